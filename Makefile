@@ -1,0 +1,71 @@
+# Everything here runs in .venv, which the first target makes: Python 3.11+, make and git are enough.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/.ready
+GAUSSMAP := $(BIN)/gaussmap
+# Matplotlib's elevation model of the Jacksboro fault: 344 x 403 heights in metres, 3 arc seconds
+# apart, rows from north to south. One cell for 8 x 8 heights leaves out their smallest folds.
+DEM = from matplotlib.cbook import get_sample_data as f; \
+	print(f("jacksboro_fault_dem.npz", asfileobj=False))
+TERRAIN = "$$($(BIN)/python -c '$(DEM)'):elevation" --spacing 74.5 -92.5 --cells 50 43
+
+.DEFAULT_GOAL := help
+.PHONY: help demo generate check-generated test coverage bench lint typecheck formulas orders errata clean
+
+help: ## list the targets
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+$(READY): pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
+		|| { echo "gaussmap needs Python 3.11 or newer: make PYTHON=python3.12 …" >&2; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade pip
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	mkdir -p $(VENV)/typing
+	ln -sfn ../.. $(VENV)/typing/gaussmap
+	touch $@
+
+demo: $(READY) ## sample a torus and real terrain: a PLY and a PNG of each in out/
+	@mkdir -p out
+	$(GAUSSMAP) sample torus --count 10000 -o out/torus.ply
+	$(GAUSSMAP) plot torus --count 2000 -o out/torus.png
+	$(GAUSSMAP) sample $(TERRAIN) --count 50000 -o out/terrain.ply
+	$(GAUSSMAP) plot $(TERRAIN) --count 3000 -o out/terrain.png
+
+generate: $(READY) ## derive all formulas and write generated/
+	$(BIN)/python -m gaussmap.symbolic
+
+check-generated: $(READY) ## show a diff and fail if generated/ is stale
+	$(BIN)/python -m gaussmap.symbolic --check
+
+test: $(READY) ## run all tests
+	$(BIN)/python -m pytest
+
+coverage: $(READY) ## run all tests without compilation, with the coverage of every line
+	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q -W ignore::RuntimeWarning --cov --cov-report=term
+
+bench: $(READY) ## run the benchmarks (ratios against the machine's own limit)
+	$(BIN)/python -m pytest benchmarks -o python_files='bench_*.py' --benchmark-only --benchmark-quiet
+
+lint: $(READY) ## check style
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+typecheck: $(READY) ## check types
+	$(BIN)/pyright
+
+formulas: $(READY) ## list the formulas; `gaussmap formulas NAME` shows one
+	@$(GAUSSMAP) formulas
+
+orders: $(READY) ## measure the orders of approximation again (docs/orders.md)
+	$(BIN)/python docs/orders.py > docs/orders.tmp
+	mv docs/orders.tmp docs/orders.md
+
+errata: $(READY) ## write the errata of the paper (docs/errata.md)
+	$(BIN)/python docs/errata.py > docs/errata.tmp
+	mv docs/errata.tmp docs/errata.md
+
+clean: ## remove what make made
+	rm -rf $(VENV) out build *.egg-info .pytest_cache .ruff_cache .hypothesis .benchmarks .coverage
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
