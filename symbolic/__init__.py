@@ -1,0 +1,17 @@
+"""The mathematics of gaussmap in SymPy: derived once, exactly, and printed as kernels and LaTeX.
+
+`formulas` holds every formula by its name. `BezierTriangle` does the algebra for one given patch.
+"""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from . import patch, spline
+from .bezier import BezierTriangle
+from .formula import Formula
+
+__all__ = ["BezierTriangle", "Formula", "formulas"]
+
+formulas: Mapping[str, Formula] = MappingProxyType(
+    {formula.name: formula for formula in (*patch.FORMULAS, *spline.FORMULAS)}
+)

@@ -1,0 +1,31 @@
+"""`python -m gaussmap.symbolic`: write generated/, or with --check show what is stale."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from .files import GENERATED, derive, differences, write
+
+
+def main(arguments: list[str] | None = None, folder: Path = GENERATED) -> int:
+    """Write a folder, or compare it; the exit code is 1 when it is stale."""
+    parser = argparse.ArgumentParser(prog="python -m gaussmap.symbolic", description=__doc__)
+    parser.add_argument(
+        "--check", action="store_true", help="write nothing; show a diff and fail if stale"
+    )
+    check = parser.parse_args(arguments).check
+    texts = derive()
+    if not check:
+        write(texts, folder)
+        return 0
+    stale = differences(texts, folder)
+    sys.stdout.writelines(stale)
+    if stale:
+        print("generated/ is stale: run `make generate` and commit the result", file=sys.stderr)
+    return 1 if stale else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,201 @@
+"""Formulas as people write them: plain text and LaTeX."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Any, cast
+
+import sympy as sp
+from sympy.printing.latex import LatexPrinter
+from sympy.printing.precedence import PRECEDENCE
+from sympy.printing.str import StrPrinter
+
+from .formula import Dot, Formula, VectorSymbol, scalar, substitute, vectors
+from .printer import PositiveFirst
+
+__all__ = ["latex", "latex_name", "latex_of", "text"]
+
+TEXT_WIDTH = 84
+LATEX_WIDTH = 66
+
+
+class Length(sp.Expr):
+    """The length of a vector."""
+
+    is_commutative = True
+    is_positive = True
+
+
+# What a program has to call by one name, as people write it.
+AS_WRITTEN = {
+    scalar("c3_twice"): 2 * scalar("c_3"),
+    scalar("n_n"): cast(sp.Expr, Length(*vectors("n"))) ** 2,
+    scalar("R_sum"): scalar("R_1") + scalar("R_2"),
+    scalar("R_product"): scalar("R_1") * scalar("R_2"),
+}
+
+
+def text(formula: Formula) -> str:
+    """Return the definitions of a formula as plain text, one a line; long lines are continued."""
+    lines = []
+    for left, right in _equations(formula):
+        name = TextPrinter().doprint(left)
+        rows = _rows(TextPrinter(), right, TEXT_WIDTH - len(name), len)
+        lines += [f"{name} = {rows[0]}", *(f"{'':{len(name)}} {row}" for row in rows[1:])]
+    return "\n".join(lines)
+
+
+def latex(formula: Formula) -> str:
+    """Return the definitions of a formula as an `aligned` block of LaTeX."""
+    lines = []
+    for left, right in _equations(formula):
+        rows = _rows(MathPrinter(), right, LATEX_WIDTH, _typeset_length)
+        lines += [f"{latex_of(left)} &= {rows[0]}", *(f"&\\quad {{}} {row}" for row in rows[1:])]
+    return "\\begin{aligned}\n" + " \\\\\n".join(lines) + "\n\\end{aligned}"
+
+
+def latex_of(expression: sp.Expr, **settings: object) -> str:
+    """Return an expression as LaTeX, vectors in bold; `settings` are those of `sympy.latex`."""
+    return MathPrinter(settings).doprint(_as_written(expression))
+
+
+def latex_name(name: str, *, bold: bool = False) -> str:
+    """Return the LaTeX of the name of a symbol."""
+    if bold and re.fullmatch("d[UVD]", name):
+        return rf"\nabla {name[1]}"
+    if re.fullmatch("[a-e]{3}", name):
+        return rf"[\mathbf{{{name}}}]"
+    letter = re.fullmatch(r"(mu|[A-Za-z])(\d*)((?:_[a-z\d]+)*)", name)
+    if letter is None:
+        word, index = cast(re.Match[str], re.fullmatch(r"(\w+?)(_[a-z])?", name)).groups()
+        return r"\mathit{" + word.replace("_", r"\_") + "}" + (index or "")
+    stem, digits, indices = letter.groups()
+    below = ",".join(x for x in (digits, *indices.split("_")) if x)
+    if stem == "mu":
+        stem, below = r"\mu", below and rf"\mathrm{{{below}}}"
+    if bold:
+        stem = rf"\boldsymbol{{{stem}}}" if stem == r"\mu" else rf"\mathbf{{{stem}}}"
+    return f"{stem}_{{{below}}}" if below else stem
+
+
+class ForPeople(PositiveFirst):
+    """For printers: the products of vectors."""
+
+    dot: str
+    cross: str
+    det: str
+
+    def _print_Dot(self, expr: sp.Expr) -> str:
+        return self.dot.join(map(cast(Any, self)._print, expr.args))
+
+    def _print_Cross(self, expr: sp.Expr) -> str:
+        return self.cross.join(map(cast(Any, self)._print, expr.args))
+
+    def _print_Det(self, expr: sp.Expr) -> str:
+        return f"{self.det}({', '.join(map(cast(Any, self)._print, expr.args))})"
+
+    def _print_Length(self, expr: sp.Expr) -> str:
+        return f"|{cast(Any, self)._print(expr.args[0])}|"
+
+
+class TextPrinter(ForPeople, StrPrinter):
+    """Print plain text."""
+
+    dot, cross, det = "·", " × ", "det"
+
+    def opening(self, size: sp.Expr) -> str:
+        """Return what stands before a sum of terms with a common coefficient."""
+        numerator = size.as_numer_denom()[0]
+        return "(" if numerator == 1 else f"{numerator}*("
+
+    def closing(self, size: sp.Expr) -> str:
+        """Return what stands after a sum of terms with a common coefficient."""
+        denominator = size.as_numer_denom()[1]
+        return ")" if denominator == 1 else f")/{denominator}"
+
+    def _print_Pow(self, expr: sp.Pow, rational: bool = False) -> str:
+        if expr.exp.is_Integer and expr.exp.is_negative:
+            return f"1/{self.parenthesize(1 / expr, PRECEDENCE['Mul'])}"
+        return super()._print_Pow(expr, rational)
+
+
+class MathPrinter(ForPeople, LatexPrinter):
+    """Print LaTeX, with vectors in bold."""
+
+    dot, cross, det = r" \cdot ", r" \times ", r"\det"
+
+    def opening(self, size: sp.Expr) -> str:
+        """Return what stands before a sum of terms with a common coefficient."""
+        return rf"{self._print(size)} \bigl( "
+
+    def closing(self, size: sp.Expr) -> str:
+        """Return what stands after a sum of terms with a common coefficient."""
+        return r" \bigr)"
+
+    def _print_Symbol(self, expr: sp.Symbol, style: str = "plain") -> str:
+        return latex_name(expr.name, bold=isinstance(expr, VectorSymbol))
+
+
+def _as_written(value: sp.Expr) -> sp.Expr:
+    """Return an expression as people write it."""
+    squares = {x: Length(x.args[0]) ** 2 for x in value.atoms(Dot) if x.args[0] == x.args[1]}
+    return substitute(value, {**AS_WRITTEN, **squares})
+
+
+def _equations(formula: Formula) -> list[tuple[sp.Expr, sp.Expr]]:
+    """Return the two sides of the definitions as people write them, without x = x."""
+    pairs = ((_as_written(x), _as_written(value)) for x, value in formula.definitions)
+    return [(left, right) for left, right in pairs if left != right]
+
+
+def _rows(
+    printer: TextPrinter | MathPrinter, value: sp.Expr, width: int, size: Callable[[str], int]
+) -> list[str]:
+    """Print a sum in rows that are about as long as `width`."""
+    rows = [""]
+    for term in _signed_terms(printer, value):
+        if rows[-1] and size(rows[-1]) + size(term) > width:
+            rows.append("")
+        rows[-1] = f"{rows[-1]} {term}".strip()
+    return rows
+
+
+def _signed_terms(printer: TextPrinter | MathPrinter, value: sp.Expr) -> list[str]:
+    """Print the terms of a sum; those with one coefficient, up to the sign, in brackets.
+
+    Two of several terms are left alone: the brackets would hide more than they save.
+    """
+    groups: dict[sp.Expr, list[sp.Expr]] = {}
+    terms = printer._as_ordered_terms(value) if value.is_Add else [value]
+    sizes = [abs(_coefficient(x)) for x in terms]
+    for term, size in zip(terms, sizes, strict=True):
+        together = size != 1 and (sizes.count(size) > 2 or sizes.count(size) == len(sizes) > 1)
+        groups.setdefault(size if together else term, []).append(term)
+    result = [x for group in groups.values() for x in _bracketed(printer, group)]
+    return [result[0].removeprefix("+ "), *result[1:]]
+
+
+def _bracketed(printer: TextPrinter | MathPrinter, terms: list[sp.Expr]) -> list[str]:
+    """Print terms with their signs; if there are several, their common coefficient once."""
+
+    def signed(term: sp.Expr) -> str:
+        printed = printer.doprint(term)
+        return f"- {printed[1:].lstrip()}" if printed.startswith("-") else f"+ {printed}"
+
+    if len(terms) == 1:
+        return [signed(terms[0])]
+    coefficient = _coefficient(terms[0])
+    first, *others = (signed(x / coefficient) for x in terms)
+    sign = "-" if coefficient.is_negative else "+"
+    first = f"{sign} {printer.opening(abs(coefficient))}{first.removeprefix('+ ')}"
+    return [first, *others[:-1], others[-1] + printer.closing(abs(coefficient))]
+
+
+def _coefficient(term: sp.Expr) -> sp.Number:
+    return term.as_coeff_Mul()[0]
+
+
+def _typeset_length(source: str) -> int:
+    """Return about how many characters wide LaTeX is when typeset."""
+    return len(re.sub(r"\\[a-zA-Z]+|[{}_^ \\]", "", source))

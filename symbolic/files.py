@@ -1,0 +1,260 @@
+"""The files of generated/: which formulas each of them holds, and how its templates are filled."""
+
+from __future__ import annotations
+
+import difflib
+import subprocess
+import sys
+import textwrap
+from collections.abc import Mapping
+from fractions import Fraction
+from pathlib import Path
+
+import sympy as sp
+
+from . import latex, patch, spline, surfaces
+from .emit import block, call, functions, render
+from .formula import Formula
+from .positions import position
+from .printer import source_of
+
+__all__ = ["GENERATED", "derive", "differences", "write"]
+
+GENERATED = Path(__file__).parent.parent / "generated"
+PROJECT = GENERATED.parent / "pyproject.toml"
+
+
+def derive() -> dict[str, str]:
+    """Return the texts of all generated files by their names."""
+    sources = {
+        "__init__.py": '"""Kernels and formulas written by `make generate`: never edit these."""\n',
+        "patch.py": patch_source(),
+        "spline.py": spline_source(),
+        "sampler.py": sampler_source(),
+        "surfaces.py": surfaces_source(),
+    }
+    pages = {"formulas.md": latex.markdown(), "formulas.tex": latex.document()}
+    return {name: formatted(text) for name, text in sources.items()} | pages
+
+
+def write(texts: Mapping[str, str], folder: Path) -> None:
+    """Write files into a folder, and remove those that are not among them."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in existing(folder).keys() - texts.keys():
+        (folder / name).unlink()
+    for name, text in texts.items():
+        (folder / name).write_text(text, encoding="utf-8", newline="\n")
+
+
+def differences(texts: Mapping[str, str], folder: Path) -> list[str]:
+    """Return a unified diff from the files of a folder to the given ones; empty if equal."""
+    old = existing(folder)
+    lines: list[str] = []
+    for name in sorted(old.keys() | texts.keys()):
+        before, after = (x.get(name, "").splitlines(keepends=True) for x in (old, texts))
+        lines += difflib.unified_diff(before, after, f"{folder.name}/{name}", f"derived/{name}")
+    return lines
+
+
+def existing(folder: Path) -> dict[str, str]:
+    """Return the texts of the files of a folder."""
+    paths = [path for path in folder.iterdir() if path.is_file()]
+    return {path.name: path.read_text(encoding="utf-8", errors="replace") for path in paths}
+
+
+def formatted(source: str) -> str:
+    """Return Python source without unused imports, formatted by the settings of this project.
+
+    Raises CalledProcessError if ruff is not installed or the source is no Python.
+    """
+    options = ["--config", str(PROJECT), "--no-cache", "--quiet", "-"]
+    for command in (["check", "--fix-only", "--select", "F401"], ["format"]):
+        run = subprocess.run(
+            [sys.executable, "-m", "ruff", *command, *options],
+            input=source,
+            stdout=subprocess.PIPE,
+            encoding="utf-8",
+            check=True,
+        )
+        source = run.stdout
+    return source
+
+
+# --- the files ------------------------------------------------------------------------------------
+
+
+def header(title: str) -> str:
+    """Return the head of a Python file: docstring with generator and options, imports, `jit`."""
+    options = (
+        f"SymPy {sp.__version__}. Passes: common subexpressions of all outputs together, in "
+        "canonical order; temporaries that are used once or are another name with a sign written "
+        "back. float64, no fast-math."
+    )
+    return render(
+        "header.py", {"title": f'"""{title}', "options": textwrap.fill(options, 92)}
+    ).rstrip()
+
+
+def patch_source() -> str:
+    """Return generated/patch.py: every formula of a patch as a function."""
+    formulas = [x for x in patch.FORMULAS if x not in (patch.SAMPLE, patch.CURVATURE_AT)]
+    title = "One quadratic patch: the formulas of symbolic/patch.py as functions of scalars."
+    return f"{header(title)}\n\n\n{functions(formulas)}\n"
+
+
+def spline_source() -> str:
+    """Return generated/spline.py: fitting, control nets, evaluation, measure."""
+    border = [
+        spline.EXTRAPOLATION,
+        spline.EDGE_POINT,
+        spline.EDGE_POINT_FROM_VERTICES,
+        spline.BEYOND_EDGE,
+        spline.BEYOND_CORNER,
+    ]
+    stores = (
+        f"nets[patch, {k}, {x}] = {component}"
+        for k, point in enumerate(patch.NET)
+        for x, component in enumerate(point.components)
+    )
+    return render(
+        "spline.py",
+        {
+            "header": header(
+                "The C1 quadratic spline: fitting, control nets, evaluation, measure."
+            ),
+            "constants": f"{_grid_constants()}\nNODE = {source_of(patch.QUADRATURE_NODE)}",
+            "formulas": functions([*border, spline.TRIANGLE, patch.MEASURE]),
+            "coefficient": block(spline.COEFFICIENT),
+            "load_vertices": _load_vertices(),
+            "coefficient_from_vertices": block(spline.COEFFICIENT_FROM_VERTICES),
+            "patch_vectors": _patch_vectors(),
+            "load": _load(spline.CONTROL_NET, "mu[{place}, {x}]"),
+            "control_net": block(spline.CONTROL_NET),
+            "store_net": "\n".join(stores),
+            "envelope": block(patch.ENVELOPE),
+            "tangents": block(patch.TANGENTS),
+            "measure": f"dA, dS = {call(patch.MEASURE)}",
+        },
+    )
+
+
+def sampler_source() -> str:
+    """Return generated/sampler.py: the loops that find the normals of patches and fill samples."""
+    called = [
+        spline.TRIANGLE,
+        patch.FORMS,
+        patch.ORIENTATION,
+        patch.CONTROL_NORMALS,
+        patch.PARABOLIC_CUBIC,
+    ]
+    net = ", ".join(f"net[{k}, {x}]" for k in range(6) for x in range(3))
+    return render(
+        "sampler.py",
+        {
+            "header": header("Sampling by normals: which patch has which normal, and where."),
+            "constants": f"{_grid_constants()}\n{_triangle_neighbours()}",
+            "formulas": functions(called),
+            "patch_vectors": _patch_vectors(),
+            "control_normals": f"{net} = {call(patch.CONTROL_NORMALS)}",
+            "parabolic_cubic": f"cubic = {call(patch.PARABOLIC_CUBIC)}",
+            "tangents": block(patch.TANGENTS),
+            "forms": block(patch.FORMS),
+            "parameters": block(patch.PARAMETERS),
+            "sample": block(patch.SAMPLE),
+            "envelope": block(patch.ENVELOPE),
+            "curvature_at": block(patch.CURVATURE_AT),
+            "store_sample": render("store_sample.py", {}).rstrip(),
+        },
+    )
+
+
+def surfaces_source() -> str:
+    """Return generated/surfaces.py: the evaluation loop of each surface, and the catalogue."""
+    catalogue = surfaces.CATALOGUE.values()
+    head = header("The catalogue of parametric surfaces: evaluation loops and data.")
+    kernels = "\n\n\n".join(_surface_kernel(x) for x in catalogue)
+    entries = "\n".join(_surface_entry(x) for x in catalogue)
+    return f"{head}\n\n\n{kernels}\n\n\nCATALOGUE = {{\n{entries}\n}}\n"
+
+
+# --- parts of the templates -----------------------------------------------------------------------
+
+
+def _grid_constants() -> str:
+    neighbours, corners = (
+        [[list(spline.quarter_turns(x, turns)) for x in places] for turns in range(4)]
+        for places in (
+            spline.NEIGHBOURS.values(),
+            [[float(x) for x in spline.SOUTH[key]] for key in ("200", "020")],
+        )
+    )
+    return (
+        f"SCALE = {spline.SCALE}.0\n"
+        f"NEIGHBOURS = np.array({neighbours})\n"
+        f"CORNERS = np.array({corners})"
+    )
+
+
+def _triangle_neighbours() -> str:
+    """Return which of the nine coefficients the formula `triangle` reads, in its order."""
+    places = [k for k, x in enumerate(spline.MU.values()) if x in spline.TRIANGLE.inputs]
+    return f"TRIANGLE_NEIGHBOURS = np.array({places})"
+
+
+def _load(formula: Formula, value: str) -> str:
+    """Return assignments to the coefficients that a formula reads; `value` has {place} and {x}."""
+    return "\n".join(
+        f"{component} = " + value.format(place=place, x=x)
+        for k, symbol in enumerate(spline.MU.values())
+        for place in [f"i + NEIGHBOURS[turn, {k}, 0], j + NEIGHBOURS[turn, {k}, 1]"]
+        if symbol in formula.inputs
+        for x, component in enumerate(symbol.components)
+    )
+
+
+def _load_vertices() -> str:
+    """Return assignments to the values round a cell; vertex (i, j) is its south-western one."""
+    return "\n".join(
+        f"{letter}{k} = values[i + {int(s + Fraction(3, 2))}, j + {int(t + Fraction(3, 2))}, x]"
+        for letter, points in spline.VERTEX_ORBITS.items()
+        for k, (s, t) in enumerate(points)
+    )
+
+
+def _patch_vectors() -> str:
+    """Return a function that loads the differences of the coefficients and calls `triangle`."""
+    difference = "scale * (mu[{place}, {x}] - mu[i, j, {x}])"
+    return render(
+        "patch_vectors.py",
+        {
+            "load_differences": _load(spline.TRIANGLE, difference),
+            "call": f"return {call(spline.TRIANGLE)}",
+        },
+    ).rstrip()
+
+
+def _surface_kernel(surface: surfaces.ParametricSurface) -> str:
+    arguments = ", ".join(["parameters", "points", *(x.symbol.name for x in surface.parameters)])
+    return render(
+        "surface.py",
+        {
+            "definition": f"def {surface.name}({arguments}):",
+            "docstring": textwrap.fill(f'"""{surface.sentence}', 92) + '\n"""',
+            "position": block(position(surface)),
+        },
+    ).rstrip()
+
+
+def _surface_entry(surface: surfaces.ParametricSurface) -> str:
+    parameters = ", ".join(
+        f'"{x.symbol.name}": ({float(x.default)!r}, {x.positive}, {x.sentence!r})'
+        for x in surface.parameters
+    )
+    domain = ", ".join(
+        f"({source_of(sp.sympify(low))}, {source_of(sp.sympify(high))})"
+        for low, high in surface.domain
+    )
+    return (
+        f'    "{surface.name}": {{"kernel": {surface.name}, "sentence": {surface.sentence!r}, '
+        f'"parameters": {{{parameters}}}, "domain": ({domain}), "ends": {surface.continuation!r}}},'
+    )

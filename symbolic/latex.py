@@ -1,0 +1,169 @@
+"""All formulas and surfaces: a page for a code host and a complete LaTeX document."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+
+import sympy as sp
+
+from . import patch, spline, surfaces
+from .display import latex_name, latex_of
+from .emit import render
+from .formula import Formula, VectorSymbol
+from .positions import position
+from .simplify import straight_line
+
+__all__ = ["document", "markdown"]
+
+GENERATOR = f"Written by `make generate` with SymPy {sp.__version__}: do not edit."
+FORMULAS = {"One quadratic patch": patch.FORMULAS, "The quadratic spline": spline.FORMULAS}
+ENDS = {
+    "none": "has edges",
+    "wrap": "is periodic",
+    "flip": "is periodic with a mirror image",
+    "pole": "ends in poles",
+}
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What is shown of a formula or a surface; in sentences and facts `$` encloses LaTeX."""
+
+    name: str
+    sentence: str
+    aligned: str
+    facts: tuple[str, ...]
+
+
+def markdown() -> str:
+    """Return generated/formulas.md, whose formulas a code host renders."""
+
+    def converted(sentence: str) -> str:
+        return _converted(sentence, mathematics=lambda x: f"$`{x}`$")
+
+    parts = []
+    for title, entries in sections().items():
+        parts.append(f"## {title}")
+        for entry in entries:
+            parts += [
+                f"### `{entry.name}`",
+                converted(entry.sentence),
+                f"```math\n{entry.aligned}\n```",
+                "\n".join(f"- {converted(fact)}" for fact in entry.facts),
+            ]
+    return render("formulas.md", {"generator": GENERATOR, "sections": "\n\n".join(parts)})
+
+
+def document() -> str:
+    """Return generated/formulas.tex, a complete LaTeX document."""
+
+    def converted(sentence: str) -> str:
+        return _converted(sentence, mathematics=lambda x: f"${x}$", plain=_escaped)
+
+    parts = []
+    for title, entries in sections().items():
+        parts.append(f"\\section{{{title}}}\n")
+        for entry in entries:
+            parts += [
+                f"\\subsection*{{{_escaped(f'`{entry.name}`')}}}",
+                converted(entry.sentence),
+                entry.aligned.replace("{aligned}", "{align*}"),
+                "\\\\*\n".join(map(converted, entry.facts)) + "\n",
+            ]
+    return render("formulas.tex", {"generator": f"% {GENERATOR}", "sections": "\n".join(parts)})
+
+
+# --- entries --------------------------------------------------------------------------------------
+
+
+@cache
+def sections() -> dict[str, list[Entry]]:
+    """Return the entries by the titles of their sections."""
+    result = {title: [_formula(x) for x in formulas] for title, formulas in FORMULAS.items()}
+    return result | {"Parametric surfaces": [_surface(x) for x in surfaces.CATALOGUE.values()]}
+
+
+def _formula(formula: Formula) -> Entry:
+    return Entry(
+        formula.name,
+        _converted(formula.description, mathematics=lambda x: f"${_named(x)}$"),
+        formula.latex(),
+        (
+            f"Source: {formula.source}.",
+            f"Inputs: {', '.join(f'${latex_of(x)}$' for x in formula.inputs)}.",
+            _operations(formula),
+        ),
+    )
+
+
+def _surface(surface: surfaces.ParametricSurface) -> Entry:
+    """Return the entry of a surface: position, domain, parameters, and how u and v end."""
+
+    def latex(expression: sp.Expr) -> str:
+        return latex_of(expression, fold_short_frac=True, mul_symbol=r" \, ")
+
+    coordinates = [latex(x).replace("\\frac", "\\dfrac") for x in surface.position]
+    gap = "12pt" if any("\\dfrac" in x for x in coordinates) else "4pt"
+    column = f" \\\\[{gap}]\n".join(coordinates)
+    intervals = [", ".join(map(latex, ends)) for ends in surface.domain]
+    lines = [
+        "\\begin{aligned}",
+        f"\\mathbf{{x}}(u, v) &= \\begin{{pmatrix}}\n{column}\n\\end{{pmatrix}} \\\\[4pt]",
+        "(u, v) &\\in " + " \\times ".join(f"[{x}]" for x in intervals),
+        "\\end{aligned}",
+    ]
+    parameters = (f"${latex_of(x.symbol)} = {x.default}$: {x.sentence}" for x in surface.parameters)
+    ends = ", ".join(
+        f"${name}$ {' and '.join(ENDS[x] for x in dict.fromkeys(ends))}"
+        for name, ends in zip("uv", surface.continuation, strict=True)
+    )
+    return Entry(
+        surface.name,
+        surface.sentence,
+        "\n".join(lines),
+        (*parameters, f"{ends}.", _operations(position(surface))),
+    )
+
+
+def _operations(formula: Formula) -> str:
+    code = straight_line(formula)
+    return f"Operations: {code.operations_before} as written, {code.operations_after} as run."
+
+
+# --- sentences ------------------------------------------------------------------------------------
+
+
+def _converted(
+    sentence: str,
+    *,
+    mathematics: Callable[[str], str],
+    plain: Callable[[str], str] = str,
+) -> str:
+    """Return a sentence with what stands between dollar signs, and the rest of it, converted."""
+    parts = sentence.split("$")
+    parts[::2] = map(plain, parts[::2])
+    parts[1::2] = map(mathematics, parts[1::2])
+    return "".join(parts)
+
+
+@cache
+def _vectors() -> set[str]:
+    """Return the names of all vectors."""
+    formulas = [x for section in FORMULAS.values() for x in section]
+    symbols = {s for x in formulas for s in (*x.inputs, *(name for name, _ in x.definitions))}
+    return {s.name for s in symbols if isinstance(s, VectorSymbol)}
+
+
+def _named(source: str) -> str:
+    """Return mathematics of a sentence as LaTeX, with the names as in the formulas."""
+    names = re.sub(r"[A-Za-z]\w*", lambda x: latex_name(x[0], bold=x[0] in _vectors()), source)
+    return names.replace("×", r"\times").replace("…", r"\ldots")
+
+
+def _escaped(text: str) -> str:
+    """Return plain text for LaTeX, with what stands between backquotes in typewriter letters."""
+    escaped = re.sub(r"([<>])", r"$\1$", re.sub(r"([_&%#])", r"\\\1", text))
+    return re.sub(r"`(.*?)`", r"\\texttt{\1}", escaped)

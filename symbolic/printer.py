@@ -1,0 +1,86 @@
+"""SymPy expressions as Python source for Numba: products instead of powers, exact numbers."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable
+from typing import Any, cast
+
+import sympy as sp
+from sympy.printing.precedence import PRECEDENCE
+from sympy.printing.pycode import PythonCodePrinter
+
+__all__ = ["PositiveFirst", "operations", "source_of"]
+
+
+class PositiveFirst:
+    """For printers: the terms of a sum in SymPy's order, but the first positive one in front."""
+
+    def _as_ordered_terms(self, expr: sp.Expr, order: str | None = None) -> list[sp.Expr]:
+        terms = cast(Any, super())._as_ordered_terms(expr, order)
+        positive = (x for x in terms if not x.as_coeff_Mul()[0].is_negative)
+        first = next(positive, terms[0])
+        return [first, *(x for x in terms if x is not first)]
+
+
+class KernelPrinter(PositiveFirst, PythonCodePrinter):
+    """Print without `**`, with integers as integers, so that integer arguments stay exact."""
+
+    def _print_Mul(self, expr: sp.Mul) -> str:
+        coefficient, rest = expr.as_coeff_Mul()
+        size = abs(coefficient)
+        above, below = [] if size == 1 else [self._print(size)], []
+        for factor in rest.as_ordered_factors():
+            base, exponent = factor.as_base_exp() if factor.is_Pow else (factor, sp.S.One)
+            (below if exponent.is_negative else above).extend(self._factors(base, abs(exponent)))
+        return ("-" if coefficient.is_negative else "") + _quotient(above, below)
+
+    def _print_Pow(self, expr: sp.Pow, rational: bool = False) -> str:
+        base, exponent = expr.as_base_exp()
+        factors = self._factors(base, abs(exponent))
+        return _quotient([], factors) if exponent.is_negative else _quotient(factors, [])
+
+    def _print_Rational(self, expr: sp.Rational) -> str:
+        numerator, denominator = int(expr.p), int(expr.q)
+        if denominator & (denominator - 1) == 0:
+            return repr(numerator / denominator)
+        return f"({numerator}.0 / {denominator}.0)"
+
+    def _factors(self, base: sp.Expr, exponent: sp.Expr) -> list[str]:
+        """Return a power with a positive exponent as factors."""
+        whole, half = divmod(exponent, 1)
+        if not whole.is_Integer or half not in (0, sp.S.Half):
+            raise ValueError(f"the exponent {exponent} is neither an integer nor a half")
+        roots = [f"math.sqrt({self._print(base)})"] if half else []
+        return [self.parenthesize(base, PRECEDENCE["Mul"])] * int(whole) + roots
+
+
+def _quotient(above: list[str], below: list[str]) -> str:
+    numerator = " * ".join(above or ["1.0"])
+    if not below:
+        return numerator
+    denominator = below[0] if len(below) == 1 else f"({' * '.join(below)})"
+    return f"{numerator} / {denominator}"
+
+
+def source_of(expression: sp.Expr) -> str:
+    """Return the expression as Python source.
+
+    Raises ValueError for exponents other than integers and halves, NotImplementedError for
+    functions that `math` does not have.
+    """
+    printer = KernelPrinter({"fully_qualified_modules": True, "allow_unknown_functions": False})
+    return cast(str, printer.doprint(expression))
+
+
+def operations(expressions: Iterable[sp.Expr]) -> int:
+    """Return how many operations and calls the source does; constants alone cost nothing."""
+    nodes = (node for x in expressions for node in ast.walk(ast.parse(source_of(x))))
+    return sum(
+        isinstance(node, ast.BinOp | ast.UnaryOp | ast.Call) and _has_variable(node)
+        for node in nodes
+    )
+
+
+def _has_variable(tree: ast.AST) -> bool:
+    return any(isinstance(node, ast.Name) and node.id != "math" for node in ast.walk(tree))

@@ -1,0 +1,98 @@
+"""From a formula to straight-line code, by a short list of passes."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass
+from functools import cache
+from typing import cast
+
+import sympy as sp
+
+from .formula import Definition, Formula, substitute
+from .printer import operations
+
+__all__ = ["StraightLine", "straight_line"]
+
+
+@dataclass(frozen=True)
+class StraightLine:
+    """Assignments in their order, and the number of operations as written and as they run."""
+
+    assignments: tuple[Definition, ...]
+    operations_before: int
+    operations_after: int
+
+
+@cache
+def straight_line(formula: Formula) -> StraightLine:
+    """Share subexpressions between the definitions of a formula, then drop needless names."""
+    definitions = formula.in_components().definitions
+    assignments = share_subexpressions(definitions)
+    assignments = write_back(assignments, other_names(assignments))
+    assignments = write_back(assignments, used_once(assignments))
+    assignments = name_temporaries(assignments)
+    return StraightLine(
+        tuple(assignments),
+        operations(value for _, value in definitions),
+        operations(value for _, value in assignments),
+    )
+
+
+def share_subexpressions(definitions: Collection[Definition]) -> list[Definition]:
+    """Eliminate common subexpressions jointly; each temporary stands just before its first use."""
+    names, values = zip(*definitions, strict=True)
+    temporaries = sp.numbered_symbols("t", cls=sp.Dummy, real=True)
+    shared, reduced = cast(
+        tuple[list[Definition], list[sp.Expr]],
+        sp.cse(values, symbols=temporaries, order="canonical"),
+    )
+    pending = dict(shared)
+    result: list[Definition] = []
+
+    def append(symbol: sp.Symbol, value: sp.Expr) -> None:
+        for needed in [x for x in pending if x in value.free_symbols]:
+            if needed in pending:
+                append(needed, pending.pop(needed))
+        result.append((symbol, value))
+
+    for name, value in zip(names, reduced, strict=True):
+        append(name, value)
+    return result
+
+
+def other_names(assignments: Iterable[Definition]) -> set[sp.Symbol]:
+    """Return the temporaries whose value is another symbol, perhaps with a sign."""
+    return {x for x, value in assignments if x.is_Dummy and (value.is_Symbol or (-value).is_Symbol)}
+
+
+def used_once(assignments: Iterable[Definition]) -> Collection[sp.Symbol]:
+    """Return the temporaries that occur once."""
+    nodes = (node for _, value in assignments for node in sp.preorder_traversal(value))
+    uses = Counter(node for node in nodes if isinstance(node, sp.Dummy))
+    return {symbol for symbol, count in uses.items() if count == 1}
+
+
+def write_back(
+    assignments: Iterable[Definition], needless: Collection[sp.Symbol]
+) -> list[Definition]:
+    """Put the values of needless symbols where they are used."""
+    values: dict[sp.Symbol, sp.Expr] = {}
+    kept: list[Definition] = []
+    for symbol, value in assignments:
+        written = substitute(value, values)
+        if symbol in needless:
+            values[symbol] = written
+        else:
+            kept.append((symbol, written))
+    return kept
+
+
+def name_temporaries(assignments: Collection[Definition]) -> list[Definition]:
+    """Call the temporaries t0, t1, … in their order, but for names that the formula has itself."""
+    symbols = {y for x, value in assignments for y in (x, *value.atoms(sp.Symbol))}
+    taken = {x.name for x in symbols if not x.is_Dummy}
+    free = (x for x in sp.numbered_symbols("t", real=True) if x.name not in taken)
+    names = dict(zip((x for x, _ in assignments if x.is_Dummy), free, strict=False))
+    return [(names.get(symbol, symbol), substitute(value, names)) for symbol, value in assignments]

@@ -1,0 +1,428 @@
+"""The catalogue of parametric surfaces: exact positions, domains, and what lies beyond the ends."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal, get_args
+
+import sympy as sp
+
+from .formula import dot
+
+__all__ = ["CATALOGUE", "Continuation", "End", "Parameter", "ParametricSurface", "u", "v"]
+
+Triple = tuple[sp.Expr, sp.Expr, sp.Expr]
+End = Literal["none", "wrap", "flip", "pole"]
+Continuation = tuple[tuple[End, End], tuple[End, End]]
+
+NONE: tuple[End, End] = ("none", "none")
+WRAP: tuple[End, End] = ("wrap", "wrap")
+FLIP: tuple[End, End] = ("flip", "flip")
+POLES: tuple[End, End] = ("pole", "pole")
+
+u, v = sp.symbols("u v", real=True)
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A number that a user may choose; `positive` says that it must be greater than zero."""
+
+    symbol: sp.Symbol
+    default: sp.Expr
+    sentence: str
+    positive: bool = True
+
+
+@dataclass(frozen=True)
+class ParametricSurface:
+    """A surface x(u,v) over the rectangle [u0,u1] × [v0,v1], and what lies beyond the rectangle.
+
+    `continuation` holds, for u and for v, what stands at the low and at the high end:
+
+    - "none": the surface has an edge here, or is cut off;
+    - "wrap": periodic, x(u1 + s, v) = x(u0 + s, v);
+    - "flip": periodic with a mirror image, x(u1 + s, v) = x(u0 + s, v0 + v1 − v);
+    - "pole": the whole end of v is one point, and the surface goes on along the opposite meridian,
+      x(u, v1 − s) = x(u + (u1 − u0)/2, v1 + s).
+    """
+
+    name: str
+    sentence: str
+    position: Triple
+    u: sp.Symbol
+    v: sp.Symbol
+    parameters: tuple[Parameter, ...]
+    domain: tuple[tuple[sp.Expr, sp.Expr], tuple[sp.Expr, sp.Expr]]
+    continuation: Continuation
+
+    def __post_init__(self) -> None:
+        """Refuse unknown symbols, a domain that is no rectangle, and ends that do not match."""
+        if not self.name.isidentifier():
+            raise ValueError(f"{self.name!r} is not an identifier")
+        known = {self.u, self.v, *self.defaults}
+        if unknown := sp.Tuple(*self.position).free_symbols - known:
+            raise ValueError(f"{self.name}: unknown symbols {sorted(map(str, unknown))}")
+        for low, high in self.domain:
+            if low.free_symbols | high.free_symbols or not (high - low).is_positive:
+                raise ValueError(f"{self.name}: [{low}, {high}] is not an interval of numbers")
+        along_u, along_v = self.continuation
+        for low, high in self.continuation:
+            if unknown := {low, high} - set(get_args(End)):
+                raise ValueError(f"{self.name}: unknown ends {sorted(unknown)}")
+            if low != high and not {low, high} <= {"none", "pole"}:
+                raise ValueError(f"{self.name}: {low!r} cannot stand opposite {high!r}")
+        if "pole" in along_u or ("pole" in along_v and along_u != WRAP):
+            raise ValueError(f"{self.name}: a pole needs to be at an end of v, and u to wrap")
+
+    @property
+    def defaults(self) -> dict[sp.Symbol, sp.Expr]:
+        """The default value of each parameter."""
+        return {parameter.symbol: parameter.default for parameter in self.parameters}
+
+    def derivative(self, *by: sp.Symbol) -> sp.Matrix:
+        """Return the partial derivative of the position by each of `by` in turn."""
+        return sp.Matrix([sp.diff(component, *by) for component in self.position])
+
+    @cached_property
+    def normal_field(self) -> Triple:
+        """The normal x_u × x_v, not normalized."""
+        x, y, z = self.derivative(self.u).cross(self.derivative(self.v))
+        return x, y, z
+
+    @cached_property
+    def gaussian_curvature(self) -> sp.Expr:
+        """The Gaussian curvature K = (L N − M²)/(E G − F²), not simplified."""
+        L, M, N, area = self._second_form
+        return (L * N - M**2) / area**4
+
+    @cached_property
+    def mean_curvature(self) -> sp.Expr:
+        """The mean curvature, positive on a sphere with outward normals, not simplified.
+
+        It is half the sum of the principal curvatures −II/I, so that a principal radius is positive
+        where the normal points away from the centre of curvature.
+        """
+        x_u, x_v = self.derivative(self.u), self.derivative(self.v)
+        E, F, G = dot(x_u, x_u), dot(x_u, x_v), dot(x_v, x_v)
+        L, M, N, area = self._second_form
+        return -(E * N - 2 * F * M + G * L) / (2 * area**3)
+
+    @cached_property
+    def _second_form(self) -> tuple[sp.Expr, sp.Expr, sp.Expr, sp.Expr]:
+        """Return L, M, N with x_u × x_v in place of the unit normal, and |x_u × x_v|."""
+        normal = sp.Matrix(self.normal_field)
+        L = dot(normal, self.derivative(self.u, self.u))
+        M = dot(normal, self.derivative(self.u, self.v))
+        N = dot(normal, self.derivative(self.v, self.v))
+        return L, M, N, sp.sqrt(dot(normal, normal))
+
+
+# --- the catalogue --------------------------------------------------------------------------------
+
+TURN = (sp.Integer(0), 2 * sp.pi)
+UNIT = (sp.Integer(0), sp.Integer(1))
+SYMMETRIC = (sp.Integer(-1), sp.Integer(1))
+
+a, b, c, d = sp.symbols("a b c d", positive=True)
+major, minor, radius, bottom, top = sp.symbols("major minor radius bottom top", positive=True)
+height, half_width, pitch, scale = sp.symbols("height half_width pitch scale", positive=True)
+amplitude, frequency, slope_u, slope_v = sp.symbols(
+    "amplitude frequency slope_u slope_v", real=True
+)
+
+TORUS = ParametricSurface(
+    name="torus",
+    sentence="The torus round the z axis, u being the angle round the axis and v the angle round "
+    "the tube, from its outer equator upwards, with normals pointing out of the tube.",
+    position=(
+        (major + minor * sp.cos(v)) * sp.cos(u),
+        (major + minor * sp.cos(v)) * sp.sin(u),
+        minor * sp.sin(v),
+    ),
+    u=u,
+    v=v,
+    parameters=(
+        Parameter(major, sp.Rational(1), "The radius of the circle in the middle of the tube."),
+        Parameter(minor, sp.Rational(7, 20), "The radius of the tube, less than major."),
+    ),
+    domain=(TURN, TURN),
+    continuation=(WRAP, WRAP),
+)
+
+SEMI_AXES = (
+    Parameter(a, sp.Rational(1), "The semi-axis along x."),
+    Parameter(b, sp.Rational(3, 5), "The semi-axis along y."),
+    Parameter(c, sp.Rational(3, 10), "The semi-axis along z."),
+)
+
+ELLIPSOID = ParametricSurface(
+    name="ellipsoid",
+    sentence="The whole ellipsoid x²/a² + y²/b² + z²/c² = 1, with the longitude u, the latitude v "
+    "(angles on the unit sphere that is stretched), poles at z = ±c, and outward normals.",
+    position=(a * sp.cos(u) * sp.cos(v), b * sp.sin(u) * sp.cos(v), c * sp.sin(v)),
+    u=u,
+    v=v,
+    parameters=SEMI_AXES,
+    domain=(TURN, (-sp.pi / 2, sp.pi / 2)),
+    continuation=(WRAP, POLES),
+)
+
+ELLIPSOID_PATCH = ParametricSurface(
+    name="ellipsoid_patch",
+    sentence="The belt of the ellipsoid between the latitudes v = ±π/3, so without its poles, with "
+    "the longitude u and outward normals.",
+    position=ELLIPSOID.position,
+    u=u,
+    v=v,
+    parameters=SEMI_AXES,
+    domain=(TURN, (-sp.pi / 3, sp.pi / 3)),
+    continuation=(WRAP, NONE),
+)
+
+SPHERE = ParametricSurface(
+    name="sphere",
+    sentence="The whole sphere round the origin, with the longitude u, the latitude v, poles on "
+    "the z axis, and outward normals.",
+    position=(
+        radius * sp.cos(u) * sp.cos(v),
+        radius * sp.sin(u) * sp.cos(v),
+        radius * sp.sin(v),
+    ),
+    u=u,
+    v=v,
+    parameters=(Parameter(radius, sp.Rational(1), "The radius."),),
+    domain=(TURN, (-sp.pi / 2, sp.pi / 2)),
+    continuation=(WRAP, POLES),
+)
+
+HYPERBOLOID = ParametricSurface(
+    name="hyperboloid",
+    sentence="The hyperboloid of one sheet x²/a² + y²/b² − z²/c² = 1, cut off at z = ±c sinh 1, u "
+    "going round the z axis and v along it, with normals pointing away from the axis.",
+    position=(a * sp.cosh(v) * sp.cos(u), b * sp.cosh(v) * sp.sin(u), c * sp.sinh(v)),
+    u=u,
+    v=v,
+    parameters=(
+        Parameter(a, sp.Rational(1), "The semi-axis of the waist along x."),
+        Parameter(b, sp.Rational(4, 5), "The semi-axis of the waist along y."),
+        Parameter(c, sp.Rational(1), "The semi-axis along z, imaginary: the waist is at z = 0."),
+    ),
+    domain=(TURN, SYMMETRIC),
+    continuation=(WRAP, NONE),
+)
+
+ELLIPTIC_PARABOLOID = ParametricSurface(
+    name="elliptic_paraboloid",
+    sentence="The graph z = x²/a² + y²/b² of x = u and y = v, with upward normals, which point to "
+    "its inside.",
+    position=(u, v, u**2 / a**2 + v**2 / b**2),
+    u=u,
+    v=v,
+    parameters=(
+        Parameter(a, sp.Rational(1), "The semi-axis along x of the ellipse at z = 1."),
+        Parameter(b, sp.Rational(3, 2), "The semi-axis along y of the ellipse at z = 1."),
+    ),
+    domain=(SYMMETRIC, SYMMETRIC),
+    continuation=(NONE, NONE),
+)
+
+HYPERBOLIC_PARABOLOID = ParametricSurface(
+    name="hyperbolic_paraboloid",
+    sentence="The saddle z = x²/a² − y²/b², a graph of x = u and y = v with upward normals.",
+    position=(u, v, u**2 / a**2 - v**2 / b**2),
+    u=u,
+    v=v,
+    parameters=(
+        Parameter(a, sp.Rational(1), "The semi-axis along x of the hyperbola at z = 1."),
+        Parameter(b, sp.Rational(3, 2), "The semi-axis along y of the hyperbola at z = −1."),
+    ),
+    domain=(SYMMETRIC, SYMMETRIC),
+    continuation=(NONE, NONE),
+)
+
+MONKEY_SADDLE = ParametricSurface(
+    name="monkey_saddle",
+    sentence="The monkey saddle z = scale (x³ − 3 x y²), a graph of x = u and y = v with upward "
+    "normals and a flat point at the origin.",
+    position=(u, v, scale * (u**3 - 3 * u * v**2)),
+    u=u,
+    v=v,
+    parameters=(Parameter(scale, sp.Rational(1, 2), "The factor of the heights."),),
+    domain=(SYMMETRIC, SYMMETRIC),
+    continuation=(NONE, NONE),
+)
+
+ENNEPER = ParametricSurface(
+    name="enneper",
+    sentence="Enneper's minimal surface, without the self-intersections that it has farther out, "
+    "in conformal parameters, with its normal at the origin pointing upwards.",
+    position=(
+        scale * (u - u**3 / 3 + u * v**2),
+        scale * (v - v**3 / 3 + v * u**2),
+        scale * (u**2 - v**2),
+    ),
+    u=u,
+    v=v,
+    parameters=(Parameter(scale, sp.Rational(1), "The factor of the size."),),
+    domain=(SYMMETRIC, SYMMETRIC),
+    continuation=(NONE, NONE),
+)
+
+CATENOID = ParametricSurface(
+    name="catenoid",
+    sentence="The minimal surface √(x² + y²) = radius cosh(z/radius), cut off at z = ±radius, u "
+    "being the angle round the z axis and v = z/radius, with normals pointing away from the axis.",
+    position=(
+        radius * sp.cosh(v) * sp.cos(u),
+        radius * sp.cosh(v) * sp.sin(u),
+        radius * v,
+    ),
+    u=u,
+    v=v,
+    parameters=(Parameter(radius, sp.Rational(1), "The radius of the waist."),),
+    domain=(TURN, SYMMETRIC),
+    continuation=(WRAP, NONE),
+)
+
+HELICOID = ParametricSurface(
+    name="helicoid",
+    sentence="One turn of the right-handed helicoid, u being the signed distance from the z axis "
+    "and v the angle, with normals pointing upwards where u > 0 and downwards where u < 0.",
+    position=(u * sp.cos(v), u * sp.sin(v), pitch * v),
+    u=u,
+    v=v,
+    parameters=(Parameter(pitch, sp.Rational(1, 2), "The rise per radian."),),
+    domain=(SYMMETRIC, (-sp.pi, sp.pi)),
+    continuation=(NONE, NONE),
+)
+
+MOEBIUS_BAND = ParametricSurface(
+    name="moebius_band",
+    sentence="The Möbius band round the z axis, u being the angle round the axis and v running "
+    "across, upright at u = 0 with its normal there pointing away from the axis, and with the "
+    "opposite normal after one turn.",
+    position=(
+        (radius + half_width * v * sp.sin(u / 2)) * sp.cos(u),
+        (radius + half_width * v * sp.sin(u / 2)) * sp.sin(u),
+        half_width * v * sp.cos(u / 2),
+    ),
+    u=u,
+    v=v,
+    parameters=(
+        Parameter(radius, sp.Rational(1), "The radius of the circle in the middle of the band."),
+        Parameter(half_width, sp.Rational(2, 5), "Half the width of the band, less than radius."),
+    ),
+    domain=(TURN, SYMMETRIC),
+    continuation=(FLIP, NONE),
+)
+
+_focus = sp.sqrt(a**2 - b**2)
+_weight = a - _focus * sp.cos(u) * sp.cos(v)
+
+DUPIN_CYCLIDE = ParametricSurface(
+    name="dupin_cyclide",
+    sentence="The ring cyclide round the ellipse x²/a² + y²/b² = 1, on which spheres of radius d − "
+    "x √(a² − b²)/a are centred, in lines of curvature u, v, with normals pointing outwards.",
+    position=(
+        (d * (_focus - a * sp.cos(u) * sp.cos(v)) + b**2 * sp.cos(u)) / _weight,
+        b * sp.sin(u) * (a - d * sp.cos(v)) / _weight,
+        b * sp.sin(v) * (_focus * sp.cos(u) - d) / _weight,
+    ),
+    u=u,
+    v=v,
+    parameters=(
+        Parameter(a, sp.Rational(1), "The semi-axis of the ellipse along x."),
+        Parameter(b, sp.Rational(24, 25), "The semi-axis of the ellipse along y, at most a."),
+        Parameter(
+            d, sp.Rational(1, 2), "The mean radius of the tube, √(a² − b²) < d < a for a ring."
+        ),
+    ),
+    domain=(TURN, TURN),
+    continuation=(WRAP, WRAP),
+)
+
+WAVY_GRAPH = ParametricSurface(
+    name="wavy_graph",
+    sentence="The graph z = amplitude sin(frequency x) cos(frequency y) of x = u and y = v, with "
+    "upward normals.",
+    position=(u, v, amplitude * sp.sin(frequency * u) * sp.cos(frequency * v)),
+    u=u,
+    v=v,
+    parameters=(
+        Parameter(amplitude, sp.Rational(1, 5), "The height of the waves.", positive=False),
+        Parameter(frequency, sp.Rational(3), "Radians per unit of length.", positive=False),
+    ),
+    domain=(SYMMETRIC, SYMMETRIC),
+    continuation=(NONE, NONE),
+)
+
+CYLINDER = ParametricSurface(
+    name="cylinder",
+    sentence="The circular cylinder round the z axis, u being the angle and v = z/height, with "
+    "normals pointing away from the axis.",
+    position=(radius * sp.cos(u), radius * sp.sin(u), height * v),
+    u=u,
+    v=v,
+    parameters=(
+        Parameter(radius, sp.Rational(1), "The radius."),
+        Parameter(height, sp.Rational(2), "The height."),
+    ),
+    domain=(TURN, UNIT),
+    continuation=(WRAP, NONE),
+)
+
+_distance = bottom + (top - bottom) * v
+
+CONE = ParametricSurface(
+    name="cone",
+    sentence="The frustum of a circular cone round the z axis, which does not reach the apex, u "
+    "being the angle and v = z/height, with normals pointing away from the axis.",
+    position=(_distance * sp.cos(u), _distance * sp.sin(u), height * v),
+    u=u,
+    v=v,
+    parameters=(
+        Parameter(bottom, sp.Rational(1), "The radius at z = 0."),
+        Parameter(top, sp.Rational(1, 2), "The radius at z = height."),
+        Parameter(height, sp.Rational(1), "The height."),
+    ),
+    domain=(TURN, UNIT),
+    continuation=(WRAP, NONE),
+)
+
+PLANE = ParametricSurface(
+    name="plane",
+    sentence="The plane z = slope_u x + slope_v y, a graph of x = u and y = v with upward normals.",
+    position=(u, v, slope_u * u + slope_v * v),
+    u=u,
+    v=v,
+    parameters=(
+        Parameter(slope_u, sp.Rational(0), "The slope along x.", positive=False),
+        Parameter(slope_v, sp.Rational(0), "The slope along y.", positive=False),
+    ),
+    domain=(SYMMETRIC, SYMMETRIC),
+    continuation=(NONE, NONE),
+)
+
+CATALOGUE: dict[str, ParametricSurface] = {
+    surface.name: surface
+    for surface in (
+        TORUS,
+        ELLIPSOID,
+        ELLIPSOID_PATCH,
+        SPHERE,
+        HYPERBOLOID,
+        ELLIPTIC_PARABOLOID,
+        HYPERBOLIC_PARABOLOID,
+        MONKEY_SADDLE,
+        ENNEPER,
+        CATENOID,
+        HELICOID,
+        MOEBIUS_BAND,
+        DUPIN_CYCLIDE,
+        WAVY_GRAPH,
+        CYLINDER,
+        CONE,
+        PLANE,
+    )
+}

@@ -1,0 +1,302 @@
+"""What is emitted computes the formulas, exactly; generated/ is up to date."""
+
+import ast
+import math
+import os
+import random
+import shutil
+import subprocess
+import sys
+from fractions import Fraction
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+import sympy as sp
+from gaussmap.symbolic import emit, files, formulas, patch, surfaces
+from gaussmap.symbolic.__main__ import main
+from gaussmap.symbolic.positions import position
+
+PYTHON_FILES = sorted(path.name for path in files.GENERATED.glob("*.py"))
+POSITIONS = {name: position(surface) for name, surface in surfaces.CATALOGUE.items()}
+
+
+# --- running source on exact numbers --------------------------------------------------------------
+
+
+class ExactLiterals(ast.NodeTransformer):
+    """Turn float literals into fractions, and take off decorators."""
+
+    def visit_Constant(self, node: ast.Constant) -> ast.expr:
+        if not isinstance(node.value, float):
+            return node
+        return ast.parse(f"Number({str(Fraction(node.value))!r})", mode="eval").body
+
+    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.AST:
+        node.decorator_list = []
+        return self.generic_visit(node)
+
+
+def exact_root(value: Fraction) -> Fraction:
+    root = Fraction(math.isqrt(value.numerator), math.isqrt(value.denominator))
+    assert root**2 == value, "choose inputs whose square root is rational"
+    return root
+
+
+EXACT = {"Number": Fraction, "math": SimpleNamespace(sqrt=exact_root)}
+
+
+def executed(source: str, names: dict[str, Any]) -> dict[str, Any]:
+    """Run source with exact literals and return all names it defines."""
+    tree = ast.fix_missing_locations(ExactLiterals().visit(ast.parse(source)))
+    namespace = dict(names)
+    exec(compile(tree, "generated", "exec"), namespace)
+    return namespace
+
+
+def exact_inputs(formula, seed: int) -> dict[str, Fraction]:
+    """Return random fractions for the inputs of a formula."""
+    generator = random.Random(seed)
+    inputs = {
+        symbol.name: Fraction(generator.randint(-40, 40) * 2 + 1, generator.randint(1, 30))
+        for symbol in formula.in_components().inputs
+    }
+    return inputs | rational_length(inputs) if formula is patch.MEASURE else inputs
+
+
+def rational_length(inputs: dict[str, Fraction]) -> dict[str, Fraction]:
+    """Return d and e for which p_u and p_v are orthogonal, with the lengths 3 |u| and 3 |v|."""
+    u, v = inputs["u"], inputs["v"]
+    result = {}
+    for axis, p_u, p_v in zip("xyz", (1, 2, 2), (2, 1, -2), strict=True):
+        a, b, c = (inputs[f"{name}_{axis}"] for name in "abc")
+        result[f"d_{axis}"] = u * p_u - a * u - b * v
+        result[f"e_{axis}"] = v * p_v - b * u - c * v
+    return result
+
+
+def expected(formula, inputs: dict[str, Fraction]) -> list[Fraction]:
+    """Evaluate the undecomposed expressions of the outputs in SymPy."""
+    numbers = {
+        symbol: sp.Rational(inputs[symbol.name].numerator, inputs[symbol.name].denominator)
+        for symbol in formula.in_components().inputs
+    }
+    values = [value.xreplace(numbers) for value in formula.expanded().values()]
+    return [Fraction(int(value.p), int(value.q)) for value in values]
+
+
+def emitted_functions() -> list[Any]:
+    """Return the functions in generated/ that are formulas: file, name, source."""
+    cases = []
+    for file in PYTHON_FILES:
+        text = (files.GENERATED / file).read_text(encoding="utf-8")
+        for node in ast.parse(text).body:
+            if isinstance(node, ast.FunctionDef) and node.name in formulas:
+                source = ast.get_source_segment(text, node)
+                cases.append(pytest.param(node.name, source, id=f"{file}:{node.name}"))
+    return cases
+
+
+@pytest.mark.parametrize(("name", "source"), emitted_functions())
+def test_generated_functions_are_exact(name, source):
+    formula = formulas[name]
+    function = executed(source, EXACT)[name]
+    for seed in range(2):
+        inputs = exact_inputs(formula, seed)
+        result = function(**inputs)
+        outputs = result if isinstance(result, tuple) else (result,)
+        assert list(outputs) == expected(formula, inputs)
+
+
+def test_every_formula_of_a_patch_is_a_function():
+    text = (files.GENERATED / "patch.py").read_text(encoding="utf-8")
+    names = [x.name for x in ast.parse(text).body if isinstance(x, ast.FunctionDef)]
+    composed = {"sample", "curvature_at"}
+    assert names == ["jit", *(x.name for x in patch.FORMULAS if x.name not in composed)]
+
+
+@pytest.mark.parametrize("formula", formulas.values(), ids=formulas)
+def test_blocks_are_exact(formula):
+    for seed in range(2):
+        inputs = exact_inputs(formula, seed)
+        names = executed(emit.block(formula), EXACT | inputs)
+        outputs = [names[symbol.name] for symbol in formula.in_components().outputs]
+        assert outputs == expected(formula, inputs)
+
+
+@pytest.mark.parametrize("formula", POSITIONS.values(), ids=POSITIONS)
+def test_blocks_of_surfaces_are_exact(formula):
+    """Run on symbols, with the functions of SymPy in the place of those of `math`."""
+    inputs = {symbol.name: symbol for symbol in formula.inputs}
+    names = executed(emit.block(formula), {"Number": sp.Rational, "math": sp} | inputs)
+    for name, value in formula.expanded().items():
+        assert sp.expand(names[name] - value) == 0 or sp.simplify(names[name] - value) == 0
+
+
+# --- the source -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("file", PYTHON_FILES)
+def test_no_powers(file):
+    tree = ast.parse((files.GENERATED / file).read_text(encoding="utf-8"))
+    assert not [node for node in ast.walk(tree) if isinstance(node, ast.Pow)]
+
+
+@pytest.mark.parametrize("file", PYTHON_FILES)
+def test_generated_files_import_nothing_but_math_numpy_numba(file):
+    tree = ast.parse((files.GENERATED / file).read_text(encoding="utf-8"))
+    assert not [node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
+    imported = [
+        x.name for node in ast.walk(tree) if isinstance(node, ast.Import) for x in node.names
+    ]
+    assert set(imported) <= {"math", "numba", "numpy"}
+
+
+@pytest.mark.parametrize("file", [name for name in PYTHON_FILES if name != "__init__.py"])
+def test_headers_say_who_wrote_them(file):
+    head = (files.GENERATED / file).read_text(encoding="utf-8").partition("import")[0]
+    assert "make generate" in head
+    assert f"SymPy {sp.__version__}" in head
+    assert "no fast-math" in " ".join(head.split())
+
+
+def operations_in(source: str) -> int:
+    """Count operations and calls in source; an operation on constants alone costs nothing."""
+
+    def is_variable(node: ast.AST) -> bool:
+        return isinstance(node, ast.Name) and node.id != "math"
+
+    return sum(
+        isinstance(node, ast.BinOp | ast.UnaryOp | ast.Call)
+        and any(map(is_variable, ast.walk(node)))
+        for node in ast.walk(ast.parse(source))
+    )
+
+
+@pytest.mark.parametrize("formula", [*formulas.values(), *POSITIONS.values()], ids=lambda x: x.name)
+def test_the_count_of_operations_is_that_of_the_source(formula):
+    comment, *code = emit.block(formula).splitlines()
+    assert comment.startswith(f"# {formula.name} ({formula.source}): ")
+    counted = comment.rpartition(", ")[2]
+    assert counted == f"{operations_in(chr(10).join(code))} here"
+
+
+def test_functions_show_formula_source_and_counts():
+    source = emit.function(formulas["parameters"])
+    assert source == (
+        "@jit\n"
+        "def parameters(D, U, V):\n"
+        '    """The parameters at which the patch has the normal n.\n'
+        "\n"
+        "        r = 1/D\n"
+        "        u = U*r\n"
+        "        v = V*r\n"
+        "\n"
+        "    Source: eq. (9); 3 operations as written, 3 here.\n"
+        '    """\n'
+        "    r = 1.0 / D\n"
+        "    u = U * r\n"
+        "    v = V * r\n"
+        "    return u, v"
+    )
+
+
+def test_long_argument_lists_are_broken():
+    definition = emit.function(formulas["support_function"]).splitlines()
+    assert definition[1] == "def support_function("
+    assert definition[4] == "):  # fmt: skip"
+    assert all(len(line) <= 100 for line in definition[:5])
+
+
+# --- templates ------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def template(tmp_path, monkeypatch):
+    monkeypatch.setattr(emit, "TEMPLATES", tmp_path)
+    (tmp_path / "loop.py.in").write_text("for k in range(3):\n    {{body}}\n{{end}}\n")
+    return "loop.py"
+
+
+def test_values_are_indented_as_their_placeholders(template):
+    filled = emit.render(template, {"body": "a = 1\n\nb = {{end}}", "end": "pass"})
+    assert filled == "for k in range(3):\n    a = 1\n\n    b = {{end}}\npass\n"
+
+
+@pytest.mark.parametrize(
+    ("values", "keys"),
+    [({"body": "x"}, r"\['end'\]"), ({"body": "", "end": "", "more": ""}, r"\['more'\]"),
+     ({"bod": "", "end": ""}, r"\['bod', 'body'\]")],
+)  # fmt: skip
+def test_keys_have_to_match(template, values, keys):
+    with pytest.raises(ValueError, match=f"loop.py and its values differ in {keys}"):
+        emit.render(template, values)
+
+
+# --- the files ------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def derived():
+    return files.derive()
+
+
+@pytest.fixture
+def copy(tmp_path, derived, monkeypatch):
+    """Return a copy of generated/ to compare with; the derivation is not repeated each time."""
+    monkeypatch.setattr("gaussmap.symbolic.__main__.derive", lambda: derived)
+    return shutil.copytree(files.GENERATED, tmp_path / "generated")
+
+
+def test_generated_is_up_to_date(derived):
+    assert derived == files.existing(files.GENERATED)
+
+
+def test_writing_into_a_new_folder(copy):
+    assert main([], copy.parent / "new" / "folder") == 0
+    assert files.existing(copy.parent / "new" / "folder") == files.existing(copy)
+
+
+def test_check_passes(copy, capsys):
+    assert main(["--check"], copy) == 0
+    assert capsys.readouterr() == ("", "")
+
+
+def test_check_shows_what_differs(copy, capsys):
+    text = (copy / "patch.py").read_text(encoding="utf-8")
+    (copy / "patch.py").write_text(text.replace("A * C - B * B", "A * C"), encoding="utf-8")
+    (copy / "spline.py").unlink()
+    (copy / "orphan.py").write_text("pass\n", encoding="utf-8")
+    before = files.existing(copy)
+    assert main(["--check"], copy) == 1
+    out, err = capsys.readouterr()
+    assert "--- generated/patch.py\n+++ derived/patch.py\n" in out
+    assert "-    D = A * C\n+    D = A * C - B * B\n" in out
+    assert "--- generated/orphan.py\n+++ derived/orphan.py\n@@ -1 +0,0 @@\n-pass\n" in out
+    assert "+++ derived/spline.py\n@@ -0,0 +1," in out
+    assert "derived/sampler.py" not in out
+    assert "stale" in err
+    assert files.existing(copy) == before
+
+
+def test_writing_removes_orphans_only(copy):
+    (copy / "orphan.py").write_text("pass\n", encoding="utf-8")
+    (copy / "folder").mkdir()
+    assert main([], copy) == 0
+    assert files.existing(copy) == files.existing(files.GENERATED)
+    assert (copy / "folder").exists()
+
+
+def test_the_command_checks_the_committed_files():
+    """Three interpreters with different seeds of the hash: each derives the committed bytes."""
+    runs = [
+        subprocess.Popen(
+            [sys.executable, "-m", "gaussmap.symbolic", "--check"],
+            env=os.environ | {"PYTHONHASHSEED": seed},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+        for seed in ("0", "1", "2")
+    ]
+    assert [(run.communicate()[0], run.returncode) for run in runs] == [("", 0)] * 3

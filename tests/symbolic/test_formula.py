@@ -1,0 +1,210 @@
+"""Formulas: vectors and scalars, components, composition, text and LaTeX."""
+
+from dataclasses import FrozenInstanceError
+
+import pytest
+import sympy as sp
+from gaussmap.symbolic import Formula, formulas, patch, spline
+from gaussmap.symbolic.formula import (
+    BEYOND_THE_PAPER,
+    Cross,
+    Det,
+    Dot,
+    VectorSymbol,
+    components,
+    compose,
+    dot,
+    flat,
+    is_vector,
+    scalar,
+    substitute,
+    vectors,
+)
+
+a, b, c = vectors("abc")
+s, t = scalar("s"), scalar("t")
+a_x, a_y, a_z = a.components
+b_x, b_y, b_z = b.components
+
+
+def built(**changes) -> Formula:
+    arguments = {"inputs": [a, b, s], "outputs": [("x", s * a + b)]} | changes
+    return Formula.build("name", "A $sentence$.", **arguments)
+
+
+# --- vectors --------------------------------------------------------------------------------------
+
+
+def test_names_of_components():
+    assert [symbol.name for symbol in VectorSymbol("p_u").components] == ["p_u_x", "p_u_y", "p_u_z"]
+    assert all(symbol.is_real for symbol in a.components)
+    assert flat([s, a]) == (s, a_x, a_y, a_z)
+    assert a.column == sp.Matrix(a.components)
+
+
+def test_components_of_products():
+    assert components(Dot(a, b)) == (a_x * b_x + a_y * b_y + a_z * b_z,)
+    (determinant,) = components(Det(a, b, c))
+    assert sp.expand(determinant - sp.Matrix.hstack(a.column, b.column, c.column).det()) == 0
+    assert components(Cross(a, b)) == (
+        a_y * b_z - a_z * b_y,
+        a_z * b_x - a_x * b_z,
+        a_x * b_y - a_y * b_x,
+    )
+
+
+def test_components_of_a_vector_expression():
+    value = (s * a - 2 * Cross(a, b)) / t + Dot(a, b) * b
+    expected = (s * a.column - 2 * a.column.cross(b.column)) / t
+    expected += dot(a.column, b.column) * b.column
+    assert [sp.expand(x) for x in components(value)] == [sp.expand(x) for x in expected.flat()]
+
+
+@pytest.mark.parametrize(
+    ("value", "answer"),
+    [(a, True), (s * a, True), (Cross(a, b), True), (Dot(a, b) * a, True), (a + b, True),
+     (s, False), (Dot(a, b), False), (Det(a, b, c), False), (sp.sqrt(Dot(a, a)), False),
+     (sp.Integer(0), False)],
+)  # fmt: skip
+def test_what_is_a_vector(value, answer):
+    assert is_vector(value) is answer
+
+
+@pytest.mark.parametrize("value", [a + s, a * b, a**2, sp.sqrt(a), 1 / a, Cross(a, b) + 1])
+def test_nonsense_is_refused(value):
+    with pytest.raises(ValueError, match="mixes scalars and vectors"):
+        is_vector(value)
+
+
+def test_substitution_is_simultaneous():
+    assert substitute(s + 2 * t, {s: t, t: s}) == t + 2 * s
+
+
+# --- formulas -------------------------------------------------------------------------------------
+
+
+def test_build_tells_vectors_from_scalars():
+    formula = built(terms=[("r", Dot(a, b))], outputs=[("x", scalar("r") * a), ("y", s)])
+    assert [symbol for symbol, _ in formula.definitions] == [
+        scalar("r"),
+        VectorSymbol("x"),
+        scalar("y"),
+    ]
+    assert formula.outputs == (VectorSymbol("x"), scalar("y"))
+    assert formula.source == BEYOND_THE_PAPER
+    assert formula.sentence == "A sentence."
+
+
+def test_in_components():
+    plain = built().in_components()
+    assert plain.inputs == (a_x, a_y, a_z, b_x, b_y, b_z, s)
+    assert plain.outputs == VectorSymbol("x").components
+    assert [value for _, value in plain.definitions] == [
+        s * a_x + b_x,
+        s * a_y + b_y,
+        s * a_z + b_z,
+    ]
+    assert plain.in_components() == plain
+
+
+def test_components_of_a_defined_vector_can_be_used():
+    formula = built(terms=[("x", s * a)], outputs=[("h", VectorSymbol("x").components[1] ** 2)])
+    assert formula.expanded() == {"h": s**2 * a_y**2}
+
+
+def test_expanded_has_inputs_only():
+    for formula in formulas.values():
+        for value in formula.expanded().values():
+            assert value.free_symbols <= set(formula.in_components().inputs)
+
+
+def test_undefined_symbols_are_refused():
+    with pytest.raises(ValueError, match=r"name: x uses undefined \['b', 't'\]"):
+        built(inputs=[a, s], outputs=[("x", s * a + t * b)])
+
+
+@pytest.mark.parametrize("name", ["s", "r"])
+def test_double_definitions_are_refused(name):
+    with pytest.raises(ValueError, match=f"name: {name} is defined twice"):
+        built(terms=[("r", s), (name, 2 * s)])
+
+
+def test_formulas_are_immutable():
+    with pytest.raises(FrozenInstanceError):
+        setattr(built(), "name", "other")  # noqa: B010
+
+
+# --- composition ----------------------------------------------------------------------------------
+
+FIRST = Formula.build("first", "", inputs=[a, s], outputs=[("r", s * Dot(a, a)), ("q", s + 1)])
+SECOND = Formula.build("second", "", inputs=[scalar("r"), t], outputs=[("h", scalar("r") * t)])
+
+
+def test_compose_feeds_the_later_parts_and_drops_what_is_not_needed():
+    both = compose("both", "", [FIRST, SECOND], source="x", outputs=[scalar("h")])
+    assert both.inputs == (a, s, t)
+    assert [symbol.name for symbol, _ in both.definitions] == ["r", "h"]
+    assert both.expanded() == {"h": s * dot(a.column, a.column) * t}
+
+
+def test_compose_keeps_a_vector_of_which_one_component_is_needed():
+    first = Formula.build("first", "", inputs=[a, s], outputs=[("x", s * a)])
+    second = Formula.build(
+        "second", "", inputs=[VectorSymbol("x")], outputs=[("h", VectorSymbol("x").components[2])]
+    )
+    both = compose("both", "", [first, second], source="x", outputs=[scalar("h")])
+    assert both.expanded() == {"h": s * a_z}
+
+
+def test_compose_refuses_two_meanings_of_a_term():
+    other = Formula.build("other", "", inputs=[s], outputs=[("r", s**2)])
+    with pytest.raises(ValueError, match="two parts define r differently"):
+        compose("both", "", [FIRST, other], source="x", outputs=[scalar("r")])
+
+
+def test_compose_refuses_an_output_that_no_part_defines():
+    with pytest.raises(ValueError, match=r"no part defines \['w'\]"):
+        compose("both", "", [FIRST, SECOND], source="x", outputs=[scalar("h"), scalar("w")])
+
+
+def test_a_sample_is_its_parts():
+    sample, parts = patch.SAMPLE.expanded(), {}
+    values: dict[sp.Symbol, sp.Expr] = {}
+    for part in (patch.FORMS, patch.PARAMETERS, patch.ENVELOPE, patch.TANGENTS, patch.CURVATURE):
+        for symbol, value in part.in_components().definitions:
+            values[symbol] = substitute(value, values)
+            parts[symbol.name] = values[symbol]
+    assert {name: parts[name] for name in sample} == sample
+
+
+# --- what users see -------------------------------------------------------------------------------
+
+
+def test_all_formulas_by_name_in_order():
+    assert list(formulas) == [x.name for x in (*patch.FORMULAS, *spline.FORMULAS)]
+    assert all(formula.name == name for name, formula in formulas.items())
+    assert not hasattr(formulas, "__setitem__")
+
+
+@pytest.mark.parametrize("formula", formulas.values(), ids=formulas)
+def test_every_formula_says_what_it_is(formula):
+    assert formula.name.isidentifier()
+    assert formula.sentence.endswith(".")
+    assert formula.description.count("$") % 2 == 0
+    assert formula.source == BEYOND_THE_PAPER or "eq" in formula.source or "Sect" in formula.source
+
+
+def test_text():
+    assert formulas["forms"].text().splitlines() == [
+        "A = n·a", "B = n·b", "C = n·c", "P = n·d", "Q = n·e",
+        "D = A*C - B**2", "U = B*Q - C*P", "V = B*P - A*Q", "W = D - U - V",
+    ]  # fmt: skip
+    assert formulas["tangents"].text().splitlines()[-1] == "N = p_u × p_v"
+    assert formulas["curvature"].text().splitlines()[-3:] == [
+        "g = 1/|N|**2", "K = D*g", "H = g*(2*B*F - A*G - C*E)/2"
+    ]  # fmt: skip
+
+
+def test_notebooks_show_the_latex():
+    formula = formulas["envelope"]
+    assert formula._repr_latex_() == f"$\\displaystyle {formula.latex()}$"

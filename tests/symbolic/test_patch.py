@@ -1,0 +1,394 @@
+"""One patch, exactly: the support function and what follows from it, against plain definitions."""
+
+import random
+from fractions import Fraction
+from itertools import product
+from typing import Any
+
+import numpy as np
+import pytest
+import sympy as sp
+from gaussmap.symbolic import BezierTriangle, patch
+from gaussmap.symbolic.formula import dot, scalar
+
+u, v, t = sp.symbols("u v t", real=True)
+n: Any = sp.Matrix(sp.symbols("n_x n_y n_z", real=True))
+x, y, z = n
+
+# (12) of the paper, and the control points that give it; those of (11), which do not
+FORMULA_12 = (
+    5 * (x**3 + y**3 + z**3)
+    + 4 * (x**2 * y + x**2 * z + x * y**2 + x * z**2 + z * y**2 + z**2 * y)
+    + 13 * x * y * z
+) / (2 * (x**2 + 3 * x * y + y**2 + 3 * x * z + 3 * y * z + z**2))
+POINTS_12 = [
+    ["3/2", 0, 0], [0, "3/2", 0], [0, 0, "3/2"], [1, 1, "1/2"], [1, "1/2", 1], ["1/2", 1, 1]
+]  # fmt: skip
+POINTS_11 = [[2, 0, 0], [0, 2, 0], [0, 0, 2], ["3/2", 0, 0], [0, "3/2", 0], [0, 0, "3/2"]]
+
+CYLINDER = [[1, 0, 1], [0, 1, 0], [0, 0, 0], ["1/2", "1/2", 0], ["1/2", 0, 0], [0, "1/2", 0]]
+FOLDED_PLANE = [[1, 0, 0], [0, 1, 0], [0, 0, 0], [0, 1, 0], [1, 1, 0], [1, 0, 0]]
+
+
+def bezier_point(points) -> Any:
+    """Return p(u,v) by the definition (10)."""
+    w = 1 - u - v
+    basis = (u**2, v**2, w**2, 2 * u * v, 2 * u * w, 2 * v * w)
+    return sum(
+        (b * sp.Matrix(point) for b, point in zip(basis, points, strict=True)), sp.zeros(3, 1)
+    )
+
+
+class Case:
+    """A random patch, its point and tangents by definition, and rational parameter points."""
+
+    def __init__(self, seed: int) -> None:
+        generator = random.Random(seed)
+        points = [[generator.randint(-9, 9) for _ in range(3)] for _ in range(6)]
+        self.triangle: Any = BezierTriangle(points)
+        self.p: Any = bezier_point(points).applyfunc(sp.expand)
+        self.p_u, self.p_v = self.p.diff(u), self.p.diff(v)
+        self.normal: Any = self.p_u.cross(self.p_v).applyfunc(sp.expand)
+        self.places = [
+            {
+                u: sp.Rational(generator.randint(-5, 9), 7),
+                v: sp.Rational(generator.randint(-5, 9), 8),
+            }
+            for _ in range(3)
+        ]
+
+    def at_normal(self, expression, place):
+        """Return the value of an expression in n for n = N(u,v)."""
+        return expression.xreplace(dict(zip(n, self.normal.xreplace(place), strict=True)))
+
+    def fundamental_forms(self, place):
+        """Return E, F, G and L, M, N, the latter with the unnormalized N(u,v)."""
+        first = [
+            dot(a, b) for a, b in ((self.p_u, self.p_u), (self.p_u, self.p_v), (self.p_v, self.p_v))
+        ]
+        second = [dot(self.normal, self.p.diff(*by)) for by in ((u, u), (u, v), (v, v))]
+        return [form.subs(place) for form in (*first, *second)]
+
+    def curvatures(self, place):
+        """Return K and the mean curvature, positive on a sphere with outward normals."""
+        E, F, G, L, M, N = self.fundamental_forms(place)
+        area = E * G - F**2
+        return (L * N - M**2) / area**2, -(E * N - 2 * F * M + G * L) / (2 * area * sp.sqrt(area))
+
+
+@pytest.fixture(scope="module", params=[1, 2])
+def case(request) -> Case:
+    return Case(request.param)
+
+
+# --- the paper's own example ----------------------------------------------------------------------
+
+
+def test_formula_12_comes_out_exactly():
+    assert sp.cancel(BezierTriangle(POINTS_12).support_function - FORMULA_12) == 0
+
+
+def test_the_printed_control_points_11_give_another_formula():
+    numerator = 18 * x**2 * z - 59 * x * y * z + 18 * x * z**2 + 18 * y**3
+    denominator = 9 * x**2 - 34 * x * y + 14 * x * z + 33 * y**2 - 34 * y * z + 9 * z**2
+    h = BezierTriangle(POINTS_11).support_function
+    assert sp.cancel(h - numerator / denominator) == 0
+    assert sp.cancel(h - FORMULA_12) != 0
+
+
+# --- the support function -------------------------------------------------------------------------
+
+
+def test_power_form_is_the_bezier_form(case):
+    point = list(case.triangle.evaluate(patch.ENVELOPE).values())
+    assert [sp.expand(a - b) for a, b in zip(point, case.p, strict=True)] == [0, 0, 0]
+    tangents = list(case.triangle.evaluate(patch.TANGENTS).values())
+    expected = [*case.p_u, *case.p_v, *case.normal]
+    assert [sp.expand(a - b) for a, b in zip(tangents, expected, strict=True)] == [0] * 9
+
+
+def test_gradient_is_the_point_with_that_normal(case):
+    for place in case.places:
+        gradient = [case.at_normal(derivative, place) for derivative in case.triangle.gradient]
+        assert gradient == list(case.p.xreplace(place))
+
+
+def test_gradient_is_the_point_with_that_normal_identically():
+    triangle = BezierTriangle(POINTS_12)
+    point = bezier_point(triangle.control_points)
+    at_n = dict(zip((u, v), triangle.parameters, strict=True))
+    difference = point.xreplace(at_n) - sp.Matrix(triangle.gradient)
+    assert difference.applyfunc(sp.cancel) == sp.zeros(3, 1)
+
+
+def test_euler(case):
+    h, gradient = case.triangle.support_function, sp.Matrix(case.triangle.gradient)
+    assert sp.cancel(dot(n, gradient) - h) == 0
+
+
+def test_support_function_is_odd_and_homogeneous(case):
+    h = case.triangle.support_function
+    scaled = h.xreplace({a: t * a for a in n})
+    assert sp.cancel(scaled - t * h) == 0  # t = −1: odd
+    numerator, denominator = h.as_numer_denom()
+    assert sp.Poly(numerator, *n).total_degree() == 3
+    assert sp.Poly(denominator, *n).total_degree() == 2
+
+
+def test_support_function_is_the_distance_of_the_tangent_plane(case):
+    for place in case.places:
+        h = case.at_normal(case.triangle.support_function, place)
+        assert h == dot(case.normal, case.p).subs(place)
+
+
+def test_parameters_invert_the_normal(case):
+    at_normal = dict(zip(n, case.normal, strict=True))
+    D, U, V, W = (case.triangle.forms[name].xreplace(at_normal) for name in "DUVW")
+    assert sp.expand(U - u * D) == sp.expand(V - v * D) == sp.expand(W - (1 - u - v) * D) == 0
+
+
+def test_hessian_annihilates_the_normal_and_is_that_of_the_formula(case):
+    hessian = case.triangle.hessian
+    assert (hessian * n).applyfunc(sp.cancel) == sp.zeros(3, 1)
+    values = case.triangle.evaluate(patch.FORMS) | linear_forms(case.triangle)
+    for place in case.places[:2]:
+        numbers = dict(zip(n, case.normal.subs(place), strict=True))
+        rows = {scalar(name): form.subs(numbers) for name, form in values.items()}
+        for name, vector in (("p_u", case.p_u), ("p_v", case.p_v)):
+            rows |= {
+                scalar(f"{name}_{a}"): b for a, b in zip("xyz", vector.subs(place), strict=True)
+            }
+        for name, entry in patch.HESSIAN.expanded().items():
+            i, j = ("xyz".index(axis) for axis in name[2:])
+            assert entry.xreplace(rows) == hessian[i, j].subs(numbers)
+
+
+def linear_forms(triangle) -> dict[str, sp.Expr]:
+    """Return A, B, C in n."""
+    values = triangle.evaluate(patch.POWER_FORM)
+    control = dict(zip(patch.NET, triangle.control_points, strict=True))
+    numbers = {
+        a: b for s, point in control.items() for a, b in zip(s.components, point, strict=True)
+    }
+    return {
+        form: dot(n, sp.Matrix([values[f"{name}_{axis}"].subs(numbers) for axis in "xyz"]))
+        for form, name in zip("ABC", "abc", strict=True)
+    }
+
+
+# --- orientation and curvature --------------------------------------------------------------------
+
+
+def test_oriented_normal_is_n_c3_over_d_squared(case):
+    at_n = dict(zip((u, v), case.triangle.parameters, strict=True))
+    normal = case.normal.xreplace(at_n)
+    expected = n * case.triangle.orientation / case.triangle.forms["D"] ** 2
+    assert (normal - expected).applyfunc(sp.cancel) == sp.zeros(3, 1)
+
+
+def test_orientation_is_positive_at_oriented_normals(case):
+    for place in case.places:
+        c3 = case.at_normal(case.triangle.orientation, place)
+        assert c3 > 0
+        assert case.triangle.orientation.xreplace({a: -a for a in n}) == sp.expand(
+            -case.triangle.orientation
+        )
+
+
+def test_gaussian_curvature_is_that_of_the_fundamental_forms(case):
+    for place in case.places:
+        K, _ = case.curvatures(place)
+        assert case.at_normal(case.triangle.gaussian_curvature, place) == K
+
+
+def test_mean_curvature_is_that_of_the_fundamental_forms_and_of_the_radii(case):
+    for place in case.places:
+        K, H = case.curvatures(place)
+        assert same_root(case.at_normal(case.triangle.mean_curvature, place), H)
+        larger, smaller = (case.at_normal(r, place) for r in case.triangle.principal_radii)
+        assert sp.expand(larger * smaller) == 1 / K
+        assert same_root((larger + smaller) * K / 2, H)
+        assert larger >= smaller
+
+
+def same_root(left: sp.Expr, right: sp.Expr) -> bool:
+    """Compare two signed square roots of rational numbers, exactly."""
+    return sp.expand(left**2) == sp.expand(right**2) and bool(left * right > 0)
+
+
+def test_formulas_of_curvature_agree(case):
+    for place in case.places[:2]:
+        K, H = case.curvatures(place)
+        normal = case.normal.subs(place)
+        unit = normal / sp.sqrt(dot(normal, normal))
+        numbers = {scalar(f"n_{a}"): b for a, b in zip("xyz", unit, strict=True)} | place
+        sample = case.triangle.evaluate(patch.SAMPLE)
+        at = case.triangle.evaluate(patch.CURVATURE_AT)
+        for values in (sample, at):
+            assert sp.simplify(values["K"].subs(numbers)) == K
+            assert sp.simplify(values["H"].subs(numbers) - H) == 0
+        assert [sp.simplify(sample[name].subs(numbers)) for name in "uv"] == [place[u], place[v]]
+        measure = {k: e.subs(place) for k, e in case.triangle.evaluate(patch.MEASURE).items()}
+        assert measure["dA"] ** 2 == dot(normal, normal)
+        assert sp.simplify(measure["dS"] / measure["dA"]) == K
+
+
+def test_radii_formula_is_the_reciprocal_of_curvature():
+    radii, curvature = patch.RADII.expanded(), patch.CURVATURE.expanded()
+    assert sp.cancel(radii["R_product"] * curvature["K"]) == 1
+    assert sp.cancel(radii["R_sum"] * curvature["K"] / 2 - curvature["H"]) == 0
+
+
+@pytest.mark.parametrize(("sign", "order"), [(1, [0, 1, 2, 3, 4, 5]), (-1, [1, 0, 2, 3, 5, 4])])
+def test_radii_are_positive_where_normals_point_away_from_the_centre(sign, order):
+    """p = (u, v, −(u² + v²)/6) osculates a sphere of radius 3 whose pole is the origin."""
+    sixth = sp.Rational(1, 6)
+    cap = [
+        [1, 0, -sixth],
+        [0, 1, -sixth],
+        [0, 0, 0],
+        ["1/2", "1/2", 0],
+        ["1/2", 0, 0],
+        [0, "1/2", 0],
+    ]
+    triangle = BezierTriangle([cap[k] for k in order])
+    pole = dict(zip(n, (0, 0, 5 * sign), strict=True))
+    assert triangle.orientation.subs(pole) > 0
+    assert [r.subs(pole) for r in triangle.principal_radii] == [3 * sign, 3 * sign]
+    assert triangle.mean_curvature.subs(pole) == sp.Rational(sign, 3)
+    assert triangle.gaussian_curvature.subs(pole) == sp.Rational(1, 9)
+
+
+# --- the Gaussian image ---------------------------------------------------------------------------
+
+
+def test_boundary_cones_vanish_on_the_normals_along_the_edges(case):
+    edges = ({u: 0, v: t}, {u: t, v: 0}, {u: t, v: 1 - t})
+    for cone, edge in zip(case.triangle.boundary_cones, edges, strict=True):
+        normal = case.normal.xreplace({key: sp.sympify(x) for key, x in edge.items()})
+        assert cone == cone.T
+        assert cone != sp.zeros(3, 3)
+        assert sp.expand((normal.T * cone * normal)[0]) == 0
+
+
+def test_control_normals_reproduce_the_normal_field(case):
+    values = case.triangle.evaluate(patch.CONTROL_NORMALS)
+    points = [
+        [values[f"N{index}_{axis}"] for axis in "xyz"]
+        for index in ("200", "020", "002", "110", "101", "011")
+    ]
+    assert (bezier_point(points) - case.normal).applyfunc(sp.expand) == sp.zeros(3, 1)
+
+
+def test_parabolic_cubic_is_d_of_the_normal_field(case):
+    D = case.triangle.forms["D"].xreplace(dict(zip(n, case.normal, strict=True)))
+    net = case.triangle.evaluate(patch.PARABOLIC_CUBIC)
+    cubic = sum(
+        patch.multinomial(i, j, 3 - i - j) * u**i * v**j * (1 - u - v) ** (3 - i - j)
+        * net[f"D{i}{j}{3 - i - j}"]
+        for i, j in product(range(4), repeat=2)
+        if i + j <= 3
+    )  # fmt: skip
+    assert sp.expand(cubic - D) == 0
+    assert sp.Poly(sp.expand(D), u, v).total_degree() == 3
+
+
+def test_bernstein_coefficients():
+    assert patch.bernstein(u * v, 2) == {
+        "200": 0, "110": sp.Rational(1, 2), "101": 0, "020": 0, "011": 0, "002": 0
+    }  # fmt: skip
+    assert set(patch.bernstein(sp.Integer(7), 3).values()) == {7}
+
+
+def test_quadrature_is_exact_on_quadratics():
+    node = patch.QUADRATURE_NODE
+    nodes = [(1 - 2 * node, node), (node, 1 - 2 * node), (node, node)]
+    for i, j in ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)):
+        integral = sp.integrate(u**i * v**j, (u, 0, 1 - v), (v, 0, 1))
+        assert sum(r**i * s**j for r, s in nodes) / 6 == integral
+
+
+def test_a_writing_that_is_not_what_was_derived_is_refused():
+    with pytest.raises(ArithmeticError, match="is not"):
+        patch._written(scalar("u") ** 2, patch.GRADIENT[0])
+
+
+# --- what a triangle may be made of ---------------------------------------------------------------
+
+
+def test_floats_are_taken_at_their_binary_value_and_strings_at_their_decimal_one():
+    row = ["0.1", 0.1, np.float32(0.1)]
+    values: Any = BezierTriangle([row] * 6).control_points[0]
+    exact = [Fraction(1, 10), Fraction(0.1), Fraction(float(np.float32(0.1)))]
+    assert list(values) == [sp.Rational(a.numerator, a.denominator) for a in exact]
+
+
+def test_rationals_of_every_kind_are_kept():
+    kinds = [sp.Rational(1, 3), Fraction(1, 3), "1/3"]
+    thirds: Any = BezierTriangle([kinds] * 6).control_points[5]
+    sevens: Any = BezierTriangle([[np.int64(7), 7, "7"]] * 6).control_points[0]
+    assert set(thirds) == {sp.Rational(1, 3)}
+    assert set(sevens) == {7}
+
+
+def test_symbols():
+    s = sp.Symbol("s", positive=True)
+    scaled = BezierTriangle([[s * sp.Rational(a) for a in point] for point in POINTS_12])
+    assert sp.cancel(scaled.support_function - s * FORMULA_12) == 0
+    mixed = BezierTriangle([[0.5 * s, 0, 0], *POINTS_12[1:]])
+    assert mixed.control_points[0][0] == s / 2
+
+
+def test_symbols_that_the_formulas_use_themselves_do_not_get_mixed_up():
+    """A control point may be called a_x, or even D: substitution happens all at once."""
+    named = BezierTriangle([[scalar("a_x"), scalar("D"), scalar("d_y")], *POINTS_12[1:]])
+    other = BezierTriangle([[scalar("q1"), scalar("q2"), scalar("q3")], *POINTS_12[1:]])
+    renaming = {scalar("q1"): scalar("a_x"), scalar("q2"): scalar("D"), scalar("q3"): scalar("d_y")}
+    assert sp.expand(named.forms["U"] - other.forms["U"].xreplace(renaming)) == 0
+
+
+@pytest.mark.parametrize(
+    "points",
+    [
+        5,
+        [],
+        POINTS_12[:5],
+        [*POINTS_12, [0, 0, 0]],
+        [[0, 0]] * 6,
+        [[0, 0, 0, 0]] * 6,
+        ["abc"] * 6,
+        [0, 1, 2, 3, 4, 5],
+        [[0, 0, float("nan")], *POINTS_12[1:]],
+        [[0, 0, float("inf")], *POINTS_12[1:]],
+        [[0, 0, 1j], *POINTS_12[1:]],
+        [[0, 0, sp.I], *POINTS_12[1:]],
+        [[0, 0, "1/0"], *POINTS_12[1:]],
+        [[0, 0, "2 +"], *POINTS_12[1:]],
+        [[0, 0, None], *POINTS_12[1:]],
+        [[0, 0, True], *POINTS_12[1:]],
+        [[0, 0, [1]], *POINTS_12[1:]],
+        [[0, 0, sp.Matrix([1])], *POINTS_12[1:]],
+        [[0, 0, scalar("n_x")], *POINTS_12[1:]],
+        [[0, 0, scalar("u")], *POINTS_12[1:]],
+    ],
+)
+def test_bad_input_is_refused(points):
+    with pytest.raises(ValueError, match=r"control_points|coordinate|[Ss]ympify"):
+        BezierTriangle(points)
+
+
+def test_a_developable_patch_has_no_support_function():
+    cylinder = BezierTriangle(CYLINDER)
+    assert cylinder.forms["D"] == 0
+    assert set(cylinder.evaluate(patch.PARABOLIC_CUBIC).values()) == {0}
+    for name in ("parameters", "support_function", "gradient", "hessian", "gaussian_curvature"):
+        with pytest.raises(ValueError, match="developable"):
+            getattr(cylinder, name)
+
+
+def test_a_folded_plane_has_no_curvature():
+    folded = BezierTriangle(FOLDED_PLANE)
+    assert folded.forms["D"] != 0
+    assert folded.orientation == 0
+    with pytest.raises(ValueError, match="no regular point"):
+        _ = folded.gaussian_curvature

@@ -1,0 +1,285 @@
+"""The spline, exactly: what makes it C¹, and that it reproduces quadratics."""
+
+import random
+from fractions import Fraction
+from itertools import product
+from typing import Any
+
+import pytest
+import sympy as sp
+from gaussmap.symbolic import patch, spline
+from gaussmap.symbolic.formula import substitute
+
+HALF = Fraction(1, 2)
+NET: Any = spline.NET
+CELLS = [(i, j) for i in range(-2, 3) for j in range(-2, 3)]  # the support and one ring more
+ORDINATES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))  # pairs of corners
+MONOMIALS = [(r, s) for r, s in product(range(3), repeat=2) if r + s <= 2]
+
+
+class Piece:
+    """A quadratic over a triangle, by its Bézier ordinates at the places of the net."""
+
+    def __init__(self, triangle, net) -> None:
+        self.triangle = triangle
+        self.ordinates = [
+            [net.get(spline.middle(p, q), Fraction(0)) for q in triangle] for p in triangle
+        ]
+        (px, py), (qx, qy), (rx, ry) = triangle
+        area = (qx - px) * (ry - py) - (qy - py) * (rx - px)
+        self.slopes = [
+            ((qy - ry) / area, (rx - qx) / area),
+            ((ry - py) / area, (px - rx) / area),
+            ((py - qy) / area, (qx - px) / area),
+        ]  # the gradients of the barycentric coordinates
+
+    def barycentric(self, point):
+        """Return the barycentric coordinates: each is 0 at the two other corners, and linear."""
+        corners = [self.triangle[k - 2] for k in range(3)]
+        return [
+            sum(s * (x - c) for s, x, c in zip(slope, point, corner, strict=True))
+            for slope, corner in zip(self.slopes, corners, strict=True)
+        ]
+
+    def value(self, point):
+        w = self.barycentric(point)
+        return sum(w[i] * w[j] * self.ordinates[i][j] for i, j in product(range(3), repeat=2))
+
+    def gradient(self, point):
+        w = self.barycentric(point)
+        by_weight = [2 * sum(w[j] * self.ordinates[i][j] for j in range(3)) for i in range(3)]
+        return [sum(by_weight[i] * self.slopes[i][x] for i in range(3)) for x in range(2)]
+
+
+def pieces(net) -> list[Piece]:
+    return [Piece(triangle, net) for triangle in spline.triangles(CELLS)]
+
+
+@pytest.fixture(scope="module")
+def net():
+    return spline.box_spline_net()
+
+
+@pytest.fixture
+def numbers():
+    generator = random.Random(7)
+    return lambda: Fraction(generator.randint(-20, 20), generator.randint(1, 9))
+
+
+# --- the box spline -------------------------------------------------------------------------------
+
+
+def test_c1_across_every_edge(net):
+    neighbours = {}
+    for piece in pieces(net):
+        for k in range(3):
+            edge = frozenset((piece.triangle[k], piece.triangle[k - 1]))
+            neighbours.setdefault(edge, []).append(piece)
+    inner = {edge: two for edge, two in neighbours.items() if len(two) == 2}
+    assert len(inner) == 4 * 25 + 2 * 4 * 5  # half diagonals, and edges between cells
+    for edge, (left, right) in inner.items():
+        for end in edge:
+            assert left.value(end) == right.value(end)
+            assert left.gradient(end) == right.gradient(end)
+
+
+def test_not_smoother_than_that(net):
+    """Across the diagonals of an outer cell the second derivatives jump."""
+    south, east = (Piece(triangle, net) for triangle in spline.triangles([(1, 0)])[:2])
+    middle, vertex = (Fraction(1), Fraction(0)), (3 * HALF, HALF)
+    assert south.gradient(middle) == east.gradient(middle)
+    assert south.gradient(vertex) != east.gradient(vertex)
+
+
+def test_support_is_the_octagon(net):
+    inside = {place for place, value in net.items() if value}
+    assert inside
+    assert all(abs(x) < 3 * HALF and abs(y) < 3 * HALF and abs(x) + abs(y) < 2 for x, y in inside)
+    assert all(value > 0 for place, value in net.items() if place in inside)
+    assert max(net.values()) == net[Fraction(0), Fraction(0)] == HALF
+
+
+def test_symmetric_as_the_square(net):
+    for (x, y), value in net.items():
+        assert net[y, x] == net[-x, y] == value
+
+
+def test_translates_sum_to_one(net, numbers):
+    for triangle in spline.triangles([(0, 0)]):
+        for i, j in ORDINATES:
+            place = spline.middle(triangle[i], triangle[j])
+            assert sum(net.get((place[0] - r, place[1] - s), 0) for r, s in CELLS) == 1
+            assert sum(spline.net_weights(place).values()) == 1
+
+
+def test_integral_is_one(net):
+    quarter_cell = Fraction(1, 4)
+    means = [sum(x.ordinates[i][j] for i, j in ORDINATES) / 6 for x in pieces(net)]
+    assert quarter_cell * sum(means) == 1
+
+
+def test_conditions_that_leave_a_choice_are_refused(monkeypatch):
+    """The C¹ quadratics on one cell alone, with no border to vanish on, have dimension 8."""
+    monkeypatch.setattr(spline, "NEIGHBOURS", {"c": (0, 0)})
+    with pytest.raises(ArithmeticError, match="8 functions"):
+        spline.box_spline_net.__wrapped__()
+
+
+# --- nets -----------------------------------------------------------------------------------------
+
+
+def net_of_cell(mu, turn: int) -> dict[str, Fraction]:
+    """Return the net of a triangle of the central cell from its 3 × 3 coefficients, by NET."""
+    turned = {
+        name: mu[spline.quarter_turns(place, turn)] for name, place in spline.NEIGHBOURS.items()
+    }
+    values = {
+        spline.MU[name]: sp.Rational(x.numerator, x.denominator) for name, x in turned.items()
+    }
+    return {x.name[1:]: spline.fraction(y.xreplace(values)) for x, y in NET.items()}
+
+
+def averaged(mu, place) -> Fraction:
+    """Return a Bézier point of the central cell by local averaging."""
+    x, y = place
+
+    def edge(x, y):
+        """Return the Bézier point in the middle of an edge between two cells."""
+        i, j = (int(2 * x), int(2 * y))
+        return (mu[0, 0] + mu[i, j]) / 2
+
+    def half_diagonal(x, y):
+        return (edge(2 * x, Fraction(0)) + edge(Fraction(0), 2 * y)) / 2
+
+    if (x, y) == (0, 0):
+        quarter = Fraction(1, 4)
+        return (half_diagonal(quarter, quarter) + half_diagonal(-quarter, -quarter)) / 2
+    if abs(x) == abs(y) == HALF:
+        i, j = int(2 * x), int(2 * y)
+        return (mu[0, 0] + mu[i, 0] + mu[0, j] + mu[i, j]) / 4
+    return half_diagonal(x, y) if x and y else edge(x, y)
+
+
+@pytest.mark.parametrize("turn", range(4))
+def test_net_is_local_averaging(numbers, turn):
+    mu = {(i, j): numbers() for i, j in product((-1, 0, 1), repeat=2)}
+    for key, value in net_of_cell(mu, turn).items():
+        assert value == averaged(mu, spline.quarter_turns(spline.SOUTH[key], turn))
+
+
+def test_triangle_is_the_power_form_of_the_net():
+    """Its vectors are those of POWER_FORM times SCALE, the point p relative to the coefficient."""
+    values: dict[Any, Any] = dict(spline.TRIANGLE.definitions)
+    differences = {x: x - spline.MU["c"] for x in spline.MU.values() if x != spline.MU["c"]}
+    for symbol, vector in patch.POWER_FORM.definitions:
+        expected = substitute(vector, NET) - (spline.MU["c"] if symbol.name == "p" else 0)
+        assert sp.expand(values[symbol].xreplace(differences) - spline.SCALE * expected) == 0
+    weights = [
+        weight for value in values.values() for weight in value.as_coefficients_dict().values()
+    ]
+    assert all(weight.is_Integer for weight in weights)
+    assert sp.igcd(*weights) == 1
+
+
+# --- functionals ----------------------------------------------------------------------------------
+
+
+def monomial(powers, point) -> Fraction:
+    return Fraction(point[0]) ** powers[0] * Fraction(point[1]) ** powers[1]
+
+
+def applied(formula, *values: Fraction) -> Fraction:
+    """Return the only output of a formula for these inputs."""
+    numbers = [sp.Rational(x.numerator, x.denominator) for x in values]
+    (output,) = formula.expanded().values()
+    return spline.fraction(output.xreplace(dict(zip(formula.inputs, numbers, strict=True))))
+
+
+FUNCTIONALS = {
+    "coefficient": [(0, 0), *spline.orbit(HALF, HALF)],
+    "coefficient_from_centres": [(0, 0), (-1, 0), (1, 0), (0, -1), (0, 1)],
+    "coefficient_from_vertices": [*spline.orbit(HALF, HALF), *spline.orbit(HALF, 3 * HALF)],
+}
+
+
+@pytest.mark.parametrize("name", FUNCTIONALS)
+def test_the_spline_of_a_quadratic_is_that_quadratic(name, numbers):
+    """Fit all six monomials with a functional and read the spline at random places of a cell."""
+    (formula,) = [x for x in spline.FORMULAS if x.name == name]
+    for powers in MONOMIALS:
+        mu = {
+            (i, j): applied(
+                formula, *(monomial(powers, (i + x, j + y)) for x, y in FUNCTIONALS[name])
+            )
+            for i, j in product((-1, 0, 1), repeat=2)
+        }
+        for turn, triangle in enumerate(spline.triangles([(0, 0)])):
+            places = {spline.quarter_turns(place, turn): key for key, place in spline.SOUTH.items()}
+            ordinates = net_of_cell(mu, turn)
+            piece = Piece(triangle, {place: ordinates[key] for place, key in places.items()})
+            for point in [(numbers(), numbers()) for _ in range(6)]:
+                assert piece.value(point) == monomial(powers, point)
+
+
+def test_weights_of_the_functionals():
+    for orbits, weights in (
+        ((spline.CENTRE, spline.orbit(HALF, HALF)), [2, Fraction(-1, 4)]),
+        (
+            (spline.CENTRE, spline.orbit(Fraction(0), Fraction(1))),
+            [Fraction(3, 2), Fraction(-1, 8)],
+        ),
+    ):
+        assert spline.coefficient_weights(*orbits) == weights
+
+
+@pytest.mark.parametrize(
+    "orbits",
+    [
+        [[(Fraction(0), Fraction(0))]],
+        [[(Fraction(0), Fraction(0))], spline.orbit(HALF, HALF), spline.orbit(HALF, 3 * HALF)],
+    ],
+    ids=["too few", "too many"],
+)
+def test_points_that_do_not_determine_a_functional_are_refused(orbits):
+    with pytest.raises(ArithmeticError, match="do not determine"):
+        spline.coefficient_weights(*orbits)
+
+
+def test_extrapolation_is_3_minus_3_1():
+    assert spline.extrapolation_weights() == [3, -3, 1]
+    for power in range(3):
+        values = [Fraction(k) ** power for k in range(4)]
+        assert applied(spline.EXTRAPOLATION, *values[1:]) == values[0]
+
+
+# --- the border -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("formula", "points"),
+    [
+        (spline.EDGE_POINT, (0, -HALF, HALF)),
+        (spline.EDGE_POINT_FROM_VERTICES, (-HALF, HALF, -3 * HALF, 3 * HALF)),
+    ],
+)
+def test_edge_points_are_exact_on_quadratics(formula, points):
+    for power in range(3):
+        ends = (Fraction(-HALF) ** power, HALF**power)
+        middle = 2 * Fraction(0) ** power - sum(ends) / 2
+        assert applied(formula, *(Fraction(x) ** power for x in points)) == middle
+
+
+@pytest.mark.parametrize(
+    ("formula", "point"), [(spline.BEYOND_EDGE, "b110"), (spline.BEYOND_CORNER, "b200")]
+)
+def test_coefficients_beyond_the_border_give_the_point_on_it(formula, point):
+    """In the net of the cell the coefficient gives back the Bézier point that it was made from."""
+    ((unknown, value),) = formula.definitions
+    (weights,) = [y.as_coefficients_dict() for x, y in spline.NET.items() if x.name == point]
+    around = {symbol.name: weight for symbol, weight in weights.items()}
+    others = sum(
+        weight * sp.Symbol(name, real=True)
+        for name, weight in around.items()
+        if name != unknown.name
+    )
+    assert sp.expand(around[unknown.name] * value + others) == sp.Symbol("f", real=True)
