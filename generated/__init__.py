@@ -1,0 +1,1 @@
+"""Kernels and formulas written by `make generate`: never edit these."""

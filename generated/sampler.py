@@ -1,0 +1,1063 @@
+"""Sampling by normals: which patch has which normal, and where.
+
+Written by `make generate` (python -m gaussmap.symbolic): do not edit, change symbolic/ instead.
+SymPy 1.14.0. Passes: common subexpressions of all outputs together, in canonical order;
+temporaries that are used once or are another name with a sign written back. float64, no
+fast-math.
+"""
+
+import math
+
+import numba
+import numpy as np
+
+OPTIONS = {"nogil": True, "error_model": "numpy", "fastmath": False}
+
+
+def jit(function):
+    """Compile on the first call; keep the machine code on disk where a folder can be written."""
+    try:
+        return numba.njit(cache=True, **OPTIONS)(function)
+    except RuntimeError:  # no writable cache folder
+        return numba.njit(**OPTIONS)(function)
+
+
+# fill_samples loads a patch with its first sample, which a type checker cannot see.
+# pyright: reportPossiblyUnboundVariable=false
+
+# The nine coefficients round a cell, in reading order from the south-west, after 0 to 3 quarter
+# turns; and the corners u = 1, v = 1 of the triangle (w = 1 is the centre of the cell).
+SCALE = 8.0
+NEIGHBOURS = np.array(
+    [
+        [[-1, -1], [0, -1], [1, -1], [-1, 0], [0, 0], [1, 0], [-1, 1], [0, 1], [1, 1]],
+        [[1, -1], [1, 0], [1, 1], [0, -1], [0, 0], [0, 1], [-1, -1], [-1, 0], [-1, 1]],
+        [[1, 1], [0, 1], [-1, 1], [1, 0], [0, 0], [-1, 0], [1, -1], [0, -1], [-1, -1]],
+        [[-1, 1], [-1, 0], [-1, -1], [0, 1], [0, 0], [0, -1], [1, 1], [1, 0], [1, -1]],
+    ]
+)
+CORNERS = np.array(
+    [
+        [[-0.5, -0.5], [0.5, -0.5]],
+        [[0.5, -0.5], [0.5, 0.5]],
+        [[0.5, 0.5], [-0.5, 0.5]],
+        [[-0.5, 0.5], [-0.5, -0.5]],
+    ]
+)
+TRIANGLE_NEIGHBOURS = np.array([0, 1, 2, 3, 5, 7])
+
+# Rounding, in units of the largest coefficient difference of a patch. The integer weights of a vector
+# sum to at most 12 in modulus, and a scalar product with a unit normal adds three roundings, so that
+# 2⁻⁴³ bounds the error of A, B, C, P, Q with a factor of 6 to spare.
+FORM_ERROR = math.ldexp(1.0, -43)
+# U, V, W are compared with the bound of their error; D has to exceed it by this factor for u = U/D.
+ACCURATE = 65536.0
+# The coordinates themselves carry a few roundings of the largest coordinate.
+DATA_ERROR = math.ldexp(64.0, -52)
+# Control normals shorter than this (relative to the square of the tangents) are a singular point.
+SINGULAR = math.ldexp(1.0, -30)
+# The error of a control normal, as an angle: ANGLE_ERROR and, of importance for nearly singular patches
+# only, SINGULAR_ERROR times the length of a singular one, relative to its own.
+ANGLE_ERROR = math.ldexp(1.0, -40)
+SINGULAR_ERROR = math.ldexp(1.0, -10)
+
+REGULAR = 0
+WIDE = 1
+INVISIBLE = 2
+
+
+# --- formulas -------------------------------------------------------------------------------------
+
+
+@jit
+def triangle(
+    mu_sw_x, mu_sw_y, mu_sw_z, mu_s_x, mu_s_y, mu_s_z, mu_se_x, mu_se_y, mu_se_z, mu_w_x,
+    mu_w_y, mu_w_z, mu_e_x, mu_e_y, mu_e_z, mu_n_x, mu_n_y, mu_n_z
+):  # fmt: skip
+    """The vectors of the quadratic patch over the south triangle of a cell, times 8, from the
+    differences mu_s, … of the neighbouring coefficients from that of the cell: integer weights,
+    so that integers give exact results.
+
+        a = 2*(mu_e + mu_n - mu_s - mu_w) + 4*mu_sw
+        b = 2*(mu_n - mu_e + mu_s - mu_w)
+        c = 2*(mu_n - mu_e - mu_s + mu_w) + 4*mu_se
+        d = 2*(mu_s - mu_e - mu_n + mu_w)
+        e = 2*(mu_e - mu_n + mu_s - mu_w)
+        p = mu_e + mu_n + mu_s + mu_w
+
+    Source: Sect. 3.1 and eq. (8); 126 operations as written, 69 here.
+    """
+    t0 = 2 * mu_w_x
+    t1 = 2 * mu_n_x
+    t2 = 2 * mu_s_x
+    t3 = 2 * mu_e_x
+    t4 = t3 - t2
+    t5 = t1 - t0 + t4
+    a_x = 4 * mu_sw_x + t5
+    t6 = 2 * mu_w_y
+    t7 = 2 * mu_n_y
+    t8 = 2 * mu_s_y
+    t9 = 2 * mu_e_y
+    t10 = t9 - t8
+    t11 = t10 - t6 + t7
+    a_y = 4 * mu_sw_y + t11
+    t12 = 2 * mu_w_z
+    t13 = 2 * mu_n_z
+    t14 = 2 * mu_s_z
+    t15 = 2 * mu_e_z
+    t16 = t15 - t14
+    t17 = t13 - t12 + t16
+    a_z = 4 * mu_sw_z + t17
+    b_x = t1 - t0 - t4
+    b_y = t7 - t10 - t6
+    b_z = t13 - t12 - t16
+    c_x = 4 * mu_se_x + t0 + t1 - t2 - t3
+    c_y = 4 * mu_se_y + t6 + t7 - t8 - t9
+    c_z = 4 * mu_se_z + t12 + t13 - t14 - t15
+    d_x = -t5
+    d_y = -t11
+    d_z = -t17
+    e_x = t2 - t0 - t1 + t3
+    e_y = t8 - t6 - t7 + t9
+    e_z = t14 - t12 - t13 + t15
+    p_x = mu_e_x + mu_n_x + mu_s_x + mu_w_x
+    p_y = mu_e_y + mu_n_y + mu_s_y + mu_w_y
+    p_z = mu_e_z + mu_n_z + mu_s_z + mu_w_z
+    return a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z
+
+
+@jit
+def forms(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, n_x, n_y, n_z):
+    """Eliminating u, v from eq. (9) leaves three quadratic forms in n, with u = U/D, v = V/D
+    and w = W/D. The patch has the normal n where U, V, W have one sign, which is then that of D
+    = U + V + W; U = 0, V = 0, W = 0 are the three boundary cones of its Gaussian image.
+
+        A = n·a
+        B = n·b
+        C = n·c
+        P = n·d
+        Q = n·e
+        D = A*C - B**2
+        U = B*Q - C*P
+        V = B*P - A*Q
+        W = D - U - V
+
+    Source: eq. (9) and Sect. 3.2; 36 operations as written, 36 here.
+    """
+    A = a_x * n_x + a_y * n_y + a_z * n_z
+    B = b_x * n_x + b_y * n_y + b_z * n_z
+    C = c_x * n_x + c_y * n_y + c_z * n_z
+    P = d_x * n_x + d_y * n_y + d_z * n_z
+    Q = e_x * n_x + e_y * n_y + e_z * n_z
+    D = A * C - B * B
+    U = B * Q - C * P
+    V = B * P - A * Q
+    W = D - U - V
+    return D, U, V, W
+
+
+@jit
+def orientation(
+    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, n_x, n_y, n_z
+):  # fmt: skip
+    """Twice the cubic form c_3, with p_u × p_v = n c_3/D^2: n is the oriented normal of the
+    patch where c_3 > 0, and -n where c_3 < 0.
+
+        A = n·a
+        B = n·b
+        C = n·c
+        P = n·d
+        Q = n·e
+        dU = B*e - C*d - P*c + Q*b
+        dV = B*d - A*e + P*b - Q*a
+        dD = A*c - 2*B*b + C*a
+        2*c_3 = det(dU, dV, dD)
+
+    Source: beyond the paper; 99 operations as written, 97 here.
+    """
+    A = a_x * n_x + a_y * n_y + a_z * n_z
+    B = b_x * n_x + b_y * n_y + b_z * n_z
+    C = c_x * n_x + c_y * n_y + c_z * n_z
+    P = d_x * n_x + d_y * n_y + d_z * n_z
+    Q = e_x * n_x + e_y * n_y + e_z * n_z
+    dU_x = B * e_x - C * d_x - P * c_x + Q * b_x
+    dU_y = B * e_y - C * d_y - P * c_y + Q * b_y
+    dU_z = B * e_z - C * d_z - P * c_z + Q * b_z
+    dV_x = B * d_x - A * e_x + P * b_x - Q * a_x
+    dV_y = B * d_y - A * e_y + P * b_y - Q * a_y
+    dV_z = B * d_z - A * e_z + P * b_z - Q * a_z
+    t0 = 2 * B
+    dD_x = A * c_x + C * a_x - b_x * t0
+    dD_y = A * c_y + C * a_y - b_y * t0
+    dD_z = A * c_z + C * a_z - b_z * t0
+    c3_twice = (
+        dU_x * (dD_z * dV_y - dD_y * dV_z)
+        + dU_y * (dD_x * dV_z - dD_z * dV_x)
+        + dU_z * (dD_y * dV_x - dD_x * dV_y)
+    )
+    return c3_twice
+
+
+@jit
+def control_normals(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z):
+    """The Bézier net of the normal field N(u,v) = p_u × p_v: every oriented normal of the patch
+    is a non-negative combination of these six vectors.
+
+        s100 = a + d
+        t100 = b + e
+        s010 = b + d
+        t010 = c + e
+        s001 = d
+        t001 = e
+        N200 = s100 × t100
+        N110 = (s010 × t100 + s100 × t010)/2
+        N101 = (s001 × t100 + s100 × t001)/2
+        N020 = s010 × t010
+        N011 = (s001 × t010 + s010 × t001)/2
+        N002 = s001 × t001
+
+    Source: Sect. 3.2; 138 operations as written, 122 here.
+    """
+    s100_x = a_x + d_x
+    s100_y = a_y + d_y
+    s100_z = a_z + d_z
+    t100_x = b_x + e_x
+    t100_y = b_y + e_y
+    t100_z = b_z + e_z
+    s010_x = b_x + d_x
+    s010_y = b_y + d_y
+    s010_z = b_z + d_z
+    t010_x = c_x + e_x
+    t010_y = c_y + e_y
+    t010_z = c_z + e_z
+    s001_x = d_x
+    s001_y = d_y
+    s001_z = d_z
+    t001_x = e_x
+    t001_y = e_y
+    t001_z = e_z
+    N200_x = s100_y * t100_z - s100_z * t100_y
+    N200_y = s100_z * t100_x - s100_x * t100_z
+    N200_z = s100_x * t100_y - s100_y * t100_x
+    t0 = 0.5 * t100_z
+    t1 = 0.5 * s010_z
+    t2 = 0.5 * t010_z
+    t3 = 0.5 * s100_z
+    N110_x = s010_y * t0 + s100_y * t2 - t010_y * t3 - t1 * t100_y
+    N110_y = 0.5 * s010_z * t100_x - s010_x * t0 - s100_x * t2 + 0.5 * s100_z * t010_x
+    t4 = 0.5 * t100_y
+    t5 = 0.5 * t100_x
+    t6 = 0.5 * s100_x
+    t7 = 0.5 * s100_y
+    N110_z = s010_x * t4 - s010_y * t5 - t010_x * t7 + t010_y * t6
+    N101_x = s001_y * t0 - s001_z * t4 - t001_y * t3 + t001_z * t7
+    N101_y = 0.5 * s001_z * t100_x - s001_x * t0 + 0.5 * s100_z * t001_x - t001_z * t6
+    N101_z = s001_x * t4 - s001_y * t5 - t001_x * t7 + t001_y * t6
+    N020_x = s010_y * t010_z - s010_z * t010_y
+    N020_y = s010_z * t010_x - s010_x * t010_z
+    N020_z = s010_x * t010_y - s010_y * t010_x
+    t8 = 0.5 * t001_z
+    N011_x = s001_y * t2 - 0.5 * s001_z * t010_y + s010_y * t8 - t001_y * t1
+    N011_y = 0.5 * s001_z * t010_x - s001_x * t2 - s010_x * t8 + 0.5 * s010_z * t001_x
+    N011_z = (
+        0.5 * s001_x * t010_y
+        - 0.5 * s001_y * t010_x
+        + 0.5 * s010_x * t001_y
+        - 0.5 * s010_y * t001_x
+    )
+    N002_x = s001_y * t001_z - s001_z * t001_y
+    N002_y = s001_z * t001_x - s001_x * t001_z
+    N002_z = s001_x * t001_y - s001_y * t001_x
+    return (
+        N200_x,
+        N200_y,
+        N200_z,
+        N110_x,
+        N110_y,
+        N110_z,
+        N101_x,
+        N101_y,
+        N101_z,
+        N020_x,
+        N020_y,
+        N020_z,
+        N011_x,
+        N011_y,
+        N011_z,
+        N002_x,
+        N002_y,
+        N002_z,
+    )
+
+
+@jit
+def parabolic_cubic(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z):
+    """The Bézier net of D(N(u,v)), a cubic whose zeros are the parabolic points of the patch
+    and whose sign is that of the Gaussian curvature; it vanishes when the patch is developable.
+    abc is the determinant of a, b, c, and so on.
+
+        abc = det(a, b, c)
+        abd = det(a, b, d)
+        abe = det(a, b, e)
+        acd = det(a, c, d)
+        ace = det(a, c, e)
+        ade = det(a, d, e)
+        bcd = det(b, c, d)
+        bce = det(b, c, e)
+        bde = det(b, d, e)
+        cde = det(c, d, e)
+        D300 = abc*ade - abc*abd + abd*ace - abd*bcd - abd*cde - abe**2 + 2*abe*bde - ace*ade
+             + ade*bcd + ade*cde - bde**2
+        D210 = (abc*ade - abc*abe - abc*acd + abd*ace - abd*bcd + abd*bce - abe**2 - abe*ace
+             - abe*bcd + abe*cde + acd*ace - acd*bcd - acd*cde - ade*bce)/3 + 2*(abc*bde
+             - abd*cde - ace*ade + ade*bcd + bcd*bde)/3 + 4*abe*bde/3 + ade*cde - bde**2
+        D201 = (abc*ade + abd*ace - abd*bcd - abe**2)/3 - 2*(abd*cde + ace*ade - ade*bcd)/3
+             + 4*abe*bde/3 + ade*cde - bde**2
+        D120 = 2*(abc*bde + abe*bde + abe*cde - acd*cde - ade*bce)/3 - (abc*ace + abc*bcd
+             - abc*cde - abd*bce + abd*cde + abe*ace + abe*bcd + abe*bce - acd*ace + acd*bcd
+             - acd*bce + ace*ade - ade*bcd + bcd**2)/3 + ade*cde + 4*bcd*bde/3 - bde**2
+        D111 = (abc*bde - abd*cde + abe*cde - acd*cde - ace*ade + ade*bcd - ade*bce)/3
+             + (abd*bce - abe*ace - abe*bcd + acd*ace - acd*bcd)/6 + 2*abe*bde/3 + ade*cde
+             + 2*bcd*bde/3 - bde**2
+        D102 = 2*abe*bde/3 - (abd*cde + ace*ade - ade*bcd)/3 + ade*cde - bde**2
+        D030 = abc*cde - abc*bce - abe*bce + abe*cde + acd*bce - acd*cde - ade*bce + ade*cde
+             - bcd**2 + 2*bcd*bde - bde**2
+        D021 = (abc*cde - abe*bce + acd*bce - bcd**2)/3 + 2*(abe*cde - acd*cde - ade*bce)/3
+             + ade*cde + 4*bcd*bde/3 - bde**2
+        D012 = (abe*cde - acd*cde - ade*bce)/3 + ade*cde + 2*bcd*bde/3 - bde**2
+        D003 = ade*cde - bde**2
+
+    Source: Sect. 3.2 and Remark 3.1; 442 operations as written, 295 here.
+    """
+    abc = (
+        a_x * (b_y * c_z - b_z * c_y)
+        + a_y * (b_z * c_x - b_x * c_z)
+        + a_z * (b_x * c_y - b_y * c_x)
+    )
+    abd = (
+        a_x * (b_y * d_z - b_z * d_y)
+        + a_y * (b_z * d_x - b_x * d_z)
+        + a_z * (b_x * d_y - b_y * d_x)
+    )
+    abe = (
+        a_x * (b_y * e_z - b_z * e_y)
+        + a_y * (b_z * e_x - b_x * e_z)
+        + a_z * (b_x * e_y - b_y * e_x)
+    )
+    t0 = c_y * d_z - c_z * d_y
+    t1 = c_z * d_x - c_x * d_z
+    t2 = c_x * d_y - c_y * d_x
+    acd = a_x * t0 + a_y * t1 + a_z * t2
+    t3 = c_y * e_z - c_z * e_y
+    t4 = c_z * e_x - c_x * e_z
+    t5 = c_x * e_y - c_y * e_x
+    ace = a_x * t3 + a_y * t4 + a_z * t5
+    t6 = d_y * e_z - d_z * e_y
+    t7 = d_z * e_x - d_x * e_z
+    t8 = d_x * e_y - d_y * e_x
+    ade = a_x * t6 + a_y * t7 + a_z * t8
+    bcd = b_x * t0 + b_y * t1 + b_z * t2
+    bce = b_x * t3 + b_y * t4 + b_z * t5
+    bde = b_x * t6 + b_y * t7 + b_z * t8
+    cde = c_x * t6 + c_y * t7 + c_z * t8
+    t9 = abe * abe
+    t10 = abd * bcd
+    t11 = abd * cde
+    t12 = ace * ade
+    t13 = bde * bde
+    t14 = t13 - ade * cde
+    D300 = (
+        abc * ade - abc * abd + abd * ace + 2 * abe * bde + ade * bcd - t10 - t11 - t12 - t14 - t9
+    )
+    t15 = (1.0 / 3.0) * t9
+    t16 = (1.0 / 3.0) * abc
+    t17 = (1.0 / 3.0) * t10
+    t18 = acd * cde
+    t19 = (1.0 / 3.0) * t18
+    t20 = ade * bce
+    t21 = (1.0 / 3.0) * t20
+    t22 = (2.0 / 3.0) * t11
+    t23 = (2.0 / 3.0) * t12
+    t24 = (1.0 / 3.0) * abe
+    t25 = (
+        (1.0 / 3.0) * acd * bcd
+        - (2.0 / 3.0) * abc * bde
+        - (1.0 / 3.0) * abd * bce
+        - (1.0 / 3.0) * acd * ace
+        + ace * t24
+        + bcd * t24
+    )
+    D210 = (
+        (1.0 / 3.0) * abc * ade
+        + (1.0 / 3.0) * abd * ace
+        + (4.0 / 3.0) * abe * bde
+        + (1.0 / 3.0) * abe * cde
+        - abe * t16
+        - acd * t16
+        + (2.0 / 3.0) * ade * bcd
+        + (2.0 / 3.0) * bcd * bde
+        - t14
+        - t15
+        - t17
+        - t19
+        - t21
+        - t22
+        - t23
+        - t25
+    )
+    t26 = ade * bcd
+    t27 = abe * bde
+    t28 = ade * cde - t13
+    D201 = (
+        (1.0 / 3.0) * abc * ade
+        + (1.0 / 3.0) * abd * ace
+        - t15
+        - t17
+        - t22
+        - t23
+        + (2.0 / 3.0) * t26
+        + (4.0 / 3.0) * t27
+        + t28
+    )
+    t29 = bcd * bcd
+    t30 = (1.0 / 3.0) * t29
+    t31 = abe * bce
+    t32 = (1.0 / 3.0) * t31
+    t33 = (2.0 / 3.0) * t18
+    t34 = (2.0 / 3.0) * t20
+    t35 = (1.0 / 3.0) * t11
+    t36 = (1.0 / 3.0) * t12
+    t37 = t14 - (2.0 / 3.0) * abe * bde - (1.0 / 3.0) * ade * bcd + t35 + t36
+    D120 = (
+        (1.0 / 3.0) * abc * cde
+        + (2.0 / 3.0) * abe * cde
+        + (1.0 / 3.0) * acd * bce
+        - ace * t16
+        + (4.0 / 3.0) * bcd * bde
+        - bcd * t16
+        - t25
+        - t30
+        - t32
+        - t33
+        - t34
+        - t37
+    )
+    t38 = (1.0 / 6.0) * abe
+    t39 = (1.0 / 6.0) * acd
+    t40 = abe * cde
+    t41 = (2.0 / 3.0) * bcd * bde - t19 - t21 + t28 + (1.0 / 3.0) * t40
+    D111 = (
+        (1.0 / 6.0) * abd * bce
+        - ace * t38
+        + ace * t39
+        - bcd * t38
+        - bcd * t39
+        + bde * t16
+        + (1.0 / 3.0) * t26
+        + (2.0 / 3.0) * t27
+        - t35
+        - t36
+        + t41
+    )
+    D102 = -t37
+    D030 = (
+        abc * cde - abc * bce + abe * cde + acd * bce + 2 * bcd * bde - t14 - t18 - t20 - t29 - t31
+    )
+    D021 = (
+        (1.0 / 3.0) * abc * cde
+        + (1.0 / 3.0) * acd * bce
+        + (4.0 / 3.0) * bcd * bde
+        + t28
+        - t30
+        - t32
+        - t33
+        - t34
+        + (2.0 / 3.0) * t40
+    )
+    D012 = t41
+    D003 = t28
+    return D300, D210, D201, D120, D111, D102, D030, D021, D012, D003
+
+
+@jit
+def patch_vectors(mu, i, j, turn, scale):
+    """Return a, b, c, d, e, p of one patch, times SCALE * scale, p relative to its coefficient."""
+    mu_sw_x = scale * (mu[i + NEIGHBOURS[turn, 0, 0], j + NEIGHBOURS[turn, 0, 1], 0] - mu[i, j, 0])
+    mu_sw_y = scale * (mu[i + NEIGHBOURS[turn, 0, 0], j + NEIGHBOURS[turn, 0, 1], 1] - mu[i, j, 1])
+    mu_sw_z = scale * (mu[i + NEIGHBOURS[turn, 0, 0], j + NEIGHBOURS[turn, 0, 1], 2] - mu[i, j, 2])
+    mu_s_x = scale * (mu[i + NEIGHBOURS[turn, 1, 0], j + NEIGHBOURS[turn, 1, 1], 0] - mu[i, j, 0])
+    mu_s_y = scale * (mu[i + NEIGHBOURS[turn, 1, 0], j + NEIGHBOURS[turn, 1, 1], 1] - mu[i, j, 1])
+    mu_s_z = scale * (mu[i + NEIGHBOURS[turn, 1, 0], j + NEIGHBOURS[turn, 1, 1], 2] - mu[i, j, 2])
+    mu_se_x = scale * (mu[i + NEIGHBOURS[turn, 2, 0], j + NEIGHBOURS[turn, 2, 1], 0] - mu[i, j, 0])
+    mu_se_y = scale * (mu[i + NEIGHBOURS[turn, 2, 0], j + NEIGHBOURS[turn, 2, 1], 1] - mu[i, j, 1])
+    mu_se_z = scale * (mu[i + NEIGHBOURS[turn, 2, 0], j + NEIGHBOURS[turn, 2, 1], 2] - mu[i, j, 2])
+    mu_w_x = scale * (mu[i + NEIGHBOURS[turn, 3, 0], j + NEIGHBOURS[turn, 3, 1], 0] - mu[i, j, 0])
+    mu_w_y = scale * (mu[i + NEIGHBOURS[turn, 3, 0], j + NEIGHBOURS[turn, 3, 1], 1] - mu[i, j, 1])
+    mu_w_z = scale * (mu[i + NEIGHBOURS[turn, 3, 0], j + NEIGHBOURS[turn, 3, 1], 2] - mu[i, j, 2])
+    mu_e_x = scale * (mu[i + NEIGHBOURS[turn, 5, 0], j + NEIGHBOURS[turn, 5, 1], 0] - mu[i, j, 0])
+    mu_e_y = scale * (mu[i + NEIGHBOURS[turn, 5, 0], j + NEIGHBOURS[turn, 5, 1], 1] - mu[i, j, 1])
+    mu_e_z = scale * (mu[i + NEIGHBOURS[turn, 5, 0], j + NEIGHBOURS[turn, 5, 1], 2] - mu[i, j, 2])
+    mu_n_x = scale * (mu[i + NEIGHBOURS[turn, 7, 0], j + NEIGHBOURS[turn, 7, 1], 0] - mu[i, j, 0])
+    mu_n_y = scale * (mu[i + NEIGHBOURS[turn, 7, 0], j + NEIGHBOURS[turn, 7, 1], 1] - mu[i, j, 1])
+    mu_n_z = scale * (mu[i + NEIGHBOURS[turn, 7, 0], j + NEIGHBOURS[turn, 7, 1], 2] - mu[i, j, 2])
+    return triangle(
+        mu_sw_x, mu_sw_y, mu_sw_z, mu_s_x, mu_s_y, mu_s_z, mu_se_x, mu_se_y, mu_se_z, mu_w_x,
+        mu_w_y, mu_w_z, mu_e_x, mu_e_y, mu_e_z, mu_n_x, mu_n_y, mu_n_z
+    )  # fmt: skip
+
+
+# --- bins of normals: the six faces of a cube, each cut into grid x grid squares ---------------------
+
+
+@jit
+def cube_face(x, y, z):
+    """Return the face of the cube that the vector meets, and its coordinates there (in -1 … 1)."""
+    if abs(x) >= abs(y) and abs(x) >= abs(z):
+        return (0, y / x, z / x) if x > 0.0 else (1, y / -x, z / -x)
+    if abs(y) >= abs(z):
+        return (2, z / y, x / y) if y > 0.0 else (3, z / -y, x / -y)
+    return (4, x / z, y / z) if z > 0.0 else (5, x / -z, y / -z)
+
+
+@jit
+def on_face(face, x, y, z):
+    """Return the vector in the axes of a face: two coordinates along it, the third towards it."""
+    if face == 0:
+        return y, z, x
+    if face == 1:
+        return y, z, -x
+    if face == 2:
+        return z, x, y
+    if face == 3:
+        return z, x, -y
+    if face == 4:
+        return x, y, z
+    return x, y, -z
+
+
+@jit
+def bin_index(s, grid):
+    """Return the row or column of a face coordinate; monotone, also in rounding."""
+    return min(max(int((s + 1.0) * (0.5 * grid)), 0), grid - 1)
+
+
+@jit
+def bin_normals(normals, grid, starts, order):
+    """Sort normals (k, 3) into bins: order[starts[b]:starts[b + 1]] are those of bin b, ascending."""
+    bins = np.empty(normals.shape[0], np.int64)
+    starts[:] = 0
+    for k in range(normals.shape[0]):
+        face, s, t = cube_face(normals[k, 0], normals[k, 1], normals[k, 2])
+        bins[k] = (face * grid + bin_index(t, grid)) * grid + bin_index(s, grid)
+        starts[bins[k] + 1] += 1
+    for b in range(starts.size - 1):
+        starts[b + 1] += starts[b]
+    cursor = starts[:-1].copy()
+    for k in range(normals.shape[0]):
+        order[cursor[bins[k]]] = k
+        cursor[bins[k]] += 1
+
+
+# --- which normals a patch may have ---------------------------------------------------------------
+
+
+@jit
+def length_of(x, y, z):
+    """Return the length of a vector."""
+    return math.sqrt(x * x + y * y + z * z)
+
+
+@jit
+def bound_patches(
+    mu, scale, noise, border, grid, starts, first, last, kinds, bounds, windows, sizes
+):
+    """Classify the patches first, …, last − 1 and bound the normals that each of them may have.
+
+    Writes kinds (REGULAR, WIDE, INVISIBLE), the rounding bound of U, V, W, the windows (6 faces; first
+    and last column, first and last row) that hold every oriented normal, and how many normals lie in
+    them. `noise` is the rounding of the scaled coordinates, `border` the open sides of the domain.
+    """
+    rows = mu.shape[0] - 2
+    columns = mu.shape[1] - 2
+    net = np.empty((6, 3))
+    for patch in range(first, last):
+        here = patch - first
+        cell = patch // 4
+        turn = patch % 4
+        i = cell // columns
+        j = cell % columns
+        (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
+         d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(mu, i + 1, j + 1, turn, scale)  # fmt: skip
+        spread = 0.0
+        for k in range(9):
+            for x in range(3):
+                spread = max(
+                    spread,
+                    abs(mu[i + 1 + NEIGHBOURS[turn, k, 0], j + 1 + NEIGHBOURS[turn, k, 1], x]
+                        - mu[i + 1, j + 1, x]),
+                )  # fmt: skip
+        second = max(
+            abs(a_x), abs(a_y), abs(a_z), abs(b_x), abs(b_y), abs(b_z), abs(c_x), abs(c_y), abs(c_z)
+        )
+        tangent = second + max(abs(d_x), abs(d_y), abs(d_z), abs(e_x), abs(e_y), abs(e_z))
+        error = FORM_ERROR * scale * spread
+        if (
+            (turn == 0 and j == 0 and border[0])
+            or (turn == 1 and i == rows - 1 and border[1])
+            or (turn == 2 and j == columns - 1 and border[2])
+            or (turn == 3 and i == 0 and border[3])
+        ):
+            error += noise
+        bounds[here] = 32.0 * error * (tangent + error)
+
+        (
+            net[0, 0],
+            net[0, 1],
+            net[0, 2],
+            net[1, 0],
+            net[1, 1],
+            net[1, 2],
+            net[2, 0],
+            net[2, 1],
+            net[2, 2],
+            net[3, 0],
+            net[3, 1],
+            net[3, 2],
+            net[4, 0],
+            net[4, 1],
+            net[4, 2],
+            net[5, 0],
+            net[5, 1],
+            net[5, 2],
+        ) = control_normals(
+            a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z
+        )
+        cubic = parabolic_cubic(
+            a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z
+        )
+        curvature = 0.0
+        for value in cubic:
+            curvature = max(curvature, abs(value))
+        longest = 0.0
+        for k in range(6):
+            longest = max(longest, length_of(net[k, 0], net[k, 1], net[k, 2]))
+        if curvature <= 4.0 * noise * second * longest * (longest + tangent * second):
+            kinds[here] = INVISIBLE
+            sizes[here] = 0
+            continue
+        kinds[here] = cone_of_normals(net, SINGULAR * tangent * tangent)
+        sizes[here] = 0
+        for face in range(6):
+            face_window(net, SINGULAR * tangent * tangent, face, grid, windows[here, face])
+            sizes[here] += count_window(windows[here, face], face, grid, starts)
+
+
+@jit
+def cone_of_normals(net, negligible):
+    """Return REGULAR if all control normals lie within 37 degrees of their mean, else WIDE."""
+    mean_x = 0.0
+    mean_y = 0.0
+    mean_z = 0.0
+    for k in range(6):
+        length = length_of(net[k, 0], net[k, 1], net[k, 2])
+        if length <= negligible:
+            return WIDE
+        mean_x += net[k, 0] / length
+        mean_y += net[k, 1] / length
+        mean_z += net[k, 2] / length
+    limit = 0.8 * length_of(mean_x, mean_y, mean_z)
+    for k in range(6):
+        length = length_of(net[k, 0], net[k, 1], net[k, 2])
+        if net[k, 0] * mean_x + net[k, 1] * mean_y + net[k, 2] * mean_z < limit * length:
+            return WIDE
+    return REGULAR
+
+
+@jit
+def face_window(net, negligible, face, grid, window):
+    """Write first and last column, first and last row of the bins of a face that the cone may meet.
+
+    Central projection keeps convex hulls: where all control normals point to the face, the box of
+    their projections bounds the cone. Where some do not, the window is the whole face, unless the
+    cone lies beyond one of its four borders.
+    """
+    window[0], window[1], window[2], window[3] = 0, -1, 0, -1
+    s_low = t_low = math.inf
+    s_high = t_high = -math.inf
+    towards = away = 0
+    beyond_right = beyond_left = beyond_top = beyond_bottom = True
+    for k in range(6):
+        s, t, height = on_face(face, net[k, 0], net[k, 1], net[k, 2])
+        length = length_of(s, t, height)
+        if length <= negligible:
+            continue
+        slack = SINGULAR_ERROR * negligible / length + ANGLE_ERROR
+        if height <= slack * length:
+            away += 1
+        else:
+            towards += 1
+            pad = slack * ((length / height) * (length / height))
+            s_low = min(s_low, s / height - pad)
+            s_high = max(s_high, s / height + pad)
+            t_low = min(t_low, t / height - pad)
+            t_high = max(t_high, t / height + pad)
+        beyond_right = beyond_right and s - height > 2.0 * slack * length
+        beyond_left = beyond_left and -s - height > 2.0 * slack * length
+        beyond_top = beyond_top and t - height > 2.0 * slack * length
+        beyond_bottom = beyond_bottom and -t - height > 2.0 * slack * length
+    if towards == 0 or beyond_right or beyond_left or beyond_top or beyond_bottom:
+        return
+    if away > 0:
+        window[1] = window[3] = grid - 1
+    elif s_low <= 1.0 and s_high >= -1.0 and t_low <= 1.0 and t_high >= -1.0:
+        window[0] = bin_index(max(s_low, -1.0), grid)
+        window[1] = bin_index(min(s_high, 1.0), grid)
+        window[2] = bin_index(max(t_low, -1.0), grid)
+        window[3] = bin_index(min(t_high, 1.0), grid)
+
+
+@jit
+def count_window(window, face, grid, starts):
+    """Return the number of normals in a window."""
+    total = 0
+    if window[1] >= window[0]:
+        for row in range(window[2], window[3] + 1):
+            base = (face * grid + row) * grid
+            total += starts[base + window[1] + 1] - starts[base + window[0]]
+    return total
+
+
+# --- which normals a patch has --------------------------------------------------------------------
+
+
+@jit
+def select_normals(
+    mu, scale, grid, starts, order, normals, first, last,
+    kinds, bounds, windows, offsets, found, found_counts, doubtful, doubtful_counts,
+):  # fmt: skip
+    """Find the normals of the patches first, …, last − 1, in ascending order for each patch.
+
+    `normals` are in the order of the bins. Those that rounding leaves open go to `doubtful`: they have
+    to be decided exactly. Both lists of a patch start at offsets[patch - first].
+    """
+    columns = mu.shape[1] - 2
+    for patch in range(first, last):
+        here = patch - first
+        hits = 0
+        doubts = 0
+        if kinds[here] != INVISIBLE:
+            cell = patch // 4
+            (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
+             d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(
+                mu, cell // columns + 1, cell % columns + 1, patch % 4, scale
+            )  # fmt: skip
+            bound = bounds[here]
+            base = offsets[here]
+            u = 1.0 / 3.0
+            v = 1.0 / 3.0
+            # tangents (eq. (1)): 33 operations as written, 33 here
+            p_u_x = a_x * u + b_x * v + d_x
+            p_u_y = a_y * u + b_y * v + d_y
+            p_u_z = a_z * u + b_z * v + d_z
+            p_v_x = b_x * u + c_x * v + e_x
+            p_v_y = b_y * u + c_y * v + e_y
+            p_v_z = b_z * u + c_z * v + e_z
+            N_x = p_u_y * p_v_z - p_u_z * p_v_y
+            N_y = p_u_z * p_v_x - p_u_x * p_v_z
+            N_z = p_u_x * p_v_y - p_u_y * p_v_x
+            axis_x = N_x
+            axis_y = N_y
+            axis_z = N_z
+            for face in range(6):
+                window = windows[here, face]
+                for row in range(window[2], window[3] + 1):
+                    bins = (face * grid + row) * grid
+                    for k in range(starts[bins + window[0]], starts[bins + window[1] + 1]):
+                        n_x = normals[k, 0]
+                        n_y = normals[k, 1]
+                        n_z = normals[k, 2]
+                        # forms (eq. (9) and Sect. 3.2): 36 operations as written, 36 here
+                        A = a_x * n_x + a_y * n_y + a_z * n_z
+                        B = b_x * n_x + b_y * n_y + b_z * n_z
+                        C = c_x * n_x + c_y * n_y + c_z * n_z
+                        P = d_x * n_x + d_y * n_y + d_z * n_z
+                        Q = e_x * n_x + e_y * n_y + e_z * n_z
+                        D = A * C - B * B
+                        U = B * Q - C * P
+                        V = B * P - A * Q
+                        W = D - U - V
+                        low = min(U, V, W)
+                        high = max(U, V, W)
+                        if low < -bound and high > bound:
+                            continue
+                        sure = (low > bound or high < -bound) and abs(D) > ACCURATE * bound
+                        if sure and kinds[here] == REGULAR:
+                            if n_x * axis_x + n_y * axis_y + n_z * axis_z < 0.0:
+                                continue
+                        elif sure:
+                            # parameters (eq. (9)): 3 operations as written, 3 here
+                            r = 1.0 / D
+                            u = U * r
+                            v = V * r
+                            # tangents (eq. (1)): 33 operations as written, 33 here
+                            p_u_x = a_x * u + b_x * v + d_x
+                            p_u_y = a_y * u + b_y * v + d_y
+                            p_u_z = a_z * u + b_z * v + d_z
+                            p_v_x = b_x * u + c_x * v + e_x
+                            p_v_y = b_y * u + c_y * v + e_y
+                            p_v_z = b_z * u + c_z * v + e_z
+                            N_x = p_u_y * p_v_z - p_u_z * p_v_y
+                            N_y = p_u_z * p_v_x - p_u_x * p_v_z
+                            N_z = p_u_x * p_v_y - p_u_y * p_v_x
+                            towards = n_x * N_x + n_y * N_y + n_z * N_z
+                            length = abs(N_x) + abs(N_y) + abs(N_z)
+                            sure = abs(towards) > 0.25 * length and length > 0.0
+                            if sure and towards < 0.0:
+                                continue
+                        if sure:
+                            found[base + hits] = order[k]
+                            hits += 1
+                        else:
+                            doubtful[base + doubts] = order[k]
+                            doubts += 1
+            found[base : base + hits].sort()
+            doubtful[base : base + doubts].sort()
+        found_counts[here] = hits
+        doubtful_counts[here] = doubts
+
+
+# --- what a sample holds --------------------------------------------------------------------------
+
+
+@jit
+def fill_samples(
+    mu, scale, normals, frame, first, last,
+    patch_index, normal_index, points, directions, uv, support, gaussian, mean,
+):  # fmt: skip
+    """Fill the samples first, …, last − 1 from the patch and the normal of each.
+
+    frame = (u0, v0, du, dv): the corner of the domain and the size of a cell in the parameters.
+    """
+    columns = mu.shape[1] - 2
+    size = SCALE * scale
+    known = -1
+    for k in range(first, last):
+        if patch_index[k] != known:
+            known = patch_index[k]
+            cell = known // 4
+            turn = known % 4
+            i = cell // columns
+            j = cell % columns
+            (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
+             d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(
+                mu, i + 1, j + 1, turn, scale
+            )  # fmt: skip
+        n_x = normals[normal_index[k], 0]
+        n_y = normals[normal_index[k], 1]
+        n_z = normals[normal_index[k], 2]
+        # sample (eqs. (1), (5)-(9); curvatures beyond the paper): 145 operations as written, 134 here
+        A = a_x * n_x + a_y * n_y + a_z * n_z
+        B = b_x * n_x + b_y * n_y + b_z * n_z
+        C = c_x * n_x + c_y * n_y + c_z * n_z
+        P = d_x * n_x + d_y * n_y + d_z * n_z
+        Q = e_x * n_x + e_y * n_y + e_z * n_z
+        D = A * C - B * B
+        U = B * Q - C * P
+        V = B * P - A * Q
+        r = 1.0 / D
+        u = U * r
+        v = V * r
+        t0 = b_x * v
+        t1 = 0.5 * u * u
+        t2 = 0.5 * v * v
+        x_x = a_x * t1 + c_x * t2 + d_x * u + e_x * v + p_x + t0 * u
+        t3 = b_y * v
+        x_y = a_y * t1 + c_y * t2 + d_y * u + e_y * v + p_y + t3 * u
+        t4 = b_z * v
+        x_z = a_z * t1 + c_z * t2 + d_z * u + e_z * v + p_z + t4 * u
+        p_u_x = a_x * u + d_x + t0
+        p_u_y = a_y * u + d_y + t3
+        p_u_z = a_z * u + d_z + t4
+        p_v_x = b_x * u + c_x * v + e_x
+        p_v_y = b_y * u + c_y * v + e_y
+        p_v_z = b_z * u + c_z * v + e_z
+        N_x = p_u_y * p_v_z - p_u_z * p_v_y
+        N_y = p_u_z * p_v_x - p_u_x * p_v_z
+        N_z = p_u_x * p_v_y - p_u_y * p_v_x
+        E = p_u_x * p_u_x + p_u_y * p_u_y + p_u_z * p_u_z
+        F = p_u_x * p_v_x + p_u_y * p_v_y + p_u_z * p_v_z
+        G = p_v_x * p_v_x + p_v_y * p_v_y + p_v_z * p_v_z
+        g = 1.0 / (N_x * N_x + N_y * N_y + N_z * N_z)
+        K = D * g
+        H = 0.5 * g * (2 * B * F - A * G - C * E)
+        points[k, 0] = mu[i + 1, j + 1, 0] + x_x / size
+        points[k, 1] = mu[i + 1, j + 1, 1] + x_y / size
+        points[k, 2] = mu[i + 1, j + 1, 2] + x_z / size
+        directions[k, 0] = n_x
+        directions[k, 1] = n_y
+        directions[k, 2] = n_z
+        uv[k, 0] = frame[0] + frame[2] * (
+            i + 0.5 + u * CORNERS[turn, 0, 0] + v * CORNERS[turn, 1, 0]
+        )
+        uv[k, 1] = frame[1] + frame[3] * (
+            j + 0.5 + u * CORNERS[turn, 0, 1] + v * CORNERS[turn, 1, 1]
+        )
+        support[k] = n_x * points[k, 0] + n_y * points[k, 1] + n_z * points[k, 2]
+        gaussian[k] = K * size * size
+        mean[k] = H * size
+
+
+@jit
+def fill_known(
+    mu, scale, normals, frame, which, local,
+    patch_index, normal_index, points, directions, uv, support, gaussian, mean,
+):  # fmt: skip
+    """Fill the samples which[0], which[1], … at known parameters.
+
+    local (k, 5) holds u, v, the sign of K, and the parameters at which the curvatures are taken: u, v
+    themselves but at a singular point.
+    """
+    columns = mu.shape[1] - 2
+    size = SCALE * scale
+    for row in range(which.size):
+        k = which[row]
+        cell = patch_index[k] // 4
+        turn = patch_index[k] % 4
+        i = cell // columns
+        j = cell % columns
+        (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
+         d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(mu, i + 1, j + 1, turn, scale)  # fmt: skip
+        u = local[row, 3]
+        v = local[row, 4]
+        # tangents (eq. (1)): 33 operations as written, 33 here
+        p_u_x = a_x * u + b_x * v + d_x
+        p_u_y = a_y * u + b_y * v + d_y
+        p_u_z = a_z * u + b_z * v + d_z
+        p_v_x = b_x * u + c_x * v + e_x
+        p_v_y = b_y * u + c_y * v + e_y
+        p_v_z = b_z * u + c_z * v + e_z
+        N_x = p_u_y * p_v_z - p_u_z * p_v_y
+        N_y = p_u_z * p_v_x - p_u_x * p_v_z
+        N_z = p_u_x * p_v_y - p_u_y * p_v_x
+        length = length_of(N_x, N_y, N_z)
+        n_x = N_x / length
+        n_y = N_y / length
+        n_z = N_z / length
+        # curvature_at (eqs. (1), (9); curvatures beyond the paper): 81 operations as written, 81 here
+        A = a_x * n_x + a_y * n_y + a_z * n_z
+        B = b_x * n_x + b_y * n_y + b_z * n_z
+        C = c_x * n_x + c_y * n_y + c_z * n_z
+        D = A * C - B * B
+        p_u_x = a_x * u + b_x * v + d_x
+        p_u_y = a_y * u + b_y * v + d_y
+        p_u_z = a_z * u + b_z * v + d_z
+        p_v_x = b_x * u + c_x * v + e_x
+        p_v_y = b_y * u + c_y * v + e_y
+        p_v_z = b_z * u + c_z * v + e_z
+        N_x = p_u_y * p_v_z - p_u_z * p_v_y
+        N_y = p_u_z * p_v_x - p_u_x * p_v_z
+        N_z = p_u_x * p_v_y - p_u_y * p_v_x
+        E = p_u_x * p_u_x + p_u_y * p_u_y + p_u_z * p_u_z
+        F = p_u_x * p_v_x + p_u_y * p_v_y + p_u_z * p_v_z
+        G = p_v_x * p_v_x + p_v_y * p_v_y + p_v_z * p_v_z
+        g = 1.0 / (N_x * N_x + N_y * N_y + N_z * N_z)
+        K = D * g
+        H = 0.5 * g * (2 * B * F - A * G - C * E)
+        K = math.copysign(K, local[row, 2])
+        u = local[row, 0]
+        v = local[row, 1]
+        # envelope (eqs. (5)-(8)): 45 operations as written, 35 here
+        t0 = u * v
+        t1 = 0.5 * u * u
+        t2 = 0.5 * v * v
+        x_x = a_x * t1 + b_x * t0 + c_x * t2 + d_x * u + e_x * v + p_x
+        x_y = a_y * t1 + b_y * t0 + c_y * t2 + d_y * u + e_y * v + p_y
+        x_z = a_z * t1 + b_z * t0 + c_z * t2 + d_z * u + e_z * v + p_z
+        n_x = normals[normal_index[k], 0]
+        n_y = normals[normal_index[k], 1]
+        n_z = normals[normal_index[k], 2]
+        points[k, 0] = mu[i + 1, j + 1, 0] + x_x / size
+        points[k, 1] = mu[i + 1, j + 1, 1] + x_y / size
+        points[k, 2] = mu[i + 1, j + 1, 2] + x_z / size
+        directions[k, 0] = n_x
+        directions[k, 1] = n_y
+        directions[k, 2] = n_z
+        uv[k, 0] = frame[0] + frame[2] * (
+            i + 0.5 + u * CORNERS[turn, 0, 0] + v * CORNERS[turn, 1, 0]
+        )
+        uv[k, 1] = frame[1] + frame[3] * (
+            j + 0.5 + u * CORNERS[turn, 0, 1] + v * CORNERS[turn, 1, 1]
+        )
+        support[k] = n_x * points[k, 0] + n_y * points[k, 1] + n_z * points[k, 2]
+        gaussian[k] = K * size * size
+        mean[k] = H * size
+
+
+@jit
+def normals_at(mu, scale, patches, local, normals):
+    """Write the unnormalized oriented normals (k, 3) of patches at their parameters local (k, 2)."""
+    columns = mu.shape[1] - 2
+    for k in range(patches.size):
+        cell = patches[k] // 4
+        (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
+         d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(
+            mu, cell // columns + 1, cell % columns + 1, patches[k] % 4, scale
+        )  # fmt: skip
+        u = local[k, 0]
+        v = local[k, 1]
+        # tangents (eq. (1)): 33 operations as written, 33 here
+        p_u_x = a_x * u + b_x * v + d_x
+        p_u_y = a_y * u + b_y * v + d_y
+        p_u_z = a_z * u + b_z * v + d_z
+        p_v_x = b_x * u + c_x * v + e_x
+        p_v_y = b_y * u + c_y * v + e_y
+        p_v_z = b_z * u + c_z * v + e_z
+        N_x = p_u_y * p_v_z - p_u_z * p_v_y
+        N_y = p_u_z * p_v_x - p_u_x * p_v_z
+        N_z = p_u_x * p_v_y - p_u_y * p_v_x
+        normals[k, 0] = N_x
+        normals[k, 1] = N_y
+        normals[k, 2] = N_z
+
+
+@jit
+def least_cosine(mu, scale, axis):
+    """Return the least cosine between a unit vector and any oriented normal of the spline."""
+    rows = mu.shape[0] - 2
+    columns = mu.shape[1] - 2
+    net = np.empty((6, 3))
+    least = 1.0
+    for patch in range(4 * rows * columns):
+        cell = patch // 4
+        (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
+         d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(
+            mu, cell // columns + 1, cell % columns + 1, patch % 4, scale
+        )  # fmt: skip
+        (
+            net[0, 0],
+            net[0, 1],
+            net[0, 2],
+            net[1, 0],
+            net[1, 1],
+            net[1, 2],
+            net[2, 0],
+            net[2, 1],
+            net[2, 2],
+            net[3, 0],
+            net[3, 1],
+            net[3, 2],
+            net[4, 0],
+            net[4, 1],
+            net[4, 2],
+            net[5, 0],
+            net[5, 1],
+            net[5, 2],
+        ) = control_normals(
+            a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z
+        )
+        for k in range(6):
+            towards = net[k, 0] * axis[0] + net[k, 1] * axis[1] + net[k, 2] * axis[2]
+            length = length_of(net[k, 0], net[k, 1], net[k, 2])
+            if length > 0.0:
+                least = min(least, towards / length)
+    return least

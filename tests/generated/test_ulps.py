@@ -1,0 +1,243 @@
+"""Compiled formulas against exact values, in ULPs of the size of their terms.
+
+The bound is the usual one for straight-line code. A result of +, − and × is a sum of terms, and
+what is computed is that sum with every term times (1 + δ)ⁿ, |δ| <= u = 2⁻⁵³, where n counts the
+roundings that the term has gone through: one for each operation on its way, and those of both
+factors at a product. With k the largest of these counts and S the sum of the moduli of the terms,
+
+    |computed − exact| <= γ S,   γ = k u/(1 − k u),
+
+which is k ULPs of S or less. At a quotient a/b the condition S(b)/|b| of the denominator enters:
+S = S(a) S(b)/b². That holds to first order in the relative error of b, which has to be small.
+
+The formula as it stands in generated/ is executed on `Term`s, which count all this. `ROUNDINGS`
+states k for every formula; how far the terms cancel is in S, and not in k.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import pytest
+from gaussmap.generated import patch
+from gaussmap.symbolic import formulas
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+UNIT = Fraction(1, 2**53)
+
+# The largest number of roundings of any term of any output.
+ROUNDINGS = {
+    "forms": 10,
+    "support_function": 24,
+    "envelope": 8,
+    "curvature": 13,
+    "orientation": 25,
+    "control_normals": 7,
+}
+
+
+@dataclass(frozen=True)
+class Term:
+    """An exact value, the sum of the moduli of the terms it is made of, and their roundings."""
+
+    value: Fraction
+    size: Fraction
+    roundings: int
+
+    @classmethod
+    def of(cls, number: Any) -> Term:
+        return (
+            number if isinstance(number, Term) else cls(Fraction(number), abs(Fraction(number)), 0)
+        )
+
+    def __add__(self, other: Any) -> Term:
+        other = Term.of(other)
+        roundings = max(self.roundings, other.roundings) + 1
+        return Term(self.value + other.value, self.size + other.size, roundings)
+
+    def __mul__(self, other: Any) -> Term:
+        other = Term.of(other)
+        roundings = self.roundings + other.roundings + 1
+        return Term(self.value * other.value, self.size * other.size, roundings)
+
+    def __truediv__(self, other: Any) -> Term:
+        other = Term.of(other)
+        quotients.append(other)
+        roundings = self.roundings + other.roundings + 1
+        size = self.size * other.size / other.value**2
+        return Term(self.value / other.value, size, roundings)
+
+    def __neg__(self) -> Term:
+        return Term(-self.value, self.size, self.roundings)
+
+    def __sub__(self, other: Any) -> Term:
+        return self + -Term.of(other)
+
+    def __rtruediv__(self, other: Any) -> Term:
+        return Term.of(other) / self
+
+    __radd__ = __add__
+    __rmul__ = __mul__
+
+
+quotients: list[Term] = []
+
+
+def as_tuple(result: Any) -> tuple[Any, ...]:
+    return result if isinstance(result, tuple) else (result,)
+
+
+def inputs_of(name: str) -> list[str]:
+    return [symbol.name for symbol in formulas[name].in_components().inputs]
+
+
+def exact(name: str, inputs: dict[str, float]) -> list[Term]:
+    """Run a generated function on terms."""
+    function = getattr(patch, name)
+    quotients.clear()
+    terms = {key: Term.of(x) for key, x in inputs.items()}
+    return list(as_tuple(getattr(function, "py_func", function)(**terms)))
+
+
+def check(name: str, inputs: dict[str, float]) -> None:
+    """Compare a compiled function with its exact values."""
+    k = ROUNDINGS[name]
+    gamma = k * UNIT / (1 - k * UNIT)
+    computed = as_tuple(getattr(patch, name)(*inputs.values()))
+    for term, result in zip(exact(name, inputs), computed, strict=True):
+        slack = 1 + Fraction(len(quotients), 1000)  # second order of the denominators
+        assert math.isfinite(result)
+        assert abs(Fraction(result) - term.value) <= gamma * term.size * slack
+
+
+def check_where_bounded(name: str, inputs: dict[str, float]) -> None:
+    """Do the same, but leave out inputs with a denominator that may be nothing but rounding."""
+    try:
+        exact(name, inputs)
+    except ZeroDivisionError:
+        assume(False)
+    assume(all(x.roundings * UNIT * x.size <= abs(x.value) / 1024 for x in quotients))
+    check(name, inputs)
+
+
+# --- inputs ---------------------------------------------------------------------------------------
+
+integers = st.integers(-1000, 1000).map(float)
+floats = st.builds(math.ldexp, st.integers(-(2**53), 2**53).map(float), st.integers(-80, -30))
+
+
+def numbers(name: str, values: st.SearchStrategy[float]) -> st.SearchStrategy[dict[str, float]]:
+    """Draw the inputs of a formula, in their order."""
+    names = inputs_of(name)
+    rows = st.tuples(*[values] * len(names))
+    return rows.map(lambda row: dict(zip(names, row, strict=True)))
+
+
+@st.composite
+def nearly_parabolic(draw: st.DrawFn, name: str) -> dict[str, float]:
+    """Draw a patch and a normal with D = A C − B² cancelling to a few or to nearly all bits."""
+    inputs = draw(numbers(name, draw(st.sampled_from([integers, floats]))))
+    a, b, c, n = ([Fraction(inputs[f"{x}_{axis}"]) for axis in "xyz"] for x in "abcn")
+    A, B = (sum(x * y for x, y in zip(vector, n, strict=True)) for vector in (a, b))
+    assume(A != 0 and n[2] != 0)
+    c_z = (B * B / A - c[0] * n[0] - c[1] * n[1]) / n[2]
+    bits = draw(st.integers(4, 60))
+    inputs["c_z"] = float(c_z * (1 + draw(st.sampled_from([-1, 1])) * Fraction(1, 2**bits)))
+    assume(abs(inputs["c_z"]) < 2.0**60)
+    return inputs
+
+
+@st.composite
+def nearly_flat(draw: st.DrawFn, name: str) -> dict[str, float]:
+    """Draw a patch that is nearly a plane: its orientation is a small remainder."""
+    inputs = draw(numbers(name, integers))
+    slope_x, slope_y = draw(floats), draw(floats)
+    bits = draw(st.integers(4, 50))
+    for key in [key for key in inputs if key.endswith("_z") and not key.startswith("n_")]:
+        stem = key.removesuffix("_z")
+        height = slope_x * inputs[f"{stem}_x"] + slope_y * inputs[f"{stem}_y"]
+        inputs[key] = height + math.ldexp(inputs[key], -bits)
+    return inputs
+
+
+EACH = pytest.mark.parametrize("name", ROUNDINGS)
+
+
+@EACH
+@settings(max_examples=40, deadline=None)
+@given(data=st.data())
+def test_integer_patches(name, data):
+    check_where_bounded(name, data.draw(numbers(name, integers)))
+
+
+@EACH
+@settings(max_examples=40, deadline=None)
+@given(data=st.data())
+def test_patches_of_any_floats(name, data):
+    check_where_bounded(name, data.draw(numbers(name, floats)))
+
+
+@pytest.mark.parametrize("name", ["forms", "support_function", "orientation"])
+@settings(max_examples=80, deadline=None)
+@given(data=st.data())
+def test_nearly_parabolic_patches(name, data):
+    check_where_bounded(name, data.draw(nearly_parabolic(name)))
+
+
+@pytest.mark.parametrize("name", ["forms", "envelope", "orientation", "control_normals"])
+@settings(max_examples=40, deadline=None)
+@given(data=st.data())
+def test_nearly_flat_patches(name, data):
+    check_where_bounded(name, data.draw(nearly_flat(name)))
+
+
+@pytest.mark.parametrize("name", ["forms", "envelope", "orientation", "control_normals"])
+@settings(max_examples=40, deadline=None)
+@given(data=st.data())
+def test_small_integers_are_exact(name, data):
+    """Without a quotient all values on the way are integers or halves below 2⁵³."""
+    inputs = data.draw(numbers(name, st.integers(-15, 15).map(float)))
+    for term, result in zip(
+        exact(name, inputs), as_tuple(getattr(patch, name)(*inputs.values())), strict=True
+    ):
+        assert Fraction(result) == term.value
+
+
+# --- the bound itself -----------------------------------------------------------------------------
+
+
+@EACH
+def test_the_stated_number_of_roundings_is_that_of_the_formula(name):
+    inputs = {key: float(3 * k + 1) for k, key in enumerate(inputs_of(name))}
+    assert max(term.roundings for term in exact(name, inputs)) == ROUNDINGS[name]
+
+
+def test_nearly_parabolic_patches_do_cancel():
+    """D is 2⁻⁵⁰ of its terms: the bound is relative to these, and the error is there."""
+    inputs = dict.fromkeys(inputs_of("forms"), 0.0)
+    third = 1.0 / 3.0
+    inputs |= {"a_x": 1.0, "b_x": third, "c_x": third * third, "n_x": 1.0}
+    D = exact("forms", inputs)[0]
+    assert 0 < abs(D.value) < D.size / 2**50
+    assert Fraction(patch.forms(*inputs.values())[0]) != D.value
+    check("forms", inputs)
+
+
+def test_a_wrong_result_is_noticed(monkeypatch):
+    """Twelve ULPs of the size of the terms are too much for D, whose terms have 8 roundings."""
+    inputs = {key: float(7 * k % 13 - 6) for k, key in enumerate(inputs_of("forms"))}
+    D, *others = as_tuple(patch.forms(*inputs.values()))
+    size = float(exact("forms", inputs)[0].size)
+    source = patch.forms
+
+    def shifted(*_: float) -> tuple[float, ...]:
+        return (D + 12 * math.ulp(size), *others)
+
+    setattr(shifted, "py_func", getattr(source, "py_func", source))  # noqa: B010
+    monkeypatch.setattr(patch, "forms", shifted)
+    with pytest.raises(AssertionError):
+        check("forms", inputs)
