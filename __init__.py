@@ -1,0 +1,66 @@
+"""gaussmap: curvature-dependent sampling of surfaces by their support functions.
+
+import gaussmap as gm
+
+samples = gm.sample(gm.surfaces.torus(major=1.0, minor=0.35), count=10_000)
+samples.points, samples.normals, samples.gaussian_curvature
+samples.write("torus.ply")
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from .runtime import surfaces
+from .runtime.errors import (
+    FileError,
+    GaussmapError,
+    GaussmapWarning,
+    InputError,
+    MissingExtraError,
+    SurfaceError,
+    UnknownNameError,
+)
+from .runtime.io import read_samples
+from .runtime.samples import Samples, SamplingReport
+from .runtime.sampling import sample, sample_many
+from .runtime.sphere import fibonacci, icosphere
+from .runtime.spline import Spline, fit
+from .runtime.surface import Surface
+
+if TYPE_CHECKING:
+    from . import symbolic
+    from .symbolic import formulas
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "FileError",
+    "GaussmapError",
+    "GaussmapWarning",
+    "InputError",
+    "MissingExtraError",
+    "Samples",
+    "SamplingReport",
+    "Spline",
+    "Surface",
+    "SurfaceError",
+    "UnknownNameError",
+    "fibonacci",
+    "fit",
+    "formulas",
+    "icosphere",
+    "read_samples",
+    "sample",
+    "sample_many",
+    "surfaces",
+    "symbolic",
+]
+
+
+def __getattr__(name: str) -> object:
+    """Load SymPy only when the formulas are asked for."""
+    if name == "symbolic":
+        return import_module(".symbolic", __name__)
+    if name == "formulas":
+        return import_module(".symbolic", __name__).formulas
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -1,0 +1,1 @@
+"""The thin runtime: surface → spline → search → samples → files and pictures."""

@@ -1,0 +1,47 @@
+"""What every argument goes through: whole numbers, real arrays, parameters that fit together."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .errors import InputError
+
+__all__ = ["parameter_arrays", "real_array", "whole_number"]
+
+
+def whole_number(value: object, name: str) -> int:
+    """Return a whole number of at least 1; raise InputError that names it if it is not one."""
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 1:
+        raise InputError(f"{name} must be a whole number of at least 1, not {value!r}.")
+    return int(value)
+
+
+def real_array(values: ArrayLike, name: str) -> NDArray[np.float64]:
+    """Return a C-contiguous float64 copy of an array of real numbers; InputError if it is none.
+
+    Text, complex numbers and objects are not taken for numbers, and what is masked has no value.
+    """
+    if np.ma.is_masked(values):
+        raise InputError(f"{name} has masked entries; fill them or leave them out.")
+    try:
+        array = np.asarray(values)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} must be an array of real numbers, with equal rows.") from None
+    if array.dtype.kind not in "fiub":
+        raise InputError(f"{name} must be an array of real numbers, not of type {array.dtype}.")
+    with np.errstate(over="ignore"):
+        return array.astype(np.float64, order="C")
+
+
+def parameter_arrays(u: ArrayLike, v: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return parameters as two arrays of one shape; InputError if they are not real numbers."""
+    u_array, v_array = real_array(u, "u"), real_array(v, "v")
+    try:
+        shape = np.broadcast_shapes(u_array.shape, v_array.shape)
+    except ValueError:
+        raise InputError(
+            f"u and v do not broadcast together: their shapes are {u_array.shape} and "
+            f"{v_array.shape}."
+        ) from None
+    return np.broadcast_to(u_array, shape), np.broadcast_to(v_array, shape)

@@ -1,0 +1,104 @@
+"""Surfaces that are given by points on a grid: scans, elevation models, images."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import InputError
+from .spline import apart, fit_grid
+from .surface import Domain, Ends, Surface
+
+__all__ = ["surface_of_elevations", "surface_of_points"]
+
+# A last row this near to the first, beside the distance of two rows, is the first row again.
+REPEATED = 1e-3
+
+
+def surface_of_points(
+    points: NDArray[np.float64], ends: Ends, name: str, domain: Domain | None = None
+) -> Surface:
+    """Make a surface of points (m, n, 3) at the vertices of the cells."""
+    _check(points, ends, name)
+    cells = tuple(
+        count if "wrap" in end or "flip" in end else count - 1
+        for count, end in zip(points.shape, ends, strict=False)
+    )
+    if domain is None:
+        domain = (0.0, float(cells[0])), (0.0, float(cells[1]))
+    spline = fit_grid(points, domain, ends, name)
+    _check_ends(points, ends, name)
+    return Surface(name, spline.evaluate, domain, ends, points)
+
+
+def surface_of_elevations(
+    elevations: NDArray[np.float64], spacing: Sequence[float] | None, ends: Ends, name: str
+) -> Surface:
+    """Make the graph of elevations (rows along y, columns along x), with upward normals."""
+    if ends != (("none", "none"), ("none", "none")):
+        raise InputError("elevations are a graph and cannot be periodic.")
+    rows, columns = elevations.shape
+    dx, dy = _spacing(spacing, max(rows, columns))
+    _check(elevations[..., None], ends, name)
+    x, y = dx * np.arange(columns), dy * np.arange(rows) + 0.0
+    if dy < 0.0:
+        elevations, y = elevations[::-1], y[::-1]
+    points = np.empty((columns, rows, 3))
+    points[..., 0] = x[:, None]
+    points[..., 1] = y
+    points[..., 2] = elevations.T
+    domain = (float(x[0]), float(x[-1])), (float(y[0]), float(y[-1]))
+    return surface_of_points(points, ends, name, domain)
+
+
+def _spacing(spacing: Sequence[float] | None, count: int) -> tuple[float, float]:
+    try:
+        dx, dy = (float(x) for x in (() if spacing is None else spacing))
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(
+            f"elevations (m, n) need spacing=(dx, dy), two numbers, not {spacing!r}."
+        ) from None
+    if not np.isfinite([dx * count, dy * count]).all() or dx <= 0.0 or dy == 0.0:
+        raise InputError(
+            f"spacing must be finite and the map too, dx > 0 and dy not 0, not ({dx}, {dy})."
+        )
+    return dx, dy
+
+
+def _check(points: NDArray[np.float64], ends: Ends, name: str) -> None:
+    for axis, end in enumerate(ends):
+        least = 3 if end[0] in ("wrap", "flip") else 4
+        if points.shape[axis] < least:
+            raise InputError(
+                f"{name} has {points.shape[0]} x {points.shape[1]} points; it needs at least "
+                f"{least} along axis {axis}, for 3 x 3 cells."
+            )
+    bad = ~np.isfinite(points).all(axis=2)
+    if bad.any():
+        i, j = np.unravel_index(int(np.argmax(bad)), bad.shape)
+        raise InputError(
+            f"{name} holds {int(bad.sum())} points with NaN or infinity, the first at [{i}, {j}]; "
+            "fill or crop them."
+        )
+
+
+def _check_ends(points: NDArray[np.float64], ends: Ends, name: str) -> None:
+    if "flip" in ends[0] and "flip" in ends[1]:
+        raise InputError(
+            f"{name} cannot be mirrored along both axes: one of its corners would be missing; use "
+            "a callable."
+        )
+    for axis, (low, high) in enumerate(ends):
+        rows = np.swapaxes(points, 0, axis)
+        if low in ("wrap", "flip"):
+            first = rows[0] if low == "wrap" else rows[0, ::-1]
+            if np.abs(rows[-1] - first).max() < REPEATED * np.abs(rows[1] - rows[0]).max():
+                raise InputError(
+                    f"{name} repeats its first points at the end of axis {axis}, which is "
+                    "periodic; leave them out."
+                )
+        for end, row in ((low, 0), (high, -1)):
+            if end == "pole" and apart(rows[row], rows[row, :1], points):
+                raise InputError(f"{name} has no pole at points[:, {row}]: they are not one point.")

@@ -1,0 +1,78 @@
+"""The normals for a wanted number of samples: a Fibonacci lattice round the mean normal."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..generated import sampler as kernels
+from .sphere import GOLDEN, fibonacci
+from .spline import Spline
+
+__all__ = ["Lattice"]
+
+
+@dataclass(frozen=True, eq=False)
+class Lattice:
+    """A Fibonacci lattice round `axis`, cut off where the cosine to the axis falls below `cosine`.
+
+    A cap that is not much smaller than the sphere is taken as the whole sphere round +z.
+    """
+
+    axis: NDArray[np.float64]
+    cosine: float
+
+    @classmethod
+    def around(cls, spline: Spline) -> Lattice:
+        """Return the lattice on the smallest cap round the mean normal that holds every normal."""
+        u, v = (
+            low + (high - low) * (np.arange(count) + 0.5) / count
+            for (low, high), count in zip(spline.domain, spline.cells, strict=True)
+        )
+        mean = np.nansum(spline.normals(u[:, None], v), axis=(0, 1))
+        length = float(np.linalg.norm(mean))
+        if length > 0.0:
+            axis = mean / length
+            cosine = kernels.least_cosine(spline.coefficients, spline.scale, axis)
+            if cosine > 0.0:
+                return cls(axis, cosine - 1e-12)
+        return cls.everywhere()
+
+    @classmethod
+    def everywhere(cls) -> Lattice:
+        """Return the lattice on the whole sphere."""
+        return cls(np.array([0.0, 0.0, 1.0]), -1.0)
+
+    @property
+    def solid_angle(self) -> float:
+        """The solid angle of the cap."""
+        return 2 * math.pi * (1.0 - self.cosine)
+
+    def density_of(self, count: int) -> float:
+        """Return the density, in normals per steradian, at which the cap holds `count` normals."""
+        return count / self.solid_angle
+
+    def normals(self, density: float) -> NDArray[np.float64]:
+        """Return unit normals (…, 3), `density` of them per steradian, at least one."""
+        if self.cosine == -1.0:
+            return fibonacci(max(1, round(4 * math.pi * density)))
+        density = max(density, self.density_of(1))
+        k = np.arange(max(1, math.floor(density * self.solid_angle)))
+        depth = (k + 0.5) / (2 * math.pi * density)  # 1 − cosine to the axis
+        angle = 2 * math.pi * np.modf(k / GOLDEN)[0]
+        radius = np.sqrt(np.maximum(depth * (2.0 - depth), 0.0))
+        across, along = self._directions()
+        vectors = (1.0 - depth)[:, None] * self.axis
+        vectors += (radius * np.cos(angle))[:, None] * across
+        vectors += (radius * np.sin(angle))[:, None] * along
+        return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+
+    def _directions(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return two unit vectors that make a right-handed frame with the axis."""
+        least = np.eye(3)[np.argmin(np.abs(self.axis))]
+        across = np.cross(least, self.axis)
+        across /= np.linalg.norm(across)
+        return across, np.cross(self.axis, across)

@@ -1,0 +1,144 @@
+"""The ring of values outside the domain: what the ends of a surface demand of its spline."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..generated import spline as kernels
+from .plain import plain
+from .surface import End, Ends
+
+__all__ = ["Border", "Sides", "coefficients_with_ring", "vertices_with_ring"]
+
+Array = NDArray[np.float64]
+Sides = tuple[tuple[Array, Array], tuple[Array, Array]]
+
+
+@dataclass(frozen=True, eq=False)
+class Border:
+    """The spline on the border of the domain: the univariate quasi-interpolant of the border.
+
+    `sides` are the middle Bézier points of the edges along u at the low and the high end of v, then
+    along v at the low and the high end of u; `corners` (2, 2, 3) the values at the corners.
+    """
+
+    sides: Sides
+    corners: Array
+
+    @classmethod
+    def of_values(cls, middles: Sides, g: Array) -> Border:
+        """Return the border from values at the middles of its edges and at all vertices."""
+        south, north = (
+            plain(kernels.edge_point)(f, row[:-1], row[1:])
+            for f, row in zip(middles[0], (g[:, 0], g[:, -1]), strict=True)
+        )
+        west, east = (
+            plain(kernels.edge_point)(f, row[:-1], row[1:])
+            for f, row in zip(middles[1], (g[0], g[-1]), strict=True)
+        )
+        return cls(((south, north), (west, east)), g[:: len(g) - 1, :: g.shape[1] - 1])
+
+    @classmethod
+    def of_vertices(cls, ringed: Array) -> Border:
+        """Return the border from values at the vertices and one ring more."""
+        sides = [
+            plain(kernels.edge_point_from_vertices)(row[1:-2], row[2:-1], row[:-3], row[3:])
+            for row in (ringed[:, 1], ringed[:, -2], ringed[1], ringed[-2])
+        ]
+        corners = ringed[1 :: len(ringed) - 3, 1 :: ringed.shape[1] - 3][:2, :2]
+        return cls(((sides[0], sides[1]), (sides[2], sides[3])), corners)
+
+
+def coefficients_with_ring(inner: Array, border: Border, ends: Ends) -> Array:
+    """Return the coefficients (m + 2, n + 2, 3) with one ring outside the inner ones (m, n, 3).
+
+    Open sides follow the border, periodic ones are copied. At a pole the outer coefficients are the
+    first inner ones mirrored in one point, their mean, so that this end of the spline is exactly
+    one point; the inner ones are rounded to multiples of a small power of two for that.
+    """
+    result = np.pad(inner, [(1, 1), (1, 1), (0, 0)])
+    turned = np.swapaxes(result, 0, 1)
+    _open_rows(result, ends[0], border.sides[1])
+    _open_rows(turned, ends[1], border.sides[0])
+    _close(result, turned, ends)
+    for i, j in ((0, 0), (0, -1), (-1, 0), (-1, -1)):
+        if ends[0][i] == ends[1][j] == "none":
+            a, b = (1, -2)[i], (1, -2)[j]
+            result[i, j] = plain(kernels.beyond_corner)(
+                border.corners[i, j], result[a, j], result[i, b], result[a, b]
+            )
+    return result
+
+
+def _open_rows(rows: Array, ends: tuple[End, End], sides: tuple[Array, Array]) -> None:
+    """Write the rows outside the open ends of the first axis."""
+    for end, side, outside, first in zip(ends, sides, (0, -1), (1, -2), strict=True):
+        if end == "none":
+            rows[outside, 1:-1] = plain(kernels.beyond_edge)(side, rows[first, 1:-1])
+
+
+def _close(result: Array, turned: Array, ends: Ends) -> None:
+    """Write the rows outside periodic ends and poles.
+
+    What runs along v is closed first where u is open: then its copies hold the ring along u too.
+    """
+    for rows, end in ((turned, ends[1]), (result, ends[0])):
+        if end[0] in ("wrap", "flip"):
+            step = 1 if end[0] == "wrap" else -1
+            rows[0], rows[-1] = rows[-2, ::step].copy(), rows[1, ::step].copy()
+        for kind, outside, first in zip(end, (0, -1), (1, -2), strict=True):
+            if kind == "pole":
+                _close_pole(rows, outside, first)
+
+
+def _close_pole(rows: Array, outside: int, first: int) -> None:
+    inner = rows[first, 1:-1]
+    grain = 4.0 * float(np.spacing(np.abs(inner).max()))
+    inner = np.round(inner / grain) * grain
+    spread = (inner - inner[0]).mean(axis=0)  # exactly 0 where all are equal
+    pole = inner[0] + np.round(spread / grain) * grain
+    rows[first, 1:-1] = inner
+    rows[outside, 1:-1] = 2.0 * pole - inner
+
+
+# --- vertices -------------------------------------------------------------------------------------
+
+
+def vertices_with_ring(values: Array, ends: Ends) -> Array:
+    """Add the values (m, n, 3) at the vertices one step outside the domain.
+
+    Values of a periodic direction come without the repeated last row and get two rows at the high
+    end; others get one row at each end.
+    """
+    turned = np.swapaxes(values, 0, 1)
+    reverse = values[::-1]  # of vertices that close, the first stays the first
+    reverse = np.roll(reverse, 1, axis=0) if ends[0][0] in ("wrap", "flip") else reverse
+    opposite = np.roll(turned, len(values) // 2, axis=1)
+    low, high = _beyond(turned, np.swapaxes(reverse, 0, 1), opposite, ends[1])
+    ringed = np.swapaxes(np.concatenate([low, turned, high]), 0, 1)
+    low, high = _beyond(ringed, ringed[:, ::-1], ringed, ends[0])
+    return np.ascontiguousarray(np.concatenate([low, ringed, high]))
+
+
+def _beyond(
+    rows: Array, mirrored: Array, opposite: Array, ends: tuple[End, End]
+) -> tuple[Array, Array]:
+    """Return the rows before the first and after the last one.
+
+    `mirrored` are the same rows with the other parameter reversed, `opposite` those half a period
+    away along it.
+    """
+    if ends[0] in ("wrap", "flip"):
+        source = rows if ends[0] == "wrap" else mirrored
+        return source[-1:], source[:2]
+    parts = []
+    for end, step, first in zip(ends, (1, -1), (0, -1), strict=True):
+        if end == "pole":
+            parts.append(opposite[first + step][None])
+        else:
+            inside = (rows[first + k * step] for k in range(3))
+            parts.append(plain(kernels.extrapolation)(*inside)[None])
+    return parts[0], parts[1]

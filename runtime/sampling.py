@@ -1,0 +1,187 @@
+"""`sample` and `sample_many`: from a surface to its samples, in one call."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterable, Iterator, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .checks import whole_number
+from .errors import GaussmapError, GaussmapWarning, InputError
+from .lattice import Lattice
+from .samples import Samples, SamplingReport
+from .search import Hits, NormalBins, fill, find
+from .sphere import as_normals
+from .spline import Spline, fit
+from .surface import Surface
+from .threads import thread_count
+from .visibility import invisible_share, visible_solid_angle
+
+__all__ = ["sample", "sample_many"]
+
+# `count` is met by changing the number of normals, until it is this near or after so many tries.
+NEAR_ENOUGH = 0.01
+TRIES = 6
+# At most this many normals for each sample that was asked (a thin Gaussian image catches few).
+NORMALS_PER_SAMPLE = 100
+WORTH_A_WARNING = 0.01
+
+
+def sample(
+    surface: Surface | Spline,
+    normals: ArrayLike | None = None,
+    *,
+    count: int | None = None,
+    cells: Sequence[int] | None = None,
+    threads: int | None = None,
+    progress: bool = False,
+) -> Samples:
+    """Return every point of a surface that has one of the given normals, each exactly once.
+
+    Uniformly spread normals make the samples dense where the surface bends and sparse where it is
+    flat: their density is |K| (paper, Sect. 4.2). The surface is first approximated by a spline of
+    `cells` = (m, n) cells (see `fit`); a `Spline` is taken as it is.
+
+    Give either `normals`, an array (S, 3) of directions of any length such as `icosphere(32)` or
+    `fibonacci(10_000)`, or `count`, about how many samples shall come: within 5 % where the
+    Gaussian image is resolved, from a Fibonacci lattice of normals round the mean normal of the
+    surface.
+
+    With `progress`, work that takes longer than a second shows a bar on standard error.
+
+    Samples are ordered by patch and then by normal, the same for any number of `threads` (by
+    default one for each core). A GaussmapWarning says when the surface has flat or developable
+    parts, of which normals see nothing, or when `count` cannot be met. Raises InputError for
+    unusable arguments and SurfaceError for a surface that cannot be evaluated.
+    """
+    directions = _directions(normals, count, threads)
+    if isinstance(surface, Spline) and cells is not None:
+        raise InputError("cells=... is for surfaces; this spline has its cells already.")
+    spline = surface if isinstance(surface, Spline) else fit(surface, cells)
+    if directions is None:
+        assert count is not None
+        bins, hits, density = _by_count(spline, int(count), threads, progress)
+    else:
+        bins = NormalBins(directions)
+        hits = find(spline, bins, threads, progress)
+        density = len(bins.normals) / (4 * math.pi)
+    samples = _samples(spline, bins.normals, hits, density, threads)
+    _warn(samples.report, count)
+    return samples
+
+
+def sample_many(
+    surfaces: Iterable[Surface | Spline],
+    normals: ArrayLike | None = None,
+    *,
+    progress: bool = True,
+    count: int | None = None,
+    cells: Sequence[int] | None = None,
+    threads: int | None = None,
+) -> Iterator[Samples]:
+    """Yield the samples of each surface, in order; the arguments are those of `sample`.
+
+    Progress goes to standard error if that is a terminal. A surface that raises a GaussmapError is
+    reported by a GaussmapWarning, with its number and name, and left out; the others go on.
+    `samples.report.surface` tells which surface the samples are of. Raises InputError for unusable
+    normals, count or threads.
+    """
+    from tqdm import tqdm
+
+    directions = _directions(normals, count, threads)
+    if isinstance(surfaces, str) or not isinstance(surfaces, Iterable):
+        raise InputError(f"sample_many takes surfaces to go through, not {surfaces!r}.")
+    bar = tqdm(surfaces, desc="sampling", unit="surface", disable=None if progress else True)
+    for number, surface in enumerate(bar):
+        try:
+            samples = sample(surface, directions, count=count, cells=cells, threads=threads)
+        except GaussmapError as error:
+            name = getattr(surface, "name", type(surface).__name__)
+            warnings.warn(
+                f"surface {number} ({name}) is left out: {error}", GaussmapWarning, stacklevel=2
+            )
+        else:
+            yield samples
+
+
+def _directions(
+    normals: ArrayLike | None, count: int | None, threads: int | None
+) -> NDArray[np.float64] | None:
+    """Return the unit normals that were asked, None if it was a count; InputError if unusable."""
+    if (normals is None) == (count is None):
+        raise InputError("give either normals=... or count=..., and not both.")
+    thread_count(threads)
+    if normals is not None:
+        return as_normals(normals)
+    whole_number(count, "count")
+    return None
+
+
+def _by_count(
+    spline: Spline, count: int, threads: int | None, progress: bool
+) -> tuple[NormalBins, Hits, float]:
+    """Choose the number of normals so that about `count` samples come."""
+    lattice = Lattice.around(spline)
+    densest = lattice.density_of(NORMALS_PER_SAMPLE * max(count, 1000))
+    everything = float(np.abs(spline.measure[1]).sum())
+    resolved = visible_solid_angle(spline, min(count / max(everything, 1e-300), densest))
+    if resolved == 0.0:
+        lattice, density = Lattice.everywhere(), count / (4 * math.pi)
+    else:
+        density = count / resolved
+    best: tuple[NormalBins, Hits, float] | None = None
+    for _ in range(TRIES):
+        density = min(density, densest)
+        bins = NormalBins(lattice.normals(density))
+        hits = find(spline, bins, threads, progress)
+        if best is None or abs(len(hits) - count) < abs(len(best[1]) - count):
+            best = bins, hits, density
+        if abs(len(hits) - count) <= NEAR_ENOUGH * count or resolved == 0.0:
+            break
+        density *= count / len(hits) if len(hits) else 2.0
+    assert best is not None
+    return best
+
+
+def _samples(
+    spline: Spline,
+    normals: NDArray[np.float64],
+    hits: Hits,
+    density: float,
+    threads: int | None,
+) -> Samples:
+    report = SamplingReport(
+        surface=spline.name,
+        normals=len(normals),
+        samples=len(hits),
+        patches=spline.patches,
+        invisible_share=invisible_share(spline, density),
+        degenerate_patches=hits.invisible,
+    )
+    fields = fill(spline, normals, hits, threads)
+    return Samples(
+        **fields, normal_index=hits.normal_index, patch_index=hits.patch_index, report=report
+    )
+
+
+def _warn(report: SamplingReport, count: int | None) -> None:
+    """Say when normals see less of the surface than the user may think."""
+    share = report.invisible_share or 0.0
+    reasons = []
+    if share > WORTH_A_WARNING:
+        reasons.append(
+            f"{100 * share:.0f} % of its area is flat or developable, where normals see nothing "
+            "but the error of the spline"
+        )
+    elif report.samples == 0 and report.degenerate_patches == report.patches:
+        reasons.append("it is flat or developable up to the rounding of its coordinates")
+    elif report.samples == 0:
+        reasons.append("none of the normals lies in its Gaussian image")
+    if count is not None and abs(report.samples - count) > 0.05 * count + 1:
+        reasons.append(f"{report.samples} samples came where {count} were asked")
+    if reasons:
+        message = f"surface {report.surface!r}: {'; '.join(reasons)}."
+        warnings.warn(message, GaussmapWarning, stacklevel=3)

@@ -1,0 +1,92 @@
+"""Sets of unit normals: the refined icosahedron, the Fibonacci lattice, and what a user brings."""
+
+from __future__ import annotations
+
+import math
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .checks import real_array, whole_number
+from .errors import InputError
+
+__all__ = ["as_normals", "fibonacci", "icosphere"]
+
+GOLDEN = (1 + math.sqrt(5)) / 2
+
+
+def icosphere(frequency: int) -> NDArray[np.float64]:
+    """Return the 10 ν² + 2 vertices (…, 3) of the icosahedron whose edges are cut into ν parts.
+
+    Every face carries a planar triangular lattice that is projected from the centre to the unit
+    sphere ("uniform refinement", paper, Sect. 4.2). The 12 vertices come first, then the points
+    inside the 30 edges, then those inside the 20 faces. Many of them lie in common symmetry planes.
+
+    Raises InputError unless `frequency` is a whole number of at least 1.
+    """
+    nu = whole_number(frequency, "frequency")
+    # Coordinates a + b φ as integers (a, b): what mirrors another point does so bit for bit.
+    golden = np.array([1.0, GOLDEN])
+    corners = np.array(
+        [((0, 0), (i, 0), (0, j)) for i in (-1, 1) for j in (-1, 1)]
+        + [((i, 0), (0, j), (0, 0)) for i in (-1, 1) for j in (-1, 1)]
+        + [((0, i), (0, 0), (j, 0)) for i in (-1, 1) for j in (-1, 1)]
+    )
+    near = np.abs(np.sum(((corners[:, None] - corners) @ golden) ** 2, axis=2) - 4.0) < 1.0
+    edges = [pair for pair in combinations(range(12), 2) if near[pair]]
+    faces = [
+        (i, j, k)
+        for i, j, k in combinations(range(12), 3)
+        if near[i, j] and near[j, k] and near[i, k]
+    ]
+    along = np.arange(1, nu)[:, None, None]
+    parts = [corners * nu]
+    parts += [(nu - along) * corners[i] + along * corners[j] for i, j in edges]
+    s, t = np.meshgrid(np.arange(1, nu), np.arange(1, nu), indexing="ij")
+    s, t = (x[s + t < nu][:, None, None] for x in (s, t))
+    parts += [(nu - s - t) * corners[i] + s * corners[j] + t * corners[k] for i, j, k in faces]
+    return _unit(np.concatenate(parts) @ golden)
+
+
+def fibonacci(count: int) -> NDArray[np.float64]:
+    """Return `count` unit normals (count, 3) on a Fibonacci lattice, from +z to −z.
+
+    The points are spread evenly (every one stands for the same area of the sphere) and in general
+    position: no symmetry aligns them with a surface. Raises InputError unless `count` is a whole
+    number of at least 1.
+    """
+    total = whole_number(count, "count")
+    k = np.arange(total)
+    z = 1.0 - (2.0 * k + 1.0) / total
+    angle = 2.0 * math.pi * np.modf(k / GOLDEN)[0]
+    radius = np.sqrt((1.0 - z) * (1.0 + z))
+    return _unit(np.column_stack([radius * np.cos(angle), radius * np.sin(angle), z]))
+
+
+def as_normals(normals: ArrayLike) -> NDArray[np.float64]:
+    """Return an array of directions (S, 3), of any non-zero lengths, as unit normals, float64.
+
+    A vector that has unit length already, up to rounding, is kept bit for bit. Raises InputError
+    for another shape, an empty array, NaN, infinity, or a vector of length 0, and names its row.
+    """
+    array = real_array(normals, "normals")
+    if array.ndim != 2 or array.shape[1] != 3 or array.shape[0] == 0:
+        raise InputError(f"normals must have the shape (S, 3) with S >= 1, not {array.shape}.")
+    bad = ~np.isfinite(array).all(axis=1)
+    if bad.any():
+        raise InputError(f"normals[{int(bad.argmax())}] holds NaN or infinity.")
+    zero = ~array.any(axis=1)
+    if zero.any():
+        raise InputError(
+            f"normals[{int(zero.argmax())}] is the zero vector, which has no direction."
+        )
+    return _unit(array)
+
+
+def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Divide by the length, safely for the smallest and the largest numbers."""
+    exponents = np.frexp(np.abs(vectors).max(axis=1, keepdims=True))[1]
+    scaled = np.ldexp(vectors, np.where(np.abs(exponents) > 1, -exponents, 0))
+    length = np.sqrt(np.einsum("ij,ij->i", scaled, scaled))[:, None]
+    return np.where(np.abs(length - 1.0) <= 4.5e-16, scaled, scaled / length)

@@ -1,0 +1,209 @@
+"""A surface: how to evaluate x(u,v), over which rectangle, and what lies beyond its ends."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, cast
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .checks import parameter_arrays, real_array
+from .errors import GaussmapError, InputError, SurfaceError
+
+if TYPE_CHECKING:
+    import sympy
+
+__all__ = ["Domain", "End", "Ends", "Periodicity", "Surface"]
+
+End = Literal["none", "wrap", "flip", "pole"]
+Ends = tuple[tuple[End, End], tuple[End, End]]
+Domain = tuple[tuple[float, float], tuple[float, float]]
+Periodicity = bool | End | tuple[End, End]
+Evaluation = Callable[[NDArray[np.float64], NDArray[np.float64]], ArrayLike]
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """A parametric surface x(u,v).
+
+    Make one with `from_callable`, `from_sympy` or `from_grid`, or take one of `gaussmap.surfaces`.
+
+    `function(u, v)` gets two float64 arrays of one shape and returns points of that shape + (3,).
+    `ends` holds, for u and for v, what lies beyond the low and the high end: "none" (an edge),
+    "wrap" (periodic), "flip" (periodic with the other parameter mirrored, as on the Möbius band) or
+    "pole" (for v: the end is one point and the opposite meridian continues the surface). Normals
+    point along x_u × x_v. `grid` holds the points (m, n, 3) of a surface that was given by points.
+    """
+
+    name: str
+    function: Evaluation
+    domain: Domain
+    ends: Ends
+    grid: NDArray[np.float64] | None = None
+
+    @classmethod
+    def from_callable(
+        cls,
+        f: Evaluation,
+        domain: Sequence[Sequence[float]],
+        periodic: Sequence[Periodicity] = (False, False),
+        *,
+        name: str = "surface",
+    ) -> Surface:
+        """Make a surface of a vectorized callable f(u, v) → (..., 3).
+
+        `domain` is ((u0, u1), (v0, v1)); `periodic` says for u and for v whether the surface
+        closes: True or False, or in words as in `ends` above, one for both ends or a pair (low,
+        high). Raises InputError for an empty or infinite domain or an unknown word. The callable is
+        first called when the surface is fitted or evaluated (see `evaluate`).
+        """
+        if not callable(f):
+            raise InputError(f"f must be callable as f(u, v), and {type(f).__name__} is not.")
+        return cls(name, f, checked_domain(domain), checked_ends(periodic))
+
+    @classmethod
+    def from_sympy(
+        cls,
+        position: Sequence[sympy.Expr | str | float],
+        parameters: Sequence[sympy.Symbol | str],
+        domain: Sequence[Sequence[float | str | sympy.Expr]],
+        periodic: Sequence[Periodicity] = (False, False),
+        *,
+        name: str = "surface",
+    ) -> Surface:
+        """Make a surface of three SymPy expressions (or strings) in the two `parameters`.
+
+        `domain` and `periodic` are as in `from_callable`; the domain may hold SymPy numbers, or
+        strings such as "2*pi". Raises InputError unless there are three expressions without further
+        symbols.
+        """
+        from .expressions import compiled, numbers
+
+        f = compiled(position, parameters)
+        return cls(name, f, checked_domain(numbers(domain)), checked_ends(periodic))
+
+    @classmethod
+    def from_grid(
+        cls,
+        points: ArrayLike,
+        spacing: Sequence[float] | None = None,
+        periodic: Sequence[Periodicity] = (False, False),
+        *,
+        name: str = "grid",
+    ) -> Surface:
+        """Make a surface of points (m, n, 3), or of elevations (m, n) with spacing=(dx, dy).
+
+        Points: u and v are the fractional row and column, u = i and v = j at points[i, j]. A
+        periodic direction must not repeat its first row at its end. Elevations are a map with rows
+        along y and columns along x: elevations[i, j] stands at x = u = j dx, y = v = i dy, in the
+        unit of the elevations, and normals point upward. A negative dy means that rows run from
+        north to south.
+
+        One spline cell stands between any four neighbouring points, so that nothing is lost;
+        `fit(cells=...)` chooses otherwise. Raises InputError for another shape, NaN or infinity
+        (and says where), fewer than 4 points in a direction that is not periodic (3 if it is), or
+        spacing that is missing, zero or not wanted.
+        """
+        from .grid import surface_of_elevations, surface_of_points
+
+        array = _grid(points)
+        if array.ndim == 2:
+            return surface_of_elevations(array, spacing, checked_ends(periodic), name)
+        if spacing is not None:
+            raise InputError(
+                "spacing is for elevations of shape (m, n); points (m, n, 3) need none."
+            )
+        return surface_of_points(array, checked_ends(periodic), name)
+
+    def evaluate(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
+        """Return the points x(u, v), shape (..., 3), for parameters that broadcast together.
+
+        Raises SurfaceError if the callable raises, returns another shape than (..., 3) or anything
+        but real numbers, or gives NaN or infinity, and says where; InputError if the parameters are
+        no real numbers, or lie outside a surface that was given by points.
+        """
+        u_array, v_array = parameter_arrays(u, v)
+        shape = u_array.shape
+        u_array, v_array = np.atleast_1d(u_array), np.atleast_1d(v_array)
+        try:
+            with np.errstate(all="ignore"):
+                returned = self.function(u_array.copy(), v_array.copy())
+        except GaussmapError:
+            raise
+        except Exception as error:
+            raise SurfaceError(
+                f"the callable of surface {self.name!r} raised {type(error).__name__}: "
+                f"{' '.join(str(error).split())}"
+            ) from error
+        try:
+            points = real_array(returned, f"what the callable of surface {self.name!r} returns")
+        except InputError as error:
+            raise SurfaceError(str(error)) from None
+        if points.shape != (*u_array.shape, 3):
+            raise SurfaceError(
+                f"the callable of surface {self.name!r} returned the shape {points.shape} for "
+                f"parameters of shape {u_array.shape}; it must return {(*u_array.shape, 3)}."
+            )
+        if not np.isfinite(points).all():
+            bad = ~np.isfinite(points).all(axis=-1)
+            where = np.unravel_index(int(np.argmax(bad)), bad.shape)
+            raise SurfaceError(
+                f"surface {self.name!r} is not finite at u = {float(u_array[where])}, "
+                f"v = {float(v_array[where])}: {points[where]}."
+            )
+        return points.reshape(*shape, 3)
+
+
+def checked_domain(domain: Sequence[Sequence[float]]) -> Domain:
+    """Return a domain as floats; InputError unless it is a bounded rectangle with an inside."""
+    try:
+        (u0, u1), (v0, v1) = ((float(low), float(high)) for low, high in domain)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"domain must be ((u0, u1), (v0, v1)), not {domain!r}.") from None
+    for name, low, high in (("u", u0, u1), ("v", v0, v1)):
+        if not 0.0 < high - low < np.inf:
+            raise InputError(f"the domain of {name} is empty or infinite: ({low}, {high}).")
+    return (u0, u1), (v0, v1)
+
+
+def checked_ends(periodic: Sequence[Periodicity]) -> Ends:
+    """Return what lies beyond the ends, from the short forms of a user; InputError on a clash."""
+    try:
+        along_u, along_v = periodic
+    except (TypeError, ValueError):
+        raise InputError(
+            f"periodic must be a pair, one entry for u and one for v, not {periodic!r}."
+        ) from None
+    ends = _pair(along_u, "u"), _pair(along_v, "v")
+    if "pole" in ends[0]:
+        raise InputError('only v can end in a "pole": exchange the parameters u and v.')
+    if "pole" in ends[1] and ends[0] != ("wrap", "wrap"):
+        raise InputError('a "pole" of v needs u to be periodic ("wrap").')
+    return ends
+
+
+def _pair(entry: Periodicity, name: str) -> tuple[End, End]:
+    if isinstance(entry, bool | np.bool_):
+        return ("wrap", "wrap") if entry else ("none", "none")
+    pair = (entry, entry) if isinstance(entry, str) else entry
+    known = ("none", "wrap", "flip", "pole")
+    if not isinstance(pair, tuple | list) or len(pair) != 2 or any(x not in known for x in pair):
+        raise InputError(
+            f"periodic for {name} must be True, False, one of {', '.join(known)}, or a pair of "
+            f"these, not {entry!r}."
+        )
+    low, high = pair
+    if low != high and not {low, high} <= {"none", "pole"}:
+        raise InputError(f'"wrap" and "flip" must stand at both ends of {name}, not {entry!r}.')
+    return cast(tuple[End, End], (low, high))
+
+
+def _grid(points: ArrayLike) -> NDArray[np.float64]:
+    array = real_array(points, "a grid")
+    if array.ndim not in (2, 3) or (array.ndim == 3 and array.shape[2] != 3):
+        raise InputError(
+            f"a grid must have the shape (m, n, 3), or (m, n) for elevations, not {array.shape}."
+        )
+    return array

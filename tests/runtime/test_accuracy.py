@@ -1,0 +1,246 @@
+"""How fast the spline and its samples approach the surface: orders measured, against theory.
+
+References are the exact formulas of symbolic/surfaces.py. An order is the least-squares slope of
+log(largest error) against log(cell size) over four grids.
+"""
+
+from dataclasses import dataclass
+
+import gaussmap as gm
+import numpy as np
+import pytest
+import sympy as sp
+from gaussmap.symbolic.surfaces import CATALOGUE
+from numpy.typing import NDArray
+
+pytestmark = pytest.mark.compiled
+
+Array = NDArray[np.float64]
+THREE = ["torus", "ellipsoid_patch", "wavy_graph"]
+OTHERS = ["hyperboloid", "monkey_saddle", "enneper", "catenoid", "moebius_band", "dupin_cyclide"]
+FAR_FROM_THE_POLES = 0.5  # radians of latitude
+
+
+@dataclass(frozen=True, eq=False)
+class Exact:
+    """The exact surface at parameters (k, 2)."""
+
+    name: str
+
+    def _values(self, expressions: tuple[sp.Expr, ...], uv: Array) -> Array:
+        surface = CATALOGUE[self.name]
+        exact = [sp.sympify(e).xreplace(surface.defaults) for e in expressions]
+        function = sp.lambdify((surface.u, surface.v), exact, "numpy", cse=True)
+        return np.stack([np.broadcast_to(x, len(uv)) for x in function(*uv.T)], axis=-1)
+
+    def points(self, uv: Array) -> Array:
+        return self._values(CATALOGUE[self.name].position, uv)
+
+    def normals(self, uv: Array) -> Array:
+        vectors = self._values(CATALOGUE[self.name].normal_field, uv)
+        return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+
+    def curvatures(self, uv: Array) -> Array:
+        surface = CATALOGUE[self.name]
+        return self._values((surface.gaussian_curvature, surface.mean_curvature), uv)
+
+
+def random_places(name: str, count: int = 20_000, margin: float = 0.0) -> Array:
+    """Return parameters, at open ends no nearer to them than `margin` of the domain."""
+    surface = gm.surfaces.surface(name)
+    places = np.random.default_rng(1).random((count, 2))
+    for axis, ends in enumerate(surface.ends):
+        low, high = surface.domain[axis]
+        inside = margin if "none" in ends else 0.0
+        if "pole" in ends:
+            inside = FAR_FROM_THE_POLES / (high - low)
+        places[:, axis] = low + (high - low) * (inside + (1 - 2 * inside) * places[:, axis])
+    return places
+
+
+def order(cells: list[int], errors: list[float]) -> float:
+    """Return the least-squares slope."""
+    return -float(np.polyfit(np.log(cells), np.log(errors), 1)[0])
+
+
+# --- the spline -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", [*THREE, *OTHERS, "ellipsoid", "sphere"])
+def test_positions_have_order_three_and_normals_two(name: str) -> None:
+    exact, uv = Exact(name), random_places(name)
+    points, normals = exact.points(uv), exact.normals(uv)
+    cells, position_errors, normal_errors = [32, 64, 128, 256], [], []
+    for m in cells:
+        spline = gm.fit(gm.surfaces.surface(name), (m, m))
+        distances = np.linalg.norm(spline.evaluate(*uv.T) - points, axis=1)
+        angles = np.linalg.norm(spline.normals(*uv.T) - normals, axis=1)
+        position_errors.append(float(distances.max()))
+        normal_errors.append(float(angles.max()))
+    assert order(cells, position_errors) == pytest.approx(3.0, abs=0.3)
+    assert order(cells, normal_errors) == pytest.approx(2.0, abs=0.1)
+    assert position_errors[-1] < 1e-6
+    assert normal_errors[-1] < 5e-4
+
+
+def test_constants_of_the_torus() -> None:
+    """The errors themselves, as they were measured with a prototype."""
+    exact, uv = Exact("torus"), random_places("torus")
+    for m, position, normal in ((32, 8.2e-5, 1.9e-3), (64, 9.9e-6, 4.6e-4), (128, 1.2e-6, 1.2e-4)):
+        spline = gm.fit(gm.surfaces.torus(major=1.0, minor=0.35), (m, m))
+        distances = np.linalg.norm(spline.evaluate(*uv.T) - exact.points(uv), axis=1)
+        angles = np.linalg.norm(spline.normals(*uv.T) - exact.normals(uv), axis=1)
+        assert distances.max() == pytest.approx(position, rel=0.3)
+        assert angles.max() == pytest.approx(normal, rel=0.4)
+
+
+def test_quadratic_graphs_are_exact() -> None:
+    for name in ("elliptic_paraboloid", "hyperbolic_paraboloid", "plane"):
+        exact, uv = Exact(name), random_places(name, 1000)
+        spline = gm.fit(gm.surfaces.surface(name), (16, 16))
+        np.testing.assert_allclose(spline.evaluate(*uv.T), exact.points(uv), rtol=0, atol=4e-15)
+        np.testing.assert_allclose(spline.normals(*uv.T), exact.normals(uv), rtol=0, atol=1e-13)
+
+
+def test_samples_of_quadratic_graphs_are_exact() -> None:
+    """Each at the point that has its normal, with its curvatures."""
+    for name in ("elliptic_paraboloid", "hyperbolic_paraboloid"):
+        samples = gm.sample(gm.surfaces.surface(name), count=1000, cells=(7, 9))
+        exact = Exact(name)
+        np.testing.assert_allclose(samples.points, exact.points(samples.uv), rtol=0, atol=1e-14)
+        np.testing.assert_allclose(samples.normals, exact.normals(samples.uv), rtol=0, atol=1e-13)
+        K, H = exact.curvatures(samples.uv).T
+        np.testing.assert_allclose(samples.gaussian_curvature, K, rtol=1e-11)
+        np.testing.assert_allclose(samples.mean_curvature, H, rtol=0, atol=1e-11)
+
+
+# --- the support function -------------------------------------------------------------------------
+
+
+def support_of_samples(name: str, uv: Array, m: int) -> tuple[Array, Array]:
+    """Return h at the exact normals of uv, on the sheet of uv, and how far the parameters moved."""
+    surface = gm.surfaces.surface(name)
+    samples = gm.sample(surface, Exact(name).normals(uv), cells=(m, m))
+    low, high = np.array(surface.domain).T
+    gaps = np.abs(samples.uv - uv[samples.normal_index]) / (high - low)
+    closed = np.array(["none" not in ends for ends in surface.ends])
+    gaps = np.where(closed, np.minimum(gaps, 1.0 - gaps), gaps).max(axis=1)
+    nearest = np.full(len(uv), np.inf)
+    np.minimum.at(nearest, samples.normal_index, gaps)
+    chosen = gaps == nearest[samples.normal_index]
+    support = np.full(len(uv), np.nan)
+    support[samples.normal_index[chosen]] = samples.support[chosen]
+    return support, nearest
+
+
+@pytest.mark.parametrize("name", THREE)
+def test_support_function_has_order_three(name: str) -> None:
+    """At normals of points that are neither at the edge of the Gaussian image nor at a fold."""
+    exact, uv = Exact(name), random_places(name, 5000, margin=0.03)
+    bending = np.abs(exact.curvatures(uv)[:, 0])
+    uv = uv[bending > 0.1 * bending.max()]
+    h = (exact.normals(uv) * exact.points(uv)).sum(axis=1)
+    cells, errors = [64, 112, 192, 320], []
+    for m in cells:
+        support, moved = support_of_samples(name, uv, m)
+        assert moved.max() < 2.0 / m
+        errors.append(float(np.abs(support - h).max()))
+    assert order(cells, errors) == pytest.approx(3.0, abs=0.3)
+    assert errors[0] < 5e-6
+
+
+def test_support_function_of_an_ellipsoid_in_closed_form() -> None:
+    axes = np.array([1.0, 0.6, 0.3])
+    normals, cells, errors = gm.fibonacci(2000), [64, 112, 192, 320], []
+    for m in cells:
+        samples = gm.sample(gm.surfaces.ellipsoid_patch(), normals, cells=(m, m))
+        expected = np.linalg.norm(axes * samples.normals, axis=1)
+        errors.append(float(np.abs(samples.support - expected).max()))
+    assert order(cells, errors) == pytest.approx(3.0, abs=0.3)
+
+
+def test_support_function_of_a_torus_in_closed_form() -> None:
+    normals, cells, errors = gm.fibonacci(2000)[5:-5], [64, 112, 192, 320], []
+    for m in cells:
+        samples = gm.sample(gm.surfaces.torus(major=1.0, minor=0.35), normals, cells=(m, m))
+        along = np.hypot(samples.normals[:, 0], samples.normals[:, 1])
+        expected = np.where(samples.elliptic, along, -along) + 0.35
+        steep = along > 0.1  # off the parabolic circles, whose normals are ±z
+        errors.append(float(np.abs(samples.support - expected)[steep].max()))
+        assert np.bincount(samples.normal_index).tolist() == [2] * len(normals)
+    assert order(cells, errors) == pytest.approx(3.0, abs=0.3)
+
+
+# --- the samples ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", [*THREE, *OTHERS, "ellipsoid", "sphere"])
+def test_curvatures_have_order_one(name: str) -> None:
+    """The curvatures of the spline jump from patch to patch; errors are as large as a cell."""
+    exact, normals = Exact(name), gm.fibonacci(20_000)
+    cells, gaussian, mean = [24, 48, 96, 192], [], []
+    for m in cells:
+        samples = gm.sample(gm.surfaces.surface(name), normals, cells=(m, m))
+        if "pole" in gm.surfaces.surface(name).ends[1]:
+            samples = samples[np.abs(samples.uv[:, 1]) < np.pi / 2 - FAR_FROM_THE_POLES]
+        K, H = exact.curvatures(samples.uv).T
+        size = np.sqrt(np.abs(K).max())
+        gaussian.append(float(np.abs(samples.gaussian_curvature - K).max() / size**2))
+        mean.append(float(np.abs(samples.mean_curvature - H).max() / size))
+    assert order(cells, gaussian) == pytest.approx(1.0, abs=0.35)
+    assert order(cells, mean) == pytest.approx(1.0, abs=0.35)
+    assert gaussian[-1] < 0.1
+    assert mean[-1] < 0.1
+
+
+@pytest.mark.parametrize("name", THREE)
+def test_samples_have_their_normal_on_the_surface_too(name: str) -> None:
+    """Points are order three from the surface; the surface's normal there is order two off."""
+    exact, cells, distances, angles = Exact(name), [32, 64, 128, 256], [], []
+    for m in cells:
+        samples = gm.sample(gm.surfaces.surface(name), gm.fibonacci(20_000), cells=(m, m))
+        gap = np.linalg.norm(samples.points - exact.points(samples.uv), axis=1)
+        turn = np.linalg.norm(samples.normals - exact.normals(samples.uv), axis=1)
+        distances.append(float(gap.max()))
+        angles.append(float(turn.max()))
+    assert order(cells, distances) == pytest.approx(3.0, abs=0.3)
+    assert order(cells, angles) == pytest.approx(2.0, abs=0.2)
+
+
+@pytest.mark.parametrize("name", ["sphere", "ellipsoid"])
+def test_samples_near_poles_are_on_the_surface(name: str) -> None:
+    """Within a cell of a pole curvatures mean nothing, but points and normals keep their orders."""
+    exact, cells, distances = Exact(name), [16, 32, 64, 128], []
+    for m in cells:
+        samples = gm.sample(gm.surfaces.surface(name), gm.fibonacci(20_000), cells=(m, m))
+        gap = np.linalg.norm(samples.points - exact.points(samples.uv), axis=1)
+        distances.append(float(gap.max()))
+    assert order(cells, distances) > 1.9
+    assert distances[-1] < 1e-3
+
+
+def test_signs() -> None:
+    """Outward normals: positive mean curvature on a sphere and round the outside of a torus."""
+    ball = gm.sample(gm.surfaces.sphere(radius=2.0), gm.fibonacci(2000))
+    ball = ball[np.abs(ball.uv[:, 1]) < 1.4]
+    assert (ball.points * ball.normals).sum(axis=1).min() > 1.99
+    np.testing.assert_allclose(ball.mean_curvature, 0.5, rtol=0.1)
+    np.testing.assert_allclose(ball.gaussian_curvature, 0.25, rtol=0.2)
+    np.testing.assert_allclose(ball.support, 2.0, rtol=1e-4)
+    ring = gm.sample(gm.surfaces.torus(major=1.0, minor=0.35), gm.fibonacci(2000))
+    outside = np.hypot(ring.points[:, 0], ring.points[:, 1]) > 1.1
+    inside = np.hypot(ring.points[:, 0], ring.points[:, 1]) < 0.9
+    assert (ring.mean_curvature[outside] > 1.0).all()
+    assert (ring.gaussian_curvature[outside] > 0).all()
+    assert (ring.gaussian_curvature[inside] < 0).all()
+    bowl = gm.sample(gm.surfaces.elliptic_paraboloid(), count=100, cells=(8, 8))
+    assert (bowl.mean_curvature < 0).all()  # upward normals point to the inside
+    assert (bowl.normals[:, 2] > 0).all()
+
+
+def test_minimal_surfaces_have_no_mean_curvature() -> None:
+    for name in ("catenoid", "enneper", "helicoid"):
+        samples = gm.sample(gm.surfaces.surface(name), count=2000, cells=(128, 128))
+        size = np.sqrt(np.abs(samples.gaussian_curvature).max())
+        assert np.abs(samples.mean_curvature).max() < 0.05 * size
+        assert (samples.gaussian_curvature < 0).all()

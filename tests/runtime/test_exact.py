@@ -1,0 +1,94 @@
+"""Exact decisions: splines and normals full of exact ties, against what topology demands."""
+
+from fractions import Fraction
+from itertools import product
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.generated import sampler as kernels
+from gaussmap.runtime import exact
+from gaussmap.runtime.plain import plain
+from gaussmap.runtime.surface import Ends
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+ALIGNED = np.array([n for n in product((-1.0, 0.0, 1.0), repeat=3) if any(n)])
+WRAP: Ends = (("wrap", "wrap"), ("wrap", "wrap"))
+
+
+def torus_of_integers(m: int, n: int, size: int, noise: np.ndarray) -> gm.Spline:
+    """A closed spline whose coefficients are small integers: most of its ties are exact."""
+    u, v = np.meshgrid(2 * np.pi * np.arange(m) / m, 2 * np.pi * np.arange(n) / n, indexing="ij")
+    ring = 2.0 + np.cos(v)
+    inner = np.round(size * np.stack([ring * np.cos(u), ring * np.sin(u), np.sin(v)], -1)) + noise
+    return gm.Spline(
+        np.pad(inner, [(1, 1), (1, 1), (0, 0)], mode="wrap"), ((0, m), (0, n)), WRAP, "t"
+    )
+
+
+def sign_sums(spline: gm.Spline, normals: np.ndarray) -> np.ndarray:
+    samples = gm.sample(spline, normals)
+    signs = np.where(samples.elliptic, 1, -1)
+    return np.bincount(samples.normal_index, weights=signs, minlength=len(normals))
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("size", [4, 8, 64])
+@pytest.mark.parametrize("cells", [(8, 8), (12, 8), (16, 12), (10, 6)])
+def test_integer_torus(size: int, cells: tuple[int, int]) -> None:
+    spline = torus_of_integers(*cells, size, np.zeros((*cells, 3)))
+    normals = np.concatenate([ALIGNED, gm.icosphere(4)])
+    assert (sign_sums(spline, normals) == 0).all()
+
+
+@pytest.mark.compiled
+@settings(max_examples=60, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1), height=st.integers(0, 4))
+def test_dented_integer_torus(seed: int, height: int) -> None:
+    noise = np.random.default_rng(seed).integers(-height, height + 1, (12, 10, 3))
+    spline = torus_of_integers(12, 10, 64, noise)
+    normals = np.concatenate([ALIGNED, gm.icosphere(3)])
+    assert (sign_sums(spline, normals) == 0).all()
+
+
+def test_forms_on_integers_are_those_of_fractions() -> None:
+    spline = torus_of_integers(6, 5, 50, np.zeros((6, 5, 3)))
+    spline.coefficients[...] *= 0.3  # no integers any more, and a common exponent to find
+    patches = np.arange(spline.patches)
+    vectors, exponent = exact._patch_vectors(spline, patches)
+    unit = Fraction(2) ** exponent / Fraction(spline.scale)
+    for patch in patches[::7]:
+        cell, turn = divmod(int(patch), 4)
+        i, j = divmod(cell, spline.cells[1])
+        around = [
+            [Fraction(float(x)) for x in spline.coefficients[i + 1 + di, j + 1 + dj]]
+            for di, dj in kernels.NEIGHBOURS[turn]
+        ]
+        read = [around[k][x] - around[4][x] for k in kernels.TRIANGLE_NEIGHBOURS for x in range(3)]
+        expected = plain(kernels.triangle)(*read)[:15]
+        assert [int(x) * unit for x in vectors[:, patch]] == list(expected)
+
+
+def test_moved_normal_agrees_with_a_slightly_moved_one() -> None:
+    """Real displacements in the same order of size give the same signs, for small integers."""
+    rng = np.random.default_rng(5)
+    n = np.array([[int(x) for x in row] for row in rng.integers(-1, 2, (3, 400))], dtype=object)
+    vectors = np.array(
+        [[int(x) for x in row] for row in rng.integers(-3, 4, (15, 400))], dtype=object
+    )
+    _, signs = exact._moved_forms(vectors, n)
+    # In bits: n 64 · 20, ε 16 · 20, 4 · 20 and 20, so that also n ε₃ ≫ ε₁² and ε₁ ε₃ ≫ ε₂².
+    shifts = (1 << 320, 1 << 80, 1 << 20)
+    moved = np.array([(x << 1280) + e for x, e in zip(n, shifts, strict=True)], dtype=object)
+    assert (signs == exact._sign(exact._forms(vectors, moved)[1:])).all()
+    assert (exact._sign(exact._forms(vectors, n)[1:]) == 0).any()
+
+
+def test_parabolic_normal_of_a_torus_has_a_sensible_place() -> None:
+    """n = ±z touches the torus along whole circles: one point of each sign remains."""
+    samples = gm.sample(gm.surfaces.torus(), [[0, 0, 1], [0, 0, -1]], cells=(16, 16))
+    assert sorted(samples.normal_index.tolist()) == [0, 0, 1, 1]
+    assert int(samples.elliptic.sum()) == int(samples.hyperbolic.sum()) == 2
+    np.testing.assert_allclose(np.abs(samples.points[:, 2]), 0.35, atol=2e-3)
+    np.testing.assert_allclose(np.hypot(*samples.points[:, :2].T), 1.0, atol=2e-2)

@@ -1,0 +1,217 @@
+"""Every preimage of every normal once: Σ sign K = χ/2 (math.md, Sect. 4) needs no reference."""
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.generated import sampler as kernels
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+pytestmark = pytest.mark.compiled
+
+Array = NDArray[np.float64]
+TORUS = gm.surfaces.torus(major=1.0, minor=0.35)
+
+
+def count_preimages(
+    samples: gm.Samples, normals: int
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return, for each normal, how many elliptic and how many hyperbolic preimages came back."""
+    elliptic, hyperbolic = (
+        np.bincount(samples.normal_index[kind], minlength=normals)
+        for kind in (samples.elliptic, samples.hyperbolic)
+    )
+    return elliptic, hyperbolic
+
+
+def check_torus(samples: gm.Samples, normals: Array, axis: Array) -> None:
+    elliptic, hyperbolic = count_preimages(samples, len(normals))
+    assert (elliptic == hyperbolic).all()
+    away = np.abs(normals @ axis) < np.cos(np.radians(2.0))
+    assert (elliptic[away] == 1).all()
+    assert samples.report.degenerate_patches == 0
+    assert np.isfinite(samples.points).all()
+    assert np.isfinite(samples.gaussian_curvature).all()
+
+
+def moved(surface: gm.Surface, rotation: Array, shift: float, factor: float) -> gm.Surface:
+    def evaluate(u: Array, v: Array) -> Array:
+        return factor * (surface.evaluate(u, v) @ rotation.T) + shift
+
+    return gm.Surface(surface.name, evaluate, surface.domain, surface.ends)
+
+
+def rotation_of(quaternion: tuple[float, float, float, float]) -> Array:
+    w, x, y, z = np.array(quaternion) / np.linalg.norm(quaternion)
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+quaternions = st.tuples(*[st.floats(-1.0, 1.0)] * 4).filter(lambda q: np.linalg.norm(q) > 0.1)
+
+
+@pytest.mark.parametrize("cells", [16, 32, 64, 96])
+@pytest.mark.parametrize("frequency", [10, 32, 100])
+def test_torus_icosphere(cells: int, frequency: int) -> None:
+    normals = gm.icosphere(frequency)
+    samples = gm.sample(TORUS, normals, cells=(cells, cells))
+    check_torus(samples, normals, np.array([0.0, 0.0, 1.0]))
+
+
+@pytest.mark.parametrize("cells", [16, 32, 64, 96])
+def test_torus_fibonacci(cells: int) -> None:
+    normals = gm.fibonacci(10**6)
+    samples = gm.sample(TORUS, normals, cells=(cells, cells))
+    check_torus(samples, normals, np.array([0.0, 0.0, 1.0]))
+
+
+@pytest.mark.parametrize("shift", [0.0, 1e6, 1e9])
+@pytest.mark.parametrize("factor", [1.0, 1e9, 1e-9, 1e12, 1e-12, 1e150, 1e-150])
+@pytest.mark.parametrize("turned", [False, True])
+def test_torus_moved_and_scaled(shift: float, factor: float, turned: bool) -> None:
+    rotation = rotation_of((0.5, 0.1, -0.7, 0.3)) if turned else np.eye(3)
+    normals = gm.icosphere(10) @ rotation.T
+    for cells in ((16, 16), (40, 24), (96, 96)):
+        surface = moved(TORUS, rotation, shift * factor, factor)
+        check_torus(gm.sample(surface, normals, cells=cells), normals, rotation[:, 2])
+
+
+@settings(max_examples=25, deadline=None)
+@given(of_surface=quaternions, of_normals=quaternions, exponent=st.integers(-9, 9))
+def test_torus_turned_at_random(
+    of_surface: tuple[float, float, float, float],
+    of_normals: tuple[float, float, float, float],
+    exponent: int,
+) -> None:
+    turn = rotation_of(of_surface)
+    normals = gm.icosphere(8) @ rotation_of(of_normals).T
+    surface = moved(TORUS, turn, 0.0, 10.0**exponent)
+    check_torus(gm.sample(surface, normals, cells=(32, 20)), normals, turn[:, 2])
+
+
+@pytest.mark.parametrize("name", ["sphere", "ellipsoid"])
+@pytest.mark.parametrize("cells", [(16, 16), (32, 20), (64, 64), (96, 96)])
+def test_sphere_like_surfaces_have_every_normal_once(name: str, cells: tuple[int, int]) -> None:
+    for normals in (gm.icosphere(10), gm.icosphere(32), gm.fibonacci(10**5)):
+        samples = gm.sample(gm.surfaces.surface(name), normals, cells=cells)
+        elliptic, hyperbolic = count_preimages(samples, len(normals))
+        assert (elliptic - hyperbolic == 1).all()
+
+
+@pytest.mark.parametrize("cells", [16, 32, 64])
+def test_cyclide(cells: int) -> None:
+    for normals in (gm.icosphere(32), gm.fibonacci(10**5)):
+        samples = gm.sample(gm.surfaces.dupin_cyclide(), normals, cells=(cells, cells))
+        elliptic, hyperbolic = count_preimages(samples, len(normals))
+        assert (elliptic == hyperbolic).all()
+
+
+@pytest.mark.parametrize("cells", [(16, 16), (33, 17), (64, 64)])
+@pytest.mark.parametrize("frequency", [2, 10, 31, 32, 100])
+def test_symmetric_ellipsoid_patch(cells: tuple[int, int], frequency: int) -> None:
+    """Icosahedral normals in the symmetry planes: those inside the Gaussian image come once."""
+    normals = gm.icosphere(frequency)
+    planes = (np.abs(normals) == 0.0).any(axis=1)
+    assert planes.any()
+    samples = gm.sample(gm.surfaces.ellipsoid_patch(), normals, cells=cells)
+    axes = np.array([1.0, 0.6, 0.3])
+    height = np.abs(axes[2] * normals[:, 2]) / np.linalg.norm(axes * normals, axis=1)
+    latitude = np.degrees(np.arcsin(height))
+    elliptic, hyperbolic = count_preimages(samples, len(normals))
+    assert not hyperbolic.any()
+    assert (elliptic[latitude < 59.0] == 1).all()
+    assert (elliptic[latitude > 61.0] == 0).all()
+
+
+@pytest.mark.parametrize("name", ["plane", "cylinder", "cone"])
+@pytest.mark.parametrize("shift", [0.0, 1e6])
+@pytest.mark.parametrize("factor", [1.0, 1e-9, 1e9])
+@pytest.mark.parametrize("quaternion", [(1.0, 0.0, 0.0, 0.0), (0.5, 0.1, -0.7, 0.3)])
+def test_developable_surfaces(
+    name: str, shift: float, factor: float, quaternion: tuple[float, float, float, float]
+) -> None:
+    surface = moved(gm.surfaces.surface(name), rotation_of(quaternion), shift * factor, factor)
+    with pytest.warns(gm.GaussmapWarning, match="flat or developable"):
+        samples = gm.sample(surface, gm.icosphere(32), cells=(32, 32))
+    assert np.isfinite(samples.points).all()
+    assert np.isfinite(samples.gaussian_curvature).all()
+    assert samples.report.invisible_share == pytest.approx(1.0)
+    if name != "cone":  # a cone is approximated by a spline that bends a little both ways
+        assert len(samples) == 0
+        assert samples.report.degenerate_patches == samples.report.patches
+        return
+    # What comes is the error of the spline: pairs of one elliptic and one hyperbolic sample.
+    elliptic, hyperbolic = count_preimages(samples, 10242)
+    assert abs(int(elliptic.sum()) - int(hyperbolic.sum())) <= 2
+    assert len(samples) <= 0.15 * 10242
+
+
+def test_plain_sign_test_fails_where_this_one_does_not() -> None:
+    """Without the exact decision, normals on patch boundaries are lost or doubled."""
+    normals = gm.icosphere(10)
+    spline = gm.fit(TORUS, (16, 16))
+    claims = np.zeros(len(normals), dtype=int)
+    for index in range(spline.patches):
+        cell, turn = divmod(index, 4)
+        i, j = divmod(cell, spline.cells[1])
+        vectors = kernels.patch_vectors(spline.coefficients, i + 1, j + 1, turn, spline.scale)[:15]
+        _, U, V, W = _numpy(kernels.forms)(*vectors, *normals.T)
+        claims += (np.minimum(np.minimum(U, V), W) > 0) | (np.maximum(np.maximum(U, V), W) < 0)
+    exact = np.bincount(gm.sample(spline, normals).normal_index, minlength=len(normals))
+    exact += np.bincount(gm.sample(spline, -normals).normal_index, minlength=len(normals))
+    assert (exact == 4).all()  # two sheets, each seen by n and by −n
+    assert (claims != 4).any()
+
+
+def _numpy(function):
+    return getattr(function, "py_func", function)
+
+
+@pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band", "enneper", "helicoid"])
+def test_search_by_bins_finds_what_brute_force_finds(name: str) -> None:
+    """Generic normals lie on no boundary: there the signs of U, V, W and of N·n decide alone."""
+    spline = gm.fit(gm.surfaces.surface(name), (6, 5))
+    normals = gm.fibonacci(4000) @ rotation_of((0.3, 0.4, -0.5, 0.7)).T
+    found = set()
+    for index in range(spline.patches):
+        cell, turn = divmod(index, 4)
+        i, j = divmod(cell, spline.cells[1])
+        vectors = kernels.patch_vectors(spline.coefficients, i + 1, j + 1, turn, spline.scale)[:15]
+        D, U, V, W = _numpy(kernels.forms)(*vectors, *normals.T)
+        c3 = _numpy(kernels.orientation)(*vectors, *normals.T)
+        inside = (np.minimum(np.minimum(U, V), W) > 0) | (np.maximum(np.maximum(U, V), W) < 0)
+        found |= {(index, int(k)) for k in np.flatnonzero(inside & (c3 > 0) & (D != 0))}
+    samples = gm.sample(spline, normals)
+    pairs = list(zip(samples.patch_index.tolist(), samples.normal_index.tolist(), strict=True))
+    assert pairs == sorted(found)
+    assert len(pairs) > 500
+
+
+def test_open_border_belongs_to_the_surface() -> None:
+    """Half of a symmetric surface: normals in the plane of symmetry lie on its border."""
+    half = gm.Surface.from_callable(
+        lambda u, v: np.stack([u, v, u * u + 0.75 * v * v], axis=-1), ((0.0, 1.0), (-1.0, 1.0))
+    )
+    v = np.linspace(-0.99, 0.99, 777)
+    normals = np.column_stack([0.0 * v, -1.5 * v, np.ones_like(v)])
+    for cells in ((3, 3), (7, 5), (16, 16), (37, 41)):
+        samples = gm.sample(half, normals, cells=cells)
+        assert (np.bincount(samples.normal_index, minlength=len(v)) == 1).all()
+        assert np.abs(samples.uv[:, 0]).max() < 1e-12
+        np.testing.assert_allclose(np.sort(samples.uv[:, 1]), v, rtol=0, atol=1e-12)
+
+
+def test_corners_of_the_border_come_once() -> None:
+    bowl = gm.Surface.from_callable(
+        lambda u, v: np.stack([u, v, 0.5 * (u * u + v * v)], axis=-1), ((0.0, 1.0), (0.0, 1.0))
+    )
+    corners = np.array([[-x, -y, 1.0] for x in (0.0, 1.0) for y in (0.0, 1.0)])
+    for cells in ((3, 3), (8, 8), (5, 9)):
+        samples = gm.sample(bowl, corners, cells=cells)
+        assert sorted(samples.normal_index.tolist()) == [0, 1, 2, 3]

@@ -1,0 +1,305 @@
+from __future__ import annotations
+
+import copy
+import pickle
+from dataclasses import FrozenInstanceError, fields, replace
+from typing import Any
+
+import numpy as np
+import pytest
+from gaussmap.runtime.errors import InputError
+from gaussmap.runtime.samples import ARRAY_NAMES, Samples, SamplingReport
+from hypothesis import given
+from hypothesis import strategies as st
+
+REPORT = SamplingReport("torus", 8, 12, 4, 0.125, 1)
+
+
+def torus(count: Any = 12, **changes: Any) -> Samples:
+    """Points of the torus with radii 2 and 1; the outer half is elliptic."""
+    rng = np.random.default_rng(1)
+    u, v = rng.uniform(0.0, 2.0 * np.pi, (2, count))
+    normals = np.stack([np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)], axis=1)
+    points = 2.0 * np.stack([np.cos(u), np.sin(u), np.zeros(count)], axis=1) + normals
+    across = np.cos(v) / (2.0 + np.cos(v))
+    arrays: dict[str, Any] = {
+        "points": points,
+        "normals": normals,
+        "uv": np.stack([u, v], axis=1),
+        "support": np.sum(points * normals, axis=1),
+        "gaussian_curvature": across,
+        "mean_curvature": (1.0 + across) / 2.0,
+        "normal_index": np.arange(count),
+        "patch_index": np.arange(count) // 4,
+        "report": REPORT,
+    }
+    return Samples(**(arrays | changes))
+
+
+def curved(K: object, H: object) -> Samples:
+    K = np.array(K, dtype=float, ndmin=1)
+    return torus(len(K), gaussian_curvature=K, mean_curvature=np.array(H, dtype=float, ndmin=1))
+
+
+class TestConstruction:
+    def test_the_array_names_are_the_fields(self):
+        assert (*ARRAY_NAMES, "report") == tuple(field.name for field in fields(Samples))
+
+    def test_length(self):
+        assert len(torus(12)) == 12
+        assert len(torus(0)) == 0
+
+    @pytest.mark.parametrize("name", ARRAY_NAMES)
+    def test_wrong_shapes_are_named(self, name):
+        good = getattr(torus(), name)
+        for bad in (good[:-1], good[..., None], good.ravel()[0]):
+            with pytest.raises(InputError) as caught:
+                torus(**{name: np.array(bad)})
+            # When the points are wrong, all the others seem to be.
+            assert "shape" in str(caught.value)
+            assert name == "points" or str(caught.value).startswith(f"{name} must be")
+
+    @pytest.mark.parametrize("name", ARRAY_NAMES)
+    def test_wrong_dtypes_are_named(self, name):
+        good = getattr(torus(), name)
+        for bad in (
+            good.astype(np.float32),
+            good.astype(object),
+            good.astype(good.dtype.newbyteorder()),
+        ):
+            with pytest.raises(InputError, match=f"^{name} must be a {good.dtype} array"):
+                torus(**{name: bad})
+
+    @pytest.mark.parametrize("name", ARRAY_NAMES)
+    def test_lists_are_refused(self, name):
+        with pytest.raises(InputError, match=f"^{name} must be a NumPy array, not list"):
+            torus(**{name: getattr(torus(), name).tolist()})
+
+    @pytest.mark.parametrize("name", ARRAY_NAMES)
+    def test_arrays_become_contiguous(self, name):
+        good = getattr(torus(), name)
+        strided = np.repeat(good, 2, axis=0)[::2]
+        assert not strided.flags.c_contiguous
+        result = getattr(torus(**{name: strided}), name)
+        assert result.flags.c_contiguous
+        np.testing.assert_array_equal(result, good)
+
+    def test_contiguous_arrays_are_not_copied(self):
+        support = torus().support
+        assert torus(support=support).support is support
+
+    def test_the_report_must_be_one(self):
+        with pytest.raises(InputError, match="report must be a SamplingReport, not dict"):
+            torus(report={})
+
+    def test_samples_are_frozen(self):
+        with pytest.raises(FrozenInstanceError):
+            torus().support = np.zeros(12)  # pyright: ignore[reportAttributeAccessIssue]
+
+    def test_equality_is_identity(self):
+        samples = torus()
+        assert samples == samples
+        assert samples != torus()
+
+    def test_copies_and_pickles(self):
+        samples = torus()
+        for other in (copy.deepcopy(samples), pickle.loads(pickle.dumps(samples))):
+            assert other.report == samples.report
+            for name in ARRAY_NAMES:
+                np.testing.assert_array_equal(getattr(other, name), getattr(samples, name))
+
+
+class TestReport:
+    def test_numpy_numbers_become_plain(self):
+        report = SamplingReport("s", np.int64(3), np.int32(2), np.uint8(1), np.float32(0.5), 0)  # pyright: ignore[reportArgumentType]
+        assert [type(getattr(report, f.name)) for f in fields(report)] == [
+            str, int, int, int, float, int,
+        ]  # fmt: skip
+
+    @pytest.mark.parametrize("name", ["normals", "samples", "patches", "degenerate_patches"])
+    @pytest.mark.parametrize("bad", [-1, 1.5, "3"])
+    def test_bad_counts_are_named(self, name, bad):
+        with pytest.raises(InputError, match=f"^{name} must"):
+            replace(REPORT, **{name: bad})
+
+    @pytest.mark.parametrize("bad", [-0.1, 1.1, np.nan, np.inf, "much"])
+    def test_bad_shares(self, bad):
+        with pytest.raises(InputError, match=r"^invisible_share must"):
+            replace(REPORT, invisible_share=bad)
+
+    def test_rounding_of_the_share_is_forgiven(self):
+        assert replace(REPORT, invisible_share=-1e-15).invisible_share == 0.0
+        assert replace(REPORT, invisible_share=1.0 + 1e-15).invisible_share == 1.0
+
+    def test_the_label_must_be_text(self):
+        with pytest.raises(InputError, match=r"^surface must be a string, not bytes"):
+            replace(REPORT, surface=b"torus")  # pyright: ignore[reportArgumentType]
+
+    def test_unknown_numbers(self):
+        report = SamplingReport("s", None, 0, None, None, None)
+        assert report.normals is report.patches is report.invisible_share is None
+
+    def test_the_number_of_samples_is_always_known(self):
+        with pytest.raises(InputError, match=r"^samples must be an integer"):
+            replace(REPORT, samples=None)  # pyright: ignore[reportArgumentType]
+
+
+class TestCurvatures:
+    def test_the_sign_bit_counts(self):
+        samples = curved([1.0, 0.0, -0.0, -1.0], 0.0 * np.ones(4))
+        assert samples.elliptic.tolist() == [True, True, False, False]
+        assert samples.hyperbolic.tolist() == [False, False, True, True]
+
+    def test_the_torus(self):
+        samples = torus(1000)
+        across = np.cos(samples.uv[:, 1]) / (2.0 + np.cos(samples.uv[:, 1]))
+        expected = np.stack([np.ones(1000), across], axis=1)
+        np.testing.assert_allclose(samples.principal_curvatures, expected, rtol=0, atol=4e-15)
+
+    @pytest.mark.parametrize(
+        ("K", "H", "expected"),
+        [
+            (4.0, 2.0, (2.0, 2.0)),  # sphere
+            (4.0, -2.0, (-2.0, -2.0)),  # sphere, inward normals
+            (1.0 + 1e-15, 1.0, (1.0, 1.0)),  # sphere, rounded: the discriminant is negative
+            (-1.0, 0.0, (1.0, -1.0)),  # minimal surface
+            (-1.0, -0.0, (1.0, -1.0)),
+            (0.0, 0.0, (0.0, 0.0)),  # plane
+            (-0.0, 0.5, (1.0, 0.0)),  # cylinder
+            (-0.0, -0.5, (0.0, -1.0)),
+            (2.0, -1.5, (-1.0, -2.0)),
+        ],
+    )
+    def test_simple_surfaces(self, K, H, expected):
+        assert curved(K, H).principal_curvatures.tolist() == [list(expected)]
+
+    def test_no_cancellation(self):
+        # Curvatures 1 and 1e-20: H alone does not know the second one.
+        big, small = curved(1e-20, 0.5).principal_curvatures[0]
+        assert (big, small) == (1.0, 1e-20)
+
+    @given(
+        st.floats(-1e3, 1e3).filter(lambda k: k == 0 or abs(k) > 1e-3),
+        st.floats(-1e3, 1e3).filter(lambda k: k == 0 or abs(k) > 1e-3),
+    )
+    def test_product_and_mean_come_back(self, first, second):
+        K, H = first * second, (first + second) / 2.0
+        big, small = curved(K, H).principal_curvatures[0]
+        size = max(abs(first), abs(second))
+        assert big >= small
+        # The root of a difference of squares: half the digits near umbilics.
+        assert [big, small] == pytest.approx(
+            sorted([first, second], reverse=True), rel=0, abs=4e-8 * size
+        )
+        assert (big + small) / 2.0 == pytest.approx(H, rel=0, abs=4e-16 * size)
+
+    @pytest.mark.parametrize(
+        ("K", "H"), [(np.inf, 1.0), (-np.inf, 1.0), (np.nan, 1.0), (1.0, np.inf), (1.0, np.nan)]
+    )
+    def test_not_finite(self, K, H):
+        assert np.isnan(curved(K, H).principal_curvatures).all()
+
+    def test_none(self):
+        samples = torus(0)
+        assert samples.principal_curvatures.shape == (0, 2)
+        assert samples.elliptic.shape == samples.hyperbolic.shape == (0,)
+
+
+class TestIndexing:
+    @pytest.mark.parametrize(
+        "key",
+        [
+            slice(None),
+            slice(2, 7),
+            slice(None, None, -3),
+            slice(5, 5),
+            np.arange(12) % 3 == 0,
+            np.zeros(12, bool),
+            np.array([7, 0, 7, -1]),
+            np.array([3, 1], np.uint8),
+            [4, 2],
+            [],
+        ],
+        ids=str,
+    )
+    def test_all_arrays_are_cut_alike(self, key):
+        samples = torus(12)
+        part = samples[key]
+        rows = np.arange(12)[key if not isinstance(key, list) else np.array(key, int)]
+        assert len(part) == len(rows)
+        assert part.report is samples.report
+        for name in ARRAY_NAMES:
+            array = getattr(part, name)
+            assert array.flags.c_contiguous
+            np.testing.assert_array_equal(array, getattr(samples, name)[rows])
+
+    @pytest.mark.parametrize(
+        ("key", "message"),
+        [
+            (3, "picked by"),
+            (np.int64(3), "picked by"),
+            ([0.5], "picked by"),
+            ("support", "picked by"),
+            ([[0, 1]], "picked by"),
+            (None, "picked by"),
+            (np.ones(11, bool), "the mask has 11 entries, but there are 12 samples"),
+            (np.ones(0, bool), "the mask has 0 entries"),
+            ([12], "out of range: there are 12 samples"),
+            ([-13], "out of range"),
+        ],
+        ids=str,
+    )
+    def test_bad_keys(self, key, message):
+        with pytest.raises(InputError, match=message):
+            torus(12)[key]
+
+    def test_the_halves_make_the_whole(self):
+        samples = torus(500)
+        elliptic, hyperbolic = samples[samples.elliptic], samples[samples.hyperbolic]
+        assert len(elliptic) > 0
+        assert len(hyperbolic) > 0
+        assert len(elliptic) + len(hyperbolic) == 500
+        assert (elliptic.gaussian_curvature > 0).all()
+        assert (hyperbolic.gaussian_curvature < 0).all()
+
+
+class TestText:
+    def samples(self) -> Samples:
+        K = np.ones(10012)
+        K[:5000] = -0.0
+        report = SamplingReport("torus", 1234567, 10012, 4, 0.03125, 0)
+        return torus(10012, gaussian_curvature=K, report=report)
+
+    def test_repr(self):
+        assert repr(self.samples()) == (
+            "Samples(10,012 points on torus: 5,012 elliptic, 5,000 hyperbolic)"
+        )
+
+    def test_repr_stays_one_short_line(self):
+        samples = torus(report=replace(REPORT, surface="x**2 +\n y**2 " * 20))
+        assert len(repr(samples)) < 100
+        assert repr(samples).startswith("Samples(12 points on x**2 + y**2 x**2")
+        assert "…:" in repr(samples)
+        assert "\n" not in repr(samples)
+
+    def test_summary(self):
+        assert self.samples().summary() == (
+            "1,234,567 normals asked, 10,012 samples came: 5,012 elliptic, 5,000 hyperbolic; "
+            "normals cannot see 3.12 % of the surface"
+        )
+
+    def test_summary_of_a_part(self):
+        assert self.samples()[:10].summary() == (
+            "1,234,567 normals asked, 10 of the 10,012 samples that came: "
+            "0 elliptic, 10 hyperbolic; normals cannot see 3.12 % of the surface"
+        )
+
+    def test_summary_of_what_is_unknown(self):
+        report = SamplingReport("an unknown surface", None, 10012, None, None, None)
+        samples = replace(self.samples(), report=report)
+        assert samples.summary() == "10,012 samples came: 5,012 elliptic, 5,000 hyperbolic"
+
+
+def test_write(tmp_path):
+    torus().write(tmp_path / "torus.xyz")
+    assert np.loadtxt(tmp_path / "torus.xyz").shape == (12, 6)

@@ -1,0 +1,237 @@
+"""Sets of normals: how many, how long, how even; and what a user brings."""
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.runtime.sphere import as_normals
+from hypothesis import given
+from hypothesis import strategies as st
+
+ULP = 2.0**-52
+FREQUENCIES = [1, 2, 3, 5, 8, 16, 33]
+
+
+def lengths(vectors):
+    """Return lengths to more than double precision."""
+    return np.sqrt((vectors.astype(np.longdouble) ** 2).sum(axis=1)).astype(float)
+
+
+def nearest(normals):
+    """Return, for each normal, the distance to the nearest other one."""
+    cosines = normals @ normals.T
+    np.fill_diagonal(cosines, -1.0)
+    other = normals[cosines.argmax(axis=1)]
+    return np.linalg.norm(normals - other, axis=1)
+
+
+# --- icosphere ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("frequency", FREQUENCIES)
+def test_icosphere_counts(frequency):
+    normals = gm.icosphere(frequency)
+    assert normals.shape == (10 * frequency**2 + 2, 3)
+    assert normals.dtype == np.float64
+    assert normals.flags.c_contiguous
+    assert len(np.unique(normals.round(9) + 0.0, axis=0)) == len(normals)
+
+
+@pytest.mark.parametrize("frequency", FREQUENCIES)
+def test_icosphere_is_of_unit_length(frequency):
+    np.testing.assert_allclose(lengths(gm.icosphere(frequency)), 1.0, rtol=0, atol=2 * ULP)
+
+
+@pytest.mark.parametrize("frequency", FREQUENCIES)
+def test_icosphere_is_symmetric(frequency):
+    """Under n → −n bitwise, and under the symmetries that exchange or mirror the axes."""
+    normals = gm.icosphere(frequency) + 0.0  # no −0
+    points = set(map(tuple, normals.tolist()))
+    assert points == set(map(tuple, (0.0 - normals).tolist()))
+    for axis in range(3):
+        mirrored = normals.copy()
+        mirrored[:, axis] = 0.0 - mirrored[:, axis]
+        assert points == set(map(tuple, mirrored.tolist()))
+    rounded = set(map(tuple, (normals.round(9) + 0.0).tolist()))
+    turned = set(map(tuple, (np.roll(normals, 1, axis=1).round(9) + 0.0).tolist()))
+    assert rounded == turned
+
+
+@pytest.mark.parametrize("frequency", [2, 3, 5, 8, 16])
+def test_icosphere_is_even(frequency):
+    distances = nearest(gm.icosphere(frequency))
+    assert distances.max() < 1.5 * distances.min()
+    # six triangles meet in most vertices: 10 ν² triangles' area of about √3/2 d² for each normal
+    assert distances.mean() == pytest.approx(
+        np.sqrt(4 * np.pi / (10 * frequency**2) * 2 / np.sqrt(3)), rel=0.2
+    )
+
+
+def test_icosphere_begins_with_vertices_then_edges():
+    normals = gm.icosphere(4)
+    np.testing.assert_allclose(normals[:12], gm.icosphere(1), rtol=0, atol=2 * ULP)
+    # on an edge, the planes of symmetry of the icosahedron: the mean of the ends, twice refined
+    edge = gm.icosphere(2)[12:]
+    assert len(edge) == 30
+    corners = gm.icosphere(1)
+    sums = corners[:, None] + corners
+    middles = sums[np.abs(np.linalg.norm(sums, axis=-1) - 1.7013016167) < 1e-6]
+    middles /= np.linalg.norm(middles, axis=1, keepdims=True)
+    expected = {tuple(x) for x in (middles.round(9) + 0.0).tolist()}
+    assert {tuple(x) for x in (edge.round(9) + 0.0).tolist()} == expected
+
+
+@pytest.mark.parametrize("make", [gm.icosphere, gm.fibonacci])
+@pytest.mark.parametrize("number", [0, -1, 1.0, True, "4", None, np.nan, [4], 4j])
+def test_numbers_that_are_none(make, number):
+    with pytest.raises(gm.InputError, match=r"must be a whole number of at least 1, not "):
+        make(number)
+
+
+@pytest.mark.parametrize("make", [gm.icosphere, gm.fibonacci])
+def test_numpy_integers_are_numbers(make):
+    assert (make(np.int16(7)) == make(7)).all()
+
+
+# --- fibonacci ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 10, 1000, 3000])
+def test_fibonacci_counts_and_lengths(count):
+    normals = gm.fibonacci(count)
+    assert normals.shape == (count, 3)
+    np.testing.assert_allclose(lengths(normals), 1.0, rtol=0, atol=2 * ULP)
+    assert (np.diff(normals[:, 2]) < 0).all()
+    assert len(np.unique(normals, axis=0)) == count
+
+
+@pytest.mark.parametrize("count", [300, 3000])
+def test_fibonacci_is_even(count):
+    normals = gm.fibonacci(count)
+    distances = nearest(normals)
+    ideal = np.sqrt(4 * np.pi / count * 2 / np.sqrt(3))
+    assert distances.min() > 0.7 * ideal
+    assert distances.max() < 1.1 * ideal
+    assert np.abs(normals.mean(axis=0)).max() < 2.0 / count
+    np.testing.assert_allclose(normals[:, 2], -normals[::-1, 2], rtol=0, atol=4 * ULP)
+    np.testing.assert_allclose(normals.T @ normals / count, np.eye(3) / 3, rtol=0, atol=2 / count)
+
+
+def test_fibonacci_gives_every_cap_its_share():
+    count = 20_000
+    normals, centres = gm.fibonacci(count), gm.icosphere(3)
+    for cosine in (0.99, 0.9, 0.5, 0.0):
+        share = (normals @ centres.T > cosine).mean(axis=0)
+        np.testing.assert_allclose(share, (1 - cosine) / 2, rtol=0, atol=3 * count**-0.75)
+
+
+def test_fibonacci_is_in_general_position():
+    normals = gm.fibonacci(10_001)
+    assert (normals == 0.0).any(axis=1).sum() <= 2  # k = 0 lies in the plane y = 0
+    assert np.abs(np.diff(np.sort(np.abs(normals[1:, 1])))).min() > 0.0
+
+
+# --- as_normals -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "factor", [1.0, 3.0, 1e-3, 1e-160, 1e-300, 1e-307, 1e160, 1e300, 1.7e308, 2.0**-1022]
+)
+def test_any_length(factor):
+    directions = gm.icosphere(3)
+    normals = as_normals(factor * directions)
+    np.testing.assert_allclose(normals, directions, rtol=0, atol=2 * ULP)
+    np.testing.assert_allclose(lengths(normals), 1.0, rtol=0, atol=2 * ULP)
+
+
+def test_extreme_directions():
+    tiny, huge = 5e-324, np.finfo(float).max
+    given_ = [[tiny, 0, 0], [0, -huge, 0], [huge, huge, huge], [tiny, tiny, 0], [huge, tiny, -huge]]
+    third, half = 3**-0.5, 2**-0.5
+    expected = [[1, 0, 0], [0, -1, 0], [third, third, third], [half, half, 0], [half, 0, -half]]
+    np.testing.assert_allclose(as_normals(given_), expected, rtol=0, atol=2 * ULP)
+
+
+@pytest.mark.parametrize("exponent", [-1000, -1, 1, 1000])
+def test_powers_of_two_change_no_bit(exponent):
+    directions = np.random.default_rng(0).standard_normal((200, 3))
+    np.testing.assert_array_equal(as_normals(directions * 2.0**exponent), as_normals(directions))
+
+
+@pytest.mark.parametrize("normals", [gm.icosphere(16), gm.fibonacci(5000)], ids=["ico", "fib"])
+def test_unit_normals_are_kept_bit_for_bit(normals):
+    np.testing.assert_array_equal(as_normals(normals), normals)
+
+
+@given(st.lists(st.tuples(*[st.floats(-1e300, 1e300)] * 3).filter(any), min_size=1, max_size=20))
+def test_any_direction(vectors):
+    normals = as_normals(vectors)
+    np.testing.assert_allclose(lengths(normals), 1.0, rtol=0, atol=2 * ULP)
+    np.testing.assert_array_equal(as_normals(normals), normals)
+    assert (np.sign(normals) * np.sign(vectors) >= 0).all()
+    largest = np.abs(vectors).argmax(axis=1)
+    assert (np.abs(normals)[np.arange(len(normals)), largest] >= 0.57).all()
+
+
+@pytest.mark.parametrize(
+    "bring",
+    [
+        lambda x: x.tolist(),
+        lambda x: x.astype(np.float32),
+        lambda x: x.astype(">f8"),
+        lambda x: x.astype(np.longdouble),
+        np.asfortranarray,
+        lambda x: np.repeat(x, 2, axis=0)[::2],
+        lambda x: np.ma.masked_array(x, mask=False),
+        tuple,
+    ],
+)
+def test_any_array_of_directions(bring):
+    directions = 7 * gm.fibonacci(50)
+    normals = as_normals(bring(directions))
+    assert normals.dtype == np.float64
+    assert type(normals) is np.ndarray
+    assert normals.flags.c_contiguous
+    np.testing.assert_allclose(normals, gm.fibonacci(50), rtol=0, atol=1e-7)
+
+
+def test_integer_directions():
+    np.testing.assert_array_equal(as_normals([[3, 4, 0], [0, 0, -9]]), [[0.6, 0.8, 0], [0, 0, -1]])
+
+
+def test_the_array_of_the_user_is_left_alone():
+    directions = np.array([[3.0, 4.0, 0.0]])
+    normals = as_normals(directions)
+    normals[:] = 0.0
+    assert directions.tolist() == [[3.0, 4.0, 0.0]]
+    unit = np.array([[0.0, 0.0, 1.0]])
+    as_normals(unit)[:] = 0.0
+    assert unit.tolist() == [[0.0, 0.0, 1.0]]
+
+
+@pytest.mark.parametrize(
+    ("directions", "complaint"),
+    [
+        ([], r"must have the shape \(S, 3\) with S >= 1, not \(0,\)\.$"),
+        (np.zeros((0, 3)), r"must have the shape \(S, 3\) with S >= 1, not \(0, 3\)\.$"),
+        ([0, 0, 1], r"must have the shape \(S, 3\) with S >= 1, not \(3,\)\.$"),
+        (np.ones((5, 4)), r"not \(5, 4\)\.$"),
+        (np.ones((3, 5)), r"not \(3, 5\)\.$"),
+        (np.ones((2, 3, 1)), r"not \(2, 3, 1\)\.$"),
+        (5.0, r"not \(\)\.$"),
+        ([[0, 0, 1], [0, 0, 0]], r"^normals\[1\] is the zero vector, which has no direction\.$"),
+        ([[0.0, -0.0, 0.0]], r"^normals\[0\] is the zero vector"),
+        ([[0, 0, 1], [0, 1, 0], [0, np.nan, 1]], r"^normals\[2\] holds NaN or infinity\.$"),
+        ([[0, 0, np.inf]], r"^normals\[0\] holds NaN or infinity\.$"),
+        (np.ones((2, 3)) * 1j, "must be an array of real numbers, not of type complex128"),
+        ([["0", "0", "1"]], "must be an array of real numbers, not of type <U1"),
+        (np.ones((2, 3), object), "must be an array of real numbers, not of type object"),
+        ([[None, 0, 1]], "must be an array of real numbers, not of type object"),
+        ([[0, 0, 1], [0, 1]], "must be an array of real numbers, with equal rows"),
+        ("up", "must be an array of real numbers"),
+        (np.ma.masked_equal(np.eye(3), 0), "has masked entries"),
+    ],
+)
+def test_directions_that_are_none(directions, complaint):
+    for call in (as_normals, lambda n: gm.sample(gm.surfaces.torus(), n, cells=(4, 4))):
+        with pytest.raises(gm.InputError, match=complaint):
+            call(directions)

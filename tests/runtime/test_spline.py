@@ -1,0 +1,591 @@
+"""The spline: exact on quadratics, C¹ over every edge and seam, closed at poles."""
+
+import math
+from fractions import Fraction
+
+import gaussmap as gm
+import numpy as np
+import pytest
+
+SQUARE = ((0.0, 1.0), (0.0, 1.0))
+OPEN = (("none", "none"), ("none", "none"))
+TORUS = gm.surfaces.torus(major=1.0, minor=0.35)
+
+# The corners u = 1 and v = 1 of the triangles south, east, north, west of a cell, from its centre.
+CORNERS = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]) / 2
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(3)
+
+
+def cube(u, v):
+    """Return a surface that is neither quadratic nor symmetric."""
+    return np.stack([u + 0.2 * v**3, v - 0.3 * u * u * v, u**3 - u * v * v + 0.1 * v], axis=-1)
+
+
+CUBE = gm.Surface.from_callable(cube, SQUARE)
+NAMES = ["torus", "sphere", "moebius_band", "catenoid", "wavy_graph", "cube", "klein", "grid"]
+
+
+def made(name):
+    if name == "cube":
+        return CUBE
+    if name == "klein":
+        return gm.Surface.from_callable(
+            lambda u, v: np.stack(
+                [
+                    (2 + np.cos(v)) * np.cos(2 * u),
+                    (2 + np.cos(v)) * np.sin(2 * u),
+                    np.sin(v) * np.cos(u),
+                ],
+                axis=-1,
+            ),
+            ((0, np.pi), (-np.pi, np.pi)),
+            ("flip", "wrap"),
+        )
+    if name == "grid":
+        points = np.random.default_rng(0).random((7, 6, 3))
+        return gm.Surface.from_grid(points, periodic=(False, True))
+    return gm.surfaces.surface(name)
+
+
+def bezier(net, weights):
+    """Return points and their derivatives (…, 3, 3) by the three barycentric coordinates."""
+    b200, b020, b002, b110, b101, b011 = np.moveaxis(net, -2, 0)
+    l1, l2, l3 = (weights[..., k, None] for k in range(3))
+    by1, by2, by3 = (
+        l1 * b200 + l2 * b110 + l3 * b101,
+        l1 * b110 + l2 * b020 + l3 * b011,
+        l1 * b101 + l2 * b011 + l3 * b002,
+    )
+    return l1 * by1 + l2 * by2 + l3 * by3, 2.0 * np.stack([by1, by2, by3], axis=-2)
+
+
+def read(spline, patch, place):
+    """Return point, ∂x/∂s and ∂x/∂t of patches at places (k, 2), in cells from the corner."""
+    cell, turn = np.divmod(patch, 4)
+    centre = np.stack(np.divmod(cell, spline.cells[1]), axis=-1) + 0.5
+    first, second = CORNERS[turn], CORNERS[turn + 1]
+    inverse = np.linalg.inv(np.stack([first, second], axis=-1))
+    weights = np.einsum("kij,kj->ki", inverse, place - centre)
+    weights = np.column_stack([weights, 1.0 - weights.sum(axis=1)])
+    point, by_weight = bezier(spline.control_nets[patch], weights)
+    gradients = np.concatenate([inverse, -inverse.sum(axis=1, keepdims=True)], axis=1)
+    slopes = np.einsum("kli,klx->kix", gradients, by_weight)
+    return point, slopes[:, 0], slopes[:, 1]
+
+
+def step(spline):
+    """Return the largest difference of neighbouring coefficients, the size of all derivatives."""
+    return max(np.abs(np.diff(spline.coefficients, axis=axis)).max() for axis in (0, 1))
+
+
+def check_smooth(spline, patch, place, other_patch, other_place, turned=(1.0, 1.0)):
+    """Check that value and derivatives agree; `turned` are the signs of the other derivatives."""
+    here, there = read(spline, patch, place), read(spline, other_patch, other_place)
+    size = np.abs(spline.coefficients).max()
+    np.testing.assert_allclose(here[0], there[0], rtol=0, atol=8e-16 * size)
+    for slope, other, sign in zip(here[1:], there[1:], turned, strict=True):
+        np.testing.assert_allclose(slope, sign * other, rtol=0, atol=4e-15 * size)
+    assert np.abs(here[1]).max() > 1e-3 * step(spline)
+
+
+# --- exactness ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("cells", [(3, 3), (3, 8), (8, 3), (5, 7), (16, 16)])
+@pytest.mark.parametrize("domain", [SQUARE, ((-2.0, 5.0), (10.0, 10.5))])
+def test_quadratics_are_reproduced_up_to_the_border(cells, domain, rng):
+    weights = rng.standard_normal((6, 3))
+
+    def quadratic(u, v):
+        return np.stack([u * u, u * v, v * v, u, v, np.ones_like(u)], axis=-1) @ weights
+
+    spline = gm.fit(gm.Surface.from_callable(quadratic, domain), cells)
+    (u0, u1), (v0, v1) = domain
+    u = u0 + (u1 - u0) * np.append(rng.random(500), [0, 0, 1, 1, 0.3, 0, 1])
+    v = v0 + (v1 - v0) * np.append(rng.random(500), [0, 1, 0, 1, 0, 0.3, 1])
+    expected = quadratic(u, v)
+    size = np.abs(spline.coefficients).max()
+    np.testing.assert_allclose(spline.evaluate(u, v), expected, rtol=0, atol=4e-15 * size)
+
+
+def test_quadratics_have_exact_normals(rng):
+    surface = gm.surfaces.hyperbolic_paraboloid(a=1.0, b=1.5)
+    u, v = 2 * rng.random((2, 500)) - 1
+    expected = np.stack([-2 * u, 2 * v / 2.25, np.ones_like(u)], axis=-1)
+    expected /= np.linalg.norm(expected, axis=1, keepdims=True)
+    normals = gm.fit(surface, (7, 5)).normals(u, v)
+    np.testing.assert_allclose(normals, expected, rtol=0, atol=2e-14)
+
+
+def test_cubics_are_not_reproduced(rng):
+    """The test above can fail."""
+    u, v = rng.random((2, 50))
+    assert np.abs(gm.fit(CUBE, (8, 8)).evaluate(u, v) - cube(u, v)).max() > 1e-5
+
+
+def rough(u, v):
+    """Return whole numbers without any pattern: the formulas below are exact on them."""
+    angles = np.stack([37 * u + 91 * v, 55 * u - 23 * v, 71 * u * v + 13 * u + 7 * v], axis=-1)
+    return np.round(99 * np.sin(10 * angles + 1))
+
+
+def exactly(points):
+    return [[Fraction(x) for x in point] for point in points.reshape(-1, 3)]
+
+
+@pytest.mark.parametrize("cells", [(4, 8), (8, 4)])
+def test_coefficients_in_rational_numbers(cells):
+    """Inside, μ = 2 f(centre) − ¼ Σ f(vertices), without any rounding."""
+    m, n = cells
+    spline = gm.fit(gm.Surface.from_callable(rough, SQUARE), cells)
+    i, j = (x.ravel() for x in np.indices((m, n)))
+    centres = exactly(rough((i + 0.5) / m, (j + 0.5) / n))
+    vertices = [exactly(rough((i + a) / m, (j + b) / n)) for a in (0, 1) for b in (0, 1)]
+    for k, mu in enumerate(exactly(spline.coefficients[1:-1, 1:-1])):
+        around = [corner[k] for corner in vertices]
+        for x in range(3):
+            assert mu[x] == 2 * centres[k][x] - sum(point[x] for point in around) / 4
+
+
+@pytest.mark.parametrize("cells", [(4, 8), (8, 4)])
+def test_open_borders_in_rational_numbers(cells):
+    """The border is the univariate quasi-interpolant of the border, and the corners are met."""
+    m, n = cells
+    spline = gm.fit(gm.Surface.from_callable(rough, SQUARE), cells)
+    nets = spline.control_nets.reshape(m, n, 4, 6, 3)
+    for turn, edge in enumerate(
+        ([(k / m, 0) for k in range(2 * m)], [(1, k / n) for k in range(2 * n)],
+         [(k / m, 1) for k in range(2 * m)], [(0, k / n) for k in range(2 * n)])
+    ):  # fmt: skip
+        row = [nets[:, 0, 0], nets[-1, :, 1], nets[:, -1, 2], nets[0, :, 3]][turn]
+        middles = exactly(row[:, 3])
+        for k, middle in enumerate(middles):
+            step_ = np.array(edge[1]) - np.array(edge[0])
+            start = np.array(edge[0]) + k * step_
+            ends = exactly(np.stack([rough(*start), rough(*(start + step_))]))
+            (centre,) = exactly(rough(*(start + step_ / 2)))
+            for x in range(3):
+                assert middle[x] == 2 * centre[x] - (ends[0][x] + ends[1][x]) / 2
+    for u in (0, 1):
+        for v in (0, 1):
+            assert (spline.evaluate(u, v) == rough(np.float64(u), np.float64(v))).all()
+
+
+@pytest.mark.compiled
+def test_noise_does_not_grow_at_the_border():
+    """The largest value of a spline of data between −1 and 1 is no larger there than inside."""
+    signs = np.random.default_rng(2).choice([-1.0, 1.0], (400, 7, 7, 1)) * np.ones(3)
+    places = np.linspace(0, 6, 25)
+    largest = np.zeros((25, 25))
+    for points in signs:
+        spline = gm.fit(gm.Surface.from_grid(points))
+        largest = np.maximum(largest, np.abs(spline.evaluate(places[:, None], places))[..., 0])
+    assert largest.max() < 1.6
+    assert largest[12, 12] > 1.2
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_constants_stay_constant(name):
+    surface = made(name)
+    constant = gm.Surface(
+        name, lambda u, v: np.full((*u.shape, 3), 0.75), surface.domain, surface.ends
+    )
+    spline = gm.fit(constant, (6, 5))
+    assert (spline.coefficients == 0.75).all()
+    assert (spline.control_nets == 0.75).all()
+
+
+# --- smoothness -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_c1_inside(name, rng):
+    spline = gm.fit(made(name), None if name == "grid" else (6, 5))
+    m, n = spline.cells
+    along = rng.random((m * n, 3))
+    for index in range(m * n):
+        i, j = divmod(index, n)
+        for turn in range(4):  # half diagonals, from the centre to the corner v = 1 of this patch
+            place = [i + 0.5, j + 0.5] + along[index, :, None] * CORNERS[turn + 1]
+            patch = np.full(3, 4 * index + turn)
+            check_smooth(spline, patch, place, np.full(3, 4 * index + (turn + 1) % 4), place)
+        if i + 1 < m:  # east of this cell, west of the next
+            place = np.column_stack([np.full(3, i + 1.0), j + along[index]])
+            patch, other = np.full(3, 4 * index + 1), np.full(3, 4 * (index + n) + 3)
+            check_smooth(spline, patch, place, other, place)
+        if j + 1 < n:  # north of this cell, south of the next
+            place = np.column_stack([i + along[index], np.full(3, j + 1.0)])
+            patch, other = np.full(3, 4 * index + 2), np.full(3, 4 * (index + 1) + 0)
+            check_smooth(spline, patch, place, other, place)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_c1_over_seams(name, rng):
+    surface = made(name)
+    spline = gm.fit(surface, None if name == "grid" else (6, 5))
+    m, n = spline.cells
+    along = rng.random(4)
+    if surface.ends[0][0] in ("wrap", "flip"):
+        flip = surface.ends[0][0] == "flip"
+        for j in range(n):
+            place = np.column_stack([np.full(4, float(m)), j + along])
+            other = np.column_stack([np.zeros(4), n - j - along if flip else j + along])
+            cell = n - 1 - j if flip else j
+            patches = np.full(4, 4 * ((m - 1) * n + j) + 1), np.full(4, 4 * cell + 3)
+            check_smooth(spline, patches[0], place, patches[1], other, (1.0, -1.0 if flip else 1.0))
+    if surface.ends[1][0] == "wrap":
+        for i in range(m):
+            place = np.column_stack([i + along, np.full(4, float(n))])
+            other = np.column_stack([i + along, np.zeros(4)])
+            patches = np.full(4, 4 * (i * n + n - 1) + 2), np.full(4, 4 * i * n)
+            check_smooth(spline, patches[0], place, patches[1], other)
+
+
+def test_c1_over_a_mirrored_seam_of_v(rng):
+    band = gm.surfaces.moebius_band()
+    turned = gm.Surface.from_callable(
+        lambda u, v: band.evaluate(v, u), (band.domain[1], band.domain[0]), (False, "flip")
+    )
+    spline = gm.fit(turned, (5, 6))
+    for i in range(5):
+        along = rng.random(4)
+        place = np.column_stack([i + along, np.full(4, 6.0)])
+        other = np.column_stack([5 - i - along, np.zeros(4)])
+        patches = np.full(4, 4 * (i * 6 + 5) + 2), np.full(4, 4 * (4 - i) * 6)
+        check_smooth(spline, patches[0], place, patches[1], other, (-1.0, 1.0))
+
+
+def test_seams_of_coefficients_are_bitwise_equal():
+    coefficients = gm.fit(TORUS, (6, 5)).coefficients
+    for axis in (0, 1):
+        rows = np.swapaxes(coefficients, 0, axis)
+        assert (rows[0] == rows[-2]).all()
+        assert (rows[-1] == rows[1]).all()
+    rows = gm.fit(gm.surfaces.moebius_band(), (6, 5)).coefficients
+    assert (rows[0] == rows[-2, ::-1]).all()
+    assert (rows[-1] == rows[1, ::-1]).all()
+
+
+# --- poles ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["sphere", "ellipsoid"])
+@pytest.mark.parametrize("cells", [(4, 3), (6, 5), (64, 64)])
+@pytest.mark.parametrize("shift", [0.0, 1e6])
+def test_poles_are_one_point(name, cells, shift):
+    surface = gm.surfaces.surface(name)
+    moved = gm.Surface.from_callable(
+        lambda u, v: surface.evaluate(u, v) + shift, surface.domain, (True, "pole")
+    )
+    spline = gm.fit(moved, cells)
+    for inner, outer, corner in ((1, 0, 0), (-2, -1, 2)):
+        pairs = zip(spline.coefficients[:, inner], spline.coefficients[:, outer], strict=True)
+        centres = {tuple(Fraction(x) + Fraction(y) for x, y in zip(*pair, strict=True))
+                   for pair in pairs}  # fmt: skip
+        assert len(centres) == 1  # exactly
+        at_pole = (
+            np.arange(cells[0]) * cells[1] + (0 if corner == 0 else cells[1] - 1)
+        ) * 4 + corner
+        edge = spline.control_nets[at_pole][:, [0, 1, 3]].reshape(-1, 3)
+        spread = np.abs(edge - edge[0]).max()
+        assert spread <= 2e-16 * np.abs(spline.coefficients).max()
+        end = surface.domain[1][0 if corner == 0 else 1]
+        north = surface.evaluate(0.0, end) + shift
+        np.testing.assert_allclose(edge[0], north, rtol=1e-15, atol=5.0 / cells[0] ** 3)
+
+
+def test_half_a_sphere_has_one_pole():
+    ball = gm.surfaces.sphere()
+    half = gm.Surface.from_callable(
+        ball.function, ((0, 2 * np.pi), (0, np.pi / 2)), (True, ("none", "pole"))
+    )
+    spline = gm.fit(half, (32, 16))
+    u = np.linspace(0, 2 * np.pi, 50)
+    np.testing.assert_allclose(
+        spline.evaluate(u, np.pi / 2), spline.evaluate(np.zeros(50), np.pi / 2), rtol=0, atol=2e-16
+    )
+    np.testing.assert_allclose(spline.evaluate(u, 0.0), ball.evaluate(u, 0.0), rtol=0, atol=1e-3)
+
+
+def test_poles_have_no_normal():
+    spline = gm.fit(gm.surfaces.sphere(), (8, 6))
+    normals = spline.normals([0.3, 0.3], [np.pi / 2, 0.5])
+    assert np.isnan(normals[0]).all() or np.abs(normals[0] - [0, 0, 1]).max() < 0.5
+    assert np.linalg.norm(normals[1]) == pytest.approx(1.0, rel=1e-15)
+
+
+# --- reading --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_control_nets_and_evaluate_agree(name, rng):
+    spline = gm.fit(made(name), None if name == "grid" else (6, 5))
+    m, n = spline.cells
+    assert spline.patches == 4 * m * n == len(spline.control_nets)
+    patch = rng.integers(0, spline.patches, 400)
+    weights = rng.dirichlet([1.0, 1.0, 1.0], 400)
+    cell, turn = np.divmod(patch, 4)
+    place = np.stack(np.divmod(cell, n), axis=-1) + 0.5
+    place += weights[:, :1] * CORNERS[turn] + weights[:, 1:2] * CORNERS[turn + 1]
+    u0, v0, du, dv = spline.frame
+    u, v = u0 + du * place[:, 0], v0 + dv * place[:, 1]
+    points, by_s, by_t = read(spline, patch, place)
+    size = np.abs(spline.coefficients).max()
+    np.testing.assert_allclose(spline.evaluate(u, v), points, rtol=0, atol=8e-15 * size)
+    normals = np.cross(by_s, by_t)
+    lengths = np.linalg.norm(normals, axis=1)
+    regular = lengths > 0.01 * np.median(lengths)
+    assert regular.sum() > 350
+    expected = normals[regular] / lengths[regular, None]
+    found = spline.normals(u, v)[regular]
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-10)
+    np.testing.assert_allclose(np.linalg.norm(found, axis=1), 1.0, rtol=0, atol=3e-16)
+
+
+def test_frame_and_cells():
+    spline = gm.fit(gm.Surface.from_callable(cube, ((-1, 5), (10, 12))), (3, 8))
+    assert spline.cells == (3, 8)
+    assert spline.patches == 96
+    assert spline.frame.tolist() == [-1.0, 10.0, 2.0, 0.25]
+    assert gm.fit(CUBE).cells == (64, 64)
+
+
+@pytest.mark.parametrize("turns", [-3, -1, 1, 2, 1000])
+def test_periodic_parameters_wrap(turns, rng):
+    spline = gm.fit(TORUS, (8, 7))
+    u, v = 2 * np.pi * rng.random((2, 100))
+    expected, period = spline.evaluate(u, v), 2 * np.pi * turns
+    near = {"rtol": 0, "atol": 1e-13 * abs(turns)}
+    np.testing.assert_allclose(spline.evaluate(u + period, v), expected, **near)
+    np.testing.assert_allclose(spline.evaluate(u, v + period), expected, **near)
+    np.testing.assert_allclose(spline.evaluate(u - period, v + period), expected, **near)
+
+
+@pytest.mark.parametrize("turns", [-3, -1, 1, 2, 5])
+def test_mirrored_parameters_wrap(turns, rng):
+    spline = gm.fit(gm.surfaces.moebius_band(), (8, 7))
+    u, v = 2 * np.pi * rng.random(100), 2 * rng.random(100) - 1
+    sign = (-1) ** turns
+    expected, normals = spline.evaluate(u, sign * v), spline.normals(u, sign * v)
+    beyond = u + 2 * np.pi * turns
+    np.testing.assert_allclose(spline.evaluate(beyond, v), expected, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(np.abs((spline.normals(beyond, v) * normals).sum(axis=1)), 1.0)
+
+
+def test_both_ends_of_a_period_are_the_same_point():
+    spline = gm.fit(TORUS, (8, 7))
+    v = np.linspace(0, 2 * np.pi, 29)
+    low, high = spline.evaluate(0.0, v), spline.evaluate(2 * np.pi, v)
+    np.testing.assert_allclose(low, high, rtol=0, atol=1e-15)
+    tiny = spline.evaluate(-1e-20, v)
+    np.testing.assert_allclose(low, tiny, rtol=0, atol=1e-15)
+
+
+def test_outside_an_open_domain():
+    spline = gm.fit(CUBE, (5, 5))
+    for u, v, name in (
+        (1.001, 0.5, "u"),
+        (0.5, -0.001, "v"),
+        (np.nan, 0.5, "u"),
+        (0.5, np.inf, "v"),
+    ):
+        complaint = rf"^{name} = .* lies outside the domain \(0.0, 1.0\) of 'surface'\.$"
+        for read_ in (spline.evaluate, spline.normals):
+            with pytest.raises(gm.InputError, match=complaint):
+                read_([0.5, u], [0.5, v])
+    spline.evaluate([0.0, 1.0], [1.0, 0.0])
+
+
+def test_infinite_periodic_parameters():
+    with pytest.raises(gm.InputError, match="u = inf lies outside"):
+        gm.fit(TORUS, (5, 5)).evaluate(np.inf, 0.0)
+
+
+# --- size and place -------------------------------------------------------------------------------
+
+
+def moved(surface, matrix, shift):
+    return gm.Surface(
+        surface.name,
+        lambda u, v: surface.evaluate(u, v) @ np.asarray(matrix).T + shift,
+        surface.domain,
+        surface.ends,
+    )
+
+
+@pytest.mark.parametrize("exponent", [-1000, -40, -1, 1, 40, 990])
+@pytest.mark.parametrize("name", ["torus", "moebius_band", "sphere", "catenoid"])
+def test_powers_of_two_change_no_bit(name, exponent):
+    surface, factor = gm.surfaces.surface(name), 2.0**exponent
+    plain = gm.fit(surface, (6, 5))
+    scaled = gm.fit(moved(surface, factor * np.eye(3), 0.0), (6, 5))
+    assert (scaled.coefficients == factor * plain.coefficients).all()
+    u, v = np.linspace(*surface.domain[0], 17)[:, None], np.linspace(*surface.domain[1], 13)
+    assert (scaled.evaluate(u, v) == factor * plain.evaluate(u, v)).all()
+    np.testing.assert_array_equal(scaled.normals(u, v), plain.normals(u, v))
+    assert (scaled.measure[1] == plain.measure[1]).all()
+    assert (scaled.measure[0] == plain.measure[0]).all()
+
+
+@pytest.mark.parametrize("ends", [(False, False), (True, False), (True, True), ("flip", False)])
+def test_affine_maps_commute_with_fitting(ends):
+    """On binary fractions nothing is rounded, so that the coefficients map exactly."""
+
+    def dyadic(u, v):
+        points = np.stack([u * v - v * v, u * (1 - u) * v, 3 * u * u * v * (1 - v)], axis=-1)
+        points *= np.round(64 * u * (1 - u) * v * (1 - v))[..., None]
+        return np.round(256 * points) / 256  # 0 on the whole border: closes whichever way
+
+    surface = gm.Surface.from_callable(dyadic, SQUARE, ends)
+    matrix, shift = np.array([[2.0, -1.0, 0.5], [0.25, 3.0, -4.0], [1.0, 0.0, 8.0]]), [1e6, -3.5, 7]
+    plain = gm.fit(surface, (8, 6)).coefficients
+    assert np.ptp(plain) > 0.1
+    mapped = gm.fit(moved(surface, matrix, shift), (8, 6)).coefficients
+    assert (mapped == plain @ matrix.T + shift).all()
+
+
+@pytest.mark.parametrize("factor", [1e-12, 1e12, 1e-300, 1e300])
+def test_any_unit_of_length(factor, rng):
+    u, v = 2 * np.pi * rng.random((2, 200))
+    plain = gm.fit(TORUS, (8, 7))
+    scaled = gm.fit(moved(TORUS, factor * np.eye(3), 0.0), (8, 7))
+    points, normals = scaled.evaluate(u, v), scaled.normals(u, v)
+    np.testing.assert_allclose(points / factor, plain.evaluate(u, v), rtol=0, atol=4e-15)
+    np.testing.assert_allclose(normals, plain.normals(u, v), rtol=0, atol=1e-13)
+
+
+def test_the_smallest_numbers_there_are(rng):
+    """Sizes at which a coefficient has only a few bits left, or none."""
+    u, v = 2 * np.pi * rng.random((2, 200))
+    plain = gm.fit(TORUS, (8, 7))
+    tiny = gm.fit(moved(TORUS, 2.0**-1060 * np.eye(3), 0.0), (8, 7))
+    np.testing.assert_allclose(
+        tiny.evaluate(u, v) * 2.0**1000 * 2.0**60, plain.evaluate(u, v), rtol=0, atol=1e-3
+    )
+    assert np.isfinite(tiny.normals(u, v)).all()
+    none = gm.fit(moved(TORUS, 0.0 * np.eye(3), 0.0), (8, 7))
+    assert (none.evaluate(u, v) == 0.0).all()
+    assert np.isnan(none.normals(u, v)).all()
+
+
+@pytest.mark.parametrize("shift", [1e6, 1e12])
+def test_far_from_the_origin(shift, rng):
+    u, v = 2 * np.pi * rng.random((2, 200))
+    plain, far = gm.fit(TORUS, (8, 7)), gm.fit(moved(TORUS, np.eye(3), shift), (8, 7))
+    rounding = np.spacing(shift)
+    points = far.evaluate(u, v) - shift
+    np.testing.assert_allclose(points, plain.evaluate(u, v), rtol=0, atol=4 * rounding)
+    normals = far.normals(u, v)
+    np.testing.assert_allclose(normals, plain.normals(u, v), rtol=0, atol=50 * rounding)
+
+
+def test_normals_of_a_surface_that_is_nearly_a_curve():
+    thin = gm.fit(moved(TORUS, np.diag([1.0, 1.0, 1e-200]), 0.0), (8, 7))
+    normals = thin.normals(0.3, np.linspace(0, 6, 20))
+    np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1.0, rtol=1e-15)
+
+
+# --- area and solid angle -------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("name", "euler"), [("torus", 0), ("dupin_cyclide", 0), ("sphere", 2)])
+def test_gauss_bonnet(name, euler):
+    solid_angles = gm.fit(gm.surfaces.surface(name), (64, 64)).measure[1]
+    assert solid_angles.sum() == pytest.approx(2 * math.pi * euler, abs=0.02)
+
+
+def test_solid_angle_of_a_torus():
+    """4π outside where it is elliptic, and −4π inside."""
+    solid_angles = gm.fit(TORUS, (64, 64)).measure[1]
+    assert solid_angles[solid_angles > 0].sum() == pytest.approx(4 * math.pi, rel=0.01)
+    assert solid_angles[solid_angles < 0].sum() == pytest.approx(-4 * math.pi, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("name", "area"),
+    [
+        ("torus", 4 * math.pi**2 * 0.35),
+        ("sphere", 4 * math.pi),
+        ("cylinder", 4 * math.pi),
+        ("cone", math.pi * 1.5 * math.hypot(0.5, 1.0)),
+        ("plane", 4.0),
+        ("catenoid", math.pi * (2 + math.sinh(2))),
+    ],
+)
+def test_areas(name, area):
+    spline = gm.fit(gm.surfaces.surface(name), (48, 48))
+    inner = spline.coefficients[1:-1, 1:-1].reshape(-1, 3)
+    diagonal = np.linalg.norm(np.ptp(inner, axis=0))
+    assert spline.measure[0].sum() * diagonal**2 == pytest.approx(area, rel=1e-3)
+    assert (spline.measure[0] >= 0).all()
+
+
+# --- arguments of fit -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "cells", [(4, 5), [4, 5], np.array([4, 5]), (np.int8(4), np.uint64(5)), iter((4, 5))]
+)
+def test_cells(cells):
+    assert gm.fit(CUBE, cells).cells == (4, 5)
+
+
+@pytest.mark.parametrize(
+    ("cells", "complaint"),
+    [
+        ((2, 3), "at least 3 x 3 cells are needed, not 2 x 3"),
+        ((3, 2), "at least 3 x 3 cells are needed, not 3 x 2"),
+        ((0, 5), r"cells\[0\] must be a whole number"),
+        ((5, -5), r"cells\[1\] must be a whole number"),
+        ((5.0, 5), r"cells\[0\] must be a whole number"),
+        ((True, 5), r"cells\[0\] must be a whole number"),
+        ((np.nan, 5), r"cells\[0\] must be a whole number"),
+        (("5", "5"), r"cells\[0\] must be a whole number"),
+        (np.array([5.0, 5.0]), r"cells\[0\] must be a whole number"),
+        (5, "cells must be a pair of whole numbers"),
+        ((5,), "cells must be a pair of whole numbers"),
+        ((5, 5, 5), "cells must be a pair of whole numbers"),
+        ({"u": 5, "v": 5}, r"cells\[0\] must be a whole number"),
+    ],
+)
+def test_cells_that_are_none(cells, complaint):
+    for call in (gm.fit, lambda surface, cells: gm.sample(surface, count=5, cells=cells)):
+        with pytest.raises(gm.InputError, match=complaint):
+            call(CUBE, cells)
+
+
+def test_an_odd_number_of_cells_at_a_pole():
+    with pytest.raises(gm.InputError, match="even number of cells along u, not 5"):
+        gm.fit(gm.surfaces.sphere(), (5, 4))
+    assert gm.fit(gm.surfaces.sphere(), (4, 5)).cells == (4, 5)
+
+
+@pytest.mark.parametrize("surface", [None, "torus", 5, np.zeros((5, 5, 3)), TORUS.evaluate])
+def test_what_cannot_be_fitted(surface):
+    for call in (gm.fit, lambda surface: gm.sample(surface, count=5)):
+        with pytest.raises(gm.InputError, match="fit takes a Surface, not "):
+            call(surface)
+
+
+@pytest.mark.parametrize("domain", [((0, 5e-324), (0, 1)), ((1, 1 + 2**-50), (0, 1))])
+def test_domains_too_narrow_for_the_cells(domain):
+    with pytest.raises(gm.InputError, match="domain of u is too narrow for 8 cells"):
+        gm.fit(gm.Surface.from_callable(cube, domain), (8, 8))
+
+
+@pytest.mark.parametrize("domain", [((0, 1e-300), (0, 1)), ((1, 1 + 2**-40), (-1e300, 1e300))])
+def test_domains_of_odd_sizes(domain):
+    (u0, u1), (v0, v1) = domain
+    surface = gm.Surface.from_callable(
+        lambda u, v: cube((u - u0) / (u1 - u0), (v - v0) / (v1 - v0)), domain
+    )
+    plain, odd = gm.fit(CUBE, (8, 8)), gm.fit(surface, (8, 8))
+    np.testing.assert_allclose(odd.coefficients, plain.coefficients, rtol=0, atol=1e-10)
+    at_u, at_v = u0 + 0.3125 * (u1 - u0), v0 + 0.4375 * (v1 - v0)
+    np.testing.assert_allclose(
+        odd.evaluate(at_u, at_v), plain.evaluate(0.3125, 0.4375), rtol=0, atol=1e-10
+    )

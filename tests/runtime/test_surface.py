@@ -1,0 +1,430 @@
+"""Surfaces of callables and of SymPy expressions; what is no surface is refused in one sentence."""
+
+import re
+
+import gaussmap as gm
+import numpy as np
+import pytest
+import sympy as sp
+
+SQUARE = ((0.0, 1.0), (0.0, 1.0))
+TURN = ((0.0, 2 * np.pi), (0.0, 2 * np.pi))
+
+
+def saddle(u, v):
+    return np.stack([u, v, u * v + u * u], axis=-1)
+
+
+def tube(u, v):
+    return np.stack([(2 + np.cos(v)) * np.cos(u), (2 + np.cos(v)) * np.sin(u), np.sin(v)], axis=-1)
+
+
+def bowl(u, v):
+    """Return the northern half of the unit sphere, whose pole is at v = 1."""
+    angle = v * np.pi / 2
+    return np.stack([np.cos(u) * np.cos(angle), np.sin(u) * np.cos(angle), np.sin(angle)], axis=-1)
+
+
+def refused(kind, complaint, call, *arguments, **named):
+    """Check that a call raises `kind` with one line that matches `complaint`."""
+    with pytest.raises(kind, match=complaint) as caught:
+        call(*arguments, **named)
+    assert isinstance(caught.value, gm.GaussmapError)
+    assert "\n" not in str(caught.value)
+
+
+# --- domain and ends ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "domain",
+    [
+        ((0, 1), (0, 2)),
+        [[0, 1], [0, 2]],
+        np.array([[0, 1], [0, 2]]),
+        ((0, 1), iter((0, 2))),
+        (pair for pair in ((0, 1), (0, 2))),
+        ((sp.Integer(0), sp.Integer(1)), (0, sp.sqrt(4))),
+    ],
+    ids=lambda x: type(x).__name__,
+)
+def test_domains(domain):
+    assert gm.Surface.from_callable(saddle, domain).domain == ((0.0, 1.0), (0.0, 2.0))
+
+
+@pytest.mark.parametrize(
+    ("domain", "complaint"),
+    [
+        (((0, 0), (0, 1)), "domain of u is empty or infinite"),
+        (((0, 1), (1, 0)), "domain of v is empty or infinite"),
+        (((0, np.inf), (0, 1)), "domain of u is empty or infinite"),
+        (((-np.inf, 0), (0, 1)), "domain of u is empty or infinite"),
+        (((0, 1), (0, np.nan)), "domain of v is empty or infinite"),
+        (((-1e308, 1e308), (0, 1)), "domain of u is empty or infinite"),  # so is its length
+        (((0, 10**400), (0, 1)), "domain must be"),
+        (((0, 1),), "domain must be"),
+        (((0, 1, 2), (0, 1)), "domain must be"),
+        ((0, 1), "domain must be"),
+        ("abcd", "domain must be"),
+        (None, "domain must be"),
+        ((("a", 1), (0, 1)), "domain must be"),
+        (((0j, 1), (0, 1)), "domain must be"),
+    ],
+)
+def test_domains_that_are_none(domain, complaint):
+    refused(gm.InputError, complaint, gm.Surface.from_callable, saddle, domain)
+
+
+@pytest.mark.parametrize(
+    ("periodic", "ends"),
+    [
+        ((False, False), (("none", "none"), ("none", "none"))),
+        ((True, False), (("wrap", "wrap"), ("none", "none"))),
+        ((np.True_, "none"), (("wrap", "wrap"), ("none", "none"))),
+        ([False, "flip"], (("none", "none"), ("flip", "flip"))),
+        ((True, "pole"), (("wrap", "wrap"), ("pole", "pole"))),
+        (("wrap", ["none", "pole"]), (("wrap", "wrap"), ("none", "pole"))),
+        (("wrap", ("pole", "none")), (("wrap", "wrap"), ("pole", "none"))),
+    ],
+)
+def test_ends(periodic, ends):
+    assert gm.Surface.from_callable(tube, TURN, periodic).ends == ends
+
+
+@pytest.mark.parametrize(
+    ("periodic", "complaint"),
+    [
+        (True, "must be a pair"),
+        (None, "must be a pair"),
+        ("wrap", "must be a pair"),
+        ((True,), "must be a pair"),
+        ((1, 0), "periodic for u must be True, False"),
+        ((None, False), "periodic for u must be True, False"),
+        ((False, "poles"), "periodic for v must be True, False"),
+        ((("wrap",), False), "periodic for u must be True, False"),
+        ((("wrap", "none"), False), "both ends of u"),
+        ((True, ("wrap", "pole")), "both ends of v"),
+        ((("wrap", "flip"), False), "both ends of u"),
+        (("pole", True), "only v can end"),
+        ((False, "pole"), "needs u to be periodic"),
+        (("flip", ("pole", "none")), "needs u to be periodic"),
+    ],
+)
+def test_ends_that_do_not_match(periodic, complaint):
+    refused(gm.InputError, complaint, gm.Surface.from_callable, tube, TURN, periodic)
+
+
+@pytest.mark.parametrize("f", [None, 5, "saddle", np.zeros((5, 5, 3))], ids=lambda f: str(type(f)))
+def test_what_is_not_callable(f):
+    refused(gm.InputError, "f must be callable", gm.Surface.from_callable, f, SQUARE)
+
+
+# --- callables ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("shape", [(), (1,), (5,), (2, 3), (0,), (2, 0, 3)])
+@pytest.mark.parametrize("name", ["callable", "sympy", "catalogue", "grid", "spline"])
+def test_evaluate_keeps_the_shape(name, shape):
+    made = {
+        "callable": gm.Surface.from_callable(saddle, SQUARE),
+        "sympy": gm.Surface.from_sympy(("u", "v", "u*v + u**2"), "uv", SQUARE),
+        "catalogue": gm.surfaces.plane(),
+        "grid": gm.Surface.from_grid(saddle(*np.indices((5, 6)) * 1.0)),
+        "spline": gm.fit(gm.Surface.from_callable(saddle, SQUARE), (3, 4)),
+    }[name]
+    u, v = np.full(shape, 0.25), np.full(shape, 0.5)
+    assert made.evaluate(u, v).shape == (*shape, 3)
+    if u.size:
+        single = made.evaluate(0.25, 0.5)
+        assert single.shape == (3,)
+        assert (made.evaluate(u, v) == single).all()
+
+
+def test_the_callable_gets_arrays_of_its_own():
+    """It may change them, and return the same array each time."""
+    memory = {}
+
+    def careless(u, v):
+        assert u.shape == v.shape
+        assert u.dtype == v.dtype == np.float64
+        assert u.ndim >= 1
+        points = memory.setdefault(u.shape, saddle(u, v))
+        u[...] = v[...] = np.nan
+        return points
+
+    surface = gm.Surface.from_callable(careless, SQUARE, name="careless")
+    u, v = np.linspace(0, 1, 5), np.linspace(0, 1, 5)
+    np.testing.assert_array_equal(surface.evaluate(u, v), saddle(u, v))
+    np.testing.assert_array_equal(u, np.linspace(0, 1, 5))
+    np.testing.assert_array_equal(surface.evaluate(0.5, 0.25), saddle(0.5, 0.25))
+    first, second = gm.fit(surface, (4, 5)), gm.fit(surface, (4, 5))
+    plain = gm.fit(gm.Surface.from_callable(saddle, SQUARE), (4, 5))
+    np.testing.assert_array_equal(first.coefficients, plain.coefficients)
+    np.testing.assert_array_equal(second.coefficients, plain.coefficients)
+
+
+@pytest.mark.parametrize(
+    ("returned", "complaint"),
+    [
+        (
+            lambda u, v: np.stack([u, v, u]),
+            r"returned the shape \(3, 4, 5\).*must return \(4, 5, 3",
+        ),
+        (lambda u, v: (u, v, u), r"returned the shape \(3, 4, 5\)"),
+        (lambda u, v: saddle(u, v)[..., :2], r"returned the shape \(4, 5, 2\)"),
+        (lambda u, v: saddle(u, v).reshape(-1, 3), r"returned the shape \(20, 3\)"),
+        (lambda u, v: np.zeros(3), r"returned the shape \(3,\)"),
+        (lambda u, v: 0.0, r"returned the shape \(\)"),
+        (lambda u, v: (u, v, 0), "array of real numbers, with equal rows"),
+        (lambda u, v: None, "array of real numbers, not of type object"),
+        (lambda u, v: saddle(u, v).astype(object), "not of type object"),
+        (lambda u, v: saddle(u, v).astype(str), "not of type <U"),
+        (lambda u, v: saddle(u, v) + 0j, "not of type complex128"),
+        (lambda u, v: np.ma.masked_less(saddle(u, v), 0.5), "masked entries"),
+        (lambda u, v: 1 / 0, "raised ZeroDivisionError: division by zero"),
+        (lambda u, v: [][1], "raised IndexError"),
+        (lambda u: u, "raised TypeError"),
+        (lambda u, v: int("several\nlines"), "raised ValueError: .*several"),
+        (lambda u, v: saddle(np.where(u < 0.5, u, np.nan), v), "not finite at u = 0.625, v = 0.1:"),
+        (lambda u, v: saddle(u, np.where(v < 0.5, v, np.inf)), "not finite at u = 0.125, v = 0.5:"),
+        (lambda u, v: saddle(u, v) / 0.0, "not finite at u = 0.125, v = 0.1:"),
+        (lambda u, v: 1e305 * saddle(u, v), "too large"),
+    ],
+)
+def test_callables_that_return_no_surface(returned, complaint):
+    surface = gm.Surface.from_callable(returned, SQUARE, name="mine")
+    refused(gm.SurfaceError, complaint, gm.fit, surface, (4, 5))
+    refused(gm.SurfaceError, "mine", gm.sample, surface, count=10, cells=(4, 5))
+
+
+def test_the_error_of_a_callable_is_kept():
+    surface = gm.Surface.from_callable(lambda u, v: 1 / 0, SQUARE)
+    with pytest.raises(gm.SurfaceError) as caught:
+        gm.fit(surface)
+    assert isinstance(caught.value.__cause__, ZeroDivisionError)
+
+
+def test_interrupts_go_through():
+    def interrupted(u, v):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        gm.fit(gm.Surface.from_callable(interrupted, SQUARE))
+
+
+@pytest.mark.parametrize(
+    ("u", "v", "complaint"),
+    [
+        ("a", 0.1, "u must be an array of real numbers"),
+        (0.1, "0.5", "v must be an array of real numbers"),
+        (0.5j, 0.1, "u must be an array of real numbers"),
+        (None, 0.1, "u must be an array of real numbers"),
+        ([[0.1], [0.1, 0.2]], 0.1, "u must be an array of real numbers"),
+        ([0.1, 0.2, 0.3], [0.1, 0.2], "do not broadcast together"),
+        (np.ma.masked_array([0.1], mask=True), 0.1, "u has masked entries"),
+    ],
+)
+def test_parameters_that_are_none(u, v, complaint):
+    surface = gm.Surface.from_callable(saddle, SQUARE)
+    refused(gm.InputError, complaint, surface.evaluate, u, v)
+    refused(gm.InputError, complaint, gm.fit(surface, (3, 3)).evaluate, u, v)
+    refused(gm.InputError, complaint, gm.fit(surface, (3, 3)).normals, u, v)
+
+
+# --- what the ends promise ------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("f", "domain", "periodic", "complaint"),
+    [
+        (saddle, SQUARE, (True, False), "does not close along u"),
+        (saddle, SQUARE, (False, True), "does not close along v"),
+        (tube, ((0, np.pi), (0, 2 * np.pi)), (True, True), "does not close along u"),
+        (tube, ((0, 6.28), (0, 2 * np.pi)), (True, True), "does not close along u"),
+        (tube, TURN, ("flip", False), "does not close along u: .* mirrored"),
+        (tube, TURN, (False, "flip"), "does not close along v: .* mirrored"),
+        (tube, TURN, (True, "pole"), "has no pole at v = 0.0"),
+        (bowl, ((0, 2 * np.pi), (0, 1)), (True, "pole"), "has no pole at v = 0.0"),
+        (bowl, ((0, 2 * np.pi), (0, 0.9)), (True, ("none", "pole")), "has no pole at v = 0.9"),
+    ],
+)
+def test_ends_that_the_surface_does_not_have(f, domain, periodic, complaint):
+    surface = gm.Surface.from_callable(f, domain, periodic)
+    refused(gm.SurfaceError, complaint, gm.fit, surface, (8, 9))
+
+
+@pytest.mark.parametrize("factor", [1.0, 1e-200, 1e200])
+@pytest.mark.parametrize("shift", [0.0, 1e6, 1e12])
+def test_ends_close_up_to_rounding(factor, shift):
+    surface = gm.Surface.from_callable(
+        lambda u, v: factor * (tube(u, v) + shift), TURN, (True, True)
+    )
+    gm.fit(surface, (8, 9))
+    half = gm.Surface.from_callable(
+        lambda u, v: factor * (bowl(u, v) + shift),
+        ((0, 2 * np.pi), (0, 1)),
+        (True, ("none", "pole")),
+    )
+    gm.fit(half, (8, 9))
+
+
+def test_ends_close_up_to_rounding_far_from_the_origin():
+    shift = 1e14  # whose last bit is 1/64
+
+    def unlucky(u, v):
+        return tube(u, v) + np.where(u == 2 * np.pi, shift + 1 / 64, shift)[..., None]
+
+    gm.fit(gm.Surface.from_callable(unlucky, TURN, (True, True)), (8, 9))
+
+
+def test_single_precision_is_precise_enough_to_close():
+    surface = gm.Surface.from_callable(
+        lambda u, v: tube(u.astype(np.float32), v.astype(np.float32)), TURN, (True, True)
+    )
+    points = gm.fit(surface, (64, 64)).evaluate(1.0, 2.0)
+    np.testing.assert_allclose(points, tube(1.0, 2.0), rtol=0, atol=2e-5)
+
+
+# --- SymPy ----------------------------------------------------------------------------------------
+
+u, v = sp.symbols("u v")
+
+
+@pytest.mark.parametrize(
+    ("position", "parameters"),
+    [
+        (("u", "v", "u*v + u**2"), ("u", "v")),
+        (("u", "v", "u*v + u**2"), "uv"),
+        ((u, v, u * v + u**2), (u, v)),
+        (sp.Matrix([u, v, u * v + u**2]), (u, v)),
+        ((u, "v", u * v + u**2), (u, "v")),
+        (("u", "v", "u*v + u**2"), sp.symbols("u v", real=True)),
+        ((*sp.symbols("u v", positive=True), u * v + u**2), ("u", "v")),
+        (("beta", "gamma", "beta*gamma + beta**2"), ("beta", "gamma")),  # SymPy has such functions
+        (("S", "N", "S*N + S**2"), ("S", "N")),
+        (("E", "I", "E*I + E**2"), ("E", "I")),
+        ((x for x in ("u", "v", "u*v + u**2")), iter("uv")),
+    ],
+)
+def test_expressions_are_what_a_callable_is(position, parameters):
+    surface = gm.Surface.from_sympy(position, parameters, SQUARE)
+    at_u, at_v = np.random.default_rng(0).random((2, 7, 5))
+    np.testing.assert_allclose(surface.evaluate(at_u, at_v), saddle(at_u, at_v), rtol=1e-15)
+
+
+def test_expressions_of_a_closed_surface():
+    surface = gm.Surface.from_sympy(
+        ("(2 + cos(v))*cos(u)", "(2 + cos(v))*sin(u)", "sin(v)"),
+        ("u", "v"),
+        ((0, "2*pi"), (0, 2 * sp.pi)),
+        (True, True),
+        name="tube",
+    )
+    assert surface.name == "tube"
+    assert surface.domain == TURN
+    reference = gm.fit(gm.Surface.from_callable(tube, TURN, (True, True)), (16, 16))
+    np.testing.assert_allclose(
+        gm.fit(surface, (16, 16)).coefficients, reference.coefficients, rtol=0, atol=1e-14
+    )
+
+
+def test_constants_and_functions_of_one_parameter():
+    surface = gm.Surface.from_sympy((1, "pi", "u**-1"), "uv", ((1, 2), (0, 1)))
+    points = surface.evaluate([1.0, 2.0], 0.0)
+    np.testing.assert_allclose(points, [[1, np.pi, 1], [1, np.pi, 0.5]], rtol=1e-16)
+
+
+@pytest.mark.parametrize(
+    ("position", "complaint"),
+    [
+        (("u", "v"), "position must be three SymPy expressions"),
+        (("u", "v", "u", "v"), "position must be three SymPy expressions"),
+        (None, "position must be three SymPy expressions"),
+        (5, "position must be three SymPy expressions"),
+        (("u", "v", "w"), "neither parameter nor number: w"),
+        (("u", "a*v", "b"), "neither parameter nor number: a, b"),
+        (("u", "v", "u +"), "'u [+]' is not a SymPy expression"),
+        (("u", "v", "u("), "is not a SymPy expression"),
+        (("u", "v", "u.x"), "is not a SymPy expression"),
+        (("u", "v", ""), "is not a SymPy expression"),
+        (("u", "v", "lambda"), "is not a SymPy expression"),
+        (("u", "v", "u < 1"), "is not a SymPy expression"),
+        (("u", "v", "gamma"), "is not a SymPy expression"),
+        (("u", "v", [u]), "is not a SymPy expression"),
+        (("u", "v", None), "is not a SymPy expression"),
+        (("u", "v", saddle), "is not a SymPy expression"),
+        (("u", "v", "1/0"), "position is not finite"),
+        (("u", "v", sp.nan), "position is not finite"),
+    ],
+)
+def test_expressions_that_are_none(position, complaint):
+    refused(gm.InputError, complaint, gm.Surface.from_sympy, position, ("u", "v"), SQUARE)
+
+
+@pytest.mark.parametrize(
+    "parameters",
+    [
+        ("u",),
+        ("u", "u"),
+        ("u", "v", "w"),
+        (1, 2),
+        None,
+        ("u v", "v"),
+        ("", "v"),
+        (u + v, v),
+        (u, sp.Symbol("u", real=True)),
+    ],
+)
+def test_parameters_of_expressions_that_are_none(parameters):
+    complaint = "parameters must be two SymPy symbols"
+    refused(gm.InputError, complaint, gm.Surface.from_sympy, ("u", "v", "u"), parameters, SQUARE)
+
+
+@pytest.mark.parametrize(
+    ("domain", "complaint"),
+    [
+        (((0, "x"), (0, 1)), "domain must be"),
+        (((0, "I"), (0, 1)), "domain must be"),
+        (((0, "zoo"), (0, 1)), "domain must be"),
+        (((0, "1 +"), (0, 1)), "domain must be"),
+        (((0, "a.b"), (0, 1)), "domain must be"),
+        (((0, None), (0, 1)), "domain must be"),
+        (None, "domain must be"),
+        ("abcd", "domain must be"),
+        (((0, "10**400"), (0, 1)), "empty or infinite|domain must be"),
+        (((0, "oo"), (0, 1)), "domain of u is empty or infinite"),
+        (((0, "pi"), ("pi", "pi")), "domain of v is empty or infinite"),
+    ],
+)
+def test_domains_of_expressions_that_are_none(domain, complaint):
+    refused(gm.InputError, complaint, gm.Surface.from_sympy, ("u", "v", "u*v"), "uv", domain)
+
+
+@pytest.mark.parametrize(
+    ("height", "complaint"),
+    [
+        ("sqrt(u - 2)", "not finite at u = "),
+        ("log(u - 1)", "not finite at u = "),
+        ("I*u", "not of type complex128"),
+        ("elliptic_k(u)", "raised NameError: name 'elliptic_k' is not defined"),
+        ("1/(u - 1/2)", "not finite at u = 0.5"),
+    ],
+)
+def test_expressions_that_cannot_be_evaluated(height, complaint):
+    surface = gm.Surface.from_sympy(("u", "v", height), "uv", SQUARE)
+    refused(gm.SurfaceError, complaint, gm.fit, surface, (4, 4))
+
+
+def test_complex_detours_to_a_real_surface():
+    surface = gm.Surface.from_sympy(("u", "v", "re(exp(I*u))"), "uv", SQUARE)
+    assert surface.evaluate(0.5, 0.5)[2] == pytest.approx(np.cos(0.5), rel=1e-15)
+
+
+def test_runtime_does_not_load_sympy():
+    import subprocess
+    import sys
+
+    code = "import gaussmap, sys; gaussmap.sample(gaussmap.surfaces.torus(), count=5, cells=(4, 4))"
+    code += "; print([name for name in ('sympy', 'matplotlib', 'pandas') if name in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert re.fullmatch(r"\[\]\s*", done.stdout)

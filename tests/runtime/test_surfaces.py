@@ -1,0 +1,129 @@
+"""The catalogue at runtime: its compiled surfaces are those of symbolic/, by name and by number."""
+
+import gaussmap as gm
+import numpy as np
+import pytest
+import sympy as sp
+from gaussmap.symbolic.surfaces import CATALOGUE
+
+NAMES = list(CATALOGUE)
+
+
+def changed(name: str) -> dict[str, float]:
+    """Return other parameters than the defaults, in the same proportions."""
+    return {p.symbol.name: 1.25 * float(p.default) for p in CATALOGUE[name].parameters}
+
+
+def test_names():
+    assert list(gm.surfaces.names()) == NAMES
+    assert set(NAMES) <= set(dir(gm.surfaces))
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("with_defaults", [True, False])
+def test_positions_are_those_of_the_derivation(name, with_defaults):
+    exact = CATALOGUE[name]
+    chosen = {} if with_defaults else changed(name)
+    values = {
+        p.symbol: sp.Float(chosen.get(p.symbol.name, float(p.default)), 30)
+        for p in exact.parameters
+    }
+    position = sp.lambdify((exact.u, exact.v), [x.xreplace(values) for x in exact.position])
+    surface = gm.surfaces.surface(name, **chosen)
+    u, v = (np.linspace(*interval, 9) for interval in surface.domain)
+    points = surface.evaluate(u[:, None], v)
+    expected = np.array([[[float(x) for x in position(a, b)] for b in v] for a in u])
+    np.testing.assert_allclose(points, expected, rtol=0, atol=1e-14 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_domain_and_ends_are_those_of_the_derivation(name):
+    surface, exact = gm.surfaces.surface(name), CATALOGUE[name]
+    assert surface.name == name
+    assert surface.grid is None
+    assert surface.ends == exact.continuation
+    exact_domain = [[float(end) for end in interval] for interval in exact.domain]
+    np.testing.assert_allclose(surface.domain, exact_domain, rtol=3e-16)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_makers(name):
+    maker = getattr(gm.surfaces, name)
+    assert maker.__name__ == name
+    assert CATALOGUE[name].sentence in maker.__doc__
+    first, second = maker(**changed(name)), gm.surfaces.surface(name, **changed(name))
+    assert (first.evaluate(0.5, 0.25) == second.evaluate(0.5, 0.25)).all()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_descriptions(name):
+    exact = CATALOGUE[name]
+    first, *others = gm.surfaces.describe(name).splitlines()
+    assert first == f"{name}: {exact.sentence}"
+    assert len(others) == len(exact.parameters)
+    for line, parameter in zip(others, exact.parameters, strict=True):
+        assert line.strip().startswith(f"{parameter.symbol.name} = {float(parameter.default):g}: ")
+        assert line.endswith(parameter.sentence)
+
+
+@pytest.mark.parametrize("name", ["Torus", "", "toruS", " torus", None, 3, ["torus"], ("torus",)])
+def test_unknown_surfaces(name):
+    for call in (gm.surfaces.surface, gm.surfaces.describe):
+        with pytest.raises(gm.UnknownNameError, match=r"^there is no surface .* there are torus,"):
+            call(name)
+
+
+def test_unknown_attributes():
+    assert not hasattr(gm.surfaces, "donut")
+    with pytest.raises(AttributeError, match="has no 'donut'; it has torus, ellipsoid"):
+        _ = gm.surfaces.donut
+
+
+@pytest.mark.parametrize(
+    ("parameters", "complaint"),
+    [
+        ({"size": 1}, "torus has no parameter 'size'; it has major, minor."),
+        ({"name": "x"}, "torus has no parameter 'name'; it has major, minor."),
+        ({"minor": 0}, "minor of torus must be a positive number, not 0."),
+        ({"minor": -0.1}, "minor of torus must be a positive number, not -0.1."),
+        ({"minor": float("nan")}, "minor of torus must be a positive number, not nan."),
+        ({"minor": float("inf")}, "minor of torus must be a positive number, not inf."),
+        ({"minor": "thin"}, "minor of torus must be a number, not 'thin'."),
+        ({"minor": None}, "minor of torus must be a number, not None."),
+        ({"minor": 1j}, "minor of torus must be a number, not 1j."),
+        ({"minor": [0.1, 0.2]}, r"minor of torus must be a number, not \[0.1, 0.2\]."),
+        ({"minor": 10**400}, "minor of torus must be a number, not 1000"),
+    ],
+)
+def test_unusable_parameters(parameters, complaint):
+    for call in (gm.surfaces.torus, lambda **named: gm.surfaces.surface("torus", **named)):
+        with pytest.raises(gm.InputError, match=complaint):
+            call(**parameters)
+
+
+def test_parameters_that_may_be_negative_or_zero():
+    surface = gm.surfaces.plane(slope_u=-2.0, slope_v=0)
+    assert surface.evaluate(0.5, 0.25).tolist() == [0.5, 0.25, -1.0]
+    with pytest.raises(gm.InputError, match="slope_u of plane must be a finite number, not nan"):
+        gm.surfaces.plane(slope_u=float("nan"))
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("call", [gm.fit, lambda surface: gm.sample(surface, count=10)])
+def test_parameters_that_make_no_surface(call):
+    with pytest.raises(gm.SurfaceError, match="'dupin_cyclide' is not finite at u = "):
+        call(gm.surfaces.dupin_cyclide(a=0.5, b=0.96))
+    with pytest.raises(gm.SurfaceError, match="'torus' is not finite at u = "):
+        call(gm.surfaces.torus(major=1e308, minor=1e308))
+
+
+def test_numpy_numbers_are_parameters_too():
+    reference = gm.surfaces.torus(minor=0.25).evaluate(1.0, 2.0)
+    for minor in (np.float32(0.25), np.float64(0.25), np.array(0.25), sp.Rational(1, 4)):
+        assert (gm.surfaces.torus(minor=minor).evaluate(1.0, 2.0) == reference).all()
+
+
+def test_each_surface_keeps_its_own_parameters():
+    thick, thin = gm.surfaces.torus(minor=0.5), gm.surfaces.torus(minor=0.1)
+    assert thick.evaluate(0.0, 0.0).tolist() == [1.5, 0.0, 0.0]
+    assert thin.evaluate(0.0, 0.0).tolist() == [1.1, 0.0, 0.0]
