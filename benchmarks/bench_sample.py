@@ -1,0 +1,140 @@
+"""Sampling, against the time in which the same arrays can be written at all.
+
+The writing limit is a compiled loop on the same number of threads that stores constants into arrays
+of the same shapes. It stores into memory it holds (`of_writing_limit`): no sampler that returns new
+arrays can get there, because the system has to give it that memory. `of_new_array_limit` is against
+the same loop on new arrays.
+"""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from functools import partial
+
+import gaussmap as gm
+import numba
+import numpy as np
+import pytest
+from gaussmap.runtime.search import NormalBins, fill, find
+from gaussmap.runtime.threads import thread_count
+
+TORUS = gm.surfaces.torus()
+
+
+@numba.njit(nogil=True, error_model="numpy")
+def write(
+    first, last, number, index,
+    points, normals, uv, support, gaussian, mean, normal_index, patch_index,
+):  # fmt: skip
+    """Store the same number everywhere in the samples first, …, last − 1."""
+    for k in range(first, last):
+        points[k, 0] = number
+        points[k, 1] = number
+        points[k, 2] = number
+        normals[k, 0] = number
+        normals[k, 1] = number
+        normals[k, 2] = number
+        uv[k, 0] = number
+        uv[k, 1] = number
+        support[k] = number
+        gaussian[k] = number
+        mean[k] = number
+        normal_index[k] = index
+        patch_index[k] = index
+
+
+def new_arrays(count):
+    floats = [np.empty((count, 3)), np.empty((count, 3)), np.empty((count, 2))]
+    floats += [np.empty(count) for _ in range(3)]
+    return *floats, np.empty(count, np.int64), np.empty(count, np.int64)
+
+
+@pytest.fixture(scope="module")
+def limits():
+    """Make the writing limits for a number of samples."""
+    threads = thread_count(None)
+    with ThreadPoolExecutor(threads) as pool:
+
+        def write_all(count, arrays):
+            ends = [count * k // threads for k in range(threads + 1)]
+            list(pool.map(lambda a, b: write(a, b, 1.0, 1, *arrays), ends, ends[1:]))
+            return arrays
+
+        def make(count):
+            held = new_arrays(count)
+            return {
+                "writing_limit": partial(write_all, count, held),
+                "new_array_limit": lambda: write_all(count, new_arrays(count)),
+            }
+
+        yield make
+
+
+@dataclass(frozen=True)
+class Case:
+    """Normals for a spline of the torus, and how many rounds to time."""
+
+    normals: np.ndarray
+    spline: gm.Spline
+    rounds: int
+
+    @property
+    def hits(self):
+        return find(self.spline, NormalBins(self.normals))
+
+
+# The torus has every normal twice: 4 n² patches share 2 S samples.
+CASES = {
+    "icosphere-100k-781-a-patch": (lambda: gm.icosphere(100), 8, 9),
+    "icosphere-100k-5-a-patch": (lambda: gm.icosphere(100), 100, 9),
+    "fibonacci-100k-781-a-patch": (lambda: gm.fibonacci(100_000), 8, 15),
+    "fibonacci-100k-5-a-patch": (lambda: gm.fibonacci(100_000), 100, 15),
+    "fibonacci-1M-556-a-patch": (lambda: gm.fibonacci(1_000_000), 30, 5),
+    "fibonacci-1M-5-a-patch": (lambda: gm.fibonacci(1_000_000), 320, 5),
+}
+
+
+@pytest.fixture(scope="module", params=CASES.values(), ids=list(CASES))
+def case(request):
+    normals, cells, rounds = request.param
+    return Case(normals(), gm.fit(TORUS, (cells, cells)), rounds)
+
+
+@pytest.fixture(scope="module")
+def hits(case):
+    return case.hits
+
+
+@pytest.fixture
+def against_limit(compare, limits, case, hits):
+    """Compare with the limits of writing as many samples as there are hits."""
+    return partial(
+        compare,
+        limits=limits(len(hits)),
+        units={"samples": len(hits)},
+        rounds=case.rounds,
+        samples_per_patch=len(hits) / case.spline.patches,
+        exact_decisions=len(hits.exact),
+    )
+
+
+def test_sample(against_limit, case):
+    """All of gm.sample for a spline that has never been read."""
+    against_limit(lambda: gm.sample(replace(case.spline), case.normals))
+
+
+def test_find_and_fill(against_limit, case):
+    def find_and_fill():
+        hits = find(case.spline, NormalBins(case.normals))
+        return hits, fill(case.spline, case.normals, hits)
+
+    against_limit(find_and_fill)
+
+
+def test_find(against_limit, case):
+    against_limit(lambda: find(case.spline, NormalBins(case.normals)))
+
+
+def test_fill(against_limit, case, hits):
+    against_limit(lambda: fill(case.spline, case.normals, hits))

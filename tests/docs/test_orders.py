@@ -1,0 +1,127 @@
+"""The measurements of docs/orders.py, on small grids, against theory and the runtime itself."""
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.docs import orders
+from gaussmap.docs.orders import ANGLES, DERIVATIVES, POSITIONS, QUANTITIES, SUPPORT
+
+pytestmark = pytest.mark.compiled
+
+GRIDS = (16, 32)
+NORMALS = gm.fibonacci(3_000)
+CUBIC = ("monkey_saddle", "enneper")
+CURVED = (*CUBIC, "torus", "hyperboloid", "helicoid", "wavy_graph")
+FLAT = ("cylinder", "cone")
+QUADRATIC = ("elliptic_paraboloid", "plane")
+
+
+@pytest.fixture(scope="module")
+def measured():
+    return {name: orders.measure(name, GRIDS, NORMALS) for name in (*CURVED, *FLAT, *QUADRATIC)}
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES, ids=lambda x: x.title)
+@pytest.mark.parametrize("name", CURVED)
+def test_order(measured, name, quantity):
+    # terms of the next order are still felt on coarse grids; on cubics there are none
+    above = 0.1 if name in CUBIC else 1.2
+    assert quantity.order - 0.1 < measured[name].slope(quantity) < quantity.order + above
+
+
+def test_cubics_have_exact_orders(measured):
+    for name in CUBIC:
+        assert measured[name].slope(POSITIONS) == pytest.approx(3.0, abs=1e-3)
+        assert measured[name].slope(DERIVATIVES) == pytest.approx(2.0, abs=1e-3)
+
+
+def test_quadratics_are_reproduced(measured):
+    for name in QUADRATIC:
+        assert measured[name].true.reproduced
+        assert np.nanmax(measured[name].errors) < 1e-11
+    assert not any(measured[name].true.reproduced for name in (*CURVED, *FLAT))
+
+
+def test_developable_surfaces_have_no_support_function(measured):
+    for name in (*FLAT, "plane"):
+        assert measured[name].true.developable
+        assert measured[name].support == []
+        assert np.isnan(measured[name].errors[QUANTITIES.index(SUPPORT)]).all()
+
+
+def test_normals_of_the_cylinder_are_faster(measured):
+    assert measured["cylinder"].slope(ANGLES) == pytest.approx(3.0, abs=0.1)
+    assert measured["cone"].slope(ANGLES) == pytest.approx(2.0, abs=0.1)
+    entries = (measured[name].true.entry for name in FLAT)
+    assert [orders.third_derivatives_are_tangent(entry) for entry in entries] == [True, False]
+
+
+@pytest.mark.parametrize("name", ["torus", "moebius_band"])
+def test_errors_at_parameters_are_those_of_the_runtime(name):
+    cells, parts = 6, 2 * orders.PARTS
+    true = orders.TrueSurface(name)
+    spline = gm.fit(true.surface, (cells, cells))
+    u, v = np.meshgrid(
+        *(np.linspace(*ends, cells * parts + 1) for ends in true.surface.domain), indexing="ij"
+    )
+    position, _, angle = orders.parameter_errors(true, cells)
+    # the places of orders.py are among these, and the border is among both
+    apart = np.linalg.norm(spline.evaluate(u, v) - true.surface.evaluate(u, v), axis=-1)
+    assert position == pytest.approx(apart.max(), rel=0.05)
+    assert position <= apart.max() + 1e-12
+    places = true.unit(np.stack([u, v], axis=-1))
+    x_u, x_v = np.moveaxis(true.derivatives(places[..., 0], places[..., 1], 1)[..., 1:, :], -2, 0)
+    exact = np.cross(x_u, x_v)
+    assert angle == pytest.approx(orders.angles(spline.normals(u, v), exact).max(), rel=0.05)
+
+
+def test_newton_agrees_with_closed_forms():
+    for name in ("torus", "ellipsoid_patch", "hyperboloid"):
+        found = orders.support_errors(orders.TrueSurface(name), 16, NORMALS)
+        assert found.compared > 500
+        assert found.closed_form < 1e-14
+
+
+def test_preimages_have_the_normals():
+    true = orders.TrueSurface("enneper")
+    places = np.array([[0.3, 0.4], [0.7, 0.2]])
+    derivatives = true.derivatives(places[:, 0], places[:, 1], 1)
+    normals = np.cross(derivatives[:, 1], derivatives[:, 2])
+    found = orders.preimages(true, places + 0.02, normals)
+    assert found == pytest.approx(places, abs=1e-12)
+    assert true.inside(places).all()
+    assert not true.inside(places + 1.0).any()
+
+
+def test_the_sum_of_compared_and_left_out_is_all(measured):
+    for name in CURVED:
+        for cells, found in zip(GRIDS, measured[name].support, strict=True):
+            samples = gm.sample(gm.surfaces.surface(name), NORMALS, cells=(cells, cells))
+            assert found.compared + sum(found.left_out.values()) == len(samples)
+            assert found.compared > 0.95 * len(samples)
+
+
+def test_regular_and_singular_surfaces_are_the_catalogue():
+    assert sorted(orders.regular_surfaces() + orders.singular_surfaces()) == sorted(
+        gm.surfaces.names()
+    )
+    assert orders.singular_surfaces() == ["ellipsoid", "sphere"]
+    with pytest.raises(ArithmeticError, match="sphere has a singular point"):
+        _ = orders.TrueSurface("sphere").largest_curvature
+
+
+def test_tables(measured):
+    names = ["torus", "plane", "cylinder"]
+    chosen = [measured[name] for name in names]
+    for quantity in QUANTITIES:
+        lines = orders.table(quantity, chosen).splitlines()
+        assert [line.split("|")[1].strip(" `") for line in lines[2:]] == names
+        assert len({line.count("|") for line in lines}) == 1
+    assert "exact" in orders.table(POSITIONS, chosen).splitlines()[3]
+    assert orders.table(SUPPORT, chosen).count("–") == 2 * (len(GRIDS) + 4)
+
+
+def test_numbers():
+    values = (8.6473e-5, 0.02704, 4.031, 151.2, 7.999e-16)
+    assert list(map(orders.number, values)) == ["8.65e-5", "0.027", "4.03", "151", "8.00e-16"]
+    assert [orders.above(x) for x in (0.0, 3e-16, 9e-13)] == ["0", "< 1e-15", "< 1e-12"]
