@@ -43,7 +43,7 @@ test: $(READY) ## run all tests
 	$(BIN)/python -m pytest
 
 coverage: $(READY) ## run all tests without compilation, with the coverage of every line
-	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q -W ignore::RuntimeWarning --cov --cov-report=term
+	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q -rfE -W ignore::RuntimeWarning --cov --cov-report=term
 
 bench: $(READY) ## run the benchmarks (ratios against the machine's own limit)
 	$(BIN)/python -m pytest benchmarks -o python_files='bench_*.py' --benchmark-only --benchmark-quiet
