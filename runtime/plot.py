@@ -1,8 +1,4 @@
-"""One picture of a sampling: the surface with its samples, and the unit sphere with their normals.
-
-Matplotlib draws in three dimensions without a depth test. What hides what is therefore decided
-here, by the triangles of a mesh of the surface that lie between a sample and the viewer.
-"""
+"""One picture of a sampling: the surface with its samples, the unit sphere with their normals."""
 
 from __future__ import annotations
 
@@ -11,8 +7,6 @@ import math
 import os
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -22,15 +16,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import io
 from .errors import GaussmapWarning, InputError, MissingExtraError
+from .globe import draw_globe, view_of
 from .lattice import Lattice
+from .palette import ELLIPTIC, HYPERBOLIC, INK, NO_SAMPLE, PALE, SCALE, STYLE
 from .samples import Samples
 from .sampling import sample
+from .scene import AZIMUTH, ELEVATION, Scene
 from .sphere import as_normals
 from .spline import Spline, fit
 from .surface import Surface
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.colors import Colormap, Normalize
     from matplotlib.figure import Figure
 
@@ -44,30 +40,7 @@ LEFT, ROOM_WIDTH, ROOM_HEIGHT = 2.4, 4.1, 3.1
 RIGHT, RADIUS = 6.8, 1.35
 DOTS_PER_INCH = {".png": 200, ".pdf": 300, ".svg": 300}
 
-# Blue for elliptic and orange for hyperbolic, in both halves: the pair that everybody can tell
-# apart (Okabe and Ito). The neutral colour of the scale stands for zero curvature.
-ELLIPTIC, HYPERBOLIC, NO_SAMPLE = "#0072b2", "#d55e00", "#a8a8a8"
-SCALE = ("#7a2e00", HYPERBOLIC, "#f3b183", "#f7f7f7", "#8cc4e8", ELLIPTIC, "#003c66")
-INK, PALE, FAINT, GLOBE = "#333333", "#8a8a8a", "#e4e4e4", "#eceef0"
-STYLE = {
-    "axes.edgecolor": PALE,
-    "axes.labelcolor": INK,
-    "axes.linewidth": 0.5,
-    **{f"axes3d.{axis}axis.panecolor": (1.0, 1.0, 1.0, 0.0) for axis in "xyz"},
-    "font.size": 8.0,
-    "grid.color": FAINT,
-    "grid.linewidth": 0.4,
-    "svg.hashsalt": "gaussmap",
-    "text.color": INK,
-}
-
-ELEVATION, AZIMUTH = math.radians(28.0), math.radians(-55.0)  # of the viewer
-MESH, MOST_MESH, ISOLINES = 112, 224, 16  # quadrangles along u and v: as many as cells, within this
-# A surface hides a sample if it is nearer to the viewer by this part of the picture's diameter.
-HIDING = 0.01
-# A height below or above these parts of the width is exaggerated or reduced, to about the second.
-LOW, LOW_WANTED = 0.1, 0.25
-HIGH, HIGH_WANTED = 10.0, 2.0
+ISOLINES = 16  # parameter lines along u and v
 ROBUST = 95.0  # the percentile of |K| at the ends of the colour scale
 
 
@@ -165,132 +138,13 @@ def _box(x: float, y: float, width: float, height: float) -> tuple[float, float,
     return (x - width / 2) / WIDTH, (y - height / 2) / HEIGHT, width / WIDTH, height / HEIGHT
 
 
-# ── What hides what ──────────────────────────────────────────────────────────────────────────────
-
-
-def _view() -> NDArray[np.float64]:
-    """Return the rows right, up, and towards the viewer."""
-    s, c, S, C = (f(angle) for angle in (ELEVATION, AZIMUTH) for f in (math.sin, math.cos))
-    return np.array([[-S, C, 0.0], [-s * C, -s * S, c], [c * C, c * S, s]])
-
-
-@dataclass(frozen=True, eq=False)
-class _Scene:
-    """A mesh (m + 1, n + 1, 3) of a surface, to be seen with its heights times `factor`."""
-
-    mesh: NDArray[np.float64]
-    factor: float
-
-    @classmethod
-    def of(cls, spline: Spline) -> _Scene:
-        u, v = (
-            np.linspace(low, high, min(max(MESH, count), MOST_MESH) + 1)
-            for (low, high), count in zip(spline.domain, spline.cells, strict=True)
-        )
-        mesh = spline.evaluate(u[:, None], v)
-        return cls(mesh, _height_factor(np.ptp(mesh.reshape(-1, 3), axis=0)))
-
-    def seen(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return points (..., 3) as right, up, and nearness to the viewer."""
-        return (points * [1.0, 1.0, self.factor]) @ _view().T
-
-    @cached_property
-    def quadrangles(self) -> NDArray[np.float64]:
-        """The quadrangles (Q, 4, 3) of the mesh, their corners going round."""
-        m = self.mesh
-        corners = m[:-1, :-1], m[1:, :-1], m[1:, 1:], m[:-1, 1:]
-        return np.stack([x.reshape(-1, 3) for x in corners], axis=1)
-
-    @cached_property
-    def triangles(self) -> NDArray[np.float64]:
-        """The halves (T, 3, 3) of the quadrangles as they are seen."""
-        seen = self.seen(self.quadrangles)
-        return np.concatenate([seen[:, [0, 1, 2]], seen[:, [0, 2, 3]]])
-
-    @cached_property
-    def brightness(self) -> NDArray[np.float64]:
-        """How much light each quadrangle gets, 0 … 1, from behind the viewer's left shoulder."""
-        a, b, c, d = np.moveaxis(self.seen(self.quadrangles), 1, 0)
-        size = np.abs([c - a, d - b]).max() or 1.0
-        normals = np.cross((c - a) / size, (d - b) / size)
-        length = np.linalg.norm(normals, axis=1, keepdims=True)
-        normals /= np.where(length > 0.0, length, 1.0)
-        normals *= np.where(normals[:, 2:] < 0.0, -1.0, 1.0)  # both sides of a surface are lit
-        lamp = np.array([-0.45, 0.6, 0.7])
-        return np.clip(normals @ (lamp / np.linalg.norm(lamp)), 0.0, 1.0)
-
-    def visible(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Say which points (P, 3) of the surface the surface does not hide."""
-        seen = self.seen(points)
-        diameter = float(np.linalg.norm(np.ptp(self.triangles.reshape(-1, 3), axis=0)))
-        return seen[:, 2] >= _front(self.triangles, seen[:, :2]) - HIDING * diameter
-
-
-def _front(triangles: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return how near the nearest of the triangles (T, 3, 3) is at places (P, 2); −∞ at none."""
-    flat = triangles[..., :2]
-    grid = max(1, round(math.sqrt(len(triangles)) / 2))
-    lowest, highest = flat.min(axis=(0, 1)), flat.max(axis=(0, 1))
-    step = np.where(highest > lowest, highest - lowest, 1.0) / grid
-
-    def square(points: NDArray[np.float64]) -> NDArray[np.int64]:
-        return np.clip(np.floor((points - lowest) / step), 0, grid - 1).astype(np.int64)
-
-    # Every triangle is noted in all squares that its bounding box meets.
-    first, last = square(flat.min(axis=1)), square(flat.max(axis=1))
-    sizes = last - first + 1
-    owner, k = _runs(sizes.prod(axis=1))
-    i, j = np.divmod(k, sizes[owner, 1])
-    noted = (first[owner, 0] + i) * grid + first[owner, 1] + j
-    order = np.argsort(noted, kind="stable")
-    starts = np.searchsorted(noted[order], np.arange(grid * grid + 1))
-
-    own = square(places) @ [grid, 1]
-    place, k = _runs(starts[own + 1] - starts[own])
-    near = triangles[owner[order[starts[own][place] + k]]]
-    a, b, c = np.moveaxis(near[..., :2] - places[place][:, None], 1, 0)
-    weights = np.stack([_cross(b, c), _cross(c, a), _cross(a, b)], axis=1)
-    total = weights.sum(axis=1, keepdims=True)
-    weights /= np.where(total == 0.0, np.nan, total)
-    inside = (weights >= -1e-9).all(axis=1)
-    front = np.full(len(places), -np.inf)
-    np.maximum.at(front, place[inside], np.einsum("ij,ij->i", weights, near[..., 2])[inside])
-    return front
-
-
-def _runs(counts: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return each k, repeated counts[k] times, and beside it the numbers 0 … counts[k] − 1."""
-    which = np.repeat(np.arange(len(counts)), counts)
-    return which, np.arange(len(which)) - (np.cumsum(counts) - counts)[which]
-
-
-def _cross(left: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.float64]:
-    return left[:, 0] * right[:, 1] - left[:, 1] * right[:, 0]
-
-
-def _height_factor(extent: NDArray[np.float64]) -> float:
-    """Return the factor for heights: 1, unless the surface is very low or very high."""
-    width, height = float(extent[:2].max()), float(extent[2])
-    if LOW * width <= height <= HIGH * width or height <= 1e-9 * width or width <= 1e-9 * height:
-        return 1.0
-    if height < LOW * width:
-        return _round(LOW_WANTED * width / height)
-    return 1.0 / _round(height / (HIGH_WANTED * width))
-
-
-def _round(factor: float) -> float:
-    """Return the largest of …, 1, 2, 5, 10, 20, … that is not above a factor."""
-    power = 10.0 ** math.floor(math.log10(factor))
-    return power * max(digit for digit in (1, 2, 5) if digit * power <= factor * (1 + 1e-9))
-
-
 # ── The left half: the surface ───────────────────────────────────────────────────────────────────
 
 
 def _draw_surface(figure: Figure, samples: Samples, spline: Spline) -> None:
     from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
-    scene = _Scene.of(spline)
+    scene = Scene.of(spline)
     axes: Any = figure.add_axes(_box(LEFT, MIDDLE, 4.5, 4.5), projection="3d")
     axes.computed_zorder = False
     _frame(axes, scene)
@@ -319,7 +173,7 @@ def _draw_surface(figure: Figure, samples: Samples, spline: Spline) -> None:
     _write(figure, LEFT, TITLES, f"{len(visible):,} of {len(samples):,} samples in sight")
 
 
-def _frame(axes: Any, scene: _Scene) -> None:  # noqa: ANN401
+def _frame(axes: Any, scene: Scene) -> None:  # noqa: ANN401
     """Set the viewer, the limits, the same scale along all axes, and the labels."""
     from matplotlib.ticker import FixedLocator, MaxNLocator
 
@@ -329,7 +183,7 @@ def _frame(axes: Any, scene: _Scene) -> None:  # noqa: ANN401
     margin = np.maximum(extent, 0.02 * extent.max() or 1.0) / factors / 2
     limits = (points.min(axis=0) + points.max(axis=0)) / 2 + np.outer([-1.0, 1.0], margin)
     axes.set_proj_type("ortho")
-    axes.view_init(math.degrees(ELEVATION), math.degrees(AZIMUTH))
+    axes.view_init(ELEVATION, AZIMUTH)
     axes.set(xlim=limits[:, 0], ylim=limits[:, 1], zlim=limits[:, 2])
     axes.set_box_aspect(2 * margin * factors, zoom=_zoom(axes, 2 * margin * factors))
     axes.patch.set_visible(False)
@@ -362,7 +216,7 @@ def _zoom(axes: Any, aspect: NDArray[np.float64]) -> float:  # noqa: ANN401
     return float(min(ROOM_WIDTH / width, ROOM_HEIGHT / height))
 
 
-def _isolines(scene: _Scene) -> NDArray[np.float64]:
+def _isolines(scene: Scene) -> NDArray[np.float64]:
     """Return the visible pieces (…, 2, 3) of some parameter lines."""
     pieces = []
     for mesh in (scene.mesh, np.swapaxes(scene.mesh, 0, 1)):
@@ -429,8 +283,8 @@ def _draw_sphere(figure: Figure, samples: Samples, normals: NDArray[np.float64])
     axes = figure.add_axes(_box(RIGHT, MIDDLE, 2.6 * RADIUS, 2.6 * RADIUS))
     axes.set(xlim=(-1.3, 1.3), ylim=(-1.3, 1.3), aspect="equal")
     axes.set_axis_off()
-    view = _view_of(samples.normals if len(samples) else normals)
-    _draw_globe(axes, view)
+    view = view_of(samples.normals if len(samples) else normals)
+    draw_globe(axes, view)
     area = _marker_area(normals)
     handles = []
     for height, kind in enumerate(kinds):
@@ -463,56 +317,6 @@ def _draw_sphere(figure: Figure, samples: Samples, normals: NDArray[np.float64])
     )  # fmt: skip
     whose = "their normals" if len(samples) else "the normals that were asked"
     _write(figure, RIGHT, TITLES, f"{whose}, on the unit sphere")
-
-
-def _draw_globe(axes: Axes, view: NDArray[np.float64]) -> None:
-    """Draw a translucent globe with meridians and parallels every 30°, and the three axes."""
-    from matplotlib.collections import LineCollection
-    from matplotlib.patches import Circle
-    from matplotlib.patheffects import withStroke
-
-    axes.add_patch(Circle((0, 0), 1.0, facecolor=GLOBE, alpha=0.75, linewidth=0, zorder=2))
-    turn = np.linspace(0.0, 2 * math.pi, 181)
-    c, s, ones = np.cos(turn), np.sin(turn), np.ones_like(turn)
-    circles = [
-        np.outer(c, [math.cos(a), math.sin(a), 0.0]) + np.outer(s, [0.0, 0.0, 1.0])
-        for a in np.radians(range(0, 180, 30))
-    ] + [
-        np.stack([math.cos(a) * c, math.cos(a) * s, math.sin(a) * ones], axis=1)
-        for a in np.radians(range(-60, 90, 30))
-    ]
-    seen = np.array(circles) @ view.T
-    pieces = np.stack([seen[:, :-1], seen[:, 1:]], axis=2).reshape(-1, 2, 3)
-    front = pieces[(pieces[..., 2] >= 0.0).all(axis=1)][..., :2]
-    axes.add_collection(LineCollection(list(front), colors="white", linewidths=0.8, zorder=3))
-    axes.add_patch(Circle((0, 0), 1.0, facecolor="none", edgecolor=PALE, linewidth=0.6, zorder=4))
-    halo = [withStroke(linewidth=2.0, foreground="white")]
-    for direction, name in zip(view.T, "xyz", strict=True):
-        across = float(np.linalg.norm(direction[:2]))
-        if direction[2] < -0.3:  # behind the globe
-            continue
-        reach = 1.1 / across if across > 0.75 else 1.15
-        axes.plot(*np.outer(direction[:2], [1.0, reach]), color=INK, linewidth=0.7, zorder=5)
-        x, y, _ = direction * (reach + 0.1)
-        axes.text(x, y, name, ha="center", va="center", path_effects=halo, zorder=7)
-
-
-def _view_of(normals: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the rows right, up, and towards a viewer who sees most of the normals.
-
-    That is the viewer of the left half, turned towards the mean normal, the further the more the
-    normals agree.
-    """
-    old = _view()
-    mean = normals.mean(axis=0)
-    new = (1.0 - np.linalg.norm(mean)) * old[2] + mean
-    length = float(np.linalg.norm(new))
-    cosine = float(old[2] @ new) / length if length > 1e-6 else -1.0
-    if cosine < -0.999:  # straight from behind
-        return old * [[-1.0], [1.0], [-1.0]]
-    new /= length
-    turned = old[:2] - np.outer(old[:2] @ new / (1.0 + cosine), old[2] + new)
-    return np.vstack([turned, new])
 
 
 def _marker_area(normals: NDArray[np.float64]) -> float:
