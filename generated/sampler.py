@@ -61,6 +61,9 @@ SINGULAR = math.ldexp(1.0, -30)
 ANGLE_ERROR = math.ldexp(1.0, -40)
 SINGULAR_ERROR = math.ldexp(1.0, -10)
 
+# Samples of one patch are computed so many at a time, then stored.
+TILE = 256
+
 REGULAR = 0
 WIDE = 1
 INVISIBLE = 2
@@ -542,8 +545,11 @@ def bin_index(s, grid):
 
 
 @jit
-def bin_normals(normals, grid, starts, order):
-    """Sort normals (k, 3) into bins: order[starts[b]:starts[b + 1]] are those of bin b, ascending."""
+def bin_normals(normals, grid, starts, order, components):
+    """Sort normals (k, 3) into bins: order[starts[b]:starts[b + 1]] are those of bin b, ascending.
+
+    Writes the components (3, k) of the normals in that order too.
+    """
     bins = np.empty(normals.shape[0], np.int64)
     starts[:] = 0
     for k in range(normals.shape[0]):
@@ -554,8 +560,11 @@ def bin_normals(normals, grid, starts, order):
         starts[b + 1] += starts[b]
     cursor = starts[:-1].copy()
     for k in range(normals.shape[0]):
-        order[cursor[bins[k]]] = k
+        at = cursor[bins[k]]
         cursor[bins[k]] += 1
+        order[at] = k
+        for axis in range(3):
+            components[axis, at] = normals[k, axis]
 
 
 # --- which normals a patch may have ---------------------------------------------------------------
@@ -568,20 +577,173 @@ def length_of(x, y, z):
 
 
 @jit
-def bound_patches(
-    mu, scale, noise, border, grid, starts, first, last, kinds, bounds, windows, sizes
-):
-    """Classify the patches first, …, last − 1 and bound the normals that each of them may have.
+def cone_of_normals(net, negligible):
+    """Return REGULAR if all control normals lie within 37 degrees of their mean, else WIDE."""
+    mean_x = 0.0
+    mean_y = 0.0
+    mean_z = 0.0
+    for k in range(6):
+        length = length_of(net[k, 0], net[k, 1], net[k, 2])
+        if length <= negligible:
+            return WIDE
+        mean_x += net[k, 0] / length
+        mean_y += net[k, 1] / length
+        mean_z += net[k, 2] / length
+    limit = 0.8 * length_of(mean_x, mean_y, mean_z)
+    for k in range(6):
+        length = length_of(net[k, 0], net[k, 1], net[k, 2])
+        if net[k, 0] * mean_x + net[k, 1] * mean_y + net[k, 2] * mean_z < limit * length:
+            return WIDE
+    return REGULAR
 
-    Writes kinds (REGULAR, WIDE, INVISIBLE), the rounding bound of U, V, W, the windows (6 faces; first
-    and last column, first and last row) that hold every oriented normal, and how many normals lie in
-    them. `noise` is the rounding of the scaled coordinates, `border` the open sides of the domain.
+
+@jit
+def face_window(net, negligible, regular, face, grid, window, hull):
+    """Write first and last column, first and last row of the bins of a face that the cone may meet.
+
+    Central projection keeps convex hulls: the hull of the projected control normals bounds the cone.
+    It is written too, in bins; its error and the number of its points are returned. Where some control
+    normals do not point to the face, the cone is cut off before them, but outside the face; if it is
+    wide, the window is the whole face and the error infinite. The window is empty if the cone lies
+    beyond one of the borders of the face.
+    """
+    window[0], window[1], window[2], window[3] = 0, -1, 0, -1
+    half = 0.5 * grid
+    error = 0.0
+    towards = away = 0
+    away_s = away_t = 0.0
+    beyond_right = beyond_left = beyond_top = beyond_bottom = True
+    for k in range(6):
+        s, t, height = on_face(face, net[k, 0], net[k, 1], net[k, 2])
+        length = length_of(s, t, height)
+        if length <= negligible:
+            continue
+        slack = SINGULAR_ERROR * negligible / length + ANGLE_ERROR
+        if height <= slack * length:
+            away += 1
+            away_s += s / length
+            away_t += t / length
+        else:
+            error = max(error, slack * ((length / height) * (length / height)) * half)
+            hull[towards, 0] = (s / height + 1.0) * half
+            hull[towards, 1] = (t / height + 1.0) * half
+            towards += 1
+        beyond_right = beyond_right and s - height > 2.0 * slack * length
+        beyond_left = beyond_left and -s - height > 2.0 * slack * length
+        beyond_top = beyond_top and t - height > 2.0 * slack * length
+        beyond_bottom = beyond_bottom and -t - height > 2.0 * slack * length
+    if towards == 0 or beyond_right or beyond_left or beyond_top or beyond_bottom:
+        return math.inf, 0
+    if away > 0:
+        if not regular:
+            window[1] = window[3] = grid - 1
+            return math.inf, 0
+        towards = cut_hull(net, face, grid, away_s, away_t, hull)
+        error = 64.0 * ANGLE_ERROR * half
+    left, right = hull[:towards, 0].min() - error, hull[:towards, 0].max() + error
+    below, above = hull[:towards, 1].min() - error, hull[:towards, 1].max() + error
+    if left <= grid and right >= 0.0 and below <= grid and above >= 0.0:
+        window[0], window[1] = within(left, grid), within(right, grid)
+        window[2], window[3] = within(below, grid), within(above, grid)
+    return error, towards
+
+
+@jit
+def cut_hull(net, face, grid, away_s, away_t, hull):
+    """Write the hull of a cone cut by a plane between the face and what points away from it.
+
+    The plane is 3 height = (s, t)·d with d the unit direction of what points away: on the face, where
+    |s|, |t| <= height, the left side is larger. Returns the number of points, 12 at most.
+    """
+    half = 0.5 * grid
+    length = length_of(away_s, away_t, 0.0)
+    size = 0
+    for k in range(6):
+        s, t, height = on_face(face, net[k, 0], net[k, 1], net[k, 2])
+        before = 3.0 * height - (s * away_s + t * away_t) / length
+        if before >= 0.0:
+            hull[size, 0] = (s / height + 1.0) * half
+            hull[size, 1] = (t / height + 1.0) * half
+            size += 1
+            continue
+        for i in range(6):
+            s_i, t_i, height_i = on_face(face, net[i, 0], net[i, 1], net[i, 2])
+            before_i = 3.0 * height_i - (s_i * away_s + t_i * away_t) / length
+            if before_i >= 0.0:
+                middle = height_i * before - height * before_i
+                hull[size, 0] = ((s_i * before - s * before_i) / middle + 1.0) * half
+                hull[size, 1] = ((t_i * before - t * before_i) / middle + 1.0) * half
+                size += 1
+    return size
+
+
+@jit
+def within(place, grid):
+    """Return the bin of a place along an edge of the grid, the first or last if it is outside."""
+    return min(max(int(place), 0), grid - 1)
+
+
+@jit
+def span_of_row(hull, size, error, row, window):
+    """Return the first and the last column of the bins of a row that the hull meets."""
+    low = row - error
+    high = row + 1.0 + error
+    first = math.inf
+    last = -math.inf
+    for i in range(size):
+        s, t = hull[i]
+        if low <= t <= high:
+            first = min(first, s)
+            last = max(last, s)
+        for j in range(i):
+            slope = (hull[j, 0] - s) / (hull[j, 1] - t)
+            if (t < low) != (hull[j, 1] < low):
+                first = min(first, s + (low - t) * slope)
+                last = max(last, s + (low - t) * slope)
+            if (t > high) != (hull[j, 1] > high):
+                first = min(first, s + (high - t) * slope)
+                last = max(last, s + (high - t) * slope)
+    if last < first:
+        return 0, -1
+    return max(window[0], int(max(first - error, 0.0))), min(window[1], int(max(last + error, 0.0)))
+
+
+@jit
+def count_window(window, face, grid, starts):
+    """Return the number of normals in a window."""
+    total = 0
+    if window[1] >= window[0]:
+        for row in range(window[2], window[3] + 1):
+            base = (face * grid + row) * grid
+            total += starts[base + window[1] + 1] - starts[base + window[0]]
+    return total
+
+
+# --- which normals a patch has --------------------------------------------------------------------
+
+
+@jit
+def search_patches(
+    mu, scale, noise, border, grid, starts, order, normals, first, last,
+    found, doubtful, bounds, counts,
+):  # fmt: skip
+    """Find the normals of the patches first, …, last − 1, in ascending order for each patch.
+
+    `normals` (3, S) are in the order of the bins. found (3, …) holds the patch, the normal and its
+    place in that order; doubtful (3, …) those that rounding leaves open, to be decided exactly, and
+    bounds (…) the errors of their forms. Adds the numbers of both, and that of the invisible patches,
+    to counts (3). `noise` is the rounding of the scaled coordinates, `border` the open sides of the
+    domain. Returns the patch before which it stopped for lack of room, and the room that it needs.
     """
     rows = mu.shape[0] - 2
     columns = mu.shape[1] - 2
     net = np.empty((6, 3))
+    hulls = np.empty((6, 12, 2))
+    errors = np.empty(6)
+    sizes = np.empty(6, np.int64)
+    windows = np.empty((6, 4), np.int64)
+    places, x, y, z, codes, notes, scratch, buckets = buffers(256)
     for patch in range(first, last):
-        here = patch - first
         cell = patch // 4
         turn = patch % 4
         i = cell // columns
@@ -590,11 +752,11 @@ def bound_patches(
          d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(mu, i + 1, j + 1, turn, scale)  # fmt: skip
         spread = 0.0
         for k in range(9):
-            for x in range(3):
+            for axis in range(3):
                 spread = max(
                     spread,
-                    abs(mu[i + 1 + NEIGHBOURS[turn, k, 0], j + 1 + NEIGHBOURS[turn, k, 1], x]
-                        - mu[i + 1, j + 1, x]),
+                    abs(mu[i + 1 + NEIGHBOURS[turn, k, 0], j + 1 + NEIGHBOURS[turn, k, 1], axis]
+                        - mu[i + 1, j + 1, axis]),
                 )  # fmt: skip
         second = max(
             abs(a_x), abs(a_y), abs(a_z), abs(b_x), abs(b_y), abs(b_z), abs(c_x), abs(c_y), abs(c_z)
@@ -608,7 +770,7 @@ def bound_patches(
             or (turn == 3 and i == 0 and border[3])
         ):
             error += noise
-        bounds[here] = 32.0 * error * (tangent + error)
+        bound = 32.0 * error * (tangent + error)
 
         (
             net[0, 0],
@@ -642,188 +804,233 @@ def bound_patches(
         for k in range(6):
             longest = max(longest, length_of(net[k, 0], net[k, 1], net[k, 2]))
         if curvature <= 4.0 * noise * second * longest * (longest + tangent * second):
-            kinds[here] = INVISIBLE
-            sizes[here] = 0
+            counts[2] += 1
             continue
-        kinds[here] = cone_of_normals(net, SINGULAR * tangent * tangent)
-        sizes[here] = 0
+
+        # Which normals may the patch have?
+        negligible = SINGULAR * tangent * tangent
+        regular = cone_of_normals(net, negligible) == REGULAR
+        total = 0
         for face in range(6):
-            face_window(net, SINGULAR * tangent * tangent, face, grid, windows[here, face])
-            sizes[here] += count_window(windows[here, face], face, grid, starts)
+            errors[face], sizes[face] = face_window(
+                net, negligible, regular, face, grid, windows[face], hulls[face]
+            )
+            total += count_window(windows[face], face, grid, starts)
+        if counts[0] + total > found.shape[1] or counts[1] + total > doubtful.shape[1]:
+            return patch, total
+        if total > x.size:
+            places, x, y, z, codes, notes, scratch, buckets = buffers(total)
+        count = gather(windows, hulls, sizes, errors, grid, starts, normals, places, x, y, z)
 
-
-@jit
-def cone_of_normals(net, negligible):
-    """Return REGULAR if all control normals lie within 37 degrees of their mean, else WIDE."""
-    mean_x = 0.0
-    mean_y = 0.0
-    mean_z = 0.0
-    for k in range(6):
-        length = length_of(net[k, 0], net[k, 1], net[k, 2])
-        if length <= negligible:
-            return WIDE
-        mean_x += net[k, 0] / length
-        mean_y += net[k, 1] / length
-        mean_z += net[k, 2] / length
-    limit = 0.8 * length_of(mean_x, mean_y, mean_z)
-    for k in range(6):
-        length = length_of(net[k, 0], net[k, 1], net[k, 2])
-        if net[k, 0] * mean_x + net[k, 1] * mean_y + net[k, 2] * mean_z < limit * length:
-            return WIDE
-    return REGULAR
-
-
-@jit
-def face_window(net, negligible, face, grid, window):
-    """Write first and last column, first and last row of the bins of a face that the cone may meet.
-
-    Central projection keeps convex hulls: where all control normals point to the face, the box of
-    their projections bounds the cone. Where some do not, the window is the whole face, unless the
-    cone lies beyond one of its four borders.
-    """
-    window[0], window[1], window[2], window[3] = 0, -1, 0, -1
-    s_low = t_low = math.inf
-    s_high = t_high = -math.inf
-    towards = away = 0
-    beyond_right = beyond_left = beyond_top = beyond_bottom = True
-    for k in range(6):
-        s, t, height = on_face(face, net[k, 0], net[k, 1], net[k, 2])
-        length = length_of(s, t, height)
-        if length <= negligible:
-            continue
-        slack = SINGULAR_ERROR * negligible / length + ANGLE_ERROR
-        if height <= slack * length:
-            away += 1
-        else:
-            towards += 1
-            pad = slack * ((length / height) * (length / height))
-            s_low = min(s_low, s / height - pad)
-            s_high = max(s_high, s / height + pad)
-            t_low = min(t_low, t / height - pad)
-            t_high = max(t_high, t / height + pad)
-        beyond_right = beyond_right and s - height > 2.0 * slack * length
-        beyond_left = beyond_left and -s - height > 2.0 * slack * length
-        beyond_top = beyond_top and t - height > 2.0 * slack * length
-        beyond_bottom = beyond_bottom and -t - height > 2.0 * slack * length
-    if towards == 0 or beyond_right or beyond_left or beyond_top or beyond_bottom:
-        return
-    if away > 0:
-        window[1] = window[3] = grid - 1
-    elif s_low <= 1.0 and s_high >= -1.0 and t_low <= 1.0 and t_high >= -1.0:
-        window[0] = bin_index(max(s_low, -1.0), grid)
-        window[1] = bin_index(min(s_high, 1.0), grid)
-        window[2] = bin_index(max(t_low, -1.0), grid)
-        window[3] = bin_index(min(t_high, 1.0), grid)
-
-
-@jit
-def count_window(window, face, grid, starts):
-    """Return the number of normals in a window."""
-    total = 0
-    if window[1] >= window[0]:
-        for row in range(window[2], window[3] + 1):
-            base = (face * grid + row) * grid
-            total += starts[base + window[1] + 1] - starts[base + window[0]]
-    return total
-
-
-# --- which normals a patch has --------------------------------------------------------------------
-
-
-@jit
-def select_normals(
-    mu, scale, grid, starts, order, normals, first, last,
-    kinds, bounds, windows, offsets, found, found_counts, doubtful, doubtful_counts,
-):  # fmt: skip
-    """Find the normals of the patches first, …, last − 1, in ascending order for each patch.
-
-    `normals` are in the order of the bins. Those that rounding leaves open go to `doubtful`: they have
-    to be decided exactly. Both lists of a patch start at offsets[patch - first].
-    """
-    columns = mu.shape[1] - 2
-    for patch in range(first, last):
-        here = patch - first
+        # Which of them has it?
+        u = 1.0 / 3.0
+        v = 1.0 / 3.0
+        # tangents (eq. (1)): 33 operations as written, 33 here
+        p_u_x = a_x * u + b_x * v + d_x
+        p_u_y = a_y * u + b_y * v + d_y
+        p_u_z = a_z * u + b_z * v + d_z
+        p_v_x = b_x * u + c_x * v + e_x
+        p_v_y = b_y * u + c_y * v + e_y
+        p_v_z = b_z * u + c_z * v + e_z
+        N_x = p_u_y * p_v_z - p_u_z * p_v_y
+        N_y = p_u_z * p_v_x - p_u_x * p_v_z
+        N_z = p_u_x * p_v_y - p_u_y * p_v_x
+        classify(
+            a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
+            N_x, N_y, N_z, regular, bound, x[:count], y[:count], z[:count], codes,
+        )  # fmt: skip
+        if not regular:
+            look_again(
+                a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
+                x, y, z, codes[:count],
+            )  # fmt: skip
         hits = 0
         doubts = 0
-        if kinds[here] != INVISIBLE:
-            cell = patch // 4
-            (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
-             d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(
-                mu, cell // columns + 1, cell % columns + 1, patch % 4, scale
-            )  # fmt: skip
-            bound = bounds[here]
-            base = offsets[here]
-            u = 1.0 / 3.0
-            v = 1.0 / 3.0
-            # tangents (eq. (1)): 33 operations as written, 33 here
-            p_u_x = a_x * u + b_x * v + d_x
-            p_u_y = a_y * u + b_y * v + d_y
-            p_u_z = a_z * u + b_z * v + d_z
-            p_v_x = b_x * u + c_x * v + e_x
-            p_v_y = b_y * u + c_y * v + e_y
-            p_v_z = b_z * u + c_z * v + e_z
-            N_x = p_u_y * p_v_z - p_u_z * p_v_y
-            N_y = p_u_z * p_v_x - p_u_x * p_v_z
-            N_z = p_u_x * p_v_y - p_u_y * p_v_x
-            axis_x = N_x
-            axis_y = N_y
-            axis_z = N_z
-            for face in range(6):
-                window = windows[here, face]
-                for row in range(window[2], window[3] + 1):
-                    bins = (face * grid + row) * grid
-                    for k in range(starts[bins + window[0]], starts[bins + window[1] + 1]):
-                        n_x = normals[k, 0]
-                        n_y = normals[k, 1]
-                        n_z = normals[k, 2]
-                        # forms (eq. (9) and Sect. 3.2): 36 operations as written, 36 here
-                        A = a_x * n_x + a_y * n_y + a_z * n_z
-                        B = b_x * n_x + b_y * n_y + b_z * n_z
-                        C = c_x * n_x + c_y * n_y + c_z * n_z
-                        P = d_x * n_x + d_y * n_y + d_z * n_z
-                        Q = e_x * n_x + e_y * n_y + e_z * n_z
-                        D = A * C - B * B
-                        U = B * Q - C * P
-                        V = B * P - A * Q
-                        W = D - U - V
-                        low = min(U, V, W)
-                        high = max(U, V, W)
-                        if low < -bound and high > bound:
-                            continue
-                        sure = (low > bound or high < -bound) and abs(D) > ACCURATE * bound
-                        if sure and kinds[here] == REGULAR:
-                            if n_x * axis_x + n_y * axis_y + n_z * axis_z < 0.0:
-                                continue
-                        elif sure:
-                            # parameters (eq. (9)): 3 operations as written, 3 here
-                            r = 1.0 / D
-                            u = U * r
-                            v = V * r
-                            # tangents (eq. (1)): 33 operations as written, 33 here
-                            p_u_x = a_x * u + b_x * v + d_x
-                            p_u_y = a_y * u + b_y * v + d_y
-                            p_u_z = a_z * u + b_z * v + d_z
-                            p_v_x = b_x * u + c_x * v + e_x
-                            p_v_y = b_y * u + c_y * v + e_y
-                            p_v_z = b_z * u + c_z * v + e_z
-                            N_x = p_u_y * p_v_z - p_u_z * p_v_y
-                            N_y = p_u_z * p_v_x - p_u_x * p_v_z
-                            N_z = p_u_x * p_v_y - p_u_y * p_v_x
-                            towards = n_x * N_x + n_y * N_y + n_z * N_z
-                            length = abs(N_x) + abs(N_y) + abs(N_z)
-                            sure = abs(towards) > 0.25 * length and length > 0.0
-                            if sure and towards < 0.0:
-                                continue
-                        if sure:
-                            found[base + hits] = order[k]
-                            hits += 1
-                        else:
-                            doubtful[base + doubts] = order[k]
-                            doubts += 1
-            found[base : base + hits].sort()
-            doubtful[base : base + doubts].sort()
-        found_counts[here] = hits
-        doubtful_counts[here] = doubts
+        for k in range(count):
+            notes[hits] = order[places[k]] << 32 | places[k]
+            hits += codes[k] == 1
+            doubts += codes[k] == 2
+        counts[0] = store(notes, hits, scratch, buckets, patch, found, counts[0])
+        if doubts > 0:
+            bounds[counts[1] : counts[1] + doubts] = bound
+            doubts = 0
+            for k in range(count):
+                notes[doubts] = order[places[k]] << 32 | places[k]
+                doubts += codes[k] == 2
+            counts[1] = store(notes, doubts, scratch, buckets, patch, doubtful, counts[1])
+    return last, 0
+
+
+@jit
+def buffers(size):
+    """Return arrays for the candidates of a patch."""
+    x, y, z = np.empty(size), np.empty(size), np.empty(size)
+    notes, scratch = np.empty(size, np.int64), np.empty(size, np.int64)
+    return (
+        np.empty(size, np.int64),
+        x,
+        y,
+        z,
+        np.empty(size, np.int8),
+        notes,
+        scratch,
+        np.empty(size + 1, np.int64),
+    )
+
+
+@jit
+def gather(windows, hulls, sizes, errors, grid, starts, normals, places, x, y, z):
+    """Copy the normals that a patch may have, and their places; return how many there are."""
+    count = 0
+    for face in range(6):
+        window = windows[face]
+        for row in range(window[2], window[3] + 1):
+            left, right = window[0], window[1]
+            if right > left + 3 and errors[face] < math.inf:
+                left, right = span_of_row(hulls[face], sizes[face], errors[face], row, window)
+                if left > right:
+                    continue
+            base = (face * grid + row) * grid
+            begin = starts[base + left]
+            for k in range(starts[base + right + 1] - begin):
+                places[count + k] = begin + k
+                x[count + k] = normals[0, begin + k]
+                y[count + k] = normals[1, begin + k]
+                z[count + k] = normals[2, begin + k]
+            count += max(starts[base + right + 1] - begin, 0)
+    return count
+
+
+@jit
+def classify(
+    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
+    N_x, N_y, N_z, regular, bound, x, y, z, codes,
+):  # fmt: skip
+    """Write for each normal whether the patch has it: 0 no, 1 yes, 2 if rounding leaves it open.
+
+    N is a normal of the patch. The loop has no branches, so that it runs on vectors.
+    """
+    least = ACCURATE * bound
+    lowest = 0.0 if regular else -math.inf
+    for k in range(x.size):
+        n_x = x[k]
+        n_y = y[k]
+        n_z = z[k]
+        # forms (eq. (9) and Sect. 3.2): 36 operations as written, 36 here
+        A = a_x * n_x + a_y * n_y + a_z * n_z
+        B = b_x * n_x + b_y * n_y + b_z * n_z
+        C = c_x * n_x + c_y * n_y + c_z * n_z
+        P = d_x * n_x + d_y * n_y + d_z * n_z
+        Q = e_x * n_x + e_y * n_y + e_z * n_z
+        D = A * C - B * B
+        U = B * Q - C * P
+        V = B * P - A * Q
+        W = D - U - V
+        low = U if U < V else V
+        low = W if W < low else low
+        high = U if U > V else V
+        high = W if W > high else high
+        outside = (low < -bound) & (high > bound)
+        behind = n_x * N_x + n_y * N_y + n_z * N_z < lowest
+        sure = ((low > bound) | (high < -bound)) & (abs(D) > least)
+        codes[k] = np.int8(0) if outside | behind else np.int8(1) if sure else np.int8(2)
+
+
+@jit
+def look_again(
+    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
+    x, y, z, codes,
+):  # fmt: skip
+    """Compare the sure normals of a patch that bends far with the normal at their own parameters."""
+    for k in range(codes.size):
+        if codes[k] != 1:
+            continue
+        n_x = x[k]
+        n_y = y[k]
+        n_z = z[k]
+        # forms (eq. (9) and Sect. 3.2): 36 operations as written, 36 here
+        A = a_x * n_x + a_y * n_y + a_z * n_z
+        B = b_x * n_x + b_y * n_y + b_z * n_z
+        C = c_x * n_x + c_y * n_y + c_z * n_z
+        P = d_x * n_x + d_y * n_y + d_z * n_z
+        Q = e_x * n_x + e_y * n_y + e_z * n_z
+        D = A * C - B * B
+        U = B * Q - C * P
+        V = B * P - A * Q
+        W = D - U - V
+        # parameters (eq. (9)): 3 operations as written, 3 here
+        r = 1.0 / D
+        u = U * r
+        v = V * r
+        # tangents (eq. (1)): 33 operations as written, 33 here
+        p_u_x = a_x * u + b_x * v + d_x
+        p_u_y = a_y * u + b_y * v + d_y
+        p_u_z = a_z * u + b_z * v + d_z
+        p_v_x = b_x * u + c_x * v + e_x
+        p_v_y = b_y * u + c_y * v + e_y
+        p_v_z = b_z * u + c_z * v + e_z
+        N_x = p_u_y * p_v_z - p_u_z * p_v_y
+        N_y = p_u_z * p_v_x - p_u_x * p_v_z
+        N_z = p_u_x * p_v_y - p_u_y * p_v_x
+        towards = n_x * N_x + n_y * N_y + n_z * N_z
+        length = abs(N_x) + abs(N_y) + abs(N_z)
+        if not (abs(towards) > 0.25 * length and length > 0.0):
+            codes[k] = 2
+        elif towards < 0.0:
+            codes[k] = 0
+
+
+@jit
+def store(notes, count, scratch, starts, patch, pairs, at):
+    """Sort notes and write patch, normal and place of each to pairs (3, …) from `at` on; return the end."""
+    if count <= 32:
+        insertion_sort(notes, count)
+    else:
+        notes = radix_sort(notes, count, scratch, starts)
+    for k in range(count):
+        pairs[0, at + k] = patch
+        pairs[1, at + k] = notes[k] >> 32
+        pairs[2, at + k] = notes[k] & 0xFFFFFFFF
+    return at + count
+
+
+@jit
+def insertion_sort(notes, count):
+    """Sort a few notes."""
+    for k in range(1, count):
+        note = notes[k]
+        at = k
+        while at > 0 and notes[at - 1] > note:
+            notes[at] = notes[at - 1]
+            at -= 1
+        notes[at] = note
+
+
+@jit
+def radix_sort(notes, count, scratch, starts):
+    """Sort notes by the numbers of the normals, in digits of as many values as there are notes."""
+    low = high = notes[0] >> 32
+    for k in range(count):
+        low = min(low, notes[k] >> 32)
+        high = max(high, notes[k] >> 32)
+    width = 1
+    while 2 << width <= count:
+        width += 1
+    mask = (1 << width) - 1
+    shift = 0
+    while (high - low) >> shift > 0:
+        starts[: mask + 2] = 0
+        for k in range(count):
+            starts[((((notes[k] >> 32) - low) >> shift) & mask) + 1] += 1
+        for k in range(mask + 1):
+            starts[k + 1] += starts[k]
+        for k in range(count):
+            digit = (((notes[k] >> 32) - low) >> shift) & mask
+            scratch[starts[digit]] = notes[k]
+            starts[digit] += 1
+        notes, scratch = scratch, notes
+        shift += width
+    return notes
 
 
 # --- what a sample holds --------------------------------------------------------------------------
@@ -832,29 +1039,72 @@ def select_normals(
 @jit
 def fill_samples(
     mu, scale, normals, frame, first, last,
-    patch_index, normal_index, points, directions, uv, support, gaussian, mean,
+    patch_index, place, points, directions, uv, support, gaussian, mean,
 ):  # fmt: skip
-    """Fill the samples first, …, last − 1 from the patch and the normal of each.
+    """Fill the samples first, …, last − 1 from the patch and the place of the normal of each.
 
     frame = (u0, v0, du, dv): the corner of the domain and the size of a cell in the parameters.
     """
     columns = mu.shape[1] - 2
     size = SCALE * scale
-    known = -1
-    for k in range(first, last):
-        if patch_index[k] != known:
-            known = patch_index[k]
-            cell = known // 4
-            turn = known % 4
-            i = cell // columns
-            j = cell % columns
-            (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
-             d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(
-                mu, i + 1, j + 1, turn, scale
-            )  # fmt: skip
-        n_x = normals[normal_index[k], 0]
-        n_y = normals[normal_index[k], 1]
-        n_z = normals[normal_index[k], 2]
+    tile = np.empty((11, TILE))
+    begin = first
+    while begin < last:
+        patch = patch_index[begin]
+        count = 1
+        while count < TILE and begin + count < last and patch_index[begin + count] == patch:
+            count += 1
+        cell = patch // 4
+        turn = patch % 4
+        i = cell // columns
+        j = cell % columns
+        for k in range(count):
+            tile[0, k] = normals[0, place[begin + k]]
+            tile[1, k] = normals[1, place[begin + k]]
+            tile[2, k] = normals[2, place[begin + k]]
+        evaluate_tile(
+            *patch_vectors(mu, i + 1, j + 1, turn, scale),
+            tile[0, :count], tile[1], tile[2], tile[3], tile[4], tile[5], tile[6], tile[7], tile[8], tile[9],
+        )  # fmt: skip
+        for k in range(count):
+            n_x = tile[0, k]
+            n_y = tile[1, k]
+            n_z = tile[2, k]
+            u = tile[3, k]
+            v = tile[4, k]
+            x_x = tile[5, k]
+            x_y = tile[6, k]
+            x_z = tile[7, k]
+            K = tile[8, k]
+            H = tile[9, k]
+            points[k, 0] = mu[i + 1, j + 1, 0] + x_x / size
+            points[k, 1] = mu[i + 1, j + 1, 1] + x_y / size
+            points[k, 2] = mu[i + 1, j + 1, 2] + x_z / size
+            directions[k, 0] = n_x
+            directions[k, 1] = n_y
+            directions[k, 2] = n_z
+            uv[k, 0] = frame[0] + frame[2] * (
+                i + 0.5 + u * CORNERS[turn, 0, 0] + v * CORNERS[turn, 1, 0]
+            )
+            uv[k, 1] = frame[1] + frame[3] * (
+                j + 0.5 + u * CORNERS[turn, 0, 1] + v * CORNERS[turn, 1, 1]
+            )
+            support[k] = n_x * points[k, 0] + n_y * points[k, 1] + n_z * points[k, 2]
+            gaussian[k] = K * size * size
+            mean[k] = H * size
+        begin += count
+
+
+@jit
+def evaluate_tile(
+    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z,
+    normals_x, normals_y, normals_z, us, vs, points_x, points_y, points_z, gaussian, mean,
+):  # fmt: skip
+    """Evaluate a patch for some of its normals; the loop has no branches, so that it runs on vectors."""
+    for k in range(normals_x.size):
+        n_x = normals_x[k]
+        n_y = normals_y[k]
+        n_z = normals_z[k]
         # sample (eqs. (1), (5)-(9); curvatures beyond the paper): 145 operations as written, 134 here
         A = a_x * n_x + a_y * n_y + a_z * n_z
         B = b_x * n_x + b_y * n_y + b_z * n_z
@@ -890,27 +1140,19 @@ def fill_samples(
         g = 1.0 / (N_x * N_x + N_y * N_y + N_z * N_z)
         K = D * g
         H = 0.5 * g * (2 * B * F - A * G - C * E)
-        points[k, 0] = mu[i + 1, j + 1, 0] + x_x / size
-        points[k, 1] = mu[i + 1, j + 1, 1] + x_y / size
-        points[k, 2] = mu[i + 1, j + 1, 2] + x_z / size
-        directions[k, 0] = n_x
-        directions[k, 1] = n_y
-        directions[k, 2] = n_z
-        uv[k, 0] = frame[0] + frame[2] * (
-            i + 0.5 + u * CORNERS[turn, 0, 0] + v * CORNERS[turn, 1, 0]
-        )
-        uv[k, 1] = frame[1] + frame[3] * (
-            j + 0.5 + u * CORNERS[turn, 0, 1] + v * CORNERS[turn, 1, 1]
-        )
-        support[k] = n_x * points[k, 0] + n_y * points[k, 1] + n_z * points[k, 2]
-        gaussian[k] = K * size * size
-        mean[k] = H * size
+        us[k] = u
+        vs[k] = v
+        points_x[k] = x_x
+        points_y[k] = x_y
+        points_z[k] = x_z
+        gaussian[k] = K
+        mean[k] = H
 
 
 @jit
 def fill_known(
     mu, scale, normals, frame, which, local,
-    patch_index, normal_index, points, directions, uv, support, gaussian, mean,
+    patch_index, place, points, directions, uv, support, gaussian, mean,
 ):  # fmt: skip
     """Fill the samples which[0], which[1], … at known parameters.
 
@@ -973,9 +1215,9 @@ def fill_known(
         x_x = a_x * t1 + b_x * t0 + c_x * t2 + d_x * u + e_x * v + p_x
         x_y = a_y * t1 + b_y * t0 + c_y * t2 + d_y * u + e_y * v + p_y
         x_z = a_z * t1 + b_z * t0 + c_z * t2 + d_z * u + e_z * v + p_z
-        n_x = normals[normal_index[k], 0]
-        n_y = normals[normal_index[k], 1]
-        n_z = normals[normal_index[k], 2]
+        n_x = normals[0, place[k]]
+        n_y = normals[1, place[k]]
+        n_z = normals[2, place[k]]
         points[k, 0] = mu[i + 1, j + 1, 0] + x_x / size
         points[k, 1] = mu[i + 1, j + 1, 1] + x_y / size
         points[k, 2] = mu[i + 1, j + 1, 2] + x_z / size

@@ -68,7 +68,7 @@ def sample(
         bins = NormalBins(directions)
         hits = find(spline, bins, threads, progress)
         density = len(bins.normals) / (4 * math.pi)
-    samples = _samples(spline, bins.normals, hits, density, threads)
+    samples = _samples(spline, bins, hits, density, threads)
     _warn(samples.report, count)
     return samples
 
@@ -148,20 +148,20 @@ def _by_count(
 
 def _samples(
     spline: Spline,
-    normals: NDArray[np.float64],
+    bins: NormalBins,
     hits: Hits,
     density: float,
     threads: int | None,
 ) -> Samples:
     report = SamplingReport(
         surface=spline.name,
-        normals=len(normals),
+        normals=len(bins.normals),
         samples=len(hits),
         patches=spline.patches,
         invisible_share=invisible_share(spline, density),
         degenerate_patches=hits.invisible,
     )
-    fields = fill(spline, normals, hits, threads)
+    fields = fill(spline, bins, hits, threads)
     return Samples(
         **fields, normal_index=hits.normal_index, patch_index=hits.patch_index, report=report
     )
