@@ -64,9 +64,9 @@ SINGULAR_ERROR = math.ldexp(1.0, -10)
 # Samples of one patch are computed so many at a time, then stored.
 TILE = 256
 
-REGULAR = 0
-WIDE = 1
-INVISIBLE = 2
+# A cone of 37 degrees round an axis misses the face of the cube, 55 degrees wide at its corners, if
+# the axis points away from it by this sine or more.
+BEHIND = -0.05
 
 
 # --- formulas -------------------------------------------------------------------------------------
@@ -577,24 +577,27 @@ def length_of(x, y, z):
 
 
 @jit
-def cone_of_normals(net, negligible):
-    """Return REGULAR if all control normals lie within 37 degrees of their mean, else WIDE."""
-    mean_x = 0.0
-    mean_y = 0.0
-    mean_z = 0.0
+def cone_of_normals(net, negligible, axis):
+    """Say whether all control normals lie within 37 degrees of their mean, and write that to `axis`."""
+    axis[:] = 0.0
     for k in range(6):
         length = length_of(net[k, 0], net[k, 1], net[k, 2])
         if length <= negligible:
-            return WIDE
-        mean_x += net[k, 0] / length
-        mean_y += net[k, 1] / length
-        mean_z += net[k, 2] / length
-    limit = 0.8 * length_of(mean_x, mean_y, mean_z)
+            return False
+        for x in range(3):
+            axis[x] += net[k, x] / length
+    axis /= length_of(axis[0], axis[1], axis[2])
     for k in range(6):
-        length = length_of(net[k, 0], net[k, 1], net[k, 2])
-        if net[k, 0] * mean_x + net[k, 1] * mean_y + net[k, 2] * mean_z < limit * length:
-            return WIDE
-    return REGULAR
+        towards = net[k, 0] * axis[0] + net[k, 1] * axis[1] + net[k, 2] * axis[2]
+        if not towards >= 0.8 * length_of(net[k, 0], net[k, 1], net[k, 2]):
+            return False
+    return True
+
+
+@jit
+def empty(window):
+    """Make a window that holds no bin."""
+    window[0], window[1], window[2], window[3] = 0, -1, 0, -1
 
 
 @jit
@@ -607,7 +610,7 @@ def face_window(net, negligible, regular, face, grid, window, hull):
     wide, the window is the whole face and the error infinite. The window is empty if the cone lies
     beyond one of the borders of the face.
     """
-    window[0], window[1], window[2], window[3] = 0, -1, 0, -1
+    empty(window)
     half = 0.5 * grid
     error = 0.0
     towards = away = 0
@@ -742,6 +745,7 @@ def search_patches(
     errors = np.empty(6)
     sizes = np.empty(6, np.int64)
     windows = np.empty((6, 4), np.int64)
+    axis = np.empty(3)
     places, x, y, z, codes, notes, scratch, buckets = buffers(256)
     for patch in range(first, last):
         cell = patch // 4
@@ -750,19 +754,11 @@ def search_patches(
         j = cell % columns
         (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
          d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(mu, i + 1, j + 1, turn, scale)  # fmt: skip
-        spread = 0.0
-        for k in range(9):
-            for axis in range(3):
-                spread = max(
-                    spread,
-                    abs(mu[i + 1 + NEIGHBOURS[turn, k, 0], j + 1 + NEIGHBOURS[turn, k, 1], axis]
-                        - mu[i + 1, j + 1, axis]),
-                )  # fmt: skip
         second = max(
             abs(a_x), abs(a_y), abs(a_z), abs(b_x), abs(b_y), abs(b_z), abs(c_x), abs(c_y), abs(c_z)
         )
         tangent = second + max(abs(d_x), abs(d_y), abs(d_z), abs(e_x), abs(e_y), abs(e_z))
-        error = FORM_ERROR * scale * spread
+        error = FORM_ERROR * scale * spread_of(mu, i + 1, j + 1, turn)
         if (
             (turn == 0 and j == 0 and border[0])
             or (turn == 1 and i == rows - 1 and border[1])
@@ -794,35 +790,10 @@ def search_patches(
         ) = control_normals(
             a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z
         )
-        cubic = parabolic_cubic(
-            a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z
-        )
-        curvature = 0.0
-        for value in cubic:
-            curvature = max(curvature, abs(value))
         longest = 0.0
         for k in range(6):
             longest = max(longest, length_of(net[k, 0], net[k, 1], net[k, 2]))
-        if curvature <= 4.0 * noise * second * longest * (longest + tangent * second):
-            counts[2] += 1
-            continue
-
-        # Which normals may the patch have?
-        negligible = SINGULAR * tangent * tangent
-        regular = cone_of_normals(net, negligible) == REGULAR
-        total = 0
-        for face in range(6):
-            errors[face], sizes[face] = face_window(
-                net, negligible, regular, face, grid, windows[face], hulls[face]
-            )
-            total += count_window(windows[face], face, grid, starts)
-        if counts[0] + total > found.shape[1] or counts[1] + total > doubtful.shape[1]:
-            return patch, total
-        if total > x.size:
-            places, x, y, z, codes, notes, scratch, buckets = buffers(total)
-        count = gather(windows, hulls, sizes, errors, grid, starts, normals, places, x, y, z)
-
-        # Which of them has it?
+        flat = 4.0 * noise * second * longest * (longest + tangent * second)
         u = 1.0 / 3.0
         v = 1.0 / 3.0
         # tangents (eq. (1)): 33 operations as written, 33 here
@@ -835,6 +806,42 @@ def search_patches(
         N_x = p_u_y * p_v_z - p_u_z * p_v_y
         N_y = p_u_z * p_v_x - p_u_x * p_v_z
         N_z = p_u_x * p_v_y - p_u_y * p_v_x
+        n_x = N_x
+        n_y = N_y
+        n_z = N_z
+        D, U, V, W = forms(
+            a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, n_x, n_y, n_z
+        )
+        if abs(D) <= flat:  # at the centre, so perhaps everywhere
+            cubic = parabolic_cubic(
+                a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z
+            )
+            curvature = 0.0
+            for value in cubic:
+                curvature = max(curvature, abs(value))
+            if curvature <= flat:
+                counts[2] += 1
+                continue
+
+        # Which normals may the patch have?
+        negligible = SINGULAR * tangent * tangent
+        regular = cone_of_normals(net, negligible, axis)
+        total = 0
+        for face in range(6):
+            if regular and on_face(face, axis[0], axis[1], axis[2])[2] < BEHIND:
+                empty(windows[face])
+                continue
+            errors[face], sizes[face] = face_window(
+                net, negligible, regular, face, grid, windows[face], hulls[face]
+            )
+            total += count_window(windows[face], face, grid, starts)
+        if counts[0] + total > found.shape[1] or counts[1] + total > doubtful.shape[1]:
+            return patch, total
+        if total > x.size:
+            places, x, y, z, codes, notes, scratch, buckets = buffers(total)
+        count = gather(windows, hulls, sizes, errors, grid, starts, normals, places, x, y, z)
+
+        # Which of them has it?
         classify(
             a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
             N_x, N_y, N_z, regular, bound, x[:count], y[:count], z[:count], codes,
@@ -844,38 +851,32 @@ def search_patches(
                 a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
                 x, y, z, codes[:count],
             )  # fmt: skip
-        hits = 0
-        doubts = 0
-        for k in range(count):
-            notes[hits] = order[places[k]] << 32 | places[k]
-            hits += codes[k] == 1
-            doubts += codes[k] == 2
+        hits = note(codes, 1, order, places, notes, count)
         counts[0] = store(notes, hits, scratch, buckets, patch, found, counts[0])
-        if doubts > 0:
-            bounds[counts[1] : counts[1] + doubts] = bound
-            doubts = 0
-            for k in range(count):
-                notes[doubts] = order[places[k]] << 32 | places[k]
-                doubts += codes[k] == 2
-            counts[1] = store(notes, doubts, scratch, buckets, patch, doubtful, counts[1])
+        doubts = note(codes, 2, order, places, notes, count)
+        bounds[counts[1] : counts[1] + doubts] = bound
+        counts[1] = store(notes, doubts, scratch, buckets, patch, doubtful, counts[1])
     return last, 0
 
 
 @jit
+def spread_of(mu, i, j, turn):
+    """Return the largest component of the differences between the coefficients of a cell and around."""
+    spread = 0.0
+    for k in range(9):
+        for x in range(3):
+            other = mu[i + NEIGHBOURS[turn, k, 0], j + NEIGHBOURS[turn, k, 1], x]
+            spread = max(spread, abs(other - mu[i, j, x]))
+    return spread
+
+
+@jit
 def buffers(size):
-    """Return arrays for the candidates of a patch."""
+    """Return arrays for the candidates of a patch: places, x, y, z, codes, notes, and two to sort with."""
     x, y, z = np.empty(size), np.empty(size), np.empty(size)
     notes, scratch = np.empty(size, np.int64), np.empty(size, np.int64)
-    return (
-        np.empty(size, np.int64),
-        x,
-        y,
-        z,
-        np.empty(size, np.int8),
-        notes,
-        scratch,
-        np.empty(size + 1, np.int64),
-    )
+    places, buckets = np.empty(size, np.int64), np.empty(size + 1, np.int64)
+    return places, x, y, z, np.empty(size, np.int8), notes, scratch, buckets
 
 
 @jit
@@ -927,9 +928,9 @@ def classify(
         V = B * P - A * Q
         W = D - U - V
         low = U if U < V else V
-        low = W if W < low else low
+        low = low if low < W else W
         high = U if U > V else V
-        high = W if W > high else high
+        high = high if high > W else W
         outside = (low < -bound) & (high > bound)
         behind = n_x * N_x + n_y * N_y + n_z * N_z < lowest
         sure = ((low > bound) | (high < -bound)) & (abs(D) > least)
@@ -948,16 +949,9 @@ def look_again(
         n_x = x[k]
         n_y = y[k]
         n_z = z[k]
-        # forms (eq. (9) and Sect. 3.2): 36 operations as written, 36 here
-        A = a_x * n_x + a_y * n_y + a_z * n_z
-        B = b_x * n_x + b_y * n_y + b_z * n_z
-        C = c_x * n_x + c_y * n_y + c_z * n_z
-        P = d_x * n_x + d_y * n_y + d_z * n_z
-        Q = e_x * n_x + e_y * n_y + e_z * n_z
-        D = A * C - B * B
-        U = B * Q - C * P
-        V = B * P - A * Q
-        W = D - U - V
+        D, U, V, W = forms(
+            a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, n_x, n_y, n_z
+        )
         # parameters (eq. (9)): 3 operations as written, 3 here
         r = 1.0 / D
         u = U * r
@@ -978,6 +972,16 @@ def look_again(
             codes[k] = 2
         elif towards < 0.0:
             codes[k] = 0
+
+
+@jit
+def note(codes, code, order, places, notes, count):
+    """Write a note, number << 32 | place, of each candidate that has the code; return how many have."""
+    chosen = 0
+    for k in range(count):
+        notes[chosen] = order[places[k]] << 32 | places[k]
+        chosen += codes[k] == code
+    return chosen
 
 
 @jit
@@ -1047,7 +1051,7 @@ def fill_samples(
     """
     columns = mu.shape[1] - 2
     size = SCALE * scale
-    tile = np.empty((11, TILE))
+    tile = np.empty((10, TILE))
     begin = first
     while begin < last:
         patch = patch_index[begin]
@@ -1066,17 +1070,17 @@ def fill_samples(
             *patch_vectors(mu, i + 1, j + 1, turn, scale),
             tile[0, :count], tile[1], tile[2], tile[3], tile[4], tile[5], tile[6], tile[7], tile[8], tile[9],
         )  # fmt: skip
-        for k in range(count):
-            n_x = tile[0, k]
-            n_y = tile[1, k]
-            n_z = tile[2, k]
-            u = tile[3, k]
-            v = tile[4, k]
-            x_x = tile[5, k]
-            x_y = tile[6, k]
-            x_z = tile[7, k]
-            K = tile[8, k]
-            H = tile[9, k]
+        for k in range(begin, begin + count):
+            n_x = tile[0, k - begin]
+            n_y = tile[1, k - begin]
+            n_z = tile[2, k - begin]
+            u = tile[3, k - begin]
+            v = tile[4, k - begin]
+            x_x = tile[5, k - begin]
+            x_y = tile[6, k - begin]
+            x_z = tile[7, k - begin]
+            K = tile[8, k - begin]
+            H = tile[9, k - begin]
             points[k, 0] = mu[i + 1, j + 1, 0] + x_x / size
             points[k, 1] = mu[i + 1, j + 1, 1] + x_y / size
             points[k, 2] = mu[i + 1, j + 1, 2] + x_z / size

@@ -64,6 +64,16 @@ def test_torus_icosphere(cells: int, frequency: int) -> None:
     check_torus(samples, normals, np.array([0.0, 0.0, 1.0]))
 
 
+@pytest.mark.parametrize("cells", [(3, 3), (4, 7), (8, 5), (9, 9)])
+@pytest.mark.parametrize(
+    "normals", [gm.icosphere(9), gm.fibonacci(20_000)], ids=["aligned", "generic"]
+)
+def test_patches_that_bend_far(cells: tuple[int, int], normals: Array) -> None:
+    elliptic, hyperbolic = count_preimages(gm.sample(TORUS, normals, cells=cells), len(normals))
+    assert (elliptic == hyperbolic).all()
+    assert elliptic.sum() >= len(normals)
+
+
 @pytest.mark.parametrize("cells", [16, 32, 64, 96])
 def test_torus_fibonacci(cells: int) -> None:
     normals = gm.fibonacci(10**6)
