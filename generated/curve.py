@@ -26,7 +26,7 @@ def jit(function):
 
 @jit
 def arc_power_form(b20_x, b20_y, b11_x, b11_y, b02_x, b02_y):
-    """The vectors of an arc p(t) = a t^2/2 + b t + c from its control points.
+    """The vectors a, b, c of an arc from its control points.
 
         a = 2*b02 - 4*b11 + 2*b20
         b = 2*(b11 - b20)
@@ -95,7 +95,7 @@ def arc_envelope(a_x, a_y, b_x, b_y, c_x, c_y, t):
 
 @jit
 def arc_tangent(a_x, a_y, b_x, b_y, t):
-    """The tangent vector, and the normal: the tangent turned clockwise by 90°.
+    """The tangent vector, and the normal: the tangent after a quarter turn clockwise.
 
         p_t = a*t + b
         N_x = p_t_y
@@ -141,8 +141,8 @@ def arc_curvature_at(a_x, a_y, p_t_x, p_t_y):
 
 @jit
 def arc_control_points(mu_l_x, mu_l_y, mu_c_x, mu_c_y, mu_r_x, mu_r_y):
-    """The control points of an arc of the C¹ quadratic spline from the coefficients of its
-    piece and the two next to it.
+    """The control points of an arc of the quadratic spline from the coefficients of its piece
+    and the two next to it.
 
         b20 = (mu_c + mu_l)/2
         b11 = mu_c

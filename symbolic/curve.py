@@ -40,7 +40,7 @@ def _power_form() -> Formula:
         point += sp.binomial(2, j) * (1 - t) ** i * t**j * control_point
     return Formula.build(
         "arc_power_form",
-        "The vectors of an arc $p(t) = a t^2/2 + b t + c$ from its control points.",
+        "The vectors $a$, $b$, $c$ of an arc from its control points.",
         source=SECTION,
         inputs=CONTROL_POINTS,
         outputs=[
@@ -106,7 +106,7 @@ ENVELOPE = Formula.build(
 
 TANGENT = Formula.build(
     "arc_tangent",
-    "The tangent vector, and the normal: the tangent turned clockwise by 90°.",
+    "The tangent vector, and the normal: the tangent after a quarter turn clockwise.",
     source=f"eq. (1), in the plane: {SECTION}",
     inputs=[a, b, t],
     outputs=[
@@ -188,7 +188,7 @@ NET = _net()
 
 CONTROL_NET = Formula.build(
     "arc_control_points",
-    "The control points of an arc of the C¹ quadratic spline from the coefficients of its piece "
+    "The control points of an arc of the quadratic spline from the coefficients of its piece "
     "and the two next to it.",
     source=SECTION,
     inputs=COEFFICIENTS,
