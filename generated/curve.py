@@ -234,6 +234,31 @@ def evaluate(mu, scale, places, points, normals, curvatures):
         curvatures[k] = kappa * scale
 
 
+# --- how the normal turns --------------------------------------------------------------------------
+
+
+@jit
+def settle(angles, turns, errors, straight, start):
+    """Let the normal of a joint be that of the joint before where only rounding tells them apart.
+
+    angles + 2 pi turns (P + 1,) are those of the joints, errors (P + 1,) their rounding, and straight
+    (P,) says which arcs may be between two such joints. A closed curve is gone round from the joint
+    `start` > 0; start = 0 is the first joint of an open one.
+    """
+    pieces = angles.size - 1
+    whole = turns[pieces] - turns[0]
+    for k in range(start, start + pieces - (1 if start > 0 else 0)):
+        before = k % pieces
+        here = before + 1
+        step = angles[here] - angles[before] + 2.0 * math.pi * (turns[here] - turns[before])
+        if straight[before] and abs(step) <= 2.0 * min(errors[here], errors[before]):
+            angles[here] = angles[before]
+            turns[here] = turns[before]
+            if here == pieces and start > 0:
+                angles[0] = angles[here]
+                turns[0] = turns[here] - whole
+
+
 # --- what a sample holds --------------------------------------------------------------------------
 
 

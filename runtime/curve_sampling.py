@@ -6,6 +6,9 @@ where κ < 0. Neighbouring arcs share a joint, and with it its place: so no norm
 there, whatever rounding did to the place, and on a closed curve the sum of sign κ over the
 preimages of a normal is the turning number, for every normal. A normal that is exactly that of an
 inflection has two preimages there or none, as one close to it has.
+
+Where only the rounding of the coordinates tells the normals of neighbouring joints apart, the curve
+is straight, and they get one place.
 """
 
 from __future__ import annotations
@@ -106,14 +109,20 @@ def find(spline: CurveSpline, normals: Array) -> Hits:
 def _places(spline: CurveSpline, angles: Array) -> NDArray[np.int64]:
     """Return how many of the sorted angles come before each joint, full turns included.
 
-    The ends of an open curve belong to it: they are moved outwards by the rounding of their normal.
+    Along straight stretches the normal does not turn. The ends of an open curve belong to it: they
+    are moved outwards by the rounding of their normal.
     """
     ends, turns = (x.copy() for x in spline.angles)
+    bent = np.flatnonzero(~spline.straight)
+    with np.errstate(divide="ignore"):
+        errors = spline.noise / np.hypot(*spline.joint_normals.T)
+    start = int(bent[0]) + 1 if len(bent) else 1
+    ahead = spline.straight & ~spline.reversing
+    kernels.settle(ends, turns, errors, ahead, start if spline.periodic else 0)
     if not spline.periodic:
-        for joint, piece, outwards in ((0, 0, -1.0), (-1, -1, 1.0)):
-            if not spline.straight[piece]:
-                error = spline.noise / math.hypot(*spline.joint_normals[joint])
-                ends[joint] += outwards * math.copysign(error, spline.bends[piece])
+        for joint, outwards in ((0, -1.0), (-1, 1.0)):
+            if not spline.straight[joint]:
+                ends[joint] += outwards * math.copysign(errors[joint], spline.bends[joint])
         beyond = (ends > np.pi).astype(np.int64) - (ends <= -np.pi)
         ends -= 2 * np.pi * beyond
         turns += beyond
@@ -182,7 +191,8 @@ def _straight_share(spline: CurveSpline, normals: int) -> float:
     if total == 0.0:
         return 1.0
     density = max(normals, LEAST_NORMALS) / (2 * np.pi)
-    unseen = spline.straight | (np.abs(spline.bends) * total * density < lengths)
+    bends = np.where(spline.reversing, 0.0, np.abs(spline.bends))
+    unseen = bends * total * density < lengths
     return float(lengths[unseen].sum()) / total
 
 
