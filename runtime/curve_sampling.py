@@ -112,7 +112,7 @@ def _places(spline: CurveSpline, angles: Array) -> NDArray[np.int64]:
     Along straight stretches the normal does not turn. The ends of an open curve belong to it: they
     are moved outwards by the rounding of their normal.
     """
-    ends, turns = (x.copy() for x in spline.angles)
+    ends, turns = spline.angles[0].copy(), spline.angles[1].copy()
     bent = np.flatnonzero(~spline.straight)
     with np.errstate(divide="ignore"):
         errors = spline.noise / np.hypot(*spline.joint_normals.T)
@@ -126,7 +126,7 @@ def _places(spline: CurveSpline, angles: Array) -> NDArray[np.int64]:
         beyond = (ends > np.pi).astype(np.int64) - (ends <= -np.pi)
         ends -= 2 * np.pi * beyond
         turns += beyond
-    return np.searchsorted(angles, ends) + len(angles) * turns
+    return np.searchsorted(angles, ends).astype(np.int64) + len(angles) * turns
 
 
 def _by_count(spline: CurveSpline, count: int) -> tuple[Array, Hits]:

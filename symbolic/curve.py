@@ -169,7 +169,7 @@ def b_spline_net() -> sp.Matrix:
     equations = [sum(net.col(place)) - 1 for place in range(3)]
     for left, right in pairwise(pieces):
         equations += [left[2] - right[0], left[2] - left[1] - (right[1] - right[0])]
-    solutions = sp.solve(equations, list(net), dict=True)
+    solutions = sp.solve(equations, net.flat(), dict=True)
     if len(solutions) != 1 or len(solutions[0]) != len(net):
         raise ArithmeticError("the conditions do not determine the B-spline")
     return net.subs(solutions[0])

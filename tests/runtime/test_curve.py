@@ -166,7 +166,7 @@ def test_ends_of_an_open_curve_are_met():
 @pytest.mark.parametrize("domain", [(0.3, 2.0), TURN], ids=["open", "closed"])
 def test_orders(domain):
     curve = gm.Curve.from_callable(eight, domain, periodic=domain is TURN)
-    t = np.linspace(*domain, 4001)
+    t = np.linspace(domain[0], domain[1], 4001)
     tangent = np.stack([np.cos(t), 2 * np.cos(2 * t)], axis=-1)
     exact = np.stack([tangent[:, 1], -tangent[:, 0]], axis=-1)
     exact /= np.linalg.norm(exact, axis=-1, keepdims=True)

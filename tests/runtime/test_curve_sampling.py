@@ -55,10 +55,10 @@ def sampled(curve: gm.Curve | gm.CurveSpline, normals: Array, pieces: int | None
         return gm.sample_curve(curve, normals, pieces=pieces)
 
 
-def sums(samples: gm.CurveSamples, count: int) -> Array:
+def sums(samples: gm.CurveSamples, count: int) -> NDArray[np.int64]:
     """Return Σ sign κ over the preimages of each normal."""
     signs = np.where(np.signbit(samples.curvature), -1, 1)
-    return np.bincount(samples.normal_index, signs, minlength=count)
+    return np.bincount(samples.normal_index, signs, minlength=count).astype(np.int64)
 
 
 def is_sane(samples: gm.CurveSamples) -> None:

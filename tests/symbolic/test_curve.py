@@ -108,7 +108,7 @@ def test_curvature_is_that_of_the_definition(case):
         tangent = dict(zip(curve.p_t.components, case.tangent.subs(t, place), strict=True))
         at = case.expression(curve.CURVATURE_AT, "kappa").xreplace(tangent)
         assert sp.simplify(at - case.curvature(place)) == 0
-        form = case.at_normal(curve.PARAMETER.definitions[0][1].in_components(), place, 1 / length)
+        form = case.at_normal(curve.PARAMETER.in_components().definitions[0][1], place, 1 / length)
         by_normal = curve.CURVATURE.expanded()["kappa"].xreplace(
             {curve.A: form.xreplace(case.values), **tangent}
         )
