@@ -17,7 +17,7 @@ from itertools import pairwise
 
 import sympy as sp
 
-from .formula import Det, Dot, Formula, compose, plane_vectors, scalar, substitute
+from .formula import Det, Dot, Formula, compose, dot, plane_vectors, scalar, substitute
 
 __all__ = ["FORMULAS", "NET", "b_spline_net"]
 
@@ -90,9 +90,7 @@ SUPPORT_FUNCTION = Formula.build(
 )
 
 # ∇h = ∂h/∂A a + ∂h/∂B b + c
-POINT = (
-    _written(t**2 / 2, sp.diff(SUPPORT, A)) * a + _written(t, sp.diff(SUPPORT, B)) * b + c
-)  # fmt: skip
+POINT = _written(t**2 / 2, sp.diff(SUPPORT, A)) * a + _written(t, sp.diff(SUPPORT, B)) * b + c
 (p_t,) = plane_vectors(["p_t"])
 
 ENVELOPE = Formula.build(
@@ -135,12 +133,25 @@ CURVATURE = Formula.build(
     outputs=[("kappa", 1 / _radius())],
 )
 
+
+def _curvature_at() -> sp.Expr:
+    """Put the normal of TANGENT, divided by its length, into CURVATURE: there A = −det(p_t, a)/|p_t|.
+
+    Raises ArithmeticError if N·a is not −det(p_t, a).
+    """
+    area = Det(p_t, a)
+    _, N_x, N_y = (value for _, value in TANGENT.definitions)
+    if sp.expand(dot(sp.Matrix([N_x, N_y]), a.column) + area.in_components()) != 0:
+        raise ArithmeticError("N·a is not −det(p_t, a)")
+    return substitute(1 / _radius(), {A: -area / sp.sqrt(Dot(p_t, p_t))})
+
+
 CURVATURE_AT = Formula.build(
     "arc_curvature_at",
     "The curvature at a parameter, for the normal $n = N/|N|$ of `arc_tangent` in `arc_curvature`.",
     source=f"beyond the paper: {SECTION}",
     inputs=[a, p_t],
-    outputs=[("kappa", Det(p_t, a) / sp.sqrt(Dot(p_t, p_t)) ** 3)],
+    outputs=[("kappa", _curvature_at())],
 )
 
 SAMPLE = compose(
