@@ -238,12 +238,11 @@ def evaluate(mu, scale, places, points, normals, curvatures):
 
 
 @jit
-def settle(angles, turns, errors, straight, start):
+def settle(angles, turns, errors, start):
     """Let the normal of a joint be that of the joint before where only rounding tells them apart.
 
-    angles + 2 pi turns (P + 1,) are those of the joints, errors (P + 1,) their rounding, and straight
-    (P,) says which arcs may be between two such joints. A closed curve is gone round from the joint
-    `start` > 0; start = 0 is the first joint of an open one.
+    angles + 2 pi turns (P + 1,) are those of the joints, errors (P + 1,) their rounding. A closed curve
+    is gone round from the joint `start` > 0; start = 0 is the first joint of an open one.
     """
     pieces = angles.size - 1
     whole = turns[pieces] - turns[0]
@@ -251,7 +250,7 @@ def settle(angles, turns, errors, straight, start):
         before = k % pieces
         here = before + 1
         step = angles[here] - angles[before] + 2.0 * math.pi * (turns[here] - turns[before])
-        if straight[before] and abs(step) <= 2.0 * min(errors[here], errors[before]):
+        if abs(step) <= 2.0 * min(errors[here], errors[before]):
             angles[here] = angles[before]
             turns[here] = turns[before]
             if here == pieces and start > 0:

@@ -117,8 +117,7 @@ def _places(spline: CurveSpline, angles: Array) -> NDArray[np.int64]:
     with np.errstate(divide="ignore"):
         errors = spline.noise / np.hypot(*spline.joint_normals.T)
     start = int(bent[0]) + 1 if len(bent) else 1
-    ahead = spline.straight & ~spline.reversing
-    kernels.settle(ends, turns, errors, ahead, start if spline.periodic else 0)
+    kernels.settle(ends, turns, errors, start if spline.periodic else 0)
     if not spline.periodic:
         for joint, outwards in ((0, -1.0), (-1, 1.0)):
             if not spline.straight[joint]:

@@ -135,7 +135,7 @@ CURVATURE = Formula.build(
 
 
 def _curvature_at() -> sp.Expr:
-    """Put the normal of TANGENT, divided by its length, into CURVATURE: there A = −det(p_t, a)/|p_t|.
+    """Put the unit normal of TANGENT into CURVATURE: there A = −det(p_t, a)/|p_t|.
 
     Raises ArithmeticError if N·a is not −det(p_t, a).
     """

@@ -274,7 +274,7 @@ def test_polygon() -> None:
 # --- straight pieces ------------------------------------------------------------------------------
 
 
-def stadium(turn: Array, shift: float = 0.0) -> gm.Curve:
+def stadium(turn: Array, shift: float = 0.0, start: float = 0.0) -> gm.Curve:
     """Two straight sides of length 2 and two half circles of radius 1, each a quarter of it."""
 
     def f(t: Array) -> Array:
@@ -285,20 +285,21 @@ def stadium(turn: Array, shift: float = 0.0) -> gm.Curve:
         side = np.where((quarter % 2 == 0)[..., None], straight, bend)
         return np.where((quarter < 2)[..., None], side, -side) @ turn.T + shift
 
-    return gm.Curve.from_callable(f, (0.0, 4.0), True, name="stadium")
+    return gm.Curve.from_callable(f, (start, start + 4.0), True, name="stadium")
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.3, 1.234])
 @pytest.mark.parametrize("shift", [0.0, 1e6])
+@pytest.mark.parametrize("start", [0.0, 0.5, 1.5])
 @pytest.mark.parametrize("normals", [AXES, gm.circle(100)], ids=["axes", "circle"])
-def test_stadium(angle: float, shift: float, normals: Array) -> None:
+def test_stadium(angle: float, shift: float, start: float, normals: Array) -> None:
     """Every normal once, also the one that a whole side has; the warning says how much is straight.
 
     The spline bends the last piece of each side towards the half circle.
     """
     turn = rotation(angle)
     with pytest.warns(gm.GaussmapWarning, match=r"3\d % of its length is straight"):
-        samples = gm.sample_curve(stadium(turn, shift), normals @ turn.T, pieces=64)
+        samples = gm.sample_curve(stadium(turn, shift, start), normals @ turn.T, pieces=64)
     is_sane(samples)
     assert (np.bincount(samples.normal_index, minlength=len(normals)) == 1).all()
     length = 4 + 2 * np.pi
