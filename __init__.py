@@ -11,6 +11,11 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from .runtime import surfaces
+from .runtime.circle import circle
+from .runtime.curve import Curve
+from .runtime.curve_samples import CurveReport, CurveSamples
+from .runtime.curve_sampling import sample_curve
+from .runtime.curve_spline import CurveSpline, fit_curve
 from .runtime.errors import (
     FileError,
     GaussmapError,
@@ -21,6 +26,7 @@ from .runtime.errors import (
     UnknownNameError,
 )
 from .runtime.io import read_samples
+from .runtime.polygon import polygon_distance
 from .runtime.samples import Samples, SamplingReport
 from .runtime.sampling import sample, sample_many
 from .runtime.sphere import fibonacci, icosphere
@@ -34,6 +40,10 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "Curve",
+    "CurveReport",
+    "CurveSamples",
+    "CurveSpline",
     "FileError",
     "GaussmapError",
     "GaussmapWarning",
@@ -45,12 +55,16 @@ __all__ = [
     "Surface",
     "SurfaceError",
     "UnknownNameError",
+    "circle",
     "fibonacci",
     "fit",
+    "fit_curve",
     "formulas",
     "icosphere",
+    "polygon_distance",
     "read_samples",
     "sample",
+    "sample_curve",
     "sample_many",
     "surfaces",
     "symbolic",
