@@ -56,17 +56,12 @@ ACCURATE = 65536.0
 DATA_ERROR = math.ldexp(64.0, -52)
 # Control normals shorter than this (relative to the square of the tangents) are a singular point.
 SINGULAR = math.ldexp(1.0, -30)
-# The error of a control normal, as an angle: ANGLE_ERROR and, of importance for nearly singular patches
-# only, SINGULAR_ERROR times the length of a singular one, relative to its own.
+# The error of a control normal, as an angle, is at most this times one plus the square of the tangents,
+# relative to its length.
 ANGLE_ERROR = math.ldexp(1.0, -40)
-SINGULAR_ERROR = math.ldexp(1.0, -10)
 
 # Samples of one patch are computed so many at a time, then stored.
 TILE = 256
-
-# A cone of 37 degrees round an axis misses the face of the cube, 55 degrees wide at its corners, if
-# the axis points away from it by this sine or more.
-BEHIND = -0.05
 
 
 # --- formulas -------------------------------------------------------------------------------------
@@ -545,15 +540,27 @@ def bin_index(s, grid):
 
 
 @jit
-def bin_normals(normals, grid, starts, order, components):
+def mapped(frame, x, y, z):
+    """Return a vector as a linear map (3, 3) maps it."""
+    return (
+        frame[0, 0] * x + frame[0, 1] * y + frame[0, 2] * z,
+        frame[1, 0] * x + frame[1, 1] * y + frame[1, 2] * z,
+        frame[2, 0] * x + frame[2, 1] * y + frame[2, 2] * z,
+    )
+
+
+@jit
+def bin_normals(normals, frame, grid, starts, order, components):
     """Sort normals (k, 3) into bins: order[starts[b]:starts[b + 1]] are those of bin b, ascending.
 
-    Writes the components (3, k) of the normals in that order too.
+    The bins are on a cube round the normals as `frame`, a linear map, maps them. Writes the components
+    (3, k) of the normals (as they are) in that order too.
     """
     bins = np.empty(normals.shape[0], np.int64)
     starts[:] = 0
     for k in range(normals.shape[0]):
-        face, s, t = cube_face(normals[k, 0], normals[k, 1], normals[k, 2])
+        x, y, z = mapped(frame, normals[k, 0], normals[k, 1], normals[k, 2])
+        face, s, t = cube_face(x, y, z)
         bins[k] = (face * grid + bin_index(t, grid)) * grid + bin_index(s, grid)
         starts[bins[k] + 1] += 1
     for b in range(starts.size - 1):
@@ -577,21 +584,33 @@ def length_of(x, y, z):
 
 
 @jit
-def cone_of_normals(net, negligible, axis):
-    """Say whether all control normals lie within 37 degrees of their mean, and write that to `axis`."""
+def cone_of_normals(net, errors, axis):
+    """Write the mean of the control normals to `axis`; return the sine of the cone round it.
+
+    `errors` are those of the control normals, as angles. The sine is infinite if the cone is not
+    narrower than 37 degrees, or has a singular point.
+    """
     axis[:] = 0.0
     for k in range(6):
         length = length_of(net[k, 0], net[k, 1], net[k, 2])
-        if length <= negligible:
-            return False
+        if errors[k] == math.inf:
+            return math.inf
         for x in range(3):
             axis[x] += net[k, x] / length
     axis /= length_of(axis[0], axis[1], axis[2])
+    sine = 0.0
     for k in range(6):
+        length = length_of(net[k, 0], net[k, 1], net[k, 2])
         towards = net[k, 0] * axis[0] + net[k, 1] * axis[1] + net[k, 2] * axis[2]
-        if not towards >= 0.8 * length_of(net[k, 0], net[k, 1], net[k, 2]):
-            return False
-    return True
+        if not towards >= 0.8 * length:
+            return math.inf
+        away = length_of(
+            net[k, 1] * axis[2] - net[k, 2] * axis[1],
+            net[k, 2] * axis[0] - net[k, 0] * axis[2],
+            net[k, 0] * axis[1] - net[k, 1] * axis[0],
+        )
+        sine = max(sine, away / length + 2.0 * errors[k])
+    return sine
 
 
 @jit
@@ -601,48 +620,63 @@ def empty(window):
 
 
 @jit
-def face_window(net, negligible, regular, face, grid, window, hull):
+def map_net(net, errors, frame, stretch, shown, angles):
+    """Write the control normals as the frame maps them, with length 1, and their errors as angles.
+
+    `stretch` is the norm of the frame.
+    """
+    for k in range(6):
+        x, y, z = mapped(frame, net[k, 0], net[k, 1], net[k, 2])
+        length = length_of(x, y, z)
+        if errors[k] < math.inf:
+            shown[k, 0], shown[k, 1], shown[k, 2] = x / length, y / length, z / length
+            angles[k] = errors[k] * stretch * length_of(net[k, 0], net[k, 1], net[k, 2]) / length
+        else:
+            angles[k] = math.inf
+
+
+@jit
+def face_window(shown, angles, narrow, face, grid, window, hull):
     """Write first and last column, first and last row of the bins of a face that the cone may meet.
 
     Central projection keeps convex hulls: the hull of the projected control normals bounds the cone.
     It is written too, in bins; its error and the number of its points are returned. Where some control
     normals do not point to the face, the cone is cut off before them, but outside the face; if it is
-    wide, the window is the whole face and the error infinite. The window is empty if the cone lies
-    beyond one of the borders of the face.
+    not narrow, the window is the whole face and the error infinite. The window is empty if the cone
+    lies beyond one of the borders of the face.
     """
     empty(window)
     half = 0.5 * grid
-    error = 0.0
+    error = largest = 0.0
     towards = away = 0
     away_s = away_t = 0.0
     beyond_right = beyond_left = beyond_top = beyond_bottom = True
     for k in range(6):
-        s, t, height = on_face(face, net[k, 0], net[k, 1], net[k, 2])
-        length = length_of(s, t, height)
-        if length <= negligible:
+        if angles[k] == math.inf:
             continue
-        slack = SINGULAR_ERROR * negligible / length + ANGLE_ERROR
-        if height <= slack * length:
+        s, t, height = on_face(face, shown[k, 0], shown[k, 1], shown[k, 2])
+        largest = max(largest, angles[k])
+        if height <= angles[k]:
             away += 1
-            away_s += s / length
-            away_t += t / length
+            away_s += s
+            away_t += t
         else:
-            error = max(error, slack * ((length / height) * (length / height)) * half)
+            error = max(error, angles[k] / (height * height) * half)
             hull[towards, 0] = (s / height + 1.0) * half
             hull[towards, 1] = (t / height + 1.0) * half
             towards += 1
-        beyond_right = beyond_right and s - height > 2.0 * slack * length
-        beyond_left = beyond_left and -s - height > 2.0 * slack * length
-        beyond_top = beyond_top and t - height > 2.0 * slack * length
-        beyond_bottom = beyond_bottom and -t - height > 2.0 * slack * length
+        beyond_right = beyond_right and s - height > 2.0 * angles[k]
+        beyond_left = beyond_left and -s - height > 2.0 * angles[k]
+        beyond_top = beyond_top and t - height > 2.0 * angles[k]
+        beyond_bottom = beyond_bottom and -t - height > 2.0 * angles[k]
     if towards == 0 or beyond_right or beyond_left or beyond_top or beyond_bottom:
         return math.inf, 0
     if away > 0:
-        if not regular:
+        towards = cut_hull(shown, face, grid, away_s, away_t, hull) if narrow else 0
+        error = 1024.0 * largest * half
+        if towards == 0:
             window[1] = window[3] = grid - 1
             return math.inf, 0
-        towards = cut_hull(net, face, grid, away_s, away_t, hull)
-        error = 64.0 * ANGLE_ERROR * half
     left, right = hull[:towards, 0].min() - error, hull[:towards, 0].max() + error
     below, above = hull[:towards, 1].min() - error, hull[:towards, 1].max() + error
     if left <= grid and right >= 0.0 and below <= grid and above >= 0.0:
@@ -652,30 +686,36 @@ def face_window(net, negligible, regular, face, grid, window, hull):
 
 
 @jit
-def cut_hull(net, face, grid, away_s, away_t, hull):
+def cut_hull(shown, face, grid, away_s, away_t, hull):
     """Write the hull of a cone cut by a plane between the face and what points away from it.
 
     The plane is 3 height = (s, t)·d with d the unit direction of what points away: on the face, where
-    |s|, |t| <= height, the left side is larger. Returns the number of points, 12 at most.
+    |s|, |t| <= height, the left side is larger. Returns the number of points, 12 at most; 0 if the cone
+    is so wide that there is no such plane.
     """
     half = 0.5 * grid
-    length = length_of(away_s, away_t, 0.0)
+    length = max(length_of(away_s, away_t, 0.0), 0.01)
     size = 0
     for k in range(6):
-        s, t, height = on_face(face, net[k, 0], net[k, 1], net[k, 2])
+        s, t, height = on_face(face, shown[k, 0], shown[k, 1], shown[k, 2])
         before = 3.0 * height - (s * away_s + t * away_t) / length
         if before >= 0.0:
+            if height < 0.01:
+                return 0
             hull[size, 0] = (s / height + 1.0) * half
             hull[size, 1] = (t / height + 1.0) * half
             size += 1
             continue
         for i in range(6):
-            s_i, t_i, height_i = on_face(face, net[i, 0], net[i, 1], net[i, 2])
+            s_i, t_i, height_i = on_face(face, shown[i, 0], shown[i, 1], shown[i, 2])
             before_i = 3.0 * height_i - (s_i * away_s + t_i * away_t) / length
             if before_i >= 0.0:
-                middle = height_i * before - height * before_i
-                hull[size, 0] = ((s_i * before - s * before_i) / middle + 1.0) * half
-                hull[size, 1] = ((t_i * before - t * before_i) / middle + 1.0) * half
+                share = before_i / (before_i - before)
+                middle = height_i + share * (height - height_i)
+                if middle < 0.01:
+                    return 0
+                hull[size, 0] = ((s_i + share * (s - s_i)) / middle + 1.0) * half
+                hull[size, 1] = ((t_i + share * (t - t_i)) / middle + 1.0) * half
                 size += 1
     return size
 
@@ -727,25 +767,25 @@ def count_window(window, face, grid, starts):
 
 @jit
 def search_patches(
-    mu, scale, noise, border, grid, starts, order, normals, first, last,
+    mu, scale, noise, border, frame, stretch, grid, starts, order, normals, first, last,
     found, doubtful, bounds, counts,
 ):  # fmt: skip
     """Find the normals of the patches first, …, last − 1, in ascending order for each patch.
 
-    `normals` (3, S) are in the order of the bins. found (3, …) holds the patch, the normal and its
-    place in that order; doubtful (3, …) those that rounding leaves open, to be decided exactly, and
-    bounds (…) the errors of their forms. Adds the numbers of both, and that of the invisible patches,
-    to counts (3). `noise` is the rounding of the scaled coordinates, `border` the open sides of the
-    domain. Returns the patch before which it stopped for lack of room, and the room that it needs.
+    `normals` (3, S) are in the order of the bins, which are those of `frame`, of norm `stretch`.
+    found (3, …) holds the patch, the normal and its place in that order; doubtful (3, …) those that
+    rounding leaves open, to be decided exactly, and bounds (…) the errors of their forms. Adds the
+    numbers of both, and that of the developable patches, to counts (3). `noise` is the rounding of the
+    scaled coordinates, `border` the open sides of the domain. Returns the patch before which it
+    stopped for lack of room, and the room that it needs.
     """
     rows = mu.shape[0] - 2
     columns = mu.shape[1] - 2
-    net = np.empty((6, 3))
-    hulls = np.empty((6, 12, 2))
-    errors = np.empty(6)
-    sizes = np.empty(6, np.int64)
-    windows = np.empty((6, 4), np.int64)
-    axis = np.empty(3)
+    net, shown = np.empty((6, 3)), np.empty((6, 3))
+    errors, angles = np.empty(6), np.empty(6)
+    windows, hulls = np.empty((6, 4), np.int64), np.empty((6, 12, 2))
+    slacks, sizes = np.empty(6), np.empty(6, np.int64)
+    axis, spread, reach = np.empty(3), np.empty(3), np.empty(3)
     places, x, y, z, codes, notes, scratch, buckets = buffers(256)
     for patch in range(first, last):
         cell = patch // 4
@@ -754,20 +794,6 @@ def search_patches(
         j = cell % columns
         (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
          d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(mu, i + 1, j + 1, turn, scale)  # fmt: skip
-        second = max(
-            abs(a_x), abs(a_y), abs(a_z), abs(b_x), abs(b_y), abs(b_z), abs(c_x), abs(c_y), abs(c_z)
-        )
-        tangent = second + max(abs(d_x), abs(d_y), abs(d_z), abs(e_x), abs(e_y), abs(e_z))
-        error = FORM_ERROR * scale * spread_of(mu, i + 1, j + 1, turn)
-        if (
-            (turn == 0 and j == 0 and border[0])
-            or (turn == 1 and i == rows - 1 and border[1])
-            or (turn == 2 and j == columns - 1 and border[2])
-            or (turn == 3 and i == 0 and border[3])
-        ):
-            error += noise
-        bound = 32.0 * error * (tangent + error)
-
         (
             net[0, 0],
             net[0, 1],
@@ -790,63 +816,61 @@ def search_patches(
         ) = control_normals(
             a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z
         )
-        longest = 0.0
-        for k in range(6):
-            longest = max(longest, length_of(net[k, 0], net[k, 1], net[k, 2]))
-        flat = 4.0 * noise * second * longest * (longest + tangent * second)
-        u = 1.0 / 3.0
-        v = 1.0 / 3.0
-        # tangents (eq. (1)): 33 operations as written, 33 here
-        p_u_x = a_x * u + b_x * v + d_x
-        p_u_y = a_y * u + b_y * v + d_y
-        p_u_z = a_z * u + b_z * v + d_z
-        p_v_x = b_x * u + c_x * v + e_x
-        p_v_y = b_y * u + c_y * v + e_y
-        p_v_z = b_z * u + c_z * v + e_z
-        N_x = p_u_y * p_v_z - p_u_z * p_v_y
-        N_y = p_u_z * p_v_x - p_u_x * p_v_z
-        N_z = p_u_x * p_v_y - p_u_y * p_v_x
-        n_x = N_x
-        n_y = N_y
-        n_z = N_z
-        D, U, V, W = forms(
-            a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, n_x, n_y, n_z
+        counts[2] += is_developable(
+            a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, net, noise
         )
-        if abs(D) <= flat:  # at the centre, so perhaps everywhere
-            cubic = parabolic_cubic(
-                a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z
-            )
-            curvature = 0.0
-            for value in cubic:
-                curvature = max(curvature, abs(value))
-            if curvature <= flat:
-                counts[2] += 1
-                continue
 
         # Which normals may the patch have?
-        negligible = SINGULAR * tangent * tangent
-        regular = cone_of_normals(net, negligible, axis)
+        tangents = max(
+            max(abs(a_x), abs(b_x), abs(c_x)) + max(abs(d_x), abs(e_x)),
+            max(abs(a_y), abs(b_y), abs(c_y)) + max(abs(d_y), abs(e_y)),
+            max(abs(a_z), abs(b_z), abs(c_z)) + max(abs(d_z), abs(e_z)),
+        )
+        for k in range(6):
+            length = length_of(net[k, 0], net[k, 1], net[k, 2])
+            regular = length > SINGULAR * tangents * tangents
+            errors[k] = ANGLE_ERROR * (1.0 + tangents * tangents / length) if regular else math.inf
+        sine = cone_of_normals(net, errors, axis)
+        map_net(net, errors, frame, stretch, shown, angles)
         total = 0
         for face in range(6):
-            if regular and on_face(face, axis[0], axis[1], axis[2])[2] < BEHIND:
-                empty(windows[face])
-                continue
-            errors[face], sizes[face] = face_window(
-                net, negligible, regular, face, grid, windows[face], hulls[face]
+            slacks[face], sizes[face] = face_window(
+                shown, angles, sine < math.inf, face, grid, windows[face], hulls[face]
             )
             total += count_window(windows[face], face, grid, starts)
         if counts[0] + total > found.shape[1] or counts[1] + total > doubtful.shape[1]:
             return patch, total
         if total > x.size:
             places, x, y, z, codes, notes, scratch, buckets = buffers(total)
-        count = gather(windows, hulls, sizes, errors, grid, starts, normals, places, x, y, z)
+        count = gather(windows, hulls, sizes, slacks, grid, starts, normals, places, x, y, z)
 
-        # Which of them has it?
+        # Which of them has it? The components of n bound the errors of the forms.
+        spread_of(mu, i + 1, j + 1, turn, spread)
+        for k in range(3):
+            reach[k] = min(1.0, abs(axis[k]) + sine) if sine < math.inf else 1.0
+        form = (
+            reach[0] * (max(abs(a_x), abs(b_x), abs(c_x)) + max(abs(d_x), abs(e_x)))
+            + reach[1] * (max(abs(a_y), abs(b_y), abs(c_y)) + max(abs(d_y), abs(e_y)))
+            + reach[2] * (max(abs(a_z), abs(b_z), abs(c_z)) + max(abs(d_z), abs(e_z)))
+        )
+        error = (
+            FORM_ERROR
+            * scale
+            * (reach[0] * spread[0] + reach[1] * spread[1] + reach[2] * spread[2])
+        )
+        if (
+            (turn == 0 and j == 0 and border[0])
+            or (turn == 1 and i == rows - 1 and border[1])
+            or (turn == 2 and j == columns - 1 and border[2])
+            or (turn == 3 and i == 0 and border[3])
+        ):
+            error += noise
+        bound = 32.0 * error * (form + error)
         classify(
             a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
-            N_x, N_y, N_z, regular, bound, x[:count], y[:count], z[:count], codes,
+            axis, sine, bound, x[:count], y[:count], z[:count], codes,
         )  # fmt: skip
-        if not regular:
+        if sine == math.inf:
             look_again(
                 a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
                 x, y, z, codes[:count],
@@ -860,14 +884,95 @@ def search_patches(
 
 
 @jit
-def spread_of(mu, i, j, turn):
-    """Return the largest component of the differences between the coefficients of a cell and around."""
-    spread = 0.0
+def all_developable(mu, scale, noise):
+    """Say whether no patch is bent in two directions by more than the rounding of its coordinates."""
+    columns = mu.shape[1] - 2
+    net = np.empty((6, 3))
+    for patch in range(4 * (mu.shape[0] - 2) * columns):
+        cell = patch // 4
+        (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
+         d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(
+            mu, cell // columns + 1, cell % columns + 1, patch % 4, scale
+        )  # fmt: skip
+        (
+            net[0, 0],
+            net[0, 1],
+            net[0, 2],
+            net[1, 0],
+            net[1, 1],
+            net[1, 2],
+            net[2, 0],
+            net[2, 1],
+            net[2, 2],
+            net[3, 0],
+            net[3, 1],
+            net[3, 2],
+            net[4, 0],
+            net[4, 1],
+            net[4, 2],
+            net[5, 0],
+            net[5, 1],
+            net[5, 2],
+        ) = control_normals(
+            a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z
+        )
+        if not is_developable(
+            a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, net, noise
+        ):
+            return False
+    return True
+
+
+@jit
+def is_developable(
+    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, net, noise
+):  # fmt: skip
+    """Say whether the Gaussian curvature of a patch is nothing but rounding of its coordinates."""
+    second = max(
+        abs(a_x), abs(a_y), abs(a_z), abs(b_x), abs(b_y), abs(b_z), abs(c_x), abs(c_y), abs(c_z)
+    )
+    tangent = second + max(abs(d_x), abs(d_y), abs(d_z), abs(e_x), abs(e_y), abs(e_z))
+    longest = 0.0
+    for k in range(6):
+        longest = max(longest, length_of(net[k, 0], net[k, 1], net[k, 2]))
+    flat = 4.0 * noise * second * longest * (longest + tangent * second)
+    u = 1.0 / 3.0
+    v = 1.0 / 3.0
+    # tangents (eq. (1)): 33 operations as written, 33 here
+    p_u_x = a_x * u + b_x * v + d_x
+    p_u_y = a_y * u + b_y * v + d_y
+    p_u_z = a_z * u + b_z * v + d_z
+    p_v_x = b_x * u + c_x * v + e_x
+    p_v_y = b_y * u + c_y * v + e_y
+    p_v_z = b_z * u + c_z * v + e_z
+    N_x = p_u_y * p_v_z - p_u_z * p_v_y
+    N_y = p_u_z * p_v_x - p_u_x * p_v_z
+    N_z = p_u_x * p_v_y - p_u_y * p_v_x
+    n_x = N_x
+    n_y = N_y
+    n_z = N_z
+    D, U, V, W = forms(
+        a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, n_x, n_y, n_z
+    )
+    if abs(D) > flat:  # already at the centre
+        return False
+    cubic = parabolic_cubic(
+        a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z
+    )
+    curvature = 0.0
+    for value in cubic:
+        curvature = max(curvature, abs(value))
+    return curvature <= flat
+
+
+@jit
+def spread_of(mu, i, j, turn, spread):
+    """Write the largest differences, by component, of the coefficients of a cell and around it."""
+    spread[:] = 0.0
     for k in range(9):
         for x in range(3):
             other = mu[i + NEIGHBOURS[turn, k, 0], j + NEIGHBOURS[turn, k, 1], x]
-            spread = max(spread, abs(other - mu[i, j, x]))
-    return spread
+            spread[x] = max(spread[x], abs(other - mu[i, j, x]))
 
 
 @jit
@@ -880,15 +985,15 @@ def buffers(size):
 
 
 @jit
-def gather(windows, hulls, sizes, errors, grid, starts, normals, places, x, y, z):
+def gather(windows, hulls, sizes, slacks, grid, starts, normals, places, x, y, z):
     """Copy the normals that a patch may have, and their places; return how many there are."""
     count = 0
     for face in range(6):
         window = windows[face]
         for row in range(window[2], window[3] + 1):
             left, right = window[0], window[1]
-            if right > left + 3 and errors[face] < math.inf:
-                left, right = span_of_row(hulls[face], sizes[face], errors[face], row, window)
+            if right > left + 3 and slacks[face] < math.inf:
+                left, right = span_of_row(hulls[face], sizes[face], slacks[face], row, window)
                 if left > right:
                     continue
             base = (face * grid + row) * grid
@@ -905,14 +1010,17 @@ def gather(windows, hulls, sizes, errors, grid, starts, normals, places, x, y, z
 @jit
 def classify(
     a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
-    N_x, N_y, N_z, regular, bound, x, y, z, codes,
+    axis, sine, bound, x, y, z, codes,
 ):  # fmt: skip
     """Write for each normal whether the patch has it: 0 no, 1 yes, 2 if rounding leaves it open.
 
-    N is a normal of the patch. The loop has no branches, so that it runs on vectors.
+    The normals of the patch lie in the cone with the sine round the axis, if that is not infinite. The
+    loop has no branches, so that it runs on vectors.
     """
     least = ACCURATE * bound
-    lowest = 0.0 if regular else -math.inf
+    lowest = 0.0 if sine < math.inf else -math.inf
+    widest = sine * sine
+    r_x, r_y, r_z = axis
     for k in range(x.size):
         n_x = x[k]
         n_y = y[k]
@@ -931,10 +1039,13 @@ def classify(
         low = low if low < W else W
         high = U if U > V else V
         high = high if high > W else W
+        s = n_y * r_z - n_z * r_y
+        t = n_z * r_x - n_x * r_z
+        w = n_x * r_y - n_y * r_x
+        beside = (s * s + t * t + w * w > widest) | (n_x * r_x + n_y * r_y + n_z * r_z < lowest)
         outside = (low < -bound) & (high > bound)
-        behind = n_x * N_x + n_y * N_y + n_z * N_z < lowest
         sure = ((low > bound) | (high < -bound)) & (abs(D) > least)
-        codes[k] = np.int8(0) if outside | behind else np.int8(1) if sure else np.int8(2)
+        codes[k] = np.int8(0) if outside | beside else np.int8(1) if sure else np.int8(2)
 
 
 @jit

@@ -159,7 +159,7 @@ def _samples(
         samples=len(hits),
         patches=spline.patches,
         invisible_share=invisible_share(spline, density),
-        degenerate_patches=hits.invisible,
+        degenerate_patches=hits.developable,
     )
     fields = fill(spline, bins, hits, threads)
     return Samples(

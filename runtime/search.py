@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..generated import sampler as kernels
 from .exact import decide
+from .sphere import perpendicular
 from .spline import Spline
 from .threads import over_ranges, thread_count
 
@@ -21,20 +22,47 @@ FEWEST_PATCHES, MOST_PATCHES = 64, 4096
 RANGES_PER_THREAD = 4
 SAMPLES_AT_A_TIME = 1 << 16
 NORMALS_PER_BIN = 8
+# A cap of normals is not taken for narrower than this, the tangent of half its angle.
+NARROWEST = 2.0**-20
 # Room for so many hits at first; a patch that needs more gets it.
 ROOM = 1 << 15
 
 
 @dataclass(frozen=True, eq=False)
 class NormalBins:
-    """Unit normals (S, 3), sorted into the squares of a cube round the sphere."""
+    """Unit normals (S, 3), sorted into the squares of a cube round the sphere.
+
+    Normals that all lie in a cap are first mapped linearly, so that they fill a face of the cube.
+    """
 
     normals: NDArray[np.float64]
 
     @cached_property
+    def frame(self) -> NDArray[np.float64]:
+        """The linear map (3, 3), the identity unless there is such a cap."""
+        mean = self.normals.mean(axis=0)
+        length = float(np.linalg.norm(mean))
+        if length < 0.8:
+            return np.eye(3)
+        axis = mean / length
+        across, along = perpendicular(axis)
+        directions = np.stack([across, along, axis])
+        x, y, z = directions @ self.normals.T
+        if not (z > 0.5).all():
+            return np.eye(3)
+        tangent = max(float(np.hypot(x, y).max() / z.min()), NARROWEST)
+        return directions / [[tangent], [tangent], [1.0]] if tangent < 0.8 else np.eye(3)
+
+    @cached_property
+    def stretch(self) -> float:
+        """The norm of the frame."""
+        return float(np.linalg.norm(self.frame, axis=1).max())
+
+    @cached_property
     def grid(self) -> int:
         """The number of squares along an edge of the cube."""
-        return max(1, min(2048, round(math.sqrt(len(self.normals) / (6 * NORMALS_PER_BIN)))))
+        faces = 6 if self.stretch < 1.1 else 1
+        return max(1, min(2048, round(math.sqrt(len(self.normals) / (faces * NORMALS_PER_BIN)))))
 
     @cached_property
     def sorted(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
@@ -42,7 +70,7 @@ class NormalBins:
         starts = np.empty(6 * self.grid**2 + 1, dtype=np.int64)
         order = np.empty(len(self.normals), dtype=np.int64)
         components = np.empty((3, len(self.normals)))
-        kernels.bin_normals(self.normals, self.grid, starts, order, components)
+        kernels.bin_normals(self.normals, self.frame, self.grid, starts, order, components)
         return starts, order, components
 
 
@@ -51,8 +79,8 @@ class Hits:
     """Which patch has which normal, by patch and then by normal.
 
     `place` is the place of the normal in the order of the bins. `exact` are the numbers of the hits
-    that had to be decided exactly, `local` what `Decision` says of them. `invisible` counts the
-    patches that are flat or developable up to the rounding of their coordinates.
+    that had to be decided exactly, `local` what `Decision` says of them. `developable` counts the
+    patches that are so, up to the rounding of their coordinates.
     """
 
     patch_index: NDArray[np.int64]
@@ -60,7 +88,7 @@ class Hits:
     place: NDArray[np.int64]
     exact: NDArray[np.int64]
     local: NDArray[np.float64]
-    invisible: int
+    developable: int
 
     def __len__(self) -> int:
         """Return the number of samples."""
@@ -77,7 +105,7 @@ class _Range:
     sure: NDArray[np.int64]
     doubtful: NDArray[np.int64]
     bounds: NDArray[np.float64]
-    invisible: int
+    developable: int
 
 
 def find(
@@ -86,6 +114,8 @@ def find(
     """Return which patch of a spline has which of the normals."""
     border = np.array([end == "none" for end in _sides(spline)])
     noise = kernels.DATA_ERROR * float(np.abs(spline.coefficients * spline.scale).max())
+    if kernels.all_developable(spline.coefficients, spline.scale, noise):
+        return _hits(np.empty((3, 0), dtype=np.int64), spline.patches)
 
     def search(first: int, last: int) -> list[_Range]:
         parts, room = [], ROOM
@@ -93,16 +123,17 @@ def find(
             found, doubtful = np.empty((2, 3, room), dtype=np.int64)
             bounds, counts = np.empty(room), np.zeros(3, dtype=np.int64)
             first, needed = kernels.search_patches(
-                spline.coefficients, spline.scale, noise, border, bins.grid, *bins.sorted,
+                spline.coefficients, spline.scale, noise, border,
+                bins.frame, bins.stretch, bins.grid, *bins.sorted,
                 first, last, found, doubtful, bounds, counts,
             )  # fmt: skip
-            sure, open_, invisible = counts.tolist()
+            sure, open_, developable = counts.tolist()
             parts.append(
                 _Range(
                     found[:, :sure].copy(),
                     doubtful[:, :open_].copy(),
                     bounds[:open_].copy(),
-                    invisible,
+                    developable,
                 )
             )
             room = max(ROOM, needed)
@@ -153,17 +184,29 @@ def _decided(
     """Decide the doubtful pairs and merge those that are samples with the sure ones."""
     sure = np.concatenate([r.sure for r in ranges], axis=1)
     doubtful = np.concatenate([r.doubtful for r in ranges], axis=1)
-    invisible = sum(r.invisible for r in ranges)
-    nothing = np.empty(0, dtype=np.int64)
+    developable = sum(r.developable for r in ranges)
     if doubtful.shape[1] == 0:
-        return Hits(*sure, nothing, np.empty((0, 5)), invisible)
+        return _hits(sure, developable)
     bounds = np.concatenate([r.bounds for r in ranges])
     forgiven = np.where(_on_border(spline, border, doubtful[0]), bounds, 0.0)
     decision = decide(spline, doubtful[0], bins.normals[doubtful[1]], forgiven)
-    new = doubtful[:, decision.which]
-    places = _insertion_places(*sure[:2], *new[:2])
-    merged = np.insert(sure, places, new, axis=1)
-    return Hits(*merged, places + np.arange(len(places)), decision.local, invisible)
+    patch, normal, place = doubtful[:, decision.which]
+    places = _insertion_places(sure[0], sure[1], patch, normal)
+    merged = np.insert(sure, places, (patch, normal, place), axis=1)
+    return _hits(merged, developable, places + np.arange(len(places)), decision.local)
+
+
+def _hits(
+    pairs: NDArray[np.int64],
+    developable: int,
+    exact: NDArray[np.int64] | None = None,
+    local: NDArray[np.float64] | None = None,
+) -> Hits:
+    patch, normal, place = pairs
+    exact = np.empty(0, dtype=np.int64) if exact is None else exact
+    return Hits(
+        patch, normal, place, exact, np.empty((0, 5)) if local is None else local, developable
+    )
 
 
 def _insertion_places(

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from .checks import real_array, whole_number
 from .errors import InputError
 
-__all__ = ["as_normals", "fibonacci", "icosphere"]
+__all__ = ["as_normals", "fibonacci", "icosphere", "perpendicular"]
 
 GOLDEN = (1 + math.sqrt(5)) / 2
 
@@ -84,6 +84,14 @@ def as_normals(normals: ArrayLike, dimension: int = 3) -> NDArray[np.float64]:
             f"normals[{int(zero.argmax())}] is the zero vector, which has no direction."
         )
     return _unit(array)
+
+
+def perpendicular(axis: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return two unit vectors that make a right-handed frame with a unit vector."""
+    least = np.eye(3)[np.argmin(np.abs(axis))]
+    across = np.cross(least, axis)
+    across /= np.linalg.norm(across)
+    return across, np.cross(axis, across)
 
 
 def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
