@@ -12,8 +12,9 @@ from pathlib import Path
 
 import sympy as sp
 
-from . import latex, patch, spline, surfaces
+from . import latex, patch, spline, support, surfaces
 from .emit import block, call, functions, render
+from .expression import hessian_entries
 from .formula import Formula
 from .positions import position
 from .printer import source_of
@@ -31,6 +32,7 @@ def derive() -> dict[str, str]:
         "patch.py": patch_source(),
         "spline.py": spline_source(),
         "sampler.py": sampler_source(),
+        "support.py": support_source(),
         "surfaces.py": surfaces_source(),
     }
     pages = {"formulas.md": latex.markdown(), "formulas.tex": latex.document()}
@@ -164,6 +166,31 @@ def sampler_source() -> str:
             "envelope": block(patch.ENVELOPE),
             "curvature_at": block(patch.CURVATURE_AT),
             "store_sample": render("store_sample.py", {}).rstrip(),
+        },
+    )
+
+
+def support_source() -> str:
+    """Return generated/support.py: support functions of patches, their offsets and curvatures."""
+    return render(
+        "support.py",
+        {
+            "header": header("Support functions: envelope, Hessian, curvatures."),
+            "constants": _grid_constants(),
+            "formulas": functions([spline.TRIANGLE]),
+            "patch_vectors": _patch_vectors(),
+            "forms": block(patch.FORMS),
+            "parameters": block(patch.PARAMETERS),
+            "tangents": block(patch.TANGENTS),
+            "branch": block(support.BRANCH),
+            "parameters_at": block(support.PARAMETERS_AT),
+            "hessian_at": block(support.HESSIAN_AT),
+            "offset": block(support.OFFSET),
+            "tangent_plane": block(support.TANGENT_PLANE),
+            "curvature_from_hessian": block(support.CURVATURE_FROM_HESSIAN),
+            "store_hessian_of_size": hessian_entries("{entry} = {name} / size"),
+            "add_hessian": hessian_entries("{entry} += {name}"),
+            "load_hessian": hessian_entries("{name} = {entry}", both=False),
         },
     )
 
