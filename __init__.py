@@ -11,6 +11,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from .runtime import surfaces
+from .runtime.branches import Branches
 from .runtime.errors import (
     FileError,
     GaussmapError,
@@ -25,6 +26,7 @@ from .runtime.samples import Samples, SamplingReport
 from .runtime.sampling import sample, sample_many
 from .runtime.sphere import fibonacci, icosphere
 from .runtime.spline import Spline, fit
+from .runtime.support import SupportFunction
 from .runtime.surface import Surface
 
 if TYPE_CHECKING:
@@ -34,6 +36,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "Branches",
     "FileError",
     "GaussmapError",
     "GaussmapWarning",
@@ -42,6 +45,7 @@ __all__ = [
     "Samples",
     "SamplingReport",
     "Spline",
+    "SupportFunction",
     "Surface",
     "SurfaceError",
     "UnknownNameError",

@@ -348,8 +348,8 @@ def fill_hessians(mu, scale, patches, normals, known, hessians):
 
 
 @jit
-def add_offset(d, normals, points, hessians):
-    """Add a sphere of radius d to points and Hessians at unit normals (k, 3)."""
+def add_offset(d, normals, points, hessians, gaussian, mean):
+    """Add a sphere of radius d to points and Hessians at unit normals (k, 3), change curvatures."""
     for row in range(normals.shape[0]):
         n_x = normals[row, 0]
         n_y = normals[row, 1]
@@ -378,6 +378,14 @@ def add_offset(d, normals, points, hessians):
         hessians[row, 2, 0] += H_xz
         hessians[row, 1, 2] += H_yz
         hessians[row, 2, 1] += H_yz
+        K = gaussian[row]
+        H = mean[row]
+        # offset_curvature (beyond the paper): 16 operations as written, 11 here
+        t0 = 1.0 / (2 * H * d + K * d * d + 1)
+        K_d = K * t0
+        H_d = t0 * (H + K * d)
+        gaussian[row] = K_d
+        mean[row] = H_d
 
 
 @jit

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import cast
+from typing import Any, cast
 
 import sympy as sp
 from sympy.logic.boolalg import Boolean
@@ -87,14 +87,15 @@ def is_homogeneous(h: sp.Expr, gradient: Sequence[sp.Expr] | None = None) -> boo
     if gradient is None:
         gradient = [_derivative(h, axis) for axis in NORMAL]
     defect = dot(sp.Matrix(gradient), n.column) - h
-    place = dict(zip(NORMAL, GENERIC, strict=True))
+    place: Any = dict(zip(NORMAL, GENERIC, strict=True))
     value = defect.evalf(30, subs=place)
     if not value.is_number or abs(value) > sp.Float("1e-15"):
         return False
     if defect.count_ops() > LONGEST_PROOF:
         return False
     signs = {s: sp.Abs(s.args[0]) / s.args[0] for s in defect.atoms(sp.sign)}
-    return sp.expand(sp.together(defect.xreplace(signs)).as_numer_denom()[0]) == 0
+    quotient = cast(sp.Expr, sp.together(defect.xreplace(signs)))
+    return sp.expand(quotient.as_numer_denom()[0]) == 0
 
 
 def _derivative(expression: sp.Expr, by: sp.Symbol) -> sp.Expr:

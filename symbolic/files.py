@@ -186,6 +186,7 @@ def support_source() -> str:
             "parameters_at": block(support.PARAMETERS_AT),
             "hessian_at": block(support.HESSIAN_AT),
             "offset": block(support.OFFSET),
+            "offset_curvature": block(support.OFFSET_CURVATURE),
             "tangent_plane": block(support.TANGENT_PLANE),
             "curvature_from_hessian": block(support.CURVATURE_FROM_HESSIAN),
             "store_hessian_of_size": hessian_entries("{entry} = {name} / size"),

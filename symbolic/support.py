@@ -7,7 +7,8 @@ extension is eq. (5) with eq. (6), and its Hessian is derived here.
 
 from __future__ import annotations
 
-from itertools import product
+from collections.abc import Iterable
+from typing import cast
 
 import sympy as sp
 
@@ -25,6 +26,7 @@ __all__ = [
     "HESSIAN_SYMBOLS",
     "INTRINSIC_GRADIENT",
     "OFFSET",
+    "OFFSET_CURVATURE",
     "PARAMETERS_AT",
     "SECOND_DERIVATIVES",
     "TANGENT_PLANE",
@@ -38,27 +40,33 @@ n, x, dh = vectors(("n", "x", "dh"))
 h, d = scalar("h"), scalar("d")
 
 
-def symmetric(name: str) -> sp.Matrix:
-    """Return the symmetric matrix of the symbols name_xx, name_yy and so on."""
-    return sp.Matrix(3, 3, lambda i, j: scalar(f"{name}_{''.join(sorted('xyz'[i] + 'xyz'[j]))}"))
+def named(name: str) -> tuple[sp.Symbol, ...]:
+    """Return the symbols name_xx, name_yy and so on."""
+    return tuple(scalar(f"{name}_{key}") for key in ENTRIES)
+
+
+def symmetric(symbols: Iterable[sp.Symbol]) -> sp.Matrix:
+    """Return the symmetric matrix of these symbols."""
+    values = {place: x for x, place in zip(symbols, ENTRIES.values(), strict=True)}
+    return sp.Matrix(3, 3, lambda i, j: values[min(i, j), max(i, j)])
 
 
 def entries(name: str, matrix: sp.Matrix) -> list[tuple[str, sp.Expr]]:
     """Return the entries of a symmetric matrix with their names."""
-    return [(f"{name}_{key}", matrix[place]) for key, place in ENTRIES.items()]
+    return [(f"{name}_{key}", cast(sp.Expr, matrix[place])) for key, place in ENTRIES.items()]
 
 
-SECOND = symmetric("h")
-HESSIAN_MATRIX = symmetric("H")
-SECOND_DERIVATIVES = tuple(SECOND[place] for place in ENTRIES.values())
-HESSIAN_SYMBOLS = tuple(HESSIAN_MATRIX[place] for place in ENTRIES.values())
+SECOND_DERIVATIVES = named("h")
+HESSIAN_SYMBOLS = named("H")
+SECOND = symmetric(SECOND_DERIVATIVES)
+HESSIAN_MATRIX = symmetric(HESSIAN_SYMBOLS)
 TANGENTIAL = sp.eye(3) - n.column * n.column.T
 
 
 def _on_sphere(expression: sp.Expr) -> sp.Expr:
     """Return a polynomial in n for |n| = 1 in its normal form, that of degree below 2 in n_z."""
     n_z = n.components[2]
-    return sp.rem(sp.expand(expression), dot(n.column, n.column) - 1, n_z)
+    return cast(sp.Expr, sp.rem(sp.expand(expression), dot(n.column, n.column) - 1, n_z))
 
 
 def _derivatives_of_extension(function: sp.Expr, order: int) -> sp.Matrix:
@@ -113,7 +121,7 @@ INTRINSIC_GRADIENT = Formula.build(
 )
 
 _verified(
-    h * n.column + dh.column - dot(dh.column, n.column) * n.column,
+    n.column * h + dh.column - n.column * dot(dh.column, n.column),
     _derivatives_of_extension(_to_second_order()[0], 1),
 )
 
@@ -129,18 +137,18 @@ ENVELOPE_OPERATOR = Formula.build(
 
 def _hessian_of_extension() -> Formula:
     """Write the Hessian of |n| h(n/|n|) in h, dh, h_xx …, and check it by differentiation."""
-    q = sp.Matrix([scalar(f"q_{axis}") for axis in "xyz"])
+    (along,) = vectors("q")
     g, k, r = (scalar(name) for name in "gkr")
-    normal = n.column
+    normal, q, along_normal = n.column, along.column, SECOND * n.column
     written = SECOND - normal * q.T - q * normal.T + (r - k) * normal * normal.T + k * sp.eye(3)
     terms = [
-        *((str(symbol), value) for symbol, value in zip(q, SECOND * normal, strict=True)),
+        *((x.name, y) for x, y in zip(along.components, along_normal.flat(), strict=True)),
         ("r", dot(normal, q)),
         ("g", Dot(dh, n)),
         ("k", h - g),
     ]
-    values = dict(zip(q, SECOND * normal, strict=True))
-    values |= {r: dot(normal, SECOND * normal), k: h - dot(dh.column, normal)}
+    values = dict(zip(along.components, along_normal.flat(), strict=True))
+    values |= {r: dot(normal, along_normal), k: h - dot(dh.column, normal)}
     plain = written.applyfunc(lambda entry: substitute(entry, values))
     _verified(plain, _derivatives_of_extension(_to_second_order()[0], 2))
     return Formula.build(
@@ -158,8 +166,8 @@ HESSIAN_OF_EXTENSION = _hessian_of_extension()
 
 def _offset() -> Formula:
     """Differentiate the support function d |n| of a sphere."""
-    _verified(d * n.column, _derivatives_of_extension(d, 1))
-    hessian = _verified(d * TANGENTIAL, _derivatives_of_extension(d, 2))
+    _verified(n.column * d, _derivatives_of_extension(d, 1))
+    hessian = _verified(TANGENTIAL * d, _derivatives_of_extension(d, 2))
     return Formula.build(
         "offset",
         "The sphere of radius $d$, $h = d|n|$, at a unit normal $n$: envelope and Hessian. Its "
@@ -176,8 +184,8 @@ OFFSET = _offset()
 def _curvature_from_hessian() -> Formula:
     """Read the radii from the characteristic polynomial, of which 0 (with n) is one root."""
     _, minus_trace, minors, _ = HESSIAN_MATRIX.charpoly().all_coeffs()
-    m, q, T = scalar("m"), scalar("q"), symmetric("T")
-    squares = (T[i, j] ** 2 / 2 for i, j in product(range(3), repeat=2))
+    m, q = scalar("m"), scalar("q")
+    squares = (x**2 for x in symmetric(named("T")).flat())
     return Formula.build(
         "curvature_from_hessian",
         "Curvature from the Hessian of a support function at a unit normal $n$: half the sum $m$ "
@@ -187,7 +195,7 @@ def _curvature_from_hessian() -> Formula:
         terms=[("m", -minus_trace / 2), *entries("T", HESSIAN_MATRIX - m * TANGENTIAL)],
         outputs=[
             ("q", minors),
-            ("S", sum(squares, start=sp.S.Zero)),
+            ("S", sum(squares, start=sp.S.Zero) / 2),
             ("K", 1 / q),
             ("H", m / q),
         ],
@@ -195,6 +203,28 @@ def _curvature_from_hessian() -> Formula:
 
 
 CURVATURE_FROM_HESSIAN = _curvature_from_hessian()
+
+
+def _offset_curvature() -> Formula:
+    """Add d to both radii, and write the result in the curvatures."""
+    K, H, R_1, R_2 = (scalar(name) for name in ("K", "H", "R_1", "R_2"))
+    of_radii = {K: 1 / (R_1 * R_2), H: (R_1 + R_2) / (2 * R_1 * R_2)}
+    shrinking = 1 + 2 * d * H + d**2 * K
+    outputs = [("K_d", K / shrinking), ("H_d", (H + d * K) / shrinking)]
+    for (_, target), curvature in zip(outputs, (K, H), strict=True):
+        moved = substitute(of_radii[curvature], {R_1: R_1 + d, R_2: R_2 + d})
+        if sp.cancel(substitute(target, of_radii) - moved) != 0:
+            raise ArithmeticError(f"{target} is not {moved}")
+    return Formula.build(
+        "offset_curvature",
+        "Gaussian and mean curvature of the offset at the distance $d$, of use also where a radius "
+        "is infinite.",
+        inputs=[K, H, d],
+        outputs=outputs,
+    )
+
+
+OFFSET_CURVATURE = _offset_curvature()
 
 BRANCH = compose(
     "branch",
@@ -227,6 +257,7 @@ FORMULAS = (
     ENVELOPE_OPERATOR,
     HESSIAN_OF_EXTENSION,
     OFFSET,
+    OFFSET_CURVATURE,
     CURVATURE_FROM_HESSIAN,
     BRANCH,
     PARAMETERS_AT,
