@@ -84,8 +84,8 @@ class SupportFunction:
         do; if it is homogeneous of degree 1, its gradient is the envelope. Else that is (5), with
         the intrinsic gradient (6). Derivatives are taken by SymPy and compiled. `domain` is a
         condition, such as "n_z > 0" or "(n_x > 0) & (n_y > 0)"; without it every normal is asked.
-        Normals where h or its gradient is not real and finite have no branch, and kinks, such as
-        that of |n_x|, none of the points between their two sides.
+        Normals where h or its gradient is not real and finite have no branch. A kink, such as that
+        of |n_x|, stands for a flat part of the surface, which normals cannot see.
 
         Raises InputError for what is no real expression in the three components, or uses functions
         that cannot be compiled.
