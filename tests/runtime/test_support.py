@@ -1,5 +1,7 @@
 """Support functions given as expressions and by splines: envelope, curvatures, branches."""
 
+from typing import Any
+
 import gaussmap as gm
 import numpy as np
 import pytest
@@ -17,7 +19,7 @@ def given(h: object, **options) -> gm.SupportFunction:
     return gm.SupportFunction.from_sympy(h, **options)  # pyright: ignore
 
 
-def close(actual: Array, expected: Array, size: float, ulps: int = 64) -> None:
+def close(actual: NDArray[Any], expected: NDArray[Any], size: float, ulps: int = 64) -> None:
     """Compare up to the rounding of some dozens of operations on numbers of a size."""
     np.testing.assert_allclose(actual, expected, rtol=0.0, atol=ulps * EPS * size)
 
@@ -33,7 +35,8 @@ def test_ellipsoid() -> None:
     assert (branches.normal_index == np.arange(len(NORMALS))).all()
     close(branches.support, h, 3.0)
     close(branches.points, points, 3.0)
-    close(np.einsum("ki,ij,kj->k", branches.points, np.linalg.inv(A), branches.points), 1.0, 4.0)  # pyright: ignore
+    level = np.einsum("ki,ij,kj->k", branches.points, np.linalg.inv(A), branches.points)
+    close(level, np.ones(len(NORMALS)), 4.0)
     hessian = A / h[:, None, None] - points[:, :, None] * points[:, None, :] / h[:, None, None]
     close(branches.hessian, hessian, 4.0)
     gaussian = h**4 / np.linalg.det(A)
