@@ -33,7 +33,7 @@ class Branches:
 
     Where a radius is 0 the surface is singular (a point has two such): Gaussian curvature is
     infinite and mean curvature infinite or NaN. Where a radius is infinite, at a parabolic point,
-    Hessian and radii are infinite or NaN.
+    Hessian and radii are infinite or NaN; Gaussian curvature is then 0, or NaN after a sum.
     """
 
     normal_index: NDArray[np.int64]

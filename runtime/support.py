@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, SupportsFloat
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .branches import Branches
+from .branches import Branches, Sheets
 from .checks import real_array
 from .errors import InputError
 from .sphere import as_normals
@@ -103,12 +103,12 @@ class SupportFunction:
         shape, are empty, zero, NaN or infinite.
         """
         directions = as_normals(normals)
-        return self._source.sheets(directions).branches(directions)
+        return self._sheets(directions).branches(directions)
 
     def sheets(self, normals: ArrayLike) -> NDArray[np.int64]:
         """Return how many branches each of the normals (S, 3) has, (S,) int64; see `branches`."""
         directions = as_normals(normals)
-        rows = self._source.sheets(directions).normal_index
+        rows = self._sheets(directions).normal_index
         return np.bincount(rows, minlength=len(directions)).astype(np.int64)
 
     def contains(self, normals: ArrayLike) -> NDArray[np.bool_]:
@@ -131,6 +131,10 @@ class SupportFunction:
         values = np.full(count, np.nan)
         values[branches.normal_index] = branches.support
         return values
+
+    def _sheets(self, directions: NDArray[np.float64]) -> Sheets:
+        with np.errstate(all="ignore"):  # infinite curvatures and radii are answers, too
+            return self._source.sheets(directions)
 
     def _single_valued(self, normals: ArrayLike) -> tuple[Branches, int]:
         branches = self.branches(normals)

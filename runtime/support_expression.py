@@ -50,8 +50,8 @@ class ExpressionSource:
             unknown = re.search(r"(\w+)(?:'>)?$", str(error).partition("\n")[0])
             name = unknown[1] if unknown else "a function"
             raise InputError(
-                f"h = {_short(expression)} cannot be compiled: it, a derivative of it or its domain "
-                f"uses {name}, which kernels cannot compute."
+                f"h = {_short(expression)} cannot be compiled: it, a derivative or its domain uses "
+                f"{name}, which kernels cannot compute."
             ) from error
         return cls(expression, condition, source)
 

@@ -148,7 +148,8 @@ class PatchSource:
         import sympy as sp
 
         D, U, V, W = self._symbolic.forms.values()
-        inside = [sp.And(*(s * x >= 0 for x in (U, V, W))) for s in (1, -1)]
+        at_least: Any = sp.Ge  # its type hints do not say that it is a Boolean
+        inside = [sp.And(*(at_least(s * x, 0) for x in (U, V, W))) for s in (1, -1)]
         return sp.And(sp.Or(*inside), sp.Ne(D, 0), sp.Gt(self._symbolic.orientation, 0))
 
     def __str__(self) -> str:

@@ -259,6 +259,34 @@ def test_parabolic_normals_keep_the_sign(torus: gm.Spline) -> None:
 
 
 @pytest.mark.compiled
+def test_hessian_at_poles_is_taken_where_the_curvatures_are() -> None:
+    """Next to the singular point, at 2⁻²⁰: a radius that small has lost 20 of the 43 bits."""
+    poles = [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [0.0, 1e-9, 1.0]]
+    branches = gm.SupportFunction.of_spline(gm.surfaces.sphere(), (16, 16)).branches(poles)
+    assert branches.normal_index.tolist() == [0, 1, 2]
+    product = branches.principal_radii.prod(axis=1) * branches.gaussian_curvature
+    assert np.abs(product - 1).max() < 2.0**-20
+
+
+def test_small_spline_without_compilation() -> None:
+    """A bowl z = u² + v²: the spline is exact, x = (−n_x, −n_y, ·)/(2 n_z)."""
+    bowl = gm.Surface.from_callable(
+        lambda u, v: np.stack([u, v, u * u + v * v], axis=-1), ((-1.0, 1.0), (-1.0, 1.0))
+    )
+    normals = np.array([[0.3, -0.2, 1.0], [0.0, 0.0, 1.0], [0.5, 0.5, 1.0], [0.0, 0.0, -1.0]])
+    support = gm.SupportFunction.of_spline(bowl, (3, 3))
+    branches = support.branches(normals)
+    assert branches.normal_index.tolist() == [0, 1, 2]
+    u, v = (-normals[:3, :2] / (2 * normals[:3, 2:])).T
+    close(branches.points, np.column_stack([u, v, u * u + v * v]), 1.0, 2**12)
+    close(branches.uv, np.column_stack([u, v]), 1.0, 2**12)
+    g = 1 + 4 * u * u + 4 * v * v  # K = 4/g², and the normal points inwards: H < 0
+    close(branches.gaussian_curvature, 4 / g**2, 4.0, 2**12)
+    close(branches.mean_curvature, -(2 + 4 * u * u + 4 * v * v) / g**1.5, 4.0, 2**12)
+    close(1 / branches.principal_radii.prod(axis=1), 4 / g**2, 4.0, 2**14)
+
+
+@pytest.mark.compiled
 def test_several_branches_are_no_single_value(torus: gm.Spline) -> None:
     support = gm.SupportFunction.of_spline(torus)
     for call in (support, support.envelope):

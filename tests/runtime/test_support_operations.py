@@ -16,7 +16,7 @@ EPS = 2.0**-52
 NORMALS = gm.fibonacci(1500)
 of_spline = gm.SupportFunction.of_spline
 given = gm.SupportFunction.from_sympy
-MIXED = [[2, 0, 1], [0, 3, 0], [0, 0, 0], [1, 2, -1], [1, 0, 2], [-1, 1, 1]]
+MIXED = [[1, 0, 2], [2, 0, 1], [2, 1, 0], [3, 3, -3], [0, 2, -3], [-1, 0, -1]]
 ELLIPSOIDS = "sqrt(n_x**2 + 4*n_y**2 + 9*n_z**2)", "sqrt(2*n_x**2 + n_y**2 + n_x*n_z + n_z**2)"
 
 

@@ -16,44 +16,54 @@ Array = NDArray[np.float64]
 EPS = 2.0**-52
 # Control points of formula (12) of the paper, and a patch with both kinds of curvature.
 OF_12 = [[1.5, 0, 0], [0, 1.5, 0], [0, 0, 1.5], [1, 1, 0.5], [1, 0.5, 1], [0.5, 1, 1]]
-MIXED = [[2, 0, 1], [0, 3, 0], [0, 0, 0], [1, 2, -1], [1, 0, 2], [-1, 1, 1]]
+MIXED = [[1, 0, 2], [2, 0, 1], [2, 1, 0], [3, 3, -3], [0, 2, -3], [-1, 0, -1]]
 ALIGNED = np.array([n for n in product((-2.0, -1.0, 0.0, 1.0, 2.0), repeat=3) if any(n)])
-NORMALS = np.concatenate([gm.icosphere(8), gm.fibonacci(3000), ALIGNED])
+NORMALS = np.concatenate([gm.icosphere(8), gm.fibonacci(1000), ALIGNED])
 
 
 def unit(normals: Array) -> Array:
     return gm.SupportFunction.from_sympy("1").branches(normals).normals
 
 
+# Half of the derivatives of (10) at u = v = 0, by uu, uv, vv, u, v, in the control points.
+DERIVATIVES = [
+    (1, 0, 1, 0, -2, 0), (0, 0, 1, 1, -1, -1), (0, 1, 1, 0, 0, -2),
+    (0, 0, -1, 0, 1, 0), (0, 0, -1, 0, 0, 1),
+]  # fmt: skip
+
+
+def exact(net: list[list[Any]], normal: Array) -> tuple[list[Any], list[Fraction]]:
+    """Return the derivatives as vectors of fractions, and their products with the normal."""
+    n = [Fraction(float(x)) for x in normal]
+    vectors = [
+        [sum(w * Fraction(b[x]) for w, b in zip(weights, net, strict=True)) for x in range(3)]
+        for weights in DERIVATIVES
+    ]
+    forms = [sum((x * y for x, y in zip(s, n, strict=True)), start=Fraction(0)) for s in vectors]
+    return vectors, forms
+
+
+def exact_sign(net: list[list[Any]], normal: Array) -> int:
+    """Return the sign of D, which is that of the curvature."""
+    A, B, C, _, _ = exact(net, normal)[1]
+    return (A * C > B * B) - (A * C < B * B)
+
+
 def exact_place(net: list[list[Any]], normal: Array) -> tuple[Fraction, Fraction] | None:
     """Solve n·p_u = n·p_v = 0 in fractions; None unless the closed patch has this normal."""
-    b = [[Fraction(x) for x in point] for point in net]
-    n = [Fraction(float(x)) for x in normal]
-
-    def along(*weights: int) -> Fraction:
-        return sum(
-            (w * c * x for w, p in zip(weights, b, strict=True) for c, x in zip(p, n, strict=True)),
-            start=Fraction(0),
-        )
-
-    # Half of the second and first derivatives of (10) at u = v = 0.
-    A, B, C = along(1, 0, 1, 0, -2, 0), along(0, 0, 1, 1, -1, -1), along(0, 1, 1, 0, 0, -2)
-    P, Q = along(0, 0, -1, 0, 1, 0), along(0, 0, -1, 0, 0, 1)
+    (a, b, c, d, e), (A, B, C, P, Q) = exact(net, normal)
     D = A * C - B * B
     if D == 0:
         return None
     u, v = (B * Q - C * P) / D, (B * P - A * Q) / D
     if min(u, v, 1 - u - v) < 0:
         return None
-    a, m, c, d, e = (
-        [sum(w * b[k][x] for k, w in enumerate(ws)) for x in range(3)]
-        for ws in ((1, 0, 1, 0, -2, 0), (0, 0, 1, 1, -1, -1), (0, 1, 1, 0, 0, -2),
-                   (0, 0, -1, 0, 1, 0), (0, 0, -1, 0, 0, 1))
-    )  # fmt: skip
-    p_u = [a[x] * u + m[x] * v + d[x] for x in range(3)]
-    p_v = [m[x] * u + c[x] * v + e[x] for x in range(3)]
+    p_u = [a[x] * u + b[x] * v + d[x] for x in range(3)]
+    p_v = [b[x] * u + c[x] * v + e[x] for x in range(3)]
     N = [p_u[y] * p_v[z] - p_u[z] * p_v[y] for y, z in ((1, 2), (2, 0), (0, 1))]
-    return (u, v) if sum(x * y for x, y in zip(N, n, strict=True)) > 0 else None
+    return (
+        (u, v) if sum(x * Fraction(float(y)) for x, y in zip(N, normal, strict=True)) > 0 else None
+    )
 
 
 @pytest.mark.parametrize("net", [OF_12, MIXED], ids=["formula 12", "mixed"])
@@ -121,6 +131,36 @@ def test_domain_is_a_condition() -> None:
     condition = sp.lambdify(NORMAL, support.domain)
     normals = unit(gm.fibonacci(2000))
     assert (support.contains(normals) == condition(*normals.T)).all()  # in general position
+
+
+def test_next_to_a_parabolic_line() -> None:
+    """All of a parabolic line has one normal: near it, only exact arithmetic knows D, U, V, W."""
+    turn = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))[0]
+    b = 0.1 * np.array(MIXED) @ (np.sign(np.linalg.det(turn)) * turn).T
+    a, m, c = (np.array(weights) @ b for weights in DERIVATIVES[:3])
+
+    def normal(u: float) -> Array:
+        p_u, p_v = a * u + m * (1 - u) / 2, m * u + c * (1 - u) / 2
+        return np.cross(p_u + b[4] - b[2], p_v + b[5] - b[2])
+
+    def curvature(u: float) -> float:
+        n = normal(u)
+        return float((n @ a) * (n @ c) - (n @ m) ** 2)
+
+    low, high = 0.0, 1.0
+    assert curvature(low) * curvature(high) < 0
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (low, middle) if curvature(low) * curvature(middle) <= 0 else (middle, high)
+    near = normal(low) / np.linalg.norm(normal(low))
+    steps = np.random.default_rng(1).uniform(-1.0, 1.0, (500, 3))
+    normals = unit(near + steps * np.logspace(-16, -10, 500)[:, None])
+    branches = gm.SupportFunction.of_patch(b).branches(normals)
+    places = [exact_place(b.tolist(), n) for n in normals]
+    assert branches.normal_index.tolist() == [k for k, x in enumerate(places) if x is not None]
+    assert len(branches) > 20
+    assert (branches.elliptic == [exact_sign(b.tolist(), n) > 0 for n in branches.normals]).all()
+    assert 0 < np.count_nonzero(branches.elliptic) < len(branches)
 
 
 # --- the boundary ---------------------------------------------------------------------------------
