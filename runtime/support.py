@@ -137,15 +137,15 @@ class SupportFunction:
             return self._source.sheets(directions)
 
     def _single_valued(self, normals: ArrayLike) -> tuple[Branches, int]:
-        branches = self.branches(normals)
-        count = len(as_normals(normals))
-        sheets = np.bincount(branches.normal_index, minlength=count)
+        directions = as_normals(normals)
+        branches = self._sheets(directions).branches(directions)
+        sheets = np.bincount(branches.normal_index, minlength=len(directions))
         if sheets.max() > 1:
             worst = int(np.argmax(sheets > 1))
             raise InputError(
                 f"normals[{worst}] has {sheets[worst]} branches; branches(normals) returns them."
             )
-        return branches, count
+        return branches, len(directions)
 
     # --- operations -------------------------------------------------------------------------------
 

@@ -117,27 +117,16 @@ class PatchSource:
 
     def sheets(self, normals: NDArray[np.float64]) -> Sheets:
         """Return the branch of each normal that has one."""
-        kinds, uv = np.empty(len(normals), dtype=np.int8), np.zeros((len(normals), 2))
-        kernels.classify(
-            self._vectors, self._bound, sampler.ACCURATE * self._bound, normals, kinds, uv
-        )
-        open_ = np.flatnonzero(kinds == kernels.DOUBTFUL)
-        which, at, elliptic = self._decided(normals[open_])
-        kinds[open_], uv[open_] = kernels.OUTSIDE, at
-        kinds[open_[which]] = kernels.INSIDE
-        rows = np.flatnonzero(kinds == kernels.INSIDE)
+        rows, uv, signs = self._members(normals)
         count = len(rows)
         points, hessian = np.empty((count, 3)), np.empty((count, 3, 3))
         gaussian, mean = np.empty(count), np.empty(count)
         kernels.fill_branches(
-            self._vectors, self.control_points[2], self._scale, normals[rows], uv[rows],
+            self._vectors, self.control_points[2], self._scale, normals[rows], uv,
             points, hessian, gaussian, mean,
         )  # fmt: skip
-        places = np.searchsorted(rows, open_[which])
-        gaussian[places] = np.copysign(gaussian[places], np.where(elliptic[which], 1.0, -1.0))
-        return Sheets(
-            rows, points, hessian, gaussian, mean, np.zeros(count, dtype=np.int64), uv[rows]
-        )
+        gaussian = np.where(signs != 0, np.copysign(gaussian, signs), gaussian)
+        return Sheets(rows, points, hessian, gaussian, mean, np.zeros(count, dtype=np.int64), uv)
 
     def expression(self) -> sympy.Expr:
         """Return the cubic over the quadratic form, with the exact values of the control points."""
@@ -185,17 +174,32 @@ class PatchSource:
         net, _ = integers(self.control_points)
         return plain(formulas.power_form)(*net.ravel())[:15]
 
+    def _members(
+        self, normals: NDArray[np.float64]
+    ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.int8]]:
+        """Return which normals the patch has, their u, v (k, 2), and the exact sign of K or 0."""
+        kinds, uv = np.empty(len(normals), dtype=np.int8), np.zeros((len(normals), 2))
+        signs = np.zeros_like(kinds)
+        kernels.classify(
+            self._vectors, self._bound, sampler.ACCURATE * self._bound, normals, kinds, uv
+        )
+        open_ = np.flatnonzero(kinds == kernels.DOUBTFUL)
+        inside, uv[open_], signs[open_] = self._decided(normals[open_])
+        kinds[open_] = np.where(inside, kernels.INSIDE, kernels.OUTSIDE)
+        rows = np.flatnonzero(kinds == kernels.INSIDE)
+        return rows, uv[rows], signs[rows]
+
     def _decided(
         self, normals: NDArray[np.float64]
-    ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.bool_]]:
-        """Decide exactly: which normals (k, 3) belong to the patch, u, v (k, 2), whether K > 0."""
+    ) -> tuple[NDArray[np.bool_], NDArray[np.float64], NDArray[np.int8]]:
+        """Decide exactly: which normals (k, 3) belong to the patch, u, v (k, 2), the sign of K."""
         n, _ = integers_by_row(normals)
         forms = np.array(plain(formulas.forms)(*self._exact_vectors, *n), dtype=object)
-        D, U, V, W = (sign(x) for x in forms)
+        D, *bounds = (sign(x) for x in forms)
         c3 = sign(np.asarray(plain(formulas.orientation)(*self._exact_vectors, *n), dtype=object))
-        signs = np.stack([U, V, W])
+        signs = np.stack(bounds)
         inside = (D != 0) & (c3 > 0) & ((signs.min(axis=0) >= 0) | (signs.max(axis=0) <= 0))
         uv = np.zeros((len(normals), 2))
         for axis in (0, 1):
             uv[inside, axis] = ratio(forms[axis + 1, inside], forms[0, inside])
-        return np.flatnonzero(inside), uv, D > 0
+        return inside, uv, D
