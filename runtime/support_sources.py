@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -137,7 +137,7 @@ class PatchSource:
         import sympy as sp
 
         D, U, V, W = self._symbolic.forms.values()
-        at_least: Any = sp.Ge  # its type hints do not say that it is a Boolean
+        at_least = cast(Any, sp.Ge)  # its type hints do not say that it is a Boolean
         inside = [sp.And(*(at_least(s * x, 0) for x in (U, V, W))) for s in (1, -1)]
         return sp.And(sp.Or(*inside), sp.Ne(D, 0), sp.Gt(self._symbolic.orientation, 0))
 

@@ -143,6 +143,11 @@ def test_homogeneous_of_degree_1(h, answer):
     assert is_homogeneous(h) is answer
 
 
+def test_long_expressions_are_not_expanded():
+    h = sum((sp.sqrt(k * x**2 + y**2 + z**2 + k * x * z) for k in range(1, 200)), start=sp.S.Zero)
+    assert not is_homogeneous(h)
+
+
 def test_gradient_of_a_homogeneous_function_is_taken_as_it_is():
     assert "dh_S" not in kernel_source(FUNCTIONS["ellipsoid"])
     assert "dh_S_x" in kernel_source(x**3)
