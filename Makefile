@@ -11,7 +11,7 @@ DEM = from matplotlib.cbook import get_sample_data as f; \
 TERRAIN = "$$($(BIN)/python -c '$(DEM)'):elevation" --spacing 74.5 -92.5 --cells 50 43
 
 .DEFAULT_GOAL := help
-.PHONY: help demo generate check-generated test coverage bench lint typecheck formulas orders errata clean
+.PHONY: help demo generate check-generated test coverage bench lint typecheck formulas orders errata curves figures clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -62,9 +62,17 @@ orders: $(READY) ## measure the orders of approximation again (docs/orders.md)
 	$(BIN)/python docs/orders.py > docs/orders.tmp
 	mv docs/orders.tmp docs/orders.md
 
+curves: $(READY) ## measure curves sampled by normals again (docs/curves.md)
+	$(BIN)/python docs/curves.py > docs/curves.tmp
+	mv docs/curves.tmp docs/curves.md
+
 errata: $(READY) ## write the errata of the paper (docs/errata.md)
 	$(BIN)/python docs/errata.py > docs/errata.tmp
 	mv docs/errata.tmp docs/errata.md
+
+figures: $(READY) ## draw Figs. 2-7 of the paper again (docs/figures.md)
+	$(BIN)/python docs/figures.py > docs/figures.tmp
+	mv docs/figures.tmp docs/figures.md
 
 clean: ## remove what make made
 	rm -rf $(VENV) out build *.egg-info .pytest_cache .ruff_cache .hypothesis .benchmarks .coverage

@@ -12,6 +12,11 @@ from typing import TYPE_CHECKING
 
 from .runtime import surfaces
 from .runtime.branches import Branches
+from .runtime.circle import circle
+from .runtime.curve import Curve
+from .runtime.curve_samples import CurveReport, CurveSamples
+from .runtime.curve_sampling import sample_curve
+from .runtime.curve_spline import CurveSpline, fit_curve
 from .runtime.errors import (
     FileError,
     GaussmapError,
@@ -22,6 +27,7 @@ from .runtime.errors import (
     UnknownNameError,
 )
 from .runtime.io import read_samples
+from .runtime.polygon import polygon_distance
 from .runtime.samples import Samples, SamplingReport
 from .runtime.sampling import sample, sample_many
 from .runtime.sphere import fibonacci, icosphere
@@ -37,6 +43,10 @@ __version__ = "0.1.0"
 
 __all__ = [
     "Branches",
+    "Curve",
+    "CurveReport",
+    "CurveSamples",
+    "CurveSpline",
     "FileError",
     "GaussmapError",
     "GaussmapWarning",
@@ -49,12 +59,16 @@ __all__ = [
     "Surface",
     "SurfaceError",
     "UnknownNameError",
+    "circle",
     "fibonacci",
     "fit",
+    "fit_curve",
     "formulas",
     "icosphere",
+    "polygon_distance",
     "read_samples",
     "sample",
+    "sample_curve",
     "sample_many",
     "surfaces",
     "symbolic",

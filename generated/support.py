@@ -348,21 +348,21 @@ def fill_hessians(mu, scale, patches, normals, known, hessians):
 
 
 @jit
-def add_offset(d, normals, points, hessians, gaussian, mean):
-    """Add a sphere of radius d to points and Hessians at unit normals (k, 3), change curvatures."""
+def add_offset(R, normals, points, hessians, gaussian, mean):
+    """Add a sphere of radius R to points and Hessians at unit normals (k, 3), change curvatures."""
     for row in range(normals.shape[0]):
         n_x = normals[row, 0]
         n_y = normals[row, 1]
         n_z = normals[row, 2]
         # offset (eqs. (5)-(7)): 21 operations as written, 18 here
-        t0 = d * n_x
+        t0 = R * n_x
         x_x = t0
-        t1 = d * n_y
+        t1 = R * n_y
         x_y = t1
-        x_z = d * n_z
-        H_xx = d * (1 - n_x * n_x)
-        H_yy = d * (1 - n_y * n_y)
-        H_zz = d * (1 - n_z * n_z)
+        x_z = R * n_z
+        H_xx = R * (1 - n_x * n_x)
+        H_yy = R * (1 - n_y * n_y)
+        H_zz = R * (1 - n_z * n_z)
         H_xy = -n_y * t0
         H_xz = -n_z * t0
         H_yz = -n_z * t1
@@ -381,11 +381,11 @@ def add_offset(d, normals, points, hessians, gaussian, mean):
         K = gaussian[row]
         H = mean[row]
         # offset_curvature (beyond the paper): 16 operations as written, 11 here
-        t0 = 1.0 / (2 * H * d + K * d * d + 1)
-        K_d = K * t0
-        H_d = t0 * (H + K * d)
-        gaussian[row] = K_d
-        mean[row] = H_d
+        t0 = 1.0 / (2 * H * R + K * R * R + 1)
+        K_offset = K * t0
+        H_offset = t0 * (H + K * R)
+        gaussian[row] = K_offset
+        mean[row] = H_offset
 
 
 @jit

@@ -22,7 +22,7 @@ class InputError(GaussmapError, ValueError):
 
 
 class SurfaceError(GaussmapError):
-    """A surface cannot be evaluated: its callable raised, or returned something unusable."""
+    """A surface or a curve cannot be evaluated: its callable raised, or returned no points."""
 
 
 class UnknownNameError(GaussmapError, LookupError):

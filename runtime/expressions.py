@@ -13,24 +13,20 @@ from .errors import InputError
 if TYPE_CHECKING:
     import sympy
 
-__all__ = ["compiled", "numbers"]
+__all__ = ["compiled", "interval", "numbers", "one_symbol", "two_symbols"]
 
 
 def compiled(
-    position: Sequence[Any], parameters: Sequence[Any]
-) -> Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.float64]]:
-    """Return f(u, v) → (..., 3) for three expressions in two parameters; InputError if unusable."""
+    position: Sequence[Any], symbols: Sequence[sympy.Symbol]
+) -> Callable[..., NDArray[np.float64]]:
+    """Return f(u, v) → (..., 3) for three expressions in two symbols, or f(t) → (..., 2).
+
+    Raises InputError if they are unusable.
+    """
     import sympy as sp
 
-    symbols = _symbols(parameters)
     by_name = {symbol.name: symbol for symbol in symbols}
-    try:
-        x, y, z = position
-    except (TypeError, ValueError):
-        raise InputError(
-            f"position must be three SymPy expressions (x, y, z), not {position!r}."
-        ) from None
-    expressions = [_expression(entry, by_name) for entry in (x, y, z)]
+    expressions = [_expression(entry, by_name) for entry in _coordinates(position, len(symbols))]
     if any(e.has(sp.nan, sp.zoo) for e in expressions):
         raise InputError(f"position is not finite: {position!r}.")
     expressions = [
@@ -43,8 +39,9 @@ def compiled(
         raise InputError(f"position holds symbols that are neither parameter nor number: {names}.")
     function = sp.lambdify(symbols, expressions, modules="numpy", cse=True)
 
-    def evaluate(u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.stack([np.broadcast_to(x, u.shape) for x in function(u, v)], axis=-1)
+    def evaluate(*values: NDArray[np.float64]) -> NDArray[np.float64]:
+        shape = values[0].shape
+        return np.stack([np.broadcast_to(x, shape) for x in function(*values)], axis=-1)
 
     return evaluate
 
@@ -59,16 +56,52 @@ def numbers(domain: Sequence[Sequence[Any]]) -> list[list[float]]:
         ) from None
 
 
-def _symbols(parameters: Sequence[Any]) -> list[sympy.Symbol]:
-    import sympy as sp
-
+def interval(domain: Sequence[Any]) -> list[float]:
+    """Return the ends of an interval, which may be expressions, as floats; InputError if not."""
     try:
-        u, v = (sp.Symbol(x) if isinstance(x, str) and x.isidentifier() else x for x in parameters)
+        return [float(_expression(end, {})) for end in domain]
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"domain must be (t0, t1) in numbers, not {domain!r}.") from None
+
+
+def _coordinates(position: Sequence[Any], parameters: int) -> tuple[Any, ...]:
+    """Return the coordinates, one more than there are parameters."""
+    names = "(x, y, z)" if parameters == 2 else "(x, y)"
+    try:
+        coordinates = () if isinstance(position, str) else tuple(position)
+    except TypeError:
+        coordinates = ()
+    if len(coordinates) != parameters + 1:
+        number = "three" if parameters == 2 else "two"
+        raise InputError(f"position must be {number} SymPy expressions {names}, not {position!r}.")
+    return coordinates
+
+
+def two_symbols(parameters: Sequence[Any]) -> list[sympy.Symbol]:
+    """Return the parameters of a surface, symbols or their names; InputError if they are not."""
+    try:
+        u, v = (_symbol(x) for x in parameters)
     except (TypeError, ValueError):
         u = v = None
-    if not (isinstance(u, sp.Symbol) and isinstance(v, sp.Symbol)) or u.name == v.name:
+    if u is None or v is None or u.name == v.name:
         raise InputError(f"parameters must be two SymPy symbols (u, v), not {parameters!r}.")
     return [u, v]
+
+
+def one_symbol(parameter: sympy.Symbol | str) -> list[sympy.Symbol]:
+    """Return the parameter of a curve, a symbol or its name; InputError if it is not."""
+    symbol = _symbol(parameter)
+    if symbol is None:
+        raise InputError(f"the parameter must be a SymPy symbol such as t, not {parameter!r}.")
+    return [symbol]
+
+
+def _symbol(entry: object) -> sympy.Symbol | None:
+    import sympy as sp
+
+    if isinstance(entry, str) and entry.isidentifier():
+        return sp.Symbol(entry)
+    return entry if isinstance(entry, sp.Symbol) else None
 
 
 def _expression(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401 - SymPy has no types

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from .spline import Spline
 
-__all__ = ["AZIMUTH", "ELEVATION", "Scene", "front", "height_factor", "view"]
+__all__ = ["AZIMUTH", "ELEVATION", "Scene", "front", "height_factor", "quadrangles", "view"]
 
 ELEVATION, AZIMUTH = 28.0, -55.0  # of the viewer, in degrees
 MESH, MOST_MESH = 112, 224  # quadrangles along u and v: as many as cells, within this
@@ -61,9 +61,7 @@ class Scene:
     @cached_property
     def quadrangles(self) -> NDArray[np.float64]:
         """The quadrangles (Q, 4, 3) of the mesh, their corners going round."""
-        m = self.mesh
-        corners = m[:-1, :-1], m[1:, :-1], m[1:, 1:], m[:-1, 1:]
-        return np.stack([x.reshape(-1, 3) for x in corners], axis=1)
+        return quadrangles(self.mesh)
 
     @cached_property
     def triangles(self) -> NDArray[np.float64]:
@@ -88,6 +86,12 @@ class Scene:
         seen = self.seen(points)
         diameter = float(np.linalg.norm(np.ptp(self.triangles.reshape(-1, 3), axis=0)))
         return seen[:, 2] >= front(self.triangles, seen[:, :2]) - HIDING * diameter
+
+
+def quadrangles(mesh: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the quadrangles (Q, 4, 3) of a mesh (m + 1, n + 1, 3), their corners going round."""
+    corners = mesh[:-1, :-1], mesh[1:, :-1], mesh[1:, 1:], mesh[:-1, 1:]
+    return np.stack([x.reshape(-1, 3) for x in corners], axis=1)
 
 
 def front(triangles: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -64,15 +64,17 @@ def fibonacci(count: int) -> NDArray[np.float64]:
     return _unit(np.column_stack([radius * np.cos(angle), radius * np.sin(angle), z]))
 
 
-def as_normals(normals: ArrayLike) -> NDArray[np.float64]:
-    """Return an array of directions (S, 3), of any non-zero lengths, as unit normals, float64.
+def as_normals(normals: ArrayLike, dimension: int = 3) -> NDArray[np.float64]:
+    """Return directions (S, dimension), of any non-zero lengths, as unit normals, float64.
 
     A vector that has unit length already, up to rounding, is kept bit for bit. Raises InputError
     for another shape, an empty array, NaN, infinity, or a vector of length 0, and names its row.
     """
     array = real_array(normals, "normals")
-    if array.ndim != 2 or array.shape[1] != 3 or array.shape[0] == 0:
-        raise InputError(f"normals must have the shape (S, 3) with S >= 1, not {array.shape}.")
+    if array.ndim != 2 or array.shape[1] != dimension or array.shape[0] == 0:
+        raise InputError(
+            f"normals must have the shape (S, {dimension}) with S >= 1, not {array.shape}."
+        )
     bad = ~np.isfinite(array).all(axis=1)
     if bad.any():
         raise InputError(f"normals[{int(bad.argmax())}] holds NaN or infinity.")

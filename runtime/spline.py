@@ -16,7 +16,15 @@ from .errors import InputError, SurfaceError
 from .ring import Border, Sides, coefficients_with_ring, vertices_with_ring
 from .surface import Domain, Ends, Surface
 
-__all__ = ["DEFAULT_CELLS", "Spline", "apart", "fit", "fit_grid"]
+__all__ = [
+    "DEFAULT_CELLS",
+    "Spline",
+    "apart",
+    "fit",
+    "fit_grid",
+    "not_too_large",
+    "scale_to_one",
+]
 
 DEFAULT_CELLS = (64, 64)
 # What is said to be one point may be this far apart, beside the size of the surface.
@@ -66,8 +74,7 @@ class Spline:
     def scale(self) -> float:
         """A power of two that brings the differences of neighbouring coefficients to about 1."""
         steps = [np.abs(np.diff(self.coefficients, axis=axis)).max() for axis in (0, 1)]
-        largest = max(steps)
-        return math.ldexp(1.0, min(-math.frexp(largest)[1], LARGEST_EXPONENT)) if largest else 1.0
+        return scale_to_one(float(max(steps)))
 
     def evaluate(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
         """Return points (..., 3) at parameters that broadcast together.
@@ -158,12 +165,17 @@ def fit(surface: Surface, cells: Sequence[int] | None = None) -> Spline:
 
 def fit_grid(points: NDArray[np.float64], domain: Domain, ends: Ends, name: str) -> Spline:
     """Return the spline with one cell between any four neighbouring points (m, n, 3) of a grid."""
-    values = vertices_with_ring(_not_too_large(points, name), ends)
+    values = vertices_with_ring(not_too_large(points, name), ends)
     inner = np.empty((values.shape[0] - 3, values.shape[1] - 3, 3))
     _checked_cells(inner.shape[:2], ends)
     kernels.fit_vertices(values, inner)
     border = Border.of_vertices(values)
     return Spline(coefficients_with_ring(inner, border, ends), domain, ends, name)
+
+
+def scale_to_one(largest: float) -> float:
+    """Return a power of two that brings a number to about 1."""
+    return math.ldexp(1.0, min(-math.frexp(largest)[1], LARGEST_EXPONENT)) if largest else 1.0
 
 
 def apart(
@@ -176,7 +188,8 @@ def apart(
     return float(np.abs(first - second).max()) > SAME_POINT * size + rounding
 
 
-def _not_too_large(points: NDArray[np.float64], name: str) -> NDArray[np.float64]:
+def not_too_large(points: NDArray[np.float64], name: str) -> NDArray[np.float64]:
+    """Return points; SurfaceError if formulas would overflow with them."""
     if np.abs(points).max() > 2.0**LARGEST_EXPONENT:
         raise SurfaceError(f"the coordinates of {name!r} are too large to compute with.")
     return points
@@ -189,8 +202,8 @@ def _values(
 
     Vertices on a seam are made bitwise equal, so that the spline closes exactly.
     """
-    centres = _not_too_large(surface.evaluate(lines_u[1::2, None], lines_v[1::2]), surface.name)
-    vertices = _not_too_large(surface.evaluate(lines_u[::2, None], lines_v[::2]), surface.name)
+    centres = not_too_large(surface.evaluate(lines_u[1::2, None], lines_v[1::2]), surface.name)
+    vertices = not_too_large(surface.evaluate(lines_u[::2, None], lines_v[::2]), surface.name)
     for axis, (along, ends) in enumerate(zip("uv", surface.ends, strict=True)):
         rows = np.swapaxes(vertices, 0, axis)
         if ends[0] in ("wrap", "flip"):
@@ -212,8 +225,8 @@ def _values(
 
 def _middles(surface: Surface, lines_u: NDArray[np.float64], lines_v: NDArray[np.float64]) -> Sides:
     """Evaluate a surface in the middle of the edges at the ends of v, and at the ends of u."""
-    at_v = _not_too_large(surface.evaluate(lines_u[1::2], lines_v[[0, -1], None]), surface.name)
-    at_u = _not_too_large(surface.evaluate(lines_u[[0, -1], None], lines_v[1::2]), surface.name)
+    at_v = not_too_large(surface.evaluate(lines_u[1::2], lines_v[[0, -1], None]), surface.name)
+    at_u = not_too_large(surface.evaluate(lines_u[[0, -1], None], lines_v[1::2]), surface.name)
     return (at_v[0], at_v[1]), (at_u[0], at_u[1])
 
 

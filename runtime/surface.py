@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .checks import parameter_arrays, real_array
-from .errors import GaussmapError, InputError, SurfaceError
+from .errors import InputError
+from .evaluation import evaluated
 
 if TYPE_CHECKING:
     import sympy
@@ -79,9 +80,9 @@ class Surface:
         strings such as "2*pi". Raises InputError unless there are three expressions without further
         symbols.
         """
-        from .expressions import compiled, numbers
+        from .expressions import compiled, numbers, two_symbols
 
-        f = compiled(position, parameters)
+        f = compiled(position, two_symbols(parameters))
         return cls(name, f, checked_domain(numbers(domain)), checked_ends(periodic))
 
     @classmethod
@@ -125,35 +126,8 @@ class Surface:
         no real numbers, or lie outside a surface that was given by points.
         """
         u_array, v_array = parameter_arrays(u, v)
-        shape = u_array.shape
-        u_array, v_array = np.atleast_1d(u_array), np.atleast_1d(v_array)
-        try:
-            with np.errstate(all="ignore"):
-                returned = self.function(u_array.copy(), v_array.copy())
-        except GaussmapError:
-            raise
-        except Exception as error:
-            raise SurfaceError(
-                f"the callable of surface {self.name!r} raised {type(error).__name__}: "
-                f"{' '.join(str(error).split())}"
-            ) from error
-        try:
-            points = real_array(returned, f"what the callable of surface {self.name!r} returns")
-        except InputError as error:
-            raise SurfaceError(str(error)) from None
-        if points.shape != (*u_array.shape, 3):
-            raise SurfaceError(
-                f"the callable of surface {self.name!r} returned the shape {points.shape} for "
-                f"parameters of shape {u_array.shape}; it must return {(*u_array.shape, 3)}."
-            )
-        if not np.isfinite(points).all():
-            bad = ~np.isfinite(points).all(axis=-1)
-            where = np.unravel_index(int(np.argmax(bad)), bad.shape)
-            raise SurfaceError(
-                f"surface {self.name!r} is not finite at u = {float(u_array[where])}, "
-                f"v = {float(v_array[where])}: {points[where]}."
-            )
-        return points.reshape(*shape, 3)
+        parameters = {"u": u_array, "v": v_array}
+        return evaluated(self.function, parameters, 3, f"surface {self.name!r}")
 
 
 def checked_domain(domain: Sequence[Sequence[float]]) -> Domain:

@@ -6,12 +6,12 @@
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from . import patch, spline, support
+from . import curve, patch, spline, support
 from .bezier import BezierTriangle
 from .formula import Formula
 
 __all__ = ["BezierTriangle", "Formula", "formulas"]
 
 formulas: Mapping[str, Formula] = MappingProxyType(
-    {formula.name: formula for formula in (*patch.FORMULAS, *spline.FORMULAS, *support.FORMULAS)}
+    {x.name: x for x in (*patch.FORMULAS, *spline.FORMULAS, *support.FORMULAS, *curve.FORMULAS)}
 )

@@ -48,7 +48,8 @@ class BezierTriangle:
     @property
     def normal(self) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
         """The symbols n_x, n_y, n_z."""
-        return n.components
+        x, y, z = n.components
+        return x, y, z
 
     def evaluate(self, formula: Formula) -> dict[str, sp.Expr]:
         """Return the outputs of a formula for this patch; inputs but a … e, p stay symbols."""

@@ -27,6 +27,8 @@ class Length(sp.Expr):
     is_positive = True
 
 
+GREEK = {"mu": r"\mu", "kappa": r"\kappa"}
+
 # What a program has to call by one name, as people write it.
 AS_WRITTEN = {
     scalar("c3_twice"): 2 * scalar("c_3"),
@@ -66,14 +68,15 @@ def latex_name(name: str, *, bold: bool = False) -> str:
         return rf"\nabla{gradient[2]} {gradient[1]}"
     if re.fullmatch("[a-e]{3}", name):
         return rf"[\mathbf{{{name}}}]"
-    letter = re.fullmatch(r"(mu|[A-Za-z])(\d*)((?:_[a-z\d]+)*)", name)
+    letter = re.fullmatch(rf"({'|'.join(GREEK)}|[A-Za-z])(\d*)((?:_[a-z\d]+)*)", name)
     if letter is None:
         word, index = cast(re.Match[str], re.fullmatch(r"(\w+?)(_[a-z])?", name)).groups()
         return r"\mathit{" + word.replace("_", r"\_") + "}" + (index or "")
     stem, digits, indices = letter.groups()
     below = ",".join(x for x in (digits, *indices.split("_")) if x)
     if stem == "mu":
-        stem, below = r"\mu", below and rf"\mathrm{{{below}}}"
+        below = below and rf"\mathrm{{{below}}}"
+    stem = GREEK.get(stem, stem)
     if bold:
         stem = rf"\boldsymbol{{{stem}}}" if stem == r"\mu" else rf"\mathbf{{{stem}}}"
     return f"{stem}_{{{below}}}" if below else stem

@@ -9,13 +9,14 @@ import textwrap
 from collections.abc import Mapping
 from fractions import Fraction
 from pathlib import Path
+from typing import cast
 
 import sympy as sp
 
-from . import latex, patch, spline, support, surfaces
+from . import curve, latex, patch, spline, support, surfaces
 from .emit import block, call, functions, render
 from .expression import hessian_entries
-from .formula import Formula
+from .formula import Formula, PlaneVector
 from .positions import position
 from .printer import source_of
 
@@ -29,6 +30,7 @@ def derive() -> dict[str, str]:
     """Return the texts of all generated files by their names."""
     sources = {
         "__init__.py": '"""Kernels and formulas written by `make generate`: never edit these."""\n',
+        "curve.py": curve_source(),
         "patch.py": patch_source(),
         "spline.py": spline_source(),
         "sampler.py": sampler_source(),
@@ -95,6 +97,29 @@ def header(title: str) -> str:
     return render(
         "header.py", {"title": f'"""{title}', "options": textwrap.fill(options, 92)}
     ).rstrip()
+
+
+def curve_source() -> str:
+    """Return generated/curve.py: the formulas of curves, evaluation, what a sample holds."""
+    load = "\n".join(
+        f"{component} = scale * (mu[{place}, {x}] - mu[i + 1, {x}])"
+        for place, symbol in zip(("i", "i + 2"), curve.ARC.inputs, strict=True)
+        for x, component in enumerate(cast(PlaneVector, symbol).components)
+    )
+    return render(
+        "curve.py",
+        {
+            "header": header("Planar curves: arcs, evaluation, what a sample holds."),
+            "formulas": functions([x for x in curve.FORMULAS if x is not curve.SAMPLE]),
+            "load": load,
+            "arc": block(curve.ARC),
+            "envelope": block(curve.ENVELOPE),
+            "tangent": block(curve.TANGENT),
+            "curvature_at": block(curve.CURVATURE_AT),
+            "parameter": block(curve.PARAMETER),
+            "sample": block(curve.SAMPLE),
+        },
+    )
 
 
 def patch_source() -> str:

@@ -20,16 +20,17 @@ __all__ = [
     "Det",
     "Dot",
     "Formula",
+    "PlaneVector",
     "VectorSymbol",
     "compose",
     "dot",
+    "plane_vectors",
     "scalar",
     "substitute",
     "vectors",
 ]
 
 BEYOND_THE_PAPER = "beyond the paper"
-AXES = ("x", "y", "z")
 
 Definition = tuple[sp.Symbol, sp.Expr]
 
@@ -40,11 +41,12 @@ Definition = tuple[sp.Symbol, sp.Expr]
 class VectorSymbol(sp.Symbol):
     """The name of a vector of R³."""
 
+    AXES: tuple[str, ...] = ("x", "y", "z")
+
     @property
-    def components(self) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
+    def components(self) -> tuple[sp.Symbol, ...]:
         """The symbols name_x, name_y, name_z."""
-        x, y, z = (scalar(f"{self.name}_{axis}") for axis in AXES)
-        return x, y, z
+        return tuple(scalar(f"{self.name}_{axis}") for axis in self.AXES)
 
     @classmethod
     def class_key(cls) -> tuple[Literal[2], Literal[0], str]:
@@ -55,6 +57,12 @@ class VectorSymbol(sp.Symbol):
     def column(self) -> sp.Matrix:
         """The components as a matrix."""
         return sp.Matrix(self.components)
+
+
+class PlaneVector(VectorSymbol):
+    """The name of a vector of R²."""
+
+    AXES = ("x", "y")
 
 
 class VectorProduct(sp.Expr):
@@ -79,10 +87,12 @@ class Dot(VectorProduct):
 
 
 class Det(VectorProduct):
-    """The scalar triple product of three vector symbols."""
+    """The determinant of three vector symbols, or of two in the plane."""
 
     def in_components(self) -> sp.Expr:
-        """Return r · (s × t)."""
+        """Return r · (s × t), or s_x t_y − s_y t_x."""
+        if len(self.args) == 2:
+            return cast(sp.Expr, sp.Matrix.hstack(*self.factors).det())
         r, s, t = self.factors
         return dot(r, s.cross(t))
 
@@ -105,6 +115,11 @@ def scalar(name: str) -> sp.Symbol:
 def vectors(names: Iterable[str]) -> tuple[VectorSymbol, ...]:
     """Return one vector symbol for each name."""
     return tuple(VectorSymbol(name) for name in names)
+
+
+def plane_vectors(names: Iterable[str]) -> tuple[PlaneVector, ...]:
+    """Return one vector symbol of the plane for each name."""
+    return tuple(PlaneVector(name) for name in names)
 
 
 def dot(left: sp.Matrix, right: sp.Matrix) -> sp.Expr:
@@ -131,15 +146,23 @@ def is_vector(expression: sp.Basic) -> bool:
 
 
 def components(expression: sp.Expr) -> tuple[sp.Expr, ...]:
-    """Return the three components of a vector, or a scalar in the components of its vectors.
+    """Return the components of a vector, or a scalar in the components of its vectors.
 
-    Raises ValueError if the expression makes no sense, see `is_vector`.
+    Raises ValueError if the expression makes no sense, see `is_vector`, or mixes R² and R³.
     """
     plain = substitute(expression, {x: x.in_components() for x in expression.atoms(Dot, Det)})
     if not is_vector(expression):
         return (plain,)
     columns = {x: x.column.flat() for x in plain.atoms(VectorSymbol, Cross)}
-    return tuple(substitute(plain, {x: y[k] for x, y in columns.items()}) for k in range(3))
+    rows = zip(*columns.values(), strict=True)
+    return tuple(substitute(plain, dict(zip(columns, row, strict=True))) for row in rows)
+
+
+def named(name: str, expression: sp.Expr) -> sp.Symbol:
+    """Return a symbol of the kind that the expression is: a scalar or a vector of R² or R³."""
+    if not is_vector(expression):
+        return scalar(name)
+    return (PlaneVector if len(components(expression)) == 2 else VectorSymbol)(name)
 
 
 def flat(symbols: Iterable[sp.Symbol]) -> tuple[sp.Symbol, ...]:
@@ -195,13 +218,9 @@ class Formula:
 
         Raises ValueError if an expression is neither a scalar nor a vector.
         """
-
-        def named(pairs: Sequence[tuple[str, sp.Expr]]) -> list[Definition]:
-            return [(VectorSymbol(x) if is_vector(y) else scalar(x), y) for x, y in pairs]
-
-        ends = named(outputs)
-        symbols = tuple(symbol for symbol, _ in ends)
-        return cls(name, description, source, tuple(inputs), (*named(terms), *ends), symbols)
+        pairs = tuple((named(x, y), y) for x, y in (*terms, *outputs))
+        symbols = tuple(symbol for symbol, _ in pairs[len(terms) :])
+        return cls(name, description, source, tuple(inputs), pairs, symbols)
 
     @property
     def sentence(self) -> str:

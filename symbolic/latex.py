@@ -9,7 +9,7 @@ from functools import cache
 
 import sympy as sp
 
-from . import patch, spline, support, surfaces
+from . import curve, patch, spline, support, surfaces
 from .display import latex_name, latex_of
 from .emit import render
 from .formula import Formula, VectorSymbol
@@ -23,6 +23,7 @@ FORMULAS = {
     "One quadratic patch": patch.FORMULAS,
     "The quadratic spline": spline.FORMULAS,
     "Support functions": support.FORMULAS,
+    "Planar curves": curve.FORMULAS,
 }
 ENDS = {
     "none": "has edges",
@@ -93,7 +94,7 @@ def sections() -> dict[str, list[Entry]]:
 def _formula(formula: Formula) -> Entry:
     return Entry(
         formula.name,
-        _converted(formula.description, mathematics=lambda x: f"${_named(x)}$"),
+        _converted(formula.description, mathematics=lambda x: f"${_named(x, formula)}$"),
         formula.latex(),
         (
             f"Source: {formula.source}.",
@@ -157,13 +158,19 @@ def _converted(
 def _vectors() -> set[str]:
     """Return the names of all vectors."""
     formulas = [x for section in FORMULAS.values() for x in section]
-    symbols = {s for x in formulas for s in (*x.inputs, *(name for name, _ in x.definitions))}
+    symbols = {s for x in formulas for s in _symbols(x)}
     return {s.name for s in symbols if isinstance(s, VectorSymbol)}
 
 
-def _named(source: str) -> str:
-    """Return mathematics of a sentence as LaTeX, with the names as in the formulas."""
-    names = re.sub(r"[A-Za-z]\w*", lambda x: latex_name(x[0], bold=x[0] in _vectors()), source)
+def _symbols(formula: Formula) -> tuple[sp.Symbol, ...]:
+    return *formula.inputs, *(name for name, _ in formula.definitions)
+
+
+def _named(source: str, formula: Formula) -> str:
+    """Return mathematics of its sentence as LaTeX, with the names as in the formulas."""
+    scalars = {s.name for s in _symbols(formula) if not isinstance(s, VectorSymbol)}
+    bold = _vectors() - scalars
+    names = re.sub(r"[A-Za-z]\w*", lambda x: latex_name(x[0], bold=x[0] in bold), source)
     return names.replace("×", r"\times").replace("…", r"\ldots")
 
 

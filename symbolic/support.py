@@ -37,7 +37,7 @@ ENTRIES = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "xz": (0, 2),
 
 n, x, dh = vectors(("n", "x", "dh"))
 (intrinsic,) = vectors(["dh_S"])
-h, d = scalar("h"), scalar("d")
+h, R = scalar("h"), scalar("R")
 
 
 def named(name: str) -> tuple[sp.Symbol, ...]:
@@ -165,16 +165,16 @@ HESSIAN_OF_EXTENSION = _hessian_of_extension()
 
 
 def _offset() -> Formula:
-    """Differentiate the support function d |n| of a sphere."""
-    _verified(n.column * d, _derivatives_of_extension(d, 1))
-    hessian = _verified(TANGENTIAL * d, _derivatives_of_extension(d, 2))
+    """Differentiate the support function R |n| of a sphere."""
+    _verified(n.column * R, _derivatives_of_extension(R, 1))
+    hessian = _verified(TANGENTIAL * R, _derivatives_of_extension(R, 2))
     return Formula.build(
         "offset",
-        "The sphere of radius $d$, $h = d|n|$, at a unit normal $n$: envelope and Hessian. Its "
-        "convolution with a surface is the offset at the distance $d$.",
+        "The sphere of radius $R$, $h = R|n|$, at a unit normal $n$: envelope and Hessian. Its "
+        "convolution with a surface is the offset at the distance $R$.",
         source="eqs. (5)-(7)",
-        inputs=[d, n],
-        outputs=[("x", d * n), *entries("H", hessian)],
+        inputs=[R, n],
+        outputs=[("x", R * n), *entries("H", hessian)],
     )
 
 
@@ -206,20 +206,20 @@ CURVATURE_FROM_HESSIAN = _curvature_from_hessian()
 
 
 def _offset_curvature() -> Formula:
-    """Add d to both radii, and write the result in the curvatures."""
+    """Add R to both radii, and write the result in the curvatures."""
     K, H, R_1, R_2 = (scalar(name) for name in ("K", "H", "R_1", "R_2"))
     of_radii = {K: 1 / (R_1 * R_2), H: (R_1 + R_2) / (2 * R_1 * R_2)}
-    shrinking = 1 + 2 * d * H + d**2 * K
-    outputs = [("K_d", K / shrinking), ("H_d", (H + d * K) / shrinking)]
+    shrinking = 1 + 2 * R * H + R**2 * K
+    outputs = [("K_offset", K / shrinking), ("H_offset", (H + R * K) / shrinking)]
     for (_, target), curvature in zip(outputs, (K, H), strict=True):
-        moved = substitute(of_radii[curvature], {R_1: R_1 + d, R_2: R_2 + d})
+        moved = substitute(of_radii[curvature], {R_1: R_1 + R, R_2: R_2 + R})
         if sp.cancel(substitute(target, of_radii) - moved) != 0:
             raise ArithmeticError(f"{target} is not {moved}")
     return Formula.build(
         "offset_curvature",
-        "Gaussian and mean curvature of the offset at the distance $d$, of use also where a radius "
+        "Gaussian and mean curvature of the offset at the distance $R$, of use also where a radius "
         "is infinite.",
-        inputs=[K, H, d],
+        inputs=[K, H, R],
         outputs=outputs,
     )
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 import sympy as sp
-from gaussmap.symbolic import emit, files, formulas, patch, surfaces
+from gaussmap.symbolic import curve, emit, files, formulas, patch, surfaces
 from gaussmap.symbolic.__main__ import main
 from gaussmap.symbolic.positions import position
 
@@ -61,6 +61,8 @@ def exact_inputs(formula, seed: int) -> dict[str, Fraction]:
         symbol.name: Fraction(generator.randint(-40, 40) * 2 + 1, generator.randint(1, 30))
         for symbol in formula.in_components().inputs
     }
+    if formula is curve.CURVATURE_AT:
+        return inputs | {"p_t_x": 3 * inputs["a_x"], "p_t_y": 4 * inputs["a_x"]}
     return inputs | rational_length(inputs) if formula is patch.MEASURE else inputs
 
 

@@ -4,12 +4,13 @@ from dataclasses import FrozenInstanceError
 
 import pytest
 import sympy as sp
-from gaussmap.symbolic import Formula, formulas, patch, spline, support
+from gaussmap.symbolic import Formula, curve, formulas, patch, spline, support
 from gaussmap.symbolic.formula import (
     BEYOND_THE_PAPER,
     Cross,
     Det,
     Dot,
+    PlaneVector,
     VectorSymbol,
     components,
     compose,
@@ -58,6 +59,24 @@ def test_components_of_a_vector_expression():
     expected = (s * a.column - 2 * a.column.cross(b.column)) / t
     expected += dot(a.column, b.column) * b.column
     assert [sp.expand(x) for x in components(value)] == [sp.expand(x) for x in expected.flat()]
+
+
+def test_vectors_of_the_plane():
+    r, q = PlaneVector("r"), PlaneVector("q")
+    (r_x, r_y), (q_x, q_y) = r.components, q.components
+    assert [x.name for x in (r_x, r_y)] == ["r_x", "r_y"]
+    assert components(Dot(r, q)) == (r_x * q_x + r_y * q_y,)
+    assert components(Det(r, q)) == (r_x * q_y - r_y * q_x,)
+    assert components(s * r - q) == (s * r_x - q_x, s * r_y - q_y)
+    formula = built(inputs=[r, s], outputs=[("y", s * r), ("z", Dot(r, r))])
+    assert formula.outputs == (PlaneVector("y"), scalar("z"))
+    assert PlaneVector("y") != VectorSymbol("y")
+
+
+@pytest.mark.parametrize("value", [a + PlaneVector("r"), s * a - PlaneVector("r")])
+def test_vectors_of_plane_and_space_do_not_mix(value):
+    with pytest.raises(ValueError, match=r"shorter|longer"):
+        components(value)
 
 
 @pytest.mark.parametrize(
@@ -181,8 +200,8 @@ def test_a_sample_is_its_parts():
 
 
 def test_all_formulas_by_name_in_order():
-    parts = (*patch.FORMULAS, *spline.FORMULAS, *support.FORMULAS)
-    assert list(formulas) == [x.name for x in parts]
+    everything = (*patch.FORMULAS, *spline.FORMULAS, *support.FORMULAS, *curve.FORMULAS)
+    assert list(formulas) == [x.name for x in everything]
     assert all(formula.name == name for name, formula in formulas.items())
     assert not hasattr(formulas, "__setitem__")
 

@@ -18,6 +18,7 @@ from gaussmap.symbolic.formula import (
     substitute,
     vectors,
 )
+from gaussmap.symbolic.latex import FORMULAS as SECTIONS
 from gaussmap.symbolic.simplify import straight_line
 
 MARKDOWN = (files.GENERATED / "formulas.md").read_text(encoding="utf-8")
@@ -169,8 +170,13 @@ def test_every_formula_and_surface_is_a_block_of_its_own():
         name.replace("_", r"\_") for name in entries
     ]
     for page, section in ((MARKDOWN, "## {}\n"), (TEX, "\\section{{{}}}\n")):
-        for title in ("One quadratic patch", "The quadratic spline", "Parametric surfaces"):
+        for title in (*SECTIONS, "Parametric surfaces"):
             assert section.format(title) in page
+
+
+def test_letters_of_a_sentence_are_those_of_its_formula():
+    """$t$ is a vector of `hessian` and the parameter of an arc."""
+    assert r"$`\mathbf{p}(t(\mathbf{n}))`$" in MARKDOWN
 
 
 def test_latex_is_balanced():

@@ -108,14 +108,14 @@ def test_curvature_from_hessian_against_eigenvalues():
 
 
 def test_offset_is_the_sphere_and_adds_to_the_radii():
-    d, place = scalar("d"), places()[1] | {scalar("d"): sp.Integer(4)}
+    R, place = scalar("R"), places()[1] | {scalar("R"): sp.Integer(4)}
     sphere = branch(4 * LENGTH).expanded()
     for name, value in formulas["offset"].expanded().items():
         assert value.xreplace(place) == sphere[name].xreplace(place)
-    numbers = {scalar("K"): sp.Rational(1, 6), scalar("H"): sp.Rational(5, 12), d: sp.Integer(4)}
+    numbers = {scalar("K"): sp.Rational(1, 6), scalar("H"): sp.Rational(5, 12), R: sp.Integer(4)}
     moved = formulas["offset_curvature"].expanded()  # radii 2 and 3 become 6 and 7
-    assert moved["K_d"].xreplace(numbers) == sp.Rational(1, 42)
-    assert moved["H_d"].xreplace(numbers) == (sp.Rational(1, 6) + sp.Rational(1, 7)) / 2
+    assert moved["K_offset"].xreplace(numbers) == sp.Rational(1, 42)
+    assert moved["H_offset"].xreplace(numbers) == (sp.Rational(1, 6) + sp.Rational(1, 7)) / 2
 
 
 # --- homogeneity, and the kernels of expressions --------------------------------------------------

@@ -1,0 +1,48 @@
+"""Draw Figs. 2-7 of the paper into docs/figures/, and print docs/figures.md, the page of them.
+
+Every number on the page is measured here.
+"""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Callable
+from pathlib import Path
+
+import matplotlib.style
+from gaussmap.docs.patch_figures import figure_2, figure_3
+from gaussmap.docs.surface_figures import figure_6, figure_7
+from gaussmap.runtime.io import atomic_path
+from gaussmap.runtime.palette import STYLE
+from matplotlib.figure import Figure
+
+FOLDER = Path(__file__).parent / "figures"
+FIGURES: dict[int, Callable[[], tuple[Figure, str]]] = {
+    2: figure_2,
+    3: figure_3,
+    6: figure_6,
+    7: figure_7,
+}
+HEAD = """# The figures of the paper
+
+Written by `make figures`: do not edit. Blue is elliptic, orange hyperbolic. Fig. 1 of the paper is
+a sketch of the definition and is left out.
+"""
+
+
+def page(folder: Path) -> str:
+    """Draw the figures into a folder, and return the page that shows them."""
+    folder.mkdir(exist_ok=True)
+    parts = [HEAD]
+    for number, draw in FIGURES.items():
+        with matplotlib.style.context(["default", STYLE, {"mathtext.fontset": "stix"}]):
+            figure, caption = draw()
+            with atomic_path(folder / f"figure_{number}.png") as temporary:
+                figure.savefig(temporary, format="png", metadata={"Software": None})
+        text = textwrap.fill(f"**Fig. {number}.** {caption}", 100)
+        parts.append(f"\n![Fig. {number}](figures/figure_{number}.png)\n\n{text}\n")
+    return "".join(parts)
+
+
+if __name__ == "__main__":
+    print(page(FOLDER), end="")

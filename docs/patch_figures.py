@@ -1,0 +1,174 @@
+"""Figs. 2 and 3: a quadratic triangular patch, and the domain of its support function."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from gaussmap.docs.drawing import MESH, TINTS, Floats, Globe, Picture, panels
+from gaussmap.generated import patch as kernels
+from gaussmap.runtime.globe import view_of
+from gaussmap.runtime.palette import INK
+from gaussmap.runtime.plain import plain
+from gaussmap.runtime.scene import Scene, quadrangles, view
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+__all__ = ["figure_2", "figure_3"]
+
+INDICES = ("200", "020", "002", "110", "101", "011")
+LEGS = ((0, 3), (3, 1), (1, 5), (5, 2), (2, 4), (4, 0), (3, 4), (3, 5), (4, 5))  # of the net
+# The edges by their equations: which control points they have, and their colour (Okabe and Ito).
+EDGES = {
+    "u = 0": ((1, 5, 2), "#0072b2"),
+    "v = 0": ((0, 4, 2), "#009e73"),
+    "w = 0": ((0, 3, 1), "#cc79a7"),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Patch:
+    """A quadratic Bézier triangle with the control net (6, 3)."""
+
+    net: Floats
+
+    @classmethod
+    def of(cls, surface: Callable[[Floats], Floats], corners: Floats) -> Patch:
+        """Return the part of a quadratic surface over a triangle (3, 2), by its blossom."""
+        x, y = corners[[0, 1, 2, 0, 0, 1]], corners[[0, 1, 2, 1, 2, 2]]
+        return cls(2 * surface((x + y) / 2) - (surface(x) + surface(y)) / 2)
+
+    @cached_property
+    def vectors(self) -> tuple[float, ...]:
+        """The components of a, …, e."""
+        return kernels.power_form(*self.net.ravel())[:15]
+
+    @cached_property
+    def control_normals(self) -> Floats:
+        """The Bézier net (6, 3) of the normal field."""
+        normals = np.reshape(kernels.control_normals(*self.vectors), (6, 3))
+        return normals[[0, 3, 5, 1, 2, 4]]  # they come as 200, 110, 101, 020, 011, 002
+
+    @cached_property
+    def mesh(self) -> Floats:
+        """Barycentric coordinates (MESH + 1, MESH + 1, 3), from the corner w = 1 outwards."""
+        s, t = np.meshgrid(*2 * [np.linspace(0.0, 1.0, MESH + 1)], indexing="ij")
+        return np.stack([s * (1 - t), s * t, 1 - s], axis=-1)
+
+    @cached_property
+    def tints(self) -> Floats:
+        """A colour for each quadrangle of the mesh: blue where it is elliptic, else orange."""
+        normals = bezier(self.control_normals, quadrangles(self.mesh).mean(axis=1))
+        D = plain(kernels.forms)(*self.vectors, *normals.T)[0]
+        return TINTS[1 + np.sign(D).astype(int)]
+
+
+def bezier(net: Floats, at: Floats) -> Floats:
+    """Evaluate a quadratic Bézier triangle at barycentric coordinates (…, 3)."""
+    u, v, w = np.moveaxis(at, -1, 0)[..., None]
+    terms = (u * u, v * v, w * w, 2 * u * v, 2 * u * w, 2 * v * w)
+    return sum((x * y for x, y in zip(terms, net, strict=True)), start=np.zeros(3))
+
+
+def unit(vectors: Floats) -> Floats:
+    """Return vectors with length 1, NaN in the place of 0."""
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return vectors / np.where(length > 1e-9, length, np.nan)
+
+
+# The control points of formula (12), see errata.md.
+PATCH = Patch(
+    np.array([[1.5, 0, 0], [0, 1.5, 0], [0, 0, 1.5], [1, 1, 0.5], [1, 0.5, 1], [0.5, 1, 1]])
+)
+
+
+def folded(uv: Floats) -> Floats:
+    """Return points of a quadratic surface with the parabolic line v = 0, which has one normal."""
+    u, v = np.moveaxis(uv, -1, 0)
+    return np.stack([u * u / 2 + u, u * v + v - u * u, v * v], axis=-1)
+
+
+BESIDE = Patch.of(folded, np.array([[0.8, 0.0], [0.0, 1.0], [-0.5, 0.0]]))
+ACROSS = Patch.of(folded, np.array([[0.8, -0.4], [0.1, 0.8], [-0.5, -0.5]]))
+
+
+def figure_2() -> tuple[Figure, str]:
+    """Draw a quadratic triangular Bézier patch with its control net."""
+    figure, axes = panels(4.2, 3.4, 1, 1, left=0.02, right=0.98, bottom=0.02, top=0.98)
+    picture = draw_patch(axes[0, 0], PATCH, view(16.0, 22.0))
+    net = PATCH.net
+    picture.fit(net, 0.14)
+    legs = [net[list(leg)] for leg in LEGS]
+    picture.lines(legs, hide=False, colors=INK, linewidths=0.9, linestyles=(0, (4, 2)), zorder=4)
+    picture.points(net, hide=False, s=18)
+    for control_point, index in zip(net, INDICES, strict=True):
+        text = rf"$\mathbf{{b}}_{{{','.join(index)}}}$"
+        picture.label(control_point, text, net.mean(axis=0), fontsize=11)
+    return figure, (
+        "A quadratic triangular Bézier patch with its control net. The control points are those "
+        "that formula (12) belongs to; the printed (11) has another support function "
+        "([errata](errata.md))."
+    )
+
+
+def figure_3() -> tuple[Figure, str]:
+    """Draw three patches and the domains of their support functions on the sphere."""
+    figure, axes = panels(
+        5.6, 8.6, 3, 2, left=0.02, right=0.98, bottom=0.03, top=0.97, wspace=0.05, hspace=0.07
+    )
+    rows = (
+        (PATCH, view(16.0, 22.0), "A patch", "Its Gaussian image"),
+        (BESIDE, view(48.0, 20.0), "An edge is a parabolic line", "A biangle"),
+        (ACROSS, view(48.0, 20.0), "A parabolic line inside", "A bow tie"),
+    )
+    for (left, right), (patch, seen_from, title, title_of_image) in zip(axes, rows, strict=True):
+        draw_patch(left, patch, seen_from, title)
+        draw_image(right, patch, title_of_image)
+    handles = [
+        Line2D([], [], color=x, linewidth=1.8, label=f"${e}$") for e, (_, x) in EDGES.items()
+    ]
+    figure.legend(handles=handles, loc="lower center", ncols=3, frameon=False)
+    return figure, "…"
+
+
+def draw_patch(axes: Axes, patch: Patch, view: Floats, title: str = "") -> Picture:
+    """Draw a patch with parameter lines and edges."""
+    picture = Picture(axes, Scene(bezier(patch.net, patch.mesh), view=view), title)
+    picture.surface(patch.tints)
+    lines = [bezier(patch.net, x) for x in isolines(8)]
+    picture.lines(lines, hide=False, colors="white", linewidths=0.6, zorder=2)
+    t = np.linspace(0.0, 1.0, 65)[:, None]
+    for places, colour in EDGES.values():
+        edge = conic(patch.net[list(places)], 1 - t, t)
+        picture.lines([edge], hide=False, colors=colour, linewidths=1.8, zorder=3)
+    return picture
+
+
+def draw_image(axes: Axes, patch: Patch, title: str) -> None:
+    """Draw the Gaussian image, the arcs round it, and, thin, the cones that they lie on."""
+    normals = unit(bezier(patch.control_normals, patch.mesh))
+    globe = Globe(axes, view_of(normals.reshape(-1, 3)), title)
+    globe.region(quadrangles(normals), patch.tints)
+    angle = np.linspace(0.0, np.pi, 2001)[:, None]
+    for places, colour in EDGES.values():
+        whole = unit(conic(patch.control_normals[list(places)], np.cos(angle), np.sin(angle)))
+        globe.lines([whole, -whole], colors=colour, linewidths=0.6, alpha=0.6, zorder=4)
+        globe.lines([whole[: len(angle) // 2 + 1]], colors=colour, linewidths=1.8)
+
+
+def conic(points: Floats, s: Floats, t: Floats) -> Floats:
+    """Return s² b₀ + 2 s t b₁ + t² b₂: with s, t ≥ 0 the arc of the edge, else the rest of it."""
+    return s * s * points[0] + 2 * s * t * points[1] + t * t * points[2]
+
+
+def isolines(count: int) -> list[Floats]:
+    """Return lines u, v, w = constant of a triangle in barycentric coordinates."""
+    lines = []
+    for c in np.arange(1, count) / count:
+        t = np.linspace(0.0, 1.0 - c, 49)
+        line = (np.full_like(t, c), t, 1.0 - c - t)
+        lines += [np.stack((*line[k:], *line[:k]), axis=-1) for k in range(3)]
+    return lines

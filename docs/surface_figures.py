@@ -1,0 +1,105 @@
+"""Figs. 6 and 7: samplings of a part of an ellipsoid and of a surface that is not convex."""
+
+from __future__ import annotations
+
+import gaussmap as gm
+import numpy as np
+from gaussmap.docs.drawing import MESH, TINTS, Floats, Globe, Picture, panels
+from gaussmap.runtime.globe import view_of
+from gaussmap.runtime.palette import ELLIPTIC, HYPERBOLIC, INK, PALE
+from gaussmap.runtime.scene import Scene, quadrangles, view
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+__all__ = ["figure_6", "figure_7"]
+
+
+def figure_6() -> tuple[Figure, str]:
+    """Draw a part of an ellipsoid, two samplings of it, and their normals."""
+    figure, axes = panels(
+        7.4, 4.7, 2, 3, left=0.01, right=0.99, bottom=0.0, top=0.945, wspace=0.02, hspace=0.12,
+        height_ratios=(0.75, 1.0),
+    )  # fmt: skip
+    surface = gm.Surface.from_sympy(
+        ("1.6*cos(u)*cos(v)", "1.2*sin(u)*cos(v)", "0.8*sin(v)"),
+        ("u", "v"),
+        domain=((-1.9, 0.4), (-0.5, 1.25)),
+        name="part of an ellipsoid",
+    )
+    spline = gm.fit(surface)
+    seen_from = view(35.0, -50.0)
+    surface_picture(axes[0, 0], spline, seen_from, "A part of an ellipsoid", 0.75)
+    image_of(axes[1, 0], spline, "Its Gaussian image")
+    for k, frequency in enumerate((10, 20), start=1):
+        normals = gm.icosphere(frequency)
+        samples = gm.sample(spline, normals)
+        picture = surface_picture(axes[0, k], spline, seen_from, f"{len(samples):,} samples", 0.75)
+        size = 10.0 / k
+        picture.points(samples.points, s=size, color=ELLIPTIC)
+        globe = image_of(axes[1, k], spline, f"{len(normals):,} uniform normals")
+        missed = np.ones(len(normals), dtype=bool)
+        missed[samples.normal_index] = False
+        globe.points(normals[missed], behind=0.0, s=0.6 * size, color=PALE)
+        globe.points(samples.normals, behind=0.2, s=size, color=ELLIPTIC)
+    return figure, "…"
+
+
+def figure_7() -> tuple[Figure, str]:
+    """Draw a surface that is not convex, the spline, a sampling and its normals."""
+    figure, axes = panels(7.4, 2.6, 1, 3, left=0.01, right=0.99, bottom=0.0, top=0.9, wspace=0.02)
+    spline = gm.fit(gm.surfaces.wavy_graph(amplitude=0.35), cells=(16, 16))
+    seen_from = view(42.0, -65.0)
+    picture = surface_picture(axes[0, 0], spline, seen_from, "The approximating spline", lines=0)
+    picture.lines(crisscross(spline), colors=INK, linewidths=0.3, zorder=3)
+    samples = gm.sample(spline, gm.icosphere(12))
+    picture = surface_picture(axes[0, 1], spline, seen_from, f"{len(samples):,} samples", lines=0)
+    globe = image_of(axes[0, 2], spline, "Their normals")
+    for kind, colour in (("elliptic", ELLIPTIC), ("hyperbolic", HYPERBOLIC)):
+        chosen = samples[getattr(samples, kind)]
+        picture.points(chosen.points, s=5.0, color=colour)
+        globe.points(chosen.normals, s=14.0 if kind == "elliptic" else 4.0, color=colour)
+    return figure, "…"
+
+
+def surface_picture(
+    axes: Axes,
+    spline: gm.Spline,
+    seen_from: Floats,
+    title: str,
+    shape: float = 1.0,
+    lines: int = 16,
+) -> Picture:
+    """Draw a spline with some parameter lines."""
+    (u0, u1), (v0, v1) = spline.domain
+    mesh = spline.evaluate(np.linspace(u0, u1, MESH + 1)[:, None], np.linspace(v0, v1, MESH + 1))
+    picture = Picture(axes, Scene(mesh, view=seen_from), title, shape)
+    picture.surface("#dbe9f3")
+    if lines:
+        at = range(0, MESH + 1, MESH // lines)
+        both = [mesh[k] for k in at] + [mesh[:, k] for k in at]
+        picture.lines(both, colors="white", linewidths=0.6, zorder=2)
+    return picture
+
+
+def image_of(axes: Axes, spline: gm.Spline, title: str) -> Globe:
+    """Draw the Gaussian image of a spline."""
+    (u0, u1), (v0, v1) = spline.domain
+    u, v = np.linspace(u0, u1, MESH + 1)[:, None], np.linspace(v0, v1, MESH + 1)
+    normals = spline.normals(u, v)
+    globe = Globe(axes, view_of(normals.reshape(-1, 3)), title)
+    quads = quadrangles(normals)
+    globe.region(quads, np.tile(TINTS[2], (len(quads), 1)))
+    return globe
+
+
+def crisscross(spline: gm.Spline) -> list[Floats]:
+    """Return the edges of the triangles of a spline."""
+    (u0, u1), (v0, v1) = spline.domain
+    m, n = spline.cells
+    t = np.linspace(0.0, 1.0, 8 * max(m, n) + 1)
+    lines = [(np.full_like(t, k / m), t) for k in range(m + 1)]
+    lines += [(t, np.full_like(t, k / n)) for k in range(n + 1)]
+    for k in range(-m + 1, n):  # diagonals of square cells
+        line = t[(t + k / n >= 0) & (t + k / n <= 1)]
+        lines += [(line, line + k / n), (line, 1 - line - k / n)]
+    return [spline.evaluate(u0 + (u1 - u0) * s, v0 + (v1 - v0) * r) for s, r in lines]

@@ -1,0 +1,408 @@
+"""Every preimage of every normal once: Σ sign κ is the turning number, and more."""
+
+import warnings
+from collections.abc import Callable
+from fractions import Fraction
+from itertools import pairwise
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.runtime.sphere import as_normals
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+ULP = 2.0**-52
+TURN = (0.0, 2 * np.pi)
+AXES = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
+
+
+def polar(radius: Callable[[Array], Array]) -> Callable[[Array], Array]:
+    return lambda t: radius(t)[..., None] * np.stack([np.cos(t), np.sin(t)], axis=-1)
+
+
+# name: the curve, its turning number, the preimages of every normal if all have equally many
+CLOSED: dict[str, tuple[Callable[[Array], Array], int, int | None]] = {
+    "circle": (polar(np.ones_like), 1, 1),
+    "clockwise": (lambda t: np.stack([np.cos(t), -np.sin(t)], -1), -1, 1),
+    "ellipse": (lambda t: np.stack([20 * np.cos(t), np.sin(t)], -1), 1, 1),
+    "eight": (lambda t: np.stack([np.sin(t), np.sin(2 * t)], -1), 0, None),
+    "limacon": (polar(lambda t: 1 + 2 * np.cos(t)), 2, 2),
+    "star": (polar(lambda t: 1 + np.cos(5 * t) / 5), 1, None),
+}
+
+
+def closed(name: str, turn: Array | None = None, factor: float = 1.0, shift: float = 0.0):
+    """Return a closed curve, turned, moved and scaled."""
+    matrix = np.eye(2) if turn is None else turn
+    f = CLOSED[name][0]
+    return gm.Curve.from_callable(
+        lambda t: factor * (f(t) @ matrix.T + shift), TURN, True, name=name
+    )
+
+
+def rotation(angle: float) -> Array:
+    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+
+
+def sampled(curve: gm.Curve | gm.CurveSpline, normals: Array, pieces: int | None = None):
+    """Sample without the warnings, which have their own tests."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", gm.GaussmapWarning)
+        return gm.sample_curve(curve, normals, pieces=pieces)
+
+
+def sums(samples: gm.CurveSamples, count: int) -> NDArray[np.int64]:
+    """Return Σ sign κ over the preimages of each normal."""
+    signs = np.where(np.signbit(samples.curvature), -1, 1)
+    return np.bincount(samples.normal_index, signs, minlength=count).astype(np.int64)
+
+
+def is_sane(samples: gm.CurveSamples) -> None:
+    fields = (samples.points, samples.normals, samples.parameters, samples.support)
+    assert all(np.isfinite(x).all() for x in (*fields, samples.curvature))
+    # two normals that differ by rounding may share a place
+    rounding = 8 * ULP * np.abs(samples.parameters).max(initial=0.0)
+    assert (np.diff(samples.parameters) >= -rounding).all()
+    assert (np.diff(samples.piece_index) >= 0).all()
+    assert len(samples) == samples.report.samples == len(samples.points)
+
+
+# --- exactly once ---------------------------------------------------------------------------------
+
+SETS = {
+    "axes": AXES,
+    "one": np.array([[1.0, 0.0]]),
+    "few": gm.circle(3),
+    "off the axes": gm.circle(1000),
+    "on the axes": np.column_stack([f(2 * np.pi * np.arange(720) / 720) for f in (np.cos, np.sin)]),
+    "twice": np.repeat(gm.circle(64), 2, axis=0),
+}
+
+
+@pytest.mark.parametrize("name", CLOSED)
+@pytest.mark.parametrize("normals", SETS.values(), ids=SETS)
+@pytest.mark.parametrize("pieces", [16, 63, 64, 720])
+def test_sum_of_signs_is_the_turning_number(name: str, normals: Array, pieces: int) -> None:
+    _, turning, preimages = CLOSED[name]
+    samples = sampled(closed(name), normals, pieces)
+    is_sane(samples)
+    assert (sums(samples, len(normals)) == turning).all()
+    assert samples.report.turning_number == turning
+    if preimages is not None:
+        counts = np.bincount(samples.normal_index, minlength=len(normals))
+        assert (counts == preimages).all()
+        assert samples.report.inflections == 0
+
+
+@pytest.mark.parametrize("name", ["ellipse", "eight", "star"])
+@pytest.mark.parametrize("factor", [1.0, 1e12, 1e-12, 1e150, 1e-150])
+@pytest.mark.parametrize("shift", [0.0, 1e6])
+def test_moved_and_scaled(name: str, factor: float, shift: float) -> None:
+    for angle in (0.0, 0.7):
+        turn = rotation(angle)
+        normals = np.concatenate([gm.circle(500), AXES]) @ turn.T
+        for pieces in (64, 99):
+            samples = sampled(closed(name, turn, factor, shift), normals, pieces)
+            is_sane(samples)
+            assert (sums(samples, len(normals)) == CLOSED[name][1]).all()
+
+
+def test_scaling_by_a_power_of_two_changes_nothing_else() -> None:
+    first, second = (
+        gm.sample_curve(closed("star", factor=x), gm.circle(300)) for x in (1.0, 2.0**40)
+    )
+    assert (first.parameters == second.parameters).all()
+    assert (first.points * 2.0**40 == second.points).all()
+    assert (first.curvature == second.curvature * 2.0**40).all()
+
+
+def test_more_pieces_than_the_coordinates_can_tell_apart() -> None:
+    """Beside a shift of 10⁶ the turn of an arc is rounding; still no normal is lost or doubled."""
+    normals = gm.circle(360)
+    near, far = (sampled(closed("star", shift=x), normals, 200_000) for x in (0.0, 1e6))
+    for samples in (near, far):
+        assert (sums(samples, 360) == 1).all()
+    assert len(near) == len(far)
+    # spacing(1e6) = 1e-10, an arc is 3e-5 long: angles to within about 8e-10/3e-5 or so
+    assert np.abs(near.parameters - far.parameters).max() < 1e-2
+
+
+# --- against exact arithmetic ---------------------------------------------------------------------
+
+
+def exact_hits(spline: gm.CurveSpline, normals: Array) -> set[tuple[int, int]]:
+    """Return (piece, normal) by exact signs of n·p' at the ends of arcs, for generic normals."""
+    mu = [[Fraction(x) for x in row] for row in spline.coefficients.tolist()]
+    tangents = [(q[0] - p[0], q[1] - p[1]) for p, q in pairwise(mu)]
+    hits = set()
+    for number, (x, y) in enumerate(normals.tolist()):
+        n = Fraction(x), Fraction(y)
+        sides = [n[0] * d[0] + n[1] * d[1] for d in tangents]
+        for piece in range(spline.pieces):
+            (s, t), (p, q) = tangents[piece : piece + 2]
+            area = s * q - t * p
+            # n·p' falls where the normal turns towards n's left, as on a circle
+            if area * sides[piece] > 0 > area * sides[piece + 1]:
+                hits.add((piece, number))
+    return hits
+
+
+@pytest.mark.parametrize("name", CLOSED)
+def test_hits_are_those_of_exact_arithmetic(name: str) -> None:
+    spline = gm.fit_curve(closed(name), 40)
+    normals = gm.circle(97) @ rotation(0.123).T
+    samples = sampled(spline, normals)
+    pairs = list(zip(samples.piece_index.tolist(), samples.normal_index.tolist(), strict=True))
+    assert set(pairs) == exact_hits(spline, samples_normals(samples, normals))
+    assert len(set(pairs)) == len(pairs) > 0
+
+
+def samples_normals(samples: gm.CurveSamples, normals: Array) -> Array:
+    """Return the normals as they were taken; the samples hold them bit for bit."""
+    unit = as_normals(normals, 2)
+    assert (samples.normals == unit[samples.normal_index]).all()
+    return unit
+
+
+points = st.lists(st.tuples(st.integers(-3, 3), st.integers(-3, 3)), min_size=3, max_size=12)
+
+
+@settings(max_examples=200, deadline=None)
+@given(polygon=points, is_closed=st.booleans())
+def test_any_small_integers(polygon: list[tuple[int, int]], is_closed: bool) -> None:
+    """Straight arcs, cusps, stops and returns are all among these."""
+    mu = np.array(polygon, dtype=np.float64)
+    if is_closed:
+        mu = np.concatenate([mu[-1:], mu, mu[:1]])
+    spline = gm.CurveSpline(mu, (0.0, float(len(mu) - 2)), is_closed, "integers")
+    aligned = np.unique(spline.joint_normals, axis=0)
+    aligned = aligned[aligned.any(axis=1)]
+    generic = gm.circle(13) @ rotation(0.1).T
+    normals = as_normals(np.concatenate([aligned, -aligned, generic]), 2)
+    samples = sampled(spline, normals)
+    is_sane(samples)
+    chosen = samples.normal_index >= 2 * len(aligned)
+    pairs = set(
+        zip(
+            samples.piece_index[chosen].tolist(), samples.normal_index[chosen].tolist(), strict=True
+        )
+    )
+    exact = {(k, j) for k, j in exact_hits(spline, normals) if j >= 2 * len(aligned)}
+    assert pairs == exact
+    assert len(pairs) == int(chosen.sum())
+    if is_closed and not spline.reversing.any():
+        assert (sums(samples, len(normals)) == spline.turning_number).all()
+
+
+# --- what a sample holds --------------------------------------------------------------------------
+
+
+def test_samples_of_an_ellipse() -> None:
+    """Convex curves at the distance d have support functions at most d apart."""
+    curve = gm.Curve.from_callable(
+        lambda t: np.stack([3 * np.cos(t), 2 * np.sin(t)], -1), TURN, True
+    )
+    spline = gm.fit_curve(curve, 100)
+    dense = np.linspace(*TURN, 10_001)
+    apart = np.linalg.norm(spline.evaluate(dense) - curve.evaluate(dense), axis=1).max()
+    normals = gm.circle(333)
+    samples = gm.sample_curve(spline, normals)
+    assert (samples.normals == normals[samples.normal_index]).all()
+    exact = np.hypot(3 * samples.normals[:, 0], 2 * samples.normals[:, 1])
+    assert np.abs(samples.support - exact).max() < 1.01 * apart
+    assert (samples.support == np.einsum("kx,kx->k", samples.normals, samples.points)).mean() > 0.5
+    places = samples.parameters
+    # t = −B/A: both lose a few roundings of |p'|; the step and the number of pieces cancel
+    np.testing.assert_allclose(spline.normals(places), samples.normals, rtol=0, atol=200 * ULP)
+    np.testing.assert_allclose(spline.evaluate(places), samples.points, rtol=0, atol=200 * ULP)
+    np.testing.assert_allclose(spline.curvature(places), samples.curvature, rtol=1e-10)
+
+
+def test_density_is_the_curvature() -> None:
+    """Between two samples on a convex curve the normal turns by the same angle."""
+    samples = gm.sample_curve(closed("ellipse"), gm.circle(60), pieces=256)
+    turns = np.einsum("kx,kx->k", samples.normals[1:], samples.normals[:-1])
+    np.testing.assert_allclose(np.arccos(turns), 2 * np.pi / 60, rtol=1e-9)
+    lengths = np.linalg.norm(np.diff(samples.points, axis=0), axis=1)
+    assert lengths.max() > 50 * lengths.min()
+
+
+def test_normals_of_any_length() -> None:
+    curve = closed("eight")
+    lengths = np.geomspace(1e-300, 1e300, 100)[:, None]
+    long, unit = (gm.sample_curve(curve, x) for x in (gm.circle(100) * lengths, gm.circle(100)))
+    np.testing.assert_allclose(long.normals, unit.normals, rtol=0, atol=4 * ULP)
+    assert (long.normal_index == unit.normal_index).all()
+
+
+# --- ends -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.3, 2.0, 3.1])
+@pytest.mark.parametrize("pieces", [1, 2, 3, 7, 50])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_ends_belong_to_an_open_curve(angle: float, pieces: int, sign: float) -> None:
+    """The normals of both ends of a parabola; those against them and beyond them are not there."""
+    turn = rotation(angle)
+    parabola = gm.Curve.from_callable(
+        lambda t: np.stack([t, sign * t * t], axis=-1) @ turn.T, (0.0, 1.0)
+    )
+    ends = np.array([[0.0, -1.0], [2.0 * sign, -1.0]])
+    beyond = np.array([[-1e-6 * sign, -1.0], [(2.0 + 1e-5) * sign, -1.0]])
+    samples = gm.sample_curve(
+        parabola, np.concatenate([ends, -ends, beyond]) @ turn.T, pieces=pieces
+    )
+    assert samples.normal_index.tolist() == [0, 1]
+    assert (np.signbit(samples.curvature) == (sign < 0)).all()
+    np.testing.assert_allclose(samples.parameters, [0.0, 1.0], rtol=0, atol=1e-12)
+
+
+def test_polygon() -> None:
+    open_ = gm.Curve.from_callable(CLOSED["ellipse"][0], (0.0, 3.0))
+    samples = gm.sample_curve(open_, count=20)
+    assert len(samples.polygon) == len(samples) + 2
+    np.testing.assert_allclose(samples.polygon[[0, -1]], open_.evaluate([0.0, 3.0]), atol=1e-14)
+    samples = gm.sample_curve(closed("ellipse"), count=20)
+    assert len(samples.polygon) == 21
+    assert (samples.polygon[0] == samples.polygon[-1]).all()
+
+
+# --- straight pieces ------------------------------------------------------------------------------
+
+
+def stadium(turn: Array, shift: float = 0.0, start: float = 0.0) -> gm.Curve:
+    """Two straight sides of length 2 and two half circles of radius 1, each a quarter of it."""
+
+    def f(t: Array) -> Array:
+        quarter, s = np.divmod(np.mod(t, 4.0), 1.0)
+        angle = np.pi * s
+        straight = np.stack([2 * s - 1, -np.ones_like(s)], axis=-1)
+        bend = np.stack([1 + np.sin(angle), -np.cos(angle)], axis=-1)
+        side = np.where((quarter % 2 == 0)[..., None], straight, bend)
+        return np.where((quarter < 2)[..., None], side, -side) @ turn.T + shift
+
+    return gm.Curve.from_callable(f, (start, start + 4.0), True, name="stadium")
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.3, 1.234])
+@pytest.mark.parametrize("shift", [0.0, 1e6])
+@pytest.mark.parametrize("start", [0.0, 0.5, 1.5])
+@pytest.mark.parametrize("normals", [AXES, gm.circle(100)], ids=["axes", "circle"])
+def test_stadium(angle: float, shift: float, start: float, normals: Array) -> None:
+    """Every normal once, also the one that a whole side has; the warning says how much is straight.
+
+    The spline bends the last piece of each side towards the half circle.
+    """
+    turn = rotation(angle)
+    with pytest.warns(gm.GaussmapWarning, match=r"3\d % of its length is straight"):
+        samples = gm.sample_curve(stadium(turn, shift, start), normals @ turn.T, pieces=64)
+    is_sane(samples)
+    assert (np.bincount(samples.normal_index, minlength=len(normals)) == 1).all()
+    length = 4 + 2 * np.pi
+    share = samples.report.straight_share
+    assert (4 - 4 * 2 / 16) / length - 1e-3 < share < 4 / length + 1e-3
+    assert samples.report.turning_number == 1
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.7, 2.0])
+@pytest.mark.parametrize("shift", [0.0, 0.1, 1e6])
+def test_a_straight_line_has_no_samples(angle: float, shift: float) -> None:
+    turn = rotation(angle)
+    line = gm.Curve.from_callable(
+        lambda t: np.stack([t, 0 * t], axis=-1) @ turn.T + shift, (0.0, 1.0), name="line"
+    )
+    with pytest.warns(gm.GaussmapWarning, match="'line': 100 % of its length is straight"):
+        samples = gm.sample_curve(line, AXES @ turn.T)
+    assert len(samples) == 0
+    assert samples.report.straight_share == 1.0
+    assert len(samples.polygon) == 2
+    with pytest.warns(gm.GaussmapWarning, match="0 samples came where 50 were asked"):
+        assert len(gm.sample_curve(line, count=50)) == 0
+
+
+@pytest.mark.parametrize("pieces", [4, 5])
+def test_curves_that_stop_or_come_back(pieces: int) -> None:
+    for f in (lambda t: np.full((*t.shape, 2), 3.0), lambda t: np.stack([t * t, 0 * t], axis=-1)):
+        with pytest.warns(gm.GaussmapWarning, match="100 % of its length is straight"):
+            samples = gm.sample_curve(
+                gm.Curve.from_callable(f, (-1.0, 1.0)), gm.circle(12), pieces=pieces
+            )
+        assert len(samples) == 0
+
+
+def test_points_of_a_square() -> None:
+    """A C¹ spline through the corners and middles of a square rounds the corners."""
+    corners = [[0, 0], [1, 0], [2, 0], [2, 1], [2, 2], [1, 2], [0, 2], [0, 1]]
+    square = gm.Curve.from_points(corners, closed=True)
+    for normals in (AXES, gm.circle(4), gm.circle(100)):
+        samples = gm.sample_curve(square, normals)
+        assert (np.bincount(samples.normal_index, minlength=len(normals)) == 1).all()
+
+
+# --- count ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("count", [1, 2, 7, 100, 1000])
+def test_count_is_exact_without_inflections(count: int) -> None:
+    assert len(gm.sample_curve(closed("ellipse"), count=count)) == count
+    assert len(gm.sample_curve(closed("limacon"), count=2 * count)) == 2 * count
+    arc = gm.Curve.from_callable(CLOSED["circle"][0], (3.0, 3.5))  # across the angle π
+    samples = gm.sample_curve(arc, count=count)
+    assert len(samples) == samples.report.normals == count
+
+
+@pytest.mark.parametrize("name", ["eight", "star"])
+@pytest.mark.parametrize("count", [20, 100, 1000])
+def test_count_is_nearly_met_with_inflections(name: str, count: int) -> None:
+    assert abs(len(gm.sample_curve(closed(name), count=count)) - count) <= 0.05 * count + 1
+
+
+def test_count_that_cannot_be_met_is_said() -> None:
+    with pytest.warns(gm.GaussmapWarning, match="samples came where 1 were asked"):
+        samples = gm.sample_curve(closed("star"), count=1)
+    assert len(samples) > 2
+
+
+def test_no_such_normal() -> None:
+    arc = gm.Curve.from_callable(CLOSED["circle"][0], (0.0, 1.0), name="arc")
+    with pytest.warns(gm.GaussmapWarning, match="'arc': it has none of the normals"):
+        assert len(gm.sample_curve(arc, [[-1.0, 0.0]])) == 0
+
+
+# --- arguments, words -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("arguments", "complaint"),
+    [({}, "either normals"), ({"normals": AXES, "count": 3}, "not both"),
+     ({"count": 0}, "at least 1"), ({"count": -4}, "at least 1"), ({"count": 2.5}, "whole number"),
+     ({"normals": np.empty((0, 2))}, r"\(S, 2\)"), ({"normals": np.eye(3)}, r"\(S, 2\)"),
+     ({"normals": [[1, 0], [0, 0]]}, r"normals\[1\] is the zero vector"),
+     ({"normals": [[1, np.nan]]}, r"normals\[0\] holds NaN"), ({"normals": "xy"}, "real numbers"),
+     ({"count": 9, "pieces": 2}, "at least 3 pieces"), ({"count": 9, "pieces": 0}, "pieces must")],
+)  # fmt: skip
+def test_unusable_arguments(arguments: dict, complaint: str) -> None:
+    with pytest.raises(gm.InputError, match=complaint):
+        gm.sample_curve(closed("circle"), **arguments)
+
+
+def test_a_spline_has_its_pieces() -> None:
+    spline = gm.fit_curve(closed("circle"), 10)
+    with pytest.raises(gm.InputError, match="has its pieces already"):
+        gm.sample_curve(spline, AXES, pieces=10)
+    assert len(gm.sample_curve(spline, AXES)) == 4
+    with pytest.raises(gm.InputError, match="takes a Curve, not Surface"):
+        gm.sample_curve(gm.surfaces.torus(), AXES)  # pyright: ignore[reportArgumentType]
+
+
+def test_words() -> None:
+    samples = gm.sample_curve(closed("eight"), gm.circle(10))
+    assert repr(samples) == f"CurveSamples({len(samples)} points on eight)"
+    assert samples.summary() == (
+        f"10 normals asked, {len(samples)} samples came; 2 inflections; "
+        "normals cannot see 0.00 % of the curve"
+    )
