@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from .branches import Sheets, curvatures
 from .errors import InputError
-from .expressions import _expression
+from .expressions import as_expression
 
 if TYPE_CHECKING:
     import sympy
@@ -42,7 +42,7 @@ class ExpressionSource:
         from ..symbolic.expression import kernel_source
 
         names = _names(normal)
-        expression = _in_normal(_expression(h, _symbols(names)), names, "h")
+        expression = _in_normal(as_expression(h, _symbols(names)), names, "h")
         condition = _condition(domain, names)
         try:
             source = kernel_source(expression, condition)

@@ -137,9 +137,9 @@ class PatchSource:
         import sympy as sp
 
         D, U, V, W = self._symbolic.forms.values()
-        at_least = cast(Any, sp.Ge)  # its type hints do not say that it is a Boolean
+        at_least, unequal = cast(Any, sp.Ge), cast(Any, sp.Ne)  # typed as numbers, too
         inside = [sp.And(*(at_least(s * x, 0) for x in (U, V, W))) for s in (1, -1)]
-        return sp.And(sp.Or(*inside), sp.Ne(D, 0), sp.Gt(self._symbolic.orientation, 0))
+        return sp.And(sp.Or(*inside), unequal(D, 0), sp.Gt(self._symbolic.orientation, 0))
 
     def __str__(self) -> str:
         return "quadratic patch"
