@@ -57,7 +57,8 @@ def decide(
     chunks = [slice(k, k + PAIRS_AT_A_TIME) for k in range(0, len(patches), PAIRS_AT_A_TIME)]
     parts = [_decide(spline, patches[x], normals[x], forgiven[x]) for x in chunks]
     which = np.concatenate([x.start + part[0] for x, part in zip(chunks, parts, strict=True)])
-    local, near = (np.concatenate([part[k] for part in parts]) for k in (1, 2))
+    local = np.concatenate([part[1] for part in parts])
+    near = np.concatenate([part[2] for part in parts])
     keep = _first_of_each_place(spline, patches[which], normals[which], local[:, :2], near)
     return Decision(which[keep], local[keep])
 

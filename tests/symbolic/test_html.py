@@ -173,7 +173,7 @@ def test_each_block_of_a_kernel_is_listed(path):
         (
             "forms",
             "sampler.py: forms, classify, evaluate_tile (in sample); "
-            "called by search_patches, look_again, fill_samples",
+            "called by search_patches, all_developable, is_developable, look_again, fill_samples",
         ),
         (
             "curvature",
