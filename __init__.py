@@ -20,7 +20,16 @@ from .runtime.errors import (
     SurfaceError,
     UnknownNameError,
 )
+from .runtime.gaussian_image import BoundaryArc, GaussianImage, GaussianImages
 from .runtime.io import read_samples
+from .runtime.parabolic_lines import (
+    ParabolicLine,
+    PatchClass,
+    Piece,
+    classify_patches,
+    parabolic_lines,
+    split_patch,
+)
 from .runtime.samples import Samples, SamplingReport
 from .runtime.sampling import sample, sample_many
 from .runtime.sphere import fibonacci, icosphere
@@ -34,24 +43,33 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "BoundaryArc",
     "FileError",
+    "GaussianImage",
+    "GaussianImages",
     "GaussmapError",
     "GaussmapWarning",
     "InputError",
     "MissingExtraError",
+    "ParabolicLine",
+    "PatchClass",
+    "Piece",
     "Samples",
     "SamplingReport",
     "Spline",
     "Surface",
     "SurfaceError",
     "UnknownNameError",
+    "classify_patches",
     "fibonacci",
     "fit",
     "formulas",
     "icosphere",
+    "parabolic_lines",
     "read_samples",
     "sample",
     "sample_many",
+    "split_patch",
     "surfaces",
     "symbolic",
 ]

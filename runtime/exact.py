@@ -20,7 +20,7 @@ from ..generated import sampler as kernels
 from .plain import plain
 from .spline import Spline
 
-__all__ = ["Decision", "decide"]
+__all__ = ["Decision", "decide", "integers", "integers_by_row"]
 
 Integers = NDArray[np.object_]
 MANTISSA = 53
@@ -54,7 +54,7 @@ def decide(
     the scaled spline; 0 for a patch that does not touch the border.
     """
     vectors, exponent = _patch_vectors(spline, patches)
-    n, exponents = _integers_by_row(normals)
+    n, exponents = integers_by_row(normals)
     forms = _forms(vectors, n)
     magnitude = _scaled(np.abs(forms[0]), 2 * (exponent + exponents))
     signs = _sign(forms[1:])
@@ -90,14 +90,14 @@ def _patch_vectors(spline: Spline, patches: NDArray[np.int64]) -> tuple[Integers
     i, j = np.divmod(cell, spline.cells[1])
     steps = kernels.NEIGHBOURS[turn]
     around = spline.coefficients[i[:, None] + 1 + steps[..., 0], j[:, None] + 1 + steps[..., 1]]
-    values, exponent = _integers(around)
+    values, exponent = integers(around)
     differences = values - values[:, 4:5]
     read = differences[:, kernels.TRIANGLE_NEIGHBOURS].reshape(len(patches), -1)
     vectors = plain(kernels.triangle)(*read.T)
     return np.array(vectors[:15], dtype=object), exponent + int(np.log2(spline.scale))
 
 
-def _integers(values: NDArray[np.float64]) -> tuple[Integers, int]:
+def integers(values: NDArray[np.float64]) -> tuple[Integers, int]:
     """Return integers and one exponent with values = integers × 2^exponent, exactly."""
     mantissas, exponents = np.frexp(values)
     whole = np.ldexp(mantissas, MANTISSA).astype(np.int64).astype(object)
@@ -106,7 +106,7 @@ def _integers(values: NDArray[np.float64]) -> tuple[Integers, int]:
     return np.left_shift(whole, shifts.astype(object)), lowest - MANTISSA
 
 
-def _integers_by_row(vectors: NDArray[np.float64]) -> tuple[Integers, NDArray[np.int64]]:
+def integers_by_row(vectors: NDArray[np.float64]) -> tuple[Integers, NDArray[np.int64]]:
     """Return vectors (k, 3) as integers (3, k), with an exponent for each vector."""
     mantissas, exponents = np.frexp(vectors)
     whole = np.ldexp(mantissas, MANTISSA).astype(np.int64).astype(object)

@@ -6,12 +6,15 @@
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from . import patch, spline
+from . import gaussian_image, patch, spline
 from .bezier import BezierTriangle
 from .formula import Formula
 
 __all__ = ["BezierTriangle", "Formula", "formulas"]
 
 formulas: Mapping[str, Formula] = MappingProxyType(
-    {formula.name: formula for formula in (*patch.FORMULAS, *spline.FORMULAS)}
+    {
+        formula.name: formula
+        for formula in (*patch.FORMULAS, *gaussian_image.FORMULAS, *spline.FORMULAS)
+    }
 )

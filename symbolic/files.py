@@ -12,7 +12,7 @@ from pathlib import Path
 
 import sympy as sp
 
-from . import latex, patch, spline, surfaces
+from . import gaussian_image, latex, patch, spline, surfaces
 from .emit import block, call, functions, render
 from .formula import Formula
 from .positions import position
@@ -28,6 +28,7 @@ def derive() -> dict[str, str]:
     """Return the texts of all generated files by their names."""
     sources = {
         "__init__.py": '"""Kernels and formulas written by `make generate`: never edit these."""\n',
+        "gaussian_image.py": gaussian_image_source(),
         "patch.py": patch_source(),
         "spline.py": spline_source(),
         "sampler.py": sampler_source(),
@@ -93,6 +94,21 @@ def header(title: str) -> str:
     return render(
         "header.py", {"title": f'"""{title}', "options": textwrap.fill(options, 92)}
     ).rstrip()
+
+
+def gaussian_image_source() -> str:
+    """Return generated/gaussian_image.py: boundary cones and arcs, parabolic lines."""
+    return render(
+        "gaussian_image.py",
+        {
+            "header": header(
+                "Gaussian images of patches: boundaries, solid angles, parabolic lines."
+            ),
+            "formulas": functions(gaussian_image.FORMULAS),
+            "arc": block(gaussian_image.ARC),
+            "solid_angle": block(gaussian_image.SOLID_ANGLE),
+        },
+    )
 
 
 def patch_source() -> str:

@@ -9,7 +9,7 @@ from functools import cache
 
 import sympy as sp
 
-from . import patch, spline, surfaces
+from . import gaussian_image, patch, spline, surfaces
 from .display import latex_name, latex_of
 from .emit import render
 from .formula import Formula, VectorSymbol
@@ -19,7 +19,11 @@ from .simplify import straight_line
 __all__ = ["document", "markdown"]
 
 GENERATOR = f"Written by `make generate` with SymPy {sp.__version__}: do not edit."
-FORMULAS = {"One quadratic patch": patch.FORMULAS, "The quadratic spline": spline.FORMULAS}
+FORMULAS = {
+    "One quadratic patch": patch.FORMULAS,
+    "Gaussian images and parabolic points": gaussian_image.FORMULAS,
+    "The quadratic spline": spline.FORMULAS,
+}
 ENDS = {
     "none": "has edges",
     "wrap": "is periodic",
