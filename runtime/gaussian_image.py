@@ -89,9 +89,9 @@ class BoundaryArc:
 class GaussianImage:
     """The Gaussian image of one quadratic patch: the region of the sphere that its normals fill.
 
-    Make one with `of_patch`, or take one from a `GaussianImages`. `control_points` (6, 3) are in the
-    order b200, b020, b002, b110, b101, b011. What depends on whether something vanishes (`kind`,
-    `patch_class`, `is_great_circle`) is decided up to the rounding of the coordinates.
+    Make one with `of_patch`, or take one from a `GaussianImages`. `control_points` (6, 3) are in
+    the order b200, b020, b002, b110, b101, b011. What depends on whether something vanishes
+    (`kind`, `patch_class`, `is_great_circle`) is decided up to the rounding of the coordinates.
     """
 
     control_points: Array
@@ -153,7 +153,7 @@ class GaussianImage:
 
     @cached_property
     def solid_angle(self) -> float:
-        """The integral of the Gaussian curvature over the patch: negative where it is hyperbolic."""
+        """The integral of the Gaussian curvature over the patch, negative where hyperbolic."""
         return float(self._measures[0][0])
 
     @cached_property
@@ -270,23 +270,29 @@ def measures_of(patches: Patches, classes: NDArray[np.int8]) -> tuple[Array, Arr
     signed = np.zeros(len(patches))
     signed[~cut] = solid_angles(normals[~cut])
     areas = np.abs(signed)
-    for k in np.flatnonzero(cut):
-        parts = _measures_of_pieces(patches[k : k + 1])
-        signed[k], areas[k] = parts.sum(), np.abs(parts).sum()
+    pieces = [(k, fan) for k in np.flatnonzero(cut) for fan in _fans_of(patches[k : k + 1])]
+    if pieces:
+        owners = np.array([k for k, _ in pieces])
+        of_piece = np.repeat(np.arange(len(pieces)), [len(fan) for _, fan in pieces])
+        parts = solid_angles(np.concatenate([fan for _, fan in pieces]))
+        sums = np.bincount(of_piece, weights=parts, minlength=len(pieces))
+        np.add.at(signed, owners, sums)
+        np.add.at(areas, owners, np.abs(sums))
     return signed, areas
 
 
-def _measures_of_pieces(patch: Patches) -> Array:
-    """Return the solid angle of each piece of one patch."""
+def _fans_of(patch: Patches) -> list[Array]:
+    """Return the polar forms (m, 3, 3, 3) of the triangles of each piece of one patch."""
     places = singular_points(patch)
-    fans = [_fan(piece.corners, places) for piece in pieces_of(patch)]
-    corners = np.concatenate(fans)
-    corners = np.concatenate([corners, 1.0 - corners.sum(axis=2, keepdims=True)], axis=2)
-    normals = triangle_of(np.repeat(patch.normals, len(corners), axis=0), corners)
-    lengths = np.linalg.norm(normals, axis=3)
-    normals[lengths <= SINGULAR * lengths.max()] = 0.0
-    owners = np.repeat(np.arange(len(fans)), [len(fan) for fan in fans])
-    return np.bincount(owners, weights=solid_angles(normals), minlength=len(fans))
+    fans = []
+    for piece in pieces_of(patch):
+        corners = _fan(piece.corners, places)
+        corners = np.concatenate([corners, 1.0 - corners.sum(axis=2, keepdims=True)], axis=2)
+        normals = triangle_of(np.repeat(patch.normals, len(corners), axis=0), corners)
+        lengths = np.linalg.norm(normals, axis=3)
+        normals[lengths <= SINGULAR * lengths.max()] = 0.0
+        fans.append(normals)
+    return fans
 
 
 def _fan(polygon: Array, places: Array) -> Array:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +17,7 @@ from .plain import plain
 __all__ = ["has_normals"]
 
 Array = NDArray[np.float64]
+Place = tuple[Fraction, Fraction]
 # The forms are sums of at most six products of two scalar products, for vectors and normals of any
 # direction: their rounding error is below 2⁻⁴⁴ times the lengths of the vectors.
 FORM_ERROR = math.ldexp(1.0, -44)
@@ -74,7 +74,7 @@ def _exact(control_points: Array, normals: Array) -> NDArray[np.bool_]:
 
 
 def _on_line(vectors: list[int], n: list[int]) -> bool:
-    """Say whether a normal with U = V = D = 0 is that of a point: these points are a line or all."""
+    """Say whether a normal with U = V = D = 0 is that of a point: of a line of them, or of all."""
     rows = [plain(lines.parabolic_line)(*vectors, *n, s, t) for s, t in ((1, 0), (0, 1))]
     row = next((row for row in rows if row[0] or row[1]), None)
     corners = [(Fraction(1), Fraction(0)), (Fraction(0), Fraction(1)), (Fraction(0), Fraction(0))]
@@ -86,8 +86,8 @@ def _on_line(vectors: list[int], n: list[int]) -> bool:
     return bool(ends) and _has_direction(vectors, n, ends[0], ends[-1])
 
 
-def _ends(row: Any, corners: list[tuple[Fraction, Fraction]]) -> list[tuple[Fraction, Fraction]]:  # noqa: ANN401
-    """Return the points where a line meets the border of the triangle, the farthest ones outside."""
+def _ends(row: tuple[int, int, int], corners: list[Place]) -> list[Place]:
+    """Return the points where a line meets the border of the triangle, from end to end."""
     heights = [row[0] * u + row[1] * v + row[2] for u, v in corners]
     found = {corner for corner, height in zip(corners, heights, strict=True) if height == 0}
     for k in range(3):
@@ -102,8 +102,8 @@ def _ends(row: Any, corners: list[tuple[Fraction, Fraction]]) -> list[tuple[Frac
 def _has_direction(
     vectors: list[int],
     n: list[int],
-    first: tuple[Fraction, Fraction],
-    last: tuple[Fraction, Fraction],
+    first: Place,
+    last: Place,
 ) -> bool:
     """Say whether N·n is positive somewhere between two places of the parameter plane."""
 

@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 from enum import IntEnum
 from itertools import combinations
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,7 +14,6 @@ from ..generated import gaussian_image as formulas
 from ..generated import patch as patch_formulas
 from .errors import InputError
 from .patches import Patches, checked_control_points
-from .plain import plain
 from .spline import Spline
 
 __all__ = [
@@ -33,7 +31,7 @@ __all__ = [
 
 Array = NDArray[np.float64]
 TRIANGLE = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
-# Directions (as angles) nearer than this are one double direction: a double root is found no better.
+# Directions (as angles) nearer than this are one double direction: rounding parts a double root.
 DOUBLE = 1e-6
 # What a line cuts off is nothing if the corners are nearer to the line than this.
 NEAR = 1e-12

@@ -29,7 +29,7 @@ CUBIC_ERROR = math.ldexp(1.0, -44)
 
 @dataclass(frozen=True, eq=False)
 class Patches:
-    """The vectors a, b, c, d, e of eq. (8) of k patches, (k, 5, 3), in a unit that keeps them near 1.
+    """The vectors a, b, c, d, e of eq. (8) of k patches, (k, 5, 3), in a unit near their size.
 
     `noise` bounds the error that the rounding of the coordinates leaves in a component. Gaussian
     images do not depend on the unit.

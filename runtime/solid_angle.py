@@ -14,8 +14,8 @@ Array = NDArray[np.float64]
 NARROW = 0.5
 SMALL = 1e-9
 # Round a singular point inside, wide triangles remain for ever. Those that are left after so many
-# subdivisions are left out, a solid angle of about 2^-26 (deeper, rounding costs more); along a curve
-# of singular points there are soon so many that about 2^-12 has to be left out.
+# subdivisions are left out, a solid angle of about 2^-26 (deeper, rounding costs more); along a
+# curve of singular points there are soon so many that about 2^-12 has to be left out.
 DEPTH = 26
 MOST_WIDE = 20_000
 # Gauss-Legendre on an arc and on its halves agree to this, or the halves are cut again; so are arcs
@@ -26,12 +26,12 @@ NODES = 16
 AGREEMENT = 1e-15
 ARC_DEPTH = 40
 MOST_PARTS = 1_000_000
-# The edges of a triangle, counter-clockwise in (u, v): the corners at their ends and the opposite one.
+# The edges of a triangle, counter-clockwise in (u, v): their corners, and the opposite one.
 EDGES = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
 
 
 def solid_angles(normals: Array) -> Array:
-    """Return the solid angles (k,) of triangles with the normal fields N(u,v), given as polar forms.
+    """Return the solid angles (k,) of triangles, given the polar forms of their normal fields.
 
     Singular points, where N vanishes, have to be corners (exactly zero) for the full accuracy.
 
@@ -53,7 +53,7 @@ def is_wide(normals: Array) -> NDArray[np.bool_]:
 
 
 def triangle_of(normals: Array, corners: Array) -> Array:
-    """Return the polar forms (k, 3, 3, 3) of triangles whose `corners` are (k, 3, 3), barycentric."""
+    """Return the polar forms (k, 3, 3, 3) of triangles with barycentric corners (k, 3, 3)."""
     return np.einsum("kia,kjb,kabx->kijx", corners, corners, normals, optimize=True)
 
 
@@ -166,8 +166,8 @@ def _near_mean(normals: Array) -> tuple[Array, NDArray[np.bool_]]:
 def _cut(normals: Array) -> tuple[Array, NDArray[np.intp]]:
     """Cut triangles into smaller ones; also returns the number of the triangle that each is from.
 
-    Into four, but at a singular corner where the normals turn by more than 60 degrees into two, from
-    that corner on: smaller triangles there turn as much.
+    Into four, but at a singular corner where the normals turn by more than 60 degrees into two,
+    from that corner on: smaller triangles there turn as much.
     """
     whole = np.ones(len(normals), dtype=bool)
     parts, which = [], []
