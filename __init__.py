@@ -22,6 +22,12 @@ from .runtime.errors import (
 )
 from .runtime.gaussian_image import BoundaryArc, GaussianImage, GaussianImages
 from .runtime.io import read_samples
+from .runtime.parabolic import (
+    ParabolicCurve,
+    ParabolicPoint,
+    ParabolicPoints,
+    parabolic_points,
+)
 from .runtime.parabolic_lines import (
     ParabolicLine,
     PatchClass,
@@ -51,7 +57,10 @@ __all__ = [
     "GaussmapWarning",
     "InputError",
     "MissingExtraError",
+    "ParabolicCurve",
     "ParabolicLine",
+    "ParabolicPoint",
+    "ParabolicPoints",
     "PatchClass",
     "Piece",
     "Samples",
@@ -66,6 +75,7 @@ __all__ = [
     "formulas",
     "icosphere",
     "parabolic_lines",
+    "parabolic_points",
     "read_samples",
     "sample",
     "sample_many",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +26,7 @@ SIGNS = {PatchClass.ELLIPTIC: 1, PatchClass.HYPERBOLIC: -1}
 
 
 def polylines_of(spline: Spline) -> list[tuple[Array, bool]]:
-    """Return where the Gaussian curvature of a spline vanishes or changes sign, as polylines (k, 2).
+    """Return where the Gaussian curvature of a spline vanishes or changes sign: polylines (k, 2).
 
     They are exact: straight in the parameters inside each patch and along the edges.
     """
@@ -131,9 +132,7 @@ class _Plane:
         return self.node(patch, ends[0]), self.node(patch, ends[1]), self.place(patch, ends)
 
 
-def _edges(
-    plane: _Plane, classes: NDArray[np.int8], splits: dict[int, _Split]
-) -> list[Segment]:
+def _edges(plane: _Plane, classes: NDArray[np.int8], splits: dict[int, _Split]) -> list[Segment]:
     """Return the parts of edges across which the curvature changes its sign."""
     sides: dict[Hashable, list[tuple[int, int]]] = {}
     for patch, edge in _interesting(plane, classes):
@@ -150,7 +149,7 @@ def _edges(
         if other in splits:
             breaks |= {1.0 - x if turned else x for x in splits[other].breaks(other_edge)}
         shares = sorted(breaks)
-        for low, high in zip(shares, shares[1:], strict=False):
+        for low, high in pairwise(shares):
             middle = 0.5 * (low + high)
             here = _sign(classes, splits, patch, _on_edge(edge, middle))
             there = _sign(
@@ -176,7 +175,9 @@ def _interesting(plane: _Plane, classes: NDArray[np.int8]) -> list[tuple[int, in
             alike &= (shifted == grid[..., :1]).all(axis=2)
     alike &= grid[..., 0] != PatchClass.MIXED
     cells = np.flatnonzero(~alike.ravel())
-    return [(int(4 * cell + turn), edge) for cell in cells for turn in range(4) for edge in range(3)]
+    return [
+        (int(4 * cell + turn), edge) for cell in cells for turn in range(4) for edge in range(3)
+    ]
 
 
 def _on_edge(edge: int, share: float) -> Array:
@@ -184,9 +185,7 @@ def _on_edge(edge: int, share: float) -> Array:
     return (1.0 - share) * CORNERS[first] + share * CORNERS[last]
 
 
-def _sign(
-    classes: NDArray[np.int8], splits: dict[int, _Split], patch: int, place: Array
-) -> int:
+def _sign(classes: NDArray[np.int8], splits: dict[int, _Split], patch: int, place: Array) -> int:
     if patch in splits:
         return splits[patch].sign(place)
     return SIGNS.get(PatchClass(int(classes[patch])), 0)
