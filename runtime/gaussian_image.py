@@ -266,9 +266,12 @@ def measures_of(patches: Patches, classes: NDArray[np.int8]) -> tuple[Array, Arr
     their singular points.
     """
     normals = patches.normals
-    cut = is_wide(normals) | (classes == PatchClass.MIXED)
+    wide = is_wide(normals)
+    curved = np.isin(classes, (PatchClass.ELLIPTIC, PatchClass.HYPERBOLIC, PatchClass.MIXED))
+    cut = curved & (wide | (classes == PatchClass.MIXED))
     signed = np.zeros(len(patches))
-    signed[~cut] = solid_angles(normals[~cut])
+    narrow = ~cut & ~wide
+    signed[narrow] = solid_angles(normals[narrow])
     areas = np.abs(signed)
     pieces = [(k, fan) for k in np.flatnonzero(cut) for fan in _fans_of(patches[k : k + 1])]
     if pieces:

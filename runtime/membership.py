@@ -23,6 +23,9 @@ Place = tuple[Fraction, Fraction]
 FORM_ERROR = math.ldexp(1.0, -44)
 # What exceeds the error by this factor gives the parameters to a few digits.
 ACCURATE = 65536.0
+# Near a singular point, where N is this short beside the square of the tangents, the few digits of
+# the parameters do not give its direction.
+SINGULAR = 2.0**-12
 
 
 def has_normals(control_points: Array, normals: Array) -> NDArray[np.bool_]:
@@ -49,7 +52,8 @@ def _rounded(patch: Patches, n: Array) -> tuple[NDArray[np.bool_], NDArray[np.bo
     N = np.stack([x + 0.0 * u for x in patch.apply(formulas.tangents, u, v)[6:]], axis=1)
     towards = np.einsum("kx,kx->k", N, n)
     lengths = np.linalg.norm(N, axis=1) * np.linalg.norm(n, axis=1)
-    clear = (np.abs(towards) > 0.25 * lengths) & (lengths > 0.0)
+    regular = np.linalg.norm(N, axis=1) > SINGULAR * float(patch.tangent[0]) ** 2
+    clear = (np.abs(towards) > 0.25 * lengths) & regular
     return sure & clear & (towards > 0.0), outside | (sure & clear)
 
 
