@@ -27,7 +27,7 @@ REFINEMENTS = 14
 NEWTON_STEPS = 6
 MOST_CELLS = 128
 # A share of the domain that is worth a warning.
-WORTH_A_WARNING = 0.001
+WORTH_A_WARNING = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +89,7 @@ def parabolic_points(
     panels, or as many more as it takes. K is known to about 1e-9 of its size, and so are the
     vertices of the curves. Two curves that are nearer than one cell of a grid (1/16 of a panel) may
     be missed. Parts of the domain where the curvature cannot be computed (a pole, a crease) are
-    left out, with a GaussmapWarning if they are more than 0.1 % of it.
+    left out, with a GaussmapWarning if they are more than 0.01 % of it.
 
     `tolerance` is relative to the size of the surface and of its domain: so far may polylines be
     from the curves in space, and so small are the rectangles that isolate points. Raises InputError
@@ -133,7 +133,7 @@ def _of_surface(
     if found.unresolved > WORTH_A_WARNING:
         warnings.warn(
             f"the curvature of {surface.name!r} is not smooth enough to be computed on "
-            f"{100.0 * found.unresolved:.1f} % of its domain, which is left out; fit a spline and "
+            f"{100.0 * found.unresolved:.2g} % of its domain, which is left out; fit a spline and "
             "ask for its parabolic points instead.",
             GaussmapWarning,
             stacklevel=3,

@@ -218,19 +218,20 @@ def singular_points(patch: Patches) -> Array:
 
 def _singular_point(patch: Patches, place: Array) -> Array:
     """Improve a zero of N(u,v) by Gauss-Newton steps; NaN if it is none."""
+    half = 0.5 * np.eye(2)
     for _ in range(3):
-        here, along_u, along_v = (
-            np.array([float(x[0]) for x in patch.apply(patch_formulas.tangents, *at)[6:]])
-            for at in (place, place + np.array([0.5, 0.0]), place + np.array([0.0, 0.5]))
-        )
-        back_u, back_v = (
-            np.array([float(x[0]) for x in patch.apply(patch_formulas.tangents, *at)[6:]])
-            for at in (place - np.array([0.5, 0.0]), place - np.array([0.0, 0.5]))
-        )
-        slopes = np.column_stack([along_u - back_u, along_v - back_v])  # exact: N is quadratic
-        place = place - np.linalg.lstsq(slopes, here, rcond=None)[0]
+        # N is quadratic: these differences are its derivatives.
+        slopes = [_normal_at(patch, place + x) - _normal_at(patch, place - x) for x in half]
+        here = _normal_at(patch, place)
+        place = place - np.linalg.lstsq(np.column_stack(slopes), here, rcond=None)[0]
     size = float(patch.tangent[0]) ** 2 * (1.0 + float(np.abs(place).max())) ** 2
-    return place if np.abs(here).max() <= 2.0**-40 * size else np.full(2, np.nan)
+    vanishes = np.abs(_normal_at(patch, place)).max() <= 2.0**-40 * size
+    return place if vanishes else np.full(2, np.nan)
+
+
+def _normal_at(patch: Patches, place: Array) -> Array:
+    """Return N(u,v), not of unit length."""
+    return np.array([float(x[0]) for x in patch.apply(patch_formulas.tangents, *place)[6:]])
 
 
 # --- one line -------------------------------------------------------------------------------------
@@ -325,9 +326,7 @@ def _oriented(
     centre = TRIANGLE.mean(axis=0)
     place = centre - (s * centre[0] + t * centre[1] + rho) * np.array([s, t])
     place = place if segment is None else segment.mean(axis=0)
-    field = patch.apply(patch_formulas.tangents, *place)[6:]
-    towards = sum(float(x[0]) * y for x, y in zip(field, normal, strict=True))
-    return -normal if towards < 0.0 else normal
+    return -normal if float(_normal_at(patch, place) @ normal) < 0.0 else normal
 
 
 def _sign_at(patch: Patches, place: Array) -> int:

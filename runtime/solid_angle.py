@@ -69,8 +69,7 @@ def boundary_of(normals: Array) -> list[Array]:
         arc = np.stack([normals[:, i, i], normals[:, i, j], normals[:, j, j]], axis=1)
         ends = normals[:, i, k], normals[:, j, k]
         limit = np.stack([ends[0], 0.5 * (ends[0] + ends[1]), ends[1]], axis=1)
-        nothing = ~arc.any(axis=(1, 2))
-        edges.append(np.where(nothing[:, None, None], limit, arc))
+        edges.append(np.where(np.any(arc, axis=(1, 2), keepdims=True), arc, limit))
     corners = []
     for before, after in ((edges[2], edges[0]), (edges[0], edges[1]), (edges[1], edges[2])):
         start, end = _first(before[:, ::-1]), _first(after)
