@@ -26,36 +26,27 @@ def jit(function):
 
 @jit
 def boundary_cones(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z):
-    """The symmetric matrices of the three quadratic cones U = 0, V = 0, W = 0 that bound the
-    Gaussian image of a patch.
+    """The rows of the symmetric matrices of the three quadratic cones U = 0, V = 0, W = 0 that
+    bound the Gaussian image of a patch.
 
-        U_xx = b_x*e_x - c_x*d_x
-        U_xy = (b_x*e_y + b_y*e_x - c_x*d_y - c_y*d_x)/2
-        U_xz = (b_x*e_z + b_z*e_x - c_x*d_z - c_z*d_x)/2
-        U_yy = b_y*e_y - c_y*d_y
-        U_yz = (b_y*e_z + b_z*e_y - c_y*d_z - c_z*d_y)/2
-        U_zz = b_z*e_z - c_z*d_z
-        V_xx = b_x*d_x - a_x*e_x
-        V_xy = (b_x*d_y - a_x*e_y - a_y*e_x + b_y*d_x)/2
-        V_xz = (b_x*d_z - a_x*e_z - a_z*e_x + b_z*d_x)/2
-        V_yy = b_y*d_y - a_y*e_y
-        V_yz = (b_y*d_z - a_y*e_z - a_z*e_y + b_z*d_y)/2
-        V_zz = b_z*d_z - a_z*e_z
-        W_xx = a_x*c_x + a_x*e_x - b_x**2 - b_x*d_x - b_x*e_x + c_x*d_x
-        W_xy = (a_x*c_y + a_x*e_y + a_y*c_x + a_y*e_x - b_x*d_y - b_x*e_y - b_y*d_x - b_y*e_x
-             + c_x*d_y + c_y*d_x)/2 - b_x*b_y
-        W_xz = (a_x*c_z + a_x*e_z + a_z*c_x + a_z*e_x - b_x*d_z - b_x*e_z - b_z*d_x - b_z*e_x
-             + c_x*d_z + c_z*d_x)/2 - b_x*b_z
-        W_yy = a_y*c_y + a_y*e_y - b_y**2 - b_y*d_y - b_y*e_y + c_y*d_y
-        W_yz = (a_y*c_z + a_y*e_z + a_z*c_y + a_z*e_y - b_y*d_z - b_y*e_z - b_z*d_y - b_z*e_y
-             + c_y*d_z + c_z*d_y)/2 - b_y*b_z
-        W_zz = a_z*c_z + a_z*e_z - b_z**2 - b_z*d_z - b_z*e_z + c_z*d_z
+        U_x = (b*e_x + b_x*e - c*d_x - c_x*d)/2
+        U_y = (b*e_y + b_y*e - c*d_y - c_y*d)/2
+        U_z = (b*e_z + b_z*e - c*d_z - c_z*d)/2
+        V_x = (b*d_x - a*e_x - a_x*e + b_x*d)/2
+        V_y = (b*d_y - a*e_y - a_y*e + b_y*d)/2
+        V_z = (b*d_z - a*e_z - a_z*e + b_z*d)/2
+        W_x = (a*c_x + a*e_x + a_x*c + a_x*e - b*d_x - b*e_x - b_x*d - b_x*e + c*d_x + c_x*d)/2
+            - b*b_x
+        W_y = (a*c_y + a*e_y + a_y*c + a_y*e - b*d_y - b*e_y - b_y*d - b_y*e + c*d_y + c_y*d)/2
+            - b*b_y
+        W_z = (a*c_z + a*e_z + a_z*c + a_z*e - b*d_z - b*e_z - b_z*d - b_z*e + c*d_z + c_z*d)/2
+            - b*b_z
 
-    Source: Sect. 3.2; 210 operations as written, 125 here.
+    Source: Sect. 3.2; 369 operations as written, 128 here.
     """
     t0 = b_x * e_x
     t1 = c_x * d_x
-    U_xx = t0 - t1
+    U_x_x = t0 - t1
     t2 = 0.5 * b_x
     t3 = e_y * t2
     t4 = 0.5 * e_x
@@ -64,65 +55,89 @@ def boundary_cones(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e
     t7 = d_y * t6
     t8 = 0.5 * d_x
     t9 = c_y * t8
-    U_xy = t3 + t5 - t7 - t9
-    t10 = e_z * t2
-    t11 = b_z * t4
-    t12 = d_z * t6
-    t13 = c_z * t8
-    U_xz = t10 + t11 - t12 - t13
-    t14 = b_y * e_y
-    t15 = c_y * d_y
-    U_yy = t14 - t15
-    t16 = 0.5 * e_z
-    t17 = b_y * t16
-    t18 = 0.5 * e_y
-    t19 = b_z * t18
-    t20 = 0.5 * d_z
-    t21 = c_y * t20
-    t22 = 0.5 * d_y
-    t23 = c_z * t22
-    U_yz = t17 + t19 - t21 - t23
-    t24 = b_z * e_z
-    t25 = c_z * d_z
-    U_zz = t24 - t25
-    t26 = a_x * e_x - b_x * d_x
-    V_xx = -t26
-    t27 = a_x * t18 + a_y * t4 - b_y * t8 - d_y * t2
-    V_xy = -t27
-    t28 = a_x * t16 + a_z * t4 - b_z * t8 - d_z * t2
-    V_xz = -t28
-    t29 = a_y * e_y - b_y * d_y
-    V_yy = -t29
-    t30 = a_y * t16 + a_z * t18 - b_y * t20 - b_z * t22
-    V_yz = -t30
-    t31 = a_z * e_z - b_z * d_z
-    V_zz = -t31
-    W_xx = a_x * c_x - b_x * b_x - t0 + t1 + t26
-    t32 = 0.5 * a_x
-    W_xy = a_y * t6 - b_x * b_y + c_y * t32 + t27 - t3 - t5 + t7 + t9
-    W_xz = a_z * t6 - b_x * b_z + c_z * t32 - t10 - t11 + t12 + t13 + t28
-    W_yy = a_y * c_y - b_y * b_y - t14 + t15 + t29
-    W_yz = 0.5 * a_y * c_z + 0.5 * a_z * c_y - b_y * b_z - t17 - t19 + t21 + t23 + t30
-    W_zz = a_z * c_z - b_z * b_z - t24 + t25 + t31
+    t10 = t3 + t5 - t7 - t9
+    U_x_y = t10
+    t11 = e_z * t2
+    t12 = b_z * t4
+    t13 = d_z * t6
+    t14 = c_z * t8
+    t15 = t11 + t12 - t13 - t14
+    U_x_z = t15
+    U_y_x = t10
+    t16 = b_y * e_y
+    t17 = c_y * d_y
+    U_y_y = t16 - t17
+    t18 = 0.5 * e_z
+    t19 = b_y * t18
+    t20 = 0.5 * e_y
+    t21 = b_z * t20
+    t22 = 0.5 * d_z
+    t23 = c_y * t22
+    t24 = 0.5 * d_y
+    t25 = c_z * t24
+    t26 = t19 + t21 - t23 - t25
+    U_y_z = t26
+    U_z_x = t15
+    U_z_y = t26
+    t27 = b_z * e_z
+    t28 = c_z * d_z
+    U_z_z = t27 - t28
+    t29 = a_x * e_x - b_x * d_x
+    V_x_x = -t29
+    t30 = a_x * t20 + a_y * t4 - b_y * t8 - d_y * t2
+    V_x_y = -t30
+    t31 = a_x * t18 + a_z * t4 - b_z * t8 - d_z * t2
+    V_x_z = -t31
+    V_y_x = -t30
+    t32 = a_y * e_y - b_y * d_y
+    V_y_y = -t32
+    t33 = a_y * t18 + a_z * t20 - b_y * t22 - b_z * t24
+    V_y_z = -t33
+    V_z_x = -t31
+    V_z_y = -t33
+    t34 = a_z * e_z - b_z * d_z
+    V_z_z = -t34
+    W_x_x = a_x * c_x - b_x * b_x - t0 + t1 + t29
+    t35 = 0.5 * a_x
+    t36 = a_y * t6 - b_x * b_y + c_y * t35 - t3 + t30 - t5 + t7 + t9
+    W_x_y = t36
+    t37 = a_z * t6 - b_x * b_z + c_z * t35 - t11 - t12 + t13 + t14 + t31
+    W_x_z = t37
+    W_y_x = t36
+    W_y_y = a_y * c_y - b_y * b_y - t16 + t17 + t32
+    t38 = 0.5 * a_y * c_z + 0.5 * a_z * c_y - b_y * b_z - t19 - t21 + t23 + t25 + t33
+    W_y_z = t38
+    W_z_x = t37
+    W_z_y = t38
+    W_z_z = a_z * c_z - b_z * b_z - t27 + t28 + t34
     return (
-        U_xx,
-        U_xy,
-        U_xz,
-        U_yy,
-        U_yz,
-        U_zz,
-        V_xx,
-        V_xy,
-        V_xz,
-        V_yy,
-        V_yz,
-        V_zz,
-        W_xx,
-        W_xy,
-        W_xz,
-        W_yy,
-        W_yz,
-        W_zz,
+        U_x_x,
+        U_x_y,
+        U_x_z,
+        U_y_x,
+        U_y_y,
+        U_y_z,
+        U_z_x,
+        U_z_y,
+        U_z_z,
+        V_x_x,
+        V_x_y,
+        V_x_z,
+        V_y_x,
+        V_y_y,
+        V_y_z,
+        V_z_x,
+        V_z_y,
+        V_z_z,
+        W_x_x,
+        W_x_y,
+        W_x_z,
+        W_y_x,
+        W_y_y,
+        W_y_z,
+        W_z_x,
+        W_z_y,
+        W_z_z,
     )
 
 
@@ -180,7 +195,7 @@ def solid_angle(q_x, q_y, q_z, n_x, n_y, n_z, n_t_x, n_t_y, n_t_z):
 @jit
 def parabolic_directions(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z):
     """The coefficients of the binary cubic det[t a − s b, t b − s c, t d − s e] in (s, t): its
-    real roots are the directions of the parabolic lines s u + t v + ρ = 0. It vanishes where
+    real roots are the directions of the parabolic lines s u + t v = const. It vanishes where
     the patch is developable, and where a, b, c are multiples of one vector, so that the
     curvature has one sign.
 
@@ -296,7 +311,7 @@ def gaussian_curvature_of_derivatives(
         C = N·c
         K = (A*C - B**2)/|N|**4
 
-    Source: Remark 3.1; 39 operations as written, 39 here.
+    Source: Sect. 3.2, Remark 3.1; 39 operations as written, 39 here.
     """
     N_x = p_u_y * p_v_z - p_u_z * p_v_y
     N_y = p_u_z * p_v_x - p_u_x * p_v_z

@@ -132,9 +132,8 @@ class GaussianImage:
         factor that the three have in common. The normals n of the patch, and their opposites, are
         where the three forms have one sign.
         """
-        entries = np.array([x[0] for x in self._patch.apply(formulas.boundary_cones)])
-        xx, xy, xz, yy, yz, zz = entries.reshape(3, 6).T
-        return np.stack([xx, xy, xz, xy, yy, yz, xz, yz, zz], axis=1).reshape(3, 3, 3)
+        rows = self._patch.apply(formulas.boundary_cones)
+        return np.array([x[0] for x in rows]).reshape(3, 3, 3)
 
     @cached_property
     def arcs(self) -> tuple[BoundaryArc, BoundaryArc, BoundaryArc]:

@@ -17,12 +17,12 @@ multiples of one vector (a graph), the binary cubic vanishes and D(N) is a const
 
 from __future__ import annotations
 
-from itertools import combinations_with_replacement, product
+from itertools import product
 
 import sympy as sp
 
 from .formula import Cross, Det, Dot, Formula, scalar, vectors
-from .patch import FORM_TERMS, FORMS, SOLUTION, VECTORS, A, B, C, P, Q, a, b, c, d, e, n
+from .patch import FORM_TERMS, LINEAR_FORMS, SOLUTION, VECTORS, A, B, C, P, Q, a, b, c, d, e, n
 
 __all__ = ["FORMULAS"]
 
@@ -36,20 +36,24 @@ p_u, p_v, N, q, n_t, N0, N1, N2, f1, f2, f3 = vectors(
 
 
 def _cones() -> Formula:
-    """Take half the Hessians of U, V, W with respect to n."""
-    forms = FORMS.expanded()
-    axes = dict(zip("xyz", n.components, strict=True))
+    """Take half the Hessians of U, V, W with respect to n, row by row, by the chain rule."""
+    forms = {"U": SOLUTION.U, "V": SOLUTION.V, "W": SOLUTION.D - SOLUTION.U - SOLUTION.V}
+    pairs = list(zip(LINEAR_FORMS, VECTORS, strict=True))
+    rows = {
+        f"{name}_{axis}": sum(
+            sp.diff(form, X, Y) / 2 * y.components["xyz".index(axis)] * x
+            for (X, x), (Y, y) in product(pairs, repeat=2)
+        )
+        for name, form in forms.items()
+        for axis in "xyz"
+    }
     return Formula.build(
         "boundary_cones",
-        "The symmetric matrices of the three quadratic cones $U = 0$, $V = 0$, $W = 0$ that bound "
-        "the Gaussian image of a patch.",
+        "The rows of the symmetric matrices of the three quadratic cones $U = 0$, $V = 0$, $W = 0$ "
+        "that bound the Gaussian image of a patch.",
         source="Sect. 3.2",
         inputs=VECTORS,
-        outputs=[
-            (f"{form}_{i}{j}", sp.expand(sp.diff(forms[form], axes[i], axes[j]) / 2))
-            for form in "UVW"
-            for i, j in combinations_with_replacement("xyz", 2)
-        ],
+        outputs=list(rows.items()),
     )
 
 
@@ -99,7 +103,7 @@ def _directions() -> Formula:
     return Formula.build(
         "parabolic_directions",
         "The coefficients of the binary cubic det[t a − s b, t b − s c, t d − s e] in (s, t): its "
-        "real roots are the directions of the parabolic lines s u + t v + ρ = 0. It vanishes where "
+        "real roots are the directions of the parabolic lines s u + t v = const. It vanishes where "
         "the patch is developable, and where $a$, $b$, $c$ are multiples of one vector, so that "
         "the curvature has one sign.",
         source="Sect. 3.2",
@@ -138,7 +142,7 @@ CURVATURE_OF_DERIVATIVES = Formula.build(
     "gaussian_curvature_of_derivatives",
     "The Gaussian curvature of any surface from its first derivatives $p_u$, $p_v$ and its second "
     "derivatives $a$, $b$, $c$ (by $uu$, $uv$, $vv$).",
-    source="Remark 3.1",
+    source="Sect. 3.2, Remark 3.1",
     inputs=[p_u, p_v, a, b, c],
     terms=[("N", Cross(p_u, p_v)), ("A", Dot(N, a)), ("B", Dot(N, b)), ("C", Dot(N, c))],
     outputs=[("K", SOLUTION.D / Dot(N, N) ** 2)],

@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 import sympy as sp
-from gaussmap.symbolic import emit, files, formulas, patch, surfaces
+from gaussmap.symbolic import emit, files, formulas, gaussian_image, patch, surfaces
 from gaussmap.symbolic.__main__ import main
 from gaussmap.symbolic.positions import position
 
@@ -61,6 +61,10 @@ def exact_inputs(formula, seed: int) -> dict[str, Fraction]:
         symbol.name: Fraction(generator.randint(-40, 40) * 2 + 1, generator.randint(1, 30))
         for symbol in formula.in_components().inputs
     }
+    if formula is gaussian_image.SOLID_ANGLE:
+        return inputs | {
+            f"n_{axis}": Fraction(x, 5) for axis, x in zip("xyz", (2, -3, 6), strict=True)
+        }
     return inputs | rational_length(inputs) if formula is patch.MEASURE else inputs
 
 
