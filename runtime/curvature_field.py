@@ -25,8 +25,8 @@ Array = NDArray[np.float64]
 ORDER = 16
 # Panels are cut at no special place: what is symmetric has its parabolic curves in special ones.
 OFFSET = 0.2360679774997897
-# K is resolved where its last coefficients are less than this, beside its largest value.
-RESOLVED = 1e-3
+# K is resolved where its error is less than this, beside its largest value on the panel.
+RESOLVED = 1e-2
 NODES = chebyshev.chebpts1(ORDER)
 TO_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(NODES, ORDER - 1))
 
@@ -48,13 +48,16 @@ class CurvatureField:
     In a periodic direction (`wraps`) the panels make one period that starts inside the domain.
 
     `coefficients` (m, n, ORDER, ORDER) are those of K in products of Chebyshev polynomials of the
-    two coordinates of a panel, −1 … 1. `noise` (m, n) bounds the error of K.
+    two coordinates of a panel, −1 … 1. `noise` (m, n) bounds the error of K; `bending` (m, n) is
+    what that has to be compared with where K is small: the square of the curvature of the parameter
+    lines in the direction of the normal, and of one over the size of the surface.
     """
 
     lines: tuple[Array, Array]
     wraps: tuple[bool, bool]
     coefficients: Array
     noise: Array
+    bending: Array
 
     @classmethod
     def of_surface(cls, surface: Surface, panels: tuple[int, int]) -> CurvatureField:
@@ -70,13 +73,14 @@ class CurvatureField:
         ]
         x = surface.evaluate(inside[0][:, None], inside[1])
         x = x.reshape(panels[0], ORDER, panels[1], ORDER, 3).transpose(0, 2, 1, 3, 4)
-        K, rounding = _curvature(x, *(np.diff(line) for line in lines))
+        K, rounding, bending = _curvature(x, *(np.diff(line) for line in lines))
         coefficients = TO_COEFFICIENTS @ K @ TO_COEFFICIENTS.T
         tail = np.maximum(
             np.abs(coefficients[..., -2:, :]).max(axis=(2, 3)),
             np.abs(coefficients[..., :, -2:]).max(axis=(2, 3)),
         )
-        return cls((lines[0], lines[1]), wraps, coefficients, rounding + ORDER * tail)
+        noise = rounding + ORDER * tail
+        return cls((lines[0], lines[1]), wraps, coefficients, noise, bending)
 
     @cached_property
     def largest(self) -> Array:
@@ -85,16 +89,20 @@ class CurvatureField:
 
     @cached_property
     def flat(self) -> NDArray[np.bool_]:
-        """Where (m, n) K is zero up to its error, and that is small beside K elsewhere."""
-        zero = self.largest <= 4.0 * ORDER * self.noise
-        small = 4.0 * ORDER * self.noise <= RESOLVED * float(self.largest.max())
-        return zero if zero.all() else zero & small
+        """Where (m, n) K is zero up to its error, although that is small."""
+        bound = 4.0 * ORDER * self.noise
+        return (self.largest <= bound) & (bound <= RESOLVED * self.bending)
 
     @cached_property
     def unresolved(self) -> NDArray[np.bool_]:
-        """Where (m, n) the error of K is large, beside K and beside the rest of the surface."""
-        typical = float(np.median(self.largest))
-        return ~self.flat & (self.noise > RESOLVED * np.maximum(self.largest, typical))
+        """Where (m, n) the error of K is large beside K, and beside how much the surface bends."""
+        least = np.maximum(self.largest, RESOLVED * self.bending)
+        return ~self.flat & ~(self.noise <= RESOLVED * least)
+
+    def share(self, which: NDArray[np.bool_]) -> float:
+        """Return the share of the domain that panels (m, n) take."""
+        areas = np.outer(*(np.diff(line) for line in self.lines))
+        return float(areas[which].sum() / areas.sum())
 
     def evaluate(self, places: Array, du: int = 0, dv: int = 0) -> Array:
         """Return K or a partial derivative (k,) at places (k, 2), extrapolating beyond the ends."""
@@ -134,8 +142,8 @@ def _nodes(lines: Array) -> Array:
     return (middle[:, None] + half[:, None] * NODES).ravel()
 
 
-def _curvature(x: Array, sizes_u: Array, sizes_v: Array) -> tuple[Array, Array]:
-    """Return K at the nodes (m, n, ORDER, ORDER) of points, and its rounding error (m, n).
+def _curvature(x: Array, sizes_u: Array, sizes_v: Array) -> tuple[Array, Array, Array]:
+    """Return K at the nodes (m, n, ORDER, ORDER) of points; its rounding error and bending (m, n).
 
     The parameters are those of the panels, scaled to the surface, so that nothing overflows.
     """
@@ -152,7 +160,12 @@ def _curvature(x: Array, sizes_u: Array, sizes_v: Array) -> tuple[Array, Array]:
     columns = [component for vector in vectors for component in np.moveaxis(vector, -1, 0)]
     with np.errstate(all="ignore"):
         K = plain(formulas.gaussian_curvature_of_derivatives)(*columns)
-        area = np.linalg.norm(np.cross(p_u, p_v), axis=-1)
+        normal = np.cross(p_u, p_v)
+        area = np.linalg.norm(normal, axis=-1)
+        along = [
+            np.abs(np.einsum("mnabx,mnabx->mnab", normal, second)) / area / (first**2).sum(axis=-1)
+            for first, second in ((p_u, p_uu), (p_v, p_vv))
+        ]
         first, second = (float(np.linalg.norm(x, axis=1).max()) for x in (DERIVATIVE, SECOND))
         of_uu = error * second * along_u[..., 0] ** 2
         of_vv = error * second * along_v[..., 0] ** 2
@@ -161,4 +174,5 @@ def _curvature(x: Array, sizes_u: Array, sizes_v: Array) -> tuple[Array, Array]:
         rounding = (uu * of_vv + vv * of_uu + 2.0 * uv * of_uv + of_uu * of_vv) / area**2
     bad = ~np.isfinite(K) | ~np.isfinite(rounding)
     K[bad], rounding[bad] = 0.0, np.inf
-    return K / scale**2, rounding.max(axis=(2, 3)) / scale**2
+    bending = 1.0 + np.nan_to_num(np.maximum(*along), posinf=0.0).max(axis=(2, 3)) ** 2
+    return K / scale**2, rounding.max(axis=(2, 3)) / scale**2, bending / scale**2

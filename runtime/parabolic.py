@@ -49,7 +49,7 @@ class ParabolicPoint:
 
     `uv` (2,) are its parameters, `point` (3,) its place in space. `box` (2, 2) holds the lowest and
     the highest parameters of the rectangle that isolates it; one that is longer than the tolerance
-    holds a whole curve of such points.
+    holds a whole curve of such points, or K is zero up to its error on all of it.
     """
 
     uv: Array
@@ -132,18 +132,20 @@ def _of_surface(
     found = search(field, 0.125 * tolerance * extent)
     if found.unresolved > WORTH_A_WARNING:
         warnings.warn(
-            f"the curvature of {surface.name!r} is not smooth enough to be computed on "
-            f"{100.0 * found.unresolved:.2g} % of its domain, which is left out; fit a spline and "
-            "ask for its parabolic points instead.",
+            f"the curvature of {surface.name!r} cannot be computed on "
+            f"{100.0 * found.unresolved:.3g} % of its domain (a pole, a crease, fine detail, or "
+            "coordinates with too few digits), which is left out; the spline of the surface "
+            "(`fit`) has parabolic points everywhere.",
             GaussmapWarning,
             stacklevel=3,
         )
     grid = surface.evaluate(*np.meshgrid(*(np.linspace(*ends, 17) for ends in surface.domain)))
     size = tolerance * _size(grid.reshape(-1, 3))
-    curves = []
-    for uv, closed in found.polylines:
-        finer = _refined(uv, field, surface, size)
-        curves.append(ParabolicCurve(finer, _evaluated(surface, finer), closed))
+    finer = _refined([uv for uv, _ in found.polylines], field, surface, size)
+    curves = [
+        ParabolicCurve(uv, _evaluated(surface, uv), closed)
+        for uv, (_, closed) in zip(finer, found.polylines, strict=True)
+    ]
     isolated = []
     for box in found.boxes:
         uv = _lowest(field, box)
@@ -166,9 +168,15 @@ def _subdivided(uv: Array, evaluate: Evaluation, size: float) -> Array:
     return np.concatenate([*pieces, uv[-1:]])
 
 
-def _refined(uv: Array, field: CurvatureField, surface: Surface, size: float) -> Array:
-    """Insert points of the curve K = 0 where a polyline departs from it by more than `size`."""
-    open_ = np.ones(len(uv) - 1, dtype=bool)
+def _refined(
+    polylines: list[Array], field: CurvatureField, surface: Surface, size: float
+) -> list[Array]:
+    """Insert points of the curve K = 0 where polylines depart from it by more than `size`."""
+    if not polylines:
+        return []
+    uv = np.concatenate(polylines)
+    owner = np.repeat(np.arange(len(polylines)), [len(x) for x in polylines])
+    open_ = owner[1:] == owner[:-1]
     for _ in range(REFINEMENTS):
         which = np.flatnonzero(open_)
         if len(which) == 0:
@@ -182,9 +190,10 @@ def _refined(uv: Array, field: CurvatureField, surface: Surface, size: float) ->
         insert = which[far]
         places = insert + 1 + np.arange(len(insert))
         uv = np.insert(uv, insert + 1, middle[far], axis=0)
+        owner = np.insert(owner, insert + 1, owner[insert])
         open_ = np.zeros(len(uv) - 1, dtype=bool)
         open_[places - 1] = open_[places] = True
-    return uv
+    return np.split(uv, np.flatnonzero(np.diff(owner)) + 1)
 
 
 def _onto_curve(field: CurvatureField, places: Array) -> Array:

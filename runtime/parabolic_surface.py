@@ -25,10 +25,10 @@ PANELS = (8, 8)
 MOST_PANELS = 64
 # Cells of the grid along a side of a panel; doubled where a curve is too small for them.
 CELLS = 16
-MOST_CELLS = 64
+MOST_LINES = 512
 MOST_BOXES = 4096
 DEEPEST = 40
-BISECTIONS = 52
+BISECTIONS = 36
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,16 +47,15 @@ class Search:
 
 
 def field_of(surface: Surface, cells: tuple[int, int] | None) -> CurvatureField:
-    """Return K on panels: as many as asked, or twice as many until K is resolved."""
+    """Return K on panels: as many as asked, or as many as resolve the most of the domain."""
     panels = PANELS if cells is None else cells
-    field = CurvatureField.of_surface(surface, panels)
-    while cells is None and field.unresolved.any() and max(panels) < MOST_PANELS:
+    best = CurvatureField.of_surface(surface, panels)
+    while cells is None and best.unresolved.any() and max(panels) < MOST_PANELS:
         panels = (2 * panels[0], 2 * panels[1])
         finer = CurvatureField.of_surface(surface, panels)
-        if finer.unresolved.mean() > 0.75 * field.unresolved.mean():
-            break  # a singular point of the parameterization stays one
-        field = finer
-    return field
+        if finer.share(finer.unresolved) < best.share(best.unresolved):
+            best = finer
+    return best
 
 
 def search(field: CurvatureField, size: Array) -> Search:
@@ -65,20 +64,17 @@ def search(field: CurvatureField, size: Array) -> Search:
     cells = CELLS
     while True:
         grid = _Grid(field, cells, usable)
-        boxes, hidden = grid.without_sign_change(size)
-        if not hidden or cells >= MOST_CELLS:
+        finest = 2 * cells * max(field.noise.shape) > MOST_LINES
+        boxes = grid.without_sign_change(size, finest)
+        if boxes is not None:
             break
         cells *= 2
     return Search(
         joined(grid.segments()),
         _clusters(boxes, size),
         _panels(field, field.flat),
-        float(_areas(field)[field.unresolved].sum() / _areas(field).sum()),
+        field.share(field.unresolved),
     )
-
-
-def _areas(field: CurvatureField) -> Array:
-    return np.outer(np.diff(field.lines[0]), np.diff(field.lines[1]))
 
 
 def _panels(field: CurvatureField, which: NDArray[np.bool_]) -> Array:
@@ -149,7 +145,10 @@ class _Grid:
         """Return the zero of K on each side of a cell at whose ends it has two signs."""
         sides, low, high = [], [], []
         for along, axis in (("u", 0), ("v", 1)):
-            change = np.diff(self.signs, axis=axis)
+            width = [(0, 0) if k == axis else (1, 1) for k in (0, 1)]
+            beside = np.pad(self.crossed, width)
+            beside = beside[:, 1:] | beside[:, :-1] if along == "u" else beside[1:] | beside[:-1]
+            change = np.diff(self.signs, axis=axis) & beside
             for i, j in zip(*np.nonzero(change), strict=True):
                 sides.append((along, int(i), int(j)))
                 low.append((self.lines[0][i], self.lines[1][j]))
@@ -160,11 +159,12 @@ class _Grid:
         places = _bisected(self.field, np.array(low), np.array(high))
         return dict(zip(sides, places, strict=True))
 
-    def without_sign_change(self, size: Array) -> tuple[Array, bool]:
+    def without_sign_change(self, size: Array, finest: bool) -> Array | None:
         """Subdivide the cells without sign change that may hold a zero of K.
 
-        Returns the rectangles (k, 2, 2) that are left at the end, and whether K has another sign
-        inside one of them, away from the curves: then the cells are too large.
+        Returns the rectangles (k, 2, 2) that are left at the end; None if K has another sign inside
+        a cell away from the curves, so that cells should be smaller. If these are the `finest`,
+        such small curves are left out.
         """
         near = self._near_curves()
         open_ = self.mask & ~self.crossed & ~near & self._may_vanish()
@@ -178,10 +178,11 @@ class _Grid:
                 break
             low, high, signs = _quartered(low, high, signs)
             keep, other = _bounded(self.field, low, high, signs)
-            if other:
-                return np.stack([low, high], axis=1), True
+            if other.any() and not finest:
+                return None
+            keep &= ~other
             low, high, signs = low[keep], high[keep], signs[keep]
-        return np.stack([low, high], axis=1), False
+        return np.stack([low, high], axis=1)
 
     def _near_curves(self) -> NDArray[np.bool_]:
         """Say which cells touch one with a sign change."""
@@ -242,10 +243,8 @@ def _quartered(
 
 def _bounded(
     field: CurvatureField, low: Array, high: Array, signs: NDArray[np.bool_]
-) -> tuple[NDArray[np.bool_], bool]:
-    """Say which rectangles may hold a zero of K, and whether K has another sign inside one."""
-    if len(low) == 0:
-        return np.zeros(0, dtype=bool), False
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Say which rectangles may hold a zero of K, and in which K has another sign too."""
     places = [
         0.5 * (low + high)[:, None, axis] + 0.5 * (high - low)[:, None, axis] * NODES[None, ::2]
         for axis in (0, 1)
@@ -266,16 +265,16 @@ def _bounded(
     spread = largest - smallest
     keep = np.where(signs, smallest - spread <= noise, largest + spread >= -noise)
     other = np.where(signs, smallest < -noise, largest > noise)
-    return keep, bool(other.any())
+    return keep, other
 
 
 def _clusters(boxes: Array, size: Array) -> Array:
     """Join rectangles that touch; returns those (k, 2, 2) that hold the groups."""
-    groups: list[Array] = []
-    for box in boxes[np.lexsort(boxes[:, 0].T)] if len(boxes) else boxes:
-        grown = box + np.array([-size, size])
-        touching = [g for g in groups if ((g[0] <= grown[1]) & (g[1] >= grown[0])).all()]
-        groups = [g for g in groups if not any(g is x for x in touching)]
-        corners = np.array([box, *touching])
-        groups.append(np.array([corners[:, 0].min(axis=0), corners[:, 1].max(axis=0)]))
-    return np.array(groups).reshape(-1, 2, 2)
+    groups = np.empty((0, 2, 2))
+    for box in boxes:
+        low, high = box[0] - size, box[1] + size
+        touching = ((groups[:, 0] <= high) & (groups[:, 1] >= low)).all(axis=1)
+        corners = np.concatenate([box[None], groups[touching]])
+        joint = np.stack([corners[:, 0].min(axis=0), corners[:, 1].max(axis=0)])
+        groups = np.concatenate([groups[~touching], joint[None]])
+    return groups
