@@ -28,14 +28,8 @@ from .runtime.parabolic import (
     ParabolicPoints,
     parabolic_points,
 )
-from .runtime.parabolic_lines import (
-    ParabolicLine,
-    PatchClass,
-    Piece,
-    classify_patches,
-    parabolic_lines,
-    split_patch,
-)
+from .runtime.parabolic_lines import ParabolicLine, Piece, parabolic_lines, split_patch
+from .runtime.patch_classes import PatchClass, classify_patches
 from .runtime.samples import Samples, SamplingReport
 from .runtime.sampling import sample, sample_many
 from .runtime.sphere import fibonacci, icosphere

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from .checks import whole_number
 from .curvature_field import CurvatureField
 from .errors import GaussmapWarning, InputError
-from .parabolic_lines import PatchClass, classify_patches
 from .parabolic_spline import polylines_of
 from .parabolic_surface import field_of, search
+from .patch_classes import PatchClass, classify_patches
 from .spline import Spline, fit
 from .surface import Surface
 

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from ..generated import sampler
 from .chains import Segment, joined
-from .parabolic_lines import PatchClass, classes_of, lines_of, pieces_of
+from .parabolic_lines import lines_of, pieces_of
+from .patch_classes import PatchClass, classes_of
 from .patches import Patches
 from .spline import Spline
 

@@ -41,8 +41,11 @@ def _cones() -> Formula:
     pairs = list(zip(LINEAR_FORMS, VECTORS, strict=True))
     rows = {
         f"{name}_{axis}": sum(
-            sp.diff(form, X, Y) / 2 * y.components["xyz".index(axis)] * x
-            for (X, x), (Y, y) in product(pairs, repeat=2)
+            (
+                sp.diff(form, X, Y) / 2 * y.components["xyz".index(axis)] * x
+                for (X, x), (Y, y) in product(pairs, repeat=2)
+            ),
+            start=sp.S.Zero,
         )
         for name, form in forms.items()
         for axis in "xyz"
