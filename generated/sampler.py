@@ -643,9 +643,8 @@ def face_window(shown, angles, narrow, face, grid, window, hull):
     It is written too, in bins; its error and the number of its points are returned. Where some control
     normals do not point to the face, the cone is cut off before them, but outside the face; if it is
     not narrow, the window is the whole face and the error infinite. The window is empty if the cone
-    lies beyond one of the borders of the face.
+    lies beyond one of the borders of the face, as it has to be before.
     """
-    empty(window)
     half = 0.5 * grid
     error = largest = 0.0
     towards = away = 0
@@ -834,6 +833,12 @@ def search_patches(
         map_net(net, errors, frame, stretch, shown, angles)
         total = 0
         for face in range(6):
+            empty(windows[face])
+            if starts[face * grid * grid] == starts[(face + 1) * grid * grid]:
+                continue
+            # A unit vector in the cone is this near to the axis, and one on the face is 1/√3 high.
+            if stretch == 1.0 and on_face(face, axis[0], axis[1], axis[2])[2] + 1.1 * sine < 0.577:
+                continue
             slacks[face], sizes[face] = face_window(
                 shown, angles, sine < math.inf, face, grid, windows[face], hulls[face]
             )

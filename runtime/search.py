@@ -21,7 +21,7 @@ __all__ = ["Hits", "NormalBins", "fill", "find"]
 FEWEST_PATCHES, MOST_PATCHES = 64, 4096
 RANGES_PER_THREAD = 4
 SAMPLES_AT_A_TIME = 1 << 16
-NORMALS_PER_BIN = 8
+NORMALS_PER_BIN = 4
 # A cap of normals is not taken for narrower than this, the tangent of half its angle.
 NARROWEST = 2.0**-20
 # Room for so many hits at first; a patch that needs more gets it.
