@@ -1,0 +1,148 @@
+"""Figs. 4 and 5: a curve sampled by uniform normals, and the polygons through its points."""
+
+from __future__ import annotations
+
+import gaussmap as gm
+import numpy as np
+import sympy as sp
+from gaussmap.docs.curves import PIECES, TURN, Polygon, TrueCurve, by_normals, t
+from gaussmap.docs.drawing import HALO, Floats, panels
+from gaussmap.docs.orders import listed
+from gaussmap.runtime.palette import ELLIPTIC, HYPERBOLIC, INK, NO_SAMPLE
+from gaussmap.symbolic.display import latex_of
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+
+__all__ = ["figure_4", "figure_5"]
+
+# A circle with one sharp bend and two hollows beside it, in polar coordinates.
+RADIUS = 1 + sp.sin(2 * t) / 5 + sp.Rational(4, 5) * sp.exp(24 * (sp.cos(t) - 1))
+DROP = TrueCurve("drop", (RADIUS * sp.cos(t), RADIUS * sp.sin(t)), TURN, True, "a drop")
+NORMALS = 24
+EVERY = 3  # so far apart are the numbered ones
+VERTICES = 24
+SMOOTH = 2001  # points of a curve as it is drawn
+FINE = 100_001  # points at which the length of a curve is measured
+
+
+def figure_4() -> tuple[Figure, str]:
+    """Draw uniform normals on the circle, and the points of a curve that have them."""
+    figure, (axes,) = panels(
+        6.6, 2.9, 1, 2, left=0.0, right=1.0, bottom=0.0, top=0.9, wspace=0.0, width_ratios=(1, 1.5)
+    )
+    normals = gm.circle(NORMALS)
+    samples = gm.sample_curve(DROP.curve, normals, pieces=PIECES)
+    positive = samples.curvature > 0.0
+    numbered = np.arange(0, NORMALS, EVERY)
+
+    left, right = axes
+    for panel in axes:
+        panel.set_anchor("N")
+    left.set_title(f"{NORMALS} uniform normals", pad=4)
+    left.set(xlim=(-1.3, 1.3), ylim=(-1.3, 1.26))
+    segments(left, np.zeros_like(normals), normals, colors=NO_SAMPLE, linewidths=0.6)
+    left.scatter(0.0, 0.0, s=8, color=INK, linewidths=0, zorder=3)
+    draw_curve(left, gm.circle(SMOOTH), closed=True)
+    both = normals[samples.normal_index[~positive]]
+    dots(left, normals, normals[numbered], ELLIPTIC)
+    left.scatter(*both.T, s=4, color=HYPERBOLIC, linewidths=0, zorder=6)
+    labels(left, normals[numbered], normals[numbered], numbered // EVERY + 1)
+
+    right.set_title(f"The {len(samples)} points of the curve that have them", pad=4)
+    draw_curve(right, DROP.derivatives(DROP.places(SMOOTH))[0])
+    tips = samples.points + 0.17 * samples.normals
+    chosen = np.isin(samples.normal_index, numbered)
+    for sign, colour in ((positive, ELLIPTIC), (~positive, HYPERBOLIC)):
+        segments(right, samples.points[sign], tips[sign], colors=colour, linewidths=0.8)
+        dots(right, samples.points[sign], samples.points[sign & chosen], colour)
+    names = samples.normal_index[chosen] // EVERY + 1
+    labels(right, tips[chosen], samples.normals[chosen], names)
+    right.set(xlim=(-1.55, 2.15), ylim=(-1.45, 1.42))
+    return figure, caption_4(samples)
+
+
+def caption_4(samples: gm.CurveSamples) -> str:
+    """Return the caption, with the numbers of points that a normal has."""
+    points = np.bincount(samples.normal_index, minlength=NORMALS)
+    counts = listed(f"{(points == k).sum()} belong to {k}" for k in np.unique(points))
+    return (
+        f"Uniform normals on the circle (left) are mapped to points of a curve (right) that are "
+        f"dense where it bends; equal numbers belong together. Blue points have a positive "
+        f"curvature, orange ones a negative one. Of the {NORMALS} normals {counts} points; "
+        f"as the curve turns round once, each has one blue point more than orange ones. The curve "
+        f"has {samples.report.inflections} inflections; in polar coordinates it is "
+        f"$`r = {latex_of(RADIUS)}`$."
+    )
+
+
+def figure_5() -> tuple[Figure, str]:
+    """Draw the polygons through points uniform in the parameter, and with uniform normals."""
+    figure, (axes,) = panels(
+        6.6, 2.75, 1, 2, left=0.01, right=0.99, bottom=0.13, top=0.91, wspace=0.03
+    )
+    uniform_normals = by_normals(DROP, VERTICES)
+    uniform = DROP.places(len(uniform_normals))
+    for panel, places, title in (
+        (axes[0], uniform, "Uniform in the parameter"),
+        (axes[1], uniform_normals, "Uniform normals"),
+    ):
+        draw_polygon(panel, places)
+        panel.set_title(title, pad=4)
+        text = measured(Polygon.through(DROP, places))
+        panel.text(0.5, -0.02, text, transform=panel.transAxes, ha="center", va="top")
+    between = Polygon.through(DROP, by_length(DROP, len(uniform) - 1))
+    return figure, (
+        f"Two polygons with {between.vertices} vertices on the curve of Fig. 4 (thin). Left: "
+        f"through points that are uniform in the parameter, the polar angle. Right: through points "
+        f"with uniform normals. Beneath are the largest distance of the curve from the polygon and "
+        f"the largest angle between them; points that are uniform in arc length would give "
+        f"{measured(between)}. On other curves uniform normals need not give the smaller distance: "
+        f"see [curves](curves.md)."
+    )
+
+
+def measured(polygon: Polygon) -> str:
+    """Return how far a polygon is from the curve, and how it is turned."""
+    return f"distance {polygon.distance:#.3g}, angle {polygon.angle:#.3g}°"
+
+
+def by_length(true: TrueCurve, edges: int) -> Floats:
+    """Return the parameters (edges + 1,) of points at equal distances along a curve."""
+    places = true.places(FINE)
+    steps = np.hypot(*np.diff(true.derivatives(places)[0], axis=0).T)
+    length = np.concatenate([[0.0], np.cumsum(steps)])
+    return np.interp(np.linspace(0.0, length[-1], edges + 1), length, places)
+
+
+def draw_polygon(axes: Axes, places: Floats) -> None:
+    """Draw the polygon through the points at parameters, the curve behind it."""
+    points = DROP.derivatives(DROP.places(SMOOTH))[0]
+    vertices = DROP.derivatives(places)[0]
+    axes.plot(*points.T, color=ELLIPTIC, linewidth=0.8, zorder=2)
+    axes.plot(*vertices.T, color=INK, linewidth=1.1, marker="o", markersize=3.0, zorder=3)
+
+
+def draw_curve(axes: Axes, points: Floats, closed: bool = False) -> None:
+    """Draw a curve through many points."""
+    axes.plot(*np.concatenate([points, points[:closed]]).T, color=INK, linewidth=0.8, zorder=3)
+
+
+def segments(axes: Axes, starts: Floats, ends: Floats, **style: object) -> None:
+    """Draw segments between points (k, 2)."""
+    axes.add_collection(LineCollection(list(np.stack([starts, ends], axis=1)), zorder=2, **style))
+
+
+def dots(axes: Axes, points: Floats, numbered: Floats, colour: str) -> None:
+    """Draw points (k, 2), the numbered ones among them larger."""
+    axes.scatter(*points.T, s=11, color=colour, linewidths=0, zorder=4)
+    axes.scatter(*numbered.T, s=28, color=colour, linewidths=0, zorder=5)
+
+
+def labels(axes: Axes, points: Floats, directions: Floats, names: Floats) -> None:
+    """Write beside points (k, 2), on the sides of unit vectors."""
+    for point, direction, name in zip(points, directions, names, strict=True):
+        axes.annotate(
+            str(name), point, xytext=8 * direction, textcoords="offset points", ha="center",
+            va="center", path_effects=HALO, zorder=8,
+        )  # fmt: skip
