@@ -11,6 +11,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from .runtime import surfaces
+from .runtime.branches import Branches
 from .runtime.circle import circle
 from .runtime.curve import Curve
 from .runtime.curve_samples import CurveReport, CurveSamples
@@ -31,6 +32,7 @@ from .runtime.samples import Samples, SamplingReport
 from .runtime.sampling import sample, sample_many
 from .runtime.sphere import fibonacci, icosphere
 from .runtime.spline import Spline, fit
+from .runtime.support import SupportFunction
 from .runtime.surface import Surface
 
 if TYPE_CHECKING:
@@ -40,6 +42,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "Branches",
     "Curve",
     "CurveReport",
     "CurveSamples",
@@ -52,6 +55,7 @@ __all__ = [
     "Samples",
     "SamplingReport",
     "Spline",
+    "SupportFunction",
     "Surface",
     "SurfaceError",
     "UnknownNameError",

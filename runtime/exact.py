@@ -17,13 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..generated import sampler as kernels
+from .integers import Integers, integers, integers_by_row, ratio, sign
 from .plain import plain
 from .spline import Spline
 
 __all__ = ["Decision", "decide"]
 
-Integers = NDArray[np.object_]
-MANTISSA = 53
 # Two samples of one normal at the open border that are closer than this (in cells) are one.
 SAME_PLACE = 1e-6
 # A point is singular where the normal is this short, beside that at the centre of its patch.
@@ -54,10 +53,10 @@ def decide(
     the scaled spline; 0 for a patch that does not touch the border.
     """
     vectors, exponent = _patch_vectors(spline, patches)
-    n, exponents = _integers_by_row(normals)
+    n, exponents = integers_by_row(normals)
     forms = _forms(vectors, n)
     magnitude = _scaled(np.abs(forms[0]), 2 * (exponent + exponents))
-    signs = _sign(forms[1:])
+    signs = sign(forms[1:])
     tied = (signs == 0).any(axis=0) & ((signs.min(axis=0) >= 0) | (signs.max(axis=0) <= 0))
     if tied.any():
         forms[:, tied], signs[:, tied] = _moved_forms(vectors[:, tied], n[:, tied])
@@ -68,8 +67,8 @@ def decide(
     u, v = np.zeros(len(patches)), np.zeros(len(patches))
     here = inside | near
     u[here], v[here] = (
-        _ratio(forms[1, here], forms[0, here]),
-        _ratio(forms[2, here], forms[0, here]),
+        ratio(forms[1, here], forms[0, here]),
+        ratio(forms[2, here], forms[0, here]),
     )
     near &= u + v <= 1.0 + tolerance
     u[near], v[near] = (x[near] / (u + v)[near] for x in (u, v))
@@ -90,29 +89,11 @@ def _patch_vectors(spline: Spline, patches: NDArray[np.int64]) -> tuple[Integers
     i, j = np.divmod(cell, spline.cells[1])
     steps = kernels.NEIGHBOURS[turn]
     around = spline.coefficients[i[:, None] + 1 + steps[..., 0], j[:, None] + 1 + steps[..., 1]]
-    values, exponent = _integers(around)
+    values, exponent = integers(around)
     differences = values - values[:, 4:5]
     read = differences[:, kernels.TRIANGLE_NEIGHBOURS].reshape(len(patches), -1)
     vectors = plain(kernels.triangle)(*read.T)
     return np.array(vectors[:15], dtype=object), exponent + int(np.log2(spline.scale))
-
-
-def _integers(values: NDArray[np.float64]) -> tuple[Integers, int]:
-    """Return integers and one exponent with values = integers × 2^exponent, exactly."""
-    mantissas, exponents = np.frexp(values)
-    whole = np.ldexp(mantissas, MANTISSA).astype(np.int64).astype(object)
-    lowest = int(exponents[mantissas != 0].min(initial=exponents.max()))
-    shifts = np.maximum(exponents - lowest, 0)
-    return np.left_shift(whole, shifts.astype(object)), lowest - MANTISSA
-
-
-def _integers_by_row(vectors: NDArray[np.float64]) -> tuple[Integers, NDArray[np.int64]]:
-    """Return vectors (k, 3) as integers (3, k), with an exponent for each vector."""
-    mantissas, exponents = np.frexp(vectors)
-    whole = np.ldexp(mantissas, MANTISSA).astype(np.int64).astype(object)
-    lowest = np.where(mantissas != 0, exponents, 2**30).min(axis=1)
-    shifts = np.maximum(exponents - lowest[:, None], 0)
-    return (whole << shifts.astype(object)).T, lowest.astype(np.int64) - MANTISSA
 
 
 def _forms(vectors: Integers, n: Integers) -> Integers:
@@ -141,7 +122,7 @@ def _moved_forms(vectors: Integers, n: Integers) -> tuple[Integers, NDArray[np.i
     leading = np.argmax(np.asarray(coefficients != 0, dtype=bool), axis=0)
     first = np.take_along_axis(coefficients, leading[None], axis=0)[0]
     in_d = np.take_along_axis(coefficients, leading[None, :1].repeat(4, axis=1), axis=0)[0]
-    return in_d, _sign(first[1:])
+    return in_d, sign(first[1:])
 
 
 def _regular_places(
@@ -163,15 +144,6 @@ def _regular_places(
     singular = np.less_equal(next(lengths), SINGULAR * next(lengths))
     places = np.where(singular[:, None], local + SINGULAR * (centre - local), local)
     return places, normals(places)
-
-
-def _sign(values: Integers) -> NDArray[np.int8]:
-    return np.asarray(values > 0, dtype=np.int8) - np.asarray(values < 0, dtype=np.int8)
-
-
-def _ratio(numerator: Integers, denominator: Integers) -> NDArray[np.float64]:
-    """Return quotients of integers, correctly rounded."""
-    return np.asarray(numerator / denominator, dtype=np.float64)
 
 
 def _scaled(values: Integers, exponents: NDArray[np.int64]) -> NDArray[np.float64]:

@@ -13,7 +13,7 @@ from .errors import InputError
 if TYPE_CHECKING:
     import sympy
 
-__all__ = ["compiled", "interval", "numbers", "one_symbol", "two_symbols"]
+__all__ = ["as_expression", "compiled", "interval", "numbers", "one_symbol", "two_symbols"]
 
 
 def compiled(
@@ -26,7 +26,7 @@ def compiled(
     import sympy as sp
 
     by_name = {symbol.name: symbol for symbol in symbols}
-    expressions = [_expression(entry, by_name) for entry in _coordinates(position, len(symbols))]
+    expressions = [as_expression(entry, by_name) for entry in _coordinates(position, len(symbols))]
     if any(e.has(sp.nan, sp.zoo) for e in expressions):
         raise InputError(f"position is not finite: {position!r}.")
     expressions = [
@@ -49,7 +49,7 @@ def compiled(
 def numbers(domain: Sequence[Sequence[Any]]) -> list[list[float]]:
     """Return a domain whose ends may be expressions as floats; raise InputError if it is none."""
     try:
-        return [[float(_expression(end, {})) for end in ends] for ends in domain]
+        return [[float(as_expression(end, {})) for end in ends] for ends in domain]
     except (TypeError, ValueError, OverflowError):
         raise InputError(
             f"domain must be ((u0, u1), (v0, v1)) in numbers, not {domain!r}."
@@ -59,7 +59,7 @@ def numbers(domain: Sequence[Sequence[Any]]) -> list[list[float]]:
 def interval(domain: Sequence[Any]) -> list[float]:
     """Return the ends of an interval, which may be expressions, as floats; InputError if not."""
     try:
-        return [float(_expression(end, {})) for end in domain]
+        return [float(as_expression(end, {})) for end in domain]
     except (TypeError, ValueError, OverflowError):
         raise InputError(f"domain must be (t0, t1) in numbers, not {domain!r}.") from None
 
@@ -104,7 +104,7 @@ def _symbol(entry: object) -> sympy.Symbol | None:
     return entry if isinstance(entry, sp.Symbol) else None
 
 
-def _expression(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401 - SymPy has no types
+def as_expression(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401 - SymPy has no types
     """Return an expression or the one that a text stands for, in which `symbols` come first."""
     import sympy as sp
 

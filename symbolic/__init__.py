@@ -6,12 +6,12 @@
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from . import curve, patch, spline
+from . import curve, patch, spline, support
 from .bezier import BezierTriangle
 from .formula import Formula
 
 __all__ = ["BezierTriangle", "Formula", "formulas"]
 
 formulas: Mapping[str, Formula] = MappingProxyType(
-    {x.name: x for x in (*patch.FORMULAS, *spline.FORMULAS, *curve.FORMULAS)}
+    {x.name: x for x in (*patch.FORMULAS, *spline.FORMULAS, *support.FORMULAS, *curve.FORMULAS)}
 )

@@ -64,8 +64,8 @@ def latex_of(expression: sp.Expr, **settings: object) -> str:
 
 def latex_name(name: str, *, bold: bool = False) -> str:
     """Return the LaTeX of the name of a symbol."""
-    if bold and re.fullmatch("d[UVD]", name):
-        return rf"\nabla {name[1]}"
+    if bold and (gradient := re.fullmatch("d([UVDh])((?:_S)?)", name)):
+        return rf"\nabla{gradient[2]} {gradient[1]}"
     if re.fullmatch("[a-e]{3}", name):
         return rf"[\mathbf{{{name}}}]"
     letter = re.fullmatch(rf"({'|'.join(GREEK)}|[A-Za-z])(\d*)((?:_[a-z\d]+)*)", name)

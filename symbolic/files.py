@@ -13,8 +13,9 @@ from typing import cast
 
 import sympy as sp
 
-from . import curve, latex, patch, spline, surfaces
+from . import curve, latex, patch, spline, support, surfaces
 from .emit import block, call, functions, render
+from .expression import hessian_entries
 from .formula import Formula, PlaneVector
 from .positions import position
 from .printer import source_of
@@ -33,6 +34,7 @@ def derive() -> dict[str, str]:
         "patch.py": patch_source(),
         "spline.py": spline_source(),
         "sampler.py": sampler_source(),
+        "support.py": support_source(),
         "surfaces.py": surfaces_source(),
     }
     pages = {"formulas.md": latex.markdown(), "formulas.tex": latex.document()}
@@ -189,6 +191,32 @@ def sampler_source() -> str:
             "envelope": block(patch.ENVELOPE),
             "curvature_at": block(patch.CURVATURE_AT),
             "store_sample": render("store_sample.py", {}).rstrip(),
+        },
+    )
+
+
+def support_source() -> str:
+    """Return generated/support.py: support functions of patches, their offsets and curvatures."""
+    return render(
+        "support.py",
+        {
+            "header": header("Support functions: envelope, Hessian, curvatures."),
+            "constants": _grid_constants(),
+            "formulas": functions([spline.TRIANGLE]),
+            "patch_vectors": _patch_vectors(),
+            "forms": block(patch.FORMS),
+            "parameters": block(patch.PARAMETERS),
+            "tangents": block(patch.TANGENTS),
+            "branch": block(support.BRANCH),
+            "parameters_at": block(support.PARAMETERS_AT),
+            "hessian_at": block(support.HESSIAN_AT),
+            "offset": block(support.OFFSET),
+            "offset_curvature": block(support.OFFSET_CURVATURE),
+            "tangent_plane": block(support.TANGENT_PLANE),
+            "curvature_from_hessian": block(support.CURVATURE_FROM_HESSIAN),
+            "store_hessian_of_size": hessian_entries("{entry} = {name} / size"),
+            "add_hessian": hessian_entries("{entry} += {name}"),
+            "load_hessian": hessian_entries("{name} = {entry}", both=False),
         },
     )
 

@@ -9,7 +9,7 @@ from functools import cache
 
 import sympy as sp
 
-from . import curve, patch, spline, surfaces
+from . import curve, patch, spline, support, surfaces
 from .display import latex_name, latex_of
 from .emit import render
 from .formula import Formula, VectorSymbol
@@ -22,6 +22,7 @@ GENERATOR = f"Written by `make generate` with SymPy {sp.__version__}: do not edi
 FORMULAS = {
     "One quadratic patch": patch.FORMULAS,
     "The quadratic spline": spline.FORMULAS,
+    "Support functions": support.FORMULAS,
     "Planar curves": curve.FORMULAS,
 }
 ENDS = {

@@ -1,4 +1,8 @@
-"""SymPy expressions as Python source for Numba: products instead of powers, exact numbers."""
+"""SymPy expressions as Python source for Numba: products instead of powers, exact numbers.
+
+Other powers than products and square roots, which only the expressions of users have, are calls of
+`math.pow`.
+"""
 
 from __future__ import annotations
 
@@ -32,13 +36,18 @@ class KernelPrinter(PositiveFirst, PythonCodePrinter):
         above, below = [] if size == 1 else [self._print(size)], []
         for factor in rest.as_ordered_factors():
             base, exponent = factor.as_base_exp() if factor.is_Pow else (factor, sp.S.One)
-            (below if exponent.is_negative else above).extend(self._factors(base, abs(exponent)))
+            side = below if exponent.is_negative else above
+            side.extend(self._factors(base, _without_sign(exponent)))
         return ("-" if coefficient.is_negative else "") + _quotient(above, below)
 
     def _print_Pow(self, expr: sp.Pow, rational: bool = False) -> str:
         base, exponent = expr.as_base_exp()
-        factors = self._factors(base, abs(exponent))
+        factors = self._factors(base, _without_sign(exponent))
         return _quotient([], factors) if exponent.is_negative else _quotient(factors, [])
+
+    def _print_Integer(self, expr: sp.Integer) -> str:
+        fits = -(2**63) <= int(expr.p) < 2**63
+        return str(int(expr.p)) if fits else f"{int(expr.p)}.0"
 
     def _print_Rational(self, expr: sp.Rational) -> str:
         numerator, denominator = int(expr.p), int(expr.q)
@@ -47,12 +56,16 @@ class KernelPrinter(PositiveFirst, PythonCodePrinter):
         return f"({numerator}.0 / {denominator}.0)"
 
     def _factors(self, base: sp.Expr, exponent: sp.Expr) -> list[str]:
-        """Return a power with a positive exponent as factors."""
+        """Return a power whose exponent is not known to be negative as factors."""
         whole, half = divmod(exponent, 1)
         if not whole.is_Integer or half not in (0, sp.S.Half):
-            raise ValueError(f"the exponent {exponent} is neither an integer nor a half")
+            return [f"math.pow({self._print(base)}, {self._print(exponent)})"]
         roots = [f"math.sqrt({self._print(base)})"] if half else []
         return [self.parenthesize(base, PRECEDENCE["Mul"])] * int(whole) + roots
+
+
+def _without_sign(exponent: sp.Expr) -> sp.Expr:
+    return -exponent if exponent.is_negative else exponent
 
 
 def _quotient(above: list[str], below: list[str]) -> str:
@@ -66,8 +79,7 @@ def _quotient(above: list[str], below: list[str]) -> str:
 def source_of(expression: sp.Expr) -> str:
     """Return the expression as Python source.
 
-    Raises ValueError for exponents other than integers and halves, NotImplementedError for
-    functions that `math` does not have.
+    Raises NotImplementedError for functions that `math` does not have.
     """
     printer = KernelPrinter({"fully_qualified_modules": True, "allow_unknown_functions": False})
     return cast(str, printer.doprint(expression))

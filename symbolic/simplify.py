@@ -64,7 +64,11 @@ def share_subexpressions(definitions: Collection[Definition]) -> list[Definition
 
 def other_names(assignments: Iterable[Definition]) -> set[sp.Symbol]:
     """Return the temporaries whose value is another symbol, perhaps with a sign."""
-    return {x for x, value in assignments if x.is_Dummy and (value.is_Symbol or (-value).is_Symbol)}
+
+    def is_name(value: sp.Basic) -> bool:  # a condition has no sign
+        return value.is_Symbol or (isinstance(value, sp.Mul) and (-value).is_Symbol)
+
+    return {x for x, value in assignments if x.is_Dummy and is_name(value)}
 
 
 def used_once(assignments: Iterable[Definition]) -> Collection[sp.Symbol]:

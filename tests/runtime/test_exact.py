@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from gaussmap.generated import sampler as kernels
 from gaussmap.runtime import exact
+from gaussmap.runtime.integers import sign
 from gaussmap.runtime.plain import plain
 from gaussmap.runtime.surface import Ends
 from hypothesis import given, settings
@@ -81,8 +82,8 @@ def test_moved_normal_agrees_with_a_slightly_moved_one() -> None:
     # In bits: n 64 · 20, ε 16 · 20, 4 · 20 and 20, so that also n ε₃ ≫ ε₁² and ε₁ ε₃ ≫ ε₂².
     shifts = (1 << 320, 1 << 80, 1 << 20)
     moved = np.array([(x << 1280) + e for x, e in zip(n, shifts, strict=True)], dtype=object)
-    assert (signs == exact._sign(exact._forms(vectors, moved)[1:])).all()
-    assert (exact._sign(exact._forms(vectors, n)[1:]) == 0).any()
+    assert (signs == sign(exact._forms(vectors, moved)[1:])).all()
+    assert (sign(exact._forms(vectors, n)[1:]) == 0).any()
 
 
 def test_parabolic_normal_of_a_torus_has_a_sensible_place() -> None:

@@ -78,6 +78,8 @@ def test_lines_of_text_are_short(formula):
         ("mu_sw", True, r"\boldsymbol{\mu}_{\mathrm{sw}}"),
         ("H_xy", False, "H_{xy}"),
         ("dU", True, r"\nabla U"),
+        ("dh", True, r"\nabla h"),
+        ("dh_S", True, r"\nabla_S h"),
         ("dA", False, r"\mathit{dA}"),
         ("abc", False, r"[\mathbf{abc}]"),
         ("major", False, r"\mathit{major}"),

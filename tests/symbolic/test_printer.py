@@ -61,10 +61,28 @@ def test_integers_stay_integers():
     assert eval(source_of(2 * x - 3 * y**2), {}, {"x": big, "y": big}) == 2 * big - 3 * big**2
 
 
-@pytest.mark.parametrize("expression", [x**y, x ** sp.Rational(1, 3), 2**x, y / x**z])
-def test_powers_without_a_product_are_refused(expression):
-    with pytest.raises(ValueError, match="neither an integer nor a half"):
-        source_of(expression)
+@pytest.mark.parametrize(
+    ("expression", "source"),
+    [
+        (x**y, "math.pow(x, y)"),
+        (x ** sp.Rational(1, 4), "math.pow(x, 0.25)"),
+        (x ** sp.Rational(-3, 4), "1.0 / math.pow(x, 0.75)"),
+        (x ** sp.Rational(1, 3), "math.pow(x, (1.0 / 3.0))"),
+        (2**x, "math.pow(2, x)"),
+        (y / x**z, "math.pow(x, -z) * y"),
+    ],
+)
+def test_other_powers(expression, source):
+    printed = source_of(expression)
+    assert printed == source
+    values = {"x": 1.75, "y": 0.625, "z": -2.5}
+    exact = expression.subs({sp.Symbol(k, real=True): sp.Rational(v) for k, v in values.items()})
+    assert eval(printed, {"math": math}, values) == pytest.approx(float(exact), rel=1e-14)
+
+
+def test_integers_beyond_64_bits_are_floats():
+    assert source_of(x * 2**63) == "9223372036854775808.0 * x"
+    assert source_of(-(2**63) + x * 0) == "-9223372036854775808"
 
 
 def test_functions_that_math_does_not_have_are_refused():

@@ -1,0 +1,110 @@
+"""A support function h(n) that a user gives: from the expression to the source of its kernel."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, cast
+
+import sympy as sp
+from sympy.logic.boolalg import Boolean
+
+from .emit import block, render
+from .formula import Definition, Formula, compose, dot, flat, scalar
+from .patch import n
+from .printer import source_of
+from .support import (
+    ENTRIES,
+    ENVELOPE_OPERATOR,
+    HESSIAN_OF_EXTENSION,
+    HESSIAN_SYMBOLS,
+    INTRINSIC_GRADIENT,
+    SECOND_DERIVATIVES,
+    x,
+)
+
+__all__ = ["hessian_entries", "is_homogeneous", "kernel_source"]
+
+NORMAL = n.components
+# Longer expressions are not proved to be homogeneous; the general formula serves them too.
+LONGEST_PROOF = 2000
+GENERIC = sp.Rational(3, 7), sp.Rational(5, 11), sp.Rational(8, 13)
+
+
+def kernel_source(h: sp.Expr, domain: Boolean | bool = True) -> str:
+    """Return a Python module whose `evaluate` writes envelope and Hessian of h for many normals.
+
+    `h` and `domain` are in the real symbols n_x, n_y, n_z. Raises NotImplementedError for functions
+    that `math` does not have.
+    """
+    return render(
+        "expression.py",
+        {
+            "domain": f"inside[row] = {source_of(cast(sp.Expr, sp.sympify(domain)))}",
+            "branch": block(branch(_exact(h))),
+            "store_hessian": hessian_entries("{entry} = {name}"),
+        },
+    )
+
+
+def hessian_entries(statement: str, both: bool = True) -> str:
+    """Return a statement for each {entry} of hessians[row] and its {name}, H_xx and so on.
+
+    Entries off the diagonal stand in two places; with both=False one of them is left out.
+    """
+    return "\n".join(
+        statement.format(entry=f"hessians[row, {i}, {j}]", name=f"H_{key}")
+        for key, place in ENTRIES.items()
+        for i, j in dict.fromkeys((place, place[::-1]) if both else (place,))
+    )
+
+
+def branch(h: sp.Expr) -> Formula:
+    """Return the formula of envelope and Hessian at a unit normal.
+
+    The gradient of what is homogeneous of degree 1 is the envelope already; anything else goes
+    through eqs. (5) and (6).
+    """
+    gradient = [_derivative(h, axis) for axis in NORMAL]
+    hessian = [_derivative(gradient[i], NORMAL[j]) for i, j in ENTRIES.values()]
+    outputs = (*x.components, *HESSIAN_SYMBOLS)
+    if is_homogeneous(h, gradient):
+        return _given((*zip(outputs, (*gradient, *hessian), strict=True),))
+    names = (scalar("h"), *flat([INTRINSIC_GRADIENT.inputs[0]]), *SECOND_DERIVATIVES)
+    parts = [
+        _given((*zip(names, (h, *gradient, *hessian), strict=True),)),
+        *(y.in_components() for y in (INTRINSIC_GRADIENT, ENVELOPE_OPERATOR, HESSIAN_OF_EXTENSION)),
+    ]
+    return compose("given", "", parts, source="eqs. (5) and (6)", outputs=outputs)
+
+
+def _given(definitions: tuple[Definition, ...]) -> Formula:
+    symbols = tuple(symbol for symbol, _ in definitions)
+    return Formula("given", "", "eqs. (5) and (6)", NORMAL, definitions, symbols)
+
+
+def is_homogeneous(h: sp.Expr, gradient: Sequence[sp.Expr] | None = None) -> bool:
+    """Say whether h is proved to be homogeneous of degree 1, by Euler's relation n·∇h = h."""
+    if gradient is None:
+        gradient = [_derivative(h, axis) for axis in NORMAL]
+    defect = dot(sp.Matrix(gradient), n.column) - h
+    if defect.count_ops() > LONGEST_PROOF:
+        return False
+    place: Any = dict(zip(NORMAL, GENERIC, strict=True))
+    value = defect.evalf(30, subs=place)
+    if not value.is_number or abs(value) > sp.Float("1e-15"):
+        return False
+    signs = {s: sp.Abs(s.args[0]) / s.args[0] for s in defect.atoms(sp.sign)}
+    quotient = cast(sp.Expr, sp.together(defect.xreplace(signs)))
+    return sp.expand(quotient.as_numer_denom()[0]) == 0
+
+
+def _derivative(expression: sp.Expr, by: sp.Symbol) -> sp.Expr:
+    """Differentiate, away from kinks such as that of |n_x|: there (7) has nothing to say."""
+    derivative = sp.diff(expression, by)
+    kinks = dict.fromkeys(derivative.atoms(sp.DiracDelta), sp.S.Zero)
+    return cast(sp.Expr, derivative.xreplace(kinks))
+
+
+def _exact(h: sp.Expr) -> sp.Expr:
+    """Take floats at their binary values, so that sums of them cancel as they should."""
+    return cast(sp.Expr, h.xreplace({x: sp.Rational(x) for x in h.atoms(sp.Float)}))

@@ -1,0 +1,155 @@
+"""What support functions refuse: one clear sentence, an InputError."""
+
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+import sympy as sp
+
+given = gm.SupportFunction.from_sympy
+SPHERE = gm.SupportFunction.from_sympy(1)
+
+
+@pytest.mark.parametrize(
+    ("h", "message"),
+    [
+        ("x*y", "no component of the normal: x, y"),
+        (sp.Symbol("w") + 1, "no component of the normal: w"),
+        ("I*n_x", "not real"),
+        ("log(-1)", "not real"),
+        ("nan", "not finite"),
+        ("1/0", "not finite"),
+        (float("nan"), "not finite"),
+        (float("inf"), "not finite"),
+        ("oo*n_x", "not finite"),
+        ("besselj(0, n_x)", "uses besselj, which kernels cannot compute"),
+        ("f(n_x)", "uses f, which"),
+        ("gamma(2 + n_x)", "uses polygamma"),
+        ("Integral(sin(n_x**2), (n_x, 0, 1))", "uses Integral"),
+        ("DiracDelta(n_x)", "uses DiracDelta"),
+        ("n_x +", "is not a SymPy expression"),
+        ("", "is not a SymPy expression"),
+        ("n_x > 0", "is not a SymPy expression"),
+        (None, "is not a SymPy expression"),
+        ([1, 2], "is not a SymPy expression"),
+        (sp.Matrix([1, 2]), "not a matrix"),
+        ("x" * 200, "no component of the normal"),
+        ("besselj(0, n_x)*(" + "+".join(f"n_x**{k}" for k in range(60)) + ")", "…"),
+    ],
+)
+def test_expressions(h: Any, message: str) -> None:
+    with pytest.raises(gm.InputError, match=message):
+        given(h)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("h", ["Sum(n_x**k, (k, 0, 3))", "lambda: 1"])
+def test_what_only_the_compiler_refuses(h: str) -> None:
+    with pytest.raises(gm.InputError, match="no function that Numba knows"):
+        given(h).branches([[0.0, 0.0, 1.0]])
+
+
+@pytest.mark.parametrize(
+    "normal",
+    ["xy", "xyzw", ("x", "x", "z"), (1, 2, 3), None, 3, ("a b", "y", "z"), ("if", "y", "z")],
+)  # fmt: skip
+def test_names_of_the_normal(normal: Any) -> None:
+    with pytest.raises(gm.InputError, match="normal must be three symbols, or their names"):
+        given("1", normal=normal)
+
+
+@pytest.mark.parametrize(
+    ("domain", "message"),
+    [
+        ("n_z", "must be a condition"),
+        ("n_z > 0 and n_x > 0", r"\(n_x > 0\) & \(n_y > 0\)"),
+        ("0 < n_z < 1", "must be a condition"),
+        (5, "must be a condition"),
+        ("n_z >", "must be a condition"),
+        ("w > 0", "domain holds symbols that are no component of the normal: w"),
+        ("I*n_z > 0", "domain is not real"),
+        ("besselj(0, n_z) > 0", "uses besselj"),
+    ],
+)
+def test_domains(domain: Any, message: str) -> None:
+    with pytest.raises(gm.InputError, match=message):
+        given("1", domain=domain)
+
+
+@pytest.mark.parametrize(
+    ("normals", "message"),
+    [
+        ([], "shape"),
+        (np.empty((0, 3)), "shape"),
+        ([1.0, 0.0, 0.0], "shape"),
+        ([[1.0, 0.0]], "shape"),
+        ([[0.0, 0.0, 0.0]], "zero vector"),
+        ([[1.0, 0.0, 0.0], [np.nan, 0.0, 0.0]], r"normals\[1\] holds NaN"),
+        ([[np.inf, 0.0, 0.0]], "infinity"),
+        ("normals", "real numbers"),
+    ],
+)
+def test_normals(normals: Any, message: str) -> None:
+    calls = (SPHERE, SPHERE.branches, SPHERE.envelope, SPHERE.sheets, SPHERE.contains)
+    for call in calls:
+        with pytest.raises(gm.InputError, match=message):
+            call(normals)
+
+
+def test_of_spline_takes_surfaces_and_splines() -> None:
+    with pytest.raises(gm.InputError, match="of_spline takes a Spline or Surface, not str"):
+        gm.SupportFunction.of_spline("torus")  # pyright: ignore
+    spline = gm.Spline(np.zeros((5, 5, 3)), ((0, 1), (0, 1)), (("none",) * 2,) * 2, "flat")  # pyright: ignore
+    with pytest.raises(gm.InputError, match="cells="):
+        gm.SupportFunction.of_spline(spline, (4, 4))
+
+
+NOT_A_NUMBER = [float("nan"), float("inf"), "1", None, [1.0, 2.0], 1j]
+
+
+@pytest.mark.parametrize("value", NOT_A_NUMBER)
+def test_numbers(value: Any) -> None:
+    with pytest.raises(gm.InputError, match="distance must be a finite number"):
+        SPHERE.offset(value)
+    with pytest.raises(gm.InputError, match="factor must be a finite number"):
+        SPHERE.scaled(value)
+
+
+def test_scaling_by_zero() -> None:
+    with pytest.raises(gm.InputError, match="factor must not be 0"):
+        SPHERE.scaled(0)
+
+
+@pytest.mark.parametrize(
+    ("shift", "message"),
+    [([1.0, 2.0], r"shape \(3,\)"), (1.0, r"shape \(3,\)"), ([[1.0, 2.0, 3.0]], r"shape \(3,\)"),
+     ([1.0, np.nan, 0.0], "NaN or infinity"), ("abc", "real numbers")],
+)  # fmt: skip
+def test_shifts(shift: Any, message: str) -> None:
+    with pytest.raises(gm.InputError, match=message):
+        SPHERE.translated(shift)
+
+
+@pytest.mark.parametrize(
+    ("rotation", "message"),
+    [
+        (np.eye(2), r"shape \(3, 3\)"),
+        (np.eye(3) * np.nan, "NaN or infinity"),
+        (np.zeros((3, 3)), "orthogonal"),
+        (2 * np.eye(3), "orthogonal"),
+        (1e200 * np.eye(3), "orthogonal"),
+        (np.eye(3) + 1e-9, "orthogonal"),
+        (-np.eye(3), "reflection"),
+        (np.diag([1.0, 1.0, -1.0]), "reflection"),
+    ],
+)
+def test_rotations(rotation: Any, message: str) -> None:
+    with pytest.raises(gm.InputError, match=message):
+        SPHERE.rotated(rotation)
+
+
+def test_only_support_functions_can_be_added() -> None:
+    for other in (1.0, None, "n_x", gm.surfaces.torus()):
+        with pytest.raises(TypeError):
+            SPHERE + other  # pyright: ignore

@@ -1,0 +1,278 @@
+"""The support function of one patch: formula, domain decided exactly, boundary included."""
+
+from fractions import Fraction
+from itertools import product
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+import sympy as sp
+from gaussmap.symbolic import BezierTriangle
+from gaussmap.symbolic.expression import NORMAL
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+EPS = 2.0**-52
+# Control points of formula (12) of the paper, and a patch with both kinds of curvature.
+OF_12 = [[1.5, 0, 0], [0, 1.5, 0], [0, 0, 1.5], [1, 1, 0.5], [1, 0.5, 1], [0.5, 1, 1]]
+MIXED = [[1, 0, 2], [2, 0, 1], [2, 1, 0], [3, 3, -3], [0, 2, -3], [-1, 0, -1]]
+ALIGNED = np.array([n for n in product((-2.0, -1.0, 0.0, 1.0, 2.0), repeat=3) if any(n)])
+NORMALS = np.concatenate([gm.icosphere(8), gm.fibonacci(1000), ALIGNED])
+
+
+def unit(normals: Array) -> Array:
+    return gm.SupportFunction.from_sympy("1").branches(normals).normals
+
+
+# Half of the derivatives of (10) at u = v = 0, by uu, uv, vv, u, v, in the control points.
+DERIVATIVES = [
+    (1, 0, 1, 0, -2, 0), (0, 0, 1, 1, -1, -1), (0, 1, 1, 0, 0, -2),
+    (0, 0, -1, 0, 1, 0), (0, 0, -1, 0, 0, 1),
+]  # fmt: skip
+
+
+def exact(net: list[list[Any]], normal: Array) -> tuple[list[Any], list[Fraction]]:
+    """Return the derivatives as vectors of fractions, and their products with the normal."""
+    n = [Fraction(float(x)) for x in normal]
+    vectors = [
+        [sum(w * Fraction(b[x]) for w, b in zip(weights, net, strict=True)) for x in range(3)]
+        for weights in DERIVATIVES
+    ]
+    forms = [sum((x * y for x, y in zip(s, n, strict=True)), start=Fraction(0)) for s in vectors]
+    return vectors, forms
+
+
+def exact_sign(net: list[list[Any]], normal: Array) -> int:
+    """Return the sign of D, which is that of the curvature."""
+    A, B, C, _, _ = exact(net, normal)[1]
+    return (A * C > B * B) - (A * C < B * B)
+
+
+def exact_place(net: list[list[Any]], normal: Array) -> tuple[Fraction, Fraction] | None:
+    """Solve n·p_u = n·p_v = 0 in fractions; None unless the closed patch has this normal."""
+    (a, b, c, d, e), (A, B, C, P, Q) = exact(net, normal)
+    D = A * C - B * B
+    if D == 0:
+        return None
+    u, v = (B * Q - C * P) / D, (B * P - A * Q) / D
+    if min(u, v, 1 - u - v) < 0:
+        return None
+    p_u = [a[x] * u + b[x] * v + d[x] for x in range(3)]
+    p_v = [b[x] * u + c[x] * v + e[x] for x in range(3)]
+    N = [p_u[y] * p_v[z] - p_u[z] * p_v[y] for y, z in ((1, 2), (2, 0), (0, 1))]
+    return (
+        (u, v) if sum(x * Fraction(float(y)) for x, y in zip(N, normal, strict=True)) > 0 else None
+    )
+
+
+@pytest.mark.parametrize("net", [OF_12, MIXED], ids=["formula 12", "mixed"])
+@pytest.mark.parametrize("factor", [1.0, 0.1])
+def test_membership_and_parameters_are_exact(net: list[list[Any]], factor: float) -> None:
+    points = (factor * np.array(net)).tolist()
+    normals = unit(NORMALS)
+    branches = gm.SupportFunction.of_patch(points).branches(normals)
+    places = [exact_place(points, n) for n in normals]
+    inside = [k for k, place in enumerate(places) if place is not None]
+    assert branches.normal_index.tolist() == inside
+    assert 30 < len(inside) < len(normals)
+    expected = np.array([places[k] for k in inside], dtype=float)
+    # u = U/D: forms are exact up to FORM_ERROR, and |D| > 65536 times that or decided exactly.
+    assert np.abs(branches.uv - expected).max() < 2.0**-14
+    assert np.median(np.abs(branches.uv - expected)) < 64 * EPS
+    assert (branches.patch_index == 0).all()
+
+
+def test_formula_12_of_the_paper() -> None:
+    support = gm.SupportFunction.of_patch(OF_12)
+    x, y, z = NORMAL
+    numerator = 5 * (x**3 + y**3 + z**3) + 13 * x * y * z
+    numerator += 4 * (x**2 * y + x**2 * z + x * y**2 + x * z**2 + z * y**2 + z**2 * y)
+    denominator = 2 * (x**2 + 3 * x * y + y**2 + 3 * x * z + 3 * y * z + z**2)
+    assert support.expression is not None
+    assert sp.cancel(support.expression - numerator / denominator) == 0
+    branches = support.branches(unit(NORMALS))
+    h = sp.lambdify(NORMAL, numerator / denominator)(*branches.normals.T)
+    np.testing.assert_allclose(branches.support, h, rtol=0.0, atol=64 * EPS)
+    latex = support._repr_latex_()
+    assert latex is not None
+    assert r"\frac{5 n_{x}^{3}" in latex
+
+
+@pytest.mark.parametrize("net", [OF_12, MIXED], ids=["formula 12", "mixed"])
+def test_branches_are_what_the_formulas_say(net: list[list[Any]]) -> None:
+    """Point, Hessian and curvature against the exact expressions, at the exact floats."""
+    patch: Any = BezierTriangle(net)
+    support = gm.SupportFunction.of_patch(net)
+    branches = support.branches(unit(NORMALS))
+    D, c3 = (sp.lambdify(NORMAL, x) for x in (patch.forms["D"], patch.orientation))
+    n = branches.normals
+    generic = np.flatnonzero(np.minimum(np.abs(D(*n.T)), np.abs(c3(*n.T))) > 0.05)[::15]
+    assert len(generic) >= 5
+    for k in generic:
+        place = {s: sp.Rational(float(x)) for s, x in zip(NORMAL, n[k], strict=True)}
+        point = [float(x.xreplace(place)) for x in patch.gradient]
+        hessian = np.array(patch.hessian.xreplace(place).tolist(), dtype=float)
+        size = float(np.abs(hessian).max() + 3.0)
+        # Dividing by D and c3 > 0.05 costs a factor of a few hundred at most.
+        np.testing.assert_allclose(branches.points[k], point, rtol=0.0, atol=1e4 * EPS * size)
+        np.testing.assert_allclose(branches.hessian[k], hessian, rtol=0.0, atol=1e5 * EPS * size)
+        K = float(patch.gaussian_curvature.xreplace(place))
+        assert branches.gaussian_curvature[k] == pytest.approx(K, rel=1e5 * EPS)
+        H = float(patch.mean_curvature.xreplace(place))
+        assert branches.mean_curvature[k] == pytest.approx(H, rel=1e5 * EPS)
+    signs = sp.lambdify(NORMAL, patch.forms["D"])(*n.T)
+    clear = np.abs(signs) > 1e-9
+    assert (branches.elliptic == (signs > 0))[clear].all()
+
+
+def test_domain_is_a_condition() -> None:
+    support = gm.SupportFunction.of_patch(MIXED)
+    condition = sp.lambdify(NORMAL, support.domain)
+    normals = unit(gm.fibonacci(2000))
+    assert (support.contains(normals) == condition(*normals.T)).all()  # in general position
+
+
+def test_next_to_a_parabolic_line() -> None:
+    """All of a parabolic line has one normal: near it, only exact arithmetic knows D, U, V, W."""
+    turn = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))[0]
+    b = 0.1 * np.array(MIXED) @ (np.sign(np.linalg.det(turn)) * turn).T
+    a, m, c = (np.array(weights) @ b for weights in DERIVATIVES[:3])
+
+    def normal(u: float) -> Array:
+        p_u, p_v = a * u + m * (1 - u) / 2, m * u + c * (1 - u) / 2
+        return np.cross(p_u + b[4] - b[2], p_v + b[5] - b[2])
+
+    def curvature(u: float) -> float:
+        n = normal(u)
+        return float((n @ a) * (n @ c) - (n @ m) ** 2)
+
+    low, high = 0.0, 1.0
+    assert curvature(low) * curvature(high) < 0
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (low, middle) if curvature(low) * curvature(middle) <= 0 else (middle, high)
+    near = normal(low) / np.linalg.norm(normal(low))
+    steps = np.random.default_rng(1).uniform(-1.0, 1.0, (500, 3))
+    normals = unit(near + steps * np.logspace(-16, -10, 500)[:, None])
+    branches = gm.SupportFunction.of_patch(b).branches(normals)
+    places = [exact_place(b.tolist(), n) for n in normals]
+    assert branches.normal_index.tolist() == [k for k, x in enumerate(places) if x is not None]
+    assert len(branches) > 20
+    assert (branches.elliptic == [exact_sign(b.tolist(), n) > 0 for n in branches.normals]).all()
+    assert 0 < np.count_nonzero(branches.elliptic) < len(branches)
+
+
+# --- the boundary ---------------------------------------------------------------------------------
+
+
+def graph(corners: list[list[int]]) -> Array:
+    """Return the net of z = u² + v² over a triangle: the polar form s·t at the middle points."""
+    x = np.array(corners, dtype=float)
+    ends, pairs = [(0, 0), (1, 1), (2, 2)], [(0, 1), (0, 2), (1, 2)]
+    return np.array([[*(x[i] + x[j]) / 2, x[i] @ x[j]] for i, j in ends + pairs])
+
+
+def test_boundary_normals_belong_to_the_closed_patch() -> None:
+    """The normal at (u, v) is along (−2u, −2v, 1): zeros stay zeros, equal ones stay equal."""
+    support = gm.SupportFunction.of_patch(graph([[1, 0], [0, 1], [0, 0]]))
+    t = np.linspace(0.0, 1.0, 41)
+    edges = [
+        np.column_stack([-2 * t, 0 * t, 1 + 0 * t]),
+        np.column_stack([0 * t, -2 * t, 1 + 0 * t]),
+    ]
+    for normals in edges:
+        assert support.contains(normals)[:-1].all()  # the last one is also on the third edge
+        outside = np.add(normals, [2.0**-52, 2.0**-52, 0.0])
+        assert not support.contains(outside).any()
+    diagonal = gm.SupportFunction.of_patch(graph([[1, 0], [1, 1], [0, 0]]))
+    on_edge = np.column_stack([-2 * t, -2 * t, 1 + 0 * t])
+    assert diagonal.contains(on_edge)[:-1].all()
+
+
+def test_two_patches_with_a_common_edge_leave_no_gap() -> None:
+    square = [graph([[1, 0], [1, 1], [0, 0]]), graph([[1, 1], [0, 1], [0, 0]])]
+    one, two = (gm.SupportFunction.of_patch(net) for net in square)
+    t = np.linspace(0.1, 1.9, 300)
+    normals = unit(np.concatenate([gm.icosphere(40), np.column_stack([-t, -t, np.ones_like(t)])]))
+    u, v = (-normals[:, :2] / (2 * normals[:, 2:] + (normals[:, 2:] == 0))).T
+    inside = (np.minimum(u, v) > 1e-12) & (np.maximum(u, v) < 1 - 1e-12) & (normals[:, 2] > 0)
+    sheets = one.sheets(normals) + two.sheets(normals)
+    assert inside.any()
+    assert (sheets[inside] >= 1).all()
+    assert (sheets[inside] == 2).sum() == (normals[inside, 0] == normals[inside, 1]).sum() > 0
+
+
+@pytest.mark.compiled
+def test_patches_of_a_spline_have_its_branches() -> None:
+    """Generic normals lie on no boundary: there the spline is the sum of its patches."""
+    spline = gm.fit(gm.surfaces.wavy_graph(), (5, 4))
+    normals = unit(np.add(gm.fibonacci(3000), [0.01, 0.02, 0.03]))  # the first one had n_y = 0
+    of_spline = gm.SupportFunction.of_spline(spline).branches(normals)
+    pairs = []
+    for index, net in enumerate(spline.control_nets):
+        of_patch = gm.SupportFunction.of_patch(net).branches(normals)
+        pairs += [(int(k), index) for k in of_patch.normal_index]
+        mine = of_spline.patch_index == index
+        # Nets carry the rounding of their points, 4 ε, beside cells of size 2/5 and large radii.
+        np.testing.assert_allclose(
+            of_patch.points, of_spline.points[mine], rtol=0.0, atol=4 * EPS / 0.4 * 100 * 100
+        )
+    found = zip(of_spline.normal_index.tolist(), of_spline.patch_index.tolist(), strict=True)
+    assert sorted(pairs) == list(found)
+    assert len(pairs) > 500
+
+
+# --- sizes, and what is no patch ------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("exponent", [-960, -40, 40, 960])
+def test_scaling_by_powers_of_two_changes_nothing(exponent: int) -> None:
+    normals = unit(NORMALS)
+    net = np.array(MIXED, dtype=float)
+    base = gm.SupportFunction.of_patch(net).branches(normals)
+    moved = gm.SupportFunction.of_patch(np.ldexp(net, exponent)).branches(normals)
+    assert (moved.normal_index == base.normal_index).all()
+    assert (moved.uv == base.uv).all()
+    assert (moved.points == np.ldexp(base.points, exponent)).all()
+
+
+def test_translation_by_whole_numbers_changes_nothing() -> None:
+    normals = unit(NORMALS)
+    base = gm.SupportFunction.of_patch(MIXED).branches(normals)
+    moved = gm.SupportFunction.of_patch(np.add(MIXED, [1e9, -1e6, 1e3])).branches(normals)
+    assert (moved.normal_index == base.normal_index).all()
+    assert (moved.hessian == base.hessian).all()
+    assert np.abs(moved.points - base.points - [1e9, -1e6, 1e3]).max() <= 2 * EPS * 1e9
+
+
+CYLINDER = [[1, 0, 1], [0, 1, 0], [0, 0, 0], [0.5, 0.5, 0], [0.5, 0, 0], [0, 0.5, 0]]
+FLAT = [[1, 0, 0], [0, 1, 0], [0, 0, 0], [0.5, 0.5, 0], [0.5, 0, 0], [0, 0.5, 0]]
+
+
+@pytest.mark.parametrize(
+    ("net", "message"),
+    [
+        (FLAT, "flat or developable"),
+        (CYLINDER, "flat or developable"),
+        (np.ones((6, 3)), "flat or developable"),
+        (np.zeros((6, 3)), "flat or developable"),
+        (np.ones((5, 3)), r"shape \(6, 3\), not \(5, 3\)"),
+        (np.ones(18), r"shape \(6, 3\), not \(18,\)"),
+        ([[1, 2, 3], [4, 5]], "equal rows"),
+        ("patch", "real numbers"),
+        (np.full((6, 3), 1j), "real numbers"),
+        (np.where(np.arange(18).reshape(6, 3) == 7, np.nan, 1.0), "not finite"),
+        (np.where(np.arange(18).reshape(6, 3) == 3, np.inf, 1.0), "not finite"),
+        (np.array(MIXED) * 1e305, "too large"),
+    ],
+)  # fmt: skip
+def test_what_is_no_patch(net: Any, message: str) -> None:
+    with pytest.raises(gm.InputError, match=message):
+        gm.SupportFunction.of_patch(net)
+
+
+def test_a_patch_folded_into_a_plane_has_no_support_function() -> None:
+    folded = [[1, 0, 0], [0, 1, 0], [0, 0, 0], [0, 1, 0], [1, 1, 0], [1, 0, 0]]
+    with pytest.raises(gm.InputError, match="no regular point"):
+        gm.SupportFunction.of_patch(folded)

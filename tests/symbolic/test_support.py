@@ -1,0 +1,164 @@
+"""Eqs. (4)-(7) for any function on the sphere, exactly, against plain differentiation."""
+
+from typing import Any
+
+import pytest
+import sympy as sp
+from gaussmap.symbolic import formulas, support
+from gaussmap.symbolic.expression import NORMAL, branch, is_homogeneous, kernel_source
+from gaussmap.symbolic.formula import scalar
+
+x, y, z = NORMAL
+LENGTH = sp.sqrt(x**2 + y**2 + z**2)
+UNIT_NORMALS = [(2, 1, 2, 3), (-6, 2, 3, 7), (1, -4, 8, 9), (0, 0, 1, 1), (3, 0, -4, 5)]
+FUNCTIONS = {
+    "constant": sp.Integer(3),
+    "linear": 3 * x - 4 * y + z / 2,
+    "ellipsoid": sp.sqrt(4 * x**2 + 2 * x * y + 3 * y**2 + y * z + 2 * z**2),
+    "odd": x**3,
+    "odd quintic": x**5 - 2 * x * y * z + z**3,
+    "even": x * y + z**4,
+    "rational": (x**3 + y**3) / (x**2 + 2 * y**2 + 3 * z**2),
+    "not homogeneous": sp.sqrt(1 + x**2 + 2 * y * z),
+}
+EACH_FUNCTION = pytest.mark.parametrize("h", FUNCTIONS.values(), ids=FUNCTIONS)
+
+
+def places() -> list[dict[sp.Symbol, sp.Expr]]:
+    return [
+        {s: sp.Rational(k, length) for s, k in zip(NORMAL, normal, strict=True)}
+        for *normal, length in UNIT_NORMALS
+    ]
+
+
+def at(place: dict[sp.Symbol, sp.Expr], value: Any) -> Any:
+    return sp.radsimp(value.xreplace(place))
+
+
+@EACH_FUNCTION
+def test_branch_is_what_differentiation_of_the_extension_gives(h):
+    extension = LENGTH * h.subs({s: s / LENGTH for s in NORMAL}, simultaneous=True)
+    derived = branch(h).expanded()
+    for place in places():
+        for axis, s in zip("xyz", NORMAL, strict=True):
+            assert at(place, derived[f"x_{axis}"] - sp.diff(extension, s)) == 0
+        for key, (i, j) in support.ENTRIES.items():
+            second = sp.diff(extension, NORMAL[i], NORMAL[j])
+            assert at(place, derived[f"H_{key}"] - second) == 0
+
+
+@EACH_FUNCTION
+def test_the_plane_of_the_envelope_point_has_the_distance_h(h):
+    """Eq. (4): n·x = h; and the Hessian has n in its kernel."""
+    derived = branch(h).expanded()
+    for place in places():
+        distance = sum(s * derived[f"x_{axis}"] for s, axis in zip(NORMAL, "xyz", strict=True))
+        assert at(place, distance - h) == 0
+        for i in range(3):
+            names = ("xyz"[min(i, j)] + "xyz"[max(i, j)] for j in range(3))
+            row = sum(s * derived[f"H_{key}"] for s, key in zip(NORMAL, names, strict=True))
+            assert at(place, row) == 0
+
+
+def test_odd_polynomial_by_hand():
+    """For h = n_x³ eq. (6) gives 3 n_x² (e_x − n_x n), and eq. (5) 3 n_x² e_x − 2 n_x³ n."""
+    derived = branch(x**3).expanded()
+    place = {x: sp.Rational(2, 3), y: sp.Rational(1, 3), z: sp.Rational(2, 3)}
+    point = [derived[f"x_{axis}"].xreplace(place) for axis in "xyz"]
+    assert point == [sp.Rational(76, 81), sp.Rational(-16, 81), sp.Rational(-32, 81)]
+
+
+def test_intrinsic_gradient_and_envelope_by_hand():
+    """dh = (3, 0, 0), n = (2, 1, 2)/3: dh·n = 2."""
+    n = {f"n_{axis}": sp.Rational(k, 3) for axis, k in zip("xyz", (2, 1, 2), strict=True)}
+    values = {scalar(k): v for k, v in (n | {"dh_x": sp.Integer(3)}).items()}
+    values |= {scalar("dh_y"): sp.S.Zero, scalar("dh_z"): sp.S.Zero}
+    projected = [v.xreplace(values) for v in formulas["intrinsic_gradient"].expanded().values()]
+    assert projected == [sp.Rational(5, 3), sp.Rational(-2, 3), sp.Rational(-4, 3)]
+    values |= {scalar(f"dh_S_{axis}"): v for axis, v in zip("xyz", projected, strict=True)}
+    values[scalar("h")] = sp.Integer(6)
+    point = [v.xreplace(values) for v in formulas["envelope_operator"].expanded().values()]
+    assert point == [sp.Rational(17, 3), sp.Rational(4, 3), sp.Rational(8, 3)]
+
+
+def test_the_envelope_operator_is_linear():
+    """Eq. (7): no product of two inputs that depend on h, and no constant."""
+    parts = (formulas["intrinsic_gradient"], formulas["envelope_operator"])
+    for formula in (*parts, formulas["hessian_of_extension"]):
+        of_h = [s for s in formula.in_components().inputs if s.name[0] == "d" or s.name[0] == "h"]
+        assert of_h
+        for value in formula.expanded().values():
+            assert {sum(m) for m in sp.Poly(value, *of_h).monoms()} == {1}
+
+
+def test_curvature_from_hessian_against_eigenvalues():
+    """A Hessian with the eigenvalues 5 and −3 in the plane orthogonal to n = (2, 1, 2)/3."""
+    n, s, t = (sp.Matrix(v) / 3 for v in ((2, 1, 2), (1, 2, -2), (2, -2, -1)))
+    hessian = 5 * s * s.T - 3 * t * t.T
+    values: dict[Any, Any] = dict(zip(NORMAL, n, strict=True))
+    values |= {scalar(f"H_{key}"): hessian[place] for key, place in support.ENTRIES.items()}
+    formula = formulas["curvature_from_hessian"]
+    result = {name: v.xreplace(values) for name, v in formula.expanded().items()}
+    assert result == {
+        "q": -15,
+        "S": 16,
+        "K": sp.Rational(-1, 15),
+        "H": sp.Rational(1, 2) * (sp.Rational(1, 5) - sp.Rational(1, 3)),
+    }
+
+
+def test_offset_is_the_sphere_and_adds_to_the_radii():
+    R, place = scalar("R"), places()[1] | {scalar("R"): sp.Integer(4)}
+    sphere = branch(4 * LENGTH).expanded()
+    for name, value in formulas["offset"].expanded().items():
+        assert value.xreplace(place) == sphere[name].xreplace(place)
+    numbers = {scalar("K"): sp.Rational(1, 6), scalar("H"): sp.Rational(5, 12), R: sp.Integer(4)}
+    moved = formulas["offset_curvature"].expanded()  # radii 2 and 3 become 6 and 7
+    assert moved["K_offset"].xreplace(numbers) == sp.Rational(1, 42)
+    assert moved["H_offset"].xreplace(numbers) == (sp.Rational(1, 6) + sp.Rational(1, 7)) / 2
+
+
+# --- homogeneity, and the kernels of expressions --------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("h", "answer"),
+    [
+        (3 * x + 4 * z, True),
+        (sp.Integer(0), True),
+        (LENGTH, True),
+        (FUNCTIONS["ellipsoid"] + 2 * LENGTH, True),
+        (FUNCTIONS["rational"], True),
+        (sp.Abs(x) + sp.Abs(y - z), True),
+        ((x**4 + y**4 + z**4) ** sp.Rational(1, 4), True),
+        (sp.Integer(1), False),
+        (x**3, False),
+        (x * y, False),
+        (FUNCTIONS["not homogeneous"], False),
+        (LENGTH + sp.Rational(1, 10**9) * x**2, False),
+        (LENGTH + sp.Rational(1, 10**25) * x**2, False),
+    ],
+)
+def test_homogeneous_of_degree_1(h, answer):
+    assert is_homogeneous(h) is answer
+
+
+def test_long_expressions_are_not_expanded():
+    h = sum((sp.sqrt(k * x**2 + y**2 + z**2 + k * x * z) for k in range(1, 200)), start=sp.S.Zero)
+    assert not is_homogeneous(h)
+
+
+def test_gradient_of_a_homogeneous_function_is_taken_as_it_is():
+    assert "dh_S" not in kernel_source(FUNCTIONS["ellipsoid"])
+    assert "dh_S_x" in kernel_source(x**3)
+
+
+def test_kernels_hold_the_domain_and_no_powers():
+    source = kernel_source(x**3 + y**2, sp.And(z > 0, x < 1))
+    assert "inside[row] = (n_z > 0) and (n_x < 1)" in source
+    assert "**" not in source
+
+
+def test_what_cannot_be_printed_is_refused():
+    with pytest.raises(NotImplementedError):
+        kernel_source(sp.besselj(0, x))
