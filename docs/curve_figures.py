@@ -13,11 +13,12 @@ from gaussmap.symbolic.display import latex_of
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 __all__ = ["figure_4", "figure_5"]
 
 # A circle with one sharp bend and two hollows beside it, in polar coordinates.
-RADIUS = 1 + sp.sin(2 * t) / 5 + sp.Rational(4, 5) * sp.exp(24 * (sp.cos(t) - 1))
+RADIUS = 1 + sp.sin(2 * t) / 6 + sp.Rational(4, 5) * sp.exp(24 * (sp.cos(t) - 1))
 DROP = TrueCurve("drop", (RADIUS * sp.cos(t), RADIUS * sp.sin(t)), TURN, True, "a drop")
 NORMALS = 24
 EVERY = 3  # so far apart are the numbered ones
@@ -139,7 +140,7 @@ def dots(axes: Axes, points: Floats, numbered: Floats, colour: str) -> None:
     axes.scatter(*numbered.T, s=28, color=colour, linewidths=0, zorder=5)
 
 
-def labels(axes: Axes, points: Floats, directions: Floats, names: Floats) -> None:
+def labels(axes: Axes, points: Floats, directions: Floats, names: NDArray[np.int64]) -> None:
     """Write beside points (k, 2), on the sides of unit vectors."""
     for point, direction, name in zip(points, directions, names, strict=True):
         axes.annotate(
