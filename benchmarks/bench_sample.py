@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 
 import gaussmap as gm
 import numba
@@ -79,9 +79,13 @@ class Case:
     spline: gm.Spline
     rounds: int
 
+    @cached_property
+    def bins(self):
+        return NormalBins(self.normals)
+
     @property
     def hits(self):
-        return find(self.spline, NormalBins(self.normals))
+        return find(self.spline, self.bins)
 
 
 # The torus has every normal twice: 4 n² patches share 2 S samples.
@@ -126,8 +130,9 @@ def test_sample(against_limit, case):
 
 def test_find_and_fill(against_limit, case):
     def find_and_fill():
-        hits = find(case.spline, NormalBins(case.normals))
-        return hits, fill(case.spline, case.normals, hits)
+        bins = NormalBins(case.normals)
+        hits = find(case.spline, bins)
+        return hits, fill(case.spline, bins, hits)
 
     against_limit(find_and_fill)
 
@@ -137,4 +142,4 @@ def test_find(against_limit, case):
 
 
 def test_fill(against_limit, case, hits):
-    against_limit(lambda: fill(case.spline, case.normals, hits))
+    against_limit(lambda: fill(case.spline, case.bins, hits))

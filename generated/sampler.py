@@ -56,14 +56,12 @@ ACCURATE = 65536.0
 DATA_ERROR = math.ldexp(64.0, -52)
 # Control normals shorter than this (relative to the square of the tangents) are a singular point.
 SINGULAR = math.ldexp(1.0, -30)
-# The error of a control normal, as an angle: ANGLE_ERROR and, of importance for nearly singular patches
-# only, SINGULAR_ERROR times the length of a singular one, relative to its own.
+# The error of a control normal, as an angle, is at most this times one plus the square of the tangents,
+# relative to its length.
 ANGLE_ERROR = math.ldexp(1.0, -40)
-SINGULAR_ERROR = math.ldexp(1.0, -10)
 
-REGULAR = 0
-WIDE = 1
-INVISIBLE = 2
+# Samples of one patch are computed so many at a time, then stored.
+TILE = 256
 
 
 # --- formulas -------------------------------------------------------------------------------------
@@ -542,20 +540,38 @@ def bin_index(s, grid):
 
 
 @jit
-def bin_normals(normals, grid, starts, order):
-    """Sort normals (k, 3) into bins: order[starts[b]:starts[b + 1]] are those of bin b, ascending."""
+def mapped(frame, x, y, z):
+    """Return a vector as a linear map (3, 3) maps it."""
+    return (
+        frame[0, 0] * x + frame[0, 1] * y + frame[0, 2] * z,
+        frame[1, 0] * x + frame[1, 1] * y + frame[1, 2] * z,
+        frame[2, 0] * x + frame[2, 1] * y + frame[2, 2] * z,
+    )
+
+
+@jit
+def bin_normals(normals, frame, grid, starts, order, components):
+    """Sort normals (k, 3) into bins: order[starts[b]:starts[b + 1]] are those of bin b, ascending.
+
+    The bins are on a cube round the normals as `frame`, a linear map, maps them. Writes the components
+    (3, k) of the normals (as they are) in that order too.
+    """
     bins = np.empty(normals.shape[0], np.int64)
     starts[:] = 0
     for k in range(normals.shape[0]):
-        face, s, t = cube_face(normals[k, 0], normals[k, 1], normals[k, 2])
+        x, y, z = mapped(frame, normals[k, 0], normals[k, 1], normals[k, 2])
+        face, s, t = cube_face(x, y, z)
         bins[k] = (face * grid + bin_index(t, grid)) * grid + bin_index(s, grid)
         starts[bins[k] + 1] += 1
     for b in range(starts.size - 1):
         starts[b + 1] += starts[b]
     cursor = starts[:-1].copy()
     for k in range(normals.shape[0]):
-        order[cursor[bins[k]]] = k
+        at = cursor[bins[k]]
         cursor[bins[k]] += 1
+        order[at] = k
+        for axis in range(3):
+            components[axis, at] = normals[k, axis]
 
 
 # --- which normals a patch may have ---------------------------------------------------------------
@@ -568,48 +584,216 @@ def length_of(x, y, z):
 
 
 @jit
-def bound_patches(
-    mu, scale, noise, border, grid, starts, first, last, kinds, bounds, windows, sizes
-):
-    """Classify the patches first, …, last − 1 and bound the normals that each of them may have.
+def cone_of_normals(net, errors, axis):
+    """Write the mean of the control normals to `axis`; return the sine of the cone round it.
 
-    Writes kinds (REGULAR, WIDE, INVISIBLE), the rounding bound of U, V, W, the windows (6 faces; first
-    and last column, first and last row) that hold every oriented normal, and how many normals lie in
-    them. `noise` is the rounding of the scaled coordinates, `border` the open sides of the domain.
+    `errors` are those of the control normals, as angles. The sine is infinite if the cone is not
+    narrower than 37 degrees, or has a singular point.
+    """
+    axis[:] = 0.0
+    for k in range(6):
+        length = length_of(net[k, 0], net[k, 1], net[k, 2])
+        if errors[k] == math.inf:
+            return math.inf
+        for x in range(3):
+            axis[x] += net[k, x] / length
+    axis /= length_of(axis[0], axis[1], axis[2])
+    sine = 0.0
+    for k in range(6):
+        length = length_of(net[k, 0], net[k, 1], net[k, 2])
+        towards = net[k, 0] * axis[0] + net[k, 1] * axis[1] + net[k, 2] * axis[2]
+        if not towards >= 0.8 * length:
+            return math.inf
+        away = length_of(
+            net[k, 1] * axis[2] - net[k, 2] * axis[1],
+            net[k, 2] * axis[0] - net[k, 0] * axis[2],
+            net[k, 0] * axis[1] - net[k, 1] * axis[0],
+        )
+        sine = max(sine, away / length + 2.0 * errors[k])
+    return sine
+
+
+@jit
+def empty(window):
+    """Make a window that holds no bin."""
+    window[0], window[1], window[2], window[3] = 0, -1, 0, -1
+
+
+@jit
+def map_net(net, errors, frame, stretch, shown, angles):
+    """Write the control normals as the frame maps them, with length 1, and their errors as angles.
+
+    `stretch` is the norm of the frame.
+    """
+    for k in range(6):
+        x, y, z = mapped(frame, net[k, 0], net[k, 1], net[k, 2])
+        length = length_of(x, y, z)
+        if errors[k] < math.inf:
+            shown[k, 0], shown[k, 1], shown[k, 2] = x / length, y / length, z / length
+            angles[k] = errors[k] * stretch * length_of(net[k, 0], net[k, 1], net[k, 2]) / length
+        else:
+            angles[k] = math.inf
+
+
+@jit
+def face_window(shown, angles, narrow, face, grid, window, hull):
+    """Write first and last column, first and last row of the bins of a face that the cone may meet.
+
+    Central projection keeps convex hulls: the hull of the projected control normals bounds the cone.
+    It is written too, in bins; its error and the number of its points are returned. Where some control
+    normals do not point to the face, the cone is cut off before them, but outside the face; if it is
+    not narrow, the window is the whole face and the error infinite. The window is empty if the cone
+    lies beyond one of the borders of the face.
+    """
+    empty(window)
+    half = 0.5 * grid
+    error = largest = 0.0
+    towards = away = 0
+    away_s = away_t = 0.0
+    beyond_right = beyond_left = beyond_top = beyond_bottom = True
+    for k in range(6):
+        if angles[k] == math.inf:
+            continue
+        s, t, height = on_face(face, shown[k, 0], shown[k, 1], shown[k, 2])
+        largest = max(largest, angles[k])
+        if height <= angles[k]:
+            away += 1
+            away_s += s
+            away_t += t
+        else:
+            error = max(error, angles[k] / (height * height) * half)
+            hull[towards, 0] = (s / height + 1.0) * half
+            hull[towards, 1] = (t / height + 1.0) * half
+            towards += 1
+        beyond_right = beyond_right and s - height > 2.0 * angles[k]
+        beyond_left = beyond_left and -s - height > 2.0 * angles[k]
+        beyond_top = beyond_top and t - height > 2.0 * angles[k]
+        beyond_bottom = beyond_bottom and -t - height > 2.0 * angles[k]
+    if towards == 0 or beyond_right or beyond_left or beyond_top or beyond_bottom:
+        return math.inf, 0
+    if away > 0:
+        towards = cut_hull(shown, face, grid, away_s, away_t, hull) if narrow else 0
+        error = 1024.0 * largest * half
+        if towards == 0:
+            window[1] = window[3] = grid - 1
+            return math.inf, 0
+    left, right = hull[:towards, 0].min() - error, hull[:towards, 0].max() + error
+    below, above = hull[:towards, 1].min() - error, hull[:towards, 1].max() + error
+    if left <= grid and right >= 0.0 and below <= grid and above >= 0.0:
+        window[0], window[1] = within(left, grid), within(right, grid)
+        window[2], window[3] = within(below, grid), within(above, grid)
+    return error, towards
+
+
+@jit
+def cut_hull(shown, face, grid, away_s, away_t, hull):
+    """Write the hull of a cone cut by a plane between the face and what points away from it.
+
+    The plane is 3 height = (s, t)·d with d the unit direction of what points away: on the face, where
+    |s|, |t| <= height, the left side is larger. Returns the number of points, 12 at most; 0 if the cone
+    is so wide that there is no such plane.
+    """
+    half = 0.5 * grid
+    length = max(length_of(away_s, away_t, 0.0), 0.01)
+    size = 0
+    for k in range(6):
+        s, t, height = on_face(face, shown[k, 0], shown[k, 1], shown[k, 2])
+        before = 3.0 * height - (s * away_s + t * away_t) / length
+        if before >= 0.0:
+            if height < 0.01:
+                return 0
+            hull[size, 0] = (s / height + 1.0) * half
+            hull[size, 1] = (t / height + 1.0) * half
+            size += 1
+            continue
+        for i in range(6):
+            s_i, t_i, height_i = on_face(face, shown[i, 0], shown[i, 1], shown[i, 2])
+            before_i = 3.0 * height_i - (s_i * away_s + t_i * away_t) / length
+            if before_i >= 0.0:
+                share = before_i / (before_i - before)
+                middle = height_i + share * (height - height_i)
+                if middle < 0.01:
+                    return 0
+                hull[size, 0] = ((s_i + share * (s - s_i)) / middle + 1.0) * half
+                hull[size, 1] = ((t_i + share * (t - t_i)) / middle + 1.0) * half
+                size += 1
+    return size
+
+
+@jit
+def within(place, grid):
+    """Return the bin of a place along an edge of the grid, the first or last if it is outside."""
+    return min(max(int(place), 0), grid - 1)
+
+
+@jit
+def span_of_row(hull, size, error, row, window):
+    """Return the first and the last column of the bins of a row that the hull meets."""
+    low = row - error
+    high = row + 1.0 + error
+    first = math.inf
+    last = -math.inf
+    for i in range(size):
+        s, t = hull[i]
+        if low <= t <= high:
+            first = min(first, s)
+            last = max(last, s)
+        for j in range(i):
+            slope = (hull[j, 0] - s) / (hull[j, 1] - t)
+            if (t < low) != (hull[j, 1] < low):
+                first = min(first, s + (low - t) * slope)
+                last = max(last, s + (low - t) * slope)
+            if (t > high) != (hull[j, 1] > high):
+                first = min(first, s + (high - t) * slope)
+                last = max(last, s + (high - t) * slope)
+    if last < first:
+        return 0, -1
+    return max(window[0], int(max(first - error, 0.0))), min(window[1], int(max(last + error, 0.0)))
+
+
+@jit
+def count_window(window, face, grid, starts):
+    """Return the number of normals in a window."""
+    total = 0
+    if window[1] >= window[0]:
+        for row in range(window[2], window[3] + 1):
+            base = (face * grid + row) * grid
+            total += starts[base + window[1] + 1] - starts[base + window[0]]
+    return total
+
+
+# --- which normals a patch has --------------------------------------------------------------------
+
+
+@jit
+def search_patches(
+    mu, scale, noise, border, frame, stretch, grid, starts, order, normals, first, last,
+    found, doubtful, bounds, counts,
+):  # fmt: skip
+    """Find the normals of the patches first, …, last − 1, in ascending order for each patch.
+
+    `normals` (3, S) are in the order of the bins, which are those of `frame`, of norm `stretch`.
+    found (3, …) holds the patch, the normal and its place in that order; doubtful (3, …) those that
+    rounding leaves open, to be decided exactly, and bounds (…) the errors of their forms. Adds the
+    numbers of both, and that of the developable patches, to counts (3). `noise` is the rounding of the
+    scaled coordinates, `border` the open sides of the domain. Returns the patch before which it
+    stopped for lack of room, and the room that it needs.
     """
     rows = mu.shape[0] - 2
     columns = mu.shape[1] - 2
-    net = np.empty((6, 3))
+    net, shown = np.empty((6, 3)), np.empty((6, 3))
+    errors, angles = np.empty(6), np.empty(6)
+    windows, hulls = np.empty((6, 4), np.int64), np.empty((6, 12, 2))
+    slacks, sizes = np.empty(6), np.empty(6, np.int64)
+    axis, spread, reach = np.empty(3), np.empty(3), np.empty(3)
+    places, x, y, z, codes, notes, scratch, buckets = buffers(256)
     for patch in range(first, last):
-        here = patch - first
         cell = patch // 4
         turn = patch % 4
         i = cell // columns
         j = cell % columns
         (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
          d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(mu, i + 1, j + 1, turn, scale)  # fmt: skip
-        spread = 0.0
-        for k in range(9):
-            for x in range(3):
-                spread = max(
-                    spread,
-                    abs(mu[i + 1 + NEIGHBOURS[turn, k, 0], j + 1 + NEIGHBOURS[turn, k, 1], x]
-                        - mu[i + 1, j + 1, x]),
-                )  # fmt: skip
-        second = max(
-            abs(a_x), abs(a_y), abs(a_z), abs(b_x), abs(b_y), abs(b_z), abs(c_x), abs(c_y), abs(c_z)
-        )
-        tangent = second + max(abs(d_x), abs(d_y), abs(d_z), abs(e_x), abs(e_y), abs(e_z))
-        error = FORM_ERROR * scale * spread
-        if (
-            (turn == 0 and j == 0 and border[0])
-            or (turn == 1 and i == rows - 1 and border[1])
-            or (turn == 2 and j == columns - 1 and border[2])
-            or (turn == 3 and i == 0 and border[3])
-        ):
-            error += noise
-        bounds[here] = 32.0 * error * (tangent + error)
-
         (
             net[0, 0],
             net[0, 1],
@@ -632,198 +816,336 @@ def bound_patches(
         ) = control_normals(
             a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z
         )
-        cubic = parabolic_cubic(
+        counts[2] += is_developable(
+            a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, net, noise
+        )
+
+        # Which normals may the patch have?
+        tangents = max(
+            max(abs(a_x), abs(b_x), abs(c_x)) + max(abs(d_x), abs(e_x)),
+            max(abs(a_y), abs(b_y), abs(c_y)) + max(abs(d_y), abs(e_y)),
+            max(abs(a_z), abs(b_z), abs(c_z)) + max(abs(d_z), abs(e_z)),
+        )
+        for k in range(6):
+            length = length_of(net[k, 0], net[k, 1], net[k, 2])
+            regular = length > SINGULAR * tangents * tangents
+            errors[k] = ANGLE_ERROR * (1.0 + tangents * tangents / length) if regular else math.inf
+        sine = cone_of_normals(net, errors, axis)
+        map_net(net, errors, frame, stretch, shown, angles)
+        total = 0
+        for face in range(6):
+            slacks[face], sizes[face] = face_window(
+                shown, angles, sine < math.inf, face, grid, windows[face], hulls[face]
+            )
+            total += count_window(windows[face], face, grid, starts)
+        if counts[0] + total > found.shape[1] or counts[1] + total > doubtful.shape[1]:
+            return patch, total
+        if total > x.size:
+            places, x, y, z, codes, notes, scratch, buckets = buffers(total)
+        count = gather(windows, hulls, sizes, slacks, grid, starts, normals, places, x, y, z)
+
+        # Which of them has it? The components of n bound the errors of the forms.
+        spread_of(mu, i + 1, j + 1, turn, spread)
+        for k in range(3):
+            reach[k] = min(1.0, abs(axis[k]) + sine) if sine < math.inf else 1.0
+        form = (
+            reach[0] * (max(abs(a_x), abs(b_x), abs(c_x)) + max(abs(d_x), abs(e_x)))
+            + reach[1] * (max(abs(a_y), abs(b_y), abs(c_y)) + max(abs(d_y), abs(e_y)))
+            + reach[2] * (max(abs(a_z), abs(b_z), abs(c_z)) + max(abs(d_z), abs(e_z)))
+        )
+        error = (
+            FORM_ERROR
+            * scale
+            * (reach[0] * spread[0] + reach[1] * spread[1] + reach[2] * spread[2])
+        )
+        if (
+            (turn == 0 and j == 0 and border[0])
+            or (turn == 1 and i == rows - 1 and border[1])
+            or (turn == 2 and j == columns - 1 and border[2])
+            or (turn == 3 and i == 0 and border[3])
+        ):
+            error += noise
+        bound = 32.0 * error * (form + error)
+        classify(
+            a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
+            axis, sine, bound, x[:count], y[:count], z[:count], codes,
+        )  # fmt: skip
+        if sine == math.inf:
+            look_again(
+                a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
+                x, y, z, codes[:count],
+            )  # fmt: skip
+        hits = note(codes, 1, order, places, notes, count)
+        counts[0] = store(notes, hits, scratch, buckets, patch, found, counts[0])
+        doubts = note(codes, 2, order, places, notes, count)
+        bounds[counts[1] : counts[1] + doubts] = bound
+        counts[1] = store(notes, doubts, scratch, buckets, patch, doubtful, counts[1])
+    return last, 0
+
+
+@jit
+def all_developable(mu, scale, noise):
+    """Say whether no patch is bent in two directions by more than the rounding of its coordinates."""
+    columns = mu.shape[1] - 2
+    net = np.empty((6, 3))
+    for patch in range(4 * (mu.shape[0] - 2) * columns):
+        cell = patch // 4
+        (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
+         d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(
+            mu, cell // columns + 1, cell % columns + 1, patch % 4, scale
+        )  # fmt: skip
+        (
+            net[0, 0],
+            net[0, 1],
+            net[0, 2],
+            net[1, 0],
+            net[1, 1],
+            net[1, 2],
+            net[2, 0],
+            net[2, 1],
+            net[2, 2],
+            net[3, 0],
+            net[3, 1],
+            net[3, 2],
+            net[4, 0],
+            net[4, 1],
+            net[4, 2],
+            net[5, 0],
+            net[5, 1],
+            net[5, 2],
+        ) = control_normals(
             a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z
         )
-        curvature = 0.0
-        for value in cubic:
-            curvature = max(curvature, abs(value))
-        longest = 0.0
-        for k in range(6):
-            longest = max(longest, length_of(net[k, 0], net[k, 1], net[k, 2]))
-        if curvature <= 4.0 * noise * second * longest * (longest + tangent * second):
-            kinds[here] = INVISIBLE
-            sizes[here] = 0
-            continue
-        kinds[here] = cone_of_normals(net, SINGULAR * tangent * tangent)
-        sizes[here] = 0
-        for face in range(6):
-            face_window(net, SINGULAR * tangent * tangent, face, grid, windows[here, face])
-            sizes[here] += count_window(windows[here, face], face, grid, starts)
+        if not is_developable(
+            a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, net, noise
+        ):
+            return False
+    return True
 
 
 @jit
-def cone_of_normals(net, negligible):
-    """Return REGULAR if all control normals lie within 37 degrees of their mean, else WIDE."""
-    mean_x = 0.0
-    mean_y = 0.0
-    mean_z = 0.0
-    for k in range(6):
-        length = length_of(net[k, 0], net[k, 1], net[k, 2])
-        if length <= negligible:
-            return WIDE
-        mean_x += net[k, 0] / length
-        mean_y += net[k, 1] / length
-        mean_z += net[k, 2] / length
-    limit = 0.8 * length_of(mean_x, mean_y, mean_z)
-    for k in range(6):
-        length = length_of(net[k, 0], net[k, 1], net[k, 2])
-        if net[k, 0] * mean_x + net[k, 1] * mean_y + net[k, 2] * mean_z < limit * length:
-            return WIDE
-    return REGULAR
-
-
-@jit
-def face_window(net, negligible, face, grid, window):
-    """Write first and last column, first and last row of the bins of a face that the cone may meet.
-
-    Central projection keeps convex hulls: where all control normals point to the face, the box of
-    their projections bounds the cone. Where some do not, the window is the whole face, unless the
-    cone lies beyond one of its four borders.
-    """
-    window[0], window[1], window[2], window[3] = 0, -1, 0, -1
-    s_low = t_low = math.inf
-    s_high = t_high = -math.inf
-    towards = away = 0
-    beyond_right = beyond_left = beyond_top = beyond_bottom = True
-    for k in range(6):
-        s, t, height = on_face(face, net[k, 0], net[k, 1], net[k, 2])
-        length = length_of(s, t, height)
-        if length <= negligible:
-            continue
-        slack = SINGULAR_ERROR * negligible / length + ANGLE_ERROR
-        if height <= slack * length:
-            away += 1
-        else:
-            towards += 1
-            pad = slack * ((length / height) * (length / height))
-            s_low = min(s_low, s / height - pad)
-            s_high = max(s_high, s / height + pad)
-            t_low = min(t_low, t / height - pad)
-            t_high = max(t_high, t / height + pad)
-        beyond_right = beyond_right and s - height > 2.0 * slack * length
-        beyond_left = beyond_left and -s - height > 2.0 * slack * length
-        beyond_top = beyond_top and t - height > 2.0 * slack * length
-        beyond_bottom = beyond_bottom and -t - height > 2.0 * slack * length
-    if towards == 0 or beyond_right or beyond_left or beyond_top or beyond_bottom:
-        return
-    if away > 0:
-        window[1] = window[3] = grid - 1
-    elif s_low <= 1.0 and s_high >= -1.0 and t_low <= 1.0 and t_high >= -1.0:
-        window[0] = bin_index(max(s_low, -1.0), grid)
-        window[1] = bin_index(min(s_high, 1.0), grid)
-        window[2] = bin_index(max(t_low, -1.0), grid)
-        window[3] = bin_index(min(t_high, 1.0), grid)
-
-
-@jit
-def count_window(window, face, grid, starts):
-    """Return the number of normals in a window."""
-    total = 0
-    if window[1] >= window[0]:
-        for row in range(window[2], window[3] + 1):
-            base = (face * grid + row) * grid
-            total += starts[base + window[1] + 1] - starts[base + window[0]]
-    return total
-
-
-# --- which normals a patch has --------------------------------------------------------------------
-
-
-@jit
-def select_normals(
-    mu, scale, grid, starts, order, normals, first, last,
-    kinds, bounds, windows, offsets, found, found_counts, doubtful, doubtful_counts,
+def is_developable(
+    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, net, noise
 ):  # fmt: skip
-    """Find the normals of the patches first, …, last − 1, in ascending order for each patch.
+    """Say whether the Gaussian curvature of a patch is nothing but rounding of its coordinates."""
+    second = max(
+        abs(a_x), abs(a_y), abs(a_z), abs(b_x), abs(b_y), abs(b_z), abs(c_x), abs(c_y), abs(c_z)
+    )
+    tangent = second + max(abs(d_x), abs(d_y), abs(d_z), abs(e_x), abs(e_y), abs(e_z))
+    longest = 0.0
+    for k in range(6):
+        longest = max(longest, length_of(net[k, 0], net[k, 1], net[k, 2]))
+    flat = 4.0 * noise * second * longest * (longest + tangent * second)
+    u = 1.0 / 3.0
+    v = 1.0 / 3.0
+    # tangents (eq. (1)): 33 operations as written, 33 here
+    p_u_x = a_x * u + b_x * v + d_x
+    p_u_y = a_y * u + b_y * v + d_y
+    p_u_z = a_z * u + b_z * v + d_z
+    p_v_x = b_x * u + c_x * v + e_x
+    p_v_y = b_y * u + c_y * v + e_y
+    p_v_z = b_z * u + c_z * v + e_z
+    N_x = p_u_y * p_v_z - p_u_z * p_v_y
+    N_y = p_u_z * p_v_x - p_u_x * p_v_z
+    N_z = p_u_x * p_v_y - p_u_y * p_v_x
+    n_x = N_x
+    n_y = N_y
+    n_z = N_z
+    D, U, V, W = forms(
+        a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, n_x, n_y, n_z
+    )
+    if abs(D) > flat:  # already at the centre
+        return False
+    cubic = parabolic_cubic(
+        a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z
+    )
+    curvature = 0.0
+    for value in cubic:
+        curvature = max(curvature, abs(value))
+    return curvature <= flat
 
-    `normals` are in the order of the bins. Those that rounding leaves open go to `doubtful`: they have
-    to be decided exactly. Both lists of a patch start at offsets[patch - first].
+
+@jit
+def spread_of(mu, i, j, turn, spread):
+    """Write the largest differences, by component, of the coefficients of a cell and around it."""
+    spread[:] = 0.0
+    for k in range(9):
+        for x in range(3):
+            other = mu[i + NEIGHBOURS[turn, k, 0], j + NEIGHBOURS[turn, k, 1], x]
+            spread[x] = max(spread[x], abs(other - mu[i, j, x]))
+
+
+@jit
+def buffers(size):
+    """Return arrays for the candidates of a patch: places, x, y, z, codes, notes, and two to sort with."""
+    x, y, z = np.empty(size), np.empty(size), np.empty(size)
+    notes, scratch = np.empty(size, np.int64), np.empty(size, np.int64)
+    places, buckets = np.empty(size, np.int64), np.empty(size + 1, np.int64)
+    return places, x, y, z, np.empty(size, np.int8), notes, scratch, buckets
+
+
+@jit
+def gather(windows, hulls, sizes, slacks, grid, starts, normals, places, x, y, z):
+    """Copy the normals that a patch may have, and their places; return how many there are."""
+    count = 0
+    for face in range(6):
+        window = windows[face]
+        for row in range(window[2], window[3] + 1):
+            left, right = window[0], window[1]
+            if right > left + 3 and slacks[face] < math.inf:
+                left, right = span_of_row(hulls[face], sizes[face], slacks[face], row, window)
+                if left > right:
+                    continue
+            base = (face * grid + row) * grid
+            begin = starts[base + left]
+            for k in range(starts[base + right + 1] - begin):
+                places[count + k] = begin + k
+                x[count + k] = normals[0, begin + k]
+                y[count + k] = normals[1, begin + k]
+                z[count + k] = normals[2, begin + k]
+            count += max(starts[base + right + 1] - begin, 0)
+    return count
+
+
+@jit
+def classify(
+    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
+    axis, sine, bound, x, y, z, codes,
+):  # fmt: skip
+    """Write for each normal whether the patch has it: 0 no, 1 yes, 2 if rounding leaves it open.
+
+    The normals of the patch lie in the cone with the sine round the axis, if that is not infinite. The
+    loop has no branches, so that it runs on vectors.
     """
-    columns = mu.shape[1] - 2
-    for patch in range(first, last):
-        here = patch - first
-        hits = 0
-        doubts = 0
-        if kinds[here] != INVISIBLE:
-            cell = patch // 4
-            (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
-             d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(
-                mu, cell // columns + 1, cell % columns + 1, patch % 4, scale
-            )  # fmt: skip
-            bound = bounds[here]
-            base = offsets[here]
-            u = 1.0 / 3.0
-            v = 1.0 / 3.0
-            # tangents (eq. (1)): 33 operations as written, 33 here
-            p_u_x = a_x * u + b_x * v + d_x
-            p_u_y = a_y * u + b_y * v + d_y
-            p_u_z = a_z * u + b_z * v + d_z
-            p_v_x = b_x * u + c_x * v + e_x
-            p_v_y = b_y * u + c_y * v + e_y
-            p_v_z = b_z * u + c_z * v + e_z
-            N_x = p_u_y * p_v_z - p_u_z * p_v_y
-            N_y = p_u_z * p_v_x - p_u_x * p_v_z
-            N_z = p_u_x * p_v_y - p_u_y * p_v_x
-            axis_x = N_x
-            axis_y = N_y
-            axis_z = N_z
-            for face in range(6):
-                window = windows[here, face]
-                for row in range(window[2], window[3] + 1):
-                    bins = (face * grid + row) * grid
-                    for k in range(starts[bins + window[0]], starts[bins + window[1] + 1]):
-                        n_x = normals[k, 0]
-                        n_y = normals[k, 1]
-                        n_z = normals[k, 2]
-                        # forms (eq. (9) and Sect. 3.2): 36 operations as written, 36 here
-                        A = a_x * n_x + a_y * n_y + a_z * n_z
-                        B = b_x * n_x + b_y * n_y + b_z * n_z
-                        C = c_x * n_x + c_y * n_y + c_z * n_z
-                        P = d_x * n_x + d_y * n_y + d_z * n_z
-                        Q = e_x * n_x + e_y * n_y + e_z * n_z
-                        D = A * C - B * B
-                        U = B * Q - C * P
-                        V = B * P - A * Q
-                        W = D - U - V
-                        low = min(U, V, W)
-                        high = max(U, V, W)
-                        if low < -bound and high > bound:
-                            continue
-                        sure = (low > bound or high < -bound) and abs(D) > ACCURATE * bound
-                        if sure and kinds[here] == REGULAR:
-                            if n_x * axis_x + n_y * axis_y + n_z * axis_z < 0.0:
-                                continue
-                        elif sure:
-                            # parameters (eq. (9)): 3 operations as written, 3 here
-                            r = 1.0 / D
-                            u = U * r
-                            v = V * r
-                            # tangents (eq. (1)): 33 operations as written, 33 here
-                            p_u_x = a_x * u + b_x * v + d_x
-                            p_u_y = a_y * u + b_y * v + d_y
-                            p_u_z = a_z * u + b_z * v + d_z
-                            p_v_x = b_x * u + c_x * v + e_x
-                            p_v_y = b_y * u + c_y * v + e_y
-                            p_v_z = b_z * u + c_z * v + e_z
-                            N_x = p_u_y * p_v_z - p_u_z * p_v_y
-                            N_y = p_u_z * p_v_x - p_u_x * p_v_z
-                            N_z = p_u_x * p_v_y - p_u_y * p_v_x
-                            towards = n_x * N_x + n_y * N_y + n_z * N_z
-                            length = abs(N_x) + abs(N_y) + abs(N_z)
-                            sure = abs(towards) > 0.25 * length and length > 0.0
-                            if sure and towards < 0.0:
-                                continue
-                        if sure:
-                            found[base + hits] = order[k]
-                            hits += 1
-                        else:
-                            doubtful[base + doubts] = order[k]
-                            doubts += 1
-            found[base : base + hits].sort()
-            doubtful[base : base + doubts].sort()
-        found_counts[here] = hits
-        doubtful_counts[here] = doubts
+    least = ACCURATE * bound
+    lowest = 0.0 if sine < math.inf else -math.inf
+    widest = sine * sine
+    r_x, r_y, r_z = axis
+    for k in range(x.size):
+        n_x = x[k]
+        n_y = y[k]
+        n_z = z[k]
+        # forms (eq. (9) and Sect. 3.2): 36 operations as written, 36 here
+        A = a_x * n_x + a_y * n_y + a_z * n_z
+        B = b_x * n_x + b_y * n_y + b_z * n_z
+        C = c_x * n_x + c_y * n_y + c_z * n_z
+        P = d_x * n_x + d_y * n_y + d_z * n_z
+        Q = e_x * n_x + e_y * n_y + e_z * n_z
+        D = A * C - B * B
+        U = B * Q - C * P
+        V = B * P - A * Q
+        W = D - U - V
+        low = U if U < V else V
+        low = low if low < W else W
+        high = U if U > V else V
+        high = high if high > W else W
+        s = n_y * r_z - n_z * r_y
+        t = n_z * r_x - n_x * r_z
+        w = n_x * r_y - n_y * r_x
+        beside = (s * s + t * t + w * w > widest) | (n_x * r_x + n_y * r_y + n_z * r_z < lowest)
+        outside = (low < -bound) & (high > bound)
+        sure = ((low > bound) | (high < -bound)) & (abs(D) > least)
+        codes[k] = np.int8(0) if outside | beside else np.int8(1) if sure else np.int8(2)
+
+
+@jit
+def look_again(
+    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
+    x, y, z, codes,
+):  # fmt: skip
+    """Compare the sure normals of a patch that bends far with the normal at their own parameters."""
+    for k in range(codes.size):
+        if codes[k] != 1:
+            continue
+        n_x = x[k]
+        n_y = y[k]
+        n_z = z[k]
+        D, U, V, W = forms(
+            a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, n_x, n_y, n_z
+        )
+        # parameters (eq. (9)): 3 operations as written, 3 here
+        r = 1.0 / D
+        u = U * r
+        v = V * r
+        # tangents (eq. (1)): 33 operations as written, 33 here
+        p_u_x = a_x * u + b_x * v + d_x
+        p_u_y = a_y * u + b_y * v + d_y
+        p_u_z = a_z * u + b_z * v + d_z
+        p_v_x = b_x * u + c_x * v + e_x
+        p_v_y = b_y * u + c_y * v + e_y
+        p_v_z = b_z * u + c_z * v + e_z
+        N_x = p_u_y * p_v_z - p_u_z * p_v_y
+        N_y = p_u_z * p_v_x - p_u_x * p_v_z
+        N_z = p_u_x * p_v_y - p_u_y * p_v_x
+        towards = n_x * N_x + n_y * N_y + n_z * N_z
+        length = abs(N_x) + abs(N_y) + abs(N_z)
+        if not (abs(towards) > 0.25 * length and length > 0.0):
+            codes[k] = 2
+        elif towards < 0.0:
+            codes[k] = 0
+
+
+@jit
+def note(codes, code, order, places, notes, count):
+    """Write a note, number << 32 | place, of each candidate that has the code; return how many have."""
+    chosen = 0
+    for k in range(count):
+        notes[chosen] = order[places[k]] << 32 | places[k]
+        chosen += codes[k] == code
+    return chosen
+
+
+@jit
+def store(notes, count, scratch, starts, patch, pairs, at):
+    """Sort notes and write patch, normal and place of each to pairs (3, …) from `at` on; return the end."""
+    if count <= 32:
+        insertion_sort(notes, count)
+    else:
+        notes = radix_sort(notes, count, scratch, starts)
+    for k in range(count):
+        pairs[0, at + k] = patch
+        pairs[1, at + k] = notes[k] >> 32
+        pairs[2, at + k] = notes[k] & 0xFFFFFFFF
+    return at + count
+
+
+@jit
+def insertion_sort(notes, count):
+    """Sort a few notes."""
+    for k in range(1, count):
+        note = notes[k]
+        at = k
+        while at > 0 and notes[at - 1] > note:
+            notes[at] = notes[at - 1]
+            at -= 1
+        notes[at] = note
+
+
+@jit
+def radix_sort(notes, count, scratch, starts):
+    """Sort notes by the numbers of the normals, in digits of as many values as there are notes."""
+    low = high = notes[0] >> 32
+    for k in range(count):
+        low = min(low, notes[k] >> 32)
+        high = max(high, notes[k] >> 32)
+    width = 1
+    while 2 << width <= count:
+        width += 1
+    mask = (1 << width) - 1
+    shift = 0
+    while (high - low) >> shift > 0:
+        starts[: mask + 2] = 0
+        for k in range(count):
+            starts[((((notes[k] >> 32) - low) >> shift) & mask) + 1] += 1
+        for k in range(mask + 1):
+            starts[k + 1] += starts[k]
+        for k in range(count):
+            digit = (((notes[k] >> 32) - low) >> shift) & mask
+            scratch[starts[digit]] = notes[k]
+            starts[digit] += 1
+        notes, scratch = scratch, notes
+        shift += width
+    return notes
 
 
 # --- what a sample holds --------------------------------------------------------------------------
@@ -832,29 +1154,72 @@ def select_normals(
 @jit
 def fill_samples(
     mu, scale, normals, frame, first, last,
-    patch_index, normal_index, points, directions, uv, support, gaussian, mean,
+    patch_index, place, points, directions, uv, support, gaussian, mean,
 ):  # fmt: skip
-    """Fill the samples first, …, last − 1 from the patch and the normal of each.
+    """Fill the samples first, …, last − 1 from the patch and the place of the normal of each.
 
     frame = (u0, v0, du, dv): the corner of the domain and the size of a cell in the parameters.
     """
     columns = mu.shape[1] - 2
     size = SCALE * scale
-    known = -1
-    for k in range(first, last):
-        if patch_index[k] != known:
-            known = patch_index[k]
-            cell = known // 4
-            turn = known % 4
-            i = cell // columns
-            j = cell % columns
-            (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
-             d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(
-                mu, i + 1, j + 1, turn, scale
-            )  # fmt: skip
-        n_x = normals[normal_index[k], 0]
-        n_y = normals[normal_index[k], 1]
-        n_z = normals[normal_index[k], 2]
+    tile = np.empty((10, TILE))
+    begin = first
+    while begin < last:
+        patch = patch_index[begin]
+        count = 1
+        while count < TILE and begin + count < last and patch_index[begin + count] == patch:
+            count += 1
+        cell = patch // 4
+        turn = patch % 4
+        i = cell // columns
+        j = cell % columns
+        for k in range(count):
+            tile[0, k] = normals[0, place[begin + k]]
+            tile[1, k] = normals[1, place[begin + k]]
+            tile[2, k] = normals[2, place[begin + k]]
+        evaluate_tile(
+            *patch_vectors(mu, i + 1, j + 1, turn, scale),
+            tile[0, :count], tile[1], tile[2], tile[3], tile[4], tile[5], tile[6], tile[7], tile[8], tile[9],
+        )  # fmt: skip
+        for k in range(begin, begin + count):
+            n_x = tile[0, k - begin]
+            n_y = tile[1, k - begin]
+            n_z = tile[2, k - begin]
+            u = tile[3, k - begin]
+            v = tile[4, k - begin]
+            x_x = tile[5, k - begin]
+            x_y = tile[6, k - begin]
+            x_z = tile[7, k - begin]
+            K = tile[8, k - begin]
+            H = tile[9, k - begin]
+            points[k, 0] = mu[i + 1, j + 1, 0] + x_x / size
+            points[k, 1] = mu[i + 1, j + 1, 1] + x_y / size
+            points[k, 2] = mu[i + 1, j + 1, 2] + x_z / size
+            directions[k, 0] = n_x
+            directions[k, 1] = n_y
+            directions[k, 2] = n_z
+            uv[k, 0] = frame[0] + frame[2] * (
+                i + 0.5 + u * CORNERS[turn, 0, 0] + v * CORNERS[turn, 1, 0]
+            )
+            uv[k, 1] = frame[1] + frame[3] * (
+                j + 0.5 + u * CORNERS[turn, 0, 1] + v * CORNERS[turn, 1, 1]
+            )
+            support[k] = n_x * points[k, 0] + n_y * points[k, 1] + n_z * points[k, 2]
+            gaussian[k] = K * size * size
+            mean[k] = H * size
+        begin += count
+
+
+@jit
+def evaluate_tile(
+    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z,
+    normals_x, normals_y, normals_z, us, vs, points_x, points_y, points_z, gaussian, mean,
+):  # fmt: skip
+    """Evaluate a patch for some of its normals; the loop has no branches, so that it runs on vectors."""
+    for k in range(normals_x.size):
+        n_x = normals_x[k]
+        n_y = normals_y[k]
+        n_z = normals_z[k]
         # sample (eqs. (1), (5)-(9); curvatures beyond the paper): 145 operations as written, 134 here
         A = a_x * n_x + a_y * n_y + a_z * n_z
         B = b_x * n_x + b_y * n_y + b_z * n_z
@@ -890,27 +1255,19 @@ def fill_samples(
         g = 1.0 / (N_x * N_x + N_y * N_y + N_z * N_z)
         K = D * g
         H = 0.5 * g * (2 * B * F - A * G - C * E)
-        points[k, 0] = mu[i + 1, j + 1, 0] + x_x / size
-        points[k, 1] = mu[i + 1, j + 1, 1] + x_y / size
-        points[k, 2] = mu[i + 1, j + 1, 2] + x_z / size
-        directions[k, 0] = n_x
-        directions[k, 1] = n_y
-        directions[k, 2] = n_z
-        uv[k, 0] = frame[0] + frame[2] * (
-            i + 0.5 + u * CORNERS[turn, 0, 0] + v * CORNERS[turn, 1, 0]
-        )
-        uv[k, 1] = frame[1] + frame[3] * (
-            j + 0.5 + u * CORNERS[turn, 0, 1] + v * CORNERS[turn, 1, 1]
-        )
-        support[k] = n_x * points[k, 0] + n_y * points[k, 1] + n_z * points[k, 2]
-        gaussian[k] = K * size * size
-        mean[k] = H * size
+        us[k] = u
+        vs[k] = v
+        points_x[k] = x_x
+        points_y[k] = x_y
+        points_z[k] = x_z
+        gaussian[k] = K
+        mean[k] = H
 
 
 @jit
 def fill_known(
     mu, scale, normals, frame, which, local,
-    patch_index, normal_index, points, directions, uv, support, gaussian, mean,
+    patch_index, place, points, directions, uv, support, gaussian, mean,
 ):  # fmt: skip
     """Fill the samples which[0], which[1], … at known parameters.
 
@@ -973,9 +1330,9 @@ def fill_known(
         x_x = a_x * t1 + b_x * t0 + c_x * t2 + d_x * u + e_x * v + p_x
         x_y = a_y * t1 + b_y * t0 + c_y * t2 + d_y * u + e_y * v + p_y
         x_z = a_z * t1 + b_z * t0 + c_z * t2 + d_z * u + e_z * v + p_z
-        n_x = normals[normal_index[k], 0]
-        n_y = normals[normal_index[k], 1]
-        n_z = normals[normal_index[k], 2]
+        n_x = normals[0, place[k]]
+        n_y = normals[1, place[k]]
+        n_z = normals[2, place[k]]
         points[k, 0] = mu[i + 1, j + 1, 0] + x_x / size
         points[k, 1] = mu[i + 1, j + 1, 1] + x_y / size
         points[k, 2] = mu[i + 1, j + 1, 2] + x_z / size

@@ -10,10 +10,16 @@ from .errors import InputError
 __all__ = ["parameter_arrays", "real_array", "whole_number"]
 
 
+# Beyond this a count is a mistake: no memory holds so many normals, cells or samples.
+MOST = 10**9
+
+
 def whole_number(value: object, name: str) -> int:
-    """Return a whole number of at least 1; raise InputError that names it if it is not one."""
+    """Return a whole number from 1 to 10⁹; raise InputError that names it if it is not one."""
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 1:
         raise InputError(f"{name} must be a whole number of at least 1, not {value!r}.")
+    if value > MOST:
+        raise InputError(f"{name} must be a whole number of at most {MOST:,}, not larger.")
     return int(value)
 
 

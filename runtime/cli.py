@@ -1,7 +1,8 @@
 """The command line: `gaussmap sample`, `plot`, `surfaces` and `formulas`.
 
 Results go to standard output; the progress bar, warnings and errors go to standard error. Every
-error is one line and the exit code 2; Ctrl-C gives 130, and a reader that went away 141.
+error is one line and the exit code 2; Ctrl-C (once the imports are done) gives 130, and a reader
+that went away 141.
 """
 
 from __future__ import annotations
@@ -226,7 +227,7 @@ def _surface(options: argparse.Namespace) -> Surface:
     if len(parameters) < len(options.set):
         raise InputError("--set gives the same parameter twice; give each once.")
     for parameter in parameters:
-        _known(parameter, tuple(CATALOGUE[name]["parameters"]), f"parameter of {name}")
+        _known(parameter, tuple(CATALOGUE[name]["parameters"]), f"{name} parameter")
     return surface(name, **parameters)
 
 
@@ -295,7 +296,7 @@ def _read_array(source: str) -> NDArray[Any]:
         raise FileError(f"'{file_name}' cannot be read: {error.strerror or error}.") from error
     except Exception as error:  # NumPy and zipfile raise a dozen kinds on bad bytes
         raise FileError(
-            f"'{file_name}' is damaged or holds something else than numbers "
+            f"'{file_name}' is damaged, or holds objects instead of numbers "
             f"({type(error).__name__}: {error}); write it again with numpy.save or numpy.savez."
         ) from error
 
@@ -320,7 +321,7 @@ def _known(name: str, known: Sequence[str], kind: str, command: str = "") -> str
     """Return `name` if it is known; otherwise say which names are near, or where all are."""
     if name in known:
         return name
-    near = difflib.get_close_matches(name.lower(), known, n=3)
+    near = difflib.get_close_matches(name.lower(), known, n=3, cutoff=0.7)
     hint = f"; did you mean {' or '.join(near)}?" if near else "."
     if command:
         hint += f" See `{command}` for all names."
@@ -338,6 +339,10 @@ class _UsageError(Exception):
 
 class _Parser(argparse.ArgumentParser):
     """A parser whose errors are one line, and which does not guess at shortened options."""
+
+    def _print_message(self, message: str, file: Any = None) -> None:  # noqa: ANN401
+        """Print help; unlike argparse, let errors of standard output be known."""
+        _print(message.rstrip("\n"), file or sys.stdout)
 
     def __init__(self, **settings: Any) -> None:  # noqa: ANN401
         super().__init__(
@@ -479,7 +484,7 @@ def _whole(most: int) -> Callable[[str], int]:
             number = 0
         if not 1 <= number <= most:
             raise argparse.ArgumentTypeError(
-                f"it must be a whole number from 1 to {most:_}, not {text!r}"
+                f"it must be a whole number from 1 to {most:,}, not {text!r}"
             )
         return number
 
@@ -504,6 +509,7 @@ def _setting(text: str) -> tuple[str, float]:
 
 
 def _say(text: str) -> None:
+    """Print to standard output."""
     _print(text, sys.stdout)
 
 

@@ -29,7 +29,7 @@ def evaluated(
     try:
         with np.errstate(all="ignore"):
             returned = function(*(x.copy() for x in arrays))
-    except GaussmapError:
+    except (GaussmapError, MemoryError):
         raise
     except Exception as error:
         raise SurfaceError(

@@ -23,6 +23,8 @@ from .spline import Spline
 
 __all__ = ["Decision", "decide"]
 
+# Python integers take memory: some hundred bytes for each of the many that a pair needs.
+PAIRS_AT_A_TIME = 1 << 14
 # Two samples of one normal at the open border that are closer than this (in cells) are one.
 SAME_PLACE = 1e-6
 # A point is singular where the normal is this short, beside that at the centre of its patch.
@@ -52,8 +54,25 @@ def decide(
     `forgiven[k]` is the error of W that is forgiven at the open border of the domain, in units of
     the scaled spline; 0 for a patch that does not touch the border.
     """
+    chunks = [slice(k, k + PAIRS_AT_A_TIME) for k in range(0, len(patches), PAIRS_AT_A_TIME)]
+    parts = [_decide(spline, patches[x], normals[x], forgiven[x]) for x in chunks]
+    which = np.concatenate([x.start + part[0] for x, part in zip(chunks, parts, strict=True)])
+    local = np.concatenate([part[1] for part in parts])
+    near = np.concatenate([part[2] for part in parts])
+    keep = _first_of_each_place(spline, patches[which], normals[which], local[:, :2], near)
+    return Decision(which[keep], local[keep])
+
+
+def _decide(
+    spline: Spline,
+    patches: NDArray[np.int64],
+    normals: NDArray[np.float64],
+    forgiven: NDArray[np.float64],
+) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.bool_]]:
+    """Return which pairs are samples, what `Decision` holds of them, and which are forgiven."""
     vectors, exponent = _patch_vectors(spline, patches)
     n, exponents = integers_by_row(normals)
+    n = n * _leading_sign(n)
     forms = _forms(vectors, n)
     magnitude = _scaled(np.abs(forms[0]), 2 * (exponent + exponents))
     signs = sign(forms[1:])
@@ -76,8 +95,7 @@ def decide(
     regular = np.column_stack([u, v])
     regular[which], directions = _regular_places(spline, patches[which], regular[which])
     which = which[np.einsum("kx,kx->k", directions, normals[which]) > 0.0]
-    which = which[_first_of_each_place(spline, patches, normals, u, v, near, which)]
-    return Decision(which, np.column_stack([u, v, signs[0], regular])[which])
+    return which, np.column_stack([u, v, signs[0], regular])[which], near[which]
 
 
 # --- integers -------------------------------------------------------------------------------------
@@ -146,6 +164,17 @@ def _regular_places(
     return places, normals(places)
 
 
+def _leading_sign(n: Integers) -> Integers:
+    """Return the sign of the first component that is not zero, for each column.
+
+    The forms are even in n. A normal and its opposite must be moved to opposite normals: where a
+    surface is joined to its own mirror image, one patch has the one and its neighbour the other.
+    """
+    signs = sign(n)
+    first = np.argmax(signs != 0, axis=0)
+    return np.take_along_axis(signs, first[None], axis=0).astype(object)
+
+
 def _scaled(values: Integers, exponents: NDArray[np.int64]) -> NDArray[np.float64]:
     """Return values × 2^exponents as floats."""
     pairs = zip(values, exponents.tolist(), strict=True)
@@ -159,23 +188,20 @@ def _first_of_each_place(
     spline: Spline,
     patches: NDArray[np.int64],
     normals: NDArray[np.float64],
-    u: NDArray[np.float64],
-    v: NDArray[np.float64],
+    local: NDArray[np.float64],
     near: NDArray[np.bool_],
-    which: NDArray[np.int64],
 ) -> NDArray[np.bool_]:
     """Drop what was let in at the border and is, for its normal, in the place of another sample."""
-    keep = np.ones(len(which), dtype=bool)
-    if not near[which].any():
+    keep = np.ones(len(patches), dtype=bool)
+    if not near.any():
         return keep
-    cell, turn = np.divmod(patches[which], 4)
+    cell, turn = np.divmod(patches, 4)
     corners = kernels.CORNERS[turn]
-    local = np.stack([u[which], v[which]], axis=1)
     place = np.stack(np.divmod(cell, spline.cells[1]), axis=1) + np.einsum(
         "kc,kcx->kx", local, corners
     )
-    for k in np.flatnonzero(near[which]):
-        same = (normals[which] == normals[which[k]]).all(axis=1)
+    for k in np.flatnonzero(near):
+        same = (normals == normals[k]).all(axis=1)
         close = np.abs(place - place[k]).max(axis=1) < SAME_PLACE
         others = same & close & keep
         others[k] = False

@@ -187,6 +187,8 @@ def _path(path: PathLike) -> Path:
         result = Path(path)
     except TypeError:
         raise InputError(f"a path must be a string or a Path, not {path!r}.") from None
+    if not os.fspath(path):
+        raise InputError("the name of the file is empty.")
     if "\0" in str(result):
         raise InputError(f"a path cannot hold a null character, as {str(result)!r} does.")
     return result

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..generated import sampler as kernels
-from .sphere import GOLDEN, fibonacci
+from .sphere import GOLDEN, fibonacci, perpendicular
 from .spline import Spline
 
 __all__ = ["Lattice"]
@@ -64,15 +64,8 @@ class Lattice:
         depth = (k + 0.5) / (2 * math.pi * density)  # 1 − cosine to the axis
         angle = 2 * math.pi * np.modf(k / GOLDEN)[0]
         radius = np.sqrt(np.maximum(depth * (2.0 - depth), 0.0))
-        across, along = self._directions()
+        across, along = perpendicular(self.axis)
         vectors = (1.0 - depth)[:, None] * self.axis
         vectors += (radius * np.cos(angle))[:, None] * across
         vectors += (radius * np.sin(angle))[:, None] * along
         return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
-
-    def _directions(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return two unit vectors that make a right-handed frame with the axis."""
-        least = np.eye(3)[np.argmin(np.abs(self.axis))]
-        across = np.cross(least, self.axis)
-        across /= np.linalg.norm(across)
-        return across, np.cross(self.axis, across)

@@ -15,12 +15,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import io
-from .errors import GaussmapWarning, InputError, MissingExtraError
+from .errors import InputError, MissingExtraError
 from .globe import draw_globe, view_of
-from .lattice import Lattice
 from .palette import ELLIPTIC, HYPERBOLIC, INK, NO_SAMPLE, PALE, SCALE, STYLE
 from .samples import Samples
-from .sampling import sample
+from .sampling import sample_and_normals
 from .scene import AZIMUTH, ELEVATION, Scene
 from .sphere import as_normals
 from .spline import Spline, fit
@@ -63,16 +62,9 @@ def plot(
     if isinstance(surface, Spline) and cells is not None:
         raise InputError("cells=... is for surfaces; this spline has its cells already.")
     spline = surface if isinstance(surface, Spline) else fit(surface, cells)
-    samples = sample(spline, normals, count=count, threads=threads, progress=progress)
-    if normals is not None:
-        directions = as_normals(normals)
-    else:
-        # Samples do not tell which normals were asked in vain: sample again, by known normals.
-        lattice = Lattice.around(spline)
-        directions = lattice.normals(lattice.density_of(samples.report.normals or 1))
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", GaussmapWarning)
-            samples = sample(spline, directions, threads=threads, progress=progress)
+    samples, directions = sample_and_normals(
+        spline, normals, count=count, cells=None, threads=threads, progress=progress
+    )
     plot_samples(samples, spline, directions, path)
     return samples
 

@@ -46,7 +46,8 @@ class SamplingReport:
     - `samples`: how many samples came.
     - `patches`: how many patches the surface was cut into.
     - `invisible_share`: share of the surface's area that normals cannot see, from 0 to 1.
-    - `degenerate_patches`: how many patches have no support function, and so give no samples.
+    - `degenerate_patches`: how many patches are developable up to the rounding of their
+      coordinates, and so have no support function (those round a pole are among them).
 
     Raises InputError if a count is not an integer or is negative, the share is outside 0…1, or the
     label is not a string.

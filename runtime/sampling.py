@@ -20,7 +20,7 @@ from .surface import Surface
 from .threads import thread_count
 from .visibility import invisible_share, visible_solid_angle
 
-__all__ = ["sample", "sample_many"]
+__all__ = ["sample", "sample_and_normals", "sample_many"]
 
 # `count` is met by changing the number of normals, until it is this near or after so many tries.
 NEAR_ENOUGH = 0.01
@@ -46,9 +46,9 @@ def sample(
     `cells` = (m, n) cells (see `fit`); a `Spline` is taken as it is.
 
     Give either `normals`, an array (S, 3) of directions of any length such as `icosphere(32)` or
-    `fibonacci(10_000)`, or `count`, about how many samples shall come: within 5 % where the
-    Gaussian image is resolved, from a Fibonacci lattice of normals round the mean normal of the
-    surface.
+    `fibonacci(10_000)`, or `count`, about how many samples shall come: within 5 % (or one sample)
+    where the Gaussian image is resolved, from a Fibonacci lattice of normals round the mean normal
+    of the surface.
 
     With `progress`, work that takes longer than a second shows a bar on standard error.
 
@@ -57,6 +57,21 @@ def sample(
     parts, of which normals see nothing, or when `count` cannot be met. Raises InputError for
     unusable arguments and SurfaceError for a surface that cannot be evaluated.
     """
+    return sample_and_normals(
+        surface, normals, count=count, cells=cells, threads=threads, progress=progress
+    )[0]
+
+
+def sample_and_normals(
+    surface: Surface | Spline,
+    normals: ArrayLike | None,
+    *,
+    count: int | None,
+    cells: Sequence[int] | None,
+    threads: int | None,
+    progress: bool,
+) -> tuple[Samples, NDArray[np.float64]]:
+    """Return what `sample` returns, and the unit normals that were asked."""
     directions = _directions(normals, count, threads)
     if isinstance(surface, Spline) and cells is not None:
         raise InputError("cells=... is for surfaces; this spline has its cells already.")
@@ -68,9 +83,9 @@ def sample(
         bins = NormalBins(directions)
         hits = find(spline, bins, threads, progress)
         density = len(bins.normals) / (4 * math.pi)
-    samples = _samples(spline, bins.normals, hits, density, threads)
+    samples = _samples(spline, bins, hits, density, threads)
     _warn(samples.report, count)
-    return samples
+    return samples, bins.normals
 
 
 def sample_many(
@@ -148,20 +163,20 @@ def _by_count(
 
 def _samples(
     spline: Spline,
-    normals: NDArray[np.float64],
+    bins: NormalBins,
     hits: Hits,
     density: float,
     threads: int | None,
 ) -> Samples:
     report = SamplingReport(
         surface=spline.name,
-        normals=len(normals),
+        normals=len(bins.normals),
         samples=len(hits),
         patches=spline.patches,
         invisible_share=invisible_share(spline, density),
-        degenerate_patches=hits.invisible,
+        degenerate_patches=hits.developable,
     )
-    fields = fill(spline, normals, hits, threads)
+    fields = fill(spline, bins, hits, threads)
     return Samples(
         **fields, normal_index=hits.normal_index, patch_index=hits.patch_index, report=report
     )
@@ -184,4 +199,4 @@ def _warn(report: SamplingReport, count: int | None) -> None:
         reasons.append(f"{report.samples} samples came where {count} were asked")
     if reasons:
         message = f"surface {report.surface!r}: {'; '.join(reasons)}."
-        warnings.warn(message, GaussmapWarning, stacklevel=3)
+        warnings.warn(message, GaussmapWarning, stacklevel=4)

@@ -11,50 +11,84 @@ from numpy.typing import NDArray
 
 from ..generated import sampler as kernels
 from .exact import decide
+from .sphere import perpendicular
 from .spline import Spline
-from .threads import over_ranges
+from .threads import over_ranges, thread_count
 
 __all__ = ["Hits", "NormalBins", "fill", "find"]
 
-PATCHES_AT_A_TIME = 4096
+# A range of patches is searched by one thread. There are several for each, but for small surfaces.
+FEWEST_PATCHES, MOST_PATCHES = 64, 4096
+RANGES_PER_THREAD = 4
 SAMPLES_AT_A_TIME = 1 << 16
 NORMALS_PER_BIN = 8
+# A cap of normals is not taken for narrower than this, the tangent of half its angle.
+NARROWEST = 2.0**-20
+# Room for so many hits at first; a patch that needs more gets it.
+ROOM = 1 << 15
 
 
 @dataclass(frozen=True, eq=False)
 class NormalBins:
-    """Unit normals (S, 3), sorted into the squares of a cube round the sphere."""
+    """Unit normals (S, 3), sorted into the squares of a cube round the sphere.
+
+    Normals that all lie in a cap are first mapped linearly, so that they fill a face of the cube.
+    """
 
     normals: NDArray[np.float64]
 
     @cached_property
+    def frame(self) -> NDArray[np.float64]:
+        """The linear map (3, 3), the identity unless there is such a cap."""
+        mean = self.normals.mean(axis=0)
+        length = float(np.linalg.norm(mean))
+        if length < 0.8:
+            return np.eye(3)
+        axis = mean / length
+        across, along = perpendicular(axis)
+        directions = np.stack([across, along, axis])
+        x, y, z = directions @ self.normals.T
+        if not (z > 0.5).all():
+            return np.eye(3)
+        tangent = max(float(np.hypot(x, y).max() / z.min()), NARROWEST)
+        return directions / [[tangent], [tangent], [1.0]] if tangent < 0.8 else np.eye(3)
+
+    @cached_property
+    def stretch(self) -> float:
+        """The norm of the frame."""
+        return float(np.linalg.norm(self.frame, axis=1).max())
+
+    @cached_property
     def grid(self) -> int:
         """The number of squares along an edge of the cube."""
-        return max(1, min(2048, round(math.sqrt(len(self.normals) / (6 * NORMALS_PER_BIN)))))
+        faces = 6 if self.stretch < 1.1 else 1
+        return max(1, min(2048, round(math.sqrt(len(self.normals) / (faces * NORMALS_PER_BIN)))))
 
     @cached_property
     def sorted(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
-        """The start of each bin; the numbers of the normals in their order; the normals in it."""
+        """The start of each bin; the numbers of the normals in their order; the normals (3, S)."""
         starts = np.empty(6 * self.grid**2 + 1, dtype=np.int64)
         order = np.empty(len(self.normals), dtype=np.int64)
-        kernels.bin_normals(self.normals, self.grid, starts, order)
-        return starts, order, self.normals[order]
+        components = np.empty((3, len(self.normals)))
+        kernels.bin_normals(self.normals, self.frame, self.grid, starts, order, components)
+        return starts, order, components
 
 
 @dataclass(frozen=True, eq=False)
 class Hits:
     """Which patch has which normal, by patch and then by normal.
 
-    `exact` are the numbers of the hits that had to be decided exactly, `local` what `Decision` says
-    of them. `invisible` counts the patches that are flat or developable up to the
-    rounding of their coordinates.
+    `place` is the place of the normal in the order of the bins. `exact` are the numbers of the hits
+    that had to be decided exactly, `local` what `Decision` says of them. `developable` counts the
+    patches that are so, up to the rounding of their coordinates.
     """
 
     patch_index: NDArray[np.int64]
     normal_index: NDArray[np.int64]
+    place: NDArray[np.int64]
     exact: NDArray[np.int64]
     local: NDArray[np.float64]
-    invisible: int
+    developable: int
 
     def __len__(self) -> int:
         """Return the number of samples."""
@@ -63,53 +97,58 @@ class Hits:
 
 @dataclass(frozen=True, eq=False)
 class _Range:
-    """What a range of patches yields: sure pairs, doubtful pairs, what is forgiven for these."""
+    """What a range of patches yields: pairs (3, …) of patch, normal and place of the normal.
 
-    sure: tuple[NDArray[np.int64], NDArray[np.int64]]
-    doubtful: tuple[NDArray[np.int64], NDArray[np.int64]]
-    forgiven: NDArray[np.float64]
-    invisible: int
+    Some are sure; rounding leaves the others open, with the error `bounds` of their forms.
+    """
+
+    sure: NDArray[np.int64]
+    doubtful: NDArray[np.int64]
+    bounds: NDArray[np.float64]
+    developable: int
 
 
 def find(
     spline: Spline, bins: NormalBins, threads: int | None = None, progress: bool = False
 ) -> Hits:
     """Return which patch of a spline has which of the normals."""
-    starts, order, normals = bins.sorted
     border = np.array([end == "none" for end in _sides(spline)])
     noise = kernels.DATA_ERROR * float(np.abs(spline.coefficients * spline.scale).max())
+    if kernels.all_developable(spline.coefficients, spline.scale, noise):
+        return _hits(np.empty((3, 0), dtype=np.int64), spline.patches)
 
-    def search(first: int, last: int) -> _Range:
-        count = last - first
-        kinds, sizes = np.empty(count, dtype=np.int8), np.empty(count, dtype=np.int64)
-        bounds, windows = np.empty(count), np.empty((count, 6, 4), dtype=np.int32)
-        kernels.bound_patches(
-            spline.coefficients, spline.scale, noise, border, bins.grid, starts, first, last,
-            kinds, bounds, windows, sizes,
-        )  # fmt: skip
-        offsets = np.concatenate([[0], np.cumsum(sizes)])
-        found, doubtful = (np.empty(offsets[-1], dtype=np.int64) for _ in range(2))
-        found_counts, doubtful_counts = (np.empty(count, dtype=np.int64) for _ in range(2))
-        kernels.select_normals(
-            spline.coefficients, spline.scale, bins.grid, starts, order, normals, first, last,
-            kinds, bounds, windows, offsets, found, found_counts, doubtful, doubtful_counts,
-        )  # fmt: skip
-        patches = np.arange(first, last)
-        open_ = np.repeat(patches, doubtful_counts)
-        forgiven = np.where(_on_border(spline, border, open_), bounds[open_ - first], 0.0)
-        return _Range(
-            (np.repeat(patches, found_counts), _packed(found, offsets, found_counts)),
-            (open_, _packed(doubtful, offsets, doubtful_counts)),
-            forgiven,
-            int(np.count_nonzero(kinds == kernels.INVISIBLE)),
-        )
+    def search(first: int, last: int) -> list[_Range]:
+        parts, room = [], ROOM
+        while first < last:
+            found, doubtful = np.empty((2, 3, room), dtype=np.int64)
+            bounds, counts = np.empty(room), np.zeros(3, dtype=np.int64)
+            first, needed = kernels.search_patches(
+                spline.coefficients, spline.scale, noise, border,
+                bins.frame, bins.stretch, bins.grid, *bins.sorted,
+                first, last, found, doubtful, bounds, counts,
+            )  # fmt: skip
+            sure, open_, developable = counts.tolist()
+            parts.append(
+                _Range(
+                    found[:, :sure].copy(),
+                    doubtful[:, :open_].copy(),
+                    bounds[:open_].copy(),
+                    developable,
+                )
+            )
+            room = max(ROOM, needed)
+        return parts
 
-    ranges = list(over_ranges(search, spline.patches, PATCHES_AT_A_TIME, threads, progress))
-    return _decided(spline, bins, ranges)
+    count = spline.patches // (RANGES_PER_THREAD * thread_count(threads))
+    size = min(max(count, FEWEST_PATCHES), MOST_PATCHES)
+    ranges = [
+        x for part in over_ranges(search, spline.patches, size, threads, progress) for x in part
+    ]
+    return _decided(spline, bins, border, ranges)
 
 
 def fill(
-    spline: Spline, normals: NDArray[np.float64], hits: Hits, threads: int | None = None
+    spline: Spline, bins: NormalBins, hits: Hits, threads: int | None = None
 ) -> dict[str, NDArray[np.float64]]:
     """Return points, normals, uv, support and curvatures of the hits."""
     count = len(hits)
@@ -121,7 +160,8 @@ def fill(
         "gaussian_curvature": np.empty(count),
         "mean_curvature": np.empty(count),
     }
-    indices = hits.patch_index, hits.normal_index
+    normals = bins.sorted[2]
+    indices = hits.patch_index, hits.place
 
     def work(first: int, last: int) -> None:
         kernels.fill_samples(
@@ -138,24 +178,34 @@ def fill(
     return fields
 
 
-def _decided(spline: Spline, bins: NormalBins, ranges: list[_Range]) -> Hits:
+def _decided(
+    spline: Spline, bins: NormalBins, border: NDArray[np.bool_], ranges: list[_Range]
+) -> Hits:
     """Decide the doubtful pairs and merge those that are samples with the sure ones."""
-    patch, normal = (np.concatenate([r.sure[k] for r in ranges]) for k in (0, 1))
-    open_patch, open_normal = (np.concatenate([r.doubtful[k] for r in ranges]) for k in (0, 1))
-    invisible = sum(r.invisible for r in ranges)
-    nothing = np.empty(0, dtype=np.int64)
-    if len(open_patch) == 0:
-        return Hits(patch, normal, nothing, np.empty((0, 5)), invisible)
-    forgiven = np.concatenate([r.forgiven for r in ranges])
-    decision = decide(spline, open_patch, bins.normals[open_normal], forgiven)
-    new_patch, new_normal = open_patch[decision.which], open_normal[decision.which]
-    places = _insertion_places(patch, normal, new_patch, new_normal, len(bins.normals))
+    sure = np.concatenate([r.sure for r in ranges], axis=1)
+    doubtful = np.concatenate([r.doubtful for r in ranges], axis=1)
+    developable = sum(r.developable for r in ranges)
+    if doubtful.shape[1] == 0:
+        return _hits(sure, developable)
+    bounds = np.concatenate([r.bounds for r in ranges])
+    forgiven = np.where(_on_border(spline, border, doubtful[0]), bounds, 0.0)
+    decision = decide(spline, doubtful[0], bins.normals[doubtful[1]], forgiven)
+    patch, normal, place = doubtful[:, decision.which]
+    places = _insertion_places(sure[0], sure[1], patch, normal)
+    merged = np.insert(sure, places, (patch, normal, place), axis=1)
+    return _hits(merged, developable, places + np.arange(len(places)), decision.local)
+
+
+def _hits(
+    pairs: NDArray[np.int64],
+    developable: int,
+    exact: NDArray[np.int64] | None = None,
+    local: NDArray[np.float64] | None = None,
+) -> Hits:
+    patch, normal, place = pairs
+    exact = np.empty(0, dtype=np.int64) if exact is None else exact
     return Hits(
-        np.insert(patch, places, new_patch),
-        np.insert(normal, places, new_normal),
-        places + np.arange(len(places)),
-        decision.local,
-        invisible,
+        patch, normal, place, exact, np.empty((0, 5)) if local is None else local, developable
     )
 
 
@@ -164,21 +214,11 @@ def _insertion_places(
     normal: NDArray[np.int64],
     new_patch: NDArray[np.int64],
     new_normal: NDArray[np.int64],
-    count: int,
 ) -> NDArray[np.int64]:
     """Return where the new pairs, sorted like the old ones, have to be inserted among them."""
     low, high = np.searchsorted(patch, new_patch), np.searchsorted(patch, new_patch, side="right")
     pairs = zip(low, high, new_normal, strict=True)
     return np.array([a + np.searchsorted(normal[a:b], n) for a, b, n in pairs], dtype=np.int64)
-
-
-def _packed(
-    values: NDArray[np.int64], offsets: NDArray[np.int64], counts: NDArray[np.int64]
-) -> NDArray[np.int64]:
-    """Return the first counts[k] values of each stretch offsets[k] … offsets[k + 1], joined."""
-    total = int(counts.sum())
-    shifts = np.repeat(offsets[:-1] - np.concatenate([[0], np.cumsum(counts)[:-1]]), counts)
-    return values[np.arange(total) + shifts]
 
 
 def _sides(spline: Spline) -> tuple[str, str, str, str]:

@@ -11,9 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 from .checks import real_array, whole_number
 from .errors import InputError
 
-__all__ = ["as_normals", "fibonacci", "icosphere"]
+__all__ = ["as_normals", "fibonacci", "icosphere", "perpendicular"]
 
 GOLDEN = (1 + math.sqrt(5)) / 2
+MOST_FREQUENT = 10_000
 
 
 def icosphere(frequency: int) -> NDArray[np.float64]:
@@ -23,9 +24,13 @@ def icosphere(frequency: int) -> NDArray[np.float64]:
     sphere ("uniform refinement", paper, Sect. 4.2). The 12 vertices come first, then the points
     inside the 30 edges, then those inside the 20 faces. Many of them lie in common symmetry planes.
 
-    Raises InputError unless `frequency` is a whole number of at least 1.
+    Raises InputError unless `frequency` is a whole number from 1 to 10,000.
     """
     nu = whole_number(frequency, "frequency")
+    if nu > MOST_FREQUENT:
+        raise InputError(
+            f"frequency must be a whole number of at most {MOST_FREQUENT:,}, not {nu}."
+        )
     # Coordinates a + b φ as integers (a, b): what mirrors another point does so bit for bit.
     golden = np.array([1.0, GOLDEN])
     corners = np.array(
@@ -84,6 +89,14 @@ def as_normals(normals: ArrayLike, dimension: int = 3) -> NDArray[np.float64]:
             f"normals[{int(zero.argmax())}] is the zero vector, which has no direction."
         )
     return _unit(array)
+
+
+def perpendicular(axis: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return two unit vectors that make a right-handed frame with a unit vector."""
+    least = np.eye(3)[np.argmin(np.abs(axis))]
+    across = np.cross(least, axis)
+    across /= np.linalg.norm(across)
+    return across, np.cross(axis, across)
 
 
 def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:

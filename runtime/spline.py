@@ -27,6 +27,7 @@ __all__ = [
 ]
 
 DEFAULT_CELLS = (64, 64)
+MOST_CELLS = 10**9
 # What is said to be one point may be this far apart, beside the size of the surface.
 SAME_POINT = 1e-6
 # Beyond this binary exponent a number cannot be multiplied by a few small ones.
@@ -251,6 +252,8 @@ def _checked_cells(cells: Sequence[int], ends: Ends) -> tuple[int, int]:
     m, n = whole_number(m, "cells[0]"), whole_number(n, "cells[1]")
     if min(m, n) < 3:
         raise InputError(f"at least 3 x 3 cells are needed, not {m} x {n}.")
+    if m * n > MOST_CELLS:
+        raise InputError(f"at most {MOST_CELLS:,} cells are possible, not {m:,} x {n:,}.")
     if "pole" in ends[1] and m % 2:
         raise InputError(f"a surface with a pole needs an even number of cells along u, not {m}.")
     return m, n

@@ -55,8 +55,9 @@ class SplineSource:
 
     def sheets(self, normals: NDArray[np.float64]) -> Sheets:
         """Return all branches, by normal and then by patch."""
-        hits = find(self.spline, NormalBins(normals))
-        fields = fill(self.spline, normals, hits)
+        bins = NormalBins(normals)
+        hits = find(self.spline, bins)
+        fields = fill(self.spline, bins, hits)
         known = np.full((len(hits), 2), np.nan)
         known[hits.exact] = hits.local[:, 3:5]
         order = np.argsort(hits.normal_index, kind="stable")

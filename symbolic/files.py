@@ -186,6 +186,7 @@ def sampler_source() -> str:
             "parabolic_cubic": f"cubic = {call(patch.PARABOLIC_CUBIC)}",
             "tangents": block(patch.TANGENTS),
             "forms": block(patch.FORMS),
+            "forms_called": f"D, U, V, W = {call(patch.FORMS)}",
             "parameters": block(patch.PARAMETERS),
             "sample": block(patch.SAMPLE),
             "envelope": block(patch.ENVELOPE),

@@ -9,11 +9,17 @@ from gaussmap import InputError
 from gaussmap.runtime.checks import parameter_arrays, real_array, whole_number
 
 
-@pytest.mark.parametrize("value", [1, 7, np.int8(7), np.uint64(7), 10**30])
+@pytest.mark.parametrize("value", [1, 7, np.int8(7), np.uint64(7), 10**9])
 def test_whole_numbers(value):
     result = whole_number(value, "count")
     assert result == value
     assert type(result) is int
+
+
+@pytest.mark.parametrize("value", [10**9 + 1, 10**30, 10**400])
+def test_whole_numbers_beyond_all_memory(value):
+    with pytest.raises(InputError, match=r"^count must be a whole number of at most 1,000,000,000"):
+        whole_number(value, "count")
 
 
 @pytest.mark.parametrize(

@@ -79,7 +79,7 @@ def test_what_cannot_be_finished_is_not_begun(
     [
         (["--html", "a.pdf"], r"'a\.pdf' has the suffix '\.pdf'; use one of \.html"),
         (["--html", "a"], "'a' has no suffix; use one of .html"),
-        (["--html", ""], "has no suffix"),
+        (["--html", ""], "the name of the file is empty"),
         (["--html", "missing/a.html"], "'.*missing' does not exist"),
         (["--html", "file.html/a.html"], "is not a folder"),
         (["--html", "folder.html"], "'folder.html' is a folder"),

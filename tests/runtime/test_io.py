@@ -645,7 +645,12 @@ class TestNames:
         assert tuple(io._WRITERS) == SUFFIXES
         assert tuple(io._READERS) == READABLE_SUFFIXES
 
-    @pytest.mark.parametrize("name", ["file.stl", "file", "file.npz.gz", ".npz", "file.", "", "."])
+    def test_no_name(self):
+        for call in (lambda: write_samples(make(), ""), lambda: read_samples("")):
+            with pytest.raises(InputError, match="the name of the file is empty"):
+                call()
+
+    @pytest.mark.parametrize("name", ["file.stl", "file", "file.npz.gz", ".npz", "file.", "."])
     def test_unknown_suffixes(self, tmp_path, monkeypatch, name):
         monkeypatch.chdir(tmp_path)
         with pytest.raises(UnknownNameError, match=r"use one of \.npz, \.ply, \.csv, \.vtp, \.xyz"):

@@ -53,6 +53,12 @@ def test_png(torus: gm.Spline, tmp_path: Path) -> None:
     assert not np.all(left[..., 0] == left[..., 2])
 
 
+def test_the_samples_are_those_of_sample(tmp_path: Path) -> None:
+    surface = gm.surfaces.monkey_saddle()
+    drawn = plot.plot(surface, tmp_path / "a.png", count=50)
+    assert (drawn.points == gm.sample(surface, count=50).points).all()
+
+
 def test_normals_without_samples_are_grey(tmp_path: Path) -> None:
     surface = gm.surfaces.elliptic_paraboloid()
     samples = plot.plot(surface, tmp_path / "a.png", gm.fibonacci(300), cells=(16, 16))

@@ -539,6 +539,8 @@ def test_cells(cells):
     [
         ((2, 3), "at least 3 x 3 cells are needed, not 2 x 3"),
         ((3, 2), "at least 3 x 3 cells are needed, not 3 x 2"),
+        ((10**5, 10**5), "at most 1,000,000,000 cells are possible, not 100,000 x 100,000"),
+        ((10**30, 4), r"cells\[0\] must be a whole number of at most 1,000,000,000"),
         ((0, 5), r"cells\[0\] must be a whole number"),
         ((5, -5), r"cells\[1\] must be a whole number"),
         ((5.0, 5), r"cells\[0\] must be a whole number"),

@@ -81,7 +81,7 @@ def test_threads_that_are_none(threads):
 @pytest.mark.parametrize("name", ["torus", "sphere", "moebius_band", "wavy_graph"])
 def test_any_number_of_threads_gives_the_same_bits(name, monkeypatch):
     """More patches and samples than go into one range; normals on symmetry planes among them."""
-    monkeypatch.setattr("gaussmap.runtime.search.PATCHES_AT_A_TIME", 500)
+    monkeypatch.setattr("gaussmap.runtime.search.MOST_PATCHES", 500)
     monkeypatch.setattr("gaussmap.runtime.search.SAMPLES_AT_A_TIME", 333)
     surface = gm.surfaces.surface(name)
     asked: dict[str, Any]
@@ -99,7 +99,8 @@ def test_any_number_of_threads_gives_the_same_bits(name, monkeypatch):
 @pytest.mark.compiled
 def test_ranges_do_not_show_in_the_result(monkeypatch):
     whole = gm.sample(gm.surfaces.torus(), gm.icosphere(16), cells=(24, 24), threads=1)
-    monkeypatch.setattr("gaussmap.runtime.search.PATCHES_AT_A_TIME", 7)
+    monkeypatch.setattr("gaussmap.runtime.search.MOST_PATCHES", 7)
+    monkeypatch.setattr("gaussmap.runtime.search.ROOM", 1)
     monkeypatch.setattr("gaussmap.runtime.search.SAMPLES_AT_A_TIME", 11)
     pieces = gm.sample(gm.surfaces.torus(), gm.icosphere(16), cells=(24, 24), threads=2)
     for array in ARRAY_NAMES:

@@ -170,10 +170,18 @@ def test_each_block_of_a_kernel_is_listed(path):
     ("name", "kernels"),
     [
         # in a loop of its own, in one of a larger formula, in another function
-        ("forms", "sampler.py: forms, select_normals, fill_samples (in sample)"),
-        ("curvature", "sampler.py: fill_samples (in sample), fill_known (in curvature_at)"),
+        (
+            "forms",
+            "sampler.py: forms, classify, evaluate_tile (in sample); "
+            "called by search_patches, all_developable, is_developable, look_again, fill_samples",
+        ),
+        (
+            "curvature",
+            "sampler.py: evaluate_tile (in sample), fill_known (in curvature_at); "
+            "called by fill_samples",
+        ),
         ("forms", "patch.py: forms, support_function"),
-        ("sample", "sampler.py: fill_samples"),
+        ("sample", "sampler.py: evaluate_tile; called by fill_samples"),
         # by calls, at once and through others
         ("measure", "spline.py: measure; called by measure_patches"),
         ("triangle", "spline.py: triangle; called by patch_vectors, evaluate, measure_patches"),
