@@ -279,7 +279,8 @@ def test_normals_in_the_image_of_the_exact_ellipsoid(captions):
         x, y, z = (AXES * normals).T
         places = np.arctan2(y, x), np.arctan2(z, np.hypot(x, y))
         inside = np.all(
-            [(low <= w) & (w <= high) for w, (low, high) in zip(places, DOMAIN, strict=True)]
+            [(low <= w) & (w <= high) for w, (low, high) in zip(places, DOMAIN, strict=True)],
+            axis=0,
         )
         expected = [f"{inside.sum():,}", f"{len(normals):,}", f"{100 * inside.mean():.2f}"]
         assert list(row) == expected
@@ -337,7 +338,7 @@ def test_waves(captions):
     up = normals[:, 2] > 0.1
     p, q = -normals[up, 0] / normals[up, 2] / slope, normals[up, 1] / normals[up, 2] / slope
     ways = [preimages(p + a, q + b) for a in (-error, 0, error) for b in (-error, 0, error)]
-    sure = np.all([(x == ways[0]).all(axis=0) for x in ways], axis=0)
+    sure = (np.stack(ways) == ways[0]).all(axis=(0, 1))
     assert (sure & have[up]).sum() > 0.5 * have.sum()
     np.testing.assert_array_equal(counts[:, up][:, sure], ways[0][:, sure])
     assert not have[~up].any()
