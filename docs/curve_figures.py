@@ -29,38 +29,42 @@ FINE = 100_001  # points at which the length of a curve is measured
 
 def figure_4() -> tuple[Figure, str]:
     """Draw uniform normals on the circle, and the points of a curve that have them."""
-    figure, (axes,) = panels(
+    figure, ((left, right),) = panels(
         6.6, 2.9, 1, 2, left=0.0, right=1.0, bottom=0.0, top=0.9, wspace=0.0, width_ratios=(1, 1.5)
     )
     normals = gm.circle(NORMALS)
     samples = gm.sample_curve(DROP.curve, normals, pieces=PIECES)
-    positive = samples.curvature > 0.0
-    numbered = np.arange(0, NORMALS, EVERY)
-
-    left, right = axes
-    for panel in axes:
-        panel.set_anchor("N")
     left.set_title(f"{NORMALS} uniform normals", pad=4)
-    left.set(xlim=(-1.3, 1.3), ylim=(-1.3, 1.26))
-    segments(left, np.zeros_like(normals), normals, colors=NO_SAMPLE, linewidths=0.6)
-    left.scatter(0.0, 0.0, s=8, color=INK, linewidths=0, zorder=3)
-    draw_curve(left, gm.circle(SMOOTH), closed=True)
-    both = normals[samples.normal_index[~positive]]
-    dots(left, normals, normals[numbered], ELLIPTIC)
-    left.scatter(*both.T, s=4, color=HYPERBOLIC, linewidths=0, zorder=6)
-    labels(left, normals[numbered], normals[numbered], numbered // EVERY + 1)
-
+    draw_normals(left, normals, normals[samples.normal_index[samples.curvature < 0.0]])
+    left.set(xlim=(-1.3, 1.3), ylim=(-1.3, 1.26), anchor="N")
     right.set_title(f"The {len(samples)} points of the curve that have them", pad=4)
-    draw_curve(right, DROP.derivatives(DROP.places(SMOOTH))[0])
-    tips = samples.points + 0.17 * samples.normals
-    chosen = np.isin(samples.normal_index, numbered)
-    for sign, colour in ((positive, ELLIPTIC), (~positive, HYPERBOLIC)):
-        segments(right, samples.points[sign], tips[sign], colors=colour, linewidths=0.8)
-        dots(right, samples.points[sign], samples.points[sign & chosen], colour)
-    names = samples.normal_index[chosen] // EVERY + 1
-    labels(right, tips[chosen], samples.normals[chosen], names)
-    right.set(xlim=(-1.55, 2.15), ylim=(-1.45, 1.42))
+    draw_samples(right, samples)
+    right.set(xlim=(-1.55, 2.15), ylim=(-1.45, 1.42), anchor="N")
     return figure, caption_4(samples)
+
+
+def draw_normals(axes: Axes, normals: Floats, negative: Floats) -> None:
+    """Draw unit normals, marked orange where one belongs to a point with κ < 0."""
+    segments(axes, np.zeros_like(normals), normals, colors=NO_SAMPLE, linewidths=0.6)
+    axes.scatter(0.0, 0.0, s=8, color=INK, linewidths=0, zorder=3)
+    draw_curve(axes, gm.circle(SMOOTH), closed=True)
+    dots(axes, normals, normals[::EVERY], ELLIPTIC)
+    axes.scatter(*negative.T, s=4, color=HYPERBOLIC, linewidths=0, zorder=6)
+    labels(axes, normals[::EVERY], normals[::EVERY], np.arange(0, NORMALS, EVERY))
+
+
+def draw_samples(axes: Axes, samples: gm.CurveSamples) -> None:
+    """Draw the curve, and samples with their normals, blue where κ > 0 and orange where κ < 0."""
+    draw_curve(axes, DROP.derivatives(DROP.places(SMOOTH))[0])
+    tips = samples.points + 0.17 * samples.normals
+    numbered = samples.normal_index % EVERY == 0
+    for chosen, colour in (
+        (samples.curvature > 0.0, ELLIPTIC),
+        (samples.curvature < 0.0, HYPERBOLIC),
+    ):
+        segments(axes, samples.points[chosen], tips[chosen], colors=colour, linewidths=0.8)
+        dots(axes, samples.points[chosen], samples.points[chosen & numbered], colour)
+    labels(axes, tips[numbered], samples.normals[numbered], samples.normal_index[numbered])
 
 
 def caption_4(samples: gm.CurveSamples) -> str:
@@ -82,29 +86,28 @@ def figure_5() -> tuple[Figure, str]:
     figure, (axes,) = panels(
         6.6, 2.75, 1, 2, left=0.01, right=0.99, bottom=0.13, top=0.91, wspace=0.03
     )
-    uniform_normals = by_normals(DROP, VERTICES)
-    uniform = DROP.places(len(uniform_normals))
-    for panel, places, title in (
-        (axes[0], uniform, "Uniform in the parameter"),
-        (axes[1], uniform_normals, "Uniform normals"),
-    ):
+    normal = by_normals(DROP, VERTICES)
+    parameter = DROP.places(len(normal))
+    axes[0].set_title("Uniform in the parameter", pad=4)
+    axes[1].set_title("Uniform normals", pad=4)
+    for panel, places in zip(axes, (parameter, normal), strict=True):
         draw_polygon(panel, places)
-        panel.set_title(title, pad=4)
-        text = measured(Polygon.through(DROP, places))
-        panel.text(0.5, -0.02, text, transform=panel.transAxes, ha="center", va="top")
-    between = Polygon.through(DROP, by_length(DROP, len(uniform) - 1))
+        style = {"transform": panel.transAxes, "ha": "center", "va": "top"}
+        panel.text(0.5, -0.02, measured(places), **style)
     return figure, (
-        f"Two polygons with {between.vertices} vertices on the curve of Fig. 4 (thin). Left: "
+        f"Two polygons with {len(normal) - 1} vertices on the curve of Fig. 4 (thin). Left: "
         f"through points that are uniform in the parameter, the polar angle. Right: through points "
-        f"with uniform normals. Beneath are the largest distance of the curve from the polygon and "
-        f"the largest angle between them; points that are uniform in arc length would give "
-        f"{measured(between)}. On other curves uniform normals need not give the smaller distance: "
-        f"see [curves](curves.md)."
+        f"with uniform normals. Measured are the largest distance of the curve from the polygon "
+        f"and the largest angle between them: {measured(parameter)} on the left, "
+        f"{measured(normal)} on the right. Points that are uniform in arc length would give "
+        f"{measured(by_length(DROP, len(normal) - 1))}. On other curves uniform normals need not "
+        f"give the smaller distance: see [curves](curves.md)."
     )
 
 
-def measured(polygon: Polygon) -> str:
-    """Return how far a polygon is from the curve, and how it is turned."""
+def measured(places: Floats) -> str:
+    """Return how far the polygon through points is from the curve, and how it is turned."""
+    polygon = Polygon.through(DROP, places)
     return f"distance {polygon.distance:#.3g}, angle {polygon.angle:#.3g}°"
 
 
@@ -140,10 +143,10 @@ def dots(axes: Axes, points: Floats, numbered: Floats, colour: str) -> None:
     axes.scatter(*numbered.T, s=28, color=colour, linewidths=0, zorder=5)
 
 
-def labels(axes: Axes, points: Floats, directions: Floats, names: NDArray[np.int64]) -> None:
-    """Write beside points (k, 2), on the sides of unit vectors."""
-    for point, direction, name in zip(points, directions, names, strict=True):
+def labels(axes: Axes, points: Floats, directions: Floats, indices: NDArray[np.int64]) -> None:
+    """Write the numbers of numbered normals beside points (k, 2), on the sides of unit vectors."""
+    for point, direction, index in zip(points, directions, indices, strict=True):
         axes.annotate(
-            str(name), point, xytext=8 * direction, textcoords="offset points", ha="center",
-            va="center", path_effects=HALO, zorder=8,
+            str(index // EVERY + 1), point, xytext=8 * direction, textcoords="offset points",
+            ha="center", va="center", path_effects=HALO, zorder=8,
         )  # fmt: skip

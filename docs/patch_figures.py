@@ -145,14 +145,25 @@ def figure_3() -> tuple[Figure, str]:
     for (left, right), (patch, seen_from, title, title_of_image) in zip(axes, rows, strict=True):
         draw_patch(left, patch, seen_from, title)
         draw_image(right, patch, seen_from, title_of_image)
+    add_legend(figure)
+    return figure, caption_3(*(patch.solid_angles for patch, *_ in rows))
+
+
+def add_legend(figure: Figure) -> None:
+    """Explain the colours of edges and parts."""
     edges = [Line2D([], [], color=x, linewidth=1.8, label=f"${e}$") for e, (_, x) in EDGES.items()]
     parts = [
         Rectangle((0, 0), 1, 1, color=tuple(TINTS[1 + sign]), label=name)
         for sign, name in ((1, "elliptic"), (-1, "hyperbolic"))
     ]
     figure.legend(handles=edges + parts, loc="lower center", ncols=5, frameon=False)
-    triangle, biangle, bow_tie = (patch.solid_angles for patch, *_ in rows)
-    return figure, (
+
+
+def caption_3(
+    triangle: tuple[float, float], biangle: tuple[float, float], bow_tie: tuple[float, float]
+) -> str:
+    """Return the caption, with the solid angles of elliptic and hyperbolic parts."""
+    return (
         f"Patches (left) and the domains of their support functions (right), the Gaussian images, "
         f"each pair seen from the same side. Edges and the arcs that they are mapped to have one "
         f"colour; thin are the rest of the conics that the arcs belong to, cut out of the sphere "

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import gaussmap as gm
 import numpy as np
 from gaussmap.docs.drawing import MESH, TINTS, Floats, Globe, Picture, panels
@@ -14,22 +16,23 @@ from numpy.typing import NDArray
 __all__ = ["figure_6", "figure_7"]
 
 
+ELLIPSOID = gm.Surface.from_sympy(
+    ("1.6*cos(u)*cos(v)", "1.2*sin(u)*cos(v)", "0.8*sin(v)"),
+    ("u", "v"),
+    domain=((-1.9, 0.4), (-0.5, 1.25)),
+    name="part of an ellipsoid",
+)
+
+
 def figure_6() -> tuple[Figure, str]:
     """Draw a part of an ellipsoid, two samplings of it, and their normals."""
     figure, axes = panels(
         7.4, 4.7, 2, 3, left=0.01, right=0.99, bottom=0.0, top=0.945, wspace=0.02, hspace=0.12,
         height_ratios=(0.75, 1.0),
     )  # fmt: skip
-    surface = gm.Surface.from_sympy(
-        ("1.6*cos(u)*cos(v)", "1.2*sin(u)*cos(v)", "0.8*sin(v)"),
-        ("u", "v"),
-        domain=((-1.9, 0.4), (-0.5, 1.25)),
-        name="part of an ellipsoid",
-    )
-    spline = gm.fit(surface)
-    share = spline.measure[1].sum() / (4 * np.pi)
+    spline = gm.fit(ELLIPSOID)
+    counts = []
     seen_from = view(35.0, -50.0)
-    found = []
     surface_picture(axes[0, 0], spline, seen_from, "A part of an ellipsoid", 0.75)
     image_of(axes[1, 0], spline, seen_from, "Its Gaussian image")
     for k, frequency in enumerate((10, 20), start=1):
@@ -39,13 +42,18 @@ def figure_6() -> tuple[Figure, str]:
         size = 10.0 / k**1.5
         picture.points(samples.points, s=size, color=ELLIPTIC)
         globe = image_of(axes[1, k], spline, seen_from, f"{len(normals):,} uniform normals")
-        missed = np.ones(len(normals), dtype=bool)
-        missed[samples.normal_index] = False
-        globe.points(normals[missed], behind=0.0, s=0.6 * size, color=PALE)
+        missed = np.delete(normals, samples.normal_index, axis=0)
+        globe.points(missed, behind=0.0, s=0.6 * size, color=PALE)
         globe.points(samples.normals, behind=0.0, s=size, color=ELLIPTIC)
-        part = len(samples) / len(normals)
-        found.append(f"{len(samples):,} of {len(normals):,} normals ({100 * part:.2f} %)")
-    return figure, (
+        counts.append((len(samples), len(normals)))
+    return figure, caption_6(spline, counts)
+
+
+def caption_6(spline: gm.Spline, counts: Sequence[tuple[int, int]]) -> str:
+    """Return the caption, with the normals that lie in the image."""
+    share = spline.measure[1].sum() / (4 * np.pi)
+    found = [f"{x:,} of {y:,} normals ({100 * x / y:.2f} %)" for x, y in counts]
+    return (
         f"A part of an ellipsoid, its Gaussian image, and two samplings; surface and sphere are "
         f"seen from the same side. The image covers {100 * share:.2f} % of the sphere. Of uniform "
         f"normals, those of two refinements of an icosahedron, {found[0]} and {found[1]} lie in it "
