@@ -26,7 +26,16 @@ from .runtime.errors import (
     SurfaceError,
     UnknownNameError,
 )
+from .runtime.gaussian_image import BoundaryArc, GaussianImage, GaussianImages
 from .runtime.io import read_samples
+from .runtime.parabolic import (
+    ParabolicCurve,
+    ParabolicPoint,
+    ParabolicPoints,
+    parabolic_points,
+)
+from .runtime.parabolic_lines import ParabolicLine, Piece, parabolic_lines, split_patch
+from .runtime.patch_classes import PatchClass, classify_patches
 from .runtime.polygon import polygon_distance
 from .runtime.samples import Samples, SamplingReport
 from .runtime.sampling import sample, sample_many
@@ -42,16 +51,25 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "BoundaryArc",
     "Branches",
     "Curve",
     "CurveReport",
     "CurveSamples",
     "CurveSpline",
     "FileError",
+    "GaussianImage",
+    "GaussianImages",
     "GaussmapError",
     "GaussmapWarning",
     "InputError",
     "MissingExtraError",
+    "ParabolicCurve",
+    "ParabolicLine",
+    "ParabolicPoint",
+    "ParabolicPoints",
+    "PatchClass",
+    "Piece",
     "Samples",
     "SamplingReport",
     "Spline",
@@ -60,16 +78,20 @@ __all__ = [
     "SurfaceError",
     "UnknownNameError",
     "circle",
+    "classify_patches",
     "fibonacci",
     "fit",
     "fit_curve",
     "formulas",
     "icosphere",
+    "parabolic_lines",
+    "parabolic_points",
     "polygon_distance",
     "read_samples",
     "sample",
     "sample_curve",
     "sample_many",
+    "split_patch",
     "surfaces",
     "symbolic",
 ]

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
+import gaussmap as gm
 import numpy as np
 from gaussmap.docs.drawing import MESH, TINTS, Floats, Globe, Picture, panels
 from gaussmap.generated import patch as kernels
@@ -29,7 +30,6 @@ EDGES = {
     "w = 0": ((0, 3, 1), "#aa4499"),
 }
 SIDE = 28.0, 48.0  # from where the first patch is seen: elevation and azimuth in degrees
-PARTS = 256  # for the integrals of K, along both sides of a patch
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,13 +62,9 @@ class Patch:
         return np.stack([s * (1 - t), s * t, 1 - s], axis=-1)
 
     @cached_property
-    def solid_angles(self) -> tuple[float, float]:
-        """The integrals of K over the elliptic and the hyperbolic part, by midpoints."""
-        s, t = np.meshgrid(*2 * [(np.arange(PARTS) + 0.5) / PARTS])
-        u, v = s * (1 - t), s * t
-        per_area = np.vectorize(kernels.measure)(*self.vectors, u, v)[1]
-        density = s * per_area  # s is the determinant of ∂(u,v)/∂(s,t)
-        return float(density.clip(min=0.0).mean()), float(density.clip(max=0.0).mean())
+    def image(self) -> gm.GaussianImage:
+        """The Gaussian image."""
+        return gm.GaussianImage.of_patch(self.net)
 
     @cached_property
     def tints(self) -> Floats:
@@ -138,15 +134,15 @@ def figure_3() -> tuple[Figure, str]:
         5.6, 8.4, 3, 2, left=0.02, right=0.98, bottom=0.04, top=0.97, wspace=0.05, hspace=0.1
     )
     rows = (
-        (PATCH, view(*SIDE), "An elliptic patch", "Its Gaussian image: a triangle"),
-        (BESIDE, view(), "Its edge $v = 0$ is a parabolic line", "A biangle"),
-        (ACROSS, view(), "A parabolic line inside", "A bow tie"),
+        (PATCH, view(*SIDE), "An elliptic patch"),
+        (BESIDE, view(), "Its edge $v = 0$ is a parabolic line"),
+        (ACROSS, view(), "A parabolic line inside"),
     )
-    for (left, right), (patch, seen_from, title, title_of_image) in zip(axes, rows, strict=True):
+    for (left, right), (patch, seen_from, title) in zip(axes, rows, strict=True):
         draw_patch(left, patch, seen_from, title)
-        draw_image(right, patch, seen_from, title_of_image)
+        draw_image(right, patch, seen_from, f"Its Gaussian image: a {patch.image.kind}")
     add_legend(figure)
-    return figure, caption_3(*(patch.solid_angles for patch, *_ in rows))
+    return figure, caption_3(*(patch.image for patch, *_ in rows))
 
 
 def add_legend(figure: Figure) -> None:
@@ -160,19 +156,21 @@ def add_legend(figure: Figure) -> None:
 
 
 def caption_3(
-    triangle: tuple[float, float], biangle: tuple[float, float], bow_tie: tuple[float, float]
+    triangle: gm.GaussianImage, biangle: gm.GaussianImage, bow_tie: gm.GaussianImage
 ) -> str:
-    """Return the caption, with the solid angles of elliptic and hyperbolic parts."""
+    """Return the caption, with the solid angles of the images."""
+    elliptic = (bow_tie.area + bow_tie.solid_angle) / 2
+    hyperbolic = (bow_tie.area - bow_tie.solid_angle) / 2
     return (
         f"Patches (left) and the domains of their support functions (right), the Gaussian images, "
         f"each pair seen from the same side. Edges and the arcs that they are mapped to have one "
         f"colour; thin are the rest of the conics that the arcs belong to, cut out of the sphere "
         f"by three quadratic cones, and their opposites. Top: the patch of Fig. 2 fills a triangle "
-        f"of {triangle[0]:.3f} sr. Middle: all points of the edge v = 0 have the same normal, so "
-        f"that one side shrinks to a point and leaves a biangle of {biangle[0]:.3f} sr. Bottom: "
+        f"of {triangle.area:.3f} sr. Middle: all points of the edge v = 0 have the same normal, so "
+        f"that one side shrinks to a point and leaves a biangle of {biangle.area:.3f} sr. Bottom: "
         f"the parabolic line of the same surface cuts this patch into an elliptic and a hyperbolic "
-        f"part, which fill the two wings of a bow tie, {bow_tie[0]:.3f} sr and "
-        f"{-bow_tie[1]:.3f} sr."
+        f"part, which fill the two wings of a bow tie, {elliptic:.3f} sr and "
+        f"{hyperbolic:.3f} sr."
     )
 
 
@@ -195,14 +193,14 @@ def draw_image(axes: Axes, patch: Patch, view: Floats, title: str) -> None:
     globe = Globe(axes, view, title)
     globe.region(quadrangles(normals), patch.tints)
     angle = np.linspace(0.0, np.pi, 2001)[:, None]
-    for places, colour in EDGES.values():
-        whole = unit(conic(patch.control_normals[list(places)], np.cos(angle), np.sin(angle)))
+    for arc, (_, colour) in zip(patch.image.arcs, EDGES.values(), strict=True):
+        whole = unit(conic(arc.control_normals, np.cos(angle), np.sin(angle)))
         globe.lines([whole, -whole], colors=colour, linewidths=0.6, alpha=0.6, zorder=4)
-        globe.lines([whole[: len(angle) // 2 + 1]], colors=colour, linewidths=1.8)
+        globe.lines([arc.points(1001)], colors=colour, linewidths=1.8)
 
 
 def conic(points: Floats, s: Floats, t: Floats) -> Floats:
-    """Return s² b₀ + 2 s t b₁ + t² b₂: with s, t ≥ 0 the arc of the edge, else the rest of it."""
+    """Return s² b₀ + 2 s t b₁ + t² b₂: with s, t ≥ 0 the arc, else the rest of the conic."""
     return s * s * points[0] + 2 * s * t * points[1] + t * t * points[2]
 
 

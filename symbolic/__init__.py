@@ -6,12 +6,16 @@
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from . import curve, patch, spline, support
+from . import curve, gaussian_image, patch, spline, support
 from .bezier import BezierTriangle
 from .formula import Formula
 
 __all__ = ["BezierTriangle", "Formula", "formulas"]
 
 formulas: Mapping[str, Formula] = MappingProxyType(
-    {x.name: x for x in (*patch.FORMULAS, *spline.FORMULAS, *support.FORMULAS, *curve.FORMULAS)}
+    {
+        formula.name: formula
+        for module in (patch, gaussian_image, spline, support, curve)
+        for formula in module.FORMULAS
+    }
 )

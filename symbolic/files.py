@@ -13,7 +13,7 @@ from typing import cast
 
 import sympy as sp
 
-from . import curve, latex, patch, spline, support, surfaces
+from . import curve, gaussian_image, latex, patch, spline, support, surfaces
 from .emit import block, call, functions, render
 from .expression import hessian_entries
 from .formula import Formula, PlaneVector
@@ -31,6 +31,7 @@ def derive() -> dict[str, str]:
     sources = {
         "__init__.py": '"""Kernels and formulas written by `make generate`: never edit these."""\n',
         "curve.py": curve_source(),
+        "gaussian_image.py": gaussian_image_source(),
         "patch.py": patch_source(),
         "spline.py": spline_source(),
         "sampler.py": sampler_source(),
@@ -118,6 +119,21 @@ def curve_source() -> str:
             "curvature_at": block(curve.CURVATURE_AT),
             "parameter": block(curve.PARAMETER),
             "sample": block(curve.SAMPLE),
+        },
+    )
+
+
+def gaussian_image_source() -> str:
+    """Return generated/gaussian_image.py: boundary cones and arcs, parabolic lines."""
+    return render(
+        "gaussian_image.py",
+        {
+            "header": header(
+                "Gaussian images of patches: boundaries, solid angles, parabolic lines."
+            ),
+            "formulas": functions(gaussian_image.FORMULAS),
+            "arc": block(gaussian_image.ARC),
+            "solid_angle": block(gaussian_image.SOLID_ANGLE),
         },
     )
 

@@ -9,7 +9,7 @@ from functools import cache
 
 import sympy as sp
 
-from . import curve, patch, spline, support, surfaces
+from . import curve, gaussian_image, patch, spline, support, surfaces
 from .display import latex_name, latex_of
 from .emit import render
 from .formula import Formula, VectorSymbol
@@ -21,6 +21,7 @@ __all__ = ["document", "markdown"]
 GENERATOR = f"Written by `make generate` with SymPy {sp.__version__}: do not edit."
 FORMULAS = {
     "One quadratic patch": patch.FORMULAS,
+    "Gaussian images and parabolic points": gaussian_image.FORMULAS,
     "The quadratic spline": spline.FORMULAS,
     "Support functions": support.FORMULAS,
     "Planar curves": curve.FORMULAS,

@@ -176,6 +176,8 @@ def test_the_patches_are_what_their_titles_say():
     def parabolic(patch):
         return np.array(plain(kernels.parabolic_cubic)(*patch.vectors))
 
+    patches = (patch_figures.PATCH, patch_figures.BESIDE, patch_figures.ACROSS)
+    assert [x.image.kind for x in patches] == ["triangle", "biangle", "bow tie"]
     control = patch_figures.PATCH.control_normals
     assert (parabolic(patch_figures.PATCH) > 0.0).all()
     assert (control @ control.T > 0.0).all()

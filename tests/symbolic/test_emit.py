@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 import sympy as sp
-from gaussmap.symbolic import curve, emit, files, formulas, patch, surfaces
+from gaussmap.symbolic import curve, emit, files, formulas, gaussian_image, patch, surfaces
 from gaussmap.symbolic.__main__ import main
 from gaussmap.symbolic.positions import position
 
@@ -63,6 +63,10 @@ def exact_inputs(formula, seed: int) -> dict[str, Fraction]:
     }
     if formula is curve.CURVATURE_AT:
         return inputs | {"p_t_x": 3 * inputs["a_x"], "p_t_y": 4 * inputs["a_x"]}
+    if formula is gaussian_image.SOLID_ANGLE:
+        return inputs | {
+            f"n_{axis}": Fraction(x, 5) for axis, x in zip("xyz", (2, -3, 6), strict=True)
+        }
     return inputs | rational_length(inputs) if formula is patch.MEASURE else inputs
 
 

@@ -4,7 +4,7 @@ from dataclasses import FrozenInstanceError
 
 import pytest
 import sympy as sp
-from gaussmap.symbolic import Formula, curve, formulas, patch, spline, support
+from gaussmap.symbolic import Formula, curve, formulas, gaussian_image, patch, spline, support
 from gaussmap.symbolic.formula import (
     BEYOND_THE_PAPER,
     Cross,
@@ -200,8 +200,8 @@ def test_a_sample_is_its_parts():
 
 
 def test_all_formulas_by_name_in_order():
-    everything = (*patch.FORMULAS, *spline.FORMULAS, *support.FORMULAS, *curve.FORMULAS)
-    assert list(formulas) == [x.name for x in everything]
+    modules = (patch, gaussian_image, spline, support, curve)
+    assert list(formulas) == [x.name for module in modules for x in module.FORMULAS]
     assert all(formula.name == name for name, formula in formulas.items())
     assert not hasattr(formulas, "__setitem__")
 
