@@ -143,6 +143,14 @@ class Comparison:
 
 def compare(true: TrueCurve, count: int) -> Comparison:
     """Compare both polygons with about `count` vertices; the ends of an open curve are two."""
+    parameters = by_normals(true, count)
+    return Comparison(
+        Polygon.through(true, true.places(len(parameters))), Polygon.through(true, parameters)
+    )
+
+
+def by_normals(true: TrueCurve, count: int) -> Array:
+    """Return the parameters of about `count` points with uniform normals, as `through` has them."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", gm.GaussmapWarning)
         samples = gm.sample_curve(
@@ -150,10 +158,7 @@ def compare(true: TrueCurve, count: int) -> Comparison:
         )
     low, high = true.curve.domain
     ends = ([], [samples.parameters[0] + high - low]) if true.periodic else ([low], [high])
-    parameters = np.concatenate([ends[0], samples.parameters, ends[1]])
-    return Comparison(
-        Polygon.through(true, true.places(len(parameters))), Polygon.through(true, parameters)
-    )
+    return np.concatenate([ends[0], samples.parameters, ends[1]])
 
 
 def slope(numbers: Sequence[float], errors: Sequence[float]) -> float:

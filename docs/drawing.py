@@ -15,13 +15,14 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
-__all__ = ["MESH", "TINTS", "Floats", "Globe", "Picture", "panels"]
+__all__ = ["HALO", "MESH", "TINTS", "Floats", "Globe", "Picture", "panels"]
 
 Floats = NDArray[np.float64]
 
 MESH = 96  # quadrangles along each side of a surface
 # Faint colours of hyperbolic, parabolic and elliptic parts.
 TINTS = np.array([[0.98, 0.87, 0.76], [0.95, 0.95, 0.95], [0.80, 0.89, 0.95]])
+HALO = [withStroke(linewidth=2.0, foreground="white")]  # keeps a text readable on a drawing
 
 
 def panels(width: float, height: float, rows: int, columns: int, **room: Any) -> tuple[Figure, Any]:  # noqa: ANN401
@@ -32,11 +33,6 @@ def panels(width: float, height: float, rows: int, columns: int, **room: Any) ->
         panel.set_axis_off()
         panel.set_aspect("equal")
     return figure, axes
-
-
-def _halo(width: float = 2.0) -> list[withStroke]:
-    """Return the effect that keeps a text readable on a drawing."""
-    return [withStroke(linewidth=width, foreground="white")]
 
 
 class Picture:
@@ -63,7 +59,7 @@ class Picture:
         seen = scene.seen(scene.quadrangles)
         order = np.argsort(seen[..., 2].mean(axis=1))
         base = np.array(to_rgb(colours)) if isinstance(colours, str) else colours[order]
-        shades = (0.62 + 0.38 * scene.brightness[order])[:, None] * base
+        shades = (0.7 + 0.3 * scene.brightness[order])[:, None] * base
         self.axes.add_collection(
             PolyCollection(
                 list(seen[order][..., :2]), facecolors=shades, edgecolors=shades, linewidths=0.3,
@@ -91,13 +87,13 @@ class Picture:
         x, y, _ = self.scene.seen(shown).T
         self.axes.scatter(x, y, **{"color": INK, "linewidths": 0.0, "zorder": 5, **style})
 
-    def label(self, point: Floats, text: str, away: Floats, **style: Any) -> None:  # noqa: ANN401
+    def label(self, point: Floats, text: str, away: Floats, gap: float, size: float) -> None:
         """Write beside a point, on the side that is away from another one."""
         here, there = self.scene.seen(np.stack([point, away]))[:, :2]
         step = (here - there) / max(float(np.linalg.norm(here - there)), 1e-12)
         self.axes.annotate(
-            text, here, xytext=13 * step, textcoords="offset points", ha="center", va="center",
-            path_effects=_halo(), zorder=8, **style,
+            text, here, xytext=gap * step, textcoords="offset points", ha="center", va="center",
+            path_effects=HALO, zorder=8, fontsize=size,
         )  # fmt: skip
 
 

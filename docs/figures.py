@@ -5,11 +5,13 @@ Every number on the page is measured here.
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Callable
 from pathlib import Path
 
 import matplotlib.style
+from gaussmap.docs.curve_figures import figure_4, figure_5
 from gaussmap.docs.patch_figures import figure_2, figure_3
 from gaussmap.docs.surface_figures import figure_6, figure_7
 from gaussmap.runtime.io import atomic_path
@@ -20,13 +22,15 @@ FOLDER = Path(__file__).parent / "figures"
 FIGURES: dict[int, Callable[[], tuple[Figure, str]]] = {
     2: figure_2,
     3: figure_3,
+    4: figure_4,
+    5: figure_5,
     6: figure_6,
     7: figure_7,
 }
 HEAD = """# The figures of the paper
 
-Written by `make figures`: do not edit. Blue is elliptic, orange hyperbolic. Fig. 1 of the paper is
-a sketch of the definition and is left out.
+Written by `make figures`: do not edit. Blue is elliptic (on curves κ > 0), orange hyperbolic
+(κ < 0). Fig. 1 of the paper is a sketch of the definition and is left out.
 """
 
 
@@ -39,9 +43,16 @@ def page(folder: Path) -> str:
             figure, caption = draw()
             with atomic_path(folder / f"figure_{number}.png") as temporary:
                 figure.savefig(temporary, format="png", metadata={"Software": None})
-        text = textwrap.fill(f"**Fig. {number}.** {caption}", 100)
+        text = filled(f"**Fig. {number}.** {caption}")
         parts.append(f"\n![Fig. {number}](figures/figure_{number}.png)\n\n{text}\n")
     return "".join(parts)
+
+
+def filled(text: str) -> str:
+    """Break a text at 100 characters, but not in formulas or links."""
+    whole = re.sub(r"\$`.*?`\$", lambda found: found[0].replace(" ", "\0"), text)
+    lines = textwrap.fill(whole, 100, break_long_words=False, break_on_hyphens=False)
+    return lines.replace("\0", " ")
 
 
 if __name__ == "__main__":

@@ -6,27 +6,30 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
+import gaussmap as gm
 import numpy as np
 from gaussmap.docs.drawing import MESH, TINTS, Floats, Globe, Picture, panels
 from gaussmap.generated import patch as kernels
-from gaussmap.runtime.globe import view_of
 from gaussmap.runtime.palette import INK
 from gaussmap.runtime.plain import plain
 from gaussmap.runtime.scene import Scene, quadrangles, view
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
 
 __all__ = ["figure_2", "figure_3"]
 
 INDICES = ("200", "020", "002", "110", "101", "011")
 LEGS = ((0, 3), (3, 1), (1, 5), (5, 2), (2, 4), (4, 0), (3, 4), (3, 5), (4, 5))  # of the net
-# The edges by their equations: which control points they have, and their colour (Okabe and Ito).
+# The edges by their equations: which control points they have, and their colour. With any kind of
+# colour blindness these three differ by at least 30 in CIELAB.
 EDGES = {
-    "u = 0": ((1, 5, 2), "#0072b2"),
+    "u = 0": ((1, 5, 2), "#000000"),
     "v = 0": ((0, 4, 2), "#009e73"),
-    "w = 0": ((0, 3, 1), "#cc79a7"),
+    "w = 0": ((0, 3, 1), "#aa4499"),
 }
+SIDE = 28.0, 48.0  # from where the first patch is seen: elevation and azimuth in degrees
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +62,11 @@ class Patch:
         return np.stack([s * (1 - t), s * t, 1 - s], axis=-1)
 
     @cached_property
+    def image(self) -> gm.GaussianImage:
+        """The Gaussian image."""
+        return gm.GaussianImage.of_patch(self.net)
+
+    @cached_property
     def tints(self) -> Floats:
         """A colour for each quadrangle of the mesh: blue where it is elliptic, else orange."""
         normals = bezier(self.control_normals, quadrangles(self.mesh).mean(axis=1))
@@ -85,10 +93,14 @@ PATCH = Patch(
 )
 
 
+# A rotation that takes the only normal of the parabolic line away from the axes.
+TURNED = np.array([[3.0, 6.0, 2.0], [-2.0, 3.0, -6.0], [-6.0, 2.0, 3.0]]) / 7
+
+
 def folded(uv: Floats) -> Floats:
     """Return points of a quadratic surface with the parabolic line v = 0, which has one normal."""
     u, v = np.moveaxis(uv, -1, 0)
-    return np.stack([u * u / 2 + u, u * v + v - u * u, v * v], axis=-1)
+    return np.stack([u * u / 2 + u, u * v + v - u * u, v * v], axis=-1) @ TURNED.T
 
 
 BESIDE = Patch.of(folded, np.array([[0.8, 0.0], [0.0, 1.0], [-0.5, 0.0]]))
@@ -97,41 +109,69 @@ ACROSS = Patch.of(folded, np.array([[0.8, -0.4], [0.1, 0.8], [-0.5, -0.5]]))
 
 def figure_2() -> tuple[Figure, str]:
     """Draw a quadratic triangular Bézier patch with its control net."""
-    figure, axes = panels(4.2, 3.4, 1, 1, left=0.02, right=0.98, bottom=0.02, top=0.98)
-    picture = draw_patch(axes[0, 0], PATCH, view(16.0, 22.0))
+    figure, axes = panels(4.0, 3.5, 1, 1, left=0.01, right=0.99, bottom=0.01, top=0.99)
+    picture = draw_patch(axes[0, 0], PATCH, view(*SIDE))
     net = PATCH.net
-    picture.fit(net, 0.14)
+    picture.fit(net, 0.1)
     legs = [net[list(leg)] for leg in LEGS]
     picture.lines(legs, hide=False, colors=INK, linewidths=0.9, linestyles=(0, (4, 2)), zorder=4)
     picture.points(net, hide=False, s=18)
     for control_point, index in zip(net, INDICES, strict=True):
-        text = rf"$\mathbf{{b}}_{{{','.join(index)}}}$"
-        picture.label(control_point, text, net.mean(axis=0), fontsize=11)
+        text = rf"$\mathbf{{b}}_{{{index}}}$"
+        gap = 14.0 if "2" in index else 21.0  # beyond the edge of the patch
+        picture.label(control_point, text, net.mean(axis=0), gap, 11.0)
     return figure, (
-        "A quadratic triangular Bézier patch with its control net. The control points are those "
-        "that formula (12) belongs to; the printed (11) has another support function "
-        "([errata](errata.md))."
+        "A quadratic triangular Bézier patch with its control net; $`\\mathbf b_{ijk}`$ belongs to "
+        "$`u^i v^j w^k`$, and the edges are u = 0 (black), v = 0 (green) and w = 0 (purple). The "
+        "control points are those that formula (12) belongs to; the printed (11) has another "
+        "support function ([errata](errata.md))."
     )
 
 
 def figure_3() -> tuple[Figure, str]:
     """Draw three patches and the domains of their support functions on the sphere."""
     figure, axes = panels(
-        5.6, 8.6, 3, 2, left=0.02, right=0.98, bottom=0.03, top=0.97, wspace=0.05, hspace=0.07
+        5.6, 8.4, 3, 2, left=0.02, right=0.98, bottom=0.04, top=0.97, wspace=0.05, hspace=0.1
     )
     rows = (
-        (PATCH, view(16.0, 22.0), "A patch", "Its Gaussian image"),
-        (BESIDE, view(48.0, 20.0), "An edge is a parabolic line", "A biangle"),
-        (ACROSS, view(48.0, 20.0), "A parabolic line inside", "A bow tie"),
+        (PATCH, view(*SIDE), "An elliptic patch"),
+        (BESIDE, view(), "Its edge $v = 0$ is a parabolic line"),
+        (ACROSS, view(), "A parabolic line inside"),
     )
-    for (left, right), (patch, seen_from, title, title_of_image) in zip(axes, rows, strict=True):
+    for (left, right), (patch, seen_from, title) in zip(axes, rows, strict=True):
         draw_patch(left, patch, seen_from, title)
-        draw_image(right, patch, title_of_image)
-    handles = [
-        Line2D([], [], color=x, linewidth=1.8, label=f"${e}$") for e, (_, x) in EDGES.items()
+        draw_image(right, patch, seen_from, f"Its Gaussian image: a {patch.image.kind}")
+    add_legend(figure)
+    return figure, caption_3(*(patch.image for patch, *_ in rows))
+
+
+def add_legend(figure: Figure) -> None:
+    """Explain the colours of edges and parts."""
+    edges = [Line2D([], [], color=x, linewidth=1.8, label=f"${e}$") for e, (_, x) in EDGES.items()]
+    parts = [
+        Rectangle((0, 0), 1, 1, color=tuple(TINTS[1 + sign]), label=name)
+        for sign, name in ((1, "elliptic"), (-1, "hyperbolic"))
     ]
-    figure.legend(handles=handles, loc="lower center", ncols=3, frameon=False)
-    return figure, "…"
+    figure.legend(handles=edges + parts, loc="lower center", ncols=5, frameon=False)
+
+
+def caption_3(
+    triangle: gm.GaussianImage, biangle: gm.GaussianImage, bow_tie: gm.GaussianImage
+) -> str:
+    """Return the caption, with the solid angles of the images."""
+    elliptic = (bow_tie.area + bow_tie.solid_angle) / 2
+    hyperbolic = (bow_tie.area - bow_tie.solid_angle) / 2
+    return (
+        f"Patches (left) and the domains of their support functions (right), the Gaussian images, "
+        f"each pair seen from the same side. Edges and the arcs that they are mapped to have one "
+        f"colour; thin are the rest of the conics that the arcs belong to, cut out of the sphere "
+        f"by three quadratic cones, and their opposites. Top: the patch of Fig. 2 fills a triangle "
+        f"of {triangle.area:.3f} sr. Middle: all points of the edge v = 0 have the same normal, so "
+        f"that one side shrinks to a point and leaves a biangle of {biangle.area:.3f} sr. Bottom: "
+        f"the parabolic line of the same surface cuts this patch into an elliptic and a hyperbolic "
+        f"part, which fill the two wings of a bow tie, {elliptic:.3f} sr and "
+        f"{hyperbolic:.3f} sr."
+    )
 
 
 def draw_patch(axes: Axes, patch: Patch, view: Floats, title: str = "") -> Picture:
@@ -147,20 +187,20 @@ def draw_patch(axes: Axes, patch: Patch, view: Floats, title: str = "") -> Pictu
     return picture
 
 
-def draw_image(axes: Axes, patch: Patch, title: str) -> None:
+def draw_image(axes: Axes, patch: Patch, view: Floats, title: str) -> None:
     """Draw the Gaussian image, the arcs round it, and, thin, the cones that they lie on."""
     normals = unit(bezier(patch.control_normals, patch.mesh))
-    globe = Globe(axes, view_of(normals.reshape(-1, 3)), title)
+    globe = Globe(axes, view, title)
     globe.region(quadrangles(normals), patch.tints)
     angle = np.linspace(0.0, np.pi, 2001)[:, None]
-    for places, colour in EDGES.values():
-        whole = unit(conic(patch.control_normals[list(places)], np.cos(angle), np.sin(angle)))
+    for arc, (_, colour) in zip(patch.image.arcs, EDGES.values(), strict=True):
+        whole = unit(conic(arc.control_normals, np.cos(angle), np.sin(angle)))
         globe.lines([whole, -whole], colors=colour, linewidths=0.6, alpha=0.6, zorder=4)
-        globe.lines([whole[: len(angle) // 2 + 1]], colors=colour, linewidths=1.8)
+        globe.lines([arc.points(1001)], colors=colour, linewidths=1.8)
 
 
 def conic(points: Floats, s: Floats, t: Floats) -> Floats:
-    """Return s² b₀ + 2 s t b₁ + t² b₂: with s, t ≥ 0 the arc of the edge, else the rest of it."""
+    """Return s² b₀ + 2 s t b₁ + t² b₂: with s, t ≥ 0 the arc, else the rest of the conic."""
     return s * s * points[0] + 2 * s * t * points[1] + t * t * points[2]
 
 

@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import gaussmap as gm
 import numpy as np
 from gaussmap.docs.drawing import MESH, TINTS, Floats, Globe, Picture, panels
-from gaussmap.runtime.globe import view_of
 from gaussmap.runtime.palette import ELLIPTIC, HYPERBOLIC, INK, PALE
 from gaussmap.runtime.scene import Scene, quadrangles, view
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 __all__ = ["figure_6", "figure_7"]
+
+
+ELLIPSOID = gm.Surface.from_sympy(
+    ("1.6*cos(u)*cos(v)", "1.2*sin(u)*cos(v)", "0.8*sin(v)"),
+    ("u", "v"),
+    domain=((-1.9, 0.4), (-0.5, 1.25)),
+    name="part of an ellipsoid",
+)
 
 
 def figure_6() -> tuple[Figure, str]:
@@ -20,45 +30,80 @@ def figure_6() -> tuple[Figure, str]:
         7.4, 4.7, 2, 3, left=0.01, right=0.99, bottom=0.0, top=0.945, wspace=0.02, hspace=0.12,
         height_ratios=(0.75, 1.0),
     )  # fmt: skip
-    surface = gm.Surface.from_sympy(
-        ("1.6*cos(u)*cos(v)", "1.2*sin(u)*cos(v)", "0.8*sin(v)"),
-        ("u", "v"),
-        domain=((-1.9, 0.4), (-0.5, 1.25)),
-        name="part of an ellipsoid",
-    )
-    spline = gm.fit(surface)
+    spline = gm.fit(ELLIPSOID)
+    counts = []
     seen_from = view(35.0, -50.0)
     surface_picture(axes[0, 0], spline, seen_from, "A part of an ellipsoid", 0.75)
-    image_of(axes[1, 0], spline, "Its Gaussian image")
+    image_of(axes[1, 0], spline, seen_from, "Its Gaussian image")
     for k, frequency in enumerate((10, 20), start=1):
         normals = gm.icosphere(frequency)
         samples = gm.sample(spline, normals)
         picture = surface_picture(axes[0, k], spline, seen_from, f"{len(samples):,} samples", 0.75)
-        size = 10.0 / k
+        size = 10.0 / k**1.5
         picture.points(samples.points, s=size, color=ELLIPTIC)
-        globe = image_of(axes[1, k], spline, f"{len(normals):,} uniform normals")
-        missed = np.ones(len(normals), dtype=bool)
-        missed[samples.normal_index] = False
-        globe.points(normals[missed], behind=0.0, s=0.6 * size, color=PALE)
-        globe.points(samples.normals, behind=0.2, s=size, color=ELLIPTIC)
-    return figure, "…"
+        globe = image_of(axes[1, k], spline, seen_from, f"{len(normals):,} uniform normals")
+        missed = np.delete(normals, samples.normal_index, axis=0)
+        globe.points(missed, behind=0.0, s=0.6 * size, color=PALE)
+        globe.points(samples.normals, behind=0.0, s=size, color=ELLIPTIC)
+        counts.append((len(samples), len(normals)))
+    return figure, caption_6(spline, counts)
+
+
+def caption_6(spline: gm.Spline, counts: Sequence[tuple[int, int]]) -> str:
+    """Return the caption, with the normals that lie in the image."""
+    share = spline.measure[1].sum() / (4 * np.pi)
+    found = [f"{x:,} of {y:,} normals ({100 * x / y:.2f} %)" for x, y in counts]
+    return (
+        f"A part of an ellipsoid, its Gaussian image, and two samplings; surface and sphere are "
+        f"seen from the same side. The image covers {100 * share:.2f} % of the sphere. Of uniform "
+        f"normals, those of two refinements of an icosahedron, {found[0]} and {found[1]} lie in it "
+        f"(blue, others grey), and each gives one sample."
+    )
 
 
 def figure_7() -> tuple[Figure, str]:
     """Draw a surface that is not convex, the spline, a sampling and its normals."""
-    figure, axes = panels(7.4, 2.6, 1, 3, left=0.01, right=0.99, bottom=0.0, top=0.9, wspace=0.02)
+    figure, axes = panels(7.4, 2.8, 1, 3, left=0.01, right=0.99, bottom=0.07, top=0.91, wspace=0.02)
     spline = gm.fit(gm.surfaces.wavy_graph(amplitude=0.35), cells=(16, 16))
     seen_from = view(42.0, -65.0)
     picture = surface_picture(axes[0, 0], spline, seen_from, "The approximating spline", lines=0)
     picture.lines(crisscross(spline), colors=INK, linewidths=0.3, zorder=3)
-    samples = gm.sample(spline, gm.icosphere(12))
+    normals = gm.icosphere(12)
+    samples = gm.sample(spline, normals)
     picture = surface_picture(axes[0, 1], spline, seen_from, f"{len(samples):,} samples", lines=0)
-    globe = image_of(axes[0, 2], spline, "Their normals")
+    globe = image_of(axes[0, 2], spline, view(62.0, -65.0), "Their normals")
     for kind, colour in (("elliptic", ELLIPTIC), ("hyperbolic", HYPERBOLIC)):
         chosen = samples[getattr(samples, kind)]
-        picture.points(chosen.points, s=5.0, color=colour)
+        picture.points(chosen.points, s=4.0, color=colour, label=kind)
         globe.points(chosen.normals, s=14.0 if kind == "elliptic" else 4.0, color=colour)
-    return figure, "…"
+    figure.legend(
+        *picture.axes.get_legend_handles_labels(), loc="lower center", ncols=2, frameon=False,
+        markerscale=2.0,
+    )  # fmt: skip
+    return figure, caption_7(spline, samples)
+
+
+def caption_7(spline: gm.Spline, samples: gm.Samples) -> str:
+    """Return the caption of Fig. 7, with the numbers of samples that a normal has."""
+    m, n = spline.cells
+    found = np.unique(samples.normal_index)
+    elliptic, hyperbolic = (
+        np.bincount(samples.normal_index[x])[found] for x in (samples.elliptic, samples.hyperbolic)
+    )
+    return (
+        f"A surface that is not convex. Left: the spline that approximates it, {m} × {n} cells of "
+        f"four quadratic triangles. Centre: {len(samples):,} samples, {samples.elliptic.sum():,} "
+        f"elliptic and {samples.hyperbolic.sum():,} hyperbolic. Right: their normals on the "
+        f"sphere, {len(found):,} of the {samples.report.normals:,} of a refined icosahedron, seen "
+        f"from higher. The image covers itself: each of these normals has {spread(elliptic)} "
+        f"elliptic and {spread(hyperbolic)} hyperbolic points."
+    )
+
+
+def spread(counts: NDArray[np.int64]) -> str:
+    """Return the smallest and the largest of some numbers."""
+    low, high = counts.min(), counts.max()
+    return f"{low}" if low == high else f"{low} to {high}"
 
 
 def surface_picture(
@@ -81,12 +126,12 @@ def surface_picture(
     return picture
 
 
-def image_of(axes: Axes, spline: gm.Spline, title: str) -> Globe:
+def image_of(axes: Axes, spline: gm.Spline, seen_from: Floats, title: str) -> Globe:
     """Draw the Gaussian image of a spline."""
     (u0, u1), (v0, v1) = spline.domain
     u, v = np.linspace(u0, u1, MESH + 1)[:, None], np.linspace(v0, v1, MESH + 1)
     normals = spline.normals(u, v)
-    globe = Globe(axes, view_of(normals.reshape(-1, 3)), title)
+    globe = Globe(axes, seen_from, title)
     quads = quadrangles(normals)
     globe.region(quads, np.tile(TINTS[2], (len(quads), 1)))
     return globe

@@ -1,0 +1,152 @@
+"""Figs. 4 and 5: a curve sampled by uniform normals, and the polygons through its points."""
+
+from __future__ import annotations
+
+import gaussmap as gm
+import numpy as np
+import sympy as sp
+from gaussmap.docs.curves import PIECES, TURN, Polygon, TrueCurve, by_normals, t
+from gaussmap.docs.drawing import HALO, Floats, panels
+from gaussmap.docs.orders import listed
+from gaussmap.runtime.palette import ELLIPTIC, HYPERBOLIC, INK, NO_SAMPLE
+from gaussmap.symbolic.display import latex_of
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+__all__ = ["figure_4", "figure_5"]
+
+# A circle with one sharp bend and two hollows beside it, in polar coordinates.
+RADIUS = 1 + sp.sin(2 * t) / 6 + sp.Rational(4, 5) * sp.exp(24 * (sp.cos(t) - 1))
+DROP = TrueCurve("drop", (RADIUS * sp.cos(t), RADIUS * sp.sin(t)), TURN, True, "a drop")
+NORMALS = 24
+EVERY = 3  # so far apart are the numbered ones
+VERTICES = 24
+SMOOTH = 2001  # points of a curve as it is drawn
+FINE = 100_001  # points at which the length of a curve is measured
+
+
+def figure_4() -> tuple[Figure, str]:
+    """Draw uniform normals on the circle, and the points of a curve that have them."""
+    figure, ((left, right),) = panels(
+        6.6, 2.9, 1, 2, left=0.0, right=1.0, bottom=0.0, top=0.9, wspace=0.0, width_ratios=(1, 1.5)
+    )
+    normals = gm.circle(NORMALS)
+    samples = gm.sample_curve(DROP.curve, normals, pieces=PIECES)
+    left.set_title(f"{NORMALS} uniform normals", pad=4)
+    draw_normals(left, normals, normals[samples.normal_index[samples.curvature < 0.0]])
+    left.set(xlim=(-1.3, 1.3), ylim=(-1.3, 1.26), anchor="N")
+    right.set_title(f"The {len(samples)} points of the curve that have them", pad=4)
+    draw_samples(right, samples)
+    right.set(xlim=(-1.55, 2.15), ylim=(-1.45, 1.42), anchor="N")
+    return figure, caption_4(samples)
+
+
+def draw_normals(axes: Axes, normals: Floats, negative: Floats) -> None:
+    """Draw unit normals, marked orange where one belongs to a point with κ < 0."""
+    segments(axes, np.zeros_like(normals), normals, colors=NO_SAMPLE, linewidths=0.6)
+    axes.scatter(0.0, 0.0, s=8, color=INK, linewidths=0, zorder=3)
+    draw_curve(axes, gm.circle(SMOOTH), closed=True)
+    dots(axes, normals, normals[::EVERY], ELLIPTIC)
+    axes.scatter(*negative.T, s=4, color=HYPERBOLIC, linewidths=0, zorder=6)
+    labels(axes, normals[::EVERY], normals[::EVERY], np.arange(0, NORMALS, EVERY))
+
+
+def draw_samples(axes: Axes, samples: gm.CurveSamples) -> None:
+    """Draw the curve, and samples with their normals, blue where κ > 0 and orange where κ < 0."""
+    draw_curve(axes, DROP.derivatives(DROP.places(SMOOTH))[0])
+    tips = samples.points + 0.17 * samples.normals
+    numbered = samples.normal_index % EVERY == 0
+    for chosen, colour in (
+        (samples.curvature > 0.0, ELLIPTIC),
+        (samples.curvature < 0.0, HYPERBOLIC),
+    ):
+        segments(axes, samples.points[chosen], tips[chosen], colors=colour, linewidths=0.8)
+        dots(axes, samples.points[chosen], samples.points[chosen & numbered], colour)
+    labels(axes, tips[numbered], samples.normals[numbered], samples.normal_index[numbered])
+
+
+def caption_4(samples: gm.CurveSamples) -> str:
+    """Return the caption, with the numbers of points that a normal has."""
+    points = np.bincount(samples.normal_index, minlength=NORMALS)
+    counts = listed(f"{(points == k).sum()} belong to {k}" for k in np.unique(points))
+    return (
+        f"Uniform normals on the circle (left) are mapped to points of a curve (right) that are "
+        f"dense where it bends; equal numbers belong together. Blue points have a positive "
+        f"curvature, orange ones a negative one. Of the {NORMALS} normals {counts} points; "
+        f"as the curve turns round once, each has one blue point more than orange ones. The curve "
+        f"has {samples.report.inflections} inflections; in polar coordinates it is "
+        f"$`r = {latex_of(RADIUS)}`$."
+    )
+
+
+def figure_5() -> tuple[Figure, str]:
+    """Draw the polygons through points uniform in the parameter, and with uniform normals."""
+    figure, (axes,) = panels(
+        6.6, 2.75, 1, 2, left=0.01, right=0.99, bottom=0.13, top=0.91, wspace=0.03
+    )
+    normal = by_normals(DROP, VERTICES)
+    parameter = DROP.places(len(normal))
+    axes[0].set_title("Uniform in the parameter", pad=4)
+    axes[1].set_title("Uniform normals", pad=4)
+    for panel, places in zip(axes, (parameter, normal), strict=True):
+        draw_polygon(panel, places)
+        style = {"transform": panel.transAxes, "ha": "center", "va": "top"}
+        panel.text(0.5, -0.02, measured(places), **style)
+    return figure, (
+        f"Two polygons with {len(normal) - 1} vertices on the curve of Fig. 4 (thin). Left: "
+        f"through points that are uniform in the parameter, the polar angle. Right: through points "
+        f"with uniform normals. Measured are the largest distance of the curve from the polygon "
+        f"and the largest angle between them: {measured(parameter)} on the left, "
+        f"{measured(normal)} on the right. Points that are uniform in arc length would give "
+        f"{measured(by_length(DROP, len(normal) - 1))}. On other curves uniform normals need not "
+        f"give the smaller distance: see [curves](curves.md)."
+    )
+
+
+def measured(places: Floats) -> str:
+    """Return how far the polygon through points is from the curve, and how it is turned."""
+    polygon = Polygon.through(DROP, places)
+    return f"distance {polygon.distance:#.3g}, angle {polygon.angle:#.3g}°"
+
+
+def by_length(true: TrueCurve, edges: int) -> Floats:
+    """Return the parameters (edges + 1,) of points at equal distances along a curve."""
+    places = true.places(FINE)
+    steps = np.hypot(*np.diff(true.derivatives(places)[0], axis=0).T)
+    length = np.concatenate([[0.0], np.cumsum(steps)])
+    return np.interp(np.linspace(0.0, length[-1], edges + 1), length, places)
+
+
+def draw_polygon(axes: Axes, places: Floats) -> None:
+    """Draw the polygon through the points at parameters, the curve behind it."""
+    points = DROP.derivatives(DROP.places(SMOOTH))[0]
+    vertices = DROP.derivatives(places)[0]
+    axes.plot(*points.T, color=ELLIPTIC, linewidth=0.8, zorder=2)
+    axes.plot(*vertices.T, color=INK, linewidth=1.1, marker="o", markersize=3.0, zorder=3)
+
+
+def draw_curve(axes: Axes, points: Floats, closed: bool = False) -> None:
+    """Draw a curve through many points."""
+    axes.plot(*np.concatenate([points, points[:closed]]).T, color=INK, linewidth=0.8, zorder=3)
+
+
+def segments(axes: Axes, starts: Floats, ends: Floats, **style: object) -> None:
+    """Draw segments between points (k, 2)."""
+    axes.add_collection(LineCollection(list(np.stack([starts, ends], axis=1)), zorder=2, **style))
+
+
+def dots(axes: Axes, points: Floats, numbered: Floats, colour: str) -> None:
+    """Draw points (k, 2), the numbered ones among them larger."""
+    axes.scatter(*points.T, s=11, color=colour, linewidths=0, zorder=4)
+    axes.scatter(*numbered.T, s=28, color=colour, linewidths=0, zorder=5)
+
+
+def labels(axes: Axes, points: Floats, directions: Floats, indices: NDArray[np.int64]) -> None:
+    """Write the numbers of numbered normals beside points (k, 2), on the sides of unit vectors."""
+    for point, direction, index in zip(points, directions, indices, strict=True):
+        axes.annotate(
+            str(index // EVERY + 1), point, xytext=8 * direction, textcoords="offset points",
+            ha="center", va="center", path_effects=HALO, zorder=8,
+        )  # fmt: skip
