@@ -11,12 +11,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from .runtime import surfaces
-from .runtime.branches import Branches
-from .runtime.circle import circle
-from .runtime.curve import Curve
-from .runtime.curve_samples import CurveReport, CurveSamples
-from .runtime.curve_sampling import sample_curve
-from .runtime.curve_spline import CurveSpline, fit_curve
+from .runtime.curves.circle import circle
+from .runtime.curves.curve import Curve
+from .runtime.curves.polygon import polygon_distance
+from .runtime.curves.samples import CurveReport, CurveSamples
+from .runtime.curves.sampling import sample_curve
+from .runtime.curves.spline import CurveSpline, fit_curve
 from .runtime.errors import (
     FileError,
     GaussmapError,
@@ -26,22 +26,22 @@ from .runtime.errors import (
     SurfaceError,
     UnknownNameError,
 )
-from .runtime.gaussian_image import BoundaryArc, GaussianImage, GaussianImages
-from .runtime.io import read_samples
-from .runtime.parabolic import (
+from .runtime.gaussian.classes import PatchClass, classify_patches
+from .runtime.gaussian.image import BoundaryArc, GaussianImage, GaussianImages
+from .runtime.gaussian.parabolic import (
     ParabolicCurve,
     ParabolicPoint,
     ParabolicPoints,
     parabolic_points,
 )
-from .runtime.parabolic_lines import ParabolicLine, Piece, parabolic_lines, split_patch
-from .runtime.patch_classes import PatchClass, classify_patches
-from .runtime.polygon import polygon_distance
+from .runtime.gaussian.parabolic_lines import ParabolicLine, Piece, parabolic_lines, split_patch
+from .runtime.io import read_samples
 from .runtime.samples import Samples, SamplingReport
 from .runtime.sampling import sample, sample_many
 from .runtime.sphere import fibonacci, icosphere
 from .runtime.spline import Spline, fit
-from .runtime.support import SupportFunction
+from .runtime.support.branches import Branches
+from .runtime.support.function import SupportFunction
 from .runtime.surface import Surface
 
 if TYPE_CHECKING:

@@ -10,9 +10,9 @@ import gaussmap as gm
 import numpy as np
 from gaussmap.docs.drawing import MESH, TINTS, Floats, Globe, Picture, panels
 from gaussmap.generated import patch as kernels
-from gaussmap.runtime.palette import INK
+from gaussmap.runtime.pictures.palette import INK
+from gaussmap.runtime.pictures.scene import Scene, quadrangles, view
 from gaussmap.runtime.plain import plain
-from gaussmap.runtime.scene import Scene, quadrangles, view
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D

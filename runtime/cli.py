@@ -131,7 +131,7 @@ def _run_sample(options: argparse.Namespace) -> None:
 
 
 def _run_plot(options: argparse.Namespace) -> None:
-    from . import plot
+    from .pictures import plot
 
     plot.check_target(options.output)
     _summarize(plot.plot(path=options.output, **_arguments(options)), options)

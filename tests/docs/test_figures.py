@@ -10,9 +10,9 @@ import pytest
 from gaussmap.docs import curve_figures, figures, patch_figures
 from gaussmap.docs.curves import by_normals
 from gaussmap.generated import patch as kernels
-from gaussmap.runtime.palette import ELLIPTIC, HYPERBOLIC
+from gaussmap.runtime.pictures.palette import ELLIPTIC, HYPERBOLIC
+from gaussmap.runtime.pictures.scene import quadrangles
 from gaussmap.runtime.plain import plain
-from gaussmap.runtime.scene import quadrangles
 from matplotlib.colors import to_rgb
 from matplotlib.image import imread
 

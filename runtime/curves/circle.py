@@ -1,0 +1,35 @@
+"""Unit normals in the plane, spread evenly over the circle or a part of it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..checks import whole_number
+
+__all__ = ["arc_of_normals", "circle"]
+
+
+def circle(count: int) -> NDArray[np.float64]:
+    """Return `count` unit normals (count, 2) on the circle, normal k at the angle 2π (k + ½)/count.
+
+    They are as symmetric as the set of angles is, bit for bit: mirrored in both axes if `count` is
+    even, and in the diagonals too if it is a multiple of 4. Raises InputError unless `count` is a
+    whole number of at least 1.
+    """
+    total = whole_number(count, "count")
+    # Angles in 8 count parts of a turn: a quarter has 2 count of them, and half of it is mirrored.
+    quarter, place = np.divmod(4 * (2 * np.arange(total) + 1), 2 * total)
+    beyond = place > total
+    angle = np.pi / (4 * total) * np.where(beyond, 2 * total - place, place)
+    x = np.cos(angle)
+    y = np.where(place == total, x, np.sin(angle))
+    x, y = np.where(beyond, y, x), np.where(beyond, x, y)
+    choices = np.array([[x, y], [-y, x], [-x, -y], [y, -x]])
+    return np.ascontiguousarray(choices[quarter, :, np.arange(total)])
+
+
+def arc_of_normals(low: float, high: float, count: int) -> NDArray[np.float64]:
+    """Return unit normals (count, 2) at the middles of equal parts of an interval of angles."""
+    angle = low + (high - low) * ((np.arange(count) + 0.5) / count)
+    return np.column_stack([np.cos(angle), np.sin(angle)])

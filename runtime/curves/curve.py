@@ -1,0 +1,116 @@
+"""A planar curve: how to evaluate x(t), over which interval, and whether it closes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..checks import real_array
+from ..errors import InputError
+from ..evaluation import evaluated
+
+if TYPE_CHECKING:
+    import sympy
+
+__all__ = ["Curve", "Interval"]
+
+Interval = tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """A planar parametric curve x(t).
+
+    Make one with `from_callable`, `from_sympy` or `from_points`. `function(t)` gets a float64 array
+    and returns points of its shape + (2,); `periodic` says whether the curve closes smoothly.
+    Normals are the tangent turned clockwise by 90°: outward on a circle that is run through
+    counter-clockwise. `points` holds the points (m, 2) of a curve that was given by points.
+    """
+
+    name: str
+    function: Callable[[NDArray[np.float64]], ArrayLike]
+    domain: Interval
+    periodic: bool
+    points: NDArray[np.float64] | None = None
+
+    @classmethod
+    def from_callable(
+        cls,
+        f: Callable[[NDArray[np.float64]], ArrayLike],
+        domain: Sequence[float],
+        periodic: bool = False,
+        *,
+        name: str = "curve",
+    ) -> Curve:
+        """Make a curve of a vectorized callable f(t) → (..., 2) over `domain` = (t0, t1).
+
+        Raises InputError for an empty or infinite domain, or if `periodic` is not True or False.
+        The callable is first called when the curve is fitted or evaluated (see `evaluate`).
+        """
+        if not callable(f):
+            raise InputError(f"f must be callable as f(t), and {type(f).__name__} is not.")
+        return cls(name, f, _checked_interval(domain), _yes_or_no(periodic, "periodic"))
+
+    @classmethod
+    def from_sympy(
+        cls,
+        position: Sequence[sympy.Expr | str | float],
+        parameter: sympy.Symbol | str,
+        domain: Sequence[float | str | sympy.Expr],
+        periodic: bool = False,
+        *,
+        name: str = "curve",
+    ) -> Curve:
+        """Make a curve of two SymPy expressions (or strings) in one `parameter`.
+
+        `domain` and `periodic` are as in `from_callable`; the domain may hold SymPy numbers, or
+        strings such as "2*pi". Raises InputError unless there are two expressions without further
+        symbols.
+        """
+        from ..expressions import compiled, interval, one_symbol
+
+        f = compiled(position, one_symbol(parameter))
+        return cls.from_callable(f, interval(domain), periodic, name=name)
+
+    @classmethod
+    def from_points(cls, points: ArrayLike, closed: bool = False, *, name: str = "points") -> Curve:
+        """Make a curve of points (m, 2), t = k at points[k], as evenly spaced as they may be.
+
+        A closed curve must not repeat its first point at its end. One spline piece stands between
+        any two neighbouring points; `fit_curve(pieces=...)` chooses otherwise. Raises InputError
+        for another shape, fewer than 3 points, or NaN or infinity (and says where).
+        """
+        from .spline import curve_of_points
+
+        array = real_array(points, "points of a curve")
+        return curve_of_points(array, _yes_or_no(closed, "closed"), name)
+
+    def evaluate(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Return the points x(t), shape (..., 2).
+
+        Raises SurfaceError if the callable raises, returns another shape than (..., 2) or anything
+        but real numbers, or gives NaN or infinity, and says where; InputError if the parameters are
+        no real numbers, or lie outside a curve that was given by points.
+        """
+        parameters = {"t": real_array(t, "t")}
+        return evaluated(self.function, parameters, 2, f"curve {self.name!r}")
+
+
+def _checked_interval(domain: Sequence[float]) -> Interval:
+    try:
+        low, high = (float(x) for x in domain)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"domain must be (t0, t1), not {domain!r}.") from None
+    if not 0.0 < high - low < np.inf:
+        raise InputError(f"the domain of t is empty or infinite: ({low}, {high}).")
+    return low, high
+
+
+def _yes_or_no(answer: object, name: str) -> bool:
+    if not isinstance(answer, bool | np.bool_):
+        raise InputError(f"{name} must be True or False, not {answer!r}.")
+    return bool(answer)

@@ -1,0 +1,55 @@
+"""How far points are from a polygon."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..checks import real_array
+from ..errors import InputError
+
+__all__ = ["polygon_distance"]
+
+PAIRS_AT_A_TIME = 1 << 18
+
+
+def polygon_distance(points: ArrayLike, polygon: ArrayLike) -> NDArray[np.float64]:
+    """Return the distances (k,) of points (k, 2) from a polygon with the vertices (m, 2), in turn.
+
+    A closed polygon repeats its first vertex at its end. The largest distance of many points of a
+    curve is the (one-sided) Hausdorff distance between curve and polygon. Raises InputError for
+    other shapes, an empty polygon, NaN or infinity.
+    """
+    places, vertices = _plane(points, "points"), _plane(polygon, "polygon")
+    if len(vertices) == 0:
+        raise InputError("a polygon needs at least one vertex.")
+    starts = vertices[:-1] if len(vertices) > 1 else vertices
+    edges = vertices[1:] - starts if len(vertices) > 1 else np.zeros_like(vertices)
+    squares = np.einsum("mx,mx->m", edges, edges)
+    squares[squares == 0.0] = 1.0
+    parts = max(1, len(places) * len(starts) // PAIRS_AT_A_TIME)
+    return np.concatenate(
+        [_nearest(x, starts, edges, squares) for x in np.array_split(places, parts)]
+    )
+
+
+def _nearest(
+    places: NDArray[np.float64],
+    starts: NDArray[np.float64],
+    edges: NDArray[np.float64],
+    squares: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    along = places[:, None] - starts
+    share = np.clip(np.einsum("kmx,mx->km", along, edges) / squares, 0.0, 1.0)
+    across = along - share[..., None] * edges
+    return np.sqrt(np.einsum("kmx,kmx->km", across, across).min(axis=1))
+
+
+def _plane(values: ArrayLike, name: str) -> NDArray[np.float64]:
+    array = real_array(values, name)
+    if array.ndim != 2 or array.shape[1] != 2:
+        raise InputError(f"{name} must have the shape (k, 2), not {array.shape}.")
+    if not np.isfinite(array).all():
+        row = int(np.argmin(np.isfinite(array).all(axis=1)))
+        raise InputError(f"{name}[{row}] holds NaN or infinity.")
+    return array

@@ -1,0 +1,210 @@
+"""`sample_curve`: every point of a planar curve that has one of the normals, exactly once.
+
+The normals are sorted by angle, and each joint of the spline has one place among them. The normals
+of an arc are those between the places of its two joints, passed upwards where κ > 0 and downwards
+where κ < 0. Neighbouring arcs share a joint, and with it its place: so no normal is lost or doubled
+there, whatever rounding did to the place, and on a closed curve the sum of sign κ over the
+preimages of a normal is the turning number, for every normal. A normal that is exactly that of an
+inflection has two preimages there or none, as one close to it has.
+
+Where only the rounding of the coordinates tells the normals of neighbouring joints apart, the curve
+is straight, and they get one place.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...generated import curve as kernels
+from ..checks import whole_number
+from ..errors import GaussmapWarning, InputError
+from ..sphere import as_normals
+from .circle import arc_of_normals, circle
+from .curve import Curve
+from .samples import CurveReport, CurveSamples
+from .spline import CurveSpline, angles_of, fit_curve
+
+__all__ = ["sample_curve"]
+
+Array = NDArray[np.float64]
+
+# `count` is met by changing the number of normals, until it is exact or after so many tries.
+TRIES = 6
+# What this many normals round the circle would see counts as visible, even if fewer were asked.
+LEAST_NORMALS = 1_000
+WORTH_A_WARNING = 0.01
+
+
+@dataclass(frozen=True, eq=False)
+class Hits:
+    """Which arc has which normal, along the curve, and with which sign of κ."""
+
+    piece_index: NDArray[np.int64]
+    normal_index: NDArray[np.int64]
+    signs: Array
+
+    def __len__(self) -> int:
+        return len(self.signs)
+
+
+def sample_curve(
+    curve: Curve | CurveSpline,
+    normals: ArrayLike | None = None,
+    *,
+    count: int | None = None,
+    pieces: int | None = None,
+) -> CurveSamples:
+    """Return every point of a planar curve that has one of the given normals, each exactly once.
+
+    Normals spread evenly over the circle make the samples dense where the curve bends: their
+    density is |κ| (paper, Sect. 4.1). The curve is first approximated by a spline of `pieces` arcs
+    (see `fit_curve`); a `CurveSpline` is taken as it is.
+
+    Give either `normals`, an array (S, 2) of directions of any length such as `circle(100)`, or
+    `count`, about how many samples shall come, from evenly spread normals.
+
+    Samples are ordered along the curve. Normals see nothing of straight parts, and a
+    GaussmapWarning says how much of the length that is, or that `count` cannot be met. Raises
+    InputError for unusable arguments and SurfaceError for a curve that cannot be evaluated.
+    """
+    if (normals is None) == (count is None):
+        raise InputError("give either normals=... or count=..., and not both.")
+    asked = None if count is None else whole_number(count, "count")
+    directions = None if normals is None else as_normals(normals, 2)
+    if isinstance(curve, CurveSpline) and pieces is not None:
+        raise InputError("pieces=... is for curves; this spline has its pieces already.")
+    spline = curve if isinstance(curve, CurveSpline) else fit_curve(curve, pieces)
+    if directions is None:
+        assert asked is not None
+        directions, hits = _by_count(spline, asked)
+    else:
+        hits = find(spline, directions)
+    samples = _filled(spline, directions, hits)
+    _warn(samples.report, asked)
+    return samples
+
+
+def find(spline: CurveSpline, normals: Array) -> Hits:
+    """Return which arcs of a spline have which of the unit normals."""
+    angles = angles_of(normals)
+    order = np.argsort(angles, kind="stable")
+    places = _places(spline, angles[order])
+    steps = np.where(spline.reversing, 0, np.diff(places))
+    counts, signs = np.abs(steps), np.sign(steps)
+    first = np.where(steps > 0, places[:-1], places[:-1] - 1)
+    number = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
+    ranks = np.repeat(first, counts) + np.repeat(signs, counts) * number
+    return Hits(
+        np.repeat(np.arange(spline.pieces), counts),
+        order[np.mod(ranks, len(normals))],
+        np.repeat(signs, counts).astype(np.float64),
+    )
+
+
+def _places(spline: CurveSpline, angles: Array) -> NDArray[np.int64]:
+    """Return how many of the sorted angles come before each joint, full turns included.
+
+    Along straight stretches the normal does not turn. The ends of an open curve belong to it: they
+    are moved outwards by the rounding of their normal.
+    """
+    ends, turns = spline.angles[0].copy(), spline.angles[1].copy()
+    bent = np.flatnonzero(~spline.straight)
+    with np.errstate(divide="ignore"):
+        errors = spline.noise / np.hypot(*spline.joint_normals.T)
+    start = int(bent[0]) + 1 if len(bent) else 1
+    kernels.settle(ends, turns, errors, start if spline.periodic else 0)
+    if not spline.periodic:
+        for joint, outwards in ((0, -1.0), (-1, 1.0)):
+            if not spline.straight[joint]:
+                ends[joint] += outwards * math.copysign(errors[joint], spline.bends[joint])
+        beyond = (ends > np.pi).astype(np.int64) - (ends <= -np.pi)
+        ends -= 2 * np.pi * beyond
+        turns += beyond
+    return np.searchsorted(angles, ends).astype(np.int64) + len(angles) * turns
+
+
+def _by_count(spline: CurveSpline, count: int) -> tuple[Array, Hits]:
+    """Choose evenly spread normals so that about `count` samples come."""
+    bent = np.flatnonzero(~spline.straight)
+    total = float(np.abs(spline.bends[bent]).sum())
+    if total == 0.0:
+        normals = circle(count)
+        return normals, find(spline, normals)
+    angles = spline.angles[0] + 2 * np.pi * spline.angles[1]
+    joints = angles[np.concatenate([bent, bent + 1])]
+    low, high = float(joints.min()), float(joints.max())
+    width, density = min(high - low, 2 * np.pi), count / total
+    best: tuple[Array, Hits] | None = None
+    for _ in range(TRIES):
+        size = max(1, round(density * width))
+        normals = arc_of_normals(low, high, size) if high - low < 2 * np.pi else circle(size)
+        hits = find(spline, normals)
+        if best is None or abs(len(hits) - count) < abs(len(best[1]) - count):
+            best = normals, hits
+        if len(hits) == count:
+            break
+        density *= count / max(len(hits), 1)
+    assert best is not None
+    return best
+
+
+def _filled(spline: CurveSpline, normals: Array, hits: Hits) -> CurveSamples:
+    count = len(hits)
+    points, directions = np.empty((count, 2)), np.empty((count, 2))
+    parameters, support, curvature = (np.empty(count) for _ in range(3))
+    with np.errstate(all="ignore"):  # what is uncompiled warns where an arc hardly turns
+        kernels.fill_samples(
+            spline.coefficients, spline.scale, normals, spline.domain[0], spline.step,
+            hits.piece_index, hits.normal_index, hits.signs,
+            points, directions, parameters, support, curvature,
+        )  # fmt: skip
+    report = CurveReport(
+        curve=spline.name,
+        normals=len(normals),
+        samples=count,
+        pieces=spline.pieces,
+        straight_share=_straight_share(spline, len(normals)),
+        inflections=len(spline.inflections),
+        turning_number=spline.turning_number,
+    )
+    ends = spline.evaluate(spline.domain) if not spline.periodic else np.empty((0, 2))
+    return CurveSamples(
+        points, directions, parameters, support, curvature,
+        hits.normal_index, hits.piece_index, ends, report,
+    )  # fmt: skip
+
+
+def _straight_share(spline: CurveSpline, normals: int) -> float:
+    """Return the share of the length that bends so little that normals leave no trace.
+
+    That is where a curve as long as this one and bent like that everywhere gets no sample.
+    """
+    joints = spline.scale * spline.evaluate(spline.joints)
+    lengths = np.hypot(*np.diff(joints, axis=0).T)
+    total = float(lengths.sum())
+    if total == 0.0:
+        return 1.0
+    density = max(normals, LEAST_NORMALS) / (2 * np.pi)
+    bends = np.where(spline.reversing, 0.0, np.abs(spline.bends))
+    unseen = bends * total * density < lengths
+    return float(lengths[unseen].sum()) / total
+
+
+def _warn(report: CurveReport, count: int | None) -> None:
+    """Say when normals see less of the curve than the user may think."""
+    reasons = []
+    if report.straight_share > WORTH_A_WARNING:
+        share = 100 * report.straight_share
+        reasons.append(f"{share:.0f} % of its length is straight, where normals see nothing")
+    elif report.samples == 0:
+        reasons.append("it has none of the normals")
+    if count is not None and abs(report.samples - count) > 0.05 * count + 1:
+        reasons.append(f"{report.samples} samples came where {count} were asked")
+    if reasons:
+        message = f"curve {report.curve!r}: {'; '.join(reasons)}."
+        warnings.warn(message, GaussmapWarning, stacklevel=3)

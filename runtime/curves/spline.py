@@ -1,0 +1,279 @@
+"""The C¹ quadratic spline that approximates a planar curve: fitting it, and reading it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...generated import curve as kernels
+from ...generated import spline as edge_kernels
+from ..checks import real_array, whole_number
+from ..errors import InputError, SurfaceError
+from ..plain import plain
+from ..spline import apart, not_too_large, scale_to_one
+from .curve import Curve, Interval
+
+__all__ = ["DEFAULT_PIECES", "CurveSpline", "curve_of_points", "fit_curve"]
+
+Array = NDArray[np.float64]
+
+DEFAULT_PIECES = 64
+# A difference of two coefficients carries fewer roundings of the largest coordinate than this.
+ROUNDINGS = 8.0
+# A last point this near to the first, beside the distance of two points, is the first again.
+REPEATED = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class CurveSpline:
+    """A planar C¹ quadratic spline with equal pieces of the parameter; made by `fit_curve`.
+
+    `coefficients` (P + 2, 2) holds one vector for each of the P pieces and one beyond each end;
+    those of a closed curve are copies. Joint k is the beginning of piece k.
+    """
+
+    coefficients: Array
+    domain: Interval
+    periodic: bool
+    name: str
+
+    @property
+    def pieces(self) -> int:
+        """The number of quadratic arcs."""
+        return len(self.coefficients) - 2
+
+    @property
+    def step(self) -> float:
+        """The length of a piece in the parameter."""
+        return (self.domain[1] - self.domain[0]) / self.pieces
+
+    @property
+    def joints(self) -> Array:
+        """The parameters (P + 1,) of the joints, both ends included."""
+        return np.linspace(*self.domain, self.pieces + 1)
+
+    @cached_property
+    def control_points(self) -> Array:
+        """The control points (P, 3, 2) of the arcs, each from its first to its last point."""
+        mu = self.coefficients
+        columns = plain(kernels.arc_control_points)(*mu[:-2].T, *mu[1:-1].T, *mu[2:].T)
+        return np.stack(columns, axis=-1).reshape(-1, 3, 2)
+
+    @cached_property
+    def scale(self) -> float:
+        """A power of two that brings the differences of neighbouring coefficients to about 1."""
+        return scale_to_one(float(np.abs(np.diff(self.coefficients, axis=0)).max()))
+
+    def evaluate(self, t: ArrayLike) -> Array:
+        """Return points (..., 2) at parameters.
+
+        Those of a closed curve are taken modulo the period; InputError if one of an open curve lies
+        outside the domain, or any is NaN or infinite.
+        """
+        return self._evaluate(t)[0]
+
+    def normals(self, t: ArrayLike) -> Array:
+        """Return unit normals (..., 2), the tangent turned clockwise; NaN at singular points.
+
+        For the parameters see `evaluate`.
+        """
+        vectors = self._evaluate(t)[1]
+        with np.errstate(invalid="ignore"):
+            vectors /= np.abs(vectors).max(axis=-1, keepdims=True)
+            return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+
+    def curvature(self, t: ArrayLike) -> Array:
+        """Return signed curvatures (...), positive on a circle with outward normals, in 1/L.
+
+        They jump at joints, where they are those of the following arc. NaN or infinite at singular
+        points. For the parameters see `evaluate`.
+        """
+        return self._evaluate(t)[2]
+
+    # --- how the normal turns ---------------------------------------------------------------------
+
+    @cached_property
+    def joint_normals(self) -> Array:
+        """The normals (P + 1, 2) at the joints, not of unit length: in units of 1/`scale`.
+
+        Both arcs at a joint share this one vector, and so do both ends of a closed curve.
+        """
+        tangents = self.scale * np.diff(self.coefficients, axis=0)
+        columns = plain(kernels.arc_tangent)(0.0, 0.0, *tangents.T, 0.0)[2:]
+        return np.stack(columns, axis=-1)
+
+    @cached_property
+    def angles(self) -> tuple[Array, NDArray[np.int64]]:
+        """The angles (P + 1,) of the normals at the joints in −π … π, and full turns (P + 1,).
+
+        The sum angle + 2π turns follows the curve: on an arc it changes by less than π.
+        """
+        angles = angles_of(self.joint_normals)
+        if self.periodic:
+            angles[-1] = angles[0]
+        steps = np.diff(angles)
+        turns = np.cumsum((steps < -np.pi).astype(np.int64) - (steps > np.pi))
+        return angles, np.concatenate([[0], turns])
+
+    @cached_property
+    def bends(self) -> Array:
+        """The angle (P,) by which the normal turns on each arc; its sign is that of κ there."""
+        angles, turns = self.angles
+        return np.diff(angles) + 2 * np.pi * np.diff(turns)
+
+    @property
+    def turning_number(self) -> int | None:
+        """How often the normal of a closed curve turns round; None for an open curve."""
+        return int(self.angles[1][-1]) if self.periodic else None
+
+    @cached_property
+    def noise(self) -> float:
+        """The rounding of the coordinates in a vector of `joint_normals`."""
+        return ROUNDINGS * float(np.spacing(np.abs(self.coefficients).max())) * self.scale
+
+    @cached_property
+    def straight(self) -> NDArray[np.bool_]:
+        """Which arcs (P,) are straight, up to the rounding of their coordinates."""
+        before, after = self.joint_normals[:-1], self.joint_normals[1:]
+        area = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+        return np.abs(area) <= self.noise * (_lengths(before) + _lengths(after))
+
+    @property
+    def reversing(self) -> NDArray[np.bool_]:
+        """Which arcs (P,) are straight and come back, or stop: they hold a singular point."""
+        before, after = self.joint_normals[:-1], self.joint_normals[1:]
+        return self.straight & (np.einsum("kx,kx->k", before, after) <= 0.0)
+
+    @cached_property
+    def inflections(self) -> Array:
+        """The parameters where the curvature changes its sign, ascending.
+
+        An arc is a parabola and has none: they are joints, or the middles of straight stretches.
+        """
+        bent = np.flatnonzero(~self.straight)
+        ends = np.roll(bent, -1)
+        ends[-1:] += self.pieces
+        if not self.periodic:
+            bent, ends = bent[:-1], ends[:-1]
+        changes = (self.bends[bent] > 0.0) != (self.bends[ends % self.pieces] > 0.0)
+        places = np.mod((bent[changes] + 1 + ends[changes]) / 2, self.pieces)
+        return self.domain[0] + self.step * np.sort(places)
+
+    # --- reading ----------------------------------------------------------------------------------
+
+    def _evaluate(self, t: ArrayLike) -> tuple[Array, Array, Array]:
+        array = real_array(t, "t")
+        places = self._places(array.ravel())
+        points, normals = np.empty((places.size, 2)), np.empty((places.size, 2))
+        curvatures = np.empty(places.size)
+        with np.errstate(all="ignore"):  # what is uncompiled warns at singular points
+            kernels.evaluate(self.coefficients, self.scale, places, points, normals, curvatures)
+        shape = array.shape
+        return points.reshape(*shape, 2), normals.reshape(*shape, 2), curvatures.reshape(shape)
+
+    def _places(self, t: Array) -> Array:
+        """Return parameters in pieces; InputError if one lies outside."""
+        places = (t - self.domain[0]) / self.step
+        if self.periodic:
+            with np.errstate(invalid="ignore"):
+                turns = np.where(places == self.pieces, 0.0, np.floor(places / self.pieces))
+                places = places - turns * self.pieces
+        slack = 1e-9 * self.pieces
+        inside = (places >= -slack) & (places <= self.pieces + slack)
+        if not inside.all():
+            worst = int(np.argmin(inside))
+            raise InputError(
+                f"t = {t[worst]} lies outside the domain {self.domain} of {self.name!r}."
+            )
+        return places
+
+
+def angles_of(vectors: Array) -> Array:
+    """Return the angles of vectors (k, 2) in −π … π, where −0.0 is 0.0."""
+    return np.arctan2(vectors[:, 1] + 0.0, vectors[:, 0] + 0.0)
+
+
+def _lengths(vectors: Array) -> Array:
+    return np.hypot(vectors[:, 0], vectors[:, 1])
+
+
+# --- fitting --------------------------------------------------------------------------------------
+
+
+def fit_curve(curve: Curve, pieces: int | None = None) -> CurveSpline:
+    """Approximate a planar curve by a C¹ quadratic spline with `pieces` arcs.
+
+    The quasi-interpolant is exact on quadratics; the error of positions falls with the third power
+    of the length of a piece, that of normals with the second (docs/curves.md). Without `pieces`:
+    64, or one between any two neighbouring points of a curve that was given by points.
+
+    Raises InputError for no piece, fewer than 3 pieces of a closed curve, and more than a narrow
+    domain can hold; SurfaceError if the curve cannot be evaluated (see `Curve.evaluate`) or does
+    not close although it is periodic.
+    """
+    if not isinstance(curve, Curve):
+        raise InputError(f"fit_curve takes a Curve, not {type(curve).__name__}.")
+    if pieces is None and curve.points is not None:
+        return _fit_points(curve.points, curve.domain, curve.periodic, curve.name)
+    count = whole_number(DEFAULT_PIECES if pieces is None else pieces, "pieces")
+    if curve.periodic and count < 3:
+        raise InputError(f"a closed curve needs at least 3 pieces, not {count}.")
+    low, high = curve.domain
+    places = low + (high - low) * (np.arange(2 * count + 1) / (2 * count))
+    if not (np.diff(places) > 0.0).all():
+        raise InputError(f"the domain of t is too narrow for {count} pieces: ({low}, {high}).")
+    values = not_too_large(curve.evaluate(places), curve.name)
+    if curve.periodic:
+        if apart(values[-1], values[0], values[:, None]):
+            raise SurfaceError(f"curve {curve.name!r} does not close: its two ends differ.")
+        values[-1] = values[0]
+    inner = plain(edge_kernels.edge_point)(values[1::2], values[:-1:2], values[2::2])
+    coefficients = _with_ends(inner, values[[0, -1]], curve.periodic)
+    return CurveSpline(coefficients, curve.domain, curve.periodic, curve.name)
+
+
+def curve_of_points(points: Array, closed: bool, name: str) -> Curve:
+    """Make a curve of points (m, 2) at the joints; InputError if they are unusable."""
+    if points.ndim != 2 or points.shape[1] != 2:
+        raise InputError(f"points of a curve must have the shape (m, 2), not {points.shape}.")
+    if len(points) < 3:
+        raise InputError(f"a curve needs at least 3 points, not {len(points)}.")
+    bad = ~np.isfinite(points).all(axis=1)
+    if bad.any():
+        raise InputError(
+            f"{name} holds {int(bad.sum())} points with NaN or infinity, the first at "
+            f"[{int(bad.argmax())}]; leave them out."
+        )
+    if closed and np.ptp(points[[0, -1]], axis=0).max() < REPEATED * _lengths(
+        np.diff(points[:2], axis=0)
+    ):
+        raise InputError(f"{name} repeats its first point at its end; leave it out.")
+    domain = 0.0, float(len(points) if closed else len(points) - 1)
+    spline = _fit_points(points, domain, closed, name)
+    return Curve(name, spline.evaluate, domain, closed, points)
+
+
+def _fit_points(points: Array, domain: Interval, closed: bool, name: str) -> CurveSpline:
+    """Return the spline with one piece between any two neighbouring points."""
+    not_too_large(points, name)
+    if closed:
+        values = np.concatenate([points[-1:], points, points[:2]])
+    else:
+        before = plain(edge_kernels.extrapolation)(*points[:3])
+        after = plain(edge_kernels.extrapolation)(*points[:-4:-1])
+        values = np.concatenate([before[None], points, after[None]])
+    inner = plain(edge_kernels.edge_point_from_vertices)(
+        values[1:-2], values[2:-1], values[:-3], values[3:]
+    )
+    return CurveSpline(_with_ends(inner, points[[0, -1]], closed), domain, closed, name)
+
+
+def _with_ends(inner: Array, ends: Array, closed: bool) -> Array:
+    """Return the coefficients (P + 2, 2): copies beyond the ends, or what the end points ask."""
+    if closed:
+        return np.concatenate([inner[-1:], inner, inner[:1]])
+    before, after = plain(kernels.beyond_end)(ends, inner[[0, -1]])
+    return np.concatenate([before[None], inner, after[None]])

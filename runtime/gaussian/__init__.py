@@ -1,0 +1,1 @@
+"""What the Gauss map does: images of patches, and parabolic points, where it folds."""

@@ -1,0 +1,76 @@
+"""Solid angles and areas of the Gaussian images of patches, cut where their normals stand still."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .classes import PatchClass
+from .parabolic_lines import NEAR, pieces_of, singular_points
+from .patches import Patches
+from .solid_angle import is_wide, solid_angles, triangle_of
+
+__all__ = ["measures_of"]
+
+Array = NDArray[np.float64]
+# A corner is a singular point if its normal is this short beside the others of the patch.
+SINGULAR = 2.0**-40
+
+
+def measures_of(patches: Patches, classes: NDArray[np.int8]) -> tuple[Array, Array]:
+    """Return the integrals of K and of |K| (k,) over patches.
+
+    Mixed patches, and those whose normals spread widely, are cut along their parabolic lines and at
+    their singular points.
+    """
+    normals = patches.normals
+    wide = is_wide(normals)
+    curved = np.isin(classes, (PatchClass.ELLIPTIC, PatchClass.HYPERBOLIC, PatchClass.MIXED))
+    cut = curved & (wide | (classes == PatchClass.MIXED))
+    signed = np.zeros(len(patches))
+    narrow = ~cut & ~wide
+    signed[narrow] = solid_angles(normals[narrow])
+    areas = np.abs(signed)
+    pieces = [(k, fan) for k in np.flatnonzero(cut) for fan in _fans_of(patches[k : k + 1])]
+    if pieces:
+        owners = np.array([k for k, _ in pieces])
+        of_piece = np.repeat(np.arange(len(pieces)), [len(fan) for _, fan in pieces])
+        parts = solid_angles(np.concatenate([fan for _, fan in pieces]))
+        sums = np.bincount(of_piece, weights=parts, minlength=len(pieces))
+        np.add.at(signed, owners, sums)
+        np.add.at(areas, owners, np.abs(sums))
+    return signed, areas
+
+
+def _fans_of(patch: Patches) -> list[Array]:
+    """Return the polar forms (m, 3, 3, 3) of the triangles of each piece of one patch."""
+    places = singular_points(patch)
+    fans = []
+    for piece in pieces_of(patch):
+        corners = _fan(piece.corners, places)
+        corners = np.concatenate([corners, 1.0 - corners.sum(axis=2, keepdims=True)], axis=2)
+        normals = triangle_of(np.repeat(patch.normals, len(corners), axis=0), corners)
+        lengths = np.linalg.norm(normals, axis=3)
+        normals[lengths <= SINGULAR * lengths.max()] = 0.0
+        fans.append(normals)
+    return fans
+
+
+def _fan(polygon: Array, places: Array) -> Array:
+    """Cut a convex polygon into triangles (m, 3, 2) that have the places inside it as corners."""
+    centre = polygon.mean(axis=0)
+    triangles = [np.stack([centre, polygon[k - 1], polygon[k]]) for k in range(len(polygon))]
+    for place in places:
+        cut = []
+        for triangle in triangles:
+            weights = np.linalg.solve(np.vstack([triangle.T, np.ones(3)]), [*place, 1.0])
+            if weights.min() < -NEAR or weights.max() > 1.0 - NEAR:
+                cut.append(triangle)
+                continue
+            for k in range(3):
+                if weights[k] > NEAR:
+                    part = triangle.copy()
+                    part[k] = place
+                    cut.append(part)
+        triangles = cut
+    return np.array(triangles)

@@ -1,0 +1,69 @@
+"""Classes of quadratic patches by the sign of their Gaussian curvature (paper, Remark 3.1)."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import InputError
+from ..spline import Spline
+from .parabolic_lines import pieces_of
+from .patches import Patches, checked_control_points
+
+__all__ = ["PatchClass", "classes_of", "classify_patches"]
+
+
+class PatchClass(IntEnum):
+    """What a patch is: by the sign of its Gaussian curvature, see `classify_patches`."""
+
+    PLANAR = 0
+    DEVELOPABLE = 1
+    ELLIPTIC = 2
+    HYPERBOLIC = 3
+    MIXED = 4
+    SINGULAR = 5
+
+
+def classify_patches(patches: Spline | ArrayLike) -> NDArray[np.int8]:
+    """Return a `PatchClass` for each patch (k,) int8 of a spline, or of Bézier nets (k, 6, 3).
+
+    PLANAR: the normal is constant. DEVELOPABLE: the Gaussian curvature vanishes everywhere.
+    ELLIPTIC, HYPERBOLIC: it has one sign inside. MIXED: a parabolic line separates elliptic from
+    hyperbolic parts (paper, Remark 3.1). SINGULAR: no point has a normal. The signs of the ten
+    Bézier coefficients of the cubic `parabolic_cubic` decide where they agree, the parabolic lines
+    elsewhere; what is zero up to the rounding of the coordinates counts as zero.
+
+    Raises InputError for nets of another shape, NaN or infinity.
+    """
+    if isinstance(patches, Spline):
+        return classes_of(Patches.of_spline(patches))
+    nets = np.asarray(patches)
+    if nets.ndim != 3 or nets.shape[1:] != (6, 3) or len(nets) == 0:
+        raise InputError(
+            f"classify_patches takes a Spline or nets (k, 6, 3) with k >= 1, not {nets.shape}."
+        )
+    each = [Patches.of_control_points(checked_control_points(net)[None]) for net in nets]
+    return np.concatenate([classes_of(x) for x in each])
+
+
+def classes_of(patches: Patches) -> NDArray[np.int8]:
+    """Return the class of each patch (k,)."""
+    error = patches.cubic_rounding[:, None]
+    positive = (patches.cubic > error).any(axis=1)
+    negative = (patches.cubic < -error).any(axis=1)
+    result = np.where(positive, PatchClass.ELLIPTIC, PatchClass.HYPERBOLIC).astype(np.int8)
+    result[patches.flat] = PatchClass.DEVELOPABLE
+    net = patches.normals.reshape(len(patches), 9, 3)
+    lengths = np.linalg.norm(net, axis=2)
+    longest = np.take_along_axis(net, lengths.argmax(axis=1)[:, None, None], axis=1)
+    across = np.linalg.norm(np.cross(net, longest), axis=2).max(axis=1)
+    result[across <= 4.0 * patches.normal_noise * lengths.max(axis=1)] = PatchClass.PLANAR
+    result[lengths.max(axis=1) == 0.0] = PatchClass.SINGULAR
+    for k in np.flatnonzero(positive & negative & (result >= PatchClass.ELLIPTIC)):
+        signs = {piece.sign for piece in pieces_of(patches[k : k + 1])}
+        if result[k] != PatchClass.SINGULAR:
+            alone = PatchClass.ELLIPTIC if 1 in signs else PatchClass.HYPERBOLIC
+            result[k] = PatchClass.MIXED if {1, -1} <= signs else alone
+    return result

@@ -1,0 +1,178 @@
+"""The Gaussian curvature of a smooth surface as a function of u, v: polynomials on panels.
+
+The domain is cut into panels; on each the surface is interpolated at Chebyshev nodes, which lie
+inside the panel, and differentiated: the error is that of rounding for a smooth surface. K is then
+a polynomial too, which is bounded on smaller rectangles by its coefficients and its values.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
+
+from ...generated import gaussian_image as formulas
+from ..plain import plain
+from ..surface import Surface
+
+__all__ = ["ORDER", "CurvatureField"]
+
+Array = NDArray[np.float64]
+# Nodes along a side of a panel, for K; and for the finer bounds on a small part of one.
+ORDER = 16
+# Panels are cut at no special place: what is symmetric has its parabolic curves in special ones.
+OFFSET = 0.2360679774997897
+# K is resolved where its error is less than this, beside its largest value on the panel.
+RESOLVED = 1e-2
+NODES = chebyshev.chebpts1(ORDER)
+TO_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(NODES, ORDER - 1))
+
+
+def _derivative() -> Array:
+    """Return the matrix (ORDER, ORDER) from values at the nodes to derivatives there."""
+    each = chebyshev.chebder(np.eye(ORDER))
+    return chebyshev.chebvander(NODES, ORDER - 2) @ each @ TO_COEFFICIENTS
+
+
+DERIVATIVE = _derivative()
+SECOND = DERIVATIVE @ DERIVATIVE
+
+
+@dataclass(frozen=True, eq=False)
+class CurvatureField:
+    """K on panels: `lines` are their borders along u and v.
+
+    In a periodic direction (`wraps`) the panels make one period that starts inside the domain.
+
+    `coefficients` (m, n, ORDER, ORDER) are those of K in products of Chebyshev polynomials of the
+    two coordinates of a panel, −1 … 1. `noise` (m, n) bounds the error of K; `bending` (m, n) is
+    what that has to be compared with where K is small: the square of the curvature of the parameter
+    lines in the direction of the normal, and of one over the size of the surface.
+    """
+
+    lines: tuple[Array, Array]
+    wraps: tuple[bool, bool]
+    coefficients: Array
+    noise: Array
+    bending: Array
+
+    @classmethod
+    def of_surface(cls, surface: Surface, panels: tuple[int, int]) -> CurvatureField:
+        """Interpolate a surface; SurfaceError if it cannot be evaluated."""
+        wraps = surface.ends[0][0] == "wrap", surface.ends[1][0] == "wrap"
+        lines = [
+            _lines(low, high, count, periodic)
+            for (low, high), count, periodic in zip(surface.domain, panels, wraps, strict=True)
+        ]
+        inside = [
+            low + np.mod(_nodes(x) - low, high - low) if periodic else _nodes(x)
+            for x, (low, high), periodic in zip(lines, surface.domain, wraps, strict=True)
+        ]
+        x = surface.evaluate(inside[0][:, None], inside[1])
+        x = x.reshape(panels[0], ORDER, panels[1], ORDER, 3).transpose(0, 2, 1, 3, 4)
+        K, rounding, bending = _curvature(x, *(np.diff(line) for line in lines))
+        coefficients = TO_COEFFICIENTS @ K @ TO_COEFFICIENTS.T
+        tail = np.maximum(
+            np.abs(coefficients[..., -2:, :]).max(axis=(2, 3)),
+            np.abs(coefficients[..., :, -2:]).max(axis=(2, 3)),
+        )
+        noise = rounding + ORDER * tail
+        return cls((lines[0], lines[1]), wraps, coefficients, noise, bending)
+
+    @cached_property
+    def largest(self) -> Array:
+        """The sum (m, n) of the moduli of the coefficients: a bound of |K|."""
+        return np.abs(self.coefficients).sum(axis=(2, 3))
+
+    @cached_property
+    def flat(self) -> NDArray[np.bool_]:
+        """Where (m, n) K is zero up to its error, although that is small."""
+        bound = 4.0 * ORDER * self.noise
+        return (self.largest <= bound) & (bound <= RESOLVED * self.bending)
+
+    @cached_property
+    def unresolved(self) -> NDArray[np.bool_]:
+        """Where (m, n) the error of K is large beside K, and beside how much the surface bends."""
+        least = np.maximum(self.largest, RESOLVED * self.bending)
+        return ~self.flat & ~(self.noise <= RESOLVED * least)
+
+    def share(self, which: NDArray[np.bool_]) -> float:
+        """Return the share of the domain that panels (m, n) take."""
+        areas = np.outer(*(np.diff(line) for line in self.lines))
+        return float(areas[which].sum() / areas.sum())
+
+    def evaluate(self, places: Array, du: int = 0, dv: int = 0) -> Array:
+        """Return K or a partial derivative (k,) at places (k, 2), extrapolating beyond the ends."""
+        indices, local, sizes = [], [], []
+        for line, x, periodic in zip(self.lines, places.T, self.wraps, strict=True):
+            if periodic:
+                x = line[0] + np.mod(x - line[0], line[-1] - line[0])
+            index = np.clip(np.searchsorted(line, x, side="right") - 1, 0, len(line) - 2)
+            size = line[index + 1] - line[index]
+            indices.append(index)
+            local.append(2.0 * (x - line[index]) / size - 1.0)
+            sizes.append(size)
+        basis = [
+            chebyshev.chebvander(x, ORDER - 1 - order) @ chebyshev.chebder(np.eye(ORDER), order)
+            for x, order in zip(local, (du, dv), strict=True)
+        ]
+        values = np.einsum(
+            "ka,kab,kb->k", basis[0], self.coefficients[indices[0], indices[1]], basis[1]
+        )
+        return values * (2.0 / sizes[0]) ** du * (2.0 / sizes[1]) ** dv
+
+    def gradient(self, places: Array) -> Array:
+        """Return the derivatives (k, 2) of K by u and v."""
+        return np.stack([self.evaluate(places, 1, 0), self.evaluate(places, 0, 1)], axis=1)
+
+
+def _lines(low: float, high: float, count: int, periodic: bool) -> Array:
+    shares = (np.arange(count + 1) + OFFSET) / count
+    if not periodic:
+        shares[0], shares[-1] = 0.0, 1.0
+    return low + (high - low) * shares
+
+
+def _nodes(lines: Array) -> Array:
+    """Return the Chebyshev nodes of all panels along one direction, in one line."""
+    middle, half = 0.5 * (lines[1:] + lines[:-1]), 0.5 * np.diff(lines)
+    return (middle[:, None] + half[:, None] * NODES).ravel()
+
+
+def _curvature(x: Array, sizes_u: Array, sizes_v: Array) -> tuple[Array, Array, Array]:
+    """Return K at the nodes (m, n, ORDER, ORDER) of points; its rounding error and bending (m, n).
+
+    The parameters are those of the panels, scaled to the surface, so that nothing overflows.
+    """
+    scale = float(np.abs(x - x.mean(axis=(0, 1, 2, 3))).max()) or 1.0
+    error = 4.0 * float(np.spacing(np.abs(x).max())) / scale
+    x = (x - x.mean(axis=(0, 1, 2, 3))) / scale
+    along_u, along_v = 2.0 / sizes_u[:, None, None, None, None], 2.0 / sizes_v[:, None, None, None]
+    p_u = np.einsum("ai,mnibx->mnabx", DERIVATIVE, x) * along_u
+    p_v = np.einsum("bi,mnaix->mnabx", DERIVATIVE, x) * along_v
+    p_uu = np.einsum("ai,mnibx->mnabx", SECOND, x) * along_u**2
+    p_uv = np.einsum("bi,mnaix->mnabx", DERIVATIVE, p_u) * along_v
+    p_vv = np.einsum("bi,mnaix->mnabx", SECOND, x) * along_v**2
+    vectors = (p_u, p_v, p_uu, p_uv, p_vv)
+    columns = [component for vector in vectors for component in np.moveaxis(vector, -1, 0)]
+    with np.errstate(all="ignore"):
+        K = plain(formulas.gaussian_curvature_of_derivatives)(*columns)
+        normal = np.cross(p_u, p_v)
+        area = np.linalg.norm(normal, axis=-1)
+        along = [
+            np.abs(np.einsum("mnabx,mnabx->mnab", normal, second)) / area / (first**2).sum(axis=-1)
+            for first, second in ((p_u, p_uu), (p_v, p_vv))
+        ]
+        first, second = (float(np.linalg.norm(x, axis=1).max()) for x in (DERIVATIVE, SECOND))
+        of_uu = error * second * along_u[..., 0] ** 2
+        of_vv = error * second * along_v[..., 0] ** 2
+        of_uv = error * first**2 * along_u[..., 0] * along_v[..., 0]
+        uu, uv, vv = (np.linalg.norm(x, axis=-1) for x in (p_uu, p_uv, p_vv))
+        rounding = (uu * of_vv + vv * of_uu + 2.0 * uv * of_uv + of_uu * of_vv) / area**2
+    bad = ~np.isfinite(K) | ~np.isfinite(rounding)
+    K[bad], rounding[bad] = 0.0, np.inf
+    bending = 1.0 + np.nan_to_num(np.maximum(*along), posinf=0.0).max(axis=(2, 3)) ** 2
+    return K / scale**2, rounding.max(axis=(2, 3)) / scale**2, bending / scale**2

@@ -1,0 +1,276 @@
+"""`parabolic_points`: where the Gaussian curvature of a spline or of a surface vanishes."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..checks import whole_number
+from ..errors import GaussmapWarning, InputError
+from ..spline import Spline, fit
+from ..surface import Surface
+from .classes import PatchClass, classify_patches
+from .curvature_field import CurvatureField
+from .parabolic_spline import polylines_of
+from .parabolic_surface import field_of, search
+
+__all__ = ["ParabolicCurve", "ParabolicPoint", "ParabolicPoints", "parabolic_points"]
+
+Array = NDArray[np.float64]
+Evaluation = Callable[[Array], Array]
+# Polylines are refined at most so many times, each time halving what departs from the curve.
+REFINEMENTS = 14
+NEWTON_STEPS = 6
+MOST_CELLS = 128
+# A share of the domain that is worth a warning.
+WORTH_A_WARNING = 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class ParabolicCurve:
+    """A polyline of parabolic points: `uv` (k, 2) in the parameters, `points` (k, 3) in space.
+
+    A closed curve repeats its first point at the end. In a periodic direction the parameters run on
+    beyond the end of the domain, so that they do not jump.
+    """
+
+    uv: Array
+    points: Array
+    closed: bool
+
+
+@dataclass(frozen=True, eq=False)
+class ParabolicPoint:
+    """A place where the curvature touches zero without a change of sign.
+
+    `uv` (2,) are its parameters, `point` (3,) its place in space. `box` (2, 2) holds the lowest and
+    the highest parameters of the rectangle that isolates it; one that is longer than the tolerance
+    holds a whole curve of such points, or K is zero up to its error on all of it.
+    """
+
+    uv: Array
+    point: Array
+    box: Array
+
+
+@dataclass(frozen=True, eq=False)
+class ParabolicPoints:
+    """The parabolic points of a surface.
+
+    `curves` are those across which the Gaussian curvature changes its sign; they end at the border
+    of the surface and where they meet. `isolated` are those where it only touches zero.
+    `flat` (k, 2, 2) are rectangles of the parameter plane (lowest and highest corner) in which it
+    vanishes up to rounding; `developable` says that it does so everywhere.
+    """
+
+    curves: tuple[ParabolicCurve, ...]
+    isolated: tuple[ParabolicPoint, ...]
+    flat: Array
+    developable: bool
+
+
+def parabolic_points(
+    surface: Surface | Spline,
+    *,
+    tolerance: float = 1e-4,
+    cells: Sequence[int] | None = None,
+) -> ParabolicPoints:
+    """Find the parabolic points of a surface or a spline (paper, Sect. 3.2 and Remark 3.1).
+
+    Of a `Spline`, and of a surface that was given by a grid of points, which is a spline: the lines
+    inside patches and the edges across which the curvature changes its sign; they are exact.
+
+    Of any other `Surface`: of the surface itself, which has to be smooth. It is interpolated on
+    `cells` = (m, n) panels by polynomials of degree 15 and differentiated; without `cells` 8 × 8
+    panels, or as many more as it takes. K is known to about 1e-9 of its size, and so are the
+    vertices of the curves. Two curves that are nearer than one cell of a grid (1/16 of a panel) may
+    be missed. Parts of the domain where the curvature cannot be computed (a pole, a crease) are
+    left out, with a GaussmapWarning if they are more than 0.01 % of it.
+
+    `tolerance` is relative to the size of the surface and of its domain: so far may polylines be
+    from the curves in space, and so small are the rectangles that isolate points. Raises InputError
+    unless it lies between 1e-7 and 0.1, for unusable `cells`, and for `cells` beside a spline;
+    SurfaceError if the surface cannot be evaluated.
+    """
+    limit = _tolerance(tolerance)
+    if isinstance(surface, Spline):
+        if cells is not None:
+            raise InputError("cells=... is for surfaces; this spline has its cells already.")
+        return _of_spline(surface, limit)
+    if not isinstance(surface, Surface):
+        raise InputError(
+            f"parabolic_points takes a Surface or a Spline, not {type(surface).__name__}."
+        )
+    if surface.grid is not None:
+        return _of_spline(fit(surface, cells), limit)
+    return _of_surface(surface, limit, _panels(cells))
+
+
+def _of_spline(spline: Spline, tolerance: float) -> ParabolicPoints:
+    classes = classify_patches(spline).reshape(-1, 4)
+    curves = []
+    size = tolerance * _size(spline.coefficients[1:-1, 1:-1].reshape(-1, 3))
+    for uv, closed in polylines_of(spline):
+        finer = _subdivided(uv, lambda x: _evaluated(spline, x), size)
+        curves.append(ParabolicCurve(finer, _evaluated(spline, finer), closed))
+    flat = np.isin(classes, (PatchClass.PLANAR, PatchClass.DEVELOPABLE, PatchClass.SINGULAR))
+    i, j = np.divmod(np.flatnonzero(flat.all(axis=1)), spline.cells[1])
+    low = spline.frame[:2] + np.stack([i, j], axis=1) * spline.frame[2:]
+    boxes = np.stack([low, low + spline.frame[2:]], axis=1)
+    return ParabolicPoints(tuple(curves), (), boxes, bool(flat.all()))
+
+
+def _of_surface(
+    surface: Surface, tolerance: float, panels: tuple[int, int] | None
+) -> ParabolicPoints:
+    field = field_of(surface, panels)
+    extent = np.array([high - low for low, high in surface.domain])
+    found = search(field, 0.125 * tolerance * extent)
+    if found.unresolved > WORTH_A_WARNING:
+        warnings.warn(
+            f"the curvature of {surface.name!r} cannot be computed on "
+            f"{100.0 * found.unresolved:.3g} % of its domain (a pole, a crease, fine detail, or "
+            "coordinates with too few digits), which is left out; the spline of the surface "
+            "(`fit`) has parabolic points everywhere.",
+            GaussmapWarning,
+            stacklevel=3,
+        )
+    grid = surface.evaluate(*np.meshgrid(*(np.linspace(*ends, 17) for ends in surface.domain)))
+    size = tolerance * _size(grid.reshape(-1, 3))
+    finer = _refined([uv for uv, _ in found.polylines], field, surface, size)
+    curves = [
+        ParabolicCurve(uv, _evaluated(surface, uv), closed)
+        for uv, (_, closed) in zip(finer, found.polylines, strict=True)
+    ]
+    isolated = []
+    for box in found.boxes:
+        uv = _lowest(field, box)
+        isolated.append(ParabolicPoint(uv, _evaluated(surface, uv[None])[0], box))
+    return ParabolicPoints(tuple(curves), tuple(isolated), found.flat, bool(field.flat.all()))
+
+
+# --- polylines ------------------------------------------------------------------------------------
+
+
+def _subdivided(uv: Array, evaluate: Evaluation, size: float) -> Array:
+    """Cut the segments of a polyline that are arcs of parabolas in space, until these are flat."""
+    points, middle = evaluate(uv), evaluate(0.5 * (uv[1:] + uv[:-1]))
+    height = np.linalg.norm(middle - 0.5 * (points[1:] + points[:-1]), axis=1)
+    parts = np.ceil(np.sqrt(height / size)).astype(int) if size > 0.0 else np.zeros(len(height))
+    pieces = [
+        start + (end - start) * np.arange(count)[:, None] / count
+        for start, end, count in zip(uv, uv[1:], np.clip(parts, 1, 1000).astype(int), strict=False)
+    ]
+    return np.concatenate([*pieces, uv[-1:]])
+
+
+def _refined(
+    polylines: list[Array], field: CurvatureField, surface: Surface, size: float
+) -> list[Array]:
+    """Insert points of the curve K = 0 where polylines depart from it by more than `size`."""
+    if not polylines:
+        return []
+    uv = np.concatenate(polylines)
+    owner = np.repeat(np.arange(len(polylines)), [len(x) for x in polylines])
+    open_ = owner[1:] == owner[:-1]
+    for _ in range(REFINEMENTS):
+        which = np.flatnonzero(open_)
+        if len(which) == 0:
+            break
+        start, end = uv[which], uv[which + 1]
+        middle = _onto_curve(field, 0.5 * (start + end))
+        near = np.abs(middle - 0.5 * (start + end)).max(axis=1) <= np.abs(end - start).max(axis=1)
+        middle = np.clip(middle, *_limits(surface))
+        p, q, r = (_evaluated(surface, x) for x in (start, middle, end))
+        far = near & (_distance(q, p, r) > size)
+        insert = which[far]
+        places = insert + 1 + np.arange(len(insert))
+        uv = np.insert(uv, insert + 1, middle[far], axis=0)
+        owner = np.insert(owner, insert + 1, owner[insert])
+        open_ = np.zeros(len(uv) - 1, dtype=bool)
+        open_[places - 1] = open_[places] = True
+    return np.split(uv, np.flatnonzero(np.diff(owner)) + 1)
+
+
+def _onto_curve(field: CurvatureField, places: Array) -> Array:
+    """Move places (k, 2) along the gradient of K to where it vanishes, by Newton steps."""
+    for _ in range(NEWTON_STEPS):
+        K, slope = field.evaluate(places), field.gradient(places)
+        square = np.einsum("kx,kx->k", slope, slope)
+        step = np.divide(K, square, out=np.zeros_like(K), where=square > 0.0)
+        places = places - step[:, None] * slope
+    return places
+
+
+def _distance(points: Array, start: Array, end: Array) -> Array:
+    """Return the distances (k,) of points from segments."""
+    along = end - start
+    square = np.einsum("kx,kx->k", along, along)
+    share = np.einsum("kx,kx->k", points - start, along)
+    share = np.clip(np.divide(share, square, out=np.zeros_like(share), where=square > 0.0), 0, 1)
+    return np.linalg.norm(points - start - share[:, None] * along, axis=1)
+
+
+def _lowest(field: CurvatureField, box: Array) -> Array:
+    """Return the place in a rectangle where the gradient of K vanishes, else its middle."""
+    middle = box.mean(axis=0)
+    place = middle[None]
+    for _ in range(NEWTON_STEPS):
+        uu, uv, vv = (float(field.evaluate(place, *by)[0]) for by in ((2, 0), (1, 1), (0, 2)))
+        step = np.linalg.lstsq(np.array([[uu, uv], [uv, vv]]), field.gradient(place)[0], rcond=None)
+        place = place - step[0]
+    inside = ((box[0] <= place[0]) & (place[0] <= box[1])).all()
+    return place[0] if inside else middle
+
+
+# --- arguments and evaluation ---------------------------------------------------------------------
+
+
+def _evaluated(surface: Surface | Spline, uv: Array) -> Array:
+    """Return the points (k, 3) at parameters (k, 2), which may lie beyond a periodic end."""
+    inside = uv.copy()
+    for axis, ((low, high), ends) in enumerate(zip(surface.domain, surface.ends, strict=True)):
+        if ends[0] == "wrap":
+            inside[:, axis] = low + np.mod(inside[:, axis] - low, high - low)
+    return surface.evaluate(inside[:, 0], inside[:, 1])
+
+
+def _limits(surface: Surface) -> tuple[Array, Array]:
+    """Return the lowest and highest parameters, infinite where the surface is periodic."""
+    pairs = [
+        (-np.inf, np.inf) if ends[0] == "wrap" else domain
+        for domain, ends in zip(surface.domain, surface.ends, strict=True)
+    ]
+    low, high = np.array(pairs).T
+    return low, high
+
+
+def _size(points: Array) -> float:
+    return float(np.linalg.norm(np.ptp(points, axis=0)))
+
+
+def _tolerance(tolerance: float) -> float:
+    try:
+        value = float(tolerance)
+    except (TypeError, ValueError):
+        raise InputError(f"tolerance must be a number, not {tolerance!r}.") from None
+    if not 1e-7 <= value <= 0.1:
+        raise InputError(f"tolerance must lie between 1e-7 and 0.1, and is {tolerance!r}.")
+    return value
+
+
+def _panels(cells: Sequence[int] | None) -> tuple[int, int] | None:
+    if cells is None:
+        return None
+    try:
+        m, n = cells
+    except (TypeError, ValueError):
+        raise InputError(f"cells must be a pair of whole numbers (m, n), not {cells!r}.") from None
+    m, n = whole_number(m, "cells[0]"), whole_number(n, "cells[1]")
+    if max(m, n) > MOST_CELLS:
+        raise InputError(f"at most {MOST_CELLS} x {MOST_CELLS} cells can be used, not {m} x {n}.")
+    return m, n

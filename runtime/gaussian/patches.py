@@ -1,0 +1,146 @@
+"""The vectors of many quadratic patches at once, their normal fields, and how sure these are."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...generated import patch as formulas
+from ...generated import sampler
+from ..checks import real_array
+from ..errors import InputError
+from ..plain import plain
+from ..spline import LARGEST_EXPONENT, Spline
+
+__all__ = ["Patches", "checked_control_points"]
+
+Array = NDArray[np.float64]
+# The control normals N200, N110, N101, N020, N011, N002 as pairs of corners of the triangle.
+INDEX_PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
+# Rounding of a coefficient of the parabolic cubic, beside the product of the lengths in its terms.
+CUBIC_ERROR = math.ldexp(1.0, -44)
+
+
+@dataclass(frozen=True, eq=False)
+class Patches:
+    """The vectors a, b, c, d, e of eq. (8) of k patches, (k, 5, 3), in a unit near their size.
+
+    `noise` bounds the error that the rounding of the coordinates leaves in a component. Gaussian
+    images do not depend on the unit.
+    """
+
+    vectors: Array
+    noise: float
+
+    @classmethod
+    def of_control_points(cls, nets: Array) -> Patches:
+        """Return the patches of Bézier nets (k, 6, 3)."""
+        differences = nets - nets[:, 2:3]
+        scale = _unit(float(np.abs(differences).max()))
+        columns = (differences * scale).reshape(len(nets), 18).T
+        vectors = plain(formulas.power_form)(*columns)[:15]
+        noise = sampler.DATA_ERROR * float(np.abs(nets).max()) * scale
+        return cls(_stacked(vectors, len(nets)), noise)
+
+    @classmethod
+    def of_spline(cls, spline: Spline) -> Patches:
+        """Return all patches of a spline, from differences of its coefficients."""
+        cell, turn = np.divmod(np.arange(spline.patches), 4)
+        i, j = np.divmod(cell, spline.cells[1])
+        steps = sampler.NEIGHBOURS[turn][:, sampler.TRIANGLE_NEIGHBOURS]
+        around = spline.coefficients[i[:, None] + 1 + steps[..., 0], j[:, None] + 1 + steps[..., 1]]
+        centre = spline.coefficients[i + 1, j + 1][:, None]
+        columns = (spline.scale * (around - centre)).reshape(spline.patches, -1).T
+        vectors = plain(sampler.triangle)(*columns)[:15]
+        largest = float(np.abs(spline.coefficients * spline.scale).max())
+        noise = sampler.SCALE * sampler.DATA_ERROR * largest
+        return cls(_stacked(vectors, spline.patches), noise)
+
+    def __len__(self) -> int:
+        """Return the number of patches."""
+        return len(self.vectors)
+
+    def __getitem__(self, rows: NDArray[Any] | slice) -> Patches:
+        """Return some of the patches."""
+        return Patches(self.vectors[rows], self.noise)
+
+    def apply(self, formula: Callable[..., Any], *more: ArrayLike) -> list[Any]:
+        """Return the outputs of a formula of a, b, c, d, e, each (k,), for all patches."""
+        return list(plain(formula)(*self.vectors.reshape(len(self), 15).T, *more))
+
+    @cached_property
+    def normals(self) -> Array:
+        """The polar form (k, 3, 3, 3) of N(u,v): [i, j] is the control normal of corners i and j.
+
+        What is zero up to noise is set to zero: a singular point.
+        """
+        net = _stacked(self.apply(formulas.control_normals), len(self))
+        net[np.linalg.norm(net, axis=2) <= self.normal_noise[:, None]] = 0.0
+        polar = np.empty((len(self), 3, 3, 3))
+        for k, (i, j) in enumerate(INDEX_PAIRS):
+            polar[:, i, j] = polar[:, j, i] = net[:, k]
+        return polar
+
+    @cached_property
+    def cubic(self) -> Array:
+        """The Bézier net (k, 10) of the cubic whose sign is that of K: D300, D210, D201, …."""
+        return np.stack(np.broadcast_arrays(*self.apply(formulas.parabolic_cubic)), axis=1)
+
+    @cached_property
+    def second(self) -> Array:
+        """The largest length (k,) of a, b, c."""
+        return np.linalg.norm(self.vectors[:, :3], axis=2).max(axis=1)
+
+    @cached_property
+    def tangent(self) -> Array:
+        """A bound (k,) of the lengths of p_u and p_v."""
+        return 2.0 * self.second + np.linalg.norm(self.vectors[:, 3:], axis=2).max(axis=1)
+
+    @cached_property
+    def normal_noise(self) -> Array:
+        """The error (k,) of a control normal."""
+        return 8.0 * self.tangent * (self.noise + np.spacing(self.tangent))
+
+    @cached_property
+    def cubic_rounding(self) -> Array:
+        """The rounding error (k,) of a coefficient of the cubic."""
+        return CUBIC_ERROR * self.second**2 * self.tangent**4
+
+    @cached_property
+    def flat(self) -> NDArray[np.bool_]:
+        """Which patches (k,) are flat or developable, up to noise: D(N) vanishes."""
+        longest = np.linalg.norm(self.normals, axis=3).max(axis=(1, 2))
+        error = 4.0 * self.noise * self.second * longest * (longest + self.tangent * self.second)
+        return np.abs(self.cubic).max(axis=1) <= error + self.cubic_rounding
+
+
+def checked_control_points(control_points: ArrayLike) -> Array:
+    """Return the control points of one patch as (6, 3) floats; InputError if they are none."""
+    array = real_array(control_points, "control_points")
+    if array.shape != (6, 3):
+        raise InputError(
+            "control_points must be six points of three coordinates, in the order b200, b020, "
+            f"b002, b110, b101, b011, and not of shape {array.shape}."
+        )
+    if not np.isfinite(array).all():
+        row = int(np.argmin(np.isfinite(array).all(axis=1)))
+        raise InputError(f"control_points[{row}] holds NaN or infinity.")
+    if np.abs(array).max() > 2.0**LARGEST_EXPONENT:
+        raise InputError("control_points are too large to compute with.")
+    return array
+
+
+def _stacked(columns: Any, count: int) -> Array:  # noqa: ANN401 - numbers or arrays
+    """Return 3 m columns as vectors (count, m, 3)."""
+    return np.stack(np.broadcast_arrays(*columns), axis=1).reshape(count, -1, 3).copy()
+
+
+def _unit(largest: float) -> float:
+    """Return a power of two that brings a number to about 1."""
+    return math.ldexp(1.0, min(-math.frexp(largest)[1], LARGEST_EXPONENT)) if largest else 1.0

@@ -1,0 +1,152 @@
+"""What hides what in a picture.
+
+Matplotlib draws in three dimensions without a depth test. It is therefore decided here, by the
+triangles of a mesh of the surface that lie between a point and the viewer.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..spline import Spline
+
+__all__ = ["AZIMUTH", "ELEVATION", "Scene", "front", "height_factor", "quadrangles", "view"]
+
+ELEVATION, AZIMUTH = 28.0, -55.0  # of the viewer, in degrees
+MESH, MOST_MESH = 112, 224  # quadrangles along u and v: as many as cells, within this
+# A surface hides a sample if it is nearer to the viewer by this part of the picture's diameter.
+HIDING = 0.01
+# A height below or above these parts of the width is exaggerated or reduced, to about the second.
+LOW, LOW_WANTED = 0.1, 0.25
+HIGH, HIGH_WANTED = 10.0, 2.0
+
+
+def view(elevation: float = ELEVATION, azimuth: float = AZIMUTH) -> NDArray[np.float64]:
+    """Return the rows right, up, and towards a viewer at two angles in degrees."""
+    angles = math.radians(elevation), math.radians(azimuth)
+    s, c, S, C = (f(angle) for angle in angles for f in (math.sin, math.cos))
+    return np.array([[-S, C, 0.0], [-s * C, -s * S, c], [c * C, c * S, s]])
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """A mesh (m + 1, n + 1, 3) of a surface, to be seen with its heights times `factor`.
+
+    `view` holds the rows right, up, and towards the viewer.
+    """
+
+    mesh: NDArray[np.float64]
+    factor: float = 1.0
+    view: NDArray[np.float64] = field(default_factory=view)
+
+    @classmethod
+    def of(cls, spline: Spline) -> Scene:
+        """Return the scene of a spline, with heights that can be seen."""
+        u, v = (
+            np.linspace(low, high, min(max(MESH, count), MOST_MESH) + 1)
+            for (low, high), count in zip(spline.domain, spline.cells, strict=True)
+        )
+        mesh = spline.evaluate(u[:, None], v)
+        return cls(mesh, height_factor(np.ptp(mesh.reshape(-1, 3), axis=0)))
+
+    def seen(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return points (..., 3) as right, up, and nearness to the viewer."""
+        return (points * [1.0, 1.0, self.factor]) @ self.view.T
+
+    @cached_property
+    def quadrangles(self) -> NDArray[np.float64]:
+        """The quadrangles (Q, 4, 3) of the mesh, their corners going round."""
+        return quadrangles(self.mesh)
+
+    @cached_property
+    def triangles(self) -> NDArray[np.float64]:
+        """The halves (T, 3, 3) of the quadrangles as they are seen."""
+        seen = self.seen(self.quadrangles)
+        return np.concatenate([seen[:, [0, 1, 2]], seen[:, [0, 2, 3]]])
+
+    @cached_property
+    def brightness(self) -> NDArray[np.float64]:
+        """How much light each quadrangle gets, 0 … 1, from behind the viewer's left shoulder."""
+        a, b, c, d = np.moveaxis(self.seen(self.quadrangles), 1, 0)
+        size = np.abs([c - a, d - b]).max() or 1.0
+        normals = np.cross((c - a) / size, (d - b) / size)
+        length = np.linalg.norm(normals, axis=1, keepdims=True)
+        normals /= np.where(length > 0.0, length, 1.0)
+        normals *= np.where(normals[:, 2:] < 0.0, -1.0, 1.0)  # both sides of a surface are lit
+        lamp = np.array([-0.45, 0.6, 0.7])
+        return np.clip(normals @ (lamp / np.linalg.norm(lamp)), 0.0, 1.0)
+
+    def visible(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Say which points (P, 3) of the surface the surface does not hide."""
+        seen = self.seen(points)
+        diameter = float(np.linalg.norm(np.ptp(self.triangles.reshape(-1, 3), axis=0)))
+        return seen[:, 2] >= front(self.triangles, seen[:, :2]) - HIDING * diameter
+
+
+def quadrangles(mesh: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the quadrangles (Q, 4, 3) of a mesh (m + 1, n + 1, 3), their corners going round."""
+    corners = mesh[:-1, :-1], mesh[1:, :-1], mesh[1:, 1:], mesh[:-1, 1:]
+    return np.stack([x.reshape(-1, 3) for x in corners], axis=1)
+
+
+def front(triangles: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return how near the nearest of the triangles (T, 3, 3) is at places (P, 2); −∞ at none."""
+    flat = triangles[..., :2]
+    grid = max(1, round(math.sqrt(len(triangles)) / 2))
+    lowest, highest = flat.min(axis=(0, 1)), flat.max(axis=(0, 1))
+    step = np.where(highest > lowest, highest - lowest, 1.0) / grid
+
+    def square(points: NDArray[np.float64]) -> NDArray[np.int64]:
+        return np.clip(np.floor((points - lowest) / step), 0, grid - 1).astype(np.int64)
+
+    # Every triangle is noted in all squares that its bounding box meets.
+    first, last = square(flat.min(axis=1)), square(flat.max(axis=1))
+    sizes = last - first + 1
+    owner, k = _runs(sizes.prod(axis=1))
+    i, j = np.divmod(k, sizes[owner, 1])
+    noted = (first[owner, 0] + i) * grid + first[owner, 1] + j
+    order = np.argsort(noted, kind="stable")
+    starts = np.searchsorted(noted[order], np.arange(grid * grid + 1))
+
+    own = square(places) @ [grid, 1]
+    place, k = _runs(starts[own + 1] - starts[own])
+    near = triangles[owner[order[starts[own][place] + k]]]
+    a, b, c = np.moveaxis(near[..., :2] - places[place][:, None], 1, 0)
+    weights = np.stack([_cross(b, c), _cross(c, a), _cross(a, b)], axis=1)
+    total = weights.sum(axis=1, keepdims=True)
+    weights /= np.where(total == 0.0, np.nan, total)
+    inside = (weights >= -1e-9).all(axis=1)
+    front = np.full(len(places), -np.inf)
+    np.maximum.at(front, place[inside], np.einsum("ij,ij->i", weights, near[..., 2])[inside])
+    return front
+
+
+def _runs(counts: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return each k, repeated counts[k] times, and beside it the numbers 0 … counts[k] − 1."""
+    which = np.repeat(np.arange(len(counts)), counts)
+    return which, np.arange(len(which)) - (np.cumsum(counts) - counts)[which]
+
+
+def _cross(left: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.float64]:
+    return left[:, 0] * right[:, 1] - left[:, 1] * right[:, 0]
+
+
+def height_factor(extent: NDArray[np.float64]) -> float:
+    """Return the factor for heights: 1, unless the surface is very low or very high."""
+    width, height = float(extent[:2].max()), float(extent[2])
+    if LOW * width <= height <= HIGH * width or height <= 1e-9 * width or width <= 1e-9 * height:
+        return 1.0
+    if height < LOW * width:
+        return _round(LOW_WANTED * width / height)
+    return 1.0 / _round(height / (HIGH_WANTED * width))
+
+
+def _round(factor: float) -> float:
+    """Return the largest of …, 1, 2, 5, 10, 20, … that is not above a factor."""
+    power = 10.0 ** math.floor(math.log10(factor))
+    return power * max(digit for digit in (1, 2, 5) if digit * power <= factor * (1 + 1e-9))

@@ -1,0 +1,1 @@
+"""Support functions as objects: evaluated, combined."""

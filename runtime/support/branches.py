@@ -1,0 +1,100 @@
+"""What a support function has at given normals: one row for each branch."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...generated import support as kernels
+
+__all__ = ["Branches", "Sheets", "curvatures"]
+
+
+@dataclass(frozen=True, eq=False, slots=True, repr=False)
+class Branches:
+    """The k branches of a support function at S normals, by normal and then by patch.
+
+    Lengths are in the unit L of the surface.
+
+    - `normal_index`: (k,) int64, row of the normals that were asked.
+    - `normals`: (k, 3) float64, these normals, of unit length.
+    - `support`: (k,) float64, the support function h(n) = n·x (4), in L.
+    - `points`: (k, 3) float64, the point x(n) of the envelope (5), in L.
+    - `hessian`: (k, 3, 3) float64, second derivatives of the support function (homogeneous of
+      degree 1) in L: hessian @ n = 0, and the eigenvalues in the tangent plane are the radii.
+    - `principal_radii`: (k, 2) float64, signed principal radii of curvature in L, the larger one
+      first; positive on a sphere with outward normals.
+    - `gaussian_curvature`: (k,) float64, in 1/L². Its sign bit tells elliptic from hyperbolic.
+    - `mean_curvature`: (k,) float64, in 1/L, positive on a sphere with outward normals.
+    - `patch_index`: (k,) int64, patch of the spline; −1 where there is none or more than one.
+    - `uv`: (k, 2) float64, parameters of the point; NaN where patch_index is −1.
+
+    Where a radius is 0 the surface is singular (a point has two such): Gaussian curvature is
+    infinite and mean curvature infinite or NaN. Where a radius is infinite, at a parabolic point,
+    Hessian and radii are infinite or NaN; Gaussian curvature is then 0, or NaN after a sum.
+    """
+
+    normal_index: NDArray[np.int64]
+    normals: NDArray[np.float64]
+    support: NDArray[np.float64]
+    points: NDArray[np.float64]
+    hessian: NDArray[np.float64]
+    principal_radii: NDArray[np.float64]
+    gaussian_curvature: NDArray[np.float64]
+    mean_curvature: NDArray[np.float64]
+    patch_index: NDArray[np.int64]
+    uv: NDArray[np.float64]
+
+    @property
+    def elliptic(self) -> NDArray[np.bool_]:
+        """(k,) bool: where the Gaussian curvature is positive (its sign bit is clear)."""
+        return ~self.hyperbolic
+
+    @property
+    def hyperbolic(self) -> NDArray[np.bool_]:
+        """(k,) bool: where the Gaussian curvature is negative (its sign bit is set)."""
+        return np.signbit(self.gaussian_curvature)
+
+    def __len__(self) -> int:
+        """Return the number of branches, of all normals together."""
+        return len(self.support)
+
+    def __repr__(self) -> str:
+        hyperbolic = int(np.count_nonzero(self.hyperbolic))
+        return f"Branches({len(self) - hyperbolic:,} elliptic, {hyperbolic:,} hyperbolic)"
+
+
+@dataclass(frozen=True, eq=False)
+class Sheets:
+    """What sources of support functions hand on: `Branches` without what follows from the rest."""
+
+    normal_index: NDArray[np.int64]
+    points: NDArray[np.float64]
+    hessian: NDArray[np.float64]
+    gaussian: NDArray[np.float64]
+    mean: NDArray[np.float64]
+    patch_index: NDArray[np.int64]
+    uv: NDArray[np.float64]
+
+    def branches(self, normals: NDArray[np.float64]) -> Branches:
+        """Return the branches at unit normals (S, 3)."""
+        mine = normals[self.normal_index]
+        support = np.empty(len(mine))
+        kernels.fill_support(mine, self.points, support)
+        radii, _, _ = curvatures(mine, self.hessian)
+        return Branches(
+            self.normal_index, mine, support, self.points, self.hessian, radii,
+            self.gaussian, self.mean, self.patch_index, self.uv,
+        )  # fmt: skip
+
+
+def curvatures(
+    normals: NDArray[np.float64], hessian: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Return principal radii (k, 2), Gaussian and mean curvature at unit normals (k, 3)."""
+    count = len(normals)
+    radii, gaussian, mean = np.empty((count, 2)), np.empty(count), np.empty(count)
+    kernels.fill_curvatures(normals, hessian, radii, gaussian, mean)
+    return radii, gaussian, mean

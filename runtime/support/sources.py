@@ -1,0 +1,206 @@
+"""Where support functions come from: a spline, one patch, an expression."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Protocol, cast
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...generated import patch as formulas
+from ...generated import sampler
+from ...generated import support as kernels
+from ..checks import real_array
+from ..errors import InputError
+from ..integers import integers, integers_by_row, ratio, sign
+from ..plain import plain
+from ..search import NormalBins, fill, find
+from ..spline import LARGEST_EXPONENT, Spline
+from .branches import Sheets
+
+if TYPE_CHECKING:
+    import sympy
+
+__all__ = ["PatchSource", "Source", "SplineSource"]
+
+# Quadratic and cubic forms in three variables that vanish here vanish everywhere.
+FOR_QUADRATICS = [(2, 0, 0), (0, 2, 0), (0, 0, 2), (1, 1, 0), (1, 0, 1), (0, 1, 1)]
+FOR_CUBICS = [(i, j, 3 - i - j) for i in range(4) for j in range(4 - i)]
+
+
+class Source(Protocol):
+    """A support function: what it has at unit normals (S, 3), and how it is written."""
+
+    def sheets(self, normals: NDArray[np.float64]) -> Sheets:
+        """Return all branches, by normal."""
+        ...
+
+    def expression(self) -> sympy.Expr | None:
+        """Return h in n_x, n_y, n_z, on the unit sphere; None if no one expression says it."""
+        ...
+
+    def domain(self) -> Any:  # noqa: ANN401 - a Boolean of SymPy
+        """Return the condition on n_x, n_y, n_z for a branch; None if no one condition says it."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class SplineSource:
+    """The support functions of all patches of a spline, each normal of each exactly once."""
+
+    spline: Spline
+
+    def sheets(self, normals: NDArray[np.float64]) -> Sheets:
+        """Return all branches, by normal and then by patch."""
+        bins = NormalBins(normals)
+        hits = find(self.spline, bins)
+        fields = fill(self.spline, bins, hits)
+        known = np.full((len(hits), 2), np.nan)
+        known[hits.exact] = hits.local[:, 3:5]
+        order = np.argsort(hits.normal_index, kind="stable")
+        patches, rows = hits.patch_index[order], hits.normal_index[order]
+        hessian = np.empty((len(hits), 3, 3))
+        kernels.fill_hessians(
+            self.spline.coefficients,
+            self.spline.scale,
+            patches,
+            normals[rows],
+            known[order],
+            hessian,
+        )
+        return Sheets(
+            rows, fields["points"][order], hessian, fields["gaussian_curvature"][order],
+            fields["mean_curvature"][order], patches, fields["uv"][order],
+        )  # fmt: skip
+
+    def expression(self) -> None:
+        """Return None: a spline has one expression for each patch."""
+
+    def domain(self) -> None:
+        """Return None: a spline has one domain for each patch."""
+
+    def __str__(self) -> str:
+        return f"{self.spline.name}, {self.spline.patches:,} patches"
+
+
+@dataclass(frozen=True, eq=False)
+class PatchSource:
+    """The support function of one quadratic Bézier triangle (10) with `control_points` (6, 3).
+
+    A normal belongs to it if the closed triangle has a regular point with that oriented normal.
+    What rounding leaves open is decided in exact arithmetic.
+    """
+
+    control_points: NDArray[np.float64]
+
+    @classmethod
+    def checked(cls, control_points: ArrayLike) -> PatchSource:
+        """Make one; InputError unless the patch has a support function."""
+        points = real_array(control_points, "control_points")
+        if points.shape != (6, 3):
+            raise InputError(f"control_points must have the shape (6, 3), not {points.shape}.")
+        bad = ~(np.abs(points) <= 2.0**LARGEST_EXPONENT).all(axis=1)
+        if bad.any():
+            raise InputError(
+                f"control_points[{int(bad.argmax())}] is not finite, or too large to compute with."
+            )
+        source = cls(points)
+        D, *_ = plain(formulas.forms)(*source._exact_vectors, *np.array(FOR_QUADRATICS, object).T)
+        if not D.any():
+            raise InputError("the patch is flat or developable: it has no support function.")
+        c3 = plain(formulas.orientation)(*source._exact_vectors, *np.array(FOR_CUBICS, object).T)
+        if not c3.any():
+            raise InputError("the patch has no regular point, so it has no normals.")
+        return source
+
+    def sheets(self, normals: NDArray[np.float64]) -> Sheets:
+        """Return the branch of each normal that has one."""
+        rows, uv, signs = self._members(normals)
+        count = len(rows)
+        points, hessian = np.empty((count, 3)), np.empty((count, 3, 3))
+        gaussian, mean = np.empty(count), np.empty(count)
+        kernels.fill_branches(
+            self._vectors, self.control_points[2], self._scale, normals[rows], uv,
+            points, hessian, gaussian, mean,
+        )  # fmt: skip
+        gaussian = np.where(signs != 0, np.copysign(gaussian, signs), gaussian)
+        return Sheets(rows, points, hessian, gaussian, mean, np.zeros(count, dtype=np.int64), uv)
+
+    def expression(self) -> sympy.Expr:
+        """Return the cubic over the quadratic form, with the exact values of the control points."""
+        return self._symbolic.support_function
+
+    def domain(self) -> Any:  # noqa: ANN401 - a Boolean of SymPy
+        """Return the closed Gaussian image: U, V, W of one sign, without singular points."""
+        import sympy as sp
+
+        D, U, V, W = self._symbolic.forms.values()
+        at_least, unequal = cast(Any, sp.Ge), cast(Any, sp.Ne)  # typed as numbers, too
+        inside = [sp.And(*(at_least(s * x, 0) for x in (U, V, W))) for s in (1, -1)]
+        return sp.And(sp.Or(*inside), unequal(D, 0), sp.Gt(self._symbolic.orientation, 0))
+
+    def __str__(self) -> str:
+        return "quadratic patch"
+
+    @cached_property
+    def _symbolic(self) -> Any:  # noqa: ANN401 - SymPy is loaded here only
+        from ...symbolic import BezierTriangle
+
+        return BezierTriangle(self.control_points.tolist())
+
+    @cached_property
+    def _scale(self) -> float:
+        """A power of two that brings the differences of control points to about 1."""
+        largest = float(np.abs(self.control_points - self.control_points[2]).max())
+        return math.ldexp(1.0, min(-math.frexp(largest)[1], LARGEST_EXPONENT))
+
+    @cached_property
+    def _vectors(self) -> tuple[float, ...]:
+        """The vectors a … e of eq. (8), times the scale."""
+        net = self._scale * (self.control_points - self.control_points[2])
+        return tuple(map(float, plain(formulas.power_form)(*net.ravel())[:15]))
+
+    @cached_property
+    def _bound(self) -> float:
+        """The rounding error of U, V, W at unit normals, as for the patches of a spline."""
+        second, first = np.abs(self._vectors[:9]).max(), np.abs(self._vectors[9:]).max()
+        return float(32.0 * sampler.FORM_ERROR * (second + first + sampler.FORM_ERROR))
+
+    @cached_property
+    def _exact_vectors(self) -> tuple[int, ...]:
+        """The vectors a … e as integers, in some unit."""
+        net, _ = integers(self.control_points)
+        return plain(formulas.power_form)(*net.ravel())[:15]
+
+    def _members(
+        self, normals: NDArray[np.float64]
+    ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.int8]]:
+        """Return which normals the patch has, their u, v (k, 2), and the exact sign of K or 0."""
+        kinds, uv = np.empty(len(normals), dtype=np.int8), np.zeros((len(normals), 2))
+        signs = np.zeros_like(kinds)
+        kernels.classify(
+            self._vectors, self._bound, sampler.ACCURATE * self._bound, normals, kinds, uv
+        )
+        open_ = np.flatnonzero(kinds == kernels.DOUBTFUL)
+        inside, uv[open_], signs[open_] = self._decided(normals[open_])
+        kinds[open_] = np.where(inside, kernels.INSIDE, kernels.OUTSIDE)
+        rows = np.flatnonzero(kinds == kernels.INSIDE)
+        return rows, uv[rows], signs[rows]
+
+    def _decided(
+        self, normals: NDArray[np.float64]
+    ) -> tuple[NDArray[np.bool_], NDArray[np.float64], NDArray[np.int8]]:
+        """Decide exactly: which normals (k, 3) belong to the patch, u, v (k, 2), the sign of K."""
+        n, _ = integers_by_row(normals)
+        forms = np.array(plain(formulas.forms)(*self._exact_vectors, *n), dtype=object)
+        D, *bounds = (sign(x) for x in forms)
+        c3 = sign(np.asarray(plain(formulas.orientation)(*self._exact_vectors, *n), dtype=object))
+        signs = np.stack(bounds)
+        inside = (D != 0) & (c3 > 0) & ((signs.min(axis=0) >= 0) | (signs.max(axis=0) <= 0))
+        uv = np.zeros((len(normals), 2))
+        for axis in (0, 1):
+            uv[inside, axis] = ratio(forms[axis + 1, inside], forms[0, inside])
+        return inside, uv, D

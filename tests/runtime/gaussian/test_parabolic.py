@@ -1,0 +1,514 @@
+"""Parabolic points: lines of patches, and curves and points of splines and surfaces."""
+
+import warnings
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.generated import patch as formulas
+from gaussmap.runtime.gaussian.chains import joined
+from gaussmap.runtime.gaussian.curvature_field import CurvatureField
+from gaussmap.runtime.gaussian.patches import Patches
+from gaussmap.runtime.plain import plain
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+PatchClass = gm.PatchClass
+
+
+def net_of(a, b, c, d, e) -> Array:
+    """Return the control points of ½ a u² + b uv + ½ c v² + d u + e v."""
+    a, b, c, d, e = (np.array(x, dtype=float) for x in (a, b, c, d, e))
+    return np.array([d + a / 2, e + c / 2, 0 * a, (b + d + e) / 2, d / 2, e / 2])
+
+
+def graph(f, domain=((-1.0, 1.0), (-1.0, 1.0))) -> gm.Surface:
+    return gm.Surface.from_callable(lambda u, v: np.stack([u, v, f(u, v)], axis=-1), domain)
+
+
+def distances(points: Array, polylines: list[Array]) -> Array:
+    """Return the distances (k,) of points from the nearest segment of polylines."""
+    start = np.concatenate([x[:-1] for x in polylines])
+    along = np.concatenate([np.diff(x, axis=0) for x in polylines])
+    square = np.maximum(np.einsum("sx,sx->s", along, along), 1e-300)
+    share = np.clip(np.einsum("ksx,sx->ks", points[:, None] - start, along) / square, 0.0, 1.0)
+    apart = points[:, None] - start - share[..., None] * along
+    return np.linalg.norm(apart, axis=2).min(axis=1)
+
+
+# --- one patch ------------------------------------------------------------------------------------
+
+
+def test_lines_hold_parabolic_points_with_one_normal() -> None:
+    for seed in range(40):
+        net = np.random.default_rng(seed).integers(-9, 10, (6, 3)).astype(float)
+        vectors = Patches.of_control_points(net[None]).vectors.ravel()
+        lines = gm.parabolic_lines(net)
+        assert len(lines) in (1, 3)
+        for line in lines:
+            assert np.hypot(line.s, line.t) == pytest.approx(1.0, abs=1e-15)
+            along = np.linspace(-2.0, 2.0, 7)
+            u = -line.rho * line.s - along * line.t
+            v = -line.rho * line.t + along * line.s
+            N = np.array(plain(formulas.tangents)(*vectors, u, v)[6:])
+            size = 1.0 + np.abs(N).max()
+            assert np.abs(np.cross(N.T, line.normal)).max() <= 1e-11 * size
+            if line.segment is not None:
+                weights = np.column_stack([line.segment, 1.0 - line.segment.sum(axis=1)])
+                assert weights.min() >= -1e-12
+                np.testing.assert_allclose(weights.min(axis=1), 0.0, atol=1e-12)
+                height = line.segment @ [line.s, line.t] + line.rho
+                np.testing.assert_allclose(height, 0.0, atol=1e-12)
+
+
+def test_lines_given_in_advance() -> None:
+    """p = (½u², uv, ½v²) + d u + e v with D(N) = (v + 2)² u, see `test_gaussian_image`."""
+    lines = gm.parabolic_lines(net_of([1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 2, 0], [0, 1, 2]))
+    by_place = {round(line.rho * (line.s + line.t)): line for line in lines}
+    assert sorted(by_place) == [0, 2]
+    single, double = by_place[0], by_place[2]
+    assert (single.multiplicity, double.multiplicity) == (1, 2)
+    assert abs(single.s) == pytest.approx(1.0, abs=1e-12)
+    assert abs(double.t) == pytest.approx(1.0, abs=1e-7)  # a double root has half the digits
+    np.testing.assert_allclose(single.normal, [1.0, 0.0, 0.0], atol=1e-12)
+    assert single.segment is not None
+    np.testing.assert_allclose(np.sort(single.segment, axis=0), [[0, 0], [0, 1]], atol=1e-12)
+    assert double.segment is None
+
+
+def test_pieces_make_up_the_triangle_and_have_one_sign() -> None:
+    generator = np.random.default_rng(3)
+    numbers = []
+    for _ in range(60):
+        net = generator.integers(-9, 10, (6, 3)).astype(float)
+        pieces = gm.split_patch(net)
+        numbers.append(len(pieces))
+        vectors = Patches.of_control_points(net[None]).vectors.ravel()
+        total = 0.0
+        for piece in pieces:
+            x, y = piece.corners.T
+            area = 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
+            assert area > 0.0  # counter-clockwise
+            total += area
+            weights = generator.dirichlet(np.ones(len(x)), 20)
+            u, v = (weights @ piece.corners).T
+            N = np.array(plain(formulas.tangents)(*vectors, u, v)[6:])
+            A, B, C = (vectors[k : k + 3] @ N for k in (0, 3, 6))
+            assert (np.sign(A * C - B * B) == piece.sign).all()
+        assert total == pytest.approx(0.5, abs=1e-13)
+    assert set(numbers) >= {1, 2, 3}
+
+
+@pytest.mark.parametrize("factor", [1e-150, 1e-12, 1e12, 1e100])
+def test_scale_does_not_matter(factor: float) -> None:
+    for seed in range(10):
+        net = np.random.default_rng(seed).integers(-9, 10, (6, 3)).astype(float)
+        lines, others = gm.parabolic_lines(net), gm.parabolic_lines(net * factor)
+        assert len(lines) == len(others)
+        for line, other in zip(lines, others, strict=True):
+            assert (line.s, line.t, line.rho) == pytest.approx(
+                (other.s, other.t, other.rho), rel=1e-9, abs=1e-9
+            )
+
+
+def test_translation_costs_only_its_rounding() -> None:
+    net = np.random.default_rng(1).integers(-9, 10, (6, 3)).astype(float)
+    for line, other in zip(gm.parabolic_lines(net), gm.parabolic_lines(net / 3 + 1e6), strict=True):
+        assert (line.s, line.t, line.rho) == pytest.approx((other.s, other.t, other.rho), abs=1e-7)
+
+
+# --- classes --------------------------------------------------------------------------------------
+
+X, Y, Z, O = (1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, 0)  # noqa: E741
+
+
+@pytest.mark.parametrize(
+    ("vectors", "expected"),
+    [
+        ((Z, O, Z, X, Y), PatchClass.ELLIPTIC),
+        ((Z, O, (0, 0, -1), X, Y), PatchClass.HYPERBOLIC),
+        ((O, Z, O, X, Y), PatchClass.HYPERBOLIC),
+        ((Z, O, O, X, Y), PatchClass.DEVELOPABLE),
+        ((X, Y, Z, O, O), PatchClass.DEVELOPABLE),  # a cone: homogeneous
+        ((O, O, O, X, Y), PatchClass.PLANAR),
+        ((X, Y, X, X, Y), PatchClass.PLANAR),
+        ((X, O, O, X, X), PatchClass.SINGULAR),
+        ((O, O, O, O, O), PatchClass.SINGULAR),
+        ((X, Y, Z, (0, 2, 0), (0, 1, 2)), PatchClass.ELLIPTIC),  # K = 0 on an edge
+        (((4, 0, 0), (0, 4, 0), (0, 0, 4), (-2, 4, 0), (0, 0, 4)), PatchClass.MIXED),
+    ],
+)
+def test_classes(vectors, expected) -> None:
+    net = net_of(*vectors)
+    nets = [net, net * 1e-12, net * 1e12, net[[1, 2, 0, 5, 3, 4]], net[[1, 0, 2, 3, 5, 4]]]
+    assert gm.classify_patches(np.array(nets)).tolist() == [expected] * 5
+    assert gm.classify_patches([net / 3 + 1e5]).tolist() == [expected]
+    if expected in (PatchClass.PLANAR, PatchClass.DEVELOPABLE, PatchClass.SINGULAR):
+        assert gm.parabolic_lines(net) == ()
+        assert [piece.sign for piece in gm.split_patch(net)] == [0]
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize(
+    ("name", "allowed"),
+    [
+        ("torus", {PatchClass.ELLIPTIC, PatchClass.HYPERBOLIC}),
+        ("ellipsoid_patch", {PatchClass.ELLIPTIC}),
+        ("catenoid", {PatchClass.HYPERBOLIC}),
+        ("monkey_saddle", {PatchClass.HYPERBOLIC}),
+        ("cylinder", {PatchClass.DEVELOPABLE}),
+        ("plane", {PatchClass.PLANAR}),
+    ],
+)
+def test_classes_of_splines(name: str, allowed: set) -> None:
+    spline = gm.fit(gm.surfaces.surface(name), (32, 32))
+    classes = gm.classify_patches(spline)
+    assert classes.shape == (spline.patches,)
+    assert set(classes.tolist()) == allowed
+
+
+# --- splines --------------------------------------------------------------------------------------
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("cells", [(16, 16), (24, 17), (64, 48)])
+def test_parabolic_circles_of_a_torus_spline(cells: tuple[int, int]) -> None:
+    """Two closed polylines, each within one cell of the exact circle, going round once."""
+    found = gm.parabolic_points(gm.fit(gm.surfaces.torus(), cells))
+    assert [curve.closed for curve in found.curves] == [True, True]
+    assert not found.isolated
+    assert not found.developable
+    for curve, place in zip(
+        sorted(found.curves, key=lambda x: x.uv[0, 1]), (np.pi / 2, 3 * np.pi / 2), strict=True
+    ):
+        assert np.abs(curve.uv[:, 1] - place).max() <= 2 * np.pi / cells[1]
+        assert abs(curve.uv[-1, 0] - curve.uv[0, 0]) == pytest.approx(2 * np.pi, abs=1e-12)
+        np.testing.assert_allclose(curve.points[0], curve.points[-1], atol=1e-12)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("name", ["dupin_cyclide", "moebius_band", "wavy_graph"])
+def test_curvature_changes_sign_across_the_polylines_of_a_spline(name: str) -> None:
+    """On both sides of the middle of every segment K has two signs, by the spline's own samples."""
+    spline = gm.fit(gm.surfaces.surface(name), (12, 10))
+    patches, steps = Patches.of_spline(spline), []
+    found = gm.parabolic_points(spline, tolerance=0.1)
+    for curve in found.curves:
+        along = np.diff(curve.uv, axis=0)
+        across = np.stack([-along[:, 1], along[:, 0]], axis=1)
+        across /= np.linalg.norm(across / spline.frame[2:], axis=1, keepdims=True)
+        middle = 0.5 * (curve.uv[1:] + curve.uv[:-1])
+        steps.append([signs_at(spline, patches, middle + x * across) for x in (1e-7, -1e-7)])
+    left, right = (np.concatenate([x[k] for x in steps]) for k in (0, 1))
+    assert len(left) > 20
+    assert (left * right == -1).all()
+
+
+def signs_at(spline: gm.Spline, patches: Patches, places: Array) -> Array:
+    """Return the sign of D(N) of the patch at each place, by its definition."""
+    x = (places - spline.frame[:2]) / spline.frame[2:]
+    x = np.where([e[0] == "wrap" for e in spline.ends], np.mod(x, spline.cells), x)
+    cell = np.clip(np.floor(x).astype(int), 0, np.array(spline.cells) - 1)
+    s, t = (x - cell - 0.5).T
+    turn = np.where(np.abs(s) > np.abs(t), np.where(s > 0, 1, 3), np.where(t > 0, 2, 0))
+    for k in range(1, 4):
+        s, t = np.where(turn >= k, t, s), np.where(turn >= k, -s, t)
+    vectors = patches.vectors[4 * (cell[:, 0] * spline.cells[1] + cell[:, 1]) + turn]
+    u, v = -t - s, -t + s
+    N = np.stack(plain(formulas.tangents)(*vectors.reshape(-1, 15).T, u, v)[6:], axis=1)
+    A, B, C = (np.einsum("kx,kx->k", N, vectors[:, k]) for k in range(3))
+    return np.sign(A * C - B * B)
+
+
+@pytest.mark.compiled
+def test_spline_of_a_wavy_graph_comes_nearer_with_finer_cells() -> None:
+    """K of the spline is of order 1: its parabolic net is within two cells of the exact one."""
+    for cells in (16, 48):
+        spline = gm.fit(gm.surfaces.wavy_graph(), (cells, cells))
+        found = gm.parabolic_points(spline, tolerance=0.01)
+        size = 2.0 / cells
+        vertices = np.concatenate([curve.uv for curve in found.curves])
+        assert off_the_net(vertices).max() <= 2.0 * size
+        points = np.concatenate(exact_net())
+        assert distances(points, [curve.uv for curve in found.curves]).max() <= 2.0 * size
+
+
+@pytest.mark.compiled
+def test_polylines_of_a_spline_follow_it_in_space() -> None:
+    spline = gm.fit(gm.surfaces.dupin_cyclide(), (12, 12))
+    coarse, fine = (gm.parabolic_points(spline, tolerance=x) for x in (0.1, 1e-5))
+    vertices = [sum(len(curve.uv) for curve in found.curves) for found in (coarse, fine)]
+    assert vertices[1] > vertices[0]
+    for left, right in zip(coarse.curves, fine.curves, strict=True):
+        assert len(right.uv) >= len(left.uv)
+        places = along(right.uv, 4)
+        size = np.linalg.norm(np.ptp(spline.coefficients.reshape(-1, 3), axis=0))
+        wrapped = np.mod(places, 2 * np.pi)
+        points = spline.evaluate(wrapped[:, 0], wrapped[:, 1])
+        assert distances(points, [right.points]).max() <= 1e-5 * size
+
+
+def along(polyline: Array, parts: int) -> Array:
+    """Return points that cut each segment into equal parts."""
+    share = np.arange(parts)[:, None, None] / parts
+    return ((1.0 - share) * polyline[:-1] + share * polyline[1:]).reshape(-1, polyline.shape[1])
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("name", ["cylinder", "plane"])
+def test_developable_splines_have_no_curves(name: str) -> None:
+    found = gm.parabolic_points(gm.fit(gm.surfaces.surface(name), (16, 12)))
+    assert found.developable
+    assert found.curves == ()
+    assert len(found.flat) == 16 * 12
+
+
+@pytest.mark.compiled
+def test_grids_are_splines() -> None:
+    u, v = np.meshgrid(np.linspace(-1, 1, 40), np.linspace(-1, 1, 40), indexing="ij")
+    points = np.stack([u, v, 0.2 * np.sin(3 * u) * np.cos(3 * v)], axis=-1)
+    surface = gm.Surface.from_grid(points)
+    found, expected = gm.parabolic_points(surface), gm.parabolic_points(gm.fit(surface))
+    assert len(found.curves) == len(expected.curves) > 5
+    for left, right in zip(found.curves, expected.curves, strict=True):
+        np.testing.assert_array_equal(left.uv, right.uv)
+
+
+# --- surfaces -------------------------------------------------------------------------------------
+
+
+@pytest.mark.compiled
+def test_curvature_field_of_the_torus_is_exact_up_to_its_noise() -> None:
+    surface = gm.surfaces.torus(major=1.0, minor=0.35)
+    places = np.random.default_rng(0).uniform(-1.0, 8.0, (2000, 2))
+    for panels in (8, 16):
+        field = CurvatureField.of_surface(surface, (panels, panels))
+        cosine = np.cos(places[:, 1])
+        error = np.abs(field.evaluate(places) - cosine / (0.35 * (1.0 + 0.35 * cosine)))
+        assert error.max() <= field.noise.max() < 1e-8
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("factor", [1e-12, 1.0, 1e12])
+def test_torus(factor: float) -> None:
+    found = gm.parabolic_points(gm.surfaces.torus(major=factor, minor=0.35 * factor))
+    assert [curve.closed for curve in found.curves] == [True, True]
+    assert found.isolated == ()
+    for curve in found.curves:
+        place = np.mod(curve.uv[:, 1], 2 * np.pi)
+        assert np.abs(np.abs(place - np.pi) - np.pi / 2).max() < 1e-8
+        assert abs(curve.uv[-1, 0] - curve.uv[0, 0]) == pytest.approx(2 * np.pi, abs=1e-9)
+        radius = np.hypot(*curve.points[:, :2].T)
+        np.testing.assert_allclose(radius, factor, rtol=1e-8)
+        np.testing.assert_allclose(np.abs(curve.points[:, 2]), 0.35 * factor, rtol=1e-12)
+
+
+@pytest.mark.compiled
+def test_torus_far_from_the_origin_has_the_accuracy_of_its_coordinates() -> None:
+    torus = gm.surfaces.torus()
+    moved = gm.Surface("moved", lambda u, v: torus.evaluate(u, v) + 1e4, torus.domain, torus.ends)
+    found = gm.parabolic_points(moved)
+    assert [curve.closed for curve in found.curves] == [True, True]
+    for curve in found.curves:
+        place = np.mod(curve.uv[:, 1], 2 * np.pi)
+        assert np.abs(np.abs(place - np.pi) - np.pi / 2).max() < 1e-5
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-4, 1e-5])
+def test_polylines_are_within_the_tolerance_of_the_curve(tolerance: float) -> None:
+    """The circle of the torus, in space: the polyline departs from it by no more than asked."""
+    found = gm.parabolic_points(gm.surfaces.torus(), tolerance=tolerance)
+    size = np.linalg.norm([2.7, 2.7, 0.7])
+    for curve in found.curves:
+        angle = np.linspace(0.0, 2 * np.pi, 1000)
+        height = np.full(1000, np.sign(curve.points[0, 2]) * 0.35)
+        circle = np.column_stack([np.cos(angle), np.sin(angle), height])
+        assert distances(circle, [curve.points]).max() <= tolerance * size
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("scale", [0.5, 1e-6, 10.0])
+def test_monkey_saddle_has_one_point(scale: float) -> None:
+    found = gm.parabolic_points(gm.surfaces.monkey_saddle(scale=scale))
+    assert found.curves == ()
+    (point,) = found.isolated
+    assert np.abs(point.uv).max() < 2e-4  # the tolerance, of a domain of size 2
+    assert (point.box[0] <= 0.0).all()
+    assert (point.box[1] >= 0.0).all()
+    assert np.linalg.norm(point.point[:2] - point.uv) < 1e-12
+
+
+def test_isolated_point_anywhere_is_isolated_to_the_tolerance() -> None:
+    for tolerance in (1e-2, 1e-4):
+        saddle = graph(lambda u, v: (u - 0.3) ** 3 - 3 * (u - 0.3) * (v + 0.2) ** 2)
+        (point,) = gm.parabolic_points(saddle, tolerance=tolerance).isolated
+        np.testing.assert_allclose(point.uv, [0.3, -0.2], atol=1e-7)
+        assert np.ptp(point.box, axis=0).max() <= 2.0 * tolerance
+
+
+def exact_net() -> list[Array]:
+    """Return where K of z = 0.2 sin 3x cos 3y vanishes: the lines 3x ± 3y = kπ in [−1, 1]²."""
+    lines = []
+    for k in range(-1, 2):
+        for sign in (1.0, -1.0):
+            u = np.linspace(-1.0, 1.0, 200)
+            v = sign * (k * np.pi / 3 - u)
+            inside = np.abs(v) <= 1.0
+            lines.append(np.column_stack([u, v])[inside])
+    return lines
+
+
+def off_the_net(places: Array) -> Array:
+    """Return the distances of places from the lines 3x ± 3y = kπ."""
+    sums, differences = (3 * (places @ [1, sign]) / np.pi for sign in (1, -1))
+    off = [np.abs(x - np.round(x)) * np.pi / np.sqrt(18) for x in (sums, differences)]
+    return np.minimum(*off)
+
+
+@pytest.mark.compiled
+def test_wavy_graph_has_a_net_of_curves() -> None:
+    found = gm.parabolic_points(gm.surfaces.wavy_graph(), tolerance=1e-4)
+    vertices = np.concatenate([curve.uv for curve in found.curves])
+    assert off_the_net(vertices).max() < 1e-8
+    size = np.linalg.norm([2.0, 2.0, 0.4])
+    points = np.concatenate([along(x, 3) for x in exact_net()])
+    # In a corner where two lines cross, a polyline departs from both by no more than the tolerance
+    # allows across a right angle: √2 of it.
+    assert distances(points, [c.uv for c in found.curves]).max() <= 1.5e-4 * size
+    between = np.concatenate([along(c.uv, 5) for c in found.curves])
+    assert off_the_net(between).max() <= 1.5e-4 * size
+    assert found.isolated == ()
+
+
+def test_small_closed_curve() -> None:
+    """A dent of 1/20 of the domain in a paraboloid: its rings are found, and are closed."""
+    found = gm.parabolic_points(
+        graph(lambda u, v: u * u + v * v + 0.01 * np.exp(-300 * ((u - 0.3) ** 2 + (v - 0.2) ** 2)))
+    )
+    assert len(found.curves) == 2
+    for curve in found.curves:
+        assert curve.closed
+        assert np.abs(curve.uv - [0.3, 0.2]).max() < 0.2
+        np.testing.assert_array_equal(curve.uv[0], curve.uv[-1])
+
+
+def test_touching_curve_is_isolated_in_one_rectangle() -> None:
+    """z = u⁴ + v²: K ≥ 0 vanishes along the line u = 0 without a change of sign."""
+    found = gm.parabolic_points(graph(lambda u, v: u**4 + v * v), tolerance=1e-2)
+    assert found.curves == ()
+    (line,) = found.isolated
+    np.testing.assert_allclose(line.box[:, 1], [-1.0, 1.0])
+    assert np.abs(line.box[:, 0]).max() <= 0.02
+    assert abs(line.uv[0]) < 1e-6
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize(
+    "name", ["ellipsoid", "ellipsoid_patch", "sphere", "catenoid", "helicoid", "moebius_band",
+             "enneper", "hyperboloid", "elliptic_paraboloid", "hyperbolic_paraboloid"]
+)  # fmt: skip
+def test_surfaces_of_one_sign_have_none(name: str) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = gm.parabolic_points(gm.surfaces.surface(name))
+    assert found.curves == found.isolated == ()
+    assert len(found.flat) == 0
+    assert not found.developable
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("name", ["cylinder", "cone", "plane"])
+def test_developable_surfaces_say_so(name: str) -> None:
+    found = gm.parabolic_points(gm.surfaces.surface(name))
+    assert found.developable
+    assert found.curves == found.isolated == ()
+    assert len(found.flat) == 64
+
+
+@pytest.mark.compiled
+def test_planes_touch_a_dupin_cyclide_along_its_parabolic_curves() -> None:
+    """A parabolic curve of a ring cyclide is a circle, in which one plane touches it."""
+    found = gm.parabolic_points(gm.surfaces.dupin_cyclide())
+    assert [curve.closed for curve in found.curves] == [True, True]
+    for curve in found.curves:
+        centred = curve.points - curve.points[:-1].mean(axis=0)
+        normal = np.linalg.svd(centred)[2][2]
+        assert np.abs(centred @ normal).max() < 1e-8
+        for step in np.array([[1e-4, 0.0], [0.0, -1e-4]]):
+            points = gm.surfaces.dupin_cyclide().evaluate(*(curve.uv + step).T)
+            height = (points - curve.points) @ normal
+            assert np.abs(height).max() < 1e-6  # of second order in the step
+
+
+def test_a_crease_is_left_out_with_a_warning() -> None:
+    surface = graph(lambda u, v: np.abs(u - 0.111) + u * u * v + v * v)
+    with pytest.warns(gm.GaussmapWarning, match="cannot be computed"):
+        found = gm.parabolic_points(surface, cells=(12, 12))
+    assert found.developable is False
+
+
+def test_cells_are_panels() -> None:
+    found = gm.parabolic_points(gm.surfaces.torus(), cells=(3, 5))
+    assert [curve.closed for curve in found.curves] == [True, True]
+
+
+# --- chains ---------------------------------------------------------------------------------------
+
+
+def test_chains() -> None:
+    def segment(a: int, b: int) -> tuple:
+        return a, b, np.array([[a, 0.0], [b, 0.0]])
+
+    open_ = joined([segment(2, 1), segment(2, 3), segment(4, 3)])
+    assert [closed for _, closed in open_] == [False]
+    assert sorted(open_[0][0][:, 0].tolist()) in ([1, 2, 3, 4],)
+    (ring,) = joined([segment(1, 2), segment(3, 2), segment(3, 1)])
+    assert ring[1]
+    assert ring[0][0].tolist() == ring[0][-1].tolist()
+    star = joined([segment(0, k) for k in range(1, 5)])
+    assert len(star) == 4
+    assert joined([]) == []
+
+
+# --- bad input ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("tolerance", [0.0, -1.0, 1.0, np.nan, "small", None, 1e-9])
+def test_bad_tolerance(tolerance) -> None:
+    with pytest.raises(gm.InputError, match="tolerance"):
+        gm.parabolic_points(gm.surfaces.torus(), tolerance=tolerance)
+
+
+@pytest.mark.parametrize("cells", [3, (0, 4), (4,), (2.5, 3), "ab", (1000, 4)])
+def test_bad_cells(cells) -> None:
+    with pytest.raises(gm.InputError, match="cells"):
+        gm.parabolic_points(gm.surfaces.torus(), cells=cells)
+
+
+def test_other_bad_input() -> None:
+    with pytest.raises(gm.InputError, match="Surface"):
+        gm.parabolic_points("torus")  # pyright: ignore[reportArgumentType]
+    with pytest.raises(gm.InputError, match="cells"):
+        gm.parabolic_points(gm.fit(gm.surfaces.torus(), (8, 8)), cells=(8, 8))
+    with pytest.raises(gm.SurfaceError, match="not finite"):
+        gm.parabolic_points(graph(lambda u, v: np.log(u)))
+    for nets in ([], np.zeros((6, 3)), np.zeros((2, 5, 3)), "abc", None):
+        with pytest.raises(gm.InputError, match="nets"):
+            gm.classify_patches(nets)  # pyright: ignore[reportArgumentType]
+    with pytest.raises(gm.InputError, match="NaN"):
+        gm.classify_patches(np.full((1, 6, 3), np.nan))
+
+
+@pytest.mark.parametrize("shift", [0.0, 1e9])
+def test_what_cannot_be_known_is_said(shift: float) -> None:
+    """A surface that is one point, and one whose coordinates have no digits for its curvature."""
+
+    def f(u: Array, v: Array) -> Array:
+        return np.stack([u, v, u**3 + v**3], axis=-1) * bool(shift) + shift
+
+    surface = gm.Surface.from_callable(f, ((-1, 1), (-1, 1)))
+    with pytest.warns(gm.GaussmapWarning, match="cannot be computed on 100 %"):
+        found = gm.parabolic_points(surface, cells=(8, 8))
+    assert found.curves == found.isolated == ()
+    assert not found.developable
