@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import cached_property
 from itertools import combinations_with_replacement
 from typing import Any, cast
 
 import sympy as sp
 
-from .formula import Formula, dot, flat, scalar, substitute
+from .formula import Formula, flat, scalar, substitute
 from .patch import (
     CLOSED_CURVATURE,
     FORMS,
@@ -24,6 +24,8 @@ from .patch import (
 
 __all__ = ["BezierTriangle"]
 
+PAPER_NORMAL = (scalar("n_1"), scalar("n_2"), scalar("n_3"))
+
 
 class BezierTriangle:
     """A quadratic Bézier triangle (10) with exact control points.
@@ -32,28 +34,30 @@ class BezierTriangle:
     b011; u belongs to b200, v to b020. Coordinates are numbers, SymPy expressions, or strings of
     these. A float is taken at its exact binary value, a string such as "0.1" at its decimal one.
 
-    Results are expressions in the components of `normal`, which need not have length 1. Those that
-    need the support function raise ValueError if the patch has none, because it is developable.
+    Results are expressions in the components of `normal`, n_1, n_2, n_3 as in the paper or the
+    three symbols that are given. It need not have length 1. Results that need the support function
+    raise ValueError if the patch has none, because it is developable.
     """
 
-    def __init__(self, control_points: Iterable[Iterable[object]]) -> None:
+    def __init__(
+        self,
+        control_points: Iterable[Iterable[object]],
+        normal: Sequence[sp.Symbol] = PAPER_NORMAL,
+    ) -> None:
         """Raise ValueError unless there are six points of three real coordinates."""
-        rows = [[_exact(x) for x in point] for point in _six_points(control_points)]
+        self.normal = tuple(normal)
+        reserved = {*normal, u, v}
+        rows = [[_exact(x, reserved) for x in point] for point in _six_points(control_points)]
         self.control_points = tuple(sp.ImmutableMatrix(row) for row in rows)
         net = dict(zip(flat(NET), (x for row in rows for x in row), strict=True))
         self._values = {
             scalar(name): substitute(x, net) for name, x in POWER_FORM.expanded().items()
         }
 
-    @property
-    def normal(self) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
-        """The symbols n_x, n_y, n_z."""
-        x, y, z = n.components
-        return x, y, z
-
     def evaluate(self, formula: Formula) -> dict[str, sp.Expr]:
         """Return the outputs of a formula for this patch; inputs but a … e, p stay symbols."""
-        return {name: substitute(x, self._values) for name, x in formula.expanded().items()}
+        values = self._values | dict(zip(n.components, self.normal, strict=True))
+        return {name: substitute(x, values) for name, x in formula.expanded().items()}
 
     @cached_property
     def forms(self) -> dict[str, sp.Expr]:
@@ -69,14 +73,18 @@ class BezierTriangle:
 
     @cached_property
     def support_function(self) -> sp.Expr:
-        """The support function h(n): cubic over quadratic, as in formula (12)."""
+        """The support function h(n): cubic over quadratic, written as in formula (12)."""
+        return written_in_groups(self._cubic_over_quadratic, self.normal)
+
+    @cached_property
+    def _cubic_over_quadratic(self) -> sp.Expr:
         self._require_support_function()
         return sp.cancel(self.evaluate(SUPPORT_FUNCTION)["h"])
 
     @cached_property
     def gradient(self) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
         """The gradient of the support function: the envelope point."""
-        x, y, z = (sp.cancel(sp.diff(self.support_function, by)) for by in self.normal)
+        x, y, z = (sp.cancel(sp.diff(self._cubic_over_quadratic, by)) for by in self.normal)
         return x, y, z
 
     @cached_property
@@ -99,7 +107,11 @@ class BezierTriangle:
         self._require_support_function()
         if self.orientation == 0:
             raise ValueError("the patch has no regular point (c3 = 0)")
-        values = {scalar("D"): self.forms["D"], scalar("c3_twice"): 2 * self.orientation}
+        values = {
+            scalar("D"): self.forms["D"],
+            scalar("c3_twice"): 2 * self.orientation,
+            **dict(zip(n.components, self.normal, strict=True)),
+        }
         return sp.cancel(substitute(CLOSED_CURVATURE.expanded()["K"], values))
 
     @cached_property
@@ -130,7 +142,48 @@ class BezierTriangle:
 
     @property
     def _length(self) -> sp.Expr:
-        return sp.sqrt(dot(n.column, n.column))
+        return sp.sqrt(sum((x**2 for x in self.normal), start=sp.S.Zero))
+
+    def latex(self) -> str:
+        """Return h(n) = … as LaTeX; ValueError if there is no support function."""
+        names = ", ".join(sp.latex(x) for x in self.normal)
+        return f"h({names}) = {sp.latex(self.support_function, order='none')}"
+
+    def _repr_latex_(self) -> str | None:
+        """Show the support function in a notebook, if there is one."""
+        return None if self.forms["D"] == 0 else rf"$\displaystyle {self.latex()}$"
+
+    def __repr__(self) -> str:
+        points = ", ".join(str(tuple(x.flat())) for x in self.control_points)
+        return f"BezierTriangle([{points}])"
+
+
+def written_in_groups(quotient: sp.Expr, variables: Sequence[sp.Symbol]) -> sp.Expr:
+    """Write a quotient of polynomials with rational coefficients as the paper writes (12).
+
+    Terms of the numerator with equal coefficients stand in brackets, largest groups of the highest
+    powers first, and the common factor of the denominator stands before it.
+    """
+    above, below = (sp.Poly(x, *variables) for x in sp.fraction(quotient))
+    if not all(x.is_Rational for x in (*above.coeffs(), *below.coeffs())):
+        return quotient
+    factor, denominator = below.primitive()
+    groups: dict[sp.Expr, list[sp.Expr]] = {}
+    for powers, coefficient in above.terms():
+        monomial = sp.Mul(*(x**k for x, k in zip(variables, powers, strict=True)))
+        terms = groups.setdefault(abs(coefficient), [])
+        terms.append(monomial if coefficient > 0 else -monomial)
+    parts = [_times(coefficient, sp.Add(*terms)) for coefficient, terms in groups.items()]
+    numerator = sp.Add(*parts, evaluate=False) if len(parts) > 1 else parts[0]
+    inverse = sp.Pow(denominator.as_expr(), -1, evaluate=False)
+    return sp.Mul(*([] if factor == 1 else [1 / factor]), numerator, inverse, evaluate=False)
+
+
+def _times(factor: sp.Expr, expression: sp.Expr) -> sp.Expr:
+    """Return a product that SymPy does not multiply out."""
+    if factor == 1 or not expression.is_Add:
+        return factor * expression
+    return sp.Mul(factor, expression, evaluate=False)
 
 
 def _six_points(control_points: Iterable[Iterable[object]]) -> list[list[object]]:
@@ -144,7 +197,7 @@ def _six_points(control_points: Iterable[Iterable[object]]) -> list[list[object]
     return points
 
 
-def _exact(value: object) -> sp.Expr:
+def _exact(value: object, reserved: set[sp.Symbol]) -> sp.Expr:
     """Return a coordinate as SymPy sees it, without floating-point numbers.
 
     Raises ValueError unless it is real and finite (or a symbol) and leaves n, u, v alone.
@@ -155,6 +208,6 @@ def _exact(value: object) -> sp.Expr:
     expression = substitute(expression, {x: sp.Rational(x) for x in expression.atoms(sp.Float)})
     if expression.is_real is False or expression.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
         raise ValueError(f"the coordinate {value!r} is not a real number")
-    if reserved := expression.free_symbols & {*n.components, u, v}:
-        raise ValueError(f"the coordinate {value!r} uses {sorted(map(str, reserved))}")
+    if used := expression.free_symbols & reserved:
+        raise ValueError(f"the coordinate {value!r} uses {sorted(map(str, used))}")
     return expression

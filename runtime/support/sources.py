@@ -148,8 +148,9 @@ class PatchSource:
     @cached_property
     def _symbolic(self) -> Any:  # noqa: ANN401 - SymPy is loaded here only
         from ...symbolic import BezierTriangle
+        from ...symbolic.patch import n
 
-        return BezierTriangle(self.control_points.tolist())
+        return BezierTriangle(self.control_points.tolist(), n.components)
 
     @cached_property
     def _scale(self) -> float:

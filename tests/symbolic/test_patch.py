@@ -3,7 +3,7 @@
 import random
 from fractions import Fraction
 from itertools import product
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -30,6 +30,11 @@ CYLINDER = [[1, 0, 1], [0, 1, 0], [0, 0, 0], ["1/2", "1/2", 0], ["1/2", 0, 0], [
 FOLDED_PLANE = [[1, 0, 0], [0, 1, 0], [0, 0, 0], [0, 1, 0], [1, 1, 0], [1, 0, 0]]
 
 
+def triangle_of(points) -> Any:
+    """Return the triangle with results in the symbols of the formulas."""
+    return BezierTriangle(points, patch.n.components)
+
+
 def bezier_point(points) -> Any:
     """Return p(u,v) by the definition (10)."""
     w = 1 - u - v
@@ -45,7 +50,7 @@ class Case:
     def __init__(self, seed: int) -> None:
         generator = random.Random(seed)
         points = [[generator.randint(-9, 9) for _ in range(3)] for _ in range(6)]
-        self.triangle: Any = BezierTriangle(points)
+        self.triangle: Any = triangle_of(points)
         self.p: Any = bezier_point(points).applyfunc(sp.expand)
         self.p_u, self.p_v = self.p.diff(u), self.p.diff(v)
         self.normal: Any = self.p_u.cross(self.p_v).applyfunc(sp.expand)
@@ -85,13 +90,13 @@ def case(request) -> Case:
 
 
 def test_formula_12_comes_out_exactly():
-    assert sp.cancel(BezierTriangle(POINTS_12).support_function - FORMULA_12) == 0
+    assert sp.cancel(triangle_of(POINTS_12).support_function - FORMULA_12) == 0
 
 
 def test_the_printed_control_points_11_give_another_formula():
     numerator = 18 * x**2 * z - 59 * x * y * z + 18 * x * z**2 + 18 * y**3
     denominator = 9 * x**2 - 34 * x * y + 14 * x * z + 33 * y**2 - 34 * y * z + 9 * z**2
-    h = BezierTriangle(POINTS_11).support_function
+    h = triangle_of(POINTS_11).support_function
     assert sp.cancel(h - numerator / denominator) == 0
     assert sp.cancel(h - FORMULA_12) != 0
 
@@ -113,8 +118,36 @@ def test_gradient_is_the_point_with_that_normal(case):
         assert gradient == list(case.p.xreplace(place))
 
 
-def test_gradient_is_the_point_with_that_normal_identically():
+def test_it_prints_as_the_paper_prints_it():
     triangle = BezierTriangle(POINTS_12)
+    assert str(triangle.support_function) == (
+        "(13*n_1*n_2*n_3 + 5*(n_1**3 + n_2**3 + n_3**3)"
+        " + 4*(n_1**2*n_2 + n_1**2*n_3 + n_1*n_2**2 + n_1*n_3**2 + n_2**2*n_3 + n_2*n_3**2))"
+        "/(2*(n_1**2 + 3*n_1*n_2 + 3*n_1*n_3 + n_2**2 + 3*n_2*n_3 + n_3**2))"
+    )
+    cubes = r"5 \left(n_{1}^{3} + n_{2}^{3} + n_{3}^{3}\right) + 4 \left("
+    assert triangle.latex().startswith(rf"h(n_{{1}}, n_{{2}}, n_{{3}}) = \frac{{{cubes}")
+    assert r"+ 13 n_{1} n_{2} n_{3}}{2 \left(" in triangle.latex()
+    assert cast(str, triangle._repr_latex_()).strip("$").endswith(triangle.latex())
+    assert repr(triangle).startswith("BezierTriangle([(3/2, 0, 0), (0, 3/2, 0)")
+    plane = [[2, 0, 0], [0, 2, 0], [0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 1, 0]]
+    assert BezierTriangle(plane)._repr_latex_() is None
+
+
+@pytest.mark.parametrize(
+    "points", [POINTS_11, [[1, 2, 0], [0, 1, 1], [3, 0, 2], [1, 1, 4], [2, 0, 0], [0, 5, 1]]]
+)
+def test_groups_are_only_another_writing(points):
+    triangle = BezierTriangle(points)
+    x, y, z = triangle.normal
+    point = [sp.diff(triangle.support_function, by) for by in triangle.normal]
+    at: Any = {x: 3, y: -1, z: sp.Rational(1, 2)}
+    assert [value.subs(at) for value in point] == [value.subs(at) for value in triangle.gradient]
+    assert sp.cancel(triangle.support_function - triangle._cubic_over_quadratic) == 0
+
+
+def test_gradient_is_the_point_with_that_normal_identically():
+    triangle = triangle_of(POINTS_12)
     point = bezier_point(triangle.control_points)
     at_n = dict(zip((u, v), triangle.parameters, strict=True))
     difference = point.xreplace(at_n) - sp.Matrix(triangle.gradient)
@@ -251,7 +284,7 @@ def test_radii_are_positive_where_normals_point_away_from_the_centre(sign, order
         ["1/2", 0, 0],
         [0, "1/2", 0],
     ]
-    triangle = BezierTriangle([cap[k] for k in order])
+    triangle = triangle_of([cap[k] for k in order])
     pole = dict(zip(n, (0, 0, 5 * sign), strict=True))
     assert triangle.orientation.subs(pole) > 0
     assert [r.subs(pole) for r in triangle.principal_radii] == [3 * sign, 3 * sign]
@@ -318,31 +351,31 @@ def test_a_writing_that_is_not_what_was_derived_is_refused():
 
 def test_floats_are_taken_at_their_binary_value_and_strings_at_their_decimal_one():
     row = ["0.1", 0.1, np.float32(0.1)]
-    values: Any = BezierTriangle([row] * 6).control_points[0]
+    values: Any = triangle_of([row] * 6).control_points[0]
     exact = [Fraction(1, 10), Fraction(0.1), Fraction(float(np.float32(0.1)))]
     assert list(values) == [sp.Rational(a.numerator, a.denominator) for a in exact]
 
 
 def test_rationals_of_every_kind_are_kept():
     kinds = [sp.Rational(1, 3), Fraction(1, 3), "1/3"]
-    thirds: Any = BezierTriangle([kinds] * 6).control_points[5]
-    sevens: Any = BezierTriangle([[np.int64(7), 7, "7"]] * 6).control_points[0]
+    thirds: Any = triangle_of([kinds] * 6).control_points[5]
+    sevens: Any = triangle_of([[np.int64(7), 7, "7"]] * 6).control_points[0]
     assert set(thirds) == {sp.Rational(1, 3)}
     assert set(sevens) == {7}
 
 
 def test_symbols():
     s = sp.Symbol("s", positive=True)
-    scaled = BezierTriangle([[s * sp.Rational(a) for a in point] for point in POINTS_12])
+    scaled = triangle_of([[s * sp.Rational(a) for a in point] for point in POINTS_12])
     assert sp.cancel(scaled.support_function - s * FORMULA_12) == 0
-    mixed = BezierTriangle([[0.5 * s, 0, 0], *POINTS_12[1:]])
+    mixed = triangle_of([[0.5 * s, 0, 0], *POINTS_12[1:]])
     assert mixed.control_points[0][0] == s / 2
 
 
 def test_symbols_that_the_formulas_use_themselves_do_not_get_mixed_up():
     """A control point may be called a_x, or even D: substitution happens all at once."""
-    named = BezierTriangle([[scalar("a_x"), scalar("D"), scalar("d_y")], *POINTS_12[1:]])
-    other = BezierTriangle([[scalar("q1"), scalar("q2"), scalar("q3")], *POINTS_12[1:]])
+    named = triangle_of([[scalar("a_x"), scalar("D"), scalar("d_y")], *POINTS_12[1:]])
+    other = triangle_of([[scalar("q1"), scalar("q2"), scalar("q3")], *POINTS_12[1:]])
     renaming = {scalar("q1"): scalar("a_x"), scalar("q2"): scalar("D"), scalar("q3"): scalar("d_y")}
     assert sp.expand(named.forms["U"] - other.forms["U"].xreplace(renaming)) == 0
 
@@ -374,11 +407,11 @@ def test_symbols_that_the_formulas_use_themselves_do_not_get_mixed_up():
 )
 def test_bad_input_is_refused(points):
     with pytest.raises(ValueError, match=r"control_points|coordinate|[Ss]ympify"):
-        BezierTriangle(points)
+        triangle_of(points)
 
 
 def test_a_developable_patch_has_no_support_function():
-    cylinder = BezierTriangle(CYLINDER)
+    cylinder = triangle_of(CYLINDER)
     assert cylinder.forms["D"] == 0
     assert set(cylinder.evaluate(patch.PARABOLIC_CUBIC).values()) == {0}
     for name in ("parameters", "support_function", "gradient", "hessian", "gaussian_curvature"):
@@ -387,7 +420,7 @@ def test_a_developable_patch_has_no_support_function():
 
 
 def test_a_folded_plane_has_no_curvature():
-    folded = BezierTriangle(FOLDED_PLANE)
+    folded = triangle_of(FOLDED_PLANE)
     assert folded.forms["D"] != 0
     assert folded.orientation == 0
     with pytest.raises(ValueError, match="no regular point"):

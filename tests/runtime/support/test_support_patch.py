@@ -96,13 +96,13 @@ def test_formula_12_of_the_paper() -> None:
     np.testing.assert_allclose(branches.support, h, rtol=0.0, atol=64 * EPS)
     latex = support._repr_latex_()
     assert latex is not None
-    assert r"\frac{5 n_{x}^{3}" in latex
+    assert r"5 \left(n_{x}^{3} + n_{y}^{3}" in latex
 
 
 @pytest.mark.parametrize("net", [OF_12, MIXED], ids=["formula 12", "mixed"])
 def test_branches_are_what_the_formulas_say(net: list[list[Any]]) -> None:
     """Point, Hessian and curvature against the exact expressions, at the exact floats."""
-    patch: Any = BezierTriangle(net)
+    patch: Any = BezierTriangle(net, NORMAL)
     support = gm.SupportFunction.of_patch(net)
     branches = support.branches(unit(NORMALS))
     D, c3 = (sp.lambdify(NORMAL, x) for x in (patch.forms["D"], patch.orientation))
