@@ -26,7 +26,8 @@ def power_form(
     b200_x, b200_y, b200_z, b020_x, b020_y, b020_z, b002_x, b002_y, b002_z, b110_x, b110_y,
     b110_z, b101_x, b101_y, b101_z, b011_x, b011_y, b011_z
 ):  # fmt: skip
-    """The vectors of eq. (8) from the control points of a quadratic Bézier triangle.
+    """The vectors of eq. (8), a = a_20, b = a_11, c = a_02, d = a_10, e = a_01 and p = a_00 in
+    the paper, from the control points of a quadratic Bézier triangle.
 
         a = 2*b002 - 4*b101 + 2*b200
         b = 2*(b002 - b011 - b101 + b110)
@@ -174,7 +175,7 @@ def tangents(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_
         p_v = b*u + c*v + e
         N = p_u × p_v
 
-    Source: eq. (1); 33 operations as written, 33 here.
+    Source: eqs. (1) and (14); 33 operations as written, 33 here.
     """
     p_u_x = a_x * u + b_x * v + d_x
     p_u_y = a_y * u + b_y * v + d_y
@@ -340,7 +341,7 @@ def control_normals(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, 
         N011 = (s001 × t010 + s010 × t001)/2
         N002 = s001 × t001
 
-    Source: Sect. 3.2; 138 operations as written, 122 here.
+    Source: Sect. 3.2, eq. (14); 138 operations as written, 122 here.
     """
     s100_x = a_x + d_x
     s100_y = a_y + d_y

@@ -214,7 +214,7 @@ def control_normals(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, 
         N011 = (s001 × t010 + s010 × t001)/2
         N002 = s001 × t001
 
-    Source: Sect. 3.2; 138 operations as written, 122 here.
+    Source: Sect. 3.2, eq. (14); 138 operations as written, 122 here.
     """
     s100_x = a_x + d_x
     s100_y = a_y + d_y
@@ -943,7 +943,7 @@ def is_developable(
     flat = 4.0 * noise * second * longest * (longest + tangent * second)
     u = 1.0 / 3.0
     v = 1.0 / 3.0
-    # tangents (eq. (1)): 33 operations as written, 33 here
+    # tangents (eqs. (1) and (14)): 33 operations as written, 33 here
     p_u_x = a_x * u + b_x * v + d_x
     p_u_y = a_y * u + b_y * v + d_y
     p_u_z = a_z * u + b_z * v + d_z
@@ -1072,7 +1072,7 @@ def look_again(
         r = 1.0 / D
         u = U * r
         v = V * r
-        # tangents (eq. (1)): 33 operations as written, 33 here
+        # tangents (eqs. (1) and (14)): 33 operations as written, 33 here
         p_u_x = a_x * u + b_x * v + d_x
         p_u_y = a_y * u + b_y * v + d_y
         p_u_z = a_z * u + b_z * v + d_z
@@ -1291,7 +1291,7 @@ def fill_known(
          d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(mu, i + 1, j + 1, turn, scale)  # fmt: skip
         u = local[row, 3]
         v = local[row, 4]
-        # tangents (eq. (1)): 33 operations as written, 33 here
+        # tangents (eqs. (1) and (14)): 33 operations as written, 33 here
         p_u_x = a_x * u + b_x * v + d_x
         p_u_y = a_y * u + b_y * v + d_y
         p_u_z = a_z * u + b_z * v + d_z
@@ -1367,7 +1367,7 @@ def normals_at(mu, scale, patches, local, normals):
         )  # fmt: skip
         u = local[k, 0]
         v = local[k, 1]
-        # tangents (eq. (1)): 33 operations as written, 33 here
+        # tangents (eqs. (1) and (14)): 33 operations as written, 33 here
         p_u_x = a_x * u + b_x * v + d_x
         p_u_y = a_y * u + b_y * v + d_y
         p_u_z = a_z * u + b_z * v + d_z

@@ -401,7 +401,7 @@ def evaluate(mu, scale, cells, points, normals):
         x_x = a_x * t1 + b_x * t0 + c_x * t2 + d_x * u + e_x * v + p_x
         x_y = a_y * t1 + b_y * t0 + c_y * t2 + d_y * u + e_y * v + p_y
         x_z = a_z * t1 + b_z * t0 + c_z * t2 + d_z * u + e_z * v + p_z
-        # tangents (eq. (1)): 33 operations as written, 33 here
+        # tangents (eqs. (1) and (14)): 33 operations as written, 33 here
         p_u_x = a_x * u + b_x * v + d_x
         p_u_y = a_y * u + b_y * v + d_y
         p_u_z = a_z * u + b_z * v + d_z

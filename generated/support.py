@@ -168,7 +168,7 @@ def classify(vectors, bound, accurate, normals, kinds, parameters):
             r = 1.0 / D
             u = U * r
             v = V * r
-            # tangents (eq. (1)): 33 operations as written, 33 here
+            # tangents (eqs. (1) and (14)): 33 operations as written, 33 here
             p_u_x = a_x * u + b_x * v + d_x
             p_u_y = a_y * u + b_y * v + d_y
             p_u_z = a_z * u + b_z * v + d_z
@@ -295,7 +295,7 @@ def fill_hessians(mu, scale, patches, normals, known, hessians):
             u = U * r
             v = V * r
         else:
-            # tangents (eq. (1)): 33 operations as written, 33 here
+            # tangents (eqs. (1) and (14)): 33 operations as written, 33 here
             p_u_x = a_x * u + b_x * v + d_x
             p_u_y = a_y * u + b_y * v + d_y
             p_u_z = a_z * u + b_z * v + d_z

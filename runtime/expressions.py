@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+import builtins
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -110,9 +112,43 @@ def as_expression(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401 -
 
     sympify: Any = sp.sympify  # its type hints forget `locals`
     try:
+        if isinstance(entry, str) and not _is_mathematics(entry):
+            raise InputError(f"{entry!r} is not a SymPy expression.")
         expression = sympify(entry, locals=symbols)
+    except InputError:
+        raise
     except Exception:  # SymPy runs the text as Python, which may raise anything
         expression = None
     if not isinstance(expression, sp.Expr):
         raise InputError(f"{entry!r} is not a SymPy expression.")
     return expression
+
+
+# What a text may hold besides names, numbers and calls of functions by their names.
+_SYNTAX = (
+    ast.Expression, ast.BinOp, ast.UnaryOp, ast.BoolOp, ast.Compare, ast.Tuple, ast.Load,
+    ast.operator, ast.unaryop, ast.boolop, ast.cmpop,
+)  # fmt: skip
+
+
+def _is_mathematics(text: str) -> bool:
+    """Say whether a text is arithmetic with SymPy's functions: SymPy would run any Python."""
+    import sympy as sp
+
+    def is_harmless(node: ast.AST) -> bool:
+        if isinstance(node, ast.Call):
+            name = node.func.id if isinstance(node.func, ast.Name) else ""
+            function = getattr(sp, name, None)
+            known = isinstance(function, type) and issubclass(function, sp.Basic)
+            unknown = name != "" and not hasattr(sp, name) and not hasattr(builtins, name)
+            known = known or hasattr(sp.functions, name) or name == "abs"
+            return (known or unknown) and not node.keywords
+        if isinstance(node, ast.Constant):
+            return isinstance(node.value, int | float | complex)
+        return isinstance(node, (ast.Name, *_SYNTAX))
+
+    try:
+        tree = ast.parse(text.strip(), mode="eval")
+    except (SyntaxError, ValueError):
+        return False
+    return all(map(is_harmless, ast.walk(tree)))

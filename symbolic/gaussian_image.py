@@ -119,7 +119,7 @@ PARABOLIC_DIRECTIONS = _directions()
 
 PARABOLIC_NORMAL = Formula.build(
     "parabolic_normal",
-    "The one normal along a parabolic line of direction (s, t), up to its length and sign: three "
+    "The one normal along a parabolic line of direction $(s, t)$, up to its length and sign: three "
     "vectors that are multiples of it. They do not all vanish, unless the patch is developable or "
     "has no normal on the line.",
     source="Sect. 3.2",
@@ -130,7 +130,7 @@ PARABOLIC_NORMAL = Formula.build(
 
 PARABOLIC_LINE = Formula.build(
     "parabolic_line",
-    "The parabolic line $l_u u + l_v v + l_1 = 0$ of direction (s, t) with the normal $n$; it is "
+    "The parabolic line $l_u u + l_v v + l_1 = 0$ of direction $(s, t)$ with the normal $n$; it is "
     "the line at infinity if $l_u = l_v = 0$.",
     source="Sect. 3.2",
     inputs=[*VECTORS, n, s, t],

@@ -45,7 +45,9 @@ def _power_form() -> Formula:
     origin = {u: sp.S.Zero, v: sp.S.Zero}
     return Formula.build(
         "power_form",
-        "The vectors of eq. (8) from the control points of a quadratic Bézier triangle.",
+        "The vectors of eq. (8), $a = a_20$, $b = a_11$, $c = a_02$, $d = a_10$, "
+        "$e = a_01$ and $p = a_00$ in the paper, from the control points of a quadratic Bézier "
+        "triangle.",
         source="eqs. (8) and (10)",
         inputs=NET,
         outputs=[
@@ -149,7 +151,7 @@ ENVELOPE = Formula.build(
 TANGENTS = Formula.build(
     "tangents",
     "The tangent vectors and their cross product, the oriented normal of the patch at $(u, v)$.",
-    source="eq. (1)",
+    source="eqs. (1) and (14)",
     inputs=[*VECTORS, u, v],
     outputs=[("p_u", P_U), ("p_v", P_V), ("N", Cross(p_u, p_v))],
 )
@@ -285,7 +287,7 @@ def _control_normals() -> Formula:
         "control_normals",
         "The Bézier net of the normal field $N(u,v) = p_u × p_v$: every oriented normal of the "
         "patch is a non-negative combination of these six vectors.",
-        source="Sect. 3.2",
+        source="Sect. 3.2, eq. (14)",
         inputs=VECTORS,
         terms=tangents,
         outputs=sorted(outputs.items(), reverse=True),

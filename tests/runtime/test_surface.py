@@ -362,6 +362,20 @@ def test_expressions_that_are_none(position, complaint):
 
 
 @pytest.mark.parametrize(
+    "text",
+    ["__import__('os').mkdir('x')", "open('x', 'w')", "exec('u')", "exit()", "u.__class__", "u[0]",
+     "[u for u in (1, 2)]", "(lambda: u)()", "'u'", "f'{u}'", "u if u else u", "Symbol(name=u)"],
+)  # fmt: skip
+def test_texts_are_not_run_as_python(text, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    refused(
+        gm.InputError, "is not a SymPy expression", gm.Surface.from_sympy, ("u", "v", text), "uv",
+        SQUARE,
+    )  # fmt: skip
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
     "parameters",
     [
         ("u",),
