@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -23,14 +25,17 @@ def polygon_distance(points: ArrayLike, polygon: ArrayLike) -> NDArray[np.float6
     places, vertices = _plane(points, "points"), _plane(polygon, "polygon")
     if len(vertices) == 0:
         raise InputError("a polygon needs at least one vertex.")
+    largest = max(float(np.abs(x).max(initial=0.0)) for x in (places, vertices))
+    exponent = math.frexp(largest)[1]  # squares of what is scaled so neither over- nor underflow
+    places, vertices = np.ldexp(places, -exponent), np.ldexp(vertices, -exponent)
     starts = vertices[:-1] if len(vertices) > 1 else vertices
     edges = vertices[1:] - starts if len(vertices) > 1 else np.zeros_like(vertices)
     squares = np.einsum("mx,mx->m", edges, edges)
     squares[squares == 0.0] = 1.0
     parts = max(1, len(places) * len(starts) // PAIRS_AT_A_TIME)
-    return np.concatenate(
-        [_nearest(x, starts, edges, squares) for x in np.array_split(places, parts)]
-    )
+    pieces = np.array_split(places, parts)
+    distances = np.concatenate([_nearest(x, starts, edges, squares) for x in pieces])
+    return np.ldexp(distances, exponent)
 
 
 def _nearest(

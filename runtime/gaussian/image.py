@@ -116,6 +116,8 @@ class GaussianImage:
         """
         if self.patch_class in NAMES:
             return NAMES[self.patch_class]
+        if len(self.pieces) > 1:
+            return "bow tie"
         sides = (BoundaryArc(arc[0], self._noise) for arc in boundary_of(self._patch.normals))
         return BY_SIDES.get(sum(not side.is_point for side in sides), "polygon")
 

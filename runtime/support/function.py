@@ -159,6 +159,10 @@ class SupportFunction:
             return NotImplemented
         return SupportFunction(Sum(self._source, other._source))
 
+    def __radd__(self, other: object) -> SupportFunction:
+        """Return 0 + h = h, so that `sum` can add several."""
+        return self if isinstance(other, int) and other == 0 else NotImplemented
+
     def offset(self, distance: float) -> SupportFunction:
         """Return h + d |n|: the offset surface of the points x + d n, inwards for d < 0.
 

@@ -22,6 +22,10 @@ __all__ = ["Offset", "Reversed", "Rotated", "Scaled", "Sum", "Translated"]
 Vector = NDArray[np.float64]
 
 
+# A radius of curvature is 0 up to rounding if it is this small beside the other and the distance.
+RADIUS_ERROR = 2.0**-46
+
+
 @dataclass(frozen=True, eq=False)
 class Sum:
     """h₁ + h₂, the convolution of two surfaces: x₁ + x₂ for any two points with one normal."""
@@ -72,10 +76,13 @@ class Offset:
         kernels.add_offset(
             self.distance, mine, sheets.points, sheets.hessian, sheets.gaussian, sheets.mean
         )
-        # Where a radius was 0, the old curvatures say nothing of the new ones.
-        singular = ~np.isfinite(sheets.gaussian)
-        _, gaussian, mean = curvatures(mine[singular], sheets.hessian[singular])
-        sheets.gaussian[singular], sheets.mean[singular] = gaussian, mean
+        # Where a radius was 0, the old curvatures say nothing of the new ones; where one becomes 0,
+        # they say it with the rounding of 1 + 2 H d + K d².
+        radii, gaussian, mean = curvatures(mine, sheets.hessian)
+        sizes = np.abs(radii)
+        vanishing = sizes.min(axis=1) <= RADIUS_ERROR * (sizes.max(axis=1) + abs(self.distance))
+        singular = ~np.isfinite(sheets.gaussian) | vanishing
+        sheets.gaussian[singular], sheets.mean[singular] = gaussian[singular], mean[singular]
         return sheets
 
     def expression(self) -> sympy.Expr | None:

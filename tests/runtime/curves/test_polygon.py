@@ -43,3 +43,12 @@ def test_many_points_are_cut_into_parts():
 def test_unusable_arguments(points, polygon, complaint):
     with pytest.raises(gm.InputError, match=complaint):
         gm.polygon_distance(points, polygon)
+
+
+@pytest.mark.parametrize("scale", [1e-300, 1e-200, 1e-150, 1e150, 1e200, 1e300])
+def test_any_scale(scale):
+    points, polygon = np.array([[1.0, 0.0], [3.0, 3.0]]), np.array([[0.0, 0.0], [1.0, 1.0]])
+    expected = np.sqrt([0.5, 8.0]) * scale
+    np.testing.assert_allclose(
+        gm.polygon_distance(points * scale, polygon * scale), expected, rtol=1e-14
+    )

@@ -422,3 +422,12 @@ def test_other_bad_input() -> None:
     for count in (1, 0, 2.5, None):
         with pytest.raises(gm.InputError, match=r"arc|count"):
             gm.GaussianImage.of_patch(OCTANT).arcs[0].points(count)  # pyright: ignore[reportArgumentType]
+
+
+def test_a_double_parabolic_line_inside_pinches_the_image() -> None:
+    points = [
+        [1, 0, 0.2], [-0.3, 1, 0], [0, 0, 0], [0.85, 0.5, -0.15], [0.5, 0, -0.15], [-0.15, 0.5, 0]
+    ]  # fmt: skip
+    image = gm.GaussianImage.of_patch(points)
+    assert [piece.sign for piece in image.pieces] == [-1, -1]
+    assert image.kind == "bow tie"

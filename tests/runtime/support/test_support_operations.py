@@ -314,3 +314,18 @@ def test_operations_change_nothing_before() -> None:
     assert (before.points == after.points).all()
     assert (before.hessian == after.hessian).all()
     assert "translated by (1.0, 0.0, 0.0)" in repr(COMPOSITIONS["all"](ellipsoid))
+
+
+def test_an_offset_to_a_point_is_one() -> None:
+    branches = gm.SupportFunction.from_sympy("1").offset(-1).branches(gm.fibonacci(2000))
+    assert (branches.principal_radii == 0.0).all()
+    assert np.isposinf(branches.gaussian_curvature).all()
+    assert branches.elliptic.all()
+
+
+def test_sums_of_several() -> None:
+    h = gm.SupportFunction.from_sympy("1")
+    several: Any = sum([h, h, h], start=0)
+    assert several.branches([[0.0, 0.0, 1.0]]).support.tolist() == [3.0]
+    with pytest.raises(TypeError):
+        _: Any = 1 + h
