@@ -34,7 +34,7 @@ SAME_POINT = 1e-6
 LARGEST_EXPONENT = 1000
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Spline:
     """A C¹ quadratic triangular spline on the criss-cross grid (paper, Sect. 3.1); made by `fit`.
 
@@ -76,6 +76,9 @@ class Spline:
         """A power of two that brings the differences of neighbouring coefficients to about 1."""
         steps = [np.abs(np.diff(self.coefficients, axis=axis)).max() for axis in (0, 1)]
         return scale_to_one(float(max(steps)))
+
+    def __repr__(self) -> str:
+        return f"Spline({self.name}, {self.cells[0]} x {self.cells[1]} cells)"
 
     def evaluate(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
         """Return points (..., 3) at parameters that broadcast together.

@@ -27,7 +27,7 @@ ROUNDINGS = 8.0
 REPEATED = 1e-3
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class CurveSpline:
     """A planar C¹ quadratic spline with equal pieces of the parameter; made by `fit_curve`.
 
@@ -66,6 +66,9 @@ class CurveSpline:
     def scale(self) -> float:
         """A power of two that brings the differences of neighbouring coefficients to about 1."""
         return scale_to_one(float(np.abs(np.diff(self.coefficients, axis=0)).max()))
+
+    def __repr__(self) -> str:
+        return f"CurveSpline({self.name}, {self.pieces} pieces)"
 
     def evaluate(self, t: ArrayLike) -> Array:
         """Return points (..., 2) at parameters.

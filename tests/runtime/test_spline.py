@@ -591,3 +591,7 @@ def test_domains_of_odd_sizes(domain):
     np.testing.assert_allclose(
         odd.evaluate(at_u, at_v), plain.evaluate(0.3125, 0.4375), rtol=0, atol=1e-10
     )
+
+
+def test_it_shows_itself_in_a_line():
+    assert repr(gm.fit(gm.surfaces.torus(), (8, 4))) == "Spline(torus, 8 x 4 cells)"
