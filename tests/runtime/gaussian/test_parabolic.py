@@ -393,6 +393,51 @@ def test_small_closed_curve() -> None:
         np.testing.assert_array_equal(curve.uv[0], curve.uv[-1])
 
 
+@pytest.mark.compiled
+@pytest.mark.parametrize(
+    ("size", "factor", "sharp"), [(5.0, 1.0, 1.0), (2.0, 1.0, 10.0), (1.0, 0.1, 50.0)]
+)  # fmt: skip
+def test_bump_has_one_circle_and_is_flat_far_from_it(
+    size: float, factor: float, sharp: float
+) -> None:
+    """z = f exp(−a r²): K changes its sign at r = 1/√(2a) alone; far out it is zero up to error."""
+    bump = graph(lambda u, v: factor * np.exp(-sharp * (u * u + v * v)), ((-size, size),) * 2)
+    found = gm.parabolic_points(bump)
+    (circle,) = found.curves
+    assert circle.closed
+    np.testing.assert_allclose(np.linalg.norm(circle.uv, axis=1), np.sqrt(0.5 / sharp), rtol=1e-4)
+    assert found.isolated == ()
+    low, high = found.flat[:, 0], found.flat[:, 1]
+    nearest = np.linalg.norm(np.maximum(0.0, np.maximum(low, -high)), axis=1)
+    assert nearest.min() > 2.0 / np.sqrt(sharp)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize(
+    ("domain", "ends"),
+    [(((0.0, 2 * np.pi), (-np.pi / 2, np.pi / 2)), True),
+     (((0.0, 2 * np.pi), (np.pi / 2, 3 * np.pi / 2)), True),
+     (((0.0, np.pi / 2), (-np.pi / 2, np.pi / 2)), False)],
+)  # fmt: skip
+def test_curves_on_the_border_are_curves(domain, ends: bool) -> None:
+    """Half a torus ends at its two parabolic circles: they are there, each once."""
+    torus = gm.surfaces.torus(major=1.0, minor=0.35)
+
+    def f(u: Array, v: Array) -> Array:
+        return torus.evaluate(np.mod(u, 2 * np.pi), np.mod(v, 2 * np.pi))
+
+    half = gm.Surface.from_callable(f, domain, periodic=(ends, False))
+    found = gm.parabolic_points(half)
+    assert [curve.closed for curve in found.curves] == [ends, ends]
+    assert sorted(curve.uv[0, 1] for curve in found.curves) == list(domain[1])
+    for curve in found.curves:
+        assert np.ptp(curve.uv[:, 1]) < 1e-8
+        assert np.ptp(curve.uv[:, 0]) == pytest.approx(domain[0][1] - domain[0][0])
+        np.testing.assert_allclose(np.abs(curve.points[:, 2]), 0.35, rtol=1e-12)
+    assert found.isolated == ()
+    assert len(found.flat) == 0
+
+
 def test_touching_curve_is_isolated_in_one_rectangle() -> None:
     """z = u⁴ + v²: K ≥ 0 vanishes along the line u = 0 without a change of sign."""
     found = gm.parabolic_points(graph(lambda u, v: u**4 + v * v), tolerance=1e-2)
