@@ -250,10 +250,11 @@ class _Grid:
     def without_sign_change(self, size: Array, finest: bool) -> tuple[Array, Array, float] | None:
         """Subdivide the cells without sign change that may hold a zero of K.
 
-        Returns the rectangles (k, 2, 2) that are left at the end, and large ones in which K is zero
-        up to its error, and the share of the domain that was too much to look at; None if K has another sign inside
-        a cell away from the curves, so that cells should be smaller. If these are the `finest`,
-        such small curves are left out.
+        Returns the rectangles (k, 2, 2) that are left at the end, large ones in which K is zero up
+        to its error, and the share of the domain that was too much to look at. None if K has
+        another sign inside a cell away from the curves, so that cells should be smaller. If these
+        are the `finest`, the rectangles with another sign are returned as they are: they hold a
+        closed curve that is too small for the cells.
         """
         near = self._near_curves()
         open_ = self.mask & ~self.crossed & ~near & self._may_vanish()
@@ -261,7 +262,7 @@ class _Grid:
         u, v = self.lines
         low, high = np.stack([u[i], v[j]], axis=1), np.stack([u[i + 1], v[j + 1]], axis=1)
         signs = self.signs[i, j]
-        flat = []
+        flat, rings = [], []
         for level in range(DEEPEST):
             large = ((high - low) > size).any(axis=1)
             if not large.any() or len(low) > MOST_BOXES:
@@ -270,6 +271,7 @@ class _Grid:
             keep, other, zero = _bounded(self.field, low, high, signs)
             if other.any() and not finest:
                 return None
+            rings.append(np.stack([low[other], high[other]], axis=1))
             keep &= ~other
             if level < FLAT_LEVELS:
                 flat.append(np.stack([low[zero], high[zero]], axis=1))
@@ -280,6 +282,7 @@ class _Grid:
         area = np.prod([line[-1] - line[0] for line in self.lines])
         none = np.empty((0, 2, 2))
         boxes = np.stack([low, high], axis=1)[left]
+        boxes = np.concatenate([boxes, *rings])
         return boxes, np.concatenate([none, *flat]), dropped / float(area)
 
     def _near_curves(self) -> NDArray[np.bool_]:

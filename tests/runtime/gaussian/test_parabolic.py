@@ -438,6 +438,29 @@ def test_curves_on_the_border_are_curves(domain, ends: bool) -> None:
     assert len(found.flat) == 0
 
 
+@pytest.mark.compiled
+def test_closed_curve_smaller_than_all_cells_is_isolated() -> None:
+    """z = x³ − 3 x y² + e r²: K vanishes on the circle r = e/3, which one rectangle has to meet."""
+    e = 1e-3
+    found = gm.parabolic_points(graph(lambda x, y: x**3 - 3 * x * y * y + e * (x * x + y * y)))
+    assert found.curves == ()
+    (ring,) = found.isolated
+    assert (ring.box[0] <= e / 3).all()
+    assert (ring.box[1] >= -e / 3).all()
+    assert np.abs(ring.box).max() < 1 / 64
+
+
+@pytest.mark.compiled
+def test_fine_waves_have_no_false_points() -> None:
+    """Two families of lines 10x ± 10y = kπ are all there is, and K is known well there."""
+    found = gm.parabolic_points(gm.surfaces.wavy_graph(frequency=10.0), tolerance=1e-3)
+    assert found.isolated == ()
+    assert len(found.flat) == 0
+    for curve in found.curves:
+        sums = np.stack([curve.uv @ [1, 1], curve.uv @ [1, -1]]) * 10 / np.pi
+        assert np.abs(sums - np.round(sums)).min(axis=0).max() < 1e-4
+
+
 def test_touching_curve_is_isolated_in_one_rectangle() -> None:
     """z = u⁴ + v²: K ≥ 0 vanishes along the line u = 0 without a change of sign."""
     found = gm.parabolic_points(graph(lambda u, v: u**4 + v * v), tolerance=1e-2)
