@@ -521,6 +521,18 @@ def test_cells_are_panels() -> None:
     assert [curve.closed for curve in found.curves] == [True, True]
 
 
+def test_results_print_in_one_line() -> None:
+    torus = gm.surfaces.torus()
+    found = gm.parabolic_points(torus, cells=(8, 8))
+    assert repr(found) == "ParabolicPoints(2 curves, 0 isolated, 0 flat rectangles)"
+    assert repr(found.curves[0]) == f"ParabolicCurve(closed, {len(found.curves[0].uv):,} vertices)"
+    flat = gm.parabolic_points(gm.surfaces.plane(), cells=(2, 3))
+    assert repr(flat) == "ParabolicPoints(0 curves, 0 isolated, 6 flat rectangles, developable)"
+    images = gm.GaussianImages.of_spline(gm.fit(gm.surfaces.plane(), (8, 8)))
+    assert repr(images) == "GaussianImages(256 patches)"
+    assert repr(images[0]) == "GaussianImage(point)"
+
+
 # --- chains ---------------------------------------------------------------------------------------
 
 
