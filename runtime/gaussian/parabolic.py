@@ -68,8 +68,8 @@ class ParabolicPoints:
     `curves` are those across which the Gaussian curvature changes its sign; they end at the
     border of the surface and where they meet, and one may lie on the border. Near a crossing on a
     `Surface`, two curves may turn into each other instead. `isolated` are those where it only
-    touches zero. `flat` (k, 2, 2) are rectangles of the parameter plane (lowest and highest corner) in which it
-    vanishes up to its error; `developable` says that it does so everywhere.
+    touches zero. `flat` (k, 2, 2) are rectangles of the parameter plane (lowest and highest corner)
+    in which it vanishes up to its error; `developable` says that it does so everywhere.
     """
 
     curves: tuple[ParabolicCurve, ...]
@@ -100,7 +100,8 @@ def parabolic_points(
     1e-9 where the surface is resolved, and up to 1 % of K on the panel where it is not. Where K is
     less than its error, its sign is not used: such places are `flat`. Two
     curves that are nearer than one cell of a grid (1/16 of a panel) may be missed. Parts of the
-    domain where the curvature cannot be computed (a pole, a crease) are left out, with a GaussmapWarning if they are more than 0.01 % of it.
+    domain where the curvature cannot be computed (a pole, a crease) are left out, with a
+    GaussmapWarning if they are more than 0.01 % of it.
 
     `tolerance` is relative to the size of the surface and of its domain: so far may polylines be
     from the curves in space, and so small are the rectangles that isolate points. Raises InputError

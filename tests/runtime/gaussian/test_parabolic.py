@@ -516,6 +516,16 @@ def test_a_crease_is_left_out_with_a_warning() -> None:
     assert found.developable is False
 
 
+@pytest.mark.compiled
+def test_a_crease_between_panels_gives_nothing_false() -> None:
+    """z = |x − 0.1| + r² has K = 4 / (1 + z_x² + z_y²)² > 0 on both sides of the crease."""
+    surface = graph(lambda u, v: np.abs(u - 0.1) + u * u + v * v)
+    with pytest.warns(gm.GaussmapWarning, match="cannot be computed"):
+        found = gm.parabolic_points(surface)
+    assert found.curves == found.isolated == ()
+    assert len(found.flat) == 0
+
+
 def test_cells_are_panels() -> None:
     found = gm.parabolic_points(gm.surfaces.torus(), cells=(3, 5))
     assert [curve.closed for curve in found.curves] == [True, True]
