@@ -27,6 +27,8 @@ ORDER = 16
 OFFSET = 0.2360679774997897
 # K is resolved where its error is less than this, beside its largest value on the panel.
 RESOLVED = 1e-2
+# It is known well where its error is less than this, beside how much the surface bends.
+WELL = 1e-8
 NODES = chebyshev.chebpts1(ORDER)
 TO_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(NODES, ORDER - 1))
 
@@ -75,11 +77,7 @@ class CurvatureField:
         x = x.reshape(panels[0], ORDER, panels[1], ORDER, 3).transpose(0, 2, 1, 3, 4)
         K, rounding, bending = _curvature(x, *(np.diff(line) for line in lines))
         coefficients = TO_COEFFICIENTS @ K @ TO_COEFFICIENTS.T
-        tail = np.maximum(
-            np.abs(coefficients[..., -2:, :]).max(axis=(2, 3)),
-            np.abs(coefficients[..., :, -2:]).max(axis=(2, 3)),
-        )
-        noise = rounding + ORDER * tail
+        noise = rounding + ORDER * _tail(coefficients[:, :, None])[..., 0, 0]
         return cls((lines[0], lines[1]), wraps, coefficients, noise, bending)
 
     @cached_property
@@ -98,6 +96,11 @@ class CurvatureField:
         """Where (m, n) the error of K is large beside K, and beside how much the surface bends."""
         least = np.maximum(self.largest, RESOLVED * self.bending)
         return ~self.flat & ~(self.noise <= RESOLVED * least)
+
+    @cached_property
+    def rough(self) -> NDArray[np.bool_]:
+        """Where (m, n) K is known, but with an error that smaller panels may lessen."""
+        return ~self.flat & ~(self.noise <= WELL * self.bending)
 
     def share(self, which: NDArray[np.bool_]) -> float:
         """Return the share of the domain that panels (m, n) take."""
@@ -142,6 +145,13 @@ def _nodes(lines: Array) -> Array:
     return (middle[:, None] + half[:, None] * NODES).ravel()
 
 
+def _tail(coefficients: Array) -> Array:
+    """Return the largest (m, n, 1, 1) of the last coefficients (m, n, d, ORDER, ORDER)."""
+    size = np.abs(coefficients).max(axis=2)
+    ends = size[:, :, -4:].max(axis=(2, 3)), size[..., -4:].max(axis=(2, 3))
+    return np.maximum(*ends)[..., None, None]
+
+
 def _curvature(x: Array, sizes_u: Array, sizes_v: Array) -> tuple[Array, Array, Array]:
     """Return K at the nodes (m, n, ORDER, ORDER) of points; its rounding error and bending (m, n).
 
@@ -150,6 +160,7 @@ def _curvature(x: Array, sizes_u: Array, sizes_v: Array) -> tuple[Array, Array, 
     scale = float(np.abs(x - x.mean(axis=(0, 1, 2, 3))).max()) or 1.0
     error = 4.0 * float(np.spacing(np.abs(x).max())) / scale
     x = (x - x.mean(axis=(0, 1, 2, 3))) / scale
+    error = error + _tail(TO_COEFFICIENTS @ np.moveaxis(x, -1, 2) @ TO_COEFFICIENTS.T)
     along_u, along_v = 2.0 / sizes_u[:, None, None, None, None], 2.0 / sizes_v[:, None, None, None]
     p_u = np.einsum("ai,mnibx->mnabx", DERIVATIVE, x) * along_u
     p_v = np.einsum("bi,mnaix->mnabx", DERIVATIVE, x) * along_v

@@ -96,6 +96,9 @@ class GaussianImage:
 
     control_points: Array
 
+    def __repr__(self) -> str:
+        return f"GaussianImage({self.kind})"
+
     @classmethod
     def of_patch(cls, control_points: ArrayLike) -> GaussianImage:
         """Return the Gaussian image of six control points (6, 3).
@@ -194,6 +197,9 @@ class GaussianImages:
     """
 
     spline: Spline
+
+    def __repr__(self) -> str:
+        return f"GaussianImages({len(self):,} patches)"
 
     @classmethod
     def of_spline(

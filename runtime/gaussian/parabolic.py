@@ -42,6 +42,9 @@ class ParabolicCurve:
     points: Array
     closed: bool
 
+    def __repr__(self) -> str:
+        return f"ParabolicCurve({'closed' if self.closed else 'open'}, {len(self.uv):,} vertices)"
+
 
 @dataclass(frozen=True, eq=False)
 class ParabolicPoint:
@@ -49,7 +52,8 @@ class ParabolicPoint:
 
     `uv` (2,) are its parameters, `point` (3,) its place in space. `box` (2, 2) holds the lowest and
     the highest parameters of the rectangle that isolates it; one that is longer than the tolerance
-    holds a whole curve of such points, or K is zero up to its error on all of it.
+    holds a whole curve of such points, or a closed curve too small to follow, or K is zero up to
+    its error on all of it.
     """
 
     uv: Array
@@ -61,16 +65,22 @@ class ParabolicPoint:
 class ParabolicPoints:
     """The parabolic points of a surface.
 
-    `curves` are those across which the Gaussian curvature changes its sign; they end at the border
-    of the surface and where they meet. `isolated` are those where it only touches zero.
-    `flat` (k, 2, 2) are rectangles of the parameter plane (lowest and highest corner) in which it
-    vanishes up to rounding; `developable` says that it does so everywhere.
+    `curves` are those across which the Gaussian curvature changes its sign; they end at the
+    border of the surface and where they meet, and one may lie on the border. Near a crossing on a
+    `Surface`, two curves may turn into each other instead. `isolated` are those where it only
+    touches zero. `flat` (k, 2, 2) are rectangles of the parameter plane (lowest and highest corner)
+    in which it vanishes up to its error; `developable` says that it does so everywhere.
     """
 
     curves: tuple[ParabolicCurve, ...]
     isolated: tuple[ParabolicPoint, ...]
     flat: Array
     developable: bool
+
+    def __repr__(self) -> str:
+        counts = f"{len(self.curves):,} curves, {len(self.isolated):,} isolated"
+        whole = ", developable" if self.developable else ""
+        return f"ParabolicPoints({counts}, {len(self.flat):,} flat rectangles{whole})"
 
 
 def parabolic_points(
@@ -86,10 +96,12 @@ def parabolic_points(
 
     Of any other `Surface`: of the surface itself, which has to be smooth. It is interpolated on
     `cells` = (m, n) panels by polynomials of degree 15 and differentiated; without `cells` 8 × 8
-    panels, or as many more as it takes. K is known to about 1e-9 of its size, and so are the
-    vertices of the curves. Two curves that are nearer than one cell of a grid (1/16 of a panel) may
-    be missed. Parts of the domain where the curvature cannot be computed (a pole, a crease) are
-    left out, with a GaussmapWarning if they are more than 0.01 % of it.
+    panels, or as many more as it takes, at most 64 × 64. The error of K is estimated: it is about
+    1e-9 where the surface is resolved, and up to 1 % of K on the panel where it is not. Where K is
+    less than its error, its sign is not used: such places are `flat`. Two
+    curves that are nearer than one cell of a grid (1/16 of a panel) may be missed. Parts of the
+    domain where the curvature cannot be computed (a pole, a crease) are left out, with a
+    GaussmapWarning if they are more than 0.01 % of it.
 
     `tolerance` is relative to the size of the surface and of its domain: so far may polylines be
     from the curves in space, and so small are the rectangles that isolate points. Raises InputError

@@ -393,6 +393,74 @@ def test_small_closed_curve() -> None:
         np.testing.assert_array_equal(curve.uv[0], curve.uv[-1])
 
 
+@pytest.mark.compiled
+@pytest.mark.parametrize(
+    ("size", "factor", "sharp"), [(5.0, 1.0, 1.0), (2.0, 1.0, 10.0), (1.0, 0.1, 50.0)]
+)  # fmt: skip
+def test_bump_has_one_circle_and_is_flat_far_from_it(
+    size: float, factor: float, sharp: float
+) -> None:
+    """z = f exp(−a r²): K changes its sign at r = 1/√(2a) alone; far out it is zero up to error."""
+    bump = graph(lambda u, v: factor * np.exp(-sharp * (u * u + v * v)), ((-size, size),) * 2)
+    found = gm.parabolic_points(bump)
+    (circle,) = found.curves
+    assert circle.closed
+    np.testing.assert_allclose(np.linalg.norm(circle.uv, axis=1), np.sqrt(0.5 / sharp), rtol=1e-4)
+    assert found.isolated == ()
+    low, high = found.flat[:, 0], found.flat[:, 1]
+    nearest = np.linalg.norm(np.maximum(0.0, np.maximum(low, -high)), axis=1)
+    assert nearest.min() > 2.0 / np.sqrt(sharp)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize(
+    ("domain", "ends"),
+    [(((0.0, 2 * np.pi), (-np.pi / 2, np.pi / 2)), True),
+     (((0.0, 2 * np.pi), (np.pi / 2, 3 * np.pi / 2)), True),
+     (((0.0, np.pi / 2), (-np.pi / 2, np.pi / 2)), False)],
+)  # fmt: skip
+def test_curves_on_the_border_are_curves(domain, ends: bool) -> None:
+    """Half a torus ends at its two parabolic circles: they are there, each once."""
+    torus = gm.surfaces.torus(major=1.0, minor=0.35)
+
+    def f(u: Array, v: Array) -> Array:
+        return torus.evaluate(np.mod(u, 2 * np.pi), np.mod(v, 2 * np.pi))
+
+    half = gm.Surface.from_callable(f, domain, periodic=(ends, False))
+    found = gm.parabolic_points(half)
+    assert [curve.closed for curve in found.curves] == [ends, ends]
+    assert sorted(curve.uv[0, 1] for curve in found.curves) == list(domain[1])
+    for curve in found.curves:
+        assert np.ptp(curve.uv[:, 1]) < 1e-8
+        assert np.ptp(curve.uv[:, 0]) == pytest.approx(domain[0][1] - domain[0][0])
+        np.testing.assert_allclose(np.abs(curve.points[:, 2]), 0.35, rtol=1e-12)
+    assert found.isolated == ()
+    assert len(found.flat) == 0
+
+
+@pytest.mark.compiled
+def test_closed_curve_smaller_than_all_cells_is_isolated() -> None:
+    """z = x³ − 3 x y² + e r²: K vanishes on the circle r = e/3, which one rectangle has to meet."""
+    e = 1e-3
+    found = gm.parabolic_points(graph(lambda x, y: x**3 - 3 * x * y * y + e * (x * x + y * y)))
+    assert found.curves == ()
+    (ring,) = found.isolated
+    assert (ring.box[0] <= e / 3).all()
+    assert (ring.box[1] >= -e / 3).all()
+    assert np.abs(ring.box).max() < 1 / 64
+
+
+@pytest.mark.compiled
+def test_fine_waves_have_no_false_points() -> None:
+    """Two families of lines 10x ± 10y = kπ are all there is, and K is known well there."""
+    found = gm.parabolic_points(gm.surfaces.wavy_graph(frequency=10.0), tolerance=1e-3)
+    assert found.isolated == ()
+    assert len(found.flat) == 0
+    for curve in found.curves:
+        sums = np.stack([curve.uv @ [1, 1], curve.uv @ [1, -1]]) * 10 / np.pi
+        assert np.abs(sums - np.round(sums)).min(axis=0).max() < 1e-4
+
+
 def test_touching_curve_is_isolated_in_one_rectangle() -> None:
     """z = u⁴ + v²: K ≥ 0 vanishes along the line u = 0 without a change of sign."""
     found = gm.parabolic_points(graph(lambda u, v: u**4 + v * v), tolerance=1e-2)
@@ -448,9 +516,31 @@ def test_a_crease_is_left_out_with_a_warning() -> None:
     assert found.developable is False
 
 
+@pytest.mark.compiled
+def test_a_crease_between_panels_gives_nothing_false() -> None:
+    """z = |x − 0.1| + r² has K = 4 / (1 + z_x² + z_y²)² > 0 on both sides of the crease."""
+    surface = graph(lambda u, v: np.abs(u - 0.1) + u * u + v * v)
+    with pytest.warns(gm.GaussmapWarning, match="cannot be computed"):
+        found = gm.parabolic_points(surface)
+    assert found.curves == found.isolated == ()
+    assert len(found.flat) == 0
+
+
 def test_cells_are_panels() -> None:
     found = gm.parabolic_points(gm.surfaces.torus(), cells=(3, 5))
     assert [curve.closed for curve in found.curves] == [True, True]
+
+
+def test_results_print_in_one_line() -> None:
+    torus = gm.surfaces.torus()
+    found = gm.parabolic_points(torus, cells=(8, 8))
+    assert repr(found) == "ParabolicPoints(2 curves, 0 isolated, 0 flat rectangles)"
+    assert repr(found.curves[0]) == f"ParabolicCurve(closed, {len(found.curves[0].uv):,} vertices)"
+    flat = gm.parabolic_points(gm.surfaces.plane(), cells=(2, 3))
+    assert repr(flat) == "ParabolicPoints(0 curves, 0 isolated, 6 flat rectangles, developable)"
+    images = gm.GaussianImages.of_spline(gm.fit(gm.surfaces.plane(), (8, 8)))
+    assert repr(images) == "GaussianImages(256 patches)"
+    assert repr(images[0]) == "GaussianImage(point)"
 
 
 # --- chains ---------------------------------------------------------------------------------------
