@@ -273,7 +273,8 @@ class GaussianImages:
         With sign=1 only elliptic points count, with sign=-1 only hyperbolic ones. Raises InputError
         for unusable normals (see `sample`) or another sign.
         """
-        if isinstance(sign, bool) or sign not in (-1, 0, 1):
+        is_whole = isinstance(sign, int | np.integer) and not isinstance(sign, bool)
+        if not is_whole or sign not in (-1, 0, 1):
             raise InputError(f"sign must be 1, -1 or 0 (both), not {sign!r}.")
         directions = as_normals(normals)
         bins = NormalBins(directions)

@@ -1,6 +1,7 @@
 """Gaussian images: against definitions in exact arithmetic, quadrature, and topology."""
 
 from fractions import Fraction
+from typing import Any
 
 import gaussmap as gm
 import numpy as np
@@ -459,3 +460,10 @@ def test_a_singular_point_inside_an_edge(points, count, zero, kind) -> None:
 def test_arcs_without_a_singular_point_inside() -> None:
     for arc in gm.GaussianImage.of_patch(OCTANT).arcs:
         assert arc.singular_point is None
+
+
+@pytest.mark.parametrize("sign", [np.array([1, 1]), "1", 1.0, True, None, 2])
+def test_a_sign_is_one_whole_number(sign: Any) -> None:
+    images = gm.GaussianImages.of_spline(gm.surfaces.torus(), (8, 8))
+    with pytest.raises(gm.InputError, match="sign must be 1, -1 or 0"):
+        images.sheets([[0.0, 0.0, 1.0]], sign=sign)
