@@ -24,17 +24,25 @@ __all__ = [
     "fit_grid",
     "not_too_large",
     "scale_to_one",
+    "short_label",
 ]
 
 DEFAULT_CELLS = (64, 64)
 MOST_CELLS = 10**9
+LONGEST_LABEL = 40
 # What is said to be one point may be this far apart, beside the size of the surface.
 SAME_POINT = 1e-6
 # Beyond this binary exponent a number cannot be multiplied by a few small ones.
 LARGEST_EXPONENT = 1000
 
 
-@dataclass(frozen=True, eq=False)
+def short_label(name: str) -> str:
+    """Return a name on one line, cut if it is long."""
+    label = " ".join(name.split())
+    return label if len(label) <= LONGEST_LABEL else label[: LONGEST_LABEL - 1] + "…"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Spline:
     """A C¹ quadratic triangular spline on the criss-cross grid (paper, Sect. 3.1); made by `fit`.
 
@@ -47,6 +55,9 @@ class Spline:
     domain: Domain
     ends: Ends
     name: str
+
+    def __repr__(self) -> str:
+        return f"Spline({self.cells[0]} × {self.cells[1]} cells of {short_label(self.name)})"
 
     @property
     def cells(self) -> tuple[int, int]:

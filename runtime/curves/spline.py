@@ -13,7 +13,7 @@ from ...generated import spline as edge_kernels
 from ..checks import real_array, whole_number
 from ..errors import InputError, SurfaceError
 from ..plain import plain
-from ..spline import apart, not_too_large, scale_to_one
+from ..spline import apart, not_too_large, scale_to_one, short_label
 from .curve import Curve, Interval
 
 __all__ = ["DEFAULT_PIECES", "CurveSpline", "curve_of_points", "fit_curve"]
@@ -27,7 +27,7 @@ ROUNDINGS = 8.0
 REPEATED = 1e-3
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class CurveSpline:
     """A planar C¹ quadratic spline with equal pieces of the parameter; made by `fit_curve`.
 
@@ -39,6 +39,9 @@ class CurveSpline:
     domain: Interval
     periodic: bool
     name: str
+
+    def __repr__(self) -> str:
+        return f"CurveSpline({self.pieces:,} pieces of {short_label(self.name)})"
 
     @property
     def pieces(self) -> int:
