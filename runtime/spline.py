@@ -25,6 +25,7 @@ __all__ = [
     "not_too_large",
     "scale_to_one",
     "short_label",
+    "spline_of",
 ]
 
 DEFAULT_CELLS = (64, 64)
@@ -34,6 +35,15 @@ LONGEST_LABEL = 40
 SAME_POINT = 1e-6
 # Beyond this binary exponent a number cannot be multiplied by a few small ones.
 LARGEST_EXPONENT = 1000
+
+
+def spline_of(surface: Surface | Spline, cells: Sequence[int] | None) -> Spline:
+    """Return a spline as it is, or that of a surface; InputError for `cells` beside a spline."""
+    if isinstance(surface, Spline):
+        if cells is not None:
+            raise InputError("cells=... is for surfaces; this spline has its cells already.")
+        return surface
+    return fit(surface, cells)
 
 
 def short_label(name: str) -> str:

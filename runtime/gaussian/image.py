@@ -16,7 +16,7 @@ from ..errors import InputError
 from ..plain import plain
 from ..search import NormalBins, fill, find
 from ..sphere import as_normals
-from ..spline import Spline, fit
+from ..spline import Spline, spline_of
 from ..surface import Surface
 from .area import measures_of
 from .classes import PatchClass, classes_of
@@ -235,9 +235,7 @@ class GaussianImages:
 
         Raises InputError for `cells` beside a spline, and what `fit` raises.
         """
-        if isinstance(spline, Spline) and cells is not None:
-            raise InputError("cells=... is for surfaces; this spline has its cells already.")
-        return cls(spline if isinstance(spline, Spline) else fit(spline, cells))
+        return cls(spline_of(spline, cells))
 
     def __len__(self) -> int:
         """Return the number of patches."""
