@@ -14,10 +14,10 @@ __all__ = ["parameter_arrays", "real_array", "whole_number"]
 MOST = 10**9
 
 
-def whole_number(value: object, name: str) -> int:
-    """Return a whole number from 1 to 10⁹; raise InputError that names it if it is not one."""
-    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 1:
-        raise InputError(f"{name} must be a whole number of at least 1, not {value!r}.")
+def whole_number(value: object, name: str, least: int = 1) -> int:
+    """Return a whole number from `least` to 10⁹; InputError with its name if it is none."""
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
+        raise InputError(f"{name} must be a whole number of at least {least}, not {value!r}.")
     if value > MOST:
         raise InputError(f"{name} must be a whole number of at most {MOST:,}, not larger.")
     return int(value)

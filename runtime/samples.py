@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import InputError
+from .spline import short_label
 
 __all__ = ["ARRAY_NAMES", "Samples", "SamplingReport"]
 
@@ -30,8 +31,6 @@ ARRAY_NAMES: tuple[str, ...] = tuple(_LAYOUT)
 
 # A share is a quotient of sums, so rounding may carry it this far beyond 0 or 1.
 _SHARE_ROUNDING = 1e-9
-
-_LONGEST_LABEL = 40
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,9 +162,7 @@ class Samples:
         return Samples(**{name: getattr(self, name)[rows] for name in _LAYOUT}, report=self.report)
 
     def __repr__(self) -> str:
-        label = " ".join(self.report.surface.split())
-        if len(label) > _LONGEST_LABEL:
-            label = label[: _LONGEST_LABEL - 1] + "…"
+        label = short_label(self.report.surface)
         return f"Samples({len(self):,} points on {label}: {self._split()})"
 
     def _split(self) -> str:

@@ -15,7 +15,7 @@ from .lattice import Lattice
 from .samples import Samples, SamplingReport
 from .search import Hits, NormalBins, fill, find
 from .sphere import as_normals
-from .spline import Spline, fit
+from .spline import Spline, spline_of
 from .surface import Surface
 from .threads import thread_count
 from .visibility import invisible_share, visible_solid_angle
@@ -73,9 +73,7 @@ def sample_and_normals(
 ) -> tuple[Samples, NDArray[np.float64]]:
     """Return what `sample` returns, and the unit normals that were asked."""
     directions = _directions(normals, count, threads)
-    if isinstance(surface, Spline) and cells is not None:
-        raise InputError("cells=... is for surfaces; this spline has its cells already.")
-    spline = surface if isinstance(surface, Spline) else fit(surface, cells)
+    spline = spline_of(surface, cells)
     if directions is None:
         assert count is not None
         bins, hits, density = _by_count(spline, int(count), threads, progress)

@@ -24,14 +24,32 @@ __all__ = [
     "fit_grid",
     "not_too_large",
     "scale_to_one",
+    "short_label",
+    "spline_of",
 ]
 
 DEFAULT_CELLS = (64, 64)
 MOST_CELLS = 10**9
+LONGEST_LABEL = 40
 # What is said to be one point may be this far apart, beside the size of the surface.
 SAME_POINT = 1e-6
 # Beyond this binary exponent a number cannot be multiplied by a few small ones.
 LARGEST_EXPONENT = 1000
+
+
+def spline_of(surface: Surface | Spline, cells: Sequence[int] | None) -> Spline:
+    """Return a spline as it is, or that of a surface; InputError for `cells` beside a spline."""
+    if isinstance(surface, Spline):
+        if cells is not None:
+            raise InputError("cells=... is for surfaces; this spline has its cells already.")
+        return surface
+    return fit(surface, cells)
+
+
+def short_label(name: str) -> str:
+    """Return a name on one line, cut if it is long."""
+    label = " ".join(name.split())
+    return label if len(label) <= LONGEST_LABEL else label[: LONGEST_LABEL - 1] + "…"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -47,6 +65,9 @@ class Spline:
     domain: Domain
     ends: Ends
     name: str
+
+    def __repr__(self) -> str:
+        return f"Spline({self.cells[0]} × {self.cells[1]} cells of {short_label(self.name)})"
 
     @property
     def cells(self) -> tuple[int, int]:
@@ -76,9 +97,6 @@ class Spline:
         """A power of two that brings the differences of neighbouring coefficients to about 1."""
         steps = [np.abs(np.diff(self.coefficients, axis=axis)).max() for axis in (0, 1)]
         return scale_to_one(float(max(steps)))
-
-    def __repr__(self) -> str:
-        return f"Spline({self.name}, {self.cells[0]} x {self.cells[1]} cells)"
 
     def evaluate(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
         """Return points (..., 3) at parameters that broadcast together.

@@ -202,7 +202,10 @@ def _exact(value: object, reserved: set[sp.Symbol]) -> sp.Expr:
 
     Raises ValueError unless it is real and finite (or a symbol) and leaves n, u, v alone.
     """
-    expression = cast(Any, sp.sympify)(value, rational=isinstance(value, str))
+    try:
+        expression = cast(Any, sp.sympify)(value, rational=isinstance(value, str))
+    except Exception:  # SymPy runs the text as Python, which may raise anything
+        expression = None
     if not isinstance(expression, sp.Expr) or expression.is_Matrix:
         raise ValueError(f"{value!r} is not a coordinate")
     expression = substitute(expression, {x: sp.Rational(x) for x in expression.atoms(sp.Float)})

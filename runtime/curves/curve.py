@@ -78,8 +78,9 @@ class Curve:
 
     @classmethod
     def from_points(cls, points: ArrayLike, closed: bool = False, *, name: str = "points") -> Curve:
-        """Make a curve of points (m, 2), t = k at points[k], as evenly spaced as they may be.
+        """Make a curve that passes near points (m, 2), as evenly spaced as they may be.
 
+        Its parameter is t = k beside points[k]; the spline does not interpolate the points.
         A closed curve must not repeat its first point at its end. One spline piece stands between
         any two neighbouring points; `fit_curve(pieces=...)` chooses otherwise. Raises InputError
         for another shape, fewer than 3 points, or NaN or infinity (and says where).

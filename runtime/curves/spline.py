@@ -13,7 +13,7 @@ from ...generated import spline as edge_kernels
 from ..checks import real_array, whole_number
 from ..errors import InputError, SurfaceError
 from ..plain import plain
-from ..spline import apart, not_too_large, scale_to_one
+from ..spline import apart, not_too_large, scale_to_one, short_label
 from .curve import Curve, Interval
 
 __all__ = ["DEFAULT_PIECES", "CurveSpline", "curve_of_points", "fit_curve"]
@@ -39,6 +39,9 @@ class CurveSpline:
     domain: Interval
     periodic: bool
     name: str
+
+    def __repr__(self) -> str:
+        return f"CurveSpline({self.pieces:,} pieces of {short_label(self.name)})"
 
     @property
     def pieces(self) -> int:
@@ -66,9 +69,6 @@ class CurveSpline:
     def scale(self) -> float:
         """A power of two that brings the differences of neighbouring coefficients to about 1."""
         return scale_to_one(float(np.abs(np.diff(self.coefficients, axis=0)).max()))
-
-    def __repr__(self) -> str:
-        return f"CurveSpline({self.name}, {self.pieces} pieces)"
 
     def evaluate(self, t: ArrayLike) -> Array:
         """Return points (..., 2) at parameters.

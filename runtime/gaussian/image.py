@@ -16,7 +16,7 @@ from ..errors import InputError
 from ..plain import plain
 from ..search import NormalBins, fill, find
 from ..sphere import as_normals
-from ..spline import Spline, fit
+from ..spline import Spline, spline_of
 from ..surface import Surface
 from .area import measures_of
 from .classes import PatchClass, classes_of
@@ -52,19 +52,51 @@ class BoundaryArc:
         """Return `count` unit normals (count, 3) along the arc, both ends included.
 
         At a singular end, where the normal vanishes, it is the limit; NaN if the whole arc has no
-        normals. Raises InputError unless `count` is a whole number of at least 2.
+        normals, and at a `singular_point`, where the arc jumps to the opposite normal. Raises
+        InputError unless `count` is a whole number of at least 2.
         """
-        if whole_number(count, "count") < 2:
-            raise InputError("an arc needs at least 2 points.")
-        t = np.linspace(0.0, 1.0, count)
+        t = np.linspace(0.0, 1.0, whole_number(count, "count", 2))
         normals = np.stack(formulas_of_arc(self.control_normals, t), axis=1)
         nonzero = self.control_normals[self.control_normals.any(axis=1)]
         if len(nonzero):
             for end, limit in ((0, nonzero[0]), (-1, nonzero[-1])):
                 normals[end] = normals[end] if normals[end].any() else limit
         with np.errstate(invalid="ignore"):
+            if self.singular_point is not None:
+                normals[np.linalg.norm(normals, axis=1) <= 4.0 * self.noise] = np.nan
             normals /= np.abs(normals).max(axis=1, keepdims=True)
             return normals / np.linalg.norm(normals, axis=1, keepdims=True)
+
+    @cached_property
+    def singular_point(self) -> float | None:
+        """The parameter, between 0 and 1, at which the normal vanishes up to rounding, or None.
+
+        The arc is then two parts of one great circle. Unless they are one point, the image is
+        closed between them by half a great circle, whose plane depends on the rest of the patch.
+        """
+        first, middle, last = self.control_normals
+        limit = 4.0 * self.noise
+        if min(np.linalg.norm(first), np.linalg.norm(last)) <= limit:
+            return None
+        quadratics = np.stack([first - 2.0 * middle + last, 2.0 * (middle - first), first], axis=1)
+        # What rounding leaves of a coefficient would only give roots far away.
+        quadratics[np.abs(quadratics) <= np.finfo(float).eps * np.abs(quadratics).max()] = 0.0
+        zeros = np.concatenate([np.roots(x).real for x in quadratics])
+        zeros = zeros[(zeros > 0.0) & (zeros < 1.0)]
+        if not len(zeros):
+            return None
+        lengths = np.linalg.norm(np.stack(formulas_of_arc(self.control_normals, zeros)), axis=0)
+        best = int(lengths.argmin())
+        return float(zeros[best]) if lengths[best] <= limit else None
+
+    @property
+    def sides(self) -> int:
+        """How many sides it gives the image: 0 for one point, more if it is cut inside."""
+        parts = 0 if self.is_point else 1
+        if self.singular_point is None:
+            return parts
+        jumps = float(self.control_normals[0] @ self.control_normals[2]) < 0.0
+        return 2 * parts + (1 if parts or jumps else 0)
 
     @property
     def is_point(self) -> bool:
@@ -113,16 +145,16 @@ class GaussianImage:
 
         "triangle": bounded by three arcs. "biangle": by two, because the third is one point (its
         edge is a parabolic line). "polygon": by more, because a corner is a singular point and adds
-        a great-circle arc. "bow tie": a parabolic line inside, pinched to one point. "arc": of a
-        developable patch. "point": of a plane (two opposite ones if it is folded). "empty": no
-        point of the patch has a normal.
+        a great-circle arc, or one lies inside an edge. "bow tie": a parabolic line inside, pinched
+        to one point. "arc": of a developable patch. "point": of a plane (two opposite ones if it is
+        folded). "empty": no point of the patch has a normal.
         """
         if self.patch_class in NAMES:
             return NAMES[self.patch_class]
         if len(self.pieces) > 1:
             return "bow tie"
         sides = (BoundaryArc(arc[0], self._noise) for arc in boundary_of(self._patch.normals))
-        return BY_SIDES.get(sum(not side.is_point for side in sides), "polygon")
+        return BY_SIDES.get(sum(side.sides for side in sides), "polygon")
 
     @cached_property
     def patch_class(self) -> PatchClass:
@@ -209,9 +241,7 @@ class GaussianImages:
 
         Raises InputError for `cells` beside a spline, and what `fit` raises.
         """
-        if isinstance(spline, Spline) and cells is not None:
-            raise InputError("cells=... is for surfaces; this spline has its cells already.")
-        return cls(spline if isinstance(spline, Spline) else fit(spline, cells))
+        return cls(spline_of(spline, cells))
 
     def __len__(self) -> int:
         """Return the number of patches."""
@@ -247,7 +277,8 @@ class GaussianImages:
         With sign=1 only elliptic points count, with sign=-1 only hyperbolic ones. Raises InputError
         for unusable normals (see `sample`) or another sign.
         """
-        if isinstance(sign, bool) or sign not in (-1, 0, 1):
+        is_whole = isinstance(sign, int | np.integer) and not isinstance(sign, bool)
+        if not is_whole or sign not in (-1, 0, 1):
             raise InputError(f"sign must be 1, -1 or 0 (both), not {sign!r}.")
         directions = as_normals(normals)
         bins = NormalBins(directions)

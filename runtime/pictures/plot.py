@@ -19,7 +19,7 @@ from ..errors import InputError, MissingExtraError
 from ..samples import Samples
 from ..sampling import sample_and_normals
 from ..sphere import as_normals
-from ..spline import Spline, fit
+from ..spline import Spline, spline_of
 from ..surface import Surface
 from .globe import draw_globe, view_of
 from .palette import ELLIPTIC, HYPERBOLIC, INK, NO_SAMPLE, PALE, SCALE, STYLE
@@ -59,9 +59,7 @@ def plot(
     is wrong with the path is known before any work is done.
     """
     check_target(path)
-    if isinstance(surface, Spline) and cells is not None:
-        raise InputError("cells=... is for surfaces; this spline has its cells already.")
-    spline = surface if isinstance(surface, Spline) else fit(surface, cells)
+    spline = spline_of(surface, cells)
     samples, directions = sample_and_normals(
         spline, normals, count=count, cells=None, threads=threads, progress=progress
     )

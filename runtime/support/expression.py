@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -47,11 +46,9 @@ class ExpressionSource:
         try:
             source = kernel_source(expression, condition)
         except (NotImplementedError, ValueError, TypeError, AttributeError) as error:
-            unknown = re.search(r"(\w+)(?:'>)?$", str(error).partition("\n")[0])
-            name = unknown[1] if unknown else "a function"
             raise InputError(
-                f"h = {_short(expression)} cannot be compiled: it, a derivative or its domain uses "
-                f"{name}, which kernels cannot compute."
+                f"h = {_short(expression)} cannot be compiled: {_culprits(expression, condition)}, "
+                "which kernels cannot compute."
             ) from error
         return cls(expression, condition, source)
 
@@ -153,6 +150,26 @@ def _condition(domain: object, names: Sequence[str]) -> Any:  # noqa: ANN401 - S
             f"not {domain!r}."
         )
     return _in_normal(condition, names, "domain")
+
+
+def _culprits(*expressions: Any) -> str:  # noqa: ANN401 - SymPy has no types
+    """Say which functions, as the user wrote them, cannot be compiled or differentiated."""
+    import sympy as sp
+
+    from ...symbolic.expression import kernel_source
+
+    def is_unusable(part: Any) -> bool:  # noqa: ANN401
+        try:
+            kernel_source(part)
+        except (NotImplementedError, ValueError, TypeError, AttributeError):
+            return True
+        return False
+
+    kinds = (sp.Function, sp.Integral, sp.Derivative, sp.Sum, sp.Product, sp.Limit)
+    parts = {x for e in expressions for x in e.atoms(*kinds) if is_unusable(x)}
+    inner = {x for x in parts if not any(y != x and x.has(y) for y in parts)}
+    names = sorted({x.func.__name__ for x in inner})
+    return f"it uses {', '.join(names)}" if names else "it or a derivative uses a function"
 
 
 def _short(expression: object) -> str:

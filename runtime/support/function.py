@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..checks import real_array
 from ..errors import InputError
 from ..sphere import as_normals
-from ..spline import Spline, fit
+from ..spline import Spline, spline_of
 from ..surface import Surface
 from .branches import Branches, Sheets
 from .operations import Offset, Reversed, Rotated, Scaled, Sum, Translated
@@ -51,11 +51,9 @@ class SupportFunction:
         point with a given normal is one branch, exactly once. Flat and developable patches have no
         support function, and so no branch. Raises InputError for `cells` with a spline.
         """
-        if isinstance(surface, Spline) and cells is not None:
-            raise InputError("cells=... is for surfaces; this spline has its cells already.")
         if not isinstance(surface, Spline | Surface):
             raise InputError(f"of_spline takes a Spline or Surface, not {_kind(surface)}.")
-        return cls(SplineSource(surface if isinstance(surface, Spline) else fit(surface, cells)))
+        return cls(SplineSource(spline_of(surface, cells)))
 
     @classmethod
     def of_patch(cls, control_points: ArrayLike) -> SupportFunction:

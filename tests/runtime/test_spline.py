@@ -593,5 +593,9 @@ def test_domains_of_odd_sizes(domain):
     )
 
 
-def test_it_shows_itself_in_a_line():
-    assert repr(gm.fit(gm.surfaces.torus(), (8, 4))) == "Spline(torus, 8 x 4 cells)"
+def test_a_spline_is_one_line_at_a_prompt():
+    assert repr(gm.fit(TORUS, (8, 6))) == f"Spline(8 × 6 cells of {TORUS.name})"
+    surface = gm.Surface.from_sympy(("u", "v", "u*v"), ("u", "v"), SQUARE, name="long\n" * 50)
+    assert len(repr(gm.fit(surface, (4, 4)))) < 80
+    curve = gm.Curve.from_points([[0, 0], [1, 0], [2, 1], [3, 3]], name="hook")
+    assert repr(gm.fit_curve(curve, pieces=5)) == "CurveSpline(5 pieces of hook)"

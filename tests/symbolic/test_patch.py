@@ -425,3 +425,8 @@ def test_a_folded_plane_has_no_curvature():
     assert folded.orientation == 0
     with pytest.raises(ValueError, match="no regular point"):
         _ = folded.gaussian_curvature
+
+
+def test_a_text_that_is_no_expression_is_refused_in_one_sentence() -> None:
+    with pytest.raises(ValueError, match=r"^'q\+' is not a coordinate$"):
+        BezierTriangle([["q+"] * 3] * 6)

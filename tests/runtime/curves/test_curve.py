@@ -281,8 +281,3 @@ def test_a_straight_stretch_between_bends_is_one_inflection():
     spline = gm.fit_curve(gm.Curve.from_callable(f, (-2.0, 2.0)), 40)
     assert spline.straight[11:29].all()
     assert spline.inflections == pytest.approx([0.0], abs=1e-12)
-
-
-def test_a_spline_shows_itself_in_a_line() -> None:
-    curve = gm.Curve.from_sympy(("cos(t)", "sin(t)"), "t", (0, "2*pi"), periodic=True)
-    assert repr(gm.fit_curve(curve, 12)) == "CurveSpline(curve, 12 pieces)"
