@@ -81,8 +81,8 @@ class BoundaryArc:
         quadratics = np.stack([first - 2.0 * middle + last, 2.0 * (middle - first), first], axis=1)
         # What rounding leaves of a coefficient would only give roots far away.
         quadratics[np.abs(quadratics) <= np.finfo(float).eps * np.abs(quadratics).max()] = 0.0
-        zeros = np.concatenate([np.roots(x).real for x in quadratics])
-        zeros = zeros[(zeros > 0.0) & (zeros < 1.0)]
+        roots = np.concatenate([np.roots(x).real for x in quadratics]).astype(np.float64)
+        zeros: Array = roots[(roots > 0.0) & (roots < 1.0)]
         if not len(zeros):
             return None
         lengths = np.linalg.norm(np.stack(formulas_of_arc(self.control_normals, zeros)), axis=0)
