@@ -18,7 +18,7 @@ from ...generated import gaussian_image as formulas
 from ..plain import plain
 from ..surface import Surface
 
-__all__ = ["ORDER", "CurvatureField"]
+__all__ = ["NODES", "ORDER", "SURE", "CurvatureField"]
 
 Array = NDArray[np.float64]
 # Nodes along a side of a panel, for K; and for the finer bounds on a small part of one.
@@ -31,6 +31,10 @@ RESOLVED = 1e-2
 WELL = 1e-8
 NODES = chebyshev.chebpts1(ORDER)
 TO_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(NODES, ORDER - 1))
+# How much more a polynomial can be off at the end of a panel than at its nodes (Lebesgue constant).
+LEBESGUE = float(np.abs(chebyshev.chebvander(np.ones(1), ORDER - 1) @ TO_COEFFICIENTS).sum())
+# K has a sign where it is so many times its error, which is an estimate.
+SURE = 4.0
 
 
 def _derivative() -> Array:
@@ -77,7 +81,7 @@ class CurvatureField:
         x = x.reshape(panels[0], ORDER, panels[1], ORDER, 3).transpose(0, 2, 1, 3, 4)
         K, rounding, bending = _curvature(x, *(np.diff(line) for line in lines))
         coefficients = TO_COEFFICIENTS @ K @ TO_COEFFICIENTS.T
-        noise = rounding + ORDER * _tail(coefficients[:, :, None])[..., 0, 0]
+        noise = LEBESGUE**2 / SURE * rounding + ORDER * _tail(coefficients[:, :, None])[..., 0, 0]
         return cls((lines[0], lines[1]), wraps, coefficients, noise, bending)
 
     @cached_property

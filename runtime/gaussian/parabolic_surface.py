@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ..surface import Surface
 from .chains import Segment, joined
-from .curvature_field import NODES, ORDER, CurvatureField
+from .curvature_field import NODES, ORDER, SURE, CurvatureField
 
 __all__ = ["Search", "field_of", "search"]
 
@@ -33,8 +33,6 @@ DEEPEST = 40
 FLAT_LEVELS = 1
 # Cells along a side of a group in which K is zero up to its error that counts as a point.
 FEW_CELLS = 4
-# K has a sign where it is so many times its error, which is an estimate.
-SURE = 4.0
 BISECTIONS = 36
 
 

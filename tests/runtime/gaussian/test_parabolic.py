@@ -285,7 +285,7 @@ def test_curvature_field_of_the_torus_is_exact_up_to_its_noise() -> None:
         field = CurvatureField.of_surface(surface, (panels, panels))
         cosine = np.cos(places[:, 1])
         error = np.abs(field.evaluate(places) - cosine / (0.35 * (1.0 + 0.35 * cosine)))
-        assert error.max() <= field.noise.max() < 1e-8
+        assert error.max() <= field.noise.max() < 2e-8  # K reaches 4.4 and −4.4
 
 
 @pytest.mark.compiled
@@ -395,7 +395,8 @@ def test_small_closed_curve() -> None:
 
 @pytest.mark.compiled
 @pytest.mark.parametrize(
-    ("size", "factor", "sharp"), [(5.0, 1.0, 1.0), (2.0, 1.0, 10.0), (1.0, 0.1, 50.0)]
+    ("size", "factor", "sharp"),
+    [(5.0, 1.0, 1.0), (3.0, 1.0, 2.0), (2.0, 1.0, 10.0), (1.0, 0.1, 50.0)],
 )  # fmt: skip
 def test_bump_has_one_circle_and_is_flat_far_from_it(
     size: float, factor: float, sharp: float
