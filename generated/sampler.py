@@ -534,9 +534,15 @@ def on_face(face, x, y, z):
 
 
 @jit
+def within(place, grid):
+    """Return the bin of a place along an edge of the grid, the first or last if it is outside."""
+    return min(max(int(place), 0), grid - 1)
+
+
+@jit
 def bin_index(s, grid):
     """Return the row or column of a face coordinate; monotone, also in rounding."""
-    return min(max(int((s + 1.0) * (0.5 * grid)), 0), grid - 1)
+    return within((s + 1.0) * (0.5 * grid), grid)
 
 
 @jit
@@ -717,12 +723,6 @@ def cut_hull(shown, face, grid, away_s, away_t, hull):
                 hull[size, 1] = ((t_i + share * (t - t_i)) / middle + 1.0) * half
                 size += 1
     return size
-
-
-@jit
-def within(place, grid):
-    """Return the bin of a place along an edge of the grid, the first or last if it is outside."""
-    return min(max(int(place), 0), grid - 1)
 
 
 @jit

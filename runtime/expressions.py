@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import builtins
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -111,14 +112,10 @@ def as_expression(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401 -
     import sympy as sp
 
     sympify: Any = sp.sympify  # its type hints forget `locals`
-    try:
-        if isinstance(entry, str) and not _is_mathematics(entry):
-            raise InputError(f"{entry!r} is not a SymPy expression.")
-        expression = sympify(entry, locals=symbols)
-    except InputError:
-        raise
-    except Exception:  # SymPy runs the text as Python, which may raise anything
-        expression = None
+    expression = None
+    if not isinstance(entry, str) or _is_mathematics(entry):
+        with suppress(Exception):  # SymPy runs the text as Python, which may raise anything
+            expression = sympify(entry, locals=symbols)
     if not isinstance(expression, sp.Expr):
         raise InputError(f"{entry!r} is not a SymPy expression.")
     return expression

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..checks import whole_number
 from ..errors import GaussmapWarning, InputError
-from ..spline import Spline, fit
+from ..spline import Spline, fit, spline_of
 from ..surface import Surface
 from .classes import PatchClass, classify_patches
 from .curvature_field import CurvatureField
@@ -110,9 +110,7 @@ def parabolic_points(
     """
     limit = _tolerance(tolerance)
     if isinstance(surface, Spline):
-        if cells is not None:
-            raise InputError("cells=... is for surfaces; this spline has its cells already.")
-        return _of_spline(surface, limit)
+        return _of_spline(spline_of(surface, cells), limit)
     if not isinstance(surface, Surface):
         raise InputError(
             f"parabolic_points takes a Surface or a Spline, not {type(surface).__name__}."
