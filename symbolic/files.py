@@ -8,7 +8,6 @@ import sys
 import textwrap
 from collections.abc import Mapping
 from fractions import Fraction
-from itertools import accumulate, islice, repeat
 from pathlib import Path
 from typing import cast
 
@@ -302,7 +301,10 @@ def _grid_constants() -> str:
 
 def _primes() -> list[int]:
     """Return the largest primes of which sums of twelve products of two fit into 64 bits."""
-    return list(islice(accumulate(repeat(2**29), lambda x, _: sp.prevprime(x)), 1, PRIMES + 1))
+    primes = [2**29]
+    while len(primes) <= PRIMES:
+        primes.append(int(sp.prevprime(primes[-1])))
+    return primes[1:]
 
 
 def _triangle_neighbours() -> str:
