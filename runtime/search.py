@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ..generated import icosphere
 from ..generated import sampler as kernels
 from .exact import decide
 from .sphere import perpendicular
@@ -33,9 +34,27 @@ class NormalBins:
     """Unit normals (S, 3), sorted into the squares of a cube round the sphere.
 
     Normals that all lie in a cap are first mapped linearly, so that they fill a face of the cube.
+    The points of a refined icosahedron need no bins: each is where its number says.
     """
 
     normals: NDArray[np.float64]
+
+    @cached_property
+    def frequency(self) -> int:
+        """That of the icosahedron whose points these are, in their order; 0 if they are not."""
+        frequency = math.isqrt(max(len(self.normals) - 2, 0) // 10)
+        if frequency == 0 or 10 * frequency**2 + 2 != len(self.normals):
+            return 0
+
+        def work(first: int, last: int) -> bool:
+            return icosphere.is_icosphere(self.normals, frequency, first, last)
+
+        return frequency if all(over_ranges(work, 51, 1, None)) else 0
+
+    @property
+    def components(self) -> NDArray[np.float64]:
+        """The normals (3, S) in the order of their places."""
+        return self.normals.T if self.frequency > 0 else self.sorted[2]
 
     @cached_property
     def frame(self) -> NDArray[np.float64]:
@@ -117,14 +136,19 @@ def find(
     if kernels.all_developable(spline.coefficients, spline.scale, noise):
         return _hits(np.empty((3, 0), dtype=np.int64), spline.patches)
 
+    if bins.frequency > 0:
+        patches_with, arguments = icosphere.scan_patches, (bins.normals, bins.frequency)
+    else:
+        patches_with = kernels.search_patches
+        arguments = (bins.frame, bins.stretch, bins.grid, *bins.sorted)
+
     def search(first: int, last: int) -> list[_Range]:
         parts, room = [], ROOM
         while first < last:
             found, doubtful = np.empty((2, 3, room), dtype=np.int64)
             bounds, counts = np.empty(room), np.zeros(3, dtype=np.int64)
-            first, needed = kernels.search_patches(
-                spline.coefficients, spline.scale, noise, border,
-                bins.frame, bins.stretch, bins.grid, *bins.sorted,
+            first, needed = patches_with(
+                spline.coefficients, spline.scale, noise, border, *arguments,
                 first, last, found, doubtful, bounds, counts,
             )  # fmt: skip
             sure, open_, developable = counts.tolist()
@@ -160,7 +184,7 @@ def fill(
         "gaussian_curvature": np.empty(count),
         "mean_curvature": np.empty(count),
     }
-    normals = bins.sorted[2]
+    normals = bins.components
     indices = hits.patch_index, hits.place
 
     def work(first: int, last: int) -> None:
