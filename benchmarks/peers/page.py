@@ -62,7 +62,8 @@ this B-spline, too, but for the torus, which is one of their own shapes. NumPy's
 trigonometric functions along its two sides only. Meshes have exact normals at their vertices, and
 samples those, interpolated. gaussmap is given normals of a Fibonacci lattice that were made before;
 with `count=…` it makes them, and finds out how many are needed. The recipes draw points at random;
-gaussmap's also have curvatures and parameters, and so has NumPy's recipe.
+gaussmap's also have curvatures and parameters, and so has NumPy's recipe. Each package uses the
+threads that it uses by default; for gaussmap that is one for each core.
 """
 
 SCALE = """\
