@@ -97,7 +97,7 @@ def measure_own(form: ClosedForm) -> list[Own]:
     calls: list[tuple[str, Callable[[], gm.Samples]]] = [
         ("gm.sample(surface, normals)", sampling(form, False, 100_000)),
         ("gm.sample(surface, normals)", sampling(form, False, MILLION)),
-        ("gm.sample(surface, count=1_000_000)", lambda: gm.sample(source, count=MILLION)),
+        ("gm.sample(surface, count=…)", lambda: gm.sample(source, count=MILLION)),
         ("gm.sample(spline, normals)", lambda: gm.sample(spline, normals)),
     ]
     rows = []
