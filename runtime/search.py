@@ -144,7 +144,7 @@ def find(
     ranges = [
         x for part in over_ranges(search, spline.patches, size, threads, progress) for x in part
     ]
-    return _decided(spline, bins, border, ranges)
+    return _decided(spline, bins, border, ranges, threads)
 
 
 def fill(
@@ -179,7 +179,11 @@ def fill(
 
 
 def _decided(
-    spline: Spline, bins: NormalBins, border: NDArray[np.bool_], ranges: list[_Range]
+    spline: Spline,
+    bins: NormalBins,
+    border: NDArray[np.bool_],
+    ranges: list[_Range],
+    threads: int | None,
 ) -> Hits:
     """Decide the doubtful pairs and merge those that are samples with the sure ones."""
     sure = np.concatenate([r.sure for r in ranges], axis=1)
@@ -189,7 +193,8 @@ def _decided(
         return _hits(sure, developable)
     bounds = np.concatenate([r.bounds for r in ranges])
     forgiven = np.where(_on_border(spline, border, doubtful[0]), bounds, 0.0)
-    decision = decide(spline, doubtful[0], bins.normals[doubtful[1]], forgiven)
+    normals = bins.normals[doubtful[1]]
+    decision = decide(spline, doubtful[0], normals, bounds, forgiven, threads)
     patch, normal, place = doubtful[:, decision.which]
     places = _insertion_places(sure[0], sure[1], patch, normal)
     merged = np.insert(sure, places, (patch, normal, place), axis=1)
