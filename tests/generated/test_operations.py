@@ -77,7 +77,8 @@ def test_operations_are_as_recorded():
         for name in sorted(record.keys() | found.keys())
         if record.get(name) != found.get(name)
     ]
-    assert not changed, "operations of kernels changed; if that is meant: make operations"
+    hint = "operations of kernels changed; if that is meant: make operations"
+    assert not changed, "\n".join([hint, *changed])
 
 
 @pytest.mark.parametrize(
