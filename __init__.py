@@ -26,8 +26,9 @@ from .runtime.errors import (
     SurfaceError,
     UnknownNameError,
 )
+from .runtime.gaussian.boundary import BoundaryArc
 from .runtime.gaussian.classes import PatchClass, classify_patches
-from .runtime.gaussian.image import BoundaryArc, GaussianImage, GaussianImages
+from .runtime.gaussian.image import GaussianImage, GaussianImages
 from .runtime.gaussian.parabolic import (
     ParabolicCurve,
     ParabolicPoint,

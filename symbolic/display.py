@@ -117,6 +117,9 @@ class TextPrinter(ForPeople, StrPrinter):
         denominator = size.as_numer_denom()[1]
         return ")" if denominator == 1 else f")/{denominator}"
 
+    def _print_Max(self, expr: sp.Expr) -> str:
+        return f"max({', '.join(map(self.doprint, expr.args))})"
+
     def _print_Pow(self, expr: sp.Pow, rational: bool = False) -> str:
         if expr.exp.is_Integer and expr.exp.is_negative:
             return f"1/{self.parenthesize(1 / expr, PRECEDENCE['Mul'])}"
