@@ -136,11 +136,12 @@ DOUBTFUL = 2
 
 
 @jit
-def classify(vectors, bound, accurate, normals, kinds, parameters):
-    """Say of each unit normal whether it is one of a patch, and write u, v (k, 2) of those INSIDE.
+def classify(vectors, bound, accurate, shortest, normals, kinds, parameters):
+    """Say of each normal whether it is one of a patch, and write u, v (k, 2) of those INSIDE.
 
-    `vectors` are a, b, c, d, e; `bound` is the rounding error of U, V, W. D has to exceed `accurate`.
-    Whatever rounding may have changed is DOUBTFUL.
+    `vectors` are a, b, c, d, e; `bound` is the rounding error of U, V, W. D has to exceed `accurate`,
+    and N `shortest`. Normals have a length of about 1. Whatever rounding may have changed is
+    DOUBTFUL.
     """
     (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z) = vectors
     for row in range(normals.shape[0]):
@@ -179,7 +180,8 @@ def classify(vectors, bound, accurate, normals, kinds, parameters):
             N_y = p_u_z * p_v_x - p_u_x * p_v_z
             N_z = p_u_x * p_v_y - p_u_y * p_v_x
             towards = n_x * N_x + n_y * N_y + n_z * N_z
-            if abs(towards) > 0.25 * (abs(N_x) + abs(N_y) + abs(N_z)):
+            size = abs(N_x) + abs(N_y) + abs(N_z)
+            if abs(towards) > 0.25 * size and size > shortest:
                 kinds[row] = INSIDE if towards > 0.0 else OUTSIDE
                 parameters[row, 0] = u
                 parameters[row, 1] = v

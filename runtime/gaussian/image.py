@@ -20,7 +20,7 @@ from ..surface import Surface
 from .area import measures_of
 from .boundary import BoundaryArc, boundary_arcs, edge_arcs
 from .classes import PatchClass, classes_of
-from .membership import has_normals
+from .membership import PatchNormals
 from .parabolic_lines import Piece, pieces_of
 from .patches import Patches, checked_control_points
 
@@ -136,7 +136,7 @@ class GaussianImage:
         no normal. Raises InputError for another shape, NaN, infinity or a zero vector.
         """
         as_normals(normals)
-        return has_normals(self.control_points, real_array(normals, "normals"))
+        return PatchNormals(self.control_points).contain(real_array(normals, "normals"))
 
     @cached_property
     def _patch(self) -> Patches:
