@@ -349,9 +349,16 @@ def fill_hessians(mu, scale, patches, normals, known, hessians):
 # --- any support function -------------------------------------------------------------------------
 
 
+# A sum that is smaller than its terms by this factor has lost digits.
+CANCELLED = math.ldexp(1.0, -20)
+
+
 @jit
-def add_offset(R, normals, points, hessians, gaussian, mean):
-    """Add a sphere of radius R to points and Hessians at unit normals (k, 3), change curvatures."""
+def add_offset(R, normals, points, hessians, gaussian, mean, doubtful):
+    """Add a sphere of radius R to points and Hessians at unit normals (k, 3), change curvatures.
+
+    Where a radius was 0 or becomes 0, nearly, these are `doubtful` (k,).
+    """
     for row in range(normals.shape[0]):
         n_x = normals[row, 0]
         n_y = normals[row, 1]
@@ -382,12 +389,15 @@ def add_offset(R, normals, points, hessians, gaussian, mean):
         hessians[row, 2, 1] += H_yz
         K = gaussian[row]
         H = mean[row]
-        # offset_curvature (beyond the paper): 16 operations as written, 11 here
-        t0 = 1.0 / (2 * H * R + K * R * R + 1)
+        # offset_curvature (beyond the paper): 10 operations as written, 11 here
+        s = 2 * H * R + K * R * R + 1
+        t0 = 1.0 / s
         K_offset = K * t0
         H_offset = t0 * (H + K * R)
         gaussian[row] = K_offset
         mean[row] = H_offset
+        terms = 1.0 + 2.0 * abs(R * H) + abs(R * R * K)
+        doubtful[row] = not abs(s) > CANCELLED * terms
 
 
 @jit
