@@ -73,7 +73,8 @@ def latex_name(name: str, *, bold: bool = False) -> str:
         word, index = cast(re.Match[str], re.fullmatch(r"(\w+?)(_[a-z])?", name)).groups()
         return r"\mathit{" + word.replace("_", r"\_") + "}" + (index or "")
     stem, digits, indices = letter.groups()
-    below = ",".join(x for x in (digits, *indices.split("_")) if x)
+    words = [rf"\mathrm{{{x}}}" if len(x) > 2 else x for x in indices.split("_")]
+    below = ",".join(x for x in (digits, *words) if x)
     if stem == "mu":
         below = below and rf"\mathrm{{{below}}}"
     stem = GREEK.get(stem, stem)

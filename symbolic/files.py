@@ -20,7 +20,7 @@ from .formula import Formula, PlaneVector
 from .positions import position
 from .printer import source_of
 
-__all__ = ["GENERATED", "derive", "differences", "write"]
+__all__ = ["GENERATED", "derive", "differences", "existing", "write"]
 
 GENERATED = Path(__file__).parent.parent / "generated"
 PROJECT = GENERATED.parent / "pyproject.toml"
@@ -38,8 +38,9 @@ def derive() -> dict[str, str]:
         "support.py": support_source(),
         "surfaces.py": surfaces_source(),
     }
-    pages = {"formulas.md": latex.markdown(), "formulas.tex": latex.document()}
-    return {name: formatted(text) for name, text in sources.items()} | pages
+    modules = {name: formatted(text) for name, text in sources.items()}
+    pages = {"formulas.md": latex.markdown(modules), "formulas.tex": latex.document(modules)}
+    return modules | pages
 
 
 def write(texts: Mapping[str, str], folder: Path) -> None:

@@ -120,10 +120,10 @@ def _directions() -> Formula:
         coefficients[sum(choice)] += (-1) ** sum(choice) * _determinant(names)
     return Formula.build(
         "parabolic_directions",
-        "The coefficients of the binary cubic det[t a − s b, t b − s c, t d − s e] in (s, t): its "
-        "real roots are the directions of the parabolic lines s u + t v = const. It vanishes where "
-        "the patch is developable, and where $a$, $b$, $c$ are multiples of one vector, so that "
-        "the curvature has one sign.",
+        "The coefficients of the binary cubic $det[t a − s b, t b − s c, t d − s e]$ in $(s, t)$: "
+        "its real roots are the directions of the parabolic lines $s u + t v =$ const. It vanishes "
+        "where the patch is developable, and where $a$, $b$, $c$ are multiples of one vector, so "
+        "that the curvature has one sign.",
         source="Sect. 3.2",
         inputs=VECTORS,
         outputs=[(f"k{k}{3 - k}", coefficients[k]) for k in (3, 2, 1, 0)],

@@ -40,8 +40,8 @@ def measures_of(patches: Patches, classes: NDArray[np.int8]) -> tuple[Array, Arr
         of_piece = np.repeat(np.arange(len(pieces)), [len(fan) for _, fan in pieces])
         triangles = np.concatenate([fan for _, fan in pieces])
         parts = solid_angles(triangles)
-        singular = ~triangles[:, range(3), range(3)].any(axis=2).all(axis=1)
-        for k in np.flatnonzero(singular):
+        regular = triangles[:, range(3), range(3)].any(axis=2)
+        for k in np.flatnonzero(np.any(~regular, axis=1)):
             parts[k] = by_boundary(triangles[k], parts[k])
         sums = np.bincount(of_piece, weights=parts, minlength=len(pieces))
         np.add.at(signed, owners, sums)
