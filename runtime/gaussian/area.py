@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from .boundary import BoundaryArc
 from .classes import PatchClass
-from .parabolic_lines import NEAR, pieces_of, singular_points
+from .parabolic_lines import NEAR, TRIANGLE, pieces_of, singular_points
 from .patches import Patches
 from .solid_angle import by_boundary, is_wide, solid_angles, triangle_of
 
@@ -52,8 +52,11 @@ def measures_of(patches: Patches, classes: NDArray[np.int8]) -> tuple[Array, Arr
 def _fans_of(patch: Patches) -> list[Array]:
     """Return the polar forms (m, 3, 3, 3) of the triangles of each piece of one patch."""
     fans = []
+    border, others = _on_sides(patch, TRIANGLE), list(singular_points(patch))
     for piece in pieces_of(patch):
-        corners = _barycentric(_fan(piece.corners, _singular_places(patch, piece.corners)))
+        polygon = _snapped(piece.corners, border)
+        places = _different([*border, *_on_sides(patch, polygon), *others])
+        corners = _barycentric(_fan(polygon, places))
         normals = triangle_of(np.repeat(patch.normals, len(corners), axis=0), corners)
         lengths = np.linalg.norm(normals, axis=3)
         normals[lengths <= SINGULAR * lengths.max()] = 0.0
@@ -61,8 +64,8 @@ def _fans_of(patch: Patches) -> list[Array]:
     return fans
 
 
-def _singular_places(patch: Patches, polygon: Array) -> Array:
-    """Return the places (k, 2) of singular points: those on the sides of a polygon, then others.
+def _on_sides(patch: Patches, polygon: Array) -> list[Array]:
+    """Return the places of the singular points on the sides of a polygon.
 
     On a double parabolic line there may be some that no other line meets.
     """
@@ -73,10 +76,24 @@ def _singular_places(patch: Patches, polygon: Array) -> Array:
         net = np.einsum("ai,bj,ijx->abx", ends, ends, patch.normals[0])
         arc = BoundaryArc(net[[0, 0, 1], [0, 1, 1]], float(patch.normal_noise[0]))
         places += [((1.0 - t) * start + t * end)[:2] for t in arc.singular_points]
-    for place in singular_points(patch):
-        if all(np.abs(place - other).max() > SAME for other in places):
-            places.append(place)
-    return np.array(places).reshape(-1, 2)
+    return places
+
+
+def _different(places: list[Array]) -> list[Array]:
+    """Return places without those that are nearly one before them."""
+    result: list[Array] = []
+    for place in places:
+        if all(np.abs(place - other).max() > SAME for other in result):
+            result.append(place)
+    return result
+
+
+def _snapped(polygon: Array, places: list[Array]) -> Array:
+    """Move corners that are nearly singular points there: multiple lines are not known so well."""
+    polygon = polygon.copy()
+    for place in places:
+        polygon[np.abs(polygon - place).max(axis=1) <= SAME] = place
+    return polygon
 
 
 def _barycentric(places: Array) -> Array:
@@ -84,7 +101,7 @@ def _barycentric(places: Array) -> Array:
     return np.concatenate([places, 1.0 - places.sum(axis=-1, keepdims=True)], axis=-1)
 
 
-def _fan(polygon: Array, places: Array) -> Array:
+def _fan(polygon: Array, places: list[Array]) -> Array:
     """Cut a convex polygon into triangles (m, 3, 2) that have the places inside it as corners."""
     centre = polygon.mean(axis=0)
     triangles = [np.stack([centre, polygon[k - 1], polygon[k]]) for k in range(len(polygon))]
