@@ -26,8 +26,10 @@ from .runtime.errors import (
     SurfaceError,
     UnknownNameError,
 )
+from .runtime.formulas import all_formulas
+from .runtime.gaussian.boundary import BoundaryArc
 from .runtime.gaussian.classes import PatchClass, classify_patches
-from .runtime.gaussian.image import BoundaryArc, GaussianImage, GaussianImages
+from .runtime.gaussian.image import GaussianImage, GaussianImages
 from .runtime.gaussian.parabolic import (
     ParabolicCurve,
     ParabolicPoint,
@@ -46,7 +48,9 @@ from .runtime.surface import Surface
 
 if TYPE_CHECKING:
     from . import symbolic
-    from .symbolic import formulas
+    from .runtime.formulas import Formulas
+
+    formulas: Formulas
 
 __version__ = "0.1.0"
 
@@ -102,5 +106,5 @@ def __getattr__(name: str) -> object:
     if name == "symbolic":
         return import_module(".symbolic", __name__)
     if name == "formulas":
-        return import_module(".symbolic", __name__).formulas
+        return all_formulas()
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
