@@ -7,10 +7,11 @@ import warnings
 from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from .checks import whole_number
 from .errors import GaussmapError, GaussmapWarning, InputError
+from .fields import checked_dtype, checked_fields
 from .lattice import Lattice
 from .samples import Samples, SamplingReport
 from .search import Hits, NormalBins, fill, find
@@ -36,6 +37,8 @@ def sample(
     *,
     count: int | None = None,
     cells: Sequence[int] | None = None,
+    fields: Sequence[str] | None = None,
+    dtype: DTypeLike = np.float64,
     threads: int | None = None,
     progress: bool = False,
 ) -> Samples:
@@ -50,6 +53,11 @@ def sample(
     where the Gaussian image is resolved, from a Fibonacci lattice of normals round the mean normal
     of the surface.
 
+    `fields` are the arrays of `Samples` that are wanted, such as ("points", "normals"); by default
+    all. The others are neither computed nor stored, which takes less time and memory. With
+    `dtype=numpy.float32` all numbers but the indices, which stay int64, are rounded to float32 when
+    they are stored; they are computed in float64.
+
     With `progress`, work that takes longer than a second shows a bar on standard error.
 
     Samples are ordered by patch and then by normal, the same for any number of `threads` (by
@@ -58,7 +66,14 @@ def sample(
     unusable arguments and SurfaceError for a surface that cannot be evaluated.
     """
     return sample_and_normals(
-        surface, normals, count=count, cells=cells, threads=threads, progress=progress
+        surface,
+        normals,
+        count=count,
+        cells=cells,
+        fields=fields,
+        dtype=dtype,
+        threads=threads,
+        progress=progress,
     )[0]
 
 
@@ -70,8 +85,11 @@ def sample_and_normals(
     cells: Sequence[int] | None,
     threads: int | None,
     progress: bool,
+    fields: Sequence[str] | None = None,
+    dtype: DTypeLike = np.float64,
 ) -> tuple[Samples, NDArray[np.float64]]:
     """Return what `sample` returns, and the unit normals that were asked."""
+    wanted, number = checked_fields(fields), checked_dtype(dtype)
     directions = _directions(normals, count, threads)
     spline = spline_of(surface, cells)
     if directions is None:
@@ -81,7 +99,8 @@ def sample_and_normals(
         bins = NormalBins(directions)
         hits = find(spline, bins, threads, progress)
         density = len(bins.normals) / (4 * math.pi)
-    samples = _samples(spline, bins, hits, density, threads)
+    arrays = fill(spline, bins, hits, threads, wanted, number)
+    samples = Samples(**arrays, report=_report(spline, bins, hits, density))
     _warn(samples.report, count)
     return samples, bins.normals
 
@@ -93,6 +112,8 @@ def sample_many(
     progress: bool = True,
     count: int | None = None,
     cells: Sequence[int] | None = None,
+    fields: Sequence[str] | None = None,
+    dtype: DTypeLike = np.float64,
     threads: int | None = None,
 ) -> Iterator[Samples]:
     """Yield the samples of each surface, in order; the arguments are those of `sample`.
@@ -100,21 +121,30 @@ def sample_many(
     Progress goes to standard error if that is a terminal. A surface that raises a GaussmapError is
     reported by a GaussmapWarning, with its number and name, and left out; the others go on.
     `samples.report.surface` tells which surface the samples are of. Raises InputError for unusable
-    normals, count or threads.
+    normals, count, fields, dtype or threads.
     """
     from tqdm import tqdm
 
     directions = _directions(normals, count, threads)
+    wanted, number = checked_fields(fields), checked_dtype(dtype)
     if isinstance(surfaces, str) or not isinstance(surfaces, Iterable):
         raise InputError(f"sample_many takes surfaces to go through, not {surfaces!r}.")
     bar = tqdm(surfaces, desc="sampling", unit="surface", disable=None if progress else True)
-    for number, surface in enumerate(bar):
+    for place, surface in enumerate(bar):
         try:
-            samples = sample(surface, directions, count=count, cells=cells, threads=threads)
+            samples = sample(
+                surface,
+                directions,
+                count=count,
+                cells=cells,
+                fields=wanted,
+                dtype=number,
+                threads=threads,
+            )
         except GaussmapError as error:
             name = getattr(surface, "name", type(surface).__name__)
             warnings.warn(
-                f"surface {number} ({name}) is left out: {error}", GaussmapWarning, stacklevel=2
+                f"surface {place} ({name}) is left out: {error}", GaussmapWarning, stacklevel=2
             )
         else:
             yield samples
@@ -159,24 +189,14 @@ def _by_count(
     return best
 
 
-def _samples(
-    spline: Spline,
-    bins: NormalBins,
-    hits: Hits,
-    density: float,
-    threads: int | None,
-) -> Samples:
-    report = SamplingReport(
+def _report(spline: Spline, bins: NormalBins, hits: Hits, density: float) -> SamplingReport:
+    return SamplingReport(
         surface=spline.name,
         normals=len(bins.normals),
         samples=len(hits),
         patches=spline.patches,
         invisible_share=invisible_share(spline, density),
         degenerate_patches=hits.developable,
-    )
-    fields = fill(spline, bins, hits, threads)
-    return Samples(
-        **fields, normal_index=hits.normal_index, patch_index=hits.patch_index, report=report
     )
 
 

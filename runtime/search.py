@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from ..generated import sampler as kernels
 from .exact import decide
+from .fields import ARRAY_NAMES, FLOAT_NAMES, INDEX_NAMES, new_field
 from .sphere import perpendicular
 from .spline import Spline
 from .threads import over_ranges, thread_count
@@ -148,34 +151,34 @@ def find(
 
 
 def fill(
-    spline: Spline, bins: NormalBins, hits: Hits, threads: int | None = None
-) -> dict[str, NDArray[np.float64]]:
-    """Return points, normals, uv, support and curvatures of the hits."""
+    spline: Spline,
+    bins: NormalBins,
+    hits: Hits,
+    threads: int | None = None,
+    fields: Sequence[str] = ARRAY_NAMES,
+    dtype: DTypeLike = np.float64,
+) -> dict[str, NDArray[Any]]:
+    """Return fields of the hits: see `Samples`. Numbers are rounded to `dtype` when stored."""
     count = len(hits)
-    fields = {
-        "points": np.empty((count, 3)),
-        "normals": np.empty((count, 3)),
-        "uv": np.empty((count, 2)),
-        "support": np.empty(count),
-        "gaussian_curvature": np.empty(count),
-        "mean_curvature": np.empty(count),
-    }
+    filled = {x: new_field(x, count, dtype) for x in FLOAT_NAMES if x in fields}
     normals = bins.sorted[2]
     indices = hits.patch_index, hits.place
+    arrays = [filled.get(name) for name in FLOAT_NAMES]
 
     def work(first: int, last: int) -> None:
         kernels.fill_samples(
             spline.coefficients, spline.scale, normals, spline.frame, first, last,
-            *indices, *fields.values(),
+            *indices, *arrays,
         )  # fmt: skip
 
-    for _ in over_ranges(work, count, SAMPLES_AT_A_TIME, threads):
-        pass
-    kernels.fill_known(
-        spline.coefficients, spline.scale, normals, spline.frame, hits.exact, hits.local,
-        *indices, *fields.values(),
-    )  # fmt: skip
-    return fields
+    if filled:
+        for _ in over_ranges(work, count, SAMPLES_AT_A_TIME, threads):
+            pass
+        kernels.fill_known(
+            spline.coefficients, spline.scale, normals, spline.frame, hits.exact, hits.local,
+            *indices, *arrays,
+        )  # fmt: skip
+    return filled | {x: getattr(hits, x) for x in INDEX_NAMES if x in fields}
 
 
 def _decided(
