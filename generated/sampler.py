@@ -556,25 +556,42 @@ def mapped(frame, x, y, z):
 
 
 @jit
-def bin_normals(normals, frame, grid, starts, order, components):
-    """Sort normals (k, 3) into bins: order[starts[b]:starts[b + 1]] are those of bin b, ascending.
+def count_bins(normals, frame, grid, first, last, bins, counts):
+    """Write the bins of the normals first, …, last − 1, and how many of them each bin has.
 
-    The bins are on a cube round the normals as `frame`, a linear map, maps them. Writes the components
-    (3, k) of the normals (as they are) in that order too.
+    The bins are on a cube round the normals (k, 3) as `frame`, a linear map, maps them.
     """
-    bins = np.empty(normals.shape[0], np.int64)
-    starts[:] = 0
-    for k in range(normals.shape[0]):
+    counts[:] = 0
+    for k in range(first, last):
         x, y, z = mapped(frame, normals[k, 0], normals[k, 1], normals[k, 2])
         face, s, t = cube_face(x, y, z)
         bins[k] = (face * grid + bin_index(t, grid)) * grid + bin_index(s, grid)
-        starts[bins[k] + 1] += 1
-    for b in range(starts.size - 1):
-        starts[b + 1] += starts[b]
-    cursor = starts[:-1].copy()
-    for k in range(normals.shape[0]):
-        at = cursor[bins[k]]
-        cursor[bins[k]] += 1
+        counts[bins[k]] += 1
+
+
+@jit
+def start_bins(counts, starts):
+    """Write where each bin starts; counts (ranges, bins) become the places of the ranges in it."""
+    start = 0
+    for b in range(counts.shape[1]):
+        starts[b] = start
+        for part in range(counts.shape[0]):
+            count = counts[part, b]
+            counts[part, b] = start
+            start += count
+    starts[counts.shape[1]] = start
+
+
+@jit
+def place_normals(normals, bins, first, last, places, order, components):
+    """Sort the normals first, …, last − 1: order[starts[b]:starts[b + 1]] are those of bin b, ascending.
+
+    `places` are those of this range in each bin. Writes the components (3, k) of the normals (as they
+    are) in that order too.
+    """
+    for k in range(first, last):
+        at = places[bins[k]]
+        places[bins[k]] += 1
         order[at] = k
         for axis in range(3):
             components[axis, at] = normals[k, axis]

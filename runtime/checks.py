@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import InputError
 
-__all__ = ["parameter_arrays", "real_array", "whole_number"]
+__all__ = ["parameter_arrays", "real_array", "real_values", "whole_number"]
 
 
 # Beyond this a count is a mistake: no memory holds so many normals, cells or samples.
@@ -28,6 +30,13 @@ def real_array(values: ArrayLike, name: str) -> NDArray[np.float64]:
 
     Text, complex numbers and objects are not taken for numbers, and what is masked has no value.
     """
+    array = real_values(values, name)
+    with np.errstate(over="ignore"):
+        return array.astype(np.float64, order="C")
+
+
+def real_values(values: ArrayLike, name: str) -> NDArray[Any]:
+    """Return an array of real numbers of any type, copied only if it is none; see `real_array`."""
     if np.ma.is_masked(values):
         raise InputError(f"{name} has masked entries; fill them or leave them out.")
     try:
@@ -36,8 +45,7 @@ def real_array(values: ArrayLike, name: str) -> NDArray[np.float64]:
         raise InputError(f"{name} must be an array of real numbers, with equal rows.") from None
     if array.dtype.kind not in "fiub":
         raise InputError(f"{name} must be an array of real numbers, not of type {array.dtype}.")
-    with np.errstate(over="ignore"):
-        return array.astype(np.float64, order="C")
+    return array
 
 
 def parameter_arrays(u: ArrayLike, v: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -96,7 +96,7 @@ def sample_and_normals(
         assert count is not None
         bins, hits, density = _by_count(spline, int(count), threads, progress)
     else:
-        bins = NormalBins(directions)
+        bins = NormalBins(directions, threads)
         hits = find(spline, bins, threads, progress)
         density = len(bins.normals) / (4 * math.pi)
     arrays = fill(spline, bins, hits, threads, wanted, number)
@@ -158,7 +158,7 @@ def _directions(
         raise InputError("give either normals=... or count=..., and not both.")
     thread_count(threads)
     if normals is not None:
-        return as_normals(normals)
+        return as_normals(normals, threads=threads)
     whole_number(count, "count")
     return None
 
@@ -178,7 +178,7 @@ def _by_count(
     best: tuple[NormalBins, Hits, float] | None = None
     for _ in range(TRIES):
         density = min(density, densest)
-        bins = NormalBins(lattice.normals(density))
+        bins = NormalBins(lattice.normals(density, threads=threads), threads)
         hits = find(spline, bins, threads, progress)
         if best is None or abs(len(hits) - count) < abs(len(best[1]) - count):
             best = bins, hits, density
