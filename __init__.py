@@ -23,6 +23,7 @@ from .runtime.errors import (
     GaussmapWarning,
     InputError,
     MissingExtraError,
+    MissingFieldError,
     SurfaceError,
     UnknownNameError,
 )
@@ -40,6 +41,7 @@ from .runtime.samples import Samples, SamplingReport
 from .runtime.sampling import sample, sample_many
 from .runtime.sphere import fibonacci, icosphere
 from .runtime.spline import Spline, fit
+from .runtime.stream import sample_stream
 from .runtime.support.branches import Branches
 from .runtime.support.function import SupportFunction
 from .runtime.surface import Surface
@@ -64,6 +66,7 @@ __all__ = [
     "GaussmapWarning",
     "InputError",
     "MissingExtraError",
+    "MissingFieldError",
     "ParabolicCurve",
     "ParabolicLine",
     "ParabolicPoint",
@@ -91,6 +94,7 @@ __all__ = [
     "sample",
     "sample_curve",
     "sample_many",
+    "sample_stream",
     "split_patch",
     "surfaces",
     "symbolic",

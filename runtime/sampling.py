@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from .checks import whole_number
+from .checks import MOST, whole_number
 from .errors import GaussmapError, GaussmapWarning, InputError
 from .fields import checked_dtype, checked_fields
 from .lattice import Lattice
@@ -21,13 +22,23 @@ from .surface import Surface
 from .threads import thread_count
 from .visibility import invisible_share, visible_solid_angle
 
-__all__ = ["sample", "sample_and_normals", "sample_many"]
+__all__ = [
+    "choose_lattice",
+    "normals_asked",
+    "sample",
+    "sample_and_normals",
+    "sample_many",
+    "sampling_report",
+    "warn_of",
+]
 
 # `count` is met by changing the number of normals, until it is this near or after so many tries.
 NEAR_ENOUGH = 0.01
 TRIES = 6
 # At most this many normals for each sample that was asked (a thin Gaussian image catches few).
 NORMALS_PER_SAMPLE = 100
+# A larger count is not tried, but concluded from this one.
+PILOT = 1_000_000
 WORTH_A_WARNING = 0.01
 
 
@@ -90,18 +101,22 @@ def sample_and_normals(
 ) -> tuple[Samples, NDArray[np.float64]]:
     """Return what `sample` returns, and the unit normals that were asked."""
     wanted, number = checked_fields(fields), checked_dtype(dtype)
-    directions = _directions(normals, count, threads)
+    asked = normals_asked(normals, count, threads)
     spline = spline_of(surface, cells)
-    if directions is None:
-        assert count is not None
-        bins, hits, density = _by_count(spline, int(count), threads, progress)
+    if isinstance(asked, int):
+        choice = choose_lattice(spline, asked, threads, progress)
+        bins, hits, density = choice.bins, choice.hits, choice.density
+        if bins is None or hits is None:
+            bins = NormalBins(choice.lattice.normals(density, threads=threads), threads)
+            hits = find(spline, bins, threads, progress)
     else:
-        bins = NormalBins(directions, threads)
+        bins = NormalBins(asked, threads)
         hits = find(spline, bins, threads, progress)
         density = len(bins.normals) / (4 * math.pi)
     arrays = fill(spline, bins, hits, threads, wanted, number)
-    samples = Samples(**arrays, report=_report(spline, bins, hits, density))
-    _warn(samples.report, count)
+    report = sampling_report(spline, len(bins.normals), len(hits), density, hits.developable)
+    samples = Samples(**arrays, report=report)
+    warn_of(report, count, stacklevel=4)
     return samples, bins.normals
 
 
@@ -125,7 +140,8 @@ def sample_many(
     """
     from tqdm import tqdm
 
-    directions = _directions(normals, count, threads)
+    asked = normals_asked(normals, count, threads)
+    directions = None if isinstance(asked, int) else asked
     wanted, number = checked_fields(fields), checked_dtype(dtype)
     if isinstance(surfaces, str) or not isinstance(surfaces, Iterable):
         raise InputError(f"sample_many takes surfaces to go through, not {surfaces!r}.")
@@ -150,57 +166,76 @@ def sample_many(
             yield samples
 
 
-def _directions(
+def normals_asked(
     normals: ArrayLike | None, count: int | None, threads: int | None
-) -> NDArray[np.float64] | None:
-    """Return the unit normals that were asked, None if it was a count; InputError if unusable."""
+) -> NDArray[np.float64] | int:
+    """Return the unit normals that were asked, or the count; InputError if unusable."""
     if (normals is None) == (count is None):
         raise InputError("give either normals=... or count=..., and not both.")
     thread_count(threads)
     if normals is not None:
         return as_normals(normals, threads=threads)
-    whole_number(count, "count")
-    return None
+    return whole_number(count, "count")
 
 
-def _by_count(
-    spline: Spline, count: int, threads: int | None, progress: bool
-) -> tuple[NormalBins, Hits, float]:
-    """Choose the number of normals so that about `count` samples come."""
+@dataclass(frozen=True, eq=False)
+class Choice:
+    """The lattice of normals for a count of samples, and what was found if they were searched."""
+
+    lattice: Lattice
+    density: float
+    bins: NormalBins | None = None
+    hits: Hits | None = None
+
+
+def choose_lattice(spline: Spline, count: int, threads: int | None, progress: bool) -> Choice:
+    """Choose the number of normals so that about `count` samples come.
+
+    More samples than `PILOT` are not searched more than once: how many normals they need follows
+    from so many.
+    """
     lattice = Lattice.around(spline)
-    densest = lattice.density_of(NORMALS_PER_SAMPLE * max(count, 1000))
+    pilot = min(count, PILOT)
+    densest = lattice.density_of(NORMALS_PER_SAMPLE * max(pilot, 1000))
     everything = float(np.abs(spline.measure[1]).sum())
-    resolved = visible_solid_angle(spline, min(count / max(everything, 1e-300), densest))
+    resolved = visible_solid_angle(spline, min(pilot / max(everything, 1e-300), densest))
     if resolved == 0.0:
-        lattice, density = Lattice.everywhere(), count / (4 * math.pi)
+        lattice, density = Lattice.everywhere(), pilot / (4 * math.pi)
     else:
-        density = count / resolved
-    best: tuple[NormalBins, Hits, float] | None = None
+        density = pilot / resolved
+    best: Choice | None = None
+    came = 0
     for _ in range(TRIES):
         density = min(density, densest)
         bins = NormalBins(lattice.normals(density, threads=threads), threads)
         hits = find(spline, bins, threads, progress)
-        if best is None or abs(len(hits) - count) < abs(len(best[1]) - count):
-            best = bins, hits, density
-        if abs(len(hits) - count) <= NEAR_ENOUGH * count or resolved == 0.0:
+        if best is None or abs(len(hits) - pilot) < abs(came - pilot):
+            best, came = Choice(lattice, density, bins, hits), len(hits)
+        if abs(len(hits) - pilot) <= NEAR_ENOUGH * pilot or resolved == 0.0:
             break
-        density *= count / len(hits) if len(hits) else 2.0
+        density *= pilot / len(hits) if len(hits) else 2.0
     assert best is not None
-    return best
+    if pilot == count:
+        return best
+    most = lattice.density_of(min(NORMALS_PER_SAMPLE * count, MOST))
+    return Choice(lattice, min(best.density * count / (came or pilot), most))
 
 
-def _report(spline: Spline, bins: NormalBins, hits: Hits, density: float) -> SamplingReport:
+def sampling_report(
+    spline: Spline, normals: int, samples: int, density: float, developable: int | None
+) -> SamplingReport:
+    """Return how a sampling with `density` normals per steradian went."""
     return SamplingReport(
         surface=spline.name,
-        normals=len(bins.normals),
-        samples=len(hits),
+        normals=normals,
+        samples=samples,
         patches=spline.patches,
         invisible_share=invisible_share(spline, density),
-        degenerate_patches=hits.developable,
+        degenerate_patches=developable,
     )
 
 
-def _warn(report: SamplingReport, count: int | None) -> None:
+def warn_of(report: SamplingReport, count: int | None, stacklevel: int) -> None:
     """Say when normals see less of the surface than the user may think."""
     share = report.invisible_share or 0.0
     reasons = []
@@ -217,4 +252,4 @@ def _warn(report: SamplingReport, count: int | None) -> None:
         reasons.append(f"{report.samples} samples came where {count} were asked")
     if reasons:
         message = f"surface {report.surface!r}: {'; '.join(reasons)}."
-        warnings.warn(message, GaussmapWarning, stacklevel=4)
+        warnings.warn(message, GaussmapWarning, stacklevel=stacklevel)

@@ -146,7 +146,7 @@ def perpendicular(axis: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArr
 
 
 def _checked_directions(values: NDArray[Any], start: int) -> NDArray[np.float64]:
-    """Return rows as float64; InputError, with its number from `start` on, for one without sense."""
+    """Return directions as float64; InputError names the first unusable row, from `start` on."""
     with np.errstate(over="ignore"):
         array = values.astype(np.float64)
     if not np.isfinite(array).all():

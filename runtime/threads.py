@@ -12,7 +12,7 @@ from typing import TypeVar
 
 from .checks import whole_number
 
-__all__ = ["over_ranges", "thread_count"]
+__all__ = ["over_ranges", "shown", "thread_count"]
 
 Result = TypeVar("Result")
 
@@ -49,7 +49,7 @@ def over_ranges(
         results = (work(first, min(first + size, total)) for first in starts)
     else:
         results = _in_threads(lambda first: work(first, min(first + size, total)), starts, workers)
-    yield from _shown(results, len(starts), progress)
+    yield from shown(results, len(starts), progress)
 
 
 def _in_threads(
@@ -70,7 +70,8 @@ def _in_threads(
             raise
 
 
-def _shown(results: Iterator[Result], count: int, progress: bool) -> Iterator[Result]:
+def shown(results: Iterator[Result], count: int, progress: bool) -> Iterator[Result]:
+    """Yield results; with `progress`, a terminal shows how many of `count` are done."""
     # tqdm shows nothing without a terminal, and its import takes longer than many a sampling.
     if not progress or sys.stderr is None or not sys.stderr.isatty():
         return results
