@@ -10,44 +10,43 @@ samples.write("torus.ply")
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from .runtime import surfaces
-from .runtime.curves.circle import circle
-from .runtime.curves.curve import Curve
-from .runtime.curves.polygon import polygon_distance
-from .runtime.curves.samples import CurveReport, CurveSamples
-from .runtime.curves.sampling import sample_curve
-from .runtime.curves.spline import CurveSpline, fit_curve
-from .runtime.errors import (
-    FileError,
-    GaussmapError,
-    GaussmapWarning,
-    InputError,
-    MissingExtraError,
-    MissingFieldError,
-    SurfaceError,
-    UnknownNameError,
-)
-from .runtime.gaussian.classes import PatchClass, classify_patches
-from .runtime.gaussian.image import BoundaryArc, GaussianImage, GaussianImages
-from .runtime.gaussian.parabolic import (
-    ParabolicCurve,
-    ParabolicPoint,
-    ParabolicPoints,
-    parabolic_points,
-)
-from .runtime.gaussian.parabolic_lines import ParabolicLine, Piece, parabolic_lines, split_patch
-from .runtime.io import read_samples
-from .runtime.samples import Samples, SamplingReport
-from .runtime.sampling import sample, sample_many
-from .runtime.sphere import fibonacci, icosphere
-from .runtime.spline import Spline, fit
-from .runtime.stream import sample_stream
-from .runtime.support.branches import Branches
-from .runtime.support.function import SupportFunction
-from .runtime.surface import Surface
-
 if TYPE_CHECKING:
     from . import symbolic
+    from .runtime import surfaces
+    from .runtime.curves.circle import circle
+    from .runtime.curves.curve import Curve
+    from .runtime.curves.polygon import polygon_distance
+    from .runtime.curves.samples import CurveReport, CurveSamples
+    from .runtime.curves.sampling import sample_curve
+    from .runtime.curves.spline import CurveSpline, fit_curve
+    from .runtime.errors import (
+        FileError,
+        GaussmapError,
+        GaussmapWarning,
+        InputError,
+        MissingExtraError,
+        MissingFieldError,
+        SurfaceError,
+        UnknownNameError,
+    )
+    from .runtime.gaussian.classes import PatchClass, classify_patches
+    from .runtime.gaussian.image import BoundaryArc, GaussianImage, GaussianImages
+    from .runtime.gaussian.parabolic import (
+        ParabolicCurve,
+        ParabolicPoint,
+        ParabolicPoints,
+        parabolic_points,
+    )
+    from .runtime.gaussian.parabolic_lines import ParabolicLine, Piece, parabolic_lines, split_patch
+    from .runtime.io import read_samples
+    from .runtime.samples import Samples, SamplingReport
+    from .runtime.sampling import sample, sample_many
+    from .runtime.sphere import fibonacci, icosphere
+    from .runtime.spline import Spline, fit
+    from .runtime.stream import sample_stream
+    from .runtime.support.branches import Branches
+    from .runtime.support.function import SupportFunction
+    from .runtime.surface import Surface
     from .symbolic import formulas
 
 __version__ = "0.1.0"
@@ -100,11 +99,45 @@ __all__ = [
     "symbolic",
 ]
 
+# Where the names are, each loaded when it is asked for: SymPy and Numba take their time.
+_MODULES = {"surfaces": "runtime.surfaces", "symbolic": "symbolic"}
+_NAMES = {
+    "runtime.curves.circle": "circle",
+    "runtime.curves.curve": "Curve",
+    "runtime.curves.polygon": "polygon_distance",
+    "runtime.curves.samples": "CurveReport CurveSamples",
+    "runtime.curves.sampling": "sample_curve",
+    "runtime.curves.spline": "CurveSpline fit_curve",
+    "runtime.errors": "FileError GaussmapError GaussmapWarning InputError MissingExtraError "
+    "MissingFieldError SurfaceError UnknownNameError",
+    "runtime.gaussian.classes": "PatchClass classify_patches",
+    "runtime.gaussian.image": "BoundaryArc GaussianImage GaussianImages",
+    "runtime.gaussian.parabolic": "ParabolicCurve ParabolicPoint ParabolicPoints parabolic_points",
+    "runtime.gaussian.parabolic_lines": "ParabolicLine Piece parabolic_lines split_patch",
+    "runtime.io": "read_samples",
+    "runtime.samples": "Samples SamplingReport",
+    "runtime.sampling": "sample sample_many",
+    "runtime.sphere": "fibonacci icosphere",
+    "runtime.spline": "Spline fit",
+    "runtime.stream": "sample_stream",
+    "runtime.support.branches": "Branches",
+    "runtime.support.function": "SupportFunction",
+    "runtime.surface": "Surface",
+    "symbolic": "formulas",
+}
+_HOMES = {name: module for module, names in _NAMES.items() for name in names.split()}
+
 
 def __getattr__(name: str) -> object:
-    """Load SymPy only when the formulas are asked for."""
-    if name == "symbolic":
-        return import_module(".symbolic", __name__)
-    if name == "formulas":
-        return import_module(".symbolic", __name__).formulas
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    if name in _MODULES:
+        value = import_module(f".{_MODULES[name]}", __name__)
+    elif name in _HOMES:
+        value = getattr(import_module(f".{_HOMES[name]}", __name__), name)
+    else:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    globals()[name] = value  # found without this function from now on
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
