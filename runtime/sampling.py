@@ -2,29 +2,23 @@
 
 from __future__ import annotations
 
-import math
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from .checks import MOST, whole_number
+from .choice import choose, normals_asked
+from .compiling import compilation_shown
 from .errors import GaussmapError, GaussmapWarning, InputError
 from .fields import checked_dtype, checked_fields
-from .lattice import Lattice
 from .samples import Samples, SamplingReport
-from .search import Hits, NormalBins, fill, find
-from .sphere import as_normals
+from .search import NormalBins, fill, find
 from .spline import Spline, spline_of
 from .surface import Surface
-from .threads import thread_count
-from .visibility import invisible_share, visible_solid_angle
+from .visibility import invisible_share
 
 __all__ = [
-    "choose_lattice",
-    "normals_asked",
     "sample",
     "sample_and_normals",
     "sample_many",
@@ -32,13 +26,6 @@ __all__ = [
     "warn_of",
 ]
 
-# `count` is met by changing the number of normals, until it is this near or after so many tries.
-NEAR_ENOUGH = 0.01
-TRIES = 6
-# At most this many normals for each sample that was asked (a thin Gaussian image catches few).
-NORMALS_PER_SAMPLE = 100
-# A larger count is not tried, but concluded from this one.
-PILOT = 1_000_000
 WORTH_A_WARNING = 0.01
 
 
@@ -102,22 +89,19 @@ def sample_and_normals(
     """Return what `sample` returns, and the unit normals that were asked."""
     wanted, number = checked_fields(fields), checked_dtype(dtype)
     asked = normals_asked(normals, count, threads)
-    spline = spline_of(surface, cells)
-    if isinstance(asked, int):
-        choice = choose_lattice(spline, asked, threads, progress)
-        bins, hits, density = choice.bins, choice.hits, choice.density
-        if bins is None or hits is None:
-            bins = NormalBins(choice.lattice.normals(density, threads=threads), threads)
+    with compilation_shown(progress):
+        spline = spline_of(surface, cells)
+        chosen = choose(spline, asked, threads, progress)
+        bins, hits = chosen.found or (
+            NormalBins(chosen.part(0, len(chosen), threads), threads),
+            None,
+        )
+        if hits is None:
             hits = find(spline, bins, threads, progress)
-    else:
-        bins = NormalBins(asked, threads)
-        hits = find(spline, bins, threads, progress)
-        density = len(bins.normals) / (4 * math.pi)
-    arrays = fill(spline, bins, hits, threads, wanted, number)
-    report = sampling_report(spline, len(bins.normals), len(hits), density, hits.developable)
-    samples = Samples(**arrays, report=report)
+        arrays = fill(spline, bins, hits, threads, wanted, number)
+    report = sampling_report(spline, len(bins.normals), len(hits), chosen.density, hits.developable)
     warn_of(report, count, stacklevel=4)
-    return samples, bins.normals
+    return Samples(**arrays, report=report), bins.normals
 
 
 def sample_many(
@@ -164,61 +148,6 @@ def sample_many(
             )
         else:
             yield samples
-
-
-def normals_asked(
-    normals: ArrayLike | None, count: int | None, threads: int | None
-) -> NDArray[np.float64] | int:
-    """Return the unit normals that were asked, or the count; InputError if unusable."""
-    if (normals is None) == (count is None):
-        raise InputError("give either normals=... or count=..., and not both.")
-    thread_count(threads)
-    if normals is not None:
-        return as_normals(normals, threads=threads)
-    return whole_number(count, "count")
-
-
-@dataclass(frozen=True, eq=False)
-class Choice:
-    """The lattice of normals for a count of samples, and what was found if they were searched."""
-
-    lattice: Lattice
-    density: float
-    bins: NormalBins | None = None
-    hits: Hits | None = None
-
-
-def choose_lattice(spline: Spline, count: int, threads: int | None, progress: bool) -> Choice:
-    """Choose the number of normals so that about `count` samples come.
-
-    More samples than `PILOT` are not searched more than once: how many normals they need follows
-    from so many.
-    """
-    lattice = Lattice.around(spline)
-    pilot = min(count, PILOT)
-    densest = lattice.density_of(NORMALS_PER_SAMPLE * max(pilot, 1000))
-    everything = float(np.abs(spline.measure[1]).sum())
-    resolved = visible_solid_angle(spline, min(pilot / max(everything, 1e-300), densest))
-    if resolved == 0.0:
-        lattice, density = Lattice.everywhere(), pilot / (4 * math.pi)
-    else:
-        density = pilot / resolved
-    best: Choice | None = None
-    came = 0
-    for _ in range(TRIES):
-        density = min(density, densest)
-        bins = NormalBins(lattice.normals(density, threads=threads), threads)
-        hits = find(spline, bins, threads, progress)
-        if best is None or abs(len(hits) - pilot) < abs(came - pilot):
-            best, came = Choice(lattice, density, bins, hits), len(hits)
-        if abs(len(hits) - pilot) <= NEAR_ENOUGH * pilot or resolved == 0.0:
-            break
-        density *= pilot / len(hits) if len(hits) else 2.0
-    assert best is not None
-    if pilot == count:
-        return best
-    most = lattice.density_of(min(NORMALS_PER_SAMPLE * count, MOST))
-    return Choice(lattice, min(best.density * count / (came or pilot), most))
 
 
 def sampling_report(

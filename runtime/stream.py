@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from .checks import whole_number
+from .choice import choose, normals_asked
 from .fields import checked_dtype, checked_fields
 from .samples import Samples, SamplingReport
-from .sampling import choose_lattice, normals_asked, sampling_report, warn_of
+from .sampling import sampling_report, warn_of
 from .search import Hits, NormalBins, Search, fill, merged
 from .spline import Spline, spline_of
 from .surface import Surface
@@ -71,13 +71,15 @@ class _Stream:
 
     def chunks(self) -> Generator[Samples, None, None]:
         """Yield the chunks of all blocks of normals, at least one, and warn at the end."""
-        total, density, part = self._normals()
-        report = sampling_report(self.spline, total, 0, density, None)
+        chosen = choose(self.spline, self.asked, self.threads, self.progress)
+        chosen, total = replace(chosen, found=None), len(chosen)  # that would stay in memory
+        report = sampling_report(self.spline, total, 0, chosen.density, None)
         starts = range(0, total, NORMALS_AT_A_TIME)
         alone = len(starts) == 1
         came = developable = 0
         for first in shown(iter(starts), len(starts), self.progress and not alone):
-            bins = NormalBins(part(first, min(first + NORMALS_AT_A_TIME, total)), self.threads)
+            last = min(first + NORMALS_AT_A_TIME, total)
+            bins = NormalBins(chosen.part(first, last, self.threads), self.threads)
             found = find_in_turn(self.spline, bins, self.threads, self.progress and alone)
             developable = 0  # the same for every block
             for hits in grouped(found, self.size):
@@ -87,19 +89,6 @@ class _Stream:
                     yield self._samples(bins, hits, first, report)
         report = replace(report, samples=came, degenerate_patches=developable)
         warn_of(report, self.asked if isinstance(self.asked, int) else None, stacklevel=3)
-
-    def _normals(self) -> tuple[int, float, Callable[[int, int], NDArray[np.float64]]]:
-        """Return how many normals there are, how many per steradian, and what returns some."""
-        asked = self.asked
-        if not isinstance(asked, int):
-            return len(asked), len(asked) / (4 * math.pi), lambda first, last: asked[first:last]
-        choice = choose_lattice(self.spline, asked, self.threads, self.progress)
-        lattice, density = choice.lattice, choice.density
-        return (
-            lattice.size(density),
-            density,
-            lambda first, last: lattice.normals(density, first, last, self.threads),
-        )
 
     def _samples(self, bins: NormalBins, hits: Hits, start: int, report: SamplingReport) -> Samples:
         """Return hits as samples; the normals are numbered from `start` on."""
