@@ -24,7 +24,7 @@ class _Notice(event.Listener):
     def on_start(self, event: event.Event) -> None:
         if self.depth == 0:
             name = event.data["dispatcher"].py_func.__name__
-            self._write(f"{ERASE}compiling {name}; the next time it will be there")
+            self._write(f"{ERASE}compiling {name} (the first time only)")
         self.depth += 1
 
     def on_end(self, event: event.Event) -> None:
