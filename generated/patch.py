@@ -99,6 +99,46 @@ def forms(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, 
 
 
 @jit
+def linear_forms(
+    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, n_x, n_y, n_z
+):  # fmt: skip
+    """The linear forms in n of eq. (9), from which u, v are eliminated.
+
+        A = n·a
+        B = n·b
+        C = n·c
+        P = n·d
+        Q = n·e
+
+    Source: eq. (9); 25 operations as written, 25 here.
+    """
+    A = a_x * n_x + a_y * n_y + a_z * n_z
+    B = b_x * n_x + b_y * n_y + b_z * n_z
+    C = c_x * n_x + c_y * n_y + c_z * n_z
+    P = d_x * n_x + d_y * n_y + d_z * n_z
+    Q = e_x * n_x + e_y * n_y + e_z * n_z
+    return A, B, C, P, Q
+
+
+@jit
+def eliminated_forms(A, B, C, P, Q):
+    """The quadratic forms of a patch from the linear ones: what eliminating u, v leaves.
+
+        D = A*C - B**2
+        U = B*Q - C*P
+        V = B*P - A*Q
+        W = D - U - V
+
+    Source: eq. (9) and Sect. 3.2; 11 operations as written, 11 here.
+    """
+    D = A * C - B * B
+    U = B * Q - C * P
+    V = B * P - A * Q
+    W = D - U - V
+    return D, U, V, W
+
+
+@jit
 def parameters(D, U, V):
     """The parameters at which the patch has the normal n.
 

@@ -1,30 +1,35 @@
 """Deciding exactly what rounding leaves open: whether a patch has a normal.
 
-Coefficients and normals are binary fractions, and the formulas need only +, − and ×: run on Python
-integers they give the exact sign of every form. What is exactly zero (a normal on the boundary of
-two patches, or at a parabolic line) is decided as if the normal were moved by an infinitesimal
-generic vector, the same for all patches: the moved normal lies on no boundary at all, so that
-exactly one of the patches that meet there claims it. Only at the open border of the domain is
-rounding forgiven: a normal that leaves the domain by no more than the error of the data belongs to
-it.
+Coefficients and normals are binary fractions, and the formulas need only +, − and ×: computed with
+more bits, and at last on integers, they give the exact sign of every form. What is exactly zero (a
+normal on the boundary of two patches, or at a parabolic line) is decided as if the normal were
+moved by an infinitesimal generic vector, the same for all patches: the moved normal lies on no
+boundary at all, so that exactly one of the patches that meet there claims it. Only at the open
+border of the domain is rounding forgiven: a normal that leaves the domain by no more than the error
+of the data belongs to it.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..generated import sampler as kernels
-from .integers import Integers, integers, integers_by_row, ratio, sign
-from .plain import plain
+from ..generated import exact as kernels
+from ..generated import sampler
+from .long_integers import forms_of_pairs
 from .spline import Spline
+from .threads import over_ranges
 
 __all__ = ["Decision", "decide"]
 
+PAIRS_AT_A_TIME = 1 << 8
 # Python integers take memory: some hundred bytes for each of the many that a pair needs.
-PAIRS_AT_A_TIME = 1 << 14
+LONG_PAIRS_AT_A_TIME = 1 << 14
+# Numbers in one pair may differ by so many powers of two, if they are not to be long.
+MOST_SHIFTED = 512
 # Two samples of one normal at the open border that are closer than this (in cells) are one.
 SAME_PLACE = 1e-6
 # A point is singular where the normal is this short, beside that at the centre of its patch.
@@ -47,100 +52,69 @@ def decide(
     spline: Spline,
     patches: NDArray[np.int64],
     normals: NDArray[np.float64],
+    bounds: NDArray[np.float64],
     forgiven: NDArray[np.float64],
+    threads: int | None = None,
 ) -> Decision:
     """Decide which of the pairs (patches[k], normals[k]) are samples.
 
-    `forgiven[k]` is the error of W that is forgiven at the open border of the domain, in units of
-    the scaled spline; 0 for a patch that does not touch the border.
+    `bounds[k]` is the error of the forms as floating-point numbers; `forgiven[k]` that of W that is
+    forgiven at the open border of the domain, 0 for a patch that does not touch the border. Both
+    are in units of the scaled spline.
     """
-    chunks = [slice(k, k + PAIRS_AT_A_TIME) for k in range(0, len(patches), PAIRS_AT_A_TIME)]
-    parts = [_decide(spline, patches[x], normals[x], forgiven[x]) for x in chunks]
-    which = np.concatenate([x.start + part[0] for x, part in zip(chunks, parts, strict=True)])
-    local = np.concatenate([part[1] for part in parts])
-    near = np.concatenate([part[2] for part in parts])
-    keep = _first_of_each_place(spline, patches[which], normals[which], local[:, :2], near)
-    return Decision(which[keep], local[keep])
+    local, size, signs = _forms(spline, patches, normals, bounds, forgiven, threads)
+    inside = (signs[:, 0] != 0) & (signs[:, 0] == signs[:, 1]) & (signs[:, 1] == signs[:, 2])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        tolerance = np.where(size > 1024 * forgiven, forgiven / size, 0.0)
+        near = (signs[:, 0] != 0) & (signs[:, 0] == signs[:, 1]) & (tolerance > 0.0) & ~inside
+        total = local.sum(axis=1)
+        near &= total <= 1.0 + tolerance
+        local[near] /= total[near, None]
+    which = np.flatnonzero(inside | near)
+    regular, directions = _regular_places(spline, patches[which], local[which])
+    towards = np.einsum("kx,kx->k", directions, normals[which]) > 0.0
+    which, regular = which[towards], regular[towards]
+    keep = _first_of_each_place(spline, patches[which], normals[which], local[which], near[which])
+    places = np.column_stack([local[which], signs[which, 0], regular])
+    return Decision(which[keep], places[keep])
 
 
-def _decide(
+def _forms(
     spline: Spline,
     patches: NDArray[np.int64],
     normals: NDArray[np.float64],
+    bounds: NDArray[np.float64],
     forgiven: NDArray[np.float64],
-) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.bool_]]:
-    """Return which pairs are samples, what `Decision` holds of them, and which are forgiven."""
-    vectors, exponent = _patch_vectors(spline, patches)
-    n, exponents = integers_by_row(normals)
-    n = n * _leading_sign(n)
-    forms = _forms(vectors, n)
-    magnitude = _scaled(np.abs(forms[0]), 2 * (exponent + exponents))
-    signs = sign(forms[1:])
-    tied = (signs == 0).any(axis=0) & ((signs.min(axis=0) >= 0) | (signs.max(axis=0) <= 0))
-    if tied.any():
-        forms[:, tied], signs[:, tied] = _moved_forms(vectors[:, tied], n[:, tied])
-    inside = (signs[0] != 0) & (signs[0] == signs[1]) & (signs[1] == signs[2])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        tolerance = np.where(magnitude > 1024 * forgiven, forgiven / magnitude, 0.0)
-    near = (signs[0] != 0) & (signs[0] == signs[1]) & (tolerance > 0.0) & ~inside
-    u, v = np.zeros(len(patches)), np.zeros(len(patches))
-    here = inside | near
-    u[here], v[here] = (
-        ratio(forms[1, here], forms[0, here]),
-        ratio(forms[2, here], forms[0, here]),
-    )
-    near &= u + v <= 1.0 + tolerance
-    u[near], v[near] = (x[near] / (u + v)[near] for x in (u, v))
-    which = np.flatnonzero(inside | near)
-    regular = np.column_stack([u, v])
-    regular[which], directions = _regular_places(spline, patches[which], regular[which])
-    which = which[np.einsum("kx,kx->k", directions, normals[which]) > 0.0]
-    return which, np.column_stack([u, v, signs[0], regular])[which], near[which]
+    threads: int | None,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int8]]:
+    """Return U/D, V/D (k, 2), the modulus of D (k,), and the signs of U, V, W (k, 3)."""
+    count = len(patches)
+    local, size = np.empty((count, 2)), np.empty(count)
+    signs, known = np.empty((count, 3), dtype=np.int8), np.empty(count, dtype=np.bool_)
+
+    def work(first: int, last: int) -> None:
+        kernels.decide_pairs(
+            spline.coefficients, spline.scale, patches, normals, bounds, forgiven,
+            kernels.PRIMES, *_tables(), first, last, local, size, signs, known,
+        )  # fmt: skip
+
+    for _ in over_ranges(work, count, PAIRS_AT_A_TIME, threads):
+        pass
+    for first in range(0, count, LONG_PAIRS_AT_A_TIME):
+        chunk = first + np.flatnonzero(~known[first : first + LONG_PAIRS_AT_A_TIME])
+        if len(chunk) > 0:
+            local[chunk], size[chunk], signs[chunk] = forms_of_pairs(
+                spline, patches[chunk], normals[chunk]
+            )
+    return local, size, signs
 
 
-# --- integers -------------------------------------------------------------------------------------
-
-
-def _patch_vectors(spline: Spline, patches: NDArray[np.int64]) -> tuple[Integers, int]:
-    """Return a, b, c, d, e (15, k) of each patch as integers, and the exponent of their unit."""
-    cell, turn = np.divmod(patches, 4)
-    i, j = np.divmod(cell, spline.cells[1])
-    steps = kernels.NEIGHBOURS[turn]
-    around = spline.coefficients[i[:, None] + 1 + steps[..., 0], j[:, None] + 1 + steps[..., 1]]
-    values, exponent = integers(around)
-    differences = values - values[:, 4:5]
-    read = differences[:, kernels.TRIANGLE_NEIGHBOURS].reshape(len(patches), -1)
-    vectors = plain(kernels.triangle)(*read.T)
-    return np.array(vectors[:15], dtype=object), exponent + int(np.log2(spline.scale))
-
-
-def _forms(vectors: Integers, n: Integers) -> Integers:
-    """Return D, U, V, W (4, k), exactly."""
-    return np.array(plain(kernels.forms)(*vectors, *n), dtype=object)
-
-
-def _moved_forms(vectors: Integers, n: Integers) -> tuple[Integers, NDArray[np.int8]]:
-    """Return D, U, V, W and the signs of U, V, W at n + (ε₁, ε₂, ε₃), with n ≫ ε₁ ≫ ε₂ ≫ ε₃ ≫ ε₁².
-
-    A quadratic form F is there a sum of ten monomials in n, ε₁, ε₂, ε₃, each infinitesimal beside
-    the one before; its coefficients follow from F(x + y) − F(x) − F(y). The first that is not zero
-    gives the sign. Quotients by D need the monomial that leads in D alone: that one is returned.
-    """
-    axes = [
-        n,
-        *(np.array([[x], [y], [z]], dtype=object) for x, y, z in np.eye(3, dtype=int).tolist()),
-    ]
-    alone = [_forms(vectors, x + 0 * n) for x in axes]
-    monomials = [
-        alone[i] if i == j else _forms(vectors, axes[i] + axes[j] + 0 * n) - alone[i] - alone[j]
-        for i in range(4)
-        for j in range(i, 4)
-    ]
-    coefficients = np.stack(monomials)
-    leading = np.argmax(np.asarray(coefficients != 0, dtype=bool), axis=0)
-    first = np.take_along_axis(coefficients, leading[None], axis=0)[0]
-    in_d = np.take_along_axis(coefficients, leading[None, :1].repeat(4, axis=1), axis=0)[0]
-    return in_d, sign(first[1:])
+@cache
+def _tables() -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return 2^k modulo each prime (m, …), and the inverses (m, m) of primes modulo larger ones."""
+    primes = kernels.PRIMES.tolist()
+    powers = np.array([[pow(2, k, p) for k in range(MOST_SHIFTED)] for p in primes])
+    return powers, np.array([[pow(p, -1, q) if p != q else 0 for q in primes] for p in primes])
 
 
 def _regular_places(
@@ -154,7 +128,7 @@ def _regular_places(
 
     def normals(places: NDArray[np.float64]) -> NDArray[np.float64]:
         result = np.empty((len(patches), 3))
-        kernels.normals_at(spline.coefficients, spline.scale, patches, places, result)
+        sampler.normals_at(spline.coefficients, spline.scale, patches, places, result)
         return result
 
     centre = np.full_like(local, 1 / 3)
@@ -162,23 +136,6 @@ def _regular_places(
     singular = np.less_equal(next(lengths), SINGULAR * next(lengths))
     places = np.where(singular[:, None], local + SINGULAR * (centre - local), local)
     return places, normals(places)
-
-
-def _leading_sign(n: Integers) -> Integers:
-    """Return the sign of the first component that is not zero, for each column.
-
-    The forms are even in n. A normal and its opposite must be moved to opposite normals: where a
-    surface is joined to its own mirror image, one patch has the one and its neighbour the other.
-    """
-    signs = sign(n)
-    first = np.argmax(signs != 0, axis=0)
-    return np.take_along_axis(signs, first[None], axis=0).astype(object)
-
-
-def _scaled(values: Integers, exponents: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Return values × 2^exponents as floats."""
-    pairs = zip(values, exponents.tolist(), strict=True)
-    return np.array([x << e if e >= 0 else x / (1 << -e) for x, e in pairs], dtype=np.float64)
 
 
 # --- the open border ------------------------------------------------------------------------------

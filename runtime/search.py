@@ -238,13 +238,14 @@ class Search:
         return min(max(count, FEWEST_PATCHES), MOST_PATCHES)
 
     def decided(
-        self, doubtful: NDArray[np.int64], bounds: NDArray[np.float64]
+        self, doubtful: NDArray[np.int64], bounds: NDArray[np.float64], threads: int | None
     ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         """Return those of the doubtful pairs that are samples, and what `Decision` says of them."""
         if doubtful.shape[1] == 0:
             return doubtful, np.empty((0, 5))
         forgiven = np.where(_on_border(self.spline, self.border, doubtful[0]), bounds, 0.0)
-        decision = decide(self.spline, doubtful[0], self.bins.normals[doubtful[1]], forgiven)
+        normals = self.bins.normals[doubtful[1]]
+        decision = decide(self.spline, doubtful[0], normals, bounds, forgiven, threads)
         return doubtful[:, decision.which], decision.local
 
 
@@ -257,7 +258,7 @@ def find(
         return Hits.none(spline.patches)
     size = search.range_size(threads)
     found = Pairs.joined([*over_ranges(search.pairs, spline.patches, size, threads, progress)])
-    return merged(found, *search.decided(found.doubtful, found.bounds))
+    return merged(found, *search.decided(found.doubtful, found.bounds, threads))
 
 
 def fill(

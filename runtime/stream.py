@@ -121,7 +121,7 @@ def find_in_turn(
     if search.hopeless:
         yield Hits.none(spline.patches)
         return
-    border = _Border.of(search)
+    border = _Border.of(search, threads)
     size = search.range_size(threads)
     yield from over_ranges(border.hits, spline.patches, size, threads, progress)
 
@@ -140,7 +140,7 @@ class _Border:
     local: NDArray[np.float64]
 
     @classmethod
-    def of(cls, search: Search) -> _Border:
+    def of(cls, search: Search, threads: int | None) -> _Border:
         """Search the cells at the border."""
         south, east, north, west = search.border
         cells = np.zeros(search.spline.cells, dtype=bool)
@@ -153,14 +153,14 @@ class _Border:
             found = search.pairs(4 * first, 4 * last)
             doubtful.append(found.doubtful)
             bounds.append(found.bounds)
-        decided = search.decided(np.concatenate(doubtful, axis=1), np.concatenate(bounds))
+        decided = search.decided(np.concatenate(doubtful, axis=1), np.concatenate(bounds), threads)
         return cls(search, cells.ravel(), *decided)
 
     def hits(self, first: int, last: int) -> Hits:
         """Return which of the patches first, …, last − 1 have which of the normals."""
         found = self.search.pairs(first, last)
         inside = ~self.cells[found.doubtful[0] // 4]
-        pairs, local = self.search.decided(found.doubtful[:, inside], found.bounds[inside])
+        pairs, local = self.search.decided(found.doubtful[:, inside], found.bounds[inside], 1)
         low, high = np.searchsorted(self.pairs[0], (first, last))
         pairs = np.concatenate([pairs, self.pairs[:, low:high]], axis=1)
         order = np.lexsort((pairs[1], pairs[0]))

@@ -8,12 +8,14 @@ import sys
 import textwrap
 from collections.abc import Mapping
 from fractions import Fraction
+from itertools import accumulate, islice, repeat
 from pathlib import Path
 from typing import cast
 
 import sympy as sp
 
 from . import curve, gaussian_image, latex, patch, spline, support, surfaces
+from .double_double import double_double_function
 from .emit import block, call, functions, render
 from .expression import hessian_entries
 from .formula import Formula, PlaneVector
@@ -22,6 +24,8 @@ from .printer import source_of
 
 __all__ = ["GENERATED", "derive", "differences", "write"]
 
+# Enough for coefficients and normals of 340 bits together.
+PRIMES = 24
 GENERATED = Path(__file__).parent.parent / "generated"
 PROJECT = GENERATED.parent / "pyproject.toml"
 
@@ -31,6 +35,7 @@ def derive() -> dict[str, str]:
     sources = {
         "__init__.py": '"""Kernels and formulas written by `make generate`: never edit these."""\n',
         "curve.py": curve_source(),
+        "exact.py": exact_source(),
         "gaussian_image.py": gaussian_image_source(),
         "patch.py": patch_source(),
         "spline.py": spline_source(),
@@ -212,6 +217,36 @@ def sampler_source() -> str:
     )
 
 
+def exact_source() -> str:
+    """Return generated/exact.py: the forms of patches, exact enough to know their signs."""
+    names = [x.name for x in spline.TRIANGLE.in_components().outputs]
+    vectors, outputs = ", ".join(names[:15]), ", ".join(names)
+    difference = "multiple(plus((mu[{place}, {x}], 0.0), (-mu[i, j, {x}], 0.0)), scale)"
+    residue = "residue(around[{k}, {x}], lowest, prime, powers)"
+    centre = (f"centre_{x} = {residue.format(k=4, x=x)}" for x in range(3))
+    precise = [spline.TRIANGLE, patch.FORMS]
+    modular = [spline.TRIANGLE, patch.LINEAR_FORMS_OF_NORMAL, patch.ELIMINATED_FORMS]
+    return render(
+        "exact.py",
+        {
+            "header": header("Exact decisions: the signs of the forms of a patch and a normal."),
+            "constants": f"{_grid_constants()}\nPRIMES = np.array({_primes()})",
+            "formulas": functions(modular),
+            "double_double_formulas": "\n\n\n".join(map(double_double_function, precise)),
+            "load_pairs": _load(spline.TRIANGLE, difference),
+            "triangle_of_pairs": f"{outputs} = double_double_{call(spline.TRIANGLE)}",
+            "forms_of_pairs": f"return double_double_{call(patch.FORMS)}",
+            "load_centre": "\n".join(centre),
+            "load_residues": _load(spline.TRIANGLE, f"({residue} - centre_{{x}})"),
+            "triangle_of_residues": f"{outputs} = {call(spline.TRIANGLE)}",
+            "return_vectors": f"return {', '.join(f'{x} % prime' for x in names[:15])}",
+            "name_vectors": f"{vectors} = vectors",
+            "linear_forms": f"A, B, C, P, Q = {call(patch.LINEAR_FORMS_OF_NORMAL)}",
+            "eliminated_forms": f"D, U, V, W = {call(patch.ELIMINATED_FORMS)}",
+        },
+    )
+
+
 def support_source() -> str:
     """Return generated/support.py: support functions of patches, their offsets and curvatures."""
     return render(
@@ -265,6 +300,11 @@ def _grid_constants() -> str:
     )
 
 
+def _primes() -> list[int]:
+    """Return the largest primes of which sums of twelve products of two fit into 64 bits."""
+    return list(islice(accumulate(repeat(2**29), lambda x, _: sp.prevprime(x)), 1, PRIMES + 1))
+
+
 def _triangle_neighbours() -> str:
     """Return which of the nine coefficients the formula `triangle` reads, in its order."""
     places = [k for k, x in enumerate(spline.MU.values()) if x in spline.TRIANGLE.inputs]
@@ -272,9 +312,9 @@ def _triangle_neighbours() -> str:
 
 
 def _load(formula: Formula, value: str) -> str:
-    """Return assignments to the coefficients that a formula reads; `value` has {place} and {x}."""
+    """Return assignments to what a formula reads; `value` has {place}, its number {k}, and {x}."""
     return "\n".join(
-        f"{component} = " + value.format(place=place, x=x)
+        f"{component} = " + value.format(place=place, k=k, x=x)
         for k, symbol in enumerate(spline.MU.values())
         for place in [f"i + NEIGHBOURS[turn, {k}, 0], j + NEIGHBOURS[turn, {k}, 1]"]
         if symbol in formula.inputs

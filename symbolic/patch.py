@@ -108,6 +108,22 @@ FORMS = Formula.build(
     outputs=[("D", SOLUTION.D), ("U", SOLUTION.U), ("V", SOLUTION.V), ("W", D - U - V)],
 )
 
+ELIMINATED_FORMS = Formula.build(
+    "eliminated_forms",
+    "The quadratic forms of a patch from the linear ones: what eliminating $u$, $v$ leaves.",
+    source="eq. (9) and Sect. 3.2",
+    inputs=LINEAR_FORMS,
+    outputs=[("D", SOLUTION.D), ("U", SOLUTION.U), ("V", SOLUTION.V), ("W", D - U - V)],
+)
+
+LINEAR_FORMS_OF_NORMAL = Formula.build(
+    "linear_forms",
+    "The linear forms in $n$ of eq. (9), from which $u$, $v$ are eliminated.",
+    source="eq. (9)",
+    inputs=[*VECTORS, n],
+    outputs=FORM_TERMS,
+)
+
 PARAMETERS = Formula.build(
     "parameters",
     "The parameters at which the patch has the normal $n$.",
@@ -378,6 +394,8 @@ CURVATURE_AT = compose(
 FORMULAS = (
     POWER_FORM,
     FORMS,
+    LINEAR_FORMS_OF_NORMAL,
+    ELIMINATED_FORMS,
     PARAMETERS,
     SUPPORT_FUNCTION,
     ENVELOPE,

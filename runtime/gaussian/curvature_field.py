@@ -7,7 +7,7 @@ a polynomial too, which is bounded on smaller rectangles by its coefficients and
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -29,6 +29,8 @@ OFFSET = 0.2360679774997897
 RESOLVED = 1e-2
 # It is known well where its error is less than this, beside how much the surface bends.
 WELL = 1e-8
+# Where |p_u × p_v| on a panel falls below this share of its largest value, K has a denominator.
+LEAST_AREA = 1e-2
 NODES = chebyshev.chebpts1(ORDER)
 TO_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(NODES, ORDER - 1))
 # How much more a polynomial can be off at the end of a panel than at its nodes (Lebesgue constant).
@@ -54,9 +56,11 @@ class CurvatureField:
     In a periodic direction (`wraps`) the panels make one period that starts inside the domain.
 
     `coefficients` (m, n, ORDER, ORDER) are those of K in products of Chebyshev polynomials of the
-    two coordinates of a panel, −1 … 1. `noise` (m, n) bounds the error of K; `bending` (m, n) is
-    what that has to be compared with where K is small: the square of the curvature of the parameter
-    lines in the direction of the normal, and of one over the size of the surface.
+    two coordinates of a panel, −1 … 1; on some panels those of K |p_u × p_v|⁴, scaled, which has
+    the same zeros and signs and is nearer to a polynomial where the surface is steep. `noise`
+    (m, n) bounds the error of K; `bending` (m, n) is what that has to be compared with where K is
+    small: the square of the curvature of the parameter lines in the direction of the normal, and of
+    one over the size of the surface.
     """
 
     lines: tuple[Array, Array]
@@ -79,10 +83,12 @@ class CurvatureField:
         ]
         x = surface.evaluate(inside[0][:, None], inside[1])
         x = x.reshape(panels[0], ORDER, panels[1], ORDER, 3).transpose(0, 2, 1, 3, 4)
-        K, rounding, bending = _curvature(x, *(np.diff(line) for line in lines))
-        coefficients = TO_COEFFICIENTS @ K @ TO_COEFFICIENTS.T
-        noise = LEBESGUE**2 / SURE * rounding + ORDER * _tail(coefficients[:, :, None])[..., 0, 0]
-        return cls((lines[0], lines[1]), wraps, coefficients, noise, bending)
+        K, rounding, bending, area = _curvature(x, *(np.diff(line) for line in lines))
+        fields = [
+            cls((lines[0], lines[1]), wraps, *_polynomials(K * weight, rounding * weight), rest)
+            for weight, rest in ((np.ones_like(K), bending), _weights(area, bending))
+        ]
+        return _better(*fields)
 
     @cached_property
     def largest(self) -> Array:
@@ -113,6 +119,22 @@ class CurvatureField:
 
     def evaluate(self, places: Array, du: int = 0, dv: int = 0) -> Array:
         """Return K or a partial derivative (k,) at places (k, 2), extrapolating beyond the ends."""
+        indices, local, sizes = self._located(places)
+        basis = [
+            chebyshev.chebvander(x, ORDER - 1 - order) @ chebyshev.chebder(np.eye(ORDER), order)
+            for x, order in zip(local, (du, dv), strict=True)
+        ]
+        inner = self.coefficients[indices[0], indices[1]] @ basis[1][..., None]
+        values = np.einsum("ka,ka->k", basis[0], inner[..., 0])
+        return values * (2.0 / sizes[0]) ** du * (2.0 / sizes[1]) ** dv
+
+    def noise_at(self, places: Array) -> Array:
+        """Return the error of K (k,) at places (k, 2)."""
+        (i, j), *_ = self._located(places)
+        return self.noise[i, j]
+
+    def _located(self, places: Array) -> tuple[list[NDArray[np.int64]], list[Array], list[Array]]:
+        """Return panels, coordinates on them (-1 … 1) and sizes of panels, each by u and by v."""
         indices, local, sizes = [], [], []
         for line, x, periodic in zip(self.lines, places.T, self.wraps, strict=True):
             if periodic:
@@ -122,14 +144,7 @@ class CurvatureField:
             indices.append(index)
             local.append(2.0 * (x - line[index]) / size - 1.0)
             sizes.append(size)
-        basis = [
-            chebyshev.chebvander(x, ORDER - 1 - order) @ chebyshev.chebder(np.eye(ORDER), order)
-            for x, order in zip(local, (du, dv), strict=True)
-        ]
-        values = np.einsum(
-            "ka,kab,kb->k", basis[0], self.coefficients[indices[0], indices[1]], basis[1]
-        )
-        return values * (2.0 / sizes[0]) ** du * (2.0 / sizes[1]) ** dv
+        return indices, local, sizes
 
     def gradient(self, places: Array) -> Array:
         """Return the derivatives (k, 2) of K by u and v."""
@@ -156,8 +171,10 @@ def _tail(coefficients: Array) -> Array:
     return np.maximum(*ends)[..., None, None]
 
 
-def _curvature(x: Array, sizes_u: Array, sizes_v: Array) -> tuple[Array, Array, Array]:
-    """Return K at the nodes (m, n, ORDER, ORDER) of points; its rounding error and bending (m, n).
+def _curvature(x: Array, sizes_u: Array, sizes_v: Array) -> tuple[Array, Array, Array, Array]:
+    """Return K, its rounding error, bending (m, n) and |p_u × p_v| at the nodes of points.
+
+    All but the bending are (m, n, ORDER, ORDER).
 
     The parameters are those of the panels, scaled to the surface, so that nothing overflows.
     """
@@ -190,4 +207,35 @@ def _curvature(x: Array, sizes_u: Array, sizes_v: Array) -> tuple[Array, Array, 
     bad = ~np.isfinite(K) | ~np.isfinite(rounding)
     K[bad], rounding[bad] = 0.0, np.inf
     bending = 1.0 + np.nan_to_num(np.maximum(*along), posinf=0.0).max(axis=(2, 3)) ** 2
-    return K / scale**2, rounding.max(axis=(2, 3)) / scale**2, bending / scale**2
+    return K / scale**2, rounding / scale**2, bending / scale**2, area
+
+
+def _weights(area: Array, bending: Array) -> tuple[Array, Array]:
+    """Return the weights (m, n, ORDER, ORDER) that rid K of its denominator, and the bending then.
+
+    They are at most 1. Near a singular point, where |p_u × p_v| vanishes, they would too: there the
+    weights are 1 and the bending 0, so that nothing is known.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        weights = (area / area.max(axis=(2, 3), keepdims=True)) ** 4
+    singular = ~(weights.min(axis=(2, 3)) >= LEAST_AREA**4)
+    weights[singular] = 1.0
+    return weights, np.where(singular, 0.0, bending * weights.min(axis=(2, 3)))
+
+
+def _polynomials(K: Array, rounding: Array) -> tuple[Array, Array]:
+    """Return the coefficients (m, n, ORDER, ORDER) and the error (m, n) of K on each panel."""
+    coefficients = TO_COEFFICIENTS @ K @ TO_COEFFICIENTS.T
+    tail = _tail(coefficients[:, :, None])[..., 0, 0]
+    return coefficients, LEBESGUE**2 / SURE * rounding.max(axis=(2, 3)) + ORDER * tail
+
+
+def _better(plain: CurvatureField, weighted: CurvatureField) -> CurvatureField:
+    """Take K with weights on the panels where K alone is not known well, but is so with them."""
+    better = plain.rough & ~weighted.flat & ~weighted.unresolved
+    with np.errstate(invalid="ignore"):
+        better &= weighted.noise * plain.largest < plain.noise * weighted.largest
+    coefficients = np.where(better[..., None, None], weighted.coefficients, plain.coefficients)
+    noise = np.where(better, weighted.noise, plain.noise)
+    bending = np.where(better, weighted.bending, plain.bending)
+    return replace(plain, coefficients=coefficients, noise=noise, bending=bending)

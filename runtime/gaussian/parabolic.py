@@ -17,6 +17,7 @@ from .classes import PatchClass, classify_patches
 from .curvature_field import CurvatureField
 from .parabolic_spline import polylines_of
 from .parabolic_surface import field_of, search
+from .rectangles import merged
 
 __all__ = ["ParabolicCurve", "ParabolicPoint", "ParabolicPoints", "parabolic_points"]
 
@@ -66,10 +67,10 @@ class ParabolicPoints:
     """The parabolic points of a surface.
 
     `curves` are those across which the Gaussian curvature changes its sign; they end at the
-    border of the surface and where they meet, and one may lie on the border. Near a crossing on a
-    `Surface`, two curves may turn into each other instead. `isolated` are those where it only
-    touches zero. `flat` (k, 2, 2) are rectangles of the parameter plane (lowest and highest corner)
-    in which it vanishes up to its error; `developable` says that it does so everywhere.
+    border of the surface and where they meet or cross, and one may lie on the border. `isolated`
+    are those where it only touches zero. `flat` (k, 2, 2) are rectangles of the parameter plane
+    (lowest and highest corner) in which it vanishes up to its error; `developable` says that it
+    does so everywhere.
     """
 
     curves: tuple[ParabolicCurve, ...]
@@ -99,7 +100,8 @@ def parabolic_points(
     panels, or as many more as it takes, at most 64 × 64. The error of K is estimated: it is about
     1e-9 where the surface is resolved, and up to 1 % of K on the panel where it is not. Where K is
     less than its error, its sign is not used: such places are `flat`. Two
-    curves that are nearer than one cell of a grid (1/16 of a panel) may be missed. Parts of the
+    curves that are nearer than one cell of a grid (1/16 of a panel) may be missed, and so may a
+    crossing from which they part by less than a cell in 16. Parts of the
     domain where the curvature cannot be computed (a pole, a crease) are left out, with a
     GaussmapWarning if they are more than 0.01 % of it.
 
@@ -129,9 +131,9 @@ def _of_spline(spline: Spline, tolerance: float) -> ParabolicPoints:
         curves.append(ParabolicCurve(finer, _evaluated(spline, finer), closed))
     flat = np.isin(classes, (PatchClass.PLANAR, PatchClass.DEVELOPABLE, PatchClass.SINGULAR))
     i, j = np.divmod(np.flatnonzero(flat.all(axis=1)), spline.cells[1])
-    low = spline.frame[:2] + np.stack([i, j], axis=1) * spline.frame[2:]
-    boxes = np.stack([low, low + spline.frame[2:]], axis=1)
-    return ParabolicPoints(tuple(curves), (), boxes, bool(flat.all()))
+    corners = np.stack([[i, j], [i + 1, j + 1]]).transpose(2, 0, 1)
+    boxes = spline.frame[:2] + corners * spline.frame[2:]
+    return ParabolicPoints(tuple(curves), (), merged(boxes), bool(flat.all()))
 
 
 def _of_surface(

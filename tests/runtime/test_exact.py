@@ -6,9 +6,10 @@ from itertools import product
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.generated import exact as kernels_of_pairs
 from gaussmap.generated import sampler as kernels
-from gaussmap.runtime import exact
-from gaussmap.runtime.integers import sign
+from gaussmap.runtime import exact, long_integers
+from gaussmap.runtime.integers import integers, sign
 from gaussmap.runtime.plain import plain
 from gaussmap.runtime.surface import Ends
 from hypothesis import given, settings
@@ -16,6 +17,7 @@ from hypothesis import strategies as st
 
 ALIGNED = np.array([n for n in product((-1.0, 0.0, 1.0), repeat=3) if any(n)])
 WRAP: Ends = (("wrap", "wrap"), ("wrap", "wrap"))
+OPEN: Ends = (("none", "none"), ("none", "none"))
 
 
 def torus_of_integers(m: int, n: int, size: int, noise: np.ndarray) -> gm.Spline:
@@ -57,7 +59,7 @@ def test_forms_on_integers_are_those_of_fractions() -> None:
     spline = torus_of_integers(6, 5, 50, np.zeros((6, 5, 3)))
     spline.coefficients[...] *= 0.3  # no integers any more, and a common exponent to find
     patches = np.arange(spline.patches)
-    vectors, exponent = exact._patch_vectors(spline, patches)
+    vectors, exponent = long_integers._patch_vectors(spline, patches)
     unit = Fraction(2) ** exponent / Fraction(spline.scale)
     for patch in patches[::7]:
         cell, turn = divmod(int(patch), 4)
@@ -78,12 +80,83 @@ def test_moved_normal_agrees_with_a_slightly_moved_one() -> None:
     vectors = np.array(
         [[int(x) for x in row] for row in rng.integers(-3, 4, (15, 400))], dtype=object
     )
-    _, signs = exact._moved_forms(vectors, n)
+    _, signs = long_integers._moved_forms(vectors, n)
     # In bits: n 64 · 20, ε 16 · 20, 4 · 20 and 20, so that also n ε₃ ≫ ε₁² and ε₁ ε₃ ≫ ε₂².
     shifts = (1 << 320, 1 << 80, 1 << 20)
     moved = np.array([(x << 1280) + e for x, e in zip(n, shifts, strict=True)], dtype=object)
-    assert (signs == sign(exact._forms(vectors, moved)[1:])).all()
-    assert (sign(exact._forms(vectors, n)[1:]) == 0).any()
+    assert (signs == sign(long_integers._forms(vectors, moved)[1:])).all()
+    assert (sign(long_integers._forms(vectors, n)[1:]) == 0).any()
+
+
+def every_pair(spline: gm.Spline, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    patches = np.repeat(np.arange(spline.patches), len(normals))
+    return patches, np.tile(normals, (spline.patches, 1))
+
+
+def decided(
+    spline: gm.Spline, patches: np.ndarray, normals: np.ndarray, bound: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return what the compiled decision says of pairs if the forms are known up to `bound`."""
+    bounds = np.full(len(patches), bound)
+    return exact._forms(spline, patches, normals, bounds, np.ones(len(patches)), None)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("bound", [1e-13, np.inf])
+@pytest.mark.parametrize("size", [1.0, 0.3, 1e-5, 1e150, 1e-150])
+def test_compiled_forms_are_those_of_long_integers(size: float, bound: float) -> None:
+    """With an infinite bound nothing but integers modulo primes decides."""
+    spline = torus_of_integers(8, 6, 8, np.zeros((8, 6, 3)))
+    spline.coefficients[...] *= size
+    pairs = every_pair(spline, np.concatenate([ALIGNED, gm.icosphere(3)]))
+    local, length, signs = decided(spline, *pairs, bound)
+    expected_local, expected_length, expected_signs = long_integers.forms_of_pairs(spline, *pairs)
+    np.testing.assert_array_equal(signs, expected_signs)
+    inside = (signs == signs[:, :1]).all(axis=1) & (signs != 0).all(axis=1)
+    # U/D is rounded once by the integers; modulo primes after sums of at most 24 positive terms.
+    np.testing.assert_allclose(local[inside], expected_local[inside], rtol=2**-46, atol=0.0)
+    np.testing.assert_allclose(length[inside], expected_length[inside], rtol=2**-46)
+
+
+@pytest.mark.compiled
+def test_numbers_too_long_for_the_primes_are_long_integers() -> None:
+    spline = torus_of_integers(8, 6, 8, np.zeros((8, 6, 3)))
+    spline.coefficients[3, 3] *= 1e-200
+    patches, normals = every_pair(spline, np.array([[1.0, 0.0, 0.0], [1.0, 1e-170, 1e-290]]))
+    _, _, signs = decided(spline, patches, normals, np.inf)
+    expected = long_integers.forms_of_pairs(spline, patches, normals)[2]
+    np.testing.assert_array_equal(signs, expected)
+
+
+def test_double_doubles_carry_106_bits() -> None:
+    """Forms of random patches, against fractions: the error that the kernel allows for."""
+    rng = np.random.default_rng(3)
+    spline = gm.Spline(rng.standard_normal((4, 4, 3)), ((0, 2), (0, 2)), OPEN, "t")
+    for patch, n in zip(range(16), gm.fibonacci(16), strict=True):
+        i, j = divmod(patch // 4, 2)
+        forms = kernels_of_pairs.precise_forms(
+            spline.coefficients, i + 1, j + 1, patch % 4, spline.scale, *n
+        )
+        vectors, exponent = long_integers._patch_vectors(spline, np.array([patch]))
+        whole, unit = integers(n)
+        exact_forms = long_integers._forms(vectors, whole[:, None])[:, 0]
+        scale = Fraction(2) ** (2 * (exponent + unit))
+        size = max(abs(int(x)) * scale for x in exact_forms)
+        for (high, low), value in zip(forms, exact_forms, strict=True):
+            error = abs(Fraction(high) + Fraction(low) - int(value) * scale)
+            # 40 operations in a row at most, each with an error of 2⁻¹⁰² of sums of 12 moduli.
+            assert error <= 40 * 12 * Fraction(2) ** -102 * max(size, 1)
+
+
+@given(values=st.lists(st.integers(-(2**200), 2**200), min_size=1, max_size=5))
+def test_numbers_come_back_from_their_residues(values: list[int]) -> None:
+    primes = kernels_of_pairs.PRIMES[:9]
+    inverses = exact._tables()[1]
+    for value in values:
+        residues = np.array([value % int(p) for p in primes])
+        found = kernels_of_pairs.value_of(residues, primes, inverses, np.empty(9, dtype=np.int64))
+        # Nine digits are added, with two roundings each.
+        assert abs(Fraction(found) - value) <= 18 * Fraction(2) ** -53 * abs(value)
 
 
 def test_parabolic_normal_of_a_torus_has_a_sensible_place() -> None:

@@ -161,7 +161,7 @@ def test_each_block_of_a_kernel_is_listed(path):
         if head := re.match(r"def (\w+)\(", line):
             function = head[1]
             if function in formulas:
-                assert f"{path.name}: {function}" in rows_of(function)["Kernels"]
+                assert re.search(rf"\b{path.name}:.*\b{function}\b", rows_of(function)["Kernels"])
         if name := re.match(r" +# (\w+) \(.*\): \d+ operations", line):
             assert re.search(rf"\b{path.name}:.*\b{function}\b", rows_of(name[1])["Kernels"])
 
