@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -79,13 +80,11 @@ def checked_fields(fields: Sequence[str] | None) -> tuple[str, ...]:
 
 def checked_dtype(dtype: DTypeLike) -> np.dtype[np.floating]:
     """Return float32 or float64, in this machine's byte order; InputError for any other type."""
-    try:
+    with suppress(TypeError, SyntaxError):  # NumPy reads some texts as Python
         result = np.dtype(dtype)
-    except TypeError:
-        result = None
-    if result not in (np.dtype(np.float32), np.dtype(np.float64)):
-        raise InputError(f"dtype must be float32 or float64, not {dtype!r}.")
-    return result  # pyright: ignore[reportReturnType]
+        if dtype is not None and result in (np.dtype(np.float32), np.dtype(np.float64)):
+            return result
+    raise InputError(f"dtype must be float32 or float64, not {dtype!r}.")
 
 
 def _unknown(name: object) -> str:
