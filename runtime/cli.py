@@ -1,8 +1,7 @@
 """The command line: `gaussmap sample`, `plot`, `surfaces` and `formulas`.
 
 Results go to standard output; the progress bar, warnings and errors go to standard error. Every
-error is one line and the exit code 2; Ctrl-C (once the imports are done) gives 130, and a reader
-that went away 141.
+error is one line and the exit code 2; Ctrl-C gives 130, and a reader that went away 141.
 """
 
 from __future__ import annotations

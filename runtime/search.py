@@ -176,6 +176,8 @@ class Pairs:
     @classmethod
     def joined(cls, parts: Sequence[Pairs]) -> Pairs:
         """Return the pairs of consecutive ranges."""
+        if len(parts) == 1:
+            return parts[0]
         return cls(
             np.concatenate([part.sure for part in parts], axis=1),
             np.concatenate([part.doubtful for part in parts], axis=1),
