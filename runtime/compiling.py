@@ -22,7 +22,7 @@ class _Notice(event.Listener):
         self.depth = 0  # a kernel has those compiled that it calls; Numba does it under a lock
 
     def on_start(self, event: event.Event) -> None:
-        if self.depth == 0:
+        if self.depth == 0 and event.data is not None:
             name = event.data["dispatcher"].py_func.__name__
             self._write(f"{ERASE}compiling {name} (the first time only)")
         self.depth += 1

@@ -80,10 +80,10 @@ def checked_fields(fields: Sequence[str] | None) -> tuple[str, ...]:
 
 def checked_dtype(dtype: DTypeLike) -> np.dtype[np.floating]:
     """Return float32 or float64, in this machine's byte order; InputError for any other type."""
+    known = np.dtype(np.float32), np.dtype(np.float64)
     with suppress(TypeError, SyntaxError):  # NumPy reads some texts as Python
-        result = np.dtype(dtype)
-        if dtype is not None and result in (np.dtype(np.float32), np.dtype(np.float64)):
-            return result
+        if dtype is not None and np.dtype(dtype) in known:
+            return known[known.index(np.dtype(dtype))]
     raise InputError(f"dtype must be float32 or float64, not {dtype!r}.")
 
 

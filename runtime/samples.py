@@ -169,7 +169,7 @@ class Samples:
         return np.signbit(self.gaussian_curvature)
 
     @property
-    def principal_curvatures(self) -> NDArray[np.float64]:
+    def principal_curvatures(self) -> NDArray[np.floating]:
         """(N, 2) float64: the principal curvatures, in 1/L, the larger one first.
 
         They are computed from K and H. Where the two nearly agree, K and H determine their

@@ -190,7 +190,7 @@ def test_concatenation():
     assert (report.samples, report.patches) == (2 * len(FULL), FULL.report.patches)
     for unusable in ([], [FULL, narrow()], [FULL, narrow(None, dtype="f4")], [1], [FULL, None]):
         with pytest.raises(gm.InputError):
-            Samples.concatenate(unusable)
+            Samples.concatenate(unusable)  # pyright: ignore[reportArgumentType]
 
 
 def test_samples_need_one_array_and_one_type():
