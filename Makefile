@@ -11,7 +11,8 @@ DEM = from matplotlib.cbook import get_sample_data as f; \
 TERRAIN = "$$($(BIN)/python -c '$(DEM)'):elevation" --spacing 74.5 -92.5 --cells 50 43
 
 .DEFAULT_GOAL := help
-.PHONY: help demo generate check-generated test coverage bench lint typecheck formulas orders errata curves figures clean
+.PHONY: help demo generate check-generated test coverage bench bench-guard bench-record bench-peers \
+	operations lint typecheck formulas orders errata curves figures clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -47,6 +48,24 @@ coverage: $(READY) ## run all tests without compilation, with the coverage of ev
 
 bench: $(READY) ## run the benchmarks (ratios against the machine's own limit)
 	$(BIN)/python -m pytest benchmarks -o python_files='bench_*.py' --benchmark-only --benchmark-quiet
+
+bench-guard: $(READY) ## fail if sampling is 30 % slower than recorded, beside the writing limit
+	$(BIN)/python -m gaussmap.benchmarks.guard
+
+bench-record: $(READY) ## record the ratios that bench-guard compares with
+	$(BIN)/python -m gaussmap.benchmarks.guard --record
+
+operations: $(READY) ## record the operation counts of all kernels
+	$(BIN)/python tests/generated/test_operations.py
+
+$(VENV)/peers/.ready: $(READY) benchmarks/peers/install
+	benchmarks/peers/install
+
+# A smaller number leaves out what takes much time and memory: make bench-peers LARGEST=1e6
+LARGEST := 1e8
+bench-peers: $(VENV)/peers/.ready ## measure gaussmap beside others, and its scaling, again (docs/performance.md)
+	$(VENV)/peers/bin/python -m gaussmap.benchmarks.peers --largest $(LARGEST) > docs/performance.tmp
+	mv docs/performance.tmp docs/performance.md
 
 lint: $(READY) ## check style
 	$(BIN)/ruff check .

@@ -8,64 +8,28 @@ the same loop on new arrays.
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 import gaussmap as gm
-import numba
 import numpy as np
 import pytest
+from gaussmap.benchmarks.writing import Writers, new_arrays
 from gaussmap.runtime.search import NormalBins, fill, find
-from gaussmap.runtime.threads import thread_count
 
 TORUS = gm.surfaces.torus()
-
-
-@numba.njit(nogil=True, error_model="numpy")
-def write(
-    first, last, number, index,
-    points, normals, uv, support, gaussian, mean, normal_index, patch_index,
-):  # fmt: skip
-    """Store the same number everywhere in the samples first, …, last − 1."""
-    for k in range(first, last):
-        points[k, 0] = number
-        points[k, 1] = number
-        points[k, 2] = number
-        normals[k, 0] = number
-        normals[k, 1] = number
-        normals[k, 2] = number
-        uv[k, 0] = number
-        uv[k, 1] = number
-        support[k] = number
-        gaussian[k] = number
-        mean[k] = number
-        normal_index[k] = index
-        patch_index[k] = index
-
-
-def new_arrays(count):
-    floats = [np.empty((count, 3)), np.empty((count, 3)), np.empty((count, 2))]
-    floats += [np.empty(count) for _ in range(3)]
-    return *floats, np.empty(count, np.int64), np.empty(count, np.int64)
 
 
 @pytest.fixture(scope="module")
 def limits():
     """Make the writing limits for a number of samples."""
-    threads = thread_count(None)
-    with ThreadPoolExecutor(threads) as pool:
-
-        def write_all(count, arrays):
-            ends = [count * k // threads for k in range(threads + 1)]
-            list(pool.map(lambda a, b: write(a, b, 1.0, 1, *arrays), ends, ends[1:]))
-            return arrays
+    with Writers() as write:
 
         def make(count):
             held = new_arrays(count)
             return {
-                "writing_limit": partial(write_all, count, held),
-                "new_array_limit": lambda: write_all(count, new_arrays(count)),
+                "writing_limit": lambda: write(held),
+                "new_array_limit": lambda: write(new_arrays(count)),
             }
 
         yield make

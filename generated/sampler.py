@@ -607,33 +607,50 @@ def length_of(x, y, z):
 
 
 @jit
-def cone_of_normals(net, errors, axis):
-    """Write the mean of the control normals to `axis`; return the sine of the cone round it.
+def largest_tangent(
+    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z
+):  # fmt: skip
+    """Return a bound of the components of the tangents of a patch."""
+    return max(
+        max(abs(a_x), abs(b_x), abs(c_x)) + max(abs(d_x), abs(e_x)),
+        max(abs(a_y), abs(b_y), abs(c_y)) + max(abs(d_y), abs(e_y)),
+        max(abs(a_z), abs(b_z), abs(c_z)) + max(abs(d_z), abs(e_z)),
+    )
 
-    `errors` are those of the control normals, as angles. The sine is infinite if the cone is not
-    narrower than 37 degrees, or has a singular point.
+
+@jit
+def cone_of_normals(net, tangents, unit, errors, axis):
+    """Write the directions of the control normals, their errors as angles, and the axis of a cone.
+
+    Returns the sine of the cone round the axis that holds them; it is infinite if the cone is not
+    narrower than 37 degrees, or has a singular point, which has no direction and an infinite error.
     """
+    square = tangents * tangents
+    worst = 0.0
     axis[:] = 0.0
     for k in range(6):
         length = length_of(net[k, 0], net[k, 1], net[k, 2])
-        if errors[k] == math.inf:
-            return math.inf
+        inverse = 1.0 / length
+        regular = length > SINGULAR * square
+        errors[k] = ANGLE_ERROR * (1.0 + square * inverse) if regular else math.inf
+        worst = max(worst, errors[k])
         for x in range(3):
-            axis[x] += net[k, x] / length
-    axis /= length_of(axis[0], axis[1], axis[2])
-    sine = 0.0
+            unit[k, x] = net[k, x] * inverse if regular else 0.0
+            axis[x] += unit[k, x]
+    inverse = 1.0 / length_of(axis[0], axis[1], axis[2])
+    for x in range(3):
+        axis[x] *= inverse
+    widest = 0.0
+    towards = 1.0
     for k in range(6):
-        length = length_of(net[k, 0], net[k, 1], net[k, 2])
-        towards = net[k, 0] * axis[0] + net[k, 1] * axis[1] + net[k, 2] * axis[2]
-        if not towards >= 0.8 * length:
-            return math.inf
-        away = length_of(
-            net[k, 1] * axis[2] - net[k, 2] * axis[1],
-            net[k, 2] * axis[0] - net[k, 0] * axis[2],
-            net[k, 0] * axis[1] - net[k, 1] * axis[0],
-        )
-        sine = max(sine, away / length + 2.0 * errors[k])
-    return sine
+        towards = min(towards, unit[k, 0] * axis[0] + unit[k, 1] * axis[1] + unit[k, 2] * axis[2])
+        s = unit[k, 1] * axis[2] - unit[k, 2] * axis[1]
+        t = unit[k, 2] * axis[0] - unit[k, 0] * axis[2]
+        w = unit[k, 0] * axis[1] - unit[k, 1] * axis[0]
+        widest = max(widest, s * s + t * t + w * w)
+    if not (worst < math.inf and towards >= 0.8):
+        return math.inf
+    return math.sqrt(widest) + 2.0 * worst
 
 
 @jit
@@ -643,19 +660,11 @@ def empty(window):
 
 
 @jit
-def map_net(net, errors, frame, stretch, shown, angles):
-    """Write the control normals as the frame maps them, with length 1, and their errors as angles.
-
-    `stretch` is the norm of the frame.
-    """
+def map_net(unit, errors, frame, shown, angles, stretch):
+    """Write the control normals as the frame maps them, and their errors; the frame has this norm."""
     for k in range(6):
-        x, y, z = mapped(frame, net[k, 0], net[k, 1], net[k, 2])
-        length = length_of(x, y, z)
-        if errors[k] < math.inf:
-            shown[k, 0], shown[k, 1], shown[k, 2] = x / length, y / length, z / length
-            angles[k] = errors[k] * stretch * length_of(net[k, 0], net[k, 1], net[k, 2]) / length
-        else:
-            angles[k] = math.inf
+        shown[k, 0], shown[k, 1], shown[k, 2] = mapped(frame, unit[k, 0], unit[k, 1], unit[k, 2])
+        angles[k] = errors[k] * stretch
 
 
 @jit
@@ -683,9 +692,11 @@ def face_window(shown, angles, narrow, face, grid, window, hull):
             away_s += s
             away_t += t
         else:
-            error = max(error, angles[k] / (height * height) * half)
-            hull[towards, 0] = (s / height + 1.0) * half
-            hull[towards, 1] = (t / height + 1.0) * half
+            inverse = 1.0 / height
+            far = 1.0 + (abs(s) + abs(t)) * inverse
+            error = max(error, angles[k] * inverse * far * half)
+            hull[towards, 0] = (s * inverse + 1.0) * half
+            hull[towards, 1] = (t * inverse + 1.0) * half
             towards += 1
         beyond_right = beyond_right and s - height > 2.0 * angles[k]
         beyond_left = beyond_left and -s - height > 2.0 * angles[k]
@@ -743,28 +754,31 @@ def cut_hull(shown, face, grid, away_s, away_t, hull):
 
 
 @jit
-def span_of_row(hull, size, error, row, window):
-    """Return the first and the last column of the bins of a row that the hull meets."""
-    low = row - error
-    high = row + 1.0 + error
-    first = math.inf
-    last = -math.inf
+def spans_of_hull(hull, size, error, height, first, last, low, high):
+    """Write where the hull of points is in the rows first, …, last: from low (…) to high (…).
+
+    A row reaches over `height` from its number on. `error` is that of the points; rows that the hull
+    does not meet get an empty span.
+    """
+    for row in range(last - first + 1):
+        low[row] = math.inf
+        high[row] = -math.inf
     for i in range(size):
-        s, t = hull[i]
-        if low <= t <= high:
-            first = min(first, s)
-            last = max(last, s)
-        for j in range(i):
-            slope = (hull[j, 0] - s) / (hull[j, 1] - t)
-            if (t < low) != (hull[j, 1] < low):
-                first = min(first, s + (low - t) * slope)
-                last = max(last, s + (low - t) * slope)
-            if (t > high) != (hull[j, 1] > high):
-                first = min(first, s + (high - t) * slope)
-                last = max(last, s + (high - t) * slope)
-    if last < first:
-        return 0, -1
-    return max(window[0], int(max(first - error, 0.0))), min(window[1], int(max(last + error, 0.0)))
+        for j in range(max(i, 1)):
+            below, above = (i, j) if hull[i, 1] <= hull[j, 1] else (j, i)
+            s, t = hull[below]
+            s_end, t_end = hull[above]
+            left, right = min(s, s_end), max(s, s_end)
+            slope = (s_end - s) / (t_end - t) if t_end > t else 0.0
+            start = max(first, math.ceil(t - error) - height)
+            end = min(last, math.floor(t_end + error))
+            for row in range(start, end + 1):
+                p = s + (min(max(row - error, t), t_end) - t) * slope
+                q = s + (min(max(row + height + error, t), t_end) - t) * slope
+                if t_end == t:
+                    p, q = left, right
+                low[row - first] = min(low[row - first], max(left, min(p, q)))
+                high[row - first] = max(high[row - first], min(right, max(p, q)))
 
 
 @jit
@@ -795,13 +809,12 @@ def search_patches(
     scaled coordinates, `border` the open sides of the domain. Returns the patch before which it
     stopped for lack of room, and the room that it needs.
     """
-    rows = mu.shape[0] - 2
     columns = mu.shape[1] - 2
-    net, shown = np.empty((6, 3)), np.empty((6, 3))
+    net, unit, shown = np.empty((6, 3)), np.empty((6, 3)), np.empty((6, 3))
     errors, angles = np.empty(6), np.empty(6)
     windows, hulls = np.empty((6, 4), np.int64), np.empty((6, 12, 2))
     slacks, sizes = np.empty(6), np.empty(6, np.int64)
-    axis, spread, reach = np.empty(3), np.empty(3), np.empty(3)
+    axis, low, high = np.empty(3), np.empty(grid), np.empty(grid)
     places, x, y, z, codes, notes, scratch, buckets = buffers(256)
     for patch in range(first, last):
         cell = patch // 4
@@ -837,17 +850,11 @@ def search_patches(
         )
 
         # Which normals may the patch have?
-        tangents = max(
-            max(abs(a_x), abs(b_x), abs(c_x)) + max(abs(d_x), abs(e_x)),
-            max(abs(a_y), abs(b_y), abs(c_y)) + max(abs(d_y), abs(e_y)),
-            max(abs(a_z), abs(b_z), abs(c_z)) + max(abs(d_z), abs(e_z)),
+        tangents = largest_tangent(
+            a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z
         )
-        for k in range(6):
-            length = length_of(net[k, 0], net[k, 1], net[k, 2])
-            regular = length > SINGULAR * tangents * tangents
-            errors[k] = ANGLE_ERROR * (1.0 + tangents * tangents / length) if regular else math.inf
-        sine = cone_of_normals(net, errors, axis)
-        map_net(net, errors, frame, stretch, shown, angles)
+        sine = cone_of_normals(net, tangents, unit, errors, axis)
+        map_net(unit, errors, frame, shown, angles, stretch)
         total = 0
         for face in range(6):
             empty(windows[face])
@@ -864,30 +871,14 @@ def search_patches(
             return patch, total
         if total > x.size:
             places, x, y, z, codes, notes, scratch, buckets = buffers(total)
-        count = gather(windows, hulls, sizes, slacks, grid, starts, normals, places, x, y, z)
+        count = gather(
+            windows, hulls, sizes, slacks, grid, starts, normals, low, high, places, x, y, z
+        )
 
-        # Which of them has it? The components of n bound the errors of the forms.
-        spread_of(mu, i + 1, j + 1, turn, spread)
-        for k in range(3):
-            reach[k] = min(1.0, abs(axis[k]) + sine) if sine < math.inf else 1.0
-        form = (
-            reach[0] * (max(abs(a_x), abs(b_x), abs(c_x)) + max(abs(d_x), abs(e_x)))
-            + reach[1] * (max(abs(a_y), abs(b_y), abs(c_y)) + max(abs(d_y), abs(e_y)))
-            + reach[2] * (max(abs(a_z), abs(b_z), abs(c_z)) + max(abs(d_z), abs(e_z)))
-        )
-        error = (
-            FORM_ERROR
-            * scale
-            * (reach[0] * spread[0] + reach[1] * spread[1] + reach[2] * spread[2])
-        )
-        if (
-            (turn == 0 and j == 0 and border[0])
-            or (turn == 1 and i == rows - 1 and border[1])
-            or (turn == 2 and j == columns - 1 and border[2])
-            or (turn == 3 and i == 0 and border[3])
-        ):
-            error += noise
-        bound = 32.0 * error * (form + error)
+        bound = bound_of_forms(
+            mu, i, j, turn, scale, noise, border, axis, sine,
+            a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
+        )  # fmt: skip
         classify(
             a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
             axis, sine, bound, x[:count], y[:count], z[:count], codes,
@@ -988,13 +979,45 @@ def is_developable(
 
 
 @jit
-def spread_of(mu, i, j, turn, spread):
-    """Write the largest differences, by component, of the coefficients of a cell and around it."""
-    spread[:] = 0.0
+def bound_of_forms(
+    mu, i, j, turn, scale, noise, border, axis, sine,
+    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
+):  # fmt: skip
+    """Return the error of the forms of a patch; the components of its normals bound it too.
+
+    On an open border of the domain it holds the rounding of the coordinates, `noise`.
+    """
+    x = y = z = 1.0  # a little more does no harm
+    if sine < math.inf:
+        x, y, z = abs(axis[0]) + sine, abs(axis[1]) + sine, abs(axis[2]) + sine
+    form = (
+        x * (max(abs(a_x), abs(b_x), abs(c_x)) + max(abs(d_x), abs(e_x)))
+        + y * (max(abs(a_y), abs(b_y), abs(c_y)) + max(abs(d_y), abs(e_y)))
+        + z * (max(abs(a_z), abs(b_z), abs(c_z)) + max(abs(d_z), abs(e_z)))
+    )
+    s, t, w = spread_of(mu, i + 1, j + 1, turn)
+    error = FORM_ERROR * scale * (x * s + y * t + z * w)
+    if (
+        (turn == 0 and j == 0 and border[0])
+        or (turn == 1 and i == mu.shape[0] - 3 and border[1])
+        or (turn == 2 and j == mu.shape[1] - 3 and border[2])
+        or (turn == 3 and i == 0 and border[3])
+    ):
+        error += noise
+    return 32.0 * error * (form + error)
+
+
+@jit
+def spread_of(mu, i, j, turn):
+    """Return the largest differences, by component, of the coefficients of a cell and around it."""
+    s, t, w = 0.0, 0.0, 0.0
     for k in range(9):
-        for x in range(3):
-            other = mu[i + NEIGHBOURS[turn, k, 0], j + NEIGHBOURS[turn, k, 1], x]
-            spread[x] = max(spread[x], abs(other - mu[i, j, x]))
+        p = i + NEIGHBOURS[turn, k, 0]
+        q = j + NEIGHBOURS[turn, k, 1]
+        s = max(s, abs(mu[p, q, 0] - mu[i, j, 0]))
+        t = max(t, abs(mu[p, q, 1] - mu[i, j, 1]))
+        w = max(w, abs(mu[p, q, 2] - mu[i, j, 2]))
+    return s, t, w
 
 
 @jit
@@ -1007,17 +1030,24 @@ def buffers(size):
 
 
 @jit
-def gather(windows, hulls, sizes, slacks, grid, starts, normals, places, x, y, z):
+def gather(windows, hulls, sizes, slacks, grid, starts, normals, low, high, places, x, y, z):
     """Copy the normals that a patch may have, and their places; return how many there are."""
     count = 0
     for face in range(6):
         window = windows[face]
+        cut = window[1] > window[0] + 3 and window[3] > window[2] + 3 and slacks[face] < math.inf
+        if cut:
+            spans_of_hull(
+                hulls[face], sizes[face], slacks[face], 1, window[2], window[3], low, high
+            )
         for row in range(window[2], window[3] + 1):
             left, right = window[0], window[1]
-            if right > left + 3 and slacks[face] < math.inf:
-                left, right = span_of_row(hulls[face], sizes[face], slacks[face], row, window)
-                if left > right:
+            if cut:
+                start = max(low[row - window[2]] - slacks[face], window[0])
+                end = min(high[row - window[2]] + slacks[face], window[1] + 1.0)
+                if start > end:
                     continue
+                left, right = int(start), min(int(end), right)
             base = (face * grid + row) * grid
             begin = starts[base + left]
             for k in range(starts[base + right + 1] - begin):

@@ -74,9 +74,9 @@ def decide(
     regular, directions = _regular_places(spline, patches[which], local[which])
     towards = np.einsum("kx,kx->k", directions, normals[which]) > 0.0
     which, regular = which[towards], regular[towards]
-    keep = _first_of_each_place(spline, patches[which], normals[which], local[which], near[which])
-    places = np.column_stack([local[which], signs[which, 0], regular])
-    return Decision(which[keep], places[keep])
+    at = np.column_stack([local[which], signs[which, 0], regular])
+    keep = _first_of_each_place(spline, patches[which], normals[which], at[:, :2], near[which])
+    return Decision(which[keep], at[keep])
 
 
 def _forms(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from ..generated import icosphere
 from ..generated import sampler as kernels
 from .exact import decide
 from .fields import ARRAY_NAMES, FLOAT_NAMES, INDEX_NAMES, new_field
@@ -38,10 +39,28 @@ class NormalBins:
     """Unit normals (S, 3), sorted into the squares of a cube round the sphere.
 
     Normals that all lie in a cap are first mapped linearly, so that they fill a face of the cube.
+    The points of a refined icosahedron need no bins: each is where its number says.
     """
 
     normals: NDArray[np.float64]
     threads: int | None = None
+
+    @cached_property
+    def frequency(self) -> int:
+        """That of the icosahedron whose points these are, in their order; 0 if they are not."""
+        frequency = math.isqrt(max(len(self.normals) - 2, 0) // 10)
+        if frequency == 0 or 10 * frequency**2 + 2 != len(self.normals):
+            return 0
+
+        def work(first: int, last: int) -> bool:
+            return icosphere.is_icosphere(self.normals, frequency, first, last)
+
+        return frequency if all(over_ranges(work, 51, 1, self.threads)) else 0
+
+    @property
+    def components(self) -> NDArray[np.float64]:
+        """The normals (3, S) in the order of their places."""
+        return self.normals.T if self.frequency > 0 else self.sorted[2]
 
     @cached_property
     def frame(self) -> NDArray[np.float64]:
@@ -211,15 +230,23 @@ class Search:
         """Whether all patches are developable, up to the rounding of their coordinates."""
         return kernels.all_developable(self.spline.coefficients, self.spline.scale, self.noise)
 
+    @cached_property
+    def kernel(self) -> tuple[Callable[..., tuple[int, int]], tuple[Any, ...]]:
+        """What searches patches, and what it is told of the normals."""
+        bins = self.bins
+        if bins.frequency > 0:
+            return icosphere.scan_patches, (bins.normals, bins.frequency)
+        return kernels.search_patches, (bins.frame, bins.stretch, bins.grid, *bins.sorted)
+
     def pairs(self, first: int, last: int) -> Pairs:
         """Return what the patches first, …, last − 1 yield."""
+        patches_with, arguments = self.kernel
         parts, room = [], ROOM
         while first < last:
             found, doubtful = np.empty((2, 3, room), dtype=np.int64)
             bounds, counts = np.empty(room), np.zeros(3, dtype=np.int64)
-            first, needed = kernels.search_patches(
-                self.spline.coefficients, self.spline.scale, self.noise, self.border,
-                self.bins.frame, self.bins.stretch, self.bins.grid, *self.bins.sorted,
+            first, needed = patches_with(
+                self.spline.coefficients, self.spline.scale, self.noise, self.border, *arguments,
                 first, last, found, doubtful, bounds, counts,
             )  # fmt: skip
             sure, open_, developable = counts.tolist()
@@ -274,7 +301,7 @@ def fill(
     """Return fields of the hits: see `Samples`. Numbers are rounded to `dtype` when stored."""
     count = len(hits)
     filled = {x: new_field(x, count, dtype) for x in FLOAT_NAMES if x in fields}
-    normals = bins.sorted[2]
+    normals = bins.components
     indices = hits.patch_index, hits.place
     arrays = [filled.get(name) for name in FLOAT_NAMES]
 

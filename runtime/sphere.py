@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import reduce
-from itertools import combinations
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..generated import icosphere as icosahedron
 from .checks import real_values, whole_number
 from .errors import InputError
 from .threads import over_ranges
@@ -46,25 +46,15 @@ def icosphere(frequency: int) -> NDArray[np.float64]:
             f"frequency must be a whole number of at most {MOST_FREQUENT:,}, not {nu}."
         )
     # Coordinates a + b φ as integers (a, b): what mirrors another point does so bit for bit.
-    golden = np.array([1.0, GOLDEN])
-    corners = np.array(
-        [((0, 0), (i, 0), (0, j)) for i in (-1, 1) for j in (-1, 1)]
-        + [((i, 0), (0, j), (0, 0)) for i in (-1, 1) for j in (-1, 1)]
-        + [((0, i), (0, 0), (j, 0)) for i in (-1, 1) for j in (-1, 1)]
-    )
-    near = np.abs(np.sum(((corners[:, None] - corners) @ golden) ** 2, axis=2) - 4.0) < 1.0
-    edges = [pair for pair in combinations(range(12), 2) if near[pair]]
-    faces = [
-        (i, j, k)
-        for i, j, k in combinations(range(12), 3)
-        if near[i, j] and near[j, k] and near[i, k]
-    ]
+    golden, corners = np.array([1.0, GOLDEN]), icosahedron.CORNERS
     along = np.arange(1, nu)[:, None, None]
     parts = [corners * nu]
-    parts += [(nu - along) * corners[i] + along * corners[j] for i, j in edges]
+    parts += [(nu - along) * corners[i] + along * corners[j] for i, j in icosahedron.EDGES]
     s, t = np.meshgrid(np.arange(1, nu), np.arange(1, nu), indexing="ij")
     s, t = (x[s + t < nu][:, None, None] for x in (s, t))
-    parts += [(nu - s - t) * corners[i] + s * corners[j] + t * corners[k] for i, j, k in faces]
+    parts += [
+        (nu - s - t) * corners[i] + s * corners[j] + t * corners[k] for i, j, k in icosahedron.FACES
+    ]
     return _unit(np.concatenate(parts) @ golden)
 
 

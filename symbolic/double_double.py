@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import textwrap
+from typing import cast
 
 import sympy as sp
 
@@ -30,37 +31,40 @@ def double_double_function(formula: Formula) -> str:
 
 def _written(value: sp.Expr) -> str:
     """Return an expression as calls of `plus`, `minus`, `times`, `multiple` and `negative`."""
-    if value.is_Symbol:
+    if isinstance(value, sp.Symbol):
         return value.name
-    if value.is_Add:
+    if isinstance(value, sp.Add):
         return _sum(value)
-    if value.is_Mul:
+    if isinstance(value, sp.Mul):
         return _product(value)
-    if value.is_Pow and value.exp == 2:
-        return f"times({_written(value.base)}, {_written(value.base)})"
+    if isinstance(value, sp.Pow) and value.exp == 2:
+        base = _written(value.base)
+        return f"times({base}, {base})"
     raise NotImplementedError(f"{value} cannot be written in double-doubles")
 
 
-def _sum(value: sp.Expr) -> str:
-    terms = sorted(value.as_ordered_terms(), key=lambda x: x.as_coeff_Mul()[0].is_negative)
-    result = _written(terms[0])
-    for term in terms[1:]:
-        negative = term.as_coeff_Mul()[0].is_negative
-        result = (
-            f"{'minus' if negative else 'plus'}({result}, {_written(-term if negative else term)})"
-        )
+def _sum(value: sp.Add) -> str:
+    signed = [(_is_negative(x), x) for x in cast(list[sp.Expr], value.as_ordered_terms())]
+    (_, first), *others = sorted(signed, key=lambda pair: pair[0])
+    result = _written(first)
+    for negative, term in others:
+        name, size = ("minus", -term) if negative else ("plus", term)
+        result = f"{name}({result}, {_written(size)})"
     return result
 
 
-def _product(value: sp.Expr) -> str:
+def _product(value: sp.Mul) -> str:
     number, rest = value.as_coeff_Mul()
-    first, *others = rest.as_ordered_factors()
-    result = _written(first)
-    for factor in others:
-        result = f"times({result}, {_written(factor)})"
-    if abs(number) != 1:
-        size = abs(number)
+    size = abs(number)
+    result, *factors = map(_written, rest.as_ordered_factors())
+    for factor in factors:
+        result = f"times({result}, {factor})"
+    if size != 1:
         if not (size.is_Integer and int(size) & (int(size) - 1) == 0):
             raise NotImplementedError(f"{value} has a factor that is no power of two")
         result = f"multiple({result}, {int(size)}.0)"
     return f"negative({result})" if number.is_negative else result
+
+
+def _is_negative(term: sp.Expr) -> bool:
+    return bool(term.as_coeff_Mul()[0].is_negative)

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import difflib
+import math
 import subprocess
 import sys
 import textwrap
 from collections.abc import Mapping
 from fractions import Fraction
-from itertools import accumulate, islice, repeat
+from itertools import combinations
 from pathlib import Path
 from typing import cast
 
 import sympy as sp
 
-from . import curve, gaussian_image, latex, patch, spline, support, surfaces
+from . import curve, gaussian_image, icosahedron, latex, patch, spline, support, surfaces
 from .double_double import double_double_function
 from .emit import block, call, functions, render
 from .expression import hessian_entries
@@ -26,6 +27,20 @@ __all__ = ["GENERATED", "derive", "differences", "write"]
 
 # Enough for coefficients and normals of 340 bits together.
 PRIMES = 24
+# What the search among bins and that among the points of an icosahedron share.
+SCANNED = (
+    "bound_of_forms",
+    "classify",
+    "cone_of_normals",
+    "control_normals",
+    "face_window",
+    "is_developable",
+    "largest_tangent",
+    "look_again",
+    "map_net",
+    "patch_vectors",
+    "spans_of_hull",
+)
 GENERATED = Path(__file__).parent.parent / "generated"
 PROJECT = GENERATED.parent / "pyproject.toml"
 
@@ -37,6 +52,7 @@ def derive() -> dict[str, str]:
         "curve.py": curve_source(),
         "exact.py": exact_source(),
         "gaussian_image.py": gaussian_image_source(),
+        "icosphere.py": icosphere_source(),
         "patch.py": patch_source(),
         "spline.py": spline_source(),
         "sampler.py": sampler_source(),
@@ -93,16 +109,15 @@ def formatted(source: str) -> str:
 # --- the files ------------------------------------------------------------------------------------
 
 
-def header(title: str) -> str:
+def header(title: str, imports: str = "") -> str:
     """Return the head of a Python file: docstring with generator and options, imports, `jit`."""
     options = (
         f"SymPy {sp.__version__}. Passes: common subexpressions of all outputs together, in "
         "canonical order; temporaries that are used once or are another name with a sign written "
         "back. float64, no fast-math."
     )
-    return render(
-        "header.py", {"title": f'"""{title}', "options": textwrap.fill(options, 92)}
-    ).rstrip()
+    values = {"title": f'"""{title}', "options": textwrap.fill(options, 92), "imports": imports}
+    return render("header.py", values).rstrip()
 
 
 def curve_source() -> str:
@@ -139,6 +154,41 @@ def gaussian_image_source() -> str:
             "formulas": functions(gaussian_image.FORMULAS),
             "arc": block(gaussian_image.ARC),
             "solid_angle": block(gaussian_image.SOLID_ANGLE),
+        },
+    )
+
+
+def icosphere_source() -> str:
+    """Return generated/icosphere.py: the normals of patches among the points of an icosahedron."""
+    faces, edges = icosahedron.FACES, icosahedron.EDGES
+    sides = [tuple(combinations(face, 2)) for face in faces]
+    owners = [next(k for k, pairs in enumerate(sides) if edge in pairs) for edge in edges]
+    holders = [next(k for k, face in enumerate(faces) if corner in face) for corner in range(12)]
+    bars = [_floats(icosahedron.bars(face)) for face in faces]
+    frames = [_floats(icosahedron.frame(face)) for face in faces]
+    arrays = {
+        "CORNERS": [icosahedron.golden_parts(x) for x in icosahedron.CORNERS],
+        "EDGES": edges,
+        "FACES": faces,
+        "CORNER_PLACES": [
+            (k, *((0, 0), (0, 1), (1, 0))[faces[k].index(corner)])
+            for corner, k in enumerate(holders)
+        ],
+        "EDGE_PLACES": [(k, sides[k].index(edge)) for edge, k in zip(edges, owners, strict=True)],
+        "BARS": bars,
+        "LENGTHS": [[math.hypot(*row) for row in matrix] for matrix in bars],
+        "FRAMES": frames,
+        "STRETCHES": [max(math.hypot(*row) for row in matrix) for matrix in frames],
+    }
+    return render(
+        "icosphere.py",
+        {
+            "header": header(
+                "Sampling by the points of a refined icosahedron, row by row.",
+                f"\nfrom .sampler import {', '.join(SCANNED)}\n",
+            ),
+            "constants": "\n".join(f"{name} = np.array({x})" for name, x in arrays.items()),
+            "control_normals": _control_normals(),
         },
     )
 
@@ -195,7 +245,6 @@ def sampler_source() -> str:
         patch.CONTROL_NORMALS,
         patch.PARABOLIC_CUBIC,
     ]
-    net = ", ".join(f"net[{k}, {x}]" for k in range(6) for x in range(3))
     return render(
         "sampler.py",
         {
@@ -203,7 +252,7 @@ def sampler_source() -> str:
             "constants": f"{_grid_constants()}\n{_triangle_neighbours()}",
             "formulas": functions(called),
             "patch_vectors": _patch_vectors(),
-            "control_normals": f"{net} = {call(patch.CONTROL_NORMALS)}",
+            "control_normals": _control_normals(),
             "parabolic_cubic": f"cubic = {call(patch.PARABOLIC_CUBIC)}",
             "tangents": block(patch.TANGENTS),
             "forms": block(patch.FORMS),
@@ -302,7 +351,10 @@ def _grid_constants() -> str:
 
 def _primes() -> list[int]:
     """Return the largest primes of which sums of twelve products of two fit into 64 bits."""
-    return list(islice(accumulate(repeat(2**29), lambda x, _: sp.prevprime(x)), 1, PRIMES + 1))
+    primes = [2**29]
+    while len(primes) <= PRIMES:
+        primes.append(int(sp.prevprime(primes[-1])))
+    return primes[1:]
 
 
 def _triangle_neighbours() -> str:
@@ -329,6 +381,17 @@ def _load_vertices() -> str:
         for letter, points in spline.VERTEX_ORBITS.items()
         for k, (s, t) in enumerate(points)
     )
+
+
+def _floats(matrix: sp.Matrix) -> list[list[float]]:
+    """Return a matrix, correctly rounded."""
+    return [[float(x.evalf(40)) for x in matrix.row(k)] for k in range(matrix.rows)]
+
+
+def _control_normals() -> str:
+    """Return the call of `control_normals` that fills `net` (6, 3)."""
+    net = ", ".join(f"net[{k}, {x}]" for k in range(6) for x in range(3))
+    return f"{net} = {call(patch.CONTROL_NORMALS)}"
 
 
 def _patch_vectors() -> str:

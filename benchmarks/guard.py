@@ -1,0 +1,148 @@
+"""Fail when sampling is slower, beside the writing limit, than benchmarks/recorded.json says.
+
+`make bench-guard` compares and `make bench-record` writes the record. What is compared is the time
+of writing the same arrays over that of sampling, both on one thread and in time of the processor,
+so that others on the machine disturb little. Each time is the best of ROUNDS, taken in turns:
+others only make times longer. (The best quotient of a round is one with disturbed writing.)
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from statistics import median
+from time import process_time
+
+import gaussmap as gm
+import numpy as np
+
+from .writing import Arrays, Writers, new_arrays
+
+__all__ = ["CASES", "RECORD", "compared", "main", "quotient"]
+
+RECORD = Path(__file__).parent / "recorded.json"
+ROUNDS = 15
+TRIES = 2
+RECORDINGS = 5  # of which the median is recorded
+SHARE = 0.7  # of what is recorded has to be reached
+Work = Callable[[], object]
+
+
+def _sampling(normals: np.ndarray, cells: int) -> tuple[Work, Arrays]:
+    """Return gm.sample for a spline of the torus that was never read, and arrays of that size."""
+    spline = gm.fit(gm.surfaces.torus(), (cells, cells))
+    count = len(gm.sample(spline, normals))
+    return lambda: gm.sample(replace(spline), normals, threads=1), new_arrays(count)
+
+
+def _fitting(cells: int) -> tuple[Work, Arrays]:
+    """Return gm.fit for a grid, and one array that is as large as its values."""
+    torus = gm.surfaces.torus()
+    lines = [low + (high - low) * np.arange(cells) / cells for low, high in torus.domain]
+    values = torus.evaluate(lines[0][:, None], lines[1])
+    surface = gm.Surface.from_grid(values, periodic=(True, True))
+    return lambda: gm.fit(surface), new_arrays(cells * cells)
+
+
+# The torus has every normal twice: 4 n² patches share 2 S samples.
+CASES: Mapping[str, Callable[[], tuple[Work, Arrays]]] = {
+    "icosphere-781-a-patch": lambda: _sampling(gm.icosphere(100), 8),
+    "icosphere-5-a-patch": lambda: _sampling(gm.icosphere(100), 100),
+    "fibonacci-781-a-patch": lambda: _sampling(gm.fibonacci(100_000), 8),
+    "fibonacci-5-a-patch": lambda: _sampling(gm.fibonacci(100_000), 100),
+    "fit-grid": lambda: _fitting(256),
+}
+
+
+def quotient(work: Work, limit: Work, rounds: int = ROUNDS) -> float:
+    """Return the best time of `limit` over the best of `work`; 1 is as fast as the limit.
+
+    The limit gets an untimed run before each timed one, so that its memory is at hand.
+    """
+    own, writing = [], []
+    work()
+    for _ in range(rounds):
+        limit()
+        writing.append(_seconds(limit))
+        own.append(_seconds(work))
+    return min(writing) / min(own)
+
+
+def compared(
+    record: Mapping[str, float], measure: Mapping[str, Callable[[], float]], tries: int = TRIES
+) -> list[tuple[str, float, float, bool]]:
+    """Return name, recorded, measured, and whether that is enough, for each case.
+
+    What is not enough is measured again, up to `tries` times. Raises ValueError unless exactly the
+    cases that are measured are recorded.
+    """
+    if record.keys() != measure.keys():
+        differ = ", ".join(sorted(record.keys() ^ measure.keys()))
+        raise ValueError(f"the record and the cases differ in {differ}: run `make bench-record`")
+    rows = []
+    for name, once in measure.items():
+        best = 0.0
+        for _ in range(tries):
+            best = max(best, once())
+            if best >= SHARE * record[name]:
+                break
+        rows.append((name, record[name], best, best >= SHARE * record[name]))
+    return rows
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Compare with the record, or write it with --record; return 1 if a case is too slow."""
+    parser = argparse.ArgumentParser(description=main.__doc__)
+    parser.add_argument("--record", action="store_true", help="write the record")
+    write_record = parser.parse_args(arguments).record
+    with Writers(threads=1) as write:
+        measure = {name: partial(_measured, make, write) for name, make in CASES.items()}
+        if write_record:
+            ratios = {
+                x: round(median(f() for _ in range(RECORDINGS)), 4) for x, f in measure.items()
+            }
+            _store(ratios)
+            return 0
+        rows = compared(json.loads(RECORD.read_text(encoding="utf-8")), measure)
+    for name, before, now, enough in rows:
+        verdict = "ok" if enough else f"FAILED: below {SHARE:.0%} of the record"
+        print(f"{name:<24} {now:8.4f} of the writing limit, recorded {before:.4f}: {verdict}")
+    return int(not all(enough for *_, enough in rows))
+
+
+def recorded(once: Callable[[], float]) -> float:
+    """Return the median of several measurements, as it is recorded."""
+    return round(median(once() for _ in range(RECORDINGS)), 4)
+
+
+def _measured(make: Callable[[], tuple[Work, Arrays]], write: Writers) -> float:
+    work, arrays = make()
+    return quotient(work, lambda: write(arrays))
+
+
+def _store(ratios: Mapping[str, float]) -> None:
+    """Write the record beside its place, then rename it."""
+    text = json.dumps(ratios, indent=4) + "\n"
+    written = RECORD.with_suffix(".tmp")
+    written.write_text(text, encoding="utf-8")
+    os.replace(written, RECORD)
+    print(text, end="")
+
+
+def _seconds(work: Work) -> float:
+    """Return the seconds of the processor that work takes."""
+    start = process_time()
+    result = work()
+    taken = process_time() - start
+    del result
+    return taken
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,51 @@
+"""What was measured on: the processor, the memory, and the versions of the packages."""
+
+from __future__ import annotations
+
+import os
+import platform
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+__all__ = ["machine"]
+
+PACKAGES = (
+    "numpy", "numba", "scipy", "splipy", "trimesh", "open3d", "pymeshlab", "gmsh",
+    "cadquery-ocp-novtk", "geomdl",
+)  # fmt: skip
+
+
+def machine() -> list[str]:
+    """Return the items of a list in Markdown."""
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    return [
+        f"- {processor()}, {cores} cores, {memory()}, {platform.system()}",
+        f"- Python {platform.python_version()}; {', '.join(versions())}",
+    ]
+
+
+def processor() -> str:
+    """Return the name of the processor."""
+    path = Path("/proc/cpuinfo")
+    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
+    names = [x.partition(":")[2].strip() for x in lines if x.startswith("model name")]
+    return names[0] if names else platform.processor() or platform.machine()
+
+
+def memory() -> str:
+    """Return how much memory there is."""
+    if not hasattr(os, "sysconf"):
+        return "unknown memory"
+    size = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    return f"{size / 2**30:.0f} GiB of memory"
+
+
+def versions() -> list[str]:
+    """Return the packages that are installed, with their versions."""
+    found = []
+    for name in PACKAGES:
+        try:
+            found.append(f"{name} {version(name)}")
+        except PackageNotFoundError:
+            continue
+    return found

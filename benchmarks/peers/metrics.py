@@ -1,0 +1,85 @@
+"""How well points with normals stand for a surface: the worst of many places, in degrees."""
+
+# Only `make bench-peers` installs these packages.
+# pyright: reportMissingImports=false
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .forms import Array, ClosedForm
+from .recipe import draw
+
+__all__ = ["Places", "nearest_by_tree", "worst_in_normal", "worst_in_space"]
+
+PLACES = 200_000
+# samples (N, 3), places (M, 3) → which sample is nearest to each place, (M,)
+Nearest = Callable[[Array, Array], np.ndarray]
+
+
+def nearest_by_tree(samples: Array, places: Array) -> np.ndarray:
+    """Return which sample is nearest to each place, by SciPy's k-d tree."""
+    from scipy.spatial import cKDTree
+
+    return cKDTree(samples).query(places, workers=-1)[1]
+
+
+@dataclass(frozen=True)
+class Places:
+    """Places on a surface, uniform by area, where samples are judged."""
+
+    points: Array
+    normals: Array
+    hyperbolic: np.ndarray
+
+    @classmethod
+    def of(cls, form: ClosedForm, count: int = PLACES) -> Places:
+        """Draw the places."""
+        u, v = draw(form, count, form.area, seed=7)
+        return cls(*form.evaluate(u, v), hyperbolic=form.curvature(u, v) < 0.0)
+
+
+def angles(left: Array, right: Array) -> Array:
+    """Return the angles between unit vectors in degrees, accurate when they are small."""
+    chord = np.linalg.norm(left - right, axis=-1)
+    return np.degrees(2.0 * np.arcsin(np.minimum(chord / 2.0, 1.0)))
+
+
+def worst_in_space(places: Places, points: Array, normals: Array, nearest: Nearest) -> float:
+    """E: the largest angle between a place's normal and that of the sample nearest in space."""
+    return float(angles(places.normals, normals[nearest(points, places.points)]).max())
+
+
+def worst_in_normal(
+    places: Places, normals: Array, hyperbolic: np.ndarray, nearest: Nearest
+) -> float:
+    """G: the largest angle to the sample nearest in normal that has the same sign of K.
+
+    180 degrees if a sign has places and no sample.
+    """
+    worst = 0.0
+    for sign in (False, True):
+        asked, samples = places.normals[places.hyperbolic == sign], normals[hyperbolic == sign]
+        if len(asked) and not len(samples):
+            return 180.0
+        if len(asked):
+            found = samples[nearest(samples, asked)]
+            worst = max(worst, float(angles(asked, found).max()))
+    return worst
+
+
+def both(
+    form: ClosedForm, places: Places, points: Array, normals: Array, nearest: Nearest
+) -> tuple[float, float]:
+    """Return E and G of samples; normals that point to the other side are all turned first."""
+    u, v = form.parameters(points)
+    if np.einsum("nx,nx->n", form.evaluate(u, v)[1], normals).mean() < 0.0:
+        normals = -normals
+    hyperbolic = form.curvature(u, v) < 0.0
+    return (
+        worst_in_space(places, points, normals, nearest),
+        worst_in_normal(places, normals, hyperbolic, nearest),
+    )

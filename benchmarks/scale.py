@@ -1,0 +1,107 @@
+"""How the time of gm.sample grows with the number of samples, and with that of patches.
+
+The torus, a Fibonacci lattice of normals. A number of samples or patches beyond `largest` is left
+out. Beyond STREAMED samples they come in chunks from gm.sample_stream, and are counted only.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from statistics import median
+from time import perf_counter
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+
+__all__ = ["LAST", "STREAM", "STREAMED", "Series", "measure", "slope"]
+
+SIZES = tuple(10**k for k in range(3, 9))
+STREAMED = 10**7
+LAST = 3  # so many of the largest sizes make the second slope
+FIXED_CELLS = 64
+FIXED_NORMALS = 500
+TORUS = gm.surfaces.torus()
+STREAM: Any = getattr(gm, "sample_stream", None)
+
+
+@dataclass(frozen=True)
+class Series:
+    """Times over growing sizes: (patches, samples, seconds) each; what is missing, and why."""
+
+    title: str
+    rows: Sequence[tuple[int, int, float]]
+    missing: str = ""
+
+    def slope(self, last: int = 0) -> float:
+        """Return the slope of log(time) against log(patches + samples), over the `last` sizes."""
+        return slope([(patches + samples, t) for patches, samples, t in self.rows[-last:]])
+
+
+def slope(pairs: Sequence[tuple[float, float]]) -> float:
+    """Return the slope of log(y) against log(x) by least squares; ValueError for under two x."""
+    if len({x for x, _ in pairs}) < 2:
+        raise ValueError("a slope needs two sizes")
+    x, y = np.log(np.array(pairs, dtype=float)).T
+    return float(np.polyfit(x, y, 1)[0])
+
+
+def measure(largest: int) -> list[Series]:
+    """Measure both series up to a size of `largest`."""
+    return [by_samples(largest), by_patches(largest)]
+
+
+def by_samples(largest: int) -> Series:
+    """More and more normals for a spline of 64 × 64 cells."""
+    spline = gm.fit(TORUS, (FIXED_CELLS, FIXED_CELLS))
+    rows, missing = [], ""
+    for size in SIZES:
+        if size > largest or (size > STREAMED and STREAM is None):
+            missing = f"{size:,} samples and more were not measured"
+            break
+        if size > STREAMED:
+            taken, samples = _time(lambda size=size: _streamed(spline, size), size)
+        else:
+            normals = gm.fibonacci(size // 2)  # the torus has every normal twice
+            taken, samples = _time(lambda normals=normals: len(gm.sample(spline, normals)), size)
+        rows.append((spline.patches, samples, taken))
+    return Series(f"samples, {spline.patches:,} patches", rows, missing)
+
+
+def by_patches(largest: int) -> Series:
+    """Finer and finer splines for the same normals; their fit is not timed."""
+    normals = gm.fibonacci(FIXED_NORMALS)
+    rows, missing = [], ""
+    for size in SIZES:
+        if size > largest:
+            missing = f"{size:,} patches and more were not measured"
+            break
+        cells = round(math.sqrt(size / 4))
+        spline = gm.fit(TORUS, (cells, cells))
+        taken, samples = _time(lambda spline=spline: len(gm.sample(_fresh(spline), normals)), size)
+        rows.append((spline.patches, samples, taken))
+    return Series(f"patches, {len(normals):,} normals", rows, missing)
+
+
+def _fresh(spline: gm.Spline) -> gm.Spline:
+    """Return the spline without what it has already computed about itself."""
+    return gm.Spline(spline.coefficients, spline.domain, spline.ends, spline.name)
+
+
+def _streamed(spline: gm.Spline, count: int) -> int:
+    """Count samples that come in chunks; nothing of them is kept."""
+    return sum(len(chunk) for chunk in STREAM(spline, count=count))
+
+
+def _time(work: Callable[[], int], size: int) -> tuple[float, int]:
+    """Return the median seconds of several runs, fewer for large sizes, and what came."""
+    samples, times = 0, []
+    if size <= 10**6:
+        work()
+    for _ in range(7 if size <= 10**5 else 3 if size <= 10**7 else 1):
+        start = perf_counter()
+        samples = work()
+        times.append(perf_counter() - start)
+    return median(times), samples

@@ -1,0 +1,273 @@
+"""What `make bench-peers` measures with: the closed forms, the two metrics, the turns, the page."""
+
+import math
+from itertools import pairwise
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.benchmarks import scale
+from gaussmap.benchmarks.peers import metrics, page, peer, recipe, splines
+from gaussmap.benchmarks.peers.catalogue import GMSH, PEERS, RECIPE, SPLIPY_RECIPE
+from gaussmap.benchmarks.peers.forms import FORMS, Torus
+from gaussmap.benchmarks.peers.measure import Measured, Own
+from gaussmap.benchmarks.peers.peer import Peer
+
+FORM = pytest.mark.parametrize("form", FORMS, ids=lambda x: x.name)
+
+
+def nearest(samples, places):
+    """Compare all with all, where SciPy is not installed."""
+    return np.linalg.norm(places[:, None] - samples, axis=2).argmin(axis=1)
+
+
+def places_inside(form, count, margin=1e-3):
+    rng = np.random.default_rng(3)
+    ends = np.array(form.surface.domain)
+    inside = rng.uniform(margin, 1.0 - margin, (2, count))
+    return ends[:, :1] + np.diff(ends) * inside
+
+
+# --- closed forms ---------------------------------------------------------------------------------
+
+
+@FORM
+def test_positions_are_those_of_gaussmap(form):
+    u, v = places_inside(form, 100)
+    assert form.evaluate(u, v)[0] == pytest.approx(form.surface.evaluate(u, v), abs=1e-15)
+
+
+@FORM
+def test_normals_area_and_curvature(form):
+    """Central differences with h = 1e-5 are off by h² and by ε/h times a few derivatives."""
+    u, v = places_inside(form, 100)
+    h = 1e-5
+    (x_u, n_u), (x_v, n_v) = (
+        tuple((b - a) / (2 * h) for a, b in zip(low, high, strict=True))
+        for low, high in (
+            (form.evaluate(u - h, v), form.evaluate(u + h, v)),
+            (form.evaluate(u, v - h), form.evaluate(u, v + h)),
+        )
+    )
+    normals = form.evaluate(u, v)[1]
+    assert np.linalg.norm(normals, axis=1) == pytest.approx(1.0, abs=1e-15)
+    cross = np.cross(x_u, x_v)
+    assert cross == pytest.approx(normals * form.area(u, v)[:, None], abs=1e-8)
+    image = np.einsum("nx,nx->n", normals, np.cross(n_u, n_v))  # of the Gauss map: K |x_u × x_v|
+    assert image == pytest.approx(form.curvature(u, v) * form.area(u, v), abs=1e-7)
+    assert form.bending(u, v) == pytest.approx(np.abs(image), abs=1e-7)
+
+
+@FORM
+def test_parameters_of_points(form):
+    u, v = places_inside(form, 100)
+    found = np.stack(form.parameters(form.evaluate(u, v)[0]))
+    turns = (found - [u, v]) / (2 * math.pi)
+    assert turns == pytest.approx(np.round(turns), abs=1e-14)
+
+
+@FORM
+def test_lattices_have_no_point_twice_and_reach_open_ends(form):
+    points, normals = recipe.by_grid(form, 900)
+    assert points.shape == normals.shape == (len(points), 3)
+    assert len(points) == pytest.approx(900, rel=0.05)
+    apart = np.linalg.norm(points[:, None] - points, axis=2)
+    np.fill_diagonal(apart, 1.0)
+    assert apart.min() > 1e-3
+    for line, ends, domain in zip(
+        form.lattice(900), form.surface.ends, form.surface.domain, strict=True
+    ):
+        assert line.min() == domain[0]
+        assert (line.max() == domain[1]) == (ends[0] == "none")
+
+
+def test_random_places_have_their_density():
+    """The torus has (1 + 2r/πR)/2 of its area, and half of its |K|, where K > 0; five sigma."""
+    torus, count = Torus(), 40_000
+    sigma = 0.5 / math.sqrt(count)
+    v = recipe.draw(torus, count, torus.area)[1]
+    expected = 0.5 + torus.minor / (math.pi * torus.major)
+    assert np.mean(np.cos(v) > 0.0) == pytest.approx(expected, abs=5 * sigma)
+    points, normals, uv, K = recipe.by_curvature(torus, count)
+    assert np.mean(K > 0.0) == pytest.approx(0.5, abs=5 * sigma)
+    for found, again in zip((points, normals), torus.evaluate(*uv.T), strict=True):
+        assert (found == again).all()
+
+
+@FORM
+def test_the_net_is_evaluated_at_any_parameters(form, monkeypatch):
+    """A spline that is the surface itself takes the place of Splipy's."""
+
+    def spline(u, v, tensor=True):
+        return form.evaluate(u[:, None], v[None, :])[0] if tensor else form.evaluate(u, v)[0]
+
+    monkeypatch.setattr(splines, "net", lambda form: spline)
+    surface = splines.surface_of_net(form)
+    u, v = places_inside(form, 12)
+    for pair in ((u[:, None], v), (u, v[:5, None]), (u, v), (u.reshape(3, 4), v.reshape(3, 4))):
+        expected = form.surface.evaluate(*pair)
+        assert surface.evaluate(*pair) == pytest.approx(expected, abs=1e-15)
+    assert surface.ends == form.surface.ends
+    assert gm.fit(surface, (8, 8)).coefficients == pytest.approx(
+        gm.fit(form.surface, (8, 8)).coefficients, abs=1e-14
+    )
+
+
+# --- metrics --------------------------------------------------------------------------------------
+
+
+def turned(normals, degrees):
+    """Turn vectors round the z axis."""
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    return normals @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+@pytest.mark.parametrize("degrees", [1e-9, 3.0, 90.0, 180.0])
+def test_angles(degrees):
+    axis = np.array([[1.0, 0.0, 0.0]])
+    assert metrics.angles(axis, turned(axis, degrees)) == pytest.approx(degrees, rel=1e-7)
+
+
+def test_worst_in_space_is_of_the_nearest_point():
+    points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+    normals = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
+    places = metrics.Places(points + 0.4, turned(normals, 7.0), np.zeros(2, dtype=bool))
+    assert metrics.worst_in_space(places, points, normals, nearest) == pytest.approx(7.0)
+
+
+def test_worst_in_normal_keeps_the_sign_of_the_curvature():
+    x = np.array([[1.0, 0.0, 0.0]])
+    places = metrics.Places(x, x, np.array([False]))
+    normals = np.concatenate([turned(x, 1.0), turned(x, 5.0)])
+    found = [
+        metrics.worst_in_normal(places, normals, np.array(hyperbolic), nearest)
+        for hyperbolic in ([False, False], [True, False], [True, True])
+    ]
+    assert found == pytest.approx([1.0, 5.0, 180.0])
+
+
+@FORM
+def test_both_metrics_of_a_grid_and_of_its_other_side(form):
+    places = metrics.Places.of(form, 500)
+    points, normals = recipe.by_grid(form, 400)
+    found = metrics.both(form, places, points, normals, nearest)
+    assert metrics.both(form, places, points, -normals, nearest) == found
+    u, v = form.parameters(points)
+    hyperbolic = form.curvature(u, v) < 0.0
+    assert found[0] == metrics.worst_in_space(places, points, normals, nearest)
+    assert found[1] == metrics.worst_in_normal(places, normals, hyperbolic, nearest)
+
+
+def test_places_that_are_samples_are_perfect():
+    torus = Torus()
+    places = metrics.Places.of(torus, 300)
+    assert metrics.both(torus, places, places.points, places.normals, nearest) == (0.0, 0.0)
+
+
+# --- time -----------------------------------------------------------------------------------------
+
+
+def points_of(count):
+    return np.zeros((count, 3)), np.zeros((count, 3))
+
+
+def test_times_are_taken_in_turns(monkeypatch):
+    """A clock that goes with what is done: the ratio is the median of 2/1, 6/1 and 4/1."""
+    now, done = [0.0], []
+
+    def step(name, seconds):
+        done.append(name)
+        now[0] += seconds
+        return points_of(5)
+
+    monkeypatch.setattr(peer, "perf_counter", lambda: now[0])
+    seconds = iter([2.0, 6.0, 4.0])
+    others = {"other": lambda: step("other", 1.0)}
+    turns = peer.in_turns(lambda: step("own", next(seconds)), others, 3)
+    assert done == ["other", "own"] * 3
+    assert turns == peer.Turns(4.0, 5, {"other": 4.0})
+
+
+@pytest.mark.parametrize("count", [300, 10_000, 100_000])
+@pytest.mark.parametrize("power", [1.0, 2.0, -2.0])
+def test_tuning_finds_the_setting(count, power):
+    sizes = []
+
+    def made(knob):
+        sizes.append(round(37.0 * knob**power))
+        return points_of(sizes[-1])
+
+    knob = peer.tuned(made, 1.0, count, power)
+    assert 37.0 * knob**power == pytest.approx(count, rel=2 * peer.NEAR_ENOUGH)
+    assert max(sizes) <= 1.1 * peer.TUNED_AT
+
+
+def test_a_package_that_is_missing_is_named():
+    gone = Peer("gone", "no", "no_such_package_here", lambda form, count: lambda: points_of(1), 1)
+    assert "no_such_package_here" in gone.missing
+    assert RECIPE.missing == ""
+
+
+# --- the page -------------------------------------------------------------------------------------
+
+
+def measured(missing=()):
+    """Every peer at a rate for which gaussmap is about 200 times as fast."""
+    found = []
+    for x in PEERS:
+        times = 199.6 if x is RECIPE else 200.4
+        found.append(Measured(x, "", x.count, 0.1, 1e4, 10.0, times, 9_990, (2.0, 3.0)))
+    why = "No module named 'x'"
+    return [Measured(x.peer, missing=why) if x.peer in missing else x for x in found]
+
+
+@pytest.fixture
+def text():
+    own = [Own("gm.sample(surface, normals)", 1_000_000, 1.23e7)]
+    surfaces = [
+        page.OnSurface(FORMS[0], measured(), own, (10_010, 12.0, 2.5)),
+        page.OnSurface(FORMS[1], measured(missing=(GMSH,)), own, (10_000, 4.0, 1.5)),
+    ]
+    rows = [(1000, 10**k, 1e-6 * (1000 + 10**k)) for k in range(3, 7)]
+    linear = scale.Series("samples, 1,000 patches", rows, "10,000,000 samples were not measured")
+    steep = scale.Series("patches", [(n, 0, 1e-9 * n**1.2) for n in (10, 99)])
+    return page.page(surfaces, [linear, steep])
+
+
+def test_tables_are_whole(text):
+    tables = text.split("\n| :--")[1:]
+    assert len(tables) == 2 + 1 + 2 + 1
+    width = 0
+    for line, after in pairwise(text.replace("\\|", "").splitlines()):
+        if after.startswith("| :--"):
+            width = line.count("|")
+        assert line.count("|") in (0, 2, width)  # |K| in a sentence has two
+
+
+def test_every_peer_is_named_and_the_missing_ones_say_why(text):
+    for x in PEERS:
+        assert text.count(f"| {x.title} |") >= 2
+    assert f"| {GMSH.title} | κmax | missing: No module named 'x' | – |" in text
+    assert "(9,990 to 10,010)" in text
+
+
+def test_targets_are_judged(text):
+    rows = text.partition("### Targets")[2].splitlines()[4:7]
+    assert rows == [
+        f"| {RECIPE.title} | ≥ 20 | 200 ×, met | 200 ×, met |",
+        f"| {SPLIPY_RECIPE.title} | ≥ 200 | 200 ×, met | 200 ×, met |",
+        f"| {GMSH.title} | ≥ 1000 | 200 ×, not met | missing |",
+    ]
+
+
+def test_slopes_are_judged(text):
+    assert "| samples, 1,000 patches | 1.00 | 1.00 | yes |" in text
+    assert "| patches | 1.20 | 1.20 | no |" in text
+    assert "10,000,000 samples were not measured." in text
+
+
+def test_numbers_in_words():
+    assert [page.rate(x) for x in (1.234e7, 8.6e3)] == ["1.2e7", "8.6e3"]
+    assert [page.times(x) for x in (0.0432, 1.55, 12.4, 1234.5)] == [
+        "0.043 ×", "1.6 ×", "12 ×", "1,234 ×",
+    ]  # fmt: skip

@@ -1,0 +1,59 @@
+"""The slope of log(time), and the sizes that are measured."""
+
+import pytest
+from gaussmap.benchmarks import scale
+
+
+@pytest.mark.parametrize("power", [0.5, 1.0, 1.05])
+def test_slope_of_a_power(power):
+    pairs = [(10.0**k, 3e-8 * 10.0 ** (k * power)) for k in range(3, 9)]
+    assert scale.slope(pairs) == pytest.approx(power, abs=1e-13)
+
+
+def test_slope_by_least_squares():
+    # by hand: x = 0, 1, 2 and y = 0, 0, 3 give Σ(x − 1)(y − 1)/Σ(x − 1)² = 3/2
+    assert scale.slope([(1, 1), (10, 1), (100, 1000)]) == pytest.approx(1.5)
+
+
+@pytest.mark.parametrize("pairs", [[], [(10, 1.0)], [(10, 1.0), (10, 2.0)]])
+def test_slope_needs_two_sizes(pairs):
+    with pytest.raises(ValueError, match="two sizes"):
+        scale.slope(pairs)
+
+
+def test_a_series_grows_with_patches_and_samples():
+    series = scale.Series("x", [(0, 1, 1.0), (50, 50, 1.0), (900, 100, 10.0)])
+    assert series.slope(2) == pytest.approx(1.0)
+    assert series.slope() < 1.0
+
+
+@pytest.mark.compiled
+def test_measuring_up_to_a_size():
+    samples, patches = scale.measure(10_000)
+    assert [count for _, count, _ in samples.rows] == [1_000, 10_000]
+    assert {count for count, _, _ in samples.rows} == {4 * scale.FIXED_CELLS**2}
+    assert [count for count, _, _ in patches.rows] == [1_024, 10_000]
+    assert {count for _, count, _ in patches.rows} == {2 * scale.FIXED_NORMALS}
+    assert all(seconds > 0.0 for series in (samples, patches) for *_, seconds in series.rows)
+    assert "100,000 samples" in samples.missing
+    assert "100,000 patches" in patches.missing
+
+
+@pytest.mark.compiled
+def test_larger_sizes_come_in_chunks(monkeypatch):
+    """As from gm.sample_stream; without it they are left out."""
+    asked = []
+
+    def stream(spline, count):
+        asked.append(count)
+        yield from (range(count - 7), range(7))
+
+    monkeypatch.setattr(scale, "STREAMED", 1_000)
+    monkeypatch.setattr(scale, "STREAM", stream)
+    series = scale.by_samples(10_000)
+    assert [count for _, count, _ in series.rows] == [1_000, 10_000]
+    assert set(asked) == {10_000}
+    monkeypatch.setattr(scale, "STREAM", None)
+    series = scale.by_samples(10_000)
+    assert [count for _, count, _ in series.rows] == [1_000]
+    assert series.missing == "10,000 samples and more were not measured"
