@@ -10,45 +10,45 @@ samples.write("torus.ply")
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from .runtime import surfaces
-from .runtime.curves.circle import circle
-from .runtime.curves.curve import Curve
-from .runtime.curves.polygon import polygon_distance
-from .runtime.curves.samples import CurveReport, CurveSamples
-from .runtime.curves.sampling import sample_curve
-from .runtime.curves.spline import CurveSpline, fit_curve
-from .runtime.errors import (
-    FileError,
-    GaussmapError,
-    GaussmapWarning,
-    InputError,
-    MissingExtraError,
-    SurfaceError,
-    UnknownNameError,
-)
-from .runtime.formulas import all_formulas
-from .runtime.gaussian.boundary import BoundaryArc
-from .runtime.gaussian.classes import PatchClass, classify_patches
-from .runtime.gaussian.image import GaussianImage, GaussianImages
-from .runtime.gaussian.parabolic import (
-    ParabolicCurve,
-    ParabolicPoint,
-    ParabolicPoints,
-    parabolic_points,
-)
-from .runtime.gaussian.parabolic_lines import ParabolicLine, Piece, parabolic_lines, split_patch
-from .runtime.io import read_samples
-from .runtime.samples import Samples, SamplingReport
-from .runtime.sampling import sample, sample_many
-from .runtime.sphere import fibonacci, icosphere
-from .runtime.spline import Spline, fit
-from .runtime.support.branches import Branches
-from .runtime.support.function import SupportFunction
-from .runtime.surface import Surface
-
 if TYPE_CHECKING:
     from . import symbolic
+    from .runtime import surfaces
+    from .runtime.curves.circle import circle
+    from .runtime.curves.curve import Curve
+    from .runtime.curves.polygon import polygon_distance
+    from .runtime.curves.samples import CurveReport, CurveSamples
+    from .runtime.curves.sampling import sample_curve
+    from .runtime.curves.spline import CurveSpline, fit_curve
+    from .runtime.errors import (
+        FileError,
+        GaussmapError,
+        GaussmapWarning,
+        InputError,
+        MissingExtraError,
+        MissingFieldError,
+        SurfaceError,
+        UnknownNameError,
+    )
     from .runtime.formulas import Formulas
+    from .runtime.gaussian.boundary import BoundaryArc
+    from .runtime.gaussian.classes import PatchClass, classify_patches
+    from .runtime.gaussian.image import GaussianImage, GaussianImages
+    from .runtime.gaussian.parabolic import (
+        ParabolicCurve,
+        ParabolicPoint,
+        ParabolicPoints,
+        parabolic_points,
+    )
+    from .runtime.gaussian.parabolic_lines import ParabolicLine, Piece, parabolic_lines, split_patch
+    from .runtime.io import read_samples
+    from .runtime.samples import Samples, SamplingReport
+    from .runtime.sampling import sample, sample_many
+    from .runtime.sphere import fibonacci, icosphere
+    from .runtime.spline import Spline, fit
+    from .runtime.stream import sample_stream
+    from .runtime.support.branches import Branches
+    from .runtime.support.function import SupportFunction
+    from .runtime.surface import Surface
 
     formulas: Formulas
 
@@ -68,6 +68,7 @@ __all__ = [
     "GaussmapWarning",
     "InputError",
     "MissingExtraError",
+    "MissingFieldError",
     "ParabolicCurve",
     "ParabolicLine",
     "ParabolicPoint",
@@ -95,16 +96,53 @@ __all__ = [
     "sample",
     "sample_curve",
     "sample_many",
+    "sample_stream",
     "split_patch",
     "surfaces",
     "symbolic",
 ]
 
+# Where the names are, each loaded when it is asked for: SymPy and Numba take their time.
+_MODULES = {"surfaces": "runtime.surfaces", "symbolic": "symbolic"}
+_NAMES = {
+    "runtime.curves.circle": "circle",
+    "runtime.curves.curve": "Curve",
+    "runtime.curves.polygon": "polygon_distance",
+    "runtime.curves.samples": "CurveReport CurveSamples",
+    "runtime.curves.sampling": "sample_curve",
+    "runtime.curves.spline": "CurveSpline fit_curve",
+    "runtime.errors": "FileError GaussmapError GaussmapWarning InputError MissingExtraError "
+    "MissingFieldError SurfaceError UnknownNameError",
+    "runtime.gaussian.classes": "PatchClass classify_patches",
+    "runtime.gaussian.boundary": "BoundaryArc",
+    "runtime.gaussian.image": "GaussianImage GaussianImages",
+    "runtime.gaussian.parabolic": "ParabolicCurve ParabolicPoint ParabolicPoints parabolic_points",
+    "runtime.gaussian.parabolic_lines": "ParabolicLine Piece parabolic_lines split_patch",
+    "runtime.io": "read_samples",
+    "runtime.samples": "Samples SamplingReport",
+    "runtime.sampling": "sample sample_many",
+    "runtime.sphere": "fibonacci icosphere",
+    "runtime.spline": "Spline fit",
+    "runtime.stream": "sample_stream",
+    "runtime.support.branches": "Branches",
+    "runtime.support.function": "SupportFunction",
+    "runtime.surface": "Surface",
+}
+_HOMES = {name: module for module, names in _NAMES.items() for name in names.split()}
+
 
 def __getattr__(name: str) -> object:
-    """Load SymPy only when the formulas are asked for."""
-    if name == "symbolic":
-        return import_module(".symbolic", __name__)
-    if name == "formulas":
-        return all_formulas()
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    if name in _MODULES:
+        value = import_module(f".{_MODULES[name]}", __name__)
+    elif name == "formulas":
+        value = import_module(".runtime.formulas", __name__).all_formulas()
+    elif name in _HOMES:
+        value = getattr(import_module(f".{_HOMES[name]}", __name__), name)
+    else:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    globals()[name] = value  # found without this function from now on
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

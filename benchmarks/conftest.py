@@ -130,6 +130,7 @@ def run(tmp_path: Any) -> Callable[..., Work]:
         python = Path(sys.executable)
         program = python.with_name(script) if script else python
         environment = os.environ | ({"NUMBA_CACHE_DIR": str(cache)} if cache else {})
+        environment.pop("PYTHONDONTWRITEBYTECODE", None)  # a warm cache is Python's as well
         return partial(
             subprocess.run,
             [str(program), *arguments],

@@ -556,25 +556,42 @@ def mapped(frame, x, y, z):
 
 
 @jit
-def bin_normals(normals, frame, grid, starts, order, components):
-    """Sort normals (k, 3) into bins: order[starts[b]:starts[b + 1]] are those of bin b, ascending.
+def count_bins(normals, frame, grid, first, last, bins, counts):
+    """Write the bins of the normals first, …, last − 1, and how many of them each bin has.
 
-    The bins are on a cube round the normals as `frame`, a linear map, maps them. Writes the components
-    (3, k) of the normals (as they are) in that order too.
+    The bins are on a cube round the normals (k, 3) as `frame`, a linear map, maps them.
     """
-    bins = np.empty(normals.shape[0], np.int64)
-    starts[:] = 0
-    for k in range(normals.shape[0]):
+    counts[:] = 0
+    for k in range(first, last):
         x, y, z = mapped(frame, normals[k, 0], normals[k, 1], normals[k, 2])
         face, s, t = cube_face(x, y, z)
         bins[k] = (face * grid + bin_index(t, grid)) * grid + bin_index(s, grid)
-        starts[bins[k] + 1] += 1
-    for b in range(starts.size - 1):
-        starts[b + 1] += starts[b]
-    cursor = starts[:-1].copy()
-    for k in range(normals.shape[0]):
-        at = cursor[bins[k]]
-        cursor[bins[k]] += 1
+        counts[bins[k]] += 1
+
+
+@jit
+def start_bins(counts, starts):
+    """Write where each bin starts; counts (ranges, bins) become the places of the ranges in it."""
+    start = 0
+    for b in range(counts.shape[1]):
+        starts[b] = start
+        for part in range(counts.shape[0]):
+            count = counts[part, b]
+            counts[part, b] = start
+            start += count
+    starts[counts.shape[1]] = start
+
+
+@jit
+def place_normals(normals, bins, first, last, places, order, components):
+    """Sort the normals first, …, last − 1: order[starts[b]:starts[b + 1]] are those of bin b, ascending.
+
+    `places` are those of this range in each bin. Writes the components (3, k) of the normals (as they
+    are) in that order too.
+    """
+    for k in range(first, last):
+        at = places[bins[k]]
+        places[bins[k]] += 1
         order[at] = k
         for axis in range(3):
             components[axis, at] = normals[k, axis]
@@ -1193,7 +1210,9 @@ def fill_samples(
 ):  # fmt: skip
     """Fill the samples first, …, last − 1 from the patch and the place of the normal of each.
 
-    frame = (u0, v0, du, dv): the corner of the domain and the size of a cell in the parameters.
+    frame = (u0, v0, du, dv): the corner of the domain and the size of a cell in the parameters. What
+    is not wanted of points (k, 3), directions (k, 3), uv (k, 2), support, gaussian and mean (k) is
+    None: Numba compiles without it, and the compiler drops what only that needs.
     """
     columns = mu.shape[1] - 2
     size = SCALE * scale
@@ -1215,6 +1234,7 @@ def fill_samples(
         evaluate_tile(
             *patch_vectors(mu, i + 1, j + 1, turn, scale),
             tile[0, :count], tile[1], tile[2], tile[3], tile[4], tile[5], tile[6], tile[7], tile[8], tile[9],
+            points, uv, support, gaussian, mean,
         )  # fmt: skip
         for k in range(begin, begin + count):
             n_x = tile[0, k - begin]
@@ -1227,30 +1247,43 @@ def fill_samples(
             x_z = tile[7, k - begin]
             K = tile[8, k - begin]
             H = tile[9, k - begin]
-            points[k, 0] = mu[i + 1, j + 1, 0] + x_x / size
-            points[k, 1] = mu[i + 1, j + 1, 1] + x_y / size
-            points[k, 2] = mu[i + 1, j + 1, 2] + x_z / size
-            directions[k, 0] = n_x
-            directions[k, 1] = n_y
-            directions[k, 2] = n_z
-            uv[k, 0] = frame[0] + frame[2] * (
-                i + 0.5 + u * CORNERS[turn, 0, 0] + v * CORNERS[turn, 1, 0]
-            )
-            uv[k, 1] = frame[1] + frame[3] * (
-                j + 0.5 + u * CORNERS[turn, 0, 1] + v * CORNERS[turn, 1, 1]
-            )
-            support[k] = n_x * points[k, 0] + n_y * points[k, 1] + n_z * points[k, 2]
-            gaussian[k] = K * size * size
-            mean[k] = H * size
+            p_x = mu[i + 1, j + 1, 0] + x_x / size
+            p_y = mu[i + 1, j + 1, 1] + x_y / size
+            p_z = mu[i + 1, j + 1, 2] + x_z / size
+            if points is not None:
+                points[k, 0] = p_x
+                points[k, 1] = p_y
+                points[k, 2] = p_z
+            if directions is not None:
+                directions[k, 0] = n_x
+                directions[k, 1] = n_y
+                directions[k, 2] = n_z
+            if uv is not None:
+                uv[k, 0] = frame[0] + frame[2] * (
+                    i + 0.5 + u * CORNERS[turn, 0, 0] + v * CORNERS[turn, 1, 0]
+                )
+                uv[k, 1] = frame[1] + frame[3] * (
+                    j + 0.5 + u * CORNERS[turn, 0, 1] + v * CORNERS[turn, 1, 1]
+                )
+            if support is not None:
+                support[k] = n_x * p_x + n_y * p_y + n_z * p_z
+            if gaussian is not None:
+                gaussian[k] = K * size * size
+            if mean is not None:
+                mean[k] = H * size
         begin += count
 
 
 @jit
 def evaluate_tile(
     a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z,
-    normals_x, normals_y, normals_z, us, vs, points_x, points_y, points_z, gaussian, mean,
+    normals_x, normals_y, normals_z, us, vs, points_x, points_y, points_z, curvatures, means,
+    points, uv, support, gaussian, mean,
 ):  # fmt: skip
-    """Evaluate a patch for some of its normals; the loop has no branches, so that it runs on vectors."""
+    """Evaluate a patch for some of its normals; the loop has no branches, so that it runs on vectors.
+
+    Of the last five is asked only whether they are None, and so not wanted: no branch is left of it.
+    """
     for k in range(normals_x.size):
         n_x = normals_x[k]
         n_y = normals_y[k]
@@ -1290,13 +1323,17 @@ def evaluate_tile(
         g = 1.0 / (N_x * N_x + N_y * N_y + N_z * N_z)
         K = D * g
         H = 0.5 * g * (2 * B * F - A * G - C * E)
-        us[k] = u
-        vs[k] = v
-        points_x[k] = x_x
-        points_y[k] = x_y
-        points_z[k] = x_z
-        gaussian[k] = K
-        mean[k] = H
+        if uv is not None:
+            us[k] = u
+            vs[k] = v
+        if points is not None or support is not None:
+            points_x[k] = x_x
+            points_y[k] = x_y
+            points_z[k] = x_z
+        if gaussian is not None:
+            curvatures[k] = K
+        if mean is not None:
+            means[k] = H
 
 
 @jit
@@ -1304,7 +1341,7 @@ def fill_known(
     mu, scale, normals, frame, which, local,
     patch_index, place, points, directions, uv, support, gaussian, mean,
 ):  # fmt: skip
-    """Fill the samples which[0], which[1], … at known parameters.
+    """Fill the samples which[0], which[1], … at known parameters; see `fill_samples`.
 
     local (k, 5) holds u, v, the sign of K, and the parameters at which the curvatures are taken: u, v
     themselves but at a singular point.
@@ -1368,21 +1405,30 @@ def fill_known(
         n_x = normals[0, place[k]]
         n_y = normals[1, place[k]]
         n_z = normals[2, place[k]]
-        points[k, 0] = mu[i + 1, j + 1, 0] + x_x / size
-        points[k, 1] = mu[i + 1, j + 1, 1] + x_y / size
-        points[k, 2] = mu[i + 1, j + 1, 2] + x_z / size
-        directions[k, 0] = n_x
-        directions[k, 1] = n_y
-        directions[k, 2] = n_z
-        uv[k, 0] = frame[0] + frame[2] * (
-            i + 0.5 + u * CORNERS[turn, 0, 0] + v * CORNERS[turn, 1, 0]
-        )
-        uv[k, 1] = frame[1] + frame[3] * (
-            j + 0.5 + u * CORNERS[turn, 0, 1] + v * CORNERS[turn, 1, 1]
-        )
-        support[k] = n_x * points[k, 0] + n_y * points[k, 1] + n_z * points[k, 2]
-        gaussian[k] = K * size * size
-        mean[k] = H * size
+        p_x = mu[i + 1, j + 1, 0] + x_x / size
+        p_y = mu[i + 1, j + 1, 1] + x_y / size
+        p_z = mu[i + 1, j + 1, 2] + x_z / size
+        if points is not None:
+            points[k, 0] = p_x
+            points[k, 1] = p_y
+            points[k, 2] = p_z
+        if directions is not None:
+            directions[k, 0] = n_x
+            directions[k, 1] = n_y
+            directions[k, 2] = n_z
+        if uv is not None:
+            uv[k, 0] = frame[0] + frame[2] * (
+                i + 0.5 + u * CORNERS[turn, 0, 0] + v * CORNERS[turn, 1, 0]
+            )
+            uv[k, 1] = frame[1] + frame[3] * (
+                j + 0.5 + u * CORNERS[turn, 0, 1] + v * CORNERS[turn, 1, 1]
+            )
+        if support is not None:
+            support[k] = n_x * p_x + n_y * p_y + n_z * p_z
+        if gaussian is not None:
+            gaussian[k] = K * size * size
+        if mean is not None:
+            mean[k] = H * size
 
 
 @jit

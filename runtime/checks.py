@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import InputError, UnknownNameError
 
-__all__ = ["known_name", "parameter_arrays", "real_array", "whole_number"]
+__all__ = ["known_name", "parameter_arrays", "real_array", "real_values", "whole_number"]
 
 
 # Beyond this a count is a mistake: no memory holds so many normals, cells or samples.
@@ -47,6 +48,13 @@ def real_array(values: ArrayLike, name: str) -> NDArray[np.float64]:
 
     Text, complex numbers and objects are not taken for numbers, and what is masked has no value.
     """
+    array = real_values(values, name)
+    with np.errstate(over="ignore"):
+        return array.astype(np.float64, order="C")
+
+
+def real_values(values: ArrayLike, name: str) -> NDArray[Any]:
+    """Return an array of real numbers of any type, copied only if it is none; see `real_array`."""
     if np.ma.is_masked(values):
         raise InputError(f"{name} has masked entries; fill them or leave them out.")
     try:
@@ -55,8 +63,7 @@ def real_array(values: ArrayLike, name: str) -> NDArray[np.float64]:
         raise InputError(f"{name} must be an array of real numbers, with equal rows.") from None
     if array.dtype.kind not in "fiub":
         raise InputError(f"{name} must be an array of real numbers, not of type {array.dtype}.")
-    with np.errstate(over="ignore"):
-        return array.astype(np.float64, order="C")
+    return array
 
 
 def parameter_arrays(u: ArrayLike, v: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

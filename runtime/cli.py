@@ -1,8 +1,7 @@
 """The command line: `gaussmap sample`, `plot`, `surfaces` and `formulas`.
 
 Results go to standard output; the progress bar, warnings and errors go to standard error. Every
-error is one line and the exit code 2; Ctrl-C (once the imports are done) gives 130, and a reader
-that went away 141.
+error is one line and the exit code 2; Ctrl-C gives 130, and a reader that went away 141.
 """
 
 from __future__ import annotations
@@ -28,8 +27,9 @@ from numpy.typing import NDArray
 
 from .checks import known_name
 from .errors import FileError, GaussmapError, GaussmapWarning, InputError, MissingExtraError
+from .fields import ARRAY_NAMES, checked_fields
 from .formulas import all_formulas
-from .io import atomic_path, check_target
+from .io import atomic_path, check_fields, check_target
 from .samples import Samples
 from .sampling import sample
 from .sphere import icosphere
@@ -66,6 +66,7 @@ FILE.npz:NAME if it holds several arrays. The array is a grid of points (m, n, 3
 examples:
   gaussmap sample torus --count 10000 -o torus.ply
   gaussmap sample torus --set minor=0.2 --frequency 32 -o torus.npz
+  gaussmap sample torus --fields points,normals --float32 -o torus.ply
   gaussmap sample heights.npy --spacing 30 30 --count 50000 -o terrain.ply
   gaussmap sample scan.npz:points --periodic u --normals directions.npy -o scan.csv
 """
@@ -119,7 +120,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _run_sample(options: argparse.Namespace) -> None:
     check_target(options.output)
-    samples = sample(**_arguments(options))
+    fields = checked_fields(options.fields)
+    check_fields(options.output, fields)
+    dtype = np.float32 if options.float32 else np.float64
+    samples = sample(**_arguments(options), fields=fields, dtype=dtype)
     samples.write(options.output)
     _summarize(samples, options)
 
@@ -353,6 +357,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     _add_sampling(command, default_count=10_000)
     _add_output(command, ".npz, .ply, .csv, .vtp or .xyz")
+    _add_contents(command)
     command.set_defaults(run=_run_sample)
 
     command = commands.add_parser(
@@ -454,6 +459,19 @@ def _add_sampling(parser: argparse.ArgumentParser, default_count: int) -> None:
 def _add_output(parser: argparse.ArgumentParser, suffixes: str) -> None:
     parser.add_argument(
         "-o", "--output", required=True, metavar="OUT", help=f"the file to write: {suffixes}"
+    )
+
+
+def _add_contents(parser: argparse.ArgumentParser) -> None:
+    group = parser.add_argument_group("what the file holds")
+    group.add_argument(
+        "--fields",
+        type=lambda text: tuple(text.split(",")),
+        metavar="NAME,NAME",
+        help=f"only these (default: all), of {', '.join(ARRAY_NAMES)}",
+    )
+    group.add_argument(
+        "--float32", action="store_true", help="numbers of half the size: 7 digits, not 16"
     )
 
 

@@ -8,6 +8,7 @@ __all__ = [
     "GaussmapWarning",
     "InputError",
     "MissingExtraError",
+    "MissingFieldError",
     "SurfaceError",
     "UnknownNameError",
 ]
@@ -35,6 +36,13 @@ class FileError(GaussmapError, OSError):
 
 class MissingExtraError(GaussmapError, ImportError):
     """An optional dependency is not installed; the message names the extra that brings it."""
+
+
+class MissingFieldError(GaussmapError, AttributeError):
+    """Samples lack a field that was not asked for when they were made (see `fields` of `sample`).
+
+    As an AttributeError it makes `hasattr(samples, name)` false.
+    """
 
 
 class GaussmapWarning(UserWarning):

@@ -15,7 +15,7 @@ import secrets
 import shutil
 import stat
 import zipfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
@@ -25,12 +25,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import FileError, GaussmapError, InputError, MissingExtraError, UnknownNameError
-from .samples import ARRAY_NAMES, Samples, SamplingReport
+from .fields import ARRAY_NAMES, FLOAT_NAMES
+from .samples import Samples, SamplingReport
 
 __all__ = [
     "READABLE_SUFFIXES",
     "SUFFIXES",
     "atomic_path",
+    "check_fields",
     "check_target",
     "read_samples",
     "write_samples",
@@ -40,6 +42,13 @@ PathLike = str | os.PathLike[str]
 
 # Raised when .npz files change such that older versions of gaussmap would misread them.
 _NPZ_VERSION = 1
+
+# The fields that a format cannot do without.
+_NEEDED: dict[str, tuple[str, ...]] = {
+    ".ply": ("points",),
+    ".vtp": ("points",),
+    ".xyz": ("points", "normals"),
+}
 
 # The suffixes of files that can be written, and of those that can be read.
 SUFFIXES = (".npz", ".ply", ".csv", ".vtp", ".xyz")
@@ -63,6 +72,8 @@ _COLUMNS: dict[str, tuple[str, int | None]] = {
 }
 
 _PLY_REPORT = "comment gaussmap report "
+# Only in a file of fewer fields.
+_PLY_FIELDS = "comment gaussmap fields "
 # Some readers hold a header line in a buffer of 256 or 1,024 bytes.
 _PLY_CHUNK = 200
 
@@ -77,30 +88,46 @@ def write_samples(samples: Samples, path: PathLike) -> None:
     """Write samples to a file; its suffix, in any case, chooses the format.
 
     An existing file is replaced once the new one is complete; if anything fails, it stays as it
-    was.
+    was. Files hold the fields that the samples hold, float32 as float32.
 
     - `.npz`: everything, the report included; reads back bit for bit.
     - `.ply`: binary, one vertex a sample, all columns and the report (in comments); reads back
-      bit for bit. Indices are 32-bit.
-    - `.csv`: a header row and one row a sample, 17 significant digits, so that floats survive.
-    - `.xyz`: rows `x y z nx ny nz`, 17 significant digits, no header.
-    - `.vtp`: VTK PolyData with all arrays, and the report as field data; needs the extra `vtk`.
+      bit for bit. Indices are 32-bit. Needs the field `points`.
+    - `.csv`: a header row and one row a sample, 17 significant digits (9 of float32), so that
+      floats survive.
+    - `.xyz`: rows `x y z nx ny nz`, digits as in `.csv`, no header. Needs `points` and `normals`.
+    - `.vtp`: VTK PolyData with all arrays, and the report as field data; needs the extra `vtk` and
+      the field `points`.
 
     Raises UnknownNameError if the suffix is none of `SUFFIXES`, FileError if the file cannot be
-    written, InputError if an index does not fit into a `.ply` file, and MissingExtraError if a
-    `.vtp` file is asked and pyvista is not installed.
+    written, InputError if an index does not fit into a `.ply` file or the format needs a field that
+    is not there, and MissingExtraError if a `.vtp` file is asked and pyvista is not installed.
     """
     path = _path(path)
-    writer = _WRITERS[_suffix(path, SUFFIXES)]
+    suffix = _suffix(path, SUFFIXES)
+    check_fields(suffix, samples.fields)
+    writer = _WRITERS[suffix]
     with atomic_path(path) as temporary:
         writer(samples, temporary)
+
+
+def check_fields(path: PathLike, fields: Sequence[str]) -> None:
+    """Raise InputError if the format of a file, told by its suffix, needs other fields too."""
+    suffix = _path(path).suffix.lower() or os.fspath(path)
+    lacking = [repr(name) for name in _NEEDED.get(suffix, ()) if name not in fields]
+    if lacking:
+        raise InputError(
+            f"a {suffix} file needs {' and '.join(lacking)}; add that to the fields, or write a "
+            ".npz or .csv file."
+        )
 
 
 def read_samples(path: PathLike) -> Samples:
     """Read samples from a `.npz` or `.ply` file that `write_samples` wrote.
 
     A `.ply` file that another program rewrote is read as long as it is binary and has all the
-    columns; if it has lost the comments that hold the report, the report's numbers are None.
+    columns; if it has lost the comments that hold the report, the report's numbers are None. A file
+    of fewer fields says in a comment which these are.
 
     Raises UnknownNameError if the suffix is none of `READABLE_SUFFIXES`, and FileError if the file
     is missing, unreadable, damaged, or not from gaussmap. Nothing is ever unpickled.
@@ -275,7 +302,9 @@ def _report_from_json(text: str) -> SamplingReport:
 
 
 def _write_npz(samples: Samples, path: Path) -> None:
-    arrays = {name: getattr(samples, name) for name in ARRAY_NAMES}
+    arrays = {name: getattr(samples, name) for name in samples.fields}
+    if samples.fields != ARRAY_NAMES:
+        arrays["fields"] = np.array(samples.fields)
     # Given a path, savez appends .npz to names that end in .NPZ. Not savez_compressed: it takes
     # forty times as long, and saves a sixth.
     with open(path, "wb") as file:
@@ -295,11 +324,20 @@ def _read_npz(file: BinaryIO) -> Samples:
     with np.load(file, allow_pickle=False) as archive:
         if "format_version" in archive and int(archive["format_version"]) > _NPZ_VERSION:
             raise _UnusableError("comes from a newer version of gaussmap; update gaussmap.")
-        missing = [n for n in ("format_version", "report", *ARRAY_NAMES) if n not in archive]
+        fields = _known_fields(archive["fields"].tolist() if "fields" in archive else ARRAY_NAMES)
+        missing = [n for n in ("format_version", "report", *fields) if n not in archive]
         if missing:
             raise _lacks("arrays", missing)
-        arrays = {name: _native(archive[name]) for name in ARRAY_NAMES}
+        arrays = {name: _native(archive[name]) for name in fields}
         return Samples(**arrays, report=_report_from_json(str(archive["report"])))
+
+
+def _known_fields(names: Iterable[str]) -> tuple[str, ...]:
+    """Return the fields that a file says to hold, in the order of `ARRAY_NAMES`."""
+    held = set(names)
+    if not held or not held <= set(ARRAY_NAMES):
+        raise _UnusableError("holds fields that gaussmap does not know; update gaussmap.")
+    return tuple(name for name in ARRAY_NAMES if name in held)
 
 
 def _lacks(what: str, missing: Sequence[str]) -> _UnusableError:
@@ -323,6 +361,7 @@ class _PlyHeader(NamedTuple):
     binary: bool
     faces: bool
     report: str  # the report as JSON; empty if the file holds none
+    fields: tuple[str, ...]
 
 
 def _write_ply(samples: Samples, path: Path) -> None:
@@ -337,7 +376,7 @@ def _write_ply(samples: Samples, path: Path) -> None:
     buffer.seek(0)
     header = [line.decode().rstrip() for line in iter(buffer.readline, b"end_header\n")]
     with open(path, "wb") as file:
-        file.writelines(f"{line}\n".encode() for line in _ply_header(header, samples.report))
+        file.writelines(f"{line}\n".encode() for line in _ply_header(header, samples))
         shutil.copyfileobj(buffer, file)
 
 
@@ -354,14 +393,16 @@ def _ply_column(name: str, column: NDArray[Any]) -> NDArray[Any]:
     return narrow
 
 
-def _ply_header(header: Sequence[str], report: SamplingReport) -> Iterator[str]:
+def _ply_header(header: Sequence[str], samples: Samples) -> Iterator[str]:
     """Yield meshio's header with the report in place of the time, which differs run by run."""
-    text = _report_to_json(report)
+    text = _report_to_json(samples.report)
     for line in header:
         if line.startswith("comment "):
             yield "comment written by gaussmap with meshio"
             for start in range(0, len(text), _PLY_CHUNK):
                 yield _PLY_REPORT + text[start : start + _PLY_CHUNK]
+            if samples.fields != ARRAY_NAMES:
+                yield _PLY_FIELDS + " ".join(samples.fields)
         else:
             # The standard's own name for the type; not every reader knows the younger int32.
             yield line.replace("property int32 ", "property int ")
@@ -374,7 +415,8 @@ def _read_ply(file: BinaryIO) -> Samples:
     header = _parse_ply_header(file)
     if not header.binary:
         raise _UnusableError("is a text .ply file, and gaussmap reads binary ones; convert it.")
-    missing = [name for name in _COLUMNS if name not in header.columns]
+    wanted = [column for column, (name, _) in _COLUMNS.items() if name in header.fields]
+    missing = [column for column in wanted if column not in header.columns]
     if missing:
         raise _lacks("columns", missing)
     size = file.seek(0, os.SEEK_END)
@@ -388,7 +430,7 @@ def _read_ply(file: BinaryIO) -> Samples:
     end = header.size + header.vertices * sum(columns[n].dtype.itemsize for n in header.columns)
     if size < end or (size > end and not header.faces):
         raise _UnusableError(f"has {size:,} bytes instead of {end:,}; write it again.")
-    return _from_columns(columns, _ply_report(header))
+    return _from_columns(columns, header.fields, _ply_report(header))
 
 
 def _parse_ply_header(file: BinaryIO) -> _PlyHeader:
@@ -404,6 +446,7 @@ def _parse_ply_header(file: BinaryIO) -> _PlyHeader:
         elif words[:1] == ["property"]:
             columns.setdefault(element, []).append(words[-1])
     chunks = (line.removeprefix(_PLY_REPORT) for line in lines if line.startswith(_PLY_REPORT))
+    fields = [x for line in lines if line.startswith(_PLY_FIELDS) for x in line.split()[3:]]
     return _PlyHeader(
         size=file.tell(),
         vertices=counts.get("vertex", 0),
@@ -411,6 +454,7 @@ def _parse_ply_header(file: BinaryIO) -> _PlyHeader:
         binary=not any(line.startswith("format ascii") for line in lines),
         faces="face" in counts,
         report="".join(chunks),
+        fields=_known_fields(fields or ARRAY_NAMES),
     )
 
 
@@ -446,16 +490,25 @@ def _columns(samples: Samples) -> dict[str, NDArray[Any]]:
     return {
         column: getattr(samples, name)[..., slice(None) if part is None else part]
         for column, (name, part) in _COLUMNS.items()
+        if name in samples.fields
     }
 
 
-def _from_columns(columns: Mapping[str, NDArray[Any]], report: SamplingReport) -> Samples:
-    """Undo `_columns`; numbers of narrower types, such as float32, are widened."""
+def _from_columns(
+    columns: Mapping[str, NDArray[Any]], fields: Sequence[str], report: SamplingReport
+) -> Samples:
+    """Undo `_columns`; numbers of narrower types are widened, float32 unless all of them are."""
     arrays = {}
-    for name in ARRAY_NAMES:
+    floats = {
+        columns[c].dtype
+        for c, (name, _) in _COLUMNS.items()
+        if name in FLOAT_NAMES and c in columns
+    }
+    floating = np.float32 if floats == {np.dtype(np.float32)} else np.float64
+    for name in fields:
         parts = [columns[column] for column, (whole, _) in _COLUMNS.items() if whole == name]
         array = parts[0] if len(parts) == 1 else np.stack(parts, axis=1)
-        dtype = np.int64 if name.endswith("_index") else np.float64
+        dtype = floating if name in FLOAT_NAMES else np.int64
         if not np.can_cast(array.dtype, dtype, "safe"):
             raise _UnusableError(f"has {array.dtype} numbers as {name}; write it again.")
         arrays[name] = array.astype(dtype)
@@ -463,7 +516,8 @@ def _from_columns(columns: Mapping[str, NDArray[Any]], report: SamplingReport) -
 
 
 def _write_csv(samples: Samples, path: Path) -> None:
-    _write_rows(path, ",".join(_COLUMNS) + "\n", ",", list(_columns(samples).values()))
+    columns = _columns(samples)
+    _write_rows(path, ",".join(columns) + "\n", ",", list(columns.values()))
 
 
 def _write_xyz(samples: Samples, path: Path) -> None:
@@ -471,7 +525,8 @@ def _write_xyz(samples: Samples, path: Path) -> None:
 
 
 def _write_rows(path: Path, header: str, mark: str, columns: Sequence[NDArray[Any]]) -> None:
-    pattern = mark.join("%d" if c.dtype.kind == "i" else "%.17g" for c in columns) + "\n"
+    digits = {"i8": "%d", "f4": "%.9g", "f8": "%.17g"}
+    pattern = mark.join(digits[column.dtype.str[1:]] for column in columns) + "\n"
     with open(path, "w", encoding="ascii", newline="\n") as file:
         file.write(header)
         for start in range(0, len(columns[0]), _TEXT_ROWS):
@@ -491,11 +546,12 @@ def _write_vtp(samples: Samples, path: Path) -> None:
 
     cloud = pv.PolyData(samples.points)
     data = cloud.GetPointData()
-    for name in ARRAY_NAMES:
+    for name in samples.fields:
         if name != "points":
             # By way of VTK: pyvista refuses arrays without elements.
             data.AddArray(pv.convert_array(getattr(samples, name), name=name))
-    data.SetActiveNormals("normals")
+    if "normals" in samples.fields:
+        data.SetActiveNormals("normals")
     cloud.field_data["report"] = [_report_to_json(samples.report)]
 
     # Into memory first: when the disk is full, VTK leaves half a file and pyvista says nothing.

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..generated import sampler as kernels
-from .sphere import GOLDEN, fibonacci, perpendicular
+from .sphere import in_pieces, part_of_fibonacci, perpendicular, spiral_angle
 from .spline import Spline
 
 __all__ = ["Lattice"]
@@ -55,17 +55,33 @@ class Lattice:
         """Return the density, in normals per steradian, at which the cap holds `count` normals."""
         return count / self.solid_angle
 
-    def normals(self, density: float) -> NDArray[np.float64]:
-        """Return unit normals (…, 3), `density` of them per steradian, at least one."""
+    def size(self, density: float) -> int:
+        """Return how many normals there are if `density` of them are asked per steradian."""
         if self.cosine == -1.0:
-            return fibonacci(max(1, round(4 * math.pi * density)))
+            return max(1, round(4 * math.pi * density))
+        return max(1, math.floor(max(density, self.density_of(1)) * self.solid_angle))
+
+    def normals(
+        self, density: float, first: int = 0, last: int | None = None, threads: int | None = None
+    ) -> NDArray[np.float64]:
+        """Return unit normals (…, 3), `density` of them per steradian, at least one.
+
+        With `first` and `last`, only the rows first, …, last − 1 of these.
+        """
+        last = self.size(density) if last is None else last
+        if self.cosine == -1.0:
+            return part_of_fibonacci(self.size(density), first, last, threads)
         density = max(density, self.density_of(1))
-        k = np.arange(max(1, math.floor(density * self.solid_angle)))
-        depth = (k + 0.5) / (2 * math.pi * density)  # 1 − cosine to the axis
-        angle = 2 * math.pi * np.modf(k / GOLDEN)[0]
-        radius = np.sqrt(np.maximum(depth * (2.0 - depth), 0.0))
         across, along = perpendicular(self.axis)
-        vectors = (1.0 - depth)[:, None] * self.axis
-        vectors += (radius * np.cos(angle))[:, None] * across
-        vectors += (radius * np.sin(angle))[:, None] * along
-        return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+
+        def rows(begin: int, end: int) -> NDArray[np.float64]:
+            k = np.arange(begin, end)
+            depth = (k + 0.5) / (2 * math.pi * density)  # 1 − cosine to the axis
+            angle = spiral_angle(k)
+            radius = np.sqrt(np.maximum(depth * (2.0 - depth), 0.0))
+            vectors = (1.0 - depth)[:, None] * self.axis
+            vectors += (radius * np.cos(angle))[:, None] * across
+            vectors += (radius * np.sin(angle))[:, None] * along
+            return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+
+        return in_pieces(rows, first, last, threads)

@@ -5,29 +5,23 @@ from __future__ import annotations
 import math
 import operator
 import os
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from dataclasses import fields as dataclass_fields
 from typing import Any, SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .errors import InputError
+from .errors import InputError, MissingFieldError
+from .fields import ARRAY_NAMES, DERIVED, FLOAT_NAMES, row_shape
 from .spline import short_label
 
 __all__ = ["ARRAY_NAMES", "Samples", "SamplingReport"]
 
-# Every array of `Samples`: how many numbers belong to one sample, and their type.
-_LAYOUT: dict[str, tuple[tuple[int, ...], type[np.generic]]] = {
-    "points": ((3,), np.float64),
-    "normals": ((3,), np.float64),
-    "uv": ((2,), np.float64),
-    "support": ((), np.float64),
-    "gaussian_curvature": ((), np.float64),
-    "mean_curvature": ((), np.float64),
-    "normal_index": ((), np.int64),
-    "patch_index": ((), np.int64),
-}
-ARRAY_NAMES: tuple[str, ...] = tuple(_LAYOUT)
+# What a field is set to that was not asked for; reading it raises MissingFieldError.
+_NOT_ASKED: Any = None
 
 # A share is a quotient of sums, so rounding may carry it this far beyond 0 or 1.
 _SHARE_ROUNDING = 1e-9
@@ -75,7 +69,7 @@ class Samples:
     """N samples of a surface, one row each; lengths in the surface's unit L.
 
     Indexing with a boolean mask (N,), an index array or a slice gives the `Samples` of those
-    rows, with the same report: `samples[samples.elliptic]`.
+    rows, with the same report: `samples[samples.elliptic]`. `Samples.concatenate` is the other way.
 
     - `points`: (N, 3) float64, points of the surface, in L.
     - `normals`: (N, 3) float64, unit normals at the points.
@@ -88,27 +82,81 @@ class Samples:
     - `patch_index`: (N,) int64, patch of the surface that holds the point.
     - `report`: how the sampling went.
 
+    All numbers but the indices may be float32 instead, if that was asked. What was not asked
+    (`fields` of `sample`) is not there: reading it raises MissingFieldError, an AttributeError.
+
     All arrays are C-contiguous; an array that is not is copied. Raises InputError if an array has
-    another shape or dtype.
+    another shape or dtype, or if there is none.
     """
 
-    points: NDArray[np.float64]
-    normals: NDArray[np.float64]
-    uv: NDArray[np.float64]
-    support: NDArray[np.float64]
-    gaussian_curvature: NDArray[np.float64]
-    mean_curvature: NDArray[np.float64]
-    normal_index: NDArray[np.int64]
-    patch_index: NDArray[np.int64]
-    report: SamplingReport
+    points: NDArray[np.float64] = _NOT_ASKED
+    normals: NDArray[np.float64] = _NOT_ASKED
+    uv: NDArray[np.float64] = _NOT_ASKED
+    support: NDArray[np.float64] = _NOT_ASKED
+    gaussian_curvature: NDArray[np.float64] = _NOT_ASKED
+    mean_curvature: NDArray[np.float64] = _NOT_ASKED
+    normal_index: NDArray[np.int64] = _NOT_ASKED
+    patch_index: NDArray[np.int64] = _NOT_ASKED
+    report: SamplingReport = field(kw_only=True)
 
     def __post_init__(self) -> None:
-        count = (np.shape(self.points) or (0,))[0]
-        for name, (tail, dtype) in _LAYOUT.items():
-            array = _checked(name, getattr(self, name), (count, *tail), np.dtype(dtype))
-            object.__setattr__(self, name, array)
+        arrays = {name: getattr(self, name) for name in ARRAY_NAMES}
+        arrays = {name: array for name, array in arrays.items() if array is not None}
+        if not arrays:
+            raise InputError("samples need at least one array, such as points.")
+        count = (np.shape(next(iter(arrays.values()))) or (0,))[0]
+        floating = _common_dtype(arrays)
+        for name in ARRAY_NAMES:
+            if name in arrays:
+                dtype = floating if name in FLOAT_NAMES else np.dtype(np.int64)
+                array = _checked(name, arrays[name], (count, *row_shape(name)), dtype)
+                object.__setattr__(self, name, array)
+            else:
+                object.__delattr__(self, name)  # an empty slot, for which __getattr__ speaks
         if not isinstance(self.report, SamplingReport):
             raise InputError(f"report must be a SamplingReport, not {type(self.report).__name__}.")
+
+    def __getattr__(self, name: str) -> Any:  # noqa: ANN401
+        if name in ARRAY_NAMES or name in DERIVED:
+            needed = [x for x in DERIVED.get(name, (name,)) if x not in self.fields]
+            subject = "" if name in ARRAY_NAMES else f"{name} needs {' and '.join(needed)}, but "
+            raise MissingFieldError(
+                f"{subject}these samples hold {', '.join(self.fields)} only; "
+                f"add {' and '.join(repr(x) for x in needed)} to fields=... when sampling."
+            )
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _rebuilt, (self._arrays(), self.report)
+
+    @classmethod
+    def concatenate(cls, parts: Iterable[Samples]) -> Samples:
+        """Return the samples of several parts, one after the other, such as those of a stream.
+
+        The report counts all of them; what the parts' reports do not agree about is None in it.
+        Raises InputError if there is no part, or if the parts have different fields or dtypes.
+        """
+        pieces = list(parts)
+        if not all(isinstance(part, Samples) for part in pieces) or not pieces:
+            raise InputError("concatenate takes Samples, at least one.")
+        kinds = {(part.fields, part.dtype) for part in pieces}
+        if len(kinds) > 1:
+            raise InputError("these samples do not fit together: they have other fields or dtypes.")
+        arrays = {
+            name: np.concatenate([getattr(part, name) for part in pieces])
+            for name in pieces[0].fields
+        }
+        return cls(**arrays, report=_common_report([part.report for part in pieces], arrays))
+
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """The names of the arrays that these samples hold."""
+        return tuple(self._arrays())
+
+    @property
+    def dtype(self) -> np.dtype[np.floating]:
+        """The type of all numbers but the indices: float64 or float32."""
+        return _common_dtype(self._arrays())
 
     @property
     def elliptic(self) -> NDArray[np.bool_]:
@@ -121,21 +169,22 @@ class Samples:
         return np.signbit(self.gaussian_curvature)
 
     @property
-    def principal_curvatures(self) -> NDArray[np.float64]:
+    def principal_curvatures(self) -> NDArray[np.floating]:
         """(N, 2) float64: the principal curvatures, in 1/L, the larger one first.
 
         They are computed from K and H. Where the two nearly agree, K and H determine their
-        difference only to about 1e-8 relative to H; elsewhere both are accurate, however
-        different their sizes. NaN where H² − K is not finite.
+        difference only to about 1e-8 relative to H (3e-4 if they are float32); elsewhere both are
+        accurate, however different their sizes. NaN where H² − K is not finite.
         """
-        K, H = self.gaussian_curvature, self.mean_curvature
+        K, H = (x.astype(np.float64) for x in (self.gaussian_curvature, self.mean_curvature))
         with np.errstate(all="ignore"):
             square = H * H - K
             root = np.where(np.isfinite(square), np.sqrt(np.maximum(square, 0.0)), np.nan)
             # H − root would cancel when |K| is small against H²; K / (H + root) does not.
             far = H + np.copysign(root, H)
             near = np.where(root > 0.0, K / far, H)
-        return np.stack([np.maximum(far, near), np.minimum(far, near)], axis=1)
+            both = np.stack([np.maximum(far, near), np.minimum(far, near)], axis=1)
+            return both.astype(self.dtype, copy=False)
 
     def summary(self) -> str:
         """One line: normals asked, samples came, their split, what normals cannot see."""
@@ -143,7 +192,7 @@ class Samples:
         if len(self) != report.samples:
             came = f"{len(self):,} of the {report.samples:,} samples that came"
         asked = "" if report.normals is None else f"{report.normals:,} normals asked, "
-        line = f"{asked}{came}: {self._split()}"
+        line = f"{asked}{came}{self._split()}"
         if report.invisible_share is not None:
             line += f"; normals cannot see {100.0 * report.invisible_share:.2f} % of the surface"
         return line
@@ -155,19 +204,57 @@ class Samples:
         write_samples(self, path)
 
     def __len__(self) -> int:
-        return len(self.support)
+        return len(next(iter(self._arrays().values())))
 
     def __getitem__(self, key: ArrayLike | slice) -> Samples:
         rows = key if isinstance(key, slice) else _rows(key, len(self))
-        return Samples(**{name: getattr(self, name)[rows] for name in _LAYOUT}, report=self.report)
+        return Samples(
+            **{n: array[rows] for n, array in self._arrays().items()}, report=self.report
+        )
 
     def __repr__(self) -> str:
         label = short_label(self.report.surface)
-        return f"Samples({len(self):,} points on {label}: {self._split()})"
+        return f"Samples({len(self):,} points on {label}{self._split()})"
 
     def _split(self) -> str:
+        if "gaussian_curvature" not in self.fields:
+            return f" ({', '.join(self.fields)} only)"
         hyperbolic = int(np.count_nonzero(self.hyperbolic))
-        return f"{len(self) - hyperbolic:,} elliptic, {hyperbolic:,} hyperbolic"
+        return f": {len(self) - hyperbolic:,} elliptic, {hyperbolic:,} hyperbolic"
+
+    def _arrays(self) -> dict[str, NDArray[Any]]:
+        found: dict[str, NDArray[Any]] = {}
+        for name in ARRAY_NAMES:
+            with suppress(AttributeError):
+                # Past __getattr__, which asks here what there is.
+                found[name] = object.__getattribute__(self, name)
+        return found
+
+
+def _rebuilt(arrays: dict[str, NDArray[Any]], report: SamplingReport) -> Samples:
+    """Return samples that were copied or pickled."""
+    return Samples(**arrays, report=report)
+
+
+def _common_dtype(arrays: Mapping[str, object]) -> np.dtype[np.floating]:
+    """Return float32 if all that may be float32 is, otherwise float64."""
+    types = {getattr(arrays[name], "dtype", None) for name in FLOAT_NAMES if name in arrays}
+    return np.dtype(np.float32 if types == {np.dtype(np.float32)} else np.float64)
+
+
+def _common_report(
+    reports: Sequence[SamplingReport], arrays: Mapping[str, NDArray[Any]]
+) -> SamplingReport:
+    """Return what reports agree about, with the number of all samples."""
+    common: dict[str, Any] = {
+        x.name: getattr(reports[0], x.name)
+        if len({getattr(report, x.name) for report in reports}) == 1
+        else None
+        for x in dataclass_fields(SamplingReport)
+    }
+    common["surface"] = common["surface"] or "several surfaces"
+    common["samples"] = len(next(iter(arrays.values())))
+    return SamplingReport(**common)
 
 
 def _count(name: str, value: SupportsIndex) -> int:

@@ -2,31 +2,30 @@
 
 from __future__ import annotations
 
-import math
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from .checks import whole_number
+from .choice import choose, normals_asked
+from .compiling import compilation_shown
 from .errors import GaussmapError, GaussmapWarning, InputError
-from .lattice import Lattice
+from .fields import checked_dtype, checked_fields
 from .samples import Samples, SamplingReport
-from .search import Hits, NormalBins, fill, find
-from .sphere import as_normals
+from .search import NormalBins, fill, find
 from .spline import Spline, spline_of
 from .surface import Surface
-from .threads import thread_count
-from .visibility import invisible_share, visible_solid_angle
+from .visibility import invisible_share
 
-__all__ = ["sample", "sample_and_normals", "sample_many"]
+__all__ = [
+    "sample",
+    "sample_and_normals",
+    "sample_many",
+    "sampling_report",
+    "warn_of",
+]
 
-# `count` is met by changing the number of normals, until it is this near or after so many tries.
-NEAR_ENOUGH = 0.01
-TRIES = 6
-# At most this many normals for each sample that was asked (a thin Gaussian image catches few).
-NORMALS_PER_SAMPLE = 100
 WORTH_A_WARNING = 0.01
 
 
@@ -36,6 +35,8 @@ def sample(
     *,
     count: int | None = None,
     cells: Sequence[int] | None = None,
+    fields: Sequence[str] | None = None,
+    dtype: DTypeLike = np.float64,
     threads: int | None = None,
     progress: bool = False,
 ) -> Samples:
@@ -50,6 +51,11 @@ def sample(
     where the Gaussian image is resolved, from a Fibonacci lattice of normals round the mean normal
     of the surface.
 
+    `fields` are the arrays of `Samples` that are wanted, such as ("points", "normals"); by default
+    all. The others are neither computed nor stored, which takes less time and memory. With
+    `dtype=numpy.float32` all numbers but the indices, which stay int64, are rounded to float32 when
+    they are stored; they are computed in float64.
+
     With `progress`, work that takes longer than a second shows a bar on standard error.
 
     Samples are ordered by patch and then by normal, the same for any number of `threads` (by
@@ -58,7 +64,14 @@ def sample(
     unusable arguments and SurfaceError for a surface that cannot be evaluated.
     """
     return sample_and_normals(
-        surface, normals, count=count, cells=cells, threads=threads, progress=progress
+        surface,
+        normals,
+        count=count,
+        cells=cells,
+        fields=fields,
+        dtype=dtype,
+        threads=threads,
+        progress=progress,
     )[0]
 
 
@@ -70,20 +83,25 @@ def sample_and_normals(
     cells: Sequence[int] | None,
     threads: int | None,
     progress: bool,
+    fields: Sequence[str] | None = None,
+    dtype: DTypeLike = np.float64,
 ) -> tuple[Samples, NDArray[np.float64]]:
     """Return what `sample` returns, and the unit normals that were asked."""
-    directions = _directions(normals, count, threads)
-    spline = spline_of(surface, cells)
-    if directions is None:
-        assert count is not None
-        bins, hits, density = _by_count(spline, int(count), threads, progress)
-    else:
-        bins = NormalBins(directions)
-        hits = find(spline, bins, threads, progress)
-        density = len(bins.normals) / (4 * math.pi)
-    samples = _samples(spline, bins, hits, density, threads)
-    _warn(samples.report, count)
-    return samples, bins.normals
+    wanted, number = checked_fields(fields), checked_dtype(dtype)
+    asked = normals_asked(normals, count, threads)
+    with compilation_shown(progress):
+        spline = spline_of(surface, cells)
+        chosen = choose(spline, asked, threads, progress)
+        bins, hits = chosen.found or (
+            NormalBins(chosen.part(0, len(chosen), threads), threads),
+            None,
+        )
+        if hits is None:
+            hits = find(spline, bins, threads, progress)
+        arrays = fill(spline, bins, hits, threads, wanted, number)
+    report = sampling_report(spline, len(bins.normals), len(hits), chosen.density, hits.developable)
+    warn_of(report, count, stacklevel=4)
+    return Samples(**arrays, report=report), bins.normals
 
 
 def sample_many(
@@ -93,6 +111,8 @@ def sample_many(
     progress: bool = True,
     count: int | None = None,
     cells: Sequence[int] | None = None,
+    fields: Sequence[str] | None = None,
+    dtype: DTypeLike = np.float64,
     threads: int | None = None,
 ) -> Iterator[Samples]:
     """Yield the samples of each surface, in order; the arguments are those of `sample`.
@@ -100,87 +120,51 @@ def sample_many(
     Progress goes to standard error if that is a terminal. A surface that raises a GaussmapError is
     reported by a GaussmapWarning, with its number and name, and left out; the others go on.
     `samples.report.surface` tells which surface the samples are of. Raises InputError for unusable
-    normals, count or threads.
+    normals, count, fields, dtype or threads.
     """
     from tqdm import tqdm
 
-    directions = _directions(normals, count, threads)
+    asked = normals_asked(normals, count, threads)
+    directions = None if isinstance(asked, int) else asked
+    wanted, number = checked_fields(fields), checked_dtype(dtype)
     if isinstance(surfaces, str) or not isinstance(surfaces, Iterable):
         raise InputError(f"sample_many takes surfaces to go through, not {surfaces!r}.")
     bar = tqdm(surfaces, desc="sampling", unit="surface", disable=None if progress else True)
-    for number, surface in enumerate(bar):
+    for place, surface in enumerate(bar):
         try:
-            samples = sample(surface, directions, count=count, cells=cells, threads=threads)
+            samples = sample(
+                surface,
+                directions,
+                count=count,
+                cells=cells,
+                fields=wanted,
+                dtype=number,
+                threads=threads,
+            )
         except GaussmapError as error:
             name = getattr(surface, "name", type(surface).__name__)
             warnings.warn(
-                f"surface {number} ({name}) is left out: {error}", GaussmapWarning, stacklevel=2
+                f"surface {place} ({name}) is left out: {error}", GaussmapWarning, stacklevel=2
             )
         else:
             yield samples
 
 
-def _directions(
-    normals: ArrayLike | None, count: int | None, threads: int | None
-) -> NDArray[np.float64] | None:
-    """Return the unit normals that were asked, None if it was a count; InputError if unusable."""
-    if (normals is None) == (count is None):
-        raise InputError("give either normals=... or count=..., and not both.")
-    thread_count(threads)
-    if normals is not None:
-        return as_normals(normals)
-    whole_number(count, "count")
-    return None
-
-
-def _by_count(
-    spline: Spline, count: int, threads: int | None, progress: bool
-) -> tuple[NormalBins, Hits, float]:
-    """Choose the number of normals so that about `count` samples come."""
-    lattice = Lattice.around(spline)
-    densest = lattice.density_of(NORMALS_PER_SAMPLE * max(count, 1000))
-    everything = float(np.abs(spline.measure[1]).sum())
-    resolved = visible_solid_angle(spline, min(count / max(everything, 1e-300), densest))
-    if resolved == 0.0:
-        lattice, density = Lattice.everywhere(), count / (4 * math.pi)
-    else:
-        density = count / resolved
-    best: tuple[NormalBins, Hits, float] | None = None
-    for _ in range(TRIES):
-        density = min(density, densest)
-        bins = NormalBins(lattice.normals(density))
-        hits = find(spline, bins, threads, progress)
-        if best is None or abs(len(hits) - count) < abs(len(best[1]) - count):
-            best = bins, hits, density
-        if abs(len(hits) - count) <= NEAR_ENOUGH * count or resolved == 0.0:
-            break
-        density *= count / len(hits) if len(hits) else 2.0
-    assert best is not None
-    return best
-
-
-def _samples(
-    spline: Spline,
-    bins: NormalBins,
-    hits: Hits,
-    density: float,
-    threads: int | None,
-) -> Samples:
-    report = SamplingReport(
+def sampling_report(
+    spline: Spline, normals: int, samples: int, density: float, developable: int | None
+) -> SamplingReport:
+    """Return how a sampling with `density` normals per steradian went."""
+    return SamplingReport(
         surface=spline.name,
-        normals=len(bins.normals),
-        samples=len(hits),
+        normals=normals,
+        samples=samples,
         patches=spline.patches,
         invisible_share=invisible_share(spline, density),
-        degenerate_patches=hits.developable,
-    )
-    fields = fill(spline, bins, hits, threads)
-    return Samples(
-        **fields, normal_index=hits.normal_index, patch_index=hits.patch_index, report=report
+        degenerate_patches=developable,
     )
 
 
-def _warn(report: SamplingReport, count: int | None) -> None:
+def warn_of(report: SamplingReport, count: int | None, stacklevel: int) -> None:
     """Say when normals see less of the surface than the user may think."""
     share = report.invisible_share or 0.0
     reasons = []
@@ -197,4 +181,4 @@ def _warn(report: SamplingReport, count: int | None) -> None:
         reasons.append(f"{report.samples} samples came where {count} were asked")
     if reasons:
         message = f"surface {report.surface!r}: {'; '.join(reasons)}."
-        warnings.warn(message, GaussmapWarning, stacklevel=4)
+        warnings.warn(message, GaussmapWarning, stacklevel=stacklevel)

@@ -3,26 +3,31 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from ..generated import icosphere
 from ..generated import sampler as kernels
 from .exact import decide
+from .fields import ARRAY_NAMES, FLOAT_NAMES, INDEX_NAMES, new_field
 from .sphere import perpendicular
 from .spline import Spline
 from .threads import over_ranges, thread_count
 
-__all__ = ["Hits", "NormalBins", "fill", "find"]
+__all__ = ["Hits", "NormalBins", "Pairs", "Search", "fill", "find", "merged"]
 
 # A range of patches is searched by one thread. There are several for each, but for small surfaces.
 FEWEST_PATCHES, MOST_PATCHES = 64, 4096
 RANGES_PER_THREAD = 4
 SAMPLES_AT_A_TIME = 1 << 16
 NORMALS_PER_BIN = 4
+# Normals are sorted by a thread for so many at least, and by so many threads at most.
+FEWEST_NORMALS, MOST_COUNTS = 1 << 16, 8
 # A cap of normals is not taken for narrower than this, the tangent of half its angle.
 NARROWEST = 2.0**-20
 # Room for so many hits at first; a patch that needs more gets it.
@@ -38,6 +43,7 @@ class NormalBins:
     """
 
     normals: NDArray[np.float64]
+    threads: int | None = None
 
     @cached_property
     def frequency(self) -> int:
@@ -49,7 +55,7 @@ class NormalBins:
         def work(first: int, last: int) -> bool:
             return icosphere.is_icosphere(self.normals, frequency, first, last)
 
-        return frequency if all(over_ranges(work, 51, 1, None)) else 0
+        return frequency if all(over_ranges(work, 51, 1, self.threads)) else 0
 
     @property
     def components(self) -> NDArray[np.float64]:
@@ -59,7 +65,7 @@ class NormalBins:
     @cached_property
     def frame(self) -> NDArray[np.float64]:
         """The linear map (3, 3), the identity unless there is such a cap."""
-        mean = self.normals.mean(axis=0)
+        mean = self._sum() / len(self.normals)
         length = float(np.linalg.norm(mean))
         if length < 0.8:
             return np.eye(3)
@@ -71,6 +77,14 @@ class NormalBins:
             return np.eye(3)
         tangent = max(float(np.hypot(x, y).max() / z.min()), NARROWEST)
         return directions / [[tangent], [tangent], [1.0]] if tangent < 0.8 else np.eye(3)
+
+    def _sum(self) -> NDArray[np.float64]:
+        """Return the sum of all normals, added in the same order for any number of threads."""
+        parts = over_ranges(
+            lambda first, last: np.ones(last - first) @ self.normals[first:last],
+            len(self.normals), FEWEST_NORMALS, self.threads,
+        )  # fmt: skip
+        return np.sum(list(parts), axis=0)
 
     @cached_property
     def stretch(self) -> float:
@@ -86,10 +100,26 @@ class NormalBins:
     @cached_property
     def sorted(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
         """The start of each bin; the numbers of the normals in their order; the normals (3, S)."""
-        starts = np.empty(6 * self.grid**2 + 1, dtype=np.int64)
-        order = np.empty(len(self.normals), dtype=np.int64)
-        components = np.empty((3, len(self.normals)))
-        kernels.bin_normals(self.normals, self.frame, self.grid, starts, order, components)
+        total, count = len(self.normals), 6 * self.grid**2
+        size = max(FEWEST_NORMALS, -(-total // min(thread_count(self.threads), MOST_COUNTS)))
+        bins = np.empty(total, dtype=np.int32)
+        counts = np.empty((-(-total // size), count), dtype=np.int64)
+        starts, order = np.empty(count + 1, dtype=np.int64), np.empty(total, dtype=np.int64)
+        components = np.empty((3, total))
+
+        def count_bins(first: int, last: int) -> None:
+            kernels.count_bins(
+                self.normals, self.frame, self.grid, first, last, bins, counts[first // size]
+            )
+
+        def place(first: int, last: int) -> None:
+            kernels.place_normals(
+                self.normals, bins, first, last, counts[first // size], order, components
+            )
+
+        list(over_ranges(count_bins, total, size, self.threads))
+        kernels.start_bins(counts, starts)
+        list(over_ranges(place, total, size, self.threads))
         return starts, order, components
 
 
@@ -109,13 +139,49 @@ class Hits:
     local: NDArray[np.float64]
     developable: int
 
+    @classmethod
+    def none(cls, developable: int) -> Hits:
+        """Return no hits."""
+        empty = np.empty(0, dtype=np.int64)
+        return cls(empty, empty, empty, empty, np.empty((0, 5)), developable)
+
+    @classmethod
+    def joined(cls, parts: Sequence[Hits]) -> Hits:
+        """Return the hits of consecutive ranges of patches."""
+        if len(parts) == 1:
+            return parts[0]
+        starts = np.cumsum([0, *(len(part) for part in parts)])
+        return cls(
+            np.concatenate([part.patch_index for part in parts]),
+            np.concatenate([part.normal_index for part in parts]),
+            np.concatenate([part.place for part in parts]),
+            np.concatenate(
+                [part.exact + start for part, start in zip(parts, starts[:-1], strict=True)]
+            ),
+            np.concatenate([part.local for part in parts]),
+            sum(part.developable for part in parts),
+        )
+
     def __len__(self) -> int:
         """Return the number of samples."""
         return len(self.patch_index)
 
+    def __getitem__(self, key: slice) -> Hits:
+        """Return consecutive hits; the developable patches are counted with the first of all."""
+        first, last, _ = key.indices(len(self))
+        low, high = np.searchsorted(self.exact, (first, last))
+        return Hits(
+            self.patch_index[first:last],
+            self.normal_index[first:last],
+            self.place[first:last],
+            self.exact[low:high] - first,
+            self.local[low:high],
+            self.developable if first == 0 else 0,
+        )
+
 
 @dataclass(frozen=True, eq=False)
-class _Range:
+class Pairs:
     """What a range of patches yields: pairs (3, …) of patch, normal and place of the normal.
 
     Some are sure; rounding leaves the others open, with the error `bounds` of their forms.
@@ -126,34 +192,66 @@ class _Range:
     bounds: NDArray[np.float64]
     developable: int
 
+    @classmethod
+    def joined(cls, parts: Sequence[Pairs]) -> Pairs:
+        """Return the pairs of consecutive ranges."""
+        if len(parts) == 1:
+            return parts[0]
+        return cls(
+            np.concatenate([part.sure for part in parts], axis=1),
+            np.concatenate([part.doubtful for part in parts], axis=1),
+            np.concatenate([part.bounds for part in parts]),
+            sum(part.developable for part in parts),
+        )
 
-def find(
-    spline: Spline, bins: NormalBins, threads: int | None = None, progress: bool = False
-) -> Hits:
-    """Return which patch of a spline has which of the normals."""
-    border = np.array([end == "none" for end in _sides(spline)])
-    noise = kernels.DATA_ERROR * float(np.abs(spline.coefficients * spline.scale).max())
-    if kernels.all_developable(spline.coefficients, spline.scale, noise):
-        return _hits(np.empty((3, 0), dtype=np.int64), spline.patches)
 
-    if bins.frequency > 0:
-        patches_with, arguments = icosphere.scan_patches, (bins.normals, bins.frequency)
-    else:
-        patches_with = kernels.search_patches
-        arguments = (bins.frame, bins.stretch, bins.grid, *bins.sorted)
+@dataclass(frozen=True, eq=False)
+class Search:
+    """The search for the normals that the patches of a spline have, range by range."""
 
-    def search(first: int, last: int) -> list[_Range]:
+    spline: Spline
+    bins: NormalBins
+
+    @cached_property
+    def border(self) -> NDArray[np.bool_]:
+        """Which sides of the domain are open, in the order of a cell's triangles: s, e, n, w."""
+        (west, east), (south, north) = self.spline.ends
+        return np.array([end == "none" for end in (south, east, north, west)])
+
+    @cached_property
+    def noise(self) -> float:
+        """The rounding of the scaled coordinates."""
+        return kernels.DATA_ERROR * float(
+            np.abs(self.spline.coefficients * self.spline.scale).max()
+        )
+
+    @cached_property
+    def hopeless(self) -> bool:
+        """Whether all patches are developable, up to the rounding of their coordinates."""
+        return kernels.all_developable(self.spline.coefficients, self.spline.scale, self.noise)
+
+    @cached_property
+    def kernel(self) -> tuple[Callable[..., tuple[int, int]], tuple[Any, ...]]:
+        """What searches patches, and what it is told of the normals."""
+        bins = self.bins
+        if bins.frequency > 0:
+            return icosphere.scan_patches, (bins.normals, bins.frequency)
+        return kernels.search_patches, (bins.frame, bins.stretch, bins.grid, *bins.sorted)
+
+    def pairs(self, first: int, last: int) -> Pairs:
+        """Return what the patches first, …, last − 1 yield."""
+        patches_with, arguments = self.kernel
         parts, room = [], ROOM
         while first < last:
             found, doubtful = np.empty((2, 3, room), dtype=np.int64)
             bounds, counts = np.empty(room), np.zeros(3, dtype=np.int64)
             first, needed = patches_with(
-                spline.coefficients, spline.scale, noise, border, *arguments,
+                self.spline.coefficients, self.spline.scale, self.noise, self.border, *arguments,
                 first, last, found, doubtful, bounds, counts,
             )  # fmt: skip
             sure, open_, developable = counts.tolist()
             parts.append(
-                _Range(
+                Pairs(
                     found[:, :sure].copy(),
                     doubtful[:, :open_].copy(),
                     bounds[:open_].copy(),
@@ -161,81 +259,77 @@ def find(
                 )
             )
             room = max(ROOM, needed)
-        return parts
+        return Pairs.joined(parts)
 
-    count = spline.patches // (RANGES_PER_THREAD * thread_count(threads))
-    size = min(max(count, FEWEST_PATCHES), MOST_PATCHES)
-    ranges = [
-        x for part in over_ranges(search, spline.patches, size, threads, progress) for x in part
-    ]
-    return _decided(spline, bins, border, ranges, threads)
+    def range_size(self, threads: int | None) -> int:
+        """Return how many patches one range has."""
+        count = self.spline.patches // (RANGES_PER_THREAD * thread_count(threads))
+        return min(max(count, FEWEST_PATCHES), MOST_PATCHES)
+
+    def decided(
+        self, doubtful: NDArray[np.int64], bounds: NDArray[np.float64], threads: int | None
+    ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """Return those of the doubtful pairs that are samples, and what `Decision` says of them."""
+        if doubtful.shape[1] == 0:
+            return doubtful, np.empty((0, 5))
+        forgiven = np.where(_on_border(self.spline, self.border, doubtful[0]), bounds, 0.0)
+        normals = self.bins.normals[doubtful[1]]
+        decision = decide(self.spline, doubtful[0], normals, bounds, forgiven, threads)
+        return doubtful[:, decision.which], decision.local
+
+
+def find(
+    spline: Spline, bins: NormalBins, threads: int | None = None, progress: bool = False
+) -> Hits:
+    """Return which patch of a spline has which of the normals."""
+    search = Search(spline, bins)
+    if search.hopeless:
+        return Hits.none(spline.patches)
+    size = search.range_size(threads)
+    found = Pairs.joined([*over_ranges(search.pairs, spline.patches, size, threads, progress)])
+    return merged(found, *search.decided(found.doubtful, found.bounds, threads))
 
 
 def fill(
-    spline: Spline, bins: NormalBins, hits: Hits, threads: int | None = None
-) -> dict[str, NDArray[np.float64]]:
-    """Return points, normals, uv, support and curvatures of the hits."""
+    spline: Spline,
+    bins: NormalBins,
+    hits: Hits,
+    threads: int | None = None,
+    fields: Sequence[str] = ARRAY_NAMES,
+    dtype: DTypeLike = np.float64,
+) -> dict[str, NDArray[Any]]:
+    """Return fields of the hits: see `Samples`. Numbers are rounded to `dtype` when stored."""
     count = len(hits)
-    fields = {
-        "points": np.empty((count, 3)),
-        "normals": np.empty((count, 3)),
-        "uv": np.empty((count, 2)),
-        "support": np.empty(count),
-        "gaussian_curvature": np.empty(count),
-        "mean_curvature": np.empty(count),
-    }
+    filled = {x: new_field(x, count, dtype) for x in FLOAT_NAMES if x in fields}
     normals = bins.components
     indices = hits.patch_index, hits.place
+    arrays = [filled.get(name) for name in FLOAT_NAMES]
 
     def work(first: int, last: int) -> None:
         kernels.fill_samples(
             spline.coefficients, spline.scale, normals, spline.frame, first, last,
-            *indices, *fields.values(),
+            *indices, *arrays,
         )  # fmt: skip
 
-    for _ in over_ranges(work, count, SAMPLES_AT_A_TIME, threads):
-        pass
-    kernels.fill_known(
-        spline.coefficients, spline.scale, normals, spline.frame, hits.exact, hits.local,
-        *indices, *fields.values(),
-    )  # fmt: skip
-    return fields
+    if filled:
+        for _ in over_ranges(work, count, SAMPLES_AT_A_TIME, threads):
+            pass
+        kernels.fill_known(
+            spline.coefficients, spline.scale, normals, spline.frame, hits.exact, hits.local,
+            *indices, *arrays,
+        )  # fmt: skip
+    return filled | {x: getattr(hits, x) for x in INDEX_NAMES if x in fields}
 
 
-def _decided(
-    spline: Spline,
-    bins: NormalBins,
-    border: NDArray[np.bool_],
-    ranges: list[_Range],
-    threads: int | None,
-) -> Hits:
-    """Decide the doubtful pairs and merge those that are samples with the sure ones."""
-    sure = np.concatenate([r.sure for r in ranges], axis=1)
-    doubtful = np.concatenate([r.doubtful for r in ranges], axis=1)
-    developable = sum(r.developable for r in ranges)
-    if doubtful.shape[1] == 0:
-        return _hits(sure, developable)
-    bounds = np.concatenate([r.bounds for r in ranges])
-    forgiven = np.where(_on_border(spline, border, doubtful[0]), bounds, 0.0)
-    normals = bins.normals[doubtful[1]]
-    decision = decide(spline, doubtful[0], normals, bounds, forgiven, threads)
-    patch, normal, place = doubtful[:, decision.which]
-    places = _insertion_places(sure[0], sure[1], patch, normal)
-    merged = np.insert(sure, places, (patch, normal, place), axis=1)
-    return _hits(merged, developable, places + np.arange(len(places)), decision.local)
-
-
-def _hits(
-    pairs: NDArray[np.int64],
-    developable: int,
-    exact: NDArray[np.int64] | None = None,
-    local: NDArray[np.float64] | None = None,
-) -> Hits:
-    patch, normal, place = pairs
-    exact = np.empty(0, dtype=np.int64) if exact is None else exact
-    return Hits(
-        patch, normal, place, exact, np.empty((0, 5)) if local is None else local, developable
-    )
+def merged(found: Pairs, decided: NDArray[np.int64], local: NDArray[np.float64]) -> Hits:
+    """Return the sure pairs and those that were decided, sorted like them, as hits."""
+    pairs, exact = found.sure, np.empty(0, dtype=np.int64)
+    if decided.shape[1]:
+        patch, normal, place = decided
+        places = _insertion_places(pairs[0], pairs[1], patch, normal)
+        pairs = np.insert(pairs, places, (patch, normal, place), axis=1)
+        exact = places + np.arange(len(places))
+    return Hits(pairs[0], pairs[1], pairs[2], exact, local, found.developable)
 
 
 def _insertion_places(
@@ -248,12 +342,6 @@ def _insertion_places(
     low, high = np.searchsorted(patch, new_patch), np.searchsorted(patch, new_patch, side="right")
     pairs = zip(low, high, new_normal, strict=True)
     return np.array([a + np.searchsorted(normal[a:b], n) for a, b, n in pairs], dtype=np.int64)
-
-
-def _sides(spline: Spline) -> tuple[str, str, str, str]:
-    """Return the ends of the domain in the order of the triangles of a cell: s, e, n, w."""
-    (west, east), (south, north) = spline.ends
-    return south, east, north, west
 
 
 def _on_border(

@@ -3,17 +3,31 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import reduce
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..generated import icosphere as icosahedron
-from .checks import real_array, whole_number
+from .checks import real_values, whole_number
 from .errors import InputError
+from .threads import over_ranges
 
-__all__ = ["as_normals", "fibonacci", "icosphere", "perpendicular"]
+__all__ = [
+    "as_normals",
+    "fibonacci",
+    "icosphere",
+    "in_pieces",
+    "part_of_fibonacci",
+    "perpendicular",
+    "spiral_angle",
+]
 
 GOLDEN = (1 + math.sqrt(5)) / 2
+# So many normals are made at a time: their arrays fit into the cache.
+PIECE = 1 << 15
 MOST_FREQUENT = 10_000
 
 
@@ -52,33 +66,65 @@ def fibonacci(count: int) -> NDArray[np.float64]:
     number of at least 1.
     """
     total = whole_number(count, "count")
-    k = np.arange(total)
-    z = 1.0 - (2.0 * k + 1.0) / total
-    angle = 2.0 * math.pi * np.modf(k / GOLDEN)[0]
-    radius = np.sqrt((1.0 - z) * (1.0 + z))
-    return _unit(np.column_stack([radius * np.cos(angle), radius * np.sin(angle), z]))
+    return part_of_fibonacci(total, 0, total)
 
 
-def as_normals(normals: ArrayLike, dimension: int = 3) -> NDArray[np.float64]:
+def part_of_fibonacci(
+    count: int, first: int, last: int, threads: int | None = None
+) -> NDArray[np.float64]:
+    """Return the rows first, …, last − 1 of `fibonacci(count)`."""
+
+    def rows(begin: int, end: int) -> NDArray[np.float64]:
+        k = np.arange(begin, end)
+        z = 1.0 - (2.0 * k + 1.0) / count
+        angle = spiral_angle(k)
+        radius = np.sqrt((1.0 - z) * (1.0 + z))
+        return _unit(np.column_stack([radius * np.cos(angle), radius * np.sin(angle), z]))
+
+    return in_pieces(rows, first, last, threads)
+
+
+def spiral_angle(k: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return the azimuth of the points of a Fibonacci lattice."""
+    return 2.0 * math.pi * np.modf(k / GOLDEN)[0]
+
+
+def in_pieces(
+    rows: Callable[[int, int], NDArray[np.float64]],
+    first: int,
+    last: int,
+    threads: int | None = None,
+    width: int = 3,
+) -> NDArray[np.float64]:
+    """Return rows(first, last) (…, width), made in pieces that stay in the cache, on threads."""
+    result = np.empty((last - first, width))
+
+    def work(begin: int, end: int) -> None:
+        result[begin:end] = rows(first + begin, first + end)
+
+    for _ in over_ranges(work, last - first, PIECE, threads):
+        pass
+    return result
+
+
+def as_normals(
+    normals: ArrayLike, dimension: int = 3, threads: int | None = None
+) -> NDArray[np.float64]:
     """Return directions (S, dimension), of any non-zero lengths, as unit normals, float64.
 
     A vector that has unit length already, up to rounding, is kept bit for bit. Raises InputError
     for another shape, an empty array, NaN, infinity, or a vector of length 0, and names its row.
     """
-    array = real_array(normals, "normals")
+    array = real_values(normals, "normals")
     if array.ndim != 2 or array.shape[1] != dimension or array.shape[0] == 0:
         raise InputError(
             f"normals must have the shape (S, {dimension}) with S >= 1, not {array.shape}."
         )
-    bad = ~np.isfinite(array).all(axis=1)
-    if bad.any():
-        raise InputError(f"normals[{int(bad.argmax())}] holds NaN or infinity.")
-    zero = ~array.any(axis=1)
-    if zero.any():
-        raise InputError(
-            f"normals[{int(zero.argmax())}] is the zero vector, which has no direction."
-        )
-    return _unit(array)
+
+    def rows(begin: int, end: int) -> NDArray[np.float64]:
+        return _unit(_checked_directions(array[begin:end], begin))
+
+    return in_pieces(rows, 0, len(array), threads, dimension)
 
 
 def perpendicular(axis: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -89,9 +135,32 @@ def perpendicular(axis: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArr
     return across, np.cross(axis, across)
 
 
+def _checked_directions(values: NDArray[Any], start: int) -> NDArray[np.float64]:
+    """Return directions as float64; InputError names the first unusable row, from `start` on."""
+    with np.errstate(over="ignore"):
+        array = values.astype(np.float64)
+    if not np.isfinite(array).all():
+        bad = int(np.argmin(np.isfinite(array).all(axis=1)))
+        raise InputError(f"normals[{start + bad}] holds NaN or infinity.")
+    zero = _largest(array) == 0.0
+    if zero.any():
+        raise InputError(
+            f"normals[{start + int(zero.argmax())}] is the zero vector, which has no direction."
+        )
+    return array
+
+
+def _largest(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the largest component of each vector, in modulus."""
+    return reduce(np.maximum, np.abs(vectors).T)
+
+
 def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
     """Divide by the length, safely for the smallest and the largest numbers."""
-    exponents = np.frexp(np.abs(vectors).max(axis=1, keepdims=True))[1]
-    scaled = np.ldexp(vectors, np.where(np.abs(exponents) > 1, -exponents, 0))
-    length = np.sqrt(np.einsum("ij,ij->i", scaled, scaled))[:, None]
-    return np.where(np.abs(length - 1.0) <= 4.5e-16, scaled, scaled / length)
+    exponents = np.frexp(_largest(vectors))[1]
+    far = np.abs(exponents) > 1
+    if far.any():
+        vectors = np.ldexp(vectors, np.where(far, -exponents, 0)[:, None])
+    length = np.sqrt(np.einsum("ij,ij->i", vectors, vectors))[:, None]
+    near = np.abs(length - 1.0) <= 4.5e-16
+    return vectors if near.all() else np.where(near, vectors, vectors / length)

@@ -15,6 +15,7 @@ from .checks import parameter_arrays, whole_number
 from .errors import InputError, SurfaceError
 from .ring import Border, Sides, coefficients_with_ring, vertices_with_ring
 from .surface import Domain, Ends, Surface
+from .threads import over_ranges
 
 __all__ = [
     "DEFAULT_CELLS",
@@ -31,6 +32,7 @@ __all__ = [
 DEFAULT_CELLS = (64, 64)
 MOST_CELLS = 10**9
 LONGEST_LABEL = 40
+PATCHES_AT_A_TIME = 1 << 14
 # What is said to be one point may be this far apart, beside the size of the surface.
 SAME_POINT = 1e-6
 # Beyond this binary exponent a number cannot be multiplied by a few small ones.
@@ -120,7 +122,15 @@ class Spline:
         Areas are in units of the squared diagonal of the bounding box of the coefficients.
         """
         areas, solid_angles = np.empty(self.patches), np.empty(self.patches)
-        kernels.measure_patches(self.coefficients, self.scale, 0, self.patches, areas, solid_angles)
+
+        def work(first: int, last: int) -> None:
+            kernels.measure_patches(
+                self.coefficients, self.scale, first, last,
+                areas[first:last], solid_angles[first:last],
+            )  # fmt: skip
+
+        for _ in over_ranges(work, self.patches, PATCHES_AT_A_TIME, None):
+            pass
         inner = self.coefficients[1:-1, 1:-1].reshape(-1, 3) * self.scale
         diagonal = float(np.linalg.norm(np.ptp(inner, axis=0)))
         return areas / diagonal**2 if diagonal > 0.0 else areas, solid_angles

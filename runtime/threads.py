@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+import sys
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from itertools import islice
 from typing import TypeVar
 
 from .checks import whole_number
 
-__all__ = ["over_ranges", "thread_count"]
+__all__ = ["over_ranges", "shown", "thread_count"]
 
 Result = TypeVar("Result")
+
+# So many ranges for each thread are computed before their results are taken.
+AHEAD = 4
 
 
 def thread_count(threads: int | None) -> int:
@@ -34,23 +40,40 @@ def over_ranges(
 ) -> Iterator[Result]:
     """Yield work(first, last) for the consecutive ranges of `size` in 0 … total, in order.
 
-    With `progress`, a bar on standard error shows work that takes longer than a second.
+    No more than a few results for each thread wait for who takes them; closing the iterator ends
+    the work. With `progress`, a bar on standard error shows work that takes longer than a second.
     """
-    ranges = [(first, min(first + size, total)) for first in range(0, total, size)]
-    workers = min(thread_count(threads), len(ranges))
+    starts = range(0, total, size)
+    workers = min(thread_count(threads), len(starts))
     if workers <= 1:
-        yield from _shown((work(first, last) for first, last in ranges), len(ranges), progress)
-        return
+        results = (work(first, min(first + size, total)) for first in starts)
+    else:
+        results = _in_threads(lambda first: work(first, min(first + size, total)), starts, workers)
+    yield from shown(results, len(starts), progress)
+
+
+def _in_threads(
+    work: Callable[[int], Result], starts: Iterable[int], workers: int
+) -> Iterator[Result]:
+    """Yield work(start) in order, computed by threads that are only a little ahead."""
+    waiting = iter(starts)
     with ThreadPoolExecutor(workers) as pool:
         try:
-            yield from _shown(pool.map(lambda ends: work(*ends), ranges), len(ranges), progress)
+            ahead = deque(pool.submit(work, start) for start in islice(waiting, AHEAD * workers))
+            while ahead:
+                result = ahead.popleft().result()
+                ahead.extend(pool.submit(work, start) for start in islice(waiting, 1))
+                yield result
+                del result  # it is not to be kept alive while the next one is computed
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)  # Ctrl-C must not wait for all ranges
             raise
 
 
-def _shown(results: Iterator[Result], count: int, progress: bool) -> Iterator[Result]:
-    if not progress:
+def shown(results: Iterator[Result], count: int, progress: bool) -> Iterator[Result]:
+    """Yield results; with `progress`, a terminal shows how many of `count` are done."""
+    # tqdm shows nothing without a terminal, and its import takes longer than many a sampling.
+    if not progress or sys.stderr is None or not sys.stderr.isatty():
         return results
     from tqdm import tqdm
 

@@ -1,0 +1,106 @@
+"""Which normals are searched: those that are given, or as many as bring a number of samples."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .checks import MOST, whole_number
+from .errors import InputError
+from .lattice import Lattice
+from .search import Hits, NormalBins, find
+from .sphere import as_normals
+from .spline import Spline
+from .threads import thread_count
+from .visibility import visible_solid_angle
+
+__all__ = ["Chosen", "choose", "normals_asked"]
+
+# `count` is met by changing the number of normals, until it is this near or after so many tries.
+NEAR_ENOUGH = 0.01
+TRIES = 6
+# At most this many normals for each sample that was asked (a thin Gaussian image catches few).
+NORMALS_PER_SAMPLE = 100
+# A larger count is not tried, but concluded from this one.
+PILOT = 1_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class Chosen:
+    """The normals to search for, `density` of them per steradian: an array, or those of a lattice.
+
+    If they have been searched already, `found` is what came.
+    """
+
+    source: NDArray[np.float64] | Lattice
+    density: float
+    found: tuple[NormalBins, Hits] | None = None
+
+    def __len__(self) -> int:
+        """Return how many normals there are."""
+        if isinstance(self.source, Lattice):
+            return self.source.size(self.density)
+        return len(self.source)
+
+    def part(self, first: int, last: int, threads: int | None) -> NDArray[np.float64]:
+        """Return the normals first, …, last − 1."""
+        if isinstance(self.source, Lattice):
+            return self.source.normals(self.density, first, last, threads)
+        return self.source[first:last]
+
+
+def normals_asked(
+    normals: ArrayLike | None, count: int | None, threads: int | None
+) -> NDArray[np.float64] | int:
+    """Return the unit normals that were asked, or the count; InputError if unusable."""
+    if (normals is None) == (count is None):
+        raise InputError("give either normals=... or count=..., and not both.")
+    thread_count(threads)
+    if normals is not None:
+        return as_normals(normals, threads=threads)
+    return whole_number(count, "count")
+
+
+def choose(
+    spline: Spline, asked: NDArray[np.float64] | int, threads: int | None, progress: bool
+) -> Chosen:
+    """Return the normals that are asked, or those that bring about so many samples.
+
+    More samples than `PILOT` are not tried: how many normals they need follows from so many.
+    """
+    if not isinstance(asked, int):
+        return Chosen(asked, len(asked) / (4 * math.pi))
+    pilot = min(asked, PILOT)
+    chosen, came = _tried(spline, pilot, threads, progress)
+    if pilot == asked or not isinstance(chosen.source, Lattice):
+        return chosen
+    most = chosen.source.density_of(min(NORMALS_PER_SAMPLE * asked, MOST))
+    return Chosen(chosen.source, min(chosen.density * asked / (came or pilot), most))
+
+
+def _tried(spline: Spline, count: int, threads: int | None, progress: bool) -> tuple[Chosen, int]:
+    """Change the density of a lattice until about `count` samples come; return how many came."""
+    lattice = Lattice.around(spline)
+    densest = lattice.density_of(NORMALS_PER_SAMPLE * max(count, 1000))
+    everything = float(np.abs(spline.measure[1]).sum())
+    resolved = visible_solid_angle(spline, min(count / max(everything, 1e-300), densest))
+    if resolved == 0.0:
+        lattice, density = Lattice.everywhere(), count / (4 * math.pi)
+    else:
+        density = count / resolved
+    best: Chosen | None = None
+    came = 0
+    for _ in range(TRIES):
+        density = min(density, densest)
+        bins = NormalBins(lattice.normals(density, threads=threads), threads)
+        hits = find(spline, bins, threads, progress)
+        if best is None or abs(len(hits) - count) < abs(came - count):
+            best, came = Chosen(lattice, density, (bins, hits)), len(hits)
+        if abs(len(hits) - count) <= NEAR_ENOUGH * count or resolved == 0.0:
+            break
+        density *= count / len(hits) if len(hits) else 2.0
+    assert best is not None
+    return best, came

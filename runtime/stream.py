@@ -1,0 +1,168 @@
+"""`sample_stream`: the samples of a surface in chunks, in bounded memory."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+from .checks import whole_number
+from .choice import choose, normals_asked
+from .fields import checked_dtype, checked_fields
+from .samples import Samples, SamplingReport
+from .sampling import sampling_report, warn_of
+from .search import Hits, NormalBins, Search, fill, merged
+from .spline import Spline, spline_of
+from .surface import Surface
+from .threads import over_ranges, shown
+
+__all__ = ["sample_stream"]
+
+# So many normals are searched at a time. With what is found they take some 300 MB.
+NORMALS_AT_A_TIME = 1 << 21
+
+
+def sample_stream(
+    surface: Surface | Spline,
+    normals: ArrayLike | None = None,
+    *,
+    count: int | None = None,
+    chunk: int = 1_000_000,
+    cells: Sequence[int] | None = None,
+    fields: Sequence[str] | None = None,
+    dtype: DTypeLike = np.float64,
+    threads: int | None = None,
+    progress: bool = False,
+) -> Generator[Samples, None, None]:
+    """Yield the samples that `sample` returns in chunks of at most `chunk`, in bounded memory.
+
+    A thousand million samples that are reduced on the fly take less than 1 GiB: with `count`, not
+    even the normals are ever in memory all at once.
+
+    `Samples.concatenate(sample_stream(…))` is `sample(…)`, bit for bit and in the same order, for
+    up to 2,097,152 normals. More of them are searched in blocks of so many: the samples are the
+    same, but ordered by block of normals, then by patch, then by normal.
+
+    There is at least one chunk, and all but the last of each block are full. A chunk's report
+    counts the samples of the chunk, and no degenerate patches; a GaussmapWarning comes at the end.
+    Closing the generator ends the work.
+
+    The other arguments, and what is raised, are those of `sample`. `chunk` is a whole number. All
+    arguments are checked, and the surface is evaluated, before the first chunk is asked for.
+    """
+    size = whole_number(chunk, "chunk")
+    wanted, number = checked_fields(fields), checked_dtype(dtype)
+    asked = normals_asked(normals, count, threads)
+    stream = _Stream(spline_of(surface, cells), asked, size, wanted, number, threads, progress)
+    return stream.chunks()
+
+
+@dataclass(frozen=True, eq=False)
+class _Stream:
+    spline: Spline
+    asked: NDArray[np.float64] | int
+    size: int
+    fields: tuple[str, ...]
+    dtype: np.dtype[np.floating]
+    threads: int | None
+    progress: bool
+
+    def chunks(self) -> Generator[Samples, None, None]:
+        """Yield the chunks of all blocks of normals, at least one, and warn at the end."""
+        chosen = choose(self.spline, self.asked, self.threads, self.progress)
+        chosen, total = replace(chosen, found=None), len(chosen)  # that would stay in memory
+        report = sampling_report(self.spline, total, 0, chosen.density, None)
+        starts = range(0, total, NORMALS_AT_A_TIME)
+        alone = len(starts) == 1
+        came = developable = 0
+        for first in shown(iter(starts), len(starts), self.progress and not alone):
+            last = min(first + NORMALS_AT_A_TIME, total)
+            bins = NormalBins(chosen.part(first, last, self.threads), self.threads)
+            found = find_in_turn(self.spline, bins, self.threads, self.progress and alone)
+            developable = 0  # the same for every block
+            for hits in grouped(found, self.size):
+                came += len(hits)
+                developable += hits.developable
+                if len(hits) or (came == 0 and first == starts[-1]):
+                    yield self._samples(bins, hits, first, report)
+        report = replace(report, samples=came, degenerate_patches=developable)
+        warn_of(report, self.asked if isinstance(self.asked, int) else None, stacklevel=3)
+
+    def _samples(self, bins: NormalBins, hits: Hits, start: int, report: SamplingReport) -> Samples:
+        """Return hits as samples; the normals are numbered from `start` on."""
+        arrays = fill(self.spline, bins, hits, self.threads, self.fields, self.dtype)
+        if start and "normal_index" in arrays:
+            arrays["normal_index"] = arrays["normal_index"] + start
+        return Samples(**arrays, report=replace(report, samples=len(hits)))
+
+
+def grouped(parts: Iterator[Hits], size: int) -> Iterator[Hits]:
+    """Join and cut consecutive hits: `size` at a time, and what is left at the end."""
+    group: list[Hits] = []
+    room = size
+    for hits in parts:
+        start = 0
+        while len(hits) - start >= room:
+            yield Hits.joined([*group, hits[start : start + room]])
+            start += room
+            group, room = [], size
+        group.append(hits[start:])
+        room -= len(group[-1])
+    yield Hits.joined(group)
+
+
+def find_in_turn(
+    spline: Spline, bins: NormalBins, threads: int | None, progress: bool
+) -> Iterator[Hits]:
+    """Yield what `find` returns, for one range of patches after the other."""
+    search = Search(spline, bins)
+    if search.hopeless:
+        yield Hits.none(spline.patches)
+        return
+    border = _Border.of(search, threads)
+    size = search.range_size(threads)
+    yield from over_ranges(border.hits, spline.patches, size, threads, progress)
+
+
+@dataclass(frozen=True, eq=False)
+class _Border:
+    """The cells (m n,) at the open border of the domain, and which of their doubtful pairs count.
+
+    There two patches may both have a sample at one place, of which one is dropped. So these pairs
+    are decided together, before all others, whichever ranges their patches lie in.
+    """
+
+    search: Search
+    cells: NDArray[np.bool_]
+    pairs: NDArray[np.int64]
+    local: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, search: Search, threads: int | None) -> _Border:
+        """Search the cells at the border."""
+        south, east, north, west = search.border
+        cells = np.zeros(search.spline.cells, dtype=bool)
+        cells[:, 0], cells[:, -1] = south, north
+        cells[0] |= west
+        cells[-1] |= east
+        doubtful, bounds = [np.empty((3, 0), dtype=np.int64)], [np.empty(0)]
+        ends = np.flatnonzero(np.diff(cells.ravel(), prepend=False, append=False))
+        for first, last in ends.reshape(-1, 2).tolist():
+            found = search.pairs(4 * first, 4 * last)
+            doubtful.append(found.doubtful)
+            bounds.append(found.bounds)
+        decided = search.decided(np.concatenate(doubtful, axis=1), np.concatenate(bounds), threads)
+        return cls(search, cells.ravel(), *decided)
+
+    def hits(self, first: int, last: int) -> Hits:
+        """Return which of the patches first, …, last − 1 have which of the normals."""
+        found = self.search.pairs(first, last)
+        inside = ~self.cells[found.doubtful[0] // 4]
+        pairs, local = self.search.decided(found.doubtful[:, inside], found.bounds[inside], 1)
+        low, high = np.searchsorted(self.pairs[0], (first, last))
+        pairs = np.concatenate([pairs, self.pairs[:, low:high]], axis=1)
+        order = np.lexsort((pairs[1], pairs[0]))
+        local = np.concatenate([local, self.local[low:high]])
+        return merged(found, pairs[:, order], local[order])

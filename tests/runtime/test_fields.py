@@ -1,0 +1,288 @@
+"""Only some fields, and float32: the same numbers, and a sentence for what is missing."""
+
+import copy
+import pickle
+from dataclasses import replace
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.runtime import fields as names
+from gaussmap.runtime.cli import main
+from gaussmap.runtime.fields import ARRAY_NAMES, FLOAT_NAMES
+from gaussmap.runtime.pictures.plot import plot_samples
+from gaussmap.runtime.samples import Samples
+from gaussmap.runtime.search import NormalBins, fill, find
+
+# The vertices of the icosphere lie in planes of symmetry: some samples are decided exactly.
+NORMALS = gm.icosphere(6)
+SPLINE = gm.fit(gm.surfaces.torus(), (12, 8))
+FULL = gm.sample(SPLINE, NORMALS)
+SUBSETS = [(name,) for name in ARRAY_NAMES] + [
+    ("points", "normals"),
+    ("mean_curvature", "uv"),
+    ("patch_index", "support", "gaussian_curvature"),
+    ("normal_index", "patch_index"),
+]
+
+
+def narrow(fields: Any = ("points",), **options: Any) -> Samples:
+    return gm.sample(SPLINE, NORMALS, fields=fields, **options)
+
+
+# --- what is stored -------------------------------------------------------------------------------
+
+
+def test_some_samples_are_decided_exactly():
+    assert 0 < len(find(SPLINE, NormalBins(NORMALS)).exact) < len(FULL)
+
+
+@pytest.mark.parametrize("fields", SUBSETS, ids="-".join)
+def test_fields_are_those_of_a_full_sampling(fields):
+    samples = narrow(fields)
+    assert len(samples) == len(FULL)
+    assert samples.report == FULL.report
+    assert samples.fields == tuple(name for name in ARRAY_NAMES if name in fields)
+    for name in ARRAY_NAMES:
+        assert hasattr(samples, name) == (name in fields)
+    for name in fields:
+        assert getattr(samples, name).tobytes() == getattr(FULL, name).tobytes()
+
+
+def test_nothing_is_filled_that_is_not_wanted(monkeypatch):
+    bins = NormalBins(NORMALS)
+    hits = find(SPLINE, bins)
+    assert set(fill(SPLINE, bins, hits, fields=("uv", "patch_index"))) == {"uv", "patch_index"}
+
+    def filled(*_):
+        raise AssertionError("indices are known without it")
+
+    monkeypatch.setattr("gaussmap.generated.sampler.fill_samples", filled)
+    monkeypatch.setattr("gaussmap.generated.sampler.fill_known", filled)
+    assert narrow(("patch_index",)).fields == ("patch_index",)
+
+
+@pytest.mark.parametrize("dtype", [np.float32, "float32", np.dtype(np.float32), "f4"])
+def test_float32_is_float64_rounded_once(dtype):
+    samples = narrow(None, dtype=dtype)
+    assert samples.dtype == np.float32
+    for name in FLOAT_NAMES:
+        array = getattr(samples, name)
+        assert array.dtype == np.float32
+        assert array.tobytes() == getattr(FULL, name).astype(np.float32).tobytes()
+    for name in names.INDEX_NAMES:
+        assert getattr(samples, name).dtype == np.int64
+        assert (getattr(samples, name) == getattr(FULL, name)).all()
+    assert (samples.elliptic == FULL.elliptic).all()
+
+
+def test_principal_curvatures_of_float32():
+    samples = narrow(("gaussian_curvature", "mean_curvature"), dtype=np.float32)
+    found = samples.principal_curvatures
+    assert found.dtype == np.float32
+    # H² − K has the rounding of both, its root that times the half of its inverse.
+    size = np.abs(FULL.mean_curvature) + np.sqrt(np.abs(FULL.gaussian_curvature))
+    gap = np.ptp(FULL.principal_curvatures, axis=1)
+    error = np.abs(found - FULL.principal_curvatures).max(axis=1)
+    assert (error <= 4 * 2.0**-24 * size * (1 + size / gap)).all()
+
+
+# --- what is missing ------------------------------------------------------------------------------
+
+
+def test_a_missing_field_is_said_to_be():
+    samples = narrow(("points", "normals"))
+    with pytest.raises(
+        gm.MissingFieldError, match=r"hold points, normals only; add 'uv' to fields="
+    ):
+        _ = samples.uv
+    for name in ("elliptic", "hyperbolic", "principal_curvatures"):
+        assert not hasattr(samples, name)
+        with pytest.raises(gm.MissingFieldError, match=f"^{name} needs gaussian_curvature"):
+            getattr(samples, name)
+    lacks_mean = narrow(("gaussian_curvature",))
+    assert lacks_mean.elliptic.any()
+    with pytest.raises(gm.MissingFieldError, match="needs mean_curvature, but"):
+        _ = lacks_mean.principal_curvatures
+    with pytest.raises(AttributeError, match="has no attribute 'curvature'") as caught:
+        _ = samples.curvature  # pyright: ignore[reportAttributeAccessIssue]
+    assert not isinstance(caught.value, gm.GaussmapError)
+
+
+def test_pictures_say_what_they_need(tmp_path):
+    with pytest.raises(gm.MissingFieldError, match="add 'normal_index' to fields"):
+        plot_samples(narrow(), SPLINE, NORMALS, tmp_path / "a.png")
+    assert not any(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ("points", r"must be a tuple of names, such as \('points',\), not a string"),
+        ("points,uv", "not a string"),
+        ((), "fields is empty"),
+        ([], "fields is empty"),
+        (3, "must be a tuple of names, not 3"),
+        (("points", "points"), "names 'points' twice"),
+        (("points", "normal"), "no field 'normal'; did you mean 'normals'"),
+        (("colour",), "no field 'colour'; there is points, normals, uv"),
+        ((1,), "no field 1"),
+        ((None,), "no field None"),
+        (("elliptic",), "elliptic is computed when it is read, from 'gaussian_curvature'"),
+        (("principal_curvatures",), "from 'gaussian_curvature' and 'mean_curvature'"),
+    ],
+)
+def test_fields_that_are_none(fields, message):
+    for call in (
+        lambda: narrow(fields),
+        lambda: next(gm.sample_many([SPLINE], NORMALS, fields=fields)),
+        lambda: gm.sample_stream(SPLINE, NORMALS, fields=fields),
+    ):
+        with pytest.raises(gm.InputError, match=message):
+            call()
+
+
+@pytest.mark.parametrize(
+    "dtype", ["float16", np.float128, int, ">f4", "numbers", object, 7, "f4,f4", None, "f("]
+)
+def test_types_that_are_none(dtype):
+    for call in (
+        lambda: narrow(dtype=dtype),
+        lambda: next(gm.sample_many([SPLINE], NORMALS, dtype=dtype)),
+        lambda: gm.sample_stream(SPLINE, NORMALS, dtype=dtype),
+    ):
+        with pytest.raises(gm.InputError, match="dtype must be float32 or float64, not"):
+            call()
+
+
+# --- samples of few fields ------------------------------------------------------------------------
+
+
+def test_text():
+    samples = narrow(("points", "uv"))
+    assert repr(samples) == f"Samples({len(FULL):,} points on torus (points, uv only))"
+    assert samples.summary().startswith(
+        f"{len(NORMALS):,} normals asked, {len(FULL):,} samples came (points, uv only); normals"
+    )
+
+
+def test_copies_pickles_and_parts():
+    samples = narrow(("uv", "normal_index"), dtype=np.float32)
+    whole = slice(None)
+    for other in (copy.copy(samples), copy.deepcopy(samples), pickle.loads(pickle.dumps(samples)),
+                  samples[whole], Samples.concatenate([samples[:5], samples[5:]])):  # fmt: skip
+        assert other.fields == ("uv", "normal_index")
+        assert other.dtype == np.float32
+        assert other.uv.tobytes() == samples.uv.tobytes()
+        assert other.normal_index.tobytes() == samples.normal_index.tobytes()
+
+
+def test_concatenation():
+    parts = [FULL[:10], FULL[10:10], FULL[10:]]
+    joined = Samples.concatenate(iter(parts))
+    assert joined.report == FULL.report
+    for name in ARRAY_NAMES:
+        assert getattr(joined, name).tobytes() == getattr(FULL, name).tobytes()
+    other = replace(FULL, report=replace(FULL.report, surface="other", normals=3))
+    report = Samples.concatenate([FULL, other]).report
+    assert (report.surface, report.normals) == ("several surfaces", None)
+    assert (report.samples, report.patches) == (2 * len(FULL), FULL.report.patches)
+    for unusable in ([], [FULL, narrow()], [FULL, narrow(None, dtype="f4")], [1], [FULL, None]):
+        with pytest.raises(gm.InputError):
+            Samples.concatenate(unusable)  # pyright: ignore[reportArgumentType]
+
+
+def test_samples_need_one_array_and_one_type():
+    with pytest.raises(gm.InputError, match="need at least one array"):
+        Samples(report=FULL.report)
+    single = narrow(dtype=np.float32)
+    with pytest.raises(gm.InputError, match="points must be a float64 array"):
+        Samples(points=single.points, normals=FULL.normals, report=FULL.report)
+
+
+# --- files ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("suffix", [".npz", ".ply"])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("fields", [("points",), ("points", "uv", "patch_index"), ARRAY_NAMES])
+def test_files_keep_fields_and_types(tmp_path, suffix, dtype, fields):
+    samples = narrow(fields, dtype=dtype)
+    samples.write(tmp_path / f"a{suffix}")
+    again = gm.read_samples(tmp_path / f"a{suffix}")
+    assert again.fields == samples.fields
+    assert again.report == samples.report
+    for name in fields:
+        assert getattr(again, name).dtype == getattr(samples, name).dtype
+        assert getattr(again, name).tobytes() == getattr(samples, name).tobytes()
+
+
+def test_text_of_float32_reads_back(tmp_path):
+    samples = narrow(("points", "normals", "normal_index"), dtype=np.float32)
+    samples.write(tmp_path / "a.csv")
+    assert (tmp_path / "a.csv").read_text().startswith("x,y,z,nx,ny,nz,normal_index\n")
+    rows = np.loadtxt(tmp_path / "a.csv", delimiter=",", skiprows=1)
+    assert rows[:, :3].astype(np.float32).tobytes() == samples.points.tobytes()
+    assert (rows[:, 6] == samples.normal_index).all()
+    samples.write(tmp_path / "a.xyz")
+    assert np.loadtxt(tmp_path / "a.xyz", dtype=np.float32)[:, 3:].tobytes() == (
+        samples.normals.tobytes()
+    )
+
+
+def test_vtp_of_few_fields(tmp_path):
+    pyvista = pytest.importorskip("pyvista")
+    narrow(("points", "uv"), dtype=np.float32).write(tmp_path / "a.vtp")
+    cloud = pyvista.read(tmp_path / "a.vtp")
+    assert cloud.points.dtype == np.float32
+    assert list(cloud.point_data) == ["uv"]
+
+
+@pytest.mark.parametrize(
+    ("suffix", "fields", "lacking"),
+    [
+        (".ply", ("uv",), "'points'"),
+        (".vtp", ("normals",), "'points'"),
+        (".xyz", ("uv",), "'points' and 'normals'"),
+        (".xyz", ("points",), "'normals'"),
+    ],
+)
+def test_formats_say_what_they_need(tmp_path, suffix, fields, lacking):
+    with pytest.raises(gm.InputError, match=f"a {suffix} file needs {lacking}; add"):
+        narrow(fields).write(tmp_path / f"a{suffix}")
+    assert not any(tmp_path.iterdir())
+
+
+def test_a_file_that_lacks_what_it_promises(tmp_path):
+    narrow(("points", "uv")).write(tmp_path / "a.ply")
+    whole = (tmp_path / "a.ply").read_bytes()
+    for old, new, message in (
+        (b"fields points uv", b"fields points support", "lacks the columns support"),
+        (b"fields points uv", b"fields points colour", "fields that gaussmap does not know"),
+        (b"comment gaussmap fields points uv\n", b"", "lacks the columns nx"),
+    ):
+        (tmp_path / "b.ply").write_bytes(whole.replace(old, new))
+        with pytest.raises(gm.FileError, match=message):
+            gm.read_samples(tmp_path / "b.ply")
+
+
+# --- the command line -----------------------------------------------------------------------------
+
+
+@pytest.mark.compiled
+def test_command_line(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    few = ["sample", "torus", "--frequency", "4", "--cells", "12", "8"]
+    assert main([*few, "--fields", "points,uv", "--float32", "-o", "a.npz"]) == 0
+    assert "(points, uv only)" in capsys.readouterr().out
+    samples = gm.read_samples("a.npz")
+    assert (samples.fields, samples.dtype) == (("points", "uv"), np.float32)
+    for fields, output, message in (
+        ("points,colour", "b.npz", "there is no field 'colour'"),
+        ("points,,uv", "b.npz", "there is no field ''"),
+        ("uv", "b.ply", "a .ply file needs 'points'"),
+    ):
+        assert main([*few, "--fields", fields, "-o", output]) == 2
+        assert message in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["a.npz"]

@@ -1,0 +1,303 @@
+"""Streams: what `sample` returns, in chunks, in bounded memory, whatever ends them."""
+
+import gc
+import subprocess
+import sys
+import threading
+import warnings
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.runtime import choice, search, stream
+from gaussmap.runtime.samples import Samples
+from gaussmap.runtime.search import NormalBins, Search, find
+from gaussmap.runtime.sphere import as_normals
+
+TORUS = gm.fit(gm.surfaces.torus(), (12, 8))
+
+
+def torus_part(u0, u1, v0, v1):
+    """Return a part of a torus, which has open borders."""
+    torus = gm.surfaces.torus()
+    return gm.Surface.from_callable(torus.evaluate, ((u0, u1), (v0, v1)), name="part")
+
+
+# The borders of this part lie in planes of symmetry, as many vertices of the icosahedron do.
+QUARTER = gm.fit(torus_part(0.0, np.pi, -np.pi / 2, np.pi / 2), (12, 8))
+
+
+def same(one, other):
+    assert one.fields == other.fields
+    for name in one.fields:
+        assert getattr(one, name).dtype == getattr(other, name).dtype
+        assert getattr(one, name).tobytes() == getattr(other, name).tobytes()
+
+
+# --- the same samples in the same order -----------------------------------------------------------
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("threads", [1, 2, 3, 7])
+@pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band", "sphere"])
+def test_chunks_make_the_whole(name, threads, monkeypatch):
+    monkeypatch.setattr(search, "MOST_PATCHES", 64)
+    surface = gm.surfaces.surface(name)
+    questions: list[dict[str, Any]] = [{"normals": gm.icosphere(12)}, {"count": 900}]
+    for asked in questions:
+        whole = gm.sample(surface, cells=(20, 16), threads=1, **asked)
+        for size in (7, 100, len(whole), 10**9):
+            chunks = list(
+                gm.sample_stream(surface, chunk=size, cells=(20, 16), threads=threads, **asked)
+            )
+            assert [len(x) for x in chunks[:-1]] == [size] * (len(chunks) - 1)
+            assert 0 < len(chunks[-1]) <= size
+            joined = Samples.concatenate(chunks)
+            same(joined, whole)
+            assert joined.report.invisible_share == whole.report.invisible_share
+            assert joined.report.normals == whole.report.normals
+            assert joined.report.samples == whole.report.samples
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("fields", [("points",), ("normal_index",), ("uv", "patch_index")])
+def test_fields_and_types(fields, dtype):
+    options = {"normals": gm.icosphere(5), "fields": fields, "dtype": dtype}
+    for threads in (1, 2):
+        chunks = gm.sample_stream(TORUS, chunk=37, threads=threads, **options)
+        same(Samples.concatenate(chunks), gm.sample(TORUS, **options))
+
+
+def test_one_patch_with_more_samples_than_a_chunk():
+    spline = gm.fit(gm.surfaces.torus(), (3, 3))
+    whole = gm.sample(spline, gm.fibonacci(500))
+    assert np.bincount(whole.patch_index).max() > 3 * 5
+    chunks = list(gm.sample_stream(spline, gm.fibonacci(500), chunk=5))
+    assert max(map(len, chunks)) == 5
+    same(Samples.concatenate(chunks), whole)
+
+
+@pytest.mark.parametrize("name", ["wavy_graph", "monkey_saddle"])
+def test_a_sample_of_two_ranges_comes_once(name, monkeypatch):
+    """At an open border two patches may claim one normal, and one is chosen: across ranges too."""
+    spline = gm.fit(gm.surfaces.surface(name), (12, 8))
+    (u0, u1), (v0, v1) = spline.domain
+    u, v = np.linspace(u0, u1, 13), np.linspace(v0, v1, 9)
+    ends = [spline.normals(u, x) for x in (v0, v1)] + [spline.normals(x, v) for x in (u0, u1)]
+    normals = as_normals(np.concatenate(ends))  # those at the corners of border cells
+    whole = gm.sample(spline, normals)
+    monkeypatch.setattr(search, "FEWEST_PATCHES", 1)
+    monkeypatch.setattr(search, "MOST_PATCHES", 1)
+    for threads in (1, 2):
+        same(Samples.concatenate(gm.sample_stream(spline, normals, threads=threads)), whole)
+    alone, apart = Search(spline, NormalBins(normals)), 0
+    for patch in range(spline.patches):
+        found = alone.pairs(patch, patch + 1)
+        apart += found.sure.shape[1] + alone.decided(found.doubtful, found.bounds, 1)[0].shape[1]
+    assert apart > len(whole)  # patch by patch, some would come twice
+
+
+@pytest.mark.parametrize("size", [10, 64, 333])
+@pytest.mark.parametrize("asked", [{"normals": gm.icosphere(6)}, {"count": 700}])
+def test_blocks_of_normals(size, asked, monkeypatch):
+    """The same samples, by block of normals, then by patch, then by normal."""
+    whole = gm.sample(TORUS, **asked)
+    monkeypatch.setattr(stream, "NORMALS_AT_A_TIME", size)
+    chunks = list(gm.sample_stream(TORUS, chunk=50, **asked))
+    assert max(map(len, chunks)) <= 50
+    joined = Samples.concatenate(chunks)
+    order = np.lexsort((whole.normal_index, whole.patch_index, whole.normal_index // size))
+    same(joined, whole[order])
+    assert joined.report.normals == whole.report.normals
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band"])
+def test_a_count_is_concluded_from_a_smaller_one(name, monkeypatch):
+    spline = gm.fit(gm.surfaces.surface(name))
+    monkeypatch.setattr(choice, "PILOT", 2000)
+    tried = []
+
+    def recorded(spline, bins, *rest):
+        tried.append(len(bins.normals))
+        return find(spline, bins, *rest)
+
+    monkeypatch.setattr(choice, "find", recorded)
+    samples = gm.sample(spline, count=50_000)
+    assert abs(len(samples) - 50_000) <= 2500
+    assert 10 * max(tried) < (samples.report.normals or 0)
+    same(Samples.concatenate(gm.sample_stream(spline, count=50_000, chunk=9999)), samples)
+
+
+# --- what there is to say -------------------------------------------------------------------------
+
+
+def test_no_samples_are_one_empty_chunk():
+    empty = gm.sample_stream(gm.surfaces.plane(), gm.icosphere(2), cells=(8, 8), fields=("uv",))
+    with pytest.warns(gm.GaussmapWarning, match="flat or developable") as caught:
+        chunks = [*empty]
+    assert [len(x) for x in chunks] == [0]
+    assert chunks[0].uv.shape == (0, 2)
+    assert len(caught) == 1
+    assert caught[0].filename == __file__
+
+
+def test_no_samples_of_several_blocks(monkeypatch):
+    monkeypatch.setattr(stream, "NORMALS_AT_A_TIME", 1)
+    with pytest.warns(gm.GaussmapWarning, match="none of the normals lies in its Gaussian image"):
+        chunks = list(gm.sample_stream(QUARTER, [[-1, -1, 0]] * 3))
+    assert [len(x) for x in chunks] == [0]
+    # nothing in the first and in the last block
+    normals = [[-1, -1, 0], [1, 2, 3], [-1, -1, 0]]
+    assert [len(x) for x in gm.sample_stream(QUARTER, normals)] == [1]
+
+
+def test_reports_count_their_chunk():
+    chunks = list(gm.sample_stream(TORUS, gm.icosphere(4), chunk=50))
+    for chunk in chunks:
+        assert chunk.report.samples == len(chunk)
+        assert chunk.report.degenerate_patches is None
+        assert (chunk.report.normals, chunk.report.patches) == (162, TORUS.patches)
+    assert "50 samples came: " in chunks[0].summary()
+
+
+def broken(u, v):
+    raise RuntimeError("no such surface")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error"),
+    [
+        ({}, gm.InputError),
+        ({"count": 5, "normals": [[0, 0, 1]]}, gm.InputError),
+        ({"count": 0}, gm.InputError),
+        ({"normals": [[0, 0, 0]]}, gm.InputError),
+        ({"count": 5, "chunk": 0}, gm.InputError),
+        ({"count": 5, "chunk": 2.5}, gm.InputError),
+        ({"count": 5, "chunk": "many"}, gm.InputError),
+        ({"count": 5, "threads": 0}, gm.InputError),
+        ({"count": 5, "cells": (4, 4)}, gm.InputError),
+        (
+            {"count": 5, "surface": gm.Surface.from_callable(broken, ((0, 1), (0, 1)))},
+            gm.SurfaceError,
+        ),
+    ],
+)
+def test_errors_come_at_once(arguments, error):
+    with pytest.raises(error):
+        gm.sample_stream(**{"surface": TORUS, **arguments})
+
+
+# --- the end --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_closing_ends_the_work(threads, monkeypatch):
+    monkeypatch.setattr(search, "FEWEST_PATCHES", 1)
+    monkeypatch.setattr(search, "MOST_PATCHES", 1)
+    searched = []
+    pairs = Search.pairs
+
+    def recorded(self, first, last):
+        searched.append(first)
+        return pairs(self, first, last)
+
+    monkeypatch.setattr(Search, "pairs", recorded)
+    before = threading.active_count()
+    chunks = gm.sample_stream(TORUS, gm.icosphere(8), chunk=5, threads=threads)
+    next(chunks)
+    chunks.close()
+    assert len(searched) < TORUS.patches / 4
+    assert threading.active_count() == before
+    # and without a word of farewell
+    chunks = gm.sample_stream(TORUS, gm.icosphere(8), chunk=5, threads=threads)
+    next(chunks)
+    del chunks
+    gc.collect()
+    assert threading.active_count() == before
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+@pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt, MemoryError])
+def test_an_error_ends_the_work(threads, error, monkeypatch):
+    monkeypatch.setattr(search, "FEWEST_PATCHES", 1)
+    monkeypatch.setattr(search, "MOST_PATCHES", 4)
+    pairs = Search.pairs
+
+    def failing(self, first, last):
+        if first == 100:
+            raise error("one hundred")
+        return pairs(self, first, last)
+
+    monkeypatch.setattr(Search, "pairs", failing)
+    before = threading.active_count()
+    with pytest.raises(error, match="one hundred"):
+        list(gm.sample_stream(TORUS, gm.icosphere(8), chunk=5, threads=threads))
+    assert threading.active_count() == before
+
+
+@pytest.mark.compiled
+def test_streams_in_several_python_threads():
+    whole = gm.sample(TORUS, gm.icosphere(8))
+    narrow = gm.sample(TORUS, gm.icosphere(8), fields=("points",), dtype=np.float32)
+    found: list[Samples] = [whole] * 6
+    start = threading.Barrier(6, timeout=30)
+
+    def work(k):
+        options = {"fields": ("points",), "dtype": np.float32} if k % 2 else {}
+        start.wait()
+        found[k] = Samples.concatenate(
+            gm.sample_stream(TORUS, gm.icosphere(8), chunk=100 + k, threads=1 + k % 3, **options)
+        )
+
+    workers = [threading.Thread(target=work, args=(k,)) for k in range(6)]
+    for worker in workers:
+        worker.start()
+    for worker in workers:
+        worker.join()
+    for k, samples in enumerate(found):
+        same(samples, narrow if k % 2 else whole)
+
+
+def test_streams_may_be_interleaved():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        first = gm.sample_stream(TORUS, gm.icosphere(6), chunk=20)
+        second = gm.sample_stream(QUARTER, gm.icosphere(6), chunk=7)
+        pairs = list(zip(first, second, strict=False))
+    same(
+        Samples.concatenate(x for x, _ in pairs),
+        gm.sample(TORUS, gm.icosphere(6))[: 20 * len(pairs)],
+    )
+
+
+# --- memory ---------------------------------------------------------------------------------------
+
+REDUCE = """
+import resource
+import gaussmap as gm
+
+def peak():
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+
+for _ in gm.sample_stream(gm.surfaces.torus(), count=1000):
+    pass
+before = peak()
+came = sum(len(x) for x in gm.sample_stream(gm.surfaces.torus(), count=20_000_000, chunk=100_000))
+print(came, peak() - before)
+"""
+
+
+@pytest.mark.compiled
+@pytest.mark.skipif(sys.platform != "linux", reason="the peak is in other units")
+def test_memory_is_bounded():
+    """The samples would take 2.1 GB, and 240 MB of normals more; neither is ever there."""
+    done = subprocess.run(
+        [sys.executable, "-c", REDUCE], capture_output=True, text=True, check=True
+    )
+    came, grown = map(int, done.stdout.split())
+    assert abs(came - 20_000_000) <= 1_000_000
+    # A block of normals, sorted: 24 + 24 + 8 + 4 bytes each, and bins; what two sheets of it have:
+    # 24 bytes a sample, twice while ranges are joined. A chunk: 104 bytes a sample, twice.
+    assert grown < stream.NORMALS_AT_A_TIME * (64 + 2 * 2 * 24) + 100_000 * 2 * 104 + 200e6
