@@ -13,6 +13,7 @@ import numpy as np
 
 from .sampler import (
     bound_of_forms,
+    box_of,
     classify,
     cone_of_normals,
     control_normals,
@@ -56,6 +57,22 @@ CORNERS = np.array(
         [(0, -1), (0, 0), (1, 0)],
         [(0, 1), (0, 0), (-1, 0)],
         [(0, 1), (0, 0), (1, 0)],
+    ]
+)
+POSITIONS = np.array(
+    [
+        [0.0, -1.0, -1.618033988749895],
+        [0.0, -1.0, 1.618033988749895],
+        [0.0, 1.0, -1.618033988749895],
+        [0.0, 1.0, 1.618033988749895],
+        [-1.0, -1.618033988749895, 0.0],
+        [-1.0, 1.618033988749895, 0.0],
+        [1.0, -1.618033988749895, 0.0],
+        [1.0, 1.618033988749895, 0.0],
+        [-1.618033988749895, 0.0, -1.0],
+        [-1.618033988749895, 0.0, 1.0],
+        [1.618033988749895, 0.0, -1.0],
+        [1.618033988749895, 0.0, 1.0],
     ]
 )
 EDGES = np.array(
@@ -423,7 +440,6 @@ STRETCHES = np.array(
     ]
 )
 
-GOLDEN = (1.0 + math.sqrt(5.0)) / 2.0
 # A normal is one of the icosahedron if it is as near to it as this angle.
 NEAR = math.ldexp(1.0, -48)
 # Where so few rows may hold a normal of a patch, they are all taken as long as the longest.
@@ -469,11 +485,7 @@ def are_points(normals, first, step, count, x, y, z, x_step, y_step, z_step):
 @jit
 def corner(k):
     """Return a corner of the icosahedron."""
-    return (
-        CORNERS[k, 0, 0] + GOLDEN * CORNERS[k, 0, 1],
-        CORNERS[k, 1, 0] + GOLDEN * CORNERS[k, 1, 1],
-        CORNERS[k, 2, 0] + GOLDEN * CORNERS[k, 2, 1],
-    )
+    return POSITIONS[k, 0], POSITIONS[k, 1], POSITIONS[k, 2]
 
 
 @jit
@@ -518,13 +530,41 @@ def is_icosphere(normals, frequency, first, last):
 
 
 @jit
-def may_meet(face, axis, sine):
-    """Say whether a cone of normals may meet a face."""
+def faces_met(axis, sine, met):
+    """Write which faces a cone of normals may meet, in ascending order; return how many.
+
+    Most cones are narrow and lie within the face that is nearest to their axis.
+    """
+    slack = 1.01 * sine + 1e-9
+    if sine < math.inf:
+        nearest = 0
+        highest = -math.inf
+        for face in range(20):
+            height = (
+                FRAMES[face, 2, 0] * axis[0]
+                + FRAMES[face, 2, 1] * axis[1]
+                + FRAMES[face, 2, 2] * axis[2]
+            )
+            if height > highest:
+                nearest, highest = face, height
+        if reaches(nearest, axis, -slack):
+            met[0] = nearest
+            return 1
+    count = 0
+    for face in range(20):
+        met[count] = face
+        count += sine == math.inf or reaches(face, axis, slack)
+    return count
+
+
+@jit
+def reaches(face, axis, slack):
+    """Say whether a unit vector lies in a face, or farther outside by less than the slack (a sine)."""
     for k in range(3):
         towards = (
             BARS[face, k, 0] * axis[0] + BARS[face, k, 1] * axis[1] + BARS[face, k, 2] * axis[2]
         )
-        if towards < -LENGTHS[face, k] * (1.01 * sine + 1e-9):
+        if towards < -LENGTHS[face, k] * slack:
             return False
     return True
 
@@ -542,16 +582,13 @@ def spans_of_face(
     error, size = face_window(shown, angles, sine < math.inf, 4, frequency, window, hull)
     if window[1] < window[0]:
         return 0, -1, 0
-    first, last = 0, frequency
+    first, last, left, right = 0, frequency, 0, frequency
     if error < math.inf:
-        first = max(first, math.ceil(hull[:size, 1].min() - error))
-        last = min(last, math.floor(hull[:size, 1].max() + error))
+        west, east, south, north = box_of(hull, size, error)
+        first, last = math.ceil(max(south, 0.0)), math.floor(min(north, frequency))
+        left, right = math.ceil(max(west, 0.0)), math.floor(min(east, frequency))
     total = 0
     if error == math.inf or last - first < FEW_ROWS:
-        left, right = 0, frequency
-        if error < math.inf:
-            left = max(left, math.ceil(hull[:size, 0].min() - error))
-            right = min(right, math.floor(hull[:size, 0].max() + error))
         for row in range(first, last + 1):
             spans[0, row] = left
             spans[1, row] = min(right, frequency - row)
@@ -582,21 +619,21 @@ def on_border(spans, first, last, frequency):
 
 
 @jit
-def note_border(faces, spans, first, last, frequency, places):
+def note_border(spans, first, last, frequency, places):
     """Write the corners, then the points inside edges that a patch may have; return how many.
 
-    Each is looked up on one of its faces.
+    Each is looked up on one of its faces; those that are not met have no rows.
     """
     count = 0
     for k in range(12):
         face, t, s = CORNER_PLACES[k]
         row = s * frequency
-        if faces[face] and first[face] <= row <= last[face]:
+        if first[face] <= row <= last[face]:
             places[count] = k
             count += spans[face, 0, row] <= t * frequency <= spans[face, 1, row]
     for edge in range(30):
         face, side = EDGE_PLACES[edge]
-        if faces[face]:
+        if first[face] <= last[face]:
             start = 12 + edge * (frequency - 1) - 1
             for k in range(1, frequency):
                 row = k if side == 0 else 0 if side == 1 else frequency - k
@@ -608,14 +645,48 @@ def note_border(faces, spans, first, last, frequency, places):
 
 
 @jit
-def note_inside(face, spans, first, last, frequency, places, count):
-    """Write the points inside a face that a patch may have after `count` others; return how many."""
+def note_inside(face, spans, first, last, frequency, places, x, y, z, count):
+    """Write the points inside a face that a patch may have after `count` others; return how many.
+
+    Writes their numbers, and where they are on the face.
+    """
+    i_x, i_y, i_z = corner(FACES[face, 0])
+    j_x, j_y, j_z = corner(FACES[face, 1])
+    k_x, k_y, k_z = corner(FACES[face, 2])
     for s in range(max(first, 1), min(last, frequency - 2) + 1):
         start = row_start(face, s, frequency)
-        for t in range(max(spans[0, s], 1), min(spans[1, s], frequency - s - 1) + 1):
-            places[count] = start + t
-            count += 1
+        left = max(spans[0, s], 1)
+        size = min(spans[1, s], frequency - s - 1) - left + 1
+        rest = frequency - s - left
+        begin_x = rest * i_x + s * j_x + left * k_x
+        begin_y = rest * i_y + s * j_y + left * k_y
+        begin_z = rest * i_z + s * j_z + left * k_z
+        for t in range(size):
+            places[count + t] = start + left + t
+            x[count + t] = begin_x + t * (k_x - i_x)
+            y[count + t] = begin_y + t * (k_y - i_y)
+            z[count + t] = begin_z + t * (k_z - i_z)
+        count += max(size, 0)
     return count
+
+
+@jit
+def look_up(normals, places, x, y, z):
+    """Write the normals of these numbers."""
+    for k in range(x.size):
+        x[k] = normals[places[k], 0]
+        y[k] = normals[places[k], 1]
+        z[k] = normals[places[k], 2]
+
+
+@jit
+def normalize(x, y, z):
+    """Divide vectors by their lengths."""
+    for k in range(x.size):
+        inverse = 1.0 / math.sqrt(x[k] * x[k] + y[k] * y[k] + z[k] * z[k])
+        x[k] *= inverse
+        y[k] *= inverse
+        z[k] *= inverse
 
 
 # --- which points a patch has ---------------------------------------------------------------------
@@ -634,11 +705,10 @@ def scan_patches(
     net, unit, shown = np.empty((6, 3)), np.empty((6, 3)), np.empty((6, 3))
     errors, angles = np.empty(6), np.empty(6)
     window, hull, axis = np.empty(4, np.int64), np.empty((12, 2)), np.empty(3)
-    faces, first, last = np.empty(20, np.bool_), np.empty(20, np.int64), np.empty(20, np.int64)
+    met, first, last = np.empty(21, np.int64), np.zeros(20, np.int64), np.full(20, -1)
     spans = np.empty((20, 2, frequency + 1), np.int64)
     low, high = np.empty(frequency + 1), np.empty(frequency + 1)
-    places, codes = np.empty(256, np.int64), np.empty(256, np.int8)
-    x, y, z = np.empty(256), np.empty(256), np.empty(256)
+    places, codes, which, few_codes, x, y, z = candidates(256)
     for patch in range(first_patch, last_patch):
         cell = patch // 4
         turn = patch % 4
@@ -678,61 +748,98 @@ def scan_patches(
 
         total = 0
         at_border = False
-        for face in range(20):
-            faces[face] = sine == math.inf or may_meet(face, axis, sine)
-            if faces[face]:
-                first[face], last[face], count = spans_of_face(
-                    face,
-                    unit,
-                    errors,
-                    sine,
-                    frequency,
-                    shown,
-                    angles,
-                    window,
-                    hull,
-                    low,
-                    high,
-                    spans[face],
-                )
-                faces[face] = count > 0
-                total += count
-                if count > 0 and not at_border:
-                    at_border = on_border(spans[face], first[face], last[face], frequency)
+        faces = faces_met(axis, sine, met)
+        for k in range(faces):
+            face = met[k]
+            first[face], last[face], count = spans_of_face(
+                face,
+                unit,
+                errors,
+                sine,
+                frequency,
+                shown,
+                angles,
+                window,
+                hull,
+                low,
+                high,
+                spans[face],
+            )
+            total += count
+            at_border = at_border or on_border(spans[face], first[face], last[face], frequency)
         if counts[0] + total + 1 > found.shape[1] or counts[1] + total + 1 > doubtful.shape[1]:
             return patch, total + 1
-        if total + 1 > x.size:
-            places, codes = np.empty(total + 1, np.int64), np.empty(total + 1, np.int8)
-            x, y, z = np.empty(total + 1), np.empty(total + 1), np.empty(total + 1)
-        count = note_border(faces, spans, first, last, frequency, places) if at_border else 0
-        for face in range(20):
-            if faces[face]:
-                count = note_inside(
-                    face, spans[face], first[face], last[face], frequency, places, count
-                )
-        for k in range(count):
-            x[k] = normals[places[k], 0]
-            y[k] = normals[places[k], 1]
-            z[k] = normals[places[k], 2]
-
+        if total + 16 > x.size:
+            places, codes, which, few_codes, x, y, z = candidates(total + 16)
+        count = 0
+        if at_border:
+            count = note_border(spans, first, last, frequency, places)
+            look_up(normals, places, x[:count], y[:count], z[:count])
+        for k in range(faces):
+            face = met[k]
+            count = note_inside(
+                face, spans[face], first[face], last[face], frequency, places, x, y, z, count
+            )
+            last[face] = -1
         bound = bound_of_forms(
             mu, i, j, turn, scale, noise, border, axis, sine,
             a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
         )  # fmt: skip
-        classify(
-            a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
-            axis, sine, bound, x[:count], y[:count], z[:count], codes,
-        )  # fmt: skip
         if sine == math.inf:
+            look_up(normals, places, x[:count], y[:count], z[:count])
+            classify(
+                a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
+                axis, sine, bound, x[:count], y[:count], z[:count], codes,
+            )  # fmt: skip
             look_again(
                 a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
                 x, y, z, codes[:count],
             )  # fmt: skip
+        else:
+            # What is computed differs from the normals by rounding, and their forms by less than the
+            # bound: they are looked up where twice the bound leaves something open.
+            # A few more are computed, so that vectors are full.
+            full = (count | 15) + 1
+            normalize(x[:full], y[:full], z[:full])
+            classify(
+                a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
+                axis, sine, 2.0 * bound, x[:full], y[:full], z[:full], codes,
+            )  # fmt: skip
+            unsure = look_up_unsure(normals, codes, places, count, which, x, y, z)
+            if unsure > 0:
+                classify(
+                    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
+                    axis, sine, bound, x[:unsure], y[:unsure], z[:unsure], few_codes,
+                )  # fmt: skip
+                for k in range(unsure):
+                    codes[which[k]] = few_codes[k]
         counts[0] = store_in_order(codes, 1, places, count, patch, found, counts[0])
         doubts = counts[1]
         counts[1] = store_in_order(codes, 2, places, count, patch, doubtful, counts[1])
         bounds[doubts : counts[1]] = bound
     return last_patch, 0
+
+
+@jit
+def candidates(size):
+    """Return arrays for the points that a patch may have."""
+    places, which = np.empty(size, np.int64), np.empty(size, np.int64)
+    codes, few_codes = np.empty(size, np.int8), np.empty(size, np.int8)
+    return places, codes, which, few_codes, np.ones(size), np.ones(size), np.ones(size)
+
+
+@jit
+def look_up_unsure(normals, codes, places, count, which, x, y, z):
+    """Write which of the points are open, and their normals; return how many are."""
+    unsure = 0
+    for k in range(count):
+        which[unsure] = k
+        unsure += codes[k] == 2
+    for k in range(unsure):
+        x[k] = normals[places[which[k]], 0]
+        y[k] = normals[places[which[k]], 1]
+        z[k] = normals[places[which[k]], 2]
+    return unsure
 
 
 @jit

@@ -60,8 +60,9 @@ SINGULAR = math.ldexp(1.0, -30)
 # relative to its length.
 ANGLE_ERROR = math.ldexp(1.0, -40)
 
-# Samples of one patch are computed so many at a time, then stored.
-TILE = 256
+# Samples are computed so many at a time, then stored.
+TILE = 64
+TILE_ROWS = 38
 
 
 # --- formulas -------------------------------------------------------------------------------------
@@ -583,18 +584,17 @@ def start_bins(counts, starts):
 
 
 @jit
-def place_normals(normals, bins, first, last, places, order, components):
+def place_normals(normals, bins, first, last, places, order, ordered):
     """Sort the normals first, …, last − 1: order[starts[b]:starts[b + 1]] are those of bin b, ascending.
 
-    `places` are those of this range in each bin. Writes the components (3, k) of the normals (as they
-    are) in that order too.
+    `places` are those of this range in each bin. Writes the normals (as they are) in that order too.
     """
     for k in range(first, last):
         at = places[bins[k]]
         places[bins[k]] += 1
         order[at] = k
         for axis in range(3):
-            components[axis, at] = normals[k, axis]
+            ordered[at, axis] = normals[k, axis]
 
 
 # --- which normals a patch may have ---------------------------------------------------------------
@@ -710,12 +710,21 @@ def face_window(shown, angles, narrow, face, grid, window, hull):
         if towards == 0:
             window[1] = window[3] = grid - 1
             return math.inf, 0
-    left, right = hull[:towards, 0].min() - error, hull[:towards, 0].max() + error
-    below, above = hull[:towards, 1].min() - error, hull[:towards, 1].max() + error
+    left, right, below, above = box_of(hull, towards, error)
     if left <= grid and right >= 0.0 and below <= grid and above >= 0.0:
         window[0], window[1] = within(left, grid), within(right, grid)
         window[2], window[3] = within(below, grid), within(above, grid)
     return error, towards
+
+
+@jit
+def box_of(hull, size, error):
+    """Return the least and the greatest s, the least and the greatest t of points, with their error."""
+    left, right, below, above = hull[0, 0], hull[0, 0], hull[0, 1], hull[0, 1]
+    for k in range(1, size):
+        left, right = min(left, hull[k, 0]), max(right, hull[k, 0])
+        below, above = min(below, hull[k, 1]), max(above, hull[k, 1])
+    return left - error, right + error, below - error, above + error
 
 
 @jit
@@ -802,7 +811,7 @@ def search_patches(
 ):  # fmt: skip
     """Find the normals of the patches first, …, last − 1, in ascending order for each patch.
 
-    `normals` (3, S) are in the order of the bins, which are those of `frame`, of norm `stretch`.
+    `normals` (S, 3) are in the order of the bins, which are those of `frame`, of norm `stretch`.
     found (3, …) holds the patch, the normal and its place in that order; doubtful (3, …) those that
     rounding leaves open, to be decided exactly, and bounds (…) the errors of their forms. Adds the
     numbers of both, and that of the developable patches, to counts (3). `noise` is the rounding of the
@@ -869,8 +878,8 @@ def search_patches(
             total += count_window(windows[face], face, grid, starts)
         if counts[0] + total > found.shape[1] or counts[1] + total > doubtful.shape[1]:
             return patch, total
-        if total > x.size:
-            places, x, y, z, codes, notes, scratch, buckets = buffers(total)
+        if total + 16 > x.size:
+            places, x, y, z, codes, notes, scratch, buckets = buffers(total + 16)
         count = gather(
             windows, hulls, sizes, slacks, grid, starts, normals, low, high, places, x, y, z
         )
@@ -879,9 +888,10 @@ def search_patches(
             mu, i, j, turn, scale, noise, border, axis, sine,
             a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
         )  # fmt: skip
+        full = (count | 15) + 1  # a few more, so that vectors are full
         classify(
             a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
-            axis, sine, bound, x[:count], y[:count], z[:count], codes,
+            axis, sine, bound, x[:full], y[:full], z[:full], codes,
         )  # fmt: skip
         if sine == math.inf:
             look_again(
@@ -1023,7 +1033,7 @@ def spread_of(mu, i, j, turn):
 @jit
 def buffers(size):
     """Return arrays for the candidates of a patch: places, x, y, z, codes, notes, and two to sort with."""
-    x, y, z = np.empty(size), np.empty(size), np.empty(size)
+    x, y, z = np.ones(size), np.ones(size), np.ones(size)
     notes, scratch = np.empty(size, np.int64), np.empty(size, np.int64)
     places, buckets = np.empty(size, np.int64), np.empty(size + 1, np.int64)
     return places, x, y, z, np.empty(size, np.int8), notes, scratch, buckets
@@ -1052,9 +1062,9 @@ def gather(windows, hulls, sizes, slacks, grid, starts, normals, low, high, plac
             begin = starts[base + left]
             for k in range(starts[base + right + 1] - begin):
                 places[count + k] = begin + k
-                x[count + k] = normals[0, begin + k]
-                y[count + k] = normals[1, begin + k]
-                z[count + k] = normals[2, begin + k]
+                x[count + k] = normals[begin + k, 0]
+                y[count + k] = normals[begin + k, 1]
+                z[count + k] = normals[begin + k, 2]
             count += max(starts[base + right + 1] - begin, 0)
     return count
 
@@ -1214,80 +1224,161 @@ def fill_samples(
     is not wanted of points (k, 3), directions (k, 3), uv (k, 2), support, gaussian and mean (k) is
     None: Numba compiles without it, and the compiler drops what only that needs.
     """
-    columns = mu.shape[1] - 2
     size = SCALE * scale
-    tile = np.empty((10, TILE))
-    begin = first
-    while begin < last:
-        patch = patch_index[begin]
-        count = 1
-        while count < TILE and begin + count < last and patch_index[begin + count] == patch:
-            count += 1
-        cell = patch // 4
-        turn = patch % 4
-        i = cell // columns
-        j = cell % columns
+    tile = np.empty(TILE_ROWS * TILE)
+    loaded = -1
+    for begin in range(first, last, TILE):
+        count = min(TILE, last - begin)
+        if patch_index[begin] != loaded or patch_index[begin + count - 1] != loaded:
+            loaded = load_patches(mu, scale, patch_index, begin, count, tile)
         for k in range(count):
-            tile[0, k] = normals[0, place[begin + k]]
-            tile[1, k] = normals[1, place[begin + k]]
-            tile[2, k] = normals[2, place[begin + k]]
+            at = np.uint64(place[begin + k])
+            n_x = normals[at, 0]
+            n_y = normals[at, 1]
+            n_z = normals[at, 2]
+            tile[0 * TILE + k] = n_x
+            tile[1 * TILE + k] = n_y
+            tile[2 * TILE + k] = n_z
+        # A few more than wanted, so that vectors are full: what they give is not stored.
         evaluate_tile(
-            *patch_vectors(mu, i + 1, j + 1, turn, scale),
-            tile[0, :count], tile[1], tile[2], tile[3], tile[4], tile[5], tile[6], tile[7], tile[8], tile[9],
-            points, uv, support, gaussian, mean,
-        )  # fmt: skip
-        for k in range(begin, begin + count):
-            n_x = tile[0, k - begin]
-            n_y = tile[1, k - begin]
-            n_z = tile[2, k - begin]
-            u = tile[3, k - begin]
-            v = tile[4, k - begin]
-            x_x = tile[5, k - begin]
-            x_y = tile[6, k - begin]
-            x_z = tile[7, k - begin]
-            K = tile[8, k - begin]
-            H = tile[9, k - begin]
-            p_x = mu[i + 1, j + 1, 0] + x_x / size
-            p_y = mu[i + 1, j + 1, 1] + x_y / size
-            p_z = mu[i + 1, j + 1, 2] + x_z / size
+            tile, min(TILE, (count | 15) + 1), frame, size, points, uv, support, gaussian, mean
+        )
+        for row in range(count):
+            k = begin + row
+            n_x = tile[0 * TILE + row]
+            n_y = tile[1 * TILE + row]
+            n_z = tile[2 * TILE + row]
+            point_x = tile[30 * TILE + row]
+            point_y = tile[31 * TILE + row]
+            point_z = tile[32 * TILE + row]
+            s = tile[33 * TILE + row]
+            t = tile[34 * TILE + row]
+            h = tile[35 * TILE + row]
+            K = tile[36 * TILE + row]
+            H = tile[37 * TILE + row]
             if points is not None:
-                points[k, 0] = p_x
-                points[k, 1] = p_y
-                points[k, 2] = p_z
+                points[k, 0] = point_x
+                points[k, 1] = point_y
+                points[k, 2] = point_z
             if directions is not None:
                 directions[k, 0] = n_x
                 directions[k, 1] = n_y
                 directions[k, 2] = n_z
             if uv is not None:
-                uv[k, 0] = frame[0] + frame[2] * (
-                    i + 0.5 + u * CORNERS[turn, 0, 0] + v * CORNERS[turn, 1, 0]
-                )
-                uv[k, 1] = frame[1] + frame[3] * (
-                    j + 0.5 + u * CORNERS[turn, 0, 1] + v * CORNERS[turn, 1, 1]
-                )
+                uv[k, 0] = s
+                uv[k, 1] = t
             if support is not None:
-                support[k] = n_x * p_x + n_y * p_y + n_z * p_z
+                support[k] = h
             if gaussian is not None:
-                gaussian[k] = K * size * size
+                gaussian[k] = K
             if mean is not None:
-                mean[k] = H * size
-        begin += count
+                mean[k] = H
 
 
 @jit
-def evaluate_tile(
-    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z,
-    normals_x, normals_y, normals_z, us, vs, points_x, points_y, points_z, curvatures, means,
-    points, uv, support, gaussian, mean,
-):  # fmt: skip
-    """Evaluate a patch for some of its normals; the loop has no branches, so that it runs on vectors.
+def load_patches(mu, scale, patch_index, begin, count, tile):
+    """Write what belongs to the patches of the samples of a tile; return the patch if there is one."""
+    columns = mu.shape[1] - 2
+    patch = patch_index[begin]
+    if patch_index[begin + count - 1] == patch:
+        load_patch(mu, patch // 4 // columns, patch // 4 % columns, patch % 4, scale, tile, 0, TILE)
+        return patch
+    end = 0
+    while end < count:
+        start = end
+        patch = patch_index[begin + start]
+        while end < count and patch_index[begin + end] == patch:
+            end += 1
+        load_patch(
+            mu, patch // 4 // columns, patch // 4 % columns, patch % 4, scale, tile, start, end
+        )
+    return -1
 
-    Of the last five is asked only whether they are None, and so not wanted: no branch is left of it.
+
+@jit
+def load_patch(mu, i, j, turn, scale, tile, start, end):
+    """Write what belongs to a patch for the samples start, …, end − 1 of a tile."""
+    (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
+     d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(mu, i + 1, j + 1, turn, scale)  # fmt: skip
+    centre_x = mu[i + 1, j + 1, 0]
+    centre_y = mu[i + 1, j + 1, 1]
+    centre_z = mu[i + 1, j + 1, 2]
+    cell_u = i + 0.5
+    cell_v = j + 0.5
+    u_s = CORNERS[turn, 0, 0]
+    u_t = CORNERS[turn, 0, 1]
+    v_s = CORNERS[turn, 1, 0]
+    v_t = CORNERS[turn, 1, 1]
+    for k in range(start, end):
+        tile[3 * TILE + k] = a_x
+        tile[4 * TILE + k] = a_y
+        tile[5 * TILE + k] = a_z
+        tile[6 * TILE + k] = b_x
+        tile[7 * TILE + k] = b_y
+        tile[8 * TILE + k] = b_z
+        tile[9 * TILE + k] = c_x
+        tile[10 * TILE + k] = c_y
+        tile[11 * TILE + k] = c_z
+        tile[12 * TILE + k] = d_x
+        tile[13 * TILE + k] = d_y
+        tile[14 * TILE + k] = d_z
+        tile[15 * TILE + k] = e_x
+        tile[16 * TILE + k] = e_y
+        tile[17 * TILE + k] = e_z
+        tile[18 * TILE + k] = p_x
+        tile[19 * TILE + k] = p_y
+        tile[20 * TILE + k] = p_z
+        tile[21 * TILE + k] = centre_x
+        tile[22 * TILE + k] = centre_y
+        tile[23 * TILE + k] = centre_z
+        tile[24 * TILE + k] = cell_u
+        tile[25 * TILE + k] = cell_v
+        tile[26 * TILE + k] = u_s
+        tile[27 * TILE + k] = u_t
+        tile[28 * TILE + k] = v_s
+        tile[29 * TILE + k] = v_t
+
+
+@jit
+def evaluate_tile(tile, count, frame, size, points, uv, support, gaussian, mean):
+    """Evaluate `count` samples of a tile; the loop has no branches, so that it runs on vectors.
+
+    A tile holds a row of TILE numbers for each of what a sample needs and has. Of the last five is asked only whether they are None, and so not wanted: no
+    branch is left of it.
     """
-    for k in range(normals_x.size):
-        n_x = normals_x[k]
-        n_y = normals_y[k]
-        n_z = normals_z[k]
+    unit = 1.0 / size
+    u_0, v_0, du, dv = frame[0], frame[1], frame[2], frame[3]
+    for k in range(count):
+        n_x = tile[0 * TILE + k]
+        n_y = tile[1 * TILE + k]
+        n_z = tile[2 * TILE + k]
+        a_x = tile[3 * TILE + k]
+        a_y = tile[4 * TILE + k]
+        a_z = tile[5 * TILE + k]
+        b_x = tile[6 * TILE + k]
+        b_y = tile[7 * TILE + k]
+        b_z = tile[8 * TILE + k]
+        c_x = tile[9 * TILE + k]
+        c_y = tile[10 * TILE + k]
+        c_z = tile[11 * TILE + k]
+        d_x = tile[12 * TILE + k]
+        d_y = tile[13 * TILE + k]
+        d_z = tile[14 * TILE + k]
+        e_x = tile[15 * TILE + k]
+        e_y = tile[16 * TILE + k]
+        e_z = tile[17 * TILE + k]
+        p_x = tile[18 * TILE + k]
+        p_y = tile[19 * TILE + k]
+        p_z = tile[20 * TILE + k]
+        centre_x = tile[21 * TILE + k]
+        centre_y = tile[22 * TILE + k]
+        centre_z = tile[23 * TILE + k]
+        cell_u = tile[24 * TILE + k]
+        cell_v = tile[25 * TILE + k]
+        u_s = tile[26 * TILE + k]
+        u_t = tile[27 * TILE + k]
+        v_s = tile[28 * TILE + k]
+        v_t = tile[29 * TILE + k]
         # sample (eqs. (1), (5)-(9); curvatures beyond the paper): 145 operations as written, 134 here
         A = a_x * n_x + a_y * n_y + a_z * n_z
         B = b_x * n_x + b_y * n_y + b_z * n_z
@@ -1323,17 +1414,27 @@ def evaluate_tile(
         g = 1.0 / (N_x * N_x + N_y * N_y + N_z * N_z)
         K = D * g
         H = 0.5 * g * (2 * B * F - A * G - C * E)
+        point_x = centre_x + x_x * unit
+        point_y = centre_y + x_y * unit
+        point_z = centre_z + x_z * unit
+        s = u_0 + du * (cell_u + u * u_s + v * v_s)
+        t = v_0 + dv * (cell_v + u * u_t + v * v_t)
+        h = n_x * point_x + n_y * point_y + n_z * point_z
+        K = K * size * size
+        H = H * size
+        if points is not None:
+            tile[30 * TILE + k] = point_x
+            tile[31 * TILE + k] = point_y
+            tile[32 * TILE + k] = point_z
         if uv is not None:
-            us[k] = u
-            vs[k] = v
-        if points is not None or support is not None:
-            points_x[k] = x_x
-            points_y[k] = x_y
-            points_z[k] = x_z
+            tile[33 * TILE + k] = s
+            tile[34 * TILE + k] = t
+        if support is not None:
+            tile[35 * TILE + k] = h
         if gaussian is not None:
-            curvatures[k] = K
+            tile[36 * TILE + k] = K
         if mean is not None:
-            means[k] = H
+            tile[37 * TILE + k] = H
 
 
 @jit
@@ -1348,12 +1449,23 @@ def fill_known(
     """
     columns = mu.shape[1] - 2
     size = SCALE * scale
+    unit = 1.0 / size
+    u_0, v_0, du, dv = frame[0], frame[1], frame[2], frame[3]
     for row in range(which.size):
         k = which[row]
         cell = patch_index[k] // 4
         turn = patch_index[k] % 4
         i = cell // columns
         j = cell % columns
+        centre_x = mu[i + 1, j + 1, 0]
+        centre_y = mu[i + 1, j + 1, 1]
+        centre_z = mu[i + 1, j + 1, 2]
+        cell_u = i + 0.5
+        cell_v = j + 0.5
+        u_s = CORNERS[turn, 0, 0]
+        u_t = CORNERS[turn, 0, 1]
+        v_s = CORNERS[turn, 1, 0]
+        v_t = CORNERS[turn, 1, 1]
         (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
          d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(mu, i + 1, j + 1, turn, scale)  # fmt: skip
         u = local[row, 3]
@@ -1402,33 +1514,34 @@ def fill_known(
         x_x = a_x * t1 + b_x * t0 + c_x * t2 + d_x * u + e_x * v + p_x
         x_y = a_y * t1 + b_y * t0 + c_y * t2 + d_y * u + e_y * v + p_y
         x_z = a_z * t1 + b_z * t0 + c_z * t2 + d_z * u + e_z * v + p_z
-        n_x = normals[0, place[k]]
-        n_y = normals[1, place[k]]
-        n_z = normals[2, place[k]]
-        p_x = mu[i + 1, j + 1, 0] + x_x / size
-        p_y = mu[i + 1, j + 1, 1] + x_y / size
-        p_z = mu[i + 1, j + 1, 2] + x_z / size
+        n_x = normals[place[k], 0]
+        n_y = normals[place[k], 1]
+        n_z = normals[place[k], 2]
+        point_x = centre_x + x_x * unit
+        point_y = centre_y + x_y * unit
+        point_z = centre_z + x_z * unit
+        s = u_0 + du * (cell_u + u * u_s + v * v_s)
+        t = v_0 + dv * (cell_v + u * u_t + v * v_t)
+        h = n_x * point_x + n_y * point_y + n_z * point_z
+        K = K * size * size
+        H = H * size
         if points is not None:
-            points[k, 0] = p_x
-            points[k, 1] = p_y
-            points[k, 2] = p_z
+            points[k, 0] = point_x
+            points[k, 1] = point_y
+            points[k, 2] = point_z
         if directions is not None:
             directions[k, 0] = n_x
             directions[k, 1] = n_y
             directions[k, 2] = n_z
         if uv is not None:
-            uv[k, 0] = frame[0] + frame[2] * (
-                i + 0.5 + u * CORNERS[turn, 0, 0] + v * CORNERS[turn, 1, 0]
-            )
-            uv[k, 1] = frame[1] + frame[3] * (
-                j + 0.5 + u * CORNERS[turn, 0, 1] + v * CORNERS[turn, 1, 1]
-            )
+            uv[k, 0] = s
+            uv[k, 1] = t
         if support is not None:
-            support[k] = n_x * p_x + n_y * p_y + n_z * p_z
+            support[k] = h
         if gaussian is not None:
-            gaussian[k] = K * size * size
+            gaussian[k] = K
         if mean is not None:
-            mean[k] = H * size
+            mean[k] = H
 
 
 @jit

@@ -58,9 +58,9 @@ class NormalBins:
         return frequency if all(over_ranges(work, 51, 1, self.threads)) else 0
 
     @property
-    def components(self) -> NDArray[np.float64]:
-        """The normals (3, S) in the order of their places."""
-        return self.normals.T if self.frequency > 0 else self.sorted[2]
+    def ordered(self) -> NDArray[np.float64]:
+        """The normals (S, 3) in the order of their places."""
+        return self.normals if self.frequency > 0 else self.sorted[2]
 
     @cached_property
     def frame(self) -> NDArray[np.float64]:
@@ -99,13 +99,13 @@ class NormalBins:
 
     @cached_property
     def sorted(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
-        """The start of each bin; the numbers of the normals in their order; the normals (3, S)."""
+        """The start of each bin; the numbers of the normals in their order; the normals (S, 3)."""
         total, count = len(self.normals), 6 * self.grid**2
         size = max(FEWEST_NORMALS, -(-total // min(thread_count(self.threads), MOST_COUNTS)))
         bins = np.empty(total, dtype=np.int32)
         counts = np.empty((-(-total // size), count), dtype=np.int64)
         starts, order = np.empty(count + 1, dtype=np.int64), np.empty(total, dtype=np.int64)
-        components = np.empty((3, total))
+        ordered = np.empty((total, 3))
 
         def count_bins(first: int, last: int) -> None:
             kernels.count_bins(
@@ -114,13 +114,13 @@ class NormalBins:
 
         def place(first: int, last: int) -> None:
             kernels.place_normals(
-                self.normals, bins, first, last, counts[first // size], order, components
+                self.normals, bins, first, last, counts[first // size], order, ordered
             )
 
         list(over_ranges(count_bins, total, size, self.threads))
         kernels.start_bins(counts, starts)
         list(over_ranges(place, total, size, self.threads))
-        return starts, order, components
+        return starts, order, ordered
 
 
 @dataclass(frozen=True, eq=False)
@@ -301,7 +301,7 @@ def fill(
     """Return fields of the hits: see `Samples`. Numbers are rounded to `dtype` when stored."""
     count = len(hits)
     filled = {x: new_field(x, count, dtype) for x in FLOAT_NAMES if x in fields}
-    normals = bins.components
+    normals = bins.ordered
     indices = hits.patch_index, hits.place
     arrays = [filled.get(name) for name in FLOAT_NAMES]
 

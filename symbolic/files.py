@@ -7,7 +7,7 @@ import math
 import subprocess
 import sys
 import textwrap
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from itertools import combinations
 from pathlib import Path
@@ -30,6 +30,7 @@ PRIMES = 24
 # What the search among bins and that among the points of an icosahedron share.
 SCANNED = (
     "bound_of_forms",
+    "box_of",
     "classify",
     "cone_of_normals",
     "control_normals",
@@ -169,6 +170,7 @@ def icosphere_source() -> str:
     frames = [_floats(icosahedron.frame(face)) for face in faces]
     arrays = {
         "CORNERS": [icosahedron.golden_parts(x) for x in icosahedron.CORNERS],
+        "POSITIONS": [[float(x.evalf(40)) for x in corner] for corner in icosahedron.CORNERS],
         "EDGES": edges,
         "FACES": faces,
         "CORNER_PLACES": [
@@ -262,6 +264,8 @@ def sampler_source() -> str:
             "sample": block(patch.SAMPLE),
             "envelope": block(patch.ENVELOPE),
             "curvature_at": block(patch.CURVATURE_AT),
+            **_tile(),
+            "place_sample": render("place_sample.py", {}).rstrip(),
             "store_sample": render("store_sample.py", {}).rstrip(),
         },
     )
@@ -393,6 +397,45 @@ def _control_normals() -> str:
     """Return the call of `control_normals` that fills `net` (6, 3)."""
     net = ", ".join(f"net[{k}, {x}]" for k in range(6) for x in range(3))
     return f"{net} = {call(patch.CONTROL_NORMALS)}"
+
+
+def _tile() -> dict[str, str]:
+    """Return the parts that write and read the rows of a tile, numbers of samples side by side."""
+    vectors = [x.name for x in spline.TRIANGLE.in_components().outputs]
+    place = {f"centre_{x}": f"mu[i + 1, j + 1, {k}]" for k, x in enumerate("xyz")}
+    place |= {"cell_u": "i + 0.5", "cell_v": "j + 0.5"}
+    place |= {
+        f"{x}_{y}": f"CORNERS[turn, {i}, {j}]"
+        for i, x in enumerate("uv")
+        for j, y in enumerate("st")
+    }
+    normal = {f"n_{x}": f"normals[at, {k}]" for k, x in enumerate("xyz")}
+    points = [f"point_{x}" for x in "xyz"]
+    names = [*normal, *vectors, *place, *points, *"sthKH"]
+
+    def rows(chosen: Iterable[str]) -> dict[str, str]:
+        return {x: f"tile[{names.index(x)} * TILE + k]" for x in chosen}
+
+    def load(values: Mapping[str, str]) -> str:
+        return "\n".join(f"{name} = {value}" for name, value in values.items())
+
+    def save(chosen: Iterable[str]) -> str:
+        return "\n".join(f"{value} = {name}" for name, value in rows(chosen).items())
+
+    return {
+        "tile_rows": f"TILE_ROWS = {len(names)}",
+        "load_place": load(place),
+        "save_patch": save([*vectors, *place]),
+        "load_normal": load(normal),
+        "save_normal": save(normal),
+        "load_tile": load(rows([*normal, *vectors, *place])),
+        "save_points": save(points),
+        "save_uv": save("st"),
+        "save_support": save("h"),
+        "save_gaussian": save("K"),
+        "save_mean": save("H"),
+        "load_sample": load(rows([*normal, *points, *"sthKH"])).replace("+ k]", "+ row]"),
+    }
 
 
 def _patch_vectors() -> str:
