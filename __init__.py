@@ -29,8 +29,10 @@ if TYPE_CHECKING:
         SurfaceError,
         UnknownNameError,
     )
+    from .runtime.formulas import Formulas
+    from .runtime.gaussian.boundary import BoundaryArc
     from .runtime.gaussian.classes import PatchClass, classify_patches
-    from .runtime.gaussian.image import BoundaryArc, GaussianImage, GaussianImages
+    from .runtime.gaussian.image import GaussianImage, GaussianImages
     from .runtime.gaussian.parabolic import (
         ParabolicCurve,
         ParabolicPoint,
@@ -47,7 +49,8 @@ if TYPE_CHECKING:
     from .runtime.support.branches import Branches
     from .runtime.support.function import SupportFunction
     from .runtime.surface import Surface
-    from .symbolic import formulas
+
+    formulas: Formulas
 
 __version__ = "0.1.0"
 
@@ -111,7 +114,8 @@ _NAMES = {
     "runtime.errors": "FileError GaussmapError GaussmapWarning InputError MissingExtraError "
     "MissingFieldError SurfaceError UnknownNameError",
     "runtime.gaussian.classes": "PatchClass classify_patches",
-    "runtime.gaussian.image": "BoundaryArc GaussianImage GaussianImages",
+    "runtime.gaussian.boundary": "BoundaryArc",
+    "runtime.gaussian.image": "GaussianImage GaussianImages",
     "runtime.gaussian.parabolic": "ParabolicCurve ParabolicPoint ParabolicPoints parabolic_points",
     "runtime.gaussian.parabolic_lines": "ParabolicLine Piece parabolic_lines split_patch",
     "runtime.io": "read_samples",
@@ -123,7 +127,6 @@ _NAMES = {
     "runtime.support.branches": "Branches",
     "runtime.support.function": "SupportFunction",
     "runtime.surface": "Surface",
-    "symbolic": "formulas",
 }
 _HOMES = {name: module for module, names in _NAMES.items() for name in names.split()}
 
@@ -131,6 +134,8 @@ _HOMES = {name: module for module, names in _NAMES.items() for name in names.spl
 def __getattr__(name: str) -> object:
     if name in _MODULES:
         value = import_module(f".{_MODULES[name]}", __name__)
+    elif name == "formulas":
+        value = import_module(".runtime.formulas", __name__).all_formulas()
     elif name in _HOMES:
         value = getattr(import_module(f".{_HOMES[name]}", __name__), name)
     else:

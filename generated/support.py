@@ -136,11 +136,12 @@ DOUBTFUL = 2
 
 
 @jit
-def classify(vectors, bound, accurate, normals, kinds, parameters):
-    """Say of each unit normal whether it is one of a patch, and write u, v (k, 2) of those INSIDE.
+def classify(vectors, bound, accurate, shortest, normals, kinds, parameters):
+    """Say of each normal whether it is one of a patch, and write u, v (k, 2) of those INSIDE.
 
-    `vectors` are a, b, c, d, e; `bound` is the rounding error of U, V, W. D has to exceed `accurate`.
-    Whatever rounding may have changed is DOUBTFUL.
+    `vectors` are a, b, c, d, e; `bound` is the rounding error of U, V, W. D has to exceed `accurate`,
+    and N `shortest`. Normals have a length of about 1. Whatever rounding may have changed is
+    DOUBTFUL.
     """
     (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z) = vectors
     for row in range(normals.shape[0]):
@@ -179,7 +180,8 @@ def classify(vectors, bound, accurate, normals, kinds, parameters):
             N_y = p_u_z * p_v_x - p_u_x * p_v_z
             N_z = p_u_x * p_v_y - p_u_y * p_v_x
             towards = n_x * N_x + n_y * N_y + n_z * N_z
-            if abs(towards) > 0.25 * (abs(N_x) + abs(N_y) + abs(N_z)):
+            size = abs(N_x) + abs(N_y) + abs(N_z)
+            if abs(towards) > 0.25 * size and size > shortest:
                 kinds[row] = INSIDE if towards > 0.0 else OUTSIDE
                 parameters[row, 0] = u
                 parameters[row, 1] = v
@@ -347,9 +349,16 @@ def fill_hessians(mu, scale, patches, normals, known, hessians):
 # --- any support function -------------------------------------------------------------------------
 
 
+# A sum that is smaller than its terms by this factor has lost digits.
+CANCELLED = math.ldexp(1.0, -20)
+
+
 @jit
-def add_offset(R, normals, points, hessians, gaussian, mean):
-    """Add a sphere of radius R to points and Hessians at unit normals (k, 3), change curvatures."""
+def add_offset(R, normals, points, hessians, gaussian, mean, doubtful):
+    """Add a sphere of radius R to points and Hessians at unit normals (k, 3), change curvatures.
+
+    Where a radius was 0 or becomes 0, nearly, these are `doubtful` (k,).
+    """
     for row in range(normals.shape[0]):
         n_x = normals[row, 0]
         n_y = normals[row, 1]
@@ -380,12 +389,15 @@ def add_offset(R, normals, points, hessians, gaussian, mean):
         hessians[row, 2, 1] += H_yz
         K = gaussian[row]
         H = mean[row]
-        # offset_curvature (beyond the paper): 16 operations as written, 11 here
-        t0 = 1.0 / (2 * H * R + K * R * R + 1)
+        # offset_curvature (beyond the paper): 10 operations as written, 11 here
+        s = 2 * H * R + K * R * R + 1
+        t0 = 1.0 / s
         K_offset = K * t0
         H_offset = t0 * (H + K * R)
         gaussian[row] = K_offset
         mean[row] = H_offset
+        terms = 1.0 + 2.0 * abs(R * H) + abs(R * R * K)
+        doubtful[row] = not abs(s) > CANCELLED * terms
 
 
 @jit

@@ -2,18 +2,36 @@
 
 from __future__ import annotations
 
+import difflib
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .errors import InputError
+from .errors import InputError, UnknownNameError
 
-__all__ = ["parameter_arrays", "real_array", "real_values", "whole_number"]
+__all__ = ["known_name", "parameter_arrays", "real_array", "real_values", "whole_number"]
 
 
 # Beyond this a count is a mistake: no memory holds so many normals, cells or samples.
 MOST = 10**9
+
+
+def known_name(name: str, known: Sequence[str], kind: str, command: str = "") -> str:
+    """Return `name` if it is known; UnknownNameError with those that are near, or with all.
+
+    `command` is one that shows all of them, if they are too many to be named.
+    """
+    if name in known:
+        return name
+    near = difflib.get_close_matches(str(name).lower(), known, n=3, cutoff=0.7)
+    hint = f"; did you mean {' or '.join(near)}?" if near else "."
+    if command:
+        hint += f" See `{command}` for all names."
+    elif not near:
+        hint = f"; there is {', '.join(known)}." if known else "; there is none."
+    raise UnknownNameError(f"there is no {kind} {name!r}{hint}")
 
 
 def whole_number(value: object, name: str, least: int = 1) -> int:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import _thread
 import argparse
-import difflib
 import importlib.util
 import os
 import re
@@ -26,15 +25,10 @@ from typing import IO, Any, NoReturn, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import (
-    FileError,
-    GaussmapError,
-    GaussmapWarning,
-    InputError,
-    MissingExtraError,
-    UnknownNameError,
-)
+from .checks import known_name
+from .errors import FileError, GaussmapError, GaussmapWarning, InputError, MissingExtraError
 from .fields import ARRAY_NAMES, checked_fields
+from .formulas import all_formulas
 from .io import atomic_path, check_fields, check_target
 from .samples import Samples
 from .sampling import sample
@@ -157,7 +151,7 @@ def _arguments(options: argparse.Namespace) -> dict[str, Any]:
 
 def _run_surfaces(options: argparse.Namespace) -> None:
     if options.name is not None:
-        _say(describe(_known(options.name, names(), "surface", "gaussmap surfaces")))
+        _say(describe(known_name(options.name, names(), "surface", "gaussmap surfaces")))
         return
     _table((name, CATALOGUE[name]["sentence"]) for name in names())
 
@@ -166,15 +160,15 @@ def _run_formulas(options: argparse.Namespace) -> None:
     if options.html is not None:
         _write_formulas(options)
         return
-    from ..symbolic import formulas
-
+    formulas = all_formulas()
     if options.name is not None:
-        known = _known(options.name, tuple(formulas), "formula", "gaussmap formulas")
-        formula = formulas[known]
+        formula = formulas[options.name]
         if options.latex:
             _say(formula.latex())
         else:
-            _say(f"{known}: {formula.sentence}\nSource: {formula.source}.\n\n{formula.text()}")
+            _say(
+                f"{formula.name}: {formula.sentence}\nSource: {formula.source}.\n\n{formula.text()}"
+            )
     elif options.latex:
         _say("\n\n".join(f"% {name}\n{formula.latex()}" for name, formula in formulas.items()))
     else:
@@ -222,7 +216,7 @@ def _surface(options: argparse.Namespace) -> Surface:
         return _grid(options)
     if Path(options.surface).is_file():
         raise InputError(f"'{options.surface}' is neither a .npy nor a .npz file; save it as one.")
-    name = _known(options.surface, names(), "surface", "gaussmap surfaces")
+    name = known_name(options.surface, names(), "surface", "gaussmap surfaces")
     if options.spacing is not None:
         raise InputError(f"--spacing is for elevations in a file, and {name} is a surface by name.")
     if options.periodic is not None:
@@ -231,7 +225,7 @@ def _surface(options: argparse.Namespace) -> Surface:
     if len(parameters) < len(options.set):
         raise InputError("--set gives the same parameter twice; give each once.")
     for parameter in parameters:
-        _known(parameter, tuple(CATALOGUE[name]["parameters"]), f"{name} parameter")
+        known_name(parameter, tuple(CATALOGUE[name]["parameters"]), f"{name} parameter")
     return surface(name, **parameters)
 
 
@@ -318,20 +312,7 @@ def _unpacked(file: IO[bytes], source: str, key: str | None) -> NDArray[Any]:
                 f"'{source}' holds {len(keys)} arrays{': ' if keys else ''}{', '.join(keys)}; "
                 f"name the one to read, as in {source}:{keys[0] if keys else 'NAME'}."
             )
-        return archive[keys[0] if key is None else _known(key, keys, f"array in '{file.name}'")]
-
-
-def _known(name: str, known: Sequence[str], kind: str, command: str = "") -> str:
-    """Return `name` if it is known; otherwise say which names are near, or where all are."""
-    if name in known:
-        return name
-    near = difflib.get_close_matches(name.lower(), known, n=3, cutoff=0.7)
-    hint = f"; did you mean {' or '.join(near)}?" if near else "."
-    if command:
-        hint += f" See `{command}` for all names."
-    elif not near:
-        hint = f"; there is {', '.join(known)}." if known else "; there is none."
-    raise UnknownNameError(f"there is no {kind} {name!r}{hint}")
+        return archive[keys[0] if key is None else known_name(key, keys, f"array in '{file.name}'")]
 
 
 # ── The parser ───────────────────────────────────────────────────────────────────────────────────

@@ -73,7 +73,8 @@ def latex_name(name: str, *, bold: bool = False) -> str:
         word, index = cast(re.Match[str], re.fullmatch(r"(\w+?)(_[a-z])?", name)).groups()
         return r"\mathit{" + word.replace("_", r"\_") + "}" + (index or "")
     stem, digits, indices = letter.groups()
-    below = ",".join(x for x in (digits, *indices.split("_")) if x)
+    words = [rf"\mathrm{{{x}}}" if len(x) > 2 else x for x in indices.split("_")]
+    below = ",".join(x for x in (digits, *words) if x)
     if stem == "mu":
         below = below and rf"\mathrm{{{below}}}"
     stem = GREEK.get(stem, stem)
@@ -116,6 +117,9 @@ class TextPrinter(ForPeople, StrPrinter):
         """Return what stands after a sum of terms with a common coefficient."""
         denominator = size.as_numer_denom()[1]
         return ")" if denominator == 1 else f")/{denominator}"
+
+    def _print_Max(self, expr: sp.Expr) -> str:
+        return f"max({', '.join(map(self.doprint, expr.args))})"
 
     def _print_Pow(self, expr: sp.Pow, rational: bool = False) -> str:
         if expr.exp.is_Integer and expr.exp.is_negative:

@@ -23,7 +23,7 @@ from .formula import Formula, PlaneVector
 from .positions import position
 from .printer import source_of
 
-__all__ = ["GENERATED", "derive", "differences", "write"]
+__all__ = ["GENERATED", "derive", "differences", "existing", "write"]
 
 # Enough for coefficients and normals of 340 bits together.
 PRIMES = 24
@@ -59,8 +59,9 @@ def derive() -> dict[str, str]:
         "support.py": support_source(),
         "surfaces.py": surfaces_source(),
     }
-    pages = {"formulas.md": latex.markdown(), "formulas.tex": latex.document()}
-    return {name: formatted(text) for name, text in sources.items()} | pages
+    modules = {name: formatted(text) for name, text in sources.items()}
+    pages = {"formulas.md": latex.markdown(modules), "formulas.tex": latex.document(modules)}
+    return modules | pages
 
 
 def write(texts: Mapping[str, str], folder: Path) -> None:

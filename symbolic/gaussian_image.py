@@ -27,6 +27,7 @@ from .patch import FORM_TERMS, LINEAR_FORMS, SOLUTION, VECTORS, A, B, C, P, Q, a
 __all__ = ["FORMULAS"]
 
 s, t = scalar("s"), scalar("t")
+z0, z1, z2, r = (scalar(x) for x in ("z0", "z1", "z2", "r"))
 p_u, p_v, N, q, n_t, N0, N1, N2, f1, f2, f3 = vectors(
     ("p_u", "p_v", "N", "q", "n_t", "N0", "N1", "N2", "f1", "f2", "f3")
 )
@@ -74,6 +75,20 @@ ARC = Formula.build(
     outputs=[("n", ARC_POINT), ("n_t", sp.expand(sp.diff(ARC_POINT, t)))],
 )
 
+ARC_ZEROS = Formula.build(
+    "boundary_arc_zeros",
+    "The two zeros of the component along $q$ of the normals of a boundary arc. Where the normals "
+    "vanish, at a singular point, that of every $q$ has a zero. $s$ is the sign of $z1$, so that "
+    "nothing cancels. A discriminant below zero, which rounding may leave of a double zero, counts "
+    "as zero.",
+    inputs=[N0, N1, N2, q, s],
+    terms=[
+        *((f"z{k}", Dot(q, x)) for k, x in enumerate((N0, N1, N2))),
+        ("r", z1 + s * sp.sqrt(sp.Max(0, z1**2 - z0 * z2))),
+    ],
+    outputs=[("t1", r / (r - z2)), ("t2", z0 / (z0 - r))],
+)
+
 LENGTH: sp.Expr = sp.sqrt(Dot(n, n))
 
 SOLID_ANGLE = Formula.build(
@@ -105,10 +120,10 @@ def _directions() -> Formula:
         coefficients[sum(choice)] += (-1) ** sum(choice) * _determinant(names)
     return Formula.build(
         "parabolic_directions",
-        "The coefficients of the binary cubic det[t a − s b, t b − s c, t d − s e] in (s, t): its "
-        "real roots are the directions of the parabolic lines s u + t v = const. It vanishes where "
-        "the patch is developable, and where $a$, $b$, $c$ are multiples of one vector, so that "
-        "the curvature has one sign.",
+        "The coefficients of the binary cubic $det[t a − s b, t b − s c, t d − s e]$ in $(s, t)$: "
+        "its real roots are the directions of the parabolic lines $s u + t v =$ const. It vanishes "
+        "where the patch is developable, and where $a$, $b$, $c$ are multiples of one vector, so "
+        "that the curvature has one sign.",
         source="Sect. 3.2",
         inputs=VECTORS,
         outputs=[(f"k{k}{3 - k}", coefficients[k]) for k in (3, 2, 1, 0)],
@@ -154,6 +169,7 @@ CURVATURE_OF_DERIVATIVES = Formula.build(
 FORMULAS = (
     BOUNDARY_CONES,
     ARC,
+    ARC_ZEROS,
     SOLID_ANGLE,
     PARABOLIC_DIRECTIONS,
     PARABOLIC_NORMAL,

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import ast
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from functools import cache
 from html import escape, unescape
 from typing import TYPE_CHECKING
@@ -16,9 +14,9 @@ import sympy as sp
 from . import latex, surfaces
 from .display import latex_of
 from .emit import render
-from .files import GENERATED
+from .files import GENERATED, existing
 from .formula import Formula
-from .positions import position
+from .uses import Kernels
 
 if TYPE_CHECKING:
     from math_core import LatexToMathML
@@ -32,8 +30,6 @@ TALL = {"mfrac", "mtable"}
 SCRIPTED = {"msub", "msup", "msubsup"}
 HEIGHTS = {"mi": {"depth": "0"}, "mo": {"height": "0.6em", "depth": "0"}}
 STRUT = {"height": "0.75em", "depth": "0.3em"}
-# The first line of a formula in a loop, as `emit.block` writes it.
-BLOCK = re.compile(r"^ *# (\w+) \(.+\): \d+ operations", re.MULTILINE)
 
 
 def page() -> str:
@@ -74,7 +70,7 @@ def _section(title: str, entries: list[latex.Entry]) -> str:
 def _article(entry: latex.Entry) -> str:
     """Return one formula or surface."""
     rows = "\n".join(f"<dt>{term}</dt><dd>{value}</dd>" for term, value in _rows(entry))
-    source = f'\n<p class="source">{escape(_formulas()[entry.name].source)}</p>'
+    source = f'\n<p class="source">{escape(entry.formula.source)}</p>'
     return (
         f'<article id="{entry.name}">\n'
         f"<header>\n<h3>{_link(entry.name)}</h3>"
@@ -95,25 +91,29 @@ def _rows(entry: latex.Entry) -> Iterator[tuple[str, str]]:
         elif term != "Source":  # it stands beside the name
             yield _text(term), _text(value)
         if term == "Inputs":
-            outputs = _formulas()[entry.name].outputs
+            outputs = entry.formula.outputs
             yield "Outputs", _text(", ".join(f"${latex_of(x)}$" for x in outputs))
-    yield "Kernels", _kernels(_formulas()[entry.name])
+    yield "Kernels", _uses(entry.formula)
 
 
-def _kernels(formula: Formula) -> str:
+def _uses(formula: Formula) -> str:
     """Return where a formula runs, one item a file."""
     items = []
-    for module, uses in _uses(formula).items():
+    for module, uses in _kernels().uses(formula).items():
         inside = ", ".join(
-            f"<code>{name}</code>"
-            + ("" if whole in (formula.name, name) else f" (in {_link(whole)})")
-            for name, whole in uses.inside.items()
+            f"<code>{name}</code>" + (f" (in {_link(whole)})" if whole else "")
+            for name, whole in uses.items(formula)
         )
         callers = ", ".join(f"<code>{name}</code>" for name in uses.callers)
         items.append(
             f"<code>{module}</code>: {inside}" + (f"; called by {callers}" if callers else "")
         )
     return _list(items) if items else "none"
+
+
+@cache
+def _kernels() -> Kernels:
+    return latex.kernels(existing(GENERATED))
 
 
 def _list(items: Iterable[str]) -> str:
@@ -185,81 +185,3 @@ def _converter() -> LatexToMathML:
     from math_core import LatexToMathML
 
     return LatexToMathML(fancy_error=False)
-
-
-# --- which kernels run a formula ------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Function:
-    """A function of a generated file: which formulas stand in it, and which functions it calls."""
-
-    module: str
-    name: str
-    formulas: frozenset[str]
-    calls: frozenset[str]
-
-
-@dataclass(frozen=True)
-class Uses:
-    """The functions of a file in which a formula stands, and those that call them.
-
-    `inside` also says as what it stands there: as itself, or as a part of another formula.
-    """
-
-    inside: dict[str, str]
-    callers: tuple[str, ...]
-
-
-@cache
-def _formulas() -> dict[str, Formula]:
-    """Return the formulas of all entries by their names."""
-    formulas = [x for section in latex.FORMULAS.values() for x in section]
-    return {x.name: x for x in (*formulas, *map(position, surfaces.CATALOGUE.values()))}
-
-
-@cache
-def _functions() -> tuple[Function, ...]:
-    """Return the functions of the generated files, in their order."""
-    result = []
-    for path in sorted(GENERATED.glob("*.py")):
-        source = path.read_text(encoding="utf-8")
-        for node in ast.parse(source).body:
-            if isinstance(node, ast.FunctionDef):
-                blocks = BLOCK.findall(ast.get_source_segment(source, node) or "")
-                inside = frozenset({node.name, *blocks} & _formulas().keys())
-                calls = (x.func for x in ast.walk(node) if isinstance(x, ast.Call))
-                called = frozenset(x.id for x in calls if isinstance(x, ast.Name))
-                result.append(Function(path.name, node.name, inside, called))
-    return tuple(result)
-
-
-def _uses(formula: Formula) -> dict[str, Uses]:
-    """Return where a formula stands and is called from, by the names of the files."""
-    composed = (x for section in latex.FORMULAS.values() for x in section if _is_part(formula, x))
-    wholes = [formula.name, *(x.name for x in composed)]
-    result = {}
-    for module in dict.fromkeys(x.module for x in _functions()):
-        functions = [x for x in _functions() if x.module == module]
-        inside = {
-            x.name: next(whole for whole in wholes if whole in x.formulas)
-            for x in functions
-            if not x.formulas.isdisjoint(wholes)
-        }
-        reached = set(inside)
-        while more := {x.name for x in functions if not x.calls.isdisjoint(reached)} - reached:
-            reached |= more
-        if inside:
-            callers = (x.name for x in functions if x.name in reached - inside.keys())
-            result[module] = Uses(inside, tuple(callers))
-    return result
-
-
-def _is_part(formula: Formula, whole: Formula) -> bool:
-    """Say whether another formula does what this one does, and more.
-
-    It may leave out a few of the outputs: `compose` drops what is not needed.
-    """
-    outputs = {pair for pair in formula.definitions if pair[0] in formula.outputs}
-    shared, more = outputs & {*whole.definitions}, {*whole.definitions} - {*formula.definitions}
-    return bool(more) and 2 * len(shared) > len(outputs)

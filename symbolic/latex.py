@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 
@@ -15,8 +15,9 @@ from .emit import render
 from .formula import Formula, VectorSymbol
 from .positions import position
 from .simplify import straight_line
+from .uses import Kernels
 
-__all__ = ["document", "markdown"]
+__all__ = ["document", "kernels", "markdown", "sections"]
 
 GENERATOR = f"Written by `make generate` with SymPy {sp.__version__}: do not edit."
 FORMULAS = {
@@ -38,14 +39,29 @@ ENDS = {
 class Entry:
     """What is shown of a formula or a surface; in sentences and facts `$` encloses LaTeX."""
 
-    name: str
+    formula: Formula
     sentence: str
     aligned: str
     facts: tuple[str, ...]
 
+    @property
+    def name(self) -> str:
+        """The name of the formula or surface."""
+        return self.formula.name
 
-def markdown() -> str:
-    """Return generated/formulas.md, whose formulas a code host renders."""
+
+def kernels(sources: Mapping[str, str]) -> Kernels:
+    """Return what the generated files, given as texts by their names, run of all formulas."""
+    formulas = (x for section in FORMULAS.values() for x in section)
+    return Kernels(sources, formulas, surfaces.CATALOGUE)
+
+
+def markdown(sources: Mapping[str, str]) -> str:
+    """Return generated/formulas.md, whose formulas a code host renders.
+
+    `sources` are the texts of the generated files by their names.
+    """
+    uses = kernels(sources)
 
     def converted(sentence: str) -> str:
         return _converted(sentence, mathematics=lambda x: f"$`{x}`$")
@@ -58,13 +74,14 @@ def markdown() -> str:
                 f"### `{entry.name}`",
                 converted(entry.sentence),
                 f"```math\n{entry.aligned}\n```",
-                "\n".join(f"- {converted(fact)}" for fact in entry.facts),
+                "\n".join(f"- {converted(fact)}" for fact in (*entry.facts, _run(entry, uses))),
             ]
     return render("formulas.md", {"generator": GENERATOR, "sections": "\n\n".join(parts)})
 
 
-def document() -> str:
-    """Return generated/formulas.tex, a complete LaTeX document."""
+def document(sources: Mapping[str, str]) -> str:
+    """Return generated/formulas.tex, a complete LaTeX document; `sources` as in `markdown`."""
+    uses = kernels(sources)
 
     def converted(sentence: str) -> str:
         return _converted(sentence, mathematics=lambda x: f"${x}$", plain=_escaped)
@@ -77,7 +94,7 @@ def document() -> str:
                 f"\\subsection*{{{_escaped(f'`{entry.name}`')}}}",
                 converted(entry.sentence),
                 entry.aligned.replace("{aligned}", "{align*}"),
-                "\\\\*\n".join(map(converted, entry.facts)) + "\n",
+                "\\\\*\n".join(map(converted, (*entry.facts, _run(entry, uses)))) + "\n",
             ]
     return render("formulas.tex", {"generator": f"% {GENERATOR}", "sections": "\n".join(parts)})
 
@@ -94,7 +111,7 @@ def sections() -> dict[str, list[Entry]]:
 
 def _formula(formula: Formula) -> Entry:
     return Entry(
-        formula.name,
+        formula,
         _converted(formula.description, mathematics=lambda x: f"${_named(x, formula)}$"),
         formula.latex(),
         (
@@ -127,11 +144,15 @@ def _surface(surface: surfaces.ParametricSurface) -> Entry:
         for name, ends in zip("uv", surface.continuation, strict=True)
     )
     return Entry(
-        surface.name,
+        position(surface),
         surface.sentence,
         "\n".join(lines),
         (*parameters, f"{ends}.", _operations(position(surface))),
     )
+
+
+def _run(entry: Entry, kernels: Kernels) -> str:
+    return f"Kernels: {kernels.sentence(entry.formula)}."
 
 
 def _operations(formula: Formula) -> str:
@@ -157,10 +178,11 @@ def _converted(
 
 @cache
 def _vectors() -> set[str]:
-    """Return the names of all vectors."""
+    """Return the names that are those of vectors in all formulas that have them."""
     formulas = [x for section in FORMULAS.values() for x in section]
     symbols = {s for x in formulas for s in _symbols(x)}
-    return {s.name for s in symbols if isinstance(s, VectorSymbol)}
+    scalars = {s.name for s in symbols if not isinstance(s, VectorSymbol)}
+    return {s.name for s in symbols if isinstance(s, VectorSymbol)} - scalars
 
 
 def _symbols(formula: Formula) -> tuple[sp.Symbol, ...]:
@@ -169,10 +191,13 @@ def _symbols(formula: Formula) -> tuple[sp.Symbol, ...]:
 
 def _named(source: str, formula: Formula) -> str:
     """Return mathematics of its sentence as LaTeX, with the names as in the formulas."""
-    scalars = {s.name for s in _symbols(formula) if not isinstance(s, VectorSymbol)}
-    bold = _vectors() - scalars
-    names = re.sub(r"[A-Za-z]\w*", lambda x: latex_name(x[0], bold=x[0] in bold), source)
-    return names.replace("×", r"\times").replace("…", r"\ldots")
+    bold = _vectors() | {s.name for s in _symbols(formula) if isinstance(s, VectorSymbol)}
+
+    def latex(name: re.Match[str]) -> str:
+        return r"\det" if name[0] == "det" else latex_name(name[0], bold=name[0] in bold)
+
+    names = re.sub(r"[A-Za-z]\w*", latex, source)
+    return names.replace("×", r"\times").replace("…", r"\ldots").replace("−", "-")
 
 
 def _escaped(text: str) -> str:

@@ -209,17 +209,19 @@ def _offset_curvature() -> Formula:
     """Add R to both radii, and write the result in the curvatures."""
     K, H, R_1, R_2 = (scalar(name) for name in ("K", "H", "R_1", "R_2"))
     of_radii = {K: 1 / (R_1 * R_2), H: (R_1 + R_2) / (2 * R_1 * R_2)}
-    shrinking = 1 + 2 * R * H + R**2 * K
-    outputs = [("K_offset", K / shrinking), ("H_offset", (H + R * K) / shrinking)]
+    s = scalar("s")
+    growth = {s: 1 + 2 * R * H + R**2 * K}
+    outputs = [("K_offset", K / s), ("H_offset", (H + R * K) / s)]
     for (_, target), curvature in zip(outputs, (K, H), strict=True):
         moved = substitute(of_radii[curvature], {R_1: R_1 + R, R_2: R_2 + R})
-        if sp.cancel(substitute(target, of_radii) - moved) != 0:
+        if sp.cancel(substitute(substitute(target, growth), of_radii) - moved) != 0:
             raise ArithmeticError(f"{target} is not {moved}")
     return Formula.build(
         "offset_curvature",
         "Gaussian and mean curvature of the offset at the distance $R$, of use also where a radius "
-        "is infinite.",
+        "is infinite. $s$ is how much the product of the radii grows: 0 where one becomes 0.",
         inputs=[K, H, R],
+        terms=[("s", growth[s])],
         outputs=outputs,
     )
 

@@ -51,3 +51,20 @@ def test_sampling_loads_neither_sympy_nor_matplotlib() -> None:
 def test_formulas_by_name() -> None:
     assert gm.formulas["envelope"].source.startswith("eq")
     assert set(gm.formulas) >= {"forms", "support_function", "curvature", "triangle"}
+    assert gm.formulas is gm.formulas
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("nope", r"^there is no formula 'nope'\. See `gaussmap formulas` for all names\.$"),
+        ("envelop", r"^there is no formula 'envelop'; did you mean envelope.*\? See `gaussmap "),
+        (3, r"^there is no formula 3\."),
+    ],
+)
+def test_a_formula_of_no_such_name(name: str, message: str) -> None:
+    with pytest.raises(gm.UnknownNameError, match=message):
+        gm.formulas[name]
+    assert name not in gm.formulas
+    assert gm.formulas.get(name) is None
+    assert repr(gm.formulas) == f"Formulas({len(gm.formulas)} formulas)"

@@ -5,16 +5,19 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from .boundary import BoundaryArc
 from .classes import PatchClass
-from .parabolic_lines import NEAR, pieces_of, singular_points
+from .parabolic_lines import NEAR, TRIANGLE, pieces_of, singular_points
 from .patches import Patches
-from .solid_angle import is_wide, solid_angles, triangle_of
+from .solid_angle import by_boundary, is_wide, solid_angles, triangle_of
 
 __all__ = ["measures_of"]
 
 Array = NDArray[np.float64]
 # A corner is a singular point if its normal is this short beside the others of the patch.
 SINGULAR = 2.0**-40
+# Singular points that are nearer to each other than this are one, found in two ways.
+SAME = 1e-6
 
 
 def measures_of(patches: Patches, classes: NDArray[np.int8]) -> tuple[Array, Array]:
@@ -35,7 +38,11 @@ def measures_of(patches: Patches, classes: NDArray[np.int8]) -> tuple[Array, Arr
     if pieces:
         owners = np.array([k for k, _ in pieces])
         of_piece = np.repeat(np.arange(len(pieces)), [len(fan) for _, fan in pieces])
-        parts = solid_angles(np.concatenate([fan for _, fan in pieces]))
+        triangles = np.concatenate([fan for _, fan in pieces])
+        parts = solid_angles(triangles)
+        regular = triangles[:, range(3), range(3)].any(axis=2)
+        for k in np.flatnonzero(np.any(~regular, axis=1)):
+            parts[k] = by_boundary(triangles[k], parts[k])
         sums = np.bincount(of_piece, weights=parts, minlength=len(pieces))
         np.add.at(signed, owners, sums)
         np.add.at(areas, owners, np.abs(sums))
@@ -44,11 +51,12 @@ def measures_of(patches: Patches, classes: NDArray[np.int8]) -> tuple[Array, Arr
 
 def _fans_of(patch: Patches) -> list[Array]:
     """Return the polar forms (m, 3, 3, 3) of the triangles of each piece of one patch."""
-    places = singular_points(patch)
     fans = []
+    border, others = _on_sides(patch, TRIANGLE), list(singular_points(patch))
     for piece in pieces_of(patch):
-        corners = _fan(piece.corners, places)
-        corners = np.concatenate([corners, 1.0 - corners.sum(axis=2, keepdims=True)], axis=2)
+        polygon = _snapped(piece.corners, border)
+        places = _different([*border, *_on_sides(patch, polygon), *others])
+        corners = _barycentric(_fan(polygon, places))
         normals = triangle_of(np.repeat(patch.normals, len(corners), axis=0), corners)
         lengths = np.linalg.norm(normals, axis=3)
         normals[lengths <= SINGULAR * lengths.max()] = 0.0
@@ -56,7 +64,44 @@ def _fans_of(patch: Patches) -> list[Array]:
     return fans
 
 
-def _fan(polygon: Array, places: Array) -> Array:
+def _on_sides(patch: Patches, polygon: Array) -> list[Array]:
+    """Return the places of the singular points on the sides of a polygon.
+
+    On a double parabolic line there may be some that no other line meets.
+    """
+    places = []
+    corners = _barycentric(polygon)
+    for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        ends = np.stack([start, end])
+        net = np.einsum("ai,bj,ijx->abx", ends, ends, patch.normals[0])
+        arc = BoundaryArc(net[[0, 0, 1], [0, 1, 1]], float(patch.normal_noise[0]))
+        places += [((1.0 - t) * start + t * end)[:2] for t in arc.singular_points]
+    return places
+
+
+def _different(places: list[Array]) -> list[Array]:
+    """Return places without those that are nearly one before them."""
+    result: list[Array] = []
+    for place in places:
+        if all(np.abs(place - other).max() > SAME for other in result):
+            result.append(place)
+    return result
+
+
+def _snapped(polygon: Array, places: list[Array]) -> Array:
+    """Move corners that are nearly singular points there: multiple lines are not known so well."""
+    polygon = polygon.copy()
+    for place in places:
+        polygon[np.abs(polygon - place).max(axis=1) <= SAME] = place
+    return polygon
+
+
+def _barycentric(places: Array) -> Array:
+    """Return u, v, w of places u, v along the last axis."""
+    return np.concatenate([places, 1.0 - places.sum(axis=-1, keepdims=True)], axis=-1)
+
+
+def _fan(polygon: Array, places: list[Array]) -> Array:
     """Cut a convex polygon into triangles (m, 3, 2) that have the places inside it as corners."""
     centre = polygon.mean(axis=0)
     triangles = [np.stack([centre, polygon[k - 1], polygon[k]]) for k in range(len(polygon))]

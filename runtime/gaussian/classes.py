@@ -7,12 +7,18 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import InputError
 from ..spline import Spline
-from .parabolic_lines import pieces_of
-from .patches import Patches, checked_control_points
+from .parabolic_lines import cubic_bernstein, pieces_of
+from .patches import Patches, checked_nets
 
 __all__ = ["PatchClass", "classes_of", "classify_patches"]
+
+
+# The cubic at a lattice of places inside: where it has both signs, no lines have to be found.
+LATTICE = 8
+INSIDE = cubic_bernstein(
+    np.array([(i, j) for i in range(1, LATTICE) for j in range(1, LATTICE - i)]) / LATTICE
+)
 
 
 class PatchClass(IntEnum):
@@ -35,17 +41,11 @@ def classify_patches(patches: Spline | ArrayLike) -> NDArray[np.int8]:
     Bézier coefficients of the cubic `parabolic_cubic` decide where they agree, the parabolic lines
     elsewhere; what is zero up to the rounding of the coordinates counts as zero.
 
-    Raises InputError for nets of another shape, NaN or infinity.
+    Raises InputError for nets of another shape, NaN, infinity, or numbers too large.
     """
     if isinstance(patches, Spline):
         return classes_of(Patches.of_spline(patches))
-    nets = np.asarray(patches)
-    if nets.ndim != 3 or nets.shape[1:] != (6, 3) or len(nets) == 0:
-        raise InputError(
-            f"classify_patches takes a Spline or nets (k, 6, 3) with k >= 1, not {nets.shape}."
-        )
-    each = [Patches.of_control_points(checked_control_points(net)[None]) for net in nets]
-    return np.concatenate([classes_of(x) for x in each])
+    return classes_of(Patches.of_control_points(checked_nets(patches)))
 
 
 def classes_of(patches: Patches) -> NDArray[np.int8]:
@@ -61,9 +61,12 @@ def classes_of(patches: Patches) -> NDArray[np.int8]:
     across = np.linalg.norm(np.cross(net, longest), axis=2).max(axis=1)
     result[across <= 4.0 * patches.normal_noise * lengths.max(axis=1)] = PatchClass.PLANAR
     result[lengths.max(axis=1) == 0.0] = PatchClass.SINGULAR
-    for k in np.flatnonzero(positive & negative & (result >= PatchClass.ELLIPTIC)):
+    curved = positive & negative & (result >= PatchClass.ELLIPTIC) & (result != PatchClass.SINGULAR)
+    inside = patches.cubic @ INSIDE.T
+    mixed = curved & (inside > error).any(axis=1) & (inside < -error).any(axis=1)
+    result[mixed] = PatchClass.MIXED
+    for k in np.flatnonzero(curved & ~mixed):
         signs = {piece.sign for piece in pieces_of(patches[k : k + 1])}
-        if result[k] != PatchClass.SINGULAR:
-            alone = PatchClass.ELLIPTIC if 1 in signs else PatchClass.HYPERBOLIC
-            result[k] = PatchClass.MIXED if {1, -1} <= signs else alone
+        alone = PatchClass.ELLIPTIC if 1 in signs else PatchClass.HYPERBOLIC
+        result[k] = PatchClass.MIXED if {1, -1} <= signs else alone
     return result

@@ -11,21 +11,20 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...generated import gaussian_image as formulas
-from ..checks import real_array, whole_number
+from ..checks import real_array
 from ..errors import InputError
-from ..plain import plain
 from ..search import NormalBins, fill, find
 from ..sphere import as_normals
 from ..spline import Spline, spline_of
 from ..surface import Surface
 from .area import measures_of
+from .boundary import BoundaryArc, boundary_arcs, edge_arcs
 from .classes import PatchClass, classes_of
-from .membership import has_normals
+from .membership import PatchNormals
 from .parabolic_lines import Piece, pieces_of
 from .patches import Patches, checked_control_points
-from .solid_angle import boundary_of
 
-__all__ = ["BoundaryArc", "GaussianImage", "GaussianImages"]
+__all__ = ["GaussianImage", "GaussianImages"]
 
 Array = NDArray[np.float64]
 NAMES = {
@@ -35,86 +34,6 @@ NAMES = {
     PatchClass.MIXED: "bow tie",
 }
 BY_SIDES = {2: "biangle", 3: "triangle"}
-
-
-@dataclass(frozen=True, eq=False)
-class BoundaryArc:
-    """One side of a Gaussian image: a quadratic Bézier curve of normals, projected to the sphere.
-
-    `control_normals` (3, 3) are its control points, three of the control normals of the patch (not
-    of unit length). `noise` bounds the error that the rounding of the coordinates leaves in them.
-    """
-
-    control_normals: Array
-    noise: float
-
-    def points(self, count: int) -> Array:
-        """Return `count` unit normals (count, 3) along the arc, both ends included.
-
-        At a singular end, where the normal vanishes, it is the limit; NaN if the whole arc has no
-        normals, and at a `singular_point`, where the arc jumps to the opposite normal. Raises
-        InputError unless `count` is a whole number of at least 2.
-        """
-        t = np.linspace(0.0, 1.0, whole_number(count, "count", 2))
-        normals = np.stack(formulas_of_arc(self.control_normals, t), axis=1)
-        nonzero = self.control_normals[self.control_normals.any(axis=1)]
-        if len(nonzero):
-            for end, limit in ((0, nonzero[0]), (-1, nonzero[-1])):
-                normals[end] = normals[end] if normals[end].any() else limit
-        with np.errstate(invalid="ignore"):
-            if self.singular_point is not None:
-                normals[np.linalg.norm(normals, axis=1) <= 4.0 * self.noise] = np.nan
-            normals /= np.abs(normals).max(axis=1, keepdims=True)
-            return normals / np.linalg.norm(normals, axis=1, keepdims=True)
-
-    @cached_property
-    def singular_point(self) -> float | None:
-        """The parameter, between 0 and 1, at which the normal vanishes up to rounding, or None.
-
-        The arc is then two parts of one great circle. Unless they are one point, the image is
-        closed between them by half a great circle, whose plane depends on the rest of the patch.
-        """
-        first, middle, last = self.control_normals
-        limit = 4.0 * self.noise
-        if min(np.linalg.norm(first), np.linalg.norm(last)) <= limit:
-            return None
-        quadratics = np.stack([first - 2.0 * middle + last, 2.0 * (middle - first), first], axis=1)
-        # What rounding leaves of a coefficient would only give roots far away.
-        quadratics[np.abs(quadratics) <= np.finfo(float).eps * np.abs(quadratics).max()] = 0.0
-        roots = np.concatenate([np.roots(x).real for x in quadratics]).astype(np.float64)
-        zeros: Array = roots[(roots > 0.0) & (roots < 1.0)]
-        if not len(zeros):
-            return None
-        lengths = np.linalg.norm(np.stack(formulas_of_arc(self.control_normals, zeros)), axis=0)
-        best = int(lengths.argmin())
-        return float(zeros[best]) if lengths[best] <= limit else None
-
-    @property
-    def sides(self) -> int:
-        """How many sides it gives the image: 0 for one point, more if it is cut inside."""
-        parts = 0 if self.is_point else 1
-        if self.singular_point is None:
-            return parts
-        jumps = float(self.control_normals[0] @ self.control_normals[2]) < 0.0
-        return 2 * parts + (1 if parts or jumps else 0)
-
-    @property
-    def is_point(self) -> bool:
-        """Whether all its normals are parallel, up to rounding (the edge is a parabolic line)."""
-        lengths = np.linalg.norm(self.control_normals, axis=1)
-        longest = self.control_normals[int(lengths.argmax())]
-        across = np.linalg.norm(np.cross(self.control_normals, longest), axis=1).max()
-        return bool(across <= 4.0 * self.noise * lengths.max())
-
-    @property
-    def is_great_circle(self) -> bool:
-        """Whether it lies on a great circle, up to rounding: its normals are coplanar.
-
-        Its cone is then a pair of planes. So it is for an edge in a plane of symmetry.
-        """
-        longest = float(np.linalg.norm(self.control_normals, axis=1).max())
-        volume = abs(float(np.linalg.det(self.control_normals)))
-        return volume <= 4.0 * self.noise * longest**2
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,17 +63,16 @@ class GaussianImage:
         """What the image is.
 
         "triangle": bounded by three arcs. "biangle": by two, because the third is one point (its
-        edge is a parabolic line). "polygon": by more, because a corner is a singular point and adds
-        a great-circle arc, or one lies inside an edge. "bow tie": a parabolic line inside, pinched
-        to one point. "arc": of a developable patch. "point": of a plane (two opposite ones if it is
-        folded). "empty": no point of the patch has a normal.
+        edge is a parabolic line). "polygon": by more, because a corner or a point inside an edge is
+        singular, see `boundary`. "bow tie": a parabolic line inside, pinched to one point. "arc":
+        of a developable patch. "point": of a plane (two opposite ones if it is folded). "empty": no
+        point of the patch has a normal.
         """
         if self.patch_class in NAMES:
             return NAMES[self.patch_class]
         if len(self.pieces) > 1:
             return "bow tie"
-        sides = (BoundaryArc(arc[0], self._noise) for arc in boundary_of(self._patch.normals))
-        return BY_SIDES.get(sum(side.sides for side in sides), "polygon")
+        return BY_SIDES.get(len(self.boundary), "polygon")
 
     @cached_property
     def patch_class(self) -> PatchClass:
@@ -174,13 +92,25 @@ class GaussianImage:
 
     @cached_property
     def arcs(self) -> tuple[BoundaryArc, BoundaryArc, BoundaryArc]:
-        """The sides along the edges u = 0, v = 0 and w = 0, counter-clockwise in (u, v).
+        """The normals along the edges u = 0, v = 0 and w = 0, counter-clockwise in (u, v).
 
         They run from v = 1 to w = 1, from w = 1 to u = 1 and from u = 1 to v = 1. An edge that has
         no normals, because it is one point, has the limit of the normals near it.
         """
-        w, u, v = (BoundaryArc(arc[0], self._noise) for arc in boundary_of(self._patch.normals)[:3])
-        return u, v, w
+        return edge_arcs(self._patch.normals[0], self._noise)
+
+    @cached_property
+    def boundary(self) -> tuple[BoundaryArc, ...]:
+        """The sides of the image, each from the end of the one before, as the border runs.
+
+        They are `arcs` without those that are one point, and cut where an edge has a singular point
+        inside. Round a singular point of the border the normals have all limits along an arc of a
+        great circle, which is a side, too: half a great circle where the normals of an edge jump to
+        the opposite ones. The chain is closed; it has gaps between opposite normals only if the
+        image has no inside, or if a whole curve of singular points ends there. What singular points
+        inside the patch add to the border of the image is not in it.
+        """
+        return boundary_arcs(self._patch.normals[0], self._noise)
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
@@ -206,7 +136,7 @@ class GaussianImage:
         no normal. Raises InputError for another shape, NaN, infinity or a zero vector.
         """
         as_normals(normals)
-        return has_normals(self.control_points, real_array(normals, "normals"))
+        return PatchNormals(self.control_points).contain(real_array(normals, "normals"))
 
     @cached_property
     def _patch(self) -> Patches:
@@ -296,9 +226,3 @@ class GaussianImages:
     @cached_property
     def _patches(self) -> Patches:
         return Patches.of_spline(self.spline)
-
-
-def formulas_of_arc(control_normals: Array, t: Array) -> list[Array]:
-    """Return the three components (k,) of the normals of an arc at parameters (k,)."""
-    columns = plain(formulas.boundary_arc)(*control_normals.ravel(), t)[:3]
-    return [column + 0.0 * t for column in columns]

@@ -3,78 +3,132 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...generated import gaussian_image as lines
 from ...generated import patch as formulas
-from ..integers import integers, integers_by_row
+from ...generated import sampler
+from ...generated import support as kernels
+from ..integers import integers, integers_by_row, ratio, sign
 from ..plain import plain
-from .patches import Patches
+from ..spline import LARGEST_EXPONENT
 
-__all__ = ["has_normals"]
+__all__ = ["Members", "PatchNormals"]
 
 Array = NDArray[np.float64]
 Place = tuple[Fraction, Fraction]
-# The forms are sums of at most six products of two scalar products, for vectors and normals of any
-# direction: their rounding error is below 2⁻⁴⁴ times the lengths of the vectors.
-FORM_ERROR = math.ldexp(1.0, -44)
-# What exceeds the error by this factor gives the parameters to a few digits.
-ACCURATE = 65536.0
+# Vectors whose largest component is at least ½ and below 1 are shorter than √3.
+LONGEST_SQUARED = 3.0
 # Near a singular point, where N is this short beside the square of the tangents, the few digits of
-# the parameters do not give its direction.
+# the parameters that are known do not give its direction.
 SINGULAR = 2.0**-12
 
 
-def has_normals(control_points: Array, normals: Array) -> NDArray[np.bool_]:
-    """Say which of the vectors (k, 3) are oriented normals of a patch (6, 3), border included."""
-    exponents = np.frexp(np.abs(normals).max(axis=1, keepdims=True))[1]
-    scaled = np.ldexp(normals, -exponents)
-    inside, sure = _rounded(Patches.of_control_points(control_points[None]), scaled)
-    open_ = np.flatnonzero(~sure)
-    if len(open_):
-        inside[open_] = _exact(control_points, scaled[open_])
-    return inside
+@dataclass(frozen=True, eq=False)
+class Members:
+    """What was decided of k vectors: which are normals of regular points that are not parabolic.
+
+    `inside` (k,) says that, `uv` (k, 2) where; `signs` (k,) is the sign of K where it was decided
+    exactly, else 0. At `vanishing` (k,) all of D, U, V, W are zero: the vector may be the normal of
+    a whole line.
+    """
+
+    inside: NDArray[np.bool_]
+    uv: Array
+    signs: NDArray[np.int8]
+    vanishing: NDArray[np.bool_]
 
 
-def _rounded(patch: Patches, n: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Return which normals the patch has, and for which of them rounding leaves no doubt."""
-    D, U, V, W = (np.broadcast_to(x, len(n)) for x in patch.apply(formulas.forms, *n.T))
-    size = float(patch.second[0] * patch.tangent[0])
-    error = FORM_ERROR * size * 3.0
-    low, high = np.minimum.reduce([U, V, W]), np.maximum.reduce([U, V, W])
-    outside = (low < -error) & (high > error)
-    sure = ((low > error) | (high < -error)) & (np.abs(D) > ACCURATE * error)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        u, v = np.where(sure, U / D, 0.0), np.where(sure, V / D, 0.0)
-    N = np.stack([x + 0.0 * u for x in patch.apply(formulas.tangents, u, v)[6:]], axis=1)
-    towards = np.einsum("kx,kx->k", N, n)
-    lengths = np.linalg.norm(N, axis=1) * np.linalg.norm(n, axis=1)
-    regular = np.linalg.norm(N, axis=1) > SINGULAR * float(patch.tangent[0]) ** 2
-    clear = (np.abs(towards) > 0.25 * lengths) & regular
-    return sure & clear & (towards > 0.0), outside | (sure & clear)
+@dataclass(frozen=True, eq=False)
+class PatchNormals:
+    """The oriented normals of one quadratic patch (6, 3), border included; decided exactly."""
 
+    control_points: Array
 
-def _exact(control_points: Array, normals: Array) -> NDArray[np.bool_]:
-    """Decide on integers: D ≠ 0, or the whole of a parabolic or ruling line has the normal."""
-    points, _ = integers(control_points)
-    vectors = np.array(plain(formulas.power_form)(*points.ravel())[:15], dtype=object)
-    n, _ = integers_by_row(normals)
-    columns = np.broadcast_to(vectors[:, None], (15, n.shape[1]))
-    forms = np.array(plain(formulas.forms)(*columns, *n), dtype=object)
-    positive = np.asarray(forms >= 0, dtype=bool)
-    negative = np.asarray(forms <= 0, dtype=bool)
-    inside = (positive[1:].all(axis=0) | negative[1:].all(axis=0)) & np.asarray(
-        forms[0] != 0, dtype=bool
-    )
-    orientation = np.asarray(plain(formulas.orientation)(*columns, *n) > 0, dtype=bool)
-    inside &= orientation
-    vanishing = np.asarray(forms[:3] == 0, dtype=bool).all(axis=0)
-    for k in np.flatnonzero(vanishing):
-        inside[k] = _on_line(vectors.tolist(), n[:, k].tolist())
-    return inside
+    def members(self, normals: Array) -> Members:
+        """Decide which of the vectors (k, 3) are normals, of points that are not parabolic."""
+        count = len(normals)
+        kinds, uv = np.empty(count, dtype=np.int8), np.zeros((count, 2))
+        exponents = np.frexp(np.abs(normals).max(axis=1, keepdims=True))[1]
+        scaled = np.ldexp(normals, -exponents)
+        kernels.classify(
+            self.vectors, self._bound, sampler.ACCURATE * self._bound, self._shortest, scaled,
+            kinds, uv,
+        )  # fmt: skip
+        result = Members(
+            kinds == kernels.INSIDE, uv, np.zeros(count, dtype=np.int8), np.zeros(count, dtype=bool)
+        )
+        open_ = np.flatnonzero(kinds == kernels.DOUBTFUL)
+        if len(open_):
+            self._decide(result, open_, normals[open_])
+        return result
+
+    def contain(self, normals: Array) -> NDArray[np.bool_]:
+        """Say which of the vectors (k, 3) are normals of any point, parabolic ones included."""
+        members = self.members(normals)
+        which = np.flatnonzero(members.vanishing)
+        n, _ = integers_by_row(normals[which])
+        for k, normal in zip(which, n.T.tolist(), strict=True):
+            members.inside[k] = _on_line(list(self.exact_vectors), normal)
+        return members.inside
+
+    @cached_property
+    def scale(self) -> float:
+        """A power of two that brings the differences of control points to about 1."""
+        largest = float(np.abs(self.control_points - self.control_points[2]).max())
+        return math.ldexp(1.0, min(-math.frexp(largest)[1], LARGEST_EXPONENT))
+
+    @cached_property
+    def vectors(self) -> tuple[float, ...]:
+        """The vectors a … e of eq. (8), times the scale."""
+        net = self.scale * (self.control_points - self.control_points[2])
+        return tuple(map(float, plain(formulas.power_form)(*net.ravel())[:15]))
+
+    @cached_property
+    def exact_vectors(self) -> tuple[int, ...]:
+        """The vectors a … e as integers, in some unit."""
+        net, _ = integers(self.control_points)
+        return plain(formulas.power_form)(*net.ravel())[:15]
+
+    @cached_property
+    def _sizes(self) -> tuple[float, float]:
+        """The largest components of a, b, c and of d, e."""
+        sizes = np.abs(self.vectors)
+        return float(sizes[:9].max()), float(sizes[9:].max())
+
+    @cached_property
+    def _bound(self) -> float:
+        """The rounding error of U, V, W, as for the patches of a spline.
+
+        It is that of differences of control points, of size 1, which a, b, c may be far below.
+        """
+        error = sampler.FORM_ERROR * (sum(self._sizes) + sampler.FORM_ERROR)
+        return 32.0 * LONGEST_SQUARED * error
+
+    @cached_property
+    def _shortest(self) -> float:
+        """How long N has to be, in the sum of its components, for its direction to be sure."""
+        return SINGULAR * (2.0 * self._sizes[0] + self._sizes[1]) ** 2
+
+    def _decide(self, members: Members, rows: NDArray[np.intp], normals: Array) -> None:
+        """Decide exactly, on integers, and write that into these rows of the result."""
+        n, _ = integers_by_row(normals)
+        forms = np.array(plain(formulas.forms)(*self.exact_vectors, *n), dtype=object)
+        D, *bounds = (sign(x) for x in forms)
+        c3 = sign(np.asarray(plain(formulas.orientation)(*self.exact_vectors, *n), dtype=object))
+        signs = np.stack(bounds)
+        one_sign = (signs.min(axis=0) >= 0) | (signs.max(axis=0) <= 0)
+        inside = one_sign & (D != 0) & (c3 > 0)
+        for axis in (0, 1):
+            quotients = ratio(forms[axis + 1, inside], forms[0, inside])
+            members.uv[rows[inside], axis] = quotients
+        members.inside[rows], members.signs[rows] = inside, D
+        members.vanishing[rows] = (D == 0) & (signs == 0).all(axis=0)
 
 
 def _on_line(vectors: list[int], n: list[int]) -> bool:

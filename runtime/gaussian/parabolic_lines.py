@@ -16,6 +16,7 @@ from .patches import Patches, checked_control_points
 __all__ = [
     "ParabolicLine",
     "Piece",
+    "cubic_bernstein",
     "lines_of",
     "parabolic_lines",
     "pieces_of",
@@ -109,7 +110,7 @@ def pieces_of(patch: Patches) -> tuple[Piece, ...]:
             polygons = [half for half in halves if half is not None]
     if patch.flat[0]:
         return (Piece(TRIANGLE, 0),)
-    return tuple(Piece(polygon, _sign_at(patch, polygon.mean(axis=0))) for polygon in polygons)
+    return tuple(Piece(polygon, _sign_in(patch, polygon)) for polygon in polygons)
 
 
 def clipped(polygon: Array, line: Array) -> Array | None:
@@ -191,7 +192,9 @@ def _roots(patch: Patches) -> tuple[float, NDArray[np.complex128]]:
     where the cubic vanishes.
     """
     coefficients = np.array([float(x[0]) for x in patch.apply(formulas.parabolic_directions)])
-    error = (2.0**-44 * patch.tangent[0] + 8.0 * patch.noise) * patch.second[0] * patch.tangent[0]
+    error = (
+        (2.0**-44 * patch.tangent[0] + 8.0 * patch.noise[0]) * patch.second[0] * patch.tangent[0]
+    )
     if np.abs(coefficients).max() <= error:
         return 0.0, np.empty(0, dtype=np.complex128)
     angles = np.linspace(0.0, math.pi, 8)[:-1]
@@ -269,19 +272,20 @@ def _oriented(
     return -normal if float(_normal_at(patch, place) @ normal) < 0.0 else normal
 
 
-def _sign_at(patch: Patches, place: Array) -> int:
-    """Return the sign of the cubic D(N(u,v)), in Bernstein form."""
-    u, v = place
+def _sign_in(patch: Patches, polygon: Array) -> int:
+    """Return the sign of the cubic D(N(u,v)) inside a piece; a few places may be isolated zeros."""
+    places = 0.5 * (polygon + polygon.mean(axis=0))
+    values = cubic_bernstein(places) @ patch.cubic[0]
+    return int(np.sign(values[np.abs(values).argmax()]))
+
+
+def cubic_bernstein(places: Array) -> Array:
+    """Return the weights (…, 10) of the coefficients D300, D210, … at places u, v (…, 2)."""
+    u, v = places[..., 0], places[..., 1]
     w = 1.0 - u - v
-    value = sum(
-        math.factorial(3) // (math.factorial(i) * math.factorial(j) * math.factorial(3 - i - j))
-        * u**i * v**j * w ** (3 - i - j) * coefficient
-        for (i, j), coefficient in zip(CUBIC_INDICES, patch.cubic[0], strict=True)
+    indices = [(i, j, 3 - i - j) for i in range(3, -1, -1) for j in range(3 - i, -1, -1)]
+    return np.stack(
+        [6 // math.prod(map(math.factorial, x)) * u ** x[0] * v ** x[1] * w ** x[2]
+         for x in indices],
+        axis=-1,
     )  # fmt: skip
-    return int(np.sign(value))
-
-
-# The order of the Bézier coefficients of the cubic: D300, D210, D201, ….
-CUBIC_INDICES: tuple[tuple[int, int], ...] = tuple(
-    (i, j) for i in range(3, -1, -1) for j in range(3, -1, -1) if i + j <= 3
-)

@@ -18,11 +18,12 @@ from ..errors import InputError
 from ..plain import plain
 from ..spline import LARGEST_EXPONENT, Spline
 
-__all__ = ["Patches", "checked_control_points"]
+__all__ = ["Patches", "checked_control_points", "checked_nets"]
 
 Array = NDArray[np.float64]
 # The control normals N200, N110, N101, N020, N011, N002 as pairs of corners of the triangle.
 INDEX_PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
+ORDER = "in the order b200, b020, b002, b110, b101, b011"
 # Rounding of a coefficient of the parabolic cubic, beside the product of the lengths in its terms.
 CUBIC_ERROR = math.ldexp(1.0, -44)
 
@@ -31,21 +32,21 @@ CUBIC_ERROR = math.ldexp(1.0, -44)
 class Patches:
     """The vectors a, b, c, d, e of eq. (8) of k patches, (k, 5, 3), in a unit near their size.
 
-    `noise` bounds the error that the rounding of the coordinates leaves in a component. Gaussian
-    images do not depend on the unit.
+    `noise` (k,) bounds the error that the rounding of the coordinates leaves in a component.
+    Gaussian images do not depend on the unit, which each patch has for itself.
     """
 
     vectors: Array
-    noise: float
+    noise: Array
 
     @classmethod
     def of_control_points(cls, nets: Array) -> Patches:
         """Return the patches of Bézier nets (k, 6, 3)."""
         differences = nets - nets[:, 2:3]
-        scale = _unit(float(np.abs(differences).max()))
-        columns = (differences * scale).reshape(len(nets), 18).T
+        scale = _units(np.abs(differences).max(axis=(1, 2)))
+        columns = (differences * scale[:, None, None]).reshape(len(nets), 18).T
         vectors = plain(formulas.power_form)(*columns)[:15]
-        noise = sampler.DATA_ERROR * float(np.abs(nets).max()) * scale
+        noise = sampler.DATA_ERROR * np.abs(nets).max(axis=(1, 2)) * scale
         return cls(_stacked(vectors, len(nets)), noise)
 
     @classmethod
@@ -60,7 +61,7 @@ class Patches:
         vectors = plain(sampler.triangle)(*columns)[:15]
         largest = float(np.abs(spline.coefficients * spline.scale).max())
         noise = sampler.SCALE * sampler.DATA_ERROR * largest
-        return cls(_stacked(vectors, spline.patches), noise)
+        return cls(_stacked(vectors, spline.patches), np.full(spline.patches, noise))
 
     def __len__(self) -> int:
         """Return the number of patches."""
@@ -68,7 +69,7 @@ class Patches:
 
     def __getitem__(self, rows: NDArray[Any] | slice) -> Patches:
         """Return some of the patches."""
-        return Patches(self.vectors[rows], self.noise)
+        return Patches(self.vectors[rows], self.noise[rows])
 
     def apply(self, formula: Callable[..., Any], *more: ArrayLike) -> list[Any]:
         """Return the outputs of a formula of a, b, c, d, e, each (k,), for all patches."""
@@ -125,14 +126,30 @@ def checked_control_points(control_points: ArrayLike) -> Array:
     array = real_array(control_points, "control_points")
     if array.shape != (6, 3):
         raise InputError(
-            "control_points must be six points of three coordinates, in the order b200, b020, "
-            f"b002, b110, b101, b011, and not of shape {array.shape}."
+            f"control_points must be six points of three coordinates, {ORDER}, and not of shape "
+            f"{array.shape}."
         )
-    if not np.isfinite(array).all():
-        row = int(np.argmin(np.isfinite(array).all(axis=1)))
-        raise InputError(f"control_points[{row}] holds NaN or infinity.")
-    if np.abs(array).max() > 2.0**LARGEST_EXPONENT:
-        raise InputError("control_points are too large to compute with.")
+    return _computable(array, "control_points")
+
+
+def checked_nets(nets: ArrayLike) -> Array:
+    """Return the control points of k >= 1 patches as (k, 6, 3) floats; InputError if not these."""
+    array = real_array(nets, "nets")
+    if array.ndim != 3 or array.shape[1:] != (6, 3) or len(array) == 0:
+        raise InputError(
+            f"nets must have the shape (k, 6, 3) with k >= 1, {ORDER}, and not {array.shape}."
+        )
+    return _computable(array, "nets")
+
+
+def _computable(array: Array, name: str) -> Array:
+    """Return an array of numbers to compute with; InputError that says where others are."""
+    rows = np.abs(array).reshape(len(array), -1)
+    if not np.isfinite(rows).all():
+        row = int(np.argmin(np.isfinite(rows).all(axis=1)))
+        raise InputError(f"{name}[{row}] holds NaN or infinity.")
+    if rows.max() > 2.0**LARGEST_EXPONENT:
+        raise InputError(f"{name} are too large to compute with.")
     return array
 
 
@@ -141,6 +158,6 @@ def _stacked(columns: Any, count: int) -> Array:  # noqa: ANN401 - numbers or ar
     return np.stack(np.broadcast_arrays(*columns), axis=1).reshape(count, -1, 3).copy()
 
 
-def _unit(largest: float) -> float:
-    """Return a power of two that brings a number to about 1."""
-    return math.ldexp(1.0, min(-math.frexp(largest)[1], LARGEST_EXPONENT)) if largest else 1.0
+def _units(largest: Array) -> Array:
+    """Return powers of two that bring numbers to about 1; 1 for zero."""
+    return np.ldexp(1.0, np.minimum(-np.frexp(largest)[1], LARGEST_EXPONENT))

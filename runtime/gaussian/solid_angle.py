@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import math
+from itertools import product
+
 import numpy as np
 from numpy.typing import NDArray
 
 from ...generated import gaussian_image as kernels
+from ..plain import plain
 
-__all__ = ["boundary_of", "is_wide", "solid_angles", "triangle_of"]
+__all__ = ["boundary_of", "by_boundary", "is_wide", "solid_angles", "triangle_of"]
 
 Array = NDArray[np.float64]
 # Normals of one triangle must be this near to their mean (as a cosine); wider ones are subdivided.
@@ -18,6 +22,7 @@ SMALL = 1e-9
 # curve of singular points there are soon so many that about 2^-12 has to be left out.
 DEPTH = 26
 MOST_WIDE = 20_000
+LEFT_OUT = 2.0**-6
 # Gauss-Legendre on an arc and on its halves agree to this, or the halves are cut again; so are arcs
 # with an end that is shorter than the rest by this factor, where the direction may turn too fast to
 # be seen by either.
@@ -26,6 +31,10 @@ NODES = 16
 AGREEMENT = 1e-15
 ARC_DEPTH = 40
 MOST_PARTS = 1_000_000
+# Poles to choose from, and how many normals of each arc have to be far from the opposite pole.
+POLES = np.array([x for x in product((-1.0, 0.0, 1.0), repeat=3) if any(x)])
+POLES /= np.linalg.norm(POLES, axis=1, keepdims=True)
+SAMPLES = 9
 # The edges of a triangle, counter-clockwise in (u, v): their corners, and the opposite one.
 EDGES = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
 
@@ -45,6 +54,23 @@ def solid_angles(normals: Array) -> Array:
     integrals = integrate(np.concatenate(arcs), np.tile(poles, (len(arcs), 1)))
     np.add.at(result, np.tile(owners, len(arcs)), integrals)
     return result
+
+
+def by_boundary(normals: Array, about: float) -> float:
+    """Return the solid angle of one triangle (3, 3, 3, 3) by the integral along its boundary alone.
+
+    That is known up to whole spheres, which `about` decides. It is as good at a singular corner,
+    where subdivision has to leave something out. `about` itself if the boundary is not closed.
+    """
+    arcs = np.concatenate(boundary_of(normals[None]))
+    columns = arcs.reshape(len(arcs), 9, 1).swapaxes(0, 1)
+    curve = np.stack(plain(kernels.boundary_arc)(*columns, np.linspace(0.0, 1.0, SAMPLES))[:3])
+    lengths = np.linalg.norm(curve, axis=0)
+    curve = np.divide(curve, lengths, out=np.zeros_like(curve), where=lengths > 0.0)
+    pole = POLES[int((POLES @ curve.reshape(3, -1)).min(axis=1).argmax())]
+    whole = float(integrate(arcs, np.tile(pole, (len(arcs), 1))).sum())
+    better = math.remainder(whole - about, 4.0 * math.pi)
+    return about + better if abs(better) < LEFT_OUT else about
 
 
 def is_wide(normals: Array) -> NDArray[np.bool_]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -63,45 +64,76 @@ class Sum:
 
 
 @dataclass(frozen=True, eq=False)
-class Offset:
-    """h + d |n|: the points x + d n."""
+class Changed(ABC):
+    """What operations on one support function have in common: how they are written."""
 
     of: Source
+
+    def expression(self) -> sympy.Expr | None:
+        """Return the expression; None if that of the surface is none."""
+        given = self.of.expression()
+        return None if given is None else self._written(self._moved(given), _normal())
+
+    def domain(self) -> Any:  # noqa: ANN401 - a Boolean of SymPy
+        """Return the domain; None if that of the surface is none."""
+        given = self.of.domain()
+        return None if given is None else self._moved(given)
+
+    def __str__(self) -> str:
+        return f"({self.of}) {self._name}"
+
+    @property
+    @abstractmethod
+    def _name(self) -> str:
+        """What was done to the surface, in words."""
+
+    def _moved(self, given: Any) -> Any:  # noqa: ANN401
+        """Return what is said of the normals of the surface, for those that they become."""
+        return given
+
+    def _written(self, h: Any, n: Sequence[Any]) -> Any:  # noqa: ANN401
+        """Return the new expression, once the normal has moved."""
+        return h
+
+
+@dataclass(frozen=True, eq=False)
+class Offset(Changed):
+    """h + d |n|: the points x + d n."""
+
     distance: float
 
     def sheets(self, normals: Vector) -> Sheets:
         """Return the branches; both radii grow by d."""
         sheets = self.of.sheets(normals)
         mine = normals[sheets.normal_index]
+        doubtful = np.empty(len(mine), dtype=np.bool_)
         kernels.add_offset(
-            self.distance, mine, sheets.points, sheets.hessian, sheets.gaussian, sheets.mean
-        )
+            self.distance, mine, sheets.points, sheets.hessian, sheets.gaussian, sheets.mean,
+            doubtful,
+        )  # fmt: skip
         # Where a radius was 0, the old curvatures say nothing of the new ones; where one becomes 0,
         # they say it with the rounding of 1 + 2 H d + K d².
-        radii, gaussian, mean = curvatures(mine, sheets.hessian)
+        rows = np.flatnonzero(doubtful)
+        radii, gaussian, mean = curvatures(mine[rows], sheets.hessian[rows])
         sizes = np.abs(radii)
         vanishing = sizes.min(axis=1) <= RADIUS_ERROR * (sizes.max(axis=1) + abs(self.distance))
-        singular = ~np.isfinite(sheets.gaussian) | vanishing
-        sheets.gaussian[singular], sheets.mean[singular] = gaussian[singular], mean[singular]
+        singular = ~np.isfinite(sheets.gaussian[rows]) | vanishing
+        sheets.gaussian[rows[singular]] = gaussian[singular]
+        sheets.mean[rows[singular]] = mean[singular]
         return sheets
 
-    def expression(self) -> sympy.Expr | None:
-        """Return the expression on the unit sphere."""
-        return _changed(self.of.expression(), lambda h, n: h + _exact(self.distance) * _length(n))
+    @property
+    def _name(self) -> str:
+        return f"offset by {self.distance:g}"
 
-    def domain(self) -> Any:  # noqa: ANN401 - a Boolean of SymPy
-        """Return the domain of the surface."""
-        return self.of.domain()
-
-    def __str__(self) -> str:
-        return f"({self.of}) offset by {self.distance:g}"
+    def _written(self, h: Any, n: Sequence[Any]) -> Any:  # noqa: ANN401
+        return h + _exact(self.distance) * _length(n)
 
 
 @dataclass(frozen=True, eq=False)
-class Translated:
+class Translated(Changed):
     """h + n·t: the points x + t."""
 
-    of: Source
     shift: Vector
 
     def sheets(self, normals: Vector) -> Sheets:
@@ -109,27 +141,18 @@ class Translated:
         sheets = self.of.sheets(normals)
         return replace(sheets, points=sheets.points + self.shift)
 
-    def expression(self) -> sympy.Expr | None:
-        """Return the expression."""
-        shift = [_exact(t) for t in self.shift.tolist()]
-        return _changed(
-            self.of.expression(),
-            lambda h, n: sum((s * t for s, t in zip(n, shift, strict=True)), start=h),
-        )
+    @property
+    def _name(self) -> str:
+        return f"translated by {tuple(self.shift.tolist())}"
 
-    def domain(self) -> Any:  # noqa: ANN401 - a Boolean of SymPy
-        """Return the domain of the surface."""
-        return self.of.domain()
-
-    def __str__(self) -> str:
-        return f"({self.of}) translated by {tuple(self.shift.tolist())}"
+    def _written(self, h: Any, n: Sequence[Any]) -> Any:  # noqa: ANN401
+        return sum((s * _exact(t) for s, t in zip(n, self.shift.tolist(), strict=True)), start=h)
 
 
 @dataclass(frozen=True, eq=False)
-class Rotated:
+class Rotated(Changed):
     """h(Rᵀn): the points R x."""
 
-    of: Source
     rotation: Vector
 
     def sheets(self, normals: Vector) -> Sheets:
@@ -138,27 +161,20 @@ class Rotated:
         R = self.rotation
         return replace(sheets, points=sheets.points @ R.T, hessian=R @ sheets.hessian @ R.T)
 
-    def expression(self) -> sympy.Expr | None:
-        """Return the expression."""
-        return _changed(self.of.expression(), lambda h, n: _at(h, n, self._back(n)))
+    @property
+    def _name(self) -> str:
+        return "rotated"
 
-    def domain(self) -> Any:  # noqa: ANN401 - a Boolean of SymPy
-        """Return the domain, rotated."""
-        return _changed(self.of.domain(), lambda domain, n: _at(domain, n, self._back(n)))
-
-    def _back(self, n: Sequence[Any]) -> list[Any]:
-        columns = self.rotation.T.tolist()
-        return [sum(_exact(c) * s for c, s in zip(column, n, strict=True)) for column in columns]
-
-    def __str__(self) -> str:
-        return f"({self.of}) rotated"
+    def _moved(self, given: Any) -> Any:  # noqa: ANN401
+        n, columns = _normal(), self.rotation.T.tolist()
+        back = [sum(_exact(c) * s for c, s in zip(column, n, strict=True)) for column in columns]
+        return _at(given, n, back)
 
 
 @dataclass(frozen=True, eq=False)
-class Scaled:
+class Scaled(Changed):
     """s h: the points s x, with the same normals also for s < 0."""
 
-    of: Source
     factor: float
 
     def sheets(self, normals: Vector) -> Sheets:
@@ -172,39 +188,33 @@ class Scaled:
             mean=sheets.mean / s,
         )
 
-    def expression(self) -> sympy.Expr | None:
-        """Return the expression."""
-        return _changed(self.of.expression(), lambda h, n: _exact(self.factor) * h)
+    @property
+    def _name(self) -> str:
+        return f"scaled by {self.factor:g}"
 
-    def domain(self) -> Any:  # noqa: ANN401 - a Boolean of SymPy
-        """Return the domain of the surface."""
-        return self.of.domain()
-
-    def __str__(self) -> str:
-        return f"({self.of}) scaled by {self.factor:g}"
+    def _written(self, h: Any, n: Sequence[Any]) -> Any:  # noqa: ANN401
+        return _exact(self.factor) * h
 
 
 @dataclass(frozen=True, eq=False)
-class Reversed:
+class Reversed(Changed):
     """−h(−n): the same points with the opposite normals."""
-
-    of: Source
 
     def sheets(self, normals: Vector) -> Sheets:
         """Return the branches at −n; radii change their sign."""
         sheets = self.of.sheets(-normals)
         return replace(sheets, hessian=-sheets.hessian, mean=-sheets.mean)
 
-    def expression(self) -> sympy.Expr | None:
-        """Return the expression."""
-        return _changed(self.of.expression(), lambda h, n: -_at(h, n, [-s for s in n]))
+    @property
+    def _name(self) -> str:
+        return "reversed"
 
-    def domain(self) -> Any:  # noqa: ANN401 - a Boolean of SymPy
-        """Return the opposite domain."""
-        return _changed(self.of.domain(), lambda domain, n: _at(domain, n, [-s for s in n]))
+    def _moved(self, given: Any) -> Any:  # noqa: ANN401
+        n = _normal()
+        return _at(given, n, [-s for s in n])
 
-    def __str__(self) -> str:
-        return f"({self.of}) reversed"
+    def _written(self, h: Any, n: Sequence[Any]) -> Any:  # noqa: ANN401
+        return -h
 
 
 def _pairs(
@@ -219,13 +229,11 @@ def _pairs(
     return i, starts[first[i]] + within
 
 
-def _changed(given: Any, change: Any) -> Any:  # noqa: ANN401 - SymPy is loaded here only
-    """Return change(given, (n_x, n_y, n_z)), or None for None."""
-    if given is None:
-        return None
+def _normal() -> tuple[Any, ...]:
+    """Return n_x, n_y, n_z; SymPy is loaded here only."""
     from ...symbolic.patch import n
 
-    return change(given, n.components)
+    return n.components
 
 
 def _at(given: Any, n: Sequence[Any], place: Sequence[Any]) -> Any:  # noqa: ANN401

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Protocol, cast
@@ -11,14 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...generated import patch as formulas
-from ...generated import sampler
 from ...generated import support as kernels
-from ..checks import real_array
 from ..errors import InputError
-from ..integers import integers, integers_by_row, ratio, sign
+from ..gaussian.membership import PatchNormals
+from ..gaussian.patches import checked_control_points
 from ..plain import plain
 from ..search import NormalBins, fill, find
-from ..spline import LARGEST_EXPONENT, Spline
+from ..spline import Spline
 from .branches import Sheets
 
 if TYPE_CHECKING:
@@ -99,31 +97,25 @@ class PatchSource:
     @classmethod
     def checked(cls, control_points: ArrayLike) -> PatchSource:
         """Make one; InputError unless the patch has a support function."""
-        points = real_array(control_points, "control_points")
-        if points.shape != (6, 3):
-            raise InputError(f"control_points must have the shape (6, 3), not {points.shape}.")
-        bad = ~(np.abs(points) <= 2.0**LARGEST_EXPONENT).all(axis=1)
-        if bad.any():
-            raise InputError(
-                f"control_points[{int(bad.argmax())}] is not finite, or too large to compute with."
-            )
-        source = cls(points)
-        D, *_ = plain(formulas.forms)(*source._exact_vectors, *np.array(FOR_QUADRATICS, object).T)
+        source = cls(checked_control_points(control_points))
+        vectors = source._normals.exact_vectors
+        D, *_ = plain(formulas.forms)(*vectors, *np.array(FOR_QUADRATICS, object).T)
         if not D.any():
             raise InputError("the patch is flat or developable: it has no support function.")
-        c3 = plain(formulas.orientation)(*source._exact_vectors, *np.array(FOR_CUBICS, object).T)
+        c3 = plain(formulas.orientation)(*vectors, *np.array(FOR_CUBICS, object).T)
         if not c3.any():
             raise InputError("the patch has no regular point, so it has no normals.")
         return source
 
     def sheets(self, normals: NDArray[np.float64]) -> Sheets:
         """Return the branch of each normal that has one."""
-        rows, uv, signs = self._members(normals)
-        count = len(rows)
+        members = self._normals.members(normals)
+        rows = np.flatnonzero(members.inside)
+        count, uv, signs = len(rows), members.uv[rows], members.signs[rows]
         points, hessian = np.empty((count, 3)), np.empty((count, 3, 3))
         gaussian, mean = np.empty(count), np.empty(count)
         kernels.fill_branches(
-            self._vectors, self.control_points[2], self._scale, normals[rows], uv,
+            self._normals.vectors, self.control_points[2], self._normals.scale, normals[rows], uv,
             points, hessian, gaussian, mean,
         )  # fmt: skip
         gaussian = np.where(signs != 0, np.copysign(gaussian, signs), gaussian)
@@ -153,55 +145,5 @@ class PatchSource:
         return BezierTriangle(self.control_points.tolist(), n.components)
 
     @cached_property
-    def _scale(self) -> float:
-        """A power of two that brings the differences of control points to about 1."""
-        largest = float(np.abs(self.control_points - self.control_points[2]).max())
-        return math.ldexp(1.0, min(-math.frexp(largest)[1], LARGEST_EXPONENT))
-
-    @cached_property
-    def _vectors(self) -> tuple[float, ...]:
-        """The vectors a … e of eq. (8), times the scale."""
-        net = self._scale * (self.control_points - self.control_points[2])
-        return tuple(map(float, plain(formulas.power_form)(*net.ravel())[:15]))
-
-    @cached_property
-    def _bound(self) -> float:
-        """The rounding error of U, V, W at unit normals, as for the patches of a spline."""
-        second, first = np.abs(self._vectors[:9]).max(), np.abs(self._vectors[9:]).max()
-        return float(32.0 * sampler.FORM_ERROR * (second + first + sampler.FORM_ERROR))
-
-    @cached_property
-    def _exact_vectors(self) -> tuple[int, ...]:
-        """The vectors a … e as integers, in some unit."""
-        net, _ = integers(self.control_points)
-        return plain(formulas.power_form)(*net.ravel())[:15]
-
-    def _members(
-        self, normals: NDArray[np.float64]
-    ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.int8]]:
-        """Return which normals the patch has, their u, v (k, 2), and the exact sign of K or 0."""
-        kinds, uv = np.empty(len(normals), dtype=np.int8), np.zeros((len(normals), 2))
-        signs = np.zeros_like(kinds)
-        kernels.classify(
-            self._vectors, self._bound, sampler.ACCURATE * self._bound, normals, kinds, uv
-        )
-        open_ = np.flatnonzero(kinds == kernels.DOUBTFUL)
-        inside, uv[open_], signs[open_] = self._decided(normals[open_])
-        kinds[open_] = np.where(inside, kernels.INSIDE, kernels.OUTSIDE)
-        rows = np.flatnonzero(kinds == kernels.INSIDE)
-        return rows, uv[rows], signs[rows]
-
-    def _decided(
-        self, normals: NDArray[np.float64]
-    ) -> tuple[NDArray[np.bool_], NDArray[np.float64], NDArray[np.int8]]:
-        """Decide exactly: which normals (k, 3) belong to the patch, u, v (k, 2), the sign of K."""
-        n, _ = integers_by_row(normals)
-        forms = np.array(plain(formulas.forms)(*self._exact_vectors, *n), dtype=object)
-        D, *bounds = (sign(x) for x in forms)
-        c3 = sign(np.asarray(plain(formulas.orientation)(*self._exact_vectors, *n), dtype=object))
-        signs = np.stack(bounds)
-        inside = (D != 0) & (c3 > 0) & ((signs.min(axis=0) >= 0) | (signs.max(axis=0) <= 0))
-        uv = np.zeros((len(normals), 2))
-        for axis in (0, 1):
-            uv[inside, axis] = ratio(forms[axis + 1, inside], forms[0, inside])
-        return inside, uv, D
+    def _normals(self) -> PatchNormals:
+        return PatchNormals(self.control_points)

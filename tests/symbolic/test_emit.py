@@ -67,6 +67,9 @@ def exact_inputs(formula, seed: int) -> dict[str, Fraction]:
         return inputs | {
             f"n_{axis}": Fraction(x, 5) for axis, x in zip("xyz", (2, -3, 6), strict=True)
         }
+    if formula is gaussian_image.ARC_ZEROS:  # of 3 (1 - t)² + 10 t (1 - t) + 3 t²
+        axes = {"q_x": Fraction(1), "q_y": Fraction(0), "q_z": Fraction(0)}
+        return inputs | axes | {"N0_x": Fraction(3), "N1_x": Fraction(5), "N2_x": Fraction(3)}
     return inputs | rational_length(inputs) if formula is patch.MEASURE else inputs
 
 

@@ -246,6 +246,12 @@ def test_equations_are_aligned(name):
         assert (right[0].text in {"=", "∈"}) == bool(text_of(left))
 
 
+def test_an_index_that_is_a_word_is_one_upright_word():
+    """An <mi> of several letters is upright; one for each letter would be their product."""
+    (display,) = articles()["offset_curvature"].findall("div/math")
+    assert [x.text for x in display.iter("mi")].count("offset") == 2
+
+
 def test_mathml_has_no_foreign_characters():
     """No remains of LaTeX, and no styles of letters that browsers do not know."""
     for element in root().iter("math"):

@@ -19,6 +19,7 @@ from gaussmap.symbolic.formula import (
     vectors,
 )
 from gaussmap.symbolic.latex import FORMULAS as SECTIONS
+from gaussmap.symbolic.latex import markdown
 from gaussmap.symbolic.simplify import straight_line
 
 MARKDOWN = (files.GENERATED / "formulas.md").read_text(encoding="utf-8")
@@ -35,7 +36,7 @@ def parsed(side: str, formula: Formula) -> sp.Expr:
     symbols |= {
         y.name: y for x in symbols.values() if isinstance(x, VectorSymbol) for y in x.components
     }
-    names = symbols | {"Dot": Dot, "Cross": Cross, "det": Det, "sqrt": sp.sqrt}
+    names = symbols | {"Dot": Dot, "Cross": Cross, "det": Det, "sqrt": sp.sqrt, "max": sp.Max}
     names |= {"Length": lambda x: sp.sqrt(Dot(x, x))}
     names |= {"c_3": scalar("c3_twice") / 2, "R_1": scalar("R_1"), "R_2": scalar("R_2")}
     side = re.sub(r"\|(\w+)\|", r"Length(\1)", side)
@@ -77,6 +78,7 @@ def test_lines_of_text_are_short(formula):
         ("mu", False, r"\mu"),
         ("mu_sw", True, r"\boldsymbol{\mu}_{\mathrm{sw}}"),
         ("H_xy", False, "H_{xy}"),
+        ("K_offset", False, r"K_{\mathrm{offset}}"),
         ("dU", True, r"\nabla U"),
         ("dh", True, r"\nabla h"),
         ("dh_S", True, r"\nabla_S h"),
@@ -205,8 +207,43 @@ def test_entries_name_source_inputs_and_operations(formula):
     assert f"\n- Source: {formula.source}.\n" in entry
     assert f"\n- Operations: {operations}" in entry
     assert entry.partition("- Inputs: ")[2].partition("\n")[0].count("$`") == len(formula.inputs)
-    tex = TEX.partition(f"\\texttt{{{formula.name.replace('_', chr(92) + '_')}}}")[2]
+    title = f"\\subsection*{{\\texttt{{{formula.name}}}}}".replace("_", r"\_")
+    tex = TEX.partition(title)[2]
     assert operations in tex.partition("\\subsection")[0]
+
+
+@pytest.mark.parametrize(
+    ("name", "kernels"),
+    [
+        ("curvature", "`sampler.py`: `evaluate_tile` (in `sample`), `fill_known` (in "
+         "`curvature_at`), called by `fill_samples`"),
+        ("forms", "`patch.py`: `forms`, `support_function`; `sampler.py`"),
+        ("boundary_arc", "`gaussian_image.py`: `boundary_arc`, `integrate_arcs`."),
+        ("coefficient_from_centres", "none."),
+        ("torus", "`surfaces.py`: `torus`."),
+    ],
+)  # fmt: skip
+def test_entries_name_the_kernels(name, kernels):
+    entry = MARKDOWN.partition(f"### `{name}`\n")[2].partition("\n#")[0]
+    assert kernels in entry.partition("\n- Kernels: ")[2]
+    typeset = re.sub(r"`(.*?)`", r"\\texttt{\1}", kernels).replace("_", r"\_")
+    title = f"\\subsection*{{\\texttt{{{name}}}}}".replace("_", r"\_")
+    assert typeset in TEX.partition(title)[2].partition("\\subsection")[0]
+
+
+def test_kernels_are_those_of_the_sources_that_are_given():
+    """The pages are derived beside the files, not from those that were written before."""
+    source = (
+        "def some_kernel():\n    # forms (eq. (9)): 3 operations as written, 3 here\n    pass\n"
+    )
+    entry = markdown({"new.py": source}).partition("### `forms`\n")[2].partition("\n#")[0]
+    assert "- Kernels: `new.py`: `some_kernel`.\n" in entry
+
+
+def test_symbols_in_sentences_are_mathematics():
+    entry = MARKDOWN.partition("### `parabolic_directions`\n")[2].partition("```")[0]
+    assert "in $`(s, t)`$:" in entry
+    assert r"$`\det[t \mathbf{a} - s \mathbf{b}," in entry
 
 
 @pytest.mark.parametrize("surface", surfaces.CATALOGUE.values(), ids=surfaces.CATALOGUE)

@@ -434,34 +434,6 @@ def test_a_double_parabolic_line_inside_pinches_the_image() -> None:
     assert image.kind == "bow tie"
 
 
-@pytest.mark.parametrize(
-    ("points", "count", "zero", "kind"),
-    [
-        # Whitney's umbrella: two opposite normals on the edge v = 0.
-        ([[1, 0, 0], [0, 1, -0.3], [0, 0, 0], [0.5, 0, 0.35], [0.5, 0, 0], [0, 0, -0.15]],
-         5, None, "triangle"),
-        ([[-2, 0, 1], [0, 0, -1], [-2, 0, 1], [0, 1, 2], [-1, -2, -1], [-1, 1, -2]],
-         3, 1, "polygon"),
-        ([[-1, 1, 0], [-1, -2, 0], [0, 0, -2], [-1, -2, 0], [-2, 2, 2], [0, 2, 2]],
-         4, 2, "bow tie"),
-    ],
-)  # fmt: skip
-def test_a_singular_point_inside_an_edge(points, count, zero, kind) -> None:
-    image = gm.GaussianImage.of_patch(points)
-    arc = image.arcs[1]
-    assert arc.singular_point is not None
-    if zero is not None:
-        assert arc.singular_point == pytest.approx(zero / (count - 1), abs=1e-14)
-    missing = np.isnan(arc.points(count)).any(axis=1)
-    assert np.flatnonzero(missing).tolist() == ([] if zero is None else [zero])
-    assert image.kind == kind
-
-
-def test_arcs_without_a_singular_point_inside() -> None:
-    for arc in gm.GaussianImage.of_patch(OCTANT).arcs:
-        assert arc.singular_point is None
-
-
 @pytest.mark.parametrize("sign", [np.array([1, 1]), "1", 1.0, True, None, 2])
 def test_a_sign_is_one_whole_number(sign: Any) -> None:
     images = gm.GaussianImages.of_spline(gm.surfaces.torus(), (8, 8))

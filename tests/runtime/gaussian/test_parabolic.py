@@ -150,6 +150,45 @@ def test_classes(vectors, expected) -> None:
         assert [piece.sign for piece in gm.split_patch(net)] == [0]
 
 
+def test_an_isolated_parabolic_point_has_no_say() -> None:
+    """In the middle of the piece v < 2/3, at u = v = 1/3, the curvature vanishes."""
+    net = [[1, -1, 0], [1, 0, -1], [-1, 1, 1], [-1, 1, 0], [1, 1, -1], [1, -1, -1]]
+    assert [line.multiplicity for line in gm.parabolic_lines(net)] == [1]
+    pieces = gm.split_patch(net)
+    assert [np.sign(piece.corners[:, 1].mean() - 0.6) for piece in pieces] == [-1, 1]
+    assert [piece.sign for piece in pieces] == [-1, 1]
+    assert gm.classify_patches([net]).tolist() == [PatchClass.MIXED]
+
+
+def test_classes_of_many_patches_are_those_of_each() -> None:
+    """Random and degenerate nets of all sizes; K of both signs inside, counted without lines."""
+    rng = np.random.default_rng(0)
+    kinds = [rng.integers(-k, k + 1, (400, 6, 3)).astype(float) for k in (1, 2, 9)]
+    flat = np.array([[2, 0, 0], [0, 2, 0], [0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 1, 0]])
+    bent = flat + 0.1 * rng.normal(size=(400, 6, 3))
+    planes = np.einsum("kij,jx->kix", rng.integers(-2, 3, (50, 6, 2)), [[1.0, 2, 3], [2, -1, 1]])
+    lines = np.einsum("ki,x->kix", rng.integers(-2, 3, (20, 6)), [1.0, 2, 3])
+    cones = [net_of(x, y, z, 0 * x, 0 * x) for x, y, z in rng.integers(-3, 4, (50, 3, 3))]
+    nets = np.concatenate([*kinds, bent, planes, lines, cones, np.ones((1, 6, 3))])
+    nets = nets * 10.0 ** rng.integers(-12, 13, (len(nets), 1, 1)) + 0.0
+    nets[::7] += np.abs(nets[::7]).max(axis=(1, 2), keepdims=True) * 100.0
+    classes = gm.classify_patches(nets)
+    assert set(classes.tolist()) == set(PatchClass)
+    assert classes.tolist() == [gm.classify_patches(net[None])[0] for net in nets]
+    for net, found in zip(nets, classes.tolist(), strict=True):
+        signs = {piece.sign for piece in gm.split_patch(net)}
+        assert (found == PatchClass.MIXED) == (signs == {1, -1})
+
+
+def test_messages_name_the_net() -> None:
+    nets = np.ones((4, 6, 3))
+    nets[2, 3, 1] = np.nan
+    with pytest.raises(gm.InputError, match=r"nets\[2\] holds NaN or infinity"):
+        gm.classify_patches(nets)
+    with pytest.raises(gm.InputError, match="nets are too large"):
+        gm.classify_patches(np.full((2, 6, 3), 1e305))
+
+
 @pytest.mark.compiled
 @pytest.mark.parametrize(
     ("name", "allowed"),

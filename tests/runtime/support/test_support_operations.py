@@ -8,6 +8,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 import sympy as sp
+from gaussmap.runtime.support import operations
 from gaussmap.symbolic.expression import NORMAL
 from numpy.typing import NDArray
 
@@ -329,3 +330,32 @@ def test_sums_of_several() -> None:
     assert several.branches([[0.0, 0.0, 1.0]]).support.tolist() == [3.0]
     with pytest.raises(TypeError):
         _: Any = 1 + h
+
+
+@pytest.mark.parametrize(("distance", "share"), [(0.25, 0.0), (-1.0, 1.0)])
+def test_an_offset_looks_at_radii_only_where_they_may_vanish(monkeypatch, distance, share) -> None:
+    """Of a unit sphere: at the distance −1 all radii are 0, elsewhere none."""
+    asked: list[int] = []
+    computed = operations.curvatures
+
+    def counted(normals: Array, hessian: Array) -> tuple[Array, Array, Array]:
+        asked.append(len(normals))
+        return computed(normals, hessian)
+
+    monkeypatch.setattr(operations, "curvatures", counted)
+    assert len(given("1").offset(distance).branches(NORMALS)) == len(NORMALS)
+    assert sum(asked) == share * len(NORMALS)
+
+
+def test_operations_say_their_names_and_domains() -> None:
+    half = gm.SupportFunction.from_sympy("2", domain="n_z > 0")
+    moved = half.offset(1).scaled(2).translated([1, 0, 0])
+    assert repr(moved) == (
+        "SupportFunction((((h = 2) offset by 1) scaled by 2) translated by (1.0, 0.0, 0.0))"
+    )
+    assert moved.domain == half.domain
+    assert str(half.reversed().domain) in ("n_z < 0", "-n_z > 0")
+    turned = half.rotated([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
+    assert repr(turned) == "SupportFunction((h = 2) rotated)"
+    assert turned.contains([[0, -1, 0], [0, 1, 0]]).tolist() == [True, False]
+    assert of_spline(gm.surfaces.torus()).offset(1).domain is None

@@ -1,0 +1,56 @@
+"""All formulas by their names, for people: a name that is none is answered with those near it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from .checks import known_name
+
+if TYPE_CHECKING:
+    from ..symbolic import Formula
+
+__all__ = ["Formulas", "all_formulas"]
+
+
+class Formulas(Mapping[str, "Formula"]):
+    """The formulas of `gaussmap.symbolic` by their names.
+
+    `formulas[name]` raises UnknownNameError, with the names that are near, if there is none.
+    """
+
+    def __init__(self, formulas: Mapping[str, Formula]) -> None:
+        """Hold formulas."""
+        self._formulas = formulas
+
+    def __getitem__(self, name: str) -> Formula:
+        """Return a formula; UnknownNameError if there is none of that name."""
+        return self._formulas[known_name(name, tuple(self), "formula", "gaussmap formulas")]
+
+    def __contains__(self, name: object) -> bool:
+        """Say whether there is a formula of that name."""
+        return name in self._formulas
+
+    def get(self, name: str, default: Any = None) -> Any:  # noqa: ANN401 - as in Mapping
+        """Return a formula, or `default` if there is none of that name."""
+        return self._formulas.get(name, default)
+
+    def __iter__(self) -> Iterator[str]:
+        """Return the names in the order of the sections."""
+        return iter(self._formulas)
+
+    def __len__(self) -> int:
+        """Return the number of formulas."""
+        return len(self._formulas)
+
+    def __repr__(self) -> str:
+        return f"Formulas({len(self)} formulas)"
+
+
+@cache
+def all_formulas() -> Formulas:
+    """Return all formulas; SymPy is loaded here."""
+    from ..symbolic import formulas
+
+    return Formulas(formulas)

@@ -1,0 +1,204 @@
+"""The boundary of a Gaussian image: arcs of normals along the edges, cut at singular points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise, product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...generated import gaussian_image as formulas
+from ..checks import whole_number
+from ..plain import plain
+from .solid_angle import EDGES, boundary_of
+
+__all__ = ["BoundaryArc", "boundary_arcs", "edge_arcs"]
+
+Array = NDArray[np.float64]
+CORNERS = np.eye(3)
+
+
+@dataclass(frozen=True, eq=False)
+class BoundaryArc:
+    """An arc of a Gaussian image: a quadratic Bézier curve of normals, projected to the sphere.
+
+    `control_normals` (3, 3) are its control points, not of unit length: those of an edge are three
+    of the control normals of the patch. `noise` bounds the error that the rounding of the
+    coordinates leaves in them.
+    """
+
+    control_normals: Array
+    noise: float
+
+    def points(self, count: int) -> Array:
+        """Return `count` unit normals (count, 3) along the arc, both ends included.
+
+        At a singular end, where the normal vanishes, it is the limit; NaN if the whole arc has no
+        normals, and at a singular point inside, where there is none: the `parts` end there. Raises
+        InputError unless `count` is a whole number of at least 2.
+        """
+        t = np.linspace(0.0, 1.0, whole_number(count, "count", 2))
+        normals = self._at(t)
+        nonzero = self.control_normals[self.control_normals.any(axis=1)]
+        if len(nonzero):
+            for end, limit in ((0, nonzero[0]), (-1, nonzero[-1])):
+                normals[end] = normals[end] if normals[end].any() else limit
+        with np.errstate(invalid="ignore"):
+            if self.singular_points:
+                normals[np.linalg.norm(normals, axis=1) <= self._limit] = np.nan
+            normals /= np.abs(normals).max(axis=1, keepdims=True)
+            return normals / np.linalg.norm(normals, axis=1, keepdims=True)
+
+    @cached_property
+    def singular_points(self) -> tuple[float, ...]:
+        """The parameters, between 0 and 1, at which the normal vanishes up to rounding.
+
+        There is at most one, or two if all normals of the arc are parallel.
+        """
+        if np.linalg.norm(self.control_normals, axis=1).max() <= self._limit:
+            return ()
+        with np.errstate(all="ignore"):
+            zeros = [
+                plain(formulas.boundary_arc_zeros)(*self.control_normals.ravel(), *axis, sign)
+                for axis, sign in product(CORNERS, (-1.0, 1.0))
+            ]
+        inside = np.ravel(zeros)
+        inside = np.sort(inside[(inside > 0.0) & (inside < 1.0)])
+        found = [0.0, *inside[self._lengths(inside) <= self._limit].tolist(), 1.0]
+        groups: list[list[float]] = [[]]
+        for before, t in pairwise(found):
+            groups[-1].append(before)
+            if self._lengths(np.array([before, 0.5 * (before + t)])).max() > self._limit:
+                groups.append([])
+        groups[-1].append(1.0)
+        # What reaches the first or last group is a singular corner, not inside.
+        return tuple(min(x, key=lambda t: self._lengths(np.array([t]))[0]) for x in groups[1:-1])
+
+    @cached_property
+    def parts(self) -> tuple[BoundaryArc, ...]:
+        """The arcs from one singular point to the next: great-circle arcs; itself if it has none.
+
+        Their normals are finite everywhere: at a singular point they have their limits.
+        """
+        if not self.singular_points:
+            return (self,)
+        bounds = [0.0, *self.singular_points, 1.0]
+        return tuple(replace(self, control_normals=self._between(*x)) for x in pairwise(bounds))
+
+    @property
+    def is_point(self) -> bool:
+        """Whether all its normals are parallel, up to rounding (the edge is a parabolic line)."""
+        lengths = np.linalg.norm(self.control_normals, axis=1)
+        longest = self.control_normals[int(lengths.argmax())]
+        across = np.linalg.norm(np.cross(self.control_normals, longest), axis=1).max()
+        return bool(across <= self._limit * lengths.max())
+
+    @property
+    def is_great_circle(self) -> bool:
+        """Whether it lies on a great circle, up to rounding: its normals are coplanar.
+
+        Its cone is then a pair of planes. So it is for an edge in a plane of symmetry.
+        """
+        longest = float(np.linalg.norm(self.control_normals, axis=1).max())
+        volume = abs(float(np.linalg.det(self.control_normals)))
+        return volume <= self._limit * longest**2
+
+    @property
+    def _limit(self) -> float:
+        return 4.0 * self.noise
+
+    def _at(self, t: Array) -> Array:
+        """Return the normals (k, 3), of any length, at parameters (k,)."""
+        columns = plain(formulas.boundary_arc)(*self.control_normals.ravel(), t)[:3]
+        return np.stack([column + 0.0 * t for column in columns], axis=1)
+
+    def _lengths(self, t: Array) -> Array:
+        return np.linalg.norm(self._at(t), axis=1)
+
+    def _between(self, start: float, end: float) -> Array:
+        """Return the control normals of the part between two parameters, exactly zero at zeros."""
+        places = np.array([[1.0 - start, start], [1.0 - end, end]])
+        polar = np.stack([self.control_normals[:2], self.control_normals[1:]])
+        net = np.einsum("ai,bj,ijx->abx", places, places, polar)
+        net = np.stack([net[0, 0], net[0, 1], net[1, 1]])
+        net[np.linalg.norm(net, axis=1) <= self._limit] = 0.0
+        return net
+
+
+def edge_arcs(normals: Array, noise: float) -> tuple[BoundaryArc, BoundaryArc, BoundaryArc]:
+    """Return the arcs of the edges u = 0, v = 0, w = 0, given the polar form (3, 3, 3) of N."""
+    w, u, v = (BoundaryArc(arc[0], noise) for arc in boundary_of(normals[None])[:3])
+    return u, v, w
+
+
+def boundary_arcs(normals: Array, noise: float) -> tuple[BoundaryArc, ...]:
+    """Return all arcs round a Gaussian image that are no points, see `GaussianImage.boundary`."""
+    arcs: list[BoundaryArc] = []
+    places: list[tuple[Array, Array, Array]] = []  # where each arc ends; which corners lie ahead
+    for edge, (i, j, k) in zip(edge_arcs(normals, noise), (*EDGES[1:], EDGES[0]), strict=True):
+        arcs += edge.parts
+        first, last, opposite = CORNERS[[i, j, k]]
+        for t in edge.singular_points:
+            place = (1.0 - t) * first + t * last
+            places.append((place, first - place, opposite - place))
+        places.append((last, first - last, opposite - last))
+    chain = []
+    for arc, after, place in zip(arcs, arcs[1:] + arcs[:1], places, strict=True):
+        chain += [arc, _turn(normals, arc, after, place)]
+    return tuple(arc for arc in chain if not arc.is_point)
+
+
+def _turn(
+    normals: Array, arc: BoundaryArc, after: BoundaryArc, where: tuple[Array, Array, Array]
+) -> BoundaryArc:
+    """Return the limits of the normals round a singular point, from one arc to the next.
+
+    They are part of a great circle, half of it between opposite normals; one point if the place is
+    regular. `where` holds the place and two directions from there, backwards and inwards.
+    """
+    start, end = _direction(arc.control_normals[::-1]), _direction(after.control_normals)
+    middle = 0.5 * (start + end)
+    size = min(float(np.linalg.norm(x[x.any(axis=1)], axis=1).min(initial=np.inf))
+               for x in (arc.control_normals, after.control_normals))  # fmt: skip
+    noise = arc.noise / size
+    if np.linalg.norm(middle) <= 4.0 * noise:
+        middle = _inner_limit(normals, start, arc.noise, *where)
+    return BoundaryArc(np.stack([start, middle, end]), noise)
+
+
+def _inner_limit(
+    normals: Array, start: Array, noise: float, place: Array, back: Array, inwards: Array
+) -> Array:
+    """Return a unit vector across `start` in the half-plane that the normals turn through.
+
+    Zero if there is none: what is left of N is parallel to `start`. In its polar form N is
+    2 N(place, x) + N(x, x) at place + x. If the first is always parallel to `start`, then the
+    second decides, in the direction x inwards along which the first vanishes; or the third order,
+    on the curve beside that line where the component along `start` vanishes.
+    """
+
+    def polar(x: Array, y: Array) -> Array:
+        return np.einsum("i,j,ijx->x", x, y, normals)
+
+    behind, inner = float(polar(place, back) @ start), polar(place, inwards)
+    share = float(inner @ start) / behind if abs(behind) > noise else 0.0
+    still = inwards - share * back
+    second = polar(still, still)
+    bend = float(second @ start) / behind if abs(behind) > noise else 0.0
+    size = float(np.abs(still).sum()) ** 2
+    candidates = [(inner, 1.0), (second, size), (-bend * polar(back, still), size * abs(bend))]
+    for candidate, errors in candidates:
+        across = candidate - (candidate @ start) * start
+        length = float(np.linalg.norm(across))
+        if length > 4.0 * errors * noise:
+            return across / length
+    return np.zeros(3)
+
+
+def _direction(net: Array) -> Array:
+    """Return the first control normal that is not zero, of unit length; zero if there is none."""
+    normal = net[int(net.any(axis=1).argmax())]
+    length = float(np.linalg.norm(normal))
+    return normal / length if length else normal
