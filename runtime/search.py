@@ -146,21 +146,23 @@ class Hits:
         return cls(empty, empty, empty, empty, np.empty((0, 5)), developable)
 
     @classmethod
-    def joined(cls, parts: Sequence[Hits]) -> Hits:
+    def joined(cls, parts: Sequence[Hits], threads: int | None = 1) -> Hits:
         """Return the hits of consecutive ranges of patches."""
         if len(parts) == 1:
             return parts[0]
         starts = np.cumsum([0, *(len(part) for part in parts)])
-        return cls(
-            np.concatenate([part.patch_index for part in parts]),
-            np.concatenate([part.normal_index for part in parts]),
-            np.concatenate([part.place for part in parts]),
-            np.concatenate(
-                [part.exact + start for part, start in zip(parts, starts[:-1], strict=True)]
-            ),
-            np.concatenate([part.local for part in parts]),
-            sum(part.developable for part in parts),
-        )
+        rows = np.empty((3, starts[-1]), dtype=np.int64)
+
+        def copy(k: int, _: int) -> None:
+            here = slice(starts[k], starts[k + 1])
+            rows[0, here] = parts[k].patch_index
+            rows[1, here] = parts[k].normal_index
+            rows[2, here] = parts[k].place
+
+        list(over_ranges(copy, len(parts), 1, threads))
+        exact = [part.exact + start for part, start in zip(parts, starts[:-1], strict=True)]
+        local = np.concatenate([part.local for part in parts])
+        return cls(*rows, np.concatenate(exact), local, sum(part.developable for part in parts))
 
     def __len__(self) -> int:
         """Return the number of samples."""
@@ -286,8 +288,13 @@ def find(
     if search.hopeless:
         return Hits.none(spline.patches)
     size = search.range_size(threads)
-    found = Pairs.joined([*over_ranges(search.pairs, spline.patches, size, threads, progress)])
-    return merged(found, *search.decided(found.doubtful, found.bounds, threads))
+    parts = [*over_ranges(search.pairs, spline.patches, size, threads, progress)]
+    doubtful = np.concatenate([part.doubtful for part in parts], axis=1)
+    bounds = np.concatenate([part.bounds for part in parts])
+    decided, local = search.decided(doubtful, bounds, threads)
+    cuts = np.searchsorted(decided[0], size * np.arange(len(parts) + 1))
+    ends = zip(parts, cuts, cuts[1:], strict=False)
+    return Hits.joined([merged(part, decided[:, a:b], local[a:b]) for part, a, b in ends], threads)
 
 
 def fill(

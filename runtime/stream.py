@@ -82,11 +82,12 @@ class _Stream:
             bins = NormalBins(chosen.part(first, last, self.threads), self.threads)
             found = find_in_turn(self.spline, bins, self.threads, self.progress and alone)
             developable = 0  # the same for every block
-            for hits in grouped(found, self.size):
+            for hits in grouped(found, self.size, self.threads):
                 came += len(hits)
                 developable += hits.developable
                 if len(hits) or (came == 0 and first == starts[-1]):
                     yield self._samples(bins, hits, first, report)
+            del bins, found, hits  # before the next ones are made
         report = replace(report, samples=came, degenerate_patches=developable)
         warn_of(report, self.asked if isinstance(self.asked, int) else None, stacklevel=3)
 
@@ -98,19 +99,19 @@ class _Stream:
         return Samples(**arrays, report=replace(report, samples=len(hits)))
 
 
-def grouped(parts: Iterator[Hits], size: int) -> Iterator[Hits]:
+def grouped(parts: Iterator[Hits], size: int, threads: int | None) -> Iterator[Hits]:
     """Join and cut consecutive hits: `size` at a time, and what is left at the end."""
     group: list[Hits] = []
     room = size
     for hits in parts:
         start = 0
         while len(hits) - start >= room:
-            yield Hits.joined([*group, hits[start : start + room]])
+            yield Hits.joined([*group, hits[start : start + room]], threads)
             start += room
             group, room = [], size
         group.append(hits[start:])
         room -= len(group[-1])
-    yield Hits.joined(group)
+    yield Hits.joined(group, threads)
 
 
 def find_in_turn(
