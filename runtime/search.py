@@ -293,8 +293,12 @@ def find(
     bounds = np.concatenate([part.bounds for part in parts])
     decided, local = search.decided(doubtful, bounds, threads)
     cuts = np.searchsorted(decided[0], size * np.arange(len(parts) + 1))
-    ends = zip(parts, cuts, cuts[1:], strict=False)
-    return Hits.joined([merged(part, decided[:, a:b], local[a:b]) for part, a, b in ends], threads)
+
+    def merge(k: int, _: int) -> Hits:
+        here = slice(cuts[k], cuts[k + 1])
+        return merged(parts[k], decided[:, here], local[here])
+
+    return Hits.joined([*over_ranges(merge, len(parts), 1, threads)], threads)
 
 
 def fill(
@@ -330,25 +334,11 @@ def fill(
 
 def merged(found: Pairs, decided: NDArray[np.int64], local: NDArray[np.float64]) -> Hits:
     """Return the sure pairs and those that were decided, sorted like them, as hits."""
-    pairs, exact = found.sure, np.empty(0, dtype=np.int64)
-    if decided.shape[1]:
-        patch, normal, place = decided
-        places = _insertion_places(pairs[0], pairs[1], patch, normal)
-        pairs = np.insert(pairs, places, (patch, normal, place), axis=1)
-        exact = places + np.arange(len(places))
-    return Hits(pairs[0], pairs[1], pairs[2], exact, local, found.developable)
-
-
-def _insertion_places(
-    patch: NDArray[np.int64],
-    normal: NDArray[np.int64],
-    new_patch: NDArray[np.int64],
-    new_normal: NDArray[np.int64],
-) -> NDArray[np.int64]:
-    """Return where the new pairs, sorted like the old ones, have to be inserted among them."""
-    low, high = np.searchsorted(patch, new_patch), np.searchsorted(patch, new_patch, side="right")
-    pairs = zip(low, high, new_normal, strict=True)
-    return np.array([a + np.searchsorted(normal[a:b], n) for a, b, n in pairs], dtype=np.int64)
+    pairs, exact = found.sure, np.empty(decided.shape[1], dtype=np.int64)
+    if len(exact) > 0:
+        pairs = np.empty((3, found.sure.shape[1] + len(exact)), dtype=np.int64)
+        kernels.merge_pairs(found.sure, np.ascontiguousarray(decided), pairs, exact)
+    return Hits(*pairs, exact, local, found.developable)
 
 
 def _on_border(
