@@ -29,7 +29,7 @@ if TYPE_CHECKING:
         SurfaceError,
         UnknownNameError,
     )
-    from .runtime.formulas import Formulas
+    from .runtime.formulas import formulas
     from .runtime.gaussian.boundary import BoundaryArc
     from .runtime.gaussian.classes import PatchClass, classify_patches
     from .runtime.gaussian.image import GaussianImage, GaussianImages
@@ -49,8 +49,6 @@ if TYPE_CHECKING:
     from .runtime.support.branches import Branches
     from .runtime.support.function import SupportFunction
     from .runtime.surface import Surface
-
-    formulas: Formulas
 
 __version__ = "0.1.0"
 
@@ -113,8 +111,9 @@ _NAMES = {
     "runtime.curves.spline": "CurveSpline fit_curve",
     "runtime.errors": "FileError GaussmapError GaussmapWarning InputError MissingExtraError "
     "MissingFieldError SurfaceError UnknownNameError",
-    "runtime.gaussian.classes": "PatchClass classify_patches",
+    "runtime.formulas": "formulas",
     "runtime.gaussian.boundary": "BoundaryArc",
+    "runtime.gaussian.classes": "PatchClass classify_patches",
     "runtime.gaussian.image": "GaussianImage GaussianImages",
     "runtime.gaussian.parabolic": "ParabolicCurve ParabolicPoint ParabolicPoints parabolic_points",
     "runtime.gaussian.parabolic_lines": "ParabolicLine Piece parabolic_lines split_patch",
@@ -134,8 +133,6 @@ _HOMES = {name: module for module, names in _NAMES.items() for name in names.spl
 def __getattr__(name: str) -> object:
     if name in _MODULES:
         value = import_module(f".{_MODULES[name]}", __name__)
-    elif name == "formulas":
-        value = import_module(".runtime.formulas", __name__).all_formulas()
     elif name in _HOMES:
         value = getattr(import_module(f".{_HOMES[name]}", __name__), name)
     else:

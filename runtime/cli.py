@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from .checks import known_name
 from .errors import FileError, GaussmapError, GaussmapWarning, InputError, MissingExtraError
 from .fields import ARRAY_NAMES, checked_fields
-from .formulas import all_formulas
+from .formulas import formulas
 from .io import atomic_path, check_fields, check_target
 from .samples import Samples
 from .sampling import sample
@@ -160,7 +160,6 @@ def _run_formulas(options: argparse.Namespace) -> None:
     if options.html is not None:
         _write_formulas(options)
         return
-    formulas = all_formulas()
     if options.name is not None:
         formula = formulas[options.name]
         if options.latex:

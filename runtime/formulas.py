@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from functools import cache
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from .checks import known_name
@@ -11,18 +11,20 @@ from .checks import known_name
 if TYPE_CHECKING:
     from ..symbolic import Formula
 
-__all__ = ["Formulas", "all_formulas"]
+__all__ = ["Formulas", "formulas"]
 
 
 class Formulas(Mapping[str, "Formula"]):
-    """The formulas of `gaussmap.symbolic` by their names.
+    """The formulas of `gaussmap.symbolic` by their names; SymPy is loaded when they are asked for.
 
     `formulas[name]` raises UnknownNameError, with the names that are near, if there is none.
     """
 
-    def __init__(self, formulas: Mapping[str, Formula]) -> None:
-        """Hold formulas."""
-        self._formulas = formulas
+    @cached_property
+    def _formulas(self) -> Mapping[str, Formula]:
+        from ..symbolic import formulas
+
+        return formulas
 
     def __getitem__(self, name: str) -> Formula:
         """Return a formula; UnknownNameError if there is none of that name."""
@@ -48,9 +50,4 @@ class Formulas(Mapping[str, "Formula"]):
         return f"Formulas({len(self)} formulas)"
 
 
-@cache
-def all_formulas() -> Formulas:
-    """Return all formulas; SymPy is loaded here."""
-    from ..symbolic import formulas
-
-    return Formulas(formulas)
+formulas = Formulas()
