@@ -20,8 +20,8 @@ from .threads import over_ranges, shown
 
 __all__ = ["sample_stream"]
 
-# So many normals are searched at a time. With what is found they take some 300 MB.
-NORMALS_AT_A_TIME = 1 << 21
+# So many normals are searched at a time: with what is found they take some 150 MB.
+NORMALS_AT_A_TIME = 1 << 20
 
 
 def sample_stream(
@@ -42,7 +42,7 @@ def sample_stream(
     even the normals are ever in memory all at once.
 
     `Samples.concatenate(sample_stream(…))` is `sample(…)`, bit for bit and in the same order, for
-    up to 2,097,152 normals. More of them are searched in blocks of so many: the samples are the
+    up to 1,048,576 normals. More of them are searched in blocks of so many: the samples are the
     same, but ordered by block of normals, then by patch, then by normal.
 
     There is at least one chunk, and all but the last of each block are full. A chunk's report
