@@ -162,7 +162,8 @@ class Hits:
         list(over_ranges(copy, len(parts), 1, threads))
         exact = [part.exact + start for part, start in zip(parts, starts[:-1], strict=True)]
         local = np.concatenate([part.local for part in parts])
-        return cls(*rows, np.concatenate(exact), local, sum(part.developable for part in parts))
+        developable = sum(part.developable for part in parts)
+        return cls(rows[0], rows[1], rows[2], np.concatenate(exact), local, developable)
 
     def __len__(self) -> int:
         """Return the number of samples."""
@@ -338,7 +339,7 @@ def merged(found: Pairs, decided: NDArray[np.int64], local: NDArray[np.float64])
     if len(exact) > 0:
         pairs = np.empty((3, found.sure.shape[1] + len(exact)), dtype=np.int64)
         kernels.merge_pairs(found.sure, np.ascontiguousarray(decided), pairs, exact)
-    return Hits(*pairs, exact, local, found.developable)
+    return Hits(pairs[0], pairs[1], pairs[2], exact, local, found.developable)
 
 
 def _on_border(

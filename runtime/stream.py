@@ -81,7 +81,7 @@ class _Stream:
             last = min(first + NORMALS_AT_A_TIME, total)
             bins = NormalBins(chosen.part(first, last, self.threads), self.threads)
             found = find_in_turn(self.spline, bins, self.threads, self.progress and alone)
-            developable = 0  # the same for every block
+            developable, hits = 0, Hits.none(0)  # as many as in every block
             for hits in grouped(found, self.size, self.threads):
                 came += len(hits)
                 developable += hits.developable
