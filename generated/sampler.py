@@ -1210,6 +1210,25 @@ def radix_sort(notes, count, scratch, starts):
     return notes
 
 
+@jit
+def merge_pairs(sure, decided, merged, exact):
+    """Merge pairs (3, …), both sorted by patch and then by normal; write where the decided ones are."""
+    at = 0
+    for k in range(decided.shape[1] + 1):
+        while at < sure.shape[1] and (
+            k == decided.shape[1]
+            or sure[0, at] < decided[0, k]
+            or (sure[0, at] == decided[0, k] and sure[1, at] < decided[1, k])
+        ):
+            for row in range(3):
+                merged[row, at + k] = sure[row, at]
+            at += 1
+        if k < decided.shape[1]:
+            exact[k] = at + k
+            for row in range(3):
+                merged[row, at + k] = decided[row, k]
+
+
 # --- what a sample holds --------------------------------------------------------------------------
 
 

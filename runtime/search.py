@@ -146,21 +146,24 @@ class Hits:
         return cls(empty, empty, empty, empty, np.empty((0, 5)), developable)
 
     @classmethod
-    def joined(cls, parts: Sequence[Hits]) -> Hits:
+    def joined(cls, parts: Sequence[Hits], threads: int | None = 1) -> Hits:
         """Return the hits of consecutive ranges of patches."""
         if len(parts) == 1:
             return parts[0]
         starts = np.cumsum([0, *(len(part) for part in parts)])
-        return cls(
-            np.concatenate([part.patch_index for part in parts]),
-            np.concatenate([part.normal_index for part in parts]),
-            np.concatenate([part.place for part in parts]),
-            np.concatenate(
-                [part.exact + start for part, start in zip(parts, starts[:-1], strict=True)]
-            ),
-            np.concatenate([part.local for part in parts]),
-            sum(part.developable for part in parts),
-        )
+        rows = np.empty((3, starts[-1]), dtype=np.int64)
+
+        def copy(k: int, _: int) -> None:
+            here = slice(starts[k], starts[k + 1])
+            rows[0, here] = parts[k].patch_index
+            rows[1, here] = parts[k].normal_index
+            rows[2, here] = parts[k].place
+
+        list(over_ranges(copy, len(parts), 1, threads))
+        exact = [part.exact + start for part, start in zip(parts, starts[:-1], strict=True)]
+        local = np.concatenate([part.local for part in parts])
+        developable = sum(part.developable for part in parts)
+        return cls(rows[0], rows[1], rows[2], np.concatenate(exact), local, developable)
 
     def __len__(self) -> int:
         """Return the number of samples."""
@@ -286,8 +289,17 @@ def find(
     if search.hopeless:
         return Hits.none(spline.patches)
     size = search.range_size(threads)
-    found = Pairs.joined([*over_ranges(search.pairs, spline.patches, size, threads, progress)])
-    return merged(found, *search.decided(found.doubtful, found.bounds, threads))
+    parts = [*over_ranges(search.pairs, spline.patches, size, threads, progress)]
+    doubtful = np.concatenate([part.doubtful for part in parts], axis=1)
+    bounds = np.concatenate([part.bounds for part in parts])
+    decided, local = search.decided(doubtful, bounds, threads)
+    cuts = np.searchsorted(decided[0], size * np.arange(len(parts) + 1))
+
+    def merge(k: int, _: int) -> Hits:
+        here = slice(cuts[k], cuts[k + 1])
+        return merged(parts[k], decided[:, here], local[here])
+
+    return Hits.joined([*over_ranges(merge, len(parts), 1, threads)], threads)
 
 
 def fill(
@@ -323,25 +335,11 @@ def fill(
 
 def merged(found: Pairs, decided: NDArray[np.int64], local: NDArray[np.float64]) -> Hits:
     """Return the sure pairs and those that were decided, sorted like them, as hits."""
-    pairs, exact = found.sure, np.empty(0, dtype=np.int64)
-    if decided.shape[1]:
-        patch, normal, place = decided
-        places = _insertion_places(pairs[0], pairs[1], patch, normal)
-        pairs = np.insert(pairs, places, (patch, normal, place), axis=1)
-        exact = places + np.arange(len(places))
+    pairs, exact = found.sure, np.empty(decided.shape[1], dtype=np.int64)
+    if len(exact) > 0:
+        pairs = np.empty((3, found.sure.shape[1] + len(exact)), dtype=np.int64)
+        kernels.merge_pairs(found.sure, np.ascontiguousarray(decided), pairs, exact)
     return Hits(pairs[0], pairs[1], pairs[2], exact, local, found.developable)
-
-
-def _insertion_places(
-    patch: NDArray[np.int64],
-    normal: NDArray[np.int64],
-    new_patch: NDArray[np.int64],
-    new_normal: NDArray[np.int64],
-) -> NDArray[np.int64]:
-    """Return where the new pairs, sorted like the old ones, have to be inserted among them."""
-    low, high = np.searchsorted(patch, new_patch), np.searchsorted(patch, new_patch, side="right")
-    pairs = zip(low, high, new_normal, strict=True)
-    return np.array([a + np.searchsorted(normal[a:b], n) for a, b, n in pairs], dtype=np.int64)
 
 
 def _on_border(

@@ -20,8 +20,8 @@ from .threads import over_ranges, shown
 
 __all__ = ["sample_stream"]
 
-# So many normals are searched at a time. With what is found they take some 300 MB.
-NORMALS_AT_A_TIME = 1 << 21
+# So many normals are searched at a time: with what is found they take some 150 MB.
+NORMALS_AT_A_TIME = 1 << 20
 
 
 def sample_stream(
@@ -42,7 +42,7 @@ def sample_stream(
     even the normals are ever in memory all at once.
 
     `Samples.concatenate(sample_stream(…))` is `sample(…)`, bit for bit and in the same order, for
-    up to 2,097,152 normals. More of them are searched in blocks of so many: the samples are the
+    up to 1,048,576 normals. More of them are searched in blocks of so many: the samples are the
     same, but ordered by block of normals, then by patch, then by normal.
 
     There is at least one chunk, and all but the last of each block are full. A chunk's report
@@ -81,12 +81,13 @@ class _Stream:
             last = min(first + NORMALS_AT_A_TIME, total)
             bins = NormalBins(chosen.part(first, last, self.threads), self.threads)
             found = find_in_turn(self.spline, bins, self.threads, self.progress and alone)
-            developable = 0  # the same for every block
-            for hits in grouped(found, self.size):
+            developable, hits = 0, Hits.none(0)  # as many as in every block
+            for hits in grouped(found, self.size, self.threads):
                 came += len(hits)
                 developable += hits.developable
                 if len(hits) or (came == 0 and first == starts[-1]):
                     yield self._samples(bins, hits, first, report)
+            del bins, found, hits  # before the next ones are made
         report = replace(report, samples=came, degenerate_patches=developable)
         warn_of(report, self.asked if isinstance(self.asked, int) else None, stacklevel=3)
 
@@ -98,19 +99,19 @@ class _Stream:
         return Samples(**arrays, report=replace(report, samples=len(hits)))
 
 
-def grouped(parts: Iterator[Hits], size: int) -> Iterator[Hits]:
+def grouped(parts: Iterator[Hits], size: int, threads: int | None) -> Iterator[Hits]:
     """Join and cut consecutive hits: `size` at a time, and what is left at the end."""
     group: list[Hits] = []
     room = size
     for hits in parts:
         start = 0
         while len(hits) - start >= room:
-            yield Hits.joined([*group, hits[start : start + room]])
+            yield Hits.joined([*group, hits[start : start + room]], threads)
             start += room
             group, room = [], size
         group.append(hits[start:])
         room -= len(group[-1])
-    yield Hits.joined(group)
+    yield Hits.joined(group, threads)
 
 
 def find_in_turn(
