@@ -52,15 +52,17 @@ def decide(
     spline: Spline,
     patches: NDArray[np.int64],
     normals: NDArray[np.float64],
+    numbers: NDArray[np.int64],
     bounds: NDArray[np.float64],
     forgiven: NDArray[np.float64],
     threads: int | None = None,
 ) -> Decision:
     """Decide which of the pairs (patches[k], normals[k]) are samples.
 
-    `bounds[k]` is the error of the forms as floating-point numbers; `forgiven[k]` that of W that is
-    forgiven at the open border of the domain, 0 for a patch that does not touch the border. Both
-    are in units of the scaled spline.
+    `numbers[k]` is that of the normal: equal normals with different numbers all count. `bounds[k]`
+    is the error of the forms as floating-point numbers; `forgiven[k]` that of W that is forgiven at
+    the open border of the domain, 0 for a patch that does not touch the border. Both are in units
+    of the scaled spline.
     """
     local, size, signs = _forms(spline, patches, normals, bounds, forgiven, threads)
     inside = (signs[:, 0] != 0) & (signs[:, 0] == signs[:, 1]) & (signs[:, 1] == signs[:, 2])
@@ -74,8 +76,9 @@ def decide(
     regular, directions = _regular_places(spline, patches[which], local[which])
     towards = np.einsum("kx,kx->k", directions, normals[which]) > 0.0
     which, regular = which[towards], regular[towards]
-    at = np.column_stack([local[which], signs[which, 0], regular])
-    keep = _first_of_each_place(spline, patches[which], normals[which], at[:, :2], near[which])
+    place, number = local[which], numbers[which]
+    keep = _first_of_each_place(spline, patches[which], number, place, near[which])
+    at = np.column_stack([place, signs[which, :1].astype(np.float64), regular])
     return Decision(which[keep], at[keep])
 
 
@@ -144,23 +147,23 @@ def _regular_places(
 def _first_of_each_place(
     spline: Spline,
     patches: NDArray[np.int64],
-    normals: NDArray[np.float64],
+    numbers: NDArray[np.int64],
     local: NDArray[np.float64],
     near: NDArray[np.bool_],
 ) -> NDArray[np.bool_]:
     """Drop what was let in at the border and is, for its normal, in the place of another sample."""
     keep = np.ones(len(patches), dtype=bool)
-    if not near.any():
-        return keep
     cell, turn = np.divmod(patches, 4)
     corners = kernels.CORNERS[turn]
     place = np.stack(np.divmod(cell, spline.cells[1]), axis=1) + np.einsum(
         "kc,kcx->kx", local, corners
     )
     for k in np.flatnonzero(near):
-        same = (normals == normals[k]).all(axis=1)
-        close = np.abs(place - place[k]).max(axis=1) < SAME_PLACE
-        others = same & close & keep
+        apart = place - place[k]
+        for axis, (ends, cells) in enumerate(zip(spline.ends, spline.cells, strict=True)):
+            if ends[0] == "wrap":
+                apart[:, axis] -= cells * np.round(apart[:, axis] / cells)
+        others = (numbers == numbers[k]) & (np.abs(apart).max(axis=1) < SAME_PLACE) & keep
         others[k] = False
         keep[k] = not others.any()
     return keep

@@ -277,7 +277,7 @@ class Search:
             return doubtful, np.empty((0, 5))
         forgiven = np.where(_on_border(self.spline, self.border, doubtful[0]), bounds, 0.0)
         normals = self.bins.normals[doubtful[1]]
-        decision = decide(self.spline, doubtful[0], normals, bounds, forgiven, threads)
+        decision = decide(self.spline, doubtful[0], normals, doubtful[1], bounds, forgiven, threads)
         return doubtful[:, decision.which], decision.local
 
 

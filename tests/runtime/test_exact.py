@@ -166,3 +166,26 @@ def test_parabolic_normal_of_a_torus_has_a_sensible_place() -> None:
     assert int(samples.elliptic.sum()) == int(samples.hyperbolic.sum()) == 2
     np.testing.assert_allclose(np.abs(samples.points[:, 2]), 0.35, atol=2e-3)
     np.testing.assert_allclose(np.hypot(*samples.points[:, :2].T), 1.0, atol=2e-2)
+
+
+@pytest.mark.parametrize("name", ["catenoid", "hyperboloid"])
+def test_border_vertices_of_a_closed_ring_count_once(name: str) -> None:
+    """The first and the last vertex on the border are one place: its normal is asked twice."""
+    spline = gm.fit(gm.surfaces.surface(name), (12, 8))
+    for v in spline.domain[1]:
+        normals = spline.normals(np.linspace(*spline.domain[0], 13), v)
+        samples = gm.sample(spline, normals)
+        np.testing.assert_array_equal(np.bincount(samples.normal_index, minlength=13), 1)
+
+
+def test_equal_normals_are_answered_alike() -> None:
+    """Those of the vertices on the border, where rounding lets several patches answer."""
+    spline = gm.fit(gm.surfaces.elliptic_paraboloid(), (12, 8))
+    (u_0, u_1), (v_0, v_1) = spline.domain
+    u, v = np.linspace(u_0, u_1, 13), np.linspace(v_0, v_1, 9)
+    normals = np.concatenate([spline.normals(u, end) for end in (v_0, v_1)])
+    normals = np.concatenate([normals, *(spline.normals(end, v) for end in (u_0, u_1))])
+    samples = gm.sample(spline, np.concatenate([normals, normals]))
+    counts = np.bincount(samples.normal_index, minlength=2 * len(normals))
+    np.testing.assert_array_equal(counts[: len(normals)], 1)
+    np.testing.assert_array_equal(counts[len(normals) :], 1)
