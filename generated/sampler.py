@@ -1211,22 +1211,26 @@ def radix_sort(notes, count, scratch, starts):
 
 
 @jit
-def merge_pairs(sure, decided, merged, exact):
-    """Merge pairs (3, …), both sorted by patch and then by normal; write where the decided ones are."""
+def merge_pairs(sure, decided, first, last, start, merged, exact):
+    """Merge pairs with decided ones (first, …, last − 1), both sorted by patch and then by normal.
+
+    Pairs (3, …) are written to merged from `start` on, and where the decided ones are to exact (…).
+    """
     at = 0
-    for k in range(decided.shape[1] + 1):
-        while at < sure.shape[1] and (
-            k == decided.shape[1]
+    end = sure.shape[1]
+    for k in range(first, last + 1):
+        while at < end and (
+            k == last
             or sure[0, at] < decided[0, k]
             or (sure[0, at] == decided[0, k] and sure[1, at] < decided[1, k])
         ):
             for row in range(3):
-                merged[row, at + k] = sure[row, at]
+                merged[row, start + at + k - first] = sure[row, at]
             at += 1
-        if k < decided.shape[1]:
-            exact[k] = at + k
+        if k < last:
+            exact[k] = start + at + k - first
             for row in range(3):
-                merged[row, at + k] = decided[row, k]
+                merged[row, start + at + k - first] = decided[row, k]
 
 
 # --- what a sample holds --------------------------------------------------------------------------

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .bins import NormalBins
 from .checks import MOST, whole_number
 from .errors import InputError
 from .lattice import Lattice
-from .search import Hits, NormalBins, find
+from .search import Hits, find
 from .sphere import as_normals
 from .spline import Spline
 from .threads import thread_count

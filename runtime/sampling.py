@@ -8,12 +8,13 @@ from collections.abc import Iterable, Iterator, Sequence
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
+from .bins import NormalBins
 from .choice import choose, normals_asked
 from .compiling import compilation_shown
 from .errors import GaussmapError, GaussmapWarning, InputError
 from .fields import checked_dtype, checked_fields
 from .samples import Samples, SamplingReport
-from .search import NormalBins, fill, find
+from .search import fill, find
 from .spline import Spline, spline_of
 from .surface import Surface
 from .visibility import invisible_share

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -13,114 +12,20 @@ from numpy.typing import DTypeLike, NDArray
 
 from ..generated import icosphere
 from ..generated import sampler as kernels
+from .bins import NormalBins
 from .exact import decide
 from .fields import ARRAY_NAMES, FLOAT_NAMES, INDEX_NAMES, new_field
-from .sphere import perpendicular
 from .spline import Spline
 from .threads import over_ranges, thread_count
 
-__all__ = ["Hits", "NormalBins", "Pairs", "Search", "fill", "find", "merged"]
+__all__ = ["Hits", "Pairs", "Search", "fill", "find", "merged"]
 
 # A range of patches is searched by one thread. There are several for each, but for small surfaces.
 FEWEST_PATCHES, MOST_PATCHES = 64, 4096
 RANGES_PER_THREAD = 4
 SAMPLES_AT_A_TIME = 1 << 16
-NORMALS_PER_BIN = 4
-# Normals are sorted by a thread for so many at least, and by so many threads at most.
-FEWEST_NORMALS, MOST_COUNTS = 1 << 16, 8
-# A cap of normals is not taken for narrower than this, the tangent of half its angle.
-NARROWEST = 2.0**-20
 # Room for so many hits at first; a patch that needs more gets it.
 ROOM = 1 << 15
-
-
-@dataclass(frozen=True, eq=False)
-class NormalBins:
-    """Unit normals (S, 3), sorted into the squares of a cube round the sphere.
-
-    Normals that all lie in a cap are first mapped linearly, so that they fill a face of the cube.
-    The points of a refined icosahedron need no bins: each is where its number says.
-    """
-
-    normals: NDArray[np.float64]
-    threads: int | None = None
-
-    @cached_property
-    def frequency(self) -> int:
-        """That of the icosahedron whose points these are, in their order; 0 if they are not."""
-        frequency = math.isqrt(max(len(self.normals) - 2, 0) // 10)
-        if frequency == 0 or 10 * frequency**2 + 2 != len(self.normals):
-            return 0
-
-        def work(first: int, last: int) -> bool:
-            return icosphere.is_icosphere(self.normals, frequency, first, last)
-
-        return frequency if all(over_ranges(work, 51, 1, self.threads)) else 0
-
-    @property
-    def ordered(self) -> NDArray[np.float64]:
-        """The normals (S, 3) in the order of their places."""
-        return self.normals if self.frequency > 0 else self.sorted[2]
-
-    @cached_property
-    def frame(self) -> NDArray[np.float64]:
-        """The linear map (3, 3), the identity unless there is such a cap."""
-        mean = self._sum() / len(self.normals)
-        length = float(np.linalg.norm(mean))
-        if length < 0.8:
-            return np.eye(3)
-        axis = mean / length
-        across, along = perpendicular(axis)
-        directions = np.stack([across, along, axis])
-        x, y, z = directions @ self.normals.T
-        if not (z > 0.5).all():
-            return np.eye(3)
-        tangent = max(float(np.hypot(x, y).max() / z.min()), NARROWEST)
-        return directions / [[tangent], [tangent], [1.0]] if tangent < 0.8 else np.eye(3)
-
-    def _sum(self) -> NDArray[np.float64]:
-        """Return the sum of all normals, added in the same order for any number of threads."""
-        parts = over_ranges(
-            lambda first, last: np.ones(last - first) @ self.normals[first:last],
-            len(self.normals), FEWEST_NORMALS, self.threads,
-        )  # fmt: skip
-        return np.sum(list(parts), axis=0)
-
-    @cached_property
-    def stretch(self) -> float:
-        """The norm of the frame."""
-        return float(np.linalg.norm(self.frame, axis=1).max())
-
-    @cached_property
-    def grid(self) -> int:
-        """The number of squares along an edge of the cube."""
-        faces = 6 if self.stretch < 1.1 else 1
-        return max(1, min(2048, round(math.sqrt(len(self.normals) / (faces * NORMALS_PER_BIN)))))
-
-    @cached_property
-    def sorted(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
-        """The start of each bin; the numbers of the normals in their order; the normals (S, 3)."""
-        total, count = len(self.normals), 6 * self.grid**2
-        size = max(FEWEST_NORMALS, -(-total // min(thread_count(self.threads), MOST_COUNTS)))
-        bins = np.empty(total, dtype=np.int32)
-        counts = np.empty((-(-total // size), count), dtype=np.int64)
-        starts, order = np.empty(count + 1, dtype=np.int64), np.empty(total, dtype=np.int64)
-        ordered = np.empty((total, 3))
-
-        def count_bins(first: int, last: int) -> None:
-            kernels.count_bins(
-                self.normals, self.frame, self.grid, first, last, bins, counts[first // size]
-            )
-
-        def place(first: int, last: int) -> None:
-            kernels.place_normals(
-                self.normals, bins, first, last, counts[first // size], order, ordered
-            )
-
-        list(over_ranges(count_bins, total, size, self.threads))
-        kernels.start_bins(counts, starts)
-        list(over_ranges(place, total, size, self.threads))
-        return starts, order, ordered
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,9 +92,11 @@ class Hits:
 class Pairs:
     """What a range of patches yields: pairs (3, …) of patch, normal and place of the normal.
 
-    Some are sure; rounding leaves the others open, with the error `bounds` of their forms.
+    Some are sure; rounding leaves the others open, with the error `bounds` of their forms. `last`
+    is the patch after the last one.
     """
 
+    last: int
     sure: NDArray[np.int64]
     doubtful: NDArray[np.int64]
     bounds: NDArray[np.float64]
@@ -201,6 +108,7 @@ class Pairs:
         if len(parts) == 1:
             return parts[0]
         return cls(
+            parts[-1].last,
             np.concatenate([part.sure for part in parts], axis=1),
             np.concatenate([part.doubtful for part in parts], axis=1),
             np.concatenate([part.bounds for part in parts]),
@@ -255,6 +163,7 @@ class Search:
             sure, open_, developable = counts.tolist()
             parts.append(
                 Pairs(
+                    first,
                     found[:, :sure].copy(),
                     doubtful[:, :open_].copy(),
                     bounds[:open_].copy(),
@@ -292,14 +201,7 @@ def find(
     parts = [*over_ranges(search.pairs, spline.patches, size, threads, progress)]
     doubtful = np.concatenate([part.doubtful for part in parts], axis=1)
     bounds = np.concatenate([part.bounds for part in parts])
-    decided, local = search.decided(doubtful, bounds, threads)
-    cuts = np.searchsorted(decided[0], size * np.arange(len(parts) + 1))
-
-    def merge(k: int, _: int) -> Hits:
-        here = slice(cuts[k], cuts[k + 1])
-        return merged(parts[k], decided[:, here], local[here])
-
-    return Hits.joined([*over_ranges(merge, len(parts), 1, threads)], threads)
+    return merged(parts, *search.decided(doubtful, bounds, threads), threads)
 
 
 def fill(
@@ -333,13 +235,27 @@ def fill(
     return filled | {x: getattr(hits, x) for x in INDEX_NAMES if x in fields}
 
 
-def merged(found: Pairs, decided: NDArray[np.int64], local: NDArray[np.float64]) -> Hits:
-    """Return the sure pairs and those that were decided, sorted like them, as hits."""
-    pairs, exact = found.sure, np.empty(decided.shape[1], dtype=np.int64)
-    if len(exact) > 0:
-        pairs = np.empty((3, found.sure.shape[1] + len(exact)), dtype=np.int64)
-        kernels.merge_pairs(found.sure, np.ascontiguousarray(decided), pairs, exact)
-    return Hits(pairs[0], pairs[1], pairs[2], exact, local, found.developable)
+def merged(
+    parts: Sequence[Pairs],
+    decided: NDArray[np.int64],
+    local: NDArray[np.float64],
+    threads: int | None,
+) -> Hits:
+    """Return the sure pairs of consecutive ranges and those that were decided, sorted, as hits."""
+    ends = np.searchsorted(decided[0], [0, *(part.last for part in parts)])
+    starts = np.cumsum([0, *(part.sure.shape[1] for part in parts)]) + ends
+    pairs = np.empty((3, starts[-1]), dtype=np.int64)
+    exact, decided = np.empty(len(local), dtype=np.int64), np.ascontiguousarray(decided)
+
+    def work(first: int, last: int) -> None:
+        for k in range(first, last):
+            kernels.merge_pairs(
+                parts[k].sure, decided, ends[k], ends[k + 1], starts[k], pairs, exact
+            )
+
+    list(over_ranges(work, len(parts), 1, threads))
+    patch, normal, place = pairs
+    return Hits(patch, normal, place, exact, local, sum(part.developable for part in parts))
 
 
 def _on_border(

@@ -8,12 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
+from .bins import NormalBins
 from .checks import whole_number
 from .choice import choose, normals_asked
 from .fields import checked_dtype, checked_fields
 from .samples import Samples, SamplingReport
 from .sampling import sampling_report, warn_of
-from .search import Hits, NormalBins, Search, fill, merged
+from .search import Hits, Search, fill, merged
 from .spline import Spline, spline_of
 from .surface import Surface
 from .threads import over_ranges, shown
@@ -166,4 +167,4 @@ class _Border:
         pairs = np.concatenate([pairs, self.pairs[:, low:high]], axis=1)
         order = np.lexsort((pairs[1], pairs[0]))
         local = np.concatenate([local, self.local[low:high]])
-        return merged(found, pairs[:, order], local[order])
+        return merged([found], pairs[:, order], local[order], 1)

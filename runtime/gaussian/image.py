@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...generated import gaussian_image as formulas
+from ..bins import NormalBins
 from ..checks import real_array
 from ..errors import InputError
-from ..search import NormalBins, fill, find
+from ..search import fill, find
 from ..sphere import as_normals
 from ..spline import Spline, spline_of
 from ..surface import Surface

@@ -11,11 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...generated import patch as formulas
 from ...generated import support as kernels
+from ..bins import NormalBins
 from ..errors import InputError
 from ..gaussian.membership import PatchNormals
 from ..gaussian.patches import checked_control_points
 from ..plain import plain
-from ..search import NormalBins, fill, find
+from ..search import fill, find
 from ..spline import Spline
 from .branches import Sheets
 

@@ -6,8 +6,9 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.generated import sampler as kernels
+from gaussmap.runtime.bins import NormalBins
 from gaussmap.runtime.lattice import Lattice
-from gaussmap.runtime.search import NormalBins, find
+from gaussmap.runtime.search import find
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray

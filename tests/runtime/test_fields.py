@@ -9,11 +9,12 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime import fields as names
+from gaussmap.runtime.bins import NormalBins
 from gaussmap.runtime.cli import main
 from gaussmap.runtime.fields import ARRAY_NAMES, FLOAT_NAMES
 from gaussmap.runtime.pictures.plot import plot_samples
 from gaussmap.runtime.samples import Samples
-from gaussmap.runtime.search import NormalBins, fill, find
+from gaussmap.runtime.search import fill, find
 
 # The vertices of the icosphere lie in planes of symmetry: some samples are decided exactly.
 NORMALS = gm.icosphere(6)

@@ -3,7 +3,8 @@
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.search import Hits, NormalBins, fill, find
+from gaussmap.runtime.bins import NormalBins
+from gaussmap.runtime.search import Hits, fill, find
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

@@ -10,8 +10,9 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime import choice, search, stream
+from gaussmap.runtime.bins import NormalBins
 from gaussmap.runtime.samples import Samples
-from gaussmap.runtime.search import NormalBins, Search, find
+from gaussmap.runtime.search import Search, find
 from gaussmap.runtime.sphere import as_normals
 
 TORUS = gm.fit(gm.surfaces.torus(), (12, 8))

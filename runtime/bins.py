@@ -1,0 +1,112 @@
+"""Normals sorted by direction, so that those that a patch may have are near each other."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..generated import icosphere
+from ..generated import sampler as kernels
+from .sphere import perpendicular
+from .threads import over_ranges, thread_count
+
+__all__ = ["NormalBins"]
+
+NORMALS_PER_BIN = 4
+# Normals are sorted by a thread for so many at least, and by so many threads at most.
+FEWEST_NORMALS, MOST_COUNTS = 1 << 16, 8
+# A cap of normals is not taken for narrower than this, the tangent of half its angle.
+NARROWEST = 2.0**-20
+
+
+@dataclass(frozen=True, eq=False)
+class NormalBins:
+    """Unit normals (S, 3), sorted into the squares of a cube round the sphere.
+
+    Normals that all lie in a cap are first mapped linearly, so that they fill a face of the cube.
+    The points of a refined icosahedron need no bins: each is where its number says.
+    """
+
+    normals: NDArray[np.float64]
+    threads: int | None = None
+
+    @cached_property
+    def frequency(self) -> int:
+        """That of the icosahedron whose points these are, in their order; 0 if they are not."""
+        frequency = math.isqrt(max(len(self.normals) - 2, 0) // 10)
+        if frequency == 0 or 10 * frequency**2 + 2 != len(self.normals):
+            return 0
+
+        def work(first: int, last: int) -> bool:
+            return icosphere.is_icosphere(self.normals, frequency, first, last)
+
+        return frequency if all(over_ranges(work, 51, 1, self.threads)) else 0
+
+    @property
+    def ordered(self) -> NDArray[np.float64]:
+        """The normals (S, 3) in the order of their places."""
+        return self.normals if self.frequency > 0 else self.sorted[2]
+
+    @cached_property
+    def frame(self) -> NDArray[np.float64]:
+        """The linear map (3, 3), the identity unless there is such a cap."""
+        mean = self._sum() / len(self.normals)
+        length = float(np.linalg.norm(mean))
+        if length < 0.8:
+            return np.eye(3)
+        axis = mean / length
+        across, along = perpendicular(axis)
+        directions = np.stack([across, along, axis])
+        x, y, z = directions @ self.normals.T
+        if not (z > 0.5).all():
+            return np.eye(3)
+        tangent = max(float(np.hypot(x, y).max() / z.min()), NARROWEST)
+        return directions / [[tangent], [tangent], [1.0]] if tangent < 0.8 else np.eye(3)
+
+    def _sum(self) -> NDArray[np.float64]:
+        """Return the sum of all normals, added in the same order for any number of threads."""
+        parts = over_ranges(
+            lambda first, last: np.ones(last - first) @ self.normals[first:last],
+            len(self.normals), FEWEST_NORMALS, self.threads,
+        )  # fmt: skip
+        return np.sum(list(parts), axis=0)
+
+    @cached_property
+    def stretch(self) -> float:
+        """The norm of the frame."""
+        return float(np.linalg.norm(self.frame, axis=1).max())
+
+    @cached_property
+    def grid(self) -> int:
+        """The number of squares along an edge of the cube."""
+        faces = 6 if self.stretch < 1.1 else 1
+        return max(1, min(2048, round(math.sqrt(len(self.normals) / (faces * NORMALS_PER_BIN)))))
+
+    @cached_property
+    def sorted(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
+        """The start of each bin; the numbers of the normals in their order; the normals (S, 3)."""
+        total, count = len(self.normals), 6 * self.grid**2
+        size = max(FEWEST_NORMALS, -(-total // min(thread_count(self.threads), MOST_COUNTS)))
+        bins = np.empty(total, dtype=np.int32)
+        counts = np.empty((-(-total // size), count), dtype=np.int64)
+        starts, order = np.empty(count + 1, dtype=np.int64), np.empty(total, dtype=np.int64)
+        ordered = np.empty((total, 3))
+
+        def count_bins(first: int, last: int) -> None:
+            kernels.count_bins(
+                self.normals, self.frame, self.grid, first, last, bins, counts[first // size]
+            )
+
+        def place(first: int, last: int) -> None:
+            kernels.place_normals(
+                self.normals, bins, first, last, counts[first // size], order, ordered
+            )
+
+        list(over_ranges(count_bins, total, size, self.threads))
+        kernels.start_bins(counts, starts)
+        list(over_ranges(place, total, size, self.threads))
+        return starts, order, ordered
