@@ -37,6 +37,8 @@ def jit(function):
         return numba.njit(**OPTIONS)(function)
 
 
+# sampler.py, digest 2f0dc1e6169f85d7: Numba's cache looks at this file alone.
+
 # The icosahedron: corners as pairs (a, b) of coordinates a + b φ; edges and faces as numbers of
 # corners. BARS map a normal to α, β, γ, with which the corners of a face are added to give it, and
 # LENGTHS are those of their rows. FRAMES map it to 2γ − h, 2β − h and h = α + β + γ, and STRETCHES are

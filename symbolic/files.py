@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import hashlib
 import math
 import subprocess
 import sys
@@ -168,6 +169,7 @@ def icosphere_source() -> str:
     holders = [next(k for k, face in enumerate(faces) if corner in face) for corner in range(12)]
     bars = [_floats(icosahedron.bars(face)) for face in faces]
     frames = [_floats(icosahedron.frame(face)) for face in faces]
+    digest = hashlib.sha256(sampler_source().encode()).hexdigest()[:16]
     arrays = {
         "CORNERS": [icosahedron.golden_parts(x) for x in icosahedron.CORNERS],
         "POSITIONS": [[float(x.evalf(40)) for x in corner] for corner in icosahedron.CORNERS],
@@ -191,6 +193,7 @@ def icosphere_source() -> str:
                 f"\nfrom .sampler import {', '.join(SCANNED)}\n",
             ),
             "constants": "\n".join(f"{name} = np.array({x})" for name, x in arrays.items()),
+            "digest": f"# sampler.py, digest {digest}: Numba's cache looks at this file alone.",
             "control_normals": _control_normals(),
         },
     )
