@@ -807,8 +807,8 @@ def scan_patches(
                 a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
                 axis, sine, 2.0 * bound, x[:full], y[:full], z[:full], codes,
             )  # fmt: skip
-            unsure = look_up_unsure(normals, codes, places, count, which, x, y, z)
-            if unsure > 0:
+            if has_open(codes[:count]):
+                unsure = look_up_open(normals, codes, places, count, which, x, y, z)
                 classify(
                     a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
                     axis, sine, bound, x[:unsure], y[:unsure], z[:unsure], few_codes,
@@ -816,9 +816,10 @@ def scan_patches(
                 for k in range(unsure):
                     codes[which[k]] = few_codes[k]
         counts[0] = store_in_order(codes, 1, places, count, patch, found, counts[0])
-        doubts = counts[1]
-        counts[1] = store_in_order(codes, 2, places, count, patch, doubtful, counts[1])
-        bounds[doubts : counts[1]] = bound
+        if has_open(codes[:count]):
+            doubts = counts[1]
+            counts[1] = store_in_order(codes, 2, places, count, patch, doubtful, counts[1])
+            bounds[doubts : counts[1]] = bound
     return last_patch, 0
 
 
@@ -831,17 +832,26 @@ def candidates(size):
 
 
 @jit
-def look_up_unsure(normals, codes, places, count, which, x, y, z):
+def has_open(codes):
+    """Say whether there is a 2 among codes."""
+    count = 0
+    for k in range(codes.size):
+        count += codes[k] == 2
+    return count > 0
+
+
+@jit
+def look_up_open(normals, codes, places, count, which, x, y, z):
     """Write which of the points are open, and their normals; return how many are."""
-    unsure = 0
+    size = 0
     for k in range(count):
-        which[unsure] = k
-        unsure += codes[k] == 2
-    for k in range(unsure):
+        which[size] = k
+        size += codes[k] == 2
+    for k in range(size):
         x[k] = normals[places[which[k]], 0]
         y[k] = normals[places[which[k]], 1]
         z[k] = normals[places[which[k]], 2]
-    return unsure
+    return size
 
 
 @jit
