@@ -442,7 +442,12 @@ def test_interrupted_in_a_callback(
 @posix
 def test_interrupted_by_a_signal(tmp_path: Path) -> None:
     os.mkfifo("pipe.npy")  # who reads from it is past the imports
-    command = [sys.executable, "-m", "gaussmap", "sample", "pipe.npy", "-o", "a.ply"]
+    # A test run in the background ignores interrupts, and what it starts would do so too.
+    code = (
+        "import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler); "
+        "from gaussmap.__main__ import main; sys.exit(main())"
+    )
+    command = [sys.executable, "-c", code, "sample", "pipe.npy", "-o", "a.ply"]
     with (
         subprocess.Popen(
             command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
