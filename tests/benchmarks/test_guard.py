@@ -3,6 +3,7 @@
 import json
 
 import gaussmap as gm
+import numpy as np
 import pytest
 from gaussmap.benchmarks import guard
 from gaussmap.benchmarks.writing import Writers, new_arrays
@@ -45,7 +46,7 @@ def test_compared():
         "slow": measuring(0.3, 0.349),
         "faster": measuring(0.9),
     }
-    assert guard.compared(record, measure) == [
+    assert guard.compared(record, measure, tries=2) == [
         ("steady", 0.5, 0.5, True),
         ("slower", 0.5, 0.351, True),
         ("disturbed", 0.5, 0.36, True),
@@ -95,10 +96,18 @@ def test_the_writing_limit_writes_every_sample(threads):
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("name", guard.CASES)
-def test_cases_write_as_many_samples_as_they_make(name):
+@pytest.mark.parametrize("name", [x for x in guard.CASES if x != "fit-grid"])
+def test_cases_of_sampling_fill_the_arrays_that_are_written(name):
     work, arrays = guard.CASES[name]()
+    normals = arrays[1]
+    normals.fill(np.nan)
+    work()
+    np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1.0)
+
+
+@pytest.mark.compiled
+def test_fitting_makes_as_many_cells_as_are_written():
+    work, arrays = guard.CASES["fit-grid"]()
     made = work()
-    assert isinstance(made, gm.Spline | gm.Samples)
-    size = made.patches // 4 if isinstance(made, gm.Spline) else len(made)
-    assert len(arrays[0]) == size
+    assert isinstance(made, gm.Spline)
+    assert made.patches == 4 * len(arrays[0])
