@@ -3,7 +3,8 @@
 `make bench-guard` compares and `make bench-record` writes the record. What is compared is the time
 of writing the same arrays over that of sampling, both on one thread and in time of the processor,
 so that others on the machine disturb little. Each time is the best of ROUNDS, taken in turns:
-others only make times longer. (The best quotient of a round is one with disturbed writing.)
+others only make times longer. (The best quotient of a round is one with disturbed writing.) On
+another processor than that of the record nothing is compared.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ import numpy as np
 from gaussmap.generated import sampler as kernels
 from gaussmap.runtime.bins import NormalBins
 from gaussmap.runtime.search import Search, find
+from llvmlite.binding import get_host_cpu_name
 
 from .writing import Arrays, Writers, new_arrays
 
@@ -29,7 +31,7 @@ __all__ = ["CASES", "RECORD", "compared", "main", "quotient"]
 
 RECORD = Path(__file__).parent / "recorded.json"
 ROUNDS = 15
-TRIES = 5
+TRIES = 10
 RECORDINGS = 5  # of which the least is recorded: a busy machine shall fail nobody
 SHARE = 0.7  # of what is recorded has to be reached
 Work = Callable[[], object]
@@ -117,9 +119,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     with Writers(threads=1) as write:
         measure = {name: partial(_measured, make, write) for name, make in CASES.items()}
         if write_record:
-            _store({name: recorded(once) for name, once in measure.items()})
+            ratios = {name: recorded(once) for name, once in measure.items()}
+            _store({"processor": processor(), "ratios": ratios})
             return 0
-        rows = compared(json.loads(RECORD.read_text(encoding="utf-8")), measure)
+        record = json.loads(RECORD.read_text(encoding="utf-8"))
+        if record["processor"] != processor():
+            print(f"not compared: {record['processor']} was recorded, and this is {processor()}")
+            return 0
+        rows = compared(record["ratios"], measure)
     for name, before, now, enough in rows:
         verdict = "ok" if enough else f"FAILED: below {SHARE:.0%} of the record"
         print(f"{name:<24} {now:8.4f} of the writing limit, recorded {before:.4f}: {verdict}")
@@ -136,9 +143,14 @@ def _measured(make: Callable[[], tuple[Work, Arrays]], write: Writers) -> float:
     return quotient(work, lambda: write(arrays))
 
 
-def _store(ratios: Mapping[str, float]) -> None:
+def processor() -> str:
+    """Return what LLVM calls the processor: another one has other ratios."""
+    return str(get_host_cpu_name())
+
+
+def _store(record: Mapping[str, object]) -> None:
     """Write the record beside its place, then rename it."""
-    text = json.dumps(ratios, indent=4) + "\n"
+    text = json.dumps(record, indent=4) + "\n"
     written = RECORD.with_suffix(".tmp")
     written.write_text(text, encoding="utf-8")
     os.replace(written, RECORD)
