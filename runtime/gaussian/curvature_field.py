@@ -109,8 +109,8 @@ class CurvatureField:
 
     @cached_property
     def rough(self) -> NDArray[np.bool_]:
-        """Where (m, n) K is known, but with an error that smaller panels may lessen."""
-        return ~self.flat & ~(self.noise <= WELL * self.bending)
+        """Where (m, n) the error of K is one that smaller panels may lessen."""
+        return ~(self.noise <= WELL * self.bending)
 
     def share(self, which: NDArray[np.bool_]) -> float:
         """Return the share of the domain that panels (m, n) take."""

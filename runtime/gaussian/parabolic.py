@@ -53,7 +53,7 @@ class ParabolicPoint:
 
     `uv` (2,) are its parameters, `point` (3,) its place in space. `box` (2, 2) holds the lowest and
     the highest parameters of the rectangle that isolates it; one that is longer than the tolerance
-    holds a whole curve of such points, or a closed curve too small to follow, or K is zero up to
+    holds whole curves of such points, or a closed curve too small to follow, or K is zero up to
     its error on all of it.
     """
 

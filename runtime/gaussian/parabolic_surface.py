@@ -77,7 +77,7 @@ def search(field: CurvatureField, size: Array) -> Search:
         joined(curves),
         groups[~beside],
         np.concatenate([flat, *rim]),
-        field.share(field.unresolved) + found.dropped,
+        field.share(field.unresolved),
     )
 
 

@@ -12,7 +12,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from .curvature_field import NODES, ORDER, SURE, CurvatureField
-from .rectangles import clusters, quarters, touching
+from .rectangles import clusters, merged, quarters, touching
 from .sign_grid import SignGrid
 
 __all__ = ["TouchingZeros", "parted", "touching_zeros"]
@@ -28,14 +28,10 @@ FEW_CELLS = 4
 
 @dataclass(frozen=True, eq=False)
 class TouchingZeros:
-    """Rectangles (k, 2, 2) that hold zeros of K, and large ones where K is `zero` up to its error.
-
-    `dropped` is the share of the domain that was too much to look at.
-    """
+    """Rectangles (k, 2, 2) that hold zeros of K; in large ones K is `zero` up to its error."""
 
     boxes: Array
     zero: Array
-    dropped: float
 
 
 def touching_zeros(grid: SignGrid, size: Array, finest: bool) -> TouchingZeros | None:
@@ -43,7 +39,8 @@ def touching_zeros(grid: SignGrid, size: Array, finest: bool) -> TouchingZeros |
 
     None if K has another sign inside a cell away from the curves, so that cells should be smaller.
     If these are the `finest`, the rectangles with another sign are returned as they are: they hold
-    a closed curve that is too small for the cells.
+    a closed curve that is too small for the cells. Where there are too many to cut them down to
+    `size`, along a curve or where K is zero up to its error, they stay as large as they are.
     """
     open_ = _may_vanish(grid, grid.mask & ~grid.crossed & ~_near_curves(grid))
     rectangles, signs = grid.rectangles(open_), grid.signs[:-1, :-1][open_]
@@ -62,11 +59,8 @@ def touching_zeros(grid: SignGrid, size: Array, finest: bool) -> TouchingZeros |
             zero.append(rectangles[flat])
             keep &= ~flat
         rectangles, signs = rectangles[keep], signs[keep]
-    left = ((rectangles[:, 1] - rectangles[:, 0]) <= size).all(axis=1)
-    too_many = np.prod(rectangles[~left, 1] - rectangles[~left, 0], axis=1).sum()
-    area = np.prod([line[-1] - line[0] for line in grid.lines])
-    boxes = np.concatenate([rectangles[left], *rings])
-    return TouchingZeros(boxes, np.concatenate(zero), float(too_many / area))
+    boxes = np.concatenate([merged(rectangles), *rings])
+    return TouchingZeros(boxes, np.concatenate(zero))
 
 
 def parted(grid: SignGrid, zero: Array) -> tuple[Array, Array]:

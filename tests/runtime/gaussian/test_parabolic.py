@@ -573,6 +573,36 @@ def test_touching_curve_is_isolated_in_one_rectangle() -> None:
     assert abs(line.uv[0]) < 1e-6
 
 
+@pytest.mark.parametrize(
+    ("f", "box"),
+    [
+        (lambda u, v: u**4 + v * v, [[-0.005, -1.0], [0.005, 1.0]]),
+        (lambda u, v: (u * u + v * v) ** 2, [[-0.02, -0.02], [0.02, 0.02]]),
+    ],
+)
+def test_zeros_in_too_many_rectangles_are_not_lost(f, box) -> None:
+    """K > 0 but on a line, or at a point where it is of order 4: K ≈ 48 r⁴ is lost in rounding."""
+    (zero,) = gm.parabolic_points(graph(f)).isolated
+    low, high = np.array(box)
+    assert (low <= zero.box[0]).all()
+    assert (zero.box[1] <= high).all()
+    assert (zero.box[0] <= [0.0, min(0.0, low[1] + 0.02)]).all()
+    assert (zero.box[1] >= [0.0, max(0.0, high[1] - 0.02)]).all()
+
+
+def test_panels_with_a_large_error_are_not_flat() -> None:
+    """Half twisted and bent, steep at the lower border: K, which has both signs there, is known."""
+    band = gm.Surface.from_sympy(
+        ("(1 + (v/2 + v**2/5)*cos(u/2))*cos(u)", "(1 + (v/2 + v**2/5)*cos(u/2))*sin(u)",
+         "v/2*sin(u/2) + v**2/3"),
+        ("u", "v"), domain=((0, "2*pi"), (-1, 1)),
+    )  # fmt: skip
+    found = gm.parabolic_points(band)
+    assert len(found.flat) == 0
+    ends = np.concatenate([curve.uv[[0, -1]] for curve in found.curves])
+    assert ends[:, 1].min() == -1.0  # one of them reaches the lower border
+
+
 @pytest.mark.compiled
 @pytest.mark.parametrize(
     "name", ["ellipsoid", "ellipsoid_patch", "sphere", "catenoid", "helicoid", "moebius_band",
