@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Sequence
+from fractions import Fraction
+from numbers import Rational
 from typing import Any
 
 import numpy as np
@@ -61,9 +63,19 @@ def real_values(values: ArrayLike, name: str) -> NDArray[Any]:
         array = np.asarray(values)
     except (TypeError, ValueError):
         raise InputError(f"{name} must be an array of real numbers, with equal rows.") from None
+    if _are_fractions(array):
+        return array.astype(np.float64)
     if array.dtype.kind not in "fiub":
         raise InputError(f"{name} must be an array of real numbers, not of type {array.dtype}.")
     return array
+
+
+def _are_fractions(array: NDArray[Any]) -> bool:
+    """Say whether an array holds fractions, such as are exact for SymPy, and perhaps integers."""
+    values = array.ravel().tolist() if array.dtype.kind == "O" else []
+    return any(isinstance(x, Fraction) for x in values) and all(
+        isinstance(x, Rational) for x in values
+    )
 
 
 def parameter_arrays(u: ArrayLike, v: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

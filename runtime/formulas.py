@@ -32,7 +32,7 @@ class Formulas(Mapping[str, "Formula"]):
 
     def __contains__(self, name: object) -> bool:
         """Say whether there is a formula of that name."""
-        return name in self._formulas
+        return isinstance(name, str) and name in self._formulas
 
     def get(self, name: str, default: Any = None) -> Any:  # noqa: ANN401 - as in Mapping
         """Return a formula, or `default` if there is none of that name."""

@@ -67,10 +67,10 @@ class ParabolicPoints:
     """The parabolic points of a surface.
 
     `curves` are those across which the Gaussian curvature changes its sign; they end at the
-    border of the surface and where they meet or cross, and one may lie on the border. `isolated`
-    are those where it only touches zero. `flat` (k, 2, 2) are rectangles of the parameter plane
-    (lowest and highest corner) in which it vanishes up to its error; `developable` says that it
-    does so everywhere.
+    border of the surface, at a "flip" seam, and where they meet or cross, and one may lie on the
+    border. `isolated` are those where it only touches zero. `flat` (k, 2, 2) are rectangles of the
+    parameter plane (lowest and highest corner) in which it vanishes up to its error; `developable`
+    says that it does so everywhere.
     """
 
     curves: tuple[ParabolicCurve, ...]
@@ -99,11 +99,11 @@ def parabolic_points(
     `cells` = (m, n) panels by polynomials of degree 15 and differentiated; without `cells` 8 × 8
     panels, or as many more as it takes, at most 64 × 64. The error of K is estimated: it is about
     1e-9 where the surface is resolved, and up to 1 % of K on the panel where it is not. Where K is
-    less than its error, its sign is not used: such places are `flat`. Two
-    curves that are nearer than one cell of a grid (1/16 of a panel) may be missed, and so may a
-    crossing from which they part by less than a cell in 16. Parts of the
-    domain where the curvature cannot be computed (a pole, a crease) are left out, with a
-    GaussmapWarning if they are more than 0.01 % of it.
+    less than its error, its sign is not used: such places are `flat`. Where K has a zero of a
+    higher order, its place is known no better than K. Two curves that are nearer than one cell of a
+    grid (1/16 of a panel) may be missed, and so may a crossing from which they part by less than a
+    cell in 16. Parts of the domain where the curvature cannot be computed (a pole, a crease) are
+    left out, with a GaussmapWarning if they are more than 0.01 % of it.
 
     `tolerance` is relative to the size of the surface and of its domain: so far may polylines be
     from the curves in space, and so small are the rectangles that isolate points. Raises InputError

@@ -129,3 +129,10 @@ def test_parameters_that_do_not_fit_together():
         parameter_arrays("a", 1)
     with pytest.raises(InputError, match=r"^v must be"):
         parameter_arrays(1, 1j)
+
+
+def test_fractions_are_real_numbers() -> None:
+    values = real_array([[Fraction(1, 3), 2]], "values")
+    np.testing.assert_array_equal(values, [[1 / 3, 2.0]])
+    with pytest.raises(InputError, match="not of type object"):
+        real_array([[Fraction(1, 3), "2"]], "values")
