@@ -34,8 +34,9 @@ class BezierTriangle:
     b011; u belongs to b200, v to b020. Coordinates are numbers, SymPy expressions, or strings of
     these. A float is taken at its exact binary value, a string such as "0.1" at its decimal one.
 
-    Results are expressions in the components of `normal`, n_1, n_2, n_3 as in the paper or the
-    three symbols that are given. It need not have length 1. Results that need the support function
+    Results are expressions in the components of `normal`, n_1, n_2, n_3 as in the paper (real
+    symbols, to be found as `patch.normal`) or the three symbols that are given. It need not have
+    length 1. Results that need the support function
     raise ValueError if the patch has none, because it is developable.
     """
 
