@@ -17,6 +17,7 @@ from .sampler import (
     classify,
     cone_of_normals,
     control_normals,
+    empty,
     face_window,
     is_developable,
     largest_tangent,
@@ -465,16 +466,16 @@ def row_start(face, s, frequency):
 
 
 @jit
-def are_points(normals, first, step, count, x, y, z, x_step, y_step, z_step):
+def are_points(normals, first, count, x, y, z, x_step, y_step, z_step):
     """Say whether normals lie in the directions of points along a line."""
     far = 0
     for k in range(count):
         p_x = x + k * x_step
         p_y = y + k * y_step
         p_z = z + k * z_step
-        n_x = normals[first + k * step, 0]
-        n_y = normals[first + k * step, 1]
-        n_z = normals[first + k * step, 2]
+        n_x = normals[first + k, 0]
+        n_y = normals[first + k, 1]
+        n_z = normals[first + k, 2]
         square = p_x * p_x + p_y * p_y + p_z * p_z
         s = n_y * p_z - n_z * p_y
         t = n_z * p_x - n_x * p_z
@@ -500,7 +501,7 @@ def is_icosphere(normals, frequency, first, last):
         if part == 0:
             for k in range(12):
                 x, y, z = corner(k)
-                if not are_points(normals, k, 1, 1, x, y, z, 0.0, 0.0, 0.0):
+                if not are_points(normals, k, 1, x, y, z, 0.0, 0.0, 0.0):
                     return False
         elif part <= 30:
             edge = part - 1
@@ -508,7 +509,7 @@ def is_icosphere(normals, frequency, first, last):
             p, q, r = corner(EDGES[edge, 1])
             inner = frequency - 1
             if not are_points(
-                normals, 12 + edge * inner, 1, inner,
+                normals, 12 + edge * inner, inner,
                 inner * x + p, inner * y + q, inner * z + r, p - x, q - y, r - z,
             ):  # fmt: skip
                 return False
@@ -520,7 +521,7 @@ def is_icosphere(normals, frequency, first, last):
             for s in range(1, frequency - 1):
                 rest = frequency - s - 1
                 if not are_points(
-                    normals, row_start(face, s, frequency) + 1, 1, rest,
+                    normals, row_start(face, s, frequency) + 1, rest,
                     rest * x + s * a + p, rest * y + s * b + q, rest * z + s * c + r,
                     p - x, q - y, r - z,
                 ):  # fmt: skip
@@ -580,7 +581,7 @@ def spans_of_face(
     Returns the first row, the last one, and how many points there are.
     """
     map_net(unit, errors, FRAMES[face], shown, angles, STRETCHES[face])
-    window[0], window[1], window[2], window[3] = 0, -1, 0, -1
+    empty(window)
     error, size = face_window(shown, angles, sine < math.inf, 4, frequency, window, hull)
     if window[1] < window[0]:
         return 0, -1, 0
@@ -743,6 +744,8 @@ def scan_patches(
         counts[2] += is_developable(
             a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, net, noise
         )
+
+        # Which normals may the patch have?
         tangents = largest_tangent(
             a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z
         )

@@ -153,6 +153,8 @@ def _first_of_each_place(
 ) -> NDArray[np.bool_]:
     """Drop what was let in at the border and is, for its normal, in the place of another sample."""
     keep = np.ones(len(patches), dtype=bool)
+    if not near.any():
+        return keep
     cell, turn = np.divmod(patches, 4)
     corners = kernels.CORNERS[turn]
     place = np.stack(np.divmod(cell, spline.cells[1]), axis=1) + np.einsum(

@@ -35,6 +35,7 @@ SCANNED = (
     "classify",
     "cone_of_normals",
     "control_normals",
+    "empty",
     "face_window",
     "is_developable",
     "largest_tangent",
@@ -194,7 +195,7 @@ def icosphere_source() -> str:
             ),
             "constants": "\n".join(f"{name} = np.array({x})" for name, x in arrays.items()),
             "digest": f"# sampler.py, digest {digest}: Numba's cache looks at this file alone.",
-            "control_normals": _control_normals(),
+            "cone_of_patch": _cone_of_patch(),
         },
     )
 
@@ -259,6 +260,7 @@ def sampler_source() -> str:
             "formulas": functions(called),
             "patch_vectors": _patch_vectors(),
             "control_normals": _control_normals(),
+            "cone_of_patch": _cone_of_patch(),
             "parabolic_cubic": f"cubic = {call(patch.PARABOLIC_CUBIC)}",
             "tangents": block(patch.TANGENTS),
             "forms": block(patch.FORMS),
@@ -400,6 +402,11 @@ def _control_normals() -> str:
     """Return the call of `control_normals` that fills `net` (6, 3)."""
     net = ", ".join(f"net[{k}, {x}]" for k in range(6) for x in range(3))
     return f"{net} = {call(patch.CONTROL_NORMALS)}"
+
+
+def _cone_of_patch() -> str:
+    """Return the beginning of a search: the vectors of a patch and the cone of its normals."""
+    return render("cone_of_patch.py", {"control_normals": _control_normals()}).rstrip()
 
 
 def _tile() -> dict[str, str]:

@@ -96,6 +96,8 @@ def _written(target: sp.Expr, derived: sp.Expr) -> sp.Expr:
     return target
 
 
+ELIMINATED = [("D", SOLUTION.D), ("U", SOLUTION.U), ("V", SOLUTION.V), ("W", D - U - V)]
+
 FORMS = Formula.build(
     "forms",
     "Eliminating $u$, $v$ from eq. (9) leaves three quadratic forms in $n$, with $u = U/D$, "
@@ -105,7 +107,7 @@ FORMS = Formula.build(
     source="eq. (9) and Sect. 3.2",
     inputs=[*VECTORS, n],
     terms=FORM_TERMS,
-    outputs=[("D", SOLUTION.D), ("U", SOLUTION.U), ("V", SOLUTION.V), ("W", D - U - V)],
+    outputs=ELIMINATED,
 )
 
 ELIMINATED_FORMS = Formula.build(
@@ -113,7 +115,7 @@ ELIMINATED_FORMS = Formula.build(
     "The quadratic forms of a patch from the linear ones: what eliminating $u$, $v$ leaves.",
     source="eq. (9) and Sect. 3.2",
     inputs=LINEAR_FORMS,
-    outputs=[("D", SOLUTION.D), ("U", SOLUTION.U), ("V", SOLUTION.V), ("W", D - U - V)],
+    outputs=ELIMINATED,
 )
 
 LINEAR_FORMS_OF_NORMAL = Formula.build(

@@ -34,7 +34,7 @@ class SignGrid:
         self.zero = np.abs(self.values) <= SURE * noise
         self.signs = _signs(self.values, self.zero, field.wraps)
         mask = self.panels(self.usable)
-        own = np.repeat(np.repeat(field.noise, cells, axis=0), cells, axis=1)
+        own = self.panels(field.noise)
         self.flat = (np.abs(_of_corners(self.values)) <= SURE * own).all(axis=0) & mask
         self.mask = mask & ~self.flat
         corners = _of_corners(self.signs)
@@ -63,9 +63,9 @@ class SignGrid:
                 error[0] = error[-1] = np.minimum(error[0], error[-1])
         return result, noise
 
-    def panels(self, which: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Say which cells lie in panels (m, n)."""
-        return np.repeat(np.repeat(which, self.cells, axis=0), self.cells, axis=1)
+    def panels(self, values: NDArray[Any]) -> NDArray[Any]:
+        """Return for each cell what is given of its panel (m, n)."""
+        return np.repeat(np.repeat(values, self.cells, axis=0), self.cells, axis=1)
 
     def rectangles(self, which: NDArray[np.bool_]) -> Array:
         """Return the rectangles (k, 2, 2) of the cells that are True."""
