@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .errors import InputError, MissingFieldError
 from .fields import ARRAY_NAMES, DERIVED, FLOAT_NAMES, row_shape
-from .spline import short_label
+from .spline import Spline, short_label
 
 __all__ = ["ARRAY_NAMES", "Samples", "SamplingReport"]
 
@@ -69,7 +69,8 @@ class Samples:
     """N samples of a surface, one row each; lengths in the surface's unit L.
 
     Indexing with a boolean mask (N,), an index array or a slice gives the `Samples` of those
-    rows, with the same report: `samples[samples.elliptic]`. `Samples.concatenate` is the other way.
+    rows, with the same report and spline: `samples[samples.elliptic]`. `Samples.concatenate` is
+    the other way.
 
     - `points`: (N, 3) float64, points of the surface, in L.
     - `normals`: (N, 3) float64, unit normals at the points.
@@ -81,6 +82,7 @@ class Samples:
     - `normal_index`: (N,) int64, row of the normals that were asked.
     - `patch_index`: (N,) int64, patch of the surface that holds the point.
     - `report`: how the sampling went.
+    - `spline`: the spline that was sampled; None if nobody knows it, as for samples from a file.
 
     All numbers but the indices may be float32 instead, if that was asked. What was not asked
     (`fields` of `sample`) is not there: reading it raises MissingFieldError, an AttributeError.
@@ -98,6 +100,7 @@ class Samples:
     normal_index: NDArray[np.int64] = _NOT_ASKED
     patch_index: NDArray[np.int64] = _NOT_ASKED
     report: SamplingReport = field(kw_only=True)
+    spline: Spline | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         arrays = {name: getattr(self, name) for name in ARRAY_NAMES}
@@ -115,6 +118,8 @@ class Samples:
                 object.__delattr__(self, name)  # an empty slot, for which __getattr__ speaks
         if not isinstance(self.report, SamplingReport):
             raise InputError(f"report must be a SamplingReport, not {type(self.report).__name__}.")
+        if not isinstance(self.spline, Spline | None):
+            raise InputError(f"spline must be a Spline or None, not {type(self.spline).__name__}.")
 
     def __getattr__(self, name: str) -> Any:  # noqa: ANN401
         if name in ARRAY_NAMES or name in DERIVED:
@@ -127,13 +132,14 @@ class Samples:
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _rebuilt, (self._arrays(), self.report)
+        return _rebuilt, (self._arrays(), self.report, self.spline)
 
     @classmethod
     def concatenate(cls, parts: Iterable[Samples]) -> Samples:
         """Return the samples of several parts, one after the other, such as those of a stream.
 
         The report counts all of them; what the parts' reports do not agree about is None in it.
+        The spline is kept if all parts have the same.
         Raises InputError if there is no part, or if the parts have different fields or dtypes.
         """
         pieces = list(parts)
@@ -146,7 +152,9 @@ class Samples:
             name: np.concatenate([getattr(part, name) for part in pieces])
             for name in pieces[0].fields
         }
-        return cls(**arrays, report=_common_report([part.report for part in pieces], arrays))
+        report = _common_report([part.report for part in pieces], arrays)
+        common = all(part.spline is pieces[0].spline for part in pieces)
+        return cls(**arrays, report=report, spline=pieces[0].spline if common else None)
 
     @property
     def fields(self) -> tuple[str, ...]:
@@ -208,9 +216,8 @@ class Samples:
 
     def __getitem__(self, key: ArrayLike | slice) -> Samples:
         rows = key if isinstance(key, slice) else _rows(key, len(self))
-        return Samples(
-            **{n: array[rows] for n, array in self._arrays().items()}, report=self.report
-        )
+        arrays = {name: array[rows] for name, array in self._arrays().items()}
+        return Samples(**arrays, report=self.report, spline=self.spline)
 
     def __repr__(self) -> str:
         label = short_label(self.report.surface)
@@ -231,9 +238,11 @@ class Samples:
         return found
 
 
-def _rebuilt(arrays: dict[str, NDArray[Any]], report: SamplingReport) -> Samples:
+def _rebuilt(
+    arrays: dict[str, NDArray[Any]], report: SamplingReport, spline: Spline | None
+) -> Samples:
     """Return samples that were copied or pickled."""
-    return Samples(**arrays, report=report)
+    return Samples(**arrays, report=report, spline=spline)
 
 
 def _common_dtype(arrays: Mapping[str, object]) -> np.dtype[np.floating]:

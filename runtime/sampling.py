@@ -102,7 +102,7 @@ def sample_and_normals(
         arrays = fill(spline, bins, hits, threads, wanted, number)
     report = sampling_report(spline, len(bins.normals), len(hits), chosen.density, hits.developable)
     warn_of(report, count, stacklevel=4)
-    return Samples(**arrays, report=report), bins.normals
+    return Samples(**arrays, report=report, spline=spline), bins.normals
 
 
 def sample_many(

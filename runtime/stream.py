@@ -97,7 +97,8 @@ class _Stream:
         arrays = fill(self.spline, bins, hits, self.threads, self.fields, self.dtype)
         if start and "normal_index" in arrays:
             arrays["normal_index"] = arrays["normal_index"] + start
-        return Samples(**arrays, report=replace(report, samples=len(hits)))
+        report = replace(report, samples=len(hits))
+        return Samples(**arrays, report=report, spline=self.spline)
 
 
 def grouped(parts: Iterator[Hits], size: int, threads: int | None) -> Iterator[Hits]:

@@ -5,6 +5,7 @@ import pickle
 from dataclasses import FrozenInstanceError, fields, replace
 from typing import Any
 
+import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.errors import InputError
@@ -43,7 +44,22 @@ def curved(K: object, H: object) -> Samples:
 
 class TestConstruction:
     def test_the_array_names_are_the_fields(self):
-        assert (*ARRAY_NAMES, "report") == tuple(field.name for field in fields(Samples))
+        assert (*ARRAY_NAMES, "report", "spline") == tuple(field.name for field in fields(Samples))
+
+    def test_the_spline_is_kept_by_picking_copying_and_concatenating(self):
+        spline = gm.fit(gm.surfaces.torus(), cells=(8, 8))
+        samples = gm.sample(spline, count=100)
+        halves = [samples[:50], samples[50:]]
+        assert all(part.spline is spline for part in (*halves, Samples.concatenate(halves)))
+        copied = pickle.loads(pickle.dumps(samples)).spline
+        np.testing.assert_array_equal(copied.coefficients, spline.coefficients)
+        other = gm.sample(gm.surfaces.torus(), count=100, cells=(8, 8))
+        assert Samples.concatenate([samples, other]).spline is None
+        assert torus().spline is None
+
+    def test_what_is_no_spline_is_refused(self):
+        with pytest.raises(InputError, match="spline must be a Spline or None, not Surface"):
+            torus(spline=gm.surfaces.torus())
 
     def test_length(self):
         assert len(torus(12)) == 12
