@@ -442,6 +442,7 @@ STRETCHES = np.array(
         1.1755705045849463,
     ]
 )
+FACE_RADIUS = 0.7639320225002103
 
 # A normal is one of the icosahedron if it is as near to it as this angle.
 NEAR = math.ldexp(1.0, -48)

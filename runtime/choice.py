@@ -6,19 +6,16 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from .bins import NormalBins
-from .checks import MOST, whole_number
-from .errors import InputError
+from .checks import MOST
 from .lattice import Lattice
 from .search import Hits, find
-from .sphere import as_normals
 from .spline import Spline
-from .threads import thread_count
 from .visibility import visible_solid_angle
 
-__all__ = ["Chosen", "choose", "normals_asked"]
+__all__ = ["Chosen", "choose"]
 
 # `count` is met by changing the number of normals, until it is this near or after so many tries.
 NEAR_ENOUGH = 0.01
@@ -51,18 +48,6 @@ class Chosen:
         if isinstance(self.source, Lattice):
             return self.source.normals(self.density, first, last, threads)
         return self.source[first:last]
-
-
-def normals_asked(
-    normals: ArrayLike | None, count: int | None, threads: int | None
-) -> NDArray[np.float64] | int:
-    """Return the unit normals that were asked, or the count; InputError if unusable."""
-    if (normals is None) == (count is None):
-        raise InputError("give either normals=... or count=..., and not both.")
-    thread_count(threads)
-    if normals is not None:
-        return as_normals(normals, threads=threads)
-    return whole_number(count, "count")
 
 
 def choose(

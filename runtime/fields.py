@@ -41,6 +41,7 @@ FLOAT_NAMES: tuple[str, ...] = tuple(name for name in _ROWS if name not in INDEX
 DERIVED: dict[str, tuple[str, ...]] = {
     "elliptic": ("gaussian_curvature",),
     "hyperbolic": ("gaussian_curvature",),
+    "kind": ("normal_index",),
     "principal_curvatures": ("gaussian_curvature", "mean_curvature"),
 }
 

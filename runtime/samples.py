@@ -41,6 +41,10 @@ class SamplingReport:
     - `invisible_share`: share of the surface's area that normals cannot see, from 0 to 1.
     - `degenerate_patches`: how many patches are developable up to the rounding of their
       coordinates, and so have no support function (those round a pole are among them).
+    - `coverage`: how far any point of the surface is from the nearest sample, at most, in L. Known
+      if samples were added for coverage.
+    - `angle`: the largest angle, in degrees, between the normal of a point of the surface and that
+      of the sample nearest in normal. Known if an angle was asked.
 
     Raises InputError if a count is not an integer or is negative, the share is outside 0…1, or the
     label is not a string.
@@ -52,6 +56,8 @@ class SamplingReport:
     patches: int | None
     invisible_share: float | None
     degenerate_patches: int | None
+    coverage: float | None = None
+    angle: float | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.surface, str):
@@ -62,6 +68,9 @@ class SamplingReport:
         object.__setattr__(self, "samples", _count("samples", self.samples))
         if self.invisible_share is not None:
             object.__setattr__(self, "invisible_share", _share(self.invisible_share))
+        for name in ("coverage", "angle"):
+            value = getattr(self, name)
+            object.__setattr__(self, name, None if value is None else _distance(name, value))
 
 
 @dataclass(frozen=True, eq=False, slots=True, repr=False)
@@ -79,7 +88,8 @@ class Samples:
     - `gaussian_curvature`: (N,) float64, in 1/L². Its sign bit tells elliptic from hyperbolic, so
       −0.0 counts as hyperbolic.
     - `mean_curvature`: (N,) float64, in 1/L, positive for a sphere with outward normals.
-    - `normal_index`: (N,) int64, row of the normals that were asked.
+    - `normal_index`: (N,) int64, row of the normals that were asked; −1 for a sample that was
+      added for coverage.
     - `patch_index`: (N,) int64, patch of the surface that holds the point.
     - `report`: how the sampling went.
     - `spline`: the spline that was sampled; None if nobody knows it, as for samples from a file.
@@ -175,6 +185,11 @@ class Samples:
     def hyperbolic(self) -> NDArray[np.bool_]:
         """(N,) bool: where the Gaussian curvature is negative (its sign bit is set)."""
         return np.signbit(self.gaussian_curvature)
+
+    @property
+    def kind(self) -> NDArray[np.str_]:
+        """(N,) text: "normal" for what the normals gave, "coverage" for what was added."""
+        return np.where(self.normal_index < 0, "coverage", "normal")
 
     @property
     def principal_curvatures(self) -> NDArray[np.floating]:
@@ -275,6 +290,17 @@ def _count(name: str, value: SupportsIndex) -> int:
     if count < 0:
         raise InputError(f"{name} must not be negative, and is {count}.")
     return count
+
+
+def _distance(name: str, value: float) -> float:
+    """Return `value` as a plain float ≥ 0."""
+    try:
+        distance = float(value)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} must be a number, not {value!r}.") from None
+    if not distance >= 0.0:
+        raise InputError(f"{name} must not be negative, and is {distance!r}.")
+    return distance
 
 
 def _share(value: float) -> float:

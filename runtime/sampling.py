@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from .bins import NormalBins
-from .choice import choose, normals_asked
+from .choice import choose
 from .compiling import compilation_shown
+from .density.filling import filled_samples
+from .density.request import Request, checked_request
 from .errors import GaussmapError, GaussmapWarning, InputError
 from .fields import checked_dtype, checked_fields
 from .samples import Samples, SamplingReport
@@ -28,6 +30,7 @@ __all__ = [
 ]
 
 WORTH_A_WARNING = 0.01
+COUNT_TOLERANCE = 0.05
 
 
 def sample(
@@ -35,22 +38,43 @@ def sample(
     normals: ArrayLike | None = None,
     *,
     count: int | None = None,
+    angle: float | None = None,
+    coverage: float | None = None,
+    density: str | float | None = None,
+    relax: int = 0,
     cells: Sequence[int] | None = None,
     fields: Sequence[str] | None = None,
     dtype: DTypeLike = np.float64,
     threads: int | None = None,
     progress: bool = False,
 ) -> Samples:
-    """Return every point of a surface that has one of the given normals, each exactly once.
+    """Return points of a surface with their normals, dense where it bends.
 
-    Uniformly spread normals make the samples dense where the surface bends and sparse where it is
-    flat: their density is |K| (paper, Sect. 4.2). The surface is first approximated by a spline of
-    `cells` = (m, n) cells (see `fit`); a `Spline` is taken as it is.
+    The surface is first approximated by a spline of `cells` = (m, n) cells (see `fit`); a `Spline`
+    is taken as it is. Say how many samples there shall be by one of
 
-    Give either `normals`, an array (S, 3) of directions of any length such as `icosphere(32)` or
-    `fibonacci(10_000)`, or `count`, about how many samples shall come: within 5 % (or one sample)
-    where the Gaussian image is resolved, from a Fibonacci lattice of normals round the mean normal
-    of the surface.
+    - `normals`, an array (S, 3) of directions of any length such as `icosphere(32)` or
+      `fibonacci(10_000)`: every point that has one of them comes, each exactly once;
+    - `count`, how many samples;
+    - `angle`, in degrees, at most 90: how far the normal of any point may be from that of the
+      sample nearest in normal;
+    - `coverage`, a length of the surface: how far any point may be from the nearest sample.
+
+    `density` says where they are:
+
+    - "gauss", the default of `normals`: as many as |K|, from normals alone (paper, Sect. 4.2).
+      Unbeaten in normal space, but parts that bend in one direction only, or not at all, get none.
+      A count is met within 5 % (or one sample) where the Gaussian image is resolved.
+    - "balanced", the default otherwise: the same from fewer normals, and samples that fill what
+      these leave. Their `kind` is "coverage", their `normal_index` −1. No point is farther from a
+      sample than r / κ, nor than r / √λ: κ is the larger principal curvature, so that normals turn
+      by about r, which is 2.4 times the angle between the normals. λ is a quarter of the mean of
+      κ², or follows from `coverage`, which may be given beside normals, an angle or a count.
+    - "uniform": the same everywhere; for `count` or `coverage`.
+    - a number α > 0: as |K|^α; for `count`.
+
+    `relax` steps place what is added better, at about three times the cost with each of them; two
+    are enough. The report tells the coverage that was reached, and the angle if one was asked.
 
     `fields` are the arrays of `Samples` that are wanted, such as ("points", "normals"); by default
     all. The others are neither computed nor stored, which takes less time and memory. With
@@ -66,8 +90,7 @@ def sample(
     """
     return sample_and_normals(
         surface,
-        normals,
-        count=count,
+        checked_request(normals, count, angle, coverage, density, relax, threads),
         cells=cells,
         fields=fields,
         dtype=dtype,
@@ -78,9 +101,8 @@ def sample(
 
 def sample_and_normals(
     surface: Surface | Spline,
-    normals: ArrayLike | None,
+    request: Request,
     *,
-    count: int | None,
     cells: Sequence[int] | None,
     threads: int | None,
     progress: bool,
@@ -89,19 +111,29 @@ def sample_and_normals(
 ) -> tuple[Samples, NDArray[np.float64]]:
     """Return what `sample` returns, and the unit normals that were asked."""
     wanted, number = checked_fields(fields), checked_dtype(dtype)
-    asked = normals_asked(normals, count, threads)
     with compilation_shown(progress):
         spline = spline_of(surface, cells)
-        chosen = choose(spline, asked, threads, progress)
-        bins, hits = chosen.found or (
-            NormalBins(chosen.part(0, len(chosen), threads), threads),
-            None,
-        )
-        if hits is None:
-            hits = find(spline, bins, threads, progress)
-        arrays = fill(spline, bins, hits, threads, wanted, number)
+        sampled = _by_normals if request.density == "gauss" else filled_samples
+        samples, normals = sampled(spline, request, wanted, number, threads, progress)
+    warn_of(samples.report, request, stacklevel=4)
+    return samples, normals
+
+
+def _by_normals(
+    spline: Spline,
+    request: Request,
+    fields: tuple[str, ...],
+    dtype: np.dtype[np.floating],
+    threads: int | None,
+    progress: bool,
+) -> tuple[Samples, NDArray[np.float64]]:
+    """Return the points that have the normals that are asked, and these."""
+    chosen = choose(spline, request.asked, threads, progress)
+    bins, hits = chosen.found or (NormalBins(chosen.part(0, len(chosen), threads), threads), None)
+    if hits is None:
+        hits = find(spline, bins, threads, progress)
+    arrays = fill(spline, bins, hits, threads, fields, dtype)
     report = sampling_report(spline, len(bins.normals), len(hits), chosen.density, hits.developable)
-    warn_of(report, count, stacklevel=4)
     return Samples(**arrays, report=report, spline=spline), bins.normals
 
 
@@ -111,6 +143,10 @@ def sample_many(
     *,
     progress: bool = True,
     count: int | None = None,
+    angle: float | None = None,
+    coverage: float | None = None,
+    density: str | float | None = None,
+    relax: int = 0,
     cells: Sequence[int] | None = None,
     fields: Sequence[str] | None = None,
     dtype: DTypeLike = np.float64,
@@ -120,27 +156,26 @@ def sample_many(
 
     Progress goes to standard error if that is a terminal. A surface that raises a GaussmapError is
     reported by a GaussmapWarning, with its number and name, and left out; the others go on.
-    `samples.report.surface` tells which surface the samples are of. Raises InputError for unusable
-    normals, count, fields, dtype or threads.
+    `samples.report.surface` tells which surface the samples are of. Raises InputError for
+    arguments that no surface can be sampled with.
     """
     from tqdm import tqdm
 
-    asked = normals_asked(normals, count, threads)
-    directions = None if isinstance(asked, int) else asked
+    request = checked_request(normals, count, angle, coverage, density, relax, threads)
     wanted, number = checked_fields(fields), checked_dtype(dtype)
     if isinstance(surfaces, str) or not isinstance(surfaces, Iterable):
         raise InputError(f"sample_many takes surfaces to go through, not {surfaces!r}.")
     bar = tqdm(surfaces, desc="sampling", unit="surface", disable=None if progress else True)
     for place, surface in enumerate(bar):
         try:
-            samples = sample(
+            samples, _ = sample_and_normals(
                 surface,
-                directions,
-                count=count,
+                request,
                 cells=cells,
                 fields=wanted,
                 dtype=number,
                 threads=threads,
+                progress=False,
             )
         except GaussmapError as error:
             name = getattr(surface, "name", type(surface).__name__)
@@ -165,21 +200,37 @@ def sampling_report(
     )
 
 
-def warn_of(report: SamplingReport, count: int | None, stacklevel: int) -> None:
-    """Say when normals see less of the surface than the user may think."""
-    share = report.invisible_share or 0.0
-    reasons = []
-    if share > WORTH_A_WARNING:
-        reasons.append(
-            f"{100 * share:.0f} % of its area is flat or developable, where normals see nothing "
-            "but the error of the spline"
-        )
-    elif report.samples == 0 and report.degenerate_patches == report.patches:
-        reasons.append("it is flat or developable up to the rounding of its coordinates")
-    elif report.samples == 0:
-        reasons.append("none of the normals lies in its Gaussian image")
-    if count is not None and abs(report.samples - count) > 0.05 * count + 1:
-        reasons.append(f"{report.samples} samples came where {count} were asked")
+def warn_of(report: SamplingReport, request: Request, stacklevel: int) -> None:
+    """Say when samples see less of the surface than the user may think, or miss what was asked."""
+    reasons = _unseen(report) if report.coverage is None else []
+    reasons += _missed(report, request)
     if reasons:
         message = f"surface {report.surface!r}: {'; '.join(reasons)}."
         warnings.warn(message, GaussmapWarning, stacklevel=stacklevel)
+
+
+def _unseen(report: SamplingReport) -> list[str]:
+    """Say what normals do not see."""
+    share = report.invisible_share or 0.0
+    if share > WORTH_A_WARNING:
+        return [
+            f"{100 * share:.0f} % of its area is flat or developable, where normals see nothing "
+            "but the error of the spline"
+        ]
+    if report.samples == 0 and report.degenerate_patches == report.patches:
+        return ["it is flat or developable up to the rounding of its coordinates"]
+    return ["none of the normals lies in its Gaussian image"] if report.samples == 0 else []
+
+
+def _missed(report: SamplingReport, request: Request) -> list[str]:
+    """Say which of the numbers that were asked are not met."""
+    reasons = []
+    count, coverage = request.count, request.coverage
+    if count is not None and abs(report.samples - count) > COUNT_TOLERANCE * count + 1:
+        reasons.append(f"{report.samples} samples came where {count} were asked")
+    if coverage is not None and report.coverage is not None and report.coverage > coverage:
+        reasons.append(
+            f"with {count} samples a point can be {report.coverage:.3g} from the nearest one, "
+            f"where {coverage:g} was asked"
+        )
+    return reasons

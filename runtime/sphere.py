@@ -18,6 +18,7 @@ from .threads import over_ranges
 __all__ = [
     "as_normals",
     "fibonacci",
+    "frequency_within",
     "icosphere",
     "in_pieces",
     "part_of_fibonacci",
@@ -56,6 +57,12 @@ def icosphere(frequency: int) -> NDArray[np.float64]:
         (nu - s - t) * corners[i] + s * corners[j] + t * corners[k] for i, j, k in icosahedron.FACES
     ]
     return _unit(np.concatenate(parts) @ golden)
+
+
+def frequency_within(angle: float) -> int:
+    """Return the least ν for which every direction is within `angle` degrees of `icosphere(ν)`."""
+    tangent = math.tan(math.radians(angle))
+    return 1 if tangent >= icosahedron.FACE_RADIUS else math.ceil(icosahedron.FACE_RADIUS / tangent)
 
 
 def fibonacci(count: int) -> NDArray[np.float64]:

@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from .bins import NormalBins
 from .checks import whole_number
-from .choice import choose, normals_asked
+from .choice import choose
+from .density.request import Request, checked_request
 from .fields import checked_dtype, checked_fields
 from .samples import Samples, SamplingReport
 from .sampling import sampling_report, warn_of
@@ -37,13 +38,13 @@ def sample_stream(
     threads: int | None = None,
     progress: bool = False,
 ) -> Generator[Samples, None, None]:
-    """Yield the samples that `sample` returns in chunks of at most `chunk`, in bounded memory.
+    """Yield what `sample` returns with density="gauss", in chunks of at most `chunk` samples.
 
-    A thousand million samples that are reduced on the fly take less than 1 GiB: with `count`, not
-    even the normals are ever in memory all at once.
+    Memory is bounded: a thousand million samples that are reduced on the fly take less than 1 GiB.
+    With `count`, not even the normals are ever in memory all at once.
 
-    `Samples.concatenate(sample_stream(…))` is `sample(…)`, bit for bit and in the same order, for
-    up to 1,048,576 normals. More of them are searched in blocks of so many: the samples are the
+    `Samples.concatenate(sample_stream(…))` is `sample(…, density="gauss")`, bit for bit and in the
+    same order, for up to 1,048,576 normals. More of them are searched in blocks of so many: the samples are the
     same, but ordered by block of normals, then by patch, then by normal.
 
     There is at least one chunk, and all but the last of each block are full. A chunk's report
@@ -55,15 +56,15 @@ def sample_stream(
     """
     size = whole_number(chunk, "chunk")
     wanted, number = checked_fields(fields), checked_dtype(dtype)
-    asked = normals_asked(normals, count, threads)
-    stream = _Stream(spline_of(surface, cells), asked, size, wanted, number, threads, progress)
+    request = checked_request(normals, count, None, None, "gauss", 0, threads)
+    stream = _Stream(spline_of(surface, cells), request, size, wanted, number, threads, progress)
     return stream.chunks()
 
 
 @dataclass(frozen=True, eq=False)
 class _Stream:
     spline: Spline
-    asked: NDArray[np.float64] | int
+    request: Request
     size: int
     fields: tuple[str, ...]
     dtype: np.dtype[np.floating]
@@ -72,7 +73,7 @@ class _Stream:
 
     def chunks(self) -> Generator[Samples, None, None]:
         """Yield the chunks of all blocks of normals, at least one, and warn at the end."""
-        chosen = choose(self.spline, self.asked, self.threads, self.progress)
+        chosen = choose(self.spline, self.request.asked, self.threads, self.progress)
         chosen, total = replace(chosen, found=None), len(chosen)  # that would stay in memory
         report = sampling_report(self.spline, total, 0, chosen.density, None)
         starts = range(0, total, NORMALS_AT_A_TIME)
@@ -90,7 +91,7 @@ class _Stream:
                     yield self._samples(bins, hits, first, report)
             del bins, found, hits  # before the next ones are made
         report = replace(report, samples=came, degenerate_patches=developable)
-        warn_of(report, self.asked if isinstance(self.asked, int) else None, stacklevel=3)
+        warn_of(report, self.request, stacklevel=3)
 
     def _samples(self, bins: NormalBins, hits: Hits, start: int, report: SamplingReport) -> Samples:
         """Return hits as samples; the normals are numbered from `start` on."""

@@ -52,6 +52,7 @@ def derive() -> dict[str, str]:
     """Return the texts of all generated files by their names."""
     sources = {
         "__init__.py": '"""Kernels and formulas written by `make generate`: never edit these."""\n',
+        "cover.py": cover_source(),
         "curve.py": curve_source(),
         "exact.py": exact_source(),
         "gaussian_image.py": gaussian_image_source(),
@@ -124,6 +125,26 @@ def header(title: str, imports: str = "") -> str:
     return render("header.py", values).rstrip()
 
 
+def cover_source() -> str:
+    """Return generated/cover.py: samples that come near every point of a spline."""
+    squares = [x.name for x in patch.REACH.in_components().outputs]
+    return render(
+        "cover.py",
+        {
+            "header": header("Covering: samples near every point, as near as a density asks."),
+            "constants": f"{_grid_constants()}\nNODE = {source_of(patch.QUADRATURE_NODE)}",
+            "formulas": functions([spline.TRIANGLE]),
+            "patch_vectors": _patch_vectors(),
+            "envelope": block(patch.ENVELOPE),
+            "tangents": block(patch.TANGENTS),
+            "curvature_at": block(patch.CURVATURE_AT),
+            "largest_curvature": block(patch.LARGEST_CURVATURE),
+            "reach": block(patch.REACH),
+            "store_reach": f"reaches[patch] = math.sqrt(max({', '.join(squares)}))",
+        },
+    )
+
+
 def curve_source() -> str:
     """Return generated/curve.py: the formulas of curves, evaluation, what a sample holds."""
     load = "\n".join(
@@ -193,7 +214,8 @@ def icosphere_source() -> str:
                 "Sampling by the points of a refined icosahedron, row by row.",
                 f"\nfrom .sampler import {', '.join(SCANNED)}\n",
             ),
-            "constants": "\n".join(f"{name} = np.array({x})" for name, x in arrays.items()),
+            "constants": "\n".join(f"{name} = np.array({x})" for name, x in arrays.items())
+            + f"\nFACE_RADIUS = {float(icosahedron.face_radius().evalf(40))}",
             "digest": f"# sampler.py, digest {digest}: Numba's cache looks at this file alone.",
             "cone_of_patch": _cone_of_patch(),
         },

@@ -6,7 +6,7 @@ from itertools import combinations
 
 import sympy as sp
 
-__all__ = ["CORNERS", "EDGES", "FACES", "bars", "frame", "golden_parts"]
+__all__ = ["CORNERS", "EDGES", "FACES", "bars", "face_radius", "frame", "golden_parts"]
 
 PHI = sp.GoldenRatio
 # The cyclic permutations of (0, ±1, ±φ).
@@ -52,3 +52,20 @@ def frame(face: tuple[int, int, int]) -> sp.Matrix:
     alpha, beta, gamma = (bars(face).row(k) for k in range(3))
     height = alpha + beta + gamma
     return sp.Matrix.vstack(2 * gamma - height, 2 * beta - height, height)
+
+
+def face_radius() -> sp.Expr:
+    """Return the tangent of the angle between the middle of a face and its corners.
+
+    Of all small triangles that cut a face into ν² the one in its middle looks largest from the
+    centre; its angle has a tangent ν times smaller.
+    """
+    corners = [CORNERS[x].applyfunc(lambda x: x.rewrite(sp.sqrt)) for x in FACES[0]]
+    middle = (corners[0] + corners[1] + corners[2]) / 3
+    return sp.radsimp(
+        sp.sqrt(
+            sp.radsimp(
+                sp.expand((corners[0] - middle).dot(corners[0] - middle) / middle.dot(middle))
+            )
+        )
+    )

@@ -393,6 +393,39 @@ CURVATURE_AT = compose(
     outputs=[K, H],
 )
 
+LARGEST_CURVATURE = Formula.build(
+    "largest_curvature",
+    "The larger one of the moduli of the principal curvatures.",
+    inputs=[K, H],
+    outputs=[("k", sp.Abs(H) + sp.sqrt(sp.Abs(H**2 - K)))],
+)
+
+
+def _reach() -> Formula:
+    """Go from the middle of the domain to each corner, as fast as at each corner."""
+    corners = [(sp.Integer(i), sp.Integer(j)) for i, j in ((1, 0), (0, 1), (0, 0))]
+    third = sp.Rational(1, 3)
+    terms, outputs = [], []
+    for i, at in enumerate(corners):
+        here = {u: at[0], v: at[1]}
+        for j, (u_j, v_j) in enumerate(corners):
+            step = (u_j - third) * P_U + (v_j - third) * P_V
+            terms.append((f"q{i}{j}", sp.expand(substitute(step, here))))
+            (q,) = vectors([f"q{i}{j}"])
+            outputs.append((f"r{i}{j}", Dot(q, q)))
+    return Formula.build(
+        "reach",
+        "Squares of which the largest bounds the squared distance between any point of the patch "
+        "and that in the middle of its domain: the derivative, linear in $u$ and $v$, from the "
+        "middle to a corner, at a corner.",
+        inputs=VECTORS,
+        terms=terms,
+        outputs=outputs,
+    )
+
+
+REACH = _reach()
+
 FORMULAS = (
     POWER_FORM,
     FORMS,
@@ -412,4 +445,6 @@ FORMULAS = (
     MEASURE,
     SAMPLE,
     CURVATURE_AT,
+    LARGEST_CURVATURE,
+    REACH,
 )

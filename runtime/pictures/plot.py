@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import io
+from ..density.request import checked_request
 from ..errors import InputError, MissingExtraError
 from ..samples import Samples
 from ..sampling import sample_and_normals
@@ -49,6 +50,10 @@ def plot(
     normals: ArrayLike | None = None,
     *,
     count: int | None = None,
+    angle: float | None = None,
+    coverage: float | None = None,
+    density: str | float | None = None,
+    relax: int = 0,
     cells: Sequence[int] | None = None,
     threads: int | None = None,
     progress: bool = False,
@@ -60,8 +65,9 @@ def plot(
     """
     check_target(path)
     spline = spline_of(surface, cells)
+    request = checked_request(normals, count, angle, coverage, density, relax, threads)
     samples, directions = sample_and_normals(
-        spline, normals, count=count, cells=None, threads=threads, progress=progress
+        spline, request, cells=None, threads=threads, progress=progress
     )
     plot_samples(samples, spline, directions, path)
     return samples

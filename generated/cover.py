@@ -1,0 +1,546 @@
+"""Covering: samples near every point, as near as a density asks.
+
+Written by `make generate` (python -m gaussmap.symbolic): do not edit, change symbolic/ instead.
+SymPy 1.14.0. Passes: common subexpressions of all outputs together, in canonical order;
+temporaries that are used once or are another name with a sign written back. float64, no
+fast-math.
+"""
+
+import math
+
+import numba
+import numpy as np
+
+OPTIONS = {"nogil": True, "error_model": "numpy", "fastmath": False}
+
+
+def jit(function):
+    """Compile on the first call; keep the machine code on disk where a folder can be written."""
+    try:
+        return numba.njit(cache=True, **OPTIONS)(function)
+    except RuntimeError:  # no writable cache folder
+        return numba.njit(**OPTIONS)(function)
+
+
+SCALE = 8.0
+NEIGHBOURS = np.array(
+    [
+        [[-1, -1], [0, -1], [1, -1], [-1, 0], [0, 0], [1, 0], [-1, 1], [0, 1], [1, 1]],
+        [[1, -1], [1, 0], [1, 1], [0, -1], [0, 0], [0, 1], [-1, -1], [-1, 0], [-1, 1]],
+        [[1, 1], [0, 1], [-1, 1], [1, 0], [0, 0], [-1, 0], [1, -1], [0, -1], [-1, -1]],
+        [[-1, 1], [-1, 0], [-1, -1], [0, 1], [0, 0], [0, -1], [1, 1], [1, 0], [1, -1]],
+    ]
+)
+CORNERS = np.array(
+    [
+        [[-0.5, -0.5], [0.5, -0.5]],
+        [[0.5, -0.5], [0.5, 0.5]],
+        [[0.5, 0.5], [-0.5, 0.5]],
+        [[-0.5, 0.5], [-0.5, -0.5]],
+    ]
+)
+NODE = 1.0 / 6.0
+
+# A sample is found in the grid of its own size and in the next finer and coarser one.
+SIZES = 3
+LEVELS = 16
+
+
+# --- formulas -------------------------------------------------------------------------------------
+
+
+@jit
+def triangle(
+    mu_sw_x, mu_sw_y, mu_sw_z, mu_s_x, mu_s_y, mu_s_z, mu_se_x, mu_se_y, mu_se_z, mu_w_x,
+    mu_w_y, mu_w_z, mu_e_x, mu_e_y, mu_e_z, mu_n_x, mu_n_y, mu_n_z
+):  # fmt: skip
+    """The vectors of the quadratic patch over the south triangle of a cell, times 8, from the
+    differences mu_s, … of the neighbouring coefficients from that of the cell: integer weights,
+    so that integers give exact results.
+
+        a = 2*(mu_e + mu_n - mu_s - mu_w) + 4*mu_sw
+        b = 2*(mu_n - mu_e + mu_s - mu_w)
+        c = 2*(mu_n - mu_e - mu_s + mu_w) + 4*mu_se
+        d = 2*(mu_s - mu_e - mu_n + mu_w)
+        e = 2*(mu_e - mu_n + mu_s - mu_w)
+        p = mu_e + mu_n + mu_s + mu_w
+
+    Source: Sect. 3.1 and eq. (8); 126 operations as written, 69 here.
+    """
+    t0 = 2 * mu_w_x
+    t1 = 2 * mu_n_x
+    t2 = 2 * mu_s_x
+    t3 = 2 * mu_e_x
+    t4 = t3 - t2
+    t5 = t1 - t0 + t4
+    a_x = 4 * mu_sw_x + t5
+    t6 = 2 * mu_w_y
+    t7 = 2 * mu_n_y
+    t8 = 2 * mu_s_y
+    t9 = 2 * mu_e_y
+    t10 = t9 - t8
+    t11 = t10 - t6 + t7
+    a_y = 4 * mu_sw_y + t11
+    t12 = 2 * mu_w_z
+    t13 = 2 * mu_n_z
+    t14 = 2 * mu_s_z
+    t15 = 2 * mu_e_z
+    t16 = t15 - t14
+    t17 = t13 - t12 + t16
+    a_z = 4 * mu_sw_z + t17
+    b_x = t1 - t0 - t4
+    b_y = t7 - t10 - t6
+    b_z = t13 - t12 - t16
+    c_x = 4 * mu_se_x + t0 + t1 - t2 - t3
+    c_y = 4 * mu_se_y + t6 + t7 - t8 - t9
+    c_z = 4 * mu_se_z + t12 + t13 - t14 - t15
+    d_x = -t5
+    d_y = -t11
+    d_z = -t17
+    e_x = t2 - t0 - t1 + t3
+    e_y = t8 - t6 - t7 + t9
+    e_z = t14 - t12 - t13 + t15
+    p_x = mu_e_x + mu_n_x + mu_s_x + mu_w_x
+    p_y = mu_e_y + mu_n_y + mu_s_y + mu_w_y
+    p_z = mu_e_z + mu_n_z + mu_s_z + mu_w_z
+    return a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z
+
+
+@jit
+def patch_vectors(mu, i, j, turn, scale):
+    """Return a, b, c, d, e, p of one patch, times SCALE * scale, p relative to its coefficient."""
+    mu_sw_x = scale * (mu[i + NEIGHBOURS[turn, 0, 0], j + NEIGHBOURS[turn, 0, 1], 0] - mu[i, j, 0])
+    mu_sw_y = scale * (mu[i + NEIGHBOURS[turn, 0, 0], j + NEIGHBOURS[turn, 0, 1], 1] - mu[i, j, 1])
+    mu_sw_z = scale * (mu[i + NEIGHBOURS[turn, 0, 0], j + NEIGHBOURS[turn, 0, 1], 2] - mu[i, j, 2])
+    mu_s_x = scale * (mu[i + NEIGHBOURS[turn, 1, 0], j + NEIGHBOURS[turn, 1, 1], 0] - mu[i, j, 0])
+    mu_s_y = scale * (mu[i + NEIGHBOURS[turn, 1, 0], j + NEIGHBOURS[turn, 1, 1], 1] - mu[i, j, 1])
+    mu_s_z = scale * (mu[i + NEIGHBOURS[turn, 1, 0], j + NEIGHBOURS[turn, 1, 1], 2] - mu[i, j, 2])
+    mu_se_x = scale * (mu[i + NEIGHBOURS[turn, 2, 0], j + NEIGHBOURS[turn, 2, 1], 0] - mu[i, j, 0])
+    mu_se_y = scale * (mu[i + NEIGHBOURS[turn, 2, 0], j + NEIGHBOURS[turn, 2, 1], 1] - mu[i, j, 1])
+    mu_se_z = scale * (mu[i + NEIGHBOURS[turn, 2, 0], j + NEIGHBOURS[turn, 2, 1], 2] - mu[i, j, 2])
+    mu_w_x = scale * (mu[i + NEIGHBOURS[turn, 3, 0], j + NEIGHBOURS[turn, 3, 1], 0] - mu[i, j, 0])
+    mu_w_y = scale * (mu[i + NEIGHBOURS[turn, 3, 0], j + NEIGHBOURS[turn, 3, 1], 1] - mu[i, j, 1])
+    mu_w_z = scale * (mu[i + NEIGHBOURS[turn, 3, 0], j + NEIGHBOURS[turn, 3, 1], 2] - mu[i, j, 2])
+    mu_e_x = scale * (mu[i + NEIGHBOURS[turn, 5, 0], j + NEIGHBOURS[turn, 5, 1], 0] - mu[i, j, 0])
+    mu_e_y = scale * (mu[i + NEIGHBOURS[turn, 5, 0], j + NEIGHBOURS[turn, 5, 1], 1] - mu[i, j, 1])
+    mu_e_z = scale * (mu[i + NEIGHBOURS[turn, 5, 0], j + NEIGHBOURS[turn, 5, 1], 2] - mu[i, j, 2])
+    mu_n_x = scale * (mu[i + NEIGHBOURS[turn, 7, 0], j + NEIGHBOURS[turn, 7, 1], 0] - mu[i, j, 0])
+    mu_n_y = scale * (mu[i + NEIGHBOURS[turn, 7, 0], j + NEIGHBOURS[turn, 7, 1], 1] - mu[i, j, 1])
+    mu_n_z = scale * (mu[i + NEIGHBOURS[turn, 7, 0], j + NEIGHBOURS[turn, 7, 1], 2] - mu[i, j, 2])
+    return triangle(
+        mu_sw_x, mu_sw_y, mu_sw_z, mu_s_x, mu_s_y, mu_s_z, mu_se_x, mu_se_y, mu_se_z, mu_w_x,
+        mu_w_y, mu_w_z, mu_e_x, mu_e_y, mu_e_z, mu_n_x, mu_n_y, mu_n_z
+    )  # fmt: skip
+
+
+# --- places of a patch ----------------------------------------------------------------------------
+
+
+@jit
+def place_of(mu, scale, patch, u, v):
+    """Return point, unit normal, K and H at a place of a patch, all of the surface times its scale.
+
+    The point is relative to the first coefficient. The normal is zero where there is none.
+    """
+    columns = mu.shape[1] - 2
+    i = patch // 4 // columns + 1
+    j = patch // 4 % columns + 1
+    (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
+     d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(mu, i, j, patch % 4, scale)  # fmt: skip
+    # envelope (eqs. (5)-(8)): 45 operations as written, 35 here
+    t0 = u * v
+    t1 = 0.5 * u * u
+    t2 = 0.5 * v * v
+    x_x = a_x * t1 + b_x * t0 + c_x * t2 + d_x * u + e_x * v + p_x
+    x_y = a_y * t1 + b_y * t0 + c_y * t2 + d_y * u + e_y * v + p_y
+    x_z = a_z * t1 + b_z * t0 + c_z * t2 + d_z * u + e_z * v + p_z
+    # tangents (eqs. (1) and (14)): 33 operations as written, 33 here
+    p_u_x = a_x * u + b_x * v + d_x
+    p_u_y = a_y * u + b_y * v + d_y
+    p_u_z = a_z * u + b_z * v + d_z
+    p_v_x = b_x * u + c_x * v + e_x
+    p_v_y = b_y * u + c_y * v + e_y
+    p_v_z = b_z * u + c_z * v + e_z
+    N_x = p_u_y * p_v_z - p_u_z * p_v_y
+    N_y = p_u_z * p_v_x - p_u_x * p_v_z
+    N_z = p_u_x * p_v_y - p_u_y * p_v_x
+    size = SCALE * scale
+    x_x += (mu[i, j, 0] - mu[0, 0, 0]) * size
+    x_y += (mu[i, j, 1] - mu[0, 0, 1]) * size
+    x_z += (mu[i, j, 2] - mu[0, 0, 2]) * size
+    length = math.sqrt(N_x * N_x + N_y * N_y + N_z * N_z)
+    if length == 0.0:
+        return x_x, x_y, x_z, 0.0, 0.0, 0.0, 0.0, 0.0
+    n_x = N_x / length
+    n_y = N_y / length
+    n_z = N_z / length
+    # curvature_at (eqs. (1), (9); curvatures beyond the paper): 81 operations as written, 81 here
+    A = a_x * n_x + a_y * n_y + a_z * n_z
+    B = b_x * n_x + b_y * n_y + b_z * n_z
+    C = c_x * n_x + c_y * n_y + c_z * n_z
+    D = A * C - B * B
+    p_u_x = a_x * u + b_x * v + d_x
+    p_u_y = a_y * u + b_y * v + d_y
+    p_u_z = a_z * u + b_z * v + d_z
+    p_v_x = b_x * u + c_x * v + e_x
+    p_v_y = b_y * u + c_y * v + e_y
+    p_v_z = b_z * u + c_z * v + e_z
+    N_x = p_u_y * p_v_z - p_u_z * p_v_y
+    N_y = p_u_z * p_v_x - p_u_x * p_v_z
+    N_z = p_u_x * p_v_y - p_u_y * p_v_x
+    E = p_u_x * p_u_x + p_u_y * p_u_y + p_u_z * p_u_z
+    F = p_u_x * p_v_x + p_u_y * p_v_y + p_u_z * p_v_z
+    G = p_v_x * p_v_x + p_v_y * p_v_y + p_v_z * p_v_z
+    g = 1.0 / (N_x * N_x + N_y * N_y + N_z * N_z)
+    K = D * g
+    H = 0.5 * g * (2 * B * F - A * G - C * E)
+    return x_x, x_y, x_z, n_x, n_y, n_z, K, H
+
+
+@jit
+def weight_of(K, H, reach, law):
+    """Return how many samples are wanted per area, up to a factor: law = (floor, bend, power, alpha).
+
+    That is bend k^2 + power |K|^alpha for the larger principal curvature k, but at least the floor. A
+    radius of curvature that is smaller than a patch is taken as large as the patch: it is an accident.
+    """
+    weight = 0.0
+    limit = 1.0 / (reach * reach)
+    if law[1] > 0.0:
+        # largest_curvature (beyond the paper): 6 operations as written, 6 here
+        k = abs(H) + math.sqrt(abs(H * H - K))
+        weight += law[1] * at_most(k * k, limit)
+    if law[2] > 0.0:
+        weight += law[2] * math.pow(at_most(abs(K), limit), law[3])
+    return max(weight, law[0])
+
+
+@jit
+def at_most(value, limit):
+    """Return the smaller number, the limit for NaN."""
+    return value if value < limit else limit
+
+
+@jit
+def reach_of_patches(mu, scale, first, last, reaches):
+    """Write how far a point of each patch first, …, last − 1 can be from its middle, at most."""
+    columns = mu.shape[1] - 2
+    for patch in range(first, last):
+        cell = patch // 4
+        (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
+         d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(
+            mu, cell // columns + 1, cell % columns + 1, patch % 4, scale
+        )  # fmt: skip
+        # reach (beyond the paper): 198 operations as written, 132 here
+        t0 = (1.0 / 3.0) * b_x
+        t1 = (1.0 / 3.0) * e_x
+        t2 = (2.0 / 3.0) * d_x - t1
+        q00_x = (2.0 / 3.0) * a_x - t0 + t2
+        t3 = (1.0 / 3.0) * b_y
+        t4 = (1.0 / 3.0) * e_y
+        t5 = (2.0 / 3.0) * d_y - t4
+        q00_y = (2.0 / 3.0) * a_y - t3 + t5
+        t6 = (1.0 / 3.0) * b_z
+        t7 = (1.0 / 3.0) * e_z
+        t8 = (2.0 / 3.0) * d_z - t7
+        q00_z = (2.0 / 3.0) * a_z - t6 + t8
+        t9 = (1.0 / 3.0) * a_x
+        t10 = (1.0 / 3.0) * d_x
+        t11 = t10 - (2.0 / 3.0) * e_x
+        q01_x = (2.0 / 3.0) * b_x - t11 - t9
+        t12 = (1.0 / 3.0) * a_y
+        t13 = (1.0 / 3.0) * d_y
+        t14 = t13 - (2.0 / 3.0) * e_y
+        q01_y = (2.0 / 3.0) * b_y - t12 - t14
+        t15 = (1.0 / 3.0) * a_z
+        t16 = (1.0 / 3.0) * d_z
+        t17 = t16 - (2.0 / 3.0) * e_z
+        q01_z = (2.0 / 3.0) * b_z - t15 - t17
+        t18 = t1 + t10
+        t19 = t0 + t18
+        q02_x = -t19 - t9
+        t20 = t13 + t4
+        t21 = t20 + t3
+        q02_y = -t12 - t21
+        t22 = t16 + t7
+        t23 = t22 + t6
+        q02_z = -t15 - t23
+        t24 = (1.0 / 3.0) * c_x
+        q10_x = (2.0 / 3.0) * b_x + t2 - t24
+        t25 = (1.0 / 3.0) * c_y
+        q10_y = (2.0 / 3.0) * b_y - t25 + t5
+        t26 = (1.0 / 3.0) * c_z
+        q10_z = (2.0 / 3.0) * b_z - t26 + t8
+        q11_x = (2.0 / 3.0) * c_x - t0 - t11
+        q11_y = (2.0 / 3.0) * c_y - t14 - t3
+        q11_z = (2.0 / 3.0) * c_z - t17 - t6
+        q12_x = -t19 - t24
+        q12_y = -t21 - t25
+        q12_z = -t23 - t26
+        q20_x = t2
+        q20_y = t5
+        q20_z = t8
+        q21_x = -t11
+        q21_y = -t14
+        q21_z = -t17
+        q22_x = -t18
+        q22_y = -t20
+        q22_z = -t22
+        r00 = q00_x * q00_x + q00_y * q00_y + q00_z * q00_z
+        r01 = q01_x * q01_x + q01_y * q01_y + q01_z * q01_z
+        r02 = q02_x * q02_x + q02_y * q02_y + q02_z * q02_z
+        r10 = q10_x * q10_x + q10_y * q10_y + q10_z * q10_z
+        r11 = q11_x * q11_x + q11_y * q11_y + q11_z * q11_z
+        r12 = q12_x * q12_x + q12_y * q12_y + q12_z * q12_z
+        r20 = q20_x * q20_x + q20_y * q20_y + q20_z * q20_z
+        r21 = q21_x * q21_x + q21_y * q21_y + q21_z * q21_z
+        r22 = q22_x * q22_x + q22_y * q22_y + q22_z * q22_z
+        reaches[patch] = math.sqrt(max(r00, r01, r02, r10, r11, r12, r20, r21, r22))
+
+
+@jit
+def wanted_of_patches(mu, scale, reaches, law, first, last, areas, wanted):
+    """Write the area and the integral of the weight of each patch first, …, last − 1."""
+    columns = mu.shape[1] - 2
+    for patch in range(first, last):
+        cell = patch // 4
+        (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
+         d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(
+            mu, cell // columns + 1, cell % columns + 1, patch % 4, scale
+        )  # fmt: skip
+        area = 0.0
+        total = 0.0
+        for node in range(3):
+            u = 1.0 - 2.0 * NODE if node == 0 else NODE
+            v = 1.0 - 2.0 * NODE if node == 1 else NODE
+            # tangents (eqs. (1) and (14)): 33 operations as written, 33 here
+            p_u_x = a_x * u + b_x * v + d_x
+            p_u_y = a_y * u + b_y * v + d_y
+            p_u_z = a_z * u + b_z * v + d_z
+            p_v_x = b_x * u + c_x * v + e_x
+            p_v_y = b_y * u + c_y * v + e_y
+            p_v_z = b_z * u + c_z * v + e_z
+            N_x = p_u_y * p_v_z - p_u_z * p_v_y
+            N_y = p_u_z * p_v_x - p_u_x * p_v_z
+            N_z = p_u_x * p_v_y - p_u_y * p_v_x
+            dA = math.sqrt(N_x * N_x + N_y * N_y + N_z * N_z) / 6.0
+            if dA > 0.0:
+                K, H = place_of(mu, scale, patch, u, v)[6:]
+                area += dA
+                total += dA * weight_of(K, H, reaches[patch], law)
+        areas[patch] = area
+        wanted[patch] = total
+
+
+@jit
+def start_triangles(mu, scale, reaches, law, first, last, triangles):
+    """Write the patches first, …, last − 1 as triangles (…, 5) that nothing covers yet.
+
+    A triangle holds u and v of its middle, its size beside the patch (negative if it is turned
+    over), a bound of the distance from its middle to the nearest sample, and the largest weight.
+    """
+    third = 1.0 / 3.0
+    for patch in range(first, last):
+        weight = 0.0
+        for node in range(4):
+            u = third if node == 3 else 1.0 - 2.0 * NODE if node == 0 else NODE
+            v = third if node == 3 else 1.0 - 2.0 * NODE if node == 1 else NODE
+            K, H = place_of(mu, scale, patch, u, v)[6:]
+            weight = max(weight, weight_of(K, H, reaches[patch], law))
+        triangles[patch, 0] = third
+        triangles[patch, 1] = third
+        triangles[patch, 2] = 1.0
+        triangles[patch, 3] = np.inf
+        triangles[patch, 4] = weight
+
+
+@jit
+def weigh_samples(gaussian, mean, patches, unit, reaches, law, weights):
+    """Write the weights of samples that are there already; `unit` is one length of the surface."""
+    for k in range(patches.size):
+        K = gaussian[k] * unit * unit
+        H = mean[k] * unit
+        weights[k] = weight_of(K, H, reaches[patches[k]], law)
+
+
+@jit
+def middles(mu, scale, patches, triangles, first, last, rows):
+    """Write point, normal and K (…, 7) in the middle of the triangles first, …, last − 1."""
+    for k in range(first, last):
+        x, y, z, n_x, n_y, n_z, K, _ = place_of(
+            mu, scale, patches[k], triangles[k, 0], triangles[k, 1]
+        )
+        rows[k, 0] = x
+        rows[k, 1] = y
+        rows[k, 2] = z
+        rows[k, 3] = n_x
+        rows[k, 4] = n_y
+        rows[k, 5] = n_z
+        rows[k, 6] = K
+
+
+# --- grids in space, one for each size ------------------------------------------------------------
+
+
+@jit
+def level_of(reach, finest):
+    """Return the number of the grid whose cells are at least twice as long as `reach`."""
+    return min(max(math.frexp(2.0 * reach / finest)[1], 0), LEVELS - 1)
+
+
+@jit
+def bucket_of(level, i, j, k, buckets):
+    """Return where the samples of a cell of a grid are listed, maybe with others."""
+    return (i * 73856093 ^ j * 19349663 ^ k * 83492791 ^ level * 49979687) & (buckets - 1)
+
+
+@jit
+def enter(heads, links, places, number, reach, finest):
+    """Enter a sample into the grids; `reach` is how far it has to be found."""
+    level = level_of(reach, finest)
+    for k in range(SIZES):
+        at = level + k - 1
+        if 0 <= at < LEVELS:
+            edge = finest * 2.0**at
+            bucket = bucket_of(
+                at,
+                int(math.floor(places[number, 0] / edge)),
+                int(math.floor(places[number, 1] / edge)),
+                int(math.floor(places[number, 2] / edge)),
+                heads.size,
+            )
+            links[SIZES * number + k] = heads[bucket]
+            heads[bucket] = SIZES * number + k
+
+
+@jit
+def enter_samples(heads, links, places, weights, radius, finest, first, last):
+    """Enter the samples first, …, last − 1."""
+    for number in range(first, last):
+        enter(heads, links, places, number, radius / math.sqrt(weights[number]), finest)
+
+
+@jit
+def distance_to_samples(heads, links, places, x, y, z, n_x, n_y, n_z, reach, finest, known):
+    """Return the distance to the nearest sample on the same side of the surface, if below `known`.
+
+    Not farther than `reach` is looked for. On the same side are samples whose normal makes an angle
+    of at most 90 degrees with the normal here.
+    """
+    level = level_of(reach, finest)
+    edge = finest * 2.0**level
+    best = known * known
+    if reach < known:
+        best = reach * reach
+    found = False
+    for i in range(int(math.floor((x - reach) / edge)), int(math.floor((x + reach) / edge)) + 1):
+        for j in range(
+            int(math.floor((y - reach) / edge)), int(math.floor((y + reach) / edge)) + 1
+        ):
+            for k in range(
+                int(math.floor((z - reach) / edge)), int(math.floor((z + reach) / edge)) + 1
+            ):
+                entry = heads[bucket_of(level, i, j, k, heads.size)]
+                while entry >= 0:
+                    number = entry // SIZES
+                    dx = places[number, 0] - x
+                    dy = places[number, 1] - y
+                    dz = places[number, 2] - z
+                    square = dx * dx + dy * dy + dz * dz
+                    if square < best and (
+                        places[number, 3] * n_x + places[number, 4] * n_y + places[number, 5] * n_z
+                        >= 0.0
+                    ):
+                        best = square
+                        found = True
+                    entry = links[entry]
+    return math.sqrt(best) if found else known
+
+
+# --- covering -------------------------------------------------------------------------------------
+
+
+@jit
+def cover_triangles(
+    mu, scale, reaches, law, radius, fine, strict, most, patches, triangles, first, last,
+    kept_patches, kept, cut_patches, cut, heads, links, places, weights, finest, counts, local,
+):  # fmt: skip
+    """Look at the triangles first, …, last − 1: is every place near enough to a sample?
+
+    Near enough is radius / sqrt(weight). If the middle of a triangle is not, it becomes a sample, the
+    next in places (…, 6), weights and local (…, 4) (patch, u, v, K), as long as there are fewer than
+    `most`. A triangle that is near enough is written to `kept`, the quarters of another one to `cut`.
+    counts = (kept, cut, samples).
+    """
+    for k in range(first, last):
+        patch = patches[k]
+        u = triangles[k, 0]
+        v = triangles[k, 1]
+        size = triangles[k, 2]
+        known = triangles[k, 3]
+        weight = triangles[k, 4]
+        extent = reaches[patch] * abs(size)
+        if weight >= 0.0 and known + extent <= radius / math.sqrt(weight):
+            keep(kept_patches, kept, counts, patch, u, v, size, known, weight)
+            continue
+        x, y, z, n_x, n_y, n_z, K, H = place_of(mu, scale, patch, u, v)
+        if n_x == 0.0 and n_y == 0.0 and n_z == 0.0:
+            continue
+        if weight < 0.0:
+            weight = weight_of(K, H, reaches[patch], law)
+        near = radius / math.sqrt(weight)
+        known = distance_to_samples(
+            heads, links, places, x, y, z, n_x, n_y, n_z, near, finest, known
+        )
+        small = extent <= fine * near
+        if counts[2] < most and (known > near or (strict and small and known + extent > near)):
+            number = counts[2]
+            places[number, 0] = x
+            places[number, 1] = y
+            places[number, 2] = z
+            places[number, 3] = n_x
+            places[number, 4] = n_y
+            places[number, 5] = n_z
+            weights[number] = weight
+            local[number, 0] = patch
+            local[number, 1] = u
+            local[number, 2] = v
+            local[number, 3] = K
+            enter(heads, links, places, number, near, finest)
+            counts[2] = number + 1
+            known = 0.0
+        if small or known + extent <= near:
+            keep(kept_patches, kept, counts, patch, u, v, size, known, weight)
+        else:
+            quarter(cut_patches, cut, counts, patch, u, v, size, known, weight, extent)
+
+
+@jit
+def keep(patches, triangles, counts, patch, u, v, size, known, weight):
+    """Write a triangle to those that are kept."""
+    at = counts[0]
+    patches[at] = patch
+    triangles[at, 0] = u
+    triangles[at, 1] = v
+    triangles[at, 2] = size
+    triangles[at, 3] = known
+    triangles[at, 4] = weight
+    counts[0] = at + 1
+
+
+@jit
+def quarter(patches, triangles, counts, patch, u, v, size, known, weight, extent):
+    """Write the four quarters of a triangle; that in the middle has the same middle, turned over."""
+    third = 1.0 / 3.0
+    for part in range(4):
+        at = counts[1] + part
+        patches[at] = patch
+        triangles[at, 0] = u
+        triangles[at, 1] = v
+        if part < 3:
+            triangles[at, 0] += 0.5 * size * ((1.0 if part == 0 else 0.0) - third)
+            triangles[at, 1] += 0.5 * size * ((1.0 if part == 1 else 0.0) - third)
+        triangles[at, 2] = 0.5 * size if part < 3 else -0.5 * size
+        triangles[at, 3] = known + 0.5 * extent if part < 3 else known
+        triangles[at, 4] = -1.0 if part < 3 else weight
+    counts[1] += 4

@@ -1,0 +1,251 @@
+"""Sampling by normals and filling what they leave, as dense as a density asks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from ...generated import sampler as kernels
+from ..bins import NormalBins
+from ..choice import NORMALS_PER_SAMPLE
+from ..fields import ARRAY_NAMES, FLOAT_NAMES, new_field
+from ..lattice import Lattice
+from ..samples import Samples, SamplingReport
+from ..search import fill, find
+from ..spline import Spline
+from ..visibility import invisible_share, visible_solid_angle
+from .angles import cover_normals, largest_angle
+from .cover import APPROACH, GREEDY, Cover
+from .law import Law, Wanted
+from .relaxation import relax
+from .request import Request
+
+__all__ = ["filled_samples"]
+
+# Balanced: what is filled are gaps that are wider than those between the normals by this factor.
+WIDER = 2.4
+# Balanced: the floor of the density, beside the mean of what bending asks.
+FLAT_SHARE = 0.25
+# Less bending than this, as the integral of κ² over the surface, is rounding.
+UNBENT = 1e-9
+# |K|^α vanishes where K does; there no gap is wider than this many others.
+WIDEST_GAP = 1000.0
+# So many samples of a cover each sample of the normals is taken to save. They save up to 0.7, but on
+# what it does not count gaps are filled more closely, which is good for gentle surfaces.
+SAVED = 0.2
+# Steps of the bisection for how many normals leave room for a coverage, and when it ends; it begins
+# with exp(−FEWEST_NORMALS) of them.
+BISECTIONS, NEAR_ENOUGH, FEWEST_NORMALS = 10, 0.97, 10.0
+
+
+def filled_samples(
+    spline: Spline,
+    request: Request,
+    fields: Sequence[str],
+    dtype: DTypeLike,
+    threads: int | None,
+    progress: bool,
+) -> tuple[Samples, NDArray[np.float64]]:
+    """Return samples of any density but "gauss", and the normals that were asked."""
+    filling = Filling(spline, request, threads, progress)
+    cover = filling.cover()
+    relax(cover, request.relax)
+    angle = None
+    if request.angle is not None:
+        cover_normals(cover, request.angle)
+        angle = largest_angle(cover)
+    return filling.samples(cover, fields, dtype, angle), filling.normals
+
+
+@dataclass(eq=False)
+class Filling:
+    """Samples of any density but "gauss", in two parts: what normals give, and a cover of the rest.
+
+    `normals` are those that were asked, `density` of them per steradian, `given` their samples.
+    """
+
+    spline: Spline
+    request: Request
+    threads: int | None
+    progress: bool
+    normals: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 3)))
+    density: float = 0.0
+    given: Samples | None = None
+
+    def cover(self) -> Cover:
+        """Return the cover that is asked."""
+        if self.request.density == "balanced":
+            return self._balanced()
+        cover = Cover(self._law(), None)
+        if self.request.count is not None:
+            cover.to_count(self.request.count)
+        elif self.request.coverage is not None:
+            cover.to_radius(self.request.coverage * cover.wanted.unit)
+        return cover
+
+    def _law(self) -> Wanted:
+        """Return what "uniform" or a power of |K| wants."""
+        if isinstance(self.request.density, str):
+            return Wanted(self.spline, Law(floor=1.0), self.threads)
+        wanted = Wanted(self.spline, Law(power=1.0, alpha=self.request.density), self.threads)
+        area, total = wanted.totals
+        return wanted.with_floor(total / area / WIDEST_GAP**2 if total > 0.0 else 1.0)
+
+    def samples(
+        self, cover: Cover, fields: Sequence[str], dtype: DTypeLike, angle: float | None
+    ) -> Samples:
+        """Return the samples that were given, and after them those that were added."""
+        arrays = added_fields(cover, fields, dtype)
+        if self.given is not None:
+            arrays = {
+                name: np.concatenate([getattr(self.given, name).astype(x.dtype, copy=False), x])
+                for name, x in arrays.items()
+            }
+        report = SamplingReport(
+            surface=self.spline.name,
+            normals=len(self.normals),
+            samples=cover.count,
+            patches=self.spline.patches,
+            invisible_share=invisible_share(self.spline, self.density),
+            degenerate_patches=None if self.given is None else self.given.report.degenerate_patches,
+            coverage=cover.coverage,
+            angle=angle,
+        )
+        return Samples(**arrays, report=report, spline=self.spline)
+
+    # --- balanced ---------------------------------------------------------------------------------
+
+    def _balanced(self) -> Cover:
+        request, wanted = self.request, Wanted(self.spline, Law(bend=1.0), self.threads)
+        area, bending = wanted.totals
+        # Normals and angles are absolute: then flat parts are bent as a sphere of this area.
+        least = 4 * math.pi if request.normals is not None or request.angle else UNBENT
+        floor = FLAT_SHARE * max(bending, least) / area
+        if request.count is None:
+            return self._by_radius(wanted, floor)
+        cover = self._by_count(wanted.with_floor(floor), request.count)
+        if request.coverage is None or cover.coverage <= request.coverage:
+            return cover
+        return self._by_count_and_coverage(wanted, request.count, request.coverage)
+
+    def _by_radius(self, wanted: Wanted, floor: float) -> Cover:
+        """Search the normals that are asked, or fit a coverage, and cover the rest as they do."""
+        request = self.request
+        if request.angle is not None:
+            self._search(request.directions)
+            radius = WIDER * math.radians(request.angle)
+        elif request.normals is not None:
+            self._search(request.directions)
+            radius = WIDER * spacing(self._density_met())
+        else:
+            assert request.coverage is not None
+            least = float(wanted.triangles()[:, 4].min())
+            radius = request.coverage * wanted.unit * math.sqrt(max(floor, least))
+            self._search_lattice(density_of(radius / WIDER))
+        if request.coverage is not None:
+            floor = (radius / (request.coverage * wanted.unit)) ** 2
+        cover = Cover(wanted.with_floor(floor), self.given)
+        cover.to_radius(radius)
+        return cover
+
+    def _by_count(self, wanted: Wanted, count: int) -> Cover:
+        """Search as many normals as fit the gaps that are left for the others, and fill these."""
+        seen = visible_solid_angle(self.spline, count / (4 * math.pi))
+        density = 1.0
+        # How many samples there are at one normal per steradian; all of them grow in proportion.
+        filling = wanted.totals[1] / (GREEDY * (WIDER * spacing(density)) ** 2)
+        each = seen + max(0.0, filling - SAVED * seen)
+        self._search_lattice(count / each, count)
+        cover = Cover(wanted, self.given)
+        cover.to_count(count)
+        return cover
+
+    def _by_count_and_coverage(self, wanted: Wanted, count: int, coverage: float) -> Cover:
+        """Find the most normals that leave room for a coverage, by bisection, and then fill up."""
+        seen = visible_solid_angle(self.spline, count / (4 * math.pi))
+        high = math.log(count / seen) if seen > 0.0 else 0.0
+        low = high - FEWEST_NORMALS
+        best: tuple[Cover, float] | None = None
+        for _ in range(BISECTIONS):
+            middle = (low + high) / 2
+            radius = WIDER * spacing(math.exp(middle))
+            self._search_lattice(math.exp(middle))
+            cover = Cover(wanted.with_floor((radius / (coverage * wanted.unit)) ** 2), self.given)
+            cover.to_radius(radius, count + 1)
+            if cover.count > count:
+                high = middle
+            else:
+                low, best = middle, (cover, radius)
+                if cover.count > NEAR_ENOUGH * count:
+                    break
+        if best is None:  # not even a cover alone is so small
+            self.given, cover = None, Cover(wanted.with_law(Law(floor=1.0)), None)
+            cover.to_count(count)
+            return cover
+        best[0].narrow(best[1], count, APPROACH)
+        return best[0]
+
+    # --- the normals ------------------------------------------------------------------------------
+
+    def _search_lattice(self, density: float, most: int | None = None) -> None:
+        """Search a lattice of so many normals per steradian, if the surface has any that they see."""
+        seen = visible_solid_angle(self.spline, density)
+        if round(density * seen) == 0:
+            return
+        lattice = Lattice.around(self.spline)
+        densest = lattice.density_of(NORMALS_PER_SAMPLE * max(round(density * seen), 1000))
+        self._search(lattice.normals(min(density, densest), threads=self.threads), density)
+        if most is not None and self.given is not None and len(self.given) > most:
+            self._search_lattice(density * most / len(self.given) * 0.98)
+
+    def _search(self, normals: NDArray[np.float64], density: float | None = None) -> None:
+        """Take the samples of some normals."""
+        bins = NormalBins(normals, self.threads)
+        hits = find(self.spline, bins, self.threads, self.progress)
+        self.normals, self.density = bins.normals, density or len(normals) / (4 * math.pi)
+        arrays = fill(self.spline, bins, hits, self.threads, ARRAY_NAMES)
+        report = SamplingReport(
+            surface=self.spline.name,
+            normals=len(normals),
+            samples=len(hits),
+            patches=self.spline.patches,
+            invisible_share=invisible_share(self.spline, self.density),
+            degenerate_patches=hits.developable,
+        )
+        self.given = Samples(**arrays, report=report, spline=self.spline)
+
+    def _density_met(self) -> float:
+        """How many of the normals that were searched there are per steradian of the surface's image."""
+        seen = visible_solid_angle(self.spline, self.density)
+        came = 0 if self.given is None else len(self.given)
+        return came / seen if came and seen > 0.0 else self.density
+
+
+def added_fields(cover: Cover, fields: Sequence[str], dtype: DTypeLike) -> dict[str, NDArray[Any]]:
+    """Return fields of the samples that a cover has added; see `Samples`."""
+    rows = slice(cover.given, cover.count)
+    patch, u, v, K = cover.local[rows].T
+    count, spline = len(patch), cover.wanted.spline
+    filled = {x: new_field(x, count, dtype) for x in FLOAT_NAMES if x in fields}
+    patch_index, here = patch.astype(np.int64), np.arange(count)
+    kernels.fill_known(
+        spline.coefficients, spline.scale, cover.points[rows, 3:].copy(), spline.frame, here,
+        np.column_stack([u, v, K, u, v]), patch_index, here, *(filled.get(x) for x in FLOAT_NAMES),
+    )  # fmt: skip
+    indices = {"normal_index": np.full(count, -1), "patch_index": patch_index}
+    return filled | {name: x for name, x in indices.items() if name in fields}
+
+
+def spacing(density: float) -> float:
+    """Return the covering radius of so many points per area, laid out as hexagons."""
+    return math.sqrt(2.0 / (3.0 * math.sqrt(3.0) * density))
+
+
+def density_of(radius: float) -> float:
+    """Return how many points per area have this covering radius, laid out as hexagons."""
+    return 2.0 / (3.0 * math.sqrt(3.0) * radius * radius)

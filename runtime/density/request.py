@@ -1,0 +1,116 @@
+"""What a sampling is asked for: which normals, how many samples, how near, and how dense where."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..checks import known_name, whole_number
+from ..errors import InputError
+from ..sphere import as_normals, frequency_within, icosphere
+from ..threads import thread_count
+
+__all__ = ["DENSITIES", "Request", "checked_request"]
+
+DENSITIES = ("gauss", "balanced", "uniform")
+# Each of the steps takes as long as the sampling, and the sixth one moves almost nothing.
+MOST_STEPS = 1000
+
+
+@dataclass(frozen=True, eq=False)
+class Request:
+    """One of normals (S, 3), a count, an angle in degrees and a coverage, or a coverage beside one.
+
+    `density` is one of `DENSITIES`, or α for |K|^α.
+    """
+
+    normals: NDArray[np.float64] | None
+    count: int | None
+    angle: float | None
+    coverage: float | None
+    density: str | float
+    relax: int
+
+    @property
+    def asked(self) -> NDArray[np.float64] | int:
+        """What normals alone are asked for: the normals, or a count."""
+        return self.directions if self.count is None else self.count
+
+    @property
+    def directions(self) -> NDArray[np.float64]:
+        """The normals, or as many as an angle needs."""
+        if self.normals is not None:
+            return self.normals
+        assert self.angle is not None
+        return icosphere(frequency_within(self.angle))
+
+
+def checked_request(
+    normals: ArrayLike | None,
+    count: int | None,
+    angle: float | None,
+    coverage: float | None,
+    density: str | float | None,
+    relax: int,
+    threads: int | None,
+) -> Request:
+    """Return what is asked; InputError (or UnknownNameError) if it makes no sense."""
+    thread_count(threads)
+    amounts = {"normals": normals, "count": count, "angle": angle, "coverage": coverage}
+    given = [name for name, value in amounts.items() if value is not None]
+    if not given or len({*given} - {"coverage"}) > 1:
+        raise InputError(
+            "say how many samples by one of normals=..., count=..., angle=... and coverage=...; "
+            + (f"{' and '.join(given)} do not go together." if given else "none is given.")
+        )
+    kind = _density(density, "gauss" if given == ["normals"] else "balanced")
+    _check_that_they_fit(kind, given)
+    steps = whole_number(relax, "relax", least=0)
+    if kind == "gauss" and steps:
+        raise InputError(
+            'relax moves samples that normals did not ask for; density="gauss" has none.'
+        )
+    return Request(
+        None if normals is None else as_normals(normals, threads=threads),
+        None if count is None else whole_number(count, "count"),
+        None if angle is None else _positive(angle, "angle", " degrees", most=90.0),
+        None if coverage is None else _positive(coverage, "coverage"),
+        kind,
+        min(steps, MOST_STEPS),
+    )
+
+
+def _density(density: str | float | None, default: str) -> str | float:
+    if density is None:
+        return default
+    if isinstance(density, str):
+        return known_name(density, DENSITIES, "density")
+    return _positive(density, "density, as the power of |K|,")
+
+
+def _check_that_they_fit(density: str | float, given: list[str]) -> None:
+    """Refuse what a density cannot be asked for."""
+    fitting = {
+        "gauss": [["normals"], ["count"], ["angle"]],
+        "balanced": [[x] for x in ("normals", "count", "angle", "coverage")]
+        + [[x, "coverage"] for x in ("normals", "count", "angle")],
+        "uniform": [["count"], ["coverage"]],
+    }.get(str(density), [["count"]])
+    if given not in fitting:
+        shown = f'"{density}"' if isinstance(density, str) else density
+        raise InputError(
+            f"density={shown} cannot be asked for by {' and '.join(f'{x}=...' for x in given)}; "
+            f"use {' or '.join(f'{x[0]}=...' for x in fitting if len(x) == 1)}."
+        )
+
+
+def _positive(value: object, name: str, unit: str = "", most: float = math.inf) -> float:
+    """Return a positive number; InputError if it is none, or is larger than `most`."""
+    number = value if isinstance(value, int | float | np.integer | np.floating) else math.nan
+    if isinstance(value, bool) or not 0.0 < float(number) <= most or math.isinf(float(number)):
+        limit = "" if math.isinf(most) else f" of at most {most:g}{unit}"
+        raise InputError(f"{name} must be a positive number{limit}, not {value!r}.")
+    return float(number)
