@@ -68,7 +68,7 @@ def sample(
     - "balanced", the default otherwise: the same from fewer normals, and samples that fill what
       these leave. Their `kind` is "coverage", their `normal_index` −1. No point is farther from a
       sample than r / κ, nor than r / √λ: κ is the larger principal curvature, so that normals turn
-      by about r, which is 2.4 times the angle between the normals. λ is a quarter of the mean of
+      by about r, which is twice the angle between the normals. λ is a quarter of the mean of
       κ², or follows from `coverage`, which may be given beside normals, an angle or a count.
     - "uniform": the same everywhere; for `count` or `coverage`.
     - a number α > 0: as |K|^α; for `count`.

@@ -7,7 +7,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from scipy.spatial import KDTree
+
 from .cover import Cover
+
+APART = 2.0
 
 __all__ = ["cover_normals", "largest_angle"]
 
@@ -18,8 +22,6 @@ def cover_normals(cover: Cover, angle: float) -> None:
     Where the normals that were asked lie as dense as that, only places at the border of the
     Gaussian image are farther from all of them: their nearest normal may lie outside it.
     """
-    from scipy.spatial import KDTree
-
     rows = cover.middles()
     chords = _chords(cover, rows)
     limit = _chord(angle)
@@ -34,6 +36,25 @@ def cover_normals(cover: Cover, angle: float) -> None:
     cover.add(np.array(chosen, dtype=np.int64), rows)
 
 
+def widest_angles(cover: Cover, number: int) -> None:
+    """Add samples where normals are farthest from those of all samples with the same sign of K."""
+    rows = cover.middles()
+    places = np.column_stack([rows[:, 3:6], APART * np.sign(rows[:, 6])])
+    samples = np.column_stack(
+        [cover.points[: cover.count, 3:], APART * np.sign(cover.local[: cover.count, 3])]
+    )
+    distances, tree = KDTree(samples).query(places, workers=-1)[0], KDTree(places)
+    chosen = []
+    for _ in range(number):
+        k = int(distances.argmax())
+        near = tree.query_ball_point(places[k], distances[k])
+        distances[near] = np.minimum(
+            distances[near], np.linalg.norm(places[near] - places[k], axis=1)
+        )
+        chosen.append(k)
+    cover.add(np.array(chosen, dtype=np.int64), rows)
+
+
 def largest_angle(cover: Cover) -> float:
     """Return the largest angle, in degrees, that any middle of a triangle makes with all samples."""
     largest = float(_chords(cover, cover.middles()).max(initial=0.0))
@@ -42,8 +63,6 @@ def largest_angle(cover: Cover) -> float:
 
 def _chords(cover: Cover, rows: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the distances of the unit normals in the middles to the nearest ones of samples."""
-    from scipy.spatial import KDTree
-
     return KDTree(cover.points[: cover.count, 3:]).query(rows[:, 3:6], workers=-1)[0]
 
 

@@ -223,6 +223,7 @@ class Cover:
         wanted, spline = self.wanted, self.wanted.spline
         self.points[: self.given, :3] = (given.points - spline.coefficients[0, 0]) * wanted.unit
         self.points[: self.given, 3:] = given.normals
+        self.local[: self.given, 3] = given.gaussian_curvature
         kernels.weigh_samples(
             given.gaussian_curvature, given.mean_curvature, given.patch_index, 1.0 / wanted.unit,
             wanted.reaches, wanted.law.numbers, self.weights,

@@ -28,7 +28,7 @@ from .request import Request
 __all__ = ["filled_samples"]
 
 # Balanced: what is filled are gaps that are wider than those between the normals by this factor.
-WIDER = 2.4
+WIDER = 2.0
 # Balanced: the floor of the density, beside the mean of what bending asks.
 FLAT_SHARE = 0.25
 # Less bending than this, as the integral of κ² over the surface, is rounding.
@@ -37,7 +37,7 @@ UNBENT = 1e-9
 WIDEST_GAP = 1000.0
 # So many samples of a cover each sample of the normals is taken to save. They save up to 0.7, but on
 # what it does not count gaps are filled more closely, which is good for gentle surfaces.
-SAVED = 0.2
+SAVED = 0.25
 # Steps of the bisection for how many normals leave room for a coverage, and when it ends; it begins
 # with exp(−FEWEST_NORMALS) of them.
 BISECTIONS, NEAR_ENOUGH, FEWEST_NORMALS = 10, 0.97, 10.0
