@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from .runtime.spline import Spline, fit
     from .runtime.stream import sample_stream
     from .runtime.support.branches import Branches
+    from .runtime.support.convolution import Convolution, convolve
     from .runtime.support.function import SupportFunction
     from .runtime.surface import Surface
 
@@ -55,6 +56,7 @@ __version__ = "0.1.0"
 __all__ = [
     "BoundaryArc",
     "Branches",
+    "Convolution",
     "Curve",
     "CurveReport",
     "CurveSamples",
@@ -82,6 +84,7 @@ __all__ = [
     "UnknownNameError",
     "circle",
     "classify_patches",
+    "convolve",
     "fibonacci",
     "fit",
     "fit_curve",
@@ -124,6 +127,7 @@ _NAMES = {
     "runtime.spline": "Spline fit",
     "runtime.stream": "sample_stream",
     "runtime.support.branches": "Branches",
+    "runtime.support.convolution": "Convolution convolve",
     "runtime.support.function": "SupportFunction",
     "runtime.surface": "Surface",
 }
