@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from .runtime.io import read_samples
     from .runtime.samples import Samples, SamplingReport
     from .runtime.sampling import sample, sample_many
+    from .runtime.silhouette import silhouette
     from .runtime.sphere import fibonacci, icosphere
     from .runtime.spline import Spline, fit
     from .runtime.stream import sample_stream
@@ -98,6 +99,7 @@ __all__ = [
     "sample_curve",
     "sample_many",
     "sample_stream",
+    "silhouette",
     "split_patch",
     "surfaces",
     "symbolic",
@@ -123,6 +125,7 @@ _NAMES = {
     "runtime.io": "read_samples",
     "runtime.samples": "Samples SamplingReport",
     "runtime.sampling": "sample sample_many",
+    "runtime.silhouette": "silhouette",
     "runtime.sphere": "fibonacci icosphere",
     "runtime.spline": "Spline fit",
     "runtime.stream": "sample_stream",

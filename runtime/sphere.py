@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..generated import icosphere as icosahedron
-from .checks import real_values, whole_number
+from .checks import finite_array, real_values, whole_number
 from .errors import InputError
 from .threads import over_ranges
 
@@ -23,6 +23,7 @@ __all__ = [
     "part_of_fibonacci",
     "perpendicular",
     "spiral_angle",
+    "unit_vector",
 ]
 
 GOLDEN = (1 + math.sqrt(5)) / 2
@@ -125,6 +126,14 @@ def as_normals(
         return _unit(_checked_directions(array[begin:end], begin))
 
     return in_pieces(rows, 0, len(array), threads, dimension)
+
+
+def unit_vector(direction: ArrayLike, name: str) -> NDArray[np.float64]:
+    """Return three numbers, of any length but 0, as a unit vector; InputError with their name."""
+    vector = finite_array(direction, (3,), name)
+    if not vector.any():
+        raise InputError(f"{name} is the zero vector, which has no direction.")
+    return _unit(vector[None])[0]
 
 
 def perpendicular(axis: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
