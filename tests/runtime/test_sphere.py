@@ -146,7 +146,7 @@ def test_fibonacci_is_in_general_position():
 
 @pytest.mark.parametrize("nside", [1, 2, 8, 32])
 def test_healpix_lies_on_rings(nside):
-    """z = 1 − i²/3N² in the caps and 4/3 − 2i/3N between them (Gorski et al. 2005, eqs. 4 and 8)."""
+    """z = 1 − i²/3N² in the caps, 4/3 − 2i/3N between them (Gorski et al. 2005, eqs. 4 and 8)."""
     normals = gm.healpix(nside)
     assert normals.shape == (12 * nside**2, 3)
     assert normals.flags.c_contiguous
