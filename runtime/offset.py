@@ -32,7 +32,7 @@ def offset(samples: Samples, distance: float) -> Samples:
     """Return `samples.offset(distance)`."""
     d = finite_number(distance, "distance")
     _check_fields(samples)
-    arrays: dict[str, NDArray[Any]] = {x: getattr(samples, x) for x in samples.fields}
+    arrays: dict[str, Any] = {x: getattr(samples, x) for x in samples.fields}
     moved: dict[str, Array] = {}
     with np.errstate(all="ignore"):  # infinite curvatures are answers, too
         if "points" in arrays:

@@ -45,7 +45,7 @@ def test_a_cap_has_its_share(angle: float, axis: Any) -> None:
 def test_a_cap_keeps_order_and_bits() -> None:
     part = gm.cap(NORMALS, [0, 0, 1], 40)
     assert (part == NORMALS[: len(part)]).all()
-    scaled = gm.cap(8 * NORMALS, [0, 0, 1e-300], np.int64(40))
+    scaled = gm.cap(8 * NORMALS, [0, 0, 1e-300], np.float64(40))
     assert (scaled == part).all()
 
 

@@ -115,7 +115,7 @@ def test_against_the_hull_of_all_sums(pair: tuple[Any, Any]) -> None:
 def test_surfaces_against_the_hull_and_the_exact_sum() -> None:
     """The support function of splines is of third order, and no point is deeper in the hull."""
     edges = np.diag([2.0, 1.0, 1.0]), np.array([[1.0, 1, 0], [1, -1, 0], [0, 0, 3]]) / 3
-    boxes = [smooth_box(edges[0], 0.5), smooth_box(edges[1], 0.5)]
+    boxes = smooth_box(edges[0], 0.5), smooth_box(edges[1], 0.5)
     errors = []
     for cells in (48, 96):
         sums = gm.convolve(*boxes, NORMALS, cells=(cells, cells))
