@@ -18,7 +18,7 @@ from .errors import InputError, MissingFieldError
 from .fields import ARRAY_NAMES, DERIVED, FLOAT_NAMES, row_shape
 from .spline import Spline, short_label
 
-__all__ = ["ARRAY_NAMES", "Samples", "SamplingReport"]
+__all__ = ["ARRAY_NAMES", "Samples", "SamplingReport", "rows_of"]
 
 # What a field is set to that was not asked for; reading it raises MissingFieldError.
 _NOT_ASKED: Any = None
@@ -234,7 +234,7 @@ class Samples:
         return len(next(iter(self._arrays().values())))
 
     def __getitem__(self, key: ArrayLike | slice) -> Samples:
-        rows = key if isinstance(key, slice) else _rows(key, len(self))
+        rows = key if isinstance(key, slice) else rows_of(key, len(self))
         arrays = {name: array[rows] for name, array in self._arrays().items()}
         return Samples(**arrays, report=self.report, spline=self.spline)
 
@@ -319,7 +319,7 @@ def _checked(
     return np.ascontiguousarray(array)
 
 
-def _rows(key: ArrayLike, count: int) -> NDArray[Any]:
+def rows_of(key: ArrayLike, count: int) -> NDArray[Any]:
     """Return a mask (count,) or an array of valid row numbers, (M,)."""
     rows = np.asarray(key)
     if rows.shape == (0,) and rows.dtype.kind == "f":

@@ -34,7 +34,7 @@ def silhouette(
     surface: Surface | Spline,
     direction: ArrayLike,
     *,
-    count: int,
+    count: int = 1000,
     cells: Sequence[int] | None = None,
     fields: Sequence[str] | None = None,
     dtype: DTypeLike = np.float64,

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import GaussmapWarning, InputError
-from ..samples import Samples, SamplingReport
+from ..samples import Samples, SamplingReport, rows_of
 from ..sampling import sampling_report, warn_of
 from ..sphere import as_normals
 from ..spline import Spline, short_label, spline_of
@@ -26,6 +26,9 @@ __all__ = ["Convolution", "convolve"]
 @dataclass(frozen=True, eq=False, slots=True, repr=False)
 class Convolution:
     """The k sums of two points with the same normal, by normal, then by branch of the first.
+
+    A boolean mask (k,), an index array or a slice picks some of them:
+    `sums[sums.samples.elliptic]`.
 
     - `samples`: `Samples` of the convolution surface; no `uv` and `patch_index`, of which there are
       two.
@@ -52,6 +55,10 @@ class Convolution:
     def __len__(self) -> int:
         """Return the number of sums."""
         return len(self.rows)
+
+    def __getitem__(self, key: ArrayLike | slice) -> Convolution:
+        rows = key if isinstance(key, slice) else rows_of(key, len(self))
+        return replace(self, samples=self.samples[rows], rows=self.rows[rows])
 
     def __repr__(self) -> str:
         return f"Convolution({self.samples!r})"

@@ -191,8 +191,18 @@ def test_far_and_of_any_size(factor: float, shift: float) -> None:
 @pytest.mark.compiled
 def test_a_convolution_is_written_and_picked(tmp_path: Any) -> None:
     sums = gm.convolve(gm.fit(gm.surfaces.torus(), (16, 16)), ELLIPSOID, gm.icosphere(4))
-    outer = sums.samples[sums.samples.elliptic]
-    outer.write(tmp_path / "sum.ply")
+    outer = sums[sums.samples.elliptic]
+    i, j = outer.rows.T
+    assert (outer.samples.points == outer.first.points[i] + outer.second.points[j]).all()
+    assert [len(sums[x]) for x in ([], [3], slice(2, 7), [True] * len(sums))] == [
+        0,
+        1,
+        5,
+        len(sums),
+    ]
+    with pytest.raises(gm.InputError, match="index is out of range"):
+        sums[[len(sums)]]
+    outer.samples.write(tmp_path / "sum.ply")
     assert len(gm.read_samples(tmp_path / "sum.ply")) == len(outer) > 100
 
 
