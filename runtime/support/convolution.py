@@ -6,21 +6,27 @@ import math
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import GaussmapWarning, InputError
+from ..fields import new_field
 from ..samples import Samples, SamplingReport, rows_of
 from ..sampling import sampling_report, warn_of
 from ..sphere import as_normals
 from ..spline import Spline, short_label, spline_of
 from ..surface import Surface
+from ..threads import over_ranges
 from .branches import Branches, curvatures
 from .function import SupportFunction
 from .operations import pairs
 
 __all__ = ["Convolution", "convolve"]
+
+# So many sums are made at a time: there may be many more of them than branches.
+PIECE = 1 << 14
 
 
 @dataclass(frozen=True, eq=False, slots=True, repr=False)
@@ -73,16 +79,17 @@ def convolve(
 ) -> Convolution:
     """Return the convolution of two surfaces: every sum of two points that share a given normal.
 
-    Support functions add, h = h₁ + h₂ (7), and so do points and Hessians; a normal with i points on
-    the first surface and j on the second has i j sums. `normals` (S, 3) are directions of any
-    length, such as `icosphere(32)`. A `Surface` is approximated by a spline of `cells` first (see
-    `fit`; other cells for the second surface: fit it before).
+    Support functions add, h = h₁ + h₂ (7), and so do points and Hessians. A normal with i points on
+    the first surface and j on the second has i j sums; on folded surfaces these are very many.
+    `normals` (S, 3) are directions of any length, such as `icosphere(32)`. A `Surface` is
+    approximated by a spline of `cells` first (see `fit`; other cells for the second surface: fit it
+    before).
 
     For two convex bodies whose normals point outwards this is the boundary of their Minkowski sum.
     For others it is the convolution surface, of which that boundary is a part: other sheets lie
-    inside the sum. The body that the first one must not touch when it moves past the second one is
-    the sum with the second one reflected in the origin. Reflected, its outward normals are −n:
-    `SupportFunction.of_spline(second).scaled(-1).reversed()`.
+    inside the sum. A body B, moved by t, meets a body A where t lies in the sum of A and −B, that
+    is B reflected in the origin. The outward normals of −B are −n, so it is
+    `SupportFunction.of_spline(B).scaled(-1).reversed()`.
 
     K and H come from the sum of the Hessians: a radius that is infinite (a parabolic point) makes
     them NaN, a sum of radii that is 0 infinite or NaN. Flat and developable parts are not seen by
@@ -100,19 +107,32 @@ def convolve(
     if len(one) and len(two) and not len(i):
         message = f"surface {name!r}: no normal has points on both of the two."
         warnings.warn(message, GaussmapWarning, stacklevel=2)
-    mine = one.normals[i]
-    with np.errstate(all="ignore"):  # infinite radii are answers, too
-        _, gaussian, mean = curvatures(mine, one.hessian[i] + two.hessian[j])
-    samples = Samples(
-        points=one.points[i] + two.points[j],
-        normals=mine,
-        support=one.support[i] + two.support[j],
-        gaussian_curvature=gaussian,
-        mean_curvature=mean,
-        normal_index=one.normal_index[i],
-        report=SamplingReport(name, len(directions), len(i), None, None, None),
-    )
+    report = SamplingReport(name, len(directions), len(i), None, None, None)
+    samples = Samples(**_sums(one, two, i, j), report=report)
     return Convolution(samples, one, two, np.stack([i, j], axis=1))
+
+
+def _sums(
+    one: Branches, two: Branches, i: NDArray[np.int64], j: NDArray[np.int64]
+) -> dict[str, Any]:
+    """Return what samples hold of the sums of the branches i of the one and j of the other."""
+    names = ("points", "normals", "support", "gaussian_curvature", "mean_curvature")
+    arrays: dict[str, NDArray[Any]] = {x: new_field(x, len(i), np.float64) for x in names}
+
+    def work(begin: int, end: int) -> None:
+        here, first, second = slice(begin, end), i[begin:end], j[begin:end]
+        normals = one.normals[first]
+        with np.errstate(all="ignore"):  # infinite radii are answers, too
+            hessian = one.hessian[first] + two.hessian[second]
+            _, K, H = curvatures(normals, hessian)
+        arrays["points"][here] = one.points[first] + two.points[second]
+        arrays["normals"][here] = normals
+        arrays["support"][here] = one.support[first] + two.support[second]
+        arrays["gaussian_curvature"][here], arrays["mean_curvature"][here] = K, H
+
+    for _ in over_ranges(work, len(i), PIECE, None):
+        pass
+    return arrays | {"normal_index": one.normal_index[i]}
 
 
 def _branches(
