@@ -50,8 +50,8 @@ def silhouette(
 
     Samples are ordered by normal, round the circle (`normal_index`) from the angle 0 to 2π, and
     then by patch; each point comes exactly once. Along a piece of the outline where K keeps its
-    sign, that is the order along it. Parts of the outline along which the normal stays
-    the same, straight ones and a whole circle on top of a lying torus, are seen as points at most.
+    sign, that is the order along it. Parts of the outline along which the normal stays the same,
+    straight ones and the whole circle on top of a lying torus, are seen as points at most.
 
     The other arguments are those of `sample`, and so is what is raised and warned of; InputError
     also for a direction that is zero, NaN or infinite.

@@ -117,6 +117,19 @@ def test_samples_are_ordered_by_normal_and_then_by_patch() -> None:
 
 
 @compiled
+@pytest.mark.parametrize("direction", [[0, 0, 1], [1, 2, 3], [0.5, 0, 2]])
+@pytest.mark.parametrize("outside", [True, False])
+def test_the_order_is_that_along_the_outline(direction: Any, outside: bool) -> None:
+    """A step of the normal by 2π/s moves the point by that times the largest radius at most."""
+    samples = gm.silhouette(TORUS, direction, count=2000)
+    part = samples[samples.elliptic == outside]
+    steps = np.linalg.norm(part.points - np.roll(part.points, 1, axis=0), axis=1)
+    radius = 1 / np.abs(part.principal_curvatures).min()
+    assert steps.max() <= 1.01 * radius * 2 * np.pi / len(part)
+    assert len(part) == 1000
+
+
+@compiled
 @pytest.mark.parametrize(("factor", "shift"), [(1e12, 0.0), (1e-12, 0.0), (1.0, 1e6)])
 def test_far_and_of_any_size(factor: float, shift: float) -> None:
     moved = gm.Surface(
