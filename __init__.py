@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from . import symbolic
     from .runtime import surfaces
+    from .runtime.covering import covering_radius
     from .runtime.curves.circle import circle
     from .runtime.curves.curve import Curve
     from .runtime.curves.polygon import polygon_distance
@@ -41,12 +42,15 @@ if TYPE_CHECKING:
     )
     from .runtime.gaussian.parabolic_lines import ParabolicLine, Piece, parabolic_lines, split_patch
     from .runtime.io import read_samples
+    from .runtime.regions import cap, spherical_polygon
     from .runtime.samples import Samples, SamplingReport
     from .runtime.sampling import sample, sample_many
-    from .runtime.sphere import fibonacci, icosphere
+    from .runtime.silhouette import silhouette
+    from .runtime.sphere import fibonacci, healpix, icosphere, random_normals
     from .runtime.spline import Spline, fit
     from .runtime.stream import sample_stream
     from .runtime.support.branches import Branches
+    from .runtime.support.convolution import Convolution, convolve
     from .runtime.support.function import SupportFunction
     from .runtime.surface import Surface
 
@@ -55,6 +59,7 @@ __version__ = "0.1.0"
 __all__ = [
     "BoundaryArc",
     "Branches",
+    "Convolution",
     "Curve",
     "CurveReport",
     "CurveSamples",
@@ -80,21 +85,28 @@ __all__ = [
     "Surface",
     "SurfaceError",
     "UnknownNameError",
+    "cap",
     "circle",
     "classify_patches",
+    "convolve",
+    "covering_radius",
     "fibonacci",
     "fit",
     "fit_curve",
     "formulas",
+    "healpix",
     "icosphere",
     "parabolic_lines",
     "parabolic_points",
     "polygon_distance",
+    "random_normals",
     "read_samples",
     "sample",
     "sample_curve",
     "sample_many",
     "sample_stream",
+    "silhouette",
+    "spherical_polygon",
     "split_patch",
     "surfaces",
     "symbolic",
@@ -103,6 +115,7 @@ __all__ = [
 # Where the names are, each loaded when it is asked for: SymPy and Numba take their time.
 _MODULES = {"surfaces": "runtime.surfaces", "symbolic": "symbolic"}
 _NAMES = {
+    "runtime.covering": "covering_radius",
     "runtime.curves.circle": "circle",
     "runtime.curves.curve": "Curve",
     "runtime.curves.polygon": "polygon_distance",
@@ -118,12 +131,15 @@ _NAMES = {
     "runtime.gaussian.parabolic": "ParabolicCurve ParabolicPoint ParabolicPoints parabolic_points",
     "runtime.gaussian.parabolic_lines": "ParabolicLine Piece parabolic_lines split_patch",
     "runtime.io": "read_samples",
+    "runtime.regions": "cap spherical_polygon",
     "runtime.samples": "Samples SamplingReport",
     "runtime.sampling": "sample sample_many",
-    "runtime.sphere": "fibonacci icosphere",
+    "runtime.silhouette": "silhouette",
+    "runtime.sphere": "fibonacci healpix icosphere random_normals",
     "runtime.spline": "Spline fit",
     "runtime.stream": "sample_stream",
     "runtime.support.branches": "Branches",
+    "runtime.support.convolution": "Convolution convolve",
     "runtime.support.function": "SupportFunction",
     "runtime.surface": "Surface",
 }

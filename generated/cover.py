@@ -465,7 +465,7 @@ def cover_triangles(
     mu, scale, reaches, law, radius, fine, strict, most, patches, triangles, first, last,
     kept_patches, kept, cut_patches, cut, heads, links, places, weights, finest, counts, local,
 ):  # fmt: skip
-    """Look at the triangles first, …, last − 1: is every place near enough to a sample?
+    """Tell the triangles first, …, last − 1 in which every place is near enough to a sample from others.
 
     Near enough is radius / sqrt(weight). If the middle of a triangle is not, it becomes a sample, the
     next in places (…, 6), weights and local (…, 4) (patch, u, v, K), as long as there are fewer than

@@ -3,17 +3,26 @@
 from __future__ import annotations
 
 import difflib
+import math
 from collections.abc import Sequence
 from fractions import Fraction
 from numbers import Rational
-from typing import Any
+from typing import Any, SupportsFloat
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import InputError, UnknownNameError
 
-__all__ = ["known_name", "parameter_arrays", "real_array", "real_values", "whole_number"]
+__all__ = [
+    "finite_array",
+    "finite_number",
+    "known_name",
+    "parameter_arrays",
+    "real_array",
+    "real_values",
+    "whole_number",
+]
 
 
 # Beyond this a count is a mistake: no memory holds so many normals, cells or samples.
@@ -43,6 +52,27 @@ def whole_number(value: object, name: str, least: int = 1) -> int:
     if value > MOST:
         raise InputError(f"{name} must be a whole number of at most {MOST:,}, not larger.")
     return int(value)
+
+
+def finite_number(value: SupportsFloat, name: str) -> float:
+    """Return a number as a float; InputError with its name unless it is a finite one."""
+    try:
+        number = float(value) if not isinstance(value, str) else math.nan
+    except (TypeError, ValueError, OverflowError):
+        number = math.nan
+    if not math.isfinite(number):
+        raise InputError(f"{name} must be a finite number, not {value!r}.")
+    return number
+
+
+def finite_array(values: ArrayLike, shape: tuple[int, ...], name: str) -> NDArray[np.float64]:
+    """Return a float64 array of a shape; InputError with its name if it is not, or not finite."""
+    array = real_array(values, name)
+    if array.shape != shape:
+        raise InputError(f"{name} must have the shape {shape}, not {array.shape}.")
+    if not np.isfinite(array).all():
+        raise InputError(f"{name} holds NaN or infinity.")
+    return array
 
 
 def real_array(values: ArrayLike, name: str) -> NDArray[np.float64]:

@@ -32,7 +32,7 @@ from .formulas import formulas
 from .io import atomic_path, check_fields, check_target
 from .samples import Samples
 from .sampling import sample
-from .sphere import icosphere
+from .sphere import healpix, icosphere, random_normals
 from .surface import Surface
 from .surfaces import CATALOGUE, describe, names, surface
 
@@ -44,6 +44,7 @@ FAILED, INTERRUPTED, READER_GONE = 2, 130, 141
 # A number of normals or samples beyond these fits into no computer that people sit at.
 MOST_SAMPLES = 10**9
 MOST_FREQUENCY = 10**4
+LARGEST_SEED = 10**9
 
 PERIODIC = {"none": (False, False), "u": (True, False), "v": (False, True), "uv": (True, True)}
 
@@ -250,8 +251,14 @@ def _grid(options: argparse.Namespace) -> Surface:
 
 
 def _normals(options: argparse.Namespace) -> NDArray[np.float64] | None:
+    if options.seed is not None and options.random is None:
+        raise InputError("--seed is for --random COUNT, which is not there.")
     if options.frequency is not None:
         return icosphere(options.frequency)
+    if options.healpix is not None:
+        return healpix(options.healpix)
+    if options.random is not None:
+        return random_normals(options.random, seed=options.seed or 0)
     return None if options.normals is None else _read_array(options.normals)
 
 
@@ -401,7 +408,8 @@ def _add_sampling(parser: argparse.ArgumentParser, default_count: int) -> None:
     parser.set_defaults(default_count=default_count)
     parser.add_argument("surface", metavar="SURFACE", help="a name, or a .npy or .npz file")
 
-    group = parser.add_argument_group("which normals (one of)").add_mutually_exclusive_group()
+    normals = parser.add_argument_group("which normals (one of, and --seed)")
+    group = normals.add_mutually_exclusive_group()
     group.add_argument(
         "--count",
         type=_whole(MOST_SAMPLES),
@@ -413,6 +421,25 @@ def _add_sampling(parser: argparse.ArgumentParser, default_count: int) -> None:
         type=_whole(MOST_FREQUENCY),
         metavar="NU",
         help="the 10 NU^2 + 2 vertices of an icosahedron refined NU times",
+    )
+    group.add_argument(
+        "--healpix",
+        type=_whole(MOST_FREQUENCY),
+        metavar="NSIDE",
+        help="the 12 NSIDE^2 centres of the pixels of HEALPix, NSIDE a power of 2; needs pip "
+        "install 'gaussmap[spheres]'",
+    )
+    group.add_argument(
+        "--random",
+        type=_whole(MOST_SAMPLES),
+        metavar="COUNT",
+        help="COUNT random normals, uniform on the sphere",
+    )
+    normals.add_argument(
+        "--seed",
+        type=_whole(LARGEST_SEED, least=0),
+        metavar="N",
+        help="another choice of --random (default: 0)",
     )
     group.add_argument(
         "--normals", metavar="FILE.npy", help="an array (S, 3) of directions of any length"
@@ -474,15 +501,15 @@ def _add_contents(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _whole(most: int) -> Callable[[str], int]:
+def _whole(most: int, least: int = 1) -> Callable[[str], int]:
     def whole(text: str) -> int:
         try:
             number = int(text)
         except ValueError:
-            number = 0
-        if not 1 <= number <= most:
+            number = least - 1
+        if not least <= number <= most:
             raise argparse.ArgumentTypeError(
-                f"it must be a whole number from 1 to {most:,}, not {text!r}"
+                f"it must be a whole number from {least} to {most:,}, not {text!r}"
             )
         return number
 

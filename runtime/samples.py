@@ -18,7 +18,7 @@ from .errors import InputError, MissingFieldError
 from .fields import ARRAY_NAMES, DERIVED, FLOAT_NAMES, row_shape
 from .spline import Spline, short_label
 
-__all__ = ["ARRAY_NAMES", "Samples", "SamplingReport"]
+__all__ = ["ARRAY_NAMES", "Samples", "SamplingReport", "rows_of"]
 
 # What a field is set to that was not asked for; reading it raises MissingFieldError.
 _NOT_ASKED: Any = None
@@ -220,6 +220,25 @@ class Samples:
             line += f"; normals cannot see {100.0 * report.invisible_share:.2f} % of the surface"
         return line
 
+    def offset(self, distance: float) -> Samples:
+        """Return the samples moved along their normals: the offset surface x + d n.
+
+        For d < 0 it lies inwards, if normals point outwards. Points, support and curvatures are
+        those of the offset, as far as they are there; normals, parameters and indices stay, and
+        `spline` is None. The distance is in the surface's unit L.
+
+        Normals stay even where the offset folds, because d passes a radius of curvature of that
+        side: a GaussmapWarning says at how many samples it does (if their curvatures are there),
+        and the smallest radius. Where a radius becomes 0, the offset is singular: K is infinite
+        with its old sign, or NaN if it was 0, and H is NaN.
+
+        Raises InputError unless the distance is a finite number; MissingFieldError if points lack
+        their normals, or one of the curvatures the other one.
+        """
+        from .offset import offset
+
+        return offset(self, distance)
+
     def write(self, path: str | os.PathLike[str]) -> None:
         """Write the samples to a .ply, .csv, .npz, .vtp or .xyz file; see `io.write_samples`."""
         from .io import write_samples
@@ -230,7 +249,7 @@ class Samples:
         return len(next(iter(self._arrays().values())))
 
     def __getitem__(self, key: ArrayLike | slice) -> Samples:
-        rows = key if isinstance(key, slice) else _rows(key, len(self))
+        rows = key if isinstance(key, slice) else rows_of(key, len(self))
         arrays = {name: array[rows] for name, array in self._arrays().items()}
         return Samples(**arrays, report=self.report, spline=self.spline)
 
@@ -326,7 +345,7 @@ def _checked(
     return np.ascontiguousarray(array)
 
 
-def _rows(key: ArrayLike, count: int) -> NDArray[Any]:
+def rows_of(key: ArrayLike, count: int) -> NDArray[Any]:
     """Return a mask (count,) or an array of valid row numbers, (M,)."""
     rows = np.asarray(key)
     if rows.shape == (0,) and rows.dtype.kind == "f":

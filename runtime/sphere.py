@@ -1,4 +1,4 @@
-"""Sets of unit normals: the refined icosahedron, the Fibonacci lattice, and what a user brings."""
+"""Sets of unit normals: icosahedron, Fibonacci lattice, HEALPix, random, what a user brings."""
 
 from __future__ import annotations
 
@@ -11,19 +11,22 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..generated import icosphere as icosahedron
-from .checks import real_values, whole_number
-from .errors import InputError
+from .checks import finite_array, real_values, whole_number
+from .errors import InputError, MissingExtraError
 from .threads import over_ranges
 
 __all__ = [
     "as_normals",
     "fibonacci",
     "frequency_within",
+    "healpix",
     "icosphere",
     "in_pieces",
     "part_of_fibonacci",
     "perpendicular",
+    "random_normals",
     "spiral_angle",
+    "unit_vector",
 ]
 
 GOLDEN = (1 + math.sqrt(5)) / 2
@@ -41,11 +44,7 @@ def icosphere(frequency: int) -> NDArray[np.float64]:
 
     Raises InputError unless `frequency` is a whole number from 1 to 10,000.
     """
-    nu = whole_number(frequency, "frequency")
-    if nu > MOST_FREQUENT:
-        raise InputError(
-            f"frequency must be a whole number of at most {MOST_FREQUENT:,}, not {nu}."
-        )
+    nu = _refinement(frequency, "frequency")
     # Coordinates a + b φ as integers (a, b): what mirrors another point does so bit for bit.
     golden, corners = np.array([1.0, GOLDEN]), icosahedron.CORNERS
     along = np.arange(1, nu)[:, None, None]
@@ -74,6 +73,39 @@ def fibonacci(count: int) -> NDArray[np.float64]:
     """
     total = whole_number(count, "count")
     return part_of_fibonacci(total, 0, total)
+
+
+def healpix(nside: int) -> NDArray[np.float64]:
+    """Return the 12 nside² centres (…, 3) of the pixels of HEALPix, ring by ring from +z to −z.
+
+    Pixels have equal areas, and their centres lie on rings of equal latitude; those on the equator
+    and on some meridians lie in planes of symmetry. `nside` is a power of 2 up to 8,192.
+
+    Needs astropy-healpix, which the extra "spheres" brings: MissingExtraError if it is not
+    installed. Raises InputError unless `nside` is such a number.
+    """
+    size = _refinement(nside, "nside")
+    if size & (size - 1):
+        raise InputError(f"nside must be a power of 2, not {size}.")
+    try:
+        from astropy_healpix import healpix_to_xyz
+    except ImportError as error:
+        raise MissingExtraError(
+            f"HEALPix needs astropy-healpix, but it cannot be imported ({error}); run: pip install "
+            '"gaussmap[spheres]"'
+        ) from error
+    return as_normals(np.stack(healpix_to_xyz(np.arange(12 * size**2), size, order="ring"), axis=1))
+
+
+def random_normals(count: int, *, seed: int = 0) -> NDArray[np.float64]:
+    """Return `count` unit normals (count, 3), independent and uniform on the sphere.
+
+    The same seed gives the same normals (with the same version of NumPy), and fewer of them are the
+    first of more. They are less even than those of a lattice: about 1/e of the pieces of 4π/count
+    stay empty. Raises InputError unless `count` and `seed` are whole numbers, of at least 1 and 0.
+    """
+    total, start = whole_number(count, "count"), whole_number(seed, "seed", least=0)
+    return as_normals(np.random.default_rng(start).standard_normal((total, 3)))
 
 
 def part_of_fibonacci(
@@ -134,12 +166,30 @@ def as_normals(
     return in_pieces(rows, 0, len(array), threads, dimension)
 
 
+def unit_vector(direction: ArrayLike, name: str) -> NDArray[np.float64]:
+    """Return three numbers, of any length but 0, as a unit vector; InputError with their name."""
+    vector = finite_array(direction, (3,), name)
+    if not vector.any():
+        raise InputError(f"{name} is the zero vector, which has no direction.")
+    return _unit(vector[None])[0]
+
+
 def perpendicular(axis: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return two unit vectors that make a right-handed frame with a unit vector."""
     least = np.eye(3)[np.argmin(np.abs(axis))]
     across = np.cross(least, axis)
     across /= np.linalg.norm(across)
     return across, np.cross(axis, across)
+
+
+def _refinement(value: int, name: str) -> int:
+    """Return how fine a set shall be; InputError if it is no number, or larger than any memory."""
+    number = whole_number(value, name)
+    if number > MOST_FREQUENT:
+        raise InputError(
+            f"{name} must be a whole number of at most {MOST_FREQUENT:,}, not {number}."
+        )
+    return number
 
 
 def _checked_directions(values: NDArray[Any], start: int) -> NDArray[np.float64]:

@@ -44,8 +44,8 @@ def sample_stream(
     With `count`, not even the normals are ever in memory all at once.
 
     `Samples.concatenate(sample_stream(…))` is `sample(…, density="gauss")`, bit for bit and in the
-    same order, for up to 1,048,576 normals. More of them are searched in blocks of so many: the samples are the
-    same, but ordered by block of normals, then by patch, then by normal.
+    same order, for up to 1,048,576 normals. More of them are searched in blocks of so many: the
+    samples are the same, but ordered by block of normals, then by patch, then by normal.
 
     There is at least one chunk, and all but the last of each block are full. A chunk's report
     counts the samples of the chunk, and no degenerate patches; a GaussmapWarning comes at the end.

@@ -345,6 +345,7 @@ def support_source() -> str:
             "hessian_at": block(support.HESSIAN_AT),
             "offset": block(support.OFFSET),
             "offset_curvature": block(support.OFFSET_CURVATURE),
+            "offset_growth": block(support.OFFSET_GROWTH),
             "tangent_plane": block(support.TANGENT_PLANE),
             "curvature_from_hessian": block(support.CURVATURE_FROM_HESSIAN),
             "store_hessian_of_size": hessian_entries("{entry} = {name} / size"),

@@ -27,6 +27,7 @@ __all__ = [
     "INTRINSIC_GRADIENT",
     "OFFSET",
     "OFFSET_CURVATURE",
+    "OFFSET_GROWTH",
     "PARAMETERS_AT",
     "SECOND_DERIVATIVES",
     "TANGENT_PLANE",
@@ -205,28 +206,54 @@ def _curvature_from_hessian() -> Formula:
 CURVATURE_FROM_HESSIAN = _curvature_from_hessian()
 
 
+K, H = scalar("K"), scalar("H")
+AREA_GROWTH = 1 + 2 * R * H + R**2 * K
+
+
+def _in_radii(value: sp.Expr, change: sp.Expr = sp.S.Zero) -> sp.Expr:
+    """Write what K and H say in the principal radii, after these have changed."""
+    R_1, R_2 = (scalar(name) + change for name in ("R_1", "R_2"))
+    return substitute(value, {K: 1 / (R_1 * R_2), H: (R_1 + R_2) / (2 * R_1 * R_2)})
+
+
 def _offset_curvature() -> Formula:
     """Add R to both radii, and write the result in the curvatures."""
-    K, H, R_1, R_2 = (scalar(name) for name in ("K", "H", "R_1", "R_2"))
-    of_radii = {K: 1 / (R_1 * R_2), H: (R_1 + R_2) / (2 * R_1 * R_2)}
     s = scalar("s")
-    growth = {s: 1 + 2 * R * H + R**2 * K}
     outputs = [("K_offset", K / s), ("H_offset", (H + R * K) / s)]
     for (_, target), curvature in zip(outputs, (K, H), strict=True):
-        moved = substitute(of_radii[curvature], {R_1: R_1 + R, R_2: R_2 + R})
-        if sp.cancel(substitute(substitute(target, growth), of_radii) - moved) != 0:
+        moved = _in_radii(curvature, R)
+        if sp.cancel(_in_radii(substitute(target, {s: AREA_GROWTH})) - moved) != 0:
             raise ArithmeticError(f"{target} is not {moved}")
     return Formula.build(
         "offset_curvature",
         "Gaussian and mean curvature of the offset at the distance $R$, of use also where a radius "
         "is infinite. $s$ is how much the product of the radii grows: 0 where one becomes 0.",
         inputs=[K, H, R],
-        terms=[("s", growth[s])],
+        terms=[("s", AREA_GROWTH)],
         outputs=outputs,
     )
 
 
+def _offset_growth() -> Formula:
+    """Say by which factors (R_i + R)/R_i the radii grow: their product and their mean."""
+    factors = [1 + R / scalar(name) for name in ("R_1", "R_2")]
+    outputs = {"s": AREA_GROWTH, "m": 1 + R * H}
+    expected = factors[0] * factors[1], (factors[0] + factors[1]) / 2
+    for written, derived in zip(outputs.values(), expected, strict=True):
+        if sp.cancel(_in_radii(written) - derived) != 0:
+            raise ArithmeticError(f"{written} is not {derived}")
+    return Formula.build(
+        "offset_growth",
+        "The factors by which an offset at the distance $R$ stretches the surface along its two "
+        "principal directions: their product $s$ and their mean $m$. Both are positive where $R$ "
+        "has passed no radius of curvature; elsewhere the offset is folded.",
+        inputs=[K, H, R],
+        outputs=list(outputs.items()),
+    )
+
+
 OFFSET_CURVATURE = _offset_curvature()
+OFFSET_GROWTH = _offset_growth()
 
 BRANCH = compose(
     "branch",
@@ -260,6 +287,7 @@ FORMULAS = (
     HESSIAN_OF_EXTENSION,
     OFFSET,
     OFFSET_CURVATURE,
+    OFFSET_GROWTH,
     CURVATURE_FROM_HESSIAN,
     BRANCH,
     PARAMETERS_AT,

@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-
 from scipy.spatial import KDTree
 
 from .cover import Cover
 
+# Normals with different signs of K are so far apart: farther than any others.
 APART = 2.0
 
 __all__ = ["cover_normals", "largest_angle"]
@@ -56,7 +56,7 @@ def widest_angles(cover: Cover, number: int) -> None:
 
 
 def largest_angle(cover: Cover) -> float:
-    """Return the largest angle, in degrees, that any middle of a triangle makes with all samples."""
+    """Return the largest angle, in degrees, between a normal of the surface and all samples'."""
     largest = float(_chords(cover, cover.middles()).max(initial=0.0))
     return math.degrees(2.0 * math.asin(min(largest / 2.0, 1.0)))
 

@@ -137,7 +137,7 @@ class Cover:
         self._measure_gaps()
 
     def _measure_gaps(self) -> None:
-        """Find the distances to the nearest samples where none is near, or none on the same side."""
+        """Find the nearest samples where none is near, or none on the same side."""
         from scipy.spatial import KDTree
 
         (unknown,) = np.nonzero(np.isinf(self.triangles[:, 3]))
@@ -208,7 +208,8 @@ class Cover:
         counts = np.array([0, 0, self.count])
         kernels.cover_triangles(
             wanted.spline.coefficients, wanted.spline.scale, wanted.reaches, wanted.law.numbers,
-            radius, fine, strict, self.count + size if most is None else most, patches, triangles, 0, size,
+            radius, fine, strict, self.count + size if most is None else most,
+            patches, triangles, 0, size,
             *kept, *cut, self.heads, self.links, self.points, self.weights, self.finest, counts,
             self.local,
         )  # fmt: skip

@@ -35,8 +35,8 @@ FLAT_SHARE = 0.25
 UNBENT = 1e-9
 # |K|^α vanishes where K does; there no gap is wider than this many others.
 WIDEST_GAP = 1000.0
-# So many samples of a cover each sample of the normals is taken to save. They save up to 0.7, but on
-# what it does not count gaps are filled more closely, which is good for gentle surfaces.
+# So many samples of a cover each sample of the normals is taken to save. They save up to 0.7; with
+# less, more is left for the gaps, where |K| alone leaves wide ones.
 SAVED = 0.25
 # Steps of the bisection for how many normals leave room for a coverage, and when it ends; it begins
 # with exp(−FEWEST_NORMALS) of them.
@@ -193,7 +193,7 @@ class Filling:
     # --- the normals ------------------------------------------------------------------------------
 
     def _search_lattice(self, density: float, most: int | None = None) -> None:
-        """Search a lattice of so many normals per steradian, if the surface has any that they see."""
+        """Search a lattice of so many normals per steradian, if the surface shows any."""
         seen = visible_solid_angle(self.spline, density)
         if round(density * seen) == 0:
             return
@@ -220,7 +220,7 @@ class Filling:
         self.given = Samples(**arrays, report=report, spline=self.spline)
 
     def _density_met(self) -> float:
-        """How many of the normals that were searched there are per steradian of the surface's image."""
+        """How many of the searched normals there are per steradian of the Gaussian image."""
         seen = visible_solid_angle(self.spline, self.density)
         came = 0 if self.given is None else len(self.given)
         return came / seen if came and seen > 0.0 else self.density

@@ -22,7 +22,8 @@ PATCHES_AT_A_TIME = 1 << 12
 class Law:
     """Samples per area, up to a factor: bend κ² + power |K|^α, but no less than a floor.
 
-    κ is the larger principal curvature, in modulus. Curvatures are those of the surface times its `unit` (see `Wanted`).
+    κ is the larger principal curvature, in modulus. Curvatures are those of the surface times its
+    `unit` (see `Wanted`).
     """
 
     floor: float = 0.0

@@ -26,4 +26,4 @@ def relax(cover: Cover, steps: int) -> None:
     cover.remove(np.arange(cover.given, count))
     if cover.given:
         widest_angles(cover, round(FOR_NORMALS * (count - cover.given)))
-    cover.narrow(2.0 * widest, count, STEP ** 0.5**steps, FINE * 0.5**steps, strict=False)
+    cover.narrow(2.0 * widest, count, STEP**0.5**steps, FINE * 0.5**steps, strict=False)

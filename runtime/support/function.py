@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, SupportsFloat
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import real_array
+from ..checks import finite_array, finite_number
 from ..errors import InputError
 from ..sphere import as_normals
 from ..spline import Spline, spline_of
@@ -166,21 +165,21 @@ class SupportFunction:
 
         Raises InputError unless the distance is a finite number.
         """
-        return SupportFunction(Offset(self._source, _finite(distance, "distance")))
+        return SupportFunction(Offset(self._source, finite_number(distance, "distance")))
 
     def translated(self, shift: ArrayLike) -> SupportFunction:
         """Return h + n·t: the surface of the points x + t.
 
         Raises InputError unless t is three finite numbers.
         """
-        return SupportFunction(Translated(self._source, _array(shift, (3,), "shift")))
+        return SupportFunction(Translated(self._source, finite_array(shift, (3,), "shift")))
 
     def rotated(self, rotation: ArrayLike) -> SupportFunction:
         """Return h(Rᵀn): the surface of the points R x, for a rotation matrix R (3, 3).
 
         Raises InputError unless R Rᵀ = 1 (up to 1e-12) and det R = 1.
         """
-        R = _array(rotation, (3, 3), "rotation")
+        R = finite_array(rotation, (3, 3), "rotation")
         with np.errstate(over="ignore", invalid="ignore"):
             orthogonal = np.abs(R @ R.T - np.eye(3)).max() <= ROTATION_ERROR
         if not orthogonal:
@@ -195,7 +194,7 @@ class SupportFunction:
         For s < 0 the points are also reflected in the origin, and keep their normals (as p_u × p_v
         does): the radii change their sign. Raises InputError unless s is finite and not 0.
         """
-        s = _finite(factor, "factor")
+        s = finite_number(factor, "factor")
         if s == 0.0:
             raise InputError("factor must not be 0: the surface would shrink to a point.")
         return SupportFunction(Scaled(self._source, s))
@@ -234,22 +233,3 @@ class SupportFunction:
 
 def _kind(value: object) -> str:
     return type(value).__name__
-
-
-def _finite(value: SupportsFloat, name: str) -> float:
-    try:
-        number = float(value) if not isinstance(value, str) else math.nan
-    except (TypeError, ValueError, OverflowError):
-        number = math.nan
-    if not math.isfinite(number):
-        raise InputError(f"{name} must be a finite number, not {value!r}.")
-    return number
-
-
-def _array(values: ArrayLike, shape: tuple[int, ...], name: str) -> NDArray[np.float64]:
-    array = real_array(values, name)
-    if array.shape != shape:
-        raise InputError(f"{name} must have the shape {shape}, not {array.shape}.")
-    if not np.isfinite(array).all():
-        raise InputError(f"{name} holds NaN or infinity.")
-    return array

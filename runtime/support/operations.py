@@ -18,7 +18,7 @@ from .sources import Source
 if TYPE_CHECKING:
     import sympy
 
-__all__ = ["Offset", "Reversed", "Rotated", "Scaled", "Sum", "Translated"]
+__all__ = ["Offset", "Reversed", "Rotated", "Scaled", "Sum", "Translated", "pairs"]
 
 Vector = NDArray[np.float64]
 
@@ -37,7 +37,7 @@ class Sum:
     def sheets(self, normals: Vector) -> Sheets:
         """Return all pairs of branches of each normal; by (7) points and Hessians add."""
         one, two = self.first.sheets(normals), self.second.sheets(normals)
-        i, j = _pairs(one.normal_index, two.normal_index, len(normals))
+        i, j = pairs(one.normal_index, two.normal_index, len(normals))
         rows, hessian = one.normal_index[i], one.hessian[i] + two.hessian[j]
         _, gaussian, mean = curvatures(normals[rows], hessian)
         patches, others = one.patch_index[i], two.patch_index[j]
@@ -217,7 +217,7 @@ class Reversed(Changed):
         return -h
 
 
-def _pairs(
+def pairs(
     first: NDArray[np.int64], second: NDArray[np.int64], count: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Return the rows i, j of all pairs with first[i] == second[j]; both are ascending."""

@@ -112,6 +112,22 @@ def test_the_normals_of_an_icosphere() -> None:
     np.testing.assert_array_equal(samples.normals, gm.icosphere(3)[samples.normal_index])
 
 
+@pytest.mark.parametrize(
+    ("arguments", "normals"),
+    [
+        (["--healpix", "4"], gm.healpix(4)),
+        (["--random", "150"], gm.random_normals(150)),
+        (["--random", "150", "--seed", "7"], gm.random_normals(150, seed=7)),
+        (["--seed", "0", "--random", "150"], gm.random_normals(150, seed=0)),
+    ],
+)
+def test_other_sets_of_normals(arguments: list[str], normals: np.ndarray) -> None:
+    assert main(["sample", "torus", *arguments, "--cells", "8", "8", "-o", "a.npz"]) == 0
+    samples = gm.read_samples("a.npz")
+    assert samples.report.normals == len(normals)
+    np.testing.assert_array_equal(samples.normals, normals[samples.normal_index])
+
+
 @pytest.mark.usefixtures("files")
 @pytest.mark.parametrize("source", ["directions.npy", "both.npz:those"])
 def test_normals_from_a_file(source: str) -> None:
@@ -276,11 +292,17 @@ HEIGHTS = ["--spacing", "1", "1", *TO]
         (["sample", "torus", "--cout", "5", *TO], "unrecognized arguments: --cout 5"),
         (["sample", "torus", "--coun", "5", *TO], "unrecognized arguments: --coun 5"),
         (["sample", "torus", "--count", "5", "--frequency", "3", *TO], "not allowed with"),
+        (["sample", "torus", "--random", "5", "--healpix", "4", *TO], "not allowed with"),
+        (["sample", "torus", "--seed", "5", *TO], "--seed is for --random COUNT, which is not"),
+        (["sample", "torus", "--seed", "5", "--frequency", "3", *TO], "--seed is for --random"),
+        (["sample", "torus", "--random", "5", "--seed", "-1", *TO], "--seed: .* from 0 to"),
+        (["sample", "torus", "--random", "5", "--seed", *TO], "--seed: expected one argument"),
+        (["sample", "torus", "--healpix", "3", *TO], "nside must be a power of 2, not 3"),
         (["--nonsense", "surfaces"], "unrecognized arguments"),
         # numbers
         *[
             (["sample", "torus", f"--{option}", number, *TO], f"--{option}: it must be a whole")
-            for option in ("count", "frequency", "threads")
+            for option in ("count", "frequency", "healpix", "random", "threads")
             for number in ("0", "-5", "abc", "1e4", "2.0", "nan", "", "9" * 5000)
         ],
         (["sample", "torus", "--cells", "8", "0", *TO], "--cells: it must be a whole number"),
@@ -381,6 +403,15 @@ def test_bad_output_is_found_before_the_work(monkeypatch: pytest.MonkeyPatch) ->
 
 
 @compiled
+def test_healpix_that_is_not_installed(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "astropy_healpix", None)
+    assert main(["sample", "torus", "--healpix", "4", *TO]) == 2
+    assert 'run: pip install "gaussmap[spheres]"' in capsys.readouterr().err
+    assert not Path("a.npz").exists()
+
+
 def test_an_error_in_a_process() -> None:
     done = gaussmap("sample", "tours", "-o", "a.ply")
     assert (done.returncode, done.stdout) == (2, "")

@@ -86,6 +86,13 @@ def test_torus_fibonacci(cells: int) -> None:
     check_torus(samples, normals, np.array([0.0, 0.0, 1.0]))
 
 
+@pytest.mark.parametrize("cells", [16, 40, 64])
+def test_torus_healpix(cells: int) -> None:
+    for normals in (gm.healpix(1), gm.healpix(8), gm.healpix(64), gm.random_normals(50_000)):
+        samples = gm.sample(TORUS, normals, cells=(cells, cells))
+        check_torus(samples, normals, np.array([0.0, 0.0, 1.0]))
+
+
 @pytest.mark.parametrize("shift", [0.0, 1e6, 1e9])
 @pytest.mark.parametrize("factor", [1.0, 1e9, 1e-9, 1e12, 1e-12, 1e150, 1e-150])
 @pytest.mark.parametrize("turned", [False, True])

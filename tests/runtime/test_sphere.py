@@ -1,5 +1,7 @@
 """Sets of normals: how many, how long, how even; and what a user brings."""
 
+import sys
+
 import gaussmap as gm
 import numpy as np
 import pytest
@@ -80,16 +82,25 @@ def test_icosphere_begins_with_vertices_then_edges():
     assert {tuple(x) for x in (edge.round(9) + 0.0).tolist()} == expected
 
 
-@pytest.mark.parametrize("make", [gm.icosphere, gm.fibonacci])
+MAKERS = [gm.icosphere, gm.fibonacci, gm.healpix, gm.random_normals]
+
+
+@pytest.mark.parametrize("make", MAKERS)
 @pytest.mark.parametrize("number", [0, -1, 1.0, True, "4", None, np.nan, [4], 4j])
 def test_numbers_that_are_none(make, number):
     with pytest.raises(gm.InputError, match=r"must be a whole number of at least 1, not "):
         make(number)
 
 
-@pytest.mark.parametrize("make", [gm.icosphere, gm.fibonacci])
+@pytest.mark.parametrize("make", MAKERS)
 def test_numpy_integers_are_numbers(make):
-    assert (make(np.int16(7)) == make(7)).all()
+    assert (make(np.int16(8)) == make(8)).all()
+
+
+@pytest.mark.parametrize("make", [gm.icosphere, gm.healpix])
+def test_refinements_that_no_memory_holds(make):
+    with pytest.raises(gm.InputError, match=r"must be a whole number of at most 10,000, not 10001"):
+        make(10_001)
 
 
 # --- fibonacci ------------------------------------------------------------------------------------
@@ -128,6 +139,75 @@ def test_fibonacci_is_in_general_position():
     normals = gm.fibonacci(10_001)
     assert (normals == 0.0).any(axis=1).sum() <= 2  # k = 0 lies in the plane y = 0
     assert np.abs(np.diff(np.sort(np.abs(normals[1:, 1])))).min() > 0.0
+
+
+# --- HEALPix --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("nside", [1, 2, 8, 32])
+def test_healpix_lies_on_rings(nside):
+    """z = 1 − i²/3N² in the caps, 4/3 − 2i/3N between them (Gorski et al. 2005, eqs. 4 and 8)."""
+    normals = gm.healpix(nside)
+    assert normals.shape == (12 * nside**2, 3)
+    assert normals.flags.c_contiguous
+    np.testing.assert_allclose(lengths(normals), 1.0, rtol=0, atol=2 * ULP)
+    ring = np.arange(1, 4 * nside)
+    north = np.where(ring < nside, 1 - ring**2 / (3 * nside**2), 4 / 3 - 2 * ring / (3 * nside))[
+        : 2 * nside
+    ]
+    heights = np.concatenate([north, -north[-2::-1]])
+    counts = 4 * np.minimum(np.minimum(ring, 4 * nside - ring), nside)
+    # where z is near 1 its rounding is that of the angle
+    np.testing.assert_allclose(normals[:, 2], np.repeat(heights, counts), rtol=0, atol=8 * ULP)
+    first = np.arctan2(*normals[:4, 1::-1].T)
+    np.testing.assert_allclose(np.mod(first, 2 * np.pi), np.pi / 4 * np.array([1, 3, 5, 7]))
+
+
+def test_healpix_gives_equal_areas_equal_shares():
+    normals = gm.healpix(32)
+    np.testing.assert_allclose(normals.mean(axis=0), 0, rtol=0, atol=16 * ULP)
+    np.testing.assert_allclose(normals.T @ normals / len(normals), np.eye(3) / 3, atol=1e-4)
+
+
+@pytest.mark.parametrize("nside", [3, 6, 100, 9999])
+def test_healpix_is_refined_by_halving(nside):
+    with pytest.raises(gm.InputError, match=f"nside must be a power of 2, not {nside}"):
+        gm.healpix(nside)
+
+
+def test_healpix_names_what_it_needs(monkeypatch):
+    monkeypatch.setitem(sys.modules, "astropy_healpix", None)
+    with pytest.raises(gm.MissingExtraError, match=r'needs astropy-healpix.*"gaussmap\[spheres\]"'):
+        gm.healpix(2)
+
+
+# --- random ---------------------------------------------------------------------------------------
+
+
+def test_random_normals_are_those_of_their_seed():
+    normals = gm.random_normals(1000, seed=3)
+    np.testing.assert_allclose(lengths(normals), 1.0, rtol=0, atol=2 * ULP)
+    assert (gm.random_normals(1000, seed=3) == normals).all()
+    assert (gm.random_normals(10, seed=3) == normals[:10]).all()
+    assert (gm.random_normals(1000, seed=4) != normals).all()
+    assert (gm.random_normals(5) == gm.random_normals(5, seed=0)).all()
+
+
+def test_random_normals_are_uniform():
+    """Archimedes: each coordinate is uniform in [−1, 1]; 5 σ of the mean and of the shares."""
+    count = 100_000
+    normals = gm.random_normals(count, seed=1)
+    assert np.abs(normals.mean(axis=0)).max() < 5 / np.sqrt(3 * count)
+    for axis in range(3):
+        share = np.histogram(normals[:, axis], bins=10, range=(-1, 1))[0] / count
+        assert np.abs(share - 0.1).max() < 5 * np.sqrt(0.09 / count)
+    assert np.abs(normals.T @ normals / count - np.eye(3) / 3).max() < 5 / np.sqrt(5 * count)
+
+
+@pytest.mark.parametrize("seed", [-1, 1.0, None, "3", True])
+def test_seeds_that_are_none(seed):
+    with pytest.raises(gm.InputError, match=r"seed must be a whole number of at least 0, not "):
+        gm.random_normals(5, seed=seed)
 
 
 # --- as_normals -----------------------------------------------------------------------------------

@@ -116,6 +116,9 @@ def test_offset_is_the_sphere_and_adds_to_the_radii():
     moved = formulas["offset_curvature"].expanded()  # radii 2 and 3 become 6 and 7
     assert moved["K_offset"].xreplace(numbers) == sp.Rational(1, 42)
     assert moved["H_offset"].xreplace(numbers) == (sp.Rational(1, 6) + sp.Rational(1, 7)) / 2
+    growth = formulas["offset_growth"].expanded()
+    assert growth["s"].xreplace(numbers) == sp.Rational(6 * 7, 2 * 3)
+    assert growth["m"].xreplace(numbers) == (sp.Rational(6, 2) + sp.Rational(7, 3)) / 2
 
 
 # --- homogeneity, and the kernels of expressions --------------------------------------------------

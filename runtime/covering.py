@@ -1,0 +1,81 @@
+"""The covering radius of a set of normals: how far a direction can be from the nearest of them."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .regions import angles_between
+from .sphere import as_normals
+
+__all__ = ["covering_radius"]
+
+Array = NDArray[np.float64]
+
+# A cap in degrees that grows by less has stopped growing.
+ROUNDING = 1e-12
+
+
+def covering_radius(normals: ArrayLike) -> float:
+    """Return the largest angle in degrees from any direction to the nearest of the normals (S, 3).
+
+    It is exact, up to rounding: each facet of the convex hull of the normals stands for the largest
+    empty cap round its own normal, and the covering radius is the largest angle of these caps. A
+    surface point whose Gaussian image is covered by the set has a sample whose normal is no farther
+    from its own than that.
+
+    The whole sphere is what is to be covered. For normals that fill a part of it only, such as a
+    `cap`, that is 180° minus the radius of the smallest cap that holds them: how well they cover
+    that part is another question, which this function does not answer.
+
+    Raises InputError for normals as `sample` does.
+    """
+    directions = as_normals(normals)
+    from scipy.spatial import ConvexHull, QhullError
+
+    try:
+        hull = ConvexHull(directions)
+    except QhullError:  # all in one plane, or fewer than four
+        return 180.0 - _smallest_cap(directions)
+    outwards, corners = hull.equations[:, :3], directions[hull.simplices[:, 0]]
+    largest = float(angles_between(outwards, corners).max())
+    # Beyond a facet that the centre of the sphere sees, a direction may be farther still.
+    return largest if largest <= 90.0 else 180.0 - _smallest_cap(directions)
+
+
+def _smallest_cap(normals: Array) -> float:
+    """Return the radius in degrees, at most 90, of the smallest cap that holds all normals.
+
+    It is the smallest cap of at most three of them. Normals that it leaves out are taken in one by
+    one, the farthest first, and the cap grows with each.
+    """
+    basis, radius = normals[:1], -1.0
+    while True:
+        centre, basis, grown = _cap_of_few(basis)
+        if grown <= radius + ROUNDING:
+            return min(grown, 90.0)
+        radius = grown
+        farthest = normals[np.argmin(normals @ centre)]
+        if angles_between(farthest, centre) <= radius + ROUNDING:
+            return min(radius, 90.0)
+        basis = np.concatenate([basis, farthest[None]])
+
+
+def _cap_of_few(normals: Array) -> tuple[Array, Array, float]:
+    """Return centre, those that determine it, and radius of the smallest cap of up to four."""
+    found: list[tuple[float, Array, Array]] = []
+    for size in (1, 2, 3):
+        for rows in combinations(normals, size):
+            few = np.array(rows)
+            middle = few.sum(axis=0)
+            if size == 3:
+                across = np.cross(few[1] - few[0], few[2] - few[0])
+                middle = np.copysign(1.0, across @ middle) * across
+            length = np.linalg.norm(middle)
+            if length > 0.0:
+                centre = middle / length
+                found.append((float(angles_between(normals, centre).max()), centre, few))
+    radius, centre, few = min(found, key=lambda x: x[0])
+    return centre, few, radius

@@ -1,0 +1,85 @@
+"""Offsets of samples: x + d n, with the same normals, and the curvatures that follow."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..generated import support as kernels
+from .checks import finite_number
+from .errors import GaussmapWarning, MissingFieldError
+from .samples import Samples
+
+__all__ = ["offset"]
+
+Array = NDArray[np.float64]
+
+# What the fields of an offset are computed from.
+NEEDED = {
+    "points": ("normals",),
+    "gaussian_curvature": ("mean_curvature",),
+    "mean_curvature": ("gaussian_curvature",),
+}
+# The rounding of K, H and of 1 + 2 d H + d² K, beside its terms, in units of the last place.
+ROUNDING = 4.0
+
+
+def offset(samples: Samples, distance: float) -> Samples:
+    """Return `samples.offset(distance)`."""
+    d = finite_number(distance, "distance")
+    _check_fields(samples)
+    arrays: dict[str, Any] = {x: getattr(samples, x) for x in samples.fields}
+    moved: dict[str, Array] = {}
+    with np.errstate(all="ignore"):  # infinite curvatures are answers, too
+        if "points" in arrays:
+            moved["points"] = arrays["points"] + d * arrays["normals"].astype(np.float64)
+        if "support" in arrays:
+            moved["support"] = arrays["support"].astype(np.float64) + d
+        if "gaussian_curvature" in arrays:
+            moved |= _curvatures(samples, d)
+        arrays |= {name: array.astype(samples.dtype) for name, array in moved.items()}
+    report = replace(
+        samples.report,
+        surface=f"{samples.report.surface} offset by {d:g}",
+        invisible_share=None,  # flat parts keep their area, and the others do not
+    )
+    return Samples(**arrays, report=report)
+
+
+def _curvatures(samples: Samples, d: float) -> dict[str, Array]:
+    """Return K and H of the offset, and warn where it is folded."""
+    K = samples.gaussian_curvature.astype(np.float64)
+    H = samples.mean_curvature.astype(np.float64)
+    folded = np.empty(len(samples), dtype=np.bool_)
+    rounding = ROUNDING * float(np.finfo(samples.dtype).eps)
+    kernels.offset_curvatures(d, rounding, K, H, folded)
+    if folded.any():
+        _warn(samples, d, folded)
+    return {"gaussian_curvature": K, "mean_curvature": H}
+
+
+def _check_fields(samples: Samples) -> None:
+    for name, needed in NEEDED.items():
+        missing = [x for x in needed if x not in samples.fields]
+        if name in samples.fields and missing:
+            raise MissingFieldError(
+                f"the offset of {name} needs {missing[0]}, but these samples hold "
+                f"{', '.join(samples.fields)} only; add {missing[0]!r} to fields=... when sampling."
+            )
+
+
+def _warn(samples: Samples, d: float, folded: NDArray[np.bool_]) -> None:
+    """Say where the distance has reached a radius of curvature, and which is the smallest."""
+    towards = -np.sign(d) * samples[folded].principal_curvatures
+    largest = np.where(np.isnan(towards), np.inf, towards).max()  # NaN: a curvature is infinite
+    warnings.warn(
+        f"surface {samples.report.surface!r}: the distance {d:g} reaches a radius of curvature at "
+        f"{int(folded.sum()):,} of {len(samples):,} samples, where the offset folds; the smallest "
+        f"radius on that side is {1.0 / largest:g}.",
+        GaussmapWarning,
+        stacklevel=5,
+    )

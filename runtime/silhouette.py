@@ -1,0 +1,98 @@
+"""`silhouette`: where a surface is seen edge-on, from normals on a great circle."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+from .bins import NormalBins
+from .checks import whole_number
+from .compiling import compilation_shown
+from .curves.circle import circle
+from .fields import checked_dtype, checked_fields
+from .samples import Samples
+from .sampling import sampling_report, warn_of
+from .search import Hits, fill, find
+from .sphere import as_normals, perpendicular, unit_vector
+from .spline import Spline, spline_of
+from .surface import Surface
+from .threads import thread_count
+
+__all__ = ["great_circle", "silhouette"]
+
+# `count` is met by changing the number of normals, until it is this near or after so many tries.
+NEAR_ENOUGH = 0.01
+TRIES = 6
+# At most this many normals for each sample that was asked.
+NORMALS_PER_SAMPLE = 100
+
+
+def silhouette(
+    surface: Surface | Spline,
+    direction: ArrayLike,
+    *,
+    count: int = 1000,
+    cells: Sequence[int] | None = None,
+    fields: Sequence[str] | None = None,
+    dtype: DTypeLike = np.float64,
+    threads: int | None = None,
+    progress: bool = False,
+) -> Samples:
+    """Return points of a surface whose normals are perpendicular to a direction, about `count`.
+
+    They lie on the contour generator, which a parallel projection along `direction` (three numbers
+    of any length) shows as the outline: all of it, also where the surface hides it. Where K < 0
+    the outline is concave. The normals are spread evenly over a great circle: points crowd where
+    the outline bends.
+
+    Samples are ordered by normal, round the circle (`normal_index`) from the angle 0 to 2π, and
+    then by patch; each point comes exactly once. Along a piece of the outline where K keeps its
+    sign, that is the order along it. Parts of the outline along which the normal stays the same,
+    straight ones and the whole circle on top of a lying torus, are seen as points at most.
+
+    The other arguments are those of `sample`, and so is what is raised and warned of; InputError
+    also for a direction that is zero, NaN or infinite.
+    """
+    wanted, number = checked_fields(fields), checked_dtype(dtype)
+    axis, asked = unit_vector(direction, "direction"), whole_number(count, "count")
+    thread_count(threads)
+    with compilation_shown(progress):
+        spline = spline_of(surface, cells)
+        bins, hits = _by_count(spline, axis, asked, threads, progress)
+        arrays = fill(spline, bins, hits, threads, wanted, number)
+    order = np.argsort(hits.normal_index, kind="stable")
+    asked_normals = len(bins.normals)
+    density = asked_normals / (4 * math.pi)
+    report = sampling_report(spline, asked_normals, len(hits), density, hits.developable)
+    warn_of(report, asked, stacklevel=3)
+    return Samples(**{x: y[order] for x, y in arrays.items()}, report=report, spline=spline)
+
+
+def great_circle(axis: NDArray[np.float64], count: int) -> NDArray[np.float64]:
+    """Return unit normals (count, 3) perpendicular to a unit vector, anticlockwise round it."""
+    return as_normals(circle(count) @ np.stack(perpendicular(axis)))
+
+
+def _by_count(
+    spline: Spline,
+    axis: NDArray[np.float64],
+    count: int,
+    threads: int | None,
+    progress: bool,
+) -> tuple[NormalBins, Hits]:
+    """Change the number of normals until about `count` samples come."""
+    size, best = count, None
+    for _ in range(TRIES):
+        bins = NormalBins(great_circle(axis, size), threads)
+        hits = find(spline, bins, threads, progress)
+        if best is None or abs(len(hits) - count) < abs(len(best[1]) - count):
+            best = bins, hits
+        if abs(len(hits) - count) <= NEAR_ENOUGH * count or hits.developable == spline.patches:
+            break
+        wanted = round(size * count / len(hits)) if len(hits) else 2 * size
+        size = min(max(wanted, 1), NORMALS_PER_SAMPLE * count)
+    assert best is not None
+    return best

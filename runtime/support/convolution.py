@@ -1,0 +1,156 @@
+"""`convolve`: all sums of two points with the same normal, with what both surfaces have there."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import GaussmapWarning, InputError
+from ..fields import new_field
+from ..samples import Samples, SamplingReport, rows_of
+from ..sampling import sampling_report, warn_of
+from ..sphere import as_normals
+from ..spline import Spline, short_label, spline_of
+from ..surface import Surface
+from ..threads import over_ranges
+from .branches import Branches, curvatures
+from .function import SupportFunction
+from .operations import pairs
+
+__all__ = ["Convolution", "convolve"]
+
+# So many sums are made at a time: there may be many more of them than branches.
+PIECE = 1 << 14
+
+
+@dataclass(frozen=True, eq=False, slots=True, repr=False)
+class Convolution:
+    """The k sums of two points with the same normal, by normal, then by branch of the first.
+
+    A boolean mask (k,), an index array or a slice picks some of them:
+    `sums[sums.samples.elliptic]`.
+
+    - `samples`: `Samples` of the convolution surface; no `uv` and `patch_index`, of which there are
+      two.
+    - `first`, `second`: the `Branches` of both surfaces at the normals that were asked.
+    - `rows`: (k, 2) int64, which row of `first` and which of `second` a sample is the sum of:
+      samples.points = first.points[rows[:, 0]] + second.points[rows[:, 1]].
+    """
+
+    samples: Samples
+    first: Branches
+    second: Branches
+    rows: NDArray[np.int64]
+
+    @property
+    def first_uv(self) -> NDArray[np.float64]:
+        """(k, 2) float64: parameters of the point of the first surface; NaN if it has none."""
+        return self.first.uv[self.rows[:, 0]]
+
+    @property
+    def second_uv(self) -> NDArray[np.float64]:
+        """(k, 2) float64: parameters of the point of the second surface; NaN if it has none."""
+        return self.second.uv[self.rows[:, 1]]
+
+    def __len__(self) -> int:
+        """Return the number of sums."""
+        return len(self.rows)
+
+    def __getitem__(self, key: ArrayLike | slice) -> Convolution:
+        rows = key if isinstance(key, slice) else rows_of(key, len(self))
+        return replace(self, samples=self.samples[rows], rows=self.rows[rows])
+
+    def __repr__(self) -> str:
+        return f"Convolution({self.samples!r})"
+
+
+def convolve(
+    first: Surface | Spline | SupportFunction,
+    second: Surface | Spline | SupportFunction,
+    normals: ArrayLike,
+    *,
+    cells: Sequence[int] | None = None,
+) -> Convolution:
+    """Return the convolution of two surfaces: every sum of two points that share a given normal.
+
+    Support functions add, h = h₁ + h₂ (7), and so do points and Hessians. A normal with i points on
+    the first surface and j on the second has i j sums; on folded surfaces these are very many.
+    `normals` (S, 3) are directions of any length, such as `icosphere(32)`. A `Surface` is
+    approximated by a spline of `cells` first (see `fit`; other cells for the second surface: fit it
+    before).
+
+    For two convex bodies whose normals point outwards this is the boundary of their Minkowski sum.
+    For others it is the convolution surface, of which that boundary is a part: other sheets lie
+    inside the sum. A body B, moved by t, meets a body A where t lies in the sum of A and −B, that
+    is B reflected in the origin. The outward normals of −B are −n, so it is
+    `SupportFunction.of_spline(B).scaled(-1).reversed()`.
+
+    K and H come from the sum of the Hessians: a radius that is infinite (a parabolic point) makes
+    them NaN, a sum of radii that is 0 infinite or NaN. Flat and developable parts are not seen by
+    normals, and neither are their sums: a GaussmapWarning says so, or that no sums came. Raises
+    InputError for unusable normals, for `cells` where no `Surface` takes them and for what is no
+    surface; SurfaceError as `fit` does.
+    """
+    directions = as_normals(normals)
+    if cells is not None and not any(isinstance(x, Surface) for x in (first, second)):
+        raise InputError("cells=... is for surfaces, and neither of these is a Surface.")
+    one, first_name = _branches(first, directions, cells)
+    two, second_name = _branches(second, directions, cells)
+    i, j = pairs(one.normal_index, two.normal_index, len(directions))
+    name = f"{short_label(first_name)} + {short_label(second_name)}"
+    if len(one) and len(two) and not len(i):
+        message = f"surface {name!r}: no normal has points on both of the two."
+        warnings.warn(message, GaussmapWarning, stacklevel=2)
+    report = SamplingReport(name, len(directions), len(i), None, None, None)
+    samples = Samples(**_sums(one, two, i, j), report=report)
+    return Convolution(samples, one, two, np.stack([i, j], axis=1))
+
+
+def _sums(
+    one: Branches, two: Branches, i: NDArray[np.int64], j: NDArray[np.int64]
+) -> dict[str, Any]:
+    """Return what samples hold of the sums of the branches i of the one and j of the other."""
+    names = ("points", "normals", "support", "gaussian_curvature", "mean_curvature")
+    arrays: dict[str, NDArray[Any]] = {x: new_field(x, len(i), np.float64) for x in names}
+
+    def work(begin: int, end: int) -> None:
+        here, first, second = slice(begin, end), i[begin:end], j[begin:end]
+        normals = one.normals[first]
+        with np.errstate(all="ignore"):  # infinite radii are answers, too
+            hessian = one.hessian[first] + two.hessian[second]
+            _, K, H = curvatures(normals, hessian)
+        arrays["points"][here] = one.points[first] + two.points[second]
+        arrays["normals"][here] = normals
+        arrays["support"][here] = one.support[first] + two.support[second]
+        arrays["gaussian_curvature"][here], arrays["mean_curvature"][here] = K, H
+
+    for _ in over_ranges(work, len(i), PIECE, None):
+        pass
+    return arrays | {"normal_index": one.normal_index[i]}
+
+
+def _branches(
+    surface: Surface | Spline | SupportFunction,
+    normals: NDArray[np.float64],
+    cells: Sequence[int] | None,
+) -> tuple[Branches, str]:
+    """Return what a surface has at the normals, and its name; warn of what normals cannot see."""
+    if isinstance(surface, SupportFunction):
+        return surface.branches(normals), repr(surface)
+    if not isinstance(surface, Surface | Spline):
+        raise InputError(
+            "convolve takes two of Surface, Spline and SupportFunction, not "
+            f"{type(surface).__name__}."
+        )
+    spline = spline_of(surface, cells if isinstance(surface, Surface) else None)
+    branches = SupportFunction.of_spline(spline).branches(normals)
+    density = len(normals) / (4 * math.pi)
+    report = sampling_report(spline, len(normals), len(branches), density, None)
+    warn_of(report, None, stacklevel=4)
+    return branches, spline.name

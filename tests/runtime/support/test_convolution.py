@@ -1,0 +1,247 @@
+"""Convolution: against exact sums, and against the convex hull of all sums of two points."""
+
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull
+
+Array = NDArray[np.float64]
+EPS = 2.0**-52
+NORMALS = gm.fibonacci(400)
+given = gm.SupportFunction.from_sympy
+of_spline = gm.SupportFunction.of_spline
+ELLIPSOID = given("sqrt(n_x**2 + 4*n_y**2 + 9*n_z**2)")
+TURNED = given("sqrt(2*n_x**2 + n_y**2 + n_x*n_z + n_z**2)")
+# Sums of flat ellipsoids: boxes with round edges.
+BOX = given("2*sqrt(n_x**2 + 1/16) + sqrt(n_y**2 + 1/16) + sqrt(n_z**2 + 1/16)")
+BEAM = given("sqrt((n_x + n_y)**2 + 1/9) + sqrt((n_x - n_y)**2 + 1/9) + 3*sqrt(n_z**2 + 1/9)")
+
+
+def smooth_box(edges: Array, roundness: float) -> gm.Surface:
+    """Return the boundary of Σ √((n·e)² + r²), e being the rows of `edges`: its exact envelope."""
+
+    def f(u: Array, v: Array) -> Array:
+        n = np.stack([np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)], axis=-1)
+        along = n @ edges.T
+        lengths = np.sqrt(along**2 + roundness**2)
+        share = (1 / lengths).sum(axis=-1, keepdims=True)
+        return (along / lengths) @ edges + roundness**2 * n * share
+
+    domain = ((0.0, 2 * np.pi), (-np.pi / 2, np.pi / 2))
+    return gm.Surface.from_callable(f, domain, (True, "pole"), name="smooth box")
+
+
+# --- exact sums -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("body", [ELLIPSOID, TURNED, BOX], ids=["ellipsoid", "turned", "box"])
+def test_with_a_sphere_it_is_the_offset(body: gm.SupportFunction) -> None:
+    offset = body.offset(0.25).branches(NORMALS)
+    for pair in ((body, given("1/4")), (given("1/4"), body)):
+        samples = gm.convolve(*pair, NORMALS).samples
+        assert (samples.normal_index == np.arange(len(NORMALS))).all()
+        assert (samples.normals == NORMALS).all()
+        assert np.abs(samples.points - offset.points).max() <= 16 * EPS * 4
+        assert np.abs(samples.support - offset.support).max() <= 16 * EPS * 4
+        # radii from 1/9 on, from Hessians of up to 9: K has twice their relative error
+        np.testing.assert_allclose(
+            samples.gaussian_curvature, offset.gaussian_curvature, rtol=1024 * EPS
+        )
+        np.testing.assert_allclose(samples.mean_curvature, offset.mean_curvature, rtol=1024 * EPS)
+
+
+def test_spheres() -> None:
+    sums = gm.convolve(given("2 + n_x"), given("1 - 3*n_y"), NORMALS)
+    samples = sums.samples
+    assert np.abs(samples.points - [1, -3, 0] - 3 * NORMALS).max() <= 16 * EPS * 4
+    np.testing.assert_allclose(samples.gaussian_curvature, 1 / 9, rtol=64 * EPS)
+    np.testing.assert_allclose(samples.mean_curvature, 1 / 3, rtol=64 * EPS)
+    assert np.isnan(sums.first_uv).all()
+    assert repr(sums).startswith("Convolution(Samples(400 points on SupportFunction(h = ")
+
+
+@pytest.mark.compiled
+def test_spheres_that_are_splines() -> None:
+    """Points are of third order."""
+    one, two = gm.surfaces.sphere(radius=1.0), gm.surfaces.sphere(radius=2.0)
+    errors = []
+    for cells in (16, 32, 64):
+        samples = gm.convolve(one, two, gm.icosphere(8), cells=(cells, cells)).samples
+        assert (np.bincount(samples.normal_index) == 1).all()
+        errors.append(np.abs(np.linalg.norm(samples.points, axis=1) - 3.0).max())
+    assert (np.diff(np.log2(errors)) < -2.5).all()
+
+
+# --- the boundary of the Minkowski sum of convex bodies -------------------------------------------
+
+
+def pairwise(first: Array, second: Array) -> Array:
+    return (first[:, None] + second).reshape(-1, 3)
+
+
+@pytest.mark.parametrize(
+    "pair",
+    [(ELLIPSOID, TURNED), (BOX, BEAM), (BOX, ELLIPSOID)],
+    ids=["ellipsoids", "boxes", "box and ellipsoid"],
+)
+def test_against_the_hull_of_all_sums(pair: tuple[Any, Any]) -> None:
+    """Its points are the vertices i + i of the hull, whose facets lie nearly as far out as h says.
+
+    A facet with normal e is nearer than h(e) by at most R (1 − cos θ), R being the largest radius
+    of the sum and θ < 8.5° the angle from e to the next of 400 normals.
+    """
+    sums = gm.convolve(*pair, NORMALS)
+    everything = pairwise(sums.first.points, sums.second.points)
+    hull = ConvexHull(everything)
+    size = np.abs(everything).max()
+    diagonal = np.arange(len(NORMALS)) * (len(NORMALS) + 1)
+    assert (everything[diagonal] == sums.samples.points).all()
+    assert np.isin(diagonal, hull.vertices).all()
+    farthest = (NORMALS @ everything.T).max(axis=1)
+    assert np.abs(farthest - sums.samples.support).max() <= 32 * EPS * size
+    directions, distances = hull.equations[:, :3], -hull.equations[:, 3]
+    angle = np.arccos((directions @ NORMALS.T).max(axis=1).min())
+    assert np.degrees(angle) < 8.5
+    h = (pair[0] + pair[1])(directions)
+    largest = sum(x.branches(gm.fibonacci(20_000)).principal_radii.max() for x in pair)
+    assert (distances <= h + 32 * EPS * size).all()
+    assert (h - distances <= 1.01 * largest * (1 - np.cos(angle))).all()
+
+
+@pytest.mark.compiled
+def test_surfaces_against_the_hull_and_the_exact_sum() -> None:
+    """The support function of splines is of third order, and no point is deeper in the hull."""
+    edges = np.diag([2.0, 1.0, 1.0]), np.array([[1.0, 1, 0], [1, -1, 0], [0, 0, 3]]) / 3
+    boxes = smooth_box(edges[0], 0.5), smooth_box(edges[1], 0.5)
+    errors = []
+    for cells in (48, 96):
+        sums = gm.convolve(*boxes, NORMALS, cells=(cells, cells))
+        assert (sums.samples.normal_index == np.arange(len(NORMALS))).all()
+        assert sums.samples.elliptic.all()
+        exact = sum(np.sqrt((NORMALS @ e.T) ** 2 + 0.25).sum(axis=1) for e in edges)
+        errors.append(np.abs(sums.samples.support - exact).max())
+        hull = ConvexHull(pairwise(sums.first.points, sums.second.points))
+        outside = hull.equations[:, :3] @ sums.samples.points.T + hull.equations[:, 3:]
+        assert np.abs(outside.max(axis=0)).max() <= 2 * errors[-1] + 1e-12
+    assert np.log2(errors[0] / errors[1]) > 2.5
+
+
+def test_a_sum_with_the_reflected_body() -> None:
+    """For bodies A, B: x ∈ A ⊕ (−B) where A and x + B meet; h is h_A(n) + h_B(−n)."""
+    away = given("sqrt(n_x**2 + n_y**2 + 4*n_z**2) + 5*n_x + n_y*n_z*n_x/9")
+    samples = gm.convolve(BOX, away.scaled(-1).reversed(), NORMALS).samples
+    assert np.abs(samples.support - BOX(NORMALS) - away(-NORMALS)).max() <= 64 * EPS * 8
+    assert np.abs(np.einsum("ij,ij->i", samples.points, NORMALS) - samples.support).max() < 1e-13
+    assert samples.elliptic.all()
+
+
+# --- all pairs, and what is told of them ----------------------------------------------------------
+
+
+@pytest.mark.compiled
+def test_all_pairs_of_branches() -> None:
+    torus = gm.fit(gm.surfaces.torus(), (32, 24))
+    turned = of_spline(torus).rotated(np.eye(3)[[1, 2, 0]])
+    normals = gm.icosphere(6)
+    sums = gm.convolve(torus, turned, normals)
+    samples, (i, j) = sums.samples, sums.rows.T
+    assert len(sums) == len(samples) == len(i)
+    assert (samples.points == sums.first.points[i] + sums.second.points[j]).all()
+    for rows, branches in ((i, sums.first), (j, sums.second)):
+        assert (samples.normal_index == branches.normal_index[rows]).all()
+    counts = [
+        np.bincount(x.normal_index, minlength=len(normals)) for x in (sums.first, sums.second)
+    ]
+    assert (
+        np.bincount(samples.normal_index, minlength=len(normals)) == counts[0] * counts[1]
+    ).all()
+    assert len(set(zip(i.tolist(), j.tolist(), strict=True))) == len(sums)
+    assert (np.diff(samples.normal_index) >= 0).all()
+    assert (samples.normals == normals[samples.normal_index]).all()
+    assert np.abs(torus.evaluate(*sums.first_uv.T) - sums.first.points[i]).max() < 1e-12
+    assert sums.second_uv.shape == (len(sums), 2)
+    together = (of_spline(torus) + turned).branches(normals)
+    assert (together.points == samples.points).all()
+    assert np.array_equal(together.gaussian_curvature, samples.gaussian_curvature, equal_nan=True)
+    assert samples.report.surface.startswith("torus + SupportFunction((torus, ")
+    assert (samples.report.normals, samples.report.samples) == (362, len(sums))
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize(("factor", "shift"), [(1e12, 0.0), (1e-12, 0.0), (1.0, 1e6)])
+def test_far_and_of_any_size(factor: float, shift: float) -> None:
+    """K scales with 1/L²; it has lost some digits where the sum of the radii is nearly 0."""
+    torus = of_spline(gm.surfaces.torus(), cells=(24, 24))
+    normals = gm.fibonacci(300)
+    first = gm.convolve(torus, ELLIPSOID, normals)
+    moved = gm.convolve(
+        torus.scaled(factor).translated([shift, 0, 0]), ELLIPSOID.scaled(factor), normals
+    )
+    assert (moved.rows == first.rows).all()
+    np.testing.assert_allclose(
+        moved.samples.gaussian_curvature * factor**2, first.samples.gaussian_curvature, rtol=1e-9
+    )
+    expected = factor * first.samples.points + [shift, 0, 0]
+    assert np.abs(moved.samples.points - expected).max() <= 16 * EPS * (4 * factor + shift)
+
+
+@pytest.mark.compiled
+def test_a_convolution_is_written_and_picked(tmp_path: Any) -> None:
+    sums = gm.convolve(gm.fit(gm.surfaces.torus(), (16, 16)), ELLIPSOID, gm.icosphere(4))
+    outer = sums[sums.samples.elliptic]
+    i, j = outer.rows.T
+    assert (outer.samples.points == outer.first.points[i] + outer.second.points[j]).all()
+    assert [len(sums[x]) for x in ([], [3], slice(2, 7), [True] * len(sums))] == [
+        0,
+        1,
+        5,
+        len(sums),
+    ]
+    with pytest.raises(gm.InputError, match="index is out of range"):
+        sums[[len(sums)]]
+    outer.samples.write(tmp_path / "sum.ply")
+    assert len(gm.read_samples(tmp_path / "sum.ply")) == len(outer) > 100
+
+
+@pytest.mark.compiled
+def test_what_normals_cannot_see_is_said() -> None:
+    for name in ("plane", "cylinder"):
+        with pytest.warns(gm.GaussmapWarning, match=f"'{name}': 100 % of its area is flat") as said:
+            sums = gm.convolve(ELLIPSOID, gm.surfaces.surface(name), gm.icosphere(4), cells=(8, 8))
+        assert said[0].filename == __file__
+        assert len(sums) == 0
+        assert sums.first_uv.shape == (0, 2)
+
+
+def test_surfaces_without_a_common_normal() -> None:
+    upper, lower = given("1", domain="n_z > 0"), given("1", domain="n_z < 0")
+    with pytest.warns(gm.GaussmapWarning, match="no normal has points on both") as said:
+        assert len(gm.convolve(upper, lower, NORMALS)) == 0
+    assert said[0].filename == __file__
+
+
+@pytest.mark.compiled
+def test_one_normal() -> None:
+    sums = gm.convolve(gm.surfaces.torus(), ELLIPSOID, [[0, 3, 4]], cells=(16, 16))
+    assert sums.samples.normals.tolist() == [[0, 0.6, 0.8]] * 2
+    assert sums.rows.tolist() == [[0, 0], [1, 0]]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ((ELLIPSOID, 3, NORMALS), "two of Surface, Spline and SupportFunction, not int"),
+        ((NORMALS, ELLIPSOID, NORMALS), "SupportFunction, not ndarray"),
+        ((ELLIPSOID, ELLIPSOID, [[0, 0, 0]]), r"normals\[0\] is the zero vector"),
+        ((ELLIPSOID, ELLIPSOID, []), "normals must have the shape"),
+        ((ELLIPSOID, ELLIPSOID, [[np.nan, 0, 0]]), r"normals\[0\] holds NaN"),
+    ],
+)
+def test_what_is_refused(arguments: Any, message: str) -> None:
+    with pytest.raises(gm.InputError, match=message):
+        gm.convolve(*arguments)
+    with pytest.raises(gm.InputError, match="neither of these is a Surface"):
+        gm.convolve(ELLIPSOID, ELLIPSOID, NORMALS, cells=(8, 8))

@@ -1,0 +1,194 @@
+"""The covering radius: exact cases, brute force, sets that lie in a plane or a hemisphere."""
+
+import sys
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.runtime.regions import angles_between
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+AXES = np.concatenate([np.eye(3), -np.eye(3)])
+CUBE = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+TETRAHEDRON = CUBE[[0, 3, 5, 6]]
+ACCURACY = 1e-12  # degrees: some ε of a radian, and coordinates that are rounded
+
+
+def ring(colatitude: float, angles: Any) -> Array:
+    t, c = np.radians(np.asarray(angles, float)), np.radians(colatitude)
+    return np.stack([np.sin(c) * np.cos(t), np.sin(c) * np.sin(t), np.cos(c) + 0 * t], axis=1)
+
+
+def nearest(places: Array, normals: Array) -> Array:
+    return angles_between(places[:, None], normals).min(axis=1)
+
+
+def by_search(normals: Array) -> tuple[float, float]:
+    """Return bounds of the radius in degrees, by branch and bound over the faces of a cube.
+
+    Central projection of a face brings points no farther apart, and the distance to the nearest
+    normal changes no faster than the place: so a square of the half-width w can only matter if the
+    distance at its middle plus w√2 exceeds the best that was found.
+    """
+    face, s, t = (x.ravel() for x in np.meshgrid(np.arange(6), 0.0, 0.0, indexing="ij"))
+    width, best, reach = 1.0, 0.0, 180.0
+    while reach > 1e-3:
+        flat = np.stack([s, t, np.ones_like(s)], axis=1)
+        places = np.where(face % 2, 1.0, -1.0)[:, None] * flat
+        places = np.take_along_axis(places, (np.arange(3) + face[:, None] // 2) % 3, axis=1)
+        distances = nearest(places / np.linalg.norm(places, axis=1, keepdims=True), normals)
+        best, reach = max(best, float(distances.max())), float(np.degrees(width * np.sqrt(2)))
+        kept = distances + reach > best
+        width /= 2
+        corners = [(i, j) for i in (-width, width) for j in (-width, width)]
+        face = np.repeat(face[kept], 4)
+        s, t = (
+            (np.repeat(x[kept], 4).reshape(-1, 4) + [c[k] for c in corners]).ravel()
+            for k, x in enumerate((s, t))
+        )
+    return best, best + reach
+
+
+# --- exact cases ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("normals", "cosine"),
+    [
+        (AXES, 3**-0.5),
+        (CUBE, 3**-0.5),
+        (TETRAHEDRON, 1 / 3),
+        (gm.icosphere(1), np.sqrt((5 + 2 * np.sqrt(5)) / 15)),
+        (gm.healpix(1), 2 / 3),
+    ],
+    ids=["octahedron", "cube", "tetrahedron", "icosahedron", "healpix"],
+)
+def test_platonic_solids(normals: Array, cosine: float) -> None:
+    assert abs(gm.covering_radius(normals) - np.degrees(np.arccos(cosine))) < ACCURACY
+    repeated = np.concatenate([normals, 3 * normals])
+    assert abs(gm.covering_radius(repeated) - np.degrees(np.arccos(cosine))) < ACCURACY
+
+
+@pytest.mark.parametrize("frequency", [2, 3, 8, 20])
+def test_icosphere_has_the_largest_circle_of_its_triangles(frequency: int) -> None:
+    """Its triangles are those of the lattices on the faces: here of the one between +x and +z."""
+    corners = gm.icosphere(1)
+    face = corners[np.argsort(-(corners @ [1.0, 0.0, 2.618]))[:3]]
+    i, j = (x.ravel() for x in np.indices((frequency, frequency)))
+
+    def vertex(i: Any, j: Any) -> Array:
+        weights = np.stack([i, j, frequency - i - j], axis=1)
+        points = weights @ face
+        return points / np.linalg.norm(points, axis=1, keepdims=True)
+
+    radii = []
+    for k, first in ((0, i + j < frequency), (1, i + j < frequency - 1)):
+        a, b, c = (vertex(x[first], y[first]) for x, y in ((i + k, j + k), (i + 1, j), (i, j + 1)))
+        centres = np.cross(b - a, c - a)
+        centres /= np.linalg.norm(centres, axis=1, keepdims=True)
+        radii.append(angles_between(centres, a))
+    largest = max(np.minimum(x, 180 - x).max() for x in radii)
+    assert abs(gm.covering_radius(gm.icosphere(frequency)) - largest) < 1e-10  # small triangles
+
+
+@pytest.mark.parametrize("normals", [[[0, 0, 1]], [[0, 3, 4]] * 5])
+def test_one_normal(normals: Any) -> None:
+    assert gm.covering_radius(normals) == 180.0
+
+
+@pytest.mark.parametrize("angle", [1e-6, 1.0, 90.0, 179.0, 180.0])
+def test_two_normals(angle: float) -> None:
+    assert abs(gm.covering_radius(ring(90, [0, angle])) - (180 - angle / 2)) < ACCURACY
+
+
+@pytest.mark.parametrize(
+    ("normals", "radius"),
+    [
+        (ring(90, [0, 120, 240]), 90),
+        (ring(90, [0, 90, 180]), 90),
+        (ring(90, np.arange(0, 360, 7)), 90),
+        (ring(90, [0, 50, 80, 110]), 180 - 55),  # less than half of a great circle
+        (ring(30, [0, 120, 240]), 150),
+        (ring(30, np.arange(0, 360, 1)), 150),
+        (ring(150, [0, 100, 200]), 150),
+        (np.concatenate([ring(40, np.arange(0, 360, 10)), [[0, 0, 1]]]), 140),
+        (np.concatenate([ring(90, [0, 90, 180, 270]), [[0, 0, 1]]]), 90),
+        (np.concatenate([ring(90, np.arange(0, 360, 30)), ring(30, [5, 95, 185])]), 90),
+    ],
+)
+def test_normals_in_a_plane_or_a_hemisphere(normals: Array, radius: float) -> None:
+    assert abs(gm.covering_radius(normals) - radius) < 1e-10
+    turned = normals @ np.linalg.qr(np.random.default_rng(0).standard_normal((3, 3)))[0]
+    assert abs(gm.covering_radius(turned) - radius) < 1e-6  # a plane is one up to rounding only
+
+
+def test_a_cap_leaves_the_rest_of_the_sphere() -> None:
+    """The smallest cap of those within 30° of an axis: at most one distance of normals smaller."""
+    part = gm.cap(gm.fibonacci(20_000), [1, 2, 3], 30)
+    assert 150 <= gm.covering_radius(part) < 150.5
+
+
+# --- brute force ----------------------------------------------------------------------------------
+
+
+def check(normals: Array) -> None:
+    low, high = by_search(normals)
+    assert low - 1e-9 <= gm.covering_radius(normals) <= high + 1e-9
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    count=st.integers(1, 30),
+    seed=st.integers(0, 10**6),
+    squeezed=st.sampled_from([1.0, 0.3, 0.01, 0.0]),
+    shift=st.sampled_from([0.0, 0.5, 1.0, 3.0]),
+)
+def test_against_a_search(count: int, seed: int, squeezed: float, shift: float) -> None:
+    """Random sets: all round, flat, on one side."""
+    vectors = np.random.default_rng(seed).standard_normal((count, 3))
+    vectors = vectors * [1, 1, squeezed] + [0, 0, shift]
+    check(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))
+
+
+@pytest.mark.parametrize("normals", [gm.fibonacci(500), gm.random_normals(300), gm.healpix(4)])
+def test_sets_against_a_search(normals: Array) -> None:
+    check(normals)
+
+
+def test_adding_normals_never_makes_it_larger() -> None:
+    normals = gm.random_normals(200, seed=5)
+    radii = [gm.covering_radius(normals[:k]) for k in range(1, 200)]
+    assert (np.diff(radii) <= 1e-9).all()
+
+
+# --- what it is good for --------------------------------------------------------------------------
+
+
+@pytest.mark.compiled
+def test_every_surface_point_has_a_sample_with_nearly_its_normal() -> None:
+    """The Gaussian image of each half of a torus is the whole sphere."""
+    spline, normals = gm.fit(gm.surfaces.torus(), (32, 32)), gm.fibonacci(300)
+    samples = gm.sample(spline, normals)
+    places = np.random.default_rng(0).uniform(0, 2 * np.pi, (2, 500))
+    distances = nearest(spline.normals(*places), samples.normals)
+    assert distances.max() <= gm.covering_radius(normals)
+    assert distances.max() > 0.7 * gm.covering_radius(normals)
+
+
+@pytest.mark.parametrize(
+    ("normals", "message"),
+    [([], "shape"), ([[0, 0, 0]], "zero vector"), ([[0, np.nan, 0]], "NaN"), ([1, 0, 0], "shape")],
+)
+def test_normals_that_are_none(normals: Any, message: str) -> None:
+    with pytest.raises(gm.InputError, match=message):
+        gm.covering_radius(normals)
+
+
+def test_it_names_what_it_needs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "scipy.spatial", None)
+    with pytest.raises(gm.MissingExtraError, match=r'needs SciPy.*"gaussmap\[spheres\]"'):
+        gm.covering_radius(AXES)
