@@ -115,7 +115,7 @@ def sample_and_normals(
         spline = spline_of(surface, cells)
         sampled = _by_normals if request.density == "gauss" else filled_samples
         samples, normals = sampled(spline, request, wanted, number, threads, progress)
-    warn_of(samples.report, request, stacklevel=4)
+    warn_of(samples.report, request.count, stacklevel=4, coverage=request.coverage)
     return samples, normals
 
 
@@ -200,10 +200,12 @@ def sampling_report(
     )
 
 
-def warn_of(report: SamplingReport, request: Request, stacklevel: int) -> None:
+def warn_of(
+    report: SamplingReport, count: int | None, stacklevel: int, coverage: float | None = None
+) -> None:
     """Say when samples see less of the surface than the user may think, or miss what was asked."""
     reasons = _unseen(report) if report.coverage is None else []
-    reasons += _missed(report, request)
+    reasons += _missed(report, count, coverage)
     if reasons:
         message = f"surface {report.surface!r}: {'; '.join(reasons)}."
         warnings.warn(message, GaussmapWarning, stacklevel=stacklevel)
@@ -222,10 +224,9 @@ def _unseen(report: SamplingReport) -> list[str]:
     return ["none of the normals lies in its Gaussian image"] if report.samples == 0 else []
 
 
-def _missed(report: SamplingReport, request: Request) -> list[str]:
+def _missed(report: SamplingReport, count: int | None, coverage: float | None) -> list[str]:
     """Say which of the numbers that were asked are not met."""
     reasons = []
-    count, coverage = request.count, request.coverage
     if count is not None and abs(report.samples - count) > COUNT_TOLERANCE * count + 1:
         reasons.append(f"{report.samples} samples came where {count} were asked")
     if coverage is not None and report.coverage is not None and report.coverage > coverage:

@@ -91,7 +91,7 @@ class _Stream:
                     yield self._samples(bins, hits, first, report)
             del bins, found, hits  # before the next ones are made
         report = replace(report, samples=came, degenerate_patches=developable)
-        warn_of(report, self.request, stacklevel=3)
+        warn_of(report, self.request.count, stacklevel=3)
 
     def _samples(self, bins: NormalBins, hits: Hits, start: int, report: SamplingReport) -> Samples:
         """Return hits as samples; the normals are numbered from `start` on."""

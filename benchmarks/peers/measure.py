@@ -8,6 +8,7 @@ from functools import cache
 from statistics import median
 
 import gaussmap as gm
+from gaussmap.runtime.density.request import checked_request
 from gaussmap.runtime.sampling import sample_and_normals
 
 from .catalogue import MILLION
@@ -60,9 +61,8 @@ def surface(form: ClosedForm, on_net: bool) -> gm.Surface:
 @cache
 def normals_for(form: ClosedForm, count: int) -> Array:
     """Return normals that give about `count` samples: those that gaussmap itself chooses."""
-    return sample_and_normals(
-        form.surface, None, count=count, cells=None, threads=None, progress=False
-    )[1]
+    request = checked_request(None, count, None, None, "gauss", 0, None)
+    return sample_and_normals(form.surface, request, cells=None, threads=None, progress=False)[1]
 
 
 def sampling(form: ClosedForm, on_net: bool, count: int) -> Callable[[], gm.Samples]:

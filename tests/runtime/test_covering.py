@@ -1,6 +1,5 @@
 """The covering radius: exact cases, brute force, sets that lie in a plane or a hemisphere."""
 
-import sys
 from typing import Any
 
 import gaussmap as gm
@@ -186,9 +185,3 @@ def test_every_surface_point_has_a_sample_with_nearly_its_normal() -> None:
 def test_normals_that_are_none(normals: Any, message: str) -> None:
     with pytest.raises(gm.InputError, match=message):
         gm.covering_radius(normals)
-
-
-def test_it_names_what_it_needs(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "scipy.spatial", None)
-    with pytest.raises(gm.MissingExtraError, match=r'needs SciPy.*"gaussmap\[spheres\]"'):
-        gm.covering_radius(AXES)
