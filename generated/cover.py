@@ -414,9 +414,9 @@ def enter(heads, links, places, number, reach, finest):
 
 
 @jit
-def enter_samples(heads, links, places, weights, radius, finest, first, last):
-    """Enter the samples first, …, last − 1."""
-    for number in range(first, last):
+def enter_samples(heads, links, places, weights, radius, finest, numbers):
+    """Enter samples by their numbers."""
+    for number in numbers:
         enter(heads, links, places, number, radius / math.sqrt(weights[number]), finest)
 
 
@@ -455,6 +455,29 @@ def distance_to_samples(heads, links, places, x, y, z, n_x, n_y, n_z, reach, fin
                         found = True
                     entry = links[entry]
     return math.sqrt(best) if found else known
+
+
+@jit
+def choose_apart(heads, links, places, weights, radius, finest, asked, first, last, order, counts):
+    """Choose those of the samples asked[first], …, asked[last − 1] that no chosen one is near to.
+
+    Near is radius / sqrt(weight). They are entered into the grids and appended to `order`, all others
+    are written to the beginning of `asked` again. counts = (chosen, left).
+    """
+    for k in range(first, last):
+        number = asked[k]
+        near = radius / math.sqrt(weights[number])
+        distance = distance_to_samples(
+            heads, links, places, places[number, 0], places[number, 1], places[number, 2],
+            places[number, 3], places[number, 4], places[number, 5], near, finest, np.inf,
+        )  # fmt: skip
+        if distance <= near:
+            asked[counts[1]] = number
+            counts[1] += 1
+        else:
+            order[counts[0]] = number
+            counts[0] += 1
+            enter(heads, links, places, number, near, finest)
 
 
 # --- covering -------------------------------------------------------------------------------------

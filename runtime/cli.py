@@ -67,13 +67,14 @@ FILE.npz:NAME if it holds several arrays. The array is a grid of points (m, n, 3
 examples:
   gaussmap sample torus --count 10000 -o torus.ply
   gaussmap sample torus --set minor=0.2 --frequency 32 -o torus.npz
+  gaussmap sample torus --coverage 0.05 --density uniform -o torus.ply
   gaussmap sample torus --fields points,normals --float32 -o torus.ply
   gaussmap sample heights.npy --spacing 30 30 --count 50000 -o terrain.ply
   gaussmap sample scan.npz:points --periodic u --normals directions.npy -o scan.csv
 """
 
 PLOT_EXAMPLES = """\
-SURFACE and the options that choose normals and cells are those of `gaussmap sample`.
+SURFACE and the options that choose samples and cells are those of `gaussmap sample`.
 
 examples:
   gaussmap plot torus -o torus.png
@@ -123,8 +124,12 @@ def _run_sample(options: argparse.Namespace) -> None:
     check_target(options.output)
     fields = checked_fields(options.fields)
     check_fields(options.output, fields)
+    if options.progressive and not {"points", "normals"} <= {*fields}:
+        raise InputError("--progressive needs points and normals among the --fields.")
     dtype = np.float32 if options.float32 else np.float64
     samples = sample(**_arguments(options), fields=fields, dtype=dtype)
+    if options.progressive:
+        samples = samples.progressive()
     samples.write(options.output)
     _summarize(samples, options)
 
@@ -140,10 +145,15 @@ def _arguments(options: argparse.Namespace) -> dict[str, Any]:
     """Return the arguments of `sampling.sample` that `sample` and `plot` were given."""
     _spare_inputs(options)
     surface_, normals = _surface(options), _normals(options)
+    amounts = [x for x in (options.count, options.angle, options.coverage) if x is not None]
     return {
         "surface": surface_,
         "normals": normals,
-        "count": options.count or (options.default_count if normals is None else None),
+        "count": options.default_count if normals is None and not amounts else options.count,
+        "angle": options.angle,
+        "coverage": options.coverage,
+        "density": options.density,
+        "relax": options.relax,
         "cells": options.cells,
         "threads": options.threads,
         "progress": not options.quiet,
@@ -408,13 +418,25 @@ def _add_sampling(parser: argparse.ArgumentParser, default_count: int) -> None:
     parser.set_defaults(default_count=default_count)
     parser.add_argument("surface", metavar="SURFACE", help="a name, or a .npy or .npz file")
 
-    normals = parser.add_argument_group("which normals (one of, and --seed)")
-    group = normals.add_mutually_exclusive_group()
+    amount = parser.add_argument_group("how many samples (one of, and --coverage, --seed)")
+    group = amount.add_mutually_exclusive_group()
     group.add_argument(
         "--count",
         type=_whole(MOST_SAMPLES),
         metavar="N",
-        help=f"about N samples (default: {default_count})",
+        help=f"N samples (default: {default_count})",
+    )
+    group.add_argument(
+        "--angle",
+        type=_number,
+        metavar="DEGREES",
+        help="so many that the normal of any point is so near to that of a sample",
+    )
+    amount.add_argument(
+        "--coverage",
+        type=_number,
+        metavar="LENGTH",
+        help="so many that any point is so near to a sample; alone, or beside one of the others",
     )
     group.add_argument(
         "--frequency",
@@ -435,7 +457,7 @@ def _add_sampling(parser: argparse.ArgumentParser, default_count: int) -> None:
         metavar="COUNT",
         help="COUNT random normals, uniform on the sphere",
     )
-    normals.add_argument(
+    amount.add_argument(
         "--seed",
         type=_whole(LARGEST_SEED, least=0),
         metavar="N",
@@ -443,6 +465,23 @@ def _add_sampling(parser: argparse.ArgumentParser, default_count: int) -> None:
     )
     group.add_argument(
         "--normals", metavar="FILE.npy", help="an array (S, 3) of directions of any length"
+    )
+
+    group = parser.add_argument_group("where they are")
+    group.add_argument(
+        "--density",
+        type=_density,
+        default="balanced",
+        metavar="HOW",
+        help="gauss: as dense as |K|, from normals alone; balanced (default): that, and what "
+        "leaves no gaps; uniform; or a number A for |K|^A",
+    )
+    group.add_argument(
+        "--relax",
+        type=_whole(10, least=0),
+        default=0,
+        metavar="STEPS",
+        help="place them better at more cost, in 1 or 2 steps (default: 0)",
     )
 
     group = parser.add_argument_group("the surface")
@@ -497,6 +536,11 @@ def _add_contents(parser: argparse.ArgumentParser) -> None:
         help=f"only these (default: all), of {', '.join(ARRAY_NAMES)}",
     )
     group.add_argument(
+        "--progressive",
+        action="store_true",
+        help="an order in which the first samples, however many, are a good sampling themselves",
+    )
+    group.add_argument(
         "--float32", action="store_true", help="numbers of half the size: 7 digits, not 16"
     )
 
@@ -521,6 +565,13 @@ def _number(text: str) -> float:
         return float(text)
     except ValueError:
         raise argparse.ArgumentTypeError(f"it must be a number, not {text!r}") from None
+
+
+def _density(text: str) -> str | float:
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
 def _setting(text: str) -> tuple[str, float]:

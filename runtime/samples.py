@@ -209,14 +209,29 @@ class Samples:
             both = np.stack([np.maximum(far, near), np.minimum(far, near)], axis=1)
             return both.astype(self.dtype, copy=False)
 
+    def progressive(self) -> Samples:
+        """Return the same samples in an order of which every beginning is a good sampling itself.
+
+        The first ones are far apart, beside the spacing of the samples round them; those that come
+        next halve the gaps, and so on. Take as many of them as you like: `samples[:1000]`.
+        """
+        from .density.progressive import progressive_order
+
+        points, normals = (x.astype(np.float64) for x in (self.points, self.normals))
+        return self[progressive_order(points, normals)]
+
     def summary(self) -> str:
-        """One line: normals asked, samples came, their split, what normals cannot see."""
+        """One line: normals asked, samples came, their split, and what they leave unseen."""
         report, came = self.report, f"{len(self):,} samples came"
         if len(self) != report.samples:
             came = f"{len(self):,} of the {report.samples:,} samples that came"
         asked = "" if report.normals is None else f"{report.normals:,} normals asked, "
         line = f"{asked}{came}{self._split()}"
-        if report.invisible_share is not None:
+        if report.angle is not None:
+            line += f"; every normal is within {report.angle:.3g} degrees of one"
+        if report.coverage is not None:
+            line += f"; every point is within {report.coverage:.3g} of one"
+        elif report.invisible_share is not None:
             line += f"; normals cannot see {100.0 * report.invisible_share:.2f} % of the surface"
         return line
 

@@ -239,7 +239,13 @@ class Cover:
         self.heads = np.full(1 << (2 * kernels.SIZES * room).bit_length(), -1, dtype=np.int32)
         self.links = np.empty(kernels.SIZES * room, dtype=np.int32)
         kernels.enter_samples(
-            self.heads, self.links, self.points, self.weights, radius, self.finest, 0, self.count
+            self.heads,
+            self.links,
+            self.points,
+            self.weights,
+            radius,
+            self.finest,
+            np.arange(self.count),
         )
         self.grid_radius = radius
 
