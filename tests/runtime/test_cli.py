@@ -8,6 +8,7 @@ import sys
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import gaussmap as gm
 import numpy as np
@@ -19,6 +20,9 @@ FEW = ["--count", "60", "--cells", "8", "8"]
 
 compiled = pytest.mark.compiled
 posix = pytest.mark.skipif(os.name != "posix", reason="needs POSIX")
+
+GAUSS = ["--density", "gauss"]
+EIGHT = ["--cells", "8", "8"]
 
 
 def gaussmap(*arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
@@ -71,7 +75,9 @@ def files() -> None:
 def test_sample_a_surface_by_name() -> None:
     done = gaussmap("sample", "torus", "--count", "10000", "-o", "torus.ply")
     assert (done.returncode, done.stderr) == (0, "")
-    assert re.fullmatch(r"torus\.ply: 5,000 normals asked, 10,000 samples came: .*\n", done.stdout)
+    assert re.fullmatch(
+        r"torus\.ply: [\d,]+ normals asked, 10,000 samples came: .* within .* of one\n", done.stdout
+    )
     samples = gm.read_samples("torus.ply")
     assert len(samples) == 10_000
     distance = np.hypot(np.hypot(*samples.points[:, :2].T) - 1.0, samples.points[:, 2])
@@ -106,7 +112,7 @@ def test_parameters_and_cells_arrive() -> None:
 
 def test_the_normals_of_an_icosphere() -> None:
     arguments = ["--frequency", "3", "--cells", "8", "8", "-o", "a.npz"]
-    assert main(["sample", "torus", *arguments]) == 0
+    assert main(["sample", "torus", *GAUSS, *arguments]) == 0
     samples = gm.read_samples("a.npz")
     assert samples.report.normals == 10 * 3**2 + 2
     np.testing.assert_array_equal(samples.normals, gm.icosphere(3)[samples.normal_index])
@@ -122,7 +128,7 @@ def test_the_normals_of_an_icosphere() -> None:
     ],
 )
 def test_other_sets_of_normals(arguments: list[str], normals: np.ndarray) -> None:
-    assert main(["sample", "torus", *arguments, "--cells", "8", "8", "-o", "a.npz"]) == 0
+    assert main(["sample", "torus", *GAUSS, *arguments, *EIGHT, "-o", "a.npz"]) == 0
     samples = gm.read_samples("a.npz")
     assert samples.report.normals == len(normals)
     np.testing.assert_array_equal(samples.normals, normals[samples.normal_index])
@@ -132,11 +138,42 @@ def test_other_sets_of_normals(arguments: list[str], normals: np.ndarray) -> Non
 @pytest.mark.parametrize("source", ["directions.npy", "both.npz:those"])
 def test_normals_from_a_file(source: str) -> None:
     np.savez("both.npz", those=5 * gm.icosphere(3), others=np.zeros(3))
-    assert main(["sample", "torus", "--normals", source, "--cells", "8", "8", "-o", "a.npz"]) == 0
+    assert main(["sample", "torus", *GAUSS, "--normals", source, *EIGHT, "-o", "a.npz"]) == 0
     samples = gm.read_samples("a.npz")
     np.testing.assert_allclose(
         samples.normals, gm.icosphere(3)[samples.normal_index], rtol=0, atol=1e-15
     )
+
+
+@pytest.mark.parametrize(
+    ("arguments", "options"),
+    [
+        (["--count", "200"], {"count": 200}),
+        (["--angle", "20"], {"angle": 20.0}),
+        (["--coverage", "0.3"], {"coverage": 0.3}),
+        (["--count", "200", "--coverage", "0.5"], {"count": 200, "coverage": 0.5}),
+        (["--count", "200", "--relax", "1"], {"count": 200, "relax": 1}),
+        (["--count", "200", "--density", "uniform"], {"count": 200, "density": "uniform"}),
+        (["--count", "200", "--density", "0.5"], {"count": 200, "density": 0.5}),
+        (["--count", "200", "--density", "gauss"], {"count": 200, "density": "gauss"}),
+        (["--frequency", "3"], {"normals": gm.icosphere(3), "density": "balanced"}),
+    ],
+)
+@compiled
+def test_how_many_and_where(arguments: list[str], options: dict[str, Any]) -> None:
+    assert main(["sample", "torus", *arguments, *EIGHT, "-o", "a.npz"]) == 0
+    expected = gm.sample(gm.surfaces.torus(), **options, cells=(8, 8))
+    samples = gm.read_samples("a.npz")
+    assert samples.report == expected.report
+    np.testing.assert_array_equal(samples.points, expected.points)
+
+
+def test_progressive() -> None:
+    arguments = ["sample", "torus", "--count", "200", *EIGHT]
+    assert main([*arguments, "-o", "a.npz"]) == 0
+    assert main([*arguments, "--progressive", "-o", "b.ply"]) == 0
+    ordered = gm.read_samples("a.npz").progressive()
+    np.testing.assert_array_equal(gm.read_samples("b.ply").points, ordered.points)
 
 
 @pytest.mark.usefixtures("files")
@@ -164,7 +201,7 @@ def test_a_periodic_grid(axis: str) -> None:
 def test_every_file_type(suffix: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["sample", "torus", *FEW, "-o", f"a{suffix}"]) == 0
     out, err = capsys.readouterr()
-    assert re.fullmatch(rf"a{suffix}: \d+ normals asked, .*% of the surface\n", out)
+    assert re.fullmatch(rf"a{suffix}: \d+ normals asked, .* of one\n", out)
     assert err == ""
     assert Path(f"a{suffix}").stat().st_size > 1000
 
@@ -199,7 +236,7 @@ def test_the_default_is_a_count(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_warnings_are_lines(capsys: pytest.CaptureFixture[str]) -> None:
-    arguments = ["sample", "plane", "--count", "50", "--cells", "8", "8", "-o", "a.npz"]
+    arguments = ["sample", "plane", *GAUSS, "--count", "50", *EIGHT, "-o", "a.npz"]
     for _ in range(2):  # and every time
         with warnings.catch_warnings():
             warnings.simplefilter("error")
@@ -245,7 +282,10 @@ def test_formulas(capsys: pytest.CaptureFixture[str]) -> None:
     [
         (["--version"], [f"gaussmap {gm.__version__}"]),
         (["--help"], ["examples:", "gaussmap sample torus --count 10000 -o torus.ply"]),
-        (["sample", "--help"], ["which normals", "default: 10000", "--spacing DX DY", "examples:"]),
+        (
+            ["sample", "--help"],
+            ["how many samples", "default: 10000", "--spacing DX DY"],
+        ),
         (["plot", "--help"], ["default: 2000", "gaussmap[plot]", ".png, .pdf or .svg"]),
         (["surfaces", "--help"], ["NAME"]),
         (["formulas", "--help"], ["LaTeX"]),
@@ -305,6 +345,15 @@ HEIGHTS = ["--spacing", "1", "1", *TO]
             for option in ("count", "frequency", "healpix", "random", "threads")
             for number in ("0", "-5", "abc", "1e4", "2.0", "nan", "", "9" * 5000)
         ],
+        (["sample", "torus", "--angle", "91", *TO], "angle must be a positive number of at most 90"),
+        (["sample", "torus", "--angle", "x", *TO], "--angle: it must be a number, not 'x'"),
+        (["sample", "torus", "--coverage", "-1", *TO], "coverage must be a positive number, not"),
+        (["sample", "torus", "--density", "flat", *TO], "there is no density 'flat'; there is gauss"),
+        (["sample", "torus", "--density", "-2", *TO], "must be a positive number, not -2.0"),
+        (["sample", "torus", *GAUSS, "--coverage", "1", *TO], "cannot be asked for by coverage="),
+        (["sample", "torus", *GAUSS, "--relax", "1", *TO], 'density="gauss" has none'),
+        (["sample", "torus", "--relax", "11", *TO], "--relax: it must be a whole number"),
+        (["sample", "torus", "--progressive", "--fields", "uv", *TO], "needs points and normals"),
         (["sample", "torus", "--cells", "8", "0", *TO], "--cells: it must be a whole number"),
         (["sample", "torus", "--cells", "8", *TO], "--cells: expected 2 arguments"),
         (["sample", "torus", "--cells", "2", "8", *TO], "at least 3 x 3 cells"),
