@@ -345,10 +345,10 @@ HEIGHTS = ["--spacing", "1", "1", *TO]
             for option in ("count", "frequency", "healpix", "random", "threads")
             for number in ("0", "-5", "abc", "1e4", "2.0", "nan", "", "9" * 5000)
         ],
-        (["sample", "torus", "--angle", "91", *TO], "angle must be a positive number of at most 90"),
+        (["sample", "torus", "--angle", "91", *TO], "a positive number of at most 90"),
         (["sample", "torus", "--angle", "x", *TO], "--angle: it must be a number, not 'x'"),
         (["sample", "torus", "--coverage", "-1", *TO], "coverage must be a positive number, not"),
-        (["sample", "torus", "--density", "flat", *TO], "there is no density 'flat'; there is gauss"),
+        (["sample", "torus", "--density", "flat", *TO], "there is no density"),
         (["sample", "torus", "--density", "-2", *TO], "must be a positive number, not -2.0"),
         (["sample", "torus", *GAUSS, "--coverage", "1", *TO], "cannot be asked for by coverage="),
         (["sample", "torus", *GAUSS, "--relax", "1", *TO], 'density="gauss" has none'),
