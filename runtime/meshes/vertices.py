@@ -1,0 +1,192 @@
+"""The vertices of a mesh: samples, points added along open borders, and poles."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...generated import mesh as kernels
+from ..spline import Spline
+
+if TYPE_CHECKING:
+    from scipy.spatial import KDTree
+
+    from ..samples import Samples
+
+__all__ = ["Vertices"]
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+# The spacing of a border follows from the distance of the sample that is the so many nearest.
+NEAREST = 4
+# A border is looked at in so many steps a cell at least, and so many for each sample along it.
+STEPS_A_CELL, STEPS_A_SAMPLE = 16, 4
+# A sample that is nearer to the border than this part of the spacing there has a border point
+# beside it: the angle of a triangle between a sample and two border points must not be flat.
+BESIDE = 0.25
+# Such samples are looked for in this part of the domain.
+DEEPEST = 0.125
+# A sample that is nearer to the border than this part of the domain lies on it.
+ON_BORDER = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Vertices:
+    """Vertices of a mesh: places (k, 2) in the unit square, and the sample of each, or −1.
+
+    `is_free` says which do not lie on an open side or at a pole.
+    """
+
+    places: Array
+    sample: Indices
+    is_free: NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, samples: Samples, spline: Spline) -> Vertices:
+        """Take the samples, of those at one place the first, and add open sides and poles."""
+        places = _in_unit_square(samples.uv.astype(np.float64), spline)
+        pairs = np.ascontiguousarray(places).view(np.complex128)[:, 0]
+        sample = np.sort(np.unique(pairs, return_index=True)[1])
+        inner = cls(places[sample], sample, np.ones(len(sample), dtype=bool))
+        fixed = list(_poles(spline))
+        if any("none" in ends for ends in spline.ends):
+            fixed += _sides(inner, samples.points.astype(np.float64), spline)
+        for part in fixed:
+            inner = inner.without(part.sample)
+        return cls.joined([inner, *fixed])
+
+    @classmethod
+    def fixed(cls, places: Array, sample: Indices) -> Vertices:
+        """Return vertices that are not free."""
+        return cls(places, sample, np.zeros(len(places), dtype=bool))
+
+    @classmethod
+    def joined(cls, parts: list[Vertices]) -> Vertices:
+        """Return the vertices of all parts."""
+        names = ("places", "sample", "is_free")
+        return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+
+    def without(self, sample: Indices) -> Vertices:
+        """Return these vertices without some samples."""
+        kept = ~np.isin(self.sample, sample)
+        return Vertices(self.places[kept], self.sample[kept], self.is_free[kept])
+
+    def uv(self, spline: Spline) -> Array:
+        """Return the parameters of the places."""
+        low, high = np.array(spline.domain).T
+        return np.where(self.places == 1.0, high, low + self.places * (high - low))
+
+
+def _in_unit_square(uv: Array, spline: Spline) -> Array:
+    """Return parameters in the unit square, of which no closing side is part twice."""
+    places = np.clip(spline.in_cells(uv) / spline.cells, 0.0, 1.0)
+    for axis in (0, 1):
+        again = places[:, axis] == 1.0
+        if spline.ends[axis][0] in ("wrap", "flip"):
+            places[again, axis] = 0.0
+            if spline.ends[axis][0] == "flip":
+                places[again, 1 - axis] = 1.0 - places[again, 1 - axis]
+    return places
+
+
+def _poles(spline: Spline) -> Iterator[Vertices]:
+    """Yield the poles, each one place."""
+    for place, end in enumerate(spline.ends[1]):
+        if end == "pole":
+            yield Vertices.fixed(np.array([[0.0, float(place)]]), np.array([-1]))
+
+
+# --- open sides -----------------------------------------------------------------------------------
+
+
+def _sides(inner: Vertices, points: Array, spline: Spline) -> list[Vertices]:
+    """Return the vertices of each open side, where samples lie on it those.
+
+    A corner of the domain belongs to the side that begins there, counterclockwise.
+    """
+    from scipy.spatial import KDTree
+
+    tree = KDTree(points[inner.sample])
+    return [
+        _Side(spline, axis, place, tree).vertices(inner, points)
+        for axis in (0, 1)
+        for place, end in enumerate(spline.ends[axis])
+        if end == "none"
+    ]
+
+
+class _Side:
+    """An open side of the domain, where u (axis 0) or v (axis 1) is at its low or high end."""
+
+    def __init__(self, spline: Spline, axis: int, place: int, tree: KDTree) -> None:
+        """Measure the side in units of the spacing that its points are to have."""
+        self.spline, self.axis, self.place = spline, axis, place
+        self.closes = spline.ends[1 - axis][0] != "none"
+        steps = STEPS_A_CELL * spline.cells[1 - axis]
+        steps = max(steps, STEPS_A_SAMPLE * math.isqrt(tree.n))
+        self.t = np.linspace(0.0, 1.0, steps + 1)
+        line = self.evaluate(self.t)
+        nearest = min(NEAREST, tree.n)
+        distances = tree.query(line, k=[nearest])[0][:, 0]
+        self.spacings = np.empty(len(line))
+        kernels.border_spacings(distances, float(nearest), self.spacings)
+        lengths = np.linalg.norm(np.diff(line, axis=0), axis=1)
+        shortest = float(lengths.sum()) / steps or 1.0
+        middle = np.maximum((self.spacings[1:] + self.spacings[:-1]) / 2.0, shortest)
+        self.measure = np.concatenate([[0.0], np.cumsum(lengths / middle)])
+
+    def places(self, t: Array) -> Array:
+        """Return places (k, 2) of the unit square at positions along the side."""
+        fixed = np.full_like(t, float(self.place))
+        return np.stack([fixed, t] if self.axis == 0 else [t, fixed], axis=1)
+
+    def evaluate(self, t: Array) -> Array:
+        """Return the points (k, 3) of the surface at positions along the side."""
+        vertices = Vertices.fixed(self.places(t), np.empty(0, dtype=np.int64))
+        return self.spline.evaluate(*vertices.uv(self.spline).T)
+
+    def vertices(self, inner: Vertices, points: Array) -> Vertices:
+        """Return the vertices of the side: the samples on it, and points between them."""
+        total = float(self.measure[-1])
+        count = max(round(total), 3 if self.closes else 1) if total > 0.0 else 1
+        t = np.interp(total * (np.arange(count + 1) / count), self.measure, self.t)
+        t[[0, -1]] = 0.0, 1.0
+        is_added = self._owned(t)
+        near, along, is_on = self._near(inner, points)
+        slots = np.rint(np.interp(along, self.t, self.measure) / (total or 1.0) * count)
+        slots = slots.astype(np.int64) % (count if self.closes else count + 1)
+        is_inside = self.closes | ((slots > 0) & (slots < count))
+        t[slots[is_inside]] = along[is_inside]  # of two, the last one stays
+        is_added[slots[is_on & (is_inside | (along == t[slots]))]] = False
+        is_on &= self._owned(along)
+        added = Vertices.fixed(self.places(t[is_added]), np.full(int(is_added.sum()), -1))
+        own = Vertices.fixed(self.places(along[is_on]), inner.sample[near[is_on]])
+        return Vertices.joined([added, own])
+
+    def _owned(self, t: Array) -> NDArray[np.bool_]:
+        """Say which positions belong to this side: but one of its ends."""
+        if self.closes or self.axis + self.place == 1:
+            return t < 1.0
+        return t > 0.0
+
+    def _near(self, inner: Vertices, points: Array) -> tuple[Indices, Array, NDArray[np.bool_]]:
+        """Return the samples near the side, where along it they are, and which lie on it.
+
+        The nearest one comes last. A sample on a corner is exactly there.
+        """
+        depth = np.abs(inner.places[:, self.axis] - self.place)
+        near = np.flatnonzero(depth < DEEPEST)
+        along = inner.places[near, 1 - self.axis]
+        gaps = np.linalg.norm(points[inner.sample[near]] - self.evaluate(along), axis=1)
+        is_on = depth[near] <= ON_BORDER
+        chosen = is_on | (gaps < BESIDE * np.interp(along, self.t, self.spacings))
+        order = np.flatnonzero(chosen)[np.argsort(-depth[near[chosen]], kind="stable")]
+        ends = np.rint(along)
+        along = np.where(np.abs(along - ends) <= ON_BORDER, ends, along)
+        return near[order], along[order], is_on[order]
