@@ -13,7 +13,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from .errors import InputError, UnknownNameError
 
-__all__ = ["checked_array", "known_name", "parameter_arrays", "real_array", "real_values", "whole_number"]
+__all__ = [
+    "checked_array",
+    "known_name",
+    "parameter_arrays",
+    "real_array",
+    "real_values",
+    "whole_number",
+]
 
 
 # Beyond this a count is a mistake: no memory holds so many normals, cells or samples.

@@ -15,7 +15,7 @@ from ..checks import checked_array
 from ..errors import InputError
 from ..spline import scale_to_one, short_label
 
-__all__ = ["Mesh"]
+__all__ = ["Mesh", "scaled"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -99,10 +99,8 @@ class Mesh:
         """
         cosines = np.empty(len(self.triangles))
         if len(cosines):
-            centred = self.vertices - self.vertices.mean(axis=0)
-            centred *= scale_to_one(float(np.abs(centred).max()))
-            sides = np.ones_like(self.triangles)
-            kernels.smallest_cosines(centred, self.normals, self.triangles, sides, cosines)
+            points, sides = scaled(self.vertices), np.ones_like(self.triangles)
+            kernels.smallest_cosines(points, self.normals, self.triangles, sides, cosines)
         return np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0)))
 
     def write(self, path: str | os.PathLike[str]) -> None:
@@ -110,3 +108,10 @@ class Mesh:
         from .files import write_mesh
 
         write_mesh(self, path)
+
+
+def scaled(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return points (k, 3) round the origin and of the size 1 or so: products do not overflow."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    centred = points - (low / 2.0 + high / 2.0)
+    return centred * scale_to_one(float(np.abs(centred).max()))

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -35,8 +36,9 @@ DISPLACEMENT = 1e-3
 INSIDE = 5e-10
 # The sides of a rectangle are bent outwards by this part of it, so that their points are extreme.
 BULGE = 0.05
-# How far a surface that closes both ways is continued: a whole period is always enough.
-MARGINS = (0.25, 1.0)
+# A surface that closes both ways is continued by so many mean distances of places, at first; by
+# these parts of a period if that was not enough.
+MARGIN_IN_STEPS, MARGINS = 30.0, (0.25, 1.0)
 
 
 def triangulations(
@@ -48,20 +50,24 @@ def triangulations(
     of the surface along u and v. Triangles run counterclockwise where their corner of the smallest
     number is. A place that coincides with another one may belong to no triangle.
     """
+    from scipy.spatial import QhullError
+
     closing = [axis for axis in (0, 1) if ends[axis][0] in ("wrap", "flip")]
-    for margin in MARGINS:
+    near = MARGIN_IN_STEPS / math.sqrt(len(places))
+    for margin in (near, *MARGINS) if near < MARGINS[0] else MARGINS:
         rng = np.random.default_rng(len(places))
         step = DISPLACEMENT / math.sqrt(len(places))
         moved = places + step * rng.uniform(-1.0, 1.0, places.shape)
         for axis in {0, 1} - set(closing):
             moved[:, axis] = np.clip(moved[:, axis], INSIDE, 1.0 - INSIDE)
         moved = np.where(is_free[:, None], moved, places)
-        if len(closing) == 2:
-            yield _by_copies(moved, ends, lengths, margin)
-        elif closing:
-            yield _on_sphere(moved, ends, closing[0])
-        else:
-            yield _in_rectangle(np.where(is_free[:, None], moved, _bent(moved)) * lengths)
+        with suppress(QhullError):  # fewer points than a triangulation needs, or all in line
+            if len(closing) == 2:
+                yield _by_copies(moved, ends, lengths, margin)
+            elif closing:
+                yield _on_sphere(moved, ends, closing[0])
+            else:
+                yield _in_rectangle(np.where(is_free[:, None], moved, _bent(moved)) * lengths)
 
 
 def neighbours(triangles: Indices, may_end: NDArray[np.bool_]) -> tuple[Indices, bool]:
@@ -79,7 +85,7 @@ def neighbours(triangles: Indices, may_end: NDArray[np.bool_]) -> tuple[Indices,
     beyond = np.full(len(keys), -1)
     beyond[order[first]], beyond[order[first + 1]] = order[first + 1] // 3, order[first] // 3
     single = pairs[order[starts[counts == 1]]]
-    complete = bool(counts.max(initial=2) == 2 and may_end[single].all())
+    complete = bool(len(keys) and counts.max() == 2 and may_end[single].all())
     return beyond.reshape(-1, 3), complete
 
 

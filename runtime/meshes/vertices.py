@@ -54,9 +54,13 @@ class Vertices:
         pairs = np.ascontiguousarray(places).view(np.complex128)[:, 0]
         sample = np.sort(np.unique(pairs, return_index=True)[1])
         inner = cls(places[sample], sample, np.ones(len(sample), dtype=bool))
-        fixed = list(_poles(spline))
-        if any("none" in ends for ends in spline.ends):
-            fixed += _sides(inner, samples.points.astype(np.float64), spline)
+        fixed = []
+        if any(end in ("none", "pole") for ends in spline.ends for end in ends):
+            from scipy.spatial import KDTree
+
+            points = samples.points.astype(np.float64)
+            tree = KDTree(points[sample])
+            fixed = [*_poles(tree, spline), *_sides(inner, points, tree, spline)]
         for part in fixed:
             inner = inner.without(part.sample)
         return cls.joined([inner, *fixed])
@@ -95,30 +99,37 @@ def _in_unit_square(uv: Array, spline: Spline) -> Array:
     return places
 
 
-def _poles(spline: Spline) -> Iterator[Vertices]:
-    """Yield the poles, each one place."""
+def _poles(tree: KDTree, spline: Spline) -> Iterator[Vertices]:
+    """Yield the poles, each one place, but those with a sample beside them."""
     for place, end in enumerate(spline.ends[1]):
         if end == "pole":
-            yield Vertices.fixed(np.array([[0.0, float(place)]]), np.array([-1]))
+            pole = Vertices.fixed(np.array([[0.0, float(place)]]), np.array([-1]))
+            point = spline.evaluate(*pole.uv(spline).T)
+            if tree.query(point)[0][0] >= BESIDE * _spacings(tree, point)[0]:
+                yield pole
+
+
+def _spacings(tree: KDTree, points: Array) -> Array:
+    """Return how far apart vertices are to be at points (k, 3) where there are no samples."""
+    nearest = min(NEAREST, tree.n)
+    spacings = np.empty(len(points))
+    distances = tree.query(points, k=[nearest], workers=-1)[0][:, 0]
+    kernels.border_spacings(distances, float(nearest), spacings)
+    return spacings
 
 
 # --- open sides -----------------------------------------------------------------------------------
 
 
-def _sides(inner: Vertices, points: Array, spline: Spline) -> list[Vertices]:
-    """Return the vertices of each open side, where samples lie on it those.
+def _sides(inner: Vertices, points: Array, tree: KDTree, spline: Spline) -> Iterator[Vertices]:
+    """Yield the vertices of each open side, where samples lie on it those.
 
     A corner of the domain belongs to the side that begins there, counterclockwise.
     """
-    from scipy.spatial import KDTree
-
-    tree = KDTree(points[inner.sample])
-    return [
-        _Side(spline, axis, place, tree).vertices(inner, points)
-        for axis in (0, 1)
-        for place, end in enumerate(spline.ends[axis])
-        if end == "none"
-    ]
+    for axis in (0, 1):
+        for place, end in enumerate(spline.ends[axis]):
+            if end == "none":
+                yield _Side(spline, axis, place, tree).vertices(inner, points)
 
 
 class _Side:
@@ -132,10 +143,7 @@ class _Side:
         steps = max(steps, STEPS_A_SAMPLE * math.isqrt(tree.n))
         self.t = np.linspace(0.0, 1.0, steps + 1)
         line = self.evaluate(self.t)
-        nearest = min(NEAREST, tree.n)
-        distances = tree.query(line, k=[nearest])[0][:, 0]
-        self.spacings = np.empty(len(line))
-        kernels.border_spacings(distances, float(nearest), self.spacings)
+        self.spacings = _spacings(tree, line)
         lengths = np.linalg.norm(np.diff(line, axis=0), axis=1)
         shortest = float(lengths.sum()) / steps or 1.0
         middle = np.maximum((self.spacings[1:] + self.spacings[:-1]) / 2.0, shortest)
