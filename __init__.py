@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     )
     from .runtime.gaussian.parabolic_lines import ParabolicLine, Piece, parabolic_lines, split_patch
     from .runtime.io import read_samples
+    from .runtime.meshes.mesh import Mesh
     from .runtime.samples import Samples, SamplingReport
     from .runtime.sampling import sample, sample_many
     from .runtime.sphere import fibonacci, icosphere
@@ -65,6 +66,7 @@ __all__ = [
     "GaussmapError",
     "GaussmapWarning",
     "InputError",
+    "Mesh",
     "MissingExtraError",
     "MissingFieldError",
     "ParabolicCurve",
@@ -118,6 +120,7 @@ _NAMES = {
     "runtime.gaussian.parabolic": "ParabolicCurve ParabolicPoint ParabolicPoints parabolic_points",
     "runtime.gaussian.parabolic_lines": "ParabolicLine Piece parabolic_lines split_patch",
     "runtime.io": "read_samples",
+    "runtime.meshes.mesh": "Mesh",
     "runtime.samples": "Samples SamplingReport",
     "runtime.sampling": "sample sample_many",
     "runtime.sphere": "fibonacci icosphere",

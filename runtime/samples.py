@@ -20,6 +20,11 @@ from .fields import ARRAY_NAMES, DERIVED, FLOAT_NAMES, row_shape
 from .spline import Spline, short_label
 
 if TYPE_CHECKING:
+    import open3d
+    import pandas
+    import pyvista
+    import trimesh
+
     from .meshes.mesh import Mesh
 
 __all__ = ["ARRAY_NAMES", "Samples", "SamplingReport"]
@@ -233,6 +238,42 @@ class Samples:
         from .meshes.meshing import mesh_of
 
         return mesh_of(self, spline, angle)
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """Return a table with a row for each sample and the columns of a `.csv` file.
+
+        As the other conversions, it copies. MissingExtraError without the extra `pandas`.
+        """
+        from .interop import samples_to_dataframe
+
+        return samples_to_dataframe(self)
+
+    def to_pyvista(self) -> pyvista.PolyData:
+        """Return points with all other fields as point data, normals as such.
+
+        Needs the field points. MissingExtraError without the extra `vtk`.
+        """
+        from .interop import samples_to_pyvista
+
+        return samples_to_pyvista(self)
+
+    def to_trimesh(self) -> trimesh.PointCloud:
+        """Return points in float64, with all other fields in `metadata`.
+
+        Needs the field points. MissingExtraError without the extra `trimesh`.
+        """
+        from .interop import samples_to_trimesh
+
+        return samples_to_trimesh(self)
+
+    def to_open3d(self) -> open3d.geometry.PointCloud:
+        """Return points in float64, with their normals if there are any.
+
+        Needs the field points. MissingExtraError without the extra `open3d`.
+        """
+        from .interop import samples_to_open3d
+
+        return samples_to_open3d(self)
 
     def __len__(self) -> int:
         return len(next(iter(self._arrays().values())))

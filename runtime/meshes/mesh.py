@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,15 @@ from ..checks import checked_array
 from ..errors import InputError
 from ..spline import scale_to_one, short_label
 
+if TYPE_CHECKING:
+    import open3d
+    import pyvista
+    import trimesh
+
 __all__ = ["Mesh", "scaled"]
+
+# What `sides` is set to that are not given.
+_ALL_ALIKE: Any = None
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -31,6 +39,8 @@ class Mesh:
     - `sample`: (M,) int64, which sample a vertex is, −1 for points that were added on open borders
       and at poles.
     - `name`: label of the surface.
+    - `sides`: (T, 3) int64, 1, or −1 where the normal at a corner points to the other side than
+      that at the first corner: on a one-sided surface normals change sides somewhere. By default 1.
 
     All arrays are C-contiguous; one that is not is copied. Raises InputError if an array has
     another shape or dtype, or a triangle has no such vertex.
@@ -42,10 +52,13 @@ class Mesh:
     triangles: NDArray[np.int64]
     sample: NDArray[np.int64]
     name: str = "surface"
+    sides: NDArray[np.int64] = _ALL_ALIKE
 
     def __post_init__(self) -> None:
         count = len(self.vertices) if isinstance(self.vertices, np.ndarray) else 0
         faces = len(self.triangles) if isinstance(self.triangles, np.ndarray) else 0
+        if self.sides is None:
+            object.__setattr__(self, "sides", np.ones((faces, 3), dtype=np.int64))
         floating, whole = np.dtype(np.float64), np.dtype(np.int64)
         wanted: dict[str, tuple[np.dtype[Any], tuple[int, ...]]] = {
             "vertices": (floating, (count, 3)),
@@ -53,6 +66,7 @@ class Mesh:
             "uv": (floating, (count, 2)),
             "triangles": (whole, (faces, 3)),
             "sample": (whole, (count,)),
+            "sides": (whole, (faces, 3)),
         }
         for name, (dtype, shape) in wanted.items():
             array = checked_array(name, getattr(self, name), shape, dtype)
@@ -94,20 +108,56 @@ class Mesh:
     def angles(self) -> NDArray[np.float64]:
         """(T,) float64: the largest angle between a triangle and the normals at its corners.
 
-        In degrees; 180 for a triangle without area, and more than 90 on a one-sided surface for the
-        triangles where the normals change sides.
+        In degrees; 180 for a triangle without area.
         """
         cosines = np.empty(len(self.triangles))
         if len(cosines):
-            points, sides = scaled(self.vertices), np.ones_like(self.triangles)
-            kernels.smallest_cosines(points, self.normals, self.triangles, sides, cosines)
+            points = scaled(self.vertices)
+            kernels.smallest_cosines(points, self.normals, self.triangles, self.sides, cosines)
         return np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0)))
+
+    def summary(self) -> str:
+        """One line: vertices, triangles, whether it is closed, how well it fits the normals."""
+        added = int(np.count_nonzero(self.sample < 0))
+        line = f"{len(self.vertices):,} vertices"
+        line += f" ({added:,} of them added)" if added else ""
+        line += f", {len(self.triangles):,} triangles"
+        if not len(self.triangles):
+            return line
+        border = len(self.boundary)
+        line += f", {border:,} edges on the border" if border else ", closed"
+        mean, worst = self.angles.mean(), self.angles.max()
+        return f"{line}; they deviate from the normals by {mean:.2f}° (mean), {worst:.2f}° (worst)"
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """Write the mesh to a .ply, .obj, .stl, .vtk, .vtu or .vtp file; see `files.write_mesh`."""
         from .files import write_mesh
 
         write_mesh(self, path)
+
+    def to_pyvista(self) -> pyvista.PolyData:
+        """Return the mesh with normals, uv and sample as point data.
+
+        As the other conversions, it copies. MissingExtraError without the extra `vtk`.
+        """
+        from ..interop import mesh_to_pyvista
+
+        return mesh_to_pyvista(self)
+
+    def to_trimesh(self) -> trimesh.Trimesh:
+        """Return the mesh with its normals, and uv and sample as vertex attributes.
+
+        MissingExtraError without the extra `trimesh`.
+        """
+        from ..interop import mesh_to_trimesh
+
+        return mesh_to_trimesh(self)
+
+    def to_open3d(self) -> open3d.geometry.TriangleMesh:
+        """Return the mesh with its normals; MissingExtraError without the extra `open3d`."""
+        from ..interop import mesh_to_open3d
+
+        return mesh_to_open3d(self)
 
 
 def scaled(points: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -102,7 +102,9 @@ class Triangulated:
             if len(triangles) and not neighbours(triangles, anywhere)[1]:
                 raise _too_few(len(self.points), self.name)
         reverse = sides[:, :1] < 0
-        triangles = np.where(reverse, triangles[:, [0, 2, 1]], triangles)
+        triangles, sides = (
+            np.where(reverse, x[:, [0, 2, 1]], x) for x in (triangles, sides * sides[:, :1])
+        )
         used, corners = np.unique(triangles, return_inverse=True)
         return Mesh(
             self.points[used],
@@ -111,6 +113,7 @@ class Triangulated:
             corners.reshape(-1, 3).astype(np.int64),
             self.sample[used],
             name=self.name,
+            sides=sides,
         )
 
 

@@ -27,8 +27,8 @@ Indices = NDArray[np.int64]
 # Triangles, and for each of their corners 1, or -1 where the copy of the corner is a mirror image.
 Triangulation = tuple[Indices, Indices]
 
-# Circles of latitude that stand for open ends.
-OPEN_LATITUDE = math.pi / 3
+# Between which latitudes a circle stands for an open end; at a pole opposite it is the mean.
+LATITUDES = (math.pi / 18, math.pi / 3, math.pi / 2.25)
 # Places are moved by this part of their mean distance: points of a lattice, of which four and more
 # lie on one circle, would be triangulated in another way in each of their copies.
 DISPLACEMENT = 1e-3
@@ -65,7 +65,7 @@ def triangulations(
             if len(closing) == 2:
                 yield _by_copies(moved, ends, lengths, margin)
             elif closing:
-                yield _on_sphere(moved, ends, closing[0])
+                yield _on_sphere(moved, ends, lengths, closing[0])
             else:
                 yield _in_rectangle(np.where(is_free[:, None], moved, _bent(moved)) * lengths)
 
@@ -125,16 +125,20 @@ def _all_in_front(triangles: Indices) -> Triangulation:
 # --- spheres, disks, bands: what closes one way ---------------------------------------------------
 
 
-def _on_sphere(places: Array, ends: Ends, axis: int) -> Triangulation:
+def _on_sphere(places: Array, ends: Ends, lengths: Array, axis: int) -> Triangulation:
     from scipy.spatial import ConvexHull
 
     is_mirrored = ends[axis][0] == "flip"
+    turn = math.pi if is_mirrored else 2.0 * math.pi
+    lowest, middle, highest = LATITUDES
+    wide = float(np.clip(turn * lengths[1 - axis] / lengths[axis] / 2.0, lowest, highest))
+    wide = middle if "pole" in ends[1 - axis] else wide
     latitudes = [
-        sign * (math.pi / 2 if end == "pole" else OPEN_LATITUDE)
+        sign * (math.pi / 2.0 if end == "pole" else wide)
         for sign, end in zip((-1.0, 1.0), ends[1 - axis], strict=True)
     ]
     angles = np.empty_like(places)
-    angles[:, 0] = places[:, axis] * (math.pi if is_mirrored else 2.0 * math.pi)
+    angles[:, 0] = places[:, axis] * turn
     angles[:, 1] = latitudes[0] + places[:, 1 - axis] * (latitudes[1] - latitudes[0])
     points = np.empty((len(places), 3))
     CATALOGUE["sphere"]["kernel"](angles, points, 1.0)

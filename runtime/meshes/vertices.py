@@ -50,8 +50,8 @@ class Vertices:
     @classmethod
     def of(cls, samples: Samples, spline: Spline) -> Vertices:
         """Take the samples, of those at one place the first, and add open sides and poles."""
-        places = _in_unit_square(samples.uv.astype(np.float64), spline)
-        pairs = np.ascontiguousarray(places).view(np.complex128)[:, 0]
+        places = np.clip(spline.in_cells(samples.uv.astype(np.float64)) / spline.cells, 0.0, 1.0)
+        pairs = _unique(places, spline).view(np.complex128)[:, 0]
         sample = np.sort(np.unique(pairs, return_index=True)[1])
         inner = cls(places[sample], sample, np.ones(len(sample), dtype=bool))
         fixed = []
@@ -87,16 +87,16 @@ class Vertices:
         return np.where(self.places == 1.0, high, low + self.places * (high - low))
 
 
-def _in_unit_square(uv: Array, spline: Spline) -> Array:
-    """Return parameters in the unit square, of which no closing side is part twice."""
-    places = np.clip(spline.in_cells(uv) / spline.cells, 0.0, 1.0)
+def _unique(places: Array, spline: Spline) -> Array:
+    """Return places that are equal where the points of the surface are the same, on a seam."""
+    unique = np.ascontiguousarray(places).copy()
     for axis in (0, 1):
-        again = places[:, axis] == 1.0
+        on_seam = unique[:, axis] == 1.0
         if spline.ends[axis][0] in ("wrap", "flip"):
-            places[again, axis] = 0.0
+            unique[on_seam, axis] = 0.0
             if spline.ends[axis][0] == "flip":
-                places[again, 1 - axis] = 1.0 - places[again, 1 - axis]
-    return places
+                unique[on_seam, 1 - axis] = 1.0 - unique[on_seam, 1 - axis]
+    return unique
 
 
 def _poles(tree: KDTree, spline: Spline) -> Iterator[Vertices]:
@@ -166,6 +166,7 @@ class _Side:
         t = np.interp(total * (np.arange(count + 1) / count), self.measure, self.t)
         t[[0, -1]] = 0.0, 1.0
         is_added = self._owned(t)
+        is_added[-1] &= not self.closes
         near, along, is_on = self._near(inner, points)
         slots = np.rint(np.interp(along, self.t, self.measure) / (total or 1.0) * count)
         slots = slots.astype(np.int64) % (count if self.closes else count + 1)
@@ -178,10 +179,10 @@ class _Side:
         return Vertices.joined([added, own])
 
     def _owned(self, t: Array) -> NDArray[np.bool_]:
-        """Say which positions belong to this side: but one of its ends."""
-        if self.closes or self.axis + self.place == 1:
-            return t < 1.0
-        return t > 0.0
+        """Say which positions belong to this side: of an open one but one of its ends."""
+        if self.closes:
+            return np.ones(len(t), dtype=bool)
+        return t < 1.0 if self.axis + self.place == 1 else t > 0.0
 
     def _near(self, inner: Vertices, points: Array) -> tuple[Indices, Array, NDArray[np.bool_]]:
         """Return the samples near the side, where along it they are, and which lie on it.
