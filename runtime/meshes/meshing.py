@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from ...generated import mesh as kernels
 from ..errors import InputError
 from ..spline import Spline
+from ..surface import Ends
 from .mesh import Mesh, scaled
 from .triangulation import neighbours, triangulations
-from .vertices import Vertices
+from .vertices import Vertices, ends_of
 
 if TYPE_CHECKING:
     from ..samples import Samples
@@ -73,8 +74,9 @@ class Triangulated:
     @classmethod
     def of(cls, samples: Samples, spline: Spline, to_be_whole: bool = True) -> Triangulated:
         """Triangulate; InputError if that is to be the whole surface and fails."""
-        vertices = Vertices.of(samples, spline)
-        triangles, sides, beyond = _triangles(vertices, spline, to_be_whole)
+        ends = ends_of(spline)
+        vertices = Vertices.of(samples, spline, ends)
+        triangles, sides, beyond = _triangles(vertices, spline, ends, to_be_whole)
         uv, points, normals = _on_surface(vertices, samples, spline)
         _complete(normals, triangles, sides)
         return cls(
@@ -118,23 +120,37 @@ class Triangulated:
 
 
 def _triangles(
-    vertices: Vertices, spline: Spline, to_be_whole: bool
+    vertices: Vertices, spline: Spline, ends: Ends, to_be_whole: bool
 ) -> tuple[Indices, Indices, Indices]:
     """Return triangles, the sides of the surface on which they lie, and their neighbours.
 
     Raises InputError if there are none, or if they are to be the whole surface and are not: each
-    edge in two of them, or on an open side of the domain.
+    edge in two of them, or on an open side of the domain, and the Euler characteristic right.
     """
     found = None
     lengths = _lengths(spline)
-    for triangles, sides in triangulations(vertices.places, vertices.is_free, spline.ends, lengths):
-        beyond, is_whole = neighbours(triangles, ~vertices.is_free)
+    for triangles, sides in triangulations(vertices.places, vertices.is_free, ends, lengths):
+        beyond, is_closed = neighbours(triangles, ~vertices.is_free)
         found = triangles, sides, beyond
-        if is_whole:
+        if is_closed and _characteristic(triangles, beyond) == _characteristic_of(ends):
             return found
     if found is None or to_be_whole:
         raise _too_few(len(vertices.sample), spline.name)
     return found
+
+
+def _characteristic(triangles: Indices, beyond: Indices) -> int:
+    """Return the Euler characteristic of triangles with the neighbours `beyond`."""
+    edges = (beyond.size + np.count_nonzero(beyond < 0)) // 2
+    return int(np.count_nonzero(np.bincount(triangles.ravel()))) - edges + len(triangles)
+
+
+def _characteristic_of(ends: Ends) -> int:
+    """Return the Euler characteristic of a surface: each pole closes a hole of a band."""
+    closing = [kinds[0] in ("wrap", "flip") for kinds in ends]
+    if all(closing):
+        return int(ends[0][0] == ends[1][0] == "flip")  # the projective plane
+    return sum(end == "pole" for kinds in ends for end in kinds) if any(closing) else 1
 
 
 def _too_few(count: int, name: str) -> InputError:

@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 
 from ...generated import mesh as kernels
 from ..spline import Spline
+from ..surface import End, Ends
 
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
 
     from ..samples import Samples
 
-__all__ = ["Vertices"]
+__all__ = ["Vertices", "ends_of"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -48,19 +49,19 @@ class Vertices:
     is_free: NDArray[np.bool_]
 
     @classmethod
-    def of(cls, samples: Samples, spline: Spline) -> Vertices:
+    def of(cls, samples: Samples, spline: Spline, ends: Ends) -> Vertices:
         """Take the samples, of those at one place the first, and add open sides and poles."""
         places = np.clip(spline.in_cells(samples.uv.astype(np.float64)) / spline.cells, 0.0, 1.0)
-        pairs = _unique(places, spline).view(np.complex128)[:, 0]
+        pairs = _unique(places, ends).view(np.complex128)[:, 0]
         sample = np.sort(np.unique(pairs, return_index=True)[1])
         inner = cls(places[sample], sample, np.ones(len(sample), dtype=bool))
-        fixed = []
-        if any(end in ("none", "pole") for ends in spline.ends for end in ends):
-            from scipy.spatial import KDTree
+        if all(end in ("wrap", "flip") for end, _ in ends):
+            return inner
+        from scipy.spatial import KDTree
 
-            points = samples.points.astype(np.float64)
-            tree = KDTree(points[sample])
-            fixed = [*_poles(tree, spline), *_sides(inner, points, tree, spline)]
+        points = samples.points.astype(np.float64)
+        tree = KDTree(points[sample])
+        fixed = [*_poles(inner, tree, spline, ends), *_sides(inner, points, tree, spline, ends)]
         for part in fixed:
             inner = inner.without(part.sample)
         return cls.joined([inner, *fixed])
@@ -87,26 +88,60 @@ class Vertices:
         return np.where(self.places == 1.0, high, low + self.places * (high - low))
 
 
-def _unique(places: Array, spline: Spline) -> Array:
-    """Return places that are equal where the points of the surface are the same, on a seam."""
+def ends_of(spline: Spline) -> Ends:
+    """Return what lies beyond the ends of a spline, with a closed side that is one point a pole."""
+    size = float(np.ptp(spline.coefficients, axis=(0, 1)).max())
+    found: list[tuple[End, End]] = []
+    for axis, ends in enumerate(spline.ends):
+        kinds = list(ends)
+        for place, end in enumerate(ends):
+            if end == "none" and spline.ends[1 - axis][0] == "wrap":
+                t = np.linspace(0.0, 1.0, spline.cells[1 - axis] + 1)
+                side = _points(spline, _on_side(axis, place, t))
+                kinds[place] = "pole" if np.ptp(side, axis=0).max() <= ON_BORDER * size else end
+        found.append((kinds[0], kinds[1]))
+    return found[0], found[1]
+
+
+def _unique(places: Array, ends: Ends) -> Array:
+    """Return places that are equal where the points of the surface are: on seams, at poles."""
     unique = np.ascontiguousarray(places).copy()
     for axis in (0, 1):
+        for place, end in enumerate(ends[axis]):
+            if end == "pole":
+                unique[np.abs(unique[:, axis] - place) <= ON_BORDER] = float(place)
         on_seam = unique[:, axis] == 1.0
-        if spline.ends[axis][0] in ("wrap", "flip"):
+        if ends[axis][0] in ("wrap", "flip"):
             unique[on_seam, axis] = 0.0
-            if spline.ends[axis][0] == "flip":
+            if ends[axis][0] == "flip":
                 unique[on_seam, 1 - axis] = 1.0 - unique[on_seam, 1 - axis]
     return unique
 
 
-def _poles(tree: KDTree, spline: Spline) -> Iterator[Vertices]:
-    """Yield the poles, each one place, but those with a sample beside them."""
-    for place, end in enumerate(spline.ends[1]):
-        if end == "pole":
-            pole = Vertices.fixed(np.array([[0.0, float(place)]]), np.array([-1]))
-            point = spline.evaluate(*pole.uv(spline).T)
-            if tree.query(point)[0][0] >= BESIDE * _spacings(tree, point)[0]:
-                yield pole
+def _on_side(axis: int, place: int, t: Array) -> Array:
+    """Return places (k, 2) where u (axis 0) or v (axis 1) is at an end, and the other one is t."""
+    fixed = np.full_like(t, float(place))
+    return np.stack([fixed, t] if axis == 0 else [t, fixed], axis=1)
+
+
+def _points(spline: Spline, places: Array) -> Array:
+    """Return the points (k, 3) of a spline at places."""
+    vertices = Vertices.fixed(places, np.empty(0, dtype=np.int64))
+    return spline.evaluate(*vertices.uv(spline).T)
+
+
+def _poles(inner: Vertices, tree: KDTree, spline: Spline, ends: Ends) -> Iterator[Vertices]:
+    """Yield the poles, each one place: a sample that is there, or one of no sample near by."""
+    for axis, kinds in enumerate(ends):
+        for place, end in enumerate(kinds):
+            if end == "pole":
+                there = np.abs(inner.places[:, axis] - place) <= ON_BORDER
+                at = _on_side(axis, place, np.zeros(1))
+                point = _points(spline, at)
+                if there.any():
+                    yield Vertices.fixed(at, inner.sample[there])
+                elif tree.query(point)[0][0] >= BESIDE * _spacings(tree, point)[0]:
+                    yield Vertices.fixed(at, np.array([-1]))
 
 
 def _spacings(tree: KDTree, points: Array) -> Array:
@@ -121,13 +156,15 @@ def _spacings(tree: KDTree, points: Array) -> Array:
 # --- open sides -----------------------------------------------------------------------------------
 
 
-def _sides(inner: Vertices, points: Array, tree: KDTree, spline: Spline) -> Iterator[Vertices]:
+def _sides(
+    inner: Vertices, points: Array, tree: KDTree, spline: Spline, ends: Ends
+) -> Iterator[Vertices]:
     """Yield the vertices of each open side, where samples lie on it those.
 
     A corner of the domain belongs to the side that begins there, counterclockwise.
     """
     for axis in (0, 1):
-        for place, end in enumerate(spline.ends[axis]):
+        for place, end in enumerate(ends[axis]):
             if end == "none":
                 yield _Side(spline, axis, place, tree).vertices(inner, points)
 
@@ -142,22 +179,12 @@ class _Side:
         steps = STEPS_A_CELL * spline.cells[1 - axis]
         steps = max(steps, STEPS_A_SAMPLE * math.isqrt(tree.n))
         self.t = np.linspace(0.0, 1.0, steps + 1)
-        line = self.evaluate(self.t)
+        line = _points(spline, _on_side(axis, place, self.t))
         self.spacings = _spacings(tree, line)
         lengths = np.linalg.norm(np.diff(line, axis=0), axis=1)
         shortest = float(lengths.sum()) / steps or 1.0
         middle = np.maximum((self.spacings[1:] + self.spacings[:-1]) / 2.0, shortest)
         self.measure = np.concatenate([[0.0], np.cumsum(lengths / middle)])
-
-    def places(self, t: Array) -> Array:
-        """Return places (k, 2) of the unit square at positions along the side."""
-        fixed = np.full_like(t, float(self.place))
-        return np.stack([fixed, t] if self.axis == 0 else [t, fixed], axis=1)
-
-    def evaluate(self, t: Array) -> Array:
-        """Return the points (k, 3) of the surface at positions along the side."""
-        vertices = Vertices.fixed(self.places(t), np.empty(0, dtype=np.int64))
-        return self.spline.evaluate(*vertices.uv(self.spline).T)
 
     def vertices(self, inner: Vertices, points: Array) -> Vertices:
         """Return the vertices of the side: the samples on it, and points between them."""
@@ -174,8 +201,12 @@ class _Side:
         t[slots[is_inside]] = along[is_inside]  # of two, the last one stays
         is_added[slots[is_on & (is_inside | (along == t[slots]))]] = False
         is_on &= self._owned(along)
-        added = Vertices.fixed(self.places(t[is_added]), np.full(int(is_added.sum()), -1))
-        own = Vertices.fixed(self.places(along[is_on]), inner.sample[near[is_on]])
+        added = Vertices.fixed(
+            _on_side(self.axis, self.place, t[is_added]), np.full(int(is_added.sum()), -1)
+        )
+        own = Vertices.fixed(
+            _on_side(self.axis, self.place, along[is_on]), inner.sample[near[is_on]]
+        )
         return Vertices.joined([added, own])
 
     def _owned(self, t: Array) -> NDArray[np.bool_]:
@@ -192,7 +223,8 @@ class _Side:
         depth = np.abs(inner.places[:, self.axis] - self.place)
         near = np.flatnonzero(depth < DEEPEST)
         along = inner.places[near, 1 - self.axis]
-        gaps = np.linalg.norm(points[inner.sample[near]] - self.evaluate(along), axis=1)
+        feet = _points(self.spline, _on_side(self.axis, self.place, along))
+        gaps = np.linalg.norm(points[inner.sample[near]] - feet, axis=1)
         is_on = depth[near] <= ON_BORDER
         chosen = is_on | (gaps < BESIDE * np.interp(along, self.t, self.spacings))
         order = np.flatnonzero(chosen)[np.argsort(-depth[near[chosen]], kind="stable")]
