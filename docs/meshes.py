@@ -52,11 +52,9 @@ def samples_for(form: ClosedForm, count: int) -> gm.Samples:
     """Return samples whose mesh has about `count` vertices, those of the border among them."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", gm.GaussmapWarning)
-        added = 0
-        for _ in range(2):
-            samples = gm.sample(form.surface, count=count - added)
-            added = len(samples.mesh().vertices) - len(samples)
-        return samples
+        first = gm.sample(form.surface, count=count)
+        added = len(first.mesh().vertices) - len(first)
+        return gm.sample(form.surface, count=count - added)
 
 
 def own(form: ClosedForm, count: int) -> Triangles:
@@ -107,7 +105,7 @@ def quality(form: ClosedForm, places: Places, mesh: Triangles) -> Quality:
     cells, nearest = closest(mesh, places.points)
     corners = points[triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    turned = angles(normals[cells], places.normals)
+    turned = angles(normals[cells], places.normals.astype(np.float64))
     return Quality(
         len(points),
         len(triangles),
@@ -147,8 +145,9 @@ def to_surface(form: ClosedForm, points: Array) -> Array:
     A parameter that would leave the domain is held. ArithmeticError if no point is found.
     """
     true = exact(form)
-    place = true.unit(np.stack(form.parameters(points), axis=-1))
+    place = true.unit(np.stack(form.parameters(points), axis=-1).astype(np.float64))
     is_open = np.array([ends[0] == "none" for ends in form.surface.ends])
+    step, away = np.zeros_like(place), points
     for _ in range(STEPS):
         place = np.where(is_open, np.clip(place, 0.0, 1.0), place)
         x, x_s, x_t, x_ss, x_st, x_tt = np.moveaxis(true.derivatives(*place.T, 2), -2, 0)
@@ -164,7 +163,7 @@ def to_surface(form: ClosedForm, points: Array) -> Array:
         place = place + step
     if np.abs(step).max() > 1e-6:
         raise ArithmeticError(f"Newton's method fails on {form.name}")
-    return lengths(away)
+    return lengths(away.astype(np.float64))
 
 
 def dots(left: Array, right: Array) -> Array:

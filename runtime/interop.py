@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from .errors import MissingExtraError
 
 if TYPE_CHECKING:
-    import open3d
+    import open3d  # pyright: ignore[reportMissingImports]
     import pandas
     import pyvista
     import trimesh

@@ -336,7 +336,7 @@ def _read_npz(file: BinaryIO) -> Samples:
         missing = [n for n in ("format_version", "report", *fields) if n not in archive]
         if missing:
             raise _lacks("arrays", missing)
-        arrays = {name: _native(archive[name]) for name in fields}
+        arrays: dict[str, Any] = {name: _native(archive[name]) for name in fields}
         return Samples(**arrays, report=_report_from_json(str(archive["report"])))
 
 

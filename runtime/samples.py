@@ -20,7 +20,7 @@ from .fields import ARRAY_NAMES, DERIVED, FLOAT_NAMES, row_shape
 from .spline import Spline, short_label
 
 if TYPE_CHECKING:
-    import open3d
+    import open3d  # pyright: ignore[reportMissingImports]
     import pandas
     import pyvista
     import trimesh

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from typing import cast
-
 import sympy as sp
 
-from .formula import Cross, Dot, Formula, scalar, vectors
+from .formula import Cross, Dot, Formula, scalar, substitute, vectors
 
 __all__ = ["FORMULAS"]
 
@@ -29,7 +27,7 @@ def _border_spacing() -> Formula:
     density = sp.Symbol("rho", positive=True)
     radius, number = sp.symbols("r k", positive=True)
     (found,) = sp.solve(density * sp.pi * radius**2 / 2 - number, density)
-    spacing = cast(sp.Expr, sp.sqrt(1 / found)).xreplace({radius: r, number: k})
+    spacing = substitute(sp.sqrt(1 / found), {radius: r, number: k})
     return Formula.build(
         "border_spacing",
         "How far apart points of a border are to be if the $k$-th nearest sample is $r$ away: as "

@@ -22,9 +22,9 @@ Nearest = Callable[[Array, Array], np.ndarray]
 
 def nearest_by_tree(samples: Array, places: Array) -> np.ndarray:
     """Return which sample is nearest to each place, by SciPy's k-d tree."""
-    from scipy.spatial import cKDTree
+    from scipy.spatial import KDTree
 
-    return cKDTree(samples).query(places, workers=-1)[1]
+    return np.asarray(KDTree(samples).query(places, workers=-1)[1])
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import os
 import shutil
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -53,7 +53,7 @@ def _write_ply(mesh: Mesh, path: Path) -> None:
         raise InputError("a .ply file numbers vertices by 32 bits; write a .vtu file instead.")
     columns = dict(zip(("nx", "ny", "nz"), mesh.normals.T, strict=True))
     columns |= dict(zip("uv", mesh.uv.T, strict=True))
-    cells = [("triangle", mesh.triangles.astype(np.int32))]
+    cells: list[Any] = [("triangle", mesh.triangles.astype(np.int32))]
     buffer = io.BytesIO()
     meshio.write(buffer, meshio.Mesh(mesh.vertices, cells, point_data=columns), file_format="ply")
     buffer.seek(0)

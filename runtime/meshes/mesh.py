@@ -16,7 +16,7 @@ from ..errors import InputError
 from ..spline import scale_to_one, short_label
 
 if TYPE_CHECKING:
-    import open3d
+    import open3d  # pyright: ignore[reportMissingImports]
     import pyvista
     import trimesh
 

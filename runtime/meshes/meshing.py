@@ -141,8 +141,9 @@ def _triangles(
 
 def _characteristic(triangles: Indices, beyond: Indices) -> int:
     """Return the Euler characteristic of triangles with the neighbours `beyond`."""
-    edges = (beyond.size + np.count_nonzero(beyond < 0)) // 2
-    return int(np.count_nonzero(np.bincount(triangles.ravel()))) - edges + len(triangles)
+    edges = (beyond.size + int(np.count_nonzero(beyond < 0))) // 2
+    used = int(np.count_nonzero(np.bincount(triangles.ravel())))
+    return used - edges + len(triangles)
 
 
 def _characteristic_of(ends: Ends) -> int:
@@ -187,7 +188,7 @@ def _complete(normals: Array, triangles: Indices, sides: Indices) -> None:
 
     It is 0 where there is none either.
     """
-    lacking = ~np.isfinite(normals).all(axis=1)
+    lacking: NDArray[np.bool_] = ~np.isfinite(normals).all(axis=1)
     normals[lacking] = 0.0
     beside = lacking[triangles].any(axis=1)
     corners, side = triangles[beside], sides[beside, :, None]

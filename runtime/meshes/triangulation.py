@@ -32,6 +32,8 @@ LATITUDES = (math.pi / 18, math.pi / 3, math.pi / 2.25)
 # Places are moved by this part of their mean distance: points of a lattice, of which four and more
 # lie on one circle, would be triangulated in another way in each of their copies.
 DISPLACEMENT = 1e-3
+# The height of a circle of latitude is known to this, and that of a free place is farther away.
+ROUNDING = 1e-12
 # None gets nearer to an open side than this, or on it.
 INSIDE = 5e-10
 # The sides of a rectangle are bent outwards by this part of it, so that their points are extreme.
@@ -148,11 +150,10 @@ def _on_sphere(places: Array, ends: Ends, lengths: Array, axis: int) -> Triangul
     a, b, c = np.moveaxis(points[hull.simplices], 1, 0)
     is_inwards = np.einsum("kx,kx->k", np.cross(b - a, c - a), hull.equations[:, :3]) < 0.0
     triangles = _turned(hull.simplices, is_inwards == (axis == 0))
-    heights = points[triangles, 2]
     for end, latitude in zip(ends[1 - axis], latitudes, strict=True):
         if end == "none":
-            on_circle = np.abs(heights - math.sin(latitude)) < 1e-12
-            triangles, heights = (x[~on_circle.all(axis=1)] for x in (triangles, heights))
+            off_circle = np.abs(points[:, 2] - math.sin(latitude)) > ROUNDING
+            triangles = triangles[off_circle[triangles].any(axis=1)]
     number = np.arange(len(points))
     return _one_of_each(triangles, number % len(places), len(places), number >= len(places))
 

@@ -148,7 +148,7 @@ def _spacings(tree: KDTree, points: Array) -> Array:
     """Return how far apart vertices are to be at points (k, 3) where there are no samples."""
     nearest = min(NEAREST, tree.n)
     spacings = np.empty(len(points))
-    distances = tree.query(points, k=[nearest], workers=-1)[0][:, 0]
+    distances = tree.query(points, k=nearest, workers=-1)[0].reshape(len(points), -1)[:, -1]
     kernels.border_spacings(distances, float(nearest), spacings)
     return spacings
 

@@ -95,9 +95,9 @@ class TestPyvista:
     def test_it_copies(self):
         pytest.importorskip("pyvista")
         found, surface = samples(), mesh()
-        found.to_pyvista().points[:] = 100.0
-        found.to_pyvista().point_data["uv"][:] = 100.0
-        surface.to_pyvista().points[:] = 100.0
+        found.to_pyvista().points.fill(100.0)
+        found.to_pyvista().point_data["uv"].fill(100.0)
+        surface.to_pyvista().points.fill(100.0)
         assert max(np.abs(x).max() for x in (found.points, found.uv, surface.vertices)) < 100.0
 
 

@@ -124,7 +124,7 @@ class TestFiles:
         again = pv.read(path)
         np.testing.assert_array_equal(again.regular_faces, mesh.triangles)
         normals = again.point_data["Normals"]
-        np.testing.assert_allclose(normals, mesh.normals, atol=np.finfo(np.float32).eps)
+        np.testing.assert_allclose(normals, mesh.normals, atol=float(np.finfo(np.float32).eps))
 
     def test_pyvista_reads_it_back(self, tmp_path):
         pv = pytest.importorskip("pyvista")

@@ -233,10 +233,9 @@ class TestFlips:
         assert state.flip_edges() > 0
         assert state.flip_edges() == 0
         joined = {tuple(x) for x in np.sort(state.mesh().edges, axis=1).tolist()}
-        for t, k, other in ((t, k, state.neighbours[t, k]) for t, k in np.ndindex(len(
-            state.triangles), 3)):  # fmt: skip
-            if other >= 0:
-                before, after, edge = flipped(state, t, k, other)
+        for t, k in np.ndindex(len(state.triangles), 3):
+            if state.neighbours[t, k] >= 0:
+                before, after, edge = flipped(state, t, k, int(state.neighbours[t, k]))
                 assert tuple(sorted(edge)) in joined or after <= before + 1e-12
 
     @pytest.mark.parametrize("name", ["torus", "graph", "klein"])
@@ -310,9 +309,9 @@ class TestInput:
         uv[on_seam, 0] = 0.0
         other = uv.copy()
         other[on_seam, 0] = 2 * np.pi
-        arrays = {name: getattr(samples, name) for name in samples.fields}
+        arrays: dict[str, Any] = {name: getattr(samples, name) for name in samples.fields}
         parts = [
-            gm.Samples(**(arrays | {"uv": x}), report=samples.report, spline=samples.spline)
+            gm.Samples(**{**arrays, "uv": x}, report=samples.report, spline=samples.spline)
             for x in (uv, other)
         ]
         mesh = gm.Samples.concatenate(parts).mesh()
