@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from .formula import Cross, Dot, Formula, scalar, substitute, vectors
+from .formula import Cross, Dot, Formula, scalar, vectors
 
 __all__ = ["FORMULAS"]
 
@@ -22,21 +22,13 @@ CORNER_PRODUCTS = Formula.build(
 )
 
 
-def _border_spacing() -> Formula:
-    """Solve ρ π r²/2 = k for the density ρ; points of that density are 1/√ρ apart."""
-    density = sp.Symbol("rho", positive=True)
-    radius, number = sp.symbols("r k", positive=True)
-    (found,) = sp.solve(density * sp.pi * radius**2 / 2 - number, density)
-    spacing = substitute(sp.sqrt(1 / found), {radius: r, number: k})
-    return Formula.build(
-        "border_spacing",
-        "How far apart points of a border are to be if the $k$-th nearest sample is $r$ away: as "
-        "far as samples are whose density is $k$ on half a disk of radius $r$.",
-        inputs=[r, k],
-        outputs=[("d", spacing)],
-    )
-
-
-BORDER_SPACING = _border_spacing()
+BORDER_SPACING = Formula.build(
+    "border_spacing",
+    "How far apart points of a border are to be if the $k$-th nearest sample is $r$ away: as far "
+    "as samples are of which $k$ fill half a disk of radius $r$.",
+    inputs=[r, k],
+    terms=[("rho", k / (sp.pi * r**2 / 2))],
+    outputs=[("d", 1 / sp.sqrt(scalar("rho")))],
+)
 
 FORMULAS = (CORNER_PRODUCTS, BORDER_SPACING)
