@@ -12,7 +12,7 @@ TERRAIN = "$$($(BIN)/python -c '$(DEM)'):elevation" --spacing 74.5 -92.5 --cells
 
 .DEFAULT_GOAL := help
 .PHONY: help demo generate check-generated test coverage bench bench-guard bench-record bench-peers \
-	operations lint typecheck formulas orders errata curves figures clean
+	operations lint typecheck formulas orders errata curves figures meshes clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -92,6 +92,10 @@ errata: $(READY) ## write the errata of the paper (docs/errata.md)
 figures: $(READY) ## draw Figs. 2-7 of the paper again (docs/figures.md)
 	$(BIN)/python docs/figures.py > docs/figures.tmp
 	mv docs/figures.tmp docs/figures.md
+
+meshes: $(VENV)/peers/.ready ## measure meshes beside Gmsh and Open CASCADE again (docs/meshes.md)
+	$(VENV)/peers/bin/python docs/meshes.py > docs/meshes.tmp
+	mv docs/meshes.tmp docs/meshes.md
 
 clean: ## remove what make made
 	rm -rf $(VENV) out build *.egg-info .pytest_cache .ruff_cache .hypothesis .benchmarks .coverage

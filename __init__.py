@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     )
     from .runtime.gaussian.parabolic_lines import ParabolicLine, Piece, parabolic_lines, split_patch
     from .runtime.io import read_samples
+    from .runtime.meshes.mesh import Mesh
     from .runtime.regions import cap, spherical_polygon
     from .runtime.samples import Samples, SamplingReport
     from .runtime.sampling import sample, sample_many
@@ -70,6 +71,7 @@ __all__ = [
     "GaussmapError",
     "GaussmapWarning",
     "InputError",
+    "Mesh",
     "MissingExtraError",
     "MissingFieldError",
     "ParabolicCurve",
@@ -132,6 +134,7 @@ _NAMES = {
     "runtime.gaussian.parabolic_lines": "ParabolicLine Piece parabolic_lines split_patch",
     "runtime.io": "read_samples",
     "runtime.regions": "cap spherical_polygon",
+    "runtime.meshes.mesh": "Mesh",
     "runtime.samples": "Samples SamplingReport",
     "runtime.sampling": "sample sample_many",
     "runtime.silhouette": "silhouette",

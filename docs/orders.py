@@ -11,7 +11,7 @@ import re
 import textwrap
 import warnings
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
 
@@ -83,11 +83,16 @@ QUANTITIES = (POSITIONS, DERIVATIVES, ANGLES, SUPPORT)
 class TrueSurface:
     """A surface of the catalogue with its exact derivatives, by parameters in the unit square."""
 
-    def __init__(self, name: str) -> None:
-        """Take the surface with the default values of its parameters."""
+    def __init__(self, name: str, **values: float) -> None:
+        """Take the surface with these values of its parameters, else the default ones."""
         self.name = name
-        self.entry: ParametricSurface = CATALOGUE[name]
-        self.surface = gm.surfaces.surface(name)
+        entry: ParametricSurface = CATALOGUE[name]
+        parameters = tuple(
+            replace(x, default=sp.Float(values.get(x.symbol.name, x.default)))
+            for x in entry.parameters
+        )
+        self.entry = replace(entry, parameters=parameters) if values else entry
+        self.surface = gm.surfaces.surface(name, **values)
         self.derivatives = _lambdified(self.entry)
 
     @property

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from .errors import InputError, UnknownNameError
 
 __all__ = [
+    "checked_array",
     "finite_array",
     "finite_number",
     "known_name",
@@ -119,3 +120,17 @@ def parameter_arrays(u: ArrayLike, v: ArrayLike) -> tuple[NDArray[np.float64], N
             f"{v_array.shape}."
         ) from None
     return np.broadcast_to(u_array, shape), np.broadcast_to(v_array, shape)
+
+
+def checked_array(
+    name: str, array: object, shape: tuple[int, ...], dtype: np.dtype[Any]
+) -> NDArray[Any]:
+    """Return an array, C-contiguous; InputError unless it has this shape and type already."""
+    if not isinstance(array, np.ndarray):
+        raise InputError(f"{name} must be a NumPy array, not {type(array).__name__}.")
+    if array.dtype != dtype or array.shape != shape:
+        raise InputError(
+            f"{name} must be a {dtype} array of shape {shape}, "
+            f"not a {array.dtype} array of shape {array.shape}."
+        )
+    return np.ascontiguousarray(array)

@@ -1,4 +1,4 @@
-"""The command line: `gaussmap sample`, `plot`, `surfaces` and `formulas`.
+"""The command line: `gaussmap sample`, `mesh`, `plot`, `surfaces` and `formulas`.
 
 Results go to standard output; the progress bar, warnings and errors go to standard error. Every
 error is one line and the exit code 2; Ctrl-C gives 130, and a reader that went away 141.
@@ -20,7 +20,7 @@ import zipfile
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import IO, Any, NoReturn, TextIO
+from typing import IO, TYPE_CHECKING, Any, NoReturn, TextIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +35,9 @@ from .sampling import sample
 from .sphere import healpix, icosphere, random_normals
 from .surface import Surface
 from .surfaces import CATALOGUE, describe, names, surface
+
+if TYPE_CHECKING:
+    from .meshes.mesh import Mesh
 
 __all__ = ["main"]
 
@@ -53,6 +56,7 @@ examples:
   gaussmap sample torus --count 10000 -o torus.ply
   gaussmap sample torus --set major=1.0 --set minor=0.2 --frequency 32 -o torus.npz
   gaussmap sample heights.npy --spacing 30 30 --count 50000 -o terrain.ply
+  gaussmap mesh torus --count 5000 -o torus.obj
   gaussmap plot torus -o torus.png
   gaussmap surfaces torus
   gaussmap formulas --latex
@@ -71,6 +75,15 @@ examples:
   gaussmap sample torus --fields points,normals --float32 -o torus.ply
   gaussmap sample heights.npy --spacing 30 30 --count 50000 -o terrain.ply
   gaussmap sample scan.npz:points --periodic u --normals directions.npy -o scan.csv
+"""
+
+MESH_EXAMPLES = """\
+SURFACE and the options that choose normals and cells are those of `gaussmap sample`.
+
+examples:
+  gaussmap mesh torus --count 5000 -o torus.obj
+  gaussmap mesh heights.npy --spacing 30 30 --count 50000 -o terrain.ply
+  gaussmap mesh torus --normals cap.npy --angle 20 -o part.stl
 """
 
 PLOT_EXAMPLES = """\
@@ -134,6 +147,16 @@ def _run_sample(options: argparse.Namespace) -> None:
     _summarize(samples, options)
 
 
+def _run_mesh(options: argparse.Namespace) -> None:
+    from .meshes.files import MESH_SUFFIXES
+
+    check_target(options.output, MESH_SUFFIXES)
+    fields = ("points", "normals", "uv")
+    mesh = sample(**_arguments(options), fields=fields).mesh(angle=options.angle)
+    mesh.write(options.output)
+    _summarize(mesh, options)
+
+
 def _run_plot(options: argparse.Namespace) -> None:
     from .pictures import plot
 
@@ -142,7 +165,7 @@ def _run_plot(options: argparse.Namespace) -> None:
 
 
 def _arguments(options: argparse.Namespace) -> dict[str, Any]:
-    """Return the arguments of `sampling.sample` that `sample` and `plot` were given."""
+    """Return the arguments of `sampling.sample` that were given."""
     _spare_inputs(options)
     surface_, normals = _surface(options), _normals(options)
     amounts = [x for x in (options.count, options.angle, options.coverage) if x is not None]
@@ -201,9 +224,9 @@ def _write_formulas(options: argparse.Namespace) -> None:
     _say(f"{options.html}: {len(formulas)} formulas and {len(names())} surfaces")
 
 
-def _summarize(samples: Samples, options: argparse.Namespace) -> None:
+def _summarize(result: Samples | Mesh, options: argparse.Namespace) -> None:
     if not options.quiet:
-        _say(f"{options.output}: {samples.summary()}")
+        _say(f"{options.output}: {result.summary()}")
 
 
 def _table(rows: Iterable[tuple[str, str]]) -> None:
@@ -377,6 +400,24 @@ def _parser() -> argparse.ArgumentParser:
     command.set_defaults(run=_run_sample)
 
     command = commands.add_parser(
+        "mesh",
+        help="sample a surface and write a triangle mesh through the samples",
+        description="Write a triangle mesh of a surface, whose vertices are the points that have\n"
+        "one of the given normals, and points on open borders.",
+        epilog=MESH_EXAMPLES,
+    )
+    _add_sampling(command, default_count=10_000)
+    _add_output(command, ".ply, .obj, .stl, .vtk, .vtu or .vtp")
+    command.add_argument(
+        "--angle",
+        type=_number,
+        metavar="DEGREES",
+        help="leave out triangles that deviate by more from the normals at their corners, for "
+        "normals of a part of the surface",
+    )
+    command.set_defaults(run=_run_mesh)
+
+    command = commands.add_parser(
         "plot",
         help="draw a surface, its samples and their normals",
         description="Draw a surface with its samples, coloured by Gaussian curvature, and the\n"
@@ -414,7 +455,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _add_sampling(parser: argparse.ArgumentParser, default_count: int) -> None:
-    """Add the arguments that `sample` and `plot` share."""
+    """Add the arguments that `sample`, `mesh` and `plot` share."""
     parser.set_defaults(default_count=default_count)
     parser.add_argument("surface", metavar="SURFACE", help="a name, or a .npy or .npz file")
 

@@ -19,7 +19,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any, BinaryIO, NamedTuple
+from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,13 +28,19 @@ from .errors import FileError, GaussmapError, InputError, MissingExtraError, Unk
 from .fields import ARRAY_NAMES, FLOAT_NAMES
 from .samples import Samples, SamplingReport
 
+if TYPE_CHECKING:
+    import pyvista
+
 __all__ = [
     "READABLE_SUFFIXES",
     "SUFFIXES",
     "atomic_path",
     "check_fields",
     "check_target",
+    "columns_of",
+    "known_suffix",
     "read_samples",
+    "write_polydata",
     "write_samples",
 ]
 
@@ -104,7 +110,7 @@ def write_samples(samples: Samples, path: PathLike) -> None:
     is not there, and MissingExtraError if a `.vtp` file is asked and pyvista is not installed.
     """
     path = _path(path)
-    suffix = _suffix(path, SUFFIXES)
+    suffix = known_suffix(path, SUFFIXES)
     check_fields(suffix, samples.fields)
     writer = _WRITERS[suffix]
     with atomic_path(path) as temporary:
@@ -133,7 +139,7 @@ def read_samples(path: PathLike) -> Samples:
     is missing, unreadable, damaged, or not from gaussmap. Nothing is ever unpickled.
     """
     path = _path(path)
-    suffix = _suffix(path, READABLE_SUFFIXES)
+    suffix = known_suffix(path, READABLE_SUFFIXES)
     try:
         file = open(path, "rb")  # noqa: SIM115 - an error here differs from one in the content
     except OSError as error:
@@ -164,7 +170,7 @@ def check_target(path: PathLike, suffixes: Sequence[str] = SUFFIXES) -> None:
     asked and pyvista is not installed.
     """
     path = _path(path)
-    if _suffix(path, suffixes) == ".vtp" and importlib.util.find_spec("pyvista") is None:
+    if known_suffix(path, suffixes) == ".vtp" and importlib.util.find_spec("pyvista") is None:
         raise _missing_pyvista()
     probe = _temporary(_target(path))
     try:
@@ -221,7 +227,9 @@ def _path(path: PathLike) -> Path:
     return result
 
 
-def _suffix(path: Path, known: Sequence[str]) -> str:
+def known_suffix(path: PathLike, known: Sequence[str]) -> str:
+    """Return the suffix of a path in lower case; UnknownNameError if it is none of the known."""
+    path = _path(path)
     suffix = path.suffix.lower()
     if suffix not in known:
         what = f"the suffix '{path.suffix}'" if suffix else "no suffix"
@@ -367,7 +375,7 @@ class _PlyHeader(NamedTuple):
 def _write_ply(samples: Samples, path: Path) -> None:
     import meshio
 
-    columns = {name: _ply_column(name, column) for name, column in _columns(samples).items()}
+    columns = {name: _ply_column(name, column) for name, column in columns_of(samples).items()}
     data: dict[str, ArrayLike] = {
         name: column for name, column in columns.items() if name not in ("x", "y", "z")
     }
@@ -485,7 +493,7 @@ def _ply_report(header: _PlyHeader) -> SamplingReport:
 # ── Columns, and the text formats ────────────────────────────────────────────────────────────────
 
 
-def _columns(samples: Samples) -> dict[str, NDArray[Any]]:
+def columns_of(samples: Samples) -> dict[str, NDArray[Any]]:
     """Return the columns of `_COLUMNS`, each (N,), as views."""
     return {
         column: getattr(samples, name)[..., slice(None) if part is None else part]
@@ -516,7 +524,7 @@ def _from_columns(
 
 
 def _write_csv(samples: Samples, path: Path) -> None:
-    columns = _columns(samples)
+    columns = columns_of(samples)
     _write_rows(path, ",".join(columns) + "\n", ",", list(columns.values()))
 
 
@@ -540,7 +548,6 @@ def _write_rows(path: Path, header: str, mark: str, columns: Sequence[NDArray[An
 def _write_vtp(samples: Samples, path: Path) -> None:
     try:
         import pyvista as pv
-        from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
     except ImportError as error:
         raise _missing_pyvista(f"it cannot be imported ({error})") from error
 
@@ -553,10 +560,16 @@ def _write_vtp(samples: Samples, path: Path) -> None:
     if "normals" in samples.fields:
         data.SetActiveNormals("normals")
     cloud.field_data["report"] = [_report_to_json(samples.report)]
+    write_polydata(cloud, path)
+
+
+def write_polydata(data: pyvista.PolyData, path: Path) -> None:
+    """Write VTK PolyData to a .vtp file."""
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
     # Into memory first: when the disk is full, VTK leaves half a file and pyvista says nothing.
     writer = vtkXMLPolyDataWriter()
-    writer.SetInputData(cloud)
+    writer.SetInputData(data)
     writer.SetDataModeToBinary()
     writer.SetWriteToOutputString(True)
     writer.Write()

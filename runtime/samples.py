@@ -9,14 +9,23 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from dataclasses import fields as dataclass_fields
-from typing import Any, SupportsIndex
+from typing import TYPE_CHECKING, Any, SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .checks import checked_array
 from .errors import InputError, MissingFieldError
 from .fields import ARRAY_NAMES, DERIVED, FLOAT_NAMES, row_shape
 from .spline import Spline, short_label
+
+if TYPE_CHECKING:
+    import open3d  # pyright: ignore[reportMissingImports]
+    import pandas
+    import pyvista
+    import trimesh
+
+    from .meshes.mesh import Mesh
 
 __all__ = ["ARRAY_NAMES", "Samples", "SamplingReport", "rows_of"]
 
@@ -122,7 +131,7 @@ class Samples:
         for name in ARRAY_NAMES:
             if name in arrays:
                 dtype = floating if name in FLOAT_NAMES else np.dtype(np.int64)
-                array = _checked(name, arrays[name], (count, *row_shape(name)), dtype)
+                array = checked_array(name, arrays[name], (count, *row_shape(name)), dtype)
                 object.__setattr__(self, name, array)
             else:
                 object.__delattr__(self, name)  # an empty slot, for which __getattr__ speaks
@@ -260,6 +269,61 @@ class Samples:
 
         write_samples(self, path)
 
+    def mesh(self, spline: Spline | None = None, *, angle: float | None = None) -> Mesh:
+        """Return a triangle mesh of the whole surface through the samples.
+
+        Neighbours are found in (u, v): the mesh closes where the surface does, has one vertex at a
+        pole, and reaches open borders by points that are added there, as far apart as samples near
+        them. Then edges are flipped as long as that brings the triangles nearer to the normals: the
+        largest angle between two triangles and the normals at their corners falls. Samples at one
+        place become one vertex.
+
+        `spline` is that of the samples, for samples that do not know theirs. With `angle` (degrees)
+        triangles that deviate from a normal at a corner by more are left out, for samples of a part
+        of the surface only. Needs the fields points, normals and uv, else MissingFieldError. Raises
+        InputError if there are no samples or no spline, if a sample lies outside its domain, and,
+        without `angle`, if there are too few samples for a mesh that closes.
+        """
+        from .meshes.meshing import mesh_of
+
+        return mesh_of(self, spline, angle)
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """Return a table with a row for each sample and the columns of a `.csv` file.
+
+        As the other conversions, it copies. MissingExtraError without the extra `pandas`.
+        """
+        from .interop import samples_to_dataframe
+
+        return samples_to_dataframe(self)
+
+    def to_pyvista(self) -> pyvista.PolyData:
+        """Return points with all other fields as point data, normals as such.
+
+        Needs the field points. MissingExtraError without the extra `vtk`.
+        """
+        from .interop import samples_to_pyvista
+
+        return samples_to_pyvista(self)
+
+    def to_trimesh(self) -> trimesh.PointCloud:
+        """Return points in float64, with all other fields in `metadata`.
+
+        Needs the field points. MissingExtraError without the extra `trimesh`.
+        """
+        from .interop import samples_to_trimesh
+
+        return samples_to_trimesh(self)
+
+    def to_open3d(self) -> open3d.geometry.PointCloud:
+        """Return points in float64, with their normals if there are any.
+
+        Needs the field points. MissingExtraError without the extra `open3d`.
+        """
+        from .interop import samples_to_open3d
+
+        return samples_to_open3d(self)
+
     def __len__(self) -> int:
         return len(next(iter(self._arrays().values())))
 
@@ -345,19 +409,6 @@ def _share(value: float) -> float:
     if not math.isfinite(share) or not -_SHARE_ROUNDING <= share <= 1.0 + _SHARE_ROUNDING:
         raise InputError(f"invisible_share must lie between 0 and 1, and is {share!r}.")
     return min(max(share, 0.0), 1.0)
-
-
-def _checked(
-    name: str, array: object, shape: tuple[int, ...], dtype: np.dtype[Any]
-) -> NDArray[Any]:
-    if not isinstance(array, np.ndarray):
-        raise InputError(f"{name} must be a NumPy array, not {type(array).__name__}.")
-    if array.dtype != dtype or array.shape != shape:
-        raise InputError(
-            f"{name} must be a {dtype} array of shape {shape}, "
-            f"not a {array.dtype} array of shape {array.shape}."
-        )
-    return np.ascontiguousarray(array)
 
 
 def rows_of(key: ArrayLike, count: int) -> NDArray[Any]:

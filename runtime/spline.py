@@ -140,10 +140,14 @@ class Spline:
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         u_array, v_array = parameter_arrays(u, v)
         places = np.stack([u_array.ravel(), v_array.ravel()], axis=1)
-        cells = self._wrapped((places - self.frame[:2]) / self.frame[2:], places)
+        cells = self.in_cells(places)
         points, normals = np.empty_like(places, shape=(len(places), 3)), np.empty((len(places), 3))
         kernels.evaluate(self.coefficients, self.scale, cells, points, normals)
         return points.reshape(*u_array.shape, 3), normals.reshape(*u_array.shape, 3)
+
+    def in_cells(self, places: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return parameters (k, 2) in cells from the corner of the domain; see `evaluate`."""
+        return self._wrapped((places - self.frame[:2]) / self.frame[2:], places)
 
     def _wrapped(
         self, cells: NDArray[np.float64], places: NDArray[np.float64]

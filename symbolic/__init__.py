@@ -6,7 +6,7 @@
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from . import curve, gaussian_image, patch, spline, support
+from . import curve, gaussian_image, mesh, patch, spline, support
 from .bezier import BezierTriangle
 from .formula import Formula
 
@@ -15,7 +15,7 @@ __all__ = ["BezierTriangle", "Formula", "formulas"]
 formulas: Mapping[str, Formula] = MappingProxyType(
     {
         formula.name: formula
-        for module in (patch, gaussian_image, spline, support, curve)
+        for module in (patch, gaussian_image, spline, support, mesh, curve)
         for formula in module.FORMULAS
     }
 )

@@ -16,7 +16,7 @@ from typing import cast
 
 import sympy as sp
 
-from . import curve, gaussian_image, icosahedron, latex, patch, spline, support, surfaces
+from . import curve, gaussian_image, icosahedron, latex, mesh, patch, spline, support, surfaces
 from .double_double import double_double_function
 from .emit import block, call, functions, render
 from .expression import hessian_entries
@@ -57,6 +57,7 @@ def derive() -> dict[str, str]:
         "exact.py": exact_source(),
         "gaussian_image.py": gaussian_image_source(),
         "icosphere.py": icosphere_source(),
+        "mesh.py": mesh_source(),
         "patch.py": patch_source(),
         "spline.py": spline_source(),
         "sampler.py": sampler_source(),
@@ -218,6 +219,27 @@ def icosphere_source() -> str:
             + f"\nFACE_RADIUS = {float(icosahedron.face_radius().evalf(40))}",
             "digest": f"# sampler.py, digest {digest}: Numba's cache looks at this file alone.",
             "cone_of_patch": _cone_of_patch(),
+        },
+    )
+
+
+def mesh_source() -> str:
+    """Return generated/mesh.py: border points, and flips of the edges of triangles."""
+    places = {"p": "points", "n": "normals"}
+    load = (
+        f"{letter}{i}_{axis} = {array}[{corner}, {x}]"
+        for letter, array in places.items()
+        for i, corner in enumerate("abc")
+        for x, axis in enumerate("xyz")
+    )
+    return render(
+        "mesh.py",
+        {
+            "header": header("Triangles through samples: border points, flips of edges."),
+            "formulas": functions(mesh.FORMULAS),
+            "border_spacing": f"d = {call(mesh.BORDER_SPACING)}",
+            "load_corners": "\n".join(load),
+            "corner_products": f"s0, s1, s2, L = {call(mesh.CORNER_PRODUCTS)}",
         },
     )
 

@@ -9,7 +9,7 @@ from functools import cache
 
 import sympy as sp
 
-from . import curve, gaussian_image, patch, spline, support, surfaces
+from . import curve, gaussian_image, mesh, patch, spline, support, surfaces
 from .display import latex_name, latex_of
 from .emit import render
 from .formula import Formula, VectorSymbol
@@ -25,6 +25,7 @@ FORMULAS = {
     "Gaussian images and parabolic points": gaussian_image.FORMULAS,
     "The quadratic spline": spline.FORMULAS,
     "Support functions": support.FORMULAS,
+    "Meshes": mesh.FORMULAS,
     "Planar curves": curve.FORMULAS,
 }
 ENDS = {

@@ -8,6 +8,7 @@ The torus is their own; the other two surfaces are given to them as the B-spline
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,15 @@ from .forms import ClosedForm, Torus
 from .peer import Points, Work, tuned
 from .splines import NET, net
 
-__all__ = ["gmsh_by_curvature", "opencascade_by_angle"]
+__all__ = [
+    "gmsh_by_curvature",
+    "gmsh_mesher",
+    "opencascade_by_angle",
+    "opencascade_face",
+    "opencascade_mesher",
+]
+
+Mesher = Callable[[float], Points]
 
 MULTIPLICITIES = [4, *[1] * (NET - 4), 4]
 # Large enough that the angle decides; without any bound Open CASCADE leaves out whole turns.
@@ -25,6 +34,13 @@ LINEAR_DEFLECTION = 0.1
 
 def gmsh_by_curvature(form: ClosedForm, count: int) -> Work:
     """Prepare a model and the number of elements per full turn of the normal that gives `count`."""
+    meshed = gmsh_mesher(form)
+    elements = tuned(meshed, 40.0, count, 2.0)
+    return lambda: meshed(elements)
+
+
+def gmsh_mesher(form: ClosedForm) -> Mesher:
+    """Return what makes a mesh of so many elements per full turn the mesh of Gmsh's model."""
     import gmsh
 
     if gmsh.isInitialized():
@@ -43,8 +59,7 @@ def gmsh_by_curvature(form: ClosedForm, count: int) -> Work:
         normals = gmsh.model.getNormal(tag, parameters)
         return np.reshape(points, (-1, 3)), np.reshape(normals, (-1, 3))
 
-    elements = tuned(meshed, 40.0, count, 2.0)
-    return lambda: meshed(elements)
+    return meshed
 
 
 def _gmsh_face(occ: Any, form: ClosedForm) -> int:
@@ -63,14 +78,25 @@ def _gmsh_face(occ: Any, form: ClosedForm) -> int:
 
 def opencascade_by_angle(form: ClosedForm, count: int) -> Work:
     """Prepare a face and the angular deflection that gives `count` nodes."""
-    from OCP.BRep import BRep_Tool
+    meshed = opencascade_mesher(opencascade_face(form))
+    angle = tuned(meshed, 0.2, count, -2.0)
+    return lambda: meshed(angle)
+
+
+def opencascade_face(form: ClosedForm) -> Any:
+    """Return the surface as a face of Open CASCADE."""
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
+
+    return BRepBuilderAPI_MakeFace(_opencascade_surface(form), 1e-7).Face()
+
+
+def opencascade_mesher(face: Any) -> Mesher:
+    """Return what makes a mesh of some angular deflection the mesh of a face."""
+    from OCP.BRep import BRep_Tool
     from OCP.BRepLib import BRepLib_ToolTriangulatedShape
     from OCP.BRepMesh import BRepMesh_IncrementalMesh
     from OCP.BRepTools import BRepTools
     from OCP.TopLoc import TopLoc_Location
-
-    face = BRepBuilderAPI_MakeFace(_opencascade_surface(form), 1e-7).Face()
 
     def meshed(angle: float) -> Points:
         BRepTools.Clean_s(face)
@@ -82,8 +108,7 @@ def opencascade_by_angle(form: ClosedForm, count: int) -> Work:
         normals = [(n.X(), n.Y(), n.Z()) for n in map(mesh.Normal, numbers)]
         return np.array(points), np.array(normals)
 
-    angle = tuned(meshed, 0.2, count, -2.0)
-    return lambda: meshed(angle)
+    return meshed
 
 
 def _opencascade_surface(form: ClosedForm) -> Any:

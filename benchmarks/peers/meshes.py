@@ -20,9 +20,9 @@ __all__ = ["open3d_by_area", "open3d_poisson", "pymeshlab_poisson", "trimesh_by_
 CELLS = 320**2
 
 
-def triangles(form: ClosedForm) -> tuple[Array, Array, np.ndarray]:
-    """Return vertices, their normals, and triangles (2 CELLS or a little less, 3)."""
-    u, v = form.lattice(CELLS)
+def triangles(form: ClosedForm, cells: int = CELLS) -> tuple[Array, Array, np.ndarray]:
+    """Return vertices, their normals, and triangles (2 cells or a little less, 3)."""
+    u, v = form.lattice(cells)
     numbers = np.arange(u.size * v.size).reshape(u.size, v.size)
     for axis, ends in enumerate(form.surface.ends):
         if ends[0] == "wrap":

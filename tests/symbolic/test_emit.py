@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 import sympy as sp
-from gaussmap.symbolic import curve, emit, files, formulas, gaussian_image, patch, surfaces
+from gaussmap.symbolic import curve, emit, files, formulas, gaussian_image, mesh, patch, surfaces
 from gaussmap.symbolic.__main__ import main
 from gaussmap.symbolic.positions import position
 
@@ -43,7 +43,8 @@ def exact_root(value: Fraction) -> Fraction:
     return root
 
 
-EXACT = {"Number": Fraction, "math": SimpleNamespace(sqrt=exact_root)}
+PI = Fraction(22, 7)  # stands for π
+EXACT = {"Number": Fraction, "math": SimpleNamespace(sqrt=exact_root, pi=PI)}
 
 
 def executed(source: str, names: dict[str, Any]) -> dict[str, Any]:
@@ -70,6 +71,10 @@ def exact_inputs(formula, seed: int) -> dict[str, Fraction]:
     if formula is gaussian_image.ARC_ZEROS:  # of 3 (1 - t)² + 10 t (1 - t) + 3 t²
         axes = {"q_x": Fraction(1), "q_y": Fraction(0), "q_z": Fraction(0)}
         return inputs | axes | {"N0_x": Fraction(3), "N1_x": Fraction(5), "N2_x": Fraction(3)}
+    if formula is mesh.CORNER_PRODUCTS:  # a triangle in a plane with a rational normal
+        return inputs | in_a_plane(inputs)
+    if formula is mesh.BORDER_SPACING:  # ρ = 2 k/(π r²) = (7/r)²
+        return inputs | {"k": Fraction(77)}
     return inputs | rational_length(inputs) if formula is patch.MEASURE else inputs
 
 
@@ -84,12 +89,23 @@ def rational_length(inputs: dict[str, Fraction]) -> dict[str, Fraction]:
     return result
 
 
+def in_a_plane(inputs: dict[str, Fraction]) -> dict[str, Fraction]:
+    """Return corners p1 and p2 whose edges from p0 are along orthogonal vectors of length 3."""
+    return {
+        f"p{i}_{axis}": inputs[f"p0_{axis}"] + length * x
+        for i, edge in ((1, (1, 2, 2)), (2, (2, 1, -2)))
+        for length in [inputs[f"p{i}_x"]]
+        for axis, x in zip("xyz", edge, strict=True)
+    }
+
+
 def expected(formula, inputs: dict[str, Fraction]) -> list[Fraction]:
     """Evaluate the undecomposed expressions of the outputs in SymPy."""
     numbers = {
         symbol: sp.Rational(inputs[symbol.name].numerator, inputs[symbol.name].denominator)
         for symbol in formula.in_components().inputs
     }
+    numbers[sp.pi] = sp.Rational(PI.numerator, PI.denominator)
     values = [value.xreplace(numbers) for value in formula.expanded().values()]
     return [Fraction(int(value.p), int(value.q)) for value in values]
 

@@ -36,7 +36,14 @@ def parsed(side: str, formula: Formula) -> sp.Expr:
     symbols |= {
         y.name: y for x in symbols.values() if isinstance(x, VectorSymbol) for y in x.components
     }
-    names = symbols | {"Dot": Dot, "Cross": Cross, "det": Det, "sqrt": sp.sqrt, "max": sp.Max}
+    names = symbols | {
+        "Dot": Dot,
+        "Cross": Cross,
+        "det": Det,
+        "sqrt": sp.sqrt,
+        "max": sp.Max,
+        "pi": sp.pi,
+    }
     names |= {"Length": lambda x: sp.sqrt(Dot(x, x))}
     names |= {"c_3": scalar("c3_twice") / 2, "R_1": scalar("R_1"), "R_2": scalar("R_2")}
     side = re.sub(r"\|(\w+)\|", r"Length(\1)", side)

@@ -1,0 +1,115 @@
+"""Samples and meshes as the objects of other libraries, each loaded when it is asked for."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import MissingExtraError
+
+if TYPE_CHECKING:
+    import open3d  # pyright: ignore[reportMissingImports]
+    import pandas
+    import pyvista
+    import trimesh
+
+    from .meshes.mesh import Mesh
+    from .samples import Samples
+
+__all__ = [
+    "mesh_to_open3d",
+    "mesh_to_pyvista",
+    "mesh_to_trimesh",
+    "samples_to_dataframe",
+    "samples_to_open3d",
+    "samples_to_pyvista",
+    "samples_to_trimesh",
+]
+
+
+def samples_to_dataframe(samples: Samples) -> pandas.DataFrame:
+    """Return what `Samples.to_dataframe` returns."""
+    from .io import columns_of
+
+    pandas = _library("pandas", "pandas")
+    return pandas.DataFrame({name: column.copy() for name, column in columns_of(samples).items()})
+
+
+def samples_to_pyvista(samples: Samples) -> pyvista.PolyData:
+    """Return what `Samples.to_pyvista` returns."""
+    points, pv = samples.points, _library("pyvista", "vtk")
+    arrays = {name: getattr(samples, name) for name in samples.fields if name != "points"}
+    return _polydata(pv, pv.PolyData(points.copy()), arrays)
+
+
+def samples_to_trimesh(samples: Samples) -> trimesh.PointCloud:
+    """Return what `Samples.to_trimesh` returns."""
+    points = samples.points.astype(np.float64)
+    arrays = {name: getattr(samples, name).copy() for name in samples.fields if name != "points"}
+    return _library("trimesh", "trimesh").PointCloud(points, metadata=arrays)
+
+
+def samples_to_open3d(samples: Samples) -> open3d.geometry.PointCloud:
+    """Return what `Samples.to_open3d` returns."""
+    points, library = samples.points, _library("open3d", "open3d")
+    cloud = library.geometry.PointCloud(_vectors(library, points))
+    if "normals" in samples.fields:
+        cloud.normals = _vectors(library, samples.normals)
+    return cloud
+
+
+def mesh_to_pyvista(mesh: Mesh) -> pyvista.PolyData:
+    """Return what `Mesh.to_pyvista` returns."""
+    pv = _library("pyvista", "vtk")
+    data = pv.PolyData.from_regular_faces(mesh.vertices.copy(), mesh.triangles)
+    return _polydata(
+        pv, data, {"normals": mesh.normals, "uv": mesh.uv, "sample": mesh.sample}
+    )  # fmt: skip
+
+
+def mesh_to_trimesh(mesh: Mesh) -> trimesh.Trimesh:
+    """Return what `Mesh.to_trimesh` returns."""
+    return _library("trimesh", "trimesh").Trimesh(
+        mesh.vertices.copy(),
+        mesh.triangles.copy(),
+        vertex_normals=mesh.normals.copy(),
+        vertex_attributes={"uv": mesh.uv.copy(), "sample": mesh.sample.copy()},
+        process=False,
+    )
+
+
+def mesh_to_open3d(mesh: Mesh) -> open3d.geometry.TriangleMesh:
+    """Return what `Mesh.to_open3d` returns."""
+    library = _library("open3d", "open3d")
+    triangles = library.utility.Vector3iVector(mesh.triangles.astype(np.int32))
+    result = library.geometry.TriangleMesh(_vectors(library, mesh.vertices), triangles)
+    result.vertex_normals = _vectors(library, mesh.normals)
+    return result
+
+
+def _library(name: str, extra: str) -> Any:  # noqa: ANN401
+    """Import a library; MissingExtraError with the extra that brings it."""
+    try:
+        return import_module(name)
+    except (ImportError, OSError) as error:  # OSError: a library of the system lacks
+        reason = "is not installed" if isinstance(error, ModuleNotFoundError) else f"fails: {error}"
+        raise MissingExtraError(
+            f'this needs {name}, but it {reason}; run: pip install "gaussmap[{extra}]"'
+        ) from error
+
+
+def _polydata(pv: Any, data: Any, arrays: dict[str, NDArray[Any]]) -> Any:  # noqa: ANN401
+    """Give points their arrays, with the normals as such."""
+    for name, array in arrays.items():
+        # By way of VTK: pyvista refuses arrays without elements.
+        data.GetPointData().AddArray(pv.convert_array(array, name=name, deep=True))
+    if "normals" in arrays:
+        data.GetPointData().SetActiveNormals("normals")
+    return data
+
+
+def _vectors(library: Any, rows: NDArray[Any]) -> Any:  # noqa: ANN401
+    return library.utility.Vector3dVector(rows.astype(np.float64))

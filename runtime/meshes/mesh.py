@@ -1,0 +1,167 @@
+"""A triangle mesh through samples, and how it writes itself."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...generated import mesh as kernels
+from ..checks import checked_array
+from ..errors import InputError
+from ..spline import scale_to_one, short_label
+
+if TYPE_CHECKING:
+    import open3d  # pyright: ignore[reportMissingImports]
+    import pyvista
+    import trimesh
+
+__all__ = ["Mesh", "scaled"]
+
+# What `sides` is set to that are not given.
+_ALL_ALIKE: Any = None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Mesh:
+    """A mesh of T triangles between M vertices of a surface; made by `Samples.mesh`.
+
+    - `vertices`: (M, 3) float64, points of the surface.
+    - `normals`: (M, 3) float64, the unit normals of the surface there; at a pole the mean of those
+      round it.
+    - `uv`: (M, 2) float64, the parameters. They jump where a triangle crosses a seam.
+    - `triangles`: (T, 3) int64, rows of vertices, counterclockwise as seen from where the normals
+      point; on a one-sided surface that at the first corner.
+    - `sample`: (M,) int64, which sample a vertex is, −1 for points that were added on open borders
+      and at poles.
+    - `name`: label of the surface.
+    - `sides`: (T, 3) int64, 1, or −1 where the normal at a corner points to the other side than
+      that at the first corner: on a one-sided surface normals change sides somewhere. By default 1.
+
+    All arrays are C-contiguous; one that is not is copied. Raises InputError if an array has
+    another shape or dtype, or a triangle has no such vertex.
+    """
+
+    vertices: NDArray[np.float64]
+    normals: NDArray[np.float64]
+    uv: NDArray[np.float64]
+    triangles: NDArray[np.int64]
+    sample: NDArray[np.int64]
+    name: str = "surface"
+    sides: NDArray[np.int64] = _ALL_ALIKE
+
+    def __post_init__(self) -> None:
+        count = len(self.vertices) if isinstance(self.vertices, np.ndarray) else 0
+        faces = len(self.triangles) if isinstance(self.triangles, np.ndarray) else 0
+        if self.sides is None:
+            object.__setattr__(self, "sides", np.ones((faces, 3), dtype=np.int64))
+        floating, whole = np.dtype(np.float64), np.dtype(np.int64)
+        wanted: dict[str, tuple[np.dtype[Any], tuple[int, ...]]] = {
+            "vertices": (floating, (count, 3)),
+            "normals": (floating, (count, 3)),
+            "uv": (floating, (count, 2)),
+            "triangles": (whole, (faces, 3)),
+            "sample": (whole, (count,)),
+            "sides": (whole, (faces, 3)),
+        }
+        for name, (dtype, shape) in wanted.items():
+            array = checked_array(name, getattr(self, name), shape, dtype)
+            object.__setattr__(self, name, array)
+        if faces and not 0 <= self.triangles.min() <= self.triangles.max() < count:
+            raise InputError(f"triangles have vertices that are not there: there are {count}.")
+
+    def __repr__(self) -> str:
+        return (
+            f"Mesh({len(self.vertices):,} vertices, {len(self.triangles):,} triangles on "
+            f"{short_label(self.name)})"
+        )
+
+    @cached_property
+    def _edges(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """The edges (E, 2), and in how many triangles each of them is."""
+        pairs = np.sort(self.triangles[:, [[1, 2], [2, 0], [0, 1]]].reshape(-1, 2), axis=1)
+        count = max(len(self.vertices), 1)
+        keys, times = np.unique(pairs[:, 0] * count + pairs[:, 1], return_counts=True)
+        return np.stack(np.divmod(keys, count), axis=1), times
+
+    @property
+    def edges(self) -> NDArray[np.int64]:
+        """(E, 2) int64: the edges, each once, as pairs of vertices."""
+        return self._edges[0]
+
+    @property
+    def boundary(self) -> NDArray[np.int64]:
+        """(B, 2) int64: the edges of only one triangle; none if the mesh is closed."""
+        edges, times = self._edges
+        return edges[times == 1]
+
+    @property
+    def euler_characteristic(self) -> int:
+        """M − E + T: 2 for a sphere, 1 for a disk, 0 for a torus, a band or a Klein bottle."""
+        return len(self.vertices) - len(self.edges) + len(self.triangles)
+
+    @cached_property
+    def angles(self) -> NDArray[np.float64]:
+        """(T,) float64: the largest angle between a triangle and the normals at its corners.
+
+        In degrees; 180 for a triangle without area.
+        """
+        cosines = np.empty(len(self.triangles))
+        if len(cosines):
+            points = scaled(self.vertices)
+            kernels.smallest_cosines(points, self.normals, self.triangles, self.sides, cosines)
+        return np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0)))
+
+    def summary(self) -> str:
+        """One line: vertices, triangles, whether it is closed, how well it fits the normals."""
+        added = int(np.count_nonzero(self.sample < 0))
+        line = f"{len(self.vertices):,} vertices"
+        line += f" ({added:,} of them added)" if added else ""
+        line += f", {len(self.triangles):,} triangles"
+        if not len(self.triangles):
+            return line
+        border = len(self.boundary)
+        line += f", {border:,} edges on the border" if border else ", closed"
+        mean, worst = self.angles.mean(), self.angles.max()
+        return f"{line}; they deviate from the normals by {mean:.2f}° (mean), {worst:.2f}° (worst)"
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """Write the mesh to a .ply, .obj, .stl, .vtk, .vtu or .vtp file; see `files.write_mesh`."""
+        from .files import write_mesh
+
+        write_mesh(self, path)
+
+    def to_pyvista(self) -> pyvista.PolyData:
+        """Return the mesh with normals, uv and sample as point data.
+
+        As the other conversions, it copies. MissingExtraError without the extra `vtk`.
+        """
+        from ..interop import mesh_to_pyvista
+
+        return mesh_to_pyvista(self)
+
+    def to_trimesh(self) -> trimesh.Trimesh:
+        """Return the mesh with its normals, and uv and sample as vertex attributes.
+
+        MissingExtraError without the extra `trimesh`.
+        """
+        from ..interop import mesh_to_trimesh
+
+        return mesh_to_trimesh(self)
+
+    def to_open3d(self) -> open3d.geometry.TriangleMesh:
+        """Return the mesh with its normals; MissingExtraError without the extra `open3d`."""
+        from ..interop import mesh_to_open3d
+
+        return mesh_to_open3d(self)
+
+
+def scaled(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return points (k, 3) round the origin and of the size 1 or so: products do not overflow."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    centred = points - (low / 2.0 + high / 2.0)
+    return centred * scale_to_one(float(np.abs(centred).max()))

@@ -1,0 +1,198 @@
+"""From samples to a mesh: vertices, triangles between them, and flips that follow the normals."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...generated import mesh as kernels
+from ..errors import InputError
+from ..spline import Spline
+from ..surface import Ends
+from .mesh import Mesh, scaled
+from .triangulation import neighbours, triangulations
+from .vertices import Vertices, ends_of
+
+if TYPE_CHECKING:
+    from ..samples import Samples
+
+__all__ = ["Triangulated", "mesh_of"]
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+WHOLE = 180.0  # degrees: no triangle deviates by more
+
+
+def mesh_of(samples: Samples, spline: Spline | None, angle: float | None) -> Mesh:
+    """Return what `Samples.mesh` returns."""
+    spline = samples.spline if spline is None else spline
+    if spline is None:
+        raise InputError(
+            "these samples do not know the spline that was sampled (those from a file do not); "
+            "give it, as in samples.mesh(gm.fit(surface))."
+        )
+    if not isinstance(spline, Spline):
+        raise InputError(f"spline must be a Spline, not {type(spline).__name__}.")
+    largest = WHOLE if angle is None else _checked_angle(angle)
+    if not len(samples):
+        raise InputError("there are no samples, and so there is nothing to make a mesh of.")
+    triangulated = Triangulated.of(samples, spline, to_be_whole=angle is None)
+    triangulated.flip_edges()
+    return triangulated.mesh(largest)
+
+
+def _checked_angle(angle: object) -> float:
+    if isinstance(angle, bool) or not isinstance(angle, int | float | np.number):
+        raise InputError(f"angle must be a number of degrees, not {angle!r}.")
+    if not 0.0 < angle <= WHOLE:
+        raise InputError(f"angle must lie between 0 and 180 degrees, and is {angle}.")
+    return float(angle)
+
+
+@dataclass(frozen=True, eq=False)
+class Triangulated:
+    """Samples, and vertices added to them, in a Delaunay triangulation over (u, v).
+
+    `sides` and `neighbours` (k, 3) are those of the kernel `flip_edges`, which changes them and
+    `triangles` in place.
+    """
+
+    name: str
+    uv: Array
+    sample: Indices
+    points: Array
+    normals: Array
+    triangles: Indices
+    sides: Indices
+    neighbours: Indices
+
+    @classmethod
+    def of(cls, samples: Samples, spline: Spline, to_be_whole: bool = True) -> Triangulated:
+        """Triangulate; InputError if that is to be the whole surface and fails."""
+        ends = ends_of(spline)
+        vertices = Vertices.of(samples, spline, ends)
+        triangles, sides, beyond = _triangles(vertices, spline, ends, to_be_whole)
+        uv, points, normals = _on_surface(vertices, samples, spline)
+        _complete(normals, triangles, sides)
+        return cls(
+            spline.name, uv, vertices.sample, points, normals, triangles, sides, beyond
+        )  # fmt: skip
+
+    def flip_edges(self) -> int:
+        """Flip edges as long as triangles come nearer to the normals; return how many flips."""
+        return kernels.flip_edges(
+            scaled(self.points), self.normals, self.triangles, self.sides, self.neighbours
+        )
+
+    def mesh(self, angle: float = WHOLE) -> Mesh:
+        """Return the mesh without triangles that deviate by more than an angle, in degrees.
+
+        Raises InputError if an edge is then in more than two triangles.
+        """
+        triangles, sides = self.triangles, self.sides
+        if angle < WHOLE:
+            cosines = np.empty(len(triangles))
+            kernels.smallest_cosines(scaled(self.points), self.normals, triangles, sides, cosines)
+            chosen = cosines >= math.cos(math.radians(angle))
+            triangles, sides = triangles[chosen], sides[chosen]
+            anywhere = np.ones(len(self.points), dtype=bool)
+            if len(triangles) and not neighbours(triangles, anywhere)[1]:
+                raise _too_few(len(self.points), self.name)
+        reverse = sides[:, :1] < 0
+        triangles, sides = (
+            np.where(reverse, x[:, [0, 2, 1]], x) for x in (triangles, sides * sides[:, :1])
+        )
+        used, corners = np.unique(triangles, return_inverse=True)
+        return Mesh(
+            self.points[used],
+            self.normals[used],
+            self.uv[used],
+            corners.reshape(-1, 3).astype(np.int64),
+            self.sample[used],
+            name=self.name,
+            sides=sides,
+        )
+
+
+def _triangles(
+    vertices: Vertices, spline: Spline, ends: Ends, to_be_whole: bool
+) -> tuple[Indices, Indices, Indices]:
+    """Return triangles, the sides of the surface on which they lie, and their neighbours.
+
+    Raises InputError if there are none, or if they are to be the whole surface and are not: each
+    edge in two of them, or on an open side of the domain, and the Euler characteristic right.
+    """
+    found = None
+    lengths = _lengths(spline)
+    for triangles, sides in triangulations(vertices.places, vertices.is_free, ends, lengths):
+        beyond, is_closed = neighbours(triangles, ~vertices.is_free)
+        found = triangles, sides, beyond
+        if is_closed and _characteristic(triangles, beyond) == _characteristic_of(ends):
+            return found
+    if found is None or to_be_whole:
+        raise _too_few(len(vertices.sample), spline.name)
+    return found
+
+
+def _characteristic(triangles: Indices, beyond: Indices) -> int:
+    """Return the Euler characteristic of triangles with the neighbours `beyond`."""
+    edges = (beyond.size + int(np.count_nonzero(beyond < 0))) // 2
+    used = int(np.count_nonzero(np.bincount(triangles.ravel())))
+    return used - edges + len(triangles)
+
+
+def _characteristic_of(ends: Ends) -> int:
+    """Return the Euler characteristic of a surface: each pole closes a hole of a band."""
+    closing = [kinds[0] in ("wrap", "flip") for kinds in ends]
+    if all(closing):
+        return int(ends[0][0] == ends[1][0] == "flip")  # the projective plane
+    return sum(end == "pole" for kinds in ends for end in kinds) if any(closing) else 1
+
+
+def _too_few(count: int, name: str) -> InputError:
+    return InputError(
+        f"{count:,} vertices on {name!r} are too few, or leave too large gaps, for a mesh of the "
+        "whole; take more samples or normals in all directions, or give a smaller angle=... "
+        "(degrees), which leaves out triangles across gaps."
+    )
+
+
+def _lengths(spline: Spline) -> Array:
+    """Return the mean lengths of a spline along u and along v, 1 where they vanish."""
+    inner = spline.coefficients[1:-1, 1:-1] * spline.scale
+    steps = [np.linalg.norm(np.diff(inner, axis=axis), axis=2).mean() for axis in (0, 1)]
+    lengths = np.array(steps) * spline.cells
+    return np.where(lengths > 0.0, lengths, 1.0)
+
+
+def _on_surface(vertices: Vertices, samples: Samples, spline: Spline) -> tuple[Array, Array, Array]:
+    """Return parameters, points and unit normals of vertices; NaN for normals that lack."""
+    is_sample = vertices.sample >= 0
+    own = vertices.sample[is_sample]
+    uv = vertices.uv(spline)
+    points, normals = np.empty((2, len(uv), 3))
+    uv[is_sample] = samples.uv[own]
+    points[is_sample], normals[is_sample] = samples.points[own], samples.normals[own]
+    u, v = uv[~is_sample].T
+    points[~is_sample], normals[~is_sample] = spline.evaluate(u, v), spline.normals(u, v)
+    return uv, points, normals
+
+
+def _complete(normals: Array, triangles: Indices, sides: Indices) -> None:
+    """Give vertices without a normal, such as poles, the mean of those round them.
+
+    It is 0 where there is none either.
+    """
+    lacking: NDArray[np.bool_] = ~np.isfinite(normals).all(axis=1)
+    normals[lacking] = 0.0
+    beside = lacking[triangles].any(axis=1)
+    corners, side = triangles[beside], sides[beside, :, None]
+    sums = np.zeros_like(normals)
+    np.add.at(sums, corners, side * (side * normals[corners]).sum(axis=1, keepdims=True))
+    lengths = np.linalg.norm(sums[lacking], axis=1, keepdims=True)
+    normals[lacking] = sums[lacking] / np.where(lengths > 0.0, lengths, 1.0)

@@ -1,0 +1,196 @@
+"""Triangles between places of a domain, closed where the surface closes.
+
+Qhull triangulates them where no seam is left. What closes one way is laid round a sphere, with a
+pole as one point and an open end as a circle of latitude; the convex hull is the Delaunay
+triangulation there, and the plane faces inside these circles are left out. A Möbius band is the
+half of a band that is symmetric about the centre. What closes both ways is continued into the
+plane, and one of all copies of each triangle is taken. An open domain is a rectangle.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from contextlib import suppress
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...generated.surfaces import CATALOGUE
+from ..surface import Ends
+
+__all__ = ["Triangulation", "neighbours", "triangulations"]
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+# Triangles, and for each of their corners 1, or -1 where the copy of the corner is a mirror image.
+Triangulation = tuple[Indices, Indices]
+
+# Between which latitudes a circle stands for an open end; at a pole opposite it is the mean.
+LATITUDES = (math.pi / 18, math.pi / 3, math.pi / 2.25)
+# Places are moved by this part of their mean distance: points of a lattice, of which four and more
+# lie on one circle, would be triangulated in another way in each of their copies.
+DISPLACEMENT = 1e-3
+# The height of a circle of latitude is known to this, and that of a free place is farther away.
+ROUNDING = 1e-12
+# None gets nearer to an open side than this, or on it.
+INSIDE = 5e-10
+# The sides of a rectangle are bent outwards by this part of it, so that their points are extreme.
+BULGE = 0.05
+# A surface that closes both ways is continued by so many mean distances of places, at first; by
+# these parts of a period if that was not enough.
+MARGIN_IN_STEPS, MARGINS = 30.0, (0.25, 1.0)
+
+
+def triangulations(
+    places: Array, is_free: NDArray[np.bool_], ends: Ends, lengths: Array
+) -> Iterator[Triangulation]:
+    """Yield triangulations of places (k, 2) in the unit square, the next one if one is no good.
+
+    Places that are not free lie on an open side or at a pole, and do not move. `lengths` are those
+    of the surface along u and v. Triangles run counterclockwise where their corner of the smallest
+    number is. A place that coincides with another one may belong to no triangle.
+    """
+    from scipy.spatial import QhullError
+
+    closing = [axis for axis in (0, 1) if ends[axis][0] in ("wrap", "flip")]
+    near = MARGIN_IN_STEPS / math.sqrt(len(places))
+    for margin in (near, *MARGINS) if near < MARGINS[0] else MARGINS:
+        rng = np.random.default_rng(len(places))
+        step = DISPLACEMENT / math.sqrt(len(places))
+        moved = places + step * rng.uniform(-1.0, 1.0, places.shape)
+        for axis in {0, 1} - set(closing):
+            moved[:, axis] = np.clip(moved[:, axis], INSIDE, 1.0 - INSIDE)
+        moved = np.where(is_free[:, None], moved, places)
+        with suppress(QhullError):  # fewer points than a triangulation needs, or all in line
+            if len(closing) == 2:
+                yield _by_copies(moved, ends, lengths, margin)
+            elif closing:
+                yield _on_sphere(moved, ends, lengths, closing[0])
+            else:
+                yield _in_rectangle(np.where(is_free[:, None], moved, _bent(moved)) * lengths)
+
+
+def neighbours(triangles: Indices, may_end: NDArray[np.bool_]) -> tuple[Indices, bool]:
+    """Return the triangles (k, 3) opposite to the corners, −1 for none, and whether none lacks.
+
+    None lacks if each edge is in two triangles, or in one between two vertices where the surface
+    `may_end`. Triangles at an edge of three and more are no neighbours.
+    """
+    pairs = np.sort(triangles[:, [[1, 2], [2, 0], [0, 1]]].reshape(-1, 2), axis=1)
+    keys = pairs[:, 0] * len(may_end) + pairs[:, 1]
+    order = np.argsort(keys, kind="stable")
+    starts = np.flatnonzero(np.diff(keys[order], prepend=-1))
+    counts = np.diff(starts, append=len(keys))
+    first = starts[counts == 2]
+    beyond = np.full(len(keys), -1)
+    beyond[order[first]], beyond[order[first + 1]] = order[first + 1] // 3, order[first] // 3
+    single = pairs[order[starts[counts == 1]]]
+    complete = bool(len(keys) and counts.max() == 2 and may_end[single].all())
+    return beyond.reshape(-1, 3), complete
+
+
+# --- open rectangles ------------------------------------------------------------------------------
+
+
+def _bent(places: Array) -> Array:
+    """Return places on the sides of the unit square, moved outwards by a parabola."""
+    heights = 4.0 * BULGE * places * (1.0 - places)
+    outwards = np.where(places == 0.0, -1.0, np.where(places == 1.0, 1.0, 0.0))
+    return places + outwards * heights[:, ::-1]
+
+
+def _in_rectangle(points: Array) -> Triangulation:
+    from scipy.spatial import Delaunay
+
+    return _all_in_front(_counterclockwise(points, Delaunay(points).simplices))
+
+
+def _counterclockwise(points: Array, triangles: NDArray[Any]) -> Indices:
+    """Return triangles of the plane in one orientation."""
+    a, b, c = np.moveaxis(points[triangles], 1, 0)
+    is_clockwise = np.linalg.det(np.stack([b - a, c - a], axis=1)) < 0.0
+    return _turned(triangles, is_clockwise)
+
+
+def _turned(triangles: NDArray[Any], which: NDArray[np.bool_]) -> Indices:
+    result = triangles.astype(np.int64)
+    result[which] = result[which][:, [0, 2, 1]]
+    return result
+
+
+def _all_in_front(triangles: Indices) -> Triangulation:
+    return triangles, np.ones_like(triangles)
+
+
+# --- spheres, disks, bands: what closes one way ---------------------------------------------------
+
+
+def _on_sphere(places: Array, ends: Ends, lengths: Array, axis: int) -> Triangulation:
+    from scipy.spatial import ConvexHull
+
+    is_mirrored = ends[axis][0] == "flip"
+    turn = math.pi if is_mirrored else 2.0 * math.pi
+    lowest, middle, highest = LATITUDES
+    wide = float(np.clip(turn * lengths[1 - axis] / lengths[axis] / 2.0, lowest, highest))
+    wide = middle if "pole" in ends[1 - axis] else wide
+    latitudes = [
+        sign * (math.pi / 2.0 if end == "pole" else wide)
+        for sign, end in zip((-1.0, 1.0), ends[1 - axis], strict=True)
+    ]
+    angles = np.empty_like(places)
+    angles[:, 0] = places[:, axis] * turn
+    angles[:, 1] = latitudes[0] + places[:, 1 - axis] * (latitudes[1] - latitudes[0])
+    points = np.empty((len(places), 3))
+    CATALOGUE["sphere"]["kernel"](angles, points, 1.0)
+    if is_mirrored:
+        points = np.concatenate([points, -points])
+    hull = ConvexHull(points)
+    a, b, c = np.moveaxis(points[hull.simplices], 1, 0)
+    is_inwards = np.einsum("kx,kx->k", np.cross(b - a, c - a), hull.equations[:, :3]) < 0.0
+    triangles = _turned(hull.simplices, is_inwards == (axis == 0))
+    for end, latitude in zip(ends[1 - axis], latitudes, strict=True):
+        if end == "none":
+            off_circle = np.abs(points[:, 2] - math.sin(latitude)) > ROUNDING
+            triangles = triangles[off_circle[triangles].any(axis=1)]
+    number = np.arange(len(points))
+    return _one_of_each(triangles, number % len(places), len(places), number >= len(places))
+
+
+def _one_of_each(
+    triangles: Indices, place: Indices, count: int, is_mirrored: NDArray[np.bool_]
+) -> Triangulation:
+    """Return those of all copies whose corner of the smallest number is no copy.
+
+    `place` are the numbers of what is copied; the first `count` are no copies. A triangle that has
+    two copies of one place is left out.
+    """
+    numbers = place[triangles]
+    first = np.take_along_axis(triangles, numbers.argmin(axis=1)[:, None], axis=1)[:, 0]
+    ordered = np.sort(numbers, axis=1)
+    chosen = (first < count) & (ordered[:, :-1] < ordered[:, 1:]).all(axis=1)
+    return numbers[chosen], np.where(is_mirrored[triangles[chosen]], -1, 1)
+
+
+# --- tori and Klein bottles: what closes both ways ------------------------------------------------
+
+
+def _by_copies(places: Array, ends: Ends, lengths: Array, margin: float) -> Triangulation:
+    from scipy.spatial import Delaunay
+
+    points, place = places, np.arange(len(places))
+    is_mirrored = np.zeros(len(places), dtype=bool)
+    for axis in (0, 1):
+        flips = ends[axis][0] == "flip"
+        copies = [(points, place, is_mirrored)]
+        for step, near in ((1.0, points[:, axis] < margin), (-1.0, points[:, axis] > 1.0 - margin)):
+            copy = points[near]
+            copy[:, axis] += step
+            if flips:
+                copy[:, 1 - axis] = 1.0 - copy[:, 1 - axis]
+            copies.append((copy, place[near], is_mirrored[near] ^ flips))
+        points, place, is_mirrored = (np.concatenate(x) for x in zip(*copies, strict=True))
+    points = points * lengths
+    triangles = _counterclockwise(points, Delaunay(points).simplices)
+    return _one_of_each(triangles, place, len(places), is_mirrored)

@@ -1,0 +1,184 @@
+"""The mesh as an object and as a file, read back by other libraries."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import sys
+from pathlib import Path
+from typing import Any
+
+import gaussmap as gm
+import meshio
+import numpy as np
+import pytest
+from gaussmap.runtime.meshes.files import MESH_SUFFIXES
+
+EACH = pytest.mark.parametrize("suffix", MESH_SUFFIXES)
+CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+
+
+def square(**changes: Any) -> gm.Mesh:
+    """Two triangles of the unit square, the normals 0, 30, 45 and 60 degrees from its own."""
+    angles = np.radians([0, 30, 45, 60])
+    arrays: dict[str, Any] = {
+        "vertices": CORNERS,
+        "normals": np.stack([np.sin(angles), np.zeros(4), np.cos(angles)], axis=1),
+        "uv": CORNERS[:, :2] / 3,
+        "triangles": np.array([[0, 1, 2], [0, 2, 3]]),
+        "sample": np.array([5, 6, 7, -1]),
+    }
+    return gm.Mesh(**(arrays | changes))
+
+
+def numbers(mesh: gm.Mesh) -> dict[str, np.ndarray]:
+    return {"normals": mesh.normals, "u": mesh.uv[:, 0], "v": mesh.uv[:, 1], "sample": mesh.sample}
+
+
+class TestMesh:
+    def test_edges_and_boundary(self):
+        mesh = square()
+        assert mesh.edges.tolist() == [[0, 1], [0, 2], [0, 3], [1, 2], [2, 3]]
+        assert mesh.boundary.tolist() == [[0, 1], [0, 3], [1, 2], [2, 3]]
+        assert mesh.euler_characteristic == 1
+
+    def test_angles(self):
+        np.testing.assert_allclose(square().angles, [45, 60], rtol=1e-12)
+        turned = square(triangles=np.array([[0, 2, 1], [0, 3, 2]]))
+        np.testing.assert_allclose(turned.angles, [180, 180], rtol=1e-7)
+        across = square(normals=-square().normals, sides=np.full((2, 3), -1))
+        np.testing.assert_allclose(across.angles, [45, 60], rtol=1e-12)
+
+    def test_a_triangle_without_area(self):
+        flat = square(triangles=np.array([[0, 1, 1]]))
+        assert flat.angles.tolist() == [180.0]
+
+    def test_summary(self):
+        assert square().summary() == (
+            "4 vertices (1 of them added), 2 triangles, 4 edges on the border; they deviate from "
+            "the normals by 52.50° (mean), 60.00° (worst)"
+        )
+        closed = square(
+            triangles=np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]), sample=np.arange(4)
+        )
+        assert closed.summary().startswith("4 vertices, 4 triangles, closed; they deviate")
+        assert repr(square(name="hill")) == "Mesh(4 vertices, 2 triangles on hill)"
+
+    def test_an_empty_mesh(self):
+        none = {name: getattr(square(), name)[:0] for name in ("vertices", "normals", "uv",
+                                                               "triangles", "sample")}  # fmt: skip
+        mesh = gm.Mesh(**none)
+        assert mesh.summary() == "0 vertices, 0 triangles"
+        assert (len(mesh.edges), len(mesh.angles), mesh.euler_characteristic) == (0, 0, 0)
+
+    def test_it_can_be_pickled(self):
+        copy = pickle.loads(pickle.dumps(square()))
+        np.testing.assert_array_equal(copy.triangles, square().triangles)
+
+    @pytest.mark.parametrize(
+        ("changes", "message"),
+        [
+            ({"vertices": CORNERS.tolist()}, "vertices must be a NumPy array, not list"),
+            ({"vertices": CORNERS[:, :2]}, r"vertices must be a float64 array of shape \(4, 3\)"),
+            ({"normals": CORNERS[:3]}, r"normals must be a float64 array of shape \(4, 3\)"),
+            ({"uv": CORNERS}, r"uv must be a float64 array of shape \(4, 2\)"),
+            ({"triangles": np.zeros((2, 4), dtype=int)}, r"triangles must be .* shape \(2, 3\)"),
+            ({"triangles": np.zeros((2, 3))}, "triangles must be a int64 array"),
+            ({"triangles": np.array([[0, 1, 4]])}, "triangles have vertices that are not there"),
+            ({"triangles": np.array([[0, 1, -1]])}, "triangles have vertices that are not there"),
+            ({"sample": np.arange(3)}, r"sample must be a int64 array of shape \(4,\)"),
+            ({"sides": np.ones((1, 3), dtype=int)}, r"sides must be a int64 array of shape"),
+        ],
+    )
+    def test_unusable_arrays(self, changes, message):
+        with pytest.raises(gm.InputError, match=message):
+            square(**changes)
+
+
+class TestFiles:
+    @pytest.mark.parametrize("suffix", [".ply", ".obj", ".stl", ".vtk", ".vtu"])
+    def test_meshio_reads_it_back(self, tmp_path, suffix):
+        mesh, path = square(), tmp_path / f"square{suffix}"
+        mesh.write(path)
+        again = meshio.read(path)
+        (cells,) = again.cells
+        corners = again.points[cells.data]
+        np.testing.assert_array_equal(corners, mesh.vertices[mesh.triangles])
+        if suffix in (".vtk", ".vtu"):
+            for name, values in numbers(mesh).items():
+                np.testing.assert_array_equal(again.point_data[name], values)
+
+    @pytest.mark.parametrize("suffix", [".ply", ".obj", ".stl"])
+    def test_trimesh_reads_it_back(self, tmp_path, suffix):
+        trimesh = pytest.importorskip("trimesh")
+        mesh, path = square(), tmp_path / f"square{suffix}"
+        mesh.write(path)
+        again = trimesh.load_mesh(path, process=False)
+        np.testing.assert_array_equal(again.triangles, mesh.vertices[mesh.triangles])
+
+    @pytest.mark.parametrize("suffix", [".ply", ".obj"])
+    def test_pyvista_reads_normals(self, tmp_path, suffix):
+        pv = pytest.importorskip("pyvista")
+        mesh, path = square(), tmp_path / f"square{suffix}"
+        mesh.write(path)
+        again = pv.read(path)
+        np.testing.assert_array_equal(again.regular_faces, mesh.triangles)
+        normals = again.point_data["Normals"]
+        np.testing.assert_allclose(normals, mesh.normals, atol=float(np.finfo(np.float32).eps))
+
+    def test_pyvista_reads_it_back(self, tmp_path):
+        pv = pytest.importorskip("pyvista")
+        mesh, path = square(), tmp_path / "square.vtp"
+        mesh.write(path)
+        again = pv.read(path)
+        np.testing.assert_array_equal(again.regular_faces, mesh.triangles)
+        np.testing.assert_array_equal(again.points, mesh.vertices)
+        for name in ("normals", "uv", "sample"):
+            np.testing.assert_array_equal(again.point_data[name], getattr(mesh, name))
+
+    @EACH
+    def test_the_same_mesh_gives_the_same_bytes(self, tmp_path, suffix, capfd):
+        for name in ("one", "other"):
+            square().write(tmp_path / f"{name}{suffix}")
+        one, other = ((tmp_path / f"{x}{suffix}").read_bytes() for x in ("one", "other"))
+        assert one == other
+        assert capfd.readouterr() == ("", "")
+
+    @EACH
+    def test_what_fails_leaves_the_older_file(self, tmp_path, suffix, monkeypatch):
+        path = tmp_path / f"square{suffix}"
+        path.write_text("older")
+
+        def fail(*_: object) -> None:
+            raise OSError(28, "No space left on device")
+
+        monkeypatch.setattr(os, "replace", fail)
+        with pytest.raises(gm.FileError, match="cannot be written: No space left"):
+            square().write(path)
+        assert path.read_text() == "older"
+        assert os.listdir(tmp_path) == [path.name]
+
+    def test_upper_case_and_paths(self, tmp_path):
+        square().write(str(tmp_path / "A.STL"))
+        assert (tmp_path / "A.STL").stat().st_size == 84 + 2 * 50
+
+    @pytest.mark.parametrize("name", ["square", "square.npz", "square.xyz"])
+    def test_unknown_suffixes(self, tmp_path, name):
+        with pytest.raises(gm.UnknownNameError, match=r"use one of \.ply, \.obj, \.stl"):
+            square().write(tmp_path / name)
+
+    def test_a_folder_that_is_not_there(self, tmp_path):
+        with pytest.raises(gm.FileError, match="create the folder first"):
+            square().write(tmp_path / "no" / "square.ply")
+
+    def test_no_triangles(self, tmp_path):
+        empty = square(triangles=np.empty((0, 3), dtype=np.int64))
+        with pytest.raises(gm.InputError, match="has no triangles"):
+            empty.write(tmp_path / "square.ply")
+        assert not list(Path(tmp_path).iterdir())
+
+    def test_vtp_without_pyvista(self, tmp_path, monkeypatch):
+        monkeypatch.setitem(sys.modules, "pyvista", None)
+        with pytest.raises(gm.MissingExtraError, match=r'pip install "gaussmap\[vtk\]"'):
+            square().write(tmp_path / "square.vtp")
+        assert not list(Path(tmp_path).iterdir())

@@ -1,0 +1,72 @@
+"""`gaussmap mesh`."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import gaussmap as gm
+import meshio
+import numpy as np
+import pytest
+from gaussmap.runtime import cli
+from gaussmap.runtime.cli import main
+
+FEW = ["--count", "100", "--cells", "8", "8"]
+
+
+@pytest.fixture(autouse=True)
+def _in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.mark.parametrize("suffix", ["ply", "obj", "stl", "vtk", "vtu"])
+def test_a_mesh_is_written(suffix: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["mesh", "torus", *FEW, "-o", f"torus.{suffix}"]) == 0
+    out, err = capsys.readouterr()
+    pattern = rf"torus\.{suffix}: (\d+) vertices, (\d+) triangles, closed; they deviate .*\n"
+    found = re.fullmatch(pattern, out)
+    assert found is not None
+    assert err == ""
+    (cells,) = meshio.read(f"torus.{suffix}").cells
+    assert len(cells.data) == int(found[2]) == 2 * int(found[1])
+
+
+def test_normals_of_a_part(capsys: pytest.CaptureFixture[str]) -> None:
+    normals = gm.icosphere(16)
+    np.save("cap.npy", normals[normals[:, 2] > 0.9])
+    part = ["mesh", "sphere", "--normals", "cap.npy", "--cells", "8", "8", "-o", "cap.ply"]
+    assert main([*part, "--angle", "10"]) == 0
+    out = capsys.readouterr().out
+    worst = float(re.findall(r"([\d.]+)° \(worst\)", out)[0])
+    assert worst <= 10.0
+    assert "edges on the border" in out
+
+
+def test_quiet(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["mesh", "torus", *FEW, "--quiet", "-o", "torus.ply"]) == 0
+    assert capsys.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["torus", "-o", "torus.npz"], "use one of .ply, .obj, .stl, .vtk, .vtu, .vtp"),
+        (["torus", "-o", "no/torus.ply"], "create the folder first"),
+        (["torus", *FEW, "--angle", "0", "-o", "torus.ply"], "angle must lie between 0 and 180"),
+        (["torus", "--angle", "wide", "-o", "torus.ply"], "it must be a number, not 'wide'"),
+        (["torus", "--count", "3", "--cells", "8", "8", "-o", "a.ply"], "too few"),
+        (["plane", *FEW, "--quiet", "-o", "plane.ply"], "there are no samples"),
+    ],
+)
+@pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
+def test_errors_are_lines(
+    arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["mesh", *arguments]) == cli.FAILED
+    out, err = capsys.readouterr()
+    assert out == ""
+    (line,) = [x for x in err.splitlines() if "warning" not in x]
+    assert line.startswith("gaussmap: error: ")
+    assert message in line
+    assert not list(Path().iterdir())
