@@ -22,6 +22,7 @@ def jit(function):
         return numba.njit(**OPTIONS)(function)
 
 
+NODE = 1.0 / 6.0
 # A flip must raise the smallest cosine by more than rounding.
 GAIN = 1e-14
 
@@ -77,6 +78,78 @@ def border_spacing(r, k):
     rho = 2 * k / (math.pi * r * r)
     d = 1.0 / math.sqrt(rho)
     return d
+
+
+@jit
+def edge_over_surface(p0_x, p0_y, p0_z, p1_x, p1_y, p1_z, n0_x, n0_y, n0_z, n1_x, n1_y, n1_z):
+    """The middle Bézier point of a quadratic curve from p0 to p1 that is as nearly as possible
+    perpendicular to the unit normals n0 and n1 at its ends.
+
+        e = p1 - p0
+        beta = - (e·n0 - e·n1)/(4*(n0·n1 + 1))
+        b = beta*(n0 + n1) + p0/2 + p1/2
+
+    Source: beyond the paper; 40 operations as written, 40 here.
+    """
+    e_x = p1_x - p0_x
+    e_y = p1_y - p0_y
+    e_z = p1_z - p0_z
+    beta = (
+        -0.25
+        * (e_x * n0_x - e_x * n1_x + e_y * n0_y - e_y * n1_y + e_z * n0_z - e_z * n1_z)
+        / (n0_x * n1_x + n0_y * n1_y + n0_z * n1_z + 1)
+    )
+    b_x = beta * (n0_x + n1_x) + 0.5 * p0_x + 0.5 * p1_x
+    b_y = beta * (n0_y + n1_y) + 0.5 * p0_y + 0.5 * p1_y
+    b_z = beta * (n0_z + n1_z) + 0.5 * p0_z + 0.5 * p1_z
+    return b_x, b_y, b_z
+
+
+@jit
+def power_form(
+    b200_x, b200_y, b200_z, b020_x, b020_y, b020_z, b002_x, b002_y, b002_z, b110_x, b110_y,
+    b110_z, b101_x, b101_y, b101_z, b011_x, b011_y, b011_z
+):  # fmt: skip
+    """The vectors of eq. (8), a = a_20, b = a_11, c = a_02, d = a_10, e = a_01 and p = a_00 in
+    the paper, from the control points of a quadratic Bézier triangle.
+
+        a = 2*b002 - 4*b101 + 2*b200
+        b = 2*(b002 - b011 - b101 + b110)
+        c = 2*b002 - 4*b011 + 2*b020
+        d = 2*(b101 - b002)
+        e = 2*(b011 - b002)
+        p = b002
+
+    Source: eqs. (8) and (10); 69 operations as written, 54 here.
+    """
+    t0 = 2 * b002_x
+    a_x = 2 * b200_x - 4 * b101_x + t0
+    t1 = 2 * b002_y
+    a_y = 2 * b200_y - 4 * b101_y + t1
+    t2 = 2 * b002_z
+    a_z = 2 * b200_z - 4 * b101_z + t2
+    t3 = -2 * b011_x
+    t4 = t0 - 2 * b101_x
+    b_x = 2 * b110_x + t3 + t4
+    t5 = -2 * b011_y
+    t6 = t1 - 2 * b101_y
+    b_y = 2 * b110_y + t5 + t6
+    t7 = -2 * b011_z
+    t8 = t2 - 2 * b101_z
+    b_z = 2 * b110_z + t7 + t8
+    c_x = 2 * b020_x - 4 * b011_x + t0
+    c_y = 2 * b020_y - 4 * b011_y + t1
+    c_z = 2 * b020_z - 4 * b011_z + t2
+    d_x = -t4
+    d_y = -t6
+    d_z = -t8
+    e_x = -t0 - t3
+    e_y = -t1 - t5
+    e_z = -t2 - t7
+    p_x = b002_x
+    p_y = b002_y
+    p_z = b002_z
+    return a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z
 
 
 # --- the border -----------------------------------------------------------------------------------
@@ -257,3 +330,101 @@ def flip_edges(points, normals, triangles, sides, neighbours):
                         waits[again] = True
                 break
     return flips
+
+
+# --- areas ----------------------------------------------------------------------------------------
+
+
+@jit
+def corner_areas(points, normals, triangles, sides, areas):
+    """Write the part of the area of the surface over each triangle (k, 3) that belongs to its corners.
+
+    The surface is taken as a quadratic Bezier triangle that the normals bend; a place belongs to the
+    corners by its barycentric coordinates. Normals more than 90 degrees apart bend nothing.
+    """
+    for t in range(triangles.shape[0]):
+        a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+        p0_x = points[a, 0]
+        p0_y = points[a, 1]
+        p0_z = points[a, 2]
+        p1_x = points[b, 0]
+        p1_y = points[b, 1]
+        p1_z = points[b, 2]
+        p2_x = points[c, 0]
+        p2_y = points[c, 1]
+        p2_z = points[c, 2]
+        n0_x = normals[a, 0]
+        n0_y = normals[a, 1]
+        n0_z = normals[a, 2]
+        n1_x = normals[b, 0]
+        n1_y = normals[b, 1]
+        n1_z = normals[b, 2]
+        n2_x = normals[c, 0]
+        n2_y = normals[c, 1]
+        n2_z = normals[c, 2]
+        n0_x *= sides[t, 0]
+        n0_y *= sides[t, 0]
+        n0_z *= sides[t, 0]
+        n1_x *= sides[t, 1]
+        n1_y *= sides[t, 1]
+        n1_z *= sides[t, 1]
+        n2_x *= sides[t, 2]
+        n2_y *= sides[t, 2]
+        n2_z *= sides[t, 2]
+        if (
+            min(
+                n0_x * n1_x + n0_y * n1_y + n0_z * n1_z,
+                n0_x * n2_x + n0_y * n2_y + n0_z * n2_z,
+                n1_x * n2_x + n1_y * n2_y + n1_z * n2_z,
+            )
+            < 0.0
+        ):
+            n0_x = 0.0
+            n0_y = 0.0
+            n0_z = 0.0
+            n1_x = 0.0
+            n1_y = 0.0
+            n1_z = 0.0
+            n2_x = 0.0
+            n2_y = 0.0
+            n2_z = 0.0
+        b200_x = p0_x
+        b200_y = p0_y
+        b200_z = p0_z
+        b020_x = p1_x
+        b020_y = p1_y
+        b020_z = p1_z
+        b002_x = p2_x
+        b002_y = p2_y
+        b002_z = p2_z
+        b110_x, b110_y, b110_z = edge_over_surface(
+            p0_x, p0_y, p0_z, p1_x, p1_y, p1_z, n0_x, n0_y, n0_z, n1_x, n1_y, n1_z
+        )
+        b101_x, b101_y, b101_z = edge_over_surface(
+            p0_x, p0_y, p0_z, p2_x, p2_y, p2_z, n0_x, n0_y, n0_z, n2_x, n2_y, n2_z
+        )
+        b011_x, b011_y, b011_z = edge_over_surface(
+            p1_x, p1_y, p1_z, p2_x, p2_y, p2_z, n1_x, n1_y, n1_z, n2_x, n2_y, n2_z
+        )
+        a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z = power_form(
+            b200_x, b200_y, b200_z, b020_x, b020_y, b020_z, b002_x, b002_y, b002_z, b110_x, b110_y,
+            b110_z, b101_x, b101_y, b101_z, b011_x, b011_y, b011_z
+        )  # fmt: skip
+        areas[t, 0] = areas[t, 1] = areas[t, 2] = 0.0
+        for node in range(3):
+            u = 1.0 - 2.0 * NODE if node == 0 else NODE
+            v = 1.0 - 2.0 * NODE if node == 1 else NODE
+            # tangents (eqs. (1) and (14)): 33 operations as written, 33 here
+            p_u_x = a_x * u + b_x * v + d_x
+            p_u_y = a_y * u + b_y * v + d_y
+            p_u_z = a_z * u + b_z * v + d_z
+            p_v_x = b_x * u + c_x * v + e_x
+            p_v_y = b_y * u + c_y * v + e_y
+            p_v_z = b_z * u + c_z * v + e_z
+            N_x = p_u_y * p_v_z - p_u_z * p_v_y
+            N_y = p_u_z * p_v_x - p_u_x * p_v_z
+            N_z = p_u_x * p_v_y - p_u_y * p_v_x
+            area = math.sqrt(N_x * N_x + N_y * N_y + N_z * N_z) / 6.0
+            areas[t, 0] += u * area
+            areas[t, 1] += v * area
+            areas[t, 2] += (1.0 - u - v) * area

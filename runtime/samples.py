@@ -288,6 +288,22 @@ class Samples:
 
         return mesh_of(self, spline, angle)
 
+    def weights(self, *, angle: float | None = None) -> NDArray[np.float64]:
+        """Return how much of the area of the surface belongs to each sample: (N,), in L².
+
+        Σ w f(points) approximates the integral of f over the surface: its area for f = 1, the
+        volume of a closed surface for f = support / 3, 2π times the Euler characteristic for f =
+        gaussian_curvature. The error falls with the square of the distance between samples, that is
+        as 1 / N; that of the area as 1 / N², down to that of the spline. Samples at one place share
+        a weight: all but one of them have 0.
+
+        They are taken from the mesh of the samples, bent by the normals. The arguments, what fields
+        are needed and what is raised are those of `mesh`.
+        """
+        from .meshes.weights import area_weights
+
+        return area_weights(self, angle)
+
     def to_dataframe(self) -> pandas.DataFrame:
         """Return a table with a row for each sample and the columns of a `.csv` file.
 

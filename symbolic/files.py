@@ -232,16 +232,43 @@ def mesh_source() -> str:
         for i, corner in enumerate("abc")
         for x, axis in enumerate("xyz")
     )
+    power_form = ", ".join(x.name for x in patch.POWER_FORM.in_components().outputs)
     return render(
         "mesh.py",
         {
             "header": header("Triangles through samples: border points, flips of edges."),
-            "formulas": functions(mesh.FORMULAS),
+            "formulas": functions([*mesh.FORMULAS, patch.POWER_FORM]),
+            "power_form": f"{power_form} = {call(patch.POWER_FORM)}",
+            "tangents": block(patch.TANGENTS),
+            "node": f"NODE = {source_of(patch.QUADRATURE_NODE)}",
+            **_edges_over_surface(),
             "border_spacing": f"d = {call(mesh.BORDER_SPACING)}",
             "load_corners": "\n".join(load),
             "corner_products": f"s0, s1, s2, L = {call(mesh.CORNER_PRODUCTS)}",
         },
     )
+
+
+def _edges_over_surface() -> dict[str, str]:
+    """Return the calls that find the six Bézier points of a triangle over a surface."""
+    ends = {"b110": (0, 1), "b101": (0, 2), "b011": (1, 2)}
+    names = [f"{name}_{x}" for name in ("p0", "p1", "n0", "n1") for x in "xyz"]
+    function = mesh.EDGE_OVER_SURFACE.name
+
+    def call_of(middle: str, i: int, j: int) -> str:
+        arguments = ", ".join(x.translate({ord("0"): str(i), ord("1"): str(j)}) for x in names)
+        outputs = ", ".join(f"{middle}_{x}" for x in "xyz")
+        return f"{outputs} = {function}(\n    {arguments}\n)"
+
+    corners = {"b200": 0, "b020": 1, "b002": 2}
+    normals = [(k, f"n{k}_{x}") for k in range(3) for x in "xyz"]
+    copies = (f"{name}_{x} = p{k}_{x}" for name, k in corners.items() for x in "xyz")
+    return {
+        "edges_over_surface": "\n".join(call_of(x, *ends[x]) for x in ends),
+        "corners_of_net": "\n".join(copies),
+        "turn_normals": "\n".join(f"{x} *= sides[t, {k}]" for k, x in normals),
+        "flatten_normals": "\n".join(f"{x} = 0.0" for _, x in normals),
+    }
 
 
 def patch_source() -> str:

@@ -9,7 +9,7 @@ from .formula import Cross, Dot, Formula, scalar, vectors
 __all__ = ["FORMULAS"]
 
 p0, p1, p2, n0, n1, n2, e, f, N = vectors(("p0", "p1", "p2", "n0", "n1", "n2", "e", "f", "N"))
-r, k = scalar("r"), scalar("k")
+r, k, beta = scalar("r"), scalar("k"), scalar("beta")
 
 CORNER_PRODUCTS = Formula.build(
     "corner_products",
@@ -31,4 +31,26 @@ BORDER_SPACING = Formula.build(
     outputs=[("d", 1 / sp.sqrt(scalar("rho")))],
 )
 
-FORMULAS = (CORNER_PRODUCTS, BORDER_SPACING)
+
+def _bulge() -> sp.Expr:
+    """Return how far along n0 + n1 the middle Bézier point of an edge is, by least squares.
+
+    With it the ends of the edge, a quadratic curve, should be perpendicular to the normals: the
+    products with n0 and n1 of its first and last leg, e/2 ± beta (n0 + n1), should vanish.
+    """
+    towards = 1 + Dot(n0, n1)
+    legs = Dot(e, n0) / 2 + beta * towards, Dot(e, n1) / 2 - beta * towards
+    (bulge,) = sp.solve(sp.diff(legs[0] ** 2 + legs[1] ** 2, beta), beta)
+    return sp.factor(bulge)
+
+
+EDGE_OVER_SURFACE = Formula.build(
+    "edge_over_surface",
+    "The middle Bézier point of a quadratic curve from $p0$ to $p1$ that is as nearly as possible "
+    "perpendicular to the unit normals $n0$ and $n1$ at its ends.",
+    inputs=[p0, p1, n0, n1],
+    terms=[("e", p1 - p0), ("beta", _bulge())],
+    outputs=[("b", (p0 + p1) / 2 + beta * (n0 + n1))],
+)
+
+FORMULAS = (CORNER_PRODUCTS, BORDER_SPACING, EDGE_OVER_SURFACE)

@@ -1,0 +1,55 @@
+"""How much of the area of a surface belongs to each of its samples."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...generated import mesh as kernels
+from ..spline import scale_to_one
+from .mesh import Mesh
+
+if TYPE_CHECKING:
+    from ..samples import Samples
+
+__all__ = ["area_weights"]
+
+Array = NDArray[np.float64]
+
+
+def area_weights(samples: Samples, angle: float | None) -> Array:
+    """Return what `Samples.weights` returns."""
+    mesh = samples.mesh(angle=angle)
+    parts, triangles = _areas(mesh), mesh.triangles
+    is_sample = mesh.sample[triangles] >= 0
+    number = is_sample.sum(axis=1)
+    # Vertices that were added give their part to the samples at the other corners.
+    added = np.where(is_sample, 0.0, parts).sum(axis=1) / np.maximum(number, 1)
+    shares = np.where(is_sample, parts + added[:, None], 0.0)
+    weights = np.bincount(
+        mesh.sample[triangles[is_sample]], shares[is_sample], minlength=len(samples)
+    )
+    lost = number == 0
+    if lost.any():
+        middles = mesh.vertices[triangles[lost]].mean(axis=1)
+        weights += _nearest(samples.points, middles, parts[lost].sum(axis=1))
+    return weights
+
+
+def _areas(mesh: Mesh) -> Array:
+    """Return the parts (T, 3) of the area over each triangle that belong to its corners."""
+    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    centred = mesh.vertices - (low / 2.0 + high / 2.0)
+    scale = scale_to_one(float(np.abs(centred).max()))
+    areas = np.empty(mesh.triangles.shape)
+    kernels.corner_areas(centred * scale, mesh.normals, mesh.triangles, mesh.sides, areas)
+    return areas / scale / scale
+
+
+def _nearest(points: Array, places: Array, areas: Array) -> Array:
+    """Return the areas of places, summed at the nearest points (N, 3)."""
+    from scipy.spatial import KDTree
+
+    return np.bincount(KDTree(points).query(places)[1], areas, minlength=len(points))

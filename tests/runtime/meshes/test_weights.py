@@ -1,0 +1,90 @@
+from __future__ import annotations
+
+import gaussmap as gm
+import numpy as np
+import pytest
+
+TORUS = gm.surfaces.torus(major=1.0, minor=0.35)
+
+
+def area_of(spline: gm.Spline) -> float:
+    """The area of a spline, by its own quadrature."""
+    inner = spline.coefficients[1:-1, 1:-1].reshape(-1, 3)
+    return float(spline.measure[0].sum() * np.sum(np.ptp(inner, axis=0) ** 2))
+
+
+def errors(surface: gm.Surface, count: int, density: str, volume: float) -> np.ndarray:
+    """The errors of area, volume and the integral of K, the first two relative."""
+    spline = gm.fit(surface, cells=(96, 96))
+    samples = gm.sample(spline, count=count, density=density)
+    weights = samples.weights()
+    assert (weights >= 0.0).all()
+    total = (weights * samples.gaussian_curvature).sum() - spline.measure[1].sum()
+    return np.abs(
+        [
+            weights.sum() / area_of(spline) - 1.0,
+            (weights * samples.support).sum() / 3.0 / volume - 1.0,
+            total / (4.0 * np.pi),
+        ]
+    )
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("density", ["balanced", "uniform"])
+@pytest.mark.parametrize(
+    ("surface", "volume"),
+    [
+        (TORUS, 2.0 * np.pi**2 * 0.35**2),
+        (gm.surfaces.ellipsoid(a=1.0, b=0.6, c=0.4), 4.0 / 3.0 * np.pi * 0.24),
+    ],
+)
+def test_integrals_converge(surface: gm.Surface, volume: float, density: str) -> None:
+    # Linear interpolation between samples a distance h ~ N^-1/2 apart: h² = 1/N. A triangle that
+    # the normals bend has the area to h⁴. Four times the samples: 4 and 16, or half as much.
+    coarse, fine = (errors(surface, count, density, volume) for count in (1_000, 16_000))
+    area, volume_error, curvature = coarse / fine
+    assert area > 16.0**2 / 4.0
+    assert volume_error > 16.0 / 2.0
+    assert fine[0] < 1e-6
+    assert fine[1] < 1e-3
+    assert curvature > 4.0 or fine[2] < 2e-3  # next to poles K is that of the spline
+
+
+@pytest.mark.parametrize("scale", [1e-12, 1.0, 1e12])
+def test_a_plane_is_exact(scale: float) -> None:
+    plane = gm.Surface.from_sympy(
+        (f"{scale}*u", f"2*{scale}*v", f"{scale}*(u + 3)"), ("u", "v"), ((0, 1), (0, 1))
+    )
+    samples = gm.sample(plane, count=200)
+    exact = 2.0 * np.sqrt(2.0) * scale**2
+    # Sums of some hundred areas, each rounded a few times.
+    assert samples.weights().sum() == pytest.approx(exact, rel=1e-12)
+    # Barycentric weights: linear functions come out exactly where no border vertices are merged.
+    centre = (samples.weights()[:, None] * samples.points).sum(axis=0) / exact
+    np.testing.assert_allclose(centre / scale, [0.5, 1.0, 3.5], atol=0.01)
+
+
+@pytest.mark.parametrize("name", ["moebius_band", "catenoid", "sphere", "cone"])
+def test_all_kinds_of_surfaces(name: str) -> None:
+    spline = gm.fit(getattr(gm.surfaces, name)())
+    samples = gm.sample(spline, count=3_000)
+    assert samples.weights().sum() == pytest.approx(area_of(spline), rel=2e-3)
+
+
+def test_samples_at_one_place_share_a_weight() -> None:
+    samples = gm.sample(TORUS, count=500)
+    twice = gm.Samples.concatenate([samples, samples])
+    weights = twice.weights()
+    np.testing.assert_allclose(weights[:500] + weights[500:], samples.weights(), rtol=1e-12)
+    assert (np.minimum(weights[:500], weights[500:]) == 0.0).all()
+
+
+def test_a_part_of_a_surface_needs_an_angle() -> None:
+    samples = gm.sample(TORUS, count=2_000)
+    half = samples[samples.points[:, 0] > 0.0]
+    assert half.weights(angle=30.0).sum() == pytest.approx(samples.weights().sum() / 2.0, rel=0.1)
+
+
+def test_what_is_needed() -> None:
+    with pytest.raises(gm.MissingFieldError, match="'uv'"):
+        gm.sample(TORUS, count=100, fields=("points", "normals")).weights()
