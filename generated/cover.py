@@ -401,7 +401,7 @@ def enter(heads, links, places, number, reach, finest):
     for k in range(SIZES):
         at = level + k - 1
         if 0 <= at < LEVELS:
-            edge = finest * 2.0**at
+            edge = math.ldexp(finest, at)
             bucket = bucket_of(
                 at,
                 int(math.floor(places[number, 0] / edge)),
@@ -428,7 +428,7 @@ def distance_to_samples(heads, links, places, x, y, z, n_x, n_y, n_z, reach, fin
     of at most 90 degrees with the normal here.
     """
     level = level_of(reach, finest)
-    edge = finest * 2.0**level
+    edge = math.ldexp(finest, level)
     best = known * known
     if reach < known:
         best = reach * reach

@@ -41,6 +41,7 @@ def parsed(side: str, formula: Formula) -> sp.Expr:
         "Cross": Cross,
         "det": Det,
         "sqrt": sp.sqrt,
+        "Abs": sp.Abs,
         "max": sp.Max,
         "pi": sp.pi,
     }

@@ -374,7 +374,7 @@ class TestInput:
     @pytest.mark.parametrize("name", ["torus", "sphere", "klein"])
     @pytest.mark.parametrize("count", [1, 2, 3, 5])
     def test_too_few_samples_for_a_closed_surface(self, name, count):
-        samples = gm.sample(surfaces[name][0](), count=100)[:count]
+        samples = gm.sample(surfaces[name][0](), count=100, density="gauss")[:count]
         if name == "sphere" and count > 1:
             mesh = samples.mesh()  # and two poles
             assert mesh.euler_characteristic == 2
@@ -413,9 +413,9 @@ class TestInput:
         assert mesh.euler_characteristic == 0
 
     def test_no_samples(self):
-        for surface in (gm.surfaces.plane(), gm.surfaces.cylinder()):
-            with pytest.raises(gm.InputError, match="there are no samples"):
-                gm.sample(surface, count=100).mesh()
+        samples = gm.sample(gm.surfaces.plane(), count=100)
+        with pytest.raises(gm.InputError, match="there are no samples"):
+            samples[:0].mesh()
 
     def test_samples_of_a_file_need_their_spline(self, tmp_path):
         spline = gm.fit(gm.surfaces.torus())
