@@ -18,7 +18,7 @@ def test_sample_count(compare, count, threads):
     torus = Torus()
     surface = torus.surface
     compare(
-        lambda: gm.sample(surface, count=count, threads=threads),
+        lambda: gm.sample(surface, count=count, density="gauss", threads=threads),
         baselines={"numpy_recipe": lambda: by_curvature(torus, count)},
         units={"samples": count},
         rounds=5,

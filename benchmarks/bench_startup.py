@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-SAMPLE = "import gaussmap as gm; gm.sample(gm.surfaces.torus(), count=1000)"
+SAMPLE = "import gaussmap as gm; gm.sample(gm.surfaces.torus(), count=1000, density='gauss')"
 # The first call of any compiled function makes Numba load itself: nothing that samples is faster.
 ONE_KERNEL = "import numba\n@numba.njit(cache=True)\ndef f(x):\n    return x\nf(1.0)\n"
 COMMANDS = {

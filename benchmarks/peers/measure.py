@@ -97,7 +97,10 @@ def measure_own(form: ClosedForm) -> list[Own]:
     calls: list[tuple[str, Callable[[], gm.Samples]]] = [
         ("gm.sample(surface, normals)", sampling(form, False, 100_000)),
         ("gm.sample(surface, normals)", sampling(form, False, MILLION)),
-        ("gm.sample(surface, count=…)", lambda: gm.sample(source, count=MILLION)),
+        (
+            'gm.sample(surface, count=…, density="gauss")',
+            lambda: gm.sample(source, count=MILLION, density="gauss"),
+        ),
         ("gm.sample(spline, normals)", lambda: gm.sample(spline, normals)),
     ]
     rows = []
@@ -109,6 +112,6 @@ def measure_own(form: ClosedForm) -> list[Own]:
 
 def judge_own(form: ClosedForm, places: Places) -> tuple[int, float, float]:
     """Return how many samples gaussmap gives for JUDGED, and E and G of them."""
-    samples = gm.sample(form.surface, count=JUDGED)
+    samples = gm.sample(form.surface, count=JUDGED, density="gauss")
     errors = both(form, places, samples.points, samples.normals, nearest_by_tree)
     return len(samples), *errors

@@ -61,9 +61,9 @@ their rows gaussmap samples the same B-spline, by Splipy's evaluation. Gmsh and 
 this B-spline, too, but for the torus, which is one of their own shapes. NumPy's grid computes
 trigonometric functions along its two sides only. Meshes have exact normals at their vertices, and
 samples those, interpolated. gaussmap is given normals of a Fibonacci lattice that were made before;
-with `count=…` it makes them, and finds out how many are needed. The recipes draw points at random;
-gaussmap's also have curvatures and parameters, and so has NumPy's recipe. Each package uses the
-threads that it uses by default; for gaussmap that is one for each core.
+with `count=…, density="gauss"` it makes them, and finds out how many are needed. The recipes draw
+points at random; gaussmap's also have curvatures and parameters, and so has NumPy's recipe. Each
+package uses the threads that it uses by default; for gaussmap that is one for each core.
 """
 
 SCALE = """\

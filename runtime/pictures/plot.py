@@ -88,7 +88,8 @@ def plot_samples(
     installed.
     """
     check_target(path)
-    directions = as_normals(normals)
+    alone = len(samples) > 0 and np.size(normals) == 0  # of samples that no normal gave
+    directions = samples.normals[:0] if alone else as_normals(normals)
     if len(samples) and int(samples.normal_index.max()) >= len(directions):
         raise InputError("the samples do not belong to these normals: there are too few normals.")
     import matplotlib.style
@@ -269,19 +270,19 @@ def _draw_sphere(figure: Figure, samples: Samples, normals: NDArray[np.float64])
     from matplotlib.lines import Line2D
 
     index, missed = samples.normal_index, np.ones(len(normals), dtype=bool)
-    missed[index] = False
+    missed[index[index >= 0]] = False
     # One normal may have samples of both kinds: a disc with a ring round it.
     kinds = [
         _Kind("no sample", normals[missed], NO_SAMPLE, False),
-        _Kind("elliptic", normals[index[samples.elliptic]], ELLIPTIC, True),
-        _Kind("hyperbolic", normals[index[samples.hyperbolic]], HYPERBOLIC, False),
+        _Kind("elliptic", samples.normals[samples.elliptic], ELLIPTIC, True),
+        _Kind("hyperbolic", samples.normals[samples.hyperbolic], HYPERBOLIC, False),
     ]
     axes = figure.add_axes(_box(RIGHT, MIDDLE, 2.6 * RADIUS, 2.6 * RADIUS))
     axes.set(xlim=(-1.3, 1.3), ylim=(-1.3, 1.3), aspect="equal")
     axes.set_axis_off()
     view = view_of(samples.normals if len(samples) else normals)
     draw_globe(axes, view)
-    area = _marker_area(normals)
+    area = _marker_area(normals if len(normals) else samples.normals)
     handles = []
     for height, kind in enumerate(kinds):
         size = area * (2.4 if kind.ring else 1.0)

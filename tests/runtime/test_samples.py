@@ -127,9 +127,11 @@ class TestConstruction:
 
 class TestReport:
     def test_numpy_numbers_become_plain(self):
-        report = SamplingReport("s", np.int64(3), np.int32(2), np.uint8(1), np.float32(0.5), 0)  # pyright: ignore[reportArgumentType]
+        report = SamplingReport(
+            "s", np.int64(3), np.int32(2), np.uint8(1), np.float32(0.5), 0, np.float32(2), np.int64(3)  # pyright: ignore[reportArgumentType]
+        )
         assert [type(getattr(report, f.name)) for f in fields(report)] == [
-            str, int, int, int, float, int,
+            str, int, int, int, float, int, float, float,
         ]  # fmt: skip
 
     @pytest.mark.parametrize("name", ["normals", "samples", "patches", "degenerate_patches"])
@@ -142,6 +144,12 @@ class TestReport:
     def test_bad_shares(self, bad):
         with pytest.raises(InputError, match=r"^invisible_share must"):
             replace(REPORT, invisible_share=bad)
+
+    @pytest.mark.parametrize("name", ["coverage", "angle"])
+    @pytest.mark.parametrize("bad", [-0.1, np.nan, "much", [1.0]])
+    def test_bad_distances(self, name, bad):
+        with pytest.raises(InputError, match=f"^{name} must"):
+            replace(REPORT, **{name: bad})
 
     def test_rounding_of_the_share_is_forgiven(self):
         assert replace(REPORT, invisible_share=-1e-15).invisible_share == 0.0

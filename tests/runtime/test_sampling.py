@@ -43,7 +43,7 @@ BROKEN = gm.Surface.from_callable(broken, SQUARE, name="broken")
 def test_count(name):
     spline = gm.fit(gm.surfaces.surface(name))
     for count in (300, 2000, 10_000):
-        samples = gm.sample(spline, count=count)
+        samples = gm.sample(spline, count=count, density="gauss")
         assert abs(len(samples) - count) <= 0.05 * count + 1
         assert samples.report.samples == len(samples)
         assert samples.report.invisible_share == 0.0
@@ -56,7 +56,7 @@ def test_small_counts(name):
     """A symmetric surface has not every number, but nothing far from it."""
     spline = gm.fit(gm.surfaces.surface(name))
     for count in (1, 2, 10):
-        assert abs(len(gm.sample(spline, count=count)) - count) <= 8
+        assert abs(len(gm.sample(spline, count=count, density="gauss")) - count) <= 8
 
 
 @pytest.mark.compiled
@@ -64,14 +64,15 @@ def test_small_counts(name):
 @pytest.mark.parametrize("name", ["wavy_graph", "torus"])
 def test_count_in_any_unit_of_length(name, factor):
     surface = moved(gm.surfaces.surface(name), factor, 10.0 * factor)
-    assert abs(len(gm.sample(surface, count=2000, cells=(24, 24))) - 2000) <= 100
+    samples = gm.sample(surface, count=2000, density="gauss", cells=(24, 24))
+    assert abs(len(samples) - 2000) <= 100
 
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("cells", [(4, 4), (5, 4), (6, 5)])
 def test_count_where_the_first_guess_is_wrong(cells):
     """On so few cells the quadrature of the solid angle is 6 to 12 % off."""
-    samples = gm.sample(gm.surfaces.moebius_band(), count=2000, cells=cells)
+    samples = gm.sample(gm.surfaces.moebius_band(), count=2000, density="gauss", cells=cells)
     assert abs(len(samples) - 2000) <= 40
 
 
@@ -79,8 +80,9 @@ def test_count_where_the_first_guess_is_wrong(cells):
 def test_count_on_a_thin_gaussian_image():
     """A graph so flat that its normals fill 10⁻⁶ of the sphere: the lattice is cut to them."""
     dish = gm.surfaces.elliptic_paraboloid(a=30.0, b=40.0)
-    assert abs(len(gm.sample(dish, count=2000, cells=(24, 24))) - 2000) <= 100
-    assert abs(len(gm.sample(moved(dish, 1e6), count=2000, cells=(24, 24))) - 2000) <= 100
+    for surface in (dish, moved(dish, 1e6)):
+        samples = gm.sample(surface, count=2000, density="gauss", cells=(24, 24))
+        assert abs(len(samples) - 2000) <= 100
 
 
 @pytest.mark.compiled
@@ -94,7 +96,7 @@ def test_count_is_not_met_and_said_so():
         (True, False),
     )
     with pytest.warns(gm.GaussmapWarning, match=r"\d+ samples came where 500 were asked"):
-        samples = gm.sample(ribbon, count=500, cells=(64, 16))
+        samples = gm.sample(ribbon, count=500, density="gauss", cells=(64, 16))
     assert len(samples) < 450
 
 
@@ -110,12 +112,15 @@ def test_counts_that_are_none(count):
             call()
 
 
-def test_either_normals_or_count():
-    for asked in ({}, {"normals": [[0, 0, 1]], "count": 5}):
-        with pytest.raises(gm.InputError, match=r"give either normals=\.\.\. or count=\.\.\."):
-            gm.sample(TORUS, **asked)
-        with pytest.raises(gm.InputError, match=r"give either normals=\.\.\. or count=\.\.\."):
-            next(gm.sample_many([TORUS], **asked))
+def test_normals_or_a_count_or_an_angle_or_a_coverage():
+    amounts = {"normals": [[0, 0, 1]], "count": 5, "angle": 3.0, "coverage": 0.1}
+    pairs = [("normals", "count"), ("normals", "angle"), ("count", "angle")]
+    for asked in ({}, *({x: amounts[x] for x in pair} for pair in pairs), amounts):
+        for call in (gm.sample, lambda x, **asked: next(gm.sample_many([x], **asked))):
+            with pytest.raises(gm.InputError, match="say how many samples by one of normals=") as e:
+                call(BROKEN, **asked)
+            assert ("none is given" in str(e.value)) == (not asked)
+            assert all(name in str(e.value).split(";")[1] for name in asked)
 
 
 def test_cells_are_for_surfaces():
@@ -140,7 +145,7 @@ def test_developable_surfaces_are_warned_of(name):
     assert caught[0].filename == __file__
     assert samples.report.invisible_share == pytest.approx(1.0)
     with pytest.warns(gm.GaussmapWarning, match=why + ".* samples came where 500 were asked"):
-        gm.sample(surface, count=500)
+        gm.sample(surface, count=500, density="gauss")
 
 
 @pytest.mark.compiled
@@ -168,7 +173,7 @@ def test_half_a_surface_is_flat():
         ((-1, 1), (-1, 1)),
     )
     with pytest.warns(gm.GaussmapWarning, match="5[0-4] % of its area is flat") as caught:
-        samples = gm.sample(bent, count=1000)
+        samples = gm.sample(bent, count=1000, density="gauss")
     assert "were asked" not in str(caught[0].message)
     assert (samples.uv[:, 0] > -0.05).all()
 
@@ -360,7 +365,7 @@ def solid_angles_and_areas(name, bins):
 def test_density_is_gaussian_curvature(name):
     """Counts follow ∫|K| dA closer than independent samples would, and do not follow area."""
     bins = 8
-    samples = gm.sample(gm.surfaces.surface(name), count=20_000, cells=(96, 96))
+    samples = gm.sample(gm.surfaces.surface(name), count=20_000, density="gauss", cells=(96, 96))
     low, high = np.array(gm.surfaces.surface(name).domain).T
     place = np.clip((bins * (samples.uv - low) / (high - low)).astype(int), 0, bins - 1)
     counts = np.zeros((bins, bins))

@@ -46,7 +46,7 @@ def test_chunks_make_the_whole(name, threads, monkeypatch):
     surface = gm.surfaces.surface(name)
     questions: list[dict[str, Any]] = [{"normals": gm.icosphere(12)}, {"count": 900}]
     for asked in questions:
-        whole = gm.sample(surface, cells=(20, 16), threads=1, **asked)
+        whole = gm.sample(surface, density="gauss", cells=(20, 16), threads=1, **asked)
         for size in (7, 100, len(whole), 10**9):
             chunks = list(
                 gm.sample_stream(surface, chunk=size, cells=(20, 16), threads=threads, **asked)
@@ -102,7 +102,7 @@ def test_a_sample_of_two_ranges_comes_once(name, monkeypatch):
 @pytest.mark.parametrize("asked", [{"normals": gm.icosphere(6)}, {"count": 700}])
 def test_blocks_of_normals(size, asked, monkeypatch):
     """The same samples, by block of normals, then by patch, then by normal."""
-    whole = gm.sample(TORUS, **asked)
+    whole = gm.sample(TORUS, density="gauss", **asked)
     monkeypatch.setattr(stream, "NORMALS_AT_A_TIME", size)
     chunks = list(gm.sample_stream(TORUS, chunk=50, **asked))
     assert max(map(len, chunks)) <= 50
@@ -124,7 +124,7 @@ def test_a_count_is_concluded_from_a_smaller_one(name, monkeypatch):
         return find(spline, bins, *rest)
 
     monkeypatch.setattr(choice, "find", recorded)
-    samples = gm.sample(spline, count=50_000)
+    samples = gm.sample(spline, count=50_000, density="gauss")
     assert abs(len(samples) - 50_000) <= 2500
     assert 10 * max(tried) < (samples.report.normals or 0)
     same(Samples.concatenate(gm.sample_stream(spline, count=50_000, chunk=9999)), samples)

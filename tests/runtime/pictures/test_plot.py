@@ -191,8 +191,10 @@ def test_bad_arguments(torus: gm.Spline, tmp_path: Path) -> None:
     path = tmp_path / "a.png"
     with pytest.raises(gm.InputError, match="has its cells already"):
         plot.plot(torus, path, count=50, cells=(8, 8))
-    with pytest.raises(gm.InputError, match="either normals"):
+    with pytest.raises(gm.InputError, match="say how many samples"):
         plot.plot(torus, path)
+    with pytest.raises(gm.InputError, match="at least one normal"):
+        plot.plot_samples(gm.sample(torus, [[0, 0, 1]])[:0], torus, [], path)
     with pytest.raises(gm.InputError, match="too few normals"):
         plot.plot_samples(gm.sample(torus, count=50), torus, [(0, 0, 1)], path)
     assert not path.exists()
