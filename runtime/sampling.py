@@ -30,7 +30,9 @@ __all__ = [
 ]
 
 WORTH_A_WARNING = 0.01
-COUNT_TOLERANCE = 0.05
+# A count is missed if it is by more than this share of it and so many samples: on a symmetric
+# surface several come and go at once.
+COUNT_TOLERANCE, FEW = 0.02, 5
 
 
 def sample(
@@ -64,7 +66,7 @@ def sample(
 
     - "gauss", the default of `normals`: as many as |K|, from normals alone (paper, Sect. 4.2).
       Unbeaten in normal space, but parts that bend in one direction only, or not at all, get none.
-      A count is met within 5 % (or one sample) where the Gaussian image is resolved.
+      A count is met within 2 % (or 5 samples) where the Gaussian image is resolved.
     - "balanced", the default otherwise: the same from fewer normals, and samples that fill what
       these leave. Their `kind` is "coverage", their `normal_index` −1. No point is farther from a
       sample than r / κ, nor than r / √λ: κ is the larger principal curvature, so that normals turn
@@ -227,7 +229,7 @@ def _unseen(report: SamplingReport) -> list[str]:
 def _missed(report: SamplingReport, count: int | None, coverage: float | None) -> list[str]:
     """Say which of the numbers that were asked are not met."""
     reasons = []
-    if count is not None and abs(report.samples - count) > COUNT_TOLERANCE * count + 1:
+    if count is not None and abs(report.samples - count) > COUNT_TOLERANCE * count + FEW:
         reasons.append(f"{report.samples} samples came where {count} were asked")
     if coverage is not None and report.coverage is not None and report.coverage > coverage:
         reasons.append(
