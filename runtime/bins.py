@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..generated import icosphere
 from ..generated import sampler as kernels
-from .sphere import perpendicular
+from .sphere import PARTS, perpendicular
 from .threads import over_ranges, thread_count
 
 __all__ = ["NormalBins"]
@@ -36,20 +36,16 @@ class NormalBins:
 
     @cached_property
     def frequency(self) -> int:
-        """That of the icosahedron whose points these are, in their order; 0 if they are not."""
+        """That of `icosphere` if these are its normals, bit for bit; 0 if they are not."""
         frequency = math.isqrt(max(len(self.normals) - 2, 0) // 10)
-        if frequency == 0 or 10 * frequency**2 + 2 != len(self.normals):
+        known = 0 < frequency <= icosphere.MOST_FREQUENT
+        if not known or 10 * frequency**2 + 2 != len(self.normals):
             return 0
 
         def work(first: int, last: int) -> bool:
             return icosphere.is_icosphere(self.normals, frequency, first, last)
 
-        return frequency if all(over_ranges(work, 51, 1, self.threads)) else 0
-
-    @property
-    def ordered(self) -> NDArray[np.float64]:
-        """The normals (S, 3) in the order of their places."""
-        return self.normals if self.frequency > 0 else self.sorted[2]
+        return frequency if all(over_ranges(work, PARTS, 1, self.threads)) else 0
 
     @cached_property
     def frame(self) -> NDArray[np.float64]:
