@@ -46,7 +46,7 @@ def jit(function):
         return numba.njit(**OPTIONS)(function)
 
 
-# sampler.py, digest 0042f460764cd5fa: Numba's cache looks at this file alone.
+# sampler.py, digest 8955427bb6f0a84a: Numba's cache looks at this file alone.
 
 # The icosahedron: corners as pairs (a, b) of coordinates a + b φ; edges and faces as numbers of
 # corners. BARS map a normal to α, β, γ, with which the corners of a face are added to give it, and
@@ -740,15 +740,14 @@ def spans_of_face(
             total += max(0, spans[1, row] - left + 1)
         return first, last, total
     spans_of_hull(hull, size, error, 0, first, last, low, high)
-    for row in range(first, last + 1):
-        left, right = (
-            max(low[row - first] - error, 0.0),
-            min(high[row - first] + error, frequency - row),
-        )
-        spans[0, row], spans[1, row] = (
+    here = spans[:, first:]
+    for row in range(last - first + 1):
+        left = max(low[row] - error, 0.0)
+        right = min(high[row] + error, frequency - first - row)
+        here[0, row], here[1, row] = (
             (math.ceil(left), math.floor(right)) if left <= right else (0, -1)
         )
-        total += max(0, spans[1, row] - spans[0, row] + 1)
+        total += max(0, here[1, row] - here[0, row] + 1)
     return first, last, total
 
 
@@ -780,12 +779,16 @@ def note_border(spans, first, last, frequency, places):
         face, side = EDGE_PLACES[edge]
         if first[face] <= last[face]:
             start = 12 + edge * (frequency - 1) - 1
-            for k in range(1, frequency):
+            low, high = first[face], last[face]
+            if side == 1:
+                low, high = (spans[face, 0, 0], spans[face, 1, 0]) if low <= 0 else (0, -1)
+            elif side == 2:
+                low, high = frequency - high, frequency - low
+            for k in range(max(low, 1), min(high, frequency - 1) + 1):
                 row = k if side == 0 else 0 if side == 1 else frequency - k
                 column = 0 if side == 0 else k
-                if first[face] <= row <= last[face]:
-                    places[count] = start + k
-                    count += spans[face, 0, row] <= column <= spans[face, 1, row]
+                places[count] = start + k
+                count += spans[face, 0, row] <= column <= spans[face, 1, row]
     return count
 
 
@@ -800,10 +803,10 @@ def note_inside(spans, first, last, frequency, s, t):
     for row in range(max(first, 1), min(last, frequency - 2) + 1):
         left = max(spans[0, row], 1)
         size = min(spans[1, row], frequency - row - 1) - left + 1
-        rows, columns = s[count:], t[count:]
-        for k in range(whole_vectors(size)):
-            rows[k] = row
-            columns[k] = left + k
+        for k in range(size):
+            at = np.uint64(count + k)  # so that nobody asks whether it is negative
+            s[at] = row
+            t[at] = left + k
         if size > 0:
             count += size + 1
             t[count - 1] = math.nan
@@ -839,10 +842,10 @@ def scan_patches(
     window, hull, axis = np.empty(4, np.int64), np.empty((12, 2)), np.empty(3)
     met, first, last = np.empty(21, np.int64), np.zeros(20, np.int64), np.full(20, -1)
     spans = np.empty((20, 2, frequency + 1), np.int64)
-    low, high = np.empty(frequency + 1), np.empty(frequency + 1)
+    low, high = np.empty(frequency + 17), np.empty(frequency + 17)
     forms, tile = np.empty(18), np.zeros(3 * TILE_STEP)
-    rows_and_columns = np.empty(2 * TILE_STEP, np.int64)
-    places, ends, s, t, codes = candidates(256)
+    row_and_column, tile_codes = np.empty(2 * TILE_STEP, np.int64), np.empty(TILE_STEP, np.int8)
+    places, s, t, codes, marks = candidates(256)
     for patch in range(first_patch, last_patch):
         cell = patch // 4
         turn = patch % 4
@@ -906,7 +909,7 @@ def scan_patches(
         if counts[0] + total + 1 > found.shape[0] or counts[1] + total + 1 > doubtful.shape[0]:
             return patch, total + 1
         if total + frequency + 64 > s.size:
-            places, ends, s, t, codes = candidates(2 * total + frequency + 64)
+            places, s, t, codes, marks = candidates(2 * total + frequency + 64)
         bound = bound_of_forms(
             mu, i, j, turn, scale, noise, border, axis, sine,
             a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
@@ -919,7 +922,7 @@ def scan_patches(
                 look_up(normals, places, begin, size, tile)
                 classify_tile(
                     a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
-                    axis, sine, bound, tile, codes, begin, size,
+                    axis, sine, bound, tile, tile_codes, codes, begin, size,
                 )  # fmt: skip
             store_border(codes, places, count, patch, found, doubtful, counts)
         for k in range(faces):
@@ -936,13 +939,13 @@ def scan_patches(
             if unsure > 0:
                 settle(
                     a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
-                    axis, sine, bound, face, frequency, s, t, count, rows_and_columns, tile, codes,
+                    axis, sine, bound, face, frequency, s, t, count, row_and_column, tile, tile_codes, codes,
                 )  # fmt: skip
                 counts[1] = store_open(
                     face, frequency, s, t, count, codes, patch, doubtful, counts[1]
                 )
             counts[0] = store_runs(
-                face, frequency, s, t, count, codes, places, ends, patch, found, counts[0]
+                face, frequency, s, t, count, codes, marks, places, patch, found, counts[0]
             )
         bounds[doubts : counts[1]] = bound
     return last_patch, 0
@@ -950,9 +953,9 @@ def scan_patches(
 
 @jit
 def candidates(size):
-    """Return arrays for the points that a patch may have: two of numbers, rows, columns, codes."""
-    numbers, ends = np.empty(size, np.int64), np.empty(size, np.int64)
-    return numbers, ends, np.empty(size), np.empty(size), np.empty(size, np.int8)
+    """Return arrays for the points that a patch may have: numbers, rows, columns, codes, marks."""
+    codes, marks = np.zeros(size, np.int8), np.zeros((size + 7) // 8 * 8, np.int8)
+    return np.empty(size, np.int64), np.empty(size), np.empty(size), codes, marks
 
 
 @inner
@@ -1022,37 +1025,39 @@ def classify_points(forms, bound, frequency, s, t, count, codes):
     A_0, B_0, C_0, P_0, Q_0, T_0 = forms[0], forms[1], forms[2], forms[3], forms[4], forms[5]
     A_s, B_s, C_s, P_s, Q_s, T_s = forms[6], forms[7], forms[8], forms[9], forms[10], forms[11]
     A_t, B_t, C_t, P_t, Q_t, T_t = forms[12], forms[13], forms[14], forms[15], forms[16], forms[17]
+    for begin in range(0, count + 1, 16):
+        rows, columns, here = s[begin:], t[begin:], codes[begin:]
+        for k in range(16):
+            p = rows[k]
+            q = columns[k]
+            A = A_0 + p * A_s + q * A_t
+            B = B_0 + p * B_s + q * B_t
+            C = C_0 + p * C_s + q * C_t
+            P = P_0 + p * P_s + q * P_t
+            Q = Q_0 + p * Q_s + q * Q_t
+            towards = T_0 + p * T_s + q * T_t
+            # eliminated_forms (eq. (9) and Sect. 3.2): 11 operations as written, 11 here
+            D = A * C - B * B
+            U = B * Q - C * P
+            V = B * P - A * Q
+            W = D - U - V
+            low = U if U < V else V
+            low = low if low < W else W
+            high = U if U > V else V
+            high = high if high > W else W
+            outside = ((low < -bound) & (high > bound)) | (not (towards > 0.0))
+            sure = ((low > bound) | (high < -bound)) & (abs(D) > least)
+            here[k] = np.int8(0) if outside else np.int8(1) if sure else np.int8(2)
     unsure = 0
-    for k in range(whole_vectors(count + 1)):
-        p = s[k]
-        q = t[k]
-        A = A_0 + p * A_s + q * A_t
-        B = B_0 + p * B_s + q * B_t
-        C = C_0 + p * C_s + q * C_t
-        P = P_0 + p * P_s + q * P_t
-        Q = Q_0 + p * Q_s + q * Q_t
-        towards = T_0 + p * T_s + q * T_t
-        # eliminated_forms (eq. (9) and Sect. 3.2): 11 operations as written, 11 here
-        D = A * C - B * B
-        U = B * Q - C * P
-        V = B * P - A * Q
-        W = D - U - V
-        low = U if U < V else V
-        low = low if low < W else W
-        high = U if U > V else V
-        high = high if high > W else W
-        outside = ((low < -bound) & (high > bound)) | (not (towards > 0.0))
-        sure = ((low > bound) | (high < -bound)) & (abs(D) > least)
-        code = np.int8(0) if outside else np.int8(1) if sure else np.int8(2)
-        codes[k] = code
-        unsure += code == 2
+    for k in range(whole_vectors(count)):
+        unsure += codes[k] == 2
     return unsure
 
 
 @inner
 def settle(
     a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
-    axis, sine, bound, face, frequency, s, t, count, places, tile, codes,
+    axis, sine, bound, face, frequency, s, t, count, row_and_column, tile, tile_codes, codes,
 ):  # fmt: skip
     """Classify the open points of a face by their normals."""
     k = 0
@@ -1061,10 +1066,10 @@ def settle(
         while codes[k + size] == 2 and size < TILE:
             size += 1
         if size > 0:
-            write_line(face, frequency, int(s[k]), int(t[k]), 0, 1, size, places, tile)
+            write_line(face, frequency, int(s[k]), int(t[k]), 0, 1, size, row_and_column, tile)
             classify_tile(
                 a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
-                axis, sine, bound, tile, codes, k, size,
+                axis, sine, bound, tile, tile_codes, codes, k, size,
             )  # fmt: skip
         k += max(size, 1)
 
@@ -1072,20 +1077,22 @@ def settle(
 @inner
 def classify_tile(
     a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
-    axis, sine, bound, tile, codes, first, size,
+    axis, sine, bound, tile, tile_codes, codes, first, size,
 ):  # fmt: skip
     """Write the codes of the normals of a tile from codes[first] on; see `classify`."""
-    x, y, z = tile[:size], tile[TILE_STEP:][:size], tile[2 * TILE_STEP :][:size]
-    here = codes[first : first + size]
+    full = whole_vectors(size)
+    x, y, z = tile[:full], tile[TILE_STEP:][:full], tile[2 * TILE_STEP :][:full]
     classify(
         a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
-        axis, sine, bound, x, y, z, here,
+        axis, sine, bound, x, y, z, tile_codes,
     )  # fmt: skip
     if sine == math.inf:
         look_again(
             a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
-            x, y, z, here,
+            x, y, z, tile_codes[:size],
         )  # fmt: skip
+    for k in range(size):
+        codes[first + k] = tile_codes[k]
 
 
 @inner
@@ -1097,20 +1104,25 @@ def note_of(face, s, t, count, frequency):
 
 
 @inner
-def store_runs(face, frequency, s, t, count, codes, starts, ends, patch, found, at):
-    """Write patch and note of the runs of points with the code 1 to `found` from `at` on; return the end."""
-    begun = ended = 0
-    for k in range(1, count):
-        here = codes[k] == 1
-        starts[begun] = k
-        ends[ended] = k + 1
-        begun += here & (codes[k - 1] != 1)
-        ended += here & (codes[k + 1] != 1)
-    for k in range(begun):
-        start = starts[k]
+def store_runs(face, frequency, s, t, count, codes, marks, turns, patch, found, at):
+    """Write patch and note of the runs of points with the code 1 to `found` from `at` on; return the end.
+
+    Runs begin and end, in turn, where codes change; most words of eight of them do not.
+    """
+    for k in range(whole_vectors(count)):
+        marks[k + 1] = (codes[k] == 1) != (codes[k + 1] == 1)
+    words = marks.view(np.int64)
+    size = 0
+    for word in range((count >> 3) + 1):
+        if words[word] != 0:
+            for k in range(8 * word, 8 * word + 8):
+                turns[size] = k
+                size += marks[k] & (k <= count)
+    for k in range(size >> 1):
+        start, end = turns[2 * k], turns[2 * k + 1]
         found[at + k, 0] = patch
-        found[at + k, 1] = note_of(face, s[start], t[start], ends[k] - start, frequency)
-    return at + begun
+        found[at + k, 1] = note_of(face, s[start], t[start], end - start, frequency)
+    return at + (size >> 1)
 
 
 @inner
@@ -1211,10 +1223,10 @@ def fill_runs(
 
 @inner
 def write_run(patch, number, row, column, at, count, indices, places):
-    """Write the indices and the places of a run of samples from `at` on, and up to 15 more."""
-    indices, places = indices[at:], places[at:]
-    for k in range(whole_vectors(count)):
-        indices[k] = number + k
-        indices[TILE_STEP + k] = patch
-        places[k] = row
-        places[TILE_STEP + k] = column + k
+    """Write the indices and the places of a run of samples from `at` on."""
+    for k in range(count):
+        here, beyond = np.uint64(at + k), np.uint64(at + TILE_STEP + k)
+        indices[here] = number + k
+        indices[beyond] = patch
+        places[here] = row
+        places[beyond] = column + k

@@ -779,7 +779,7 @@ def spans_of_hull(hull, size, error, height, first, last, low, high):
     """Write where the hull of points is in the rows first, …, last: from low (…) to high (…).
 
     A row reaches over `height` from its number on. `error` is that of the points; rows that the hull
-    does not meet get an empty span.
+    does not meet get an empty span. There has to be room for 15 more rows.
     """
     for row in range(last - first + 1):
         low[row] = math.inf
@@ -792,14 +792,18 @@ def spans_of_hull(hull, size, error, height, first, last, low, high):
             left, right = min(s, s_end), max(s, s_end)
             slope = (s_end - s) / (t_end - t) if t_end > t else 0.0
             start = max(first, math.ceil(t - error) - height)
-            end = min(last, math.floor(t_end + error))
-            for row in range(start, end + 1):
+            count = min(last, math.floor(t_end + error)) - start + 1
+            for k in range(whole_vectors(count)):
+                at = np.uint64(start - first + k)
+                row = float(start + k)
                 p = s + (min(max(row - error, t), t_end) - t) * slope
                 q = s + (min(max(row + height + error, t), t_end) - t) * slope
                 if t_end == t:
                     p, q = left, right
-                low[row - first] = min(low[row - first], max(left, min(p, q)))
-                high[row - first] = max(high[row - first], min(right, max(p, q)))
+                least = max(left, min(p, q)) if k < count else math.inf
+                most = min(right, max(p, q)) if k < count else -math.inf
+                low[at] = min(low[at], least)
+                high[at] = max(high[at], most)
 
 
 @inner
@@ -835,7 +839,7 @@ def search_patches(
     errors, angles = np.empty(6), np.empty(6)
     windows, hulls = np.empty((6, 4), np.int64), np.empty((6, 12, 2))
     slacks, sizes = np.empty(6), np.empty(6, np.int64)
-    axis, low, high = np.empty(3), np.empty(grid), np.empty(grid)
+    axis, low, high = np.empty(3), np.empty(grid + 16), np.empty(grid + 16)
     places, x, y, z, codes, notes, scratch, buckets = buffers(256)
     for patch in range(first, last):
         cell = patch // 4
