@@ -20,6 +20,7 @@ from .sampler import (
     classify,
     cone_of_normals,
     control_normals,
+    count_open,
     empty,
     face_window,
     fill_tile,
@@ -46,7 +47,7 @@ def jit(function):
         return numba.njit(**OPTIONS)(function)
 
 
-# sampler.py, digest 8955427bb6f0a84a: Numba's cache looks at this file alone.
+# sampler.py, digest dba3837b0808c26e: Numba's cache looks at this file alone.
 
 # The icosahedron: corners as pairs (a, b) of coordinates a + b φ; edges and faces as numbers of
 # corners. BARS map a normal to α, β, γ, with which the corners of a face are added to give it, and
@@ -1048,10 +1049,7 @@ def classify_points(forms, bound, frequency, s, t, count, codes):
             outside = ((low < -bound) & (high > bound)) | (not (towards > 0.0))
             sure = ((low > bound) | (high < -bound)) & (abs(D) > least)
             here[k] = np.int8(0) if outside else np.int8(1) if sure else np.int8(2)
-    unsure = 0
-    for k in range(whole_vectors(count)):
-        unsure += codes[k] == 2
-    return unsure
+    return count_open(codes, count)
 
 
 @inner

@@ -590,17 +590,18 @@ def start_bins(counts, starts):
 
 
 @jit
-def place_normals(normals, bins, first, last, places, order, ordered):
-    """Sort the normals first, …, last − 1: order[starts[b]:starts[b + 1]] are those of bin b, ascending.
+def place_normals(normals, bins, first, last, places, ordered):
+    """Sort the normals first, …, last − 1: ordered[starts[b]:starts[b + 1]] are those of bin b, ascending.
 
-    `places` are those of this range in each bin. Writes the normals (as they are) in that order too.
+    `places` are those of this range in each bin. The rows of ordered (S, 4) are a normal (as it is) and
+    its number.
     """
     for k in range(first, last):
         at = places[bins[k]]
         places[bins[k]] += 1
-        order[at] = k
         for axis in range(3):
             ordered[at, axis] = normals[k, axis]
+        ordered[at, 3] = k
 
 
 # --- which normals a patch may have ---------------------------------------------------------------
@@ -822,12 +823,12 @@ def count_window(window, face, grid, starts):
 
 @jit
 def search_patches(
-    mu, scale, noise, border, frame, stretch, grid, starts, order, normals, first, last,
+    mu, scale, noise, border, frame, stretch, grid, starts, normals, first, last,
     found, doubtful, bounds, counts,
 ):  # fmt: skip
     """Find the normals of the patches first, …, last − 1, in ascending order for each patch.
 
-    `normals` (S, 3) are in the order of the bins, which are those of `frame`, of norm `stretch`.
+    normals (S, 4) are in the order of the bins, which are those of `frame`, of norm `stretch`.
     found (…, 2) holds the patch and a note, normal << 32 | its place in that order; doubtful (…, 2) those
     that rounding leaves open, to be decided exactly, and bounds (…) the errors of their forms. Adds the
     numbers of both, and that of the developable patches, to counts (3). `noise` is the rounding of the
@@ -840,7 +841,7 @@ def search_patches(
     windows, hulls = np.empty((6, 4), np.int64), np.empty((6, 12, 2))
     slacks, sizes = np.empty(6), np.empty(6, np.int64)
     axis, low, high = np.empty(3), np.empty(grid + 16), np.empty(grid + 16)
-    places, x, y, z, codes, notes, scratch, buckets = buffers(256)
+    places, numbers, x, y, z, codes, notes, scratch, buckets = buffers(256)
     for patch in range(first, last):
         cell = patch // 4
         turn = patch % 4
@@ -895,9 +896,22 @@ def search_patches(
         if counts[0] + total > found.shape[0] or counts[1] + total > doubtful.shape[0]:
             return patch, total
         if total + 16 > x.size:
-            places, x, y, z, codes, notes, scratch, buckets = buffers(total + 16)
+            places, numbers, x, y, z, codes, notes, scratch, buckets = buffers(total + 16)
         count = gather(
-            windows, hulls, sizes, slacks, grid, starts, normals, low, high, places, x, y, z
+            windows,
+            hulls,
+            sizes,
+            slacks,
+            grid,
+            starts,
+            normals,
+            low,
+            high,
+            places,
+            numbers,
+            x,
+            y,
+            z,
         )
 
         bound = bound_of_forms(
@@ -914,11 +928,12 @@ def search_patches(
                 a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
                 x, y, z, codes[:count],
             )  # fmt: skip
-        hits = note(codes, 1, order, places, notes, count)
+        hits = note(codes, 1, numbers, places, notes, count)
         counts[0] = store(notes, hits, scratch, buckets, patch, found, counts[0])
-        doubts = note(codes, 2, order, places, notes, count)
-        bounds[counts[1] : counts[1] + doubts] = bound
-        counts[1] = store(notes, doubts, scratch, buckets, patch, doubtful, counts[1])
+        if count_open(codes, count) > 0:
+            doubts = note(codes, 2, numbers, places, notes, count)
+            bounds[counts[1] : counts[1] + doubts] = bound
+            counts[1] = store(notes, doubts, scratch, buckets, patch, doubtful, counts[1])
     return last, 0
 
 
@@ -1048,16 +1063,19 @@ def spread_of(mu, i, j, turn):
 
 @jit
 def buffers(size):
-    """Return arrays for the candidates of a patch: places, x, y, z, codes, notes, and two to sort with."""
+    """Return arrays for the candidates of a patch: places, numbers, x, y, z, codes, notes, two to sort."""
     x, y, z = np.ones(size), np.ones(size), np.ones(size)
     notes, scratch = np.empty(size, np.int64), np.empty(size, np.int64)
     places, buckets = np.empty(size, np.int64), np.empty(size + 1, np.int64)
-    return places, x, y, z, np.empty(size, np.int8), notes, scratch, buckets
+    numbers, codes = np.empty(size), np.empty(size, np.int8)
+    return places, numbers, x, y, z, codes, notes, scratch, buckets
 
 
 @inner
-def gather(windows, hulls, sizes, slacks, grid, starts, normals, low, high, places, x, y, z):
-    """Copy the normals that a patch may have, and their places; return how many there are."""
+def gather(
+    windows, hulls, sizes, slacks, grid, starts, normals, low, high, places, numbers, x, y, z
+):  # fmt: skip
+    """Copy the normals that a patch may have, their places and numbers; return how many there are."""
     count = 0
     for face in range(6):
         window = windows[face]
@@ -1077,10 +1095,12 @@ def gather(windows, hulls, sizes, slacks, grid, starts, normals, low, high, plac
             base = (face * grid + row) * grid
             begin = starts[base + left]
             for k in range(starts[base + right + 1] - begin):
-                places[count + k] = begin + k
-                x[count + k] = normals[begin + k, 0]
-                y[count + k] = normals[begin + k, 1]
-                z[count + k] = normals[begin + k, 2]
+                at, place = np.uint64(count + k), np.uint64(begin + k)
+                places[at] = begin + k
+                x[at] = normals[place, 0]
+                y[at] = normals[place, 1]
+                z[at] = normals[place, 2]
+                numbers[at] = normals[place, 3]
             count += max(starts[base + right + 1] - begin, 0)
     return count
 
@@ -1164,11 +1184,20 @@ def look_again(
 
 
 @inner
-def note(codes, code, order, places, notes, count):
+def count_open(codes, count):
+    """Return how many codes are 2."""
+    found = 0
+    for k in range(count):
+        found += codes[k] == 2
+    return found
+
+
+@inner
+def note(codes, code, numbers, places, notes, count):
     """Write a note, normal << 32 | place, of each candidate that has the code; return how many have."""
     chosen = 0
     for k in range(count):
-        notes[chosen] = order[places[k]] << 32 | places[k]
+        notes[chosen] = int(numbers[k]) << 32 | places[k]
         chosen += codes[k] == code
     return chosen
 

@@ -83,14 +83,13 @@ class NormalBins:
         return max(1, min(2048, round(math.sqrt(len(self.normals) / (faces * NORMALS_PER_BIN)))))
 
     @cached_property
-    def sorted(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
-        """The start of each bin; the numbers of the normals in their order; the normals (S, 3)."""
+    def sorted(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """The start of each bin; the normals in their order, and their numbers (S, 4)."""
         total, count = len(self.normals), 6 * self.grid**2
         size = max(FEWEST_NORMALS, -(-total // min(thread_count(self.threads), MOST_COUNTS)))
         bins = np.empty(total, dtype=np.int32)
         counts = np.empty((-(-total // size), count), dtype=np.int64)
-        starts, order = np.empty(count + 1, dtype=np.int64), np.empty(total, dtype=np.int64)
-        ordered = np.empty((total, 3))
+        starts, ordered = np.empty(count + 1, dtype=np.int64), np.empty((total, 4))
 
         def count_bins(first: int, last: int) -> None:
             kernels.count_bins(
@@ -98,11 +97,9 @@ class NormalBins:
             )
 
         def place(first: int, last: int) -> None:
-            kernels.place_normals(
-                self.normals, bins, first, last, counts[first // size], order, ordered
-            )
+            kernels.place_normals(self.normals, bins, first, last, counts[first // size], ordered)
 
         list(over_ranges(count_bins, total, size, self.threads))
         kernels.start_bins(counts, starts)
         list(over_ranges(place, total, size, self.threads))
-        return starts, order, ordered
+        return starts, ordered

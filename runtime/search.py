@@ -24,8 +24,8 @@ __all__ = ["Hits", "Notes", "Pairs", "Search", "fill", "fill_notes", "find", "me
 FEWEST_PATCHES, MOST_PATCHES = 64, 4096
 RANGES_PER_THREAD = 4
 SAMPLES_AT_A_TIME = 1 << 16
-# Room for so many hits at first; a patch that needs more gets it.
-ROOM = 1 << 15
+# Room for so many notes at first, and at most; a patch that needs more gets it.
+ROOM, MOST_ROOM = 1 << 15, 1 << 20
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +131,7 @@ def _none_exact() -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.floa
 
 @dataclass(frozen=True, eq=False)
 class Pairs:
-    """What a range of patches yields: rows (…, 2) of patch and note, see `Notes`.
+    """What some patches yield: rows (…, 2) of patch and note, see `Notes`.
 
     Some are sure; rounding leaves the others open, with the error `bounds` of their forms. `last`
     is the patch after the last one.
@@ -142,19 +142,6 @@ class Pairs:
     doubtful: NDArray[np.int64]
     bounds: NDArray[np.float64]
     developable: int
-
-    @classmethod
-    def joined(cls, parts: Sequence[Pairs]) -> Pairs:
-        """Return the pairs of consecutive ranges."""
-        if len(parts) == 1:
-            return parts[0]
-        return cls(
-            parts[-1].last,
-            np.concatenate([part.sure for part in parts]),
-            np.concatenate([part.doubtful for part in parts]),
-            np.concatenate([part.bounds for part in parts]),
-            sum(part.developable for part in parts),
-        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -190,29 +177,26 @@ class Search:
             return icosphere.scan_patches, (bins.normals, bins.frequency)
         return kernels.search_patches, (bins.frame, bins.stretch, bins.grid, *bins.sorted)
 
-    def pairs(self, first: int, last: int) -> Pairs:
-        """Return what the patches first, …, last − 1 yield."""
+    def pairs(self, first: int, last: int) -> list[Pairs]:
+        """Return what the patches first, …, last − 1 yield, in one or more parts."""
         patches_with, arguments = self.kernel
-        parts, room = [], ROOM
-        while first < last:
+        parts, room, begin = [], ROOM, first
+        while begin < last:
             found, doubtful = np.empty((2, room, 2), dtype=np.int64)
             bounds, counts = np.empty(room), np.zeros(3, dtype=np.int64)
-            first, needed = patches_with(
+            end, needed = patches_with(
                 self.spline.coefficients, self.spline.scale, self.noise, self.border, *arguments,
-                first, last, found, doubtful, bounds, counts,
+                begin, last, found, doubtful, bounds, counts,
             )  # fmt: skip
             sure, open_, developable = counts.tolist()
-            parts.append(
-                Pairs(
-                    first,
-                    found[:sure].copy(),
-                    doubtful[:open_].copy(),
-                    bounds[:open_].copy(),
-                    developable,
-                )
-            )
-            room = max(ROOM, needed)
-        return Pairs.joined(parts)
+            rows = found[:sure] if 2 * sure > room else found[:sure].copy()
+            doubts = doubtful[:open_].copy(), bounds[:open_].copy()
+            parts.append(Pairs(end, rows, *doubts, developable))
+            # What is left will have about as many, and some more.
+            rate = 1.2 * (sure / (end - begin)) if end > begin else 0.0
+            room = max(ROOM, needed, min(int(rate * (last - end)), MOST_ROOM) + needed)
+            begin = end
+        return parts
 
     def range_size(self, threads: int | None) -> int:
         """Return how many patches one range has."""
@@ -240,7 +224,8 @@ def find(
     if search.hopeless:
         return Hits.none(spline.patches)
     size = search.range_size(threads)
-    parts = [*over_ranges(search.pairs, spline.patches, size, threads, progress)]
+    ranges = over_ranges(search.pairs, spline.patches, size, threads, progress)
+    parts = [part for found in ranges for part in found]
     doubtful = np.concatenate([part.doubtful for part in parts])
     bounds = np.concatenate([part.bounds for part in parts])
     return merged(parts, *search.decided(doubtful, bounds, threads), bins.frequency > 0)
@@ -289,7 +274,7 @@ def fill_notes(
             *patches, bins.normals, spline.frame, bins.frequency, notes.rows, start, *arrays
         )
     else:
-        kernels.fill_samples(*patches, bins.sorted[2], spline.frame, notes.rows, start, *arrays)
+        kernels.fill_samples(*patches, bins.sorted[1], spline.frame, notes.rows, start, *arrays)
 
 
 def merged(

@@ -153,19 +153,21 @@ class _Border:
         doubtful, bounds = [np.empty((0, 2), dtype=np.int64)], [np.empty(0)]
         ends = np.flatnonzero(np.diff(cells.ravel(), prepend=False, append=False))
         for first, last in ends.reshape(-1, 2).tolist():
-            found = search.pairs(4 * first, 4 * last)
-            doubtful.append(found.doubtful)
-            bounds.append(found.bounds)
+            for found in search.pairs(4 * first, 4 * last):
+                doubtful.append(found.doubtful)
+                bounds.append(found.bounds)
         decided = search.decided(np.concatenate(doubtful), np.concatenate(bounds), threads)
         return cls(search, cells.ravel(), *decided)
 
     def hits(self, first: int, last: int) -> Hits:
         """Return which of the patches first, …, last − 1 have which of the normals."""
         found = self.search.pairs(first, last)
-        inside = ~self.cells[found.doubtful[:, 0] // 4]
-        pairs, local = self.search.decided(found.doubtful[inside], found.bounds[inside], 1)
+        doubtful = np.concatenate([x.doubtful for x in found])
+        bounds = np.concatenate([x.bounds for x in found])
+        inside = ~self.cells[doubtful[:, 0] // 4]
+        pairs, local = self.search.decided(doubtful[inside], bounds[inside], 1)
         low, high = np.searchsorted(self.pairs[:, 0], (first, last))
         pairs = np.concatenate([pairs, self.pairs[low:high]])
         order = np.lexsort((pairs[:, 1], pairs[:, 0]))
         local = np.concatenate([local, self.local[low:high]])
-        return merged([found], pairs[order], local[order], self.search.bins.frequency > 0)
+        return merged(found, pairs[order], local[order], self.search.bins.frequency > 0)

@@ -38,6 +38,7 @@ SCANNED = (
     "classify",
     "cone_of_normals",
     "control_normals",
+    "count_open",
     "empty",
     "face_window",
     "fill_tile",
