@@ -47,7 +47,7 @@ def jit(function):
         return numba.njit(**OPTIONS)(function)
 
 
-# sampler.py, digest dba3837b0808c26e: Numba's cache looks at this file alone.
+# sampler.py, digest 92cdbe2dd59dc005: Numba's cache looks at this file alone.
 
 # The icosahedron: corners as pairs (a, b) of coordinates a + b φ; edges and faces as numbers of
 # corners. BARS map a normal to α, β, γ, with which the corners of a face are added to give it, and

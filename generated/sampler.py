@@ -63,6 +63,8 @@ ANGLE_ERROR = math.ldexp(1.0, -40)
 # Samples are computed so many at a time, then stored. The rows of a tile have room for some more.
 TILE = 64
 TILE_STEP = 80
+# The normals of so many samples are asked for before they are needed.
+AHEAD = 512
 TILE_ROWS = 38
 
 
@@ -839,7 +841,7 @@ def search_patches(
     net, unit, shown = np.empty((6, 3)), np.empty((6, 3)), np.empty((6, 3))
     errors, angles = np.empty(6), np.empty(6)
     windows, hulls = np.empty((6, 4), np.int64), np.empty((6, 12, 2))
-    slacks, sizes = np.empty(6), np.empty(6, np.int64)
+    slacks, sizes, rows = np.empty(6), np.empty(6, np.int64), np.empty((6 * grid, 2), np.int64)
     axis, low, high = np.empty(3), np.empty(grid + 16), np.empty(grid + 16)
     places, numbers, x, y, z, codes, notes, scratch, buckets = buffers(256)
     for patch in range(first, last):
@@ -897,22 +899,8 @@ def search_patches(
             return patch, total
         if total + 16 > x.size:
             places, numbers, x, y, z, codes, notes, scratch, buckets = buffers(total + 16)
-        count = gather(
-            windows,
-            hulls,
-            sizes,
-            slacks,
-            grid,
-            starts,
-            normals,
-            low,
-            high,
-            places,
-            numbers,
-            x,
-            y,
-            z,
-        )
+        size = note_rows(windows, hulls, sizes, slacks, grid, starts, low, high, rows)
+        count = gather(rows, size, normals, places, numbers, x, y, z)
 
         bound = bound_of_forms(
             mu, i, j, turn, scale, noise, border, axis, sine,
@@ -1072,10 +1060,8 @@ def buffers(size):
 
 
 @inner
-def gather(
-    windows, hulls, sizes, slacks, grid, starts, normals, low, high, places, numbers, x, y, z
-):  # fmt: skip
-    """Copy the normals that a patch may have, their places and numbers; return how many there are."""
+def note_rows(windows, hulls, sizes, slacks, grid, starts, low, high, rows):
+    """Write where the rows of bins that a patch may have begin and end; return how many there are."""
     count = 0
     for face in range(6):
         window = windows[face]
@@ -1093,15 +1079,33 @@ def gather(
                     continue
                 left, right = int(start), min(int(end), right)
             base = (face * grid + row) * grid
-            begin = starts[base + left]
-            for k in range(starts[base + right + 1] - begin):
-                at, place = np.uint64(count + k), np.uint64(begin + k)
-                places[at] = begin + k
-                x[at] = normals[place, 0]
-                y[at] = normals[place, 1]
-                z[at] = normals[place, 2]
-                numbers[at] = normals[place, 3]
-            count += max(starts[base + right + 1] - begin, 0)
+            if left <= right:
+                rows[count, 0] = starts[base + left]
+                rows[count, 1] = starts[base + right + 1]
+                count += 1
+    return count
+
+
+@inner
+def gather(rows, size, normals, places, numbers, x, y, z):
+    """Copy the normals of rows of bins, their places and numbers; return how many there are."""
+    asked = 0.0
+    for row in range(size):
+        # The memory is asked for all rows at once, so that they are not waited for one by one.
+        for k in range(rows[row, 0], rows[row, 1], 2):
+            asked += normals[np.uint64(k), 0]
+    count = 0
+    for row in range(size):
+        begin = rows[row, 0]
+        for k in range(rows[row, 1] - begin):
+            at, place = np.uint64(count + k), np.uint64(begin + k)
+            places[at] = begin + k
+            x[at] = normals[place, 0]
+            y[at] = normals[place, 1]
+            z[at] = normals[place, 2]
+            numbers[at] = normals[place, 3]
+        count += rows[row, 1] - begin
+    x[count] = asked  # else the compiler drops it; sums of integers it makes slower
     return count
 
 
@@ -1295,6 +1299,8 @@ def fill_samples(
         count = min(TILE, pairs.shape[0] - begin)
         if pairs[begin, 0] != loaded or pairs[begin + count - 1, 0] != loaded:
             loaded = load_patches(mu, scale, pairs, begin, count, tile)
+        if begin % AHEAD == 0:
+            tile[TILE_STEP - 1] = ask_for(normals, pairs, begin + AHEAD)
         for k in range(count):
             indices[k] = pairs[begin + k, 1] >> 32
             indices[TILE_STEP + k] = pairs[begin + k, 0]
@@ -1309,6 +1315,15 @@ def fill_samples(
             tile, indices, count, start + begin, scale, frame,
             points, directions, uv, support, gaussian, mean, normal_index, patch_index,
         )  # fmt: skip
+
+
+@inner
+def ask_for(normals, pairs, first):
+    """Read a number of AHEAD normals, so that they are on their way: they lie far from each other."""
+    asked = 0.0
+    for k in range(first, min(first + AHEAD, pairs.shape[0])):
+        asked += normals[np.uint64(pairs[np.uint64(k), 1] & 0xFFFFFFFF), 0]
+    return asked
 
 
 @jit
