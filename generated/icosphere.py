@@ -544,7 +544,7 @@ STRETCHES = np.array(
 # The square of the length of the corners.
 SQUARE = 1.0 + PHI * PHI
 # Where a box has no more points than this, it is not cut to the hull that is inside.
-SMALL_BOX = 48
+SMALL_BOX = 192
 # The forms of a point as they are computed from those of the corners, relative to their square.
 LATTICE_ERROR = math.ldexp(1.0, -44)
 # A patch with so many samples begins a tile.
@@ -646,8 +646,10 @@ def write_points(frequency, first, last, normals):
                     size, places, tile,
                 )  # fmt: skip
                 for k in range(size):
-                    for x in range(3):
-                        normals[number + begin + k, x] = tile[x * TILE_STEP + k]
+                    at = np.uint64(number + begin + k)
+                    normals[at, 0] = tile[k]
+                    normals[at, 1] = tile[TILE_STEP + k]
+                    normals[at, 2] = tile[2 * TILE_STEP + k]
 
 
 @jit
@@ -663,11 +665,13 @@ def is_icosphere(normals, frequency, first, last):
                     face, frequency, s + begin * s_step, t + begin * t_step, s_step, t_step,
                     size, places, tile,
                 )  # fmt: skip
-                others = 0
+                others = False
                 for k in range(size):
-                    for x in range(3):
-                        others += normals[number + begin + k, x] != tile[x * TILE_STEP + k]
-                if others > 0:
+                    at = np.uint64(number + begin + k)
+                    others |= normals[at, 0] != tile[k]
+                    others |= normals[at, 1] != tile[TILE_STEP + k]
+                    others |= normals[at, 2] != tile[2 * TILE_STEP + k]
+                if others:
                     return False
     return True
 

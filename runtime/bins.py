@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..generated import icosphere
 from ..generated import sampler as kernels
-from .sphere import PARTS, perpendicular
+from .sphere import PARTS, PARTS_AT_A_TIME, perpendicular
 from .threads import over_ranges, thread_count
 
 __all__ = ["NormalBins"]
@@ -45,7 +45,8 @@ class NormalBins:
         def work(first: int, last: int) -> bool:
             return icosphere.is_icosphere(self.normals, frequency, first, last)
 
-        return frequency if all(over_ranges(work, PARTS, 1, self.threads)) else 0
+        threads = 1 if len(self.normals) < FEWEST_NORMALS else self.threads
+        return frequency if all(over_ranges(work, PARTS, PARTS_AT_A_TIME, threads)) else 0
 
     @cached_property
     def frame(self) -> NDArray[np.float64]:

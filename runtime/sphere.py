@@ -31,6 +31,7 @@ PIECE = 1 << 15
 MOST_FREQUENT = 10_000
 # The corners, the edges and the faces of an icosahedron.
 PARTS = 1 + 30 + 20
+PARTS_AT_A_TIME = 5
 
 
 def icosphere(frequency: int) -> NDArray[np.float64]:
@@ -52,7 +53,7 @@ def icosphere(frequency: int) -> NDArray[np.float64]:
     def work(first: int, last: int) -> None:
         icosahedron.write_points(nu, first, last, normals)
 
-    list(over_ranges(work, PARTS, 1, None))
+    list(over_ranges(work, PARTS, PARTS_AT_A_TIME, 1 if len(normals) < PIECE else None))
     return normals
 
 
