@@ -47,14 +47,14 @@ def jit(function):
         return numba.njit(**OPTIONS)(function)
 
 
-# sampler.py, digest 92cdbe2dd59dc005: Numba's cache looks at this file alone.
+# sampler.py, digest 1b9f10fe4cedb9fd: Numba's cache looks at this file alone.
 
-# The icosahedron: corners as pairs (a, b) of coordinates a + b φ; edges and faces as numbers of
-# corners. BARS map a normal to α, β, γ, with which the corners of a face are added to give it, and
-# LENGTHS are those of their rows. FRAMES map it to 2γ − h, 2β − h and h = α + β + γ, and STRETCHES are
-# their largest lengths. The points of frequency ν on a face are (ν − s − t, s, t): s counts its rows, t
-# its columns. Corners are looked up on one face, at t/ν and s/ν; edges too, on a side of it: t = 0,
-# s = 0 or s + t = ν.
+# The icosahedron. LINES hold, for each face, its first corner and the steps from there to the others:
+# the coordinates a + b φ as a, b. POSITIONS are the corners, FACES their numbers. BARS map a normal to
+# α, β, γ, with which the corners of a face are added to give it, and LENGTHS are those of their rows.
+# FRAMES map it to 2γ − h, 2β − h and h = α + β + γ, and STRETCHES are their largest lengths. The points
+# of frequency ν on a face are (ν − s − t, s, t): s counts its rows, t its columns. Corners are looked
+# up on one face, at t/ν and s/ν; edges too, on a side of it: t = 0, s = 0 or s + t = ν.
 PHI = 1.618033988749895
 LINES = np.array(
     [
@@ -174,40 +174,6 @@ POSITIONS = np.array(
         [-1.618033988749895, 0.0, 1.0],
         [1.618033988749895, 0.0, -1.0],
         [1.618033988749895, 0.0, 1.0],
-    ]
-)
-EDGES = np.array(
-    [
-        (0, 2),
-        (0, 4),
-        (0, 6),
-        (0, 8),
-        (0, 10),
-        (1, 3),
-        (1, 4),
-        (1, 6),
-        (1, 9),
-        (1, 11),
-        (2, 5),
-        (2, 7),
-        (2, 8),
-        (2, 10),
-        (3, 5),
-        (3, 7),
-        (3, 9),
-        (3, 11),
-        (4, 6),
-        (4, 8),
-        (4, 9),
-        (5, 7),
-        (5, 8),
-        (5, 9),
-        (6, 10),
-        (6, 11),
-        (7, 10),
-        (7, 11),
-        (8, 9),
-        (10, 11),
     ]
 )
 FACES = np.array(

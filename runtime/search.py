@@ -50,6 +50,15 @@ class Notes:
         """Return the number of samples."""
         return int(self.ends[-1]) if self.runs and len(self.rows) else len(self.rows)
 
+    @property
+    def indices(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """The patches and the normals of the samples."""
+        if not self.runs:
+            return self.rows[:, 0], self.rows[:, 1] >> 32
+        sizes = np.diff(self.ends, prepend=0)
+        firsts = np.repeat((self.rows[:, 1] >> 32) - (self.ends - sizes), sizes)
+        return np.repeat(self.rows[:, 0], sizes), firsts + np.arange(len(self))
+
     def part(self, first: int, last: int) -> Notes:
         """Return the samples first, …, last − 1, at least one."""
         if (first, last) == (0, len(self)):
@@ -82,13 +91,14 @@ class Hits:
     @classmethod
     def none(cls, developable: int) -> Hits:
         """Return no hits."""
-        return cls((), *_none_exact(), developable)
+        empty = np.empty(0, dtype=np.int64)
+        return cls((), empty, empty.reshape(0, 2), np.empty((0, 5)), developable)
 
     @classmethod
     def joined(cls, parts: Sequence[Hits]) -> Hits:
         """Return the hits of consecutive ranges of patches."""
-        starts = np.cumsum([0, *(len(part) for part in parts)])
-        exact = [part.exact + start for part, start in zip(parts, starts, strict=False)]
+        starts = np.cumsum([0, *(len(part) for part in parts[:-1])])
+        exact = [part.exact + start for part, start in zip(parts, starts, strict=True)]
         return cls(
             tuple(x for part in parts for x in part.notes),
             np.concatenate(exact),
@@ -100,6 +110,16 @@ class Hits:
     def __len__(self) -> int:
         """Return the number of samples."""
         return sum(map(len, self.notes))
+
+    @cached_property
+    def patch_index(self) -> NDArray[np.int64]:
+        """The patches of the hits."""
+        return np.concatenate([np.empty(0, np.int64), *(x.indices[0] for x in self.notes)])
+
+    @cached_property
+    def normal_index(self) -> NDArray[np.int64]:
+        """The normals of the hits."""
+        return np.concatenate([np.empty(0, np.int64), *(x.indices[1] for x in self.notes)])
 
     def __getitem__(self, key: slice) -> Hits:
         """Return consecutive hits; the developable patches are counted with the first of all."""
@@ -123,10 +143,6 @@ class Hits:
                 found.append((start + begin, notes.part(begin, end)))
             start += len(notes)
         return found
-
-
-def _none_exact() -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
-    return np.empty(0, dtype=np.int64), np.empty((0, 2), dtype=np.int64), np.empty((0, 5))
 
 
 @dataclass(frozen=True, eq=False)

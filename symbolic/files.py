@@ -188,7 +188,6 @@ def icosphere_source() -> str:
             for line in lines
         ],
         "POSITIONS": [[float(x.evalf(40)) for x in corner] for corner in icosahedron.CORNERS],
-        "EDGES": edges,
         "FACES": faces,
         "CORNER_PLACES": [
             (k, *((0, 0), (0, 1), (1, 0))[faces[k].index(corner)])
