@@ -198,7 +198,7 @@ class Search:
         patches_with, arguments = self.kernel
         parts, room, begin = [], ROOM, first
         while begin < last:
-            found, doubtful = np.empty((2, room, 2), dtype=np.int64)
+            found, doubtful = (np.empty((room, 2), dtype=np.int64) for _ in range(2))
             bounds, counts = np.empty(room), np.zeros(3, dtype=np.int64)
             end, needed = patches_with(
                 self.spline.coefficients, self.spline.scale, self.noise, self.border, *arguments,
