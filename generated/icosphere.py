@@ -47,7 +47,7 @@ def jit(function):
         return numba.njit(**OPTIONS)(function)
 
 
-# sampler.py, digest 1b9f10fe4cedb9fd: Numba's cache looks at this file alone.
+# sampler.py, digest 2c14c9ac353abcd8: Numba's cache looks at this file alone.
 
 # The icosahedron. LINES hold, for each face, its first corner and the steps from there to the others:
 # the coordinates a + b φ as a, b. POSITIONS are the corners, FACES their numbers. BARS map a normal to

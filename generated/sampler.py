@@ -70,7 +70,7 @@ TILE_ROWS = 38
 
 def inner(function):
     """Compile a function for kernels that makes no arrays, without counting references to those it gets."""
-    return numba.njit(**(OPTIONS | {"_nrt": False}))(function)
+    return numba.njit(_nrt=False, **OPTIONS)(function)  # pyright: ignore[reportCallIssue]
 
 
 # --- formulas -------------------------------------------------------------------------------------
