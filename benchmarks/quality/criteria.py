@@ -9,7 +9,7 @@ from ..peers.peer import Peer
 from .measure import Found, OnSurface
 from .ways import BALANCED, GAUSS, GMSH, PERFECT, POISSON, RELAXED
 
-__all__ = ["CRITERIA", "JUDGED_STEPS", "Criterion", "Verdict", "share", "verdicts"]
+__all__ = ["CRITERIA", "JUDGED_STEPS", "Criterion", "Verdict", "share", "verdicts", "worst"]
 
 JUDGED_STEPS = 2  # the same for all surfaces
 Measure = Callable[[Found, Found], float]
@@ -99,6 +99,13 @@ def verdicts(criterion: Criterion, on: OnSurface, counts: tuple[int, ...]) -> li
         value = None if own is None or other is None else criterion.ratio(own, other)
         result.append(Verdict(criterion, on, count, value))
     return result
+
+
+def worst(found: list[Verdict]) -> Verdict:
+    """Return the verdict that is farthest from being met; one without a value if all are."""
+    known = [x for x in found if x.value is not None]
+    sign = -1.0 if found[0].criterion.at_least else 1.0
+    return max(known, key=lambda x: sign * (x.value or 0.0), default=found[0])
 
 
 def share(found: list[Verdict]) -> str:

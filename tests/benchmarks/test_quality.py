@@ -169,6 +169,23 @@ def test_what_is_missing_is_neither_met_nor_not():
     assert criteria.share(found) == "0 of 0"
 
 
+def test_the_worst_is_farthest_from_what_is_asked():
+    """Speeds shall be large, errors small; what is missing is never the worst."""
+    found = [
+        criteria.verdicts(x, on, measure.COUNTS)[0]
+        for x in criteria.CRITERIA
+        if x.title in ("balanced : Open3D, E", "balanced : Open3D, speed")
+        for on in (
+            surface({ways.BALANCED: of(2, 1), ways.POISSON[0]: of(4, 1, 30)}),
+            surface({ways.BALANCED: of(3, 1), ways.POISSON[0]: of(4, 1, 40)}),
+            surface({ways.BALANCED: of(3, 1)}),
+        )
+    ]
+    assert criteria.worst(found[:3]) is found[1]
+    assert criteria.worst(found[3:]) is found[3]
+    assert criteria.worst(found[2:3]).value is None
+
+
 # --- the page -------------------------------------------------------------------------------------
 
 
@@ -194,8 +211,10 @@ def test_tables_are_whole(text):
 def test_the_page_says_what_is_met(text):
     rows = {x.partition(" |")[0][2:]: x for x in text.splitlines() if x.startswith("| ")}
     failed = "1.06 **not met**, 1.06 **not met**"
-    assert rows["gauss : exact, G"].endswith(f"| ≤ 1.05 | {failed} | {failed} | 0 of 4 |")
-    assert rows["relaxed : Gmsh, E"].endswith("| 1.00 met, 1.00 met | missing, missing | 2 of 2 |")
+    assert rows["gauss : exact, G"].endswith(f"| ≤ 1.05 | {failed} | {failed} | 1.06 | 0 of 4 |")
+    assert rows["relaxed : Gmsh, E"].endswith(
+        "| 1.00 met, 1.00 met | missing, missing | 1.00 | 2 of 2 |"
+    )
     assert "| 20 × **not met**" in rows["balanced : Open3D, speed"]  # 19.96
 
 
