@@ -25,10 +25,11 @@ gaussmap were chosen on the first three, and nothing was tuned for the other two
   angle between the normal of a place and that of the sample nearest in space; G the angle to the
   sample nearest in normal, among those with the same sign of K. Flat parts have one normal, so
   that neither sees whether they are sampled;
-- **points/s**: the median of several runs; of {large:,} points one run, after the smaller ones and
-  only where it takes less than about {feasible:g} s;
-- **balanced**: how many times as fast `gm.sample(surface, count=…)` is for the same count, timed in
-  turns.
+- **points/s**: the median of several runs (relaxed: one); of {large:,} points one run, after the
+  others and only where that takes less than about {feasible:g} s;
+- **balanced**: how many times as fast `gm.sample(surface, count=…)` is for the same count: the
+  median of ratios of two times that were taken right after each other, as the speed of a machine
+  that others use drifts.
 
 The bold rows are `gm.sample(surface, count=…, density=…)`, each call with the fit of a spline to
 the surface. *The paper's method, exact* takes the same normals as **gauss**, and the inverse of the
@@ -86,7 +87,7 @@ def ratio(found: Verdict) -> str:
     """Return a ratio."""
     if found.value is None:
         return "missing"
-    return times(found.value) if found.criterion.at_least else f"{found.value:.2f}"
+    return times(found.value) if found.criterion.at_least else f"{found.value:.3f}"
 
 
 def table(on: OnSurface, ways: Sequence[Peer]) -> str:

@@ -210,10 +210,10 @@ def test_tables_are_whole(text):
 
 def test_the_page_says_what_is_met(text):
     rows = {x.partition(" |")[0][2:]: x for x in text.splitlines() if x.startswith("| ")}
-    failed = "1.06 **not met**, 1.06 **not met**"
-    assert rows["gauss : exact, G"].endswith(f"| ≤ 1.05 | {failed} | {failed} | 1.06 | 0 of 4 |")
+    failed = "1.060 **not met**, 1.060 **not met**"
+    assert rows["gauss : exact, G"].endswith(f"| ≤ 1.05 | {failed} | {failed} | 1.060 | 0 of 4 |")
     assert rows["relaxed : Gmsh, E"].endswith(
-        "| 1.00 met, 1.00 met | missing, missing | 1.00 | 2 of 2 |"
+        "| 1.000 met, 1.000 met | missing, missing | 1.000 | 2 of 2 |"
     )
     assert "| 20 × **not met**" in rows["balanced : Open3D, speed"]  # 19.96
 
