@@ -117,7 +117,11 @@ def opencascade_by_angle(form: ClosedForm, count: int) -> Work:
             normals = np.array([(n.X(), n.Y(), n.Z()) for n in map(mesh.Normal, numbers)])
             parts.append(outwards(form, points, normals))
             faces.Next()
-        return np.concatenate([x for x, _ in parts]), np.concatenate([n for _, n in parts])
+        points, normals = (np.concatenate(x) for x in zip(*parts, strict=True))
+        once = np.unique(points.round(9), axis=0, return_index=True)[
+            1
+        ]  # seams and edges come twice
+        return points[once], normals[once]
 
     angle = tuned(meshed, 0.2, count, -2.0)
     return lambda: meshed(angle)

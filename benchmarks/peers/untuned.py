@@ -58,7 +58,7 @@ class MonkeySaddle(ClosedForm):
         w = np.sqrt((-n_x + 1j * n_y) / n_z / (3.0 * self.scale))
         w = np.concatenate([w, -w])
         w = w[np.maximum(np.abs(w.real), np.abs(w.imag)) <= 1.0]
-        return w.real, w.imag
+        return np.real(w), np.imag(w)
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.benchmarks import scale
-from gaussmap.benchmarks.peers import metrics, page, peer, recipe, splines
+from gaussmap.benchmarks.peers import cad, metrics, page, peer, recipe, splines
 from gaussmap.benchmarks.peers.catalogue import GMSH, PEERS, RECIPE, SPLIPY_RECIPE
 from gaussmap.benchmarks.peers.forms import FORMS, Torus
 from gaussmap.benchmarks.peers.measure import Measured, Own
@@ -115,6 +115,27 @@ def test_half_of_the_boss_has_no_curvature():
     u = np.zeros(1)
     area = boss.area(u, v)
     assert area[boss.curvature(u, v) == 0.0].sum() / area.sum() == pytest.approx(0.5, abs=0.01)
+
+
+def test_the_outline_of_the_boss():
+    """Its arcs are quarters of circles round their centres, and its lines upright or level."""
+    boss = Boss()
+    ends, centres = (np.array(x) for x in cad.boss_outline(boss))
+    steps = np.diff(ends, axis=0)
+    assert np.count_nonzero(np.abs(steps[[0, 2, 4]]) > 1e-15, axis=1) == pytest.approx(1)
+    for k, radius in ((0, boss.fillet), (1, boss.edge)):
+        spokes = ends[2 * k + 1 : 2 * k + 3] - centres[k]
+        assert np.linalg.norm(spokes, axis=1) == pytest.approx(radius, rel=1e-14)
+        assert spokes[0] @ spokes[1] == pytest.approx(0.0, abs=1e-15)
+
+
+@FORM
+def test_normals_of_a_face_are_turned_to_the_side_of_the_form(form):
+    points, normals = recipe.by_grid(form, 100)
+    for side in (1.0, -1.0):
+        found = cad.outwards(form, points, side * normals)
+        assert (found[0] == points).all()
+        assert (found[1] == normals).all()
 
 
 @FORM
