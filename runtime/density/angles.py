@@ -22,7 +22,7 @@ def cover_normals(cover: Cover, angle: float) -> None:
     Where the normals that were asked lie as dense as that, only places at the border of the
     Gaussian image are farther from all of them: their nearest normal may lie outside it.
     """
-    rows = cover.middles()
+    rows = cover.middles
     chords = _chords(cover, rows)
     limit = _chord(angle)
     (far,) = np.nonzero(chords > limit)
@@ -38,7 +38,7 @@ def cover_normals(cover: Cover, angle: float) -> None:
 
 def widest_angles(cover: Cover, number: int) -> None:
     """Add samples where normals are farthest from those of all samples with the same sign of K."""
-    rows = cover.middles()
+    rows = cover.middles
     places = np.column_stack([rows[:, 3:6], APART * np.sign(rows[:, 6])])
     samples = np.column_stack(
         [cover.points[: cover.count, 3:], APART * np.sign(cover.local[: cover.count, 3])]
@@ -57,7 +57,7 @@ def widest_angles(cover: Cover, number: int) -> None:
 
 def largest_angle(cover: Cover) -> float:
     """Return the largest angle, in degrees, between a normal of the surface and all samples'."""
-    largest = float(_chords(cover, cover.middles()).max(initial=0.0))
+    largest = float(_chords(cover, cover.middles).max(initial=0.0))
     return math.degrees(2.0 * math.asin(min(largest / 2.0, 1.0)))
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -18,9 +18,11 @@ from ..lattice import Lattice
 from ..samples import Samples, SamplingReport
 from ..search import fill, find
 from ..spline import Spline
+from ..threads import counted
 from ..visibility import invisible_share, visible_solid_angle
 from .angles import cover_normals, largest_angle
-from .cover import APPROACH, GREEDY, Cover
+from .cover import APPROACH, Cover
+from .gaps import coverage
 from .law import Law, Wanted
 from .relaxation import relax
 from .request import Request
@@ -29,6 +31,8 @@ __all__ = ["filled_samples"]
 
 # Balanced: what is filled are gaps that are wider than those between the normals by this factor.
 WIDER = 2.0
+# n samples that bring every place within a radius r have n r² times this as what is wanted of them.
+GREEDY = 1.85
 # Balanced: the floor of the density, beside the mean of what bending asks.
 FLAT_SHARE = 0.25
 # Less bending than this, as the integral of κ² over the surface, is rounding.
@@ -38,6 +42,8 @@ WIDEST_GAP = 1000.0
 # So many samples of a cover each sample of the normals is taken to save. They save up to 0.7; with
 # less, more is left for the gaps, where |K| alone leaves wide ones.
 SAVED = 0.25
+# Where normals give too many samples, so much fewer are searched than would give enough of them.
+FEWER = 0.98
 # Steps of the bisection for how many normals leave room for a coverage, and when it ends; it begins
 # with exp(−FEWEST_NORMALS) of them.
 BISECTIONS, NEAR_ENOUGH, FEWEST_NORMALS = 10, 0.97, 10.0
@@ -52,14 +58,14 @@ def filled_samples(
     progress: bool,
 ) -> tuple[Samples, NDArray[np.float64]]:
     """Return samples of any density but "gauss", and the normals that were asked."""
-    filling = Filling(spline, request, threads, progress)
-    cover = filling.cover()
-    relax(cover, request.relax)
-    angle = None
-    if request.angle is not None:
-        cover_normals(cover, request.angle)
-        angle = largest_angle(cover)
-    return filling.samples(cover, fields, dtype, angle), filling.normals
+    filling, angle = Filling(spline, request, threads, progress), None
+    with counted(request.count, progress) as filling.tell:
+        cover = filling.cover()
+        relax(cover, request.relax)
+        if request.angle is not None:
+            cover_normals(cover, request.angle)
+            angle = largest_angle(cover)
+        return filling.samples(cover, fields, dtype, angle), filling.normals
 
 
 @dataclass(eq=False)
@@ -76,12 +82,13 @@ class Filling:
     normals: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 3)))
     density: float = 0.0
     given: Samples | None = None
+    tell: Callable[[int], object] = lambda done: None
 
     def cover(self) -> Cover:
         """Return the cover that is asked."""
         if self.request.density == "balanced":
             return self._balanced()
-        cover = Cover(self._law(), None)
+        cover = Cover(self._law(), None, self.tell)
         if self.request.count is not None:
             cover.to_count(self.request.count)
         elif self.request.coverage is not None:
@@ -89,12 +96,15 @@ class Filling:
         return cover
 
     def _law(self) -> Wanted:
-        """Return what "uniform" or a power of |K| wants."""
-        if isinstance(self.request.density, str):
+        """Return what "uniform" or a power of |K| wants.
+
+        That power is the same everywhere if what bends is the error of the spline alone.
+        """
+        power, count = self.request.density, self.request.count or 0
+        if isinstance(power, str) or visible_solid_angle(self.spline, count / (4 * math.pi)) == 0.0:
             return Wanted(self.spline, Law(floor=1.0), self.threads)
-        wanted = Wanted(self.spline, Law(power=1.0, alpha=self.request.density), self.threads)
-        area, total = wanted.totals
-        return wanted.with_floor(total / area / WIDEST_GAP**2 if total > 0.0 else 1.0)
+        wanted = Wanted(self.spline, Law(power=1.0, alpha=power), self.threads)
+        return wanted.with_floor(wanted.total / wanted.area / WIDEST_GAP**2)
 
     def samples(
         self, cover: Cover, fields: Sequence[str], dtype: DTypeLike, angle: float | None
@@ -113,7 +123,7 @@ class Filling:
             patches=self.spline.patches,
             invisible_share=invisible_share(self.spline, self.density),
             degenerate_patches=None if self.given is None else self.given.report.degenerate_patches,
-            coverage=cover.coverage,
+            coverage=coverage(cover),
             angle=angle,
         )
         return Samples(**arrays, report=report, spline=self.spline)
@@ -122,14 +132,13 @@ class Filling:
 
     def _balanced(self) -> Cover:
         request, wanted = self.request, Wanted(self.spline, Law(bend=1.0), self.threads)
-        area, bending = wanted.totals
         # Normals and angles are absolute: then flat parts are bent as a sphere of this area.
         least = 4 * math.pi if request.normals is not None or request.angle else UNBENT
-        floor = FLAT_SHARE * max(bending, least) / area
+        floor = FLAT_SHARE * max(wanted.total, least) / wanted.area
         if request.count is None:
             return self._by_radius(wanted, floor)
         cover = self._by_count(wanted.with_floor(floor), request.count)
-        if request.coverage is None or cover.coverage <= request.coverage:
+        if request.coverage is None or coverage(cover) <= request.coverage:
             return cover
         return self._by_count_and_coverage(wanted, request.count, request.coverage)
 
@@ -144,12 +153,12 @@ class Filling:
             radius = WIDER * spacing(self._density_met())
         else:
             assert request.coverage is not None
-            least = float(wanted.triangles()[:, 4].min())
+            least = float(wanted.largest.min())
             radius = request.coverage * wanted.unit * math.sqrt(max(floor, least))
             self._search_lattice(density_of(radius / WIDER))
         if request.coverage is not None:
             floor = (radius / (request.coverage * wanted.unit)) ** 2
-        cover = Cover(wanted.with_floor(floor), self.given)
+        cover = Cover(wanted.with_floor(floor), self.given, self.tell)
         cover.to_radius(radius)
         return cover
 
@@ -158,10 +167,10 @@ class Filling:
         seen = visible_solid_angle(self.spline, count / (4 * math.pi))
         density = 1.0
         # How many samples there are at one normal per steradian; all of them grow in proportion.
-        filling = wanted.totals[1] / (GREEDY * (WIDER * spacing(density)) ** 2)
+        filling = wanted.total / (GREEDY * (WIDER * spacing(density)) ** 2)
         each = seen + max(0.0, filling - SAVED * seen)
         self._search_lattice(count / each, count)
-        cover = Cover(wanted, self.given)
+        cover = Cover(wanted, self.given, self.tell)
         cover.to_count(count)
         return cover
 
@@ -175,7 +184,8 @@ class Filling:
             middle = (low + high) / 2
             radius = WIDER * spacing(math.exp(middle))
             self._search_lattice(math.exp(middle))
-            cover = Cover(wanted.with_floor((radius / (coverage * wanted.unit)) ** 2), self.given)
+            floor = (radius / (coverage * wanted.unit)) ** 2
+            cover = Cover(wanted.with_floor(floor), self.given, self.tell)
             cover.to_radius(radius, count + 1)
             if cover.count > count:
                 high = middle
@@ -184,7 +194,8 @@ class Filling:
                 if cover.count > NEAR_ENOUGH * count:
                     break
         if best is None:  # not even a cover alone is so small
-            self.given, cover = None, Cover(wanted.with_law(Law(floor=1.0)), None)
+            self.normals, self.density, self.given = self.normals[:0], 0.0, None
+            cover = Cover(replace(wanted, law=Law(floor=1.0)), None, self.tell)
             cover.to_count(count)
             return cover
         best[0].narrow(best[1], count, APPROACH)
@@ -193,15 +204,20 @@ class Filling:
     # --- the normals ------------------------------------------------------------------------------
 
     def _search_lattice(self, density: float, most: int | None = None) -> None:
-        """Search a lattice of so many normals per steradian, if the surface shows any."""
-        seen = visible_solid_angle(self.spline, density)
-        if round(density * seen) == 0:
-            return
+        """Search a lattice of so many normals per steradian, if the surface shows any.
+
+        If that gives more than `most` samples, a lattice of fewer normals is searched, and so on.
+        """
         lattice = Lattice.around(self.spline)
+        seen = visible_solid_angle(self.spline, density)
         densest = lattice.density_of(NORMALS_PER_SAMPLE * max(round(density * seen), 1000))
-        self._search(lattice.normals(min(density, densest), threads=self.threads), density)
-        if most is not None and self.given is not None and len(self.given) > most:
-            self._search_lattice(density * most / len(self.given) * 0.98)
+        density = min(density, densest)
+        while round(density * seen) > 0:
+            self._search(lattice.normals(density, threads=self.threads), density)
+            if self.given is None or most is None or len(self.given) <= most:
+                return
+            density *= FEWER * most / len(self.given)
+        self.normals, self.density, self.given = self.normals[:0], 0.0, None
 
     def _search(self, normals: NDArray[np.float64], density: float | None = None) -> None:
         """Take the samples of some normals."""
