@@ -544,7 +544,9 @@ def quarter(patches, triangles, counts, k, extent):
 
 @jit
 def quarter_triangles(patches, triangles, number):
-    """Cut the first `number` of triangles, of which nothing else is known; there is room."""
+    """Cut the first `number` of triangles, with weights as before; there is room for the others."""
     counts = np.array([number, 0])
     for k in range(number):
         quarter(patches, triangles, counts, k, 0.0)
+        for at in range(counts[0] - 3, counts[0]):
+            triangles[at, 4] = triangles[k, 4]

@@ -14,7 +14,7 @@ from ..samples import Samples
 from ..threads import over_ranges
 from .law import Wanted
 
-__all__ = ["APPROACH", "FINE", "STEP", "Cover"]
+__all__ = ["APPROACH", "FINE", "STEP", "Array", "Cover", "Indices", "quarters"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -137,13 +137,13 @@ class Cover:
     ) -> None:
         """Add samples within this radius until every middle is near enough, or there are `most`.
 
-        If `strict`, every place is near enough then.
+        If `strict`, every place is near enough then. Once there are `most`, the rest is left alone.
         """
         self.radius = radius
         if not self.grid_radius / FINER <= radius <= self.grid_radius * FINER:
             self._make_grids(radius)
         wanted, spline, done = self.wanted, self.wanted.spline, 0
-        while done < self.cut:
+        while done < self.cut and self.count != most:
             self._make_room(TRIANGLES_AT_A_TIME)
             counts = np.array([self.cut, self.count])
             done = kernels.cover_triangles(
@@ -155,16 +155,13 @@ class Cover:
             self.cut, self.count = counts.tolist()
             self.tell(self.count)
 
-    def add(self, which: Indices, middles: Array) -> None:
-        """Add the middles of some triangles as samples; `middles` are those of all."""
-        self._make_room(len(which))
-        rows = slice(self.count, self.count + len(which))
-        self.points[rows] = middles[which, :6]
-        self.weights[rows] = self.triangles[which, 4]
-        self.local[rows] = np.column_stack(
-            [self.patches[which], self.triangles[which, :2], middles[which, 6]]
-        )
-        self.count += len(which)
+    def add(self, patches: Indices, triangles: Array, middles: Array) -> None:
+        """Add the middles of some triangles as samples; see `middles_of`."""
+        self._make_room(len(patches))
+        rows = slice(self.count, self.count + len(patches))
+        self.points[rows], self.weights[rows] = middles[:, :6], triangles[:, 4]
+        self.local[rows] = np.column_stack([patches, triangles[:, :2], middles[:, 6]])
+        self.count += len(patches)
         self.grid_radius = math.inf  # they are not in the grids
 
     def forget(self) -> None:
@@ -211,6 +208,18 @@ class Cover:
         patches, triangles = self.room
         room = _room(len(patches), self.cut + 3 * more)
         self.room = _enlarged(patches, room), _enlarged(triangles, room)
+
+
+def quarters(
+    patches: Indices, triangles: Array, *columns: Array
+) -> tuple[Indices, Array, *tuple[Array, ...]]:
+    """Return the quarters of triangles, those in the middles first, then three of each.
+
+    What else is known of the triangles, and holds for their quarters, comes with them.
+    """
+    room = np.tile(patches, 4), np.tile(triangles, (4, 1))
+    kernels.quarter_triangles(*room, len(patches))
+    return *room, *(np.concatenate([x, np.repeat(x, 3)]) for x in columns)
 
 
 def _room(old: int, needed: int) -> int:

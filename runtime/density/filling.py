@@ -16,7 +16,7 @@ from ..samples import Samples, SamplingReport
 from ..spline import Spline
 from ..threads import counted
 from ..visibility import invisible_share, visible_solid_angle
-from .angles import cover_normals, largest_angle
+from .angles import cover_normals
 from .answers import Answers, answers_of, answers_of_lattice, no_answers
 from .cover import APPROACH, Cover
 from .gaps import coverage
@@ -59,8 +59,7 @@ def filled_samples(
         cover, answers = filling.cover()
         relax(cover, request.relax)
         if request.angle is not None:
-            cover_normals(cover, request.angle)
-            angle = largest_angle(cover)
+            angle = cover_normals(cover, request.angle)
         return filling.samples(cover, answers, fields, dtype, angle), answers.normals
 
 

@@ -7,8 +7,7 @@ import math
 import numpy as np
 from scipy.spatial import KDTree
 
-from ...generated import cover as kernels
-from .cover import Array, Cover, Indices
+from .cover import Array, Cover, Indices, quarters
 
 __all__ = ["coverage"]
 
@@ -34,6 +33,7 @@ def coverage(cover: Cover) -> float:
     patches, triangles = cover.patches, cover.triangles
     extents = cover.wanted.reaches[patches] * np.abs(triangles[:, 2])
     bounds = triangles[:, 3] + extents
+    loose = float(bounds.max())
     first = np.argpartition(-bounds, min(FIRST, len(bounds)) - 1)[:FIRST]
     least = float(look(patches[first], triangles[first]).max())
     for _ in range(MOST_CUTS):
@@ -44,19 +44,9 @@ def coverage(cover: Cover) -> float:
         distances = look(patches, triangles)
         least = max(least, float(distances.max()))
         far = distances + extents > TIGHT * least
-        patches, triangles = _quarters(patches[far], triangles[far])
-        extents, distances = (_of_quarters(x[far]) for x in (extents / 2.0, distances))
+        patches, triangles, extents, distances = quarters(
+            patches[far], triangles[far], extents[far] / 2.0, distances[far]
+        )
         bounds = distances + 2.0 * extents
-    return max(TIGHT * least, float(bounds.max(initial=0.0))) / cover.wanted.unit
-
-
-def _quarters(patches: Indices, triangles: Array) -> tuple[Indices, Array]:
-    """Return the quarters of triangles: those in their middles, then three of each."""
-    room = np.tile(patches, 4), np.tile(triangles, (4, 1))
-    kernels.quarter_triangles(*room, len(patches))
-    return room
-
-
-def _of_quarters(values: Array) -> Array:
-    """Return for all quarters what is known of whole triangles."""
-    return np.concatenate([values, np.repeat(values, 3)])
+    tight = max(TIGHT * least, float(bounds.max(initial=0.0)))
+    return min(tight, loose) / cover.wanted.unit
