@@ -24,15 +24,17 @@ SAMPLES = ("points", "weights", "local")
 TRIANGLES_AT_A_TIME = 1 << 15
 # The first samples come where none is within so many times the radius that is expected, the next
 # ones within STEP of that, and so on.
-WIDEST, STEP = 1.05, 0.8
-# n samples that are no nearer to one another than a radius r, one after the other, have n r² times
-# this as what is wanted of them.
-PACKED = 0.95
+WIDEST, STEP = 1.3, 0.8
+# n samples that are no nearer to one another than a radius r, where there is no room for another,
+# have about n r² times this as what is wanted of them.
+PACKED = 0.6
 # The grids are made again when the radius is so many times smaller or larger than it was.
 FINER = 1.5
 # Triangles this small beside the radius are not cut any more. If all of the surface has to be near
 # enough, and not only their middles, they are cut finer, and get a sample if need be.
 FINE, FINEST = 0.7, 0.1
+# The part of all patches by which one goes on from one to the next.
+GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 # A count is approached from below: the last but one radius shall bring so much of it.
 APPROACH = 0.95
 
@@ -171,10 +173,17 @@ class Cover:
         self.grid_radius = math.inf
 
     def _whole_patches(self) -> tuple[Indices, Array]:
-        """Return all patches, as triangles that no sample is known to be near to."""
-        largest = self.wanted.largest
-        third, one, far = np.full((3, len(largest)), [[1 / 3], [1.0], [math.inf]])
-        return np.arange(len(largest)), np.column_stack([third, third, one, far, largest])
+        """Return all patches, as triangles that no sample is known to be near to.
+
+        Their order is mixed: row by row, samples would snap to the pattern of the cells.
+        """
+        count = self.wanted.spline.patches
+        step = round(count * GOLDEN)
+        while math.gcd(step, count) > 1:
+            step += 1
+        order = step * np.arange(count) % count
+        third, one, far = np.full((3, count), [[1 / 3], [1.0], [math.inf]])
+        return order, np.column_stack([third, third, one, far, self.wanted.largest[order]])
 
     def _take(self, given: Samples) -> None:
         """Enter the samples that are given."""

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from ...generated import sampler as kernels
+from ..errors import SurfaceError
 from ..fields import FLOAT_NAMES, new_field
 from ..samples import Samples, SamplingReport
 from ..spline import Spline
@@ -77,7 +78,15 @@ class Filling:
     tell: Callable[[int], object]
 
     def cover(self) -> tuple[Cover, Answers]:
-        """Return the cover that is asked, and what normals gave of it."""
+        """Return the cover that is asked, and what normals gave of it.
+
+        Raises SurfaceError if there is nothing to cover.
+        """
+        if not Wanted(self.spline, Law(floor=1.0), self.threads).area > 0.0:
+            raise SurfaceError(
+                f"surface {self.spline.name!r} has no area: all its points lie on one line or are "
+                'one point; only density="gauss" takes it.'
+            )
         if self.request.density == "balanced":
             return self._balanced()
         cover = Cover(self._law(), None, self.tell)
