@@ -76,18 +76,19 @@ def start(rng):
 #
 # This is the textbook's, in a few lines. Each sample p with normal n wants to have the nearest
 # scanned point q in its tangent plane: n·(p − q) = 0. A small turn w and shift t change that by
-# n·(w × p + t), which gives linear equations for w and t.
+# n·(w × p + t), which gives linear equations for w and t. Points that are farther than 10 mm from
+# the scan have no say.
 
 
 # %%
 def icp(samples, tree, turn, shift, steps=60):
     for _ in range(steps):
         points, normals = turn.apply(samples.points) + shift, turn.apply(samples.normals)
-        distances, nearest = tree.query(points)
-        near = distances < 10
-        gaps = (normals * (tree.data[nearest] - points)).sum(axis=1)
-        equations = np.hstack([np.cross(points, normals), normals])
-        motion = np.linalg.lstsq(equations[near], gaps[near], rcond=None)[0]
+        distances, nearest = tree.query(points, distance_upper_bound=10)
+        near = np.isfinite(distances)
+        p, n, q = points[near], normals[near], tree.data[nearest[near]]
+        equations = np.hstack([np.cross(p, n), n])
+        motion = np.linalg.lstsq(equations, (n * (q - p)).sum(axis=1), rcond=None)[0]
         small = Rotation.from_rotvec(motion[:3])
         turn, shift = small * turn, small.apply(shift) + motion[3:]
         if np.abs(motion).max() < 1e-7:

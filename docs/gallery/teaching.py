@@ -149,5 +149,5 @@ for part, colour, label in (
     axis.scatter(*(outline.points[part] @ screen.T).T, s=2, color=colour, label=label)
 axis.set_aspect("equal")
 axis.set_axis_off()
-axis.legend(fontsize=8, loc="upper right")
+figure.legend(fontsize=8, loc="outside lower center", ncols=2)
 plt.show()
