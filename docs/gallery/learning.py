@@ -8,7 +8,7 @@
 import gaussmap as gm
 import matplotlib.pyplot as plt
 import numpy as np
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 # %% [markdown]
 # ## Many shapes, one call
@@ -98,7 +98,7 @@ print(f"area: {weights.sum():.5f}, true {4 * np.pi**2 * r:.5f}")
 
 # %%
 def fitted_normals(points, neighbours):
-    _, rows = cKDTree(points).query(points, neighbours)
+    _, rows = KDTree(points).query(points, neighbours)
     near = points[rows] - points[rows].mean(axis=1, keepdims=True)
     return np.linalg.svd(near, full_matrices=False)[2][:, 2]
 

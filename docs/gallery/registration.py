@@ -14,7 +14,7 @@ import warnings
 import gaussmap as gm
 import matplotlib.pyplot as plt
 import numpy as np
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 from scipy.spatial.transform import Rotation
 
 warnings.simplefilter("ignore", gm.GaussmapWarning)  # "part of it is flat": yes, it is
@@ -61,7 +61,8 @@ plt.show()
 
 # %%
 def scan(rng, height=1.0):
-    points = plate(*rng.uniform(-50, 50, (2, 40_000)), height)
+    u, v = rng.uniform(-50, 50, (2, 40_000))
+    points = plate(u, v, height)
     return points + rng.normal(0, 0.05, points.shape)
 
 
@@ -104,11 +105,12 @@ def icp(samples, tree, turn, shift, steps=60):
 
 # %%
 def compare(sets, height=1.0, runs=20):
-    places = plate(*np.random.default_rng(0).uniform(-50, 50, (2, 1000)), height)
+    u, v = np.random.default_rng(0).uniform(-50, 50, (2, 1000))
+    places = plate(u, v, height)
     found = {name: [] for name in sets}
     for seed in range(runs):
         rng = np.random.default_rng(seed)
-        tree, first = cKDTree(scan(rng, height)), start(rng)
+        tree, first = KDTree(scan(rng, height)), start(rng)
         for name, samples in sets.items():
             turn, shift = icp(samples, tree, *first)
             off = np.linalg.norm(turn.apply(places) + shift - places, axis=1).mean()

@@ -59,7 +59,7 @@ def test_slopes_of_plates_are_so_small_that_places_are_uniform_by_area(part):
     u = np.linspace(-50, 50, 1001)
     z = part.surface.evaluate(u[:, None], u)[..., 2]
     slopes = np.hypot(*np.gradient(z, u, u))
-    # A bump or a groove has slopes up to 1.05 e^(−1/2) / 3 = 0.21, the plate up to 0.07; two grooves
+    # Slopes of a bump or a groove reach 1.05 e^(−1/2) / 3 = 0.21, of the plate 0.07; two grooves
     # cross at nearly right angles.
     assert slopes.max() < 0.21 * math.sqrt(2) * 1.1 + 0.07 < 0.4
 
