@@ -12,7 +12,8 @@ TERRAIN = "$$($(BIN)/python -c '$(DEM)'):elevation" --spacing 74.5 -92.5 --cells
 
 .DEFAULT_GOAL := help
 .PHONY: help demo generate check-generated test coverage bench bench-guard bench-record bench-peers \
-	operations lint typecheck formulas orders errata curves figures gallery meshes registration clean
+	quality operations lint typecheck formulas orders errata curves figures gallery meshes registration \
+	clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -66,6 +67,10 @@ LARGEST := 1e8
 bench-peers: $(VENV)/peers/.ready ## measure gaussmap beside others, and its scaling, again (docs/performance.md)
 	$(VENV)/peers/bin/python -m gaussmap.benchmarks.peers --largest $(LARGEST) > docs/performance.tmp
 	mv docs/performance.tmp docs/performance.md
+
+quality: $(VENV)/peers/.ready ## judge samples beside those of others again (docs/quality.md)
+	$(VENV)/peers/bin/python -m gaussmap.benchmarks.quality > docs/quality.tmp
+	mv docs/quality.tmp docs/quality.md
 
 lint: $(READY) ## check style
 	$(BIN)/ruff check .

@@ -20,9 +20,8 @@ from time import process_time
 
 import gaussmap as gm
 import numpy as np
-from gaussmap.generated import sampler as kernels
 from gaussmap.runtime.bins import NormalBins
-from gaussmap.runtime.search import Search, find
+from gaussmap.runtime.search import Search, fill_notes, find
 from llvmlite.binding import get_host_cpu_name
 
 from .writing import Arrays, Writers, new_arrays
@@ -45,13 +44,12 @@ def _sampling(normals: np.ndarray, cells: int) -> tuple[Work, Arrays]:
     spline, bins = gm.fit(gm.surfaces.torus(), (cells, cells)), NormalBins(normals, 1)
     search, hits = Search(spline, bins), find(spline, bins, 1)
     arrays = new_arrays(len(hits))
+    pieces = hits.pieces(0, len(hits))
 
     def work() -> None:
         search.pairs(0, spline.patches)
-        kernels.fill_samples(
-            spline.coefficients, spline.scale, bins.ordered, spline.frame, 0, len(hits),
-            hits.patch_index, hits.place, *arrays[:6],
-        )  # fmt: skip
+        for start, notes in pieces:
+            fill_notes(spline, bins, notes, start, arrays)
 
     return work, arrays
 

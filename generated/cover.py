@@ -43,7 +43,7 @@ NODE = 1.0 / 6.0
 
 # A sample is found in the grid of its own size and in the next finer and coarser one.
 SIZES = 3
-LEVELS = 16
+LEVELS = 32
 
 
 # --- formulas -------------------------------------------------------------------------------------
@@ -222,8 +222,12 @@ def at_most(value, limit):
 
 
 @jit
-def reach_of_patches(mu, scale, first, last, reaches):
-    """Write how far a point of each patch first, …, last − 1 can be from its middle, at most."""
+def weigh_patches(mu, scale, law, first, last, reaches, areas, weights):
+    """Write what is wanted of the patches first, …, last − 1.
+
+    That is how far a point can be from the middle, at most; the area that each node of a quadrature
+    stands for (…, 3); and the weights at the nodes and in the middle (…, 4).
+    """
     columns = mu.shape[1] - 2
     for patch in range(first, last):
         cell = patch // 4
@@ -296,23 +300,9 @@ def reach_of_patches(mu, scale, first, last, reaches):
         r21 = q21_x * q21_x + q21_y * q21_y + q21_z * q21_z
         r22 = q22_x * q22_x + q22_y * q22_y + q22_z * q22_z
         reaches[patch] = math.sqrt(max(r00, r01, r02, r10, r11, r12, r20, r21, r22))
-
-
-@jit
-def wanted_of_patches(mu, scale, reaches, law, first, last, areas, wanted):
-    """Write the area and the integral of the weight of each patch first, …, last − 1."""
-    columns = mu.shape[1] - 2
-    for patch in range(first, last):
-        cell = patch // 4
-        (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
-         d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(
-            mu, cell // columns + 1, cell % columns + 1, patch % 4, scale
-        )  # fmt: skip
-        area = 0.0
-        total = 0.0
-        for node in range(3):
-            u = 1.0 - 2.0 * NODE if node == 0 else NODE
-            v = 1.0 - 2.0 * NODE if node == 1 else NODE
+        for node in range(4):
+            u = 1.0 / 3.0 if node == 3 else 1.0 - 2.0 * NODE if node == 0 else NODE
+            v = 1.0 / 3.0 if node == 3 else 1.0 - 2.0 * NODE if node == 1 else NODE
             # tangents (eqs. (1) and (14)): 33 operations as written, 33 here
             p_u_x = a_x * u + b_x * v + d_x
             p_u_y = a_y * u + b_y * v + d_y
@@ -323,35 +313,35 @@ def wanted_of_patches(mu, scale, reaches, law, first, last, areas, wanted):
             N_x = p_u_y * p_v_z - p_u_z * p_v_y
             N_y = p_u_z * p_v_x - p_u_x * p_v_z
             N_z = p_u_x * p_v_y - p_u_y * p_v_x
-            dA = math.sqrt(N_x * N_x + N_y * N_y + N_z * N_z) / 6.0
-            if dA > 0.0:
-                K, H = place_of(mu, scale, patch, u, v)[6:]
-                area += dA
-                total += dA * weight_of(K, H, reaches[patch], law)
-        areas[patch] = area
-        wanted[patch] = total
-
-
-@jit
-def start_triangles(mu, scale, reaches, law, first, last, triangles):
-    """Write the patches first, …, last − 1 as triangles (…, 5) that nothing covers yet.
-
-    A triangle holds u and v of its middle, its size beside the patch (negative if it is turned
-    over), a bound of the distance from its middle to the nearest sample, and the largest weight.
-    """
-    third = 1.0 / 3.0
-    for patch in range(first, last):
-        weight = 0.0
-        for node in range(4):
-            u = third if node == 3 else 1.0 - 2.0 * NODE if node == 0 else NODE
-            v = third if node == 3 else 1.0 - 2.0 * NODE if node == 1 else NODE
-            K, H = place_of(mu, scale, patch, u, v)[6:]
-            weight = max(weight, weight_of(K, H, reaches[patch], law))
-        triangles[patch, 0] = third
-        triangles[patch, 1] = third
-        triangles[patch, 2] = 1.0
-        triangles[patch, 3] = np.inf
-        triangles[patch, 4] = weight
+            length = math.sqrt(N_x * N_x + N_y * N_y + N_z * N_z)
+            weights[patch, node] = law[0]
+            if node < 3:
+                areas[patch, node] = length / 6.0
+            if length > 0.0:
+                n_x = N_x / length
+                n_y = N_y / length
+                n_z = N_z / length
+                # curvature_at (eqs. (1), (9); curvatures beyond the paper): 81 operations as written, 81 here
+                A = a_x * n_x + a_y * n_y + a_z * n_z
+                B = b_x * n_x + b_y * n_y + b_z * n_z
+                C = c_x * n_x + c_y * n_y + c_z * n_z
+                D = A * C - B * B
+                p_u_x = a_x * u + b_x * v + d_x
+                p_u_y = a_y * u + b_y * v + d_y
+                p_u_z = a_z * u + b_z * v + d_z
+                p_v_x = b_x * u + c_x * v + e_x
+                p_v_y = b_y * u + c_y * v + e_y
+                p_v_z = b_z * u + c_z * v + e_z
+                N_x = p_u_y * p_v_z - p_u_z * p_v_y
+                N_y = p_u_z * p_v_x - p_u_x * p_v_z
+                N_z = p_u_x * p_v_y - p_u_y * p_v_x
+                E = p_u_x * p_u_x + p_u_y * p_u_y + p_u_z * p_u_z
+                F = p_u_x * p_v_x + p_u_y * p_v_y + p_u_z * p_v_z
+                G = p_v_x * p_v_x + p_v_y * p_v_y + p_v_z * p_v_z
+                g = 1.0 / (N_x * N_x + N_y * N_y + N_z * N_z)
+                K = D * g
+                H = 0.5 * g * (2 * B * F - A * G - C * E)
+                weights[patch, node] = weight_of(K, H, reaches[patch], law)
 
 
 @jit
@@ -421,11 +411,11 @@ def enter_samples(heads, links, places, weights, radius, finest, numbers):
 
 
 @jit
-def distance_to_samples(heads, links, places, x, y, z, n_x, n_y, n_z, reach, finest, known):
+def distance_to_samples(heads, links, places, x, y, z, n_x, n_y, n_z, reach, enough, finest, known):
     """Return the distance to the nearest sample on the same side of the surface, if below `known`.
 
-    Not farther than `reach` is looked for. On the same side are samples whose normal makes an angle
-    of at most 90 degrees with the normal here.
+    Not farther than `reach` is looked for, and no nearer one than `enough`. On the same side are
+    samples whose normal makes an angle of at most 90 degrees with the normal here.
     """
     level = level_of(reach, finest)
     edge = math.ldexp(finest, level)
@@ -453,6 +443,8 @@ def distance_to_samples(heads, links, places, x, y, z, n_x, n_y, n_z, reach, fin
                     ):
                         best = square
                         found = True
+                        if square <= enough * enough:
+                            return math.sqrt(square)
                     entry = links[entry]
     return math.sqrt(best) if found else known
 
@@ -486,38 +478,59 @@ def choose_apart(heads, links, places, weights, radius, finest, asked, first, la
 @jit
 def cover_triangles(
     mu, scale, reaches, law, radius, fine, strict, most, patches, triangles, first, last,
-    kept_patches, kept, cut_patches, cut, heads, links, places, weights, finest, counts, local,
+    heads, links, places, weights, finest, counts, local,
 ):  # fmt: skip
-    """Tell the triangles first, …, last − 1 in which every place is near enough to a sample from others.
+    """Add samples until all middles of triangles are near enough to one, and cut what is not small.
 
     Near enough is radius / sqrt(weight). If the middle of a triangle is not, it becomes a sample, the
     next in places (…, 6), weights and local (…, 4) (patch, u, v, K), as long as there are fewer than
-    `most`. A triangle that is near enough is written to `kept`, the quarters of another one to `cut`.
-    counts = (kept, cut, samples).
+    `most`. A triangle that may hold other places that are not is cut, unless its extent is smaller
+    than `fine` times what is near; if `strict`, such a small one gets a sample, too.
+
+    counts = (triangles, samples) grow. Returns the triangle that comes next: `last`, or one that there
+    was no room for.
     """
     for k in range(first, last):
+        if counts[1] == weights.size:
+            return k
         patch = patches[k]
-        u = triangles[k, 0]
-        v = triangles[k, 1]
-        size = triangles[k, 2]
         known = triangles[k, 3]
         weight = triangles[k, 4]
-        extent = reaches[patch] * abs(size)
+        extent = reaches[patch] * abs(triangles[k, 2])
         if weight >= 0.0 and known + extent <= radius / math.sqrt(weight):
-            keep(kept_patches, kept, counts, patch, u, v, size, known, weight)
             continue
-        x, y, z, n_x, n_y, n_z, K, H = place_of(mu, scale, patch, u, v)
-        if n_x == 0.0 and n_y == 0.0 and n_z == 0.0:
-            continue
+        x, y, z, n_x, n_y, n_z, K, H = place_of(mu, scale, patch, triangles[k, 0], triangles[k, 1])
+        singular = n_x == 0.0 and n_y == 0.0 and n_z == 0.0
         if weight < 0.0:
-            weight = weight_of(K, H, reaches[patch], law)
+            weight = law[0] if singular else weight_of(K, H, reaches[patch], law)
+            triangles[k, 4] = weight
         near = radius / math.sqrt(weight)
         known = distance_to_samples(
-            heads, links, places, x, y, z, n_x, n_y, n_z, near, finest, known
+            heads,
+            links,
+            places,
+            x,
+            y,
+            z,
+            n_x,
+            n_y,
+            n_z,
+            near,
+            max(near - extent, 0.0),
+            finest,
+            known,
         )
-        small = extent <= fine * near
-        if counts[2] < most and (known > near or (strict and small and known + extent > near)):
-            number = counts[2]
+        may = counts[1] < most and not singular
+        far = may and known > near
+        triangles[k, 3] = 0.0 if far else known
+        while extent > fine * near and triangles[k, 3] + extent > near:
+            if counts[0] + 3 > patches.size:
+                triangles[k, 3] = known
+                return k
+            quarter(patches, triangles, counts, k, extent)
+            extent *= 0.5
+        if far or (may and strict and known + extent > near):
+            number = counts[1]
             places[number, 0] = x
             places[number, 1] = y
             places[number, 2] = z
@@ -526,44 +539,37 @@ def cover_triangles(
             places[number, 5] = n_z
             weights[number] = weight
             local[number, 0] = patch
-            local[number, 1] = u
-            local[number, 2] = v
+            local[number, 1] = triangles[k, 0]
+            local[number, 2] = triangles[k, 1]
             local[number, 3] = K
             enter(heads, links, places, number, near, finest)
-            counts[2] = number + 1
-            known = 0.0
-        if small or known + extent <= near:
-            keep(kept_patches, kept, counts, patch, u, v, size, known, weight)
-        else:
-            quarter(cut_patches, cut, counts, patch, u, v, size, known, weight, extent)
+            counts[1] = number + 1
+            triangles[k, 3] = 0.0
+    return last
 
 
 @jit
-def keep(patches, triangles, counts, patch, u, v, size, known, weight):
-    """Write a triangle to those that are kept."""
-    at = counts[0]
-    patches[at] = patch
-    triangles[at, 0] = u
-    triangles[at, 1] = v
-    triangles[at, 2] = size
-    triangles[at, 3] = known
-    triangles[at, 4] = weight
-    counts[0] = at + 1
-
-
-@jit
-def quarter(patches, triangles, counts, patch, u, v, size, known, weight, extent):
-    """Write the four quarters of a triangle; that in the middle has the same middle, turned over."""
+def quarter(patches, triangles, counts, k, extent):
+    """Cut a triangle into quarters: that in the middle, turned over, takes its place."""
     third = 1.0 / 3.0
-    for part in range(4):
-        at = counts[1] + part
-        patches[at] = patch
-        triangles[at, 0] = u
-        triangles[at, 1] = v
-        if part < 3:
-            triangles[at, 0] += 0.5 * size * ((1.0 if part == 0 else 0.0) - third)
-            triangles[at, 1] += 0.5 * size * ((1.0 if part == 1 else 0.0) - third)
-        triangles[at, 2] = 0.5 * size if part < 3 else -0.5 * size
-        triangles[at, 3] = known + 0.5 * extent if part < 3 else known
-        triangles[at, 4] = -1.0 if part < 3 else weight
-    counts[1] += 4
+    size = triangles[k, 2]
+    for part in range(3):
+        at = counts[0] + part
+        patches[at] = patches[k]
+        triangles[at, 0] = triangles[k, 0] + 0.5 * size * ((1.0 if part == 0 else 0.0) - third)
+        triangles[at, 1] = triangles[k, 1] + 0.5 * size * ((1.0 if part == 1 else 0.0) - third)
+        triangles[at, 2] = 0.5 * size
+        triangles[at, 3] = triangles[k, 3] + 0.5 * extent
+        triangles[at, 4] = -1.0
+    triangles[k, 2] = -0.5 * size
+    counts[0] += 3
+
+
+@jit
+def quarter_triangles(patches, triangles, number):
+    """Cut the first `number` of triangles, with weights as before; there is room for the others."""
+    counts = np.array([number, 0])
+    for k in range(number):
+        quarter(patches, triangles, counts, k, 0.0)
+        for at in range(counts[0] - 3, counts[0]):
+            triangles[at, 4] = triangles[k, 4]

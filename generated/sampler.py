@@ -60,9 +60,17 @@ SINGULAR = math.ldexp(1.0, -30)
 # relative to its length.
 ANGLE_ERROR = math.ldexp(1.0, -40)
 
-# Samples are computed so many at a time, then stored.
+# Samples are computed so many at a time, then stored. The rows of a tile have room for some more.
 TILE = 64
+TILE_STEP = 80
+# The normals of so many samples are asked for before they are needed.
+AHEAD = 512
 TILE_ROWS = 38
+
+
+def inner(function):
+    """Compile a function for kernels that makes no arrays, without counting references to those it gets."""
+    return numba.njit(_nrt=False, **OPTIONS)(function)  # pyright: ignore[reportCallIssue]
 
 
 # --- formulas -------------------------------------------------------------------------------------
@@ -508,7 +516,7 @@ def patch_vectors(mu, i, j, turn, scale):
 # --- bins of normals: the six faces of a cube, each cut into grid x grid squares ---------------------
 
 
-@jit
+@inner
 def cube_face(x, y, z):
     """Return the face of the cube that the vector meets, and its coordinates there (in -1 … 1)."""
     if abs(x) >= abs(y) and abs(x) >= abs(z):
@@ -518,7 +526,7 @@ def cube_face(x, y, z):
     return (4, x / z, y / z) if z > 0.0 else (5, x / -z, y / -z)
 
 
-@jit
+@inner
 def on_face(face, x, y, z):
     """Return the vector in the axes of a face: two coordinates along it, the third towards it."""
     if face == 0:
@@ -534,19 +542,19 @@ def on_face(face, x, y, z):
     return x, y, -z
 
 
-@jit
+@inner
 def within(place, grid):
     """Return the bin of a place along an edge of the grid, the first or last if it is outside."""
     return min(max(int(place), 0), grid - 1)
 
 
-@jit
+@inner
 def bin_index(s, grid):
     """Return the row or column of a face coordinate; monotone, also in rounding."""
     return within((s + 1.0) * (0.5 * grid), grid)
 
 
-@jit
+@inner
 def mapped(frame, x, y, z):
     """Return a vector as a linear map (3, 3) maps it."""
     return (
@@ -584,29 +592,36 @@ def start_bins(counts, starts):
 
 
 @jit
-def place_normals(normals, bins, first, last, places, order, ordered):
-    """Sort the normals first, …, last − 1: order[starts[b]:starts[b + 1]] are those of bin b, ascending.
+def place_normals(normals, bins, first, last, places, ordered):
+    """Sort the normals first, …, last − 1: ordered[starts[b]:starts[b + 1]] are those of bin b, ascending.
 
-    `places` are those of this range in each bin. Writes the normals (as they are) in that order too.
+    `places` are those of this range in each bin. The rows of ordered (S, 4) are a normal (as it is) and
+    its number.
     """
     for k in range(first, last):
         at = places[bins[k]]
         places[bins[k]] += 1
-        order[at] = k
         for axis in range(3):
             ordered[at, axis] = normals[k, axis]
+        ordered[at, 3] = k
 
 
 # --- which normals a patch may have ---------------------------------------------------------------
 
 
-@jit
+@inner
+def whole_vectors(count):
+    """Return the next multiple of 16: loops of so many leave nothing to do one by one."""
+    return (count + 15) & -16
+
+
+@inner
 def length_of(x, y, z):
     """Return the length of a vector."""
     return math.sqrt(x * x + y * y + z * z)
 
 
-@jit
+@inner
 def largest_tangent(
     a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z
 ):  # fmt: skip
@@ -618,7 +633,7 @@ def largest_tangent(
     )
 
 
-@jit
+@inner
 def cone_of_normals(net, tangents, unit, errors, axis):
     """Write the directions of the control normals, their errors as angles, and the axis of a cone.
 
@@ -653,13 +668,13 @@ def cone_of_normals(net, tangents, unit, errors, axis):
     return math.sqrt(widest) + 2.0 * worst
 
 
-@jit
+@inner
 def empty(window):
     """Make a window that holds no bin."""
     window[0], window[1], window[2], window[3] = 0, -1, 0, -1
 
 
-@jit
+@inner
 def map_net(unit, errors, frame, shown, angles, stretch):
     """Write the control normals as the frame maps them, and their errors; the frame has this norm."""
     for k in range(6):
@@ -667,7 +682,7 @@ def map_net(unit, errors, frame, shown, angles, stretch):
         angles[k] = errors[k] * stretch
 
 
-@jit
+@inner
 def face_window(shown, angles, narrow, face, grid, window, hull):
     """Write first and last column, first and last row of the bins of a face that the cone may meet.
 
@@ -717,7 +732,7 @@ def face_window(shown, angles, narrow, face, grid, window, hull):
     return error, towards
 
 
-@jit
+@inner
 def box_of(hull, size, error):
     """Return the least and the greatest s, the least and the greatest t of points, with their error."""
     left, right, below, above = hull[0, 0], hull[0, 0], hull[0, 1], hull[0, 1]
@@ -727,7 +742,7 @@ def box_of(hull, size, error):
     return left - error, right + error, below - error, above + error
 
 
-@jit
+@inner
 def cut_hull(shown, face, grid, away_s, away_t, hull):
     """Write the hull of a cone cut by a plane between the face and what points away from it.
 
@@ -762,12 +777,12 @@ def cut_hull(shown, face, grid, away_s, away_t, hull):
     return size
 
 
-@jit
+@inner
 def spans_of_hull(hull, size, error, height, first, last, low, high):
     """Write where the hull of points is in the rows first, …, last: from low (…) to high (…).
 
     A row reaches over `height` from its number on. `error` is that of the points; rows that the hull
-    does not meet get an empty span.
+    does not meet get an empty span. There has to be room for 15 more rows.
     """
     for row in range(last - first + 1):
         low[row] = math.inf
@@ -780,17 +795,21 @@ def spans_of_hull(hull, size, error, height, first, last, low, high):
             left, right = min(s, s_end), max(s, s_end)
             slope = (s_end - s) / (t_end - t) if t_end > t else 0.0
             start = max(first, math.ceil(t - error) - height)
-            end = min(last, math.floor(t_end + error))
-            for row in range(start, end + 1):
+            count = min(last, math.floor(t_end + error)) - start + 1
+            for k in range(whole_vectors(count)):
+                at = np.uint64(start - first + k)
+                row = float(start + k)
                 p = s + (min(max(row - error, t), t_end) - t) * slope
                 q = s + (min(max(row + height + error, t), t_end) - t) * slope
                 if t_end == t:
                     p, q = left, right
-                low[row - first] = min(low[row - first], max(left, min(p, q)))
-                high[row - first] = max(high[row - first], min(right, max(p, q)))
+                least = max(left, min(p, q)) if k < count else math.inf
+                most = min(right, max(p, q)) if k < count else -math.inf
+                low[at] = min(low[at], least)
+                high[at] = max(high[at], most)
 
 
-@jit
+@inner
 def count_window(window, face, grid, starts):
     """Return the number of normals in a window."""
     total = 0
@@ -806,14 +825,14 @@ def count_window(window, face, grid, starts):
 
 @jit
 def search_patches(
-    mu, scale, noise, border, frame, stretch, grid, starts, order, normals, first, last,
+    mu, scale, noise, border, frame, stretch, grid, starts, normals, first, last,
     found, doubtful, bounds, counts,
 ):  # fmt: skip
     """Find the normals of the patches first, …, last − 1, in ascending order for each patch.
 
-    `normals` (S, 3) are in the order of the bins, which are those of `frame`, of norm `stretch`.
-    found (3, …) holds the patch, the normal and its place in that order; doubtful (3, …) those that
-    rounding leaves open, to be decided exactly, and bounds (…) the errors of their forms. Adds the
+    normals (S, 4) are in the order of the bins, which are those of `frame`, of norm `stretch`.
+    found (…, 2) holds the patch and a note, normal << 32 | its place in that order; doubtful (…, 2) those
+    that rounding leaves open, to be decided exactly, and bounds (…) the errors of their forms. Adds the
     numbers of both, and that of the developable patches, to counts (3). `noise` is the rounding of the
     scaled coordinates, `border` the open sides of the domain. Returns the patch before which it
     stopped for lack of room, and the room that it needs.
@@ -822,9 +841,9 @@ def search_patches(
     net, unit, shown = np.empty((6, 3)), np.empty((6, 3)), np.empty((6, 3))
     errors, angles = np.empty(6), np.empty(6)
     windows, hulls = np.empty((6, 4), np.int64), np.empty((6, 12, 2))
-    slacks, sizes = np.empty(6), np.empty(6, np.int64)
-    axis, low, high = np.empty(3), np.empty(grid), np.empty(grid)
-    places, x, y, z, codes, notes, scratch, buckets = buffers(256)
+    slacks, sizes, rows = np.empty(6), np.empty(6, np.int64), np.empty((6 * grid, 2), np.int64)
+    axis, low, high = np.empty(3), np.empty(grid + 16), np.empty(grid + 16)
+    places, numbers, x, y, z, codes, notes, scratch, buckets = buffers(256)
     for patch in range(first, last):
         cell = patch // 4
         turn = patch % 4
@@ -876,19 +895,18 @@ def search_patches(
                 shown, angles, sine < math.inf, face, grid, windows[face], hulls[face]
             )
             total += count_window(windows[face], face, grid, starts)
-        if counts[0] + total > found.shape[1] or counts[1] + total > doubtful.shape[1]:
+        if counts[0] + total > found.shape[0] or counts[1] + total > doubtful.shape[0]:
             return patch, total
         if total + 16 > x.size:
-            places, x, y, z, codes, notes, scratch, buckets = buffers(total + 16)
-        count = gather(
-            windows, hulls, sizes, slacks, grid, starts, normals, low, high, places, x, y, z
-        )
+            places, numbers, x, y, z, codes, notes, scratch, buckets = buffers(total + 16)
+        size = note_rows(windows, hulls, sizes, slacks, grid, starts, low, high, rows)
+        count = gather(rows, size, normals, places, numbers, x, y, z)
 
         bound = bound_of_forms(
             mu, i, j, turn, scale, noise, border, axis, sine,
             a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
         )  # fmt: skip
-        full = (count | 15) + 1  # a few more, so that vectors are full
+        full = whole_vectors(count)  # a few more
         classify(
             a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
             axis, sine, bound, x[:full], y[:full], z[:full], codes,
@@ -898,11 +916,12 @@ def search_patches(
                 a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
                 x, y, z, codes[:count],
             )  # fmt: skip
-        hits = note(codes, 1, order, places, notes, count)
+        hits = note(codes, 1, numbers, places, notes, count)
         counts[0] = store(notes, hits, scratch, buckets, patch, found, counts[0])
-        doubts = note(codes, 2, order, places, notes, count)
-        bounds[counts[1] : counts[1] + doubts] = bound
-        counts[1] = store(notes, doubts, scratch, buckets, patch, doubtful, counts[1])
+        if count_open(codes, count) > 0:
+            doubts = note(codes, 2, numbers, places, notes, count)
+            bounds[counts[1] : counts[1] + doubts] = bound
+            counts[1] = store(notes, doubts, scratch, buckets, patch, doubtful, counts[1])
     return last, 0
 
 
@@ -946,7 +965,7 @@ def all_developable(mu, scale, noise):
     return True
 
 
-@jit
+@inner
 def is_developable(
     a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, net, noise
 ):  # fmt: skip
@@ -988,7 +1007,7 @@ def is_developable(
     return curvature <= flat
 
 
-@jit
+@inner
 def bound_of_forms(
     mu, i, j, turn, scale, noise, border, axis, sine,
     a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
@@ -1017,7 +1036,7 @@ def bound_of_forms(
     return 32.0 * error * (form + error)
 
 
-@jit
+@inner
 def spread_of(mu, i, j, turn):
     """Return the largest differences, by component, of the coefficients of a cell and around it."""
     s, t, w = 0.0, 0.0, 0.0
@@ -1032,16 +1051,17 @@ def spread_of(mu, i, j, turn):
 
 @jit
 def buffers(size):
-    """Return arrays for the candidates of a patch: places, x, y, z, codes, notes, and two to sort with."""
+    """Return arrays for the candidates of a patch: places, numbers, x, y, z, codes, notes, two to sort."""
     x, y, z = np.ones(size), np.ones(size), np.ones(size)
     notes, scratch = np.empty(size, np.int64), np.empty(size, np.int64)
     places, buckets = np.empty(size, np.int64), np.empty(size + 1, np.int64)
-    return places, x, y, z, np.empty(size, np.int8), notes, scratch, buckets
+    numbers, codes = np.empty(size), np.empty(size, np.int8)
+    return places, numbers, x, y, z, codes, notes, scratch, buckets
 
 
-@jit
-def gather(windows, hulls, sizes, slacks, grid, starts, normals, low, high, places, x, y, z):
-    """Copy the normals that a patch may have, and their places; return how many there are."""
+@inner
+def note_rows(windows, hulls, sizes, slacks, grid, starts, low, high, rows):
+    """Write where the rows of bins that a patch may have begin and end; return how many there are."""
     count = 0
     for face in range(6):
         window = windows[face]
@@ -1059,17 +1079,37 @@ def gather(windows, hulls, sizes, slacks, grid, starts, normals, low, high, plac
                     continue
                 left, right = int(start), min(int(end), right)
             base = (face * grid + row) * grid
-            begin = starts[base + left]
-            for k in range(starts[base + right + 1] - begin):
-                places[count + k] = begin + k
-                x[count + k] = normals[begin + k, 0]
-                y[count + k] = normals[begin + k, 1]
-                z[count + k] = normals[begin + k, 2]
-            count += max(starts[base + right + 1] - begin, 0)
+            if left <= right:
+                rows[count, 0] = starts[base + left]
+                rows[count, 1] = starts[base + right + 1]
+                count += 1
     return count
 
 
-@jit
+@inner
+def gather(rows, size, normals, places, numbers, x, y, z):
+    """Copy the normals of rows of bins, their places and numbers; return how many there are."""
+    asked = 0.0
+    for row in range(size):
+        # The memory is asked for all rows at once, so that they are not waited for one by one.
+        for k in range(rows[row, 0], rows[row, 1], 2):
+            asked += normals[np.uint64(k), 0]
+    count = 0
+    for row in range(size):
+        begin = rows[row, 0]
+        for k in range(rows[row, 1] - begin):
+            at, place = np.uint64(count + k), np.uint64(begin + k)
+            places[at] = begin + k
+            x[at] = normals[place, 0]
+            y[at] = normals[place, 1]
+            z[at] = normals[place, 2]
+            numbers[at] = normals[place, 3]
+        count += rows[row, 1] - begin
+    x[count] = asked  # else the compiler drops it; sums of integers it makes slower
+    return count
+
+
+@inner
 def classify(
     a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
     axis, sine, bound, x, y, z, codes,
@@ -1110,7 +1150,7 @@ def classify(
         codes[k] = np.int8(0) if outside | beside else np.int8(1) if sure else np.int8(2)
 
 
-@jit
+@inner
 def look_again(
     a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z,
     x, y, z, codes,
@@ -1147,31 +1187,39 @@ def look_again(
             codes[k] = 0
 
 
-@jit
-def note(codes, code, order, places, notes, count):
-    """Write a note, number << 32 | place, of each candidate that has the code; return how many have."""
+@inner
+def count_open(codes, count):
+    """Return how many codes are 2."""
+    found = 0
+    for k in range(count):
+        found += codes[k] == 2
+    return found
+
+
+@inner
+def note(codes, code, numbers, places, notes, count):
+    """Write a note, normal << 32 | place, of each candidate that has the code; return how many have."""
     chosen = 0
     for k in range(count):
-        notes[chosen] = order[places[k]] << 32 | places[k]
+        notes[chosen] = int(numbers[k]) << 32 | places[k]
         chosen += codes[k] == code
     return chosen
 
 
 @jit
 def store(notes, count, scratch, starts, patch, pairs, at):
-    """Sort notes and write patch, normal and place of each to pairs (3, …) from `at` on; return the end."""
+    """Sort notes and write patch and note of each to pairs (…, 2) from `at` on; return the end."""
     if count <= 32:
         insertion_sort(notes, count)
     else:
         notes = radix_sort(notes, count, scratch, starts)
     for k in range(count):
-        pairs[0, at + k] = patch
-        pairs[1, at + k] = notes[k] >> 32
-        pairs[2, at + k] = notes[k] & 0xFFFFFFFF
+        pairs[at + k, 0] = patch
+        pairs[at + k, 1] = notes[k]
     return at + count
 
 
-@jit
+@inner
 def insertion_sort(notes, count):
     """Sort a few notes."""
     for k in range(1, count):
@@ -1211,26 +1259,24 @@ def radix_sort(notes, count, scratch, starts):
 
 
 @jit
-def merge_pairs(sure, decided, first, last, start, merged, exact):
-    """Merge pairs with decided ones (first, …, last − 1), both sorted by patch and then by normal.
-
-    Pairs (3, …) are written to merged from `start` on, and where the decided ones are to exact (…).
-    """
+def merge_pairs(sure, decided, merged, places):
+    """Merge pairs (…, 2) of patch and note with decided ones; write where these are to places (…)."""
     at = 0
-    end = sure.shape[1]
-    for k in range(first, last + 1):
+    end = sure.shape[0]
+    count = decided.shape[0]
+    for k in range(count + 1):
         while at < end and (
-            k == last
-            or sure[0, at] < decided[0, k]
-            or (sure[0, at] == decided[0, k] and sure[1, at] < decided[1, k])
+            k == count
+            or sure[at, 0] < decided[k, 0]
+            or (sure[at, 0] == decided[k, 0] and sure[at, 1] < decided[k, 1])
         ):
-            for row in range(3):
-                merged[row, start + at + k - first] = sure[row, at]
+            merged[at + k, 0] = sure[at, 0]
+            merged[at + k, 1] = sure[at, 1]
             at += 1
-        if k < last:
-            exact[k] = start + at + k - first
-            for row in range(3):
-                merged[row, start + at + k - first] = decided[row, k]
+        if k < count:
+            places[k] = at + k
+            merged[at + k, 0] = decided[k, 0]
+            merged[at + k, 1] = decided[k, 1]
 
 
 # --- what a sample holds --------------------------------------------------------------------------
@@ -1238,79 +1284,112 @@ def merge_pairs(sure, decided, first, last, start, merged, exact):
 
 @jit
 def fill_samples(
-    mu, scale, normals, frame, first, last,
-    patch_index, place, points, directions, uv, support, gaussian, mean,
+    mu, scale, normals, frame, pairs, start,
+    points, directions, uv, support, gaussian, mean, normal_index, patch_index,
 ):  # fmt: skip
-    """Fill the samples first, …, last − 1 from the patch and the place of the normal of each.
+    """Fill the samples from number `start` on from pairs (k, 2) of patch and note.
 
     frame = (u0, v0, du, dv): the corner of the domain and the size of a cell in the parameters. What
-    is not wanted of points (k, 3), directions (k, 3), uv (k, 2), support, gaussian and mean (k) is
-    None: Numba compiles without it, and the compiler drops what only that needs.
+    is not wanted of points (k, 3), directions (k, 3), uv (k, 2), support, gaussian, mean and the
+    two indices (k) is None: Numba compiles without it, and the compiler drops what only that needs.
     """
-    size = SCALE * scale
-    tile = np.empty(TILE_ROWS * TILE)
+    tile, indices = new_tile(), np.zeros(2 * TILE_STEP, np.int64)
     loaded = -1
-    for begin in range(first, last, TILE):
-        count = min(TILE, last - begin)
-        if patch_index[begin] != loaded or patch_index[begin + count - 1] != loaded:
-            loaded = load_patches(mu, scale, patch_index, begin, count, tile)
+    for begin in range(0, pairs.shape[0], TILE):
+        count = min(TILE, pairs.shape[0] - begin)
+        if pairs[begin, 0] != loaded or pairs[begin + count - 1, 0] != loaded:
+            loaded = load_patches(mu, scale, pairs, begin, count, tile)
+        if begin % AHEAD == 0:
+            tile[TILE_STEP - 1] = ask_for(normals, pairs, begin + AHEAD)
         for k in range(count):
-            at = np.uint64(place[begin + k])
+            indices[k] = pairs[begin + k, 1] >> 32
+            indices[TILE_STEP + k] = pairs[begin + k, 0]
+            at = np.uint64(pairs[begin + k, 1] & 0xFFFFFFFF)
             n_x = normals[at, 0]
             n_y = normals[at, 1]
             n_z = normals[at, 2]
-            tile[0 * TILE + k] = n_x
-            tile[1 * TILE + k] = n_y
-            tile[2 * TILE + k] = n_z
-        # A few more than wanted, so that vectors are full: what they give is not stored.
-        evaluate_tile(
-            tile, min(TILE, (count | 15) + 1), frame, size, points, uv, support, gaussian, mean
-        )
-        for row in range(count):
-            k = begin + row
-            n_x = tile[0 * TILE + row]
-            n_y = tile[1 * TILE + row]
-            n_z = tile[2 * TILE + row]
-            point_x = tile[30 * TILE + row]
-            point_y = tile[31 * TILE + row]
-            point_z = tile[32 * TILE + row]
-            s = tile[33 * TILE + row]
-            t = tile[34 * TILE + row]
-            h = tile[35 * TILE + row]
-            K = tile[36 * TILE + row]
-            H = tile[37 * TILE + row]
-            if points is not None:
-                points[k, 0] = point_x
-                points[k, 1] = point_y
-                points[k, 2] = point_z
-            if directions is not None:
-                directions[k, 0] = n_x
-                directions[k, 1] = n_y
-                directions[k, 2] = n_z
-            if uv is not None:
-                uv[k, 0] = s
-                uv[k, 1] = t
-            if support is not None:
-                support[k] = h
-            if gaussian is not None:
-                gaussian[k] = K
-            if mean is not None:
-                mean[k] = H
+            tile[0 * TILE_STEP + k] = n_x
+            tile[1 * TILE_STEP + k] = n_y
+            tile[2 * TILE_STEP + k] = n_z
+        fill_tile(
+            tile, indices, count, start + begin, scale, frame,
+            points, directions, uv, support, gaussian, mean, normal_index, patch_index,
+        )  # fmt: skip
+
+
+@inner
+def ask_for(normals, pairs, first):
+    """Read a number of AHEAD normals, so that they are on their way: they lie far from each other."""
+    asked = 0.0
+    for k in range(first, min(first + AHEAD, pairs.shape[0])):
+        asked += normals[np.uint64(pairs[np.uint64(k), 1] & 0xFFFFFFFF), 0]
+    return asked
 
 
 @jit
-def load_patches(mu, scale, patch_index, begin, count, tile):
+def new_tile():
+    """Return a tile: a row for each of what a sample needs and has, TILE_STEP numbers long."""
+    return np.zeros(TILE_ROWS * TILE_STEP)
+
+
+@inner
+def fill_tile(
+    tile, indices, count, start, scale, frame,
+    points, directions, uv, support, gaussian, mean, normal_index, patch_index,
+):  # fmt: skip
+    """Fill `count` samples from number `start` on from a tile, and rows of their indices."""
+    # A few more than wanted, so that vectors are full: what they give is not stored.
+    full = whole_vectors(count)
+    evaluate_tile(tile, full, frame, SCALE * scale, points, uv, support, gaussian, mean)
+    for row in range(count):
+        k = np.uint64(start + row)  # so that nobody asks whether it is negative
+        n_x = tile[0 * TILE_STEP + row]
+        n_y = tile[1 * TILE_STEP + row]
+        n_z = tile[2 * TILE_STEP + row]
+        point_x = tile[30 * TILE_STEP + row]
+        point_y = tile[31 * TILE_STEP + row]
+        point_z = tile[32 * TILE_STEP + row]
+        s = tile[33 * TILE_STEP + row]
+        t = tile[34 * TILE_STEP + row]
+        h = tile[35 * TILE_STEP + row]
+        K = tile[36 * TILE_STEP + row]
+        H = tile[37 * TILE_STEP + row]
+        if points is not None:
+            points[k, 0] = point_x
+            points[k, 1] = point_y
+            points[k, 2] = point_z
+        if directions is not None:
+            directions[k, 0] = n_x
+            directions[k, 1] = n_y
+            directions[k, 2] = n_z
+        if uv is not None:
+            uv[k, 0] = s
+            uv[k, 1] = t
+        if support is not None:
+            support[k] = h
+        if gaussian is not None:
+            gaussian[k] = K
+        if mean is not None:
+            mean[k] = H
+        if normal_index is not None:
+            normal_index[k] = indices[row]
+        if patch_index is not None:
+            patch_index[k] = indices[TILE_STEP + row]
+
+
+@inner
+def load_patches(mu, scale, pairs, begin, count, tile):
     """Write what belongs to the patches of the samples of a tile; return the patch if there is one."""
     columns = mu.shape[1] - 2
-    patch = patch_index[begin]
-    if patch_index[begin + count - 1] == patch:
+    patch = pairs[begin, 0]
+    if pairs[begin + count - 1, 0] == patch:
         load_patch(mu, patch // 4 // columns, patch // 4 % columns, patch % 4, scale, tile, 0, TILE)
         return patch
     end = 0
     while end < count:
         start = end
-        patch = patch_index[begin + start]
-        while end < count and patch_index[begin + end] == patch:
+        patch = pairs[begin + start, 0]
+        while end < count and pairs[begin + end, 0] == patch:
             end += 1
         load_patch(
             mu, patch // 4 // columns, patch // 4 % columns, patch % 4, scale, tile, start, end
@@ -1318,9 +1397,9 @@ def load_patches(mu, scale, patch_index, begin, count, tile):
     return -1
 
 
-@jit
+@inner
 def load_patch(mu, i, j, turn, scale, tile, start, end):
-    """Write what belongs to a patch for the samples start, …, end − 1 of a tile."""
+    """Write what belongs to a patch for the samples start, …, end − 1 of a tile, and up to 15 more."""
     (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
      d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(mu, i + 1, j + 1, turn, scale)  # fmt: skip
     centre_x = mu[i + 1, j + 1, 0]
@@ -1332,76 +1411,76 @@ def load_patch(mu, i, j, turn, scale, tile, start, end):
     u_t = CORNERS[turn, 0, 1]
     v_s = CORNERS[turn, 1, 0]
     v_t = CORNERS[turn, 1, 1]
-    for k in range(start, end):
-        tile[3 * TILE + k] = a_x
-        tile[4 * TILE + k] = a_y
-        tile[5 * TILE + k] = a_z
-        tile[6 * TILE + k] = b_x
-        tile[7 * TILE + k] = b_y
-        tile[8 * TILE + k] = b_z
-        tile[9 * TILE + k] = c_x
-        tile[10 * TILE + k] = c_y
-        tile[11 * TILE + k] = c_z
-        tile[12 * TILE + k] = d_x
-        tile[13 * TILE + k] = d_y
-        tile[14 * TILE + k] = d_z
-        tile[15 * TILE + k] = e_x
-        tile[16 * TILE + k] = e_y
-        tile[17 * TILE + k] = e_z
-        tile[18 * TILE + k] = p_x
-        tile[19 * TILE + k] = p_y
-        tile[20 * TILE + k] = p_z
-        tile[21 * TILE + k] = centre_x
-        tile[22 * TILE + k] = centre_y
-        tile[23 * TILE + k] = centre_z
-        tile[24 * TILE + k] = cell_u
-        tile[25 * TILE + k] = cell_v
-        tile[26 * TILE + k] = u_s
-        tile[27 * TILE + k] = u_t
-        tile[28 * TILE + k] = v_s
-        tile[29 * TILE + k] = v_t
+    tile = tile[start:]
+    for k in range(whole_vectors(end - start)):
+        tile[3 * TILE_STEP + k] = a_x
+        tile[4 * TILE_STEP + k] = a_y
+        tile[5 * TILE_STEP + k] = a_z
+        tile[6 * TILE_STEP + k] = b_x
+        tile[7 * TILE_STEP + k] = b_y
+        tile[8 * TILE_STEP + k] = b_z
+        tile[9 * TILE_STEP + k] = c_x
+        tile[10 * TILE_STEP + k] = c_y
+        tile[11 * TILE_STEP + k] = c_z
+        tile[12 * TILE_STEP + k] = d_x
+        tile[13 * TILE_STEP + k] = d_y
+        tile[14 * TILE_STEP + k] = d_z
+        tile[15 * TILE_STEP + k] = e_x
+        tile[16 * TILE_STEP + k] = e_y
+        tile[17 * TILE_STEP + k] = e_z
+        tile[18 * TILE_STEP + k] = p_x
+        tile[19 * TILE_STEP + k] = p_y
+        tile[20 * TILE_STEP + k] = p_z
+        tile[21 * TILE_STEP + k] = centre_x
+        tile[22 * TILE_STEP + k] = centre_y
+        tile[23 * TILE_STEP + k] = centre_z
+        tile[24 * TILE_STEP + k] = cell_u
+        tile[25 * TILE_STEP + k] = cell_v
+        tile[26 * TILE_STEP + k] = u_s
+        tile[27 * TILE_STEP + k] = u_t
+        tile[28 * TILE_STEP + k] = v_s
+        tile[29 * TILE_STEP + k] = v_t
 
 
-@jit
+@inner
 def evaluate_tile(tile, count, frame, size, points, uv, support, gaussian, mean):
     """Evaluate `count` samples of a tile; the loop has no branches, so that it runs on vectors.
 
-    A tile holds a row of TILE numbers for each of what a sample needs and has. Of the last five is asked only whether they are None, and so not wanted: no
-    branch is left of it.
+    Of the last five is asked only whether they are None, and so not wanted: no branch is left of it.
     """
     unit = 1.0 / size
     u_0, v_0, du, dv = frame[0], frame[1], frame[2], frame[3]
     for k in range(count):
-        n_x = tile[0 * TILE + k]
-        n_y = tile[1 * TILE + k]
-        n_z = tile[2 * TILE + k]
-        a_x = tile[3 * TILE + k]
-        a_y = tile[4 * TILE + k]
-        a_z = tile[5 * TILE + k]
-        b_x = tile[6 * TILE + k]
-        b_y = tile[7 * TILE + k]
-        b_z = tile[8 * TILE + k]
-        c_x = tile[9 * TILE + k]
-        c_y = tile[10 * TILE + k]
-        c_z = tile[11 * TILE + k]
-        d_x = tile[12 * TILE + k]
-        d_y = tile[13 * TILE + k]
-        d_z = tile[14 * TILE + k]
-        e_x = tile[15 * TILE + k]
-        e_y = tile[16 * TILE + k]
-        e_z = tile[17 * TILE + k]
-        p_x = tile[18 * TILE + k]
-        p_y = tile[19 * TILE + k]
-        p_z = tile[20 * TILE + k]
-        centre_x = tile[21 * TILE + k]
-        centre_y = tile[22 * TILE + k]
-        centre_z = tile[23 * TILE + k]
-        cell_u = tile[24 * TILE + k]
-        cell_v = tile[25 * TILE + k]
-        u_s = tile[26 * TILE + k]
-        u_t = tile[27 * TILE + k]
-        v_s = tile[28 * TILE + k]
-        v_t = tile[29 * TILE + k]
+        n_x = tile[0 * TILE_STEP + k]
+        n_y = tile[1 * TILE_STEP + k]
+        n_z = tile[2 * TILE_STEP + k]
+        a_x = tile[3 * TILE_STEP + k]
+        a_y = tile[4 * TILE_STEP + k]
+        a_z = tile[5 * TILE_STEP + k]
+        b_x = tile[6 * TILE_STEP + k]
+        b_y = tile[7 * TILE_STEP + k]
+        b_z = tile[8 * TILE_STEP + k]
+        c_x = tile[9 * TILE_STEP + k]
+        c_y = tile[10 * TILE_STEP + k]
+        c_z = tile[11 * TILE_STEP + k]
+        d_x = tile[12 * TILE_STEP + k]
+        d_y = tile[13 * TILE_STEP + k]
+        d_z = tile[14 * TILE_STEP + k]
+        e_x = tile[15 * TILE_STEP + k]
+        e_y = tile[16 * TILE_STEP + k]
+        e_z = tile[17 * TILE_STEP + k]
+        p_x = tile[18 * TILE_STEP + k]
+        p_y = tile[19 * TILE_STEP + k]
+        p_z = tile[20 * TILE_STEP + k]
+        centre_x = tile[21 * TILE_STEP + k]
+        centre_y = tile[22 * TILE_STEP + k]
+        centre_z = tile[23 * TILE_STEP + k]
+        cell_u = tile[24 * TILE_STEP + k]
+        cell_v = tile[25 * TILE_STEP + k]
+        u_s = tile[26 * TILE_STEP + k]
+        u_t = tile[27 * TILE_STEP + k]
+        v_s = tile[28 * TILE_STEP + k]
+        v_t = tile[29 * TILE_STEP + k]
         # sample (eqs. (1), (5)-(9); curvatures beyond the paper): 145 operations as written, 134 here
         A = a_x * n_x + a_y * n_y + a_z * n_z
         B = b_x * n_x + b_y * n_y + b_z * n_z
@@ -1446,26 +1525,28 @@ def evaluate_tile(tile, count, frame, size, points, uv, support, gaussian, mean)
         K = K * size * size
         H = H * size
         if points is not None:
-            tile[30 * TILE + k] = point_x
-            tile[31 * TILE + k] = point_y
-            tile[32 * TILE + k] = point_z
+            tile[30 * TILE_STEP + k] = point_x
+            tile[31 * TILE_STEP + k] = point_y
+            tile[32 * TILE_STEP + k] = point_z
         if uv is not None:
-            tile[33 * TILE + k] = s
-            tile[34 * TILE + k] = t
+            tile[33 * TILE_STEP + k] = s
+            tile[34 * TILE_STEP + k] = t
         if support is not None:
-            tile[35 * TILE + k] = h
+            tile[35 * TILE_STEP + k] = h
         if gaussian is not None:
-            tile[36 * TILE + k] = K
+            tile[36 * TILE_STEP + k] = K
         if mean is not None:
-            tile[37 * TILE + k] = H
+            tile[37 * TILE_STEP + k] = H
 
 
 @jit
 def fill_known(
-    mu, scale, normals, frame, which, local,
-    patch_index, place, points, directions, uv, support, gaussian, mean,
+    mu, scale, normals, frame, which, pairs, local,
+    points, directions, uv, support, gaussian, mean,
 ):  # fmt: skip
     """Fill the samples which[0], which[1], … at known parameters; see `fill_samples`.
+
+    pairs (k, 2) are their patches and the numbers of their normals.
 
     local (k, 5) holds u, v, the sign of K, and the parameters at which the curvatures are taken: u, v
     themselves but at a singular point.
@@ -1476,8 +1557,8 @@ def fill_known(
     u_0, v_0, du, dv = frame[0], frame[1], frame[2], frame[3]
     for row in range(which.size):
         k = which[row]
-        cell = patch_index[k] // 4
-        turn = patch_index[k] % 4
+        cell = pairs[row, 0] // 4
+        turn = pairs[row, 0] % 4
         i = cell // columns
         j = cell % columns
         centre_x = mu[i + 1, j + 1, 0]
@@ -1537,9 +1618,9 @@ def fill_known(
         x_x = a_x * t1 + b_x * t0 + c_x * t2 + d_x * u + e_x * v + p_x
         x_y = a_y * t1 + b_y * t0 + c_y * t2 + d_y * u + e_y * v + p_y
         x_z = a_z * t1 + b_z * t0 + c_z * t2 + d_z * u + e_z * v + p_z
-        n_x = normals[place[k], 0]
-        n_y = normals[place[k], 1]
-        n_z = normals[place[k], 2]
+        n_x = normals[pairs[row, 1], 0]
+        n_y = normals[pairs[row, 1], 1]
+        n_z = normals[pairs[row, 1], 2]
         point_x = centre_x + x_x * unit
         point_y = centre_y + x_y * unit
         point_z = centre_z + x_z * unit

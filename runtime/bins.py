@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..generated import icosphere
 from ..generated import sampler as kernels
-from .sphere import perpendicular
+from .sphere import PARTS, PARTS_AT_A_TIME, perpendicular
 from .threads import over_ranges, thread_count
 
 __all__ = ["NormalBins"]
@@ -36,20 +36,17 @@ class NormalBins:
 
     @cached_property
     def frequency(self) -> int:
-        """That of the icosahedron whose points these are, in their order; 0 if they are not."""
+        """That of `icosphere` if these are its normals, bit for bit; 0 if they are not."""
         frequency = math.isqrt(max(len(self.normals) - 2, 0) // 10)
-        if frequency == 0 or 10 * frequency**2 + 2 != len(self.normals):
+        known = 0 < frequency <= icosphere.MOST_FREQUENT
+        if not known or 10 * frequency**2 + 2 != len(self.normals):
             return 0
 
         def work(first: int, last: int) -> bool:
             return icosphere.is_icosphere(self.normals, frequency, first, last)
 
-        return frequency if all(over_ranges(work, 51, 1, self.threads)) else 0
-
-    @property
-    def ordered(self) -> NDArray[np.float64]:
-        """The normals (S, 3) in the order of their places."""
-        return self.normals if self.frequency > 0 else self.sorted[2]
+        threads = 1 if len(self.normals) < FEWEST_NORMALS else self.threads
+        return frequency if all(over_ranges(work, PARTS, PARTS_AT_A_TIME, threads)) else 0
 
     @cached_property
     def frame(self) -> NDArray[np.float64]:
@@ -87,14 +84,13 @@ class NormalBins:
         return max(1, min(2048, round(math.sqrt(len(self.normals) / (faces * NORMALS_PER_BIN)))))
 
     @cached_property
-    def sorted(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
-        """The start of each bin; the numbers of the normals in their order; the normals (S, 3)."""
+    def sorted(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """The start of each bin; the normals in their order, and their numbers (S, 4)."""
         total, count = len(self.normals), 6 * self.grid**2
         size = max(FEWEST_NORMALS, -(-total // min(thread_count(self.threads), MOST_COUNTS)))
         bins = np.empty(total, dtype=np.int32)
         counts = np.empty((-(-total // size), count), dtype=np.int64)
-        starts, order = np.empty(count + 1, dtype=np.int64), np.empty(total, dtype=np.int64)
-        ordered = np.empty((total, 3))
+        starts, ordered = np.empty(count + 1, dtype=np.int64), np.empty((total, 4))
 
         def count_bins(first: int, last: int) -> None:
             kernels.count_bins(
@@ -102,11 +98,9 @@ class NormalBins:
             )
 
         def place(first: int, last: int) -> None:
-            kernels.place_normals(
-                self.normals, bins, first, last, counts[first // size], order, ordered
-            )
+            kernels.place_normals(self.normals, bins, first, last, counts[first // size], ordered)
 
         list(over_ranges(count_bins, total, size, self.threads))
         kernels.start_bins(counts, starts)
         list(over_ranges(place, total, size, self.threads))
-        return starts, order, ordered
+        return starts, ordered

@@ -19,7 +19,10 @@ __all__ = ["Chosen", "choose"]
 
 # `count` is met by changing the number of normals, until it is this near or after so many tries.
 NEAR_ENOUGH = 0.01
-TRIES = 6
+TRIES = 20
+# The first tries follow the proportion, the others change the density by this up and down: few
+# samples come and go several at once.
+IN_PROPORTION, DITHER = 6, 0.008
 # At most this many normals for each sample that was asked (a thin Gaussian image catches few).
 NORMALS_PER_SAMPLE = 100
 # A larger count is not tried, but concluded from this one.
@@ -79,7 +82,7 @@ def _tried(spline: Spline, count: int, threads: int | None, progress: bool) -> t
         density = count / resolved
     best: Chosen | None = None
     came = 0
-    for _ in range(TRIES):
+    for tried in range(1, TRIES + 1):
         density = min(density, densest)
         bins = NormalBins(lattice.normals(density, threads=threads), threads)
         hits = find(spline, bins, threads, progress)
@@ -87,6 +90,10 @@ def _tried(spline: Spline, count: int, threads: int | None, progress: bool) -> t
             best, came = Chosen(lattice, density, (bins, hits)), len(hits)
         if abs(len(hits) - count) <= NEAR_ENOUGH * count or resolved == 0.0:
             break
-        density *= count / len(hits) if len(hits) else 2.0
+        if tried < IN_PROPORTION or len(hits) == 0:
+            density *= count / len(hits) if len(hits) else 2.0
+        else:
+            step = tried - IN_PROPORTION + 1
+            density = count / resolved * (1.0 + (-1) ** step * (step // 2) * DITHER)
     assert best is not None
     return best, came

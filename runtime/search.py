@@ -18,29 +18,73 @@ from .fields import ARRAY_NAMES, FLOAT_NAMES, INDEX_NAMES, new_field
 from .spline import Spline
 from .threads import over_ranges, thread_count
 
-__all__ = ["Hits", "Pairs", "Search", "fill", "find", "merged"]
+__all__ = ["Hits", "Notes", "Pairs", "Search", "fill", "fill_notes", "find", "merged"]
 
 # A range of patches is searched by one thread. There are several for each, but for small surfaces.
 FEWEST_PATCHES, MOST_PATCHES = 64, 4096
 RANGES_PER_THREAD = 4
 SAMPLES_AT_A_TIME = 1 << 16
-# Room for so many hits at first; a patch that needs more gets it.
-ROOM = 1 << 15
+# Room for so many notes at first, and at most; a patch that needs more gets it.
+ROOM, MOST_ROOM = 1 << 15, 1 << 20
+
+
+@dataclass(frozen=True, eq=False)
+class Notes:
+    """Samples by patch and then by normal, as kernels note them: rows (k, 2) of patch and note.
+
+    A note is one sample, normal << 32 | place of the normal in the order of the bins; or, if they
+    are `runs`, one or more with consecutive normals (see icosphere.py).
+    """
+
+    rows: NDArray[np.int64]
+    runs: bool
+
+    @cached_property
+    def ends(self) -> NDArray[np.int64]:
+        """The number of samples up to the end of each note (k,)."""
+        if not self.runs:
+            return np.arange(1, len(self.rows) + 1)
+        return np.cumsum(self.rows[:, 1] >> icosphere.SIZE & icosphere.LONGEST)
+
+    def __len__(self) -> int:
+        """Return the number of samples."""
+        return int(self.ends[-1]) if self.runs and len(self.rows) else len(self.rows)
+
+    @property
+    def indices(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """The patches and the normals of the samples."""
+        if not self.runs:
+            return self.rows[:, 0], self.rows[:, 1] >> 32
+        sizes = np.diff(self.ends, prepend=0)
+        firsts = np.repeat((self.rows[:, 1] >> 32) - (self.ends - sizes), sizes)
+        return np.repeat(self.rows[:, 0], sizes), firsts + np.arange(len(self))
+
+    def part(self, first: int, last: int) -> Notes:
+        """Return the samples first, …, last − 1, at least one."""
+        if (first, last) == (0, len(self)):
+            return self
+        if not self.runs:
+            return Notes(self.rows[first:last], self.runs)
+        low, high = np.searchsorted(self.ends, (first, last - 1), side="right")
+        rows = self.rows[low : high + 1].copy()
+        rows[-1, 1] -= (int(self.ends[high]) - last) << icosphere.SIZE
+        skipped = first - (int(self.ends[low - 1]) if low else 0)
+        rows[0, 1] += (skipped << 32) - (skipped << icosphere.SIZE)
+        return Notes(rows, self.runs)
 
 
 @dataclass(frozen=True, eq=False)
 class Hits:
-    """Which patch has which normal, by patch and then by normal.
+    """Which patch has which normal, by patch and then by normal: notes that follow each other.
 
-    `place` is the place of the normal in the order of the bins. `exact` are the numbers of the hits
-    that had to be decided exactly, `local` what `Decision` says of them. `developable` counts the
-    patches that are so, up to the rounding of their coordinates.
+    `exact` are the numbers of the hits that had to be decided exactly, `pairs` (k, 2) their patches
+    and normals, `local` what `Decision` says of them. `developable` counts the patches that are
+    so, up to the rounding of their coordinates.
     """
 
-    patch_index: NDArray[np.int64]
-    normal_index: NDArray[np.int64]
-    place: NDArray[np.int64]
+    notes: tuple[Notes, ...]
     exact: NDArray[np.int64]
+    pairs: NDArray[np.int64]
     local: NDArray[np.float64]
     developable: int
 
@@ -48,49 +92,62 @@ class Hits:
     def none(cls, developable: int) -> Hits:
         """Return no hits."""
         empty = np.empty(0, dtype=np.int64)
-        return cls(empty, empty, empty, empty, np.empty((0, 5)), developable)
+        return cls((), empty, empty.reshape(0, 2), np.empty((0, 5)), developable)
 
     @classmethod
-    def joined(cls, parts: Sequence[Hits], threads: int | None = 1) -> Hits:
+    def joined(cls, parts: Sequence[Hits]) -> Hits:
         """Return the hits of consecutive ranges of patches."""
-        if len(parts) == 1:
-            return parts[0]
-        starts = np.cumsum([0, *(len(part) for part in parts)])
-        rows = np.empty((3, starts[-1]), dtype=np.int64)
-
-        def copy(k: int, _: int) -> None:
-            here = slice(starts[k], starts[k + 1])
-            rows[0, here] = parts[k].patch_index
-            rows[1, here] = parts[k].normal_index
-            rows[2, here] = parts[k].place
-
-        list(over_ranges(copy, len(parts), 1, threads))
-        exact = [part.exact + start for part, start in zip(parts, starts[:-1], strict=True)]
-        local = np.concatenate([part.local for part in parts])
-        developable = sum(part.developable for part in parts)
-        return cls(rows[0], rows[1], rows[2], np.concatenate(exact), local, developable)
+        starts = np.cumsum([0, *(len(part) for part in parts[:-1])])
+        exact = [part.exact + start for part, start in zip(parts, starts, strict=True)]
+        return cls(
+            tuple(x for part in parts for x in part.notes),
+            np.concatenate(exact),
+            np.concatenate([part.pairs for part in parts]),
+            np.concatenate([part.local for part in parts]),
+            sum(part.developable for part in parts),
+        )
 
     def __len__(self) -> int:
         """Return the number of samples."""
-        return len(self.patch_index)
+        return sum(map(len, self.notes))
+
+    @cached_property
+    def patch_index(self) -> NDArray[np.int64]:
+        """The patches of the hits."""
+        return np.concatenate([np.empty(0, np.int64), *(x.indices[0] for x in self.notes)])
+
+    @cached_property
+    def normal_index(self) -> NDArray[np.int64]:
+        """The normals of the hits."""
+        return np.concatenate([np.empty(0, np.int64), *(x.indices[1] for x in self.notes)])
 
     def __getitem__(self, key: slice) -> Hits:
         """Return consecutive hits; the developable patches are counted with the first of all."""
         first, last, _ = key.indices(len(self))
         low, high = np.searchsorted(self.exact, (first, last))
         return Hits(
-            self.patch_index[first:last],
-            self.normal_index[first:last],
-            self.place[first:last],
+            tuple(x for _, x in self.pieces(first, last)),
             self.exact[low:high] - first,
+            self.pairs[low:high],
             self.local[low:high],
             self.developable if first == 0 else 0,
         )
 
+    def pieces(self, first: int, last: int, size: int | None = None) -> list[tuple[int, Notes]]:
+        """Return the notes of the hits first, …, last − 1, `size` at most, and where they begin."""
+        found, start = [], 0
+        for notes in self.notes:
+            low, high = max(first - start, 0), min(last - start, len(notes))
+            for begin in range(low, high, size or max(high, 1)):
+                end = min(begin + size, high) if size else high
+                found.append((start + begin, notes.part(begin, end)))
+            start += len(notes)
+        return found
+
 
 @dataclass(frozen=True, eq=False)
 class Pairs:
-    """What a range of patches yields: pairs (3, …) of patch, normal and place of the normal.
+    """What some patches yield: rows (…, 2) of patch and note, see `Notes`.
 
     Some are sure; rounding leaves the others open, with the error `bounds` of their forms. `last`
     is the patch after the last one.
@@ -101,19 +158,6 @@ class Pairs:
     doubtful: NDArray[np.int64]
     bounds: NDArray[np.float64]
     developable: int
-
-    @classmethod
-    def joined(cls, parts: Sequence[Pairs]) -> Pairs:
-        """Return the pairs of consecutive ranges."""
-        if len(parts) == 1:
-            return parts[0]
-        return cls(
-            parts[-1].last,
-            np.concatenate([part.sure for part in parts], axis=1),
-            np.concatenate([part.doubtful for part in parts], axis=1),
-            np.concatenate([part.bounds for part in parts]),
-            sum(part.developable for part in parts),
-        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,29 +193,26 @@ class Search:
             return icosphere.scan_patches, (bins.normals, bins.frequency)
         return kernels.search_patches, (bins.frame, bins.stretch, bins.grid, *bins.sorted)
 
-    def pairs(self, first: int, last: int) -> Pairs:
-        """Return what the patches first, …, last − 1 yield."""
+    def pairs(self, first: int, last: int) -> list[Pairs]:
+        """Return what the patches first, …, last − 1 yield, in one or more parts."""
         patches_with, arguments = self.kernel
-        parts, room = [], ROOM
-        while first < last:
-            found, doubtful = np.empty((2, 3, room), dtype=np.int64)
+        parts, room, begin = [], ROOM, first
+        while begin < last:
+            found, doubtful = (np.empty((room, 2), dtype=np.int64) for _ in range(2))
             bounds, counts = np.empty(room), np.zeros(3, dtype=np.int64)
-            first, needed = patches_with(
+            end, needed = patches_with(
                 self.spline.coefficients, self.spline.scale, self.noise, self.border, *arguments,
-                first, last, found, doubtful, bounds, counts,
+                begin, last, found, doubtful, bounds, counts,
             )  # fmt: skip
             sure, open_, developable = counts.tolist()
-            parts.append(
-                Pairs(
-                    first,
-                    found[:, :sure].copy(),
-                    doubtful[:, :open_].copy(),
-                    bounds[:open_].copy(),
-                    developable,
-                )
-            )
-            room = max(ROOM, needed)
-        return Pairs.joined(parts)
+            rows = found[:sure] if 2 * sure > room else found[:sure].copy()
+            doubts = doubtful[:open_].copy(), bounds[:open_].copy()
+            parts.append(Pairs(end, rows, *doubts, developable))
+            # What is left will have about as many, and some more.
+            rate = 1.2 * (sure / (end - begin)) if end > begin else 0.0
+            room = max(ROOM, needed, min(int(rate * (last - end)), MOST_ROOM) + needed)
+            begin = end
+        return parts
 
     def range_size(self, threads: int | None) -> int:
         """Return how many patches one range has."""
@@ -182,12 +223,13 @@ class Search:
         self, doubtful: NDArray[np.int64], bounds: NDArray[np.float64], threads: int | None
     ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         """Return those of the doubtful pairs that are samples, and what `Decision` says of them."""
-        if doubtful.shape[1] == 0:
+        if len(doubtful) == 0:
             return doubtful, np.empty((0, 5))
-        forgiven = np.where(_on_border(self.spline, self.border, doubtful[0]), bounds, 0.0)
-        normals = self.bins.normals[doubtful[1]]
-        decision = decide(self.spline, doubtful[0], normals, doubtful[1], bounds, forgiven, threads)
-        return doubtful[:, decision.which], decision.local
+        patches, numbers = doubtful[:, 0].copy(), doubtful[:, 1] >> 32
+        forgiven = np.where(_on_border(self.spline, self.border, patches), bounds, 0.0)
+        normals = self.bins.normals[numbers]
+        decision = decide(self.spline, patches, normals, numbers, bounds, forgiven, threads)
+        return doubtful[decision.which], decision.local
 
 
 def find(
@@ -198,10 +240,11 @@ def find(
     if search.hopeless:
         return Hits.none(spline.patches)
     size = search.range_size(threads)
-    parts = [*over_ranges(search.pairs, spline.patches, size, threads, progress)]
-    doubtful = np.concatenate([part.doubtful for part in parts], axis=1)
+    ranges = over_ranges(search.pairs, spline.patches, size, threads, progress)
+    parts = [part for found in ranges for part in found]
+    doubtful = np.concatenate([part.doubtful for part in parts])
     bounds = np.concatenate([part.bounds for part in parts])
-    return merged(parts, *search.decided(doubtful, bounds, threads), threads)
+    return merged(parts, *search.decided(doubtful, bounds, threads), bins.frequency > 0)
 
 
 def fill(
@@ -214,48 +257,61 @@ def fill(
 ) -> dict[str, NDArray[Any]]:
     """Return fields of the hits: see `Samples`. Numbers are rounded to `dtype` when stored."""
     count = len(hits)
-    filled = {x: new_field(x, count, dtype) for x in FLOAT_NAMES if x in fields}
-    normals = bins.ordered
-    indices = hits.patch_index, hits.place
-    arrays = [filled.get(name) for name in FLOAT_NAMES]
+    types = dict.fromkeys(FLOAT_NAMES, dtype) | dict.fromkeys(INDEX_NAMES, np.int64)
+    filled = {x: new_field(x, count, types[x]) for x in ARRAY_NAMES if x in fields}
+    arrays = [filled.get(name) for name in (*FLOAT_NAMES, *INDEX_NAMES)]
+    pieces = hits.pieces(0, count, SAMPLES_AT_A_TIME)
 
     def work(first: int, last: int) -> None:
-        kernels.fill_samples(
-            spline.coefficients, spline.scale, normals, spline.frame, first, last,
-            *indices, *arrays,
-        )  # fmt: skip
+        for start, notes in pieces[first:last]:
+            fill_notes(spline, bins, notes, start, arrays)
 
-    if filled:
-        for _ in over_ranges(work, count, SAMPLES_AT_A_TIME, threads):
-            pass
+    for _ in over_ranges(work, len(pieces), 1, threads):
+        pass
+    if len(hits.exact) and any(name in filled for name in FLOAT_NAMES):
         kernels.fill_known(
-            spline.coefficients, spline.scale, normals, spline.frame, hits.exact, hits.local,
-            *indices, *arrays,
+            spline.coefficients, spline.scale, bins.normals, spline.frame,
+            hits.exact, hits.pairs, hits.local, *arrays[: len(FLOAT_NAMES)],
         )  # fmt: skip
-    return filled | {x: getattr(hits, x) for x in INDEX_NAMES if x in fields}
+    return filled
+
+
+def fill_notes(
+    spline: Spline,
+    bins: NormalBins,
+    notes: Notes,
+    start: int,
+    arrays: Sequence[NDArray[Any] | None],
+) -> None:
+    """Fill arrays, in the order of FLOAT_NAMES and INDEX_NAMES, from number `start` on."""
+    patches = spline.coefficients, spline.scale
+    if notes.runs:
+        icosphere.fill_runs(
+            *patches, bins.normals, spline.frame, bins.frequency, notes.rows, start, *arrays
+        )
+    else:
+        kernels.fill_samples(*patches, bins.sorted[1], spline.frame, notes.rows, start, *arrays)
 
 
 def merged(
-    parts: Sequence[Pairs],
-    decided: NDArray[np.int64],
-    local: NDArray[np.float64],
-    threads: int | None,
+    parts: Sequence[Pairs], decided: NDArray[np.int64], local: NDArray[np.float64], runs: bool
 ) -> Hits:
     """Return the sure pairs of consecutive ranges and those that were decided, sorted, as hits."""
-    ends = np.searchsorted(decided[0], [0, *(part.last for part in parts)])
-    starts = np.cumsum([0, *(part.sure.shape[1] for part in parts)]) + ends
-    pairs = np.empty((3, starts[-1]), dtype=np.int64)
-    exact, decided = np.empty(len(local), dtype=np.int64), np.ascontiguousarray(decided)
-
-    def work(first: int, last: int) -> None:
-        for k in range(first, last):
-            kernels.merge_pairs(
-                parts[k].sure, decided, ends[k], ends[k + 1], starts[k], pairs, exact
-            )
-
-    list(over_ranges(work, len(parts), 1, threads))
-    patch, normal, place = pairs
-    return Hits(patch, normal, place, exact, local, sum(part.developable for part in parts))
+    ends = np.searchsorted(decided[:, 0], [0, *(part.last for part in parts)])
+    found, exact, start = [], [], 0
+    for part, first, last in zip(parts, ends[:-1], ends[1:], strict=True):
+        notes = Notes(part.sure, runs)
+        if last > first:
+            rows = np.empty((len(part.sure) + last - first, 2), dtype=np.int64)
+            places = np.empty(last - first, dtype=np.int64)
+            kernels.merge_pairs(part.sure, decided[first:last], rows, places)
+            notes = Notes(rows, runs)
+            exact.append(start + notes.ends[places] - 1)
+        found.append(notes)
+        start += len(notes)
+    numbers = np.concatenate(exact) if exact else np.empty(0, dtype=np.int64)
+    pairs = decided >> np.array([0, 32])
+    return Hits(tuple(found), numbers, pairs, local, sum(part.developable for part in parts))
 
 
 def _on_border(

@@ -33,6 +33,9 @@ GOLDEN = (1 + math.sqrt(5)) / 2
 # So many normals are made at a time: their arrays fit into the cache.
 PIECE = 1 << 15
 MOST_FREQUENT = 10_000
+# The corners, the edges and the faces of an icosahedron.
+PARTS = 1 + 30 + 20
+PARTS_AT_A_TIME = 5
 
 
 def icosphere(frequency: int) -> NDArray[np.float64]:
@@ -45,17 +48,13 @@ def icosphere(frequency: int) -> NDArray[np.float64]:
     Raises InputError unless `frequency` is a whole number from 1 to 10,000.
     """
     nu = _refinement(frequency, "frequency")
-    # Coordinates a + b φ as integers (a, b): what mirrors another point does so bit for bit.
-    golden, corners = np.array([1.0, GOLDEN]), icosahedron.CORNERS
-    along = np.arange(1, nu)[:, None, None]
-    parts = [corners * nu]
-    parts += [(nu - along) * corners[i] + along * corners[j] for i, j in icosahedron.EDGES]
-    s, t = np.meshgrid(np.arange(1, nu), np.arange(1, nu), indexing="ij")
-    s, t = (x[s + t < nu][:, None, None] for x in (s, t))
-    parts += [
-        (nu - s - t) * corners[i] + s * corners[j] + t * corners[k] for i, j, k in icosahedron.FACES
-    ]
-    return _unit(np.concatenate(parts) @ golden)
+    normals = np.empty((10 * nu**2 + 2, 3))
+
+    def work(first: int, last: int) -> None:
+        icosahedron.write_points(nu, first, last, normals)
+
+    list(over_ranges(work, PARTS, PARTS_AT_A_TIME, 1 if len(normals) < PIECE else None))
+    return normals
 
 
 def frequency_within(angle: float) -> int:

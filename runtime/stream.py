@@ -84,7 +84,7 @@ class _Stream:
             bins = NormalBins(chosen.part(first, last, self.threads), self.threads)
             found = find_in_turn(self.spline, bins, self.threads, self.progress and alone)
             developable, hits = 0, Hits.none(0)  # as many as in every block
-            for hits in grouped(found, self.size, self.threads):
+            for hits in grouped(found, self.size):
                 came += len(hits)
                 developable += hits.developable
                 if len(hits) or (came == 0 and first == starts[-1]):
@@ -102,19 +102,19 @@ class _Stream:
         return Samples(**arrays, report=report, spline=self.spline)
 
 
-def grouped(parts: Iterator[Hits], size: int, threads: int | None) -> Iterator[Hits]:
+def grouped(parts: Iterator[Hits], size: int) -> Iterator[Hits]:
     """Join and cut consecutive hits: `size` at a time, and what is left at the end."""
     group: list[Hits] = []
     room = size
     for hits in parts:
         start = 0
         while len(hits) - start >= room:
-            yield Hits.joined([*group, hits[start : start + room]], threads)
+            yield Hits.joined([*group, hits[start : start + room]])
             start += room
             group, room = [], size
         group.append(hits[start:])
         room -= len(group[-1])
-    yield Hits.joined(group, threads)
+    yield Hits.joined(group)
 
 
 def find_in_turn(
@@ -151,22 +151,24 @@ class _Border:
         cells[:, 0], cells[:, -1] = south, north
         cells[0] |= west
         cells[-1] |= east
-        doubtful, bounds = [np.empty((3, 0), dtype=np.int64)], [np.empty(0)]
+        doubtful, bounds = [np.empty((0, 2), dtype=np.int64)], [np.empty(0)]
         ends = np.flatnonzero(np.diff(cells.ravel(), prepend=False, append=False))
         for first, last in ends.reshape(-1, 2).tolist():
-            found = search.pairs(4 * first, 4 * last)
-            doubtful.append(found.doubtful)
-            bounds.append(found.bounds)
-        decided = search.decided(np.concatenate(doubtful, axis=1), np.concatenate(bounds), threads)
+            for found in search.pairs(4 * first, 4 * last):
+                doubtful.append(found.doubtful)
+                bounds.append(found.bounds)
+        decided = search.decided(np.concatenate(doubtful), np.concatenate(bounds), threads)
         return cls(search, cells.ravel(), *decided)
 
     def hits(self, first: int, last: int) -> Hits:
         """Return which of the patches first, …, last − 1 have which of the normals."""
         found = self.search.pairs(first, last)
-        inside = ~self.cells[found.doubtful[0] // 4]
-        pairs, local = self.search.decided(found.doubtful[:, inside], found.bounds[inside], 1)
-        low, high = np.searchsorted(self.pairs[0], (first, last))
-        pairs = np.concatenate([pairs, self.pairs[:, low:high]], axis=1)
-        order = np.lexsort((pairs[1], pairs[0]))
+        doubtful = np.concatenate([x.doubtful for x in found])
+        bounds = np.concatenate([x.bounds for x in found])
+        inside = ~self.cells[doubtful[:, 0] // 4]
+        pairs, local = self.search.decided(doubtful[inside], bounds[inside], 1)
+        low, high = np.searchsorted(self.pairs[:, 0], (first, last))
+        pairs = np.concatenate([pairs, self.pairs[low:high]])
+        order = np.lexsort((pairs[:, 1], pairs[:, 0]))
         local = np.concatenate([local, self.local[low:high]])
-        return merged([found], pairs[:, order], local[order], 1)
+        return merged(found, pairs[order], local[order], self.search.bins.frequency > 0)

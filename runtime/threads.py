@@ -7,12 +7,13 @@ import sys
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from itertools import islice
 from typing import TypeVar
 
 from .checks import whole_number
 
-__all__ = ["over_ranges", "shown", "thread_count"]
+__all__ = ["counted", "over_ranges", "shown", "thread_count"]
 
 Result = TypeVar("Result")
 
@@ -73,8 +74,24 @@ def _in_threads(
 def shown(results: Iterator[Result], count: int, progress: bool) -> Iterator[Result]:
     """Yield results; with `progress`, a terminal shows how many of `count` are done."""
     # tqdm shows nothing without a terminal, and its import takes longer than many a sampling.
-    if not progress or sys.stderr is None or not sys.stderr.isatty():
+    if not _seen(progress):
         return results
     from tqdm import tqdm
 
     return iter(tqdm(results, total=count, delay=1.0, leave=False, disable=None))
+
+
+@contextmanager
+def counted(count: int | None, progress: bool) -> Iterator[Callable[[int], object]]:
+    """Yield what is told how many are done, of `count` if that is known; see `shown`."""
+    if not _seen(progress):
+        yield lambda done: None
+        return
+    from tqdm import tqdm
+
+    with tqdm(total=count, delay=1.0, leave=False, disable=None) as bar:
+        yield lambda done: bar.update(done - bar.n)
+
+
+def _seen(progress: bool) -> bool:
+    return progress and sys.stderr is not None and sys.stderr.isatty()

@@ -30,19 +30,28 @@ __all__ = ["GENERATED", "derive", "differences", "existing", "write"]
 PRIMES = 24
 # What the search among bins and that among the points of an icosahedron share.
 SCANNED = (
+    "ACCURATE",
+    "TILE",
+    "TILE_STEP",
     "bound_of_forms",
     "box_of",
     "classify",
     "cone_of_normals",
     "control_normals",
+    "count_open",
     "empty",
     "face_window",
+    "fill_tile",
+    "inner",
     "is_developable",
     "largest_tangent",
+    "load_patch",
     "look_again",
     "map_net",
+    "new_tile",
     "patch_vectors",
     "spans_of_hull",
+    "whole_vectors",
 )
 GENERATED = Path(__file__).parent.parent / "generated"
 PROJECT = GENERATED.parent / "pyproject.toml"
@@ -192,11 +201,15 @@ def icosphere_source() -> str:
     holders = [next(k for k, face in enumerate(faces) if corner in face) for corner in range(12)]
     bars = [_floats(icosahedron.bars(face)) for face in faces]
     frames = [_floats(icosahedron.frame(face)) for face in faces]
+    corners = ([icosahedron.CORNERS[x] for x in face] for face in faces)
+    lines = [[i, j - i, k - i] for i, j, k in corners]
     digest = hashlib.sha256(sampler_source().encode()).hexdigest()[:16]
     arrays = {
-        "CORNERS": [icosahedron.golden_parts(x) for x in icosahedron.CORNERS],
+        "LINES": [
+            [[float(part) for x in icosahedron.golden_parts(y) for part in x] for y in line]
+            for line in lines
+        ],
         "POSITIONS": [[float(x.evalf(40)) for x in corner] for corner in icosahedron.CORNERS],
-        "EDGES": edges,
         "FACES": faces,
         "CORNER_PLACES": [
             (k, *((0, 0), (0, 1), (1, 0))[faces[k].index(corner)])
@@ -208,6 +221,9 @@ def icosphere_source() -> str:
         "FRAMES": frames,
         "STRETCHES": [max(math.hypot(*row) for row in matrix) for matrix in frames],
     }
+    numbers = {"PHI": icosahedron.PHI, "FACE_RADIUS": icosahedron.face_radius()}
+    constants = [f"{name} = {float(x.evalf(40))!r}" for name, x in numbers.items()]
+    constants += [f"{name} = np.array({x})" for name, x in arrays.items()]
     return render(
         "icosphere.py",
         {
@@ -215,10 +231,11 @@ def icosphere_source() -> str:
                 "Sampling by the points of a refined icosahedron, row by row.",
                 f"\nfrom .sampler import {', '.join(SCANNED)}\n",
             ),
-            "constants": "\n".join(f"{name} = np.array({x})" for name, x in arrays.items())
-            + f"\nFACE_RADIUS = {float(icosahedron.face_radius().evalf(40))}",
+            "constants": "\n".join(constants),
             "digest": f"# sampler.py, digest {digest}: Numba's cache looks at this file alone.",
             "cone_of_patch": _cone_of_patch(),
+            "linear_forms": block(patch.LINEAR_FORMS_OF_NORMAL),
+            "eliminated_forms": block(patch.ELIMINATED_FORMS),
         },
     )
 
@@ -496,7 +513,7 @@ def _tile() -> dict[str, str]:
     names = [*normal, *vectors, *place, *points, *"sthKH"]
 
     def rows(chosen: Iterable[str]) -> dict[str, str]:
-        return {x: f"tile[{names.index(x)} * TILE + k]" for x in chosen}
+        return {x: f"tile[{names.index(x)} * TILE_STEP + k]" for x in chosen}
 
     def load(values: Mapping[str, str]) -> str:
         return "\n".join(f"{name} = {value}" for name, value in values.items())

@@ -6,7 +6,7 @@ from itertools import combinations
 
 import sympy as sp
 
-__all__ = ["CORNERS", "EDGES", "FACES", "bars", "face_radius", "frame", "golden_parts"]
+__all__ = ["CORNERS", "EDGES", "FACES", "PHI", "bars", "face_radius", "frame", "golden_parts"]
 
 PHI = sp.GoldenRatio
 # The cyclic permutations of (0, ±1, ±φ).

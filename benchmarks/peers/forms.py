@@ -47,6 +47,10 @@ class ClosedForm(ABC):
     def parameters(self, points: Array) -> tuple[Array, Array]:
         """Return u and v of points (..., 3) on, or near, the surface."""
 
+    @abstractmethod
+    def preimages(self, normals: Array) -> tuple[Array, Array]:
+        """Return u and v (...,) of all points that have one of the unit normals (N, 3)."""
+
     def bending(self, u: Array, v: Array) -> Array:
         """Return |K| |x_u × x_v|, the density of the paper's samples over the parameters."""
         return np.abs(self.curvature(u, v)) * self.area(u, v)
@@ -99,6 +103,12 @@ class Torus(ClosedForm):
         x, y, z = np.moveaxis(points, -1, 0)
         return np.arctan2(y, x), np.arctan2(z, np.hypot(x, y) - self.major)
 
+    def preimages(self, normals: Array) -> tuple[Array, Array]:
+        """Return u and v: one on the outer half, one across the hole on the inner half."""
+        x, y, z = normals.T
+        u, v = np.arctan2(y, x), np.arctan2(z, np.hypot(x, y))
+        return np.concatenate([u, u + math.pi]), np.concatenate([v, math.pi - v])
+
 
 @dataclass(frozen=True)
 class Ellipsoid(ClosedForm):
@@ -141,6 +151,13 @@ class Ellipsoid(ClosedForm):
         """Return u and v."""
         x, y, z = np.moveaxis(points / [self.a, self.b, self.c], -1, 0)
         return np.arctan2(y, x), np.arctan2(z, np.hypot(x, y))
+
+    def preimages(self, normals: Array) -> tuple[Array, Array]:
+        """Return u and v of the normals that belong to the belt, one for each."""
+        x, y, z = (normals * [self.a, self.b, self.c]).T
+        u, v = np.arctan2(y, x), np.arctan2(z, np.hypot(x, y))
+        inside = np.abs(v) <= self.surface.domain[1][1]
+        return u[inside], v[inside]
 
 
 @dataclass(frozen=True)
@@ -185,6 +202,24 @@ class Waves(ClosedForm):
     def parameters(self, points: Array) -> tuple[Array, Array]:
         """Return u and v."""
         return points[..., 0], points[..., 1]
+
+    def preimages(self, normals: Array) -> tuple[Array, Array]:
+        """Return u and v from cos α cos β and sin α sin β, which are cos(α ∓ β) in pairs."""
+        n_x, n_y, n_z = normals[normals[:, 2] > 0.0].T
+        steepest = self.amplitude * self.frequency
+        cosines, sines = -n_x / n_z / steepest, n_y / n_z / steepest
+        exists = np.maximum(np.abs(cosines + sines), np.abs(cosines - sines)) <= 1.0
+        cosines, sines = cosines[exists], sines[exists]
+        turns = 2.0 * math.pi * np.arange(-2, 3)  # |α ± β| <= 2 frequency
+        assert 2.0 * self.frequency < 5.0 * math.pi
+        differences, sums = (
+            np.concatenate([x + turns[:, None], turns[:, None] - x])
+            for x in (np.arccos(cosines + sines), np.arccos(cosines - sines))
+        )
+        u = (differences[:, None] + sums).ravel() / (2.0 * self.frequency)
+        v = (sums - differences[:, None]).ravel() / (2.0 * self.frequency)
+        inside = np.maximum(np.abs(u), np.abs(v)) <= 1.0
+        return u[inside], v[inside]
 
 
 FORMS: tuple[ClosedForm, ...] = (Torus(), Ellipsoid(), Waves())

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .cad import gmsh_mesher, opencascade_face, opencascade_mesher
+from .cad import gmsh_mesher, opencascade_mesher, opencascade_shape
 from .forms import Array, ClosedForm
 from .meshes import triangles
 from .peer import Points, tuned
@@ -55,12 +55,14 @@ def opencascade_triangles(form: ClosedForm, count: int) -> Triangles:
     from OCP.BRep import BRep_Tool
     from OCP.TopLoc import TopLoc_Location
 
-    face = opencascade_face(form)
-    meshed = opencascade_mesher(face)
+    face = opencascade_shape(form)
+    meshed = opencascade_mesher(form, face)
 
     def arrays(angle: float) -> Triangles:
-        points = meshed(angle)[0]
+        meshed(angle)
         mesh = BRep_Tool.Triangulation_s(face, TopLoc_Location())
+        nodes = map(mesh.Node, range(1, mesh.NbNodes() + 1))
+        points = np.array([(p.X(), p.Y(), p.Z()) for p in nodes])
         numbers = range(1, mesh.NbTriangles() + 1)
         corners = [mesh.Triangle(k).Value(i) - 1 for k in numbers for i in (1, 2, 3)]
         return joined(points, np.reshape(corners, (-1, 3)))

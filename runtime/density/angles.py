@@ -8,37 +8,70 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
-from .cover import Cover
+from .cover import Cover, quarters
 
+# Triangles are cut until normals turn by less than this part of an angle within them.
+SMALL = 0.02
 # Normals with different signs of K are so far apart: farther than any others.
 APART = 2.0
 
-__all__ = ["cover_normals", "largest_angle"]
+__all__ = ["cover_normals", "widest_angles"]
 
 
-def cover_normals(cover: Cover, angle: float) -> None:
-    """Add samples until the normal in every middle of a triangle is within `angle` degrees of one.
+def cover_normals(cover: Cover, angle: float) -> float:
+    """Add samples until every normal of the surface is within `angle` degrees of one of theirs.
 
     Where the normals that were asked lie as dense as that, only places at the border of the
-    Gaussian image are farther from all of them: their nearest normal may lie outside it.
+    Gaussian image are farther from all of them: their nearest normal may lie outside it. Returns
+    the largest angle of any normal, in degrees. Within a triangle, normals are taken to turn by no
+    more than its extent times the curvature in its middle.
     """
-    rows = cover.middles()
-    chords = _chords(cover, rows)
-    limit = _chord(angle)
-    (far,) = np.nonzero(chords > limit)
-    normals = rows[far, 3:6]
-    tree, left = KDTree(normals), np.ones(len(far), dtype=bool)
+    limit = 2.0 * math.sin(math.radians(angle) / 2.0)
+    near = (1.0 - SMALL) * limit
+    largest, *far = _far_normals(cover, limit)
+    normals, distances = far[2][:, 3:6], far[3]
+    tree, left = KDTree(normals), np.ones(len(normals), dtype=bool)
     chosen = []
-    for k in np.argsort(-chords[far], kind="stable"):
+    for k in np.argsort(-distances, kind="stable"):
         if left[k]:
-            chosen.append(far[k])
-            left[tree.query_ball_point(normals[k], limit)] = False
-    cover.add(np.array(chosen, dtype=np.int64), rows)
+            chosen.append(k)
+            left[tree.query_ball_point(normals[k], near)] = False
+    if chosen:
+        cover.add(*(x[chosen] for x in far[:3]))
+        again = KDTree(normals[chosen]).query(normals)[0]
+        largest = max(largest, float(again.max()) + SMALL * limit)
+    return math.degrees(2.0 * math.asin(min(largest, limit) / 2.0))
+
+
+def _far_normals(
+    cover: Cover, limit: float
+) -> tuple[float, NDArray[np.int64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Find small triangles with normals that are farther than `limit` from those of all samples.
+
+    Returns how far the normals of all other triangles are at most; and patches, triangles, middles
+    and the distances of the normals in the middles.
+    """
+    tree = KDTree(cover.points[: cover.count, 3:])
+    patches, triangles, largest = cover.patches, cover.triangles.copy(), 0.0
+    weights = np.maximum(triangles[:, 4], cover.wanted.law.floor)
+    triangles[:, 4] = weights
+    turns = cover.wanted.reaches[patches] * np.abs(triangles[:, 2]) * np.sqrt(weights)
+    found = []
+    while len(patches):
+        rows = cover.middles_of(patches, triangles)
+        distances = tree.query(rows[:, 3:6], workers=-1)[0]
+        far = (distances + turns > limit) & rows[:, 3:6].any(axis=1)
+        largest = max(largest, float((distances + turns)[~far].max(initial=0.0)))
+        small = far & (turns <= SMALL * limit)
+        found.append((patches[small], triangles[small], rows[small], distances[small]))
+        cut = far & ~small
+        patches, triangles, turns = quarters(patches[cut], triangles[cut], turns[cut] / 2.0)
+    return largest, *(np.concatenate(x) for x in zip(*found, strict=True))
 
 
 def widest_angles(cover: Cover, number: int) -> None:
     """Add samples where normals are farthest from those of all samples with the same sign of K."""
-    rows = cover.middles()
+    rows = cover.middles
     places = np.column_stack([rows[:, 3:6], APART * np.sign(rows[:, 6])])
     samples = np.column_stack(
         [cover.points[: cover.count, 3:], APART * np.sign(cover.local[: cover.count, 3])]
@@ -52,19 +85,4 @@ def widest_angles(cover: Cover, number: int) -> None:
             distances[near], np.linalg.norm(places[near] - places[k], axis=1)
         )
         chosen.append(k)
-    cover.add(np.array(chosen, dtype=np.int64), rows)
-
-
-def largest_angle(cover: Cover) -> float:
-    """Return the largest angle, in degrees, between a normal of the surface and all samples'."""
-    largest = float(_chords(cover, cover.middles()).max(initial=0.0))
-    return math.degrees(2.0 * math.asin(min(largest / 2.0, 1.0)))
-
-
-def _chords(cover: Cover, rows: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the distances of the unit normals in the middles to the nearest ones of samples."""
-    return KDTree(cover.points[: cover.count, 3:]).query(rows[:, 3:6], workers=-1)[0]
-
-
-def _chord(angle: float) -> float:
-    return 2.0 * math.sin(math.radians(angle) / 2.0)
+    cover.add(cover.patches[chosen], cover.triangles[chosen], rows[chosen])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -13,25 +14,29 @@ from ..samples import Samples
 from ..threads import over_ranges
 from .law import Wanted
 
-__all__ = ["APPROACH", "GREEDY", "Cover"]
+__all__ = ["APPROACH", "FINE", "STEP", "Array", "Cover", "Indices", "quarters"]
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
 
 # The arrays that hold a row for each sample.
 SAMPLES = ("points", "weights", "local")
 TRIANGLES_AT_A_TIME = 1 << 15
 # The first samples come where none is within so many times the radius that is expected, the next
 # ones within STEP of that, and so on.
-WIDEST, STEP = 2.0, 2.0**-0.25
-# n samples of a greedy cover within a radius r have n r² times this as what is wanted of them.
-GREEDY = 1.85
+WIDEST, STEP = 1.3, 0.8
+# n samples that are no nearer to one another than a radius r, where there is no room for another,
+# have about n r² times this as what is wanted of them.
+PACKED = 0.6
 # The grids are made again when the radius is so many times smaller or larger than it was.
 FINER = 1.5
-# Triangles this small beside the radius are not cut any more. If `strict`, they get a sample if
-# need be, so that all of the surface is near enough; otherwise the middles of all triangles are.
-FINE, FINEST = 0.3, 0.1
+# Triangles this small beside the radius are not cut any more. If all of the surface has to be near
+# enough, and not only their middles, they are cut finer, and get a sample if need be.
+FINE, FINEST = 0.7, 0.1
+# The part of all patches by which one goes on from one to the next.
+GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 # A count is approached from below: the last but one radius shall bring so much of it.
-APPROACH = 0.98
+APPROACH = 0.95
 
 
 class Cover:
@@ -40,55 +45,51 @@ class Cover:
     Near enough is within radius / √weight, by a `Law` of weights. Lengths are those of the spline
     times `wanted.unit`. Rows of `points` (…, 6) (and normals), `weights` and `local` (…, 4) (patch,
     u, v, K) up to `count` are the samples; the first `given` are those that were given.
+
+    The surface is cut into triangles, smaller and smaller ones. `tell` is told how many samples
+    there are, from time to time.
     """
 
-    def __init__(self, wanted: Wanted, given: Samples | None) -> None:
+    def __init__(
+        self,
+        wanted: Wanted,
+        given: Samples | None,
+        tell: Callable[[int], object] = lambda count: None,
+    ) -> None:
         """Begin with what is given, samples of the same spline."""
-        self.wanted = wanted
+        self.wanted, self.tell = wanted, tell
         self.given = self.count = 0 if given is None else len(given)
         room = max(self.given, 1024)
         self.points, self.weights = np.empty((room, 6)), np.empty(room)
         self.local, self.links = np.empty((room, 4)), np.empty(0, dtype=np.int32)
         self.heads = np.empty(0, dtype=np.int32)
-        self.finest = self.grid_radius = math.inf
-        self.patches = np.arange(wanted.spline.patches)
-        self.triangles = wanted.triangles()
+        self.finest = self.grid_radius = self.radius = math.inf
+        self.room, self.cut = self._whole_patches(), wanted.spline.patches
         if given is not None:
             self._take(given)
 
     @property
-    def coverage(self) -> float:
-        """How far a place of the surface can be from the nearest sample, at most."""
-        extents = self.wanted.reaches[self.patches] * np.abs(self.triangles[:, 2])
-        farthest = self.triangles[:, 3] + extents
-        return float(farthest.max(initial=0.0)) / self.wanted.unit
+    def patches(self) -> Indices:
+        """The patches that the triangles are of."""
+        return self.room[0][: self.cut]
 
     @property
-    def widest_gap(self) -> float:
-        """The radius that the middles of all triangles are near enough within."""
-        return float((np.sqrt(self.triangles[:, 4]) * self.triangles[:, 3]).max(initial=0.0))
+    def triangles(self) -> Array:
+        """Triangles (…, 5) that make up the surface; see `cover_triangles`."""
+        return self.room[1][: self.cut]
 
-    def state(self) -> dict[str, NDArray[Any]]:
-        """Return what `restore` brings back: copies of the samples and the triangles."""
-        rows = {name: getattr(self, name)[: self.count].copy() for name in SAMPLES}
-        return rows | {"patches": self.patches, "triangles": self.triangles.copy()}
-
-    def restore(self, state: dict[str, NDArray[Any]]) -> None:
-        """Go back to a state with no more samples than there is room for now."""
-        self.count = len(state["weights"])
-        for name in SAMPLES:
-            getattr(self, name)[: self.count] = state[name]
-        self.patches, self.triangles = state["patches"], state["triangles"]
-        self.grid_radius = math.inf
-
+    @property
     def middles(self) -> Array:
-        """Return point, unit normal and K (…, 7) in the middle of the triangles."""
-        rows = np.empty((len(self.patches), 7))
-        spline = self.wanted.spline
+        """Point, unit normal and K (…, 7) in the middle of the triangles."""
+        return self.middles_of(self.patches, self.triangles)
+
+    def middles_of(self, patches: Indices, triangles: Array) -> Array:
+        """Return point, unit normal and K (…, 7) in the middle of triangles."""
+        rows, spline = np.empty((len(patches), 7)), self.wanted.spline
 
         def work(first: int, last: int) -> None:
             kernels.middles(
-                spline.coefficients, spline.scale, self.patches, self.triangles, first, last, rows
+                spline.coefficients, spline.scale, patches, triangles, first, last, rows
             )
 
         for _ in over_ranges(work, len(rows), TRIANGLES_AT_A_TIME, self.wanted.threads):
@@ -99,125 +100,90 @@ class Cover:
         """Add samples until every place is within radius / √weight of one, or there are `most`."""
         now = WIDEST * radius
         while now > radius:
-            self.sweep(now, most, strict=False)
+            self.sweep(now, most)
             now *= STEP
-        self.sweep(radius, most, FINEST)
+        self.sweep(radius, most, FINEST, strict=True)
 
     def to_count(self, count: int) -> None:
         """Add samples until there are so many."""
-        weight = self.wanted.totals[1]
-        radius = WIDEST * math.sqrt(weight / (GREEDY * count))
-        start = self.patches, self.triangles, self.count
+        weight = self.wanted.total
+        radius = WIDEST * math.sqrt(PACKED * weight / count)
         self.sweep(radius, count)
-        while self.count == count > start[2] + 1 and radius * radius < weight:
+        while self.count == count > self.given + 1 and radius * radius < weight:
             # That is not where the widest gaps are, but those that came first.
-            self.patches, self.triangles, self.count = start
-            self.grid_radius = math.inf
+            self.forget()
+            self.room, self.cut = self._whole_patches(), self.wanted.spline.patches
             radius *= 2.0
             self.sweep(radius, count)
         self.narrow(radius, count, STEP)
 
-    def narrow(
-        self, radius: float, count: int, step: float, fine: float = FINE, strict: bool = True
-    ) -> None:
-        """Sweep within ever smaller radii, from the given one on, until there are so many samples.
+    def narrow(self, radius: float, count: int, step: float, fine: float = FINE) -> None:
+        """Sweep within ever smaller radii than the given one, until there are so many samples.
 
         How many a radius brings is concluded from the two before, so that the last sweeps are
         whole ones, but for the very last.
         """
-        before = (math.inf, max(self.count, 1))
+        factor = step
         while self.count < count and radius > 0.0:
-            self.sweep(radius, count, fine, strict)
+            before, shrunk = self.count, factor
+            radius *= factor
+            self.sweep(radius, count, fine)
             factor = step
-            if before[1] < self.count < count:
-                power = math.log(self.count / before[1]) / math.log(before[0] / radius)
-                factor = (self.count / (APPROACH * count)) ** (1.0 / power) if power > 0.0 else step
-            before = (radius, max(self.count, 1))
-            radius *= min(max(factor, step), APPROACH)
-        self._measure_gaps()
-
-    def _measure_gaps(self) -> None:
-        """Find the nearest samples where none is near, or none on the same side."""
-        from scipy.spatial import KDTree
-
-        (unknown,) = np.nonzero(np.isinf(self.triangles[:, 3]))
-        if len(unknown):
-            tree = KDTree(self.points[: self.count, :3])
-            self.triangles[unknown, 3] = tree.query(self.middles()[unknown, :3], workers=-1)[0]
+            if 0 < before < self.count < count:
+                power = math.log(self.count / before) / -math.log(shrunk)
+                factor = (self.count / (APPROACH * count)) ** (1.0 / power)
+            factor = min(max(factor, step), APPROACH)
 
     def sweep(
-        self, radius: float, most: int | None = None, fine: float = FINE, strict: bool = True
+        self, radius: float, most: int | None = None, fine: float = FINE, strict: bool = False
     ) -> None:
-        """Add samples within this radius until every place is near enough, or there are `most`."""
+        """Add samples within this radius until every middle is near enough, or there are `most`.
+
+        If `strict`, every place is near enough then. Once there are `most`, the rest is left alone.
+        """
+        self.radius = radius
         if not self.grid_radius / FINER <= radius <= self.grid_radius * FINER:
             self._make_grids(radius)
-        kept: list[tuple[NDArray[np.int64], Array]] = []
-        todo = [(self.patches, self.triangles)]
-        while todo:
-            cut = []
-            for patches, triangles in todo:
-                for first in range(0, len(patches), TRIANGLES_AT_A_TIME):
-                    last = min(first + TRIANGLES_AT_A_TIME, len(patches))
-                    part = patches[first:last], triangles[first:last]
-                    near, far = self._look_at(radius, most, fine, strict, *part)
-                    kept.append(near)
-                    cut.append(far)
-            todo = [x for x in cut if len(x[0])]
-        self.patches, self.triangles = (np.concatenate(x) for x in zip(*kept, strict=True))
+        wanted, spline, done = self.wanted, self.wanted.spline, 0
+        while done < self.cut and self.count != most:
+            self._make_room(TRIANGLES_AT_A_TIME)
+            counts = np.array([self.cut, self.count])
+            done = kernels.cover_triangles(
+                spline.coefficients, spline.scale, wanted.reaches, wanted.law.numbers,
+                radius, fine, strict, len(self.weights) if most is None else most,
+                *self.room, done, min(done + TRIANGLES_AT_A_TIME, self.cut),
+                self.heads, self.links, self.points, self.weights, self.finest, counts, self.local,
+            )  # fmt: skip
+            self.cut, self.count = counts.tolist()
+            self.tell(self.count)
 
-    def add(self, which: NDArray[np.int64], middles: Array) -> None:
-        """Add the middles of some triangles as samples; `middles` are those of all."""
-        self._make_room(len(which))
-        rows = slice(self.count, self.count + len(which))
-        self.points[rows] = middles[which, :6]
-        self.weights[rows] = self.triangles[which, 4]
-        self.local[rows] = np.column_stack(
-            [self.patches[which], self.triangles[which, :2], middles[which, 6]]
-        )
-        self.count += len(which)
+    def add(self, patches: Indices, triangles: Array, middles: Array) -> None:
+        """Add the middles of some triangles as samples; see `middles_of`."""
+        self._make_room(len(patches))
+        rows = slice(self.count, self.count + len(patches))
+        self.points[rows], self.weights[rows] = middles[:, :6], triangles[:, 4]
+        self.local[rows] = np.column_stack([patches, triangles[:, :2], middles[:, 6]])
+        self.count += len(patches)
         self.grid_radius = math.inf  # they are not in the grids
 
-    def remove(self, rows: NDArray[np.int64]) -> None:
-        """Take samples out again; nothing is known then of how near the others are."""
-        left = np.ones(self.count, dtype=bool)
-        left[rows] = False
-        self.given -= int(np.count_nonzero(rows < self.given))
-        for name in SAMPLES:
-            array = getattr(self, name)
-            array[: np.count_nonzero(left)] = array[: self.count][left]
-        self.count = int(np.count_nonzero(left))
+    def forget(self) -> None:
+        """Take out all samples that were added, and what is known of how near samples are."""
+        self.count = self.given
         self.triangles[:, 3] = math.inf
         self.grid_radius = math.inf
 
-    def _look_at(
-        self,
-        radius: float,
-        most: int | None,
-        fine: float,
-        strict: bool,
-        patches: NDArray[np.int64],
-        triangles: Array,
-    ) -> tuple[tuple[NDArray[np.int64], Array], tuple[NDArray[np.int64], Array]]:
-        """Return the triangles that are near enough to a sample, and the quarters of the others."""
-        size, wanted = len(patches), self.wanted
-        self._make_room(size)
-        kept, cut = (
-            (np.empty(x, dtype=np.int64), np.empty((x, triangles.shape[1])))
-            for x in (size, 4 * size)
-        )
-        counts = np.array([0, 0, self.count])
-        kernels.cover_triangles(
-            wanted.spline.coefficients, wanted.spline.scale, wanted.reaches, wanted.law.numbers,
-            radius, fine, strict, self.count + size if most is None else most,
-            patches, triangles, 0, size,
-            *kept, *cut, self.heads, self.links, self.points, self.weights, self.finest, counts,
-            self.local,
-        )  # fmt: skip
-        near, far, self.count = counts.tolist()
-        return (
-            (kept[0][:near].copy(), kept[1][:near].copy()),
-            (cut[0][:far].copy(), cut[1][:far].copy()),
-        )
+    def _whole_patches(self) -> tuple[Indices, Array]:
+        """Return all patches, as triangles that no sample is known to be near to.
+
+        Their order is mixed: row by row, samples would snap to the pattern of the cells.
+        """
+        count = self.wanted.spline.patches
+        step = round(count * GOLDEN)
+        while math.gcd(step, count) > 1:
+            step += 1
+        order = step * np.arange(count) % count
+        third, one, far = np.full((3, count), [[1 / 3], [1.0], [math.inf]])
+        return order, np.column_stack([third, third, one, far, self.wanted.largest[order]])
 
     def _take(self, given: Samples) -> None:
         """Enter the samples that are given."""
@@ -232,9 +198,8 @@ class Cover:
 
     def _make_grids(self, radius: float) -> None:
         """Make the grids again, for a radius that is not much smaller than this one."""
-        weights = self.triangles[:, 4]
-        least = max(float(weights[weights >= 0.0].min(initial=math.inf)), self.wanted.law.floor)
-        self.finest = 2.0 * radius / math.sqrt(least) / 2.0 ** (kernels.LEVELS - 1)
+        widest = radius / math.sqrt(self.wanted.law.floor)
+        self.finest = math.ldexp(2.0 * widest, 1 - kernels.LEVELS)
         room = len(self.weights)
         self.heads = np.full(1 << (2 * kernels.SIZES * room).bit_length(), -1, dtype=np.int32)
         self.links = np.empty(kernels.SIZES * room, dtype=np.int32)
@@ -250,13 +215,36 @@ class Cover:
         self.grid_radius = radius
 
     def _make_room(self, more: int) -> None:
-        """Make room for so many more samples."""
-        old = len(self.weights)
-        if self.count + more <= old:
-            return
-        room = max(self.count + more, 2 * old)
-        for name in (*SAMPLES, "links"):
-            rows = getattr(self, name)
-            new = np.empty((len(rows) // old * room, *rows.shape[1:]), rows.dtype)
-            new[: len(rows)] = rows
-            setattr(self, name, new)
+        """Make room for so many more samples, and for the quarters of so many triangles."""
+        room = _room(len(self.weights), self.count + more)
+        for name in SAMPLES:
+            setattr(self, name, _enlarged(getattr(self, name), room))
+        self.links = _enlarged(self.links, kernels.SIZES * room)
+        patches, triangles = self.room
+        room = _room(len(patches), self.cut + 3 * more)
+        self.room = _enlarged(patches, room), _enlarged(triangles, room)
+
+
+def quarters(
+    patches: Indices, triangles: Array, *columns: Array
+) -> tuple[Indices, Array, *tuple[Array, ...]]:
+    """Return the quarters of triangles, those in the middles first, then three of each.
+
+    What else is known of the triangles, and holds for their quarters, comes with them.
+    """
+    room = np.tile(patches, 4), np.tile(triangles, (4, 1))
+    kernels.quarter_triangles(*room, len(patches))
+    return *room, *(np.concatenate([x, np.repeat(x, 3)]) for x in columns)
+
+
+def _room(old: int, needed: int) -> int:
+    return old if needed <= old else max(needed, 2 * old)
+
+
+def _enlarged(rows: NDArray[Any], room: int) -> NDArray[Any]:
+    """Return an array of so many rows that begins with these."""
+    if len(rows) >= room:
+        return rows
+    new = np.empty((room, *rows.shape[1:]), rows.dtype)
+    new[: len(rows)] = rows
+    return new

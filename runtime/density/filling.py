@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from ...generated import sampler as kernels
-from ..bins import NormalBins
-from ..choice import NORMALS_PER_SAMPLE
-from ..fields import ARRAY_NAMES, FLOAT_NAMES, new_field
-from ..lattice import Lattice
+from ..errors import SurfaceError
+from ..fields import FLOAT_NAMES, new_field
 from ..samples import Samples, SamplingReport
-from ..search import fill, find
 from ..spline import Spline
+from ..threads import counted
 from ..visibility import invisible_share, visible_solid_angle
-from .angles import cover_normals, largest_angle
-from .cover import APPROACH, GREEDY, Cover
+from .angles import cover_normals
+from .answers import Answers, answers_of, answers_of_lattice, no_answers
+from .cover import APPROACH, Cover
+from .gaps import coverage
 from .law import Law, Wanted
 from .relaxation import relax
 from .request import Request
@@ -29,6 +29,8 @@ __all__ = ["filled_samples"]
 
 # Balanced: what is filled are gaps that are wider than those between the normals by this factor.
 WIDER = 2.0
+# n samples that bring every place within a radius r have n r² times this as what is wanted of them.
+GREEDY = 1.85
 # Balanced: the floor of the density, beside the mean of what bending asks.
 FLAT_SHARE = 0.25
 # Less bending than this, as the integral of κ² over the surface, is rounding.
@@ -52,178 +54,163 @@ def filled_samples(
     progress: bool,
 ) -> tuple[Samples, NDArray[np.float64]]:
     """Return samples of any density but "gauss", and the normals that were asked."""
-    filling = Filling(spline, request, threads, progress)
-    cover = filling.cover()
-    relax(cover, request.relax)
     angle = None
-    if request.angle is not None:
-        cover_normals(cover, request.angle)
-        angle = largest_angle(cover)
-    return filling.samples(cover, fields, dtype, angle), filling.normals
+    with counted(request.count, progress) as tell:
+        filling = Filling(spline, request, threads, progress, tell)
+        cover, answers = filling.cover()
+        relax(cover, request.relax)
+        if request.angle is not None:
+            angle = cover_normals(cover, request.angle)
+        return filling.samples(cover, answers, fields, dtype, angle), answers.normals
 
 
-@dataclass(eq=False)
+@dataclass(frozen=True, eq=False)
 class Filling:
     """Samples of any density but "gauss", in two parts: what normals give, and a cover of the rest.
 
-    `normals` are those that were asked, `density` of them per steradian, `given` their samples.
+    `tell` is told how many samples there are.
     """
 
     spline: Spline
     request: Request
     threads: int | None
     progress: bool
-    normals: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 3)))
-    density: float = 0.0
-    given: Samples | None = None
+    tell: Callable[[int], object]
 
-    def cover(self) -> Cover:
-        """Return the cover that is asked."""
+    def cover(self) -> tuple[Cover, Answers]:
+        """Return the cover that is asked, and what normals gave of it.
+
+        Raises SurfaceError if there is nothing to cover.
+        """
+        if not Wanted(self.spline, Law(floor=1.0), self.threads).area > 0.0:
+            raise SurfaceError(
+                f"surface {self.spline.name!r} has no area: all its points lie on one line or are "
+                'one point; only density="gauss" takes it.'
+            )
         if self.request.density == "balanced":
             return self._balanced()
-        cover = Cover(self._law(), None)
+        cover = Cover(self._law(), None, self.tell)
         if self.request.count is not None:
             cover.to_count(self.request.count)
         elif self.request.coverage is not None:
             cover.to_radius(self.request.coverage * cover.wanted.unit)
-        return cover
+        return cover, no_answers()
 
     def _law(self) -> Wanted:
-        """Return what "uniform" or a power of |K| wants."""
-        if isinstance(self.request.density, str):
+        """Return what "uniform" or a power of |K| wants.
+
+        That power is the same everywhere if what bends is the error of the spline alone.
+        """
+        power, count = self.request.density, self.request.count or 0
+        if isinstance(power, str) or visible_solid_angle(self.spline, count / (4 * math.pi)) == 0.0:
             return Wanted(self.spline, Law(floor=1.0), self.threads)
-        wanted = Wanted(self.spline, Law(power=1.0, alpha=self.request.density), self.threads)
-        area, total = wanted.totals
-        return wanted.with_floor(total / area / WIDEST_GAP**2 if total > 0.0 else 1.0)
+        wanted = Wanted(self.spline, Law(power=1.0, alpha=power), self.threads)
+        return wanted.with_floor(wanted.total / wanted.area / WIDEST_GAP**2)
 
     def samples(
-        self, cover: Cover, fields: Sequence[str], dtype: DTypeLike, angle: float | None
+        self,
+        cover: Cover,
+        answers: Answers,
+        fields: Sequence[str],
+        dtype: DTypeLike,
+        angle: float | None,
     ) -> Samples:
-        """Return the samples that were given, and after them those that were added."""
-        arrays = added_fields(cover, fields, dtype)
-        if self.given is not None:
+        """Return what normals gave, and after it the samples that were added."""
+        arrays, given = added_fields(cover, fields, dtype), answers.samples
+        if given is not None:
             arrays = {
-                name: np.concatenate([getattr(self.given, name).astype(x.dtype, copy=False), x])
+                name: np.concatenate([getattr(given, name).astype(x.dtype, copy=False), x])
                 for name, x in arrays.items()
             }
         report = SamplingReport(
             surface=self.spline.name,
-            normals=len(self.normals),
+            normals=len(answers.normals),
             samples=cover.count,
             patches=self.spline.patches,
-            invisible_share=invisible_share(self.spline, self.density),
-            degenerate_patches=None if self.given is None else self.given.report.degenerate_patches,
-            coverage=cover.coverage,
+            invisible_share=invisible_share(self.spline, answers.density),
+            degenerate_patches=None if given is None else given.report.degenerate_patches,
+            coverage=coverage(cover),
             angle=angle,
         )
         return Samples(**arrays, report=report, spline=self.spline)
 
     # --- balanced ---------------------------------------------------------------------------------
 
-    def _balanced(self) -> Cover:
+    def _balanced(self) -> tuple[Cover, Answers]:
         request, wanted = self.request, Wanted(self.spline, Law(bend=1.0), self.threads)
-        area, bending = wanted.totals
         # Normals and angles are absolute: then flat parts are bent as a sphere of this area.
         least = 4 * math.pi if request.normals is not None or request.angle else UNBENT
-        floor = FLAT_SHARE * max(bending, least) / area
+        floor = FLAT_SHARE * max(wanted.total, least) / wanted.area
         if request.count is None:
             return self._by_radius(wanted, floor)
-        cover = self._by_count(wanted.with_floor(floor), request.count)
-        if request.coverage is None or cover.coverage <= request.coverage:
-            return cover
+        cover, answers = self._by_count(wanted.with_floor(floor), request.count)
+        if request.coverage is None or coverage(cover) <= request.coverage:
+            return cover, answers
         return self._by_count_and_coverage(wanted, request.count, request.coverage)
 
-    def _by_radius(self, wanted: Wanted, floor: float) -> Cover:
+    def _by_radius(self, wanted: Wanted, floor: float) -> tuple[Cover, Answers]:
         """Search the normals that are asked, or fit a coverage, and cover the rest as they do."""
         request = self.request
         if request.angle is not None:
-            self._search(request.directions)
+            answers = self._answers(request.directions)
             radius = WIDER * math.radians(request.angle)
         elif request.normals is not None:
-            self._search(request.directions)
-            radius = WIDER * spacing(self._density_met())
+            answers = self._answers(request.directions)
+            radius = WIDER * spacing(answers.density_met)
         else:
             assert request.coverage is not None
-            least = float(wanted.triangles()[:, 4].min())
+            least = float(wanted.largest.min())
             radius = request.coverage * wanted.unit * math.sqrt(max(floor, least))
-            self._search_lattice(density_of(radius / WIDER))
+            answers = self._answers(density_of(radius / WIDER))
         if request.coverage is not None:
             floor = (radius / (request.coverage * wanted.unit)) ** 2
-        cover = Cover(wanted.with_floor(floor), self.given)
+        cover = Cover(wanted.with_floor(floor), answers.samples, self.tell)
         cover.to_radius(radius)
-        return cover
+        return cover, answers
 
-    def _by_count(self, wanted: Wanted, count: int) -> Cover:
+    def _by_count(self, wanted: Wanted, count: int) -> tuple[Cover, Answers]:
         """Search as many normals as fit the gaps that are left for the others, and fill these."""
         seen = visible_solid_angle(self.spline, count / (4 * math.pi))
         density = 1.0
         # How many samples there are at one normal per steradian; all of them grow in proportion.
-        filling = wanted.totals[1] / (GREEDY * (WIDER * spacing(density)) ** 2)
+        filling = wanted.total / (GREEDY * (WIDER * spacing(density)) ** 2)
         each = seen + max(0.0, filling - SAVED * seen)
-        self._search_lattice(count / each, count)
-        cover = Cover(wanted, self.given)
+        answers = self._answers(count / each, count)
+        cover = Cover(wanted, answers.samples, self.tell)
         cover.to_count(count)
-        return cover
+        return cover, answers
 
-    def _by_count_and_coverage(self, wanted: Wanted, count: int, coverage: float) -> Cover:
+    def _by_count_and_coverage(
+        self, wanted: Wanted, count: int, coverage: float
+    ) -> tuple[Cover, Answers]:
         """Find the most normals that leave room for a coverage, by bisection, and then fill up."""
         seen = visible_solid_angle(self.spline, count / (4 * math.pi))
         high = math.log(count / seen) if seen > 0.0 else 0.0
-        low = high - FEWEST_NORMALS
-        best: tuple[Cover, float] | None = None
+        low, best = high - FEWEST_NORMALS, None
         for _ in range(BISECTIONS):
-            middle = (low + high) / 2
-            radius = WIDER * spacing(math.exp(middle))
-            self._search_lattice(math.exp(middle))
-            cover = Cover(wanted.with_floor((radius / (coverage * wanted.unit)) ** 2), self.given)
+            radius = WIDER * spacing(math.exp((low + high) / 2))
+            answers = self._answers(math.exp((low + high) / 2))
+            floor = (radius / (coverage * wanted.unit)) ** 2
+            cover = Cover(wanted.with_floor(floor), answers.samples, self.tell)
             cover.to_radius(radius, count + 1)
             if cover.count > count:
-                high = middle
-            else:
-                low, best = middle, (cover, radius)
-                if cover.count > NEAR_ENOUGH * count:
-                    break
+                high = (low + high) / 2
+                continue
+            low, best = (low + high) / 2, (cover, answers)
+            if cover.count > NEAR_ENOUGH * count:
+                break
         if best is None:  # not even a cover alone is so small
-            self.given, cover = None, Cover(wanted.with_law(Law(floor=1.0)), None)
+            cover = Cover(replace(wanted, law=Law(floor=1.0)), None, self.tell)
             cover.to_count(count)
-            return cover
-        best[0].narrow(best[1], count, APPROACH)
-        return best[0]
+            return cover, no_answers()
+        best[0].narrow(best[0].radius, count, APPROACH)
+        return best
 
-    # --- the normals ------------------------------------------------------------------------------
-
-    def _search_lattice(self, density: float, most: int | None = None) -> None:
-        """Search a lattice of so many normals per steradian, if the surface shows any."""
-        seen = visible_solid_angle(self.spline, density)
-        if round(density * seen) == 0:
-            return
-        lattice = Lattice.around(self.spline)
-        densest = lattice.density_of(NORMALS_PER_SAMPLE * max(round(density * seen), 1000))
-        self._search(lattice.normals(min(density, densest), threads=self.threads), density)
-        if most is not None and self.given is not None and len(self.given) > most:
-            self._search_lattice(density * most / len(self.given) * 0.98)
-
-    def _search(self, normals: NDArray[np.float64], density: float | None = None) -> None:
-        """Take the samples of some normals."""
-        bins = NormalBins(normals, self.threads)
-        hits = find(self.spline, bins, self.threads, self.progress)
-        self.normals, self.density = bins.normals, density or len(normals) / (4 * math.pi)
-        arrays = fill(self.spline, bins, hits, self.threads, ARRAY_NAMES)
-        report = SamplingReport(
-            surface=self.spline.name,
-            normals=len(normals),
-            samples=len(hits),
-            patches=self.spline.patches,
-            invisible_share=invisible_share(self.spline, self.density),
-            degenerate_patches=hits.developable,
-        )
-        self.given = Samples(**arrays, report=report, spline=self.spline)
-
-    def _density_met(self) -> float:
-        """How many of the searched normals there are per steradian of the Gaussian image."""
-        seen = visible_solid_angle(self.spline, self.density)
-        came = 0 if self.given is None else len(self.given)
-        return came / seen if came and seen > 0.0 else self.density
+    def _answers(self, asked: NDArray[np.float64] | float, most: int | None = None) -> Answers:
+        """Return what normals give, or a lattice of so many per steradian."""
+        if isinstance(asked, float):
+            return answers_of_lattice(self.spline, asked, self.threads, self.progress, most)
+        return answers_of(self.spline, asked, self.threads, self.progress)
 
 
 def added_fields(cover: Cover, fields: Sequence[str], dtype: DTypeLike) -> dict[str, NDArray[Any]]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -14,6 +13,8 @@ from ..spline import Spline
 from ..threads import over_ranges
 
 __all__ = ["Law", "Wanted"]
+
+Array = NDArray[np.float64]
 
 PATCHES_AT_A_TIME = 1 << 12
 
@@ -32,7 +33,7 @@ class Law:
     alpha: float = 1.0
 
     @property
-    def numbers(self) -> NDArray[np.float64]:
+    def numbers(self) -> Array:
         """The law as kernels take it."""
         return np.array([self.floor, self.bend, self.power, self.alpha])
 
@@ -53,56 +54,44 @@ class Wanted:
         """How long one length of the spline is here."""
         return kernels.SCALE * self.spline.scale
 
-    @cached_property
-    def reaches(self) -> NDArray[np.float64]:
+    @property
+    def reaches(self) -> Array:
         """How far the points of each patch (patches,) are from its middle, at most."""
-        reaches = np.empty(self.spline.patches)
+        return self._patches[0]
 
-        def work(first: int, last: int) -> None:
-            spline = self.spline
-            kernels.reach_of_patches(spline.coefficients, spline.scale, first, last, reaches)
+    @property
+    def area(self) -> float:
+        """The area of the surface."""
+        return float(self._patches[1].sum())
 
-        return self._filled(work, reaches)
+    @property
+    def total(self) -> float:
+        """The integral of what is wanted over the surface."""
+        _, areas, weights = self._patches
+        return float((areas * np.maximum(weights[:, :3], self.law.floor)).sum())
 
-    @cached_property
-    def totals(self) -> tuple[float, float]:
-        """The area of the surface, and the integral of what is wanted over it."""
-        both = np.empty((2, self.spline.patches))
-
-        def work(first: int, last: int) -> None:
-            kernels.wanted_of_patches(
-                self.spline.coefficients, self.spline.scale, self.reaches, self.law.numbers,
-                first, last, *both,
-            )  # fmt: skip
-
-        area, total = self._filled(work, both).sum(axis=1).tolist()
-        return area, total
-
-    def triangles(self) -> NDArray[np.float64]:
-        """Return the patches as triangles (patches, 5) that nothing covers; see the kernel."""
-        triangles = np.empty((self.spline.patches, 5))
-
-        def work(first: int, last: int) -> None:
-            kernels.start_triangles(
-                self.spline.coefficients, self.spline.scale, self.reaches, self.law.numbers,
-                first, last, triangles,
-            )  # fmt: skip
-
-        return self._filled(work, triangles)
+    @property
+    def largest(self) -> Array:
+        """What is wanted of each patch (patches,), where that is most."""
+        return np.maximum(self._patches[2].max(axis=1), self.law.floor)
 
     def with_floor(self, floor: float) -> Wanted:
         """Return the same with another floor."""
-        return self.with_law(replace(self.law, floor=floor))
-
-    def with_law(self, law: Law) -> Wanted:
-        """Return another law on the same spline."""
-        wanted = replace(self, law=law)
-        wanted.__dict__["reaches"] = self.reaches  # which no law changes
+        wanted = replace(self, law=replace(self.law, floor=floor))
+        wanted.__dict__["_patches"] = self._patches  # which a floor is not in
         return wanted
 
-    def _filled(
-        self, work: Callable[[int, int], None], array: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
-        for _ in over_ranges(work, self.spline.patches, PATCHES_AT_A_TIME, self.threads):
+    @cached_property
+    def _patches(self) -> tuple[Array, Array, Array]:
+        """Reaches (patches,), areas (patches, 3) and weights (patches, 4); see the kernel."""
+        count, law = self.spline.patches, replace(self.law, floor=0.0)
+        arrays = np.empty(count), np.empty((count, 3)), np.empty((count, 4))
+
+        def work(first: int, last: int) -> None:
+            kernels.weigh_patches(
+                self.spline.coefficients, self.spline.scale, law.numbers, first, last, *arrays
+            )
+
+        for _ in over_ranges(work, count, PATCHES_AT_A_TIME, self.threads):
             pass
-        return array
+        return arrays

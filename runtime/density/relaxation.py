@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from .angles import widest_angles
 from .cover import FINE, STEP, Cover
 
@@ -22,8 +20,8 @@ def relax(cover: Cover, steps: int) -> None:
     """
     if steps == 0 or cover.count == cover.given:
         return
-    count, widest = cover.count, cover.widest_gap
-    cover.remove(np.arange(cover.given, count))
+    count = cover.count
+    cover.forget()
     if cover.given:
         widest_angles(cover, round(FOR_NORMALS * (count - cover.given)))
-    cover.narrow(2.0 * widest, count, STEP**0.5**steps, FINE * 0.5**steps, strict=False)
+    cover.narrow(2.0 * cover.radius, count, STEP**0.5**steps, FINE * 0.5**steps)

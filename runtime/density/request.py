@@ -16,8 +16,10 @@ from ..threads import thread_count
 __all__ = ["DENSITIES", "Request", "checked_request"]
 
 DENSITIES = ("gauss", "balanced", "uniform")
-# Each of the steps takes as long as the sampling, and the sixth one moves almost nothing.
-MOST_STEPS = 1000
+# A step quarters the triangles; the fifth would hardly move anything.
+MOST_STEPS = 4
+# Beyond this |K|^α is so uneven that all samples crowd round the point that bends most.
+LARGEST_POWER = 8.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +71,8 @@ def checked_request(
     kind = _density(density, "gauss" if given == ["normals"] else "balanced")
     _check_that_they_fit(kind, given)
     steps = whole_number(relax, "relax", least=0)
+    if steps > MOST_STEPS:
+        raise InputError(f"relax must be at most {MOST_STEPS}, not {steps}.")
     if kind == "gauss" and steps:
         raise InputError(
             'relax moves samples that normals did not ask for; density="gauss" has none.'
@@ -79,7 +83,7 @@ def checked_request(
         None if angle is None else _positive(angle, "angle", " degrees", most=90.0),
         None if coverage is None else _positive(coverage, "coverage"),
         kind,
-        min(steps, MOST_STEPS),
+        steps,
     )
 
 
@@ -88,7 +92,7 @@ def _density(density: str | float | None, default: str) -> str | float:
         return default
     if isinstance(density, str):
         return known_name(density, DENSITIES, "density")
-    return _positive(density, "density, as the power of |K|,")
+    return _positive(density, "density, as the power of |K|,", most=LARGEST_POWER)
 
 
 def _check_that_they_fit(density: str | float, given: list[str]) -> None:

@@ -188,7 +188,7 @@ def _complete(normals: Array, triangles: Indices, sides: Indices) -> None:
 
     It is 0 where there is none either.
     """
-    lacking: NDArray[np.bool_] = ~np.isfinite(normals).all(axis=1)
+    lacking = np.asarray(~np.isfinite(normals).all(axis=1))
     normals[lacking] = 0.0
     beside = lacking[triangles].any(axis=1)
     corners, side = triangles[beside], sides[beside, :, None]

@@ -29,9 +29,10 @@ Triangulation = tuple[Indices, Indices]
 
 # Between which latitudes a circle stands for an open end; at a pole opposite it is the mean.
 LATITUDES = (math.pi / 18, math.pi / 3, math.pi / 2.25)
-# Places are moved by this part of their mean distance: points of a lattice, of which four and more
-# lie on one circle, would be triangulated in another way in each of their copies.
-DISPLACEMENT = 1e-3
+# Places are moved by these parts of their mean distance, one after the other if that is no good:
+# points of a lattice, of which four and more lie on one circle, would be triangulated in another
+# way in each of their copies. Where there are no copies the first displacement is none.
+DISPLACEMENTS = (1e-6, 1e-3)
 # The height of a circle of latitude is known to this, and that of a free place is farther away.
 ROUNDING = 1e-12
 # None gets nearer to an open side than this, or on it.
@@ -55,11 +56,11 @@ def triangulations(
     from scipy.spatial import QhullError
 
     closing = [axis for axis in (0, 1) if ends[axis][0] in ("wrap", "flip")]
-    near = MARGIN_IN_STEPS / math.sqrt(len(places))
-    for margin in (near, *MARGINS) if near < MARGINS[0] else MARGINS:
+    has_copies = len(closing) == 2 or any(ends[axis][0] == "flip" for axis in closing)
+    distance = 1.0 / math.sqrt(len(places))
+    for displacement, margin in _attempts(has_copies, MARGIN_IN_STEPS * distance):
         rng = np.random.default_rng(len(places))
-        step = DISPLACEMENT / math.sqrt(len(places))
-        moved = places + step * rng.uniform(-1.0, 1.0, places.shape)
+        moved = places + displacement * distance * rng.uniform(-1.0, 1.0, places.shape)
         for axis in {0, 1} - set(closing):
             moved[:, axis] = np.clip(moved[:, axis], INSIDE, 1.0 - INSIDE)
         moved = np.where(is_free[:, None], moved, places)
@@ -70,6 +71,14 @@ def triangulations(
                 yield _on_sphere(moved, ends, lengths, closing[0])
             else:
                 yield _in_rectangle(np.where(is_free[:, None], moved, _bent(moved)) * lengths)
+
+
+def _attempts(has_copies: bool, near: float) -> list[tuple[float, float]]:
+    """Return displacements and margins that are tried."""
+    if not has_copies:
+        return [(x, 0.0) for x in (0.0, *DISPLACEMENTS)]
+    first = [(x, near) for x in DISPLACEMENTS if near < MARGINS[0]]
+    return first + [(x, margin) for margin in MARGINS for x in DISPLACEMENTS]
 
 
 def neighbours(triangles: Indices, may_end: NDArray[np.bool_]) -> tuple[Indices, bool]:

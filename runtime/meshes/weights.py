@@ -52,4 +52,5 @@ def _nearest(points: Array, places: Array, areas: Array) -> Array:
     """Return the areas of places, summed at the nearest points (N, 3)."""
     from scipy.spatial import KDTree
 
-    return np.bincount(KDTree(points).query(places)[1], areas, minlength=len(points))
+    nearest = KDTree(points).query(places)[1]
+    return np.bincount(nearest, areas, minlength=len(points)).astype(np.float64)

@@ -7,13 +7,14 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.benchmarks import scale
-from gaussmap.benchmarks.peers import metrics, page, peer, recipe, splines
+from gaussmap.benchmarks.peers import cad, metrics, page, peer, recipe, splines
 from gaussmap.benchmarks.peers.catalogue import GMSH, PEERS, RECIPE, SPLIPY_RECIPE
 from gaussmap.benchmarks.peers.forms import FORMS, Torus
 from gaussmap.benchmarks.peers.measure import Measured, Own
 from gaussmap.benchmarks.peers.peer import Peer
+from gaussmap.benchmarks.peers.untuned import UNTUNED, Boss
 
-FORM = pytest.mark.parametrize("form", FORMS, ids=lambda x: x.name)
+FORM = pytest.mark.parametrize("form", [*FORMS, *UNTUNED], ids=lambda x: x.name)
 
 
 def nearest(samples, places):
@@ -64,6 +65,80 @@ def test_parameters_of_points(form):
     found = np.stack(form.parameters(form.evaluate(u, v)[0]))
     turns = (found - [u, v]) / (2 * math.pi)
     assert turns == pytest.approx(np.round(turns), abs=1e-14)
+
+
+@FORM
+def test_points_of_normals(form):
+    """Every place comes back from its normal, and nothing comes that has another one.
+
+    Near a parabolic point parameters follow from normals as a root does: there errors of some ε
+    become such of √ε, which is 1.5e-8.
+    """
+    u, v = places_inside(form, 100)
+    places = form.parameters(form.evaluate(u, v)[0])  # angles as preimages have them
+    bent = np.abs(form.curvature(*places)) > 0.0
+    normals = form.evaluate(*places)[1]
+    for normal, place in zip(normals[bent], np.stack(places, axis=1)[bent], strict=True):
+        found = np.stack(form.preimages(normal[None]), axis=1)
+        assert form.evaluate(*found.T)[1] == pytest.approx(
+            np.tile(normal, (len(found), 1)), abs=1e-12
+        )
+        points = form.evaluate(*found.T)[0]
+        apart = np.linalg.norm(points - form.evaluate(*place)[0], axis=1)
+        assert apart.min() < 1e-7
+        assert len(found) == 1 or np.partition(apart, 1)[1] > 1e-4
+
+
+@pytest.mark.parametrize(
+    ("form", "number"), [(FORMS[0], 2.0), (UNTUNED[1], 1.0)], ids=["torus", "boss"]
+)
+def test_how_many_points_normals_have(form, number):
+    """Each normal has two points on the torus, each upward one has two on the boss."""
+    normals = gm.fibonacci(1_000)
+    assert len(form.preimages(normals)[0]) == number * len(normals)
+
+
+@FORM
+def test_the_density_of_preimages(form):
+    """As many normals per steradian have points as the integral of |K| says.
+
+    Cells where K jumps are off by 1/400 at most; at a border some √count of the normals are.
+    """
+    (u0, u1), (v0, v1) = form.surface.domain
+    k = (np.arange(400) + 0.5) / 400
+    u, v = (u0 + (u1 - u0) * k)[:, None], (v0 + (v1 - v0) * k)[None, :]
+    solid_angle = np.mean(form.bending(u, v)) * (u1 - u0) * (v1 - v0)
+    found = len(form.preimages(gm.fibonacci(100_000))[0])
+    assert found == pytest.approx(100_000 * solid_angle / (4 * math.pi), rel=5e-3)
+
+
+def test_half_of_the_boss_has_no_curvature():
+    boss = Boss()
+    v = (np.arange(10_000) + 0.5) / 10_000 * boss.joints[-1]
+    u = np.zeros(1)
+    area = boss.area(u, v)
+    assert area[boss.curvature(u, v) == 0.0].sum() / area.sum() == pytest.approx(0.5, abs=0.01)
+
+
+def test_the_outline_of_the_boss():
+    """Its arcs are quarters of circles round their centres, and its lines upright or level."""
+    boss = Boss()
+    ends, centres = (np.array(x) for x in cad.boss_outline(boss))
+    steps = np.diff(ends, axis=0)
+    assert np.count_nonzero(np.abs(steps[[0, 2, 4]]) > 1e-15, axis=1) == pytest.approx(1)
+    for k, radius in ((0, boss.fillet), (1, boss.edge)):
+        spokes = ends[2 * k + 1 : 2 * k + 3] - centres[k]
+        assert np.linalg.norm(spokes, axis=1) == pytest.approx(radius, rel=1e-14)
+        assert spokes[0] @ spokes[1] == pytest.approx(0.0, abs=1e-15)
+
+
+@FORM
+def test_normals_of_a_face_are_turned_to_the_side_of_the_form(form):
+    points, normals = recipe.by_grid(form, 100)
+    for side in (1.0, -1.0):
+        found = cad.outwards(form, points, side * normals)
+        assert (found[0] == points).all()
+        assert (found[1] == normals).all()
 
 
 @FORM

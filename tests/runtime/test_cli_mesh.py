@@ -35,7 +35,7 @@ def test_a_mesh_is_written(suffix: str, capsys: pytest.CaptureFixture[str]) -> N
 def test_normals_of_a_part(capsys: pytest.CaptureFixture[str]) -> None:
     normals = gm.icosphere(16)
     np.save("cap.npy", normals[normals[:, 2] > 0.9])
-    part = ["mesh", "sphere", "--normals", "cap.npy", "--cells", "8", "8", "-o", "cap.ply"]
+    part = ["mesh", "torus", "--normals", "cap.npy", "--cells", "8", "8", "-o", "cap.ply"]
     assert main([*part, "--angle", "10"]) == 0
     out = capsys.readouterr().out
     worst = float(re.findall(r"([\d.]+)° \(worst\)", out)[0])

@@ -4,27 +4,31 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.bins import NormalBins
-from gaussmap.runtime.search import Hits, fill, find
+from gaussmap.runtime.fields import INDEX_NAMES
+from gaussmap.runtime.search import fill, find
+from gaussmap.runtime.sphere import as_normals
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 SURFACES = [x for x in gm.surfaces.names() if x not in ("plane", "cylinder", "cone")]
 
 
-def by_bins(spline: gm.Spline, normals: np.ndarray) -> Hits:
+def without_rows(normals: np.ndarray) -> NormalBins:
+    """Return bins that take the points of an icosahedron for any normals."""
     bins = NormalBins(normals)
-    bins.__dict__["frequency"] = 0  # instead of the points of an icosahedron: any normals
-    return find(spline, bins)
+    bins.__dict__["frequency"] = 0
+    return bins
 
 
 def assert_same(spline: gm.Spline, frequency: int) -> None:
     normals = gm.icosphere(frequency)
-    bins = NormalBins(normals)
+    bins, others = NormalBins(normals), without_rows(normals)
     assert bins.frequency == frequency
-    scanned, expected = find(spline, bins), by_bins(spline, normals)
-    np.testing.assert_array_equal(scanned.patch_index, expected.patch_index)
-    np.testing.assert_array_equal(scanned.normal_index, expected.normal_index)
+    scanned, expected = find(spline, bins), find(spline, others)
+    for name in INDEX_NAMES:
+        np.testing.assert_array_equal(getattr(scanned, name), getattr(expected, name))
     np.testing.assert_array_equal(scanned.exact, expected.exact)
+    np.testing.assert_array_equal(scanned.pairs, expected.pairs)
     np.testing.assert_array_equal(scanned.local, expected.local)
     assert scanned.developable == expected.developable
 
@@ -71,9 +75,33 @@ def test_points_are_told_by_their_directions() -> None:
 @pytest.mark.compiled
 def test_samples_are_those_of_the_bins() -> None:
     spline, normals = gm.fit(gm.surfaces.torus(), (20, 12)), gm.icosphere(30)
-    bins, others = NormalBins(normals), NormalBins(normals)
-    others.__dict__["frequency"] = 0
+    bins, others = NormalBins(normals), without_rows(normals)
     scanned = fill(spline, bins, find(spline, bins))
     expected = fill(spline, others, find(spline, others))
     for name, values in expected.items():
         np.testing.assert_array_equal(scanned[name], values, err_msg=name)
+    assert (scanned["normals"] == normals[scanned["normal_index"]]).all()
+    for name in INDEX_NAMES:  # two ways to know them
+        np.testing.assert_array_equal(getattr(find(spline, bins), name), scanned[name])
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("size", [1, 3, 50, 10**9])
+def test_hits_can_be_cut_anywhere(size: int) -> None:
+    spline, normals = gm.fit(gm.surfaces.torus(), (6, 4)), gm.icosphere(12)
+    bins = NormalBins(normals)
+    hits = find(spline, bins)
+    whole = fill(spline, bins, hits)
+    starts = range(0, len(hits), size)
+    parts = [fill(spline, bins, hits[start : start + size]) for start in starts]
+    for name, values in whole.items():
+        np.testing.assert_array_equal(np.concatenate([x[name] for x in parts]), values)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("frequency", [1, 2, 3, 7, 64, 200])
+def test_points_stay_as_they_are(frequency: int) -> None:
+    """`sample` takes them for unit vectors, and so sees that they are those of an icosahedron."""
+    normals = gm.icosphere(frequency)
+    assert as_normals(normals).tobytes() == normals.tobytes()
+    assert len(np.unique(normals, axis=0)) == 10 * frequency**2 + 2

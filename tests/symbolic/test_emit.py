@@ -64,6 +64,8 @@ def exact_inputs(formula, seed: int) -> dict[str, Fraction]:
     }
     if formula is curve.CURVATURE_AT:
         return inputs | {"p_t_x": 3 * inputs["a_x"], "p_t_y": 4 * inputs["a_x"]}
+    if formula is patch.LARGEST_CURVATURE:  # of principal curvatures that differ by 2 K
+        return inputs | {"K": inputs["H"] ** 2 - inputs["K"] ** 2}
     if formula is gaussian_image.SOLID_ANGLE:
         return inputs | {
             f"n_{axis}": Fraction(x, 5) for axis, x in zip("xyz", (2, -3, 6), strict=True)

@@ -173,15 +173,16 @@ def test_each_block_of_a_kernel_is_listed(path):
         (
             "forms",
             "sampler.py: forms, classify, evaluate_tile (in sample); "
-            "called by search_patches, all_developable, is_developable, look_again, fill_samples",
+            "called by search_patches, all_developable, is_developable, look_again, fill_samples, "
+            "fill_tile",
         ),
         (
             "curvature",
             "sampler.py: evaluate_tile (in sample), fill_known (in curvature_at); "
-            "called by fill_samples",
+            "called by fill_samples, fill_tile",
         ),
         ("forms", "patch.py: forms, support_function"),
-        ("sample", "sampler.py: evaluate_tile; called by fill_samples"),
+        ("sample", "sampler.py: evaluate_tile; called by fill_samples, fill_tile"),
         # by calls, at once and through others
         ("measure", "spline.py: measure; called by measure_patches"),
         ("triangle", "spline.py: triangle; called by patch_vectors, evaluate, measure_patches"),

@@ -11,10 +11,8 @@ import pytest
 from gaussmap.runtime.meshes.meshing import Triangulated
 from gaussmap.runtime.meshes.triangulation import neighbours
 
-pytestmark = [
-    pytest.mark.compiled,
-    pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning"),
-]
+pytestmark = pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
+compiled = pytest.mark.compiled
 
 CAP = gm.icosphere(60)[gm.icosphere(60)[:, 2] > 0.9]
 
@@ -101,6 +99,29 @@ def is_one_fan_at_each_vertex(mesh: gm.Mesh) -> bool:
     return True
 
 
+def samples_at(name: str, count: int) -> gm.Samples:
+    """Return samples at random parameters: a mesh needs no more of them than points and normals."""
+    surface = surfaces[name][0]()
+    spline = gm.fit(surface, cells=(8, 8))
+    low, high = np.array(surface.domain).T
+    uv = np.random.default_rng(1).uniform(low, high, (count, 2))
+    return gm.Samples(
+        points=spline.evaluate(*uv.T), normals=spline.normals(*uv.T), uv=uv,
+        report=gm.SamplingReport(name, None, count, None, None, None), spline=spline,
+    )  # fmt: skip
+
+
+@EACH
+def test_samples_anywhere(name):
+    _, characteristic, borders = surfaces[name]
+    mesh = samples_at(name, 100).mesh()
+    assert mesh.euler_characteristic == characteristic
+    assert (components(mesh.boundary) if borders else 0) == borders
+    assert is_one_fan_at_each_vertex(mesh)
+    assert (mesh.sample >= 0).sum() == 100
+
+
+@compiled
 class TestTopology:
     @EACH
     @pytest.mark.parametrize("options", [{"count": 60}, {"count": 600}])
@@ -170,6 +191,7 @@ class TestTopology:
         assert mesh.euler_characteristic == 2
 
 
+@compiled
 class TestBorders:
     def test_a_graph_is_meshed_up_to_its_corners(self):
         mesh = mesh_of("graph", count=1000)
@@ -223,6 +245,7 @@ class TestBorders:
         assert np.isfinite(mesh.normals).all()
 
 
+@compiled
 class TestFlips:
     @pytest.mark.parametrize("name", ["torus", "graph", "moebius"])
     def test_no_flip_is_left_that_helps(self, name):
@@ -293,6 +316,7 @@ def flipped(state: Triangulated, t: int, k: int, other: int) -> tuple[float, flo
     return before, min(cosine(c, a, d), cosine(d, b, c)), {int(c), int(d)}
 
 
+@compiled
 class TestInput:
     def test_samples_at_one_place_are_one_vertex(self):
         samples = gm.sample(gm.surfaces.torus(), count=300)

@@ -1,0 +1,93 @@
+"""What is judged: the paper's method with exact formulas, gaussmap's densities, and others."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+
+import gaussmap as gm
+from gaussmap.runtime.density.request import checked_request
+from gaussmap.runtime.sampling import sample_and_normals
+
+from ..peers.cad import gmsh_by_curvature, opencascade_by_angle
+from ..peers.forms import Array, ClosedForm
+from ..peers.meshes import open3d_poisson, pymeshlab_poisson
+from ..peers.peer import Peer, Points, Work
+
+__all__ = [
+    "BALANCED",
+    "GAUSS",
+    "GMSH",
+    "PERFECT",
+    "POISSON",
+    "RELAXED",
+    "WAYS",
+]
+
+STEPS = (1, 2, 3)
+ROUNDS = 5  # relaxed ones take long, and are timed once
+
+
+@cache
+def normals_of_gauss(form: ClosedForm, count: int) -> Array:
+    """Return the normals that gaussmap itself chooses for density="gauss"."""
+    request = checked_request(None, count, None, None, "gauss", 0, None)
+    return sample_and_normals(form.surface, request, cells=None, threads=None, progress=False)[1]
+
+
+def perfect(form: ClosedForm, count: int) -> Work:
+    """Prepare the points that have exactly the normals which gaussmap takes for this count."""
+    normals = normals_of_gauss(form, count)
+    return lambda: form.evaluate(*form.preimages(normals))
+
+
+def icosahedral(form: ClosedForm, count: int) -> Work:
+    """Prepare the points of a refined icosahedron, the refinement whose number is nearest."""
+
+    def came(frequency: int) -> int:
+        return len(form.preimages(gm.icosphere(frequency))[0])
+
+    frequency = 1
+    while came(frequency + 1) < count:
+        frequency += 1
+    frequency = min((frequency, frequency + 1), key=lambda x: abs(came(x) - count))
+    normals = gm.icosphere(frequency)
+    return lambda: form.evaluate(*form.preimages(normals))
+
+
+def sampled(density: str, steps: int = 0) -> Callable[[ClosedForm, int], Work]:
+    """Return a peer that is gaussmap, from the surface itself: every call fits a spline."""
+
+    def prepare(form: ClosedForm, count: int) -> Work:
+        surface = form.surface
+
+        def work() -> Points:
+            samples = gm.sample(surface, count=count, density=density, relax=steps)
+            return samples.points, samples.normals
+
+        return work
+
+    return prepare
+
+
+def own(title: str, density: str, steps: int = 0) -> Peer:
+    """Return one way of gaussmap."""
+    rounds = 1 if steps else ROUNDS
+    return Peer(title, density, "gaussmap", sampled(density, steps), 0, rounds)
+
+
+PERFECT = Peer("the paper's method, exact", "", "numpy", perfect, 0, rounds=ROUNDS)
+ICOSAHEDRAL = Peer("the same, icosahedral normals", "", "numpy", icosahedral, 0, rounds=ROUNDS)
+GAUSS = own("**gauss**", "gauss")
+BALANCED = own("**balanced**", "balanced")
+RELAXED = tuple(own(f"**balanced**, relax={n}", "balanced", n) for n in STEPS)
+UNIFORM = own("**uniform**", "uniform")
+POISSON = (
+    Peer("Open3D, Poisson disk", "", "open3d", open3d_poisson, 0),
+    Peer("PyMeshLab, Poisson disk", "", "pymeshlab", pymeshlab_poisson, 0),
+)
+GMSH = Peer("Gmsh, curvature size", "", "gmsh", gmsh_by_curvature, 0)
+OPENCASCADE = Peer("Open CASCADE, angular deflection", "", "OCP", opencascade_by_angle, 0)
+WAYS = (
+    PERFECT, ICOSAHEDRAL, GAUSS, BALANCED, *RELAXED, UNIFORM, *POISSON, GMSH, OPENCASCADE,
+)  # fmt: skip

@@ -1,0 +1,218 @@
+"""No point of a surface is too far from a sample, whatever density, surface, size or place."""
+
+import math
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.symbolic.surfaces import CATALOGUE
+from numpy.typing import NDArray
+from scipy.spatial import KDTree
+
+pytestmark = pytest.mark.compiled
+
+Array = NDArray[np.float64]
+
+
+def places(spline: gm.Spline, number: int = 200) -> tuple[Array, Array]:
+    """Return points and normals of number² places of a spline, its border included."""
+    u, v = (np.linspace(low, high, number) for low, high in spline.domain)
+    points, normals = spline.evaluate(u[:, None], v), spline.normals(u[:, None], v)
+    regular = np.isfinite(normals).all(axis=2)
+    return points[regular], normals[regular]
+
+
+def farthest(samples: gm.Samples, points: Array) -> float:
+    return float(KDTree(samples.points).query(points)[0].max())
+
+
+def widest_angle(samples: gm.Samples, normals: Array) -> float:
+    chord = float(KDTree(samples.normals).query(normals)[0].max())
+    return math.degrees(2.0 * math.asin(chord / 2.0))
+
+
+def scaled(name: str, factor: float, shift: float = 0.0) -> gm.Surface:
+    surface = gm.surfaces.surface(name)
+    return gm.Surface(
+        name, lambda u, v: factor * (surface.evaluate(u, v) + shift), surface.domain, surface.ends
+    )
+
+
+def even(name: str, cells: tuple[int, int]) -> tuple[int, int]:
+    """Return cells that suit a surface with poles, too."""
+    poles = "pole" in gm.surfaces.surface(name).ends[1]
+    return (cells[0] + cells[0] % 2, cells[1]) if poles else cells
+
+
+# --- coverage -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("cells", [(3, 3), (24, 20)])
+@pytest.mark.parametrize("name", CATALOGUE)
+def test_coverage_is_kept_and_reported(name, cells):
+    spline = gm.fit(gm.surfaces.surface(name), even(name, cells))
+    points, _ = places(spline)
+    size = float(np.ptp(points, axis=0).max())
+    for density in ("balanced", "uniform"):
+        asked = 0.08 * size
+        samples = gm.sample(spline, coverage=asked, density=density)
+        found = farthest(samples, points)
+        assert found <= (samples.report.coverage or 0.0) * (1 + 1e-12) <= asked * (1 + 1e-12)
+        assert found > 0.4 * asked  # and not by far too many samples
+
+
+@pytest.mark.parametrize("density", ["balanced", "uniform", 0.5, 2.0])
+@pytest.mark.parametrize("name", CATALOGUE)
+def test_the_reported_coverage_is_5_percent_off_at_most(name, density):
+    """The places are a grid: a point may be half its diagonal farther than they are."""
+    spline = gm.fit(gm.surfaces.surface(name), even(name, (12, 10)))
+    points, _ = places(spline, 500)
+    lines = (np.linspace(low, high, 500) for low, high in spline.domain)
+    grid = spline.evaluate(*np.meshgrid(*lines, indexing="ij"))
+    steps = (np.linalg.norm(np.diff(grid, axis=axis), axis=2).max() for axis in (0, 1))
+    samples = gm.sample(spline, count=400, density=density)
+    found, reported = farthest(samples, points), samples.report.coverage or 0.0
+    assert found <= reported <= 1.05 * (found + math.hypot(*steps) / 2)
+
+
+@pytest.mark.parametrize("factor", [1e-12, 1e12, 2.0**-300, 2.0**300])
+@pytest.mark.parametrize("name", ["torus", "cone", "wavy_graph"])
+def test_any_unit_of_length(name, factor):
+    spline = gm.fit(scaled(name, factor), (12, 12))
+    points, normals = places(spline)
+    by_coverage = gm.sample(spline, coverage=0.3 * factor)
+    assert farthest(by_coverage, points) <= 0.3 * factor
+    assert widest_angle(gm.sample(spline, angle=10.0), normals) <= 10.0
+    assert len(gm.sample(spline, count=300)) == 300
+    if math.frexp(factor)[0] == 0.5:  # a power of two changes no bit
+        plain = gm.sample(scaled(name, 1.0), coverage=0.3, cells=(12, 12))
+        assert (plain.points * factor == by_coverage.points).all()
+        assert plain.report.coverage == (by_coverage.report.coverage or 0.0) / factor
+
+
+@pytest.mark.parametrize("name", ["torus", "cylinder", "plane"])
+def test_far_from_the_origin(name):
+    """A million times its size away, coordinates are rounded to 1e-10: no more is lost."""
+    spline = gm.fit(scaled(name, 1.0, 1e6), (12, 12))
+    points, _ = places(spline)
+    samples = gm.sample(spline, coverage=0.2)
+    assert farthest(samples, points) <= 0.2 + 1e-9
+    assert len(gm.sample(spline, count=500)) == 500
+
+
+def test_both_sides_of_a_thin_plate_are_covered():
+    """A sheet folded back at a distance of 1e-3: samples of one side do not cover the other."""
+    gap = 1e-3
+
+    def folded(u, v):
+        turn = math.pi * gap / 2
+        s = np.clip(np.abs(u), 0.0, turn) / turn  # along half of the fold
+        angle = np.sign(u) * s * math.pi / 2
+        straight = np.maximum(np.abs(u) - turn, 0.0)
+        return np.stack(
+            [gap / 2 * np.cos(angle) - straight, v + 0.0 * u, gap / 2 * np.sin(angle)], axis=-1
+        )
+
+    plate = gm.Surface.from_callable(folded, ((-1.0, 1.0), (0.0, 1.0)))
+    spline = gm.fit(plate, (400, 10))
+    points, normals = places(spline, 300)
+    samples = gm.sample(spline, coverage=0.1)
+    for side in (-1.0, 1.0):
+        flat = np.abs(normals[:, 2] - side) < 1e-3
+        mine = samples[samples.normals[:, 2] * side > 0]
+        assert flat.sum() > 10_000
+        assert farthest(mine, points[flat]) <= 0.1
+
+
+# --- bending --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["sphere", "torus", "cylinder", "plane"])
+@pytest.mark.parametrize("angle", [3.0, 12.0])
+def test_no_point_is_farther_than_bending_allows(name, angle):
+    """|x − s| κ <= r, which is twice the angle, where κ is the same everywhere."""
+    radii = {"sphere": 1.0, "torus": 0.35, "cylinder": 1.0, "plane": math.inf}
+    spline = gm.fit(gm.surfaces.surface(name))
+    points, _ = places(spline, 400)
+    if name == "sphere":  # beside a pole, curvatures of the spline are accidents
+        points = points[np.abs(points[:, 2]) < 0.9]
+    samples = gm.sample(spline, angle=angle)
+    radius, least = 2.0 * math.radians(angle), 4 * math.pi
+    area = float(spline.measure[0].sum()) * diagonal(spline) ** 2
+    # κ of the spline is off by its cells (order 1): 64 of them in 2π allow 2 % and some
+    allowed = 1.1 * radii[name] * radius if name != "plane" else math.inf
+    bending = area / radii[name] ** 2
+    floor = max(bending, least) / area / 4
+    assert farthest(samples, points) <= min(allowed, 1.01 * radius / math.sqrt(floor))
+
+
+def diagonal(spline: gm.Spline) -> float:
+    inner = spline.coefficients[1:-1, 1:-1].reshape(-1, 3)
+    return float(np.linalg.norm(np.ptp(inner, axis=0)))
+
+
+@pytest.mark.parametrize("angle", [2.5, 10.0])
+@pytest.mark.parametrize("name", CATALOGUE)
+def test_angle_is_kept_everywhere(name, angle):
+    """Border and poles included: there, no normals of the sphere need to lie inside the image."""
+    spline = gm.fit(gm.surfaces.surface(name), (32, 32))
+    samples = gm.sample(spline, angle=angle)
+    assert widest_angle(samples, places(spline, 300)[1]) <= angle
+    assert (samples.report.angle or 0.0) <= angle
+    assert (samples.report.coverage or 0.0) >= farthest(samples, places(spline)[0])
+
+
+def test_the_reported_angle_is_none_if_none_was_asked():
+    report = gm.sample(gm.surfaces.torus(), count=50, cells=(8, 8)).report
+    assert (report.angle, report.coverage is None) == (None, False)
+    plain = gm.sample(gm.surfaces.torus(), gm.icosphere(4), cells=(8, 8)).report
+    assert (plain.angle, plain.coverage) == (None, None)
+
+
+# --- what goes together ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["torus", "cylinder", "moebius_band"])
+def test_coverage_beside_normals_and_angle(name):
+    spline = gm.fit(gm.surfaces.surface(name), (24, 24))
+    points, normals = places(spline)
+    by_normals = gm.sample(spline, gm.icosphere(6), coverage=0.2, density="balanced")
+    assert farthest(by_normals, points) <= 0.2
+    by_angle = gm.sample(spline, angle=25.0, coverage=0.1)
+    assert farthest(by_angle, points) <= 0.1
+    assert widest_angle(by_angle, normals) <= 25.0
+    assert len(by_angle) > len(gm.sample(spline, angle=25.0))
+
+
+@pytest.mark.parametrize("name", ["torus", "cylinder", "helicoid", "wavy_graph"])
+def test_coverage_beside_a_count(name):
+    spline = gm.fit(gm.surfaces.surface(name), (24, 24))
+    points, _ = places(spline)
+    alone = gm.sample(spline, count=1500)
+    reached = alone.report.coverage or 0.0
+    easy = gm.sample(spline, count=1500, coverage=2.0 * reached)
+    assert (easy.points == alone.points).all()  # what was there anyway
+    least = gm.sample(spline, coverage=0.95 * reached, density="uniform")
+    if len(least) < 1200:
+        tight = gm.sample(spline, count=1500, coverage=0.95 * reached)
+        assert len(tight) == 1500
+        assert farthest(tight, points) <= 0.95 * reached
+    with pytest.warns(gm.GaussmapWarning, match="can be .* from the nearest one, where"):
+        hopeless = gm.sample(spline, count=100, coverage=0.01 * reached)
+    assert len(hopeless) == 100
+    assert farthest(hopeless, points) <= (hopeless.report.coverage or 0.0)
+
+
+# --- relaxing -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["plane", "cylinder", "torus"])
+def test_relaxing_narrows_the_gaps(name):
+    """With uniform density the widest gap is what relaxing works on, and it costs no sample."""
+    spline = gm.fit(gm.surfaces.surface(name))
+    plain, relaxed = (
+        gm.sample(spline, count=1000, density="uniform", relax=steps) for steps in (0, 2)
+    )
+    points, _ = places(spline, 400)
+    assert len(relaxed) == len(plain) == 1000
+    assert farthest(relaxed, points) < farthest(plain, points)

@@ -1,0 +1,77 @@
+"""What a sampling can be asked for, and what is said of what makes no sense."""
+
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+
+PLANE = gm.fit(gm.surfaces.plane(), (3, 3))
+BAD_NUMBERS = [0, 0.0, -1.0, np.nan, np.inf, "3", True, [1.0], None, 1j, np.array([1.0, 2.0])]
+
+
+def refused(match: str, error: type[Exception] = gm.InputError, **asked: Any) -> None:
+    with pytest.raises(error, match=match):
+        gm.sample(PLANE, **asked)
+    with pytest.raises(error, match=match):
+        next(gm.sample_many([PLANE], progress=False, **asked))
+
+
+@pytest.mark.parametrize("value", BAD_NUMBERS[:-3])
+def test_lengths_and_angles_that_are_none(value):
+    refused("coverage must be a positive number, not", coverage=value)
+    refused("angle must be a positive number of at most 90 degrees, not", angle=value)
+    refused("coverage must be a positive number", count=5, coverage=value)
+
+
+def test_an_angle_that_is_too_large():
+    refused("at most 90 degrees, not 90.1", angle=90.1)
+
+
+@pytest.mark.parametrize("value", [0, -0.5, np.nan, np.inf, True, [1.0], 9.0])
+def test_powers_that_are_none(value):
+    refused("density, as the power of .K., must be a positive number", count=5, density=value)
+
+
+def test_densities_that_are_unknown():
+    refused("no density 'gaus'.* did you mean gauss", gm.UnknownNameError, count=5, density="gaus")
+    refused("no density ''", gm.UnknownNameError, count=5, density="")
+
+
+@pytest.mark.parametrize(
+    ("asked", "use"),
+    [
+        ({"density": "gauss", "coverage": 0.1}, "normals=... or count=... or angle=..."),
+        ({"density": "gauss", "count": 9, "coverage": 0.1}, "normals=..."),
+        ({"density": "uniform", "angle": 5.0}, "count=... or coverage=..."),
+        ({"density": "uniform", "count": 5, "coverage": 1.0}, "count=... or coverage=..."),
+        ({"density": "uniform", "normals": [[0, 0, 1]]}, "count=... or coverage=..."),
+        ({"density": 0.5, "coverage": 0.1}, "count=..."),
+        ({"density": 0.5, "normals": [[0, 0, 1]]}, "count=..."),
+    ],
+)
+def test_what_a_density_cannot_be_asked_for(asked: dict[str, Any], use: str):
+    refused("cannot be asked for by .*; use .*" + use.replace(".", r"\."), **asked)
+
+
+def test_relaxing_needs_samples_that_may_move():
+    refused("relax moves samples that normals did not ask for", normals=[[0, 0, 1]], relax=1)
+    refused("relax moves samples", count=10, density="gauss", relax=1)
+    for steps in (-1, 1.0, "1", True, None):
+        refused("relax must be a whole number of at least 0", count=10, relax=steps)
+    refused("relax must be at most", count=10, relax=1000)
+
+
+def test_defaults():
+    """Normals alone give the paper's density, all else is balanced."""
+    torus = gm.fit(gm.surfaces.torus(), (8, 8))
+    assert set(gm.sample(torus, gm.icosphere(4)).kind) == {"normal"}
+    for asked in ({"count": 100}, {"angle": 20.0}, {"coverage": 0.4}):
+        assert set(gm.sample(torus, **asked).kind) == {"normal", "coverage"}
+    gauss = gm.sample(torus, angle=20.0, density="gauss")
+    assert set(gauss.kind) == {"normal"}
+    assert gm.covering_radius(gm.icosphere(gm_frequency(gauss))) <= 20.0
+
+
+def gm_frequency(samples: gm.Samples) -> int:
+    return round(((samples.report.normals or 0) - 2) ** 0.5 / 10**0.5)
