@@ -12,7 +12,8 @@ TERRAIN = "$$($(BIN)/python -c '$(DEM)'):elevation" --spacing 74.5 -92.5 --cells
 
 .DEFAULT_GOAL := help
 .PHONY: help demo generate check-generated test coverage bench bench-guard bench-record bench-peers \
-	quality operations lint typecheck formulas orders errata curves figures meshes clean
+	quality operations lint typecheck formulas orders errata curves figures gallery meshes registration \
+	clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -100,6 +101,13 @@ figures: $(READY) ## draw Figs. 2-7 of the paper again (docs/figures.md)
 meshes: $(VENV)/peers/.ready ## measure meshes beside Gmsh and Open CASCADE again (docs/meshes.md)
 	$(VENV)/peers/bin/python docs/meshes.py > docs/meshes.tmp
 	mv docs/meshes.tmp docs/meshes.md
+
+gallery: $(READY) ## run the notebooks of docs/gallery/ again
+	$(BIN)/python docs/notebooks.py
+
+registration: $(VENV)/peers/.ready ## measure registration by Open3D's ICP again (docs/registration.md)
+	$(VENV)/peers/bin/python docs/registration.py > docs/registration.tmp
+	mv docs/registration.tmp docs/registration.md
 
 clean: ## remove what make made
 	rm -rf $(VENV) out build *.egg-info .pytest_cache .ruff_cache .hypothesis .benchmarks .coverage
