@@ -461,7 +461,7 @@ def choose_apart(heads, links, places, weights, radius, finest, asked, first, la
         near = radius / math.sqrt(weights[number])
         distance = distance_to_samples(
             heads, links, places, places[number, 0], places[number, 1], places[number, 2],
-            places[number, 3], places[number, 4], places[number, 5], near, finest, np.inf,
+            places[number, 3], places[number, 4], places[number, 5], near, near, finest, np.inf,
         )  # fmt: skip
         if distance <= near:
             asked[counts[1]] = number

@@ -77,8 +77,8 @@ def sample(
       but the error of the spline.
 
     But for "gauss", a count is met exactly, and the report bounds the coverage that was reached, to
-    5 %, and the angle if one was asked. `relax` steps, 4 at most, place what is added better; two
-    are enough. They cost several times as much as the sampling. 10⁶ samples take about MEM.
+    10 %, and the angle if one was asked. `relax` steps, 4 at most, place what is added better; two
+    are enough. They cost several times as much as the sampling. 10⁶ samples take 2.6 GB of memory.
 
     `fields` are the arrays of `Samples` that are wanted, such as ("points", "normals"); by default
     all. The others are neither computed nor stored, which takes less time and memory. With

@@ -28,8 +28,8 @@ def cover_normals(cover: Cover, angle: float) -> float:
     """
     limit = 2.0 * math.sin(math.radians(angle) / 2.0)
     near = (1.0 - SMALL) * limit
-    largest, *far = _far_normals(cover, limit)
-    normals, distances = far[2][:, 3:6], far[3]
+    largest, patches, triangles, rows, distances = _far_normals(cover, limit)
+    normals = rows[:, 3:6]
     tree, left = KDTree(normals), np.ones(len(normals), dtype=bool)
     chosen = []
     for k in np.argsort(-distances, kind="stable"):
@@ -37,7 +37,7 @@ def cover_normals(cover: Cover, angle: float) -> float:
             chosen.append(k)
             left[tree.query_ball_point(normals[k], near)] = False
     if chosen:
-        cover.add(*(x[chosen] for x in far[:3]))
+        cover.add(patches[chosen], triangles[chosen], rows[chosen])
         again = KDTree(normals[chosen]).query(normals)[0]
         largest = max(largest, float(again.max()) + SMALL * limit)
     return math.degrees(2.0 * math.asin(min(largest, limit) / 2.0))
@@ -66,7 +66,10 @@ def _far_normals(
         found.append((patches[small], triangles[small], rows[small], distances[small]))
         cut = far & ~small
         patches, triangles, turns = quarters(patches[cut], triangles[cut], turns[cut] / 2.0)
-    return largest, *(np.concatenate(x) for x in zip(*found, strict=True))
+    all_patches, all_triangles, all_rows, chords = (
+        np.concatenate(x) for x in zip(*found, strict=True)
+    )
+    return largest, all_patches, all_triangles, all_rows, chords
 
 
 def widest_angles(cover: Cover, number: int) -> None:

@@ -203,14 +203,9 @@ class Cover:
         room = len(self.weights)
         self.heads = np.full(1 << (2 * kernels.SIZES * room).bit_length(), -1, dtype=np.int32)
         self.links = np.empty(kernels.SIZES * room, dtype=np.int32)
+        numbers = np.arange(self.count)
         kernels.enter_samples(
-            self.heads,
-            self.links,
-            self.points,
-            self.weights,
-            radius,
-            self.finest,
-            np.arange(self.count),
+            self.heads, self.links, self.points, self.weights, radius, self.finest, numbers
         )
         self.grid_radius = radius
 

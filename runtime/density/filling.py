@@ -208,9 +208,9 @@ class Filling:
 
     def _answers(self, asked: NDArray[np.float64] | float, most: int | None = None) -> Answers:
         """Return what normals give, or a lattice of so many per steradian."""
-        if isinstance(asked, float):
-            return answers_of_lattice(self.spline, asked, self.threads, self.progress, most)
-        return answers_of(self.spline, asked, self.threads, self.progress)
+        if isinstance(asked, np.ndarray):
+            return answers_of(self.spline, asked, self.threads, self.progress)
+        return answers_of_lattice(self.spline, asked, self.threads, self.progress, most)
 
 
 def added_fields(cover: Cover, fields: Sequence[str], dtype: DTypeLike) -> dict[str, NDArray[Any]]:

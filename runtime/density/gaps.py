@@ -12,7 +12,7 @@ from .cover import Array, Cover, Indices, quarters
 __all__ = ["coverage"]
 
 # The coverage is known when no place can be farther than this times what was found.
-TIGHT = 1.05
+TIGHT = 1.1
 # So many triangles are looked at first, and so often a triangle is cut.
 FIRST, MOST_CUTS = 1024, 40
 

@@ -28,9 +28,9 @@ def area_weights(samples: Samples, angle: float | None) -> Array:
     # Vertices that were added give their part to the samples at the other corners.
     added = np.where(is_sample, 0.0, parts).sum(axis=1) / np.maximum(number, 1)
     shares = np.where(is_sample, parts + added[:, None], 0.0)
-    weights = np.bincount(
-        mesh.sample[triangles[is_sample]], shares[is_sample], minlength=len(samples)
-    )
+    samples_of, parts_of = mesh.sample[triangles[is_sample]], shares[is_sample]
+    weights = np.zeros(len(samples))
+    np.add.at(weights, samples_of, parts_of)
     lost = number == 0
     if lost.any():
         middles = mesh.vertices[triangles[lost]].mean(axis=1)

@@ -127,16 +127,8 @@ class TestConstruction:
 
 class TestReport:
     def test_numpy_numbers_become_plain(self):
-        report = SamplingReport(
-            "s",
-            np.int64(3),
-            np.int32(2),
-            np.uint8(1),
-            np.float32(0.5),
-            0,
-            np.float32(2),
-            np.int64(3),  # pyright: ignore[reportArgumentType]
-        )
+        numbers: Any = np.int64(3), np.int32(2), np.uint8(1), np.float32(0.5), 0
+        report = SamplingReport("s", *numbers, coverage=np.float32(2), angle=np.int64(3))  # pyright: ignore[reportArgumentType]
         assert [type(getattr(report, f.name)) for f in fields(report)] == [
             str, int, int, int, float, int, float, float,
         ]  # fmt: skip

@@ -1,7 +1,7 @@
 """How many samples come, which ones, in which order, and how dense they are where."""
 
 import math
-from typing import Any
+from typing import Any, cast
 
 import gaussmap as gm
 import numpy as np
@@ -84,7 +84,8 @@ def test_added_samples_have_the_curvatures_of_their_place():
 
 def test_what_has_no_area_is_refused():
     line = gm.Surface.from_callable(lambda u, v: np.stack([u, 0 * u, 0 * u], axis=-1), SQUARE)
-    for asked in ({"count": 10}, {"coverage": 0.1}, {"angle": 20.0}, {"normals": [[0, 0, 1]]}):
+    amounts = [{"count": 10}, {"coverage": 0.1}, {"angle": 20.0}, {"normals": [[0, 0, 1]]}]
+    for asked in cast("list[dict[str, Any]]", amounts):
         with pytest.raises(gm.SurfaceError, match="has no area"):
             gm.sample(line, cells=(3, 3), density="balanced", **asked)
 

@@ -63,7 +63,7 @@ def test_coverage_is_kept_and_reported(name, cells):
 
 @pytest.mark.parametrize("density", ["balanced", "uniform", 0.5, 2.0])
 @pytest.mark.parametrize("name", CATALOGUE)
-def test_the_reported_coverage_is_5_percent_off_at_most(name, density):
+def test_the_reported_coverage_is_10_percent_off_at_most(name, density):
     """The places are a grid: a point may be half its diagonal farther than they are."""
     spline = gm.fit(gm.surfaces.surface(name), even(name, (12, 10)))
     points, _ = places(spline, 500)
@@ -72,7 +72,7 @@ def test_the_reported_coverage_is_5_percent_off_at_most(name, density):
     steps = (np.linalg.norm(np.diff(grid, axis=axis), axis=2).max() for axis in (0, 1))
     samples = gm.sample(spline, count=400, density=density)
     found, reported = farthest(samples, points), samples.report.coverage or 0.0
-    assert found <= reported <= 1.05 * (found + math.hypot(*steps) / 2)
+    assert found <= reported <= 1.1 * (found + math.hypot(*steps) / 2)
 
 
 @pytest.mark.parametrize("factor", [1e-12, 1e12, 2.0**-300, 2.0**300])

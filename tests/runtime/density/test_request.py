@@ -57,7 +57,8 @@ def test_what_a_density_cannot_be_asked_for(asked: dict[str, Any], use: str):
 def test_relaxing_needs_samples_that_may_move():
     refused("relax moves samples that normals did not ask for", normals=[[0, 0, 1]], relax=1)
     refused("relax moves samples", count=10, density="gauss", relax=1)
-    for steps in (-1, 1.0, "1", True, None):
+    bad: list[Any] = [-1, 1.0, "1", True, None]
+    for steps in bad:
         refused("relax must be a whole number of at least 0", count=10, relax=steps)
     refused("relax must be at most", count=10, relax=1000)
 
@@ -66,12 +67,10 @@ def test_defaults():
     """Normals alone give the paper's density, all else is balanced."""
     torus = gm.fit(gm.surfaces.torus(), (8, 8))
     assert set(gm.sample(torus, gm.icosphere(4)).kind) == {"normal"}
-    for asked in ({"count": 100}, {"angle": 20.0}, {"coverage": 0.4}):
+    amounts: list[dict[str, Any]] = [{"count": 100}, {"angle": 20.0}, {"coverage": 0.4}]
+    for asked in amounts:
         assert set(gm.sample(torus, **asked).kind) == {"normal", "coverage"}
     gauss = gm.sample(torus, angle=20.0, density="gauss")
     assert set(gauss.kind) == {"normal"}
-    assert gm.covering_radius(gm.icosphere(gm_frequency(gauss))) <= 20.0
-
-
-def gm_frequency(samples: gm.Samples) -> int:
-    return round(((samples.report.normals or 0) - 2) ** 0.5 / 10**0.5)
+    frequency = round((((gauss.report.normals or 0) - 2) / 10) ** 0.5)
+    assert gm.covering_radius(gm.icosphere(frequency)) <= 20.0
