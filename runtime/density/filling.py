@@ -222,7 +222,8 @@ def added_fields(cover: Cover, fields: Sequence[str], dtype: DTypeLike) -> dict[
     patch_index, here = patch.astype(np.int64), np.arange(count)
     kernels.fill_known(
         spline.coefficients, spline.scale, cover.points[rows, 3:].copy(), spline.frame, here,
-        np.column_stack([u, v, K, u, v]), patch_index, here, *(filled.get(x) for x in FLOAT_NAMES),
+        np.column_stack([patch_index, here]), np.column_stack([u, v, K, u, v]),
+        *(filled.get(x) for x in FLOAT_NAMES),
     )  # fmt: skip
     indices = {"normal_index": np.full(count, -1), "patch_index": patch_index}
     return filled | {name: x for name, x in indices.items() if name in fields}
