@@ -83,7 +83,7 @@ SURFACE and the options that choose normals and cells are those of `gaussmap sam
 examples:
   gaussmap mesh torus --count 5000 -o torus.obj
   gaussmap mesh heights.npy --spacing 30 30 --count 50000 -o terrain.ply
-  gaussmap mesh torus --normals cap.npy --angle 20 -o part.stl
+  gaussmap mesh torus --normals cap.npy --deviation 20 -o part.stl
 """
 
 PLOT_EXAMPLES = """\
@@ -152,7 +152,7 @@ def _run_mesh(options: argparse.Namespace) -> None:
 
     check_target(options.output, MESH_SUFFIXES)
     fields = ("points", "normals", "uv")
-    mesh = sample(**_arguments(options), fields=fields).mesh(angle=options.angle)
+    mesh = sample(**_arguments(options), fields=fields).mesh(angle=options.deviation)
     mesh.write(options.output)
     _summarize(mesh, options)
 
@@ -409,7 +409,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_sampling(command, default_count=10_000)
     _add_output(command, ".ply, .obj, .stl, .vtk, .vtu or .vtp")
     command.add_argument(
-        "--angle",
+        "--deviation",
         type=_number,
         metavar="DEGREES",
         help="leave out triangles that deviate by more from the normals at their corners, for "

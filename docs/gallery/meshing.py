@@ -73,7 +73,7 @@ axis.legend()
 plt.show()
 
 # %% [markdown]
-# The volume is another test. `weights()` gives it from the samples and their normals, much more
+# The volume is another test. `weights()` gives it from the samples and their normals, more
 # accurately than the flat triangles do; many more samples tell what is right.
 
 # %%

@@ -36,7 +36,7 @@ def test_normals_of_a_part(capsys: pytest.CaptureFixture[str]) -> None:
     normals = gm.icosphere(16)
     np.save("cap.npy", normals[normals[:, 2] > 0.9])
     part = ["mesh", "torus", "--normals", "cap.npy", "--cells", "8", "8", "-o", "cap.ply"]
-    assert main([*part, "--angle", "10"]) == 0
+    assert main([*part, "--deviation", "10"]) == 0
     out = capsys.readouterr().out
     worst = float(re.findall(r"([\d.]+)° \(worst\)", out)[0])
     assert worst <= 10.0
@@ -53,10 +53,10 @@ def test_quiet(capsys: pytest.CaptureFixture[str]) -> None:
     [
         (["torus", "-o", "torus.npz"], "use one of .ply, .obj, .stl, .vtk, .vtu, .vtp"),
         (["torus", "-o", "no/torus.ply"], "create the folder first"),
-        (["torus", *FEW, "--angle", "0", "-o", "torus.ply"], "angle must lie between 0 and 180"),
-        (["torus", "--angle", "wide", "-o", "torus.ply"], "it must be a number, not 'wide'"),
+        (["torus", *FEW, "--deviation", "0", "-o", "a.ply"], "angle must lie between 0 and 180"),
+        (["torus", "--deviation", "wide", "-o", "torus.ply"], "it must be a number, not 'wide'"),
         (["torus", "--count", "3", "--cells", "8", "8", "-o", "a.ply"], "too few"),
-        (["plane", *FEW, "--quiet", "-o", "plane.ply"], "there are no samples"),
+        (["plane", *FEW, "--density", "gauss", "-o", "plane.ply"], "there are no samples"),
     ],
 )
 @pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
