@@ -6,9 +6,10 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
+from ..threads import thread_count
 from .cover import Cover, quarters
+from .trees import tree_of
 
 # Triangles are cut until normals turn by less than this part of an angle within them.
 SMALL = 0.02
@@ -30,7 +31,7 @@ def cover_normals(cover: Cover, angle: float) -> float:
     near = (1.0 - SMALL) * limit
     largest, patches, triangles, rows, distances = _far_normals(cover, limit)
     normals = rows[:, 3:6]
-    tree, left = KDTree(normals), np.ones(len(normals), dtype=bool)
+    tree, left = tree_of(normals), np.ones(len(normals), dtype=bool)
     chosen = []
     for k in np.argsort(-distances, kind="stable"):
         if left[k]:
@@ -38,7 +39,7 @@ def cover_normals(cover: Cover, angle: float) -> float:
             left[tree.query_ball_point(normals[k], near)] = False
     if chosen:
         cover.add(patches[chosen], triangles[chosen], rows[chosen])
-        again = KDTree(normals[chosen]).query(normals)[0]
+        again = tree_of(normals[chosen]).query(normals)[0]
         largest = max(largest, float(again.max()) + SMALL * limit)
     return math.degrees(2.0 * math.asin(min(largest, limit) / 2.0))
 
@@ -51,7 +52,7 @@ def _far_normals(
     Returns how far the normals of all other triangles are at most; and patches, triangles, middles
     and the distances of the normals in the middles.
     """
-    tree = KDTree(cover.points[: cover.count, 3:])
+    tree = tree_of(cover.points[: cover.count, 3:])
     patches, triangles, largest = cover.patches, cover.triangles.copy(), 0.0
     weights = np.maximum(triangles[:, 4], cover.wanted.law.floor)
     triangles[:, 4] = weights
@@ -59,7 +60,7 @@ def _far_normals(
     found = []
     while len(patches):
         rows = cover.middles_of(patches, triangles)
-        distances = tree.query(rows[:, 3:6], workers=-1)[0]
+        distances = tree.query(rows[:, 3:6], workers=thread_count(cover.wanted.threads))[0]
         far = (distances + turns > limit) & rows[:, 3:6].any(axis=1)
         largest = max(largest, float((distances + turns)[~far].max(initial=0.0)))
         small = far & (turns <= SMALL * limit)
@@ -79,7 +80,10 @@ def widest_angles(cover: Cover, number: int) -> None:
     samples = np.column_stack(
         [cover.points[: cover.count, 3:], APART * np.sign(cover.local[: cover.count, 3])]
     )
-    distances, tree = KDTree(samples).query(places, workers=-1)[0], KDTree(places)
+    distances, tree = (
+        tree_of(samples).query(places, workers=thread_count(cover.wanted.threads))[0],
+        tree_of(places),
+    )
     chosen = []
     for _ in range(number):
         k = int(distances.argmax())

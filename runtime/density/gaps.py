@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.spatial import KDTree
 
+from ..threads import thread_count
 from .cover import Array, Cover, Indices, quarters
+from .trees import tree_of
 
 __all__ = ["coverage"]
 
@@ -25,10 +26,12 @@ def coverage(cover: Cover) -> float:
     """
     if cover.count == 0:
         return math.inf
-    tree = KDTree(cover.points[: cover.count, :3])
+    tree = tree_of(cover.points[: cover.count, :3])
 
     def look(patches: Indices, triangles: Array) -> Array:
-        return tree.query(cover.middles_of(patches, triangles)[:, :3], workers=-1)[0]
+        return tree.query(
+            cover.middles_of(patches, triangles)[:, :3], workers=thread_count(cover.wanted.threads)
+        )[0]
 
     patches, triangles = cover.patches, cover.triangles
     extents = cover.wanted.reaches[patches] * np.abs(triangles[:, 2])

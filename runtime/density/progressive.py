@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated import cover as kernels
+from .trees import tree_of
 
 __all__ = ["progressive_order"]
 
@@ -49,9 +50,7 @@ def progressive_order(
 
 def _spacings(points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the mean distance (N,) of each point to the next ones, nowhere zero."""
-    from scipy.spatial import KDTree
-
-    distances = KDTree(points).query(points, k=NEIGHBOURS + 1, workers=-1)[0][:, 1:].mean(axis=1)
+    distances = tree_of(points).query(points, k=NEIGHBOURS + 1, workers=-1)[0][:, 1:].mean(axis=1)
     least = float(np.median(distances)) * 1e-3
     return np.maximum(distances, least if least > 0.0 else 1.0)
 

@@ -349,7 +349,7 @@ HEIGHTS = ["--spacing", "1", "1", *TO]
         (["sample", "torus", "--angle", "x", *TO], "--angle: it must be a number, not 'x'"),
         (["sample", "torus", "--coverage", "-1", *TO], "coverage must be a positive number, not"),
         (["sample", "torus", "--density", "flat", *TO], "there is no density"),
-        (["sample", "torus", "--density", "-2", *TO], "must be a positive number, not -2.0"),
+        (["sample", "torus", "--density", "-2", *TO], "a positive number of at most 8, not"),
         (["sample", "torus", *GAUSS, "--coverage", "1", *TO], "cannot be asked for by coverage="),
         (["sample", "torus", *GAUSS, "--relax", "1", *TO], 'density="gauss" has none'),
         (["sample", "torus", "--relax", "11", *TO], "--relax: it must be a whole number"),
