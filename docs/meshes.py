@@ -179,9 +179,9 @@ HEAD = """\
 Written by `make meshes`: do not edit.
 
 Triangle meshes of three surfaces with M vertices, about {counts}. `samples.mesh()` of gaussmap
-joins samples of the density |K| with points on open borders, M in all; edges are flipped until no
-flip brings two triangles nearer to the normals at their corners. Below it stands the triangulation
-from which the flips start. Of a grid of parameters each cell is cut along one diagonal. Gmsh meshes
+joins what `gm.sample(count=…)` gives ("balanced") with points on open borders, M in all; edges
+are flipped until no flip brings two triangles nearer to the normals at their corners. Below it
+stands the triangulation from which the flips start. Of a grid of parameters each cell is cut along one diagonal. Gmsh meshes
 by curvature, Open CASCADE by angular deflection: the torus is one of their own shapes, the other
 two surfaces are given to them as cubic B-splines through 61 × 61 points. Vertices at one place
 count once. Columns:
@@ -198,9 +198,7 @@ MEANING = """\
 ## What this says
 
 With M ≈ {last:,} the mean angle is smaller than that of Gmsh on {mean}, the worst angle on {worst},
-the distance on {distance}. The flips make the mean angle smaller by {saved}. The density |K| is
-small along parabolic curves. There lie the largest distances and angles of a surface that has such
-curves: what lacks are vertices.
+the distance on {distance}. The flips make the mean angle smaller by {saved}.
 """
 
 TIME = """\
