@@ -179,12 +179,12 @@ HEAD = """\
 Written by `make meshes`: do not edit.
 
 Triangle meshes of three surfaces with M vertices, about {counts}. `samples.mesh()` of gaussmap
-joins what `gm.sample(count=…)` gives ("balanced") with points on open borders, M in all; edges
-are flipped until no flip brings two triangles nearer to the normals at their corners. Below it
-stands the triangulation from which the flips start. Of a grid of parameters each cell is cut along one diagonal. Gmsh meshes
-by curvature, Open CASCADE by angular deflection: the torus is one of their own shapes, the other
-two surfaces are given to them as cubic B-splines through 61 × 61 points. Vertices at one place
-count once. Columns:
+joins what `gm.sample(count=…)` gives ("balanced") with points on open borders, M in all; edges are
+flipped until no flip brings two triangles nearer to the normals at their corners. Below it stands
+the triangulation from which the flips start. Of a grid of parameters each cell is cut along one
+diagonal. Gmsh meshes by curvature, Open CASCADE by angular deflection: the torus is one of their
+own shapes, the other two surfaces are given to them as cubic B-splines through 61 × 61 points.
+Vertices at one place count once. Columns:
 
 - **surface → mesh**: the largest distance of {places:,} places on the exact surface (uniform by
   area) from the mesh, in the unit of the surface;
