@@ -64,6 +64,7 @@ def test_a_plane_is_exact(scale: float) -> None:
     np.testing.assert_allclose(centre / scale, [0.5, 1.0, 3.5], atol=0.01)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("name", ["moebius_band", "catenoid", "sphere", "cone"])
 def test_all_kinds_of_surfaces(name: str) -> None:
     spline = gm.fit(getattr(gm.surfaces, name)())
