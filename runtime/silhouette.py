@@ -10,11 +10,12 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from .bins import NormalBins
 from .checks import whole_number
+from .choice import NEAR_ENOUGH, NORMALS_PER_SAMPLE
 from .compiling import compilation_shown
 from .curves.circle import circle
 from .fields import checked_dtype, checked_fields
+from .report import sampling_report, warn_of
 from .samples import Samples
-from .sampling import sampling_report, warn_of
 from .search import Hits, fill, find
 from .sphere import as_normals, perpendicular, unit_vector
 from .spline import Spline, spline_of
@@ -23,11 +24,8 @@ from .threads import thread_count
 
 __all__ = ["great_circle", "silhouette"]
 
-# `count` is met by changing the number of normals, until it is this near or after so many tries.
-NEAR_ENOUGH = 0.01
+# `count` is met by changing the number of normals, in so many tries.
 TRIES = 6
-# At most this many normals for each sample that was asked.
-NORMALS_PER_SAMPLE = 100
 
 
 def silhouette(

@@ -13,8 +13,8 @@ from .checks import whole_number
 from .choice import choose
 from .density.request import Request, checked_request
 from .fields import checked_dtype, checked_fields
+from .report import sampling_report, warn_of
 from .samples import Samples, SamplingReport
-from .sampling import sampling_report, warn_of
 from .search import Hits, Search, fill, merged
 from .spline import Spline, spline_of
 from .surface import Surface

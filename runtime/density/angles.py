@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..threads import thread_count
+from ..trees import tree_of
 from .cover import Cover, quarters
-from .trees import tree_of
 
 # Triangles are cut until normals turn by less than this part of an angle within them.
 SMALL = 0.02

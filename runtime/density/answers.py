@@ -12,10 +12,11 @@ from ..bins import NormalBins
 from ..choice import NORMALS_PER_SAMPLE
 from ..fields import ARRAY_NAMES
 from ..lattice import Lattice
-from ..samples import Samples, SamplingReport
+from ..report import sampling_report
+from ..samples import Samples
 from ..search import fill, find
 from ..spline import Spline
-from ..visibility import invisible_share, visible_solid_angle
+from ..visibility import visible_solid_angle
 
 __all__ = ["Answers", "answers_of", "answers_of_lattice", "no_answers"]
 
@@ -56,14 +57,7 @@ def answers_of(
     density = len(normals) / (4 * math.pi) if density is None else density
     bins = NormalBins(normals, threads)
     hits = find(spline, bins, threads, progress)
-    report = SamplingReport(
-        surface=spline.name,
-        normals=len(normals),
-        samples=len(hits),
-        patches=spline.patches,
-        invisible_share=invisible_share(spline, density),
-        degenerate_patches=hits.developable,
-    )
+    report = sampling_report(spline, len(normals), len(hits), density, hits.developable)
     arrays = fill(spline, bins, hits, threads, ARRAY_NAMES)
     return Answers(bins.normals, density, Samples(**arrays, report=report, spline=spline))
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ...generated import cover as kernels
 from ..samples import Samples
 from ..threads import over_ranges
+from .grids import grids_of
 from .law import Wanted
 
 __all__ = ["APPROACH", "FINE", "STEP", "Array", "Cover", "Indices", "quarters"]
@@ -198,14 +199,8 @@ class Cover:
 
     def _make_grids(self, radius: float) -> None:
         """Make the grids again, for a radius that is not much smaller than this one."""
-        widest = radius / math.sqrt(self.wanted.law.floor)
-        self.finest = math.ldexp(2.0 * widest, 1 - kernels.LEVELS)
-        room = len(self.weights)
-        self.heads = np.full(1 << (2 * kernels.SIZES * room).bit_length(), -1, dtype=np.int32)
-        self.links = np.empty(kernels.SIZES * room, dtype=np.int32)
-        numbers = np.arange(self.count)
-        kernels.enter_samples(
-            self.heads, self.links, self.points, self.weights, radius, self.finest, numbers
+        self.heads, self.links, self.finest = grids_of(
+            self.points, self.weights, np.arange(self.count), radius, self.wanted.law.floor
         )
         self.grid_radius = radius
 

@@ -13,10 +13,11 @@ from numpy.typing import DTypeLike, NDArray
 from ...generated import sampler as kernels
 from ..errors import SurfaceError
 from ..fields import FLOAT_NAMES, new_field
-from ..samples import Samples, SamplingReport
+from ..report import sampling_report
+from ..samples import Samples
 from ..spline import Spline
 from ..threads import counted
-from ..visibility import invisible_share, visible_solid_angle
+from ..visibility import visible_solid_angle
 from .angles import cover_normals
 from .answers import Answers, answers_of, answers_of_lattice, no_answers
 from .cover import APPROACH, Cover
@@ -82,11 +83,6 @@ class Filling:
 
         Raises SurfaceError if there is nothing to cover.
         """
-        if not Wanted(self.spline, Law(floor=1.0), self.threads).area > 0.0:
-            raise SurfaceError(
-                f"surface {self.spline.name!r} has no area: all its points lie on one line or are "
-                'one point; only density="gauss" takes it.'
-            )
         if self.request.density == "balanced":
             return self._balanced()
         cover = Cover(self._law(), None, self.tell)
@@ -103,9 +99,19 @@ class Filling:
         """
         power, count = self.request.density, self.request.count or 0
         if isinstance(power, str) or visible_solid_angle(self.spline, count / (4 * math.pi)) == 0.0:
-            return Wanted(self.spline, Law(floor=1.0), self.threads)
-        wanted = Wanted(self.spline, Law(power=1.0, alpha=power), self.threads)
+            return self._wanted(Law(floor=1.0))
+        wanted = self._wanted(Law(power=1.0, alpha=power))
         return wanted.with_floor(wanted.total / wanted.area / WIDEST_GAP**2)
+
+    def _wanted(self, law: Law) -> Wanted:
+        """Return a law on the spline; SurfaceError if that has no area."""
+        wanted = Wanted(self.spline, law, self.threads)
+        if not wanted.area > 0.0:
+            raise SurfaceError(
+                f"surface {self.spline.name!r} has no area: all its points lie on one line or are "
+                'one point; only density="gauss" takes it.'
+            )
+        return wanted
 
     def samples(
         self,
@@ -122,22 +128,17 @@ class Filling:
                 name: np.concatenate([getattr(given, name).astype(x.dtype, copy=False), x])
                 for name, x in arrays.items()
             }
-        report = SamplingReport(
-            surface=self.spline.name,
-            normals=len(answers.normals),
-            samples=cover.count,
-            patches=self.spline.patches,
-            invisible_share=invisible_share(self.spline, answers.density),
-            degenerate_patches=None if given is None else given.report.degenerate_patches,
-            coverage=coverage(cover),
-            angle=angle,
+        developable = None if given is None else given.report.degenerate_patches
+        report = sampling_report(
+            self.spline, len(answers.normals), cover.count, answers.density, developable
         )
+        report = replace(report, coverage=coverage(cover), angle=angle)
         return Samples(**arrays, report=report, spline=self.spline)
 
     # --- balanced ---------------------------------------------------------------------------------
 
     def _balanced(self) -> tuple[Cover, Answers]:
-        request, wanted = self.request, Wanted(self.spline, Law(bend=1.0), self.threads)
+        request, wanted = self.request, self._wanted(Law(bend=1.0))
         # Normals and angles are absolute: then flat parts are bent as a sphere of this area.
         least = 4 * math.pi if request.normals is not None or request.angle else UNBENT
         floor = FLAT_SHARE * max(wanted.total, least) / wanted.area

@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from ..threads import thread_count
+from ..trees import tree_of
 from .cover import Array, Cover, Indices, quarters
-from .trees import tree_of
 
 __all__ = ["coverage"]
 

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated import cover as kernels
-from .trees import tree_of
+from ..trees import tree_of
+from .grids import grids_of
 
 __all__ = ["progressive_order"]
 
@@ -33,10 +34,11 @@ def progressive_order(
         return asked
     places = np.column_stack([points - points.min(axis=0), normals])
     weights = 1.0 / _spacings(points) ** 2
+    least = float(weights.min())
     order, counts = np.empty(count, dtype=np.int64), np.zeros(2, dtype=np.int64)
     radius = 2.0 * math.sqrt(count)
     while len(asked) and radius > FINEST:
-        grids = _grids(order[: counts[0]], places, weights, radius)
+        grids = grids_of(places, weights, order[: counts[0]], radius, least)
         for first in range(0, len(asked), SAMPLES_AT_A_TIME):
             last = min(first + SAMPLES_AT_A_TIME, len(asked))
             kernels.choose_apart(
@@ -53,18 +55,3 @@ def _spacings(points: NDArray[np.float64]) -> NDArray[np.float64]:
     distances = tree_of(points).query(points, k=NEIGHBOURS + 1, workers=-1)[0][:, 1:].mean(axis=1)
     least = float(np.median(distances)) * 1e-3
     return np.maximum(distances, least if least > 0.0 else 1.0)
-
-
-def _grids(
-    chosen: NDArray[np.int64],
-    places: NDArray[np.float64],
-    weights: NDArray[np.float64],
-    radius: float,
-) -> tuple[NDArray[np.int32], NDArray[np.int32], float]:
-    """Return the grids for a radius, with the samples in them that are chosen already."""
-    top = 2.0 * radius / math.sqrt(float(weights.min()))
-    finest = top / 2.0 ** (kernels.LEVELS - 1)
-    heads = np.full(1 << (2 * kernels.SIZES * len(places)).bit_length(), -1, dtype=np.int32)
-    links = np.empty(kernels.SIZES * len(places), dtype=np.int32)
-    kernels.enter_samples(heads, links, places, weights, radius, finest, chosen)
-    return heads, links, finest

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import pyvista
     import trimesh
 
-__all__ = ["Mesh", "scaled"]
+__all__ = ["Mesh", "centred", "scaled"]
 
 # What `sides` is set to that are not given.
 _ALL_ALIKE: Any = None
@@ -162,6 +162,12 @@ class Mesh:
 
 def scaled(points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return points (k, 3) round the origin and of the size 1 or so: products do not overflow."""
+    around, scale = centred(points)
+    return around * scale
+
+
+def centred(points: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
+    """Return points (k, 3) moved round the origin, and a power of two that makes them about 1."""
     low, high = points.min(axis=0), points.max(axis=0)
-    centred = points - (low / 2.0 + high / 2.0)
-    return centred * scale_to_one(float(np.abs(centred).max()))
+    around = points - (low / 2.0 + high / 2.0)
+    return around, scale_to_one(float(np.abs(around).max()))

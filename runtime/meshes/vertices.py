@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ...generated import mesh as kernels
 from ..spline import Spline
 from ..surface import End, Ends
+from ..trees import tree_of
 
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
@@ -57,10 +58,8 @@ class Vertices:
         inner = cls(places[sample], sample, np.ones(len(sample), dtype=bool))
         if all(end in ("wrap", "flip") for end, _ in ends):
             return inner
-        from scipy.spatial import KDTree
-
         points = samples.points.astype(np.float64)
-        tree = KDTree(points[sample])
+        tree = tree_of(points[sample])
         fixed = [*_poles(inner, tree, spline, ends), *_sides(inner, points, tree, spline, ends)]
         for part in fixed:
             inner = inner.without(part.sample)

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated import mesh as kernels
-from ..spline import scale_to_one
-from .mesh import Mesh
+from ..trees import tree_of
+from .mesh import Mesh, centred
 
 if TYPE_CHECKING:
     from ..samples import Samples
@@ -40,17 +40,13 @@ def area_weights(samples: Samples, angle: float | None) -> Array:
 
 def _areas(mesh: Mesh) -> Array:
     """Return the parts (T, 3) of the area over each triangle that belong to its corners."""
-    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
-    centred = mesh.vertices - (low / 2.0 + high / 2.0)
-    scale = scale_to_one(float(np.abs(centred).max()))
+    points, scale = centred(mesh.vertices)
     areas = np.empty(mesh.triangles.shape)
-    kernels.corner_areas(centred * scale, mesh.normals, mesh.triangles, mesh.sides, areas)
+    kernels.corner_areas(points * scale, mesh.normals, mesh.triangles, mesh.sides, areas)
     return areas / scale / scale
 
 
 def _nearest(points: Array, places: Array, areas: Array) -> Array:
     """Return the areas of places, summed at the nearest points (N, 3)."""
-    from scipy.spatial import KDTree
-
-    nearest = KDTree(points).query(places)[1]
+    nearest = tree_of(points).query(places)[1]
     return np.bincount(nearest, areas, minlength=len(points)).astype(np.float64)

@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import GaussmapWarning, InputError
 from ..fields import new_field
+from ..report import sampling_report, warn_of
 from ..samples import Samples, SamplingReport, rows_of
-from ..sampling import sampling_report, warn_of
 from ..sphere import as_normals
 from ..spline import Spline, short_label, spline_of
 from ..surface import Surface

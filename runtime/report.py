@@ -1,0 +1,68 @@
+"""How a sampling went: its report, and the warning where it went otherwise than one may think."""
+
+from __future__ import annotations
+
+import warnings
+
+from .errors import GaussmapWarning
+from .samples import SamplingReport
+from .spline import Spline
+from .visibility import invisible_share
+
+__all__ = ["sampling_report", "warn_of"]
+
+WORTH_A_WARNING = 0.01
+# A count is missed if it is by more than this share of it and so many samples: on a symmetric
+# surface several come and go at once.
+COUNT_TOLERANCE, FEW = 0.02, 5
+
+
+def sampling_report(
+    spline: Spline, normals: int, samples: int, density: float, developable: int | None
+) -> SamplingReport:
+    """Return how a sampling with `density` normals per steradian went."""
+    return SamplingReport(
+        surface=spline.name,
+        normals=normals,
+        samples=samples,
+        patches=spline.patches,
+        invisible_share=invisible_share(spline, density),
+        degenerate_patches=developable,
+    )
+
+
+def warn_of(
+    report: SamplingReport, count: int | None, stacklevel: int, coverage: float | None = None
+) -> None:
+    """Say when samples see less of the surface than the user may think, or miss what was asked."""
+    reasons = _unseen(report) if report.coverage is None else []
+    reasons += _missed(report, count, coverage)
+    if reasons:
+        message = f"surface {report.surface!r}: {'; '.join(reasons)}."
+        warnings.warn(message, GaussmapWarning, stacklevel=stacklevel)
+
+
+def _unseen(report: SamplingReport) -> list[str]:
+    """Say what normals do not see."""
+    share = report.invisible_share or 0.0
+    if share > WORTH_A_WARNING:
+        return [
+            f"{100 * share:.0f} % of its area is flat or developable, where normals see nothing "
+            "but the error of the spline"
+        ]
+    if report.samples == 0 and report.degenerate_patches == report.patches:
+        return ["it is flat or developable up to the rounding of its coordinates"]
+    return ["none of the normals lies in its Gaussian image"] if report.samples == 0 else []
+
+
+def _missed(report: SamplingReport, count: int | None, coverage: float | None) -> list[str]:
+    """Say which of the numbers that were asked are not met."""
+    reasons = []
+    if count is not None and abs(report.samples - count) > COUNT_TOLERANCE * count + FEW:
+        reasons.append(f"{report.samples} samples came where {count} were asked")
+    if coverage is not None and report.coverage is not None and report.coverage > coverage:
+        reasons.append(
+            f"with {count} samples a point can be {report.coverage:.3g} from the nearest one, "
+            f"where {coverage:g} was asked"
+        )
+    return reasons
