@@ -41,9 +41,10 @@ CORNERS = np.array(
 )
 NODE = 1.0 / 6.0
 
-# A sample is found in the grid of its own size and in the next finer and coarser one.
-SIZES = 3
-LEVELS = 32
+# Cells of the grids are so many times as wide as the widest gap that is looked for in them.
+CELL = 2.0
+# As many powers of two as a gap can be wide.
+LEVELS = 1100
 
 
 # --- formulas -------------------------------------------------------------------------------------
@@ -345,231 +346,167 @@ def weigh_patches(mu, scale, law, first, last, reaches, areas, weights):
 
 
 @jit
-def weigh_samples(gaussian, mean, patches, unit, reaches, law, weights):
-    """Write the weights of samples that are there already; `unit` is one length of the surface."""
-    for k in range(patches.size):
-        K = gaussian[k] * unit * unit
-        H = mean[k] * unit
-        weights[k] = weight_of(K, H, reaches[patches[k]], law)
+def cut_patches(parts, ends, first, last, patches, triangles):
+    """Cut the patches first, …, last − 1 into parts² equal triangles each, up to number `ends`.
+
+    Writes the patch and (u, v) of the middle and size (…, 3) of each: the sides are parallel to those
+    of the patch, and so long; with a negative size it is turned over.
+    """
+    for patch in range(first, last):
+        step = 1.0 / parts[patch]
+        k = ends[patch] - parts[patch] * parts[patch]
+        for i in range(parts[patch]):
+            for j in range(2 * (parts[patch] - i) - 1):
+                turned = j % 2
+                patches[k] = patch
+                triangles[k, 0] = (i + (1.0 + turned) / 3.0) * step
+                triangles[k, 1] = (j // 2 + (1.0 + turned) / 3.0) * step
+                triangles[k, 2] = -step if turned else step
+                k += 1
 
 
 @jit
-def middles(mu, scale, patches, triangles, first, last, rows):
-    """Write point, normal and K (…, 7) in the middle of the triangles first, …, last − 1."""
+def middles(mu, scale, law, reaches, patches, triangles, first, last, rows):
+    """Write point, normal, weight and K (…, 8) in the middle of the triangles first, …, last − 1."""
     for k in range(first, last):
-        x, y, z, n_x, n_y, n_z, K, _ = place_of(
-            mu, scale, patches[k], triangles[k, 0], triangles[k, 1]
-        )
+        patch = patches[k]
+        x, y, z, n_x, n_y, n_z, K, H = place_of(mu, scale, patch, triangles[k, 0], triangles[k, 1])
+        singular = n_x == 0.0 and n_y == 0.0 and n_z == 0.0
         rows[k, 0] = x
         rows[k, 1] = y
         rows[k, 2] = z
         rows[k, 3] = n_x
         rows[k, 4] = n_y
         rows[k, 5] = n_z
-        rows[k, 6] = K
+        rows[k, 6] = law[0] if singular else weight_of(K, H, reaches[patch], law)
+        rows[k, 7] = K
 
 
-# --- grids in space, one for each size ------------------------------------------------------------
+# --- places in grids, one grid for each size of gaps ------------------------------------------------
 
 
 @jit
-def level_of(reach, finest):
-    """Return the number of the grid whose cells are at least twice as long as `reach`."""
-    return min(max(math.frexp(2.0 * reach / finest)[1], 0), LEVELS - 1)
+def level_of(weight):
+    """Return the number of the grid of places with this weight; the next has cells twice as wide."""
+    return LEVELS // 2 - (math.frexp(weight)[1] >> 1)
 
 
 @jit
 def bucket_of(level, i, j, k, buckets):
-    """Return where the samples of a cell of a grid are listed, maybe with others."""
-    return (i * 73856093 ^ j * 19349663 ^ k * 83492791 ^ level * 49979687) & (buckets - 1)
+    """Return where the places of a cell of a grid are, maybe with others.
 
-
-@jit
-def enter(heads, links, places, number, reach, finest):
-    """Enter a sample into the grids; `reach` is how far it has to be found."""
-    level = level_of(reach, finest)
-    for k in range(SIZES):
-        at = level + k - 1
-        if 0 <= at < LEVELS:
-            edge = math.ldexp(finest, at)
-            bucket = bucket_of(
-                at,
-                int(math.floor(places[number, 0] / edge)),
-                int(math.floor(places[number, 1] / edge)),
-                int(math.floor(places[number, 2] / edge)),
-                heads.size,
-            )
-            links[SIZES * number + k] = heads[bucket]
-            heads[bucket] = SIZES * number + k
-
-
-@jit
-def enter_samples(heads, links, places, weights, radius, finest, numbers):
-    """Enter samples by their numbers."""
-    for number in numbers:
-        enter(heads, links, places, number, radius / math.sqrt(weights[number]), finest)
-
-
-@jit
-def distance_to_samples(heads, links, places, x, y, z, n_x, n_y, n_z, reach, enough, finest, known):
-    """Return the distance to the nearest sample on the same side of the surface, if below `known`.
-
-    Not farther than `reach` is looked for, and no nearer one than `enough`. On the same side are
-    samples whose normal makes an angle of at most 90 degrees with the normal here.
+    The buckets of 4 x 4 x 4 cells are neighbours: what is near in space mostly is near in memory.
     """
-    level = level_of(reach, finest)
-    edge = math.ldexp(finest, level)
-    best = known * known
-    if reach < known:
-        best = reach * reach
-    found = False
-    for i in range(int(math.floor((x - reach) / edge)), int(math.floor((x + reach) / edge)) + 1):
-        for j in range(
-            int(math.floor((y - reach) / edge)), int(math.floor((y + reach) / edge)) + 1
-        ):
-            for k in range(
-                int(math.floor((z - reach) / edge)), int(math.floor((z + reach) / edge)) + 1
-            ):
-                entry = heads[bucket_of(level, i, j, k, heads.size)]
-                while entry >= 0:
-                    number = entry // SIZES
-                    dx = places[number, 0] - x
-                    dy = places[number, 1] - y
-                    dz = places[number, 2] - z
-                    square = dx * dx + dy * dy + dz * dz
-                    if square < best and (
-                        places[number, 3] * n_x + places[number, 4] * n_y + places[number, 5] * n_z
-                        >= 0.0
-                    ):
-                        best = square
-                        found = True
-                        if square <= enough * enough:
-                            return math.sqrt(square)
-                    entry = links[entry]
-    return math.sqrt(best) if found else known
+    block = (i >> 2) * 73856093 ^ (j >> 2) * 19349663 ^ (k >> 2) * 83492791 ^ level * 49979687
+    return ((block << 6) + ((i & 3) << 4) + ((j & 3) << 2) + (k & 3)) & (buckets - 1)
 
 
 @jit
-def choose_apart(heads, links, places, weights, radius, finest, asked, first, last, order, counts):
-    """Choose those of the samples asked[first], …, asked[last − 1] that no chosen one is near to.
-
-    Near is radius / sqrt(weight). They are entered into the grids and appended to `order`, all others
-    are written to the beginning of `asked` again. counts = (chosen, left).
-    """
-    for k in range(first, last):
-        number = asked[k]
-        near = radius / math.sqrt(weights[number])
-        distance = distance_to_samples(
-            heads, links, places, places[number, 0], places[number, 1], places[number, 2],
-            places[number, 3], places[number, 4], places[number, 5], near, near, finest, np.inf,
-        )  # fmt: skip
-        if distance <= near:
-            asked[counts[1]] = number
-            counts[1] += 1
-        else:
-            order[counts[0]] = number
-            counts[0] += 1
-            enter(heads, links, places, number, near, finest)
-
-
-# --- covering -------------------------------------------------------------------------------------
+def gaps_of(rows):
+    """Return the number of the finest grid, and the widest 1 / sqrt(weight) of each from it on."""
+    widest = np.zeros(LEVELS)
+    finest = LEVELS
+    coarsest = 0
+    for k in range(rows.shape[0]):
+        level = level_of(rows[k, 6])
+        finest = min(finest, level)
+        coarsest = max(coarsest, level)
+        widest[level] = max(widest[level], 1.0 / math.sqrt(rows[k, 6]))
+    return finest, widest[finest : coarsest + 1]
 
 
 @jit
-def cover_triangles(
-    mu, scale, reaches, law, radius, fine, strict, most, patches, triangles, first, last,
-    heads, links, places, weights, finest, counts, local,
-):  # fmt: skip
-    """Add samples until all middles of triangles are near enough to one, and cut what is not small.
+def sort_places(rows, radius, finest, widest, starts, buckets, order, places):
+    """Sort rows into grids for a radius: `places` holds rows order[k], bucket b those from starts[b] on.
 
-    Near enough is radius / sqrt(weight). If the middle of a triangle is not, it becomes a sample, the
-    next in places (…, 6), weights and local (…, 4) (patch, u, v, K), as long as there are fewer than
-    `most`. A triangle that may hold other places that are not is cut, unless its extent is smaller
-    than `fine` times what is near; if `strict`, such a small one gets a sample, too.
-
-    counts = (triangles, samples) grow. Returns the triangle that comes next: `last`, or one that there
-    was no room for.
+    Their last number becomes the square of the distance to the nearest sample times the weight, which
+    is not known yet; where there is no normal it is -1, so that such a place never is far.
     """
-    for k in range(first, last):
-        if counts[1] == weights.size:
-            return k
-        patch = patches[k]
-        known = triangles[k, 3]
-        weight = triangles[k, 4]
-        extent = reaches[patch] * abs(triangles[k, 2])
-        if weight >= 0.0 and known + extent <= radius / math.sqrt(weight):
-            continue
-        x, y, z, n_x, n_y, n_z, K, H = place_of(mu, scale, patch, triangles[k, 0], triangles[k, 1])
-        singular = n_x == 0.0 and n_y == 0.0 and n_z == 0.0
-        if weight < 0.0:
-            weight = law[0] if singular else weight_of(K, H, reaches[patch], law)
-            triangles[k, 4] = weight
-        near = radius / math.sqrt(weight)
-        known = distance_to_samples(
-            heads,
-            links,
-            places,
-            x,
-            y,
-            z,
-            n_x,
-            n_y,
-            n_z,
-            near,
-            max(near - extent, 0.0),
-            finest,
-            known,
+    for k in range(rows.shape[0]):
+        level = level_of(rows[k, 6]) - finest
+        cell = CELL * radius * widest[level]
+        buckets[k] = bucket_of(
+            level,
+            int(math.floor(rows[k, 0] / cell)),
+            int(math.floor(rows[k, 1] / cell)),
+            int(math.floor(rows[k, 2] / cell)),
+            starts.size - 1,
         )
-        may = counts[1] < most and not singular
-        far = may and known > near
-        triangles[k, 3] = 0.0 if far else known
-        while extent > fine * near and triangles[k, 3] + extent > near:
-            if counts[0] + 3 > patches.size:
-                triangles[k, 3] = known
-                return k
-            quarter(patches, triangles, counts, k, extent)
-            extent *= 0.5
-        if far or (may and strict and known + extent > near):
-            number = counts[1]
-            places[number, 0] = x
-            places[number, 1] = y
-            places[number, 2] = z
-            places[number, 3] = n_x
-            places[number, 4] = n_y
-            places[number, 5] = n_z
-            weights[number] = weight
-            local[number, 0] = patch
-            local[number, 1] = triangles[k, 0]
-            local[number, 2] = triangles[k, 1]
-            local[number, 3] = K
-            enter(heads, links, places, number, near, finest)
-            counts[1] = number + 1
-            triangles[k, 3] = 0.0
-    return last
+        starts[buckets[k]] += 1
+    total = 0
+    for bucket in range(starts.size):
+        total += starts[bucket]
+        starts[bucket] = total
+    for k in range(rows.shape[0] - 1, -1, -1):
+        starts[buckets[k]] -= 1
+        at = starts[buckets[k]]
+        order[at] = k
+        for x in range(7):
+            places[at, x] = rows[k, x]
+        regular = rows[k, 3] != 0.0 or rows[k, 4] != 0.0 or rows[k, 5] != 0.0
+        places[at, 7] = np.inf if regular else -1.0
 
 
 @jit
-def quarter(patches, triangles, counts, k, extent):
-    """Cut a triangle into quarters: that in the middle, turned over, takes its place."""
-    third = 1.0 / 3.0
-    size = triangles[k, 2]
-    for part in range(3):
-        at = counts[0] + part
-        patches[at] = patches[k]
-        triangles[at, 0] = triangles[k, 0] + 0.5 * size * ((1.0 if part == 0 else 0.0) - third)
-        triangles[at, 1] = triangles[k, 1] + 0.5 * size * ((1.0 if part == 1 else 0.0) - third)
-        triangles[at, 2] = 0.5 * size
-        triangles[at, 3] = triangles[k, 3] + 0.5 * extent
-        triangles[at, 4] = -1.0
-    triangles[k, 2] = -0.5 * size
-    counts[0] += 3
+def tell_of_sample(places, starts, widest, cell_radius, radius, x, y, z, n_x, n_y, n_z):
+    """Tell all places within radius / sqrt(weight), on the same side of the surface, of a sample.
+
+    On the same side are places whose normal makes an angle of at most 90 degrees with its own.
+    """
+    for level in range(widest.size):
+        reach = radius * widest[level]
+        cell = CELL * cell_radius * widest[level]
+        if cell == 0.0:
+            continue
+        i_last = int(math.floor((x + reach) / cell))
+        j_first = int(math.floor((y - reach) / cell))
+        j_last = int(math.floor((y + reach) / cell))
+        k_first = int(math.floor((z - reach) / cell))
+        k_last = int(math.floor((z + reach) / cell))
+        for i in range(int(math.floor((x - reach) / cell)), i_last + 1):
+            for j in range(j_first, j_last + 1):
+                for k in range(k_first, k_last + 1):
+                    bucket = bucket_of(level, i, j, k, starts.size - 1)
+                    for at in range(starts[bucket], starts[bucket + 1]):
+                        dx = places[at, 0] - x
+                        dy = places[at, 1] - y
+                        dz = places[at, 2] - z
+                        square = (dx * dx + dy * dy + dz * dz) * places[at, 6]
+                        if square < places[at, 7] and (
+                            places[at, 3] * n_x + places[at, 4] * n_y + places[at, 5] * n_z >= 0.0
+                        ):
+                            places[at, 7] = square
 
 
 @jit
-def quarter_triangles(patches, triangles, number):
-    """Cut the first `number` of triangles, with weights as before; there is room for the others."""
-    counts = np.array([number, 0])
-    for k in range(number):
-        quarter(patches, triangles, counts, k, 0.0)
-        for at in range(counts[0] - 3, counts[0]):
-            triangles[at, 4] = triangles[k, 4]
+def tell_of_samples(places, starts, widest, cell_radius, radius, samples, first, last):
+    """Tell places of the samples (…, 6) first, …, last − 1; see `tell_of_sample`."""
+    for k in range(first, last):
+        tell_of_sample(
+            places, starts, widest, cell_radius, radius, samples[k, 0], samples[k, 1],
+            samples[k, 2], samples[k, 3], samples[k, 4], samples[k, 5],
+        )  # fmt: skip
+
+
+@jit
+def choose_far(
+    places, starts, widest, cell_radius, radius, least, asked, first, last, most, chosen, counts
+):
+    """Choose those of the places asked[first], …, asked[last − 1] that are farther from all samples.
+
+    Farther than radius / sqrt(weight), that is. They become samples, but `most` are chosen. Places that
+    are farther than least / sqrt(weight) are kept in the beginning of `asked`. counts = (kept, chosen).
+    """
+    for k in range(first, last):
+        at = asked[k]
+        known = places[at, 7]
+        if known > radius * radius and counts[1] < most:
+            chosen[counts[1]] = at
+            counts[1] += 1
+            tell_of_sample(
+                places, starts, widest, cell_radius, radius, places[at, 0], places[at, 1],
+                places[at, 2], places[at, 3], places[at, 4], places[at, 5],
+            )  # fmt: skip
+        elif known > least * least:
+            asked[counts[0]] = at
+            counts[0] += 1

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..threads import thread_count
 from ..trees import tree_of
-from .cover import Cover, quarters
+from .cover import Cover
+from .pieces import Array, Pieces
 
 # Triangles are cut until normals turn by less than this part of an angle within them.
 SMALL = 0.02
@@ -29,7 +29,7 @@ def cover_normals(cover: Cover, angle: float) -> float:
     """
     limit = 2.0 * math.sin(math.radians(angle) / 2.0)
     near = (1.0 - SMALL) * limit
-    largest, patches, triangles, rows, distances = _far_normals(cover, limit)
+    largest, pieces, rows, distances = _far_normals(cover, limit)
     normals = rows[:, 3:6]
     tree, left = tree_of(normals), np.ones(len(normals), dtype=bool)
     chosen = []
@@ -38,48 +38,39 @@ def cover_normals(cover: Cover, angle: float) -> float:
             chosen.append(k)
             left[tree.query_ball_point(normals[k], near)] = False
     if chosen:
-        cover.add(patches[chosen], triangles[chosen], rows[chosen])
+        cover.add(pieces[np.array(chosen)], rows[chosen])
         again = tree_of(normals[chosen]).query(normals)[0]
         largest = max(largest, float(again.max()) + SMALL * limit)
     return math.degrees(2.0 * math.asin(min(largest, limit) / 2.0))
 
 
-def _far_normals(
-    cover: Cover, limit: float
-) -> tuple[float, NDArray[np.int64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+def _far_normals(cover: Cover, limit: float) -> tuple[float, Pieces, Array, Array]:
     """Find small triangles with normals that are farther than `limit` from those of all samples.
 
-    Returns how far the normals of all other triangles are at most; and patches, triangles, middles
-    and the distances of the normals in the middles.
+    Returns how far the normals of all other triangles are at most; and the small ones, their
+    middles and the distances of the normals there.
     """
-    tree = tree_of(cover.points[: cover.count, 3:])
-    patches, triangles, largest = cover.patches, cover.triangles.copy(), 0.0
-    weights = np.maximum(triangles[:, 4], cover.wanted.law.floor)
-    triangles[:, 4] = weights
-    turns = cover.wanted.reaches[patches] * np.abs(triangles[:, 2]) * np.sqrt(weights)
-    found = []
-    while len(patches):
-        rows = cover.middles_of(patches, triangles)
+    tree, pieces, largest = tree_of(cover.points[:, 3:]), cover.pieces, 0.0
+    small, middles, chords = [], [], []
+    while len(pieces):
+        rows = pieces.middles()
+        turns = pieces.extents * np.sqrt(rows[:, 6])
         distances = tree.query(rows[:, 3:6], workers=thread_count(cover.wanted.threads))[0]
         far = (distances + turns > limit) & rows[:, 3:6].any(axis=1)
         largest = max(largest, float((distances + turns)[~far].max(initial=0.0)))
-        small = far & (turns <= SMALL * limit)
-        found.append((patches[small], triangles[small], rows[small], distances[small]))
-        cut = far & ~small
-        patches, triangles, turns = quarters(patches[cut], triangles[cut], turns[cut] / 2.0)
-    all_patches, all_triangles, all_rows, chords = (
-        np.concatenate(x) for x in zip(*found, strict=True)
-    )
-    return largest, all_patches, all_triangles, all_rows, chords
+        uncut = far & (turns <= SMALL * limit)
+        small.append(pieces[uncut])
+        middles.append(rows[uncut])
+        chords.append(distances[uncut])
+        pieces = pieces[far & ~uncut].quarters
+    return largest, sum(small[1:], small[0]), np.concatenate(middles), np.concatenate(chords)
 
 
 def widest_angles(cover: Cover, number: int) -> None:
     """Add samples where normals are farthest from those of all samples with the same sign of K."""
-    rows = cover.middles
-    places = np.column_stack([rows[:, 3:6], APART * np.sign(rows[:, 6])])
-    samples = np.column_stack(
-        [cover.points[: cover.count, 3:], APART * np.sign(cover.local[: cover.count, 3])]
-    )
+    rows = cover.rows
+    places = np.column_stack([rows[:, 3:6], APART * np.sign(rows[:, 7])])
+    samples = np.column_stack([cover.points[:, 3:], APART * np.sign(cover.curvatures)])
     distances, tree = (
         tree_of(samples).query(places, workers=thread_count(cover.wanted.threads))[0],
         tree_of(places),
@@ -92,4 +83,5 @@ def widest_angles(cover: Cover, number: int) -> None:
             distances[near], np.linalg.norm(places[near] - places[k], axis=1)
         )
         chosen.append(k)
-    cover.add(cover.patches[chosen], cover.triangles[chosen], rows[chosen])
+    if chosen:
+        cover.add(cover.pieces[np.array(chosen)], rows[chosen])

@@ -20,7 +20,7 @@ from ..threads import counted
 from ..visibility import visible_solid_angle
 from .angles import cover_normals
 from .answers import Answers, answers_of, answers_of_lattice, no_answers
-from .cover import APPROACH, Cover
+from .cover import Cover
 from .gaps import coverage
 from .law import Law, Wanted
 from .relaxation import relax
@@ -204,7 +204,7 @@ class Filling:
             cover = Cover(replace(wanted, law=Law(floor=1.0)), None, self.tell)
             cover.to_count(count)
             return cover, no_answers()
-        best[0].narrow(best[0].radius, count, APPROACH)
+        best[0].narrow(best[0].radius, count)
         return best
 
     def _answers(self, asked: NDArray[np.float64] | float, most: int | None = None) -> Answers:
@@ -216,14 +216,13 @@ class Filling:
 
 def added_fields(cover: Cover, fields: Sequence[str], dtype: DTypeLike) -> dict[str, NDArray[Any]]:
     """Return fields of the samples that a cover has added; see `Samples`."""
-    rows = slice(cover.given, cover.count)
-    patch, u, v, K = cover.local[rows].T
-    count, spline = len(patch), cover.wanted.spline
+    patch_index, uv = cover.added.patches, cover.added.triangles[:, :2]
+    count, spline, K = len(patch_index), cover.wanted.spline, cover.curvatures[cover.given :]
     filled = {x: new_field(x, count, dtype) for x in FLOAT_NAMES if x in fields}
-    patch_index, here = patch.astype(np.int64), np.arange(count)
+    here = np.arange(count)
     kernels.fill_known(
-        spline.coefficients, spline.scale, cover.points[rows, 3:].copy(), spline.frame,
-        here, np.column_stack([patch_index, here]), np.column_stack([u, v, K, u, v]),
+        spline.coefficients, spline.scale, cover.points[cover.given :, 3:].copy(), spline.frame,
+        here, np.column_stack([patch_index, here]), np.column_stack([uv, K, uv]),
         *(filled.get(x) for x in FLOAT_NAMES),
     )  # fmt: skip
     indices = {"normal_index": np.full(count, -1), "patch_index": patch_index}

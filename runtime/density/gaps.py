@@ -8,7 +8,8 @@ import numpy as np
 
 from ..threads import thread_count
 from ..trees import tree_of
-from .cover import Array, Cover, Indices, quarters
+from .cover import Cover
+from .pieces import Array, Pieces
 
 __all__ = ["coverage"]
 
@@ -26,30 +27,26 @@ def coverage(cover: Cover) -> float:
     """
     if cover.count == 0:
         return math.inf
-    tree = tree_of(cover.points[: cover.count, :3])
+    tree = tree_of(cover.points[:, :3])
 
-    def look(patches: Indices, triangles: Array) -> Array:
-        return tree.query(
-            cover.middles_of(patches, triangles)[:, :3], workers=thread_count(cover.wanted.threads)
-        )[0]
+    def look(pieces: Pieces) -> Array:
+        points = pieces.middles()[:, :3]
+        return tree.query(points, workers=thread_count(cover.wanted.threads))[0]
 
-    patches, triangles = cover.patches, cover.triangles
-    extents = cover.wanted.reaches[patches] * np.abs(triangles[:, 2])
-    bounds = triangles[:, 3] + extents
+    pieces = cover.pieces
+    bounds = cover.distances + pieces.extents
     loose = float(bounds.max())
-    first = np.argpartition(-bounds, min(FIRST, len(bounds)) - 1)[:FIRST]
-    least = float(look(patches[first], triangles[first]).max())
+    widest = np.argpartition(-bounds, min(FIRST, len(bounds)) - 1)[:FIRST]
+    least = float(look(pieces[widest]).max())
     for _ in range(MOST_CUTS):
         far = bounds > TIGHT * least
         if not far.any():
             break
-        patches, triangles, extents = patches[far], triangles[far], extents[far]
-        distances = look(patches, triangles)
+        pieces = pieces[far]
+        distances = look(pieces)
         least = max(least, float(distances.max()))
-        far = distances + extents > TIGHT * least
-        patches, triangles, extents, distances = quarters(
-            patches[far], triangles[far], extents[far] / 2.0, distances[far]
-        )
-        bounds = distances + 2.0 * extents
+        far = distances + pieces.extents > TIGHT * least
+        bounds = np.repeat((distances + pieces.extents)[far], 4)
+        pieces = pieces[far].quarters
     tight = max(TIGHT * least, float(bounds.max(initial=0.0)))
     return min(tight, loose) / cover.wanted.unit

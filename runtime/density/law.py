@@ -60,9 +60,14 @@ class Wanted:
         return self._patches[0]
 
     @property
+    def areas(self) -> Array:
+        """The areas of the patches (patches,)."""
+        return self._patches[1].sum(axis=1)
+
+    @property
     def area(self) -> float:
         """The area of the surface."""
-        return float(self._patches[1].sum())
+        return float(self.areas.sum())
 
     @property
     def total(self) -> float:

@@ -7,9 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ...generated import cover as kernels
 from ..trees import tree_of
-from .grids import grids_of
+from .candidates import Candidates
 
 __all__ = ["progressive_order"]
 
@@ -17,7 +16,6 @@ __all__ = ["progressive_order"]
 STEP, FINEST = 2.0**-0.5, 0.25
 # The spacing at a sample is the mean distance to so many others.
 NEIGHBOURS = 6
-SAMPLES_AT_A_TIME = 1 << 15
 
 
 def progressive_order(
@@ -29,25 +27,19 @@ def progressive_order(
     the samples are dense as where they are sparse, in proportion.
     """
     count = len(points)
-    asked = np.random.default_rng(0).permutation(count)  # no direction goes first
+    left = np.random.default_rng(0).permutation(count)  # no direction goes first
     if count <= NEIGHBOURS:
-        return asked
-    places = np.column_stack([points - points.min(axis=0), normals])
+        return left
+    order, radius = left[:0], 2.0 * math.sqrt(count)
     weights = 1.0 / _spacings(points) ** 2
-    least = float(weights.min())
-    order, counts = np.empty(count, dtype=np.int64), np.zeros(2, dtype=np.int64)
-    radius = 2.0 * math.sqrt(count)
-    while len(asked) and radius > FINEST:
-        grids = grids_of(places, weights, order[: counts[0]], radius, least)
-        for first in range(0, len(asked), SAMPLES_AT_A_TIME):
-            last = min(first + SAMPLES_AT_A_TIME, len(asked))
-            kernels.choose_apart(
-                *grids[:2], places, weights, radius, grids[2], asked, first, last, order, counts
-            )
-        asked, counts[1] = asked[: counts[1]], 0
+    rows = np.column_stack([points - points.min(axis=0), normals, weights, weights])
+    while len(left) and radius > FINEST:
+        candidates = Candidates(rows[left], radius)
+        candidates.tell(rows[order, :6], radius)
+        chosen = candidates.choose(radius, len(left))
+        order, left = np.append(order, left[chosen]), np.delete(left, chosen)
         radius *= STEP
-    order[counts[0] :] = asked  # those that are almost at one place with others
-    return order
+    return np.append(order, left)  # those that are almost at one place with others
 
 
 def _spacings(points: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from .angles import widest_angles
 from .cover import FINE, STEP, Cover
 
@@ -9,6 +11,10 @@ __all__ = ["relax"]
 
 # So many of the samples that are added go where normals are farthest from those of all samples.
 FOR_NORMALS = 0.1
+# The first ones are so many times farther from others than the last ones were.
+FARTHEST = 2.0
+# With each step, triangles reach so many times less far.
+FINER = math.sqrt(0.5)
 
 
 def relax(cover: Cover, steps: int) -> None:
@@ -21,7 +27,9 @@ def relax(cover: Cover, steps: int) -> None:
     if steps == 0 or cover.count == cover.given:
         return
     count = cover.count
+    widest = FARTHEST * cover.radius
     cover.forget()
+    cover.take_candidates(cover.radius, widest, FINE * FINER**steps)
     if cover.given:
         widest_angles(cover, round(FOR_NORMALS * (count - cover.given)))
-    cover.narrow(2.0 * cover.radius, count, STEP**0.5**steps, FINE * 0.5**steps)
+    cover.narrow(widest, count, STEP**0.5**steps)
