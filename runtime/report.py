@@ -32,10 +32,17 @@ def sampling_report(
 
 
 def warn_of(
-    report: SamplingReport, count: int | None, stacklevel: int, coverage: float | None = None
+    report: SamplingReport,
+    count: int | None,
+    stacklevel: int,
+    coverage: float | None = None,
+    filled: bool = False,
 ) -> None:
-    """Say when samples see less of the surface than the user may think, or miss what was asked."""
-    reasons = _unseen(report) if report.coverage is None else []
+    """Say when samples see less of the surface than the user may think, or miss what was asked.
+
+    If they are `filled`, what normals do not see was covered.
+    """
+    reasons = [] if filled else _unseen(report)
     reasons += _missed(report, count, coverage)
     if reasons:
         message = f"surface {report.surface!r}: {'; '.join(reasons)}."

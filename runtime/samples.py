@@ -230,7 +230,7 @@ class Samples:
         return self[progressive_order(points, normals)]
 
     def summary(self) -> str:
-        """One line: normals asked, samples came, their split, and what they leave unseen."""
+        """One line: normals asked, samples came, their split, and how near they are to all else."""
         report, came = self.report, f"{len(self):,} samples came"
         if len(self) != report.samples:
             came = f"{len(self):,} of the {report.samples:,} samples that came"
@@ -240,6 +240,9 @@ class Samples:
             line += f"; every normal is within {report.angle:.3g} degrees of one"
         if report.coverage is not None:
             line += f"; every point is within {report.coverage:.3g} of one"
+        added = int((self.normal_index < 0).sum()) if "normal_index" in self.fields else 0
+        if added:
+            line += f"; {added:,} of them cover what the normals leave"
         elif report.invisible_share is not None:
             line += f"; normals cannot see {100.0 * report.invisible_share:.2f} % of the surface"
         return line
@@ -286,7 +289,19 @@ class Samples:
         """
         from .meshes.meshing import mesh_of
 
-        return mesh_of(self, spline, angle)
+        return mesh_of(self, self._spline_or(spline), angle)
+
+    def coverage(self, spline: Spline | None = None, *, threads: int | None = None) -> float:
+        """Return how far a point of the surface can be from the nearest sample, in L.
+
+        It is a bound, at most 10 % above the distance of a point that was found. `spline` is that
+        of the samples, for samples that do not know theirs; `threads` as in `gm.sample`, None for
+        all cores. Infinite if there are no samples. Needs the field points, else MissingFieldError.
+        Raises InputError if there is no spline.
+        """
+        from .density.gaps import coverage_of
+
+        return coverage_of(self.points, self._spline_or(spline), threads)
 
     def weights(self, *, angle: float | None = None) -> NDArray[np.float64]:
         """Return how much of the area of the surface belongs to each sample: (N,), in L².
@@ -351,6 +366,18 @@ class Samples:
     def __repr__(self) -> str:
         label = short_label(self.report.surface)
         return f"Samples({len(self):,} points on {label}{self._split()})"
+
+    def _spline_or(self, spline: Spline | None) -> Spline:
+        """Return the spline that is given, else that of the samples; InputError without one."""
+        spline = self.spline if spline is None else spline
+        if spline is None:
+            raise InputError(
+                "these samples do not know the spline that was sampled (those from a file do not); "
+                "give it, as in samples.mesh(gm.fit(surface))."
+            )
+        if not isinstance(spline, Spline):
+            raise InputError(f"spline must be a Spline, not {type(spline).__name__}.")
+        return spline
 
     def _split(self) -> str:
         if "gaussian_curvature" not in self.fields:

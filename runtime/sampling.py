@@ -69,9 +69,10 @@ def sample(
     - a number α > 0, at most 8: as |K|^α; for `count`. Uniform where the surface has no curvature
       but the error of the spline.
 
-    But for "gauss", a count is met exactly, and the report bounds the coverage that was reached, to
-    10 %, and the angle if one was asked. `relax` steps, 4 at most, place what is added better; two
-    are enough. They cost several times as much as the sampling. 10⁶ samples take 2.6 GB of memory.
+    But for "gauss", a count is met exactly. The report tells the angle and the coverage that were
+    reached, if they were asked; `Samples.coverage` tells that of any samples. `relax` steps, 4 at
+    most, place what is added better; two are enough. They cost several times as much as the
+    sampling.
 
     `fields` are the arrays of `Samples` that are wanted, such as ("points", "normals"); by default
     all. The others are neither computed nor stored, which takes less time and memory. With
@@ -111,11 +112,12 @@ def sample_and_normals(
 ) -> tuple[Samples, NDArray[np.float64]]:
     """Return what `sample` returns, and the unit normals that were asked."""
     wanted, number = checked_fields(fields), checked_dtype(dtype)
+    filled = request.density != "gauss"
     with compilation_shown(progress):
         spline = spline_of(surface, cells)
-        sampled = _by_normals if request.density == "gauss" else filled_samples
+        sampled = filled_samples if filled else _by_normals
         samples, normals = sampled(spline, request, wanted, number, threads, progress)
-    warn_of(samples.report, request.count, stacklevel=4, coverage=request.coverage)
+    warn_of(samples.report, request.count, 4, coverage=request.coverage, filled=filled)
     return samples, normals
 
 

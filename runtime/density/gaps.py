@@ -5,48 +5,66 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ..threads import thread_count
+from ..spline import Spline
 from ..trees import tree_of
-from .cover import Cover
-from .pieces import Array, Pieces
+from .candidates import Candidates
+from .law import Law, Wanted
+from .pieces import Array, Pieces, cut_patches
 
-__all__ = ["coverage"]
+__all__ = ["coverage", "coverage_of"]
 
 # The coverage is known when no place can be farther than this times what was found.
 TIGHT = 1.1
-# So many triangles are looked at first, and so often a triangle is cut.
-FIRST, MOST_CUTS = 1024, 40
+# Samples are looked for within so many times their spacing first.
+SPACINGS = 2.0
+MOST_CUTS = 40
 
 
-def coverage(cover: Cover) -> float:
-    """Return how far a place of the surface can be from the nearest sample, at most.
+def coverage_of(points: NDArray[np.floating], spline: Spline, threads: int | None) -> float:
+    """Return what `Samples.coverage` returns."""
+    wanted = Wanted(spline, Law(floor=1.0), threads)
+    places = (points.astype(np.float64) - spline.coefficients[0, 0]) * wanted.unit
+    return coverage(wanted, places) / wanted.unit
 
-    Triangles that may hold a place that is farther than the middles of others are cut, until none
-    does. It is a length of the surface; infinite if there is no sample.
+
+def coverage(wanted: Wanted, points: Array) -> float:
+    """Return how far a place of the surface can be from the nearest of points (N, 3), at most.
+
+    Points and the distance are as in a `Cover`. Triangles that may hold a place that is farther
+    than the middles of others are cut, until none does. Infinite if there is no point.
     """
-    if cover.count == 0:
+    if len(points) == 0:
         return math.inf
-    tree = tree_of(cover.points[:, :3])
-
-    def look(pieces: Pieces) -> Array:
-        points = pieces.middles()[:, :3]
-        return tree.query(points, workers=thread_count(cover.wanted.threads))[0]
-
-    pieces = cover.pieces
-    bounds = cover.distances + pieces.extents
-    loose = float(bounds.max())
-    widest = np.argpartition(-bounds, min(FIRST, len(bounds)) - 1)[:FIRST]
-    least = float(look(pieces[widest]).max())
+    samples = np.column_stack([points, np.zeros_like(points)])
+    pieces = cut_patches(wanted, math.inf)
+    reach = SPACINGS * math.sqrt(wanted.area / len(points)) or 1.0
+    largest = found = 0.0
     for _ in range(MOST_CUTS):
-        far = bounds > TIGHT * least
+        distances = _distances(pieces, samples, reach)
+        bounds, found = distances + pieces.extents, max(found, float(distances.max()))
+        far = bounds > TIGHT * found
+        largest = max(largest, float(bounds[~far].max(initial=0.0)))
         if not far.any():
             break
-        pieces = pieces[far]
-        distances = look(pieces)
-        least = max(least, float(distances.max()))
-        far = distances + pieces.extents > TIGHT * least
-        bounds = np.repeat((distances + pieces.extents)[far], 4)
-        pieces = pieces[far].quarters
-    tight = max(TIGHT * least, float(bounds.max(initial=0.0)))
-    return min(tight, loose) / cover.wanted.unit
+        reach, pieces = float(bounds.max()), pieces[far].quarters
+    else:
+        largest = max(largest, reach)
+    return largest
+
+
+def _distances(pieces: Pieces, samples: Array, reach: float) -> Array:
+    """Return how far the middles of pieces (M,) are from the nearest of samples without normals.
+
+    That is fast where one is within reach.
+    """
+    rows = pieces.middles()
+    rows[:, 3:7] = 1.0  # all of one weight; a sample without a normal is on every side
+    candidates = Candidates(rows, reach)
+    candidates.tell(samples, reach)
+    distances = candidates.distances
+    unknown = np.isinf(distances)
+    if unknown.any():
+        distances[unknown] = tree_of(samples[:, :3]).query(rows[unknown, :3])[0]
+    return distances

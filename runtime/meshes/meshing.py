@@ -28,16 +28,8 @@ Indices = NDArray[np.int64]
 WHOLE = 180.0  # degrees: no triangle deviates by more
 
 
-def mesh_of(samples: Samples, spline: Spline | None, angle: float | None) -> Mesh:
+def mesh_of(samples: Samples, spline: Spline, angle: float | None) -> Mesh:
     """Return what `Samples.mesh` returns."""
-    spline = samples.spline if spline is None else spline
-    if spline is None:
-        raise InputError(
-            "these samples do not know the spline that was sampled (those from a file do not); "
-            "give it, as in samples.mesh(gm.fit(surface))."
-        )
-    if not isinstance(spline, Spline):
-        raise InputError(f"spline must be a Spline, not {type(spline).__name__}.")
     largest = WHOLE if angle is None else _checked_angle(angle)
     if not len(samples):
         raise InputError("there are no samples, and so there is nothing to make a mesh of.")
