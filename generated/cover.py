@@ -45,6 +45,8 @@ NODE = 1.0 / 6.0
 CELL = 2.0
 # As many powers of two as a gap can be wide.
 LEVELS = 1100
+# Steps towards the centre of a ball.
+STEPS = 12
 
 
 # --- formulas -------------------------------------------------------------------------------------
@@ -448,10 +450,13 @@ def sort_places(rows, radius, finest, widest, starts, buckets, order, places):
 
 
 @jit
-def tell_of_sample(places, starts, widest, cell_radius, radius, x, y, z, n_x, n_y, n_z):
+def tell_of_sample(
+    places, nearest, starts, widest, cell_radius, radius, number, x, y, z, n_x, n_y, n_z
+):
     """Tell all places within radius / sqrt(weight), on the same side of the surface, of a sample.
 
     On the same side are places whose normal makes an angle of at most 90 degrees with its own.
+    `nearest` has the number of the sample that is nearest to each place.
     """
     for level in range(widest.size):
         reach = radius * widest[level]
@@ -476,37 +481,95 @@ def tell_of_sample(places, starts, widest, cell_radius, radius, x, y, z, n_x, n_
                             places[at, 3] * n_x + places[at, 4] * n_y + places[at, 5] * n_z >= 0.0
                         ):
                             places[at, 7] = square
+                            nearest[at] = number
 
 
 @jit
-def tell_of_samples(places, starts, widest, cell_radius, radius, samples, first, last):
-    """Tell places of the samples (…, 6) first, …, last − 1; see `tell_of_sample`."""
+def tell_of_samples(
+    places, nearest, starts, widest, cell_radius, radius, number, samples, first, last
+):
+    """Tell places of the samples (…, 6) first, …, last − 1, numbered from `number` on for the first."""
     for k in range(first, last):
         tell_of_sample(
-            places, starts, widest, cell_radius, radius, samples[k, 0], samples[k, 1],
-            samples[k, 2], samples[k, 3], samples[k, 4], samples[k, 5],
+            places, nearest, starts, widest, cell_radius, radius, number + k, samples[k, 0],
+            samples[k, 1], samples[k, 2], samples[k, 3], samples[k, 4], samples[k, 5],
         )  # fmt: skip
 
 
 @jit
 def choose_far(
-    places, starts, widest, cell_radius, radius, least, asked, first, last, most, chosen, counts
-):
+    places, nearest, starts, widest, cell_radius, radius, number, least, asked, first, last, most,
+    chosen, counts,
+):  # fmt: skip
     """Choose those of the places asked[first], …, asked[last − 1] that are farther from all samples.
 
-    Farther than radius / sqrt(weight), that is. They become samples, but `most` are chosen. Places that
-    are farther than least / sqrt(weight) are kept in the beginning of `asked`. counts = (kept, chosen).
+    Farther than radius / sqrt(weight), that is. They become samples, numbered from `number` on, but
+    `most` are chosen. Places that are farther than least / sqrt(weight) are kept in the beginning of
+    `asked`. counts = (kept, chosen).
     """
     for k in range(first, last):
         at = asked[k]
         known = places[at, 7]
         if known > radius * radius and counts[1] < most:
+            tell_of_sample(
+                places, nearest, starts, widest, cell_radius, radius, number + counts[1],
+                places[at, 0], places[at, 1], places[at, 2], places[at, 3], places[at, 4],
+                places[at, 5],
+            )  # fmt: skip
             chosen[counts[1]] = at
             counts[1] += 1
-            tell_of_sample(
-                places, starts, widest, cell_radius, radius, places[at, 0], places[at, 1],
-                places[at, 2], places[at, 3], places[at, 4], places[at, 5],
-            )  # fmt: skip
         elif known > least * least:
             asked[counts[0]] = at
             counts[0] += 1
+
+
+@jit
+def list_places(nearest, heads, links):
+    """List the places of each sample: heads[number] is the first, links[·] the next, -1 the end."""
+    for at in range(nearest.size):
+        if nearest[at] >= 0:
+            links[at] = heads[nearest[at]]
+            heads[nearest[at]] = at
+
+
+@jit
+def centres(places, heads, links, first, last, found):
+    """Write which place is nearest to the centre of all places of a sample, for first, …, last − 1.
+
+    The centre is that of the smallest ball, distances times sqrt(weight): time and again, it takes a
+    step towards the farthest place, of 1/2, 1/3, … of the way. -1 for samples without a place.
+    """
+    for number in range(first, last):
+        at = heads[number]
+        found[number] = at
+        if at < 0:
+            continue
+        x = places[at, 0]
+        y = places[at, 1]
+        z = places[at, 2]
+        for step in range(STEPS):
+            farthest = extreme_place(places, links, heads[number], x, y, z, 1.0)
+            x += (places[farthest, 0] - x) / (step + 2.0)
+            y += (places[farthest, 1] - y) / (step + 2.0)
+            z += (places[farthest, 2] - z) / (step + 2.0)
+        found[number] = extreme_place(places, links, heads[number], x, y, z, -1.0)
+
+
+@jit
+def extreme_place(places, links, at, x, y, z, sign):
+    """Return which place of a list is farthest from a point, distances times sqrt(weight).
+
+    With sign = -1, which is the nearest one.
+    """
+    best = -np.inf
+    found = at
+    while at >= 0:
+        dx = places[at, 0] - x
+        dy = places[at, 1] - y
+        dz = places[at, 2] - z
+        square = sign * (dx * dx + dy * dy + dz * dz) * places[at, 6]
+        if square > best:
+            best = square
+            found = at
+        at = links[at]
+    return found

@@ -8,13 +8,14 @@ import numpy as np
 
 from ..threads import thread_count
 from ..trees import tree_of
-from .cover import Cover
+from .candidates import Candidates
+from .cover import STEP, Cover
 from .pieces import Array, Pieces
 
 # Triangles are cut until normals turn by less than this part of an angle within them.
 SMALL = 0.02
-# Normals with different signs of K are so far apart: farther than any others.
-APART = 2.0
+# The gaps between normals are searched from the widest ones to this part of them.
+LEAST = 0.1
 
 __all__ = ["cover_normals", "widest_angles"]
 
@@ -66,22 +67,22 @@ def _far_normals(cover: Cover, limit: float) -> tuple[float, Pieces, Array, Arra
     return largest, sum(small[1:], small[0]), np.concatenate(middles), np.concatenate(chords)
 
 
-def widest_angles(cover: Cover, number: int) -> None:
-    """Add samples where normals are farthest from those of all samples with the same sign of K."""
-    rows = cover.rows
-    places = np.column_stack([rows[:, 3:6], APART * np.sign(rows[:, 7])])
-    samples = np.column_stack([cover.points[:, 3:], APART * np.sign(cover.curvatures)])
-    distances, tree = (
-        tree_of(samples).query(places, workers=thread_count(cover.wanted.threads))[0],
-        tree_of(places),
-    )
-    chosen = []
-    for _ in range(number):
-        k = int(distances.argmax())
-        near = tree.query_ball_point(places[k], distances[k])
-        distances[near] = np.minimum(
-            distances[near], np.linalg.norm(places[near] - places[k], axis=1)
-        )
-        chosen.append(k)
-    if chosen:
-        cover.add(cover.pieces[np.array(chosen)], rows[chosen])
+def widest_angles(cover: Cover, number: int, widest: float) -> None:
+    """Add samples where normals are farthest from those of all samples with the same sign of K.
+
+    Distances are searched from `widest` on. If there is no such place any more, fewer are added.
+    """
+    candidates = Candidates(_in_normal_space(cover.rows[:, 3:6], cover.rows[:, 7]), widest)
+    candidates.tell(_in_normal_space(cover.points[:, 3:], cover.curvatures)[:, :6], widest)
+    chosen, radius = np.empty(0, dtype=np.int64), widest
+    while len(chosen) < number and radius > LEAST * widest:
+        radius *= STEP
+        chosen = np.append(chosen, candidates.choose(radius, number - len(chosen)))
+    cover.add(cover.pieces[chosen], cover.rows[chosen])
+
+
+def _in_normal_space(normals: Array, K: Array) -> Array:
+    """Return normals as places, with the sign of K for a side (M, 8)."""
+    rows = np.zeros((len(normals), 8))
+    rows[:, :3], rows[:, 3], rows[:, 6] = normals, np.sign(K), 1.0
+    return rows

@@ -12,17 +12,17 @@ from .candidates import Candidates
 from .law import Wanted
 from .pieces import Array, Pieces, cut_patches
 
-__all__ = ["FINE", "STEP", "Cover"]
+__all__ = ["STEP", "Cover"]
 
 # The first samples come where none is within so many times the radius that is expected, the next
 # ones within STEP of that, and so on.
-WIDEST, STEP = 1.3, 0.96
+WIDEST, STEP = 1.3, 0.98
 # n samples that are no nearer to one another than a radius r, where there is no room for another,
 # have about n r² times this as what is wanted of them.
 PACKED = 0.6
-# Candidates are the middles of triangles that reach so far, beside the radius; finer ones are taken
-# when it is so many times smaller than that of the last ones.
-FINE, FINER = 0.6, 1.3
+# Candidates are the middles of triangles that reach so far, beside the radius. Others are taken if
+# it is so many times smaller than that of the last.
+FINE, SMALLER = 0.55, 1.3
 # If all of the surface has to be near enough, and not only candidates, triangles that may hold a
 # place which is not are cut until they reach so far.
 FINEST = 0.1
@@ -37,7 +37,13 @@ class Cover:
 
     Samples are chosen among the middles of `pieces`; `rows` (M, 8) is what is known of these, see
     `Pieces.middles`. `tell` is told how many samples there are, from time to time.
+
+    What was asked for is kept: `least`, the radius, if it is not 0, and `most`, the count, if there
+    is one.
     """
+
+    least: float
+    most: int | None
 
     def __init__(
         self,
@@ -52,7 +58,8 @@ class Cover:
             places = (given.points - wanted.spline.coefficients[0, 0]) * wanted.unit
             self.points = np.column_stack([places, given.normals])
             self.curvatures = given.gaussian_curvature / wanted.unit**2
-        self.given = len(self.points)
+        self.given, self.fine = len(self.points), FINE
+        self.least, self.most = 0.0, None
         self.forget()
 
     @property
@@ -60,18 +67,11 @@ class Cover:
         """How many samples there are."""
         return len(self.points)
 
-    @property
-    def distances(self) -> Array:
-        """How far the middle of each of `pieces` (M,) is from the nearest sample, at most."""
-        return self._candidates.distances / np.sqrt(self.rows[:, 6])
-
     def to_radius(self, radius: float, most: int | None = None) -> None:
         """Add samples until every place is within radius / √weight of one, or there are `most`."""
-        steps = math.ceil(math.log(WIDEST) / -math.log(STEP))
-        self.take_candidates(radius, radius / STEP**steps)
-        for k in range(steps, -1, -1):
-            self.sweep(radius / STEP**k, most)
-        self._close(radius, most)
+        self.least = radius
+        self.take_candidates(radius, WIDEST * radius)
+        self._to_radius(WIDEST * radius, most)
 
     def to_count(self, count: int) -> None:
         """Add samples until there are so many."""
@@ -83,33 +83,61 @@ class Cover:
             self.forget()
             radius *= 2.0
             self._begin(radius, count)
-        self.narrow(radius, count)
+        self.fill_up(count)
 
-    def narrow(self, radius: float, count: int, step: float = STEP) -> None:
-        """Sweep within ever smaller radii than the given one, until there are so many samples."""
-        while self.count < count and radius > 0.0:
-            radius *= step
-            self.sweep(radius, count)
+    def fill_up(self, count: int) -> None:
+        """Add samples where gaps are widest until there are so many: that is asked from now on."""
+        self.most = count
+        self.narrow(self.radius, 0.0, count)
+
+    def to_what_was_asked(self, widest: float) -> None:
+        """Sweep within radii from `widest` on, until there is what was asked for."""
+        if self.least > 0.0:
+            self._to_radius(widest, self.most)
+            widest = self.least
+        if self.most is not None:
+            self.narrow(widest, 0.0, self.most)
+
+    def narrow(self, widest: float, least: float, most: int | None) -> None:
+        """Sweep within ever smaller radii, until `least` or until there are `most` samples."""
+        radius = widest
+        while self.count != most and radius > least:
+            radius = max(STEP * radius, least)
+            self.sweep(radius, most)
 
     def sweep(self, radius: float, most: int | None = None) -> None:
         """Add candidates until all are near enough within this radius, or there are `most`."""
-        if radius < self._candidates.radius / FINER:
-            self.take_candidates(radius / FINER, radius)
+        if radius < self._candidates.radius / SMALLER:
+            self.take_candidates(radius / SMALLER, radius)
         self.radius = radius
         self._choose(self.pieces, self.rows, self._candidates, radius, most)
 
-    def take_candidates(self, radius: float, widest: float, fine: float = FINE) -> None:
+    def take_candidates(self, radius: float, widest: float) -> None:
         """Take candidates for sweeps until this radius; the first one may be as wide as `widest`.
 
         They are the middles of triangles that reach `fine` times the radius.
         """
-        self.radius, self.pieces = widest, cut_patches(self.wanted, fine * radius)
+        self.radius, self.pieces = widest, cut_patches(self.wanted, self.fine * radius)
         self.rows, self._candidates = self._told(self.pieces, radius, widest)
 
     def add(self, pieces: Pieces, rows: Array) -> None:
         """Add the middles of some pieces as samples; see `Pieces.middles`."""
-        self._candidates.tell(rows[:, :6], self.radius)
+        self._candidates.tell(rows[:, :6], self.radius, self.count)
         self._append(pieces, rows)
+
+    def centre(self, first: int, widest: float) -> None:
+        """Move samples from number `first` on to the middle of the places that they are nearest to.
+
+        Then candidates know of all samples within the radius `widest`.
+        """
+        chosen = self._candidates.centres(self.count, self.wanted.threads)
+        moved = first + np.flatnonzero(chosen[first:] >= 0)
+        pieces, rows = self.pieces[chosen[moved]], self.rows[chosen[moved]]
+        self.points[moved], self.curvatures[moved] = rows[:, :6], rows[:, 7]
+        self.added.patches[moved - self.given] = pieces.patches
+        self.added.triangles[moved - self.given] = pieces.triangles
+        self._candidates.forget()
+        self._candidates.tell(self.points, widest)
 
     def forget(self) -> None:
         """Take out all samples that were added."""
@@ -125,14 +153,17 @@ class Cover:
     ) -> None:
         """Add those of the middles of some pieces that are far from all samples."""
         room = len(rows) if most is None else max(most - self.count, 0)
-        before = self.count
-        chosen = candidates.choose(radius, room, lambda number: self.tell(before + number))
+        chosen = candidates.choose(radius, room, self.count, self.tell)
         self._append(pieces[chosen], rows[chosen])
 
     def _append(self, pieces: Pieces, rows: Array) -> None:
         self.added += pieces
         self.points = np.concatenate([self.points, rows[:, :6]])
         self.curvatures = np.concatenate([self.curvatures, rows[:, 7]])
+
+    def _to_radius(self, widest: float, most: int | None) -> None:
+        self.narrow(widest, self.least, most)
+        self._close(self.least, most)
 
     def _close(self, radius: float, most: int | None) -> None:
         """Add samples until not only candidates are within radius / √weight of one."""

@@ -209,7 +209,7 @@ class Filling:
             cover = Cover(replace(wanted, law=Law(floor=1.0)), None, self.tell)
             cover.to_count(count)
             return cover, no_answers()
-        best[0].narrow(best[0].radius, count)
+        best[0].fill_up(count)
         return best
 
     def _answers(self, asked: NDArray[np.float64] | float, most: int | None = None) -> Answers:

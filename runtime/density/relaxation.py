@@ -2,34 +2,38 @@
 
 from __future__ import annotations
 
-import math
-
 from .angles import widest_angles
-from .cover import FINE, STEP, Cover
+from .cover import Cover
 
 __all__ = ["relax"]
 
+# Candidates are the middles of triangles that reach so far, beside the radius.
+FINE = 0.2
 # So many of the samples that are added go where normals are farthest from those of all samples.
 FOR_NORMALS = 0.1
-# The first ones are so many times farther from others than the last ones were.
-FARTHEST = 2.0
-# With each step, triangles reach so many times less far.
-FINER = math.sqrt(0.5)
+# So many of the others are moved; what is left fills the gaps that are widest then.
+MOVED = 0.9
+# Gaps are that much wider at most while samples are missing.
+WIDEST = 2.0
 
 
 def relax(cover: Cover, steps: int) -> None:
-    """Add the samples again as farthest points, more and more exactly: by 1, 2, 3 … steps.
+    """Add the samples again among finer candidates, and move them `steps` times.
 
-    A few go to the widest gaps in normal space, all others to those in space. Each step halves the
-    distance between the radii of the sweeps, and the size of the triangles in whose middles samples
-    are put; without end, every sample came where the widest gap is.
+    A few go to the widest gaps in normal space and stay there, all others to those in space. A step
+    moves each to the middle of all places that it is nearest to, the centre of the smallest ball
+    around them: Lloyd's method, for the largest distance instead of the mean of the squares.
     """
     if steps == 0 or cover.count == cover.given:
         return
-    count = cover.count
-    widest = FARTHEST * cover.radius
+    count, widest = cover.count, WIDEST * cover.radius
     cover.forget()
-    cover.take_candidates(cover.radius, widest, FINE * FINER**steps)
+    cover.fine = FINE
+    cover.take_candidates(cover.radius, widest)
     if cover.given:
-        widest_angles(cover, round(FOR_NORMALS * (count - cover.given)))
-    cover.narrow(widest, count, STEP**0.5**steps)
+        widest_angles(cover, round(FOR_NORMALS * (count - cover.given)), widest)
+    settled = cover.count
+    cover.narrow(widest, cover.least, settled + round(MOVED * (count - settled)))
+    for _ in range(steps):
+        cover.centre(settled, widest)
+    cover.to_what_was_asked(widest)
