@@ -54,7 +54,7 @@ class Candidates:
 
     @property
     def distances(self) -> Array:
-        """How far each place (M,) is from a sample, times √weight, as far as samples told it.
+        """How far each place (M,) is from a sample, times √weight: the nearest, if it told.
 
         That is infinite where there is no normal.
         """

@@ -70,15 +70,15 @@ class Cover:
     def to_radius(self, radius: float, most: int | None = None) -> None:
         """Add samples until every place is within radius / √weight of one, or there are `most`."""
         self.least = radius
-        self.take_candidates(radius, WIDEST * radius)
-        self._to_radius(WIDEST * radius, most)
+        first = radius if most is None else max(radius, self._radius_of(most))
+        self.take_candidates(first, WIDEST * first)
+        self._to_radius(WIDEST * first, most)
 
     def to_count(self, count: int) -> None:
         """Add samples until there are so many."""
-        weight = self.wanted.total
-        radius = WIDEST * math.sqrt(PACKED * weight / count)
+        radius = WIDEST * self._radius_of(count)
         self._begin(radius, count)
-        while self.count == count > self.given + 1 and radius * radius < weight:
+        while self.count == count > self.given + 1 and radius * radius < self.wanted.total:
             # That is not where the widest gaps are, but those that came first.
             self.forget()
             radius *= 2.0
@@ -144,6 +144,10 @@ class Cover:
         self.points, self.curvatures = self.points[: self.given], self.curvatures[: self.given]
         self.added = Pieces(self.wanted, np.empty(0, dtype=np.int64), np.empty((0, 3)))
 
+    def _radius_of(self, count: int) -> float:
+        """Return which radius brings about so many samples."""
+        return math.sqrt(PACKED * self.wanted.total / count)
+
     def _begin(self, radius: float, count: int) -> None:
         self.take_candidates(radius / WIDEST, radius)
         self.sweep(radius, count)
@@ -163,7 +167,8 @@ class Cover:
 
     def _to_radius(self, widest: float, most: int | None) -> None:
         self.narrow(widest, self.least, most)
-        self._close(self.least, most)
+        if self.count != most:
+            self._close(self.least, most)
 
     def _close(self, radius: float, most: int | None) -> None:
         """Add samples until not only candidates are within radius / √weight of one."""

@@ -132,13 +132,15 @@ class Filling:
         report = sampling_report(
             self.spline, len(answers.normals), cover.count, answers.density, developable
         )
-        reached = None if self.request.coverage is None else self._coverage(cover)
+        asked = self.request.coverage
+        reached = None if asked is None else self._coverage(cover, asked)
         report = replace(report, coverage=reached, angle=angle)
         return Samples(**arrays, report=report, spline=self.spline)
 
-    def _coverage(self, cover: Cover) -> float:
+    def _coverage(self, cover: Cover, asked: float) -> float:
         """Return how far a point of the surface can be from the nearest sample."""
-        return coverage(cover.wanted, cover.points[:, :3]) / cover.wanted.unit
+        unit = cover.wanted.unit
+        return coverage(cover.wanted, cover.points[:, :3], asked * unit) / unit
 
     # --- balanced ---------------------------------------------------------------------------------
 
@@ -150,7 +152,7 @@ class Filling:
         if request.count is None:
             return self._by_radius(wanted, floor)
         cover, answers = self._by_count(wanted.with_floor(floor), request.count)
-        if request.coverage is None or self._coverage(cover) <= request.coverage:
+        if request.coverage is None or self._coverage(cover, request.coverage) <= request.coverage:
             return cover, answers
         return self._by_count_and_coverage(wanted, request.count, request.coverage)
 

@@ -29,11 +29,12 @@ def coverage_of(points: NDArray[np.floating], spline: Spline, threads: int | Non
     return coverage(wanted, places) / wanted.unit
 
 
-def coverage(wanted: Wanted, points: Array) -> float:
+def coverage(wanted: Wanted, points: Array, asked: float = math.inf) -> float:
     """Return how far a place of the surface can be from the nearest of points (N, 3), at most.
 
     Points and the distance are as in a `Cover`. Triangles that may hold a place that is farther
-    than the middles of others are cut, until none does. Infinite if there is no point.
+    than the middles of others are cut, until none does, nor one that is farther than asked, if no
+    middle is. Infinite if there is no point.
     """
     if len(points) == 0:
         return math.inf
@@ -44,7 +45,7 @@ def coverage(wanted: Wanted, points: Array) -> float:
     for _ in range(MOST_CUTS):
         distances = _distances(pieces, samples, reach)
         bounds, found = distances + pieces.extents, max(found, float(distances.max()))
-        far = bounds > TIGHT * found
+        far = bounds > (asked if found <= asked < TIGHT * found else TIGHT * found)
         largest = max(largest, float(bounds[~far].max(initial=0.0)))
         if not far.any():
             break
@@ -64,7 +65,7 @@ def _distances(pieces: Pieces, samples: Array, reach: float) -> Array:
     candidates = Candidates(rows, reach)
     candidates.tell(samples, reach)
     distances = candidates.distances
-    unknown = np.isinf(distances)
+    unknown = distances > reach
     if unknown.any():
         distances[unknown] = tree_of(samples[:, :3]).query(rows[unknown, :3])[0]
     return distances

@@ -16,8 +16,8 @@ from ..threads import thread_count
 __all__ = ["DENSITIES", "Request", "checked_request"]
 
 DENSITIES = ("gauss", "balanced", "uniform")
-# A step quarters the triangles; the fifth would hardly move anything.
-MOST_STEPS = 4
+# More steps would hardly move anything.
+MOST_STEPS = 10
 # Beyond this |K|^α is so uneven that all samples crowd round the point that bends most.
 LARGEST_POWER = 8.0
 

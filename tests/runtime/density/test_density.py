@@ -6,7 +6,7 @@ from typing import Any, cast
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.density import cover
+from gaussmap.runtime.density import candidates, pieces
 from gaussmap.symbolic.surfaces import CATALOGUE
 from numpy.typing import NDArray
 
@@ -135,7 +135,9 @@ def test_covers_alone_answer_no_normals(density):
      {"count": 900, "coverage": 0.12}, {"normals": gm.icosphere(5), "density": "balanced"}],
 )  # fmt: skip
 def test_the_same_for_any_number_of_threads(asked: dict[str, Any], monkeypatch):
-    monkeypatch.setattr(cover, "TRIANGLES_AT_A_TIME", 1 << 9)
+    monkeypatch.setattr(pieces, "PIECES_AT_A_TIME", 1 << 9)
+    monkeypatch.setattr(pieces, "PATCHES_AT_A_TIME", 100)
+    monkeypatch.setattr(candidates, "CENTRES_AT_A_TIME", 50)
     for surface in (TORUS, DENTS):
         expected = gm.sample(surface, threads=1, **asked)
         for threads in (1, 2, 3):
@@ -147,7 +149,7 @@ def test_the_same_for_any_number_of_threads(asked: dict[str, Any], monkeypatch):
 @pytest.mark.compiled
 def test_work_in_pieces_changes_nothing(monkeypatch):
     expected = gm.sample(TORUS, count=2000)
-    monkeypatch.setattr(cover, "TRIANGLES_AT_A_TIME", 100)
+    monkeypatch.setattr(candidates, "AT_A_TIME", 100)
     same(gm.sample(TORUS, count=2000), expected)
 
 

@@ -63,7 +63,7 @@ def test_coverage_is_kept_and_reported(name, cells):
 
 @pytest.mark.parametrize("density", ["balanced", "uniform", 0.5, 2.0])
 @pytest.mark.parametrize("name", CATALOGUE)
-def test_the_reported_coverage_is_10_percent_off_at_most(name, density):
+def test_the_coverage_of_samples_is_10_percent_off_at_most(name, density):
     """The places are a grid: a point may be half its diagonal farther than they are."""
     spline = gm.fit(gm.surfaces.surface(name), even(name, (12, 10)))
     points, _ = places(spline, 500)
@@ -71,7 +71,7 @@ def test_the_reported_coverage_is_10_percent_off_at_most(name, density):
     grid = spline.evaluate(*np.meshgrid(*lines, indexing="ij"))
     steps = (np.linalg.norm(np.diff(grid, axis=axis), axis=2).max() for axis in (0, 1))
     samples = gm.sample(spline, count=400, density=density)
-    found, reported = farthest(samples, points), samples.report.coverage or 0.0
+    found, reported = farthest(samples, points), samples.coverage()
     assert found <= reported <= 1.1 * (found + math.hypot(*steps) / 2)
 
 
@@ -159,14 +159,13 @@ def test_angle_is_kept_everywhere(name, angle):
     samples = gm.sample(spline, angle=angle)
     assert widest_angle(samples, places(spline, 300)[1]) <= angle
     assert (samples.report.angle or 0.0) <= angle
-    assert (samples.report.coverage or 0.0) >= farthest(samples, places(spline)[0])
+    assert samples.coverage() >= farthest(samples, places(spline)[0])
 
 
-def test_the_reported_angle_is_none_if_none_was_asked():
-    report = gm.sample(gm.surfaces.torus(), count=50, cells=(8, 8)).report
-    assert (report.angle, report.coverage is None) == (None, False)
-    plain = gm.sample(gm.surfaces.torus(), gm.icosphere(4), cells=(8, 8)).report
-    assert (plain.angle, plain.coverage) == (None, None)
+def test_what_was_not_asked_is_not_reported():
+    for asked in ({"count": 50}, {"normals": gm.icosphere(4)}):
+        report = gm.sample(gm.surfaces.torus(), cells=(8, 8), **asked).report
+        assert (report.angle, report.coverage) == (None, None)
 
 
 # --- what goes together ---------------------------------------------------------------------------
@@ -189,7 +188,7 @@ def test_coverage_beside_a_count(name):
     spline = gm.fit(gm.surfaces.surface(name), (24, 24))
     points, _ = places(spline)
     alone = gm.sample(spline, count=1500)
-    reached = alone.report.coverage or 0.0
+    reached = alone.coverage()
     easy = gm.sample(spline, count=1500, coverage=2.0 * reached)
     assert (easy.points == alone.points).all()  # what was there anyway
     least = gm.sample(spline, coverage=0.95 * reached, density="uniform")
