@@ -450,6 +450,12 @@ def sort_places(rows, radius, finest, widest, starts, buckets, order, places):
 
 
 @jit
+def gap_of(i, cell, x):
+    """Return how far x is from the cells with number i along its axis."""
+    return max(i * cell - x, x - (i + 1) * cell, 0.0)
+
+
+@jit
 def tell_of_sample(
     places, nearest, starts, widest, cell_radius, radius, number, x, y, z, n_x, n_y, n_z
 ):
@@ -469,8 +475,13 @@ def tell_of_sample(
         k_first = int(math.floor((z - reach) / cell))
         k_last = int(math.floor((z + reach) / cell))
         for i in range(int(math.floor((x - reach) / cell)), i_last + 1):
+            x_gap = gap_of(i, cell, x)
             for j in range(j_first, j_last + 1):
+                y_gap = gap_of(j, cell, y)
                 for k in range(k_first, k_last + 1):
+                    z_gap = gap_of(k, cell, z)
+                    if x_gap * x_gap + y_gap * y_gap + z_gap * z_gap > reach * reach:
+                        continue
                     bucket = bucket_of(level, i, j, k, starts.size - 1)
                     for at in range(starts[bucket], starts[bucket + 1]):
                         dx = places[at, 0] - x

@@ -16,13 +16,13 @@ __all__ = ["STEP", "Cover"]
 
 # The first samples come where none is within so many times the radius that is expected, the next
 # ones within STEP of that, and so on.
-WIDEST, STEP = 1.3, 0.98
+WIDEST, STEP = 1.25, 0.98
 # n samples that are no nearer to one another than a radius r, where there is no room for another,
 # have about n r² times this as what is wanted of them.
 PACKED = 0.6
 # Candidates are the middles of triangles that reach so far, beside the radius. Others are taken if
 # it is so many times smaller than that of the last.
-FINE, SMALLER = 0.55, 1.3
+FINE, SMALLER = 0.6, 1.3
 # If all of the surface has to be near enough, and not only candidates, triangles that may hold a
 # place which is not are cut until they reach so far.
 FINEST = 0.1

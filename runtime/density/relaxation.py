@@ -20,9 +20,10 @@ WIDEST = 2.0
 def relax(cover: Cover, steps: int) -> None:
     """Add the samples again among finer candidates, and move them `steps` times.
 
-    A few go to the widest gaps in normal space and stay there, all others to those in space. A step
-    moves each to the middle of all places that it is nearest to, the centre of the smallest ball
-    around them: Lloyd's method, for the largest distance instead of the mean of the squares.
+    A step moves each to the middle of all places that it is nearest to, the centre of the smallest
+    ball around them: Lloyd's method, for the largest distance instead of the mean of the squares.
+    If their count is given, a few go to the widest gaps in normal space before, and stay there; if
+    a radius is given, fewer samples may come than before.
     """
     if steps == 0 or cover.count == cover.given:
         return
@@ -30,7 +31,7 @@ def relax(cover: Cover, steps: int) -> None:
     cover.forget()
     cover.fine = FINE
     cover.take_candidates(cover.radius, widest)
-    if cover.given:
+    if cover.given and cover.most is not None:
         widest_angles(cover, round(FOR_NORMALS * (count - cover.given)), widest)
     settled = cover.count
     cover.narrow(widest, cover.least, settled + round(MOVED * (count - settled)))

@@ -163,9 +163,9 @@ def test_angle_is_kept_everywhere(name, angle):
 
 
 def test_what_was_not_asked_is_not_reported():
-    for asked in ({"count": 50}, {"normals": gm.icosphere(4)}):
-        report = gm.sample(gm.surfaces.torus(), cells=(8, 8), **asked).report
-        assert (report.angle, report.coverage) == (None, None)
+    torus = gm.surfaces.torus()
+    for samples in (gm.sample(torus, count=50), gm.sample(torus, gm.icosphere(4))):
+        assert (samples.report.angle, samples.report.coverage) == (None, None)
 
 
 # --- what goes together ---------------------------------------------------------------------------
@@ -215,3 +215,41 @@ def test_relaxing_narrows_the_gaps(name):
     points, _ = places(spline, 400)
     assert len(relaxed) == len(plain) == 1000
     assert farthest(relaxed, points) < farthest(plain, points)
+
+
+@pytest.mark.parametrize("name", ["torus", "wavy_graph", "cylinder"])
+def test_relaxing_keeps_what_was_asked(name):
+    spline = gm.fit(gm.surfaces.surface(name), (24, 24))
+    points, normals = places(spline)
+    by_coverage = gm.sample(spline, coverage=0.15, relax=2)
+    assert farthest(by_coverage, points) <= (by_coverage.report.coverage or 0.0) <= 0.15
+    assert len(by_coverage) <= len(gm.sample(spline, coverage=0.15))
+    by_angle = gm.sample(spline, angle=12.0, relax=2)
+    assert widest_angle(by_angle, normals) <= (by_angle.report.angle or 0.0) <= 12.0
+    both = gm.sample(spline, count=1500, coverage=0.15, relax=2)
+    assert len(both) == 1500
+    assert farthest(both, points) <= (both.report.coverage or 0.0) <= 0.15
+
+
+# --- the coverage of any samples ------------------------------------------------------------------
+
+
+def test_the_coverage_of_samples_from_normals():
+    """The poles of a sphere that is seen from two sides: a quarter of a great circle away."""
+    sphere = gm.fit(gm.surfaces.sphere())
+    samples = gm.sample(sphere, [[1, 0, 0], [-1, 0, 0]])
+    assert math.sqrt(2) - 1e-3 <= samples.coverage() <= 1.1 * math.sqrt(2) + 1e-3
+    assert samples.coverage(threads=1) == samples.coverage(threads=3)
+    assert samples[:0].coverage() == math.inf
+
+
+def test_coverage_needs_points_and_the_spline(tmp_path):
+    spline = gm.fit(gm.surfaces.torus(), (8, 8))
+    samples = gm.sample(spline, count=50)
+    samples.write(tmp_path / "a.npz")
+    again = gm.read_samples(tmp_path / "a.npz")
+    assert again.coverage(spline) == samples.coverage()
+    with pytest.raises(gm.InputError, match="do not know the spline"):
+        again.coverage()
+    with pytest.raises(gm.MissingFieldError, match="'points'"):
+        gm.sample(spline, count=50, fields=("uv",)).coverage()

@@ -1,0 +1,117 @@
+"""Candidates against all distances, computed one by one."""
+
+import numpy as np
+import pytest
+from gaussmap.runtime.density.candidates import Candidates
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def rows_of(count: int, seed: int, spread: float) -> Array:
+    """Return random places (count, 8) in a box, with normals all round and uneven weights."""
+    random = np.random.default_rng(seed)
+    rows = random.standard_normal((count, 8))
+    rows[:, :3] = random.random((count, 3)) - [0.3, 0.5, 2.0]
+    rows[:, 3:6] /= np.linalg.norm(rows[:, 3:6], axis=1)[:, None]
+    rows[:, 6] = np.exp(spread * random.random(count))
+    return rows
+
+
+def squares(rows: Array, samples: Array) -> Array:
+    """Return all squared distances (places, samples) times weights, infinite on another side."""
+    difference = rows[:, None, :3] - samples[None, :, :3]
+    same = rows[:, 3:6] @ samples[:, 3:6].T >= 0.0
+    return np.where(same, (difference**2).sum(axis=2) * rows[:, 6:7], np.inf)
+
+
+@pytest.mark.parametrize("spread", [0.0, 3.0, 12.0])
+@pytest.mark.parametrize("radius", [0.05, 0.3])
+@pytest.mark.parametrize("made", [0.5, 1.0, 2.0])
+def test_places_know_the_nearest_sample_within_a_radius(spread, radius, made):
+    rows, samples = rows_of(600, 1, spread), rows_of(80, 2, 0.0)[:, :6]
+    candidates = Candidates(rows, made * radius)
+    candidates.tell(samples[:30], radius)
+    candidates.tell(samples[30:], radius, 30)
+    exact = np.sqrt(squares(rows, samples).min(axis=1))
+    found = candidates.distances
+    near = exact <= radius
+    np.testing.assert_allclose(found[near], exact[near], rtol=1e-14)
+    assert (found[~near] >= exact[~near] * (1 - 1e-14)).all()
+    candidates.forget()
+    assert np.isinf(candidates.distances).all()
+
+
+@pytest.mark.parametrize("spread", [0.0, 6.0])
+def test_chosen_are_far_from_all_others_and_near_to_what_is_left(spread):
+    rows, samples = rows_of(2000, 3, spread), rows_of(20, 4, 0.0)[:, :6]
+    candidates, radius = Candidates(rows, 0.2), 0.2
+    candidates.tell(samples, 0.4)
+    chosen = np.empty(0, dtype=np.int64)
+    for step in (0.4, 0.3, 0.2):
+        chosen = np.append(chosen, candidates.choose(step, len(rows), 20 + len(chosen)))
+    assert len(set(chosen)) == len(chosen) > 20
+    everything = np.concatenate([samples, rows[chosen, :6]])
+    for k, place in enumerate(chosen):  # where it was chosen, no sample was near
+        before = squares(rows[place : place + 1], everything[: 20 + k])
+        assert before.min() > radius**2
+    left = np.setdiff1d(np.arange(len(rows)), chosen)
+    assert (squares(rows[left], everything).min(axis=1) <= radius**2 * (1 + 1e-14)).all()
+    assert (candidates.distances <= radius).all()
+
+
+def test_no_more_than_asked_are_chosen_and_the_rest_comes_later():
+    rows = rows_of(500, 5, 0.0)
+    candidates, whole = Candidates(rows, 0.1), Candidates(rows, 0.1)
+    first = candidates.choose(0.1, 7)
+    assert len(first) == 7
+    np.testing.assert_array_equal(
+        np.append(first, candidates.choose(0.1, 500)), whole.choose(0.1, 500)
+    )
+    assert len(candidates.choose(0.1, 500)) == 0
+    assert len(candidates.choose(0.05, 500)) > 0
+    assert len(candidates.choose(0.01, 0)) == 0
+
+
+def test_places_without_a_normal_are_never_chosen():
+    rows = rows_of(50, 6, 0.0)
+    rows[::2, 3:6] = 0.0
+    candidates = Candidates(rows, 0.1)
+    chosen = candidates.choose(1e-3, 50)
+    assert sorted(chosen) == list(range(1, 50, 2))
+    assert np.isinf(candidates.distances[::2]).all()
+
+
+def test_a_sample_without_a_normal_is_on_every_side():
+    rows = rows_of(200, 7, 0.0)
+    candidates = Candidates(rows, 5.0)
+    candidates.tell(np.zeros((1, 6)), 5.0)
+    np.testing.assert_allclose(
+        candidates.distances, np.linalg.norm(rows[:, :3], axis=1) * np.sqrt(rows[:, 6]), rtol=1e-14
+    )
+
+
+def test_centres_are_those_of_the_smallest_balls():
+    """Nine places in a line and one sample at an end; two samples; one that none is next to."""
+    rows = np.zeros((18, 8))
+    rows[:9, 0] = np.arange(9)
+    rows[9:, 0] = 100.0 + np.arange(9) ** 2  # most of them are at one end, which does not matter
+    rows[:, 3] = rows[:, 6] = 1.0
+    samples = np.zeros((3, 6))
+    samples[:, 0], samples[:, 3] = [0.0, 150.0, 40.0], 1.0
+    samples[2, 1] = 90.0
+    candidates = Candidates(rows, 50.0)
+    candidates.tell(samples, 90.0)
+    for threads in (1, 2):
+        np.testing.assert_array_equal(candidates.centres(3, threads), [4, 9 + 6, -1])
+
+
+def test_weights_move_centres():
+    """A place that asks for samples nine times as near pulls the centre to a quarter of the way."""
+    rows = np.zeros((41, 8))
+    rows[:, 0], rows[:, 3], rows[:, 6] = np.linspace(0.0, 4.0, 41), 1.0, 1e-3
+    rows[[0, 40], 6] = 9.0, 1.0
+    candidates = Candidates(rows, 10.0)
+    candidates.tell(rows[20:21, :6], 100.0)
+    centre = candidates.centres(1, None)[0]
+    assert abs(rows[centre, 0] - 1.0) <= 0.3  # 12 steps come that near
