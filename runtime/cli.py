@@ -26,6 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .checks import known_name
+from .density.request import MOST_STEPS
 from .errors import FileError, GaussmapError, GaussmapWarning, InputError, MissingExtraError
 from .fields import ARRAY_NAMES, checked_fields
 from .formulas import formulas
@@ -391,7 +392,8 @@ def _parser() -> argparse.ArgumentParser:
     command = commands.add_parser(
         "sample",
         help="sample a surface and write the samples to a file",
-        description="Write every point of a surface that has one of the given normals to a file.",
+        description="Write points of a surface, with their normals, to a file: those that have one\n"
+        "of many normals, and others that leave no gaps where it hardly bends.",
         epilog=SAMPLE_EXAMPLES,
     )
     _add_sampling(command, default_count=10_000)
@@ -402,8 +404,8 @@ def _parser() -> argparse.ArgumentParser:
     command = commands.add_parser(
         "mesh",
         help="sample a surface and write a triangle mesh through the samples",
-        description="Write a triangle mesh of a surface, whose vertices are the points that have\n"
-        "one of the given normals, and points on open borders.",
+        description="Write a triangle mesh of a surface, whose vertices are samples, and points\n"
+        "on open borders.",
         epilog=MESH_EXAMPLES,
     )
     _add_sampling(command, default_count=10_000)
@@ -519,10 +521,10 @@ def _add_sampling(parser: argparse.ArgumentParser, default_count: int) -> None:
     )
     group.add_argument(
         "--relax",
-        type=_whole(10, least=0),
+        type=_whole(MOST_STEPS, least=0),
         default=0,
         metavar="STEPS",
-        help="place them better at more cost, in 1 or 2 steps (default: 0)",
+        help="place them better at more cost, in 2 or 3 steps (default: 0)",
     )
 
     group = parser.add_argument_group("the surface")

@@ -13,7 +13,7 @@ from ..errors import InputError
 from ..sphere import as_normals, frequency_within, icosphere
 from ..threads import thread_count
 
-__all__ = ["DENSITIES", "Request", "checked_request"]
+__all__ = ["DENSITIES", "MOST_STEPS", "Request", "checked_request"]
 
 DENSITIES = ("gauss", "balanced", "uniform")
 # More steps would hardly move anything.
