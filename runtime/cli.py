@@ -392,8 +392,8 @@ def _parser() -> argparse.ArgumentParser:
     command = commands.add_parser(
         "sample",
         help="sample a surface and write the samples to a file",
-        description="Write points of a surface, with their normals, to a file: those that have one\n"
-        "of many normals, and others that leave no gaps where it hardly bends.",
+        description="Write points of a surface, with their normals, to a file: those that have\n"
+        "one of many normals, and others that leave no gaps where it hardly bends.",
         epilog=SAMPLE_EXAMPLES,
     )
     _add_sampling(command, default_count=10_000)
