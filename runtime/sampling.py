@@ -71,8 +71,8 @@ def sample(
 
     But for "gauss", a count is met exactly. The report tells the angle and the coverage that were
     reached, if they were asked; `Samples.coverage` tells that of any samples. `relax` steps, 10 at
-    most, place what is added better: two or three are enough. They take 10 to 20 times as long as
-    the sampling, and 20 kB of memory for each sample, else 3 kB.
+    most, place what is added better: two or three are enough. They take 20 to 40 times as long as
+    the sampling, and 30 kB of memory for each sample, which takes 2 kB else.
 
     `fields` are the arrays of `Samples` that are wanted, such as ("points", "normals"); by default
     all. The others are neither computed nor stored, which takes less time and memory. With

@@ -16,6 +16,8 @@ from .pieces import Array, Pieces
 SMALL = 0.02
 # The gaps between normals are searched from the widest ones to this part of them.
 LEAST = 0.1
+# Of so many pieces one is looked at.
+EACH = 3
 
 __all__ = ["cover_normals", "widest_angles"]
 
@@ -39,7 +41,7 @@ def cover_normals(cover: Cover, angle: float) -> float:
             chosen.append(k)
             left[tree.query_ball_point(normals[k], near)] = False
     if chosen:
-        cover.add(pieces[np.array(chosen)], rows[chosen])
+        cover.add(pieces[np.array(chosen)])
         again = tree_of(normals[chosen]).query(normals)[0]
         largest = max(largest, float(again.max()) + SMALL * limit)
     return math.degrees(2.0 * math.asin(min(largest, limit) / 2.0))
@@ -72,13 +74,15 @@ def widest_angles(cover: Cover, number: int, widest: float) -> None:
 
     Distances are searched from `widest` on. If there is no such place any more, fewer are added.
     """
-    candidates = Candidates(_in_normal_space(cover.rows[:, 3:6], cover.rows[:, 7]), widest)
+    pieces = cover.pieces[np.arange(0, len(cover.pieces), EACH)]
+    rows = pieces.middles()
+    candidates = Candidates(_in_normal_space(rows[:, 3:6], rows[:, 7]), widest)
     candidates.tell(_in_normal_space(cover.points[:, 3:], cover.curvatures)[:, :6], widest)
     chosen, radius = np.empty(0, dtype=np.int64), widest
     while len(chosen) < number and radius > LEAST * widest:
         radius *= STEP
         chosen = np.append(chosen, candidates.choose(radius, number - len(chosen)))
-    cover.add(cover.pieces[chosen], cover.rows[chosen])
+    cover.add(pieces[chosen])
 
 
 def _in_normal_space(normals: Array, K: Array) -> Array:

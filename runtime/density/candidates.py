@@ -62,6 +62,13 @@ class Candidates:
         known[self._order] = np.sqrt(np.where(squares < 0.0, np.inf, squares))
         return known
 
+    @property
+    def weights(self) -> Array:
+        """The weights of the places (M,)."""
+        weights = np.empty(len(self._order))
+        weights[self._order] = self._places[:, 6]
+        return weights
+
     def tell(self, samples: Array, radius: float, number: int = 0) -> None:
         """Tell places within a radius of samples (N, 6), point and unit normal, numbered from …."""
         for first, last in _ranges(len(samples)):

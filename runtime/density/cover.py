@@ -10,7 +10,7 @@ import numpy as np
 from ..samples import Samples
 from .candidates import Candidates
 from .law import Wanted
-from .pieces import Array, Pieces, cut_patches
+from .pieces import Pieces, cut_patches
 
 __all__ = ["STEP", "Cover"]
 
@@ -35,8 +35,7 @@ class Cover:
     times `wanted.unit`. Rows of `points` (…, 6) (and normals) and `curvatures` (K) are the samples;
     the first `given` are those that were given, all others lie in the middles of `added`.
 
-    Samples are chosen among the middles of `pieces`; `rows` (M, 8) is what is known of these, see
-    `Pieces.middles`. `tell` is told how many samples there are, from time to time.
+    Samples are chosen among the middles of `pieces`. `tell` is told how many there are.
 
     What was asked for is kept: `least`, the radius, if it is not 0, and `most`, the count, if there
     is one.
@@ -110,7 +109,7 @@ class Cover:
         if radius < self._candidates.radius / SMALLER:
             self.take_candidates(radius / SMALLER, radius)
         self.radius = radius
-        self._choose(self.pieces, self.rows, self._candidates, radius, most)
+        self._choose(self.pieces, self._candidates, radius, most)
 
     def take_candidates(self, radius: float, widest: float) -> None:
         """Take candidates for sweeps until this radius; the first one may be as wide as `widest`.
@@ -118,12 +117,13 @@ class Cover:
         They are the middles of triangles that reach `fine` times the radius.
         """
         self.radius, self.pieces = widest, cut_patches(self.wanted, self.fine * radius)
-        self.rows, self._candidates = self._told(self.pieces, radius, widest)
+        self._candidates = self._told(self.pieces, radius, widest)
 
-    def add(self, pieces: Pieces, rows: Array) -> None:
-        """Add the middles of some pieces as samples; see `Pieces.middles`."""
-        self._candidates.tell(rows[:, :6], self.radius, self.count)
-        self._append(pieces, rows)
+    def add(self, pieces: Pieces) -> None:
+        """Add the middles of some pieces as samples."""
+        first = self.count
+        self._append(pieces)
+        self._candidates.tell(self.points[first:], self.radius, first)
 
     def centre(self, first: int, widest: float) -> None:
         """Move samples from number `first` on to the middle of the places that they are nearest to.
@@ -132,7 +132,8 @@ class Cover:
         """
         chosen = self._candidates.centres(self.count, self.wanted.threads)
         moved = first + np.flatnonzero(chosen[first:] >= 0)
-        pieces, rows = self.pieces[chosen[moved]], self.rows[chosen[moved]]
+        pieces = self.pieces[chosen[moved]]
+        rows = pieces.middles()
         self.points[moved], self.curvatures[moved] = rows[:, :6], rows[:, 7]
         self.added.patches[moved - self.given] = pieces.patches
         self.added.triangles[moved - self.given] = pieces.triangles
@@ -153,14 +154,14 @@ class Cover:
         self.sweep(radius, count)
 
     def _choose(
-        self, pieces: Pieces, rows: Array, candidates: Candidates, radius: float, most: int | None
+        self, pieces: Pieces, candidates: Candidates, radius: float, most: int | None
     ) -> None:
         """Add those of the middles of some pieces that are far from all samples."""
-        room = len(rows) if most is None else max(most - self.count, 0)
-        chosen = candidates.choose(radius, room, self.count, self.tell)
-        self._append(pieces[chosen], rows[chosen])
+        room = len(pieces) if most is None else max(most - self.count, 0)
+        self._append(pieces[candidates.choose(radius, room, self.count, self.tell)])
 
-    def _append(self, pieces: Pieces, rows: Array) -> None:
+    def _append(self, pieces: Pieces) -> None:
+        rows = pieces.middles()
         self.added += pieces
         self.points = np.concatenate([self.points, rows[:, :6]])
         self.curvatures = np.concatenate([self.curvatures, rows[:, 7]])
@@ -172,24 +173,20 @@ class Cover:
 
     def _close(self, radius: float, most: int | None) -> None:
         """Add samples until not only candidates are within radius / √weight of one."""
-        pieces, rows, candidates = self.pieces, self.rows, self._candidates
-        small, places = [], []
+        pieces, candidates, small = self.pieces, self._candidates, []
         while len(pieces):
-            extents = pieces.extents * np.sqrt(rows[:, 6])
+            extents = pieces.extents * np.sqrt(candidates.weights)
             far = candidates.distances + extents > radius
             uncut = far & (extents <= FINEST * radius)
             small.append(pieces[uncut])
-            places.append(rows[uncut])
             pieces = pieces[far & ~uncut].quarters
-            rows, candidates = self._told(pieces, radius, radius)
+            candidates = self._told(pieces, radius, radius)
         pieces = sum(small[1:], start=small[0])
-        rows = np.concatenate(places)
-        candidates = self._told(pieces, radius, radius)[1]
-        self._choose(pieces, rows, candidates, (1.0 - FINEST) * radius, most)
+        candidates = self._told(pieces, radius, radius)
+        self._choose(pieces, candidates, (1.0 - FINEST) * radius, most)
 
-    def _told(self, pieces: Pieces, radius: float, widest: float) -> tuple[Array, Candidates]:
-        """Return the middles of pieces, and as candidates that know of all samples."""
-        rows = pieces.middles()
-        candidates = Candidates(rows, radius)
+    def _told(self, pieces: Pieces, radius: float, widest: float) -> Candidates:
+        """Return the middles of pieces as candidates that know of all samples."""
+        candidates = Candidates(pieces.middles(), radius)
         candidates.tell(self.points, widest)
-        return rows, candidates
+        return candidates

@@ -6,7 +6,7 @@ import pytest
 from gaussmap.runtime.density.progressive import STEP, progressive_order
 from scipy.spatial import KDTree
 
-WAVES = gm.surfaces.wavy_graph()
+WAVES = gm.fit(gm.surfaces.wavy_graph(), (24, 24))
 
 
 def spacings(points: np.ndarray) -> np.ndarray:
