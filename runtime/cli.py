@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import _thread
 import argparse
-import importlib.util
 import os
 import re
 import shutil
@@ -27,7 +26,8 @@ from numpy.typing import NDArray
 
 from .checks import known_name
 from .density.request import MOST_STEPS
-from .errors import FileError, GaussmapError, GaussmapWarning, InputError, MissingExtraError
+from .errors import FileError, GaussmapError, GaussmapWarning, InputError
+from .extras import check_extra
 from .fields import ARRAY_NAMES, checked_fields
 from .formulas import formulas
 from .io import atomic_path, check_fields, check_target
@@ -213,10 +213,7 @@ def _write_formulas(options: argparse.Namespace) -> None:
     if options.name is not None:
         raise InputError("--html writes all formulas to one page; leave out the name.")
     check_target(options.html, (".html",))
-    if importlib.util.find_spec("math_core") is None:
-        raise MissingExtraError(
-            'the page needs math-core, but it is not installed; run: pip install "gaussmap[html]"'
-        )
+    check_extra("math_core", "html", "the page")
     from ..symbolic import formulas, html
 
     page = html.page()

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import MissingExtraError
+from .extras import from_extra
 
 if TYPE_CHECKING:
     import open3d  # pyright: ignore[reportMissingImports]
@@ -34,13 +33,13 @@ def samples_to_dataframe(samples: Samples) -> pandas.DataFrame:
     """Return what `Samples.to_dataframe` returns."""
     from .io import columns_of
 
-    pandas = _library("pandas", "pandas")
+    pandas = from_extra("pandas", "pandas", "this")
     return pandas.DataFrame({name: column.copy() for name, column in columns_of(samples).items()})
 
 
 def samples_to_pyvista(samples: Samples) -> pyvista.PolyData:
     """Return what `Samples.to_pyvista` returns."""
-    points, pv = samples.points, _library("pyvista", "vtk")
+    points, pv = samples.points, from_extra("pyvista", "vtk", "this")
     arrays = {name: getattr(samples, name) for name in samples.fields if name != "points"}
     return _polydata(pv, pv.PolyData(points.copy()), arrays)
 
@@ -49,12 +48,12 @@ def samples_to_trimesh(samples: Samples) -> trimesh.PointCloud:
     """Return what `Samples.to_trimesh` returns."""
     points = samples.points.astype(np.float64)
     arrays = {name: getattr(samples, name).copy() for name in samples.fields if name != "points"}
-    return _library("trimesh", "trimesh").PointCloud(points, metadata=arrays)
+    return from_extra("trimesh", "trimesh", "this").PointCloud(points, metadata=arrays)
 
 
 def samples_to_open3d(samples: Samples) -> open3d.geometry.PointCloud:
     """Return what `Samples.to_open3d` returns."""
-    points, library = samples.points, _library("open3d", "open3d")
+    points, library = samples.points, from_extra("open3d", "open3d", "this")
     cloud = library.geometry.PointCloud(_vectors(library, points))
     if "normals" in samples.fields:
         cloud.normals = _vectors(library, samples.normals)
@@ -63,7 +62,7 @@ def samples_to_open3d(samples: Samples) -> open3d.geometry.PointCloud:
 
 def mesh_to_pyvista(mesh: Mesh) -> pyvista.PolyData:
     """Return what `Mesh.to_pyvista` returns."""
-    pv = _library("pyvista", "vtk")
+    pv = from_extra("pyvista", "vtk", "this")
     data = pv.PolyData.from_regular_faces(mesh.vertices.copy(), mesh.triangles)
     return _polydata(
         pv, data, {"normals": mesh.normals, "uv": mesh.uv, "sample": mesh.sample}
@@ -72,7 +71,7 @@ def mesh_to_pyvista(mesh: Mesh) -> pyvista.PolyData:
 
 def mesh_to_trimesh(mesh: Mesh) -> trimesh.Trimesh:
     """Return what `Mesh.to_trimesh` returns."""
-    return _library("trimesh", "trimesh").Trimesh(
+    return from_extra("trimesh", "trimesh", "this").Trimesh(
         mesh.vertices.copy(),
         mesh.triangles.copy(),
         vertex_normals=mesh.normals.copy(),
@@ -83,22 +82,11 @@ def mesh_to_trimesh(mesh: Mesh) -> trimesh.Trimesh:
 
 def mesh_to_open3d(mesh: Mesh) -> open3d.geometry.TriangleMesh:
     """Return what `Mesh.to_open3d` returns."""
-    library = _library("open3d", "open3d")
+    library = from_extra("open3d", "open3d", "this")
     triangles = library.utility.Vector3iVector(mesh.triangles.astype(np.int32))
     result = library.geometry.TriangleMesh(_vectors(library, mesh.vertices), triangles)
     result.vertex_normals = _vectors(library, mesh.normals)
     return result
-
-
-def _library(name: str, extra: str) -> Any:  # noqa: ANN401
-    """Import a library; MissingExtraError with the extra that brings it."""
-    try:
-        return import_module(name)
-    except (ImportError, OSError) as error:  # OSError: a library of the system lacks
-        reason = "is not installed" if isinstance(error, ModuleNotFoundError) else f"fails: {error}"
-        raise MissingExtraError(
-            f'this needs {name}, but it {reason}; run: pip install "gaussmap[{extra}]"'
-        ) from error
 
 
 def _polydata(pv: Any, data: Any, arrays: dict[str, NDArray[Any]]) -> Any:  # noqa: ANN401

@@ -7,7 +7,6 @@ folder, which then takes the target's place in one step.
 from __future__ import annotations
 
 import errno
-import importlib.util
 import io
 import json
 import os
@@ -24,7 +23,8 @@ from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .errors import FileError, GaussmapError, InputError, MissingExtraError, UnknownNameError
+from .errors import FileError, GaussmapError, InputError, UnknownNameError
+from .extras import check_extra, from_extra
 from .fields import ARRAY_NAMES, FLOAT_NAMES
 from .samples import Samples, SamplingReport
 
@@ -170,8 +170,8 @@ def check_target(path: PathLike, suffixes: Sequence[str] = SUFFIXES) -> None:
     asked and pyvista is not installed.
     """
     path = _path(path)
-    if known_suffix(path, suffixes) == ".vtp" and importlib.util.find_spec("pyvista") is None:
-        raise _missing_pyvista()
+    if known_suffix(path, suffixes) == ".vtp":
+        check_extra("pyvista", "vtk", "writing .vtp files")
     probe = _temporary(_target(path))
     try:
         probe.touch(exist_ok=False)
@@ -287,12 +287,6 @@ def _not_written(path: Path, error: OSError) -> FileError:
     else:
         hint = "choose another place"
     return FileError(f"'{path}' cannot be written: {_reason(error)}; {hint}.")
-
-
-def _missing_pyvista(cause: str = "it is not installed") -> MissingExtraError:
-    return MissingExtraError(
-        f'writing .vtp files needs pyvista, but {cause}; run: pip install "gaussmap[vtk]"'
-    )
 
 
 # ── The report as text ───────────────────────────────────────────────────────────────────────────
@@ -546,10 +540,7 @@ def _write_rows(path: Path, header: str, mark: str, columns: Sequence[NDArray[An
 
 
 def _write_vtp(samples: Samples, path: Path) -> None:
-    try:
-        import pyvista as pv
-    except ImportError as error:
-        raise _missing_pyvista(f"it cannot be imported ({error})") from error
+    pv = from_extra("pyvista", "vtk", "writing .vtp files")
 
     cloud = pv.PolyData(samples.points)
     data = cloud.GetPointData()

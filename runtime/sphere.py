@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..generated import icosphere as icosahedron
 from .checks import finite_array, real_values, whole_number
-from .errors import InputError, MissingExtraError
+from .errors import InputError
+from .extras import from_extra
 from .threads import over_ranges
 
 __all__ = [
@@ -86,14 +87,9 @@ def healpix(nside: int) -> NDArray[np.float64]:
     size = _refinement(nside, "nside")
     if size & (size - 1):
         raise InputError(f"nside must be a power of 2, not {size}.")
-    try:
-        from astropy_healpix import healpix_to_xyz
-    except ImportError as error:
-        raise MissingExtraError(
-            f"HEALPix needs astropy-healpix, but it cannot be imported ({error}); run: pip install "
-            '"gaussmap[spheres]"'
-        ) from error
-    return as_normals(np.stack(healpix_to_xyz(np.arange(12 * size**2), size, order="ring"), axis=1))
+    library = from_extra("astropy_healpix", "spheres", "HEALPix")
+    xyz = library.healpix_to_xyz(np.arange(12 * size**2), size, order="ring")
+    return as_normals(np.stack(xyz, axis=1))
 
 
 def random_normals(count: int, *, seed: int = 0) -> NDArray[np.float64]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import math
 import os
 import warnings
@@ -16,7 +15,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import io
 from ..density.request import checked_request
-from ..errors import InputError, MissingExtraError
+from ..errors import InputError
+from ..extras import check_extra
 from ..samples import Samples
 from ..sampling import sample_and_normals
 from ..sphere import as_normals
@@ -119,10 +119,7 @@ def plot_samples(
 def check_target(path: str | os.PathLike[str]) -> None:
     """Raise now what `plot_samples` would raise later: for its path, or for lack of matplotlib."""
     io.check_target(path, SUFFIXES)
-    if importlib.util.find_spec("matplotlib") is None:
-        raise MissingExtraError(
-            'pictures need matplotlib, but it is not installed; run: pip install "gaussmap[plot]"'
-        )
+    check_extra("matplotlib", "plot", "a picture")
 
 
 def _write(figure: Figure, x: float, y: float, text: str, **style: Any) -> None:  # noqa: ANN401

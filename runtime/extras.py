@@ -1,0 +1,34 @@
+"""Libraries that an extra brings: loaded when they are needed, and named when they are missing."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+from typing import Any
+
+from .errors import MissingExtraError
+
+__all__ = ["check_extra", "from_extra"]
+
+
+def check_extra(module: str, extra: str, purpose: str) -> None:
+    """Raise MissingExtraError unless a module is installed, without importing it."""
+    if importlib.util.find_spec(module) is None:
+        raise _missing(module, extra, purpose, "is not installed")
+
+
+def from_extra(module: str, extra: str, purpose: str) -> Any:  # noqa: ANN401
+    """Import a module; MissingExtraError with the extra that brings it."""
+    try:
+        return importlib.import_module(module)
+    except ModuleNotFoundError as error:
+        raise _missing(module, extra, purpose, "is not installed") from error
+    except (ImportError, OSError) as error:  # OSError: a library of the system lacks
+        raise _missing(module, extra, purpose, f"fails: {error}") from error
+
+
+def _missing(module: str, extra: str, purpose: str, reason: str) -> MissingExtraError:
+    package = module.replace("_", "-")
+    return MissingExtraError(
+        f'{purpose} needs {package}, but it {reason}; run: pip install "gaussmap[{extra}]"'
+    )
