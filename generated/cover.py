@@ -496,42 +496,49 @@ def tell_of_sample(
 
 
 @jit
-def tell_of_samples(
-    places, nearest, starts, widest, cell_radius, radius, number, samples, first, last
-):
-    """Tell places of the samples (…, 6) first, …, last − 1, numbered from `number` on for the first."""
-    for k in range(first, last):
+def tell_of_samples(places, nearest, starts, widest, cell_radius, box, radius, samples):
+    """Tell places of samples (…, 6), by their rows.
+
+    All places lie in the box (2, 3); samples that are far from it are left out.
+    """
+    reach = 0.0
+    for level in range(widest.size):
+        reach = max(reach, radius * widest[level])
+    for k in range(samples.shape[0]):
+        outside = False
+        for x in range(3):
+            outside |= samples[k, x] < box[0, x] - reach or samples[k, x] > box[1, x] + reach
+        if outside:
+            continue
         tell_of_sample(
-            places, nearest, starts, widest, cell_radius, radius, number + k, samples[k, 0],
+            places, nearest, starts, widest, cell_radius, radius, k, samples[k, 0],
             samples[k, 1], samples[k, 2], samples[k, 3], samples[k, 4], samples[k, 5],
         )  # fmt: skip
 
 
 @jit
-def choose_far(
-    places, nearest, starts, widest, cell_radius, radius, number, least, asked, first, last, most,
-    chosen, counts,
-):  # fmt: skip
-    """Choose those of the places asked[first], …, asked[last − 1] that are farther from all samples.
+def choose_far(places, nearest, starts, widest, cell_radius, radius, least, asked, chosen):
+    """Choose those of the asked places that are farther from all samples than radius / sqrt(weight).
 
-    Farther than radius / sqrt(weight), that is. They become samples, numbered from `number` on, but
-    `most` are chosen. Places that are farther than least / sqrt(weight) are kept in the beginning of
-    `asked`. counts = (kept, chosen).
+    They become samples, without a number. Places that are farther than least / sqrt(weight) are kept
+    in the beginning of `asked`. Returns how many are kept, and how many chosen.
     """
-    for k in range(first, last):
+    kept = 0
+    count = 0
+    for k in range(asked.size):
         at = asked[k]
         known = places[at, 7]
-        if known > radius * radius and counts[1] < most:
+        if known > radius * radius:
             tell_of_sample(
-                places, nearest, starts, widest, cell_radius, radius, number + counts[1],
-                places[at, 0], places[at, 1], places[at, 2], places[at, 3], places[at, 4],
-                places[at, 5],
+                places, nearest, starts, widest, cell_radius, radius, -1, places[at, 0],
+                places[at, 1], places[at, 2], places[at, 3], places[at, 4], places[at, 5],
             )  # fmt: skip
-            chosen[counts[1]] = at
-            counts[1] += 1
+            chosen[count] = at
+            count += 1
         elif known > least * least:
-            asked[counts[0]] = at
-            counts[0] += 1
+            asked[kept] = at
+            kept += 1
+    return kept, count
 
 
 @jit

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Mapping
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,9 +16,10 @@ __all__ = ["Candidates"]
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Numbers = NDArray[np.int32]
+Result = TypeVar("Result")
 
-# So many places or samples are worked on before Ctrl-C is listened to.
-AT_A_TIME = 1 << 14
+# Threads work on parts of the places: of about so many, but no more than MOST parts.
+PART, MOST = 1 << 16, 64
 # Places that are nearer to a sample than so many times a radius are left out of the next searches.
 LEFT_OUT = 0.7
 CENTRES_AT_A_TIME = 1 << 9
@@ -34,23 +36,28 @@ class Candidates:
     a place is told by a few dozens of samples, all in all.
     """
 
-    def __init__(self, rows: Array, radius: float) -> None:
-        """Sort places into grids, which suit radii that are not very much larger than this one."""
-        count = len(rows)
-        self.radius = radius
-        finest, self._widest = kernels.gaps_of(rows)
-        self._starts = np.zeros((1 << max(count - 1, 1).bit_length()) + 1, dtype=np.int32)
+    def __init__(
+        self, rows: Array, radius: float, threads: int | None = None, split: bool = False
+    ) -> None:
+        """Sort places into grids, which suit radii that are not very much larger than this one.
+
+        If there are many, they are `split` into parts for the threads: rows that follow one another
+        should be neighbours then.
+        """
+        count, self.radius, self._threads = len(rows), radius, threads
+        parts = min(max(count // PART, 1), MOST) if split else 1
         self._order, self._places = np.empty(count, dtype=np.int32), np.empty((count, 8))
         self._nearest = np.full(count, -1, dtype=np.int32)
-        kernels.sort_places(
-            rows, radius, finest, self._widest, self._starts, np.empty(count, dtype=np.int32),
-            self._order, self._places,
-        )  # fmt: skip
-        self._asked, self._least = np.empty(0, dtype=np.int32), np.inf
+        edges = np.linspace(0, count, parts + 1).astype(np.int64)
 
-    @property
-    def _grids(self) -> tuple[Array, Numbers, Numbers, Array, float]:
-        return self._places, self._nearest, self._starts, self._widest, self.radius
+        def part(k: int) -> _Part:
+            here = slice(int(edges[k]), int(edges[k + 1]))
+            order = self._order[here]
+            made = _Part(rows[here], radius, order, self._places[here], self._nearest[here])
+            order += np.int32(here.start)
+            return made
+
+        self._parts = self._each(part, parts)
 
     @property
     def distances(self) -> Array:
@@ -69,47 +76,36 @@ class Candidates:
         weights[self._order] = self._places[:, 6]
         return weights
 
-    def tell(self, samples: Array, radius: float, number: int = 0) -> None:
-        """Tell places within a radius of samples (N, 6), point and unit normal, numbered from …."""
-        for first, last in _ranges(len(samples)):
-            kernels.tell_of_samples(*self._grids, radius, number, samples, first, last)
+    def tell(self, samples: Array, radius: float) -> None:
+        """Tell places within a radius of samples (N, 6), point and unit normal."""
+        self._each(lambda k: self._parts[k].tell(samples, radius), len(self._parts))
 
     def forget(self) -> None:
         """Forget what samples have told."""
-        regular = self._places[:, 7] >= 0.0
-        self._places[regular, 7], self._nearest[:], self._least = np.inf, -1, np.inf
+        self._each(lambda k: self._parts[k].forget(), len(self._parts))
 
-    def choose(
-        self,
-        radius: float,
-        most: int,
-        number: int = 0,
-        told: Callable[[int], object] = lambda count: None,
-    ) -> Indices:
-        """Choose places until all of them are near enough to a sample, or `most` are chosen.
+    def choose(self, radius: float, most: int) -> Indices:
+        """Choose places until all of them are near enough to a sample.
 
-        Returns their rows; as samples, they are numbered from `number` on. `told` is told how many
-        samples there are, from time to time.
+        Returns their rows; `most` of them, all over the surface, if there are more. Then what other
+        places know is no longer true.
         """
-        if radius <= self._least:
-            self._least = LEFT_OUT * radius
-            self._asked = np.arange(len(self._order), dtype=np.int32)
-        chosen = np.empty(min(most, len(self._asked)), dtype=np.int32)
-        counts = np.zeros(2, dtype=np.int64)
-        for first, last in _ranges(len(self._asked)):
-            kernels.choose_far(
-                *self._grids, radius, number, self._least, self._asked, first, last, len(chosen),
-                chosen, counts,
-            )  # fmt: skip
-            told(number + int(counts[1]))
-        self._asked = self._asked[: counts[0]]
-        return self._order[chosen[: counts[1]]].astype(np.int64)
+        found = dict[int, Numbers]()
+        # Every other part at a time: neighbours would choose places that are near to one another.
+        for turn in (0, 1):
+            now = range(turn, len(self._parts), 2)
+            rows = self._each(lambda i, now=now: self._parts[now[i]].choose(radius), len(now))
+            found |= zip(now, rows, strict=True)
+            self._exchange({k: self._parts[k].places[found[k], :6] for k in now}, radius)
+        rows = [part.order[found[k]] for k, part in enumerate(self._parts)]
+        chosen = np.concatenate(rows).astype(np.int64)
+        return chosen if len(chosen) <= most else chosen[np.arange(most) * len(chosen) // most]
 
-    def centres(self, count: int, threads: int | None) -> Indices:
+    def centres(self, count: int) -> Indices:
         """Return for each of `count` samples the place in the middle of those it is nearest to.
 
         That is the row of the place next to the centre of the smallest ball around them, distances
-        times √weight; −1 if there are none.
+        times √weight; −1 if there are none. All samples were told at once, and none chosen since.
         """
         heads, links = (np.full(x, -1, dtype=np.int32) for x in (count, len(self._order)))
         kernels.list_places(self._nearest, heads, links)
@@ -118,10 +114,62 @@ class Candidates:
         def work(first: int, last: int) -> None:
             kernels.centres(self._places, heads, links, first, last, found)
 
-        for _ in over_ranges(work, count, CENTRES_AT_A_TIME, threads):
+        for _ in over_ranges(work, count, CENTRES_AT_A_TIME, self._threads):
             pass
         return np.where(found < 0, -1, self._order[found])
 
+    def _exchange(self, samples: Mapping[int, Array], radius: float) -> None:
+        """Tell every part of the samples of other parts."""
 
-def _ranges(count: int) -> Iterator[tuple[int, int]]:
-    return ((first, min(first + AT_A_TIME, count)) for first in range(0, count, AT_A_TIME))
+        def learn(k: int) -> None:
+            for other, points in samples.items():
+                if other != k:
+                    self._parts[k].tell(points, radius)
+
+        self._each(learn, len(self._parts))
+
+    def _each(self, work: Callable[[int], Result], count: int) -> list[Result]:
+        return list(over_ranges(lambda first, last: work(first), count, 1, self._threads))
+
+
+class _Part:
+    """Some of the places in grids of their own."""
+
+    def __init__(
+        self, rows: Array, radius: float, order: Numbers, places: Array, nearest: Numbers
+    ) -> None:
+        """Sort rows into arrays of the same length."""
+        count, self.radius = len(rows), radius
+        self.order, self.places, self.nearest = order, places, nearest
+        self.box = np.zeros((2, 3))
+        if count:
+            self.box[:] = rows[:, :3].min(axis=0), rows[:, :3].max(axis=0)
+        finest, self.widest = kernels.gaps_of(rows)
+        self.starts = np.zeros((1 << max(count - 1, 1).bit_length()) + 1, dtype=np.int32)
+        kernels.sort_places(
+            rows, radius, finest, self.widest, self.starts, np.empty(count, dtype=np.int32), order,
+            places,
+        )  # fmt: skip
+        self.asked, self.least = np.empty(0, dtype=np.int32), np.inf
+
+    def tell(self, samples: Array, radius: float) -> None:
+        kernels.tell_of_samples(
+            self.places, self.nearest, self.starts, self.widest, self.radius, self.box, radius,
+            samples,
+        )  # fmt: skip
+
+    def forget(self) -> None:
+        regular = self.places[:, 7] >= 0.0
+        self.places[regular, 7], self.nearest[:], self.least = np.inf, -1, np.inf
+
+    def choose(self, radius: float) -> Numbers:
+        if radius <= self.least:
+            self.least = LEFT_OUT * radius
+            self.asked = np.arange(len(self.places), dtype=np.int32)
+        chosen = np.empty(len(self.asked), dtype=np.int32)
+        kept, count = kernels.choose_far(
+            self.places, self.nearest, self.starts, self.widest, self.radius, radius, self.least,
+            self.asked, chosen,
+        )  # fmt: skip
+        self.asked = self.asked[:kept]
+        return chosen[:count]

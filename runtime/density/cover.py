@@ -22,7 +22,7 @@ WIDEST, STEP = 1.25, 0.98
 PACKED = 0.6
 # Candidates are the middles of triangles that reach so far, beside the radius. Others are taken if
 # it is so many times smaller than that of the last.
-FINE, SMALLER = 0.6, 1.3
+FINE, SMALLER = 0.7, 1.3
 # If all of the surface has to be near enough, and not only candidates, triangles that may hold a
 # place which is not are cut until they reach so far.
 FINEST = 0.1
@@ -123,22 +123,25 @@ class Cover:
         """Add the middles of some pieces as samples."""
         first = self.count
         self._append(pieces)
-        self._candidates.tell(self.points[first:], self.radius, first)
+        self._candidates.tell(self.points[first:], self.radius)
 
-    def centre(self, first: int, widest: float) -> None:
+    def tell_again(self, widest: float) -> None:
+        """Tell all candidates of the samples within the radius `widest`, and of no others."""
+        self._candidates.forget()
+        self._candidates.tell(self.points, widest)
+
+    def centre(self, first: int) -> None:
         """Move samples from number `first` on to the middle of the places that they are nearest to.
 
-        Then candidates know of all samples within the radius `widest`.
+        Candidates have to be told again before and after that.
         """
-        chosen = self._candidates.centres(self.count, self.wanted.threads)
+        chosen = self._candidates.centres(self.count)
         moved = first + np.flatnonzero(chosen[first:] >= 0)
         pieces = self.pieces[chosen[moved]]
         rows = pieces.middles()
         self.points[moved], self.curvatures[moved] = rows[:, :6], rows[:, 7]
         self.added.patches[moved - self.given] = pieces.patches
         self.added.triangles[moved - self.given] = pieces.triangles
-        self._candidates.forget()
-        self._candidates.tell(self.points, widest)
 
     def forget(self) -> None:
         """Take out all samples that were added."""
@@ -157,8 +160,10 @@ class Cover:
         self, pieces: Pieces, candidates: Candidates, radius: float, most: int | None
     ) -> None:
         """Add those of the middles of some pieces that are far from all samples."""
-        room = len(pieces) if most is None else max(most - self.count, 0)
-        self._append(pieces[candidates.choose(radius, room, self.count, self.tell)])
+        room = len(pieces) if most is None else most - self.count
+        if room > 0:
+            self._append(pieces[candidates.choose(radius, room)])
+            self.tell(self.count)
 
     def _append(self, pieces: Pieces) -> None:
         rows = pieces.middles()
@@ -187,6 +192,6 @@ class Cover:
 
     def _told(self, pieces: Pieces, radius: float, widest: float) -> Candidates:
         """Return the middles of pieces as candidates that know of all samples."""
-        candidates = Candidates(pieces.middles(), radius)
+        candidates = Candidates(pieces.middles(), radius, self.wanted.threads, split=True)
         candidates.tell(self.points, widest)
         return candidates

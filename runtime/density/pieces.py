@@ -20,7 +20,7 @@ PIECES_AT_A_TIME = 1 << 13
 PATCHES_AT_A_TIME = 1 << 11
 # Patches are not cut into more triangles than have this part of the square of the reach as area:
 # of long and narrow ones there would be too many.
-NARROW = 1.0 / 8.0
+NARROW = 0.5
 # The four quarters of a triangle: where their middles are, in sides from its own, and which is
 # turned over.
 QUARTERS = np.array([[0.0, 0.0], [1 / 3, -1 / 6], [-1 / 6, 1 / 3], [-1 / 6, -1 / 6]])

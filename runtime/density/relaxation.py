@@ -36,5 +36,7 @@ def relax(cover: Cover, steps: int) -> None:
     settled = cover.count
     cover.narrow(widest, cover.least, settled + round(MOVED * (count - settled)))
     for _ in range(steps):
-        cover.centre(settled, widest)
+        cover.tell_again(widest)
+        cover.centre(settled)
+    cover.tell_again(widest)
     cover.to_what_was_asked(widest)

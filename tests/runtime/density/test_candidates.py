@@ -32,7 +32,7 @@ def test_places_know_the_nearest_sample_within_a_radius(spread, radius, made):
     rows, samples = rows_of(600, 1, spread), rows_of(80, 2, 0.0)[:, :6]
     candidates = Candidates(rows, made * radius)
     candidates.tell(samples[:30], radius)
-    candidates.tell(samples[30:], radius, 30)
+    candidates.tell(samples[30:], radius)
     exact = np.sqrt(squares(rows, samples).min(axis=1))
     found = candidates.distances
     near = exact <= radius
@@ -49,7 +49,7 @@ def test_chosen_are_far_from_all_others_and_near_to_what_is_left(spread):
     candidates.tell(samples, 0.4)
     chosen = np.empty(0, dtype=np.int64)
     for step in (0.4, 0.3, 0.2):
-        chosen = np.append(chosen, candidates.choose(step, len(rows), 20 + len(chosen)))
+        chosen = np.append(chosen, candidates.choose(step, len(rows)))
     assert len(set(chosen)) == len(chosen) > 20
     everything = np.concatenate([samples, rows[chosen, :6]])
     for k, place in enumerate(chosen):  # where it was chosen, no sample was near
@@ -60,17 +60,48 @@ def test_chosen_are_far_from_all_others_and_near_to_what_is_left(spread):
     assert (candidates.distances <= radius).all()
 
 
-def test_no_more_than_asked_are_chosen_and_the_rest_comes_later():
+def test_no_more_than_asked_are_chosen_from_all_over():
     rows = rows_of(500, 5, 0.0)
-    candidates, whole = Candidates(rows, 0.1), Candidates(rows, 0.1)
-    first = candidates.choose(0.1, 7)
-    assert len(first) == 7
-    np.testing.assert_array_equal(
-        np.append(first, candidates.choose(0.1, 500)), whole.choose(0.1, 500)
-    )
+    whole = Candidates(rows, 0.1).choose(0.1, 500)
+    part = Candidates(rows, 0.1).choose(0.1, 7)
+    assert len(part) == 7
+    at = np.flatnonzero(np.isin(whole, part))
+    assert (np.diff(at) > len(whole) / 7 - 2).all()
+    assert len(Candidates(rows, 0.1).choose(0.1, 0)) == 0
+
+
+def test_nothing_is_chosen_twice():
+    candidates = Candidates(rows_of(500, 5, 0.0), 0.1)
+    first = candidates.choose(0.1, 500)
     assert len(candidates.choose(0.1, 500)) == 0
-    assert len(candidates.choose(0.05, 500)) > 0
-    assert len(candidates.choose(0.01, 0)) == 0
+    again = candidates.choose(0.05, 500)
+    assert len(again) > 0
+    assert not set(first) & set(again)
+
+
+@pytest.mark.parametrize("threads", [1, 2, 3])
+def test_parts_know_of_one_another(threads, monkeypatch):
+    """Rows that follow one another are neighbours; parts are shells of 100 of them."""
+    rows = rows_of(2000, 8, 2.0)
+    rows = rows[np.argsort(rows[:, 0])]
+    whole = Candidates(rows, 0.15)
+    monkeypatch.setattr("gaussmap.runtime.density.candidates.PART", 100)
+    candidates, radius = Candidates(rows, 0.15, threads, split=True), 0.15
+    chosen = candidates.choose(2 * radius, 2000)
+    chosen = np.append(chosen, candidates.choose(radius, 2000))
+    assert len(set(chosen)) == len(chosen)
+    near = squares(np.delete(rows, chosen, axis=0), rows[chosen, :6]).min(axis=1)
+    assert (near <= radius**2 * (1 + 1e-14)).all()
+    fewest = np.append(whole.choose(2 * radius, 2000), whole.choose(radius, 2000))
+    assert len(chosen) < 1.05 * len(fewest)
+    samples = rows[chosen, :6]
+    for each in (candidates, whole):
+        each.forget()
+        each.tell(samples, 0.3)
+    np.testing.assert_array_equal(candidates.distances, whole.distances)
+    np.testing.assert_array_equal(candidates.weights, rows[:, 6])
+    count = len(samples)
+    assert (candidates.centres(count) == whole.centres(count)).mean() > 0.98  # but for ties
 
 
 def test_places_without_a_normal_are_never_chosen():
@@ -102,8 +133,7 @@ def test_centres_are_those_of_the_smallest_balls():
     samples[2, 1] = 90.0
     candidates = Candidates(rows, 50.0)
     candidates.tell(samples, 90.0)
-    for threads in (1, 2):
-        np.testing.assert_array_equal(candidates.centres(3, threads), [4, 9 + 6, -1])
+    np.testing.assert_array_equal(candidates.centres(3), [4, 9 + 6, -1])
 
 
 def test_weights_move_centres():
@@ -113,5 +143,5 @@ def test_weights_move_centres():
     rows[[0, 40], 6] = 9.0, 1.0
     candidates = Candidates(rows, 10.0)
     candidates.tell(rows[20:21, :6], 100.0)
-    centre = candidates.centres(1, None)[0]
+    centre = candidates.centres(1)[0]
     assert abs(rows[centre, 0] - 1.0) <= 0.3  # 12 steps come that near

@@ -138,6 +138,7 @@ def test_the_same_for_any_number_of_threads(asked: dict[str, Any], monkeypatch):
     monkeypatch.setattr(pieces, "PIECES_AT_A_TIME", 1 << 9)
     monkeypatch.setattr(pieces, "PATCHES_AT_A_TIME", 100)
     monkeypatch.setattr(candidates, "CENTRES_AT_A_TIME", 50)
+    monkeypatch.setattr(candidates, "PART", 1 << 9)
     for surface in (TORUS, DENTS):
         expected = gm.sample(surface, threads=1, **asked)
         for threads in (1, 2, 3):
@@ -147,10 +148,15 @@ def test_the_same_for_any_number_of_threads(asked: dict[str, Any], monkeypatch):
 
 
 @pytest.mark.compiled
-def test_work_in_pieces_changes_nothing(monkeypatch):
-    expected = gm.sample(TORUS, count=2000)
-    monkeypatch.setattr(candidates, "AT_A_TIME", 100)
-    same(gm.sample(TORUS, count=2000), expected)
+@pytest.mark.parametrize("name", ["torus", "wavy_graph", "plane"])
+def test_parts_make_covers_hardly_worse(name, monkeypatch):
+    """Parts of 1,000 places meet in borders, where they do not always know of one another."""
+    spline = gm.fit(gm.surfaces.surface(name), (32, 32))
+    whole = gm.sample(spline, coverage=0.05, density="uniform")
+    monkeypatch.setattr(candidates, "PART", 1000)
+    parts = gm.sample(spline, coverage=0.05, density="uniform")
+    assert (parts.report.coverage or 1.0) <= 0.05
+    assert abs(len(parts) - len(whole)) <= 0.08 * len(whole)
 
 
 @pytest.mark.compiled
