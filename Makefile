@@ -68,7 +68,7 @@ bench-peers: $(VENV)/peers/.ready ## measure gaussmap beside others, and its sca
 	$(VENV)/peers/bin/python -m gaussmap.benchmarks.peers --largest $(LARGEST) > docs/performance.tmp
 	mv docs/performance.tmp docs/performance.md
 
-quality: $(VENV)/peers/.ready ## judge samples beside those of others again (docs/quality.md)
+quality: $(VENV)/peers/.ready meshes ## judge samples, and meshes, beside those of others again (docs/quality.md)
 	$(VENV)/peers/bin/python -m gaussmap.benchmarks.quality > docs/quality.tmp
 	mv docs/quality.tmp docs/quality.md
 
