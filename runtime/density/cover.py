@@ -187,8 +187,9 @@ class Cover:
             pieces = pieces[far & ~uncut].quarters
             candidates = self._told(pieces, radius, radius)
         pieces = sum(small[1:], start=small[0])
-        candidates = self._told(pieces, radius, radius)
+        candidates, first = self._told(pieces, radius, radius), self.count
         self._choose(pieces, candidates, (1.0 - FINEST) * radius, most)
+        self._candidates.tell(self.points[first:], radius)
 
     def _told(self, pieces: Pieces, radius: float, widest: float) -> Candidates:
         """Return the middles of pieces as candidates that know of all samples."""
