@@ -59,9 +59,15 @@ def icosphere(frequency: int) -> NDArray[np.float64]:
 
 
 def frequency_within(angle: float) -> int:
-    """Return the least ν for which every direction is within `angle` degrees of `icosphere(ν)`."""
-    tangent = math.tan(math.radians(angle))
-    return 1 if tangent >= icosahedron.FACE_RADIUS else math.ceil(icosahedron.FACE_RADIUS / tangent)
+    """Return the least ν for which every direction is within `angle` degrees of `icosphere(ν)`.
+
+    Raises InputError if there is none.
+    """
+    frequency = icosahedron.FACE_RADIUS / math.tan(math.radians(angle))
+    if not frequency <= MOST_FREQUENT:
+        least = math.degrees(math.atan(icosahedron.FACE_RADIUS / MOST_FREQUENT))
+        raise InputError(f"angle must be at least {least:.4f} degrees, not {angle:g}.")
+    return max(1, math.ceil(frequency))
 
 
 def fibonacci(count: int) -> NDArray[np.float64]:

@@ -23,6 +23,7 @@ from .answers import Answers, answers_of, answers_of_lattice, no_answers
 from .cover import Cover
 from .gaps import coverage
 from .law import Law, Wanted
+from .pieces import parts_of_patches
 from .relaxation import relax
 from .request import Request
 
@@ -36,6 +37,8 @@ GREEDY = 1.85
 FLAT_SHARE = 0.25
 # Less bending than this, as the integral of κ² over the surface, is rounding.
 UNBENT = 1e-9
+# Distances less than this part of the size of a surface are rounding.
+ROUNDING = 1e-15
 # |K|^α vanishes where K does; there no gap is wider than this many others.
 WIDEST_GAP = 1000.0
 # So many samples of a cover each sample of the normals is taken to save. They save up to 0.7; with
@@ -89,7 +92,7 @@ class Filling:
         if self.request.count is not None:
             cover.to_count(self.request.count)
         elif self.request.coverage is not None:
-            cover.to_radius(self.request.coverage * cover.wanted.unit)
+            cover.to_radius(self._distance(cover.wanted, self.request.coverage))
         return cover, no_answers()
 
     def _law(self) -> Wanted:
@@ -142,6 +145,10 @@ class Filling:
         unit = cover.wanted.unit
         return coverage(cover.wanted, cover.points[:, :3], asked * unit) / unit
 
+    def _distance(self, wanted: Wanted, coverage: float) -> float:
+        """Return a coverage that is asked as a length of covers, between rounding and the size."""
+        return min(max(coverage * wanted.unit, ROUNDING * wanted.size), wanted.size)
+
     # --- balanced ---------------------------------------------------------------------------------
 
     def _balanced(self) -> tuple[Cover, Answers]:
@@ -168,10 +175,11 @@ class Filling:
         else:
             assert request.coverage is not None
             least = float(wanted.largest.min())
-            radius = request.coverage * wanted.unit * math.sqrt(max(floor, least))
+            radius = self._distance(wanted, request.coverage) * math.sqrt(max(floor, least))
+            parts_of_patches(wanted.with_floor(floor), radius)  # or InputError, before the search
             answers = self._answers(density_of(radius / WIDER))
         if request.coverage is not None:
-            floor = (radius / (request.coverage * wanted.unit)) ** 2
+            floor = (radius / self._distance(wanted, request.coverage)) ** 2
         cover = Cover(wanted.with_floor(floor), answers.samples, self.tell)
         cover.to_radius(radius)
         return cover, answers
@@ -193,12 +201,13 @@ class Filling:
     ) -> tuple[Cover, Answers]:
         """Find the most normals that leave room for a coverage, by bisection, and then fill up."""
         seen = visible_solid_angle(self.spline, count / (4 * math.pi))
+        distance = self._distance(wanted, coverage)
         high = math.log(count / seen) if seen > 0.0 else 0.0
         low, best = high - FEWEST_NORMALS, None
         for _ in range(BISECTIONS):
             radius = WIDER * spacing(math.exp((low + high) / 2))
             answers = self._answers(math.exp((low + high) / 2))
-            floor = (radius / (coverage * wanted.unit)) ** 2
+            floor = (radius / distance) ** 2
             cover = Cover(wanted.with_floor(floor), answers.samples, self.tell)
             cover.to_radius(radius, count + 1)
             if cover.count > count:

@@ -55,6 +55,12 @@ class Wanted:
         return kernels.SCALE * self.spline.scale
 
     @property
+    def size(self) -> float:
+        """A length that no two points of the surface are apart."""
+        points = self.spline.coefficients.reshape(-1, 3)
+        return float(np.linalg.norm(np.ptp(points, axis=0))) * self.unit
+
+    @property
     def reaches(self) -> Array:
         """How far the points of each patch (patches,) are from its middle, at most."""
         return self._patches[0]

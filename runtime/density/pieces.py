@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated import cover as kernels
+from ..errors import InputError
 from ..threads import over_ranges
 from .law import Wanted
 
-__all__ = ["Array", "Indices", "Pieces", "cut_patches"]
+__all__ = ["Array", "Indices", "Pieces", "cut_patches", "parts_of_patches"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -21,6 +22,8 @@ PATCHES_AT_A_TIME = 1 << 11
 # Patches are not cut into more triangles than have this part of the square of the reach as area:
 # of long and narrow ones there would be too many.
 NARROW = 0.5
+# Places are numbered by 32 bits.
+MOST = 2e9
 # The four quarters of a triangle: where their middles are, in sides from its own, and which is
 # turned over.
 QUARTERS = np.array([[0.0, 0.0], [1 / 3, -1 / 6], [-1 / 6, 1 / 3], [-1 / 6, -1 / 6]])
@@ -92,10 +95,9 @@ def cut_patches(wanted: Wanted, radius: float) -> Pieces:
     """Cut all patches until every place is within radius / √weight of the middle of its triangle.
 
     That is by the largest weight of the patch, and long and narrow triangles may reach farther.
+    Raises what `parts_of_patches` raises.
     """
-    reaches = np.minimum(wanted.reaches, np.sqrt(wanted.areas / NARROW))
-    asked = np.ceil(reaches * np.sqrt(wanted.largest) / radius)
-    parts = np.maximum(asked, 1.0).astype(np.int64)
+    parts = parts_of_patches(wanted, radius)
     ends = np.cumsum(parts * parts)
     patches, triangles = np.empty(ends[-1], dtype=np.int64), np.empty((ends[-1], 3))
 
@@ -105,3 +107,20 @@ def cut_patches(wanted: Wanted, radius: float) -> Pieces:
     for _ in over_ranges(work, len(parts), PATCHES_AT_A_TIME, wanted.threads):
         pass
     return Pieces(wanted, patches, triangles)
+
+
+def parts_of_patches(wanted: Wanted, radius: float) -> Indices:
+    """Return in how many parts `cut_patches` cuts the sides of each patch (patches,).
+
+    Raises InputError if there were more than MOST triangles.
+    """
+    reaches = np.minimum(wanted.reaches, np.sqrt(wanted.areas / NARROW))
+    with np.errstate(divide="ignore", over="ignore"):
+        asked = np.maximum(np.ceil(reaches * np.sqrt(wanted.largest) / radius), 1.0)
+        total = float((asked * asked).sum())
+    if not total <= MOST:
+        raise InputError(
+            f"surface {wanted.spline.name!r} would have to be searched in more than {MOST:.0e} "
+            "places; ask for a larger coverage or angle, or for fewer samples or normals."
+        )
+    return asked.astype(np.int64)

@@ -202,6 +202,33 @@ def test_coverage_beside_a_count(name):
     assert farthest(hopeless, points) <= (hopeless.report.coverage or 0.0)
 
 
+# --- too much and too little ----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("coverage", [1e-9, 1e-100, 5e-324])
+def test_what_would_need_too_many_samples_is_refused(coverage):
+    spline = gm.fit(gm.surfaces.torus(), (8, 8))
+    for density in ("balanced", "uniform"):
+        with pytest.raises(gm.InputError, match="in more than 2e\\+09 places; ask for a larger"):
+            gm.sample(spline, coverage=coverage, density=density)
+    with pytest.raises(gm.InputError, match="in more than 2e\\+09 places"):
+        gm.sample(spline, angle=30.0, coverage=coverage)
+    with pytest.warns(gm.GaussmapWarning, match="where .* was asked"):
+        assert len(gm.sample(spline, count=50, coverage=coverage)) == 50
+    with pytest.raises(gm.InputError, match=r"angle must be at least 0\.0044 degrees, not "):
+        gm.sample(spline, angle=coverage)
+
+
+@pytest.mark.parametrize("coverage", [10.0, 1e300])
+def test_more_than_the_size_of_a_surface_asks_for_a_few_samples(coverage):
+    spline = gm.fit(gm.surfaces.torus(), (8, 8))
+    for density in ("balanced", "uniform"):
+        samples = gm.sample(spline, coverage=coverage, density=density)
+        assert 1 <= len(samples) < 10
+        assert (samples.report.coverage or math.inf) < 3.0
+    assert len(gm.sample(spline, count=50, coverage=coverage)) == 50
+
+
 # --- relaxing -------------------------------------------------------------------------------------
 
 
