@@ -63,11 +63,11 @@ def frequency_within(angle: float) -> int:
 
     Raises InputError if there is none.
     """
-    frequency = icosahedron.FACE_RADIUS / math.tan(math.radians(angle))
-    if not frequency <= MOST_FREQUENT:
+    tangent = math.tan(math.radians(angle))
+    if tangent * MOST_FREQUENT < icosahedron.FACE_RADIUS:
         least = math.degrees(math.atan(icosahedron.FACE_RADIUS / MOST_FREQUENT))
         raise InputError(f"angle must be at least {least:.4f} degrees, not {angle:g}.")
-    return max(1, math.ceil(frequency))
+    return max(1, math.ceil(icosahedron.FACE_RADIUS / tangent))
 
 
 def fibonacci(count: int) -> NDArray[np.float64]:
