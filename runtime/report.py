@@ -69,7 +69,7 @@ def _missed(report: SamplingReport, count: int | None, coverage: float | None) -
         reasons.append(f"{report.samples} samples came where {count} were asked")
     if coverage is not None and report.coverage is not None and report.coverage > coverage:
         reasons.append(
-            f"with {count} samples a point can be {report.coverage:.3g} from the nearest one, "
-            f"where {coverage:g} was asked"
+            f"with {report.samples} samples a point can be {report.coverage:.3g} from the nearest "
+            f"one, where {coverage:g} was asked"
         )
     return reasons

@@ -222,7 +222,9 @@ class Samples:
         """Return the same samples in an order of which every beginning is a good sampling itself.
 
         The first ones are far apart, beside the spacing of the samples round them; those that come
-        next halve the gaps, and so on. Take as many of them as you like: `samples[:1000]`.
+        next halve the gaps, and so on. Take as many of them as you like: `samples[:1000]`. Spacings
+        below a thousandth of the median count as such. Needs the fields points and normals, else
+        MissingFieldError.
         """
         from .density.progressive import progressive_order
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -53,14 +54,17 @@ def _far_normals(cover: Cover, limit: float) -> tuple[float, Pieces, Array, Arra
     Returns how far the normals of all other triangles are at most; and the small ones, their
     middles and the distances of the normals there.
     """
-    tree, pieces, largest = tree_of(cover.points[:, 3:]), cover.pieces, 0.0
+    # Without a floor, what is wanted is the square of the larger principal curvature.
+    bending = cover.wanted.with_floor(0.0)
+    tree, pieces, largest = tree_of(cover.points[:, 3:]), replace(cover.pieces, wanted=bending), 0.0
     small, middles, chords = [], [], []
     while len(pieces):
         rows = pieces.middles()
         turns = pieces.extents * np.sqrt(rows[:, 6])
         distances = tree.query(rows[:, 3:6], workers=thread_count(cover.wanted.threads))[0]
-        far = (distances + turns > limit) & rows[:, 3:6].any(axis=1)
-        largest = max(largest, float((distances + turns)[~far].max(initial=0.0)))
+        regular = rows[:, 3:6].any(axis=1)
+        far = regular & (distances + turns > limit)
+        largest = max(largest, float((distances + turns)[regular & ~far].max(initial=0.0)))
         uncut = far & (turns <= SMALL * limit)
         small.append(pieces[uncut])
         middles.append(rows[uncut])
@@ -86,7 +90,7 @@ def widest_angles(cover: Cover, number: int, widest: float) -> None:
 
 
 def _in_normal_space(normals: Array, K: Array) -> Array:
-    """Return normals as places, with the sign of K for a side (M, 8)."""
+    """Return normals as places (M, 8), with the sign of K for a normal: a side of its own."""
     rows = np.zeros((len(normals), 8))
-    rows[:, :3], rows[:, 3], rows[:, 6] = normals, np.sign(K), 1.0
+    rows[:, :3], rows[:, 3], rows[:, 6] = normals, np.where(np.signbit(K), -1.0, 1.0), 1.0
     return rows

@@ -24,8 +24,9 @@ PACKED = 0.6
 # it is so many times smaller than that of the last.
 FINE, SMALLER = 0.7, 1.3
 # If all of the surface has to be near enough, and not only candidates, triangles that may hold a
-# place which is not are cut until they reach so far.
-FINEST = 0.1
+# place which is not are cut until they reach so far. Narrow ones, of less than NARROW times the area
+# of such a square, may reach farther: there would be too many of them.
+FINEST, FINE_IF_NARROW, NARROW = 0.1, 0.5, 0.4
 
 
 class Cover:
@@ -180,15 +181,23 @@ class Cover:
         """Add samples until not only candidates are within radius / √weight of one."""
         pieces, candidates, small = self.pieces, self._candidates, []
         while len(pieces):
-            extents = pieces.extents * np.sqrt(candidates.weights)
-            far = candidates.distances + extents > radius
-            uncut = far & (extents <= FINEST * radius)
+            shares = pieces.extents * np.sqrt(candidates.weights) / radius
+            far = candidates.distances > (1.0 - shares) * radius
+            narrow = pieces.areas * candidates.weights <= NARROW * (FINEST * radius) ** 2
+            uncut = far & (shares <= np.where(narrow, FINE_IF_NARROW, FINEST))
             small.append(pieces[uncut])
             pieces = pieces[far & ~uncut].quarters
             candidates = self._told(pieces, radius, radius)
-        pieces = sum(small[1:], start=small[0])
-        candidates, first = self._told(pieces, radius, radius), self.count
-        self._choose(pieces, candidates, (1.0 - FINEST) * radius, most)
+        self._choose_strictly(sum(small[1:], start=small[0]), radius, most)
+
+    def _choose_strictly(self, pieces: Pieces, radius: float, most: int | None) -> None:
+        """Add middles of small pieces until all of each is within radius / √weight of a sample."""
+        rows, first = pieces.middles(), self.count
+        # A sample that is nearer to the middle by the extent is near enough to the whole piece.
+        rows[:, 6] /= (1.0 - pieces.extents * np.sqrt(rows[:, 6]) / radius) ** 2
+        candidates = Candidates(rows, radius, self.wanted.threads, split=True)
+        candidates.tell(self.points, radius)
+        self._choose(pieces, candidates, radius, most)
         self._candidates.tell(self.points[first:], radius)
 
     def _told(self, pieces: Pieces, radius: float, widest: float) -> Candidates:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -62,7 +63,7 @@ def filled_samples(
     with counted(request.count, progress) as tell:
         filling = Filling(spline, request, threads, progress, tell)
         cover, answers = filling.cover()
-        relax(cover, request.relax)
+        cover = filling.relaxed(cover)
         if request.angle is not None:
             angle = cover_normals(cover, request.angle)
         return filling.samples(cover, answers, fields, dtype, angle), answers.normals
@@ -94,6 +95,14 @@ class Filling:
         elif self.request.coverage is not None:
             cover.to_radius(self._distance(cover.wanted, self.request.coverage))
         return cover, no_answers()
+
+    def relaxed(self, cover: Cover) -> Cover:
+        """Return the cover after the steps that are asked; as it is, if they miss what it kept."""
+        relaxed, asked = copy(cover), self.request.coverage
+        relax(relaxed, self.request.relax)
+        if self.request.relax == 0 or self.request.count is None or asked is None:
+            return relaxed
+        return relaxed if self._coverage(relaxed, asked) <= asked else cover
 
     def _law(self) -> Wanted:
         """Return what "uniform" or a power of |K| wants.

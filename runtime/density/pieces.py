@@ -62,6 +62,11 @@ class Pieces:
         return self.wanted.reaches[self.patches] * np.abs(self.triangles[:, 2])
 
     @property
+    def areas(self) -> Array:
+        """About the areas of the triangles (M,): their parts of those of the patches."""
+        return self.wanted.areas[self.patches] * self.triangles[:, 2] ** 2
+
+    @property
     def quarters(self) -> Pieces:
         """The quarters of all triangles (4 M), those of each together."""
         middles = self.triangles[:, None, :2] + self.triangles[:, None, 2:] * QUARTERS
