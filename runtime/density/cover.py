@@ -24,8 +24,8 @@ PACKED = 0.6
 # it is so many times smaller than that of the last.
 FINE, SMALLER = 0.7, 1.3
 # If all of the surface has to be near enough, and not only candidates, triangles that may hold a
-# place which is not are cut until they reach so far. Narrow ones, of less than NARROW times the area
-# of such a square, may reach farther: there would be too many of them.
+# place which is not are cut until they reach so far. Narrow ones, of less than NARROW times the
+# area of such a square, may reach farther: there would be too many of them.
 FINEST, FINE_IF_NARROW, NARROW = 0.1, 0.5, 0.4
 
 
