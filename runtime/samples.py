@@ -51,9 +51,9 @@ class SamplingReport:
     - `degenerate_patches`: how many patches are developable up to the rounding of their
       coordinates, and so have no support function (those round a pole are among them).
     - `coverage`: how far any point of the surface is from the nearest sample, at most, in L. Known
-      if samples were added for coverage.
-    - `angle`: the largest angle, in degrees, between the normal of a point of the surface and that
-      of the sample nearest in normal. Known if an angle was asked.
+      if a coverage was asked; see also `Samples.coverage`.
+    - `angle`: how large the angle, in degrees, between the normal of a point of the surface and
+      that of the sample nearest in normal is, at most. Known if an angle was asked.
 
     Raises InputError if a count is not an integer or is negative, the share is outside 0…1, or the
     label is not a string.
