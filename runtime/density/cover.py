@@ -10,7 +10,7 @@ import numpy as np
 from ..samples import Samples
 from .candidates import Candidates
 from .law import Wanted
-from .pieces import Pieces, cut_patches
+from .pieces import Array, Pieces, cut_patches
 
 __all__ = ["STEP", "Cover"]
 
@@ -55,8 +55,7 @@ class Cover:
         self.wanted, self.tell = wanted, tell
         self.points, self.curvatures = np.empty((0, 6)), np.empty(0)
         if given is not None:
-            places = (given.points - wanted.spline.coefficients[0, 0]) * wanted.unit
-            self.points = np.column_stack([places, given.normals])
+            self.points = np.column_stack([wanted.places(given.points), given.normals])
             self.curvatures = given.gaussian_curvature / wanted.unit**2
         self.given, self.fine = len(self.points), FINE
         self.least, self.most = 0.0, None
@@ -118,7 +117,7 @@ class Cover:
         They are the middles of triangles that reach `fine` times the radius.
         """
         self.radius, self.pieces = widest, cut_patches(self.wanted, self.fine * radius)
-        self._candidates = self._told(self.pieces, radius, widest)
+        self._candidates = self._told(self.pieces.middles(), radius, widest)
 
     def add(self, pieces: Pieces) -> None:
         """Add the middles of some pieces as samples."""
@@ -187,7 +186,7 @@ class Cover:
             uncut = far & (shares <= np.where(narrow, FINE_IF_NARROW, FINEST))
             small.append(pieces[uncut])
             pieces = pieces[far & ~uncut].quarters
-            candidates = self._told(pieces, radius, radius)
+            candidates = self._told(pieces.middles(), radius, radius)
         self._choose_strictly(sum(small[1:], start=small[0]), radius, most)
 
     def _choose_strictly(self, pieces: Pieces, radius: float, most: int | None) -> None:
@@ -195,13 +194,11 @@ class Cover:
         rows, first = pieces.middles(), self.count
         # A sample that is nearer to the middle by the extent is near enough to the whole piece.
         rows[:, 6] /= (1.0 - pieces.extents * np.sqrt(rows[:, 6]) / radius) ** 2
-        candidates = Candidates(rows, radius, self.wanted.threads, split=True)
-        candidates.tell(self.points, radius)
-        self._choose(pieces, candidates, radius, most)
+        self._choose(pieces, self._told(rows, radius, radius), radius, most)
         self._candidates.tell(self.points[first:], radius)
 
-    def _told(self, pieces: Pieces, radius: float, widest: float) -> Candidates:
-        """Return the middles of pieces as candidates that know of all samples."""
-        candidates = Candidates(pieces.middles(), radius, self.wanted.threads, split=True)
+    def _told(self, rows: Array, radius: float, widest: float) -> Candidates:
+        """Return middles of pieces as candidates that know of all samples."""
+        candidates = Candidates(rows, radius, self.wanted.threads, split=True)
         candidates.tell(self.points, widest)
         return candidates

@@ -30,6 +30,8 @@ from .request import Request
 
 __all__ = ["filled_samples"]
 
+# Twice the area of a hexagon whose corners are 1 from its centre.
+HEXAGON = 3.0 * math.sqrt(3.0)
 # Balanced: what is filled are gaps that are wider than those between the normals by this factor.
 WIDER = 2.0
 # n samples that bring every place within a radius r have n r² times this as what is wanted of them.
@@ -98,9 +100,11 @@ class Filling:
 
     def relaxed(self, cover: Cover) -> Cover:
         """Return the cover after the steps that are asked; as it is, if they miss what it kept."""
+        if self.request.relax == 0 or cover.count == cover.given:
+            return cover
         relaxed, asked = copy(cover), self.request.coverage
         relax(relaxed, self.request.relax)
-        if self.request.relax == 0 or self.request.count is None or asked is None:
+        if self.request.count is None or asked is None:
             return relaxed
         return relaxed if self._coverage(relaxed, asked) <= asked else cover
 
@@ -256,9 +260,9 @@ def added_fields(cover: Cover, fields: Sequence[str], dtype: DTypeLike) -> dict[
 
 def spacing(density: float) -> float:
     """Return the covering radius of so many points per area, laid out as hexagons."""
-    return math.sqrt(2.0 / (3.0 * math.sqrt(3.0) * density))
+    return math.sqrt(2.0 / (HEXAGON * density))
 
 
 def density_of(radius: float) -> float:
     """Return how many points per area have this covering radius, laid out as hexagons."""
-    return 2.0 / (3.0 * math.sqrt(3.0) * radius * radius)
+    return 2.0 / (HEXAGON * radius * radius)

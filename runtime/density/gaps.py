@@ -25,8 +25,7 @@ MOST_CUTS = 40
 def coverage_of(points: NDArray[np.floating], spline: Spline, threads: int | None) -> float:
     """Return what `Samples.coverage` returns."""
     wanted = Wanted(spline, Law(floor=1.0), threads)
-    places = (points.astype(np.float64) - spline.coefficients[0, 0]) * wanted.unit
-    return coverage(wanted, places) / wanted.unit
+    return coverage(wanted, wanted.places(points)) / wanted.unit
 
 
 def coverage(wanted: Wanted, points: Array, asked: float = math.inf) -> float:

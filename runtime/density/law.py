@@ -54,6 +54,10 @@ class Wanted:
         """How long one length of the spline is here."""
         return kernels.SCALE * self.spline.scale
 
+    def places(self, points: NDArray[np.floating]) -> Array:
+        """Return points of the surface (N, 3) relative to the first coefficient, times `unit`."""
+        return (points.astype(np.float64) - self.spline.coefficients[0, 0]) * self.unit
+
     @property
     def size(self) -> float:
         """A length that no two points of the surface are apart."""

@@ -18,15 +18,13 @@ WIDEST = 2.0
 
 
 def relax(cover: Cover, steps: int) -> None:
-    """Add the samples again among finer candidates, and move them `steps` times.
+    """Add the samples, at least one, again among finer candidates, and move them `steps` times.
 
     A step moves each to the middle of all places that it is nearest to, the centre of the smallest
     ball around them: Lloyd's method, for the largest distance instead of the mean of the squares.
     If their count is given, a few go to the widest gaps in normal space before, and stay there; if
     a radius is given, fewer samples may come than before.
     """
-    if steps == 0 or cover.count == cover.given:
-        return
     count, widest = cover.count, WIDEST * cover.radius
     cover.forget()
     cover.fine = FINE
