@@ -143,8 +143,9 @@ def cover_source() -> str:
         {
             "header": header("Covering: samples near every point, as near as a density asks."),
             "constants": f"{_grid_constants()}\nNODE = {source_of(patch.QUADRATURE_NODE)}",
-            "formulas": functions([spline.TRIANGLE]),
+            "formulas": functions([spline.TRIANGLE, patch.PART_NORMALS]),
             "patch_vectors": _patch_vectors(),
+            "part_normals": _net_of(patch.PART_NORMALS),
             "envelope": block(patch.ENVELOPE),
             "tangents": block(patch.TANGENTS),
             "curvature_at": block(patch.CURVATURE_AT),
@@ -347,7 +348,7 @@ def sampler_source() -> str:
             "constants": f"{_grid_constants()}\n{_triangle_neighbours()}",
             "formulas": functions(called),
             "patch_vectors": _patch_vectors(),
-            "control_normals": _control_normals(),
+            "control_normals": _net_of(patch.CONTROL_NORMALS),
             "cone_of_patch": _cone_of_patch(),
             "parabolic_cubic": f"cubic = {call(patch.PARABOLIC_CUBIC)}",
             "tangents": block(patch.TANGENTS),
@@ -487,15 +488,15 @@ def _floats(matrix: sp.Matrix) -> list[list[float]]:
     return [[float(x.evalf(40)) for x in matrix.row(k)] for k in range(matrix.rows)]
 
 
-def _control_normals() -> str:
-    """Return the call of `control_normals` that fills `net` (6, 3)."""
+def _net_of(normals: Formula) -> str:
+    """Return the call of a formula of control normals that fills `net` (6, 3)."""
     net = ", ".join(f"net[{k}, {x}]" for k in range(6) for x in range(3))
-    return f"{net} = {call(patch.CONTROL_NORMALS)}"
+    return f"{net} = {call(normals)}"
 
 
 def _cone_of_patch() -> str:
     """Return the beginning of a search: the vectors of a patch and the cone of its normals."""
-    return render("cone_of_patch.py", {"control_normals": _control_normals()}).rstrip()
+    return render("cone_of_patch.py", {"control_normals": _net_of(patch.CONTROL_NORMALS)}).rstrip()
 
 
 def _tile() -> dict[str, str]:

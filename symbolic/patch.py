@@ -8,6 +8,7 @@ Q = n·e of the normal n; the vectors come back in by the chain rule, since ∂A
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, product
 
@@ -22,6 +23,7 @@ VECTORS = (a, b, c, d, e)
 A, B, C, P, Q = LINEAR_FORMS = tuple(scalar(x) for x in "ABCPQ")
 D, U, V, W = (scalar(x) for x in "DUVW")
 u, v, r = (scalar(x) for x in "uvr")
+side = scalar("s")
 FORM_TERMS = [(form.name, Dot(n, x)) for form, x in zip(LINEAR_FORMS, VECTORS, strict=True)]
 
 
@@ -287,13 +289,17 @@ def bernstein(polynomial: sp.Expr, degree: int) -> dict[str, sp.Expr]:
     return result
 
 
-def _control_normals() -> Formula:
-    """Multiply the linear fields p_u and p_v, both given at the corners, in Bernstein form."""
-    corners = {"100": (1, 0), "010": (0, 1), "001": (0, 0)}
+def _control_normals(
+    name: str,
+    text: str,
+    inputs: Sequence[sp.Symbol],
+    corners: Mapping[str, tuple[sp.Expr, sp.Expr]],
+) -> Formula:
+    """Multiply the linear fields p_u and p_v, both given at corners, in Bernstein form."""
     tangents = [
-        (f"{name}{corner}", substitute(field, {u: sp.Integer(at[0]), v: sp.Integer(at[1])}))
+        (f"{field_name}{corner}", sp.expand(substitute(field, {u: at[0], v: at[1]})))
         for corner, at in corners.items()
-        for name, field in (("s", P_U), ("t", P_V))
+        for field_name, field in (("s", P_U), ("t", P_V))
     ]
     outputs: dict[str, sp.Expr] = {}
     for left, right in product(corners, repeat=2):
@@ -302,17 +308,30 @@ def _control_normals() -> Formula:
         share = sp.S.One if left == right else sp.S.Half
         outputs[f"N{index}"] = outputs.get(f"N{index}", sp.S.Zero) + share * Cross(s, t)
     return Formula.build(
-        "control_normals",
-        "The Bézier net of the normal field $N(u,v) = p_u × p_v$: every oriented normal of the "
-        "patch is a non-negative combination of these six vectors.",
+        name,
+        text,
         source="Sect. 3.2, eq. (14)",
-        inputs=VECTORS,
+        inputs=inputs,
         terms=tangents,
         outputs=sorted(outputs.items(), reverse=True),
     )
 
 
-CONTROL_NORMALS = _control_normals()
+CONTROL_NORMALS = _control_normals(
+    "control_normals",
+    "The Bézier net of the normal field $N(u,v) = p_u × p_v$: every oriented normal of the "
+    "patch is a non-negative combination of these six vectors.",
+    VECTORS,
+    {"100": (sp.S.One, sp.S.Zero), "010": (sp.S.Zero, sp.S.One), "001": (sp.S.Zero, sp.S.Zero)},
+)
+
+PART_NORMALS = _control_normals(
+    "part_normals",
+    "The Bézier net of the normal field over a part of the domain: the triangle with the corner "
+    "$u$, $v$ and sides of length $s$, parallel to those of the domain.",
+    [*VECTORS, u, v, side],
+    {"100": (u + side, v), "010": (u, v + side), "001": (u, v)},
+)
 
 
 def _parabolic_cubic() -> Formula:
@@ -441,6 +460,7 @@ FORMULAS = (
     ORIENTATION,
     CLOSED_CURVATURE,
     CONTROL_NORMALS,
+    PART_NORMALS,
     PARABOLIC_CUBIC,
     MEASURE,
     SAMPLE,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
@@ -11,10 +10,13 @@ from ..threads import thread_count
 from ..trees import tree_of
 from .candidates import Candidates
 from .cover import STEP, Cover
-from .pieces import Array, Pieces
+from .pieces import Array, Indices
 
-# Triangles are cut until normals turn by less than this part of an angle within them.
-SMALL = 0.02
+# A normal is near enough if it is nearer by this part of an angle. Triangles are not cut to sides
+# that are shorter than DEEPEST of those of a patch: next to singular points normals turn at once.
+SMALL, DEEPEST = 0.02, 2.0**-10
+# Where normals are far from all others, first come those that are so many times as far as allowed.
+FIRST = 2.0
 # The gaps between normals are searched from the widest ones to this part of them.
 LEAST = 0.1
 # Of so many pieces one is looked at.
@@ -28,49 +30,41 @@ def cover_normals(cover: Cover, angle: float) -> float:
 
     Where the normals that were asked lie as dense as that, only places at the border of the
     Gaussian image are farther from all of them: their nearest normal may lie outside it. Returns
-    the largest angle of any normal, in degrees. Within a triangle, normals are taken to turn by no
-    more than its extent times the curvature in its middle.
+    the largest angle of any normal, in degrees; next to singular points, of those in the middles
+    of triangles.
     """
     limit = 2.0 * math.sin(math.radians(angle) / 2.0)
-    near = (1.0 - SMALL) * limit
-    largest, pieces, rows, distances = _far_normals(cover, limit)
-    normals = rows[:, 3:6]
-    tree, left = tree_of(normals), np.ones(len(normals), dtype=bool)
-    chosen = []
-    for k in np.argsort(-distances, kind="stable"):
-        if left[k]:
-            chosen.append(k)
-            left[tree.query_ball_point(normals[k], near)] = False
-    if chosen:
-        cover.add(pieces[np.array(chosen)])
-        again = tree_of(normals[chosen]).query(normals)[0]
-        largest = max(largest, float(again.max()) + SMALL * limit)
+    near, largest, pieces = (1.0 - SMALL) * limit, 0.0, cover.pieces
+    while len(pieces):
+        rows = pieces.middles()
+        turns = pieces.turns(rows)
+        distances = _distances(cover.points[:, 3:], rows, cover.wanted.threads)
+        far = (distances > near) & rows[:, 3:6].any(axis=1)
+        if far.any():
+            first = cover.count
+            cover.add(pieces[far][_spread(rows[far, 3:6], near)])
+            distances[far] = _distances(cover.points[first:, 3:], rows[far], cover.wanted.threads)
+        deepest = np.abs(pieces.triangles[:, 2]) <= DEEPEST
+        turns[deepest] = np.minimum(turns[deepest], limit - near)
+        far = distances + turns > limit
+        largest = max(largest, float((distances + turns)[~far].max(initial=0.0)))
+        pieces = pieces[far & ~deepest].quarters
     return math.degrees(2.0 * math.asin(min(largest, limit) / 2.0))
 
 
-def _far_normals(cover: Cover, limit: float) -> tuple[float, Pieces, Array, Array]:
-    """Find small triangles with normals that are farther than `limit` from those of all samples.
+def _distances(normals: Array, rows: Array, threads: int | None) -> Array:
+    """Return how far normals of rows are from the nearest of others (N, 3)."""
+    return tree_of(normals).query(rows[:, 3:6], workers=thread_count(threads))[0]
 
-    Returns how far the normals of all other triangles are at most; and the small ones, their
-    middles and the distances of the normals there.
-    """
-    # Without a floor, what is wanted is the square of the larger principal curvature.
-    bending = cover.wanted.with_floor(0.0)
-    tree, pieces, largest = tree_of(cover.points[:, 3:]), replace(cover.pieces, wanted=bending), 0.0
-    small, middles, chords = [], [], []
-    while len(pieces):
-        rows = pieces.middles()
-        turns = pieces.extents * np.sqrt(rows[:, 6])
-        distances = tree.query(rows[:, 3:6], workers=thread_count(cover.wanted.threads))[0]
-        regular = rows[:, 3:6].any(axis=1)
-        far = regular & (distances + turns > limit)
-        largest = max(largest, float((distances + turns)[regular & ~far].max(initial=0.0)))
-        uncut = far & (turns <= SMALL * limit)
-        small.append(pieces[uncut])
-        middles.append(rows[uncut])
-        chords.append(distances[uncut])
-        pieces = pieces[far & ~uncut].quarters
-    return largest, sum(small[1:], small[0]), np.concatenate(middles), np.concatenate(chords)
+
+def _spread(normals: Array, near: float) -> Indices:
+    """Choose some of normals (M, 3), so that all others are as near to one."""
+    candidates = Candidates(_in_normal_space(normals, np.zeros(len(normals))), near)
+    chosen, radius = np.empty(0, dtype=np.int64), FIRST * near
+    while radius > near:
+        radius = max(STEP * radius, near)
+        chosen = np.append(chosen, candidates.choose(radius, len(normals)))
+    return chosen
 
 
 def widest_angles(cover: Cover, number: int, widest: float) -> None:

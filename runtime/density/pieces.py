@@ -95,6 +95,24 @@ class Pieces:
             pass
         return rows
 
+    def turns(self, rows: Array) -> Array:
+        """Return how far normals of each triangle (M,) are from that in its middle, at most.
+
+        That is as the chord between unit vectors: 2 if they may turn by 90 degrees or more. `rows`
+        are what `middles` returns.
+        """
+        turns, spline = np.empty(len(self)), self.wanted.spline
+
+        def work(first: int, last: int) -> None:
+            kernels.turns(
+                spline.coefficients, spline.scale, self.patches, self.triangles, first, last, rows,
+                turns,
+            )  # fmt: skip
+
+        for _ in over_ranges(work, len(self), PIECES_AT_A_TIME, self.wanted.threads):
+            pass
+        return turns
+
 
 def cut_patches(wanted: Wanted, radius: float) -> Pieces:
     """Cut all patches until every place is within radius / √weight of the middle of its triangle.

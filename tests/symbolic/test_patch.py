@@ -313,6 +313,18 @@ def test_control_normals_reproduce_the_normal_field(case):
     assert (bezier_point(points) - case.normal).applyfunc(sp.expand) == sp.zeros(3, 1)
 
 
+def test_part_normals_reproduce_the_normal_field_of_a_part(case):
+    corner = scalar("u"), scalar("v")
+    values = case.triangle.evaluate(patch.PART_NORMALS)
+    points = [
+        [values[f"N{index}_{axis}"] for axis in "xyz"]
+        for index in ("200", "020", "002", "110", "101", "011")
+    ]
+    here = [x + scalar("s") * y for x, y in zip(corner, (u, v), strict=True)]
+    part = case.normal.xreplace(dict(zip((u, v), here, strict=True)))
+    assert (bezier_point(points) - part).applyfunc(sp.expand) == sp.zeros(3, 1)
+
+
 def test_parabolic_cubic_is_d_of_the_normal_field(case):
     D = case.triangle.forms["D"].xreplace(dict(zip(n, case.normal, strict=True)))
     net = case.triangle.evaluate(patch.PARABOLIC_CUBIC)

@@ -280,3 +280,36 @@ def test_coverage_needs_points_and_the_spline(tmp_path):
         again.coverage()
     with pytest.raises(gm.MissingFieldError, match="'points'"):
         gm.sample(spline, count=50, fields=("uv",)).coverage()
+
+
+# The normal field vanishes on a line, in a point; the spline is folded along curves.
+SINGULAR = {
+    "cuspidal edge": lambda u, v: (u, v**2, v**3),
+    "tilted edge": lambda u, v: (u + 0.3 * v, (v - 0.2 * u) ** 2, (v - 0.2 * u) ** 3 + 0.1 * u * u),
+    "swallowtail": lambda u, v: (u, u * v**2 + 3 * v**4, 2 * u * v + 4 * v**3),
+    "umbrella": lambda u, v: (u, v**2, u * v),
+}
+
+
+@pytest.mark.parametrize("cells", [(20, 20), (20, 21)])
+@pytest.mark.parametrize("name", SINGULAR)
+def test_angles_are_kept_at_singular_points(name, cells):
+    """Places nearer to a singular point than triangles are cut would need another bound."""
+    surface = gm.Surface.from_callable(
+        lambda u, v: np.stack(np.broadcast_arrays(*SINGULAR[name](u, v)), axis=-1),
+        ((-1.0, 1.0), (-1.0, 1.0)),
+    )
+    spline = gm.fit(surface, cells)
+    _, normals = places(spline, 700)
+    samples = gm.sample(spline, angle=10.0)
+    assert widest_angle(samples, normals) <= (samples.report.angle or 0.0) <= 10.0
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_angles_are_kept_on_crumpled_splines(seed):
+    heights = 0.35 * np.random.default_rng(seed).normal(size=(9, 9, 3))
+    grid = np.moveaxis(np.stack([*np.mgrid[:9, :9], np.zeros((9, 9))]), 0, -1)
+    spline = gm.fit(gm.Surface.from_grid(grid + heights))
+    _, normals = places(spline, 700)
+    samples = gm.sample(spline, angle=10.0)
+    assert widest_angle(samples, normals) <= (samples.report.angle or 0.0) <= 10.0
