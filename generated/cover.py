@@ -113,17 +113,18 @@ def triangle(
 
 @jit
 def part_normals(
-    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, u, v, s
+    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, u0, v0, u1, v1,
+    u2, v2
 ):  # fmt: skip
-    """The Bézier net of the normal field over a part of the domain: the triangle with the
-    corner u, v and sides of length s, parallel to those of the domain.
+    """The Bézier net of the normal field over a part of the domain, a triangle with three
+    corners.
 
-        s100 = a*s + a*u + b*v + d
-        t100 = b*s + b*u + c*v + e
-        s010 = a*u + b*s + b*v + d
-        t010 = b*u + c*s + c*v + e
-        s001 = a*u + b*v + d
-        t001 = b*u + c*v + e
+        s001 = a*u0 + b*v0 + d
+        t001 = b*u0 + c*v0 + e
+        s100 = a*u1 + b*v1 + d
+        t100 = b*u1 + c*v1 + e
+        s010 = a*u2 + b*v2 + d
+        t010 = b*u2 + c*v2 + e
         N200 = s100 × t100
         N110 = (s010 × t100 + s100 × t010)/2
         N101 = (s001 × t100 + s100 × t001)/2
@@ -131,58 +132,49 @@ def part_normals(
         N011 = (s001 × t010 + s010 × t001)/2
         N002 = s001 × t001
 
-    Source: Sect. 3.2, eq. (14); 222 operations as written, 155 here.
+    Source: Sect. 3.2, eq. (14); 198 operations as written, 182 here.
     """
-    t0 = a_x * u + b_x * v + d_x
-    s100_x = a_x * s + t0
-    t1 = a_y * u + b_y * v + d_y
-    s100_y = a_y * s + t1
-    t2 = a_z * u + b_z * v + d_z
-    s100_z = a_z * s + t2
-    t3 = b_x * s
-    t4 = b_x * u + c_x * v + e_x
-    t100_x = t3 + t4
-    t5 = b_y * s
-    t6 = b_y * u + c_y * v + e_y
-    t100_y = t5 + t6
-    t7 = b_z * s
-    t8 = b_z * u + c_z * v + e_z
-    t100_z = t7 + t8
-    s010_x = t0 + t3
-    s010_y = t1 + t5
-    s010_z = t2 + t7
-    t010_x = c_x * s + t4
-    t010_y = c_y * s + t6
-    t010_z = c_z * s + t8
-    s001_x = t0
-    s001_y = t1
-    s001_z = t2
-    t001_x = t4
-    t001_y = t6
-    t001_z = t8
+    s001_x = a_x * u0 + b_x * v0 + d_x
+    s001_y = a_y * u0 + b_y * v0 + d_y
+    s001_z = a_z * u0 + b_z * v0 + d_z
+    t001_x = b_x * u0 + c_x * v0 + e_x
+    t001_y = b_y * u0 + c_y * v0 + e_y
+    t001_z = b_z * u0 + c_z * v0 + e_z
+    s100_x = a_x * u1 + b_x * v1 + d_x
+    s100_y = a_y * u1 + b_y * v1 + d_y
+    s100_z = a_z * u1 + b_z * v1 + d_z
+    t100_x = b_x * u1 + c_x * v1 + e_x
+    t100_y = b_y * u1 + c_y * v1 + e_y
+    t100_z = b_z * u1 + c_z * v1 + e_z
+    s010_x = a_x * u2 + b_x * v2 + d_x
+    s010_y = a_y * u2 + b_y * v2 + d_y
+    s010_z = a_z * u2 + b_z * v2 + d_z
+    t010_x = b_x * u2 + c_x * v2 + e_x
+    t010_y = b_y * u2 + c_y * v2 + e_y
+    t010_z = b_z * u2 + c_z * v2 + e_z
     N200_x = s100_y * t100_z - s100_z * t100_y
     N200_y = s100_z * t100_x - s100_x * t100_z
     N200_z = s100_x * t100_y - s100_y * t100_x
-    t9 = 0.5 * t100_z
-    t10 = 0.5 * s010_z
-    t11 = 0.5 * t010_z
-    t12 = 0.5 * s100_z
-    N110_x = s010_y * t9 + s100_y * t11 - t010_y * t12 - t10 * t100_y
-    N110_y = 0.5 * s010_z * t100_x - s010_x * t9 - s100_x * t11 + 0.5 * s100_z * t010_x
-    t13 = 0.5 * t100_y
-    t14 = 0.5 * t100_x
-    t15 = 0.5 * s100_x
-    t16 = 0.5 * s100_y
-    N110_z = s010_x * t13 - s010_y * t14 - t010_x * t16 + t010_y * t15
-    N101_x = s001_y * t9 - s001_z * t13 - t001_y * t12 + t001_z * t16
-    N101_y = 0.5 * s001_z * t100_x - s001_x * t9 + 0.5 * s100_z * t001_x - t001_z * t15
-    N101_z = s001_x * t13 - s001_y * t14 - t001_x * t16 + t001_y * t15
+    t0 = 0.5 * t100_z
+    t1 = 0.5 * s010_z
+    t2 = 0.5 * t010_z
+    t3 = 0.5 * s100_z
+    N110_x = s010_y * t0 + s100_y * t2 - t010_y * t3 - t1 * t100_y
+    N110_y = 0.5 * s010_z * t100_x - s010_x * t0 - s100_x * t2 + 0.5 * s100_z * t010_x
+    t4 = 0.5 * t100_y
+    t5 = 0.5 * t100_x
+    t6 = 0.5 * s100_x
+    t7 = 0.5 * s100_y
+    N110_z = s010_x * t4 - s010_y * t5 - t010_x * t7 + t010_y * t6
+    N101_x = s001_y * t0 - s001_z * t4 - t001_y * t3 + t001_z * t7
+    N101_y = 0.5 * s001_z * t100_x - s001_x * t0 + 0.5 * s100_z * t001_x - t001_z * t6
+    N101_z = s001_x * t4 - s001_y * t5 - t001_x * t7 + t001_y * t6
     N020_x = s010_y * t010_z - s010_z * t010_y
     N020_y = s010_z * t010_x - s010_x * t010_z
     N020_z = s010_x * t010_y - s010_y * t010_x
-    t17 = 0.5 * t001_z
-    N011_x = s001_y * t11 - 0.5 * s001_z * t010_y + s010_y * t17 - t001_y * t10
-    N011_y = 0.5 * s001_z * t010_x - s001_x * t11 - s010_x * t17 + 0.5 * s010_z * t001_x
+    t8 = 0.5 * t001_z
+    N011_x = s001_y * t2 - 0.5 * s001_z * t010_y + s010_y * t8 - t001_y * t1
+    N011_y = 0.5 * s001_z * t010_x - s001_x * t2 - s010_x * t8 + 0.5 * s010_z * t001_x
     N011_z = (
         0.5 * s001_x * t010_y
         - 0.5 * s001_y * t010_x
@@ -245,67 +237,6 @@ def patch_vectors(mu, i, j, turn, scale):
 
 
 @jit
-def place_of(mu, scale, patch, u, v):
-    """Return point, unit normal, K and H at a place of a patch, all of the surface times its scale.
-
-    The point is relative to the first coefficient. The normal is zero where there is none.
-    """
-    columns = mu.shape[1] - 2
-    i = patch // 4 // columns + 1
-    j = patch // 4 % columns + 1
-    (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
-     d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(mu, i, j, patch % 4, scale)  # fmt: skip
-    # envelope (eqs. (5)-(8)): 45 operations as written, 35 here
-    t0 = u * v
-    t1 = 0.5 * u * u
-    t2 = 0.5 * v * v
-    x_x = a_x * t1 + b_x * t0 + c_x * t2 + d_x * u + e_x * v + p_x
-    x_y = a_y * t1 + b_y * t0 + c_y * t2 + d_y * u + e_y * v + p_y
-    x_z = a_z * t1 + b_z * t0 + c_z * t2 + d_z * u + e_z * v + p_z
-    # tangents (eqs. (1) and (14)): 33 operations as written, 33 here
-    p_u_x = a_x * u + b_x * v + d_x
-    p_u_y = a_y * u + b_y * v + d_y
-    p_u_z = a_z * u + b_z * v + d_z
-    p_v_x = b_x * u + c_x * v + e_x
-    p_v_y = b_y * u + c_y * v + e_y
-    p_v_z = b_z * u + c_z * v + e_z
-    N_x = p_u_y * p_v_z - p_u_z * p_v_y
-    N_y = p_u_z * p_v_x - p_u_x * p_v_z
-    N_z = p_u_x * p_v_y - p_u_y * p_v_x
-    size = SCALE * scale
-    x_x += (mu[i, j, 0] - mu[0, 0, 0]) * size
-    x_y += (mu[i, j, 1] - mu[0, 0, 1]) * size
-    x_z += (mu[i, j, 2] - mu[0, 0, 2]) * size
-    length = math.sqrt(N_x * N_x + N_y * N_y + N_z * N_z)
-    if length == 0.0:
-        return x_x, x_y, x_z, 0.0, 0.0, 0.0, 0.0, 0.0
-    n_x = N_x / length
-    n_y = N_y / length
-    n_z = N_z / length
-    # curvature_at (eqs. (1), (9); curvatures beyond the paper): 81 operations as written, 81 here
-    A = a_x * n_x + a_y * n_y + a_z * n_z
-    B = b_x * n_x + b_y * n_y + b_z * n_z
-    C = c_x * n_x + c_y * n_y + c_z * n_z
-    D = A * C - B * B
-    p_u_x = a_x * u + b_x * v + d_x
-    p_u_y = a_y * u + b_y * v + d_y
-    p_u_z = a_z * u + b_z * v + d_z
-    p_v_x = b_x * u + c_x * v + e_x
-    p_v_y = b_y * u + c_y * v + e_y
-    p_v_z = b_z * u + c_z * v + e_z
-    N_x = p_u_y * p_v_z - p_u_z * p_v_y
-    N_y = p_u_z * p_v_x - p_u_x * p_v_z
-    N_z = p_u_x * p_v_y - p_u_y * p_v_x
-    E = p_u_x * p_u_x + p_u_y * p_u_y + p_u_z * p_u_z
-    F = p_u_x * p_v_x + p_u_y * p_v_y + p_u_z * p_v_z
-    G = p_v_x * p_v_x + p_v_y * p_v_y + p_v_z * p_v_z
-    g = 1.0 / (N_x * N_x + N_y * N_y + N_z * N_z)
-    K = D * g
-    H = 0.5 * g * (2 * B * F - A * G - C * E)
-    return x_x, x_y, x_z, n_x, n_y, n_z, K, H
-
-
-@jit
 def weight_of(K, H, reach, law):
     """Return how many samples are wanted per area, up to a factor: law = (floor, bend, power, alpha).
 
@@ -343,61 +274,65 @@ def weigh_patches(mu, scale, law, first, last, reaches, areas, weights):
          d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(
             mu, cell // columns + 1, cell % columns + 1, patch % 4, scale
         )  # fmt: skip
-        # reach (beyond the paper): 198 operations as written, 132 here
-        t0 = (1.0 / 3.0) * b_x
-        t1 = (1.0 / 3.0) * e_x
-        t2 = (2.0 / 3.0) * d_x - t1
-        q00_x = (2.0 / 3.0) * a_x - t0 + t2
-        t3 = (1.0 / 3.0) * b_y
-        t4 = (1.0 / 3.0) * e_y
-        t5 = (2.0 / 3.0) * d_y - t4
-        q00_y = (2.0 / 3.0) * a_y - t3 + t5
-        t6 = (1.0 / 3.0) * b_z
-        t7 = (1.0 / 3.0) * e_z
-        t8 = (2.0 / 3.0) * d_z - t7
-        q00_z = (2.0 / 3.0) * a_z - t6 + t8
-        t9 = (1.0 / 3.0) * a_x
-        t10 = (1.0 / 3.0) * d_x
-        t11 = t10 - (2.0 / 3.0) * e_x
-        q01_x = (2.0 / 3.0) * b_x - t11 - t9
-        t12 = (1.0 / 3.0) * a_y
-        t13 = (1.0 / 3.0) * d_y
-        t14 = t13 - (2.0 / 3.0) * e_y
-        q01_y = (2.0 / 3.0) * b_y - t12 - t14
-        t15 = (1.0 / 3.0) * a_z
-        t16 = (1.0 / 3.0) * d_z
-        t17 = t16 - (2.0 / 3.0) * e_z
-        q01_z = (2.0 / 3.0) * b_z - t15 - t17
-        t18 = t1 + t10
-        t19 = t0 + t18
-        q02_x = -t19 - t9
-        t20 = t13 + t4
-        t21 = t20 + t3
-        q02_y = -t12 - t21
-        t22 = t16 + t7
-        t23 = t22 + t6
-        q02_z = -t15 - t23
-        t24 = (1.0 / 3.0) * c_x
-        q10_x = (2.0 / 3.0) * b_x + t2 - t24
-        t25 = (1.0 / 3.0) * c_y
-        q10_y = (2.0 / 3.0) * b_y - t25 + t5
-        t26 = (1.0 / 3.0) * c_z
-        q10_z = (2.0 / 3.0) * b_z - t26 + t8
-        q11_x = (2.0 / 3.0) * c_x - t0 - t11
-        q11_y = (2.0 / 3.0) * c_y - t14 - t3
-        q11_z = (2.0 / 3.0) * c_z - t17 - t6
-        q12_x = -t19 - t24
-        q12_y = -t21 - t25
-        q12_z = -t23 - t26
-        q20_x = t2
-        q20_y = t5
-        q20_z = t8
-        q21_x = -t11
-        q21_y = -t14
-        q21_z = -t17
-        q22_x = -t18
-        q22_y = -t20
-        q22_z = -t22
+        u0, v0, u1, v1, u2, v2 = 0.0, 0.0, 1.0, 0.0, 0.0, 1.0
+        # reach (beyond the paper): 228 operations as written, 222 here
+        s0_x = a_x * u0 + b_x * v0 + d_x
+        s0_y = a_y * u0 + b_y * v0 + d_y
+        s0_z = a_z * u0 + b_z * v0 + d_z
+        t0_x = b_x * u0 + c_x * v0 + e_x
+        t0_y = b_y * u0 + c_y * v0 + e_y
+        t0_z = b_z * u0 + c_z * v0 + e_z
+        s1_x = a_x * u1 + b_x * v1 + d_x
+        s1_y = a_y * u1 + b_y * v1 + d_y
+        s1_z = a_z * u1 + b_z * v1 + d_z
+        t1_x = b_x * u1 + c_x * v1 + e_x
+        t1_y = b_y * u1 + c_y * v1 + e_y
+        t1_z = b_z * u1 + c_z * v1 + e_z
+        s2_x = a_x * u2 + b_x * v2 + d_x
+        s2_y = a_y * u2 + b_y * v2 + d_y
+        s2_z = a_z * u2 + b_z * v2 + d_z
+        t2_x = b_x * u2 + c_x * v2 + e_x
+        t2_y = b_y * u2 + c_y * v2 + e_y
+        t2_z = b_z * u2 + c_z * v2 + e_z
+        t0 = (1.0 / 3.0) * u1
+        t1 = (1.0 / 3.0) * u2
+        du0 = (2.0 / 3.0) * u0 - t0 - t1
+        t2 = (1.0 / 3.0) * v1
+        t3 = (1.0 / 3.0) * v2
+        dv0 = (2.0 / 3.0) * v0 - t2 - t3
+        t4 = (1.0 / 3.0) * u0
+        du1 = (2.0 / 3.0) * u1 - t1 - t4
+        t5 = (1.0 / 3.0) * v0
+        dv1 = (2.0 / 3.0) * v1 - t3 - t5
+        du2 = (2.0 / 3.0) * u2 - t0 - t4
+        dv2 = (2.0 / 3.0) * v2 - t2 - t5
+        q00_x = du0 * s0_x + dv0 * t0_x
+        q00_y = du0 * s0_y + dv0 * t0_y
+        q00_z = du0 * s0_z + dv0 * t0_z
+        q01_x = du1 * s0_x + dv1 * t0_x
+        q01_y = du1 * s0_y + dv1 * t0_y
+        q01_z = du1 * s0_z + dv1 * t0_z
+        q02_x = du2 * s0_x + dv2 * t0_x
+        q02_y = du2 * s0_y + dv2 * t0_y
+        q02_z = du2 * s0_z + dv2 * t0_z
+        q10_x = du0 * s1_x + dv0 * t1_x
+        q10_y = du0 * s1_y + dv0 * t1_y
+        q10_z = du0 * s1_z + dv0 * t1_z
+        q11_x = du1 * s1_x + dv1 * t1_x
+        q11_y = du1 * s1_y + dv1 * t1_y
+        q11_z = du1 * s1_z + dv1 * t1_z
+        q12_x = du2 * s1_x + dv2 * t1_x
+        q12_y = du2 * s1_y + dv2 * t1_y
+        q12_z = du2 * s1_z + dv2 * t1_z
+        q20_x = du0 * s2_x + dv0 * t2_x
+        q20_y = du0 * s2_y + dv0 * t2_y
+        q20_z = du0 * s2_z + dv0 * t2_z
+        q21_x = du1 * s2_x + dv1 * t2_x
+        q21_y = du1 * s2_y + dv1 * t2_y
+        q21_z = du1 * s2_z + dv1 * t2_z
+        q22_x = du2 * s2_x + dv2 * t2_x
+        q22_y = du2 * s2_y + dv2 * t2_y
+        q22_z = du2 * s2_z + dv2 * t2_z
         r00 = q00_x * q00_x + q00_y * q00_y + q00_z * q00_z
         r01 = q01_x * q01_x + q01_y * q01_y + q01_z * q01_z
         r02 = q02_x * q02_x + q02_y * q02_y + q02_z * q02_z
@@ -407,7 +342,8 @@ def weigh_patches(mu, scale, law, first, last, reaches, areas, weights):
         r20 = q20_x * q20_x + q20_y * q20_y + q20_z * q20_z
         r21 = q21_x * q21_x + q21_y * q21_y + q21_z * q21_z
         r22 = q22_x * q22_x + q22_y * q22_y + q22_z * q22_z
-        reaches[patch] = math.sqrt(max(r00, r01, r02, r10, r11, r12, r20, r21, r22))
+        extent = math.sqrt(max(r00, r01, r02, r10, r11, r12, r20, r21, r22))
+        reaches[patch] = extent
         for node in range(4):
             u = 1.0 / 3.0 if node == 3 else 1.0 - 2.0 * NODE if node == 0 else NODE
             v = 1.0 / 3.0 if node == 3 else 1.0 - 2.0 * NODE if node == 1 else NODE
@@ -453,11 +389,10 @@ def weigh_patches(mu, scale, law, first, last, reaches, areas, weights):
 
 
 @jit
-def cut_patches(parts, ends, first, last, patches, triangles):
+def cut_patches(parts, ends, first, last, patches, corners):
     """Cut the patches first, …, last − 1 into parts² equal triangles each, up to number `ends`.
 
-    Writes the patch and (u, v) of the middle and size (…, 3) of each: the sides are parallel to those
-    of the patch, and so long; with a negative size it is turned over.
+    Writes the patch of each, and (u, v) of its corners (…, 3, 2).
     """
     for patch in range(first, last):
         step = 1.0 / parts[patch]
@@ -466,31 +401,275 @@ def cut_patches(parts, ends, first, last, patches, triangles):
             for j in range(2 * (parts[patch] - i) - 1):
                 turned = j % 2
                 patches[k] = patch
-                triangles[k, 0] = (i + (1.0 + turned) / 3.0) * step
-                triangles[k, 1] = (j // 2 + (1.0 + turned) / 3.0) * step
-                triangles[k, 2] = -step if turned else step
+                for corner in range(3):
+                    corners[k, corner, 0] = (i + (turned ^ (corner == 1))) * step
+                    corners[k, corner, 1] = (j // 2 + (turned ^ (corner == 2))) * step
                 k += 1
 
 
 @jit
-def middles(mu, scale, law, reaches, patches, triangles, first, last, rows):
-    """Write point, normal, weight and K (…, 8) in the middle of the triangles first, …, last − 1."""
-    for k in range(first, last):
-        patch = patches[k]
-        x, y, z, n_x, n_y, n_z, K, H = place_of(mu, scale, patch, triangles[k, 0], triangles[k, 1])
-        singular = n_x == 0.0 and n_y == 0.0 and n_z == 0.0
-        rows[k, 0] = x
-        rows[k, 1] = y
-        rows[k, 2] = z
-        rows[k, 3] = n_x
-        rows[k, 4] = n_y
-        rows[k, 5] = n_z
-        rows[k, 6] = law[0] if singular else weight_of(K, H, reaches[patch], law)
-        rows[k, 7] = K
+def next_patch(patches, first, last):
+    """Return the first of the numbers first, …, last whose patch is another than that of `first`."""
+    end = first
+    while end < last and patches[end] == patches[first]:
+        end += 1
+    return end
 
 
 @jit
-def turns(mu, scale, patches, triangles, first, last, rows, turned):
+def middles(mu, scale, patches, corners, first, last, law, reaches, rows):
+    """Write point, normal, weight and K (…, 8) in the middle of the triangles first, …, last − 1.
+
+    All is that of the surface times its scale. The point is relative to the first coefficient. The
+    normal is zero where there is none.
+    """
+    columns = mu.shape[1] - 2
+    size = SCALE * scale
+    end = first
+    while end < last:
+        begin, end = end, next_patch(patches, end, last)
+        patch = patches[begin]
+        i = patch // 4 // columns + 1
+        j = patch // 4 % columns + 1
+        (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
+         d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(mu, i, j, patch % 4, scale)  # fmt: skip
+        centre_x = (mu[i, j, 0] - mu[0, 0, 0]) * size
+        centre_y = (mu[i, j, 1] - mu[0, 0, 1]) * size
+        centre_z = (mu[i, j, 2] - mu[0, 0, 2]) * size
+        for k in range(begin, end):
+            u = (corners[k, 0, 0] + corners[k, 1, 0] + corners[k, 2, 0]) / 3.0
+            v = (corners[k, 0, 1] + corners[k, 1, 1] + corners[k, 2, 1]) / 3.0
+            # envelope (eqs. (5)-(8)): 45 operations as written, 35 here
+            t0 = u * v
+            t1 = 0.5 * u * u
+            t2 = 0.5 * v * v
+            x_x = a_x * t1 + b_x * t0 + c_x * t2 + d_x * u + e_x * v + p_x
+            x_y = a_y * t1 + b_y * t0 + c_y * t2 + d_y * u + e_y * v + p_y
+            x_z = a_z * t1 + b_z * t0 + c_z * t2 + d_z * u + e_z * v + p_z
+            # tangents (eqs. (1) and (14)): 33 operations as written, 33 here
+            p_u_x = a_x * u + b_x * v + d_x
+            p_u_y = a_y * u + b_y * v + d_y
+            p_u_z = a_z * u + b_z * v + d_z
+            p_v_x = b_x * u + c_x * v + e_x
+            p_v_y = b_y * u + c_y * v + e_y
+            p_v_z = b_z * u + c_z * v + e_z
+            N_x = p_u_y * p_v_z - p_u_z * p_v_y
+            N_y = p_u_z * p_v_x - p_u_x * p_v_z
+            N_z = p_u_x * p_v_y - p_u_y * p_v_x
+            rows[k, 0] = x_x + centre_x
+            rows[k, 1] = x_y + centre_y
+            rows[k, 2] = x_z + centre_z
+            length = math.sqrt(N_x * N_x + N_y * N_y + N_z * N_z)
+            if length == 0.0:
+                rows[k, 3:8] = 0.0
+                rows[k, 6] = law[0]
+                continue
+            n_x = N_x / length
+            n_y = N_y / length
+            n_z = N_z / length
+            # curvature_at (eqs. (1), (9); curvatures beyond the paper): 81 operations as written, 81 here
+            A = a_x * n_x + a_y * n_y + a_z * n_z
+            B = b_x * n_x + b_y * n_y + b_z * n_z
+            C = c_x * n_x + c_y * n_y + c_z * n_z
+            D = A * C - B * B
+            p_u_x = a_x * u + b_x * v + d_x
+            p_u_y = a_y * u + b_y * v + d_y
+            p_u_z = a_z * u + b_z * v + d_z
+            p_v_x = b_x * u + c_x * v + e_x
+            p_v_y = b_y * u + c_y * v + e_y
+            p_v_z = b_z * u + c_z * v + e_z
+            N_x = p_u_y * p_v_z - p_u_z * p_v_y
+            N_y = p_u_z * p_v_x - p_u_x * p_v_z
+            N_z = p_u_x * p_v_y - p_u_y * p_v_x
+            E = p_u_x * p_u_x + p_u_y * p_u_y + p_u_z * p_u_z
+            F = p_u_x * p_v_x + p_u_y * p_v_y + p_u_z * p_v_z
+            G = p_v_x * p_v_x + p_v_y * p_v_y + p_v_z * p_v_z
+            g = 1.0 / (N_x * N_x + N_y * N_y + N_z * N_z)
+            K = D * g
+            H = 0.5 * g * (2 * B * F - A * G - C * E)
+            rows[k, 3] = n_x
+            rows[k, 4] = n_y
+            rows[k, 5] = n_z
+            rows[k, 6] = weight_of(K, H, reaches[patch], law)
+            rows[k, 7] = K
+
+
+@jit
+def extents(mu, scale, patches, corners, first, last, farthest):
+    """Write how far the points of triangles are from those in their middles, at most."""
+    columns = mu.shape[1] - 2
+    end = first
+    while end < last:
+        begin, end = end, next_patch(patches, end, last)
+        cell = patches[begin] // 4
+        (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
+         d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(
+            mu, cell // columns + 1, cell % columns + 1, patches[begin] % 4, scale
+        )  # fmt: skip
+        for k in range(begin, end):
+            u0 = corners[k, 0, 0]
+            v0 = corners[k, 0, 1]
+            u1 = corners[k, 1, 0]
+            v1 = corners[k, 1, 1]
+            u2 = corners[k, 2, 0]
+            v2 = corners[k, 2, 1]
+            # reach (beyond the paper): 228 operations as written, 222 here
+            s0_x = a_x * u0 + b_x * v0 + d_x
+            s0_y = a_y * u0 + b_y * v0 + d_y
+            s0_z = a_z * u0 + b_z * v0 + d_z
+            t0_x = b_x * u0 + c_x * v0 + e_x
+            t0_y = b_y * u0 + c_y * v0 + e_y
+            t0_z = b_z * u0 + c_z * v0 + e_z
+            s1_x = a_x * u1 + b_x * v1 + d_x
+            s1_y = a_y * u1 + b_y * v1 + d_y
+            s1_z = a_z * u1 + b_z * v1 + d_z
+            t1_x = b_x * u1 + c_x * v1 + e_x
+            t1_y = b_y * u1 + c_y * v1 + e_y
+            t1_z = b_z * u1 + c_z * v1 + e_z
+            s2_x = a_x * u2 + b_x * v2 + d_x
+            s2_y = a_y * u2 + b_y * v2 + d_y
+            s2_z = a_z * u2 + b_z * v2 + d_z
+            t2_x = b_x * u2 + c_x * v2 + e_x
+            t2_y = b_y * u2 + c_y * v2 + e_y
+            t2_z = b_z * u2 + c_z * v2 + e_z
+            t0 = (1.0 / 3.0) * u1
+            t1 = (1.0 / 3.0) * u2
+            du0 = (2.0 / 3.0) * u0 - t0 - t1
+            t2 = (1.0 / 3.0) * v1
+            t3 = (1.0 / 3.0) * v2
+            dv0 = (2.0 / 3.0) * v0 - t2 - t3
+            t4 = (1.0 / 3.0) * u0
+            du1 = (2.0 / 3.0) * u1 - t1 - t4
+            t5 = (1.0 / 3.0) * v0
+            dv1 = (2.0 / 3.0) * v1 - t3 - t5
+            du2 = (2.0 / 3.0) * u2 - t0 - t4
+            dv2 = (2.0 / 3.0) * v2 - t2 - t5
+            q00_x = du0 * s0_x + dv0 * t0_x
+            q00_y = du0 * s0_y + dv0 * t0_y
+            q00_z = du0 * s0_z + dv0 * t0_z
+            q01_x = du1 * s0_x + dv1 * t0_x
+            q01_y = du1 * s0_y + dv1 * t0_y
+            q01_z = du1 * s0_z + dv1 * t0_z
+            q02_x = du2 * s0_x + dv2 * t0_x
+            q02_y = du2 * s0_y + dv2 * t0_y
+            q02_z = du2 * s0_z + dv2 * t0_z
+            q10_x = du0 * s1_x + dv0 * t1_x
+            q10_y = du0 * s1_y + dv0 * t1_y
+            q10_z = du0 * s1_z + dv0 * t1_z
+            q11_x = du1 * s1_x + dv1 * t1_x
+            q11_y = du1 * s1_y + dv1 * t1_y
+            q11_z = du1 * s1_z + dv1 * t1_z
+            q12_x = du2 * s1_x + dv2 * t1_x
+            q12_y = du2 * s1_y + dv2 * t1_y
+            q12_z = du2 * s1_z + dv2 * t1_z
+            q20_x = du0 * s2_x + dv0 * t2_x
+            q20_y = du0 * s2_y + dv0 * t2_y
+            q20_z = du0 * s2_z + dv0 * t2_z
+            q21_x = du1 * s2_x + dv1 * t2_x
+            q21_y = du1 * s2_y + dv1 * t2_y
+            q21_z = du1 * s2_z + dv1 * t2_z
+            q22_x = du2 * s2_x + dv2 * t2_x
+            q22_y = du2 * s2_y + dv2 * t2_y
+            q22_z = du2 * s2_z + dv2 * t2_z
+            r00 = q00_x * q00_x + q00_y * q00_y + q00_z * q00_z
+            r01 = q01_x * q01_x + q01_y * q01_y + q01_z * q01_z
+            r02 = q02_x * q02_x + q02_y * q02_y + q02_z * q02_z
+            r10 = q10_x * q10_x + q10_y * q10_y + q10_z * q10_z
+            r11 = q11_x * q11_x + q11_y * q11_y + q11_z * q11_z
+            r12 = q12_x * q12_x + q12_y * q12_y + q12_z * q12_z
+            r20 = q20_x * q20_x + q20_y * q20_y + q20_z * q20_z
+            r21 = q21_x * q21_x + q21_y * q21_y + q21_z * q21_z
+            r22 = q22_x * q22_x + q22_y * q22_y + q22_z * q22_z
+            extent = math.sqrt(max(r00, r01, r02, r10, r11, r12, r20, r21, r22))
+            farthest[k] = extent
+
+
+@jit
+def halve(mu, scale, patches, corners, first, last, halves):
+    """Cut triangles in the middle of their longest sides; the halves (2 …, 3, 2) follow one another."""
+    columns = mu.shape[1] - 2
+    end = first
+    while end < last:
+        begin, end = end, next_patch(patches, end, last)
+        cell = patches[begin] // 4
+        (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
+         d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(
+            mu, cell // columns + 1, cell % columns + 1, patches[begin] % 4, scale
+        )  # fmt: skip
+        for k in range(begin, end):
+            u0 = corners[k, 0, 0]
+            v0 = corners[k, 0, 1]
+            u1 = corners[k, 1, 0]
+            v1 = corners[k, 1, 1]
+            u2 = corners[k, 2, 0]
+            v2 = corners[k, 2, 1]
+            # sides (beyond the paper): 162 operations as written, 162 here
+            s0_x = a_x * u0 + b_x * v0 + d_x
+            s0_y = a_y * u0 + b_y * v0 + d_y
+            s0_z = a_z * u0 + b_z * v0 + d_z
+            t0_x = b_x * u0 + c_x * v0 + e_x
+            t0_y = b_y * u0 + c_y * v0 + e_y
+            t0_z = b_z * u0 + c_z * v0 + e_z
+            s1_x = a_x * u1 + b_x * v1 + d_x
+            s1_y = a_y * u1 + b_y * v1 + d_y
+            s1_z = a_z * u1 + b_z * v1 + d_z
+            t1_x = b_x * u1 + c_x * v1 + e_x
+            t1_y = b_y * u1 + c_y * v1 + e_y
+            t1_z = b_z * u1 + c_z * v1 + e_z
+            s2_x = a_x * u2 + b_x * v2 + d_x
+            s2_y = a_y * u2 + b_y * v2 + d_y
+            s2_z = a_z * u2 + b_z * v2 + d_z
+            t2_x = b_x * u2 + c_x * v2 + e_x
+            t2_y = b_y * u2 + c_y * v2 + e_y
+            t2_z = b_z * u2 + c_z * v2 + e_z
+            du0 = u2 - u1
+            dv0 = v2 - v1
+            du1 = u0 - u2
+            dv1 = v0 - v2
+            du2 = u1 - u0
+            dv2 = v1 - v0
+            q10_x = du0 * s1_x + dv0 * t1_x
+            q10_y = du0 * s1_y + dv0 * t1_y
+            q10_z = du0 * s1_z + dv0 * t1_z
+            q20_x = du0 * s2_x + dv0 * t2_x
+            q20_y = du0 * s2_y + dv0 * t2_y
+            q20_z = du0 * s2_z + dv0 * t2_z
+            q21_x = du1 * s2_x + dv1 * t2_x
+            q21_y = du1 * s2_y + dv1 * t2_y
+            q21_z = du1 * s2_z + dv1 * t2_z
+            q01_x = du1 * s0_x + dv1 * t0_x
+            q01_y = du1 * s0_y + dv1 * t0_y
+            q01_z = du1 * s0_z + dv1 * t0_z
+            q02_x = du2 * s0_x + dv2 * t0_x
+            q02_y = du2 * s0_y + dv2 * t0_y
+            q02_z = du2 * s0_z + dv2 * t0_z
+            q12_x = du2 * s1_x + dv2 * t1_x
+            q12_y = du2 * s1_y + dv2 * t1_y
+            q12_z = du2 * s1_z + dv2 * t1_z
+            r10 = q10_x * q10_x + q10_y * q10_y + q10_z * q10_z
+            r20 = q20_x * q20_x + q20_y * q20_y + q20_z * q20_z
+            r21 = q21_x * q21_x + q21_y * q21_y + q21_z * q21_z
+            r01 = q01_x * q01_x + q01_y * q01_y + q01_z * q01_z
+            r02 = q02_x * q02_x + q02_y * q02_y + q02_z * q02_z
+            r12 = q12_x * q12_x + q12_y * q12_y + q12_z * q12_z
+            side_0 = max(r10, r20)
+            side_1 = max(r21, r01)
+            side_2 = max(r02, r12)
+            apart = 0 if side_0 >= max(side_1, side_2) else 1 if side_1 >= side_2 else 2
+            left = (apart + 1) % 3
+            right = (apart + 2) % 3
+            for x in range(2):
+                middle = 0.5 * (corners[k, left, x] + corners[k, right, x])
+                for half in range(2):
+                    halves[2 * k + half, 0, x] = corners[k, apart, x]
+                halves[2 * k, 1, x] = corners[k, left, x]
+                halves[2 * k, 2, x] = middle
+                halves[2 * k + 1, 1, x] = middle
+                halves[2 * k + 1, 2, x] = corners[k, right, x]
+
+
+@jit
+def turns(mu, scale, patches, corners, first, last, rows, widest):
     """Write how far the normals of triangles are from those in their middles, as chords, at most.
 
     That is 2, which says nothing, where there is no normal in the middle or they turn by 90 degrees:
@@ -498,55 +677,43 @@ def turns(mu, scale, patches, triangles, first, last, rows, turned):
     """
     columns = mu.shape[1] - 2
     net = np.empty((6, 3))
-    for k in range(first, last):
-        cell = patches[k] // 4
+    end = first
+    while end < last:
+        begin, end = end, next_patch(patches, end, last)
+        cell = patches[begin] // 4
         (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
          d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(
-            mu, cell // columns + 1, cell % columns + 1, patches[k] % 4, scale
+            mu, cell // columns + 1, cell % columns + 1, patches[begin] % 4, scale
         )  # fmt: skip
-        s = triangles[k, 2]
-        u = triangles[k, 0] - s / 3.0
-        v = triangles[k, 1] - s / 3.0
-        (
-            net[0, 0],
-            net[0, 1],
-            net[0, 2],
-            net[1, 0],
-            net[1, 1],
-            net[1, 2],
-            net[2, 0],
-            net[2, 1],
-            net[2, 2],
-            net[3, 0],
-            net[3, 1],
-            net[3, 2],
-            net[4, 0],
-            net[4, 1],
-            net[4, 2],
-            net[5, 0],
-            net[5, 1],
-            net[5, 2],
-        ) = part_normals(
-            a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, u, v, s
-        )
-        n_x = rows[k, 3]
-        n_y = rows[k, 4]
-        n_z = rows[k, 5]
         longest = max(
             abs(a_x), abs(a_y), abs(a_z), abs(b_x), abs(b_y), abs(b_z), abs(c_x), abs(c_y), abs(c_z)
         ) + max(abs(d_x), abs(d_y), abs(d_z), abs(e_x), abs(e_y), abs(e_z))
-        farthest = 4.0 if n_x == 0.0 and n_y == 0.0 and n_z == 0.0 else 0.0
-        for i in range(6):
-            length = math.sqrt(
-                net[i, 0] * net[i, 0] + net[i, 1] * net[i, 1] + net[i, 2] * net[i, 2]
-            )
-            if length > SINGULAR * longest * longest:
-                x = net[i, 0] / length - n_x
-                y = net[i, 1] / length - n_y
-                z = net[i, 2] / length - n_z
-                square = x * x + y * y + z * z
-                farthest = max(farthest, square if square < 2.0 else 4.0)
-        turned[k] = math.sqrt(farthest)
+        for k in range(begin, end):
+            u0 = corners[k, 0, 0]
+            v0 = corners[k, 0, 1]
+            u1 = corners[k, 1, 0]
+            v1 = corners[k, 1, 1]
+            u2 = corners[k, 2, 0]
+            v2 = corners[k, 2, 1]
+            net[0, 0], net[0, 1], net[0, 2], net[1, 0], net[1, 1], net[1, 2], net[2, 0], net[2, 1], net[2, 2], net[3, 0], net[3, 1], net[3, 2], net[4, 0], net[4, 1], net[4, 2], net[5, 0], net[5, 1], net[5, 2] = part_normals(
+                a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, u0, v0, u1, v1,
+                u2, v2
+            )  # fmt: skip
+            n_x = rows[k, 3]
+            n_y = rows[k, 4]
+            n_z = rows[k, 5]
+            farthest = 4.0 if n_x == 0.0 and n_y == 0.0 and n_z == 0.0 else 0.0
+            for i in range(6):
+                length = math.sqrt(
+                    net[i, 0] * net[i, 0] + net[i, 1] * net[i, 1] + net[i, 2] * net[i, 2]
+                )
+                if length > SINGULAR * longest * longest:
+                    x = net[i, 0] / length - n_x
+                    y = net[i, 1] / length - n_y
+                    z = net[i, 2] / length - n_z
+                    square = x * x + y * y + z * z
+                    farthest = max(farthest, square if square < 2.0 else 4.0)
+            widest[k] = math.sqrt(farthest)
 
 
 # --- places in grids, one grid for each size of gaps ------------------------------------------------

@@ -457,17 +457,18 @@ def control_normals(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, 
 
 @jit
 def part_normals(
-    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, u, v, s
+    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, u0, v0, u1, v1,
+    u2, v2
 ):  # fmt: skip
-    """The Bézier net of the normal field over a part of the domain: the triangle with the
-    corner u, v and sides of length s, parallel to those of the domain.
+    """The Bézier net of the normal field over a part of the domain, a triangle with three
+    corners.
 
-        s100 = a*s + a*u + b*v + d
-        t100 = b*s + b*u + c*v + e
-        s010 = a*u + b*s + b*v + d
-        t010 = b*u + c*s + c*v + e
-        s001 = a*u + b*v + d
-        t001 = b*u + c*v + e
+        s001 = a*u0 + b*v0 + d
+        t001 = b*u0 + c*v0 + e
+        s100 = a*u1 + b*v1 + d
+        t100 = b*u1 + c*v1 + e
+        s010 = a*u2 + b*v2 + d
+        t010 = b*u2 + c*v2 + e
         N200 = s100 × t100
         N110 = (s010 × t100 + s100 × t010)/2
         N101 = (s001 × t100 + s100 × t001)/2
@@ -475,58 +476,49 @@ def part_normals(
         N011 = (s001 × t010 + s010 × t001)/2
         N002 = s001 × t001
 
-    Source: Sect. 3.2, eq. (14); 222 operations as written, 155 here.
+    Source: Sect. 3.2, eq. (14); 198 operations as written, 182 here.
     """
-    t0 = a_x * u + b_x * v + d_x
-    s100_x = a_x * s + t0
-    t1 = a_y * u + b_y * v + d_y
-    s100_y = a_y * s + t1
-    t2 = a_z * u + b_z * v + d_z
-    s100_z = a_z * s + t2
-    t3 = b_x * s
-    t4 = b_x * u + c_x * v + e_x
-    t100_x = t3 + t4
-    t5 = b_y * s
-    t6 = b_y * u + c_y * v + e_y
-    t100_y = t5 + t6
-    t7 = b_z * s
-    t8 = b_z * u + c_z * v + e_z
-    t100_z = t7 + t8
-    s010_x = t0 + t3
-    s010_y = t1 + t5
-    s010_z = t2 + t7
-    t010_x = c_x * s + t4
-    t010_y = c_y * s + t6
-    t010_z = c_z * s + t8
-    s001_x = t0
-    s001_y = t1
-    s001_z = t2
-    t001_x = t4
-    t001_y = t6
-    t001_z = t8
+    s001_x = a_x * u0 + b_x * v0 + d_x
+    s001_y = a_y * u0 + b_y * v0 + d_y
+    s001_z = a_z * u0 + b_z * v0 + d_z
+    t001_x = b_x * u0 + c_x * v0 + e_x
+    t001_y = b_y * u0 + c_y * v0 + e_y
+    t001_z = b_z * u0 + c_z * v0 + e_z
+    s100_x = a_x * u1 + b_x * v1 + d_x
+    s100_y = a_y * u1 + b_y * v1 + d_y
+    s100_z = a_z * u1 + b_z * v1 + d_z
+    t100_x = b_x * u1 + c_x * v1 + e_x
+    t100_y = b_y * u1 + c_y * v1 + e_y
+    t100_z = b_z * u1 + c_z * v1 + e_z
+    s010_x = a_x * u2 + b_x * v2 + d_x
+    s010_y = a_y * u2 + b_y * v2 + d_y
+    s010_z = a_z * u2 + b_z * v2 + d_z
+    t010_x = b_x * u2 + c_x * v2 + e_x
+    t010_y = b_y * u2 + c_y * v2 + e_y
+    t010_z = b_z * u2 + c_z * v2 + e_z
     N200_x = s100_y * t100_z - s100_z * t100_y
     N200_y = s100_z * t100_x - s100_x * t100_z
     N200_z = s100_x * t100_y - s100_y * t100_x
-    t9 = 0.5 * t100_z
-    t10 = 0.5 * s010_z
-    t11 = 0.5 * t010_z
-    t12 = 0.5 * s100_z
-    N110_x = s010_y * t9 + s100_y * t11 - t010_y * t12 - t10 * t100_y
-    N110_y = 0.5 * s010_z * t100_x - s010_x * t9 - s100_x * t11 + 0.5 * s100_z * t010_x
-    t13 = 0.5 * t100_y
-    t14 = 0.5 * t100_x
-    t15 = 0.5 * s100_x
-    t16 = 0.5 * s100_y
-    N110_z = s010_x * t13 - s010_y * t14 - t010_x * t16 + t010_y * t15
-    N101_x = s001_y * t9 - s001_z * t13 - t001_y * t12 + t001_z * t16
-    N101_y = 0.5 * s001_z * t100_x - s001_x * t9 + 0.5 * s100_z * t001_x - t001_z * t15
-    N101_z = s001_x * t13 - s001_y * t14 - t001_x * t16 + t001_y * t15
+    t0 = 0.5 * t100_z
+    t1 = 0.5 * s010_z
+    t2 = 0.5 * t010_z
+    t3 = 0.5 * s100_z
+    N110_x = s010_y * t0 + s100_y * t2 - t010_y * t3 - t1 * t100_y
+    N110_y = 0.5 * s010_z * t100_x - s010_x * t0 - s100_x * t2 + 0.5 * s100_z * t010_x
+    t4 = 0.5 * t100_y
+    t5 = 0.5 * t100_x
+    t6 = 0.5 * s100_x
+    t7 = 0.5 * s100_y
+    N110_z = s010_x * t4 - s010_y * t5 - t010_x * t7 + t010_y * t6
+    N101_x = s001_y * t0 - s001_z * t4 - t001_y * t3 + t001_z * t7
+    N101_y = 0.5 * s001_z * t100_x - s001_x * t0 + 0.5 * s100_z * t001_x - t001_z * t6
+    N101_z = s001_x * t4 - s001_y * t5 - t001_x * t7 + t001_y * t6
     N020_x = s010_y * t010_z - s010_z * t010_y
     N020_y = s010_z * t010_x - s010_x * t010_z
     N020_z = s010_x * t010_y - s010_y * t010_x
-    t17 = 0.5 * t001_z
-    N011_x = s001_y * t11 - 0.5 * s001_z * t010_y + s010_y * t17 - t001_y * t10
-    N011_y = 0.5 * s001_z * t010_x - s001_x * t11 - s010_x * t17 + 0.5 * s010_z * t001_x
+    t8 = 0.5 * t001_z
+    N011_x = s001_y * t2 - 0.5 * s001_z * t010_y + s010_y * t8 - t001_y * t1
+    N011_y = 0.5 * s001_z * t010_x - s001_x * t2 - s010_x * t8 + 0.5 * s010_z * t001_x
     N011_z = (
         0.5 * s001_x * t010_y
         - 0.5 * s001_y * t010_x
@@ -794,20 +786,35 @@ def largest_curvature(K, H):
 
 
 @jit
-def reach(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z):
-    """Squares of which the largest bounds the squared distance between any point of the patch
-    and that in the middle of its domain: the derivative, linear in u and v, from the middle to
-    a corner, at a corner.
+def reach(
+    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, u0, v0, u1, v1,
+    u2, v2
+):  # fmt: skip
+    """Squares of which the largest bounds the squared distance between any point of a part of
+    the patch and that in the middle of its domain, a triangle: the derivative, linear in u and
+    v, from the middle to a corner, at a corner.
 
-        q00 = 2*a/3 - b/3 + 2*d/3 - e/3
-        q01 = 2*b/3 - a/3 - d/3 + 2*e/3
-        q02 = - (a + b + d + e)/3
-        q10 = 2*b/3 - c/3 + 2*d/3 - e/3
-        q11 = 2*c/3 - b/3 - d/3 + 2*e/3
-        q12 = - (b + c + d + e)/3
-        q20 = 2*d/3 - e/3
-        q21 = 2*e/3 - d/3
-        q22 = - (d + e)/3
+        s0 = a*u0 + b*v0 + d
+        t0 = b*u0 + c*v0 + e
+        s1 = a*u1 + b*v1 + d
+        t1 = b*u1 + c*v1 + e
+        s2 = a*u2 + b*v2 + d
+        t2 = b*u2 + c*v2 + e
+        du0 = 2*u0/3 - u1/3 - u2/3
+        dv0 = 2*v0/3 - v1/3 - v2/3
+        du1 = 2*u1/3 - u0/3 - u2/3
+        dv1 = 2*v1/3 - v0/3 - v2/3
+        du2 = 2*u2/3 - u0/3 - u1/3
+        dv2 = 2*v2/3 - v0/3 - v1/3
+        q00 = du0*s0 + dv0*t0
+        q01 = du1*s0 + dv1*t0
+        q02 = du2*s0 + dv2*t0
+        q10 = du0*s1 + dv0*t1
+        q11 = du1*s1 + dv1*t1
+        q12 = du2*s1 + dv2*t1
+        q20 = du0*s2 + dv0*t2
+        q21 = du1*s2 + dv1*t2
+        q22 = du2*s2 + dv2*t2
         r00 = |q00|**2
         r01 = |q01|**2
         r02 = |q02|**2
@@ -818,62 +825,65 @@ def reach(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, 
         r21 = |q21|**2
         r22 = |q22|**2
 
-    Source: beyond the paper; 198 operations as written, 132 here.
+    Source: beyond the paper; 228 operations as written, 222 here.
     """
-    t0 = (1.0 / 3.0) * b_x
-    t1 = (1.0 / 3.0) * e_x
-    t2 = (2.0 / 3.0) * d_x - t1
-    q00_x = (2.0 / 3.0) * a_x - t0 + t2
-    t3 = (1.0 / 3.0) * b_y
-    t4 = (1.0 / 3.0) * e_y
-    t5 = (2.0 / 3.0) * d_y - t4
-    q00_y = (2.0 / 3.0) * a_y - t3 + t5
-    t6 = (1.0 / 3.0) * b_z
-    t7 = (1.0 / 3.0) * e_z
-    t8 = (2.0 / 3.0) * d_z - t7
-    q00_z = (2.0 / 3.0) * a_z - t6 + t8
-    t9 = (1.0 / 3.0) * a_x
-    t10 = (1.0 / 3.0) * d_x
-    t11 = t10 - (2.0 / 3.0) * e_x
-    q01_x = (2.0 / 3.0) * b_x - t11 - t9
-    t12 = (1.0 / 3.0) * a_y
-    t13 = (1.0 / 3.0) * d_y
-    t14 = t13 - (2.0 / 3.0) * e_y
-    q01_y = (2.0 / 3.0) * b_y - t12 - t14
-    t15 = (1.0 / 3.0) * a_z
-    t16 = (1.0 / 3.0) * d_z
-    t17 = t16 - (2.0 / 3.0) * e_z
-    q01_z = (2.0 / 3.0) * b_z - t15 - t17
-    t18 = t1 + t10
-    t19 = t0 + t18
-    q02_x = -t19 - t9
-    t20 = t13 + t4
-    t21 = t20 + t3
-    q02_y = -t12 - t21
-    t22 = t16 + t7
-    t23 = t22 + t6
-    q02_z = -t15 - t23
-    t24 = (1.0 / 3.0) * c_x
-    q10_x = (2.0 / 3.0) * b_x + t2 - t24
-    t25 = (1.0 / 3.0) * c_y
-    q10_y = (2.0 / 3.0) * b_y - t25 + t5
-    t26 = (1.0 / 3.0) * c_z
-    q10_z = (2.0 / 3.0) * b_z - t26 + t8
-    q11_x = (2.0 / 3.0) * c_x - t0 - t11
-    q11_y = (2.0 / 3.0) * c_y - t14 - t3
-    q11_z = (2.0 / 3.0) * c_z - t17 - t6
-    q12_x = -t19 - t24
-    q12_y = -t21 - t25
-    q12_z = -t23 - t26
-    q20_x = t2
-    q20_y = t5
-    q20_z = t8
-    q21_x = -t11
-    q21_y = -t14
-    q21_z = -t17
-    q22_x = -t18
-    q22_y = -t20
-    q22_z = -t22
+    s0_x = a_x * u0 + b_x * v0 + d_x
+    s0_y = a_y * u0 + b_y * v0 + d_y
+    s0_z = a_z * u0 + b_z * v0 + d_z
+    t0_x = b_x * u0 + c_x * v0 + e_x
+    t0_y = b_y * u0 + c_y * v0 + e_y
+    t0_z = b_z * u0 + c_z * v0 + e_z
+    s1_x = a_x * u1 + b_x * v1 + d_x
+    s1_y = a_y * u1 + b_y * v1 + d_y
+    s1_z = a_z * u1 + b_z * v1 + d_z
+    t1_x = b_x * u1 + c_x * v1 + e_x
+    t1_y = b_y * u1 + c_y * v1 + e_y
+    t1_z = b_z * u1 + c_z * v1 + e_z
+    s2_x = a_x * u2 + b_x * v2 + d_x
+    s2_y = a_y * u2 + b_y * v2 + d_y
+    s2_z = a_z * u2 + b_z * v2 + d_z
+    t2_x = b_x * u2 + c_x * v2 + e_x
+    t2_y = b_y * u2 + c_y * v2 + e_y
+    t2_z = b_z * u2 + c_z * v2 + e_z
+    t0 = (1.0 / 3.0) * u1
+    t1 = (1.0 / 3.0) * u2
+    du0 = (2.0 / 3.0) * u0 - t0 - t1
+    t2 = (1.0 / 3.0) * v1
+    t3 = (1.0 / 3.0) * v2
+    dv0 = (2.0 / 3.0) * v0 - t2 - t3
+    t4 = (1.0 / 3.0) * u0
+    du1 = (2.0 / 3.0) * u1 - t1 - t4
+    t5 = (1.0 / 3.0) * v0
+    dv1 = (2.0 / 3.0) * v1 - t3 - t5
+    du2 = (2.0 / 3.0) * u2 - t0 - t4
+    dv2 = (2.0 / 3.0) * v2 - t2 - t5
+    q00_x = du0 * s0_x + dv0 * t0_x
+    q00_y = du0 * s0_y + dv0 * t0_y
+    q00_z = du0 * s0_z + dv0 * t0_z
+    q01_x = du1 * s0_x + dv1 * t0_x
+    q01_y = du1 * s0_y + dv1 * t0_y
+    q01_z = du1 * s0_z + dv1 * t0_z
+    q02_x = du2 * s0_x + dv2 * t0_x
+    q02_y = du2 * s0_y + dv2 * t0_y
+    q02_z = du2 * s0_z + dv2 * t0_z
+    q10_x = du0 * s1_x + dv0 * t1_x
+    q10_y = du0 * s1_y + dv0 * t1_y
+    q10_z = du0 * s1_z + dv0 * t1_z
+    q11_x = du1 * s1_x + dv1 * t1_x
+    q11_y = du1 * s1_y + dv1 * t1_y
+    q11_z = du1 * s1_z + dv1 * t1_z
+    q12_x = du2 * s1_x + dv2 * t1_x
+    q12_y = du2 * s1_y + dv2 * t1_y
+    q12_z = du2 * s1_z + dv2 * t1_z
+    q20_x = du0 * s2_x + dv0 * t2_x
+    q20_y = du0 * s2_y + dv0 * t2_y
+    q20_z = du0 * s2_z + dv0 * t2_z
+    q21_x = du1 * s2_x + dv1 * t2_x
+    q21_y = du1 * s2_y + dv1 * t2_y
+    q21_z = du1 * s2_z + dv1 * t2_z
+    q22_x = du2 * s2_x + dv2 * t2_x
+    q22_y = du2 * s2_y + dv2 * t2_y
+    q22_z = du2 * s2_z + dv2 * t2_z
     r00 = q00_x * q00_x + q00_y * q00_y + q00_z * q00_z
     r01 = q01_x * q01_x + q01_y * q01_y + q01_z * q01_z
     r02 = q02_x * q02_x + q02_y * q02_y + q02_z * q02_z
@@ -884,3 +894,89 @@ def reach(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, 
     r21 = q21_x * q21_x + q21_y * q21_y + q21_z * q21_z
     r22 = q22_x * q22_x + q22_y * q22_y + q22_z * q22_z
     return r00, r01, r02, r10, r11, r12, r20, r21, r22
+
+
+@jit
+def sides(
+    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, u0, v0, u1, v1,
+    u2, v2
+):  # fmt: skip
+    """Squares that bound those of the lengths of the sides of a part of the patch, whose domain
+    is a triangle: the derivative along each side, at both of its ends.
+
+        s0 = a*u0 + b*v0 + d
+        t0 = b*u0 + c*v0 + e
+        s1 = a*u1 + b*v1 + d
+        t1 = b*u1 + c*v1 + e
+        s2 = a*u2 + b*v2 + d
+        t2 = b*u2 + c*v2 + e
+        du0 = u2 - u1
+        dv0 = v2 - v1
+        du1 = u0 - u2
+        dv1 = v0 - v2
+        du2 = u1 - u0
+        dv2 = v1 - v0
+        q10 = du0*s1 + dv0*t1
+        q20 = du0*s2 + dv0*t2
+        q21 = du1*s2 + dv1*t2
+        q01 = du1*s0 + dv1*t0
+        q02 = du2*s0 + dv2*t0
+        q12 = du2*s1 + dv2*t1
+        r10 = |q10|**2
+        r20 = |q20|**2
+        r21 = |q21|**2
+        r01 = |q01|**2
+        r02 = |q02|**2
+        r12 = |q12|**2
+
+    Source: beyond the paper; 162 operations as written, 162 here.
+    """
+    s0_x = a_x * u0 + b_x * v0 + d_x
+    s0_y = a_y * u0 + b_y * v0 + d_y
+    s0_z = a_z * u0 + b_z * v0 + d_z
+    t0_x = b_x * u0 + c_x * v0 + e_x
+    t0_y = b_y * u0 + c_y * v0 + e_y
+    t0_z = b_z * u0 + c_z * v0 + e_z
+    s1_x = a_x * u1 + b_x * v1 + d_x
+    s1_y = a_y * u1 + b_y * v1 + d_y
+    s1_z = a_z * u1 + b_z * v1 + d_z
+    t1_x = b_x * u1 + c_x * v1 + e_x
+    t1_y = b_y * u1 + c_y * v1 + e_y
+    t1_z = b_z * u1 + c_z * v1 + e_z
+    s2_x = a_x * u2 + b_x * v2 + d_x
+    s2_y = a_y * u2 + b_y * v2 + d_y
+    s2_z = a_z * u2 + b_z * v2 + d_z
+    t2_x = b_x * u2 + c_x * v2 + e_x
+    t2_y = b_y * u2 + c_y * v2 + e_y
+    t2_z = b_z * u2 + c_z * v2 + e_z
+    du0 = u2 - u1
+    dv0 = v2 - v1
+    du1 = u0 - u2
+    dv1 = v0 - v2
+    du2 = u1 - u0
+    dv2 = v1 - v0
+    q10_x = du0 * s1_x + dv0 * t1_x
+    q10_y = du0 * s1_y + dv0 * t1_y
+    q10_z = du0 * s1_z + dv0 * t1_z
+    q20_x = du0 * s2_x + dv0 * t2_x
+    q20_y = du0 * s2_y + dv0 * t2_y
+    q20_z = du0 * s2_z + dv0 * t2_z
+    q21_x = du1 * s2_x + dv1 * t2_x
+    q21_y = du1 * s2_y + dv1 * t2_y
+    q21_z = du1 * s2_z + dv1 * t2_z
+    q01_x = du1 * s0_x + dv1 * t0_x
+    q01_y = du1 * s0_y + dv1 * t0_y
+    q01_z = du1 * s0_z + dv1 * t0_z
+    q02_x = du2 * s0_x + dv2 * t0_x
+    q02_y = du2 * s0_y + dv2 * t0_y
+    q02_z = du2 * s0_z + dv2 * t0_z
+    q12_x = du2 * s1_x + dv2 * t1_x
+    q12_y = du2 * s1_y + dv2 * t1_y
+    q12_z = du2 * s1_z + dv2 * t1_z
+    r10 = q10_x * q10_x + q10_y * q10_y + q10_z * q10_z
+    r20 = q20_x * q20_x + q20_y * q20_y + q20_z * q20_z
+    r21 = q21_x * q21_x + q21_y * q21_y + q21_z * q21_z
+    r01 = q01_x * q01_x + q01_y * q01_y + q01_z * q01_z
+    r02 = q02_x * q02_x + q02_y * q02_y + q02_z * q02_z
+    r12 = q12_x * q12_x + q12_y * q12_y + q12_z * q12_z
+    return r10, r20, r21, r01, r02, r12

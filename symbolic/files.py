@@ -137,7 +137,13 @@ def header(title: str, imports: str = "") -> str:
 
 def cover_source() -> str:
     """Return generated/cover.py: samples that come near every point of a spline."""
-    squares = [x.name for x in patch.REACH.in_components().outputs]
+    reach = ", ".join(x.name for x in patch.REACH.in_components().outputs)
+    sides = [x.name for x in patch.SIDES.in_components().outputs]
+    corners = (
+        f"{x} = corners[k, {i}, {j}]"
+        for i, corner in enumerate(patch.CORNERS)
+        for j, x in enumerate(corner)
+    )
     return render(
         "cover.py",
         {
@@ -151,7 +157,13 @@ def cover_source() -> str:
             "curvature_at": block(patch.CURVATURE_AT),
             "largest_curvature": block(patch.LARGEST_CURVATURE),
             "reach": block(patch.REACH),
-            "store_reach": f"reaches[patch] = math.sqrt(max({', '.join(squares)}))",
+            "extent": f"extent = math.sqrt(max({reach}))",
+            "sides": block(patch.SIDES),
+            "longest": "\n".join(
+                f"side_{i} = max({first}, {last})"
+                for i, (first, last) in enumerate(zip(sides[::2], sides[1::2], strict=True))
+            ),
+            "load_corners": "\n".join(corners),
         },
     )
 

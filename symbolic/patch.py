@@ -8,9 +8,9 @@ Q = n·e of the normal n; the vectors come back in by the chain rule, since ∂A
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations, product
+from itertools import chain, combinations, product
 
 import sympy as sp
 
@@ -23,7 +23,7 @@ VECTORS = (a, b, c, d, e)
 A, B, C, P, Q = LINEAR_FORMS = tuple(scalar(x) for x in "ABCPQ")
 D, U, V, W = (scalar(x) for x in "DUVW")
 u, v, r = (scalar(x) for x in "uvr")
-side = scalar("s")
+CORNERS = tuple((scalar(f"u{i}"), scalar(f"v{i}")) for i in range(3))
 FORM_TERMS = [(form.name, Dot(n, x)) for form, x in zip(LINEAR_FORMS, VECTORS, strict=True)]
 
 
@@ -327,10 +327,9 @@ CONTROL_NORMALS = _control_normals(
 
 PART_NORMALS = _control_normals(
     "part_normals",
-    "The Bézier net of the normal field over a part of the domain: the triangle with the corner "
-    "$u$, $v$ and sides of length $s$, parallel to those of the domain.",
-    [*VECTORS, u, v, side],
-    {"100": (u + side, v), "010": (u, v + side), "001": (u, v)},
+    "The Bézier net of the normal field over a part of the domain, a triangle with three corners.",
+    [*VECTORS, *chain(*CORNERS)],
+    dict(zip(("001", "100", "010"), CORNERS, strict=True)),
 )
 
 
@@ -420,30 +419,50 @@ LARGEST_CURVATURE = Formula.build(
 )
 
 
-def _reach() -> Formula:
-    """Go from the middle of the domain to each corner, as fast as at each corner."""
-    corners = [(sp.Integer(i), sp.Integer(j)) for i, j in ((1, 0), (0, 1), (0, 0))]
-    third = sp.Rational(1, 3)
+def _squares_along(
+    name: str, text: str, steps: Mapping[str, tuple[sp.Expr, sp.Expr]], ends: Iterable[str]
+) -> Formula:
+    """Square the derivatives along steps in the domain, at corners of a part of it.
+
+    An end is the number of a corner and the name of a step.
+    """
     terms, outputs = [], []
-    for i, at in enumerate(corners):
-        here = {u: at[0], v: at[1]}
-        for j, (u_j, v_j) in enumerate(corners):
-            step = (u_j - third) * P_U + (v_j - third) * P_V
-            terms.append((f"q{i}{j}", sp.expand(substitute(step, here))))
-            (q,) = vectors([f"q{i}{j}"])
-            outputs.append((f"r{i}{j}", Dot(q, q)))
-    return Formula.build(
-        "reach",
-        "Squares of which the largest bounds the squared distance between any point of the patch "
-        "and that in the middle of its domain: the derivative, linear in $u$ and $v$, from the "
-        "middle to a corner, at a corner.",
-        inputs=VECTORS,
-        terms=terms,
-        outputs=outputs,
-    )
+    for i, at in enumerate(CORNERS):
+        here = dict(zip((u, v), at, strict=True))
+        terms += [(f"s{i}", substitute(P_U, here)), (f"t{i}", substitute(P_V, here))]
+    for step, (along_u, along_v) in steps.items():
+        terms += [(f"du{step}", along_u), (f"dv{step}", along_v)]
+    for corner, step in ends:
+        s, t, q = vectors([f"s{corner}", f"t{corner}", f"q{corner}{step}"])
+        terms.append((q.name, scalar(f"du{step}") * s + scalar(f"dv{step}") * t))
+        outputs.append((f"r{corner}{step}", Dot(q, q)))
+    inputs = [*VECTORS, *chain(*CORNERS)]
+    return Formula.build(name, text, inputs=inputs, terms=terms, outputs=outputs)
 
 
-REACH = _reach()
+def _between(first: tuple[sp.Expr, sp.Expr], last: tuple[sp.Expr, sp.Expr]) -> tuple[sp.Expr, ...]:
+    """Return the step from one place of the domain to another."""
+    return tuple(y - x for x, y in zip(first, last, strict=True))
+
+
+MIDDLE = tuple(sp.Add(*x) / 3 for x in zip(*CORNERS, strict=True))
+
+REACH = _squares_along(
+    "reach",
+    "Squares of which the largest bounds the squared distance between any point of a part of the "
+    "patch and that in the middle of its domain, a triangle: the derivative, linear in $u$ and "
+    "$v$, from the middle to a corner, at a corner.",
+    {str(i): _between(MIDDLE, corner) for i, corner in enumerate(CORNERS)},
+    product("012", repeat=2),
+)
+
+SIDES = _squares_along(
+    "sides",
+    "Squares that bound those of the lengths of the sides of a part of the patch, whose domain is "
+    "a triangle: the derivative along each side, at both of its ends.",
+    {str(i): _between(CORNERS[i - 2], CORNERS[i - 1]) for i in range(3)},
+    [(str((i + k) % 3), str(i)) for i in range(3) for k in (1, 2)],
+)
 
 FORMULAS = (
     POWER_FORM,
@@ -467,4 +486,5 @@ FORMULAS = (
     CURVATURE_AT,
     LARGEST_CURVATURE,
     REACH,
+    SIDES,
 )

@@ -44,7 +44,7 @@ def cover_normals(cover: Cover, angle: float) -> float:
             first = cover.count
             cover.add(pieces[far][_spread(rows[far, 3:6], near)])
             distances[far] = _distances(cover.points[first:, 3:], rows[far], cover.wanted.threads)
-        deepest = np.abs(pieces.triangles[:, 2]) <= DEEPEST
+        deepest = np.ptp(pieces.corners[:, :, 0], axis=1) <= DEEPEST
         turns[deepest] = np.minimum(turns[deepest], limit - near)
         far = distances + turns > limit
         largest = max(largest, float((distances + turns)[~far].max(initial=0.0)))

@@ -24,9 +24,8 @@ PACKED = 0.6
 # it is so many times smaller than that of the last.
 FINE, SMALLER = 0.7, 1.3
 # If all of the surface has to be near enough, and not only candidates, triangles that may hold a
-# place which is not are cut until they reach so far. Narrow ones, of less than NARROW times the
-# area of such a square, may reach farther: there would be too many of them.
-FINEST, FINE_IF_NARROW, NARROW = 0.1, 0.5, 0.4
+# place which is not are cut until they reach so far.
+FINEST = 0.1
 
 
 class Cover:
@@ -141,12 +140,12 @@ class Cover:
         rows = pieces.middles()
         self.points[moved], self.curvatures[moved] = rows[:, :6], rows[:, 7]
         self.added.patches[moved - self.given] = pieces.patches
-        self.added.triangles[moved - self.given] = pieces.triangles
+        self.added.corners[moved - self.given] = pieces.corners
 
     def forget(self) -> None:
         """Take out all samples that were added."""
         self.points, self.curvatures = self.points[: self.given], self.curvatures[: self.given]
-        self.added = Pieces(self.wanted, np.empty(0, dtype=np.int64), np.empty((0, 3)))
+        self.added = Pieces(self.wanted, np.empty(0, dtype=np.int64), np.empty((0, 3, 2)))
 
     def _radius_of(self, count: int) -> float:
         """Return which radius brings about so many samples."""
@@ -178,24 +177,24 @@ class Cover:
 
     def _close(self, radius: float, most: int | None) -> None:
         """Add samples until not only candidates are within radius / √weight of one."""
-        pieces, candidates, small = self.pieces, self._candidates, []
+        pieces, candidates, small, first = self.pieces, self._candidates, [], self.count
         while len(pieces):
             shares = pieces.extents * np.sqrt(candidates.weights) / radius
             far = candidates.distances > (1.0 - shares) * radius
-            narrow = pieces.areas * candidates.weights <= NARROW * (FINEST * radius) ** 2
-            uncut = far & (shares <= np.where(narrow, FINE_IF_NARROW, FINEST))
+            uncut = far & (shares <= FINEST)
             small.append(pieces[uncut])
-            pieces = pieces[far & ~uncut].quarters
+            pieces = pieces[far & ~uncut].halves.halves
             candidates = self._told(pieces.middles(), radius, radius)
+            self._choose(pieces, candidates, radius, most)
         self._choose_strictly(sum(small[1:], start=small[0]), radius, most)
+        self._candidates.tell(self.points[first:], radius)
 
     def _choose_strictly(self, pieces: Pieces, radius: float, most: int | None) -> None:
         """Add middles of small pieces until all of each is within radius / √weight of a sample."""
-        rows, first = pieces.middles(), self.count
+        rows = pieces.middles()
         # A sample that is nearer to the middle by the extent is near enough to the whole piece.
         rows[:, 6] /= (1.0 - pieces.extents * np.sqrt(rows[:, 6]) / radius) ** 2
         self._choose(pieces, self._told(rows, radius, radius), radius, most)
-        self._candidates.tell(self.points[first:], radius)
 
     def _told(self, rows: Array, radius: float, widest: float) -> Candidates:
         """Return middles of pieces as candidates that know of all samples."""

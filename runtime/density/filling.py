@@ -245,7 +245,7 @@ class Filling:
 
 def added_fields(cover: Cover, fields: Sequence[str], dtype: DTypeLike) -> dict[str, NDArray[Any]]:
     """Return fields of the samples that a cover has added; see `Samples`."""
-    patch_index, uv = cover.added.patches, cover.added.triangles[:, :2]
+    patch_index, uv = cover.added.patches, cover.added.uv
     count, spline, K = len(patch_index), cover.wanted.spline, cover.curvatures[cover.given :]
     filled = {x: new_field(x, count, dtype) for x in FLOAT_NAMES if x in fields}
     here = np.arange(count)

@@ -48,7 +48,7 @@ def coverage(wanted: Wanted, points: Array, asked: float = math.inf) -> float:
         largest = max(largest, float(bounds[~far].max(initial=0.0)))
         if not far.any():
             break
-        reach, pieces = float(bounds.max()), pieces[far].quarters
+        reach, pieces = float(bounds.max()), pieces[far].halves.halves
     else:
         largest = max(largest, reach)
     return largest

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,62 +21,59 @@ Indices = NDArray[np.int64]
 PIECES_AT_A_TIME = 1 << 13
 PATCHES_AT_A_TIME = 1 << 11
 # Patches are not cut into more triangles than have this part of the square of the reach as area:
-# of long and narrow ones there would be too many.
-NARROW = 0.5
+# of long and narrow ones there would be too many. Where all of a patch has less than the smaller
+# part of the square of its own reach, triangles are cut across instead of into similar ones.
+NARROW, ACROSS = 0.5, 0.1
 # Places are numbered by 32 bits.
 MOST = 2e9
-# The four quarters of a triangle: where their middles are, in sides from its own, and which is
-# turned over.
-QUARTERS = np.array([[0.0, 0.0], [1 / 3, -1 / 6], [-1 / 6, 1 / 3], [-1 / 6, -1 / 6]])
-TURNS = np.array([-0.5, 0.5, 0.5, 0.5])
 
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
-    """Triangles of patches: `triangles` (M, 3) has u, v of the middles, and the sizes.
-
-    A size is the length of the sides in (u, v), negative if the triangle is turned over.
-    """
+    """Triangles of patches: `corners` (M, 3, 2) are their corners in u, v of the patch."""
 
     wanted: Wanted
     patches: Indices
-    triangles: Array
+    corners: Array
 
     def __len__(self) -> int:
         return len(self.patches)
 
     def __getitem__(self, chosen: Indices | NDArray[np.bool_]) -> Pieces:
         """Return some of them."""
-        return Pieces(self.wanted, self.patches[chosen], self.triangles[chosen])
+        return Pieces(self.wanted, self.patches[chosen], self.corners[chosen])
 
     def __add__(self, other: Pieces) -> Pieces:
         """Return these and then the others, of the same spline."""
         return Pieces(
             self.wanted,
             np.concatenate([self.patches, other.patches]),
-            np.concatenate([self.triangles, other.triangles]),
+            np.concatenate([self.corners, other.corners]),
         )
+
+    @property
+    def uv(self) -> Array:
+        """The parameters (M, 2) of the middles."""
+        return self.corners.sum(axis=1) / 3.0
 
     @property
     def extents(self) -> Array:
         """How far the points of each triangle (M,) are from its middle, at most."""
-        return self.wanted.reaches[self.patches] * np.abs(self.triangles[:, 2])
-
-    @property
-    def areas(self) -> Array:
-        """About the areas of the triangles (M,): their parts of those of the patches."""
-        return self.wanted.areas[self.patches] * self.triangles[:, 2] ** 2
+        return self._for_each(kernels.extents, np.empty(len(self)))
 
     @property
     def quarters(self) -> Pieces:
-        """The quarters of all triangles (4 M), those of each together."""
-        middles = self.triangles[:, None, :2] + self.triangles[:, None, 2:] * QUARTERS
-        sizes = self.triangles[:, 2:] * TURNS
-        return Pieces(
-            self.wanted,
-            np.repeat(self.patches, 4),
-            np.concatenate([middles, sizes[:, :, None]], axis=2).reshape(-1, 3),
-        )
+        """The quarters of all triangles (4 M), those of each together, similar to it in u, v."""
+        sides = (self.corners + np.roll(self.corners, 1, axis=1)) / 2.0
+        places = np.concatenate([self.corners, sides], axis=1)
+        corners = places[:, [[0, 4, 3], [4, 1, 5], [3, 5, 2], [5, 3, 4]]].reshape(-1, 3, 2)
+        return Pieces(self.wanted, np.repeat(self.patches, 4), corners)
+
+    @property
+    def halves(self) -> Pieces:
+        """The halves of all triangles (2 M), cut across their longest sides."""
+        corners = self._for_each(kernels.halve, np.empty((2 * len(self), 3, 2)))
+        return Pieces(self.wanted, np.repeat(self.patches, 2), corners)
 
     def middles(self) -> Array:
         """Return point, unit normal, weight and K (M, 8) in the middles.
@@ -83,17 +81,8 @@ class Pieces:
         Points are relative to the first coefficient; all lengths are those of the spline times
         `wanted.unit`. The normal is zero where there is none.
         """
-        rows, wanted, spline = np.empty((len(self), 8)), self.wanted, self.wanted.spline
-
-        def work(first: int, last: int) -> None:
-            kernels.middles(
-                spline.coefficients, spline.scale, wanted.law.numbers, wanted.reaches,
-                self.patches, self.triangles, first, last, rows,
-            )  # fmt: skip
-
-        for _ in over_ranges(work, len(self), PIECES_AT_A_TIME, wanted.threads):
-            pass
-        return rows
+        law = self.wanted.law.numbers, self.wanted.reaches
+        return self._for_each(kernels.middles, *law, np.empty((len(self), 8)))
 
     def turns(self, rows: Array) -> Array:
         """Return how far normals of each triangle (M,) are from that in its middle, at most.
@@ -101,49 +90,68 @@ class Pieces:
         That is as the chord between unit vectors: 2 if they may turn by 90 degrees or more. `rows`
         are what `middles` returns.
         """
-        turns, spline = np.empty(len(self)), self.wanted.spline
+        return self._for_each(kernels.turns, rows, np.empty(len(self)))
+
+    def _for_each(self, kernel: Callable[..., None], *arrays: Array) -> Array:
+        """Return the last of some arrays, which a kernel writes."""
+        spline = self.wanted.spline
 
         def work(first: int, last: int) -> None:
-            kernels.turns(
-                spline.coefficients, spline.scale, self.patches, self.triangles, first, last, rows,
-                turns,
-            )  # fmt: skip
+            kernel(
+                spline.coefficients, spline.scale, self.patches, self.corners, first, last, *arrays
+            )
 
         for _ in over_ranges(work, len(self), PIECES_AT_A_TIME, self.wanted.threads):
             pass
-        return turns
+        return arrays[-1]
 
 
 def cut_patches(wanted: Wanted, radius: float) -> Pieces:
     """Cut all patches until every place is within radius / √weight of the middle of its triangle.
 
-    That is by the largest weight of the patch, and long and narrow triangles may reach farther.
-    Raises what `parts_of_patches` raises.
+    That is by the largest weight of the patch, and triangles of long and narrow ones may reach
+    farther. Raises InputError if there were more than MOST triangles.
     """
-    parts = parts_of_patches(wanted, radius)
+    parts, across = parts_of_patches(wanted, radius)
     ends = np.cumsum(parts * parts)
-    patches, triangles = np.empty(ends[-1], dtype=np.int64), np.empty((ends[-1], 3))
+    patches, corners = np.empty(ends[-1], dtype=np.int64), np.empty((ends[-1], 3, 2))
 
     def work(first: int, last: int) -> None:
-        kernels.cut_patches(parts, ends, first, last, patches, triangles)
+        kernels.cut_patches(parts, ends, first, last, patches, corners)
 
     for _ in over_ranges(work, len(parts), PATCHES_AT_A_TIME, wanted.threads):
         pass
-    return Pieces(wanted, patches, triangles)
+    pieces = Pieces(wanted, patches, corners)
+    return _cut_across(pieces, across, radius) if across.any() else pieces
 
 
-def parts_of_patches(wanted: Wanted, radius: float) -> Indices:
+def _cut_across(pieces: Pieces, across: NDArray[np.bool_], radius: float) -> Pieces:
+    """Cut pieces of some patches until they are short enough, or small enough."""
+    wanted, left = pieces.wanted, across[pieces.patches]
+    rates, share = np.sqrt(wanted.largest) / radius, 1.0
+    large = wanted.areas * rates * rates
+    done, pieces = pieces[~left], pieces[left]
+    while len(pieces):
+        here = pieces.patches
+        left = (pieces.extents * rates[here] > 1.0) & (share * large[here] > NARROW)
+        done, pieces, share = done + pieces[~left], pieces[left].halves, share / 2.0
+    return done
+
+
+def parts_of_patches(wanted: Wanted, radius: float) -> tuple[Indices, NDArray[np.bool_]]:
     """Return in how many parts `cut_patches` cuts the sides of each patch (patches,).
 
-    Raises InputError if there were more than MOST triangles.
+    And which patches are cut across instead. Raises what that raises.
     """
-    reaches = np.minimum(wanted.reaches, np.sqrt(wanted.areas / NARROW))
     with np.errstate(divide="ignore", over="ignore"):
-        asked = np.maximum(np.ceil(reaches * np.sqrt(wanted.largest) / radius), 1.0)
+        rates = np.sqrt(wanted.largest) / radius
+        small = np.sqrt(wanted.areas / NARROW) * rates
+        asked = np.maximum(np.ceil(np.minimum(wanted.reaches * rates, small)), 1.0)
         total = float((asked * asked).sum())
     if not total <= MOST:
         raise InputError(
             f"surface {wanted.spline.name!r} would have to be searched in more than {MOST:.0e} "
             "places; ask for a larger coverage or angle, or for fewer samples or normals."
         )
-    return asked.astype(np.int64)
+    across = wanted.areas < ACROSS * wanted.reaches**2
+    return np.where(across, 1, asked.astype(np.int64)), across
