@@ -23,6 +23,7 @@ VECTORS = (a, b, c, d, e)
 A, B, C, P, Q = LINEAR_FORMS = tuple(scalar(x) for x in "ABCPQ")
 D, U, V, W = (scalar(x) for x in "DUVW")
 u, v, r = (scalar(x) for x in "uvr")
+Place = tuple[sp.Expr, sp.Expr]
 CORNERS = tuple((scalar(f"u{i}"), scalar(f"v{i}")) for i in range(3))
 FORM_TERMS = [(form.name, Dot(n, x)) for form, x in zip(LINEAR_FORMS, VECTORS, strict=True)]
 
@@ -293,7 +294,7 @@ def _control_normals(
     name: str,
     text: str,
     inputs: Sequence[sp.Symbol],
-    corners: Mapping[str, tuple[sp.Expr, sp.Expr]],
+    corners: Mapping[str, Place],
 ) -> Formula:
     """Multiply the linear fields p_u and p_v, both given at corners, in Bernstein form."""
     tangents = [
@@ -420,7 +421,7 @@ LARGEST_CURVATURE = Formula.build(
 
 
 def _squares_along(
-    name: str, text: str, steps: Mapping[str, tuple[sp.Expr, sp.Expr]], ends: Iterable[str]
+    name: str, text: str, steps: Mapping[str, Place], ends: Iterable[tuple[str, ...]]
 ) -> Formula:
     """Square the derivatives along steps in the domain, at corners of a part of it.
 
@@ -430,8 +431,8 @@ def _squares_along(
     for i, at in enumerate(CORNERS):
         here = dict(zip((u, v), at, strict=True))
         terms += [(f"s{i}", substitute(P_U, here)), (f"t{i}", substitute(P_V, here))]
-    for step, (along_u, along_v) in steps.items():
-        terms += [(f"du{step}", along_u), (f"dv{step}", along_v)]
+    for step, along in steps.items():
+        terms += zip((f"du{step}", f"dv{step}"), along, strict=True)
     for corner, step in ends:
         s, t, q = vectors([f"s{corner}", f"t{corner}", f"q{corner}{step}"])
         terms.append((q.name, scalar(f"du{step}") * s + scalar(f"dv{step}") * t))
@@ -440,12 +441,12 @@ def _squares_along(
     return Formula.build(name, text, inputs=inputs, terms=terms, outputs=outputs)
 
 
-def _between(first: tuple[sp.Expr, sp.Expr], last: tuple[sp.Expr, sp.Expr]) -> tuple[sp.Expr, ...]:
+def _between(first: Place, last: Place) -> Place:
     """Return the step from one place of the domain to another."""
-    return tuple(y - x for x, y in zip(first, last, strict=True))
+    return last[0] - first[0], last[1] - first[1]
 
 
-MIDDLE = tuple(sp.Add(*x) / 3 for x in zip(*CORNERS, strict=True))
+MIDDLE = sp.Add(*(x for x, _ in CORNERS)) / 3, sp.Add(*(x for _, x in CORNERS)) / 3
 
 REACH = _squares_along(
     "reach",
