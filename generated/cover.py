@@ -736,16 +736,23 @@ def bucket_of(level, i, j, k, buckets):
 
 
 @jit
-def gaps_of(rows):
-    """Return the number of the finest grid, and the widest 1 / sqrt(weight) of each from it on."""
+def survey(rows, box):
+    """Write the box (2, 3) of places; return the number of the finest grid, and from it on the widest
+    1 / sqrt(weight) of each.
+    """
     widest = np.zeros(LEVELS)
     finest = LEVELS
     coarsest = 0
+    for x in range(3):
+        box[0, x] = box[1, x] = rows[0, x] if rows.shape[0] > 0 else 0.0
     for k in range(rows.shape[0]):
         level = level_of(rows[k, 6])
         finest = min(finest, level)
         coarsest = max(coarsest, level)
         widest[level] = max(widest[level], 1.0 / math.sqrt(rows[k, 6]))
+        for x in range(3):
+            box[0, x] = min(box[0, x], rows[k, x])
+            box[1, x] = max(box[1, x], rows[k, x])
     return finest, widest[finest : coarsest + 1]
 
 

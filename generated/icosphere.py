@@ -47,7 +47,7 @@ def jit(function):
         return numba.njit(**OPTIONS)(function)
 
 
-# sampler.py, digest 2c14c9ac353abcd8: Numba's cache looks at this file alone.
+# sampler.py, digest 7155b6a15fe4f9ff: Numba's cache looks at this file alone.
 
 # The icosahedron. LINES hold, for each face, its first corner and the steps from there to the others:
 # the coordinates a + b φ as a, b. POSITIONS are the corners, FACES their numbers. BARS map a normal to
@@ -878,6 +878,9 @@ def scan_patches(
             )
             total += count
             at_border = at_border or on_border(spans[face], first[face], last[face], frequency)
+        if total == 0:
+            last[met[:faces]] = -1
+            continue
         if counts[0] + total + 1 > found.shape[0] or counts[1] + total + 1 > doubtful.shape[0]:
             return patch, total + 1
         if total + frequency + 64 > s.size:

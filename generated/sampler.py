@@ -897,6 +897,8 @@ def search_patches(
             total += count_window(windows[face], face, grid, starts)
         if counts[0] + total > found.shape[0] or counts[1] + total > doubtful.shape[0]:
             return patch, total
+        if total == 0:
+            continue
         if total + 16 > x.size:
             places, numbers, x, y, z, codes, notes, scratch, buckets = buffers(total + 16)
         size = note_rows(windows, hulls, sizes, slacks, grid, starts, low, high, rows)
@@ -1677,7 +1679,10 @@ def normals_at(mu, scale, patches, local, normals):
 
 @jit
 def least_cosine(mu, scale, axis):
-    """Return the least cosine between a unit vector and any oriented normal of the spline."""
+    """Return the least cosine between a unit vector and any oriented normal of the spline.
+
+    If that is negative, it is one that is.
+    """
     rows = mu.shape[0] - 2
     columns = mu.shape[1] - 2
     net = np.empty((6, 3))
@@ -1715,4 +1720,6 @@ def least_cosine(mu, scale, axis):
             length = length_of(net[k, 0], net[k, 1], net[k, 2])
             if length > 0.0:
                 least = min(least, towards / length)
+        if least < 0.0:
+            break
     return least

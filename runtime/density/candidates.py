@@ -141,10 +141,8 @@ class _Part:
         """Sort rows into arrays of the same length."""
         count, self.radius = len(rows), radius
         self.order, self.places, self.nearest = order, places, nearest
-        self.box = np.zeros((2, 3))
-        if count:
-            self.box[:] = rows[:, :3].min(axis=0), rows[:, :3].max(axis=0)
-        finest, self.widest = kernels.gaps_of(rows)
+        self.box = np.empty((2, 3))
+        finest, self.widest = kernels.survey(rows, self.box)
         self.starts = np.zeros((1 << max(count - 1, 1).bit_length()) + 1, dtype=np.int32)
         kernels.sort_places(
             rows, radius, finest, self.widest, self.starts, np.empty(count, dtype=np.int32), order,

@@ -69,10 +69,10 @@ class Wanted:
         """How far the points of each patch (patches,) are from its middle, at most."""
         return self._patches[0]
 
-    @property
+    @cached_property
     def areas(self) -> Array:
         """The areas of the patches (patches,)."""
-        return self._patches[1].sum(axis=1)
+        return np.add.reduce(list(self._patches[1].T))
 
     @property
     def area(self) -> float:
@@ -85,10 +85,10 @@ class Wanted:
         _, areas, weights = self._patches
         return float((areas * np.maximum(weights[:, :3], self.law.floor)).sum())
 
-    @property
+    @cached_property
     def largest(self) -> Array:
         """What is wanted of each patch (patches,), where that is most."""
-        return np.maximum(self._patches[2].max(axis=1), self.law.floor)
+        return np.maximum.reduce(list(self._patches[2].T), initial=self.law.floor)
 
     def with_floor(self, floor: float) -> Wanted:
         """Return the same with another floor."""
