@@ -37,6 +37,8 @@ PATCHES_AT_A_TIME = 1 << 14
 SAME_POINT = 1e-6
 # Beyond this binary exponent a number cannot be multiplied by a few small ones.
 LARGEST_EXPONENT = 1000
+# Parameters that differ by less than this part of their range are the same, up to rounding.
+ROUNDING = 1e-12
 
 
 def spline_of(surface: Surface | Spline, cells: Sequence[int] | None) -> Spline:
@@ -109,7 +111,10 @@ class Spline:
         return self._evaluate(u, v)[0]
 
     def normals(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
-        """Return unit normals (..., 3) along p_u × p_v, NaN at singular points; see `evaluate`."""
+        """Return unit normals (..., 3) along p_u × p_v; see `evaluate`.
+
+        They are NaN at poles, and at singular points where p_u × p_v vanishes exactly.
+        """
         vectors = self._evaluate(u, v)[1]
         with np.errstate(invalid="ignore"):
             vectors /= np.abs(vectors).max(axis=-1, keepdims=True)
@@ -143,6 +148,9 @@ class Spline:
         cells = self.in_cells(places)
         points, normals = np.empty_like(places, shape=(len(places), 3)), np.empty((len(places), 3))
         kernels.evaluate(self.coefficients, self.scale, cells, points, normals)
+        for end, place in zip(self.ends[1], (0, self.cells[1]), strict=True):
+            if end == "pole":  # all but rounding
+                normals[np.abs(cells[:, 1] - place) <= ROUNDING * self.cells[1]] = 0.0
         return points.reshape(*u_array.shape, 3), normals.reshape(*u_array.shape, 3)
 
     def in_cells(self, places: NDArray[np.float64]) -> NDArray[np.float64]:
