@@ -3,8 +3,8 @@
 `make bench-guard` compares and `make bench-record` writes the record. What is compared is the time
 of writing the same arrays over that of sampling, both on one thread and in time of the processor,
 so that others on the machine disturb little. Each time is the best of ROUNDS, taken in turns:
-others only make times longer. (The best quotient of a round is one with disturbed writing.) On
-another processor than that of the record nothing is compared.
+others only make times longer. (The best quotient of a round is one with disturbed writing.) Each
+kind of processor has a record of its own; on one that has none nothing is compared.
 """
 
 from __future__ import annotations
@@ -110,21 +110,22 @@ def compared(
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Compare with the record, or write it with --record; return 1 if a case is too slow."""
+    """Compare with the record of this kind of processor, or write it; return 1 if it is slower."""
     parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("--record", action="store_true", help="write the record")
     write_record = parser.parse_args(arguments).record
     with Writers(threads=1) as write:
         measure = {name: partial(_measured, make, write) for name, make in CASES.items()}
+        records = json.loads(RECORD.read_text(encoding="utf-8")) if RECORD.exists() else {}
         if write_record:
             ratios = {name: recorded(once) for name, once in measure.items()}
-            _store({"processor": processor(), "ratios": ratios})
+            _store(records | {processor(): ratios})
             return 0
-        record = json.loads(RECORD.read_text(encoding="utf-8"))
-        if record["processor"] != processor():
-            print(f"not compared: {record['processor']} was recorded, and this is {processor()}")
+        if processor() not in records:
+            known = ", ".join(sorted(records))
+            print(f"not compared: recorded were {known}, and this is {processor()}")
             return 0
-        rows = compared(record["ratios"], measure)
+        rows = compared(records[processor()], measure)
     for name, before, now, enough in rows:
         verdict = "ok" if enough else f"FAILED: below {SHARE:.0%} of the record"
         print(f"{name:<24} {now:8.4f} of the writing limit, recorded {before:.4f}: {verdict}")
