@@ -233,6 +233,20 @@ def patch_vectors(mu, i, j, turn, scale):
     )  # fmt: skip
 
 
+@jit
+def cell_of(mu, patch):
+    """Return the row and the column of the coefficient of the cell of a patch."""
+    columns = mu.shape[1] - 2
+    return patch // 4 // columns + 1, patch // 4 % columns + 1
+
+
+@jit
+def vectors_of(mu, scale, patch):
+    """Return the vectors of a patch, of the surface times its scale."""
+    i, j = cell_of(mu, patch)
+    return patch_vectors(mu, i, j, patch % 4, scale)
+
+
 # --- places of a patch ----------------------------------------------------------------------------
 
 
@@ -267,13 +281,9 @@ def weigh_patches(mu, scale, law, first, last, reaches, areas, weights):
     That is how far a point can be from the middle, at most; the area that each node of a quadrature
     stands for (…, 3); and the weights at the nodes and in the middle (…, 4).
     """
-    columns = mu.shape[1] - 2
     for patch in range(first, last):
-        cell = patch // 4
         (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
-         d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(
-            mu, cell // columns + 1, cell % columns + 1, patch % 4, scale
-        )  # fmt: skip
+         d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = vectors_of(mu, scale, patch)  # fmt: skip
         u0, v0, u1, v1, u2, v2 = 0.0, 0.0, 1.0, 0.0, 0.0, 1.0
         # reach (beyond the paper): 228 operations as written, 222 here
         s0_x = a_x * u0 + b_x * v0 + d_x
@@ -423,16 +433,14 @@ def middles(mu, scale, patches, corners, first, last, law, reaches, rows):
     All is that of the surface times its scale. The point is relative to the first coefficient. The
     normal is zero where there is none.
     """
-    columns = mu.shape[1] - 2
     size = SCALE * scale
     end = first
     while end < last:
         begin, end = end, next_patch(patches, end, last)
         patch = patches[begin]
-        i = patch // 4 // columns + 1
-        j = patch // 4 % columns + 1
         (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
-         d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(mu, i, j, patch % 4, scale)  # fmt: skip
+         d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = vectors_of(mu, scale, patch)  # fmt: skip
+        i, j = cell_of(mu, patch)
         centre_x = (mu[i, j, 0] - mu[0, 0, 0]) * size
         centre_y = (mu[i, j, 1] - mu[0, 0, 1]) * size
         centre_z = (mu[i, j, 2] - mu[0, 0, 2]) * size
@@ -497,15 +505,11 @@ def middles(mu, scale, patches, corners, first, last, law, reaches, rows):
 @jit
 def extents(mu, scale, patches, corners, first, last, farthest):
     """Write how far the points of triangles are from those in their middles, at most."""
-    columns = mu.shape[1] - 2
     end = first
     while end < last:
         begin, end = end, next_patch(patches, end, last)
-        cell = patches[begin] // 4
         (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
-         d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(
-            mu, cell // columns + 1, cell % columns + 1, patches[begin] % 4, scale
-        )  # fmt: skip
+         d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = vectors_of(mu, scale, patches[begin])  # fmt: skip
         for k in range(begin, end):
             u0 = corners[k, 0, 0]
             v0 = corners[k, 0, 1]
@@ -587,15 +591,11 @@ def extents(mu, scale, patches, corners, first, last, farthest):
 @jit
 def halve(mu, scale, patches, corners, first, last, halves):
     """Cut triangles in the middle of their longest sides; the halves (2 …, 3, 2) follow one another."""
-    columns = mu.shape[1] - 2
     end = first
     while end < last:
         begin, end = end, next_patch(patches, end, last)
-        cell = patches[begin] // 4
         (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
-         d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(
-            mu, cell // columns + 1, cell % columns + 1, patches[begin] % 4, scale
-        )  # fmt: skip
+         d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = vectors_of(mu, scale, patches[begin])  # fmt: skip
         for k in range(begin, end):
             u0 = corners[k, 0, 0]
             v0 = corners[k, 0, 1]
@@ -675,16 +675,12 @@ def turns(mu, scale, patches, corners, first, last, rows, widest):
     That is 2, which says nothing, where there is no normal in the middle or they turn by 90 degrees:
     else they lie in the cone of their control normals. Those of a singular point have no direction.
     """
-    columns = mu.shape[1] - 2
     net = np.empty((6, 3))
     end = first
     while end < last:
         begin, end = end, next_patch(patches, end, last)
-        cell = patches[begin] // 4
         (a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z,
-         d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = patch_vectors(
-            mu, cell // columns + 1, cell % columns + 1, patches[begin] % 4, scale
-        )  # fmt: skip
+         d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z) = vectors_of(mu, scale, patches[begin])  # fmt: skip
         longest = max(
             abs(a_x), abs(a_y), abs(a_z), abs(b_x), abs(b_y), abs(b_z), abs(c_x), abs(c_y), abs(c_z)
         ) + max(abs(d_x), abs(d_y), abs(d_z), abs(e_x), abs(e_y), abs(e_z))
