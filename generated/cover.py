@@ -672,8 +672,9 @@ def halve(mu, scale, patches, corners, first, last, halves):
 def turns(mu, scale, patches, corners, first, last, rows, widest):
     """Write how far the normals of triangles are from those in their middles, as chords, at most.
 
-    That is 2, which says nothing, where there is no normal in the middle or they turn by 90 degrees:
-    else they lie in the cone of their control normals. Those of a singular point have no direction.
+    That is 2, which says nothing, where there is none in the middle but elsewhere, or they turn by 90
+    degrees: else they lie in the cone of their control normals. Those of a singular point have no
+    direction.
     """
     net = np.empty((6, 3))
     end = first
@@ -698,7 +699,8 @@ def turns(mu, scale, patches, corners, first, last, rows, widest):
             n_x = rows[k, 3]
             n_y = rows[k, 4]
             n_z = rows[k, 5]
-            farthest = 4.0 if n_x == 0.0 and n_y == 0.0 and n_z == 0.0 else 0.0
+            singular = n_x == 0.0 and n_y == 0.0 and n_z == 0.0
+            farthest = 0.0
             for i in range(6):
                 length = math.sqrt(
                     net[i, 0] * net[i, 0] + net[i, 1] * net[i, 1] + net[i, 2] * net[i, 2]
@@ -708,7 +710,7 @@ def turns(mu, scale, patches, corners, first, last, rows, widest):
                     y = net[i, 1] / length - n_y
                     z = net[i, 2] / length - n_z
                     square = x * x + y * y + z * z
-                    farthest = max(farthest, square if square < 2.0 else 4.0)
+                    farthest = max(farthest, square if square < 2.0 and not singular else 4.0)
             widest[k] = math.sqrt(farthest)
 
 

@@ -52,8 +52,8 @@ def sample(
       `fibonacci(10_000)`: every point that has one of them comes, each exactly once;
     - `count`, how many samples;
     - `angle`, in degrees, at most 90: how far the normal of any point may be from that of the
-      sample nearest in normal (at singular points of the spline, such as cusps, as far as triangles
-      of a thousandth of a patch resolve it);
+      sample nearest in normal (next to singular points of the spline, such as cusps, only as far as
+      triangles of a thousandth of a patch resolve it);
     - `coverage`, a length of the surface: how far any point may be from the nearest sample.
 
     `density` says where they are:

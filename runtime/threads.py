@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import os
 import sys
-import threading
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
-from functools import cache
 from itertools import islice
 from typing import TypeVar
 
@@ -47,7 +45,7 @@ def over_ranges(
     the work. With `progress`, a bar on standard error shows work that takes longer than a second.
     """
     starts = range(0, total, size)
-    workers = 1 if _HERE.works else min(thread_count(threads), len(starts))
+    workers = min(thread_count(threads), len(starts))
     if workers <= 1:
         results = (work(first, min(first + size, total)) for first in starts)
     else:
@@ -55,40 +53,22 @@ def over_ranges(
     yield from shown(results, len(starts), progress)
 
 
-class _Here(threading.local):
-    """Whether this thread works for a pool: then it does all ranges itself, and waits for none."""
-
-    works = False
-
-
-_HERE = _Here()
-
-
-@cache
-def _pool(workers: int) -> ThreadPoolExecutor:
-    """Return threads that stay: to start them anew takes longer than many a stage."""
-    return ThreadPoolExecutor(workers, "gaussmap", lambda: setattr(_HERE, "works", True))
-
-
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_pool.cache_clear)  # a child has none of the threads
-
-
 def _in_threads(
     work: Callable[[int], Result], starts: Iterable[int], workers: int
 ) -> Iterator[Result]:
     """Yield work(start) in order, computed by threads that are only a little ahead."""
-    waiting, pool = iter(starts), _pool(workers)
-    ahead = deque(pool.submit(work, start) for start in islice(waiting, AHEAD * workers))
-    try:
-        while ahead:
-            result = ahead.popleft().result()
-            ahead.extend(pool.submit(work, start) for start in islice(waiting, 1))
-            yield result
-            del result  # it is not to be kept alive while the next one is computed
-    finally:
-        for future in ahead:
-            future.cancel()  # Ctrl-C must not wait for all ranges
+    waiting = iter(starts)
+    with ThreadPoolExecutor(workers) as pool:
+        try:
+            ahead = deque(pool.submit(work, start) for start in islice(waiting, AHEAD * workers))
+            while ahead:
+                result = ahead.popleft().result()
+                ahead.extend(pool.submit(work, start) for start in islice(waiting, 1))
+                yield result
+                del result  # it is not to be kept alive while the next one is computed
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)  # Ctrl-C must not wait for all ranges
+            raise
 
 
 def shown(results: Iterator[Result], count: int, progress: bool) -> Iterator[Result]:

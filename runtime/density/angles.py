@@ -38,13 +38,13 @@ def cover_normals(cover: Cover, angle: float) -> float:
     while len(pieces):
         rows = pieces.middles()
         turns = pieces.turns(rows)
-        distances = _distances(cover.points[:, 3:], rows, cover.wanted.threads)
-        far = (distances > near) & rows[:, 3:6].any(axis=1)
+        distances = _distances(cover, 0, rows)
+        far = distances > near
         if far.any():
             first = cover.count
-            cover.add(pieces[far][_spread(rows[far, 3:6], near)])
-            distances[far] = _distances(cover.points[first:, 3:], rows[far], cover.wanted.threads)
-        deepest = np.ptp(pieces.corners[:, :, 0], axis=1) <= DEEPEST
+            cover.add(pieces[far][_spread(rows[far, 3:6], near, cover.wanted.threads)])
+            distances[far] = _distances(cover, first, rows[far])
+        deepest = np.ptp(pieces.corners, axis=1).max(axis=1) <= DEEPEST
         turns[deepest] = np.minimum(turns[deepest], limit - near)
         far = distances + turns > limit
         largest = max(largest, float((distances + turns)[~far].max(initial=0.0)))
@@ -52,14 +52,18 @@ def cover_normals(cover: Cover, angle: float) -> float:
     return math.degrees(2.0 * math.asin(min(largest, limit) / 2.0))
 
 
-def _distances(normals: Array, rows: Array, threads: int | None) -> Array:
-    """Return how far normals of rows are from the nearest of others (N, 3)."""
-    return tree_of(normals).query(rows[:, 3:6], workers=thread_count(threads))[0]
+def _distances(cover: Cover, first: int, rows: Array) -> Array:
+    """Return how far normals of rows are from those of the samples from number `first` on.
+
+    That is 0 where there is no normal.
+    """
+    tree, threads = tree_of(cover.points[first:, 3:]), thread_count(cover.wanted.threads)
+    return np.where(rows[:, 3:6].any(axis=1), tree.query(rows[:, 3:6], workers=threads)[0], 0.0)
 
 
-def _spread(normals: Array, near: float) -> Indices:
+def _spread(normals: Array, near: float, threads: int | None) -> Indices:
     """Choose some of normals (M, 3), so that all others are as near to one."""
-    candidates = Candidates(_in_normal_space(normals, np.zeros(len(normals))), near)
+    candidates = Candidates(_in_normal_space(normals, np.zeros(len(normals))), near, threads)
     chosen, radius = np.empty(0, dtype=np.int64), FIRST * near
     while radius > near:
         radius = max(STEP * radius, near)

@@ -10,7 +10,7 @@ import numpy as np
 from ..samples import Samples
 from .candidates import Candidates
 from .law import Wanted
-from .pieces import Array, Pieces, cut_patches
+from .pieces import Array, Pieces, cut_patches, refuse_more
 
 __all__ = ["STEP", "Cover"]
 
@@ -26,6 +26,8 @@ FINE, SMALLER = 0.7, 1.3
 # If all of the surface has to be near enough, and not only candidates, triangles that may hold a
 # place which is not are cut until they reach so far.
 FINEST = 0.1
+# No more than so many at a time, or so many times as many as there were.
+MANY, TIMES = 2e7, 8
 
 
 class Cover:
@@ -183,7 +185,9 @@ class Cover:
             far = candidates.distances > (1.0 - shares) * radius
             uncut = far & (shares <= FINEST)
             small.append(pieces[uncut])
-            pieces = pieces[far & ~uncut].halves.halves
+            far &= ~uncut
+            refuse_more(self.wanted, 4 * far.sum(), max(MANY, TIMES * len(self.pieces)))
+            pieces = pieces[far].halves.halves
             candidates = self._told(pieces.middles(), radius, radius)
             self._choose(pieces, candidates, radius, most)
         self._choose_strictly(sum(small[1:], start=small[0]), radius, most)

@@ -120,12 +120,12 @@ class Filling:
         return wanted.with_floor(wanted.total / wanted.area / WIDEST_GAP**2)
 
     def _wanted(self, law: Law) -> Wanted:
-        """Return a law on the spline; SurfaceError if that has no area."""
+        """Return a law on the spline; SurfaceError if that has no area but that of rounding."""
         wanted = Wanted(self.spline, law, self.threads)
-        if not wanted.area > 0.0:
+        if not wanted.area > wanted.size * wanted.noise:
             raise SurfaceError(
-                f"surface {self.spline.name!r} has no area: all its points lie on one line or are "
-                'one point; only density="gauss" takes it.'
+                f"surface {self.spline.name!r} has no area beyond rounding: all its points lie on "
+                'one curve or are one point; only density="gauss" takes it.'
             )
         return wanted
 

@@ -17,6 +17,8 @@ __all__ = ["Law", "Wanted"]
 Array = NDArray[np.float64]
 
 PATCHES_AT_A_TIME = 1 << 12
+# Coordinates carry so many roundings of the largest of them.
+NOISE = 2.0**-46
 
 
 @dataclass(frozen=True)
@@ -63,6 +65,11 @@ class Wanted:
         """A length that no two points of the surface are apart."""
         points = self.spline.coefficients.reshape(-1, 3)
         return float(np.linalg.norm(np.ptp(points, axis=0))) * self.unit
+
+    @property
+    def noise(self) -> float:
+        """The rounding of the coordinates."""
+        return NOISE * float(np.abs(self.spline.coefficients).max()) * self.unit
 
     @property
     def reaches(self) -> Array:

@@ -13,7 +13,7 @@ from ..errors import InputError
 from ..threads import over_ranges
 from .law import Wanted
 
-__all__ = ["Array", "Indices", "Pieces", "cut_patches", "parts_of_patches"]
+__all__ = ["Array", "Indices", "Pieces", "cut_patches", "parts_of_patches", "refuse_more"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -141,17 +141,22 @@ def _cut_across(pieces: Pieces, across: NDArray[np.bool_], radius: float) -> Pie
 def parts_of_patches(wanted: Wanted, radius: float) -> tuple[Indices, NDArray[np.bool_]]:
     """Return in how many parts `cut_patches` cuts the sides of each patch (patches,).
 
-    And which patches are cut across instead. Raises what that raises.
+    And which patches are cut across instead. Raises InputError if there were more than MOST.
     """
     with np.errstate(divide="ignore", over="ignore"):
         rates = np.sqrt(wanted.largest) / radius
         small = np.sqrt(wanted.areas / NARROW) * rates
         asked = np.maximum(np.ceil(np.minimum(wanted.reaches * rates, small)), 1.0)
         total = float((asked * asked).sum())
-    if not total <= MOST:
-        raise InputError(
-            f"surface {wanted.spline.name!r} would have to be searched in more than {MOST:.0e} "
-            "places; ask for a larger coverage or angle, or for fewer samples or normals."
-        )
+    refuse_more(wanted, total, MOST)
     across = wanted.areas < ACROSS * wanted.reaches**2
     return np.where(across, 1, asked.astype(np.int64)), across
+
+
+def refuse_more(wanted: Wanted, number: float, most: float) -> None:
+    """Raise InputError if the number of places to be searched is larger than what is possible."""
+    if not number <= most:
+        raise InputError(
+            f"surface {wanted.spline.name!r} would have to be searched in more than {most:.0e} "
+            "places; ask for a larger coverage or angle, or for fewer samples or normals."
+        )

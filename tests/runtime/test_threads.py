@@ -1,7 +1,6 @@
 """Threads: the same results in the same order, and errors that end the work."""
 
 import os
-import signal
 import threading
 import time
 from typing import Any
@@ -50,36 +49,6 @@ def test_an_error_ends_the_work(threads, error):
     with pytest.raises(error, match="three"):
         list(over_ranges(work, 1000, 1, threads))
     assert len(done) < 500
-
-
-def test_ranges_within_ranges():
-    """A thread that works on a range does not wait for others: they might wait for it."""
-
-    def work(first, last):
-        return sum(over_ranges(lambda low, high: high - low, 100, 1, 2))
-
-    assert list(over_ranges(work, 20, 1, 2)) == [100] * 20
-
-
-def test_threads_stay():
-    def names():
-        return set(over_ranges(lambda *_: threading.current_thread().name, 50, 1, 2))
-
-    names()
-    before = threading.active_count()
-    assert names() <= {"gaussmap_0", "gaussmap_1"}
-    assert threading.active_count() == before
-
-
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
-@pytest.mark.filterwarnings("ignore:.*fork")
-def test_a_forked_process_has_threads_of_its_own():
-    assert list(over_ranges(lambda first, last: last, 5, 1, 2)) == [1, 2, 3, 4, 5]
-    child = os.fork()
-    if child == 0:
-        signal.alarm(20)  # if it waits for the threads of its parent
-        os._exit(0 if list(over_ranges(lambda first, last: last, 5, 1, 2))[-1] == 5 else 1)
-    assert os.waitpid(child, 0)[1] == 0
 
 
 def test_how_many_threads(monkeypatch):

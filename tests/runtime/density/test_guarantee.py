@@ -313,3 +313,46 @@ def test_angles_are_kept_on_crumpled_splines(seed):
     _, normals = places(spline, 700)
     samples = gm.sample(spline, angle=10.0)
     assert widest_angle(samples, normals) <= (samples.report.angle or 0.0) <= 10.0
+
+
+def test_angles_where_half_a_surface_is_a_line():
+    """There is no normal, and none is looked for again and again."""
+    surface = gm.Surface.from_callable(
+        lambda u, v: np.stack([u, np.maximum(v, 0.0), 0.1 * np.maximum(v, 0.0) ** 2], axis=-1),
+        ((-1.0, 1.0), (-1.0, 1.0)),
+    )
+    samples = gm.sample(surface, angle=3.0, cells=(8, 8))
+    assert widest_angle(samples, places(gm.fit(surface, (8, 8)))[1]) <= 3.0
+    assert len(samples) < 1000
+
+
+CURVES = {
+    "line": lambda u, v: (u, 2.0 * u, -u),
+    "tilted line": lambda u, v: (0.1 * u + 0.7 * v, 0.3 * u + 2.1 * v, -0.2 * u - 1.4 * v),
+    "cubic": lambda u, v: (u, u**2, u**3),
+    "point": lambda u, v: (0.0, 0.0, 0.0),
+}
+
+
+@pytest.mark.parametrize("shift", [0.0, 1e6])
+@pytest.mark.parametrize("name", CURVES)
+@pytest.mark.parametrize("asked", [{"angle": 10.0}, {"coverage": 0.1}, {"count": 100}])
+def test_surfaces_whose_area_is_rounding(name, shift, asked):
+    def f(u, v):
+        return np.stack(np.broadcast_arrays(*CURVES[name](u, v), u, v)[:3], axis=-1) + shift
+
+    surface = gm.Surface.from_callable(f, ((-1.0, 1.0), (-1.0, 1.0)))
+    with pytest.raises(gm.SurfaceError, match="has no area beyond rounding: all its points lie on"):
+        gm.sample(surface, cells=(6, 6), **asked)
+
+
+def test_too_long_and_narrow_to_be_searched(monkeypatch):
+    """Where flat is as curved as a sphere of the same area, samples lie very near on a hair."""
+    monkeypatch.setattr("gaussmap.runtime.density.cover.MANY", 1e5)
+    hair = gm.Surface.from_callable(
+        lambda u, v: np.stack([u, 1e-9 * v, 0.0 * u], axis=-1), ((0.0, 1.0), (0.0, 1.0))
+    )
+    assert len(gm.sample(hair, count=50, cells=(6, 6))) == 50
+    assert len(gm.sample(hair, coverage=0.02, cells=(6, 6))) <= 60
+    with pytest.raises(gm.InputError, match=r"searched in more than 1e\+05 places"):
+        gm.sample(hair, angle=10.0, cells=(6, 6))
