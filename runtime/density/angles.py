@@ -10,7 +10,7 @@ from ..threads import thread_count
 from ..trees import tree_of
 from .candidates import Candidates
 from .cover import STEP, Cover
-from .pieces import Array, Indices
+from .pieces import Array, Indices, cut_patches
 
 # A normal is near enough if it is nearer by this part of an angle. Triangles are not cut to sides
 # that are shorter than DEEPEST of those of a patch: next to singular points normals turn at once.
@@ -30,11 +30,11 @@ def cover_normals(cover: Cover, angle: float) -> float:
 
     Where the normals that were asked lie as dense as that, only places at the border of the
     Gaussian image are farther from all of them: their nearest normal may lie outside it. Returns
-    the largest angle of any normal, in degrees; next to singular points, of those in the middles
-    of triangles.
+    the largest angle of any normal, in degrees: `angle` if there are singular points, next to which
+    only normals in the middles of triangles are known.
     """
     limit = 2.0 * math.sin(math.radians(angle) / 2.0)
-    near, largest, pieces = (1.0 - SMALL) * limit, 0.0, cover.pieces
+    near, largest, pieces = (1.0 - SMALL) * limit, 0.0, cut_patches(cover.wanted, math.inf)
     while len(pieces):
         rows = pieces.middles()
         turns = pieces.turns(rows)
@@ -44,11 +44,11 @@ def cover_normals(cover: Cover, angle: float) -> float:
             first = cover.count
             cover.add(pieces[far][_spread(rows[far, 3:6], near, cover.wanted.threads)])
             distances[far] = _distances(cover, first, rows[far])
-        deepest = np.ptp(pieces.corners, axis=1).max(axis=1) <= DEEPEST
-        turns[deepest] = np.minimum(turns[deepest], limit - near)
-        far = distances + turns > limit
-        largest = max(largest, float((distances + turns)[~far].max(initial=0.0)))
-        pieces = pieces[far & ~deepest].quarters
+        deepest = np.ptp(pieces.corners[:, :, 0], axis=1) <= DEEPEST
+        chords = distances + turns
+        far = (chords > limit) & ~deepest
+        largest = max(largest, float(chords[~far].max(initial=0.0)))
+        pieces = pieces[far].quarters
     return math.degrees(2.0 * math.asin(min(largest, limit) / 2.0))
 
 
