@@ -174,16 +174,10 @@ class Search:
         return np.array([end == "none" for end in (south, east, north, west)])
 
     @cached_property
-    def noise(self) -> float:
-        """The rounding of the scaled coordinates."""
-        return kernels.DATA_ERROR * float(
-            np.abs(self.spline.coefficients * self.spline.scale).max()
-        )
-
-    @cached_property
     def hopeless(self) -> bool:
         """Whether all patches are developable, up to the rounding of their coordinates."""
-        return kernels.all_developable(self.spline.coefficients, self.spline.scale, self.noise)
+        spline = self.spline
+        return kernels.all_developable(spline.coefficients, spline.scale, spline.noise)
 
     @cached_property
     def kernel(self) -> tuple[Callable[..., tuple[int, int]], tuple[Any, ...]]:
@@ -195,13 +189,13 @@ class Search:
 
     def pairs(self, first: int, last: int) -> list[Pairs]:
         """Return what the patches first, …, last − 1 yield, in one or more parts."""
-        patches_with, arguments = self.kernel
+        (patches_with, arguments), spline = self.kernel, self.spline
         parts, room, begin = [], ROOM, first
         while begin < last:
             found, doubtful = (np.empty((room, 2), dtype=np.int64) for _ in range(2))
             bounds, counts = np.empty(room), np.zeros(3, dtype=np.int64)
             end, needed = patches_with(
-                self.spline.coefficients, self.spline.scale, self.noise, self.border, *arguments,
+                spline.coefficients, spline.scale, spline.noise, self.border, *arguments,
                 begin, last, found, doubtful, bounds, counts,
             )  # fmt: skip
             sure, open_, developable = counts.tolist()

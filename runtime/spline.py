@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..generated import spline as kernels
+from ..generated.sampler import DATA_ERROR
 from .checks import parameter_arrays, whole_number
 from .errors import InputError, SurfaceError
 from .ring import Border, Sides, coefficients_with_ring, vertices_with_ring
@@ -101,6 +102,11 @@ class Spline:
         """A power of two that brings the differences of neighbouring coefficients to about 1."""
         steps = [np.abs(np.diff(self.coefficients, axis=axis)).max() for axis in (0, 1)]
         return scale_to_one(float(max(steps)))
+
+    @cached_property
+    def noise(self) -> float:
+        """The rounding of the coordinates, times `scale`."""
+        return DATA_ERROR * float(np.abs(self.coefficients * self.scale).max())
 
     def evaluate(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
         """Return points (..., 3) at parameters that broadcast together.

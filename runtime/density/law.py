@@ -17,8 +17,6 @@ __all__ = ["Law", "Wanted"]
 Array = NDArray[np.float64]
 
 PATCHES_AT_A_TIME = 1 << 12
-# Coordinates carry so many roundings of the largest of them.
-NOISE = 2.0**-46
 
 
 @dataclass(frozen=True)
@@ -69,7 +67,7 @@ class Wanted:
     @property
     def noise(self) -> float:
         """The rounding of the coordinates."""
-        return NOISE * float(np.abs(self.spline.coefficients).max()) * self.unit
+        return kernels.SCALE * self.spline.noise
 
     @property
     def reaches(self) -> Array:
