@@ -25,11 +25,13 @@ def main() -> int:
     gc.disable()
     from .runtime import cli
 
-    gc.freeze()
-    gc.enable()
-    if heard:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-    code = cli.main()
+    def ready() -> None:
+        gc.freeze()
+        gc.enable()
+        if heard:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
+
+    code = cli.main(ready=ready)
     if heard:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
     gc.freeze()

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import InputError, UnknownNameError
+from .limits import MOST
 
 __all__ = [
     "checked_array",
@@ -24,10 +25,6 @@ __all__ = [
     "real_values",
     "whole_number",
 ]
-
-
-# Beyond this a count is a mistake: no memory holds so many normals, cells or samples.
-MOST = 10**9
 
 
 def known_name(name: str, known: Sequence[str], kind: str, command: str = "") -> str:

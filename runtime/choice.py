@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .bins import NormalBins
-from .checks import MOST
 from .lattice import Lattice
+from .limits import MOST
 from .search import Hits, find
 from .spline import Spline
 from .visibility import visible_solid_angle

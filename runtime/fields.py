@@ -5,12 +5,13 @@ from __future__ import annotations
 import difflib
 from collections.abc import Sequence
 from contextlib import suppress
-from typing import Any
-
-import numpy as np
-from numpy.typing import DTypeLike, NDArray
+from typing import TYPE_CHECKING, Any
 
 from .errors import InputError
+
+if TYPE_CHECKING:  # names of fields stand in the help of commands, which is quick without NumPy
+    import numpy as np
+    from numpy.typing import DTypeLike, NDArray
 
 __all__ = [
     "ARRAY_NAMES",
@@ -53,6 +54,8 @@ def row_shape(name: str) -> tuple[int, ...]:
 
 def new_field(name: str, count: int, dtype: DTypeLike) -> NDArray[Any]:
     """Return an array for the field of `count` samples, not yet filled."""
+    import numpy as np
+
     return np.empty((count, *_ROWS[name]), dtype=dtype)
 
 
@@ -81,6 +84,8 @@ def checked_fields(fields: Sequence[str] | None) -> tuple[str, ...]:
 
 def checked_dtype(dtype: DTypeLike) -> np.dtype[np.floating]:
     """Return float32 or float64, in this machine's byte order; InputError for any other type."""
+    import numpy as np
+
     known = np.dtype(np.float32), np.dtype(np.float64)
     with suppress(TypeError, SyntaxError):  # NumPy reads some texts as Python
         if dtype is not None and np.dtype(dtype) in known:

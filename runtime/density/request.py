@@ -10,14 +10,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import known_name, whole_number
 from ..errors import InputError
+from ..limits import MOST_STEPS
 from ..sphere import as_normals, frequency_within, icosphere
 from ..threads import thread_count
 
-__all__ = ["DENSITIES", "MOST_STEPS", "Request", "checked_request"]
+__all__ = ["DENSITIES", "Request", "checked_request"]
 
 DENSITIES = ("gauss", "balanced", "uniform")
-# More steps would hardly move anything.
-MOST_STEPS = 10
 # Beyond this |K|^α is so uneven that all samples crowd round the point that bends most.
 LARGEST_POWER = 8.0
 

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -13,8 +14,9 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime import cli, io
+from gaussmap.runtime import io
 from gaussmap.runtime.cli import main
+from gaussmap.runtime.commands import sample as sampling
 
 FEW = ["--count", "60", "--cells", "8", "8"]
 
@@ -209,13 +211,13 @@ def test_every_file_type(suffix: str, capsys: pytest.CaptureFixture[str]) -> Non
 
 def test_quiet(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     progress = []
-    sample = cli.sample
+    sample = sampling.sample
 
     def spy(*arguments: object, **options: object) -> gm.Samples:
         progress.append(options["progress"])
         return sample(*arguments, **options)  # pyright: ignore[reportArgumentType]
 
-    monkeypatch.setattr(cli, "sample", spy)
+    monkeypatch.setattr(sampling, "sample", spy)
     assert main(["sample", "torus", *FEW, "-o", "a.npz", "--quiet"]) == 0
     assert capsys.readouterr() == ("", "")
     assert main(["sample", "torus", *FEW, "-o", "a.npz"]) == 0
@@ -229,7 +231,7 @@ def test_the_default_is_a_count(monkeypatch: pytest.MonkeyPatch) -> None:
         asked.update(options)
         raise gm.InputError("enough")
 
-    monkeypatch.setattr(cli, "sample", spy)
+    monkeypatch.setattr(sampling, "sample", spy)
     assert main(["sample", "torus", "-o", "a.npz"]) == 2
     assert (asked["count"], asked["normals"]) == (10_000, None)
     assert main(["sample", "torus", "--frequency", "2", "--threads", "3", "-o", "a.npz"]) == 2
@@ -325,21 +327,20 @@ HEIGHTS = ["--spacing", "1", "1", *TO]
     ("command", "message"),
     [
         # the command itself
-        ([], r"required: COMMAND \(see `gaussmap --help`\)"),
-        (["sampel"], "invalid choice: 'sampel'"),
-        (["sample"], r"required: SURFACE, -o/--output \(see `gaussmap sample --help`\)"),
-        (["sample", "torus"], r"required: -o/--output"),
-        (["sample", "torus", "-o"], "-o/--output: expected one argument"),
-        (["sample", "torus", "--cout", "5", *TO], "unrecognized arguments: --cout 5"),
-        (["sample", "torus", "--coun", "5", *TO], "unrecognized arguments: --coun 5"),
-        (["sample", "torus", "--count", "5", "--frequency", "3", *TO], "not allowed with"),
+        (["sampel"], r"no such command 'sampel'.*'sample'.* \(see `gaussmap --help`\)"),
+        (["sample"], r"missing argument 'SURFACE' \(see `gaussmap sample --help`\)"),
+        (["sample", "torus"], r"missing option '-o' / '--output' \(see `gaussmap sample --help`\)"),
+        (["sample", "torus", "-o"], "option '-o' requires an argument .*gaussmap sample --help"),
+        (["sample", "torus", "--cout", "5", *TO], "no such option '--cout'.*'--count'"),
+        (["sample", "torus", "--coun", "5", *TO], "no such option '--coun'"),
+        (["sample", "torus", "--count", "5", "--frequency", "3", *TO], "--frequency is not allow"),
         (["sample", "torus", "--random", "5", "--healpix", "4", *TO], "not allowed with"),
         (["sample", "torus", "--seed", "5", *TO], "--seed is for --random COUNT, which is not"),
         (["sample", "torus", "--seed", "5", "--frequency", "3", *TO], "--seed is for --random"),
         (["sample", "torus", "--random", "5", "--seed", "-1", *TO], "--seed: .* from 0 to"),
-        (["sample", "torus", "--random", "5", "--seed", *TO], "--seed: expected one argument"),
+        (["sample", "torus", "--random", "5", "--seed", *TO], "--seed: it must be .*, not '-o'"),
         (["sample", "torus", "--healpix", "3", *TO], "nside must be a power of 2, not 3"),
-        (["--nonsense", "surfaces"], "unrecognized arguments"),
+        (["--nonsense", "surfaces"], "no such option '--nonsense'"),
         # numbers
         *[
             (["sample", "torus", f"--{option}", number, *TO], f"--{option}: it must be a whole")
@@ -356,7 +357,7 @@ HEIGHTS = ["--spacing", "1", "1", *TO]
         (["sample", "torus", "--relax", "11", *TO], "--relax: it must be a whole number"),
         (["sample", "torus", "--progressive", "--fields", "uv", *TO], "needs points and normals"),
         (["sample", "torus", "--cells", "8", "0", *TO], "--cells: it must be a whole number"),
-        (["sample", "torus", "--cells", "8", *TO], "--cells: expected 2 arguments"),
+        (["sample", "torus", "--cells", "8", *TO], "--cells: it must be .*, not '-o'"),
         (["sample", "torus", "--cells", "2", "8", *TO], "at least 3 x 3 cells"),
         (["sample", "ellipsoid", "--cells", "9", "9", *TO], "even number of cells"),
         # surfaces by name
@@ -403,9 +404,9 @@ HEIGHTS = ["--spacing", "1", "1", *TO]
         (["sample", "heights.npy", "--spacing", "nan", "1", *TO], "spacing must be finite"),
         (["sample", "heights.npy", "--spacing", "1", "0", *TO], "spacing must be finite"),
         (["sample", "heights.npy", "--spacing", "1", "y", *TO], "--spacing: it must be a number"),
-        (["sample", "heights.npy", "--spacing", "1", *TO], "--spacing: expected 2 arguments"),
+        (["sample", "heights.npy", "--spacing", "1", *TO], "--spacing: it must be .*, not '-o'"),
         (["sample", "heights.npy", "--periodic", "u", *HEIGHTS], "cannot be periodic"),
-        (["sample", "heights.npy", "--periodic", "w", *HEIGHTS], "--periodic: invalid choice"),
+        (["sample", "heights.npy", "--periodic", "w", *HEIGHTS], "--periodic: 'w' is not one of"),
         (["sample", "heights.npy", "--set", "a=1", *HEIGHTS], "--set is for surfaces by name"),
         (["sample", "points.npy", *HEIGHTS], "--spacing is for elevations, and 'points.npy'"),
         # normals in files
@@ -427,7 +428,7 @@ HEIGHTS = ["--spacing", "1", "1", *TO]
         (["plot", "tours", "-o", "a.png"], "did you mean torus"),
         # lists
         (["surfaces", "tours"], "no surface 'tours'; did you mean torus"),
-        (["surfaces", "torus", "sphere"], "unrecognized arguments: sphere"),
+        (["surfaces", "torus", "sphere"], r"unexpected extra argument \(sphere\)"),
         (["formulas", "support_functoin"], r"no formula 'support_functoin'; did you mean"),
     ],
 )  # fmt: skip
@@ -447,7 +448,7 @@ def test_bad_output_is_found_before_the_work(monkeypatch: pytest.MonkeyPatch) ->
     def work(**_: object) -> None:
         pytest.fail("worked in vain")
 
-    monkeypatch.setattr(cli, "sample", work)
+    monkeypatch.setattr(sampling, "sample", work)
     assert main(["sample", "torus", "-o", "a.stl"]) == 2
     assert main(["sample", "torus", "-o", "missing/a.ply"]) == 2
 
@@ -472,7 +473,7 @@ def test_no_memory(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.Monke
     def sample(**_: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr(cli, "sample", sample)
+    monkeypatch.setattr(sampling, "sample", sample)
     assert main(["sample", "torus", *TO]) == 2
     assert re.fullmatch("gaussmap: error: there is not enough memory.*\n", capsys.readouterr().err)
 
@@ -481,7 +482,7 @@ def test_a_bug_keeps_its_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
     def sample(**_: object) -> None:
         raise ZeroDivisionError
 
-    monkeypatch.setattr(cli, "sample", sample)
+    monkeypatch.setattr(sampling, "sample", sample)
     with pytest.raises(ZeroDivisionError):
         main(["sample", "torus", *TO])
 
@@ -512,7 +513,7 @@ def test_interrupted_in_a_callback(
         sys.unraisablehook(Unraisable())  # pyright: ignore[reportArgumentType]
         raise RuntimeError("compilation failed")
 
-    monkeypatch.setattr(cli, "sample", sample)
+    monkeypatch.setattr(sampling, "sample", sample)
     hook = sys.unraisablehook
     assert main(["sample", "torus", *TO]) == 130
     assert capsys.readouterr() == ("", "gaussmap: interrupted\n")
@@ -587,3 +588,75 @@ def test_heavy_imports_are_lazy() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "set()\n"
+
+
+@compiled
+@pytest.mark.parametrize(
+    "arguments", [[], ["--help"], ["sample", "--help"], ["sample", "torus"], ["--version"]]
+)
+def test_help_and_usage_need_no_arrays(arguments: list[str]) -> None:
+    code = (
+        f"import sys; from gaussmap.runtime.cli import main; main({arguments})\n"
+        "print({'numpy', 'numba', 'scipy', 'sympy'} & set(sys.modules), file=sys.stderr)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stderr.endswith("set()\n")
+
+
+def test_a_bare_call_shows_help(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--help"]) == 0
+    text = capsys.readouterr().out
+    assert main([]) == 2
+    assert capsys.readouterr() == ("", text)
+
+
+# ── Completion by shells ─────────────────────────────────────────────────────────────────────────
+
+
+def completed(words: str) -> list[str]:
+    """Return what a shell is offered for the last word."""
+    variables = {
+        "_GAUSSMAP_COMPLETE": "bash_complete",
+        "COMP_WORDS": words,
+        "COMP_CWORD": str(len(words.split(" ")) - 1),
+    }
+    done = subprocess.run(
+        [sys.executable, "-m", "gaussmap"],
+        capture_output=True, text=True, check=True, env={**os.environ, **variables},
+    )  # fmt: skip
+    assert done.stderr == ""
+    return done.stdout.splitlines()
+
+
+@compiled
+@pytest.mark.parametrize(
+    ("words", "offered"),
+    [
+        ("gaussmap ", ["sample", "mesh", "plot", "surfaces", "formulas"]),
+        ("gaussmap sample --co", ["--count", "--coverage"]),
+        ("gaussmap plot tor", ["torus", "file:tor"]),
+        ("gaussmap surfaces tor", ["torus"]),
+        ("gaussmap mesh torus --density un", ["uniform"]),
+        ("gaussmap mesh torus -o a", ["file:a"]),
+    ],
+)
+def test_completion(words: str, offered: list[str]) -> None:
+    lines = [line.partition(",") for line in completed(words)]
+    assert [x if kind == "plain" else f"{kind}:{x}" for kind, _, x in lines] == offered
+
+
+@compiled
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_completion_is_installed(shell: str) -> None:
+    if shutil.which(shell) is None:
+        pytest.skip(f"{shell} is not installed")
+    source = f"{sys.executable} -m gaussmap"
+    install = f"_GAUSSMAP_COMPLETE={shell}_source {source}"
+    evaluate = f"{install} | source" if shell == "fish" else f'eval "$({install})"'
+    asked = {"bash": "complete -p gaussmap", "fish": "complete -c gaussmap"}
+    before = "autoload -Uz compinit; compinit -u; " if shell == "zsh" else ""
+    after = asked.get(shell, "echo ${_comps[gaussmap]}")
+    done = subprocess.run(
+        [shell, "-c", f"{before}{evaluate}; {after}"], capture_output=True, text=True, check=True
+    )
+    assert "_gaussmap_completion" in done.stdout

@@ -83,8 +83,8 @@ def test_what_cannot_be_finished_is_not_begun(
         (["--html", "missing/a.html"], "'.*missing' does not exist"),
         (["--html", "file.html/a.html"], "is not a folder"),
         (["--html", "folder.html"], "'folder.html' is a folder"),
-        (["--html"], "argument --html: expected one argument"),
-        (["--html", "a.html", "--latex"], "not allowed with argument"),
+        (["--html"], "option '--html' requires an argument"),
+        (["--html", "a.html", "--latex"], "--html is not allowed with --latex"),
         (["envelope", "--html", "a.html"], "--html writes all formulas"),
     ],
 )

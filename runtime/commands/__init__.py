@@ -1,0 +1,1 @@
+"""The commands: `parser` declares them without heavy imports, a module each does their work."""

@@ -1,0 +1,103 @@
+"""What `sample`, `mesh` and `plot` share: surfaces and normals that are named or in files."""
+
+from __future__ import annotations
+
+import os
+from contextlib import suppress
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..checks import known_name
+from ..errors import InputError
+from ..sphere import healpix, icosphere, random_normals
+from ..surface import Surface
+from ..surfaces import CATALOGUE, names, surface
+from .arrays import array_file, is_array_file, read_array
+
+__all__ = ["arguments"]
+
+PERIODIC = {"none": (False, False), "u": (True, False), "v": (False, True), "uv": (True, True)}
+
+
+def arguments(options: SimpleNamespace, default_count: int) -> dict[str, Any]:
+    """Return the arguments of `sampling.sample` that were given."""
+    _spare_inputs(options)
+    surface_, normals = _surface(options), _normals(options)
+    asked = normals, options.count, options.angle, options.coverage
+    return {
+        "surface": surface_,
+        "normals": normals,
+        "count": default_count if all(x is None for x in asked) else options.count,
+        "angle": options.angle,
+        "coverage": options.coverage,
+        "density": options.density,
+        "relax": options.relax,
+        "cells": options.cells,
+        "threads": options.threads,
+        "progress": not options.quiet,
+    }
+
+
+def _surface(options: SimpleNamespace) -> Surface:
+    if is_array_file(options.surface):
+        return _grid(options)
+    if Path(options.surface).is_file():
+        raise InputError(f"'{options.surface}' is neither a .npy nor a .npz file; save it as one.")
+    name = known_name(options.surface, names(), "surface", "gaussmap surfaces")
+    if options.spacing is not None:
+        raise InputError(f"--spacing is for elevations in a file, and {name} is a surface by name.")
+    if options.periodic is not None:
+        raise InputError(f"--periodic is for grids in a file; {name} knows where it closes.")
+    parameters = dict(options.set)
+    if len(parameters) < len(options.set):
+        raise InputError("--set gives the same parameter twice; give each once.")
+    for parameter in parameters:
+        known_name(parameter, tuple(CATALOGUE[name]["parameters"]), f"{name} parameter")
+    return surface(name, **parameters)
+
+
+def _grid(options: SimpleNamespace) -> Surface:
+    if options.set:
+        raise InputError("--set is for surfaces by name; a grid in a file has no parameters.")
+    points = read_array(options.surface)
+    if points.ndim == 2 and options.spacing is None:
+        raise InputError(
+            f"'{options.surface}' holds elevations {points.shape}, which need their distances: "
+            "add --spacing DX DY."
+        )
+    if points.ndim == 3 and options.spacing is not None:
+        raise InputError(
+            f"--spacing is for elevations, and '{options.surface}' has the shape {points.shape}."
+        )
+    return Surface.from_grid(
+        points,
+        spacing=options.spacing,
+        periodic=PERIODIC[options.periodic or "none"],
+        name=array_file(options.surface).name,
+    )
+
+
+def _normals(options: SimpleNamespace) -> NDArray[np.float64] | None:
+    if options.seed is not None and options.random is None:
+        raise InputError("--seed is for --random COUNT, which is not there.")
+    if options.frequency is not None:
+        return icosphere(options.frequency)
+    if options.healpix is not None:
+        return healpix(options.healpix)
+    if options.random is not None:
+        return random_normals(options.random, seed=options.seed or 0)
+    return None if options.normals is None else read_array(options.normals)
+
+
+def _spare_inputs(options: SimpleNamespace) -> None:
+    """Refuse to write over a file that is read."""
+    for source in (options.surface, options.normals):
+        if source is not None and is_array_file(source):
+            # If one of the two is not there, that is said where it is opened.
+            with suppress(OSError):
+                if os.path.samefile(array_file(source), options.output):
+                    raise InputError(f"'{options.output}' is read; write to another file.")

@@ -1,0 +1,23 @@
+"""`gaussmap mesh`."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+from ..io import check_target
+from ..meshes.files import MESH_SUFFIXES
+from ..sampling import sample
+from .console import summarize
+from .inputs import arguments
+
+__all__ = ["run"]
+
+
+def run(options: SimpleNamespace) -> None:
+    """Sample a surface and write a mesh of the samples to a file."""
+    check_target(options.output, MESH_SUFFIXES)
+    fields = ("points", "normals", "uv")
+    samples = sample(**arguments(options, default_count=10_000), fields=fields)
+    mesh = samples.mesh(angle=options.deviation)
+    mesh.write(options.output)
+    summarize(mesh, options)
