@@ -9,10 +9,11 @@ from functools import cached_property
 import gaussmap as gm
 import numpy as np
 from gaussmap.docs.drawing import MESH, TINTS, Floats, Globe, Picture, panels
-from gaussmap.generated import patch as kernels
+from gaussmap.generated import patch as formulas
+from gaussmap.generated.vectors import Patch as Vectors
+from gaussmap.runtime.formula_calls import python_function, vector
 from gaussmap.runtime.pictures.palette import INK
 from gaussmap.runtime.pictures.scene import Scene, quadrangles, view
-from gaussmap.runtime.plain import plain
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -45,14 +46,14 @@ class Patch:
         return cls(2 * surface((x + y) / 2) - (surface(x) + surface(y)) / 2)
 
     @cached_property
-    def vectors(self) -> tuple[float, ...]:
-        """The components of a, …, e."""
-        return kernels.power_form(*self.net.ravel())[:15]
+    def vectors(self) -> Vectors:
+        """The vectors a, …, e, p."""
+        return python_function(formulas.power_form)(*map(vector, self.net))
 
     @cached_property
     def control_normals(self) -> Floats:
         """The Bézier net (6, 3) of the normal field."""
-        normals = np.reshape(kernels.control_normals(*self.vectors), (6, 3))
+        normals = np.array(python_function(formulas.control_normals)(self.vectors))
         return normals[[0, 3, 5, 1, 2, 4]]  # they come as 200, 110, 101, 020, 011, 002
 
     @cached_property
@@ -70,7 +71,7 @@ class Patch:
     def tints(self) -> Floats:
         """A colour for each quadrangle of the mesh: blue where it is elliptic, else orange."""
         normals = bezier(self.control_normals, quadrangles(self.mesh).mean(axis=1))
-        D = plain(kernels.forms)(*self.vectors, *normals.T)[0]
+        D = python_function(formulas.forms)(self.vectors, vector(normals))[0]
         return TINTS[1 + np.sign(D).astype(int)]
 
 

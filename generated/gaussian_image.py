@@ -8,24 +8,11 @@ fast-math.
 
 import math
 
-import numba
-
-OPTIONS = {"nogil": True, "error_model": "numpy", "fastmath": False}
+from .vectors import Vector, inline
 
 
-def jit(function):
-    """Compile on the first call; keep the machine code on disk where a folder can be written."""
-    try:
-        return numba.njit(cache=True, **OPTIONS)(function)
-    except RuntimeError:  # no writable cache folder
-        return numba.njit(**OPTIONS)(function)
-
-
-# --- formulas -------------------------------------------------------------------------------------
-
-
-@jit
-def boundary_cones(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z):
+@inline
+def boundary_cones(patch):
     """The rows of the symmetric matrices of the three quadratic cones U = 0, V = 0, W = 0 that
     bound the Gaussian image of a patch.
 
@@ -44,6 +31,11 @@ def boundary_cones(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e
 
     Source: Sect. 3.2; 369 operations as written, 128 here.
     """
+    a_x, a_y, a_z = patch.a
+    b_x, b_y, b_z = patch.b
+    c_x, c_y, c_z = patch.c
+    d_x, d_y, d_z = patch.d
+    e_x, e_y, e_z = patch.e
     t0 = b_x * e_x
     t1 = c_x * d_x
     U_x_x = t0 - t1
@@ -111,38 +103,20 @@ def boundary_cones(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e
     W_z_y = t38
     W_z_z = a_z * c_z - b_z * b_z - t27 + t28 + t34
     return (
-        U_x_x,
-        U_x_y,
-        U_x_z,
-        U_y_x,
-        U_y_y,
-        U_y_z,
-        U_z_x,
-        U_z_y,
-        U_z_z,
-        V_x_x,
-        V_x_y,
-        V_x_z,
-        V_y_x,
-        V_y_y,
-        V_y_z,
-        V_z_x,
-        V_z_y,
-        V_z_z,
-        W_x_x,
-        W_x_y,
-        W_x_z,
-        W_y_x,
-        W_y_y,
-        W_y_z,
-        W_z_x,
-        W_z_y,
-        W_z_z,
+        Vector(U_x_x, U_x_y, U_x_z),
+        Vector(U_y_x, U_y_y, U_y_z),
+        Vector(U_z_x, U_z_y, U_z_z),
+        Vector(V_x_x, V_x_y, V_x_z),
+        Vector(V_y_x, V_y_y, V_y_z),
+        Vector(V_z_x, V_z_y, V_z_z),
+        Vector(W_x_x, W_x_y, W_x_z),
+        Vector(W_y_x, W_y_y, W_y_z),
+        Vector(W_z_x, W_z_y, W_z_z),
     )
 
 
-@jit
-def boundary_arc(N0_x, N0_y, N0_z, N1_x, N1_y, N1_z, N2_x, N2_y, N2_z, t):
+@inline
+def boundary_arc(N0, N1, N2, t):
     """The normals along an edge of a patch, and their derivative: a quadratic Bézier curve with
     three of the six control normals. Its projection to the sphere is an arc of the boundary of
     the Gaussian image; it lies on one of the cones U = 0, V = 0, W = 0.
@@ -152,6 +126,9 @@ def boundary_arc(N0_x, N0_y, N0_z, N1_x, N1_y, N1_z, N2_x, N2_y, N2_z, t):
 
     Source: Sect. 3.2; 72 operations as written, 48 here.
     """
+    N0_x, N0_y, N0_z = N0
+    N1_x, N1_y, N1_z = N1
+    N2_x, N2_y, N2_z = N2
     t0 = t * t
     t1 = 1 - t
     t2 = t1 * t1
@@ -170,11 +147,11 @@ def boundary_arc(N0_x, N0_y, N0_z, N1_x, N1_y, N1_z, N2_x, N2_y, N2_z, t):
     n_t_y = N2_y * t9 - N1_y * t8 + t * t10 - t10 + t5
     t11 = 2 * N0_z
     n_t_z = N2_z * t9 - N1_z * t8 + t * t11 - t11 + t6
-    return n_x, n_y, n_z, n_t_x, n_t_y, n_t_z
+    return Vector(n_x, n_y, n_z), Vector(n_t_x, n_t_y, n_t_z)
 
 
-@jit
-def boundary_arc_zeros(N0_x, N0_y, N0_z, N1_x, N1_y, N1_z, N2_x, N2_y, N2_z, q_x, q_y, q_z, s):
+@inline
+def boundary_arc_zeros(N0, N1, N2, q, s):
     """The two zeros of the component along q of the normals of a boundary arc. Where the
     normals vanish, at a singular point, that of every q has a zero. s is the sign of z1, so
     that nothing cancels. A discriminant below zero, which rounding may leave of a double zero,
@@ -189,6 +166,10 @@ def boundary_arc_zeros(N0_x, N0_y, N0_z, N1_x, N1_y, N1_z, N2_x, N2_y, N2_z, q_x
 
     Source: beyond the paper; 26 operations as written, 26 here.
     """
+    N0_x, N0_y, N0_z = N0
+    N1_x, N1_y, N1_z = N1
+    N2_x, N2_y, N2_z = N2
+    q_x, q_y, q_z = q
     z0 = N0_x * q_x + N0_y * q_y + N0_z * q_z
     z1 = N1_x * q_x + N1_y * q_y + N1_z * q_z
     z2 = N2_x * q_x + N2_y * q_y + N2_z * q_z
@@ -198,8 +179,8 @@ def boundary_arc_zeros(N0_x, N0_y, N0_z, N1_x, N1_y, N1_z, N2_x, N2_y, N2_z, q_x
     return t1, t2
 
 
-@jit
-def solid_angle(q_x, q_y, q_z, n_x, n_y, n_z, n_t_x, n_t_y, n_t_z):
+@inline
+def solid_angle(q, n, n_t):
     """What a curve n of normals of any length, with the derivative n_t, adds to a solid angle:
     the integral along the boundary of a region of the sphere is the solid angle of the region,
     if it does not hold -q. q is a unit vector.
@@ -208,6 +189,9 @@ def solid_angle(q_x, q_y, q_z, n_x, n_y, n_z, n_t_x, n_t_y, n_t_z):
 
     Source: beyond the paper; 34 operations as written, 28 here.
     """
+    q_x, q_y, q_z = q
+    n_x, n_y, n_z = n
+    n_t_x, n_t_y, n_t_z = n_t
     t0 = math.sqrt(n_x * n_x + n_y * n_y + n_z * n_z)
     S_t = (
         q_x * (n_t_z * n_y - n_t_y * n_z)
@@ -217,8 +201,8 @@ def solid_angle(q_x, q_y, q_z, n_x, n_y, n_z, n_t_x, n_t_y, n_t_z):
     return S_t
 
 
-@jit
-def parabolic_directions(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z):
+@inline
+def parabolic_directions(patch):
     """The coefficients of the binary cubic det[t a − s b, t b − s c, t d − s e] in (s, t): its
     real roots are the directions of the parabolic lines s u + t v = const. It vanishes where
     the patch is developable, and where a, b, c are multiples of one vector, so that the
@@ -231,6 +215,11 @@ def parabolic_directions(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, 
 
     Source: Sect. 3.2; 88 operations as written, 70 here.
     """
+    a_x, a_y, a_z = patch.a
+    b_x, b_y, b_z = patch.b
+    c_x, c_y, c_z = patch.c
+    d_x, d_y, d_z = patch.d
+    e_x, e_y, e_z = patch.e
     t0 = c_y * e_z - c_z * e_y
     t1 = c_z * e_x - c_x * e_z
     t2 = c_x * e_y - c_y * e_x
@@ -255,10 +244,8 @@ def parabolic_directions(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, 
     return k30, k21, k12, k03
 
 
-@jit
-def parabolic_normal(
-    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, s, t
-):  # fmt: skip
+@inline
+def parabolic_normal(patch, s, t):
     """The one normal along a parabolic line of direction (s, t), up to its length and sign:
     three vectors that are multiples of it. They do not all vanish, unless the patch is
     developable or has no normal on the line.
@@ -272,6 +259,11 @@ def parabolic_normal(
 
     Source: Sect. 3.2; 54 operations as written, 54 here.
     """
+    a_x, a_y, a_z = patch.a
+    b_x, b_y, b_z = patch.b
+    c_x, c_y, c_z = patch.c
+    d_x, d_y, d_z = patch.d
+    e_x, e_y, e_z = patch.e
     f1_x = a_x * t - b_x * s
     f1_y = a_y * t - b_y * s
     f1_z = a_z * t - b_z * s
@@ -290,14 +282,11 @@ def parabolic_normal(
     n23_x = f2_y * f3_z - f2_z * f3_y
     n23_y = f2_z * f3_x - f2_x * f3_z
     n23_z = f2_x * f3_y - f2_y * f3_x
-    return n12_x, n12_y, n12_z, n13_x, n13_y, n13_z, n23_x, n23_y, n23_z
+    return Vector(n12_x, n12_y, n12_z), Vector(n13_x, n13_y, n13_z), Vector(n23_x, n23_y, n23_z)
 
 
-@jit
-def parabolic_line(
-    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, n_x, n_y, n_z,
-    s, t
-):  # fmt: skip
+@inline
+def parabolic_line(patch, n, s, t):
     """The parabolic line l_u u + l_v v + l_1 = 0 of direction (s, t) with the normal n; it is
     the line at infinity if l_u = l_v = 0.
 
@@ -312,6 +301,12 @@ def parabolic_line(
 
     Source: Sect. 3.2; 34 operations as written, 34 here.
     """
+    a_x, a_y, a_z = patch.a
+    b_x, b_y, b_z = patch.b
+    c_x, c_y, c_z = patch.c
+    d_x, d_y, d_z = patch.d
+    e_x, e_y, e_z = patch.e
+    n_x, n_y, n_z = n
     A = a_x * n_x + a_y * n_y + a_z * n_z
     B = b_x * n_x + b_y * n_y + b_z * n_z
     C = c_x * n_x + c_y * n_y + c_z * n_z
@@ -323,10 +318,8 @@ def parabolic_line(
     return l_u, l_v, l_1
 
 
-@jit
-def gaussian_curvature_of_derivatives(
-    p_u_x, p_u_y, p_u_z, p_v_x, p_v_y, p_v_z, a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z
-):  # fmt: skip
+@inline
+def gaussian_curvature_of_derivatives(p_u, p_v, a, b, c):
     """The Gaussian curvature of any surface from its first derivatives p_u, p_v and its second
     derivatives a, b, c (by uu, uv, vv).
 
@@ -338,6 +331,11 @@ def gaussian_curvature_of_derivatives(
 
     Source: Sect. 3.2, Remark 3.1; 39 operations as written, 39 here.
     """
+    p_u_x, p_u_y, p_u_z = p_u
+    p_v_x, p_v_y, p_v_z = p_v
+    a_x, a_y, a_z = a
+    b_x, b_y, b_z = b
+    c_x, c_y, c_z = c
     N_x = p_u_y * p_v_z - p_u_z * p_v_y
     N_y = p_u_z * p_v_x - p_u_x * p_v_z
     N_z = p_u_x * p_v_y - p_u_y * p_v_x
@@ -348,51 +346,3 @@ def gaussian_curvature_of_derivatives(
         (N_x * N_x + N_y * N_y + N_z * N_z) * (N_x * N_x + N_y * N_y + N_z * N_z)
     )
     return K
-
-
-# --- the boundary ---------------------------------------------------------------------------------
-
-
-@jit
-def integrate_arcs(arcs, poles, nodes, weights, integrals):
-    """Write the integrals of the solid-angle form along arcs (k, 3, 3), for the poles (k, 3).
-
-    nodes and weights are those of a quadrature on [0, 1]. Where a normal vanishes nothing is added.
-    """
-    for k in range(arcs.shape[0]):
-        N0_x, N0_y, N0_z = arcs[k, 0, 0], arcs[k, 0, 1], arcs[k, 0, 2]
-        N1_x, N1_y, N1_z = arcs[k, 1, 0], arcs[k, 1, 1], arcs[k, 1, 2]
-        N2_x, N2_y, N2_z = arcs[k, 2, 0], arcs[k, 2, 1], arcs[k, 2, 2]
-        q_x, q_y, q_z = poles[k, 0], poles[k, 1], poles[k, 2]
-        total = 0.0
-        for node in range(nodes.size):
-            t = nodes[node]
-            # boundary_arc (Sect. 3.2): 72 operations as written, 48 here
-            t0 = t * t
-            t1 = 1 - t
-            t2 = t1 * t1
-            t3 = 2 * N1_x
-            t4 = t * t1
-            n_x = N0_x * t2 + N2_x * t0 + t3 * t4
-            t5 = 2 * N1_y
-            n_y = N0_y * t2 + N2_y * t0 + t4 * t5
-            t6 = 2 * N1_z
-            n_z = N0_z * t2 + N2_z * t0 + t4 * t6
-            t7 = 2 * N0_x
-            t8 = 4 * t
-            t9 = 2 * t
-            n_t_x = N2_x * t9 - N1_x * t8 + t * t7 + t3 - t7
-            t10 = 2 * N0_y
-            n_t_y = N2_y * t9 - N1_y * t8 + t * t10 - t10 + t5
-            t11 = 2 * N0_z
-            n_t_z = N2_z * t9 - N1_z * t8 + t * t11 - t11 + t6
-            if n_x * n_x + n_y * n_y + n_z * n_z > 0.0:
-                # solid_angle (beyond the paper): 34 operations as written, 28 here
-                t0 = math.sqrt(n_x * n_x + n_y * n_y + n_z * n_z)
-                S_t = (
-                    q_x * (n_t_z * n_y - n_t_y * n_z)
-                    + q_y * (n_t_x * n_z - n_t_z * n_x)
-                    + q_z * (n_t_y * n_x - n_t_x * n_y)
-                ) / (t0 * (n_x * q_x + n_y * q_y + n_z * q_z + t0))
-                total += weights[node] * S_t
-        integrals[k] = total

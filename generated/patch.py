@@ -1,4 +1,4 @@
-"""One quadratic patch: the formulas of symbolic/patch.py as functions of scalars.
+"""One quadratic patch: the formulas of symbolic/patch.py as functions of vectors.
 
 Written by `make generate` (python -m gaussmap.symbolic): do not edit, change symbolic/ instead.
 SymPy 1.14.0. Passes: common subexpressions of all outputs together, in canonical order;
@@ -8,24 +8,13 @@ fast-math.
 
 import math
 
-import numba
+from .vectors import Patch, Vector, inline
 
-OPTIONS = {"nogil": True, "error_model": "numpy", "fastmath": False}
-
-
-def jit(function):
-    """Compile on the first call; keep the machine code on disk where a folder can be written."""
-    try:
-        return numba.njit(cache=True, **OPTIONS)(function)
-    except RuntimeError:  # no writable cache folder
-        return numba.njit(**OPTIONS)(function)
+NODE = 1.0 / 6.0
 
 
-@jit
-def power_form(
-    b200_x, b200_y, b200_z, b020_x, b020_y, b020_z, b002_x, b002_y, b002_z, b110_x, b110_y,
-    b110_z, b101_x, b101_y, b101_z, b011_x, b011_y, b011_z
-):  # fmt: skip
+@inline
+def power_form(b200, b020, b002, b110, b101, b011):
     """The vectors of eq. (8), a = a_20, b = a_11, c = a_02, d = a_10, e = a_01 and p = a_00 in
     the paper, from the control points of a quadratic Bézier triangle.
 
@@ -38,6 +27,12 @@ def power_form(
 
     Source: eqs. (8) and (10); 69 operations as written, 54 here.
     """
+    b200_x, b200_y, b200_z = b200
+    b020_x, b020_y, b020_z = b020
+    b002_x, b002_y, b002_z = b002
+    b110_x, b110_y, b110_z = b110
+    b101_x, b101_y, b101_z = b101
+    b011_x, b011_y, b011_z = b011
     t0 = 2 * b002_x
     a_x = 2 * b200_x - 4 * b101_x + t0
     t1 = 2 * b002_y
@@ -65,11 +60,18 @@ def power_form(
     p_x = b002_x
     p_y = b002_y
     p_z = b002_z
-    return a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z
+    return Patch(
+        Vector(a_x, a_y, a_z),
+        Vector(b_x, b_y, b_z),
+        Vector(c_x, c_y, c_z),
+        Vector(d_x, d_y, d_z),
+        Vector(e_x, e_y, e_z),
+        Vector(p_x, p_y, p_z),
+    )
 
 
-@jit
-def forms(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, n_x, n_y, n_z):
+@inline
+def forms(patch, n):
     """Eliminating u, v from eq. (9) leaves three quadratic forms in n, with u = U/D, v = V/D
     and w = W/D. The patch has the normal n where U, V, W have one sign, which is then that of D
     = U + V + W; U = 0, V = 0, W = 0 are the three boundary cones of its Gaussian image.
@@ -86,6 +88,12 @@ def forms(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, 
 
     Source: eq. (9) and Sect. 3.2; 36 operations as written, 36 here.
     """
+    a_x, a_y, a_z = patch.a
+    b_x, b_y, b_z = patch.b
+    c_x, c_y, c_z = patch.c
+    d_x, d_y, d_z = patch.d
+    e_x, e_y, e_z = patch.e
+    n_x, n_y, n_z = n
     A = a_x * n_x + a_y * n_y + a_z * n_z
     B = b_x * n_x + b_y * n_y + b_z * n_z
     C = c_x * n_x + c_y * n_y + c_z * n_z
@@ -98,10 +106,8 @@ def forms(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, 
     return D, U, V, W
 
 
-@jit
-def linear_forms(
-    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, n_x, n_y, n_z
-):  # fmt: skip
+@inline
+def linear_forms(patch, n):
     """The linear forms in n of eq. (9), from which u, v are eliminated.
 
         A = n·a
@@ -112,6 +118,12 @@ def linear_forms(
 
     Source: eq. (9); 25 operations as written, 25 here.
     """
+    a_x, a_y, a_z = patch.a
+    b_x, b_y, b_z = patch.b
+    c_x, c_y, c_z = patch.c
+    d_x, d_y, d_z = patch.d
+    e_x, e_y, e_z = patch.e
+    n_x, n_y, n_z = n
     A = a_x * n_x + a_y * n_y + a_z * n_z
     B = b_x * n_x + b_y * n_y + b_z * n_z
     C = c_x * n_x + c_y * n_y + c_z * n_z
@@ -120,7 +132,7 @@ def linear_forms(
     return A, B, C, P, Q
 
 
-@jit
+@inline
 def eliminated_forms(A, B, C, P, Q):
     """The quadratic forms of a patch from the linear ones: what eliminating u, v leaves.
 
@@ -138,7 +150,7 @@ def eliminated_forms(A, B, C, P, Q):
     return D, U, V, W
 
 
-@jit
+@inline
 def parameters(D, U, V):
     """The parameters at which the patch has the normal n.
 
@@ -154,11 +166,8 @@ def parameters(D, U, V):
     return u, v
 
 
-@jit
-def support_function(
-    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z,
-    n_x, n_y, n_z
-):  # fmt: skip
+@inline
+def support_function(patch, n):
     """The support function of a quadratic patch: a cubic over a quadratic form in n,
     homogeneous of degree 1 and odd.
 
@@ -174,6 +183,13 @@ def support_function(
 
     Source: eqs. (3) and (9); 45 operations as written, 45 here.
     """
+    a_x, a_y, a_z = patch.a
+    b_x, b_y, b_z = patch.b
+    c_x, c_y, c_z = patch.c
+    d_x, d_y, d_z = patch.d
+    e_x, e_y, e_z = patch.e
+    p_x, p_y, p_z = patch.p
+    n_x, n_y, n_z = n
     A = a_x * n_x + a_y * n_y + a_z * n_z
     B = b_x * n_x + b_y * n_y + b_z * n_z
     C = c_x * n_x + c_y * n_y + c_z * n_z
@@ -186,11 +202,8 @@ def support_function(
     return h
 
 
-@jit
-def envelope(
-    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, p_x, p_y, p_z,
-    u, v
-):  # fmt: skip
+@inline
+def envelope(patch, u, v):
     """The envelope operator: the gradient of the support function is the point of the patch
     that has the normal n, p(u(n), v(n)).
 
@@ -198,17 +211,23 @@ def envelope(
 
     Source: eqs. (5)-(8); 45 operations as written, 35 here.
     """
+    a_x, a_y, a_z = patch.a
+    b_x, b_y, b_z = patch.b
+    c_x, c_y, c_z = patch.c
+    d_x, d_y, d_z = patch.d
+    e_x, e_y, e_z = patch.e
+    p_x, p_y, p_z = patch.p
     t0 = u * v
     t1 = 0.5 * u * u
     t2 = 0.5 * v * v
     x_x = a_x * t1 + b_x * t0 + c_x * t2 + d_x * u + e_x * v + p_x
     x_y = a_y * t1 + b_y * t0 + c_y * t2 + d_y * u + e_y * v + p_y
     x_z = a_z * t1 + b_z * t0 + c_z * t2 + d_z * u + e_z * v + p_z
-    return x_x, x_y, x_z
+    return Vector(x_x, x_y, x_z)
 
 
-@jit
-def tangents(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, u, v):
+@inline
+def tangents(patch, u, v):
     """The tangent vectors and their cross product, the oriented normal of the patch at (u, v).
 
         p_u = a*u + b*v + d
@@ -217,6 +236,11 @@ def tangents(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_
 
     Source: eqs. (1) and (14); 33 operations as written, 33 here.
     """
+    a_x, a_y, a_z = patch.a
+    b_x, b_y, b_z = patch.b
+    c_x, c_y, c_z = patch.c
+    d_x, d_y, d_z = patch.d
+    e_x, e_y, e_z = patch.e
     p_u_x = a_x * u + b_x * v + d_x
     p_u_y = a_y * u + b_y * v + d_y
     p_u_z = a_z * u + b_z * v + d_z
@@ -226,11 +250,11 @@ def tangents(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_
     N_x = p_u_y * p_v_z - p_u_z * p_v_y
     N_y = p_u_z * p_v_x - p_u_x * p_v_z
     N_z = p_u_x * p_v_y - p_u_y * p_v_x
-    return p_u_x, p_u_y, p_u_z, p_v_x, p_v_y, p_v_z, N_x, N_y, N_z
+    return Vector(p_u_x, p_u_y, p_u_z), Vector(p_v_x, p_v_y, p_v_z), Vector(N_x, N_y, N_z)
 
 
-@jit
-def hessian(A, B, C, D, p_u_x, p_u_y, p_u_z, p_v_x, p_v_y, p_v_z):
+@inline
+def hessian(A, B, C, D, p_u, p_v):
     """The Hessian of the support function; for a unit normal its eigenvalues on the tangent
     plane are the signed principal radii, positive on a sphere with outward normals.
 
@@ -245,6 +269,8 @@ def hessian(A, B, C, D, p_u_x, p_u_y, p_u_z, p_v_x, p_v_y, p_v_z):
 
     Source: beyond the paper; 42 operations as written, 43 here.
     """
+    p_u_x, p_u_y, p_u_z = p_u
+    p_v_x, p_v_y, p_v_z = p_v
     t0 = 1.0 / D
     s_x = t0 * (B * p_v_x - C * p_u_x)
     s_y = t0 * (B * p_v_y - C * p_u_y)
@@ -261,8 +287,8 @@ def hessian(A, B, C, D, p_u_x, p_u_y, p_u_z, p_v_x, p_v_y, p_v_z):
     return H_xx, H_yy, H_zz, H_xy, H_xz, H_yz
 
 
-@jit
-def principal_radii(A, B, C, D, p_u_x, p_u_y, p_u_z, p_v_x, p_v_y, p_v_z, N_x, N_y, N_z):
+@inline
+def principal_radii(A, B, C, D, p_u, p_v, N):
     """Sum and product of the signed principal radii of curvature for a unit normal n: trace and
     determinant of the Hessian of the support function on the tangent plane.
 
@@ -274,6 +300,9 @@ def principal_radii(A, B, C, D, p_u_x, p_u_y, p_u_z, p_v_x, p_v_y, p_v_z, N_x, N
 
     Source: beyond the paper; 28 operations as written, 29 here.
     """
+    p_u_x, p_u_y, p_u_z = p_u
+    p_v_x, p_v_y, p_v_z = p_v
+    N_x, N_y, N_z = N
     E = p_u_x * p_u_x + p_u_y * p_u_y + p_u_z * p_u_z
     F = p_u_x * p_v_x + p_u_y * p_v_y + p_u_z * p_v_z
     G = p_v_x * p_v_x + p_v_y * p_v_y + p_v_z * p_v_z
@@ -283,8 +312,8 @@ def principal_radii(A, B, C, D, p_u_x, p_u_y, p_u_z, p_v_x, p_v_y, p_v_z, N_x, N
     return R_sum, R_product
 
 
-@jit
-def curvature(A, B, C, D, p_u_x, p_u_y, p_u_z, p_v_x, p_v_y, p_v_z, N_x, N_y, N_z):
+@inline
+def curvature(A, B, C, D, p_u, p_v, N):
     """Gaussian and mean curvature for a unit normal n: the reciprocal of the product of the
     principal radii, and half the sum of their reciprocals (positive on a sphere with outward
     normals).
@@ -298,6 +327,9 @@ def curvature(A, B, C, D, p_u_x, p_u_y, p_u_z, p_v_x, p_v_y, p_v_z, N_x, N_y, N_
 
     Source: beyond the paper; 30 operations as written, 30 here.
     """
+    p_u_x, p_u_y, p_u_z = p_u
+    p_v_x, p_v_y, p_v_z = p_v
+    N_x, N_y, N_z = N
     E = p_u_x * p_u_x + p_u_y * p_u_y + p_u_z * p_u_z
     F = p_u_x * p_v_x + p_u_y * p_v_y + p_u_z * p_v_z
     G = p_v_x * p_v_x + p_v_y * p_v_y + p_v_z * p_v_z
@@ -307,10 +339,8 @@ def curvature(A, B, C, D, p_u_x, p_u_y, p_u_z, p_v_x, p_v_y, p_v_z, N_x, N_y, N_
     return K, H
 
 
-@jit
-def orientation(
-    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, n_x, n_y, n_z
-):  # fmt: skip
+@inline
+def orientation(patch, n):
     """Twice the cubic form c_3, with p_u × p_v = n c_3/D^2: n is the oriented normal of the
     patch where c_3 > 0, and -n where c_3 < 0.
 
@@ -326,6 +356,12 @@ def orientation(
 
     Source: beyond the paper; 99 operations as written, 97 here.
     """
+    a_x, a_y, a_z = patch.a
+    b_x, b_y, b_z = patch.b
+    c_x, c_y, c_z = patch.c
+    d_x, d_y, d_z = patch.d
+    e_x, e_y, e_z = patch.e
+    n_x, n_y, n_z = n
     A = a_x * n_x + a_y * n_y + a_z * n_z
     B = b_x * n_x + b_y * n_y + b_z * n_z
     C = c_x * n_x + c_y * n_y + c_z * n_z
@@ -349,8 +385,8 @@ def orientation(
     return c3_twice
 
 
-@jit
-def gaussian_curvature_closed_form(D, c3_twice, n_x, n_y, n_z):
+@inline
+def gaussian_curvature_closed_form(D, c3_twice, n):
     """The Gaussian curvature as a rational function of the normal (of any length) alone;
     kernels use the equal formula `curvature`, which does not overflow.
 
@@ -358,13 +394,14 @@ def gaussian_curvature_closed_form(D, c3_twice, n_x, n_y, n_z):
 
     Source: beyond the paper; 14 operations as written, 14 here.
     """
+    n_x, n_y, n_z = n
     n_n = n_x * n_x + n_y * n_y + n_z * n_z
     K = 4 * D * D * D * D * D / (c3_twice * c3_twice * n_n * n_n)
     return K
 
 
-@jit
-def control_normals(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z):
+@inline
+def control_normals(patch):
     """The Bézier net of the normal field N(u,v) = p_u × p_v: every oriented normal of the patch
     is a non-negative combination of these six vectors.
 
@@ -383,6 +420,11 @@ def control_normals(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, 
 
     Source: Sect. 3.2, eq. (14); 138 operations as written, 122 here.
     """
+    a_x, a_y, a_z = patch.a
+    b_x, b_y, b_z = patch.b
+    c_x, c_y, c_z = patch.c
+    d_x, d_y, d_z = patch.d
+    e_x, e_y, e_z = patch.e
     s100_x = a_x + d_x
     s100_y = a_y + d_y
     s100_z = a_z + d_z
@@ -434,32 +476,17 @@ def control_normals(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, 
     N002_y = s001_z * t001_x - s001_x * t001_z
     N002_z = s001_x * t001_y - s001_y * t001_x
     return (
-        N200_x,
-        N200_y,
-        N200_z,
-        N110_x,
-        N110_y,
-        N110_z,
-        N101_x,
-        N101_y,
-        N101_z,
-        N020_x,
-        N020_y,
-        N020_z,
-        N011_x,
-        N011_y,
-        N011_z,
-        N002_x,
-        N002_y,
-        N002_z,
+        Vector(N200_x, N200_y, N200_z),
+        Vector(N110_x, N110_y, N110_z),
+        Vector(N101_x, N101_y, N101_z),
+        Vector(N020_x, N020_y, N020_z),
+        Vector(N011_x, N011_y, N011_z),
+        Vector(N002_x, N002_y, N002_z),
     )
 
 
-@jit
-def part_normals(
-    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, u0, v0, u1, v1,
-    u2, v2
-):  # fmt: skip
+@inline
+def part_normals(patch, u0, v0, u1, v1, u2, v2):
     """The Bézier net of the normal field over a part of the domain, a triangle with three
     corners.
 
@@ -478,6 +505,11 @@ def part_normals(
 
     Source: Sect. 3.2, eq. (14); 198 operations as written, 182 here.
     """
+    a_x, a_y, a_z = patch.a
+    b_x, b_y, b_z = patch.b
+    c_x, c_y, c_z = patch.c
+    d_x, d_y, d_z = patch.d
+    e_x, e_y, e_z = patch.e
     s001_x = a_x * u0 + b_x * v0 + d_x
     s001_y = a_y * u0 + b_y * v0 + d_y
     s001_z = a_z * u0 + b_z * v0 + d_z
@@ -529,29 +561,17 @@ def part_normals(
     N002_y = s001_z * t001_x - s001_x * t001_z
     N002_z = s001_x * t001_y - s001_y * t001_x
     return (
-        N200_x,
-        N200_y,
-        N200_z,
-        N110_x,
-        N110_y,
-        N110_z,
-        N101_x,
-        N101_y,
-        N101_z,
-        N020_x,
-        N020_y,
-        N020_z,
-        N011_x,
-        N011_y,
-        N011_z,
-        N002_x,
-        N002_y,
-        N002_z,
+        Vector(N200_x, N200_y, N200_z),
+        Vector(N110_x, N110_y, N110_z),
+        Vector(N101_x, N101_y, N101_z),
+        Vector(N020_x, N020_y, N020_z),
+        Vector(N011_x, N011_y, N011_z),
+        Vector(N002_x, N002_y, N002_z),
     )
 
 
-@jit
-def parabolic_cubic(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z):
+@inline
+def parabolic_cubic(patch):
     """The Bézier net of D(N(u,v)), a cubic whose zeros are the parabolic points of the patch
     and whose sign is that of the Gaussian curvature; it vanishes when the patch is developable.
     abc is the determinant of a, b, c, and so on.
@@ -589,6 +609,11 @@ def parabolic_cubic(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, 
 
     Source: Sect. 3.2 and Remark 3.1; 442 operations as written, 295 here.
     """
+    a_x, a_y, a_z = patch.a
+    b_x, b_y, b_z = patch.b
+    c_x, c_y, c_z = patch.c
+    d_x, d_y, d_z = patch.d
+    e_x, e_y, e_z = patch.e
     abc = (
         a_x * (b_y * c_z - b_z * c_y)
         + a_y * (b_z * c_x - b_x * c_z)
@@ -739,8 +764,8 @@ def parabolic_cubic(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, 
     return D300, D210, D201, D120, D111, D102, D030, D021, D012, D003
 
 
-@jit
-def measure(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, u, v):
+@inline
+def measure(patch, u, v):
     """Area of the patch and of its Gaussian image (signed: negative where the patch is
     hyperbolic), both per area of the parameter plane.
 
@@ -755,6 +780,11 @@ def measure(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y
 
     Source: beyond the paper; 64 operations as written, 59 here.
     """
+    a_x, a_y, a_z = patch.a
+    b_x, b_y, b_z = patch.b
+    c_x, c_y, c_z = patch.c
+    d_x, d_y, d_z = patch.d
+    e_x, e_y, e_z = patch.e
     p_u_x = a_x * u + b_x * v + d_x
     p_u_y = a_y * u + b_y * v + d_y
     p_u_z = a_z * u + b_z * v + d_z
@@ -773,7 +803,127 @@ def measure(a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y
     return dA, dS
 
 
-@jit
+@inline
+def sample(patch, n):
+    """All that a sample holds: parameters, point, oriented normal, curvatures.
+
+        A = n·a
+        B = n·b
+        C = n·c
+        P = n·d
+        Q = n·e
+        D = A*C - B**2
+        U = B*Q - C*P
+        V = B*P - A*Q
+        r = 1/D
+        u = U*r
+        v = V*r
+        x = a*u**2/2 + b*u*v + c*v**2/2 + d*u + e*v + p
+        p_u = a*u + b*v + d
+        p_v = b*u + c*v + e
+        N = p_u × p_v
+        E = |p_u|**2
+        F = p_u·p_v
+        G = |p_v|**2
+        g = 1/|N|**2
+        K = D*g
+        H = g*(2*B*F - A*G - C*E)/2
+
+    Source: eqs. (1), (5)-(9); curvatures beyond the paper; 145 operations as written, 134 here.
+    """
+    a_x, a_y, a_z = patch.a
+    b_x, b_y, b_z = patch.b
+    c_x, c_y, c_z = patch.c
+    d_x, d_y, d_z = patch.d
+    e_x, e_y, e_z = patch.e
+    p_x, p_y, p_z = patch.p
+    n_x, n_y, n_z = n
+    A = a_x * n_x + a_y * n_y + a_z * n_z
+    B = b_x * n_x + b_y * n_y + b_z * n_z
+    C = c_x * n_x + c_y * n_y + c_z * n_z
+    P = d_x * n_x + d_y * n_y + d_z * n_z
+    Q = e_x * n_x + e_y * n_y + e_z * n_z
+    D = A * C - B * B
+    U = B * Q - C * P
+    V = B * P - A * Q
+    r = 1.0 / D
+    u = U * r
+    v = V * r
+    t0 = b_x * v
+    t1 = 0.5 * u * u
+    t2 = 0.5 * v * v
+    x_x = a_x * t1 + c_x * t2 + d_x * u + e_x * v + p_x + t0 * u
+    t3 = b_y * v
+    x_y = a_y * t1 + c_y * t2 + d_y * u + e_y * v + p_y + t3 * u
+    t4 = b_z * v
+    x_z = a_z * t1 + c_z * t2 + d_z * u + e_z * v + p_z + t4 * u
+    p_u_x = a_x * u + d_x + t0
+    p_u_y = a_y * u + d_y + t3
+    p_u_z = a_z * u + d_z + t4
+    p_v_x = b_x * u + c_x * v + e_x
+    p_v_y = b_y * u + c_y * v + e_y
+    p_v_z = b_z * u + c_z * v + e_z
+    N_x = p_u_y * p_v_z - p_u_z * p_v_y
+    N_y = p_u_z * p_v_x - p_u_x * p_v_z
+    N_z = p_u_x * p_v_y - p_u_y * p_v_x
+    E = p_u_x * p_u_x + p_u_y * p_u_y + p_u_z * p_u_z
+    F = p_u_x * p_v_x + p_u_y * p_v_y + p_u_z * p_v_z
+    G = p_v_x * p_v_x + p_v_y * p_v_y + p_v_z * p_v_z
+    g = 1.0 / (N_x * N_x + N_y * N_y + N_z * N_z)
+    K = D * g
+    H = 0.5 * g * (2 * B * F - A * G - C * E)
+    return u, v, Vector(x_x, x_y, x_z), Vector(N_x, N_y, N_z), K, H
+
+
+@inline
+def curvature_at(patch, n, u, v):
+    """The curvatures where the parameters are known already, and n is the unit normal there.
+
+        A = n·a
+        B = n·b
+        C = n·c
+        D = A*C - B**2
+        p_u = a*u + b*v + d
+        p_v = b*u + c*v + e
+        N = p_u × p_v
+        E = |p_u|**2
+        F = p_u·p_v
+        G = |p_v|**2
+        g = 1/|N|**2
+        K = D*g
+        H = g*(2*B*F - A*G - C*E)/2
+
+    Source: eqs. (1), (9); curvatures beyond the paper; 81 operations as written, 81 here.
+    """
+    a_x, a_y, a_z = patch.a
+    b_x, b_y, b_z = patch.b
+    c_x, c_y, c_z = patch.c
+    d_x, d_y, d_z = patch.d
+    e_x, e_y, e_z = patch.e
+    n_x, n_y, n_z = n
+    A = a_x * n_x + a_y * n_y + a_z * n_z
+    B = b_x * n_x + b_y * n_y + b_z * n_z
+    C = c_x * n_x + c_y * n_y + c_z * n_z
+    D = A * C - B * B
+    p_u_x = a_x * u + b_x * v + d_x
+    p_u_y = a_y * u + b_y * v + d_y
+    p_u_z = a_z * u + b_z * v + d_z
+    p_v_x = b_x * u + c_x * v + e_x
+    p_v_y = b_y * u + c_y * v + e_y
+    p_v_z = b_z * u + c_z * v + e_z
+    N_x = p_u_y * p_v_z - p_u_z * p_v_y
+    N_y = p_u_z * p_v_x - p_u_x * p_v_z
+    N_z = p_u_x * p_v_y - p_u_y * p_v_x
+    E = p_u_x * p_u_x + p_u_y * p_u_y + p_u_z * p_u_z
+    F = p_u_x * p_v_x + p_u_y * p_v_y + p_u_z * p_v_z
+    G = p_v_x * p_v_x + p_v_y * p_v_y + p_v_z * p_v_z
+    g = 1.0 / (N_x * N_x + N_y * N_y + N_z * N_z)
+    K = D * g
+    H = 0.5 * g * (2 * B * F - A * G - C * E)
+    return K, H
+
+
+@inline
 def largest_curvature(K, H):
     """The larger one of the moduli of the principal curvatures.
 
@@ -785,11 +935,8 @@ def largest_curvature(K, H):
     return k
 
 
-@jit
-def reach(
-    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, u0, v0, u1, v1,
-    u2, v2
-):  # fmt: skip
+@inline
+def reach(patch, u0, v0, u1, v1, u2, v2):
     """Squares of which the largest bounds the squared distance between any point of a part of
     the patch and that in the middle of its domain, a triangle: the derivative, linear in u and
     v, from the middle to a corner, at a corner.
@@ -827,6 +974,11 @@ def reach(
 
     Source: beyond the paper; 228 operations as written, 222 here.
     """
+    a_x, a_y, a_z = patch.a
+    b_x, b_y, b_z = patch.b
+    c_x, c_y, c_z = patch.c
+    d_x, d_y, d_z = patch.d
+    e_x, e_y, e_z = patch.e
     s0_x = a_x * u0 + b_x * v0 + d_x
     s0_y = a_y * u0 + b_y * v0 + d_y
     s0_z = a_z * u0 + b_z * v0 + d_z
@@ -896,11 +1048,8 @@ def reach(
     return r00, r01, r02, r10, r11, r12, r20, r21, r22
 
 
-@jit
-def sides(
-    a_x, a_y, a_z, b_x, b_y, b_z, c_x, c_y, c_z, d_x, d_y, d_z, e_x, e_y, e_z, u0, v0, u1, v1,
-    u2, v2
-):  # fmt: skip
+@inline
+def sides(patch, u0, v0, u1, v1, u2, v2):
     """Squares that bound those of the lengths of the sides of a part of the patch, whose domain
     is a triangle: the derivative along each side, at both of its ends.
 
@@ -931,6 +1080,11 @@ def sides(
 
     Source: beyond the paper; 162 operations as written, 162 here.
     """
+    a_x, a_y, a_z = patch.a
+    b_x, b_y, b_z = patch.b
+    c_x, c_y, c_z = patch.c
+    d_x, d_y, d_z = patch.d
+    e_x, e_y, e_z = patch.e
     s0_x = a_x * u0 + b_x * v0 + d_x
     s0_y = a_y * u0 + b_y * v0 + d_y
     s0_z = a_z * u0 + b_z * v0 + d_z

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..generated import sampler as kernels
+from .formula_calls import python_function
 from .integers import Integers, integers, integers_by_row, ratio, sign
-from .plain import plain
 from .spline import Spline
 
 __all__ = ["forms_of_pairs"]
@@ -50,13 +50,13 @@ def _patch_vectors(spline: Spline, patches: NDArray[np.int64]) -> tuple[Integers
     values, exponent = integers(around)
     differences = values - values[:, 4:5]
     read = differences[:, kernels.TRIANGLE_NEIGHBOURS].reshape(len(patches), -1)
-    vectors = plain(kernels.triangle)(*read.T)
+    vectors = python_function(kernels.triangle)(*read.T)
     return np.array(vectors[:15], dtype=object), exponent + int(np.log2(spline.scale))
 
 
 def _forms(vectors: Integers, n: Integers) -> Integers:
     """Return D, U, V, W (4, k), exactly."""
-    return np.array(plain(kernels.forms)(*vectors, *n), dtype=object)
+    return np.array(python_function(kernels.forms)(*vectors, *n), dtype=object)
 
 
 def _moved_forms(vectors: Integers, n: Integers) -> tuple[Integers, NDArray[np.int8]]:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..generated import spline as kernels
-from .plain import plain
+from ..generated import spline as formulas
+from .formula_calls import python_function
 from .surface import End, Ends
 
 __all__ = ["Border", "Sides", "coefficients_with_ring", "vertices_with_ring"]
@@ -32,11 +32,11 @@ class Border:
     def of_values(cls, middles: Sides, g: Array) -> Border:
         """Return the border from values at the middles of its edges and at all vertices."""
         south, north = (
-            plain(kernels.edge_point)(f, row[:-1], row[1:])
+            python_function(formulas.edge_point)(f, row[:-1], row[1:])
             for f, row in zip(middles[0], (g[:, 0], g[:, -1]), strict=True)
         )
         west, east = (
-            plain(kernels.edge_point)(f, row[:-1], row[1:])
+            python_function(formulas.edge_point)(f, row[:-1], row[1:])
             for f, row in zip(middles[1], (g[0], g[-1]), strict=True)
         )
         return cls(((south, north), (west, east)), g[:: len(g) - 1, :: g.shape[1] - 1])
@@ -45,7 +45,9 @@ class Border:
     def of_vertices(cls, ringed: Array) -> Border:
         """Return the border from values at the vertices and one ring more."""
         sides = [
-            plain(kernels.edge_point_from_vertices)(row[1:-2], row[2:-1], row[:-3], row[3:])
+            python_function(formulas.edge_point_from_vertices)(
+                row[1:-2], row[2:-1], row[:-3], row[3:]
+            )
             for row in (ringed[:, 1], ringed[:, -2], ringed[1], ringed[-2])
         ]
         corners = ringed[1 :: len(ringed) - 3, 1 :: ringed.shape[1] - 3][:2, :2]
@@ -67,7 +69,7 @@ def coefficients_with_ring(inner: Array, border: Border, ends: Ends) -> Array:
     for i, j in ((0, 0), (0, -1), (-1, 0), (-1, -1)):
         if ends[0][i] == ends[1][j] == "none":
             a, b = (1, -2)[i], (1, -2)[j]
-            result[i, j] = plain(kernels.beyond_corner)(
+            result[i, j] = python_function(formulas.beyond_corner)(
                 border.corners[i, j], result[a, j], result[i, b], result[a, b]
             )
     return result
@@ -77,7 +79,7 @@ def _open_rows(rows: Array, ends: tuple[End, End], sides: tuple[Array, Array]) -
     """Write the rows outside the open ends of the first axis."""
     for end, side, outside, first in zip(ends, sides, (0, -1), (1, -2), strict=True):
         if end == "none":
-            rows[outside, 1:-1] = plain(kernels.beyond_edge)(side, rows[first, 1:-1])
+            rows[outside, 1:-1] = python_function(formulas.beyond_edge)(side, rows[first, 1:-1])
 
 
 def _close(result: Array, turned: Array, ends: Ends) -> None:
@@ -140,5 +142,5 @@ def _beyond(
             parts.append(opposite[first + step][None])
         else:
             inside = (rows[first + k * step] for k in range(3))
-            parts.append(plain(kernels.extrapolation)(*inside)[None])
+            parts.append(python_function(formulas.extrapolation)(*inside)[None])
     return parts[0], parts[1]

@@ -1,4 +1,4 @@
-"""Formulas as Python source for Numba: functions, blocks inside loops, and filled templates."""
+"""Formulas as Python source for Numba: functions of vectors, and filled templates."""
 
 from __future__ import annotations
 
@@ -9,15 +9,32 @@ from pathlib import Path
 
 import sympy as sp
 
-from .formula import Formula
+from .formula import Formula, PlaneVector, VectorSymbol, plane_vectors, vectors
 from .printer import source_of
 from .simplify import straight_line
 
-__all__ = ["block", "call", "function", "functions", "render"]
+__all__ = [
+    "arguments",
+    "block",
+    "call",
+    "function",
+    "functions",
+    "named_tuples",
+    "render",
+    "vector_functions",
+]
 
 TEMPLATES = Path(__file__).parent / "templates"
 PLACEHOLDER = re.compile(r"^(?P<indent> *)\{\{(?P<key>\w+)\}\}$", re.MULTILINE)
 WIDTH = 92
+# The tuples that stand for several vectors: their argument's name, type, sentence and fields.
+Group = tuple[str, str, str, tuple[VectorSymbol, ...]]
+GROUPS: tuple[Group, ...] = (
+    ("patch", "Patch", "The vectors of a quadratic patch, eq. (8).", vectors("abcdep")),
+    ("arc", "Arc", "The vectors of a quadratic arc, as those of a patch.", plane_vectors("abc")),
+)
+# What an argument has to hold for a formula to take the whole tuple.
+NEEDED = {"patch": set(vectors("abcde")), "arc": set(plane_vectors("ab"))}
 
 
 def assignments(formula: Formula) -> list[str]:
@@ -51,6 +68,82 @@ def function(formula: Formula) -> str:
     body = [*docstring, *assignments(formula), f"return {', '.join(x.name for x in plain.outputs)}"]
     definition = in_brackets(f"def {formula.name}(", plain.inputs, "):")
     return f"@jit\n{definition}\n" + textwrap.indent("\n".join(body), "    ")
+
+
+def arguments(formula: Formula) -> dict[str, tuple[sp.Symbol, ...]]:
+    """Return the arguments of the function of a formula, each with the inputs that it holds.
+
+    An argument is a scalar or a vector, or a `Patch` or `Arc` that holds several vectors.
+    """
+    result: dict[str, tuple[sp.Symbol, ...]] = {}
+    for symbol in formula.inputs:
+        name = next((g[0] for g in GROUPS if symbol in g[3] and _takes(formula, g)), symbol.name)
+        result[name] = (*result.get(name, ()), symbol)
+    return result
+
+
+def _takes(formula: Formula, group: Group) -> bool:
+    return NEEDED[group[0]] <= {*formula.inputs}
+
+
+def vector_function(formula: Formula) -> str:
+    """Return a formula as an inlined function of vectors and scalars that returns its outputs."""
+    taken = arguments(formula)
+    docstring = [
+        *textwrap.wrap(f'"""{formula.sentence}', WIDTH),
+        "",
+        *(f"    {line}" for line in formula.text().splitlines()),
+        "",
+        *textwrap.wrap(f"Source: {formula.source}; {counts(formula)}.", WIDTH),
+        '"""',
+    ]
+    loads = [
+        f"{', '.join(x.name for x in symbol.components)} = "
+        + (name if name == symbol.name else f"{name}.{symbol.name}")
+        for name, symbols in taken.items()
+        for symbol in symbols
+        if isinstance(symbol, VectorSymbol)
+    ]
+    body = [*docstring, *loads, *assignments(formula), f"return {_returned(formula)}"]
+    definition = f"@inline\ndef {formula.name}({', '.join(taken)}):\n"
+    return definition + textwrap.indent("\n".join(body), "    ")
+
+
+def _returned(formula: Formula) -> str:
+    """Return the outputs of a formula as an expression: one value, several, or a named tuple."""
+    values = ", ".join(_constructed(x) for x in formula.outputs)
+    group = next((g for g in GROUPS if g[3] == formula.outputs), None)
+    return f"{group[1]}({values})" if group else values
+
+
+def _constructed(symbol: sp.Symbol) -> str:
+    if not isinstance(symbol, VectorSymbol):
+        return symbol.name
+    kind = "PlaneVector" if isinstance(symbol, PlaneVector) else "Vector"
+    return f"{kind}({', '.join(x.name for x in symbol.components)})"
+
+
+def vector_functions(formulas: Iterable[Formula]) -> str:
+    """Return several formulas as inlined functions of vectors."""
+    return "\n\n\n".join(map(vector_function, formulas))
+
+
+def named_tuples() -> str:
+    """Return the types of vectors, and of the tuples of vectors that formulas take."""
+    types = [
+        ("Vector", "A vector of R³.", [(x, "float") for x in VectorSymbol.AXES]),
+        ("PlaneVector", "A vector of R².", [(x, "float") for x in PlaneVector.AXES]),
+    ]
+    for _, name, sentence, fields in GROUPS:
+        kind = "PlaneVector" if isinstance(fields[0], PlaneVector) else "Vector"
+        types.append((name, sentence, [(x.name, kind) for x in fields]))
+    return "\n\n\n".join(
+        "\n".join(
+            [f"class {name}(NamedTuple):", f'    """{sentence}"""', ""]
+            + [f"    {field}: {kind}" for field, kind in fields]
+        )
+        for name, sentence, fields in types
+    )
 
 
 def functions(formulas: Iterable[Formula]) -> str:

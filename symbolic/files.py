@@ -18,7 +18,7 @@ import sympy as sp
 
 from . import curve, gaussian_image, icosahedron, latex, mesh, patch, spline, support, surfaces
 from .double_double import double_double_function
-from .emit import block, call, functions, render
+from .emit import block, call, functions, named_tuples, render, vector_functions
 from .expression import hessian_entries
 from .formula import Formula, PlaneVector
 from .positions import position
@@ -72,6 +72,7 @@ def derive() -> dict[str, str]:
         "sampler.py": sampler_source(),
         "support.py": support_source(),
         "surfaces.py": surfaces_source(),
+        "vectors.py": vectors_source(),
     }
     modules = {name: formatted(text) for name, text in sources.items()}
     pages = {"formulas.md": latex.markdown(modules), "formulas.tex": latex.document(modules)}
@@ -109,7 +110,7 @@ def formatted(source: str) -> str:
     Raises CalledProcessError if ruff is not installed or the source is no Python.
     """
     options = ["--config", str(PROJECT), "--no-cache", "--quiet", "-"]
-    for command in (["check", "--fix-only", "--select", "F401"], ["format"]):
+    for command in (["check", "--fix-only", "--select", "F401,I001"], ["format"]):
         run = subprocess.run(
             [sys.executable, "-m", "ruff", *command, *options],
             input=source,
@@ -126,13 +127,41 @@ def formatted(source: str) -> str:
 
 def header(title: str, imports: str = "") -> str:
     """Return the head of a Python file: docstring with generator and options, imports, `jit`."""
-    options = (
+    return render("header.py", {"docstring": _docstring(title), "imports": imports}).rstrip()
+
+
+def mathematics(title: str, *parts: str) -> str:
+    """Return a file of formulas and constants, without a loop."""
+    imports = (
+        "import math\n\nimport numpy as np\n\n"
+        "from .vectors import Arc, Patch, PlaneVector, Vector, inline"
+    )
+    return "\n\n".join([_docstring(title), imports, "\n\n\n".join(parts)]) + "\n"
+
+
+def vectors_source() -> str:
+    """Return generated/vectors.py: what formulas take and return, and how they are compiled."""
+    imports = "from typing import NamedTuple\n\nimport numba"
+    decorator = (
+        "# A formula is put into its callers before types are known, and not compiled by itself.\n"
+        'inline = numba.njit(inline="always", nogil=True, error_model="numpy", fastmath=False)'
+    )
+    title = "The vectors that formulas take and return, and the decorator that inlines formulas."
+    return f"{_docstring(title)}\n\n{imports}\n\n{decorator}\n\n\n{named_tuples()}\n"
+
+
+def _docstring(title: str) -> str:
+    """Return the docstring of a generated file: its title, who wrote it and how."""
+    return render("docstring.py", {"title": f'"""{title}', "options": _options()}).rstrip()
+
+
+def _options() -> str:
+    return textwrap.fill(
         f"SymPy {sp.__version__}. Passes: common subexpressions of all outputs together, in "
         "canonical order; temporaries that are used once or are another name with a sign written "
-        "back. float64, no fast-math."
+        "back. float64, no fast-math.",
+        92,
     )
-    values = {"title": f'"""{title}', "options": textwrap.fill(options, 92), "imports": imports}
-    return render("header.py", values).rstrip()
 
 
 def cover_source() -> str:
@@ -193,17 +222,8 @@ def curve_source() -> str:
 
 def gaussian_image_source() -> str:
     """Return generated/gaussian_image.py: boundary cones and arcs, parabolic lines."""
-    return render(
-        "gaussian_image.py",
-        {
-            "header": header(
-                "Gaussian images of patches: boundaries, solid angles, parabolic lines."
-            ),
-            "formulas": functions(gaussian_image.FORMULAS),
-            "arc": block(gaussian_image.ARC),
-            "solid_angle": block(gaussian_image.SOLID_ANGLE),
-        },
-    )
+    title = "Gaussian images of patches: boundaries, solid angles, parabolic lines."
+    return mathematics(title, vector_functions(gaussian_image.FORMULAS))
 
 
 def icosphere_source() -> str:
@@ -303,44 +323,17 @@ def _edges_over_surface() -> dict[str, str]:
 
 def patch_source() -> str:
     """Return generated/patch.py: every formula of a patch as a function."""
-    formulas = [x for x in patch.FORMULAS if x not in (patch.SAMPLE, patch.CURVATURE_AT)]
-    title = "One quadratic patch: the formulas of symbolic/patch.py as functions of scalars."
-    return f"{header(title)}\n\n\n{functions(formulas)}\n"
+    title = "One quadratic patch: the formulas of symbolic/patch.py as functions of vectors."
+    node = f"NODE = {source_of(patch.QUADRATURE_NODE)}"
+    return mathematics(title, node, vector_functions(patch.FORMULAS))
 
 
 def spline_source() -> str:
-    """Return generated/spline.py: fitting, control nets, evaluation, measure."""
-    border = [
-        spline.EXTRAPOLATION,
-        spline.EDGE_POINT,
-        spline.EDGE_POINT_FROM_VERTICES,
-        spline.BEYOND_EDGE,
-        spline.BEYOND_CORNER,
-    ]
-    stores = (
-        f"nets[patch, {k}, {x}] = {component}"
-        for k, point in enumerate(patch.NET)
-        for x, component in enumerate(point.components)
-    )
-    return render(
-        "spline.py",
-        {
-            "header": header(
-                "The C1 quadratic spline: fitting, control nets, evaluation, measure."
-            ),
-            "constants": f"{_grid_constants()}\nNODE = {source_of(patch.QUADRATURE_NODE)}",
-            "formulas": functions([*border, spline.TRIANGLE, patch.MEASURE]),
-            "coefficient": block(spline.COEFFICIENT),
-            "load_vertices": _load_vertices(),
-            "coefficient_from_vertices": block(spline.COEFFICIENT_FROM_VERTICES),
-            "patch_vectors": _patch_vectors(),
-            "load": _load(spline.CONTROL_NET, "mu[{place}, {x}]"),
-            "control_net": block(spline.CONTROL_NET),
-            "store_net": "\n".join(stores),
-            "envelope": block(patch.ENVELOPE),
-            "tangents": block(patch.TANGENTS),
-            "measure": f"dA, dS = {call(patch.MEASURE)}",
-        },
+    """Return generated/spline.py: where patches are on the grid, and the formulas of fitting."""
+    return mathematics(
+        "The C1 quadratic spline: the grid, and the formulas of symbolic/spline.py.",
+        f"{_grid_constants()}\n{_triangle_neighbours()}\n{_vertices()}",
+        vector_functions(spline.FORMULAS),
     )
 
 
@@ -486,13 +479,17 @@ def _load(formula: Formula, value: str) -> str:
     )
 
 
-def _load_vertices() -> str:
-    """Return assignments to the values round a cell; vertex (i, j) is its south-western one."""
-    return "\n".join(
-        f"{letter}{k} = values[i + {int(s + Fraction(3, 2))}, j + {int(t + Fraction(3, 2))}, x]"
-        for letter, points in spline.VERTEX_ORBITS.items()
-        for k, (s, t) in enumerate(points)
-    )
+def _vertices() -> str:
+    """Return where the vertices round a cell are, in the order of `coefficient_from_vertices`.
+
+    They are counted from the vertex one step south and one step west of those of the cell.
+    """
+    places = [
+        [int(s + Fraction(3, 2)), int(t + Fraction(3, 2))]
+        for points in spline.VERTEX_ORBITS.values()
+        for s, t in points
+    ]
+    return f"VERTICES = np.array({places})"
 
 
 def _floats(matrix: sp.Matrix) -> list[list[float]]:

@@ -12,7 +12,7 @@ from ...generated import curve as kernels
 from ...generated import spline as edge_kernels
 from ..checks import real_array, whole_number
 from ..errors import InputError, SurfaceError
-from ..plain import plain
+from ..formula_calls import python_function
 from ..spline import apart, not_too_large, scale_to_one, short_label
 from .curve import Curve, Interval
 
@@ -62,7 +62,7 @@ class CurveSpline:
     def control_points(self) -> Array:
         """The control points (P, 3, 2) of the arcs, each from its first to its last point."""
         mu = self.coefficients
-        columns = plain(kernels.arc_control_points)(*mu[:-2].T, *mu[1:-1].T, *mu[2:].T)
+        columns = python_function(kernels.arc_control_points)(*mu[:-2].T, *mu[1:-1].T, *mu[2:].T)
         return np.stack(columns, axis=-1).reshape(-1, 3, 2)
 
     @cached_property
@@ -105,7 +105,7 @@ class CurveSpline:
         Both arcs at a joint share this one vector, and so do both ends of a closed curve.
         """
         tangents = self.scale * np.diff(self.coefficients, axis=0)
-        columns = plain(kernels.arc_tangent)(0.0, 0.0, *tangents.T, 0.0)[2:]
+        columns = python_function(kernels.arc_tangent)(0.0, 0.0, *tangents.T, 0.0)[2:]
         return np.stack(columns, axis=-1)
 
     @cached_property
@@ -233,7 +233,7 @@ def fit_curve(curve: Curve, pieces: int | None = None) -> CurveSpline:
         if apart(values[-1], values[0], values[:, None]):
             raise SurfaceError(f"curve {curve.name!r} does not close: its two ends differ.")
         values[-1] = values[0]
-    inner = plain(edge_kernels.edge_point)(values[1::2], values[:-1:2], values[2::2])
+    inner = python_function(edge_kernels.edge_point)(values[1::2], values[:-1:2], values[2::2])
     coefficients = _with_ends(inner, values[[0, -1]], curve.periodic)
     return CurveSpline(coefficients, curve.domain, curve.periodic, curve.name)
 
@@ -265,10 +265,10 @@ def _fit_points(points: Array, domain: Interval, closed: bool, name: str) -> Cur
     if closed:
         values = np.concatenate([points[-1:], points, points[:2]])
     else:
-        before = plain(edge_kernels.extrapolation)(*points[:3])
-        after = plain(edge_kernels.extrapolation)(*points[:-4:-1])
+        before = python_function(edge_kernels.extrapolation)(*points[:3])
+        after = python_function(edge_kernels.extrapolation)(*points[:-4:-1])
         values = np.concatenate([before[None], points, after[None]])
-    inner = plain(edge_kernels.edge_point_from_vertices)(
+    inner = python_function(edge_kernels.edge_point_from_vertices)(
         values[1:-2], values[2:-1], values[:-3], values[3:]
     )
     return CurveSpline(_with_ends(inner, points[[0, -1]], closed), domain, closed, name)
@@ -278,5 +278,5 @@ def _with_ends(inner: Array, ends: Array, closed: bool) -> Array:
     """Return the coefficients (P + 2, 2): copies beyond the ends, or what the end points ask."""
     if closed:
         return np.concatenate([inner[-1:], inner, inner[:1]])
-    before, after = plain(kernels.beyond_end)(ends, inner[[0, -1]])
+    before, after = python_function(kernels.beyond_end)(ends, inner[[0, -1]])
     return np.concatenate([before[None], inner, after[None]])

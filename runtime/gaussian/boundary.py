@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ...generated import gaussian_image as formulas
 from ..checks import whole_number
-from ..plain import plain
+from ..formula_calls import python_function, vector
 from .solid_angle import EDGES, boundary_of
 
 __all__ = ["BoundaryArc", "boundary_arcs", "edge_arcs"]
@@ -61,7 +61,9 @@ class BoundaryArc:
             return ()
         with np.errstate(all="ignore"):
             zeros = [
-                plain(formulas.boundary_arc_zeros)(*self.control_normals.ravel(), *axis, sign)
+                python_function(formulas.boundary_arc_zeros)(
+                    *map(vector, self.control_normals), vector(axis), sign
+                )
                 for axis, sign in product(CORNERS, (-1.0, 1.0))
             ]
         inside = np.ravel(zeros)
@@ -111,7 +113,7 @@ class BoundaryArc:
 
     def _at(self, t: Array) -> Array:
         """Return the normals (k, 3), of any length, at parameters (k,)."""
-        columns = plain(formulas.boundary_arc)(*self.control_normals.ravel(), t)[:3]
+        columns, _ = python_function(formulas.boundary_arc)(*map(vector, self.control_normals), t)
         return np.stack([column + 0.0 * t for column in columns], axis=1)
 
     def _lengths(self, t: Array) -> Array:

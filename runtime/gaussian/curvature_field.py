@@ -15,7 +15,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from ...generated import gaussian_image as formulas
-from ..plain import plain
+from ..formula_calls import python_function, vector
 from ..surface import Surface
 
 __all__ = ["NODES", "ORDER", "SURE", "CurvatureField"]
@@ -188,10 +188,9 @@ def _curvature(x: Array, sizes_u: Array, sizes_v: Array) -> tuple[Array, Array, 
     p_uu = np.einsum("ai,mnibx->mnabx", SECOND, x) * along_u**2
     p_uv = np.einsum("bi,mnaix->mnabx", DERIVATIVE, p_u) * along_v
     p_vv = np.einsum("bi,mnaix->mnabx", SECOND, x) * along_v**2
-    vectors = (p_u, p_v, p_uu, p_uv, p_vv)
-    columns = [component for vector in vectors for component in np.moveaxis(vector, -1, 0)]
+    derivatives = map(vector, (p_u, p_v, p_uu, p_uv, p_vv))
     with np.errstate(all="ignore"):
-        K = plain(formulas.gaussian_curvature_of_derivatives)(*columns)
+        K = python_function(formulas.gaussian_curvature_of_derivatives)(*derivatives)
         normal = np.cross(p_u, p_v)
         area = np.linalg.norm(normal, axis=-1)
         along = [

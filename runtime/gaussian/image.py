@@ -89,7 +89,7 @@ class GaussianImage:
         where the three forms have one sign.
         """
         rows = self._patch.apply(formulas.boundary_cones)
-        return np.array([x[0] for x in rows]).reshape(3, 3, 3)
+        return np.array([[x[0] for x in row] for row in rows]).reshape(3, 3, 3)
 
     @cached_property
     def arcs(self) -> tuple[BoundaryArc, BoundaryArc, BoundaryArc]:

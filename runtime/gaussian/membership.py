@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,8 +15,9 @@ from ...generated import gaussian_image as lines
 from ...generated import patch as formulas
 from ...generated import sampler
 from ...generated import support as kernels
+from ...generated.vectors import Patch, Vector
+from ..formula_calls import python_function, vector
 from ..integers import integers, integers_by_row, ratio, sign
-from ..plain import plain
 from ..spline import LARGEST_EXPONENT
 
 __all__ = ["Members", "PatchNormals"]
@@ -57,8 +59,8 @@ class PatchNormals:
         exponents = np.frexp(np.abs(normals).max(axis=1, keepdims=True))[1]
         scaled = np.ldexp(normals, -exponents)
         kernels.classify(
-            self.vectors, self._bound, sampler.ACCURATE * self._bound, self._shortest, scaled,
-            kinds, uv,
+            tuple(chain(*self.vectors[:5])), self._bound, sampler.ACCURATE * self._bound,
+            self._shortest, scaled, kinds, uv,
         )  # fmt: skip
         result = Members(
             kinds == kernels.INSIDE, uv, np.zeros(count, dtype=np.int8), np.zeros(count, dtype=bool)
@@ -74,7 +76,7 @@ class PatchNormals:
         which = np.flatnonzero(members.vanishing)
         n, _ = integers_by_row(normals[which])
         for k, normal in zip(which, n.T.tolist(), strict=True):
-            members.inside[k] = _on_line(list(self.exact_vectors), normal)
+            members.inside[k] = _on_line(self.exact_vectors, Vector(*normal))
         return members.inside
 
     @cached_property
@@ -84,22 +86,23 @@ class PatchNormals:
         return math.ldexp(1.0, min(-math.frexp(largest)[1], LARGEST_EXPONENT))
 
     @cached_property
-    def vectors(self) -> tuple[float, ...]:
-        """The vectors a … e of eq. (8), times the scale."""
+    def vectors(self) -> Patch:
+        """The vectors of eq. (8), times the scale; p is relative to the control point b002."""
         net = self.scale * (self.control_points - self.control_points[2])
-        return tuple(map(float, plain(formulas.power_form)(*net.ravel())[:15]))
+        found = python_function(formulas.power_form)(*map(vector, net))
+        return Patch(*(Vector(*map(float, x)) for x in found))
 
     @cached_property
-    def exact_vectors(self) -> tuple[int, ...]:
-        """The vectors a … e as integers, in some unit."""
+    def exact_vectors(self) -> Patch:
+        """The vectors of eq. (8) as integers, in some unit."""
         net, _ = integers(self.control_points)
-        return plain(formulas.power_form)(*net.ravel())[:15]
+        return python_function(formulas.power_form)(*map(vector, net))
 
     @cached_property
     def _sizes(self) -> tuple[float, float]:
         """The largest components of a, b, c and of d, e."""
-        sizes = np.abs(self.vectors)
-        return float(sizes[:9].max()), float(sizes[9:].max())
+        sizes = np.abs(self.vectors[:5])
+        return float(sizes[:3].max()), float(sizes[3:].max())
 
     @cached_property
     def _bound(self) -> float:
@@ -118,9 +121,11 @@ class PatchNormals:
     def _decide(self, members: Members, rows: NDArray[np.intp], normals: Array) -> None:
         """Decide exactly, on integers, and write that into these rows of the result."""
         n, _ = integers_by_row(normals)
-        forms = np.array(plain(formulas.forms)(*self.exact_vectors, *n), dtype=object)
+        patch, normal = self.exact_vectors, Vector(*n)
+        forms = np.array(python_function(formulas.forms)(patch, normal), dtype=object)
         D, *bounds = (sign(x) for x in forms)
-        c3 = sign(np.asarray(plain(formulas.orientation)(*self.exact_vectors, *n), dtype=object))
+        orientation = python_function(formulas.orientation)(patch, normal)
+        c3 = sign(np.asarray(orientation, dtype=object))
         signs = np.stack(bounds)
         one_sign = (signs.min(axis=0) >= 0) | (signs.max(axis=0) <= 0)
         inside = one_sign & (D != 0) & (c3 > 0)
@@ -131,17 +136,18 @@ class PatchNormals:
         members.vanishing[rows] = (D == 0) & (signs == 0).all(axis=0)
 
 
-def _on_line(vectors: list[int], n: list[int]) -> bool:
+def _on_line(patch: Patch, n: Vector) -> bool:
     """Say whether a normal with U = V = D = 0 is that of a point: of a line of them, or of all."""
-    rows = [plain(lines.parabolic_line)(*vectors, *n, s, t) for s, t in ((1, 0), (0, 1))]
+    line = python_function(lines.parabolic_line)
+    rows = [line(patch, n, s, t) for s, t in ((1, 0), (0, 1))]
     row = next((row for row in rows if row[0] or row[1]), None)
     corners = [(Fraction(1), Fraction(0)), (Fraction(0), Fraction(1)), (Fraction(0), Fraction(0))]
     if row is None:
         flat = not any(x[2] for x in rows)
         edges = zip(corners, corners[1:] + corners[:1], strict=True)
-        return flat and any(_has_direction(vectors, n, *edge) for edge in edges)
+        return flat and any(_has_direction(patch, n, *edge) for edge in edges)
     ends = _ends(row, corners)
-    return bool(ends) and _has_direction(vectors, n, ends[0], ends[-1])
+    return bool(ends) and _has_direction(patch, n, ends[0], ends[-1])
 
 
 def _ends(row: tuple[int, int, int], corners: list[Place]) -> list[Place]:
@@ -158,15 +164,15 @@ def _ends(row: tuple[int, int, int], corners: list[Place]) -> list[Place]:
 
 
 def _has_direction(
-    vectors: list[int],
-    n: list[int],
+    patch: Patch,
+    n: Vector,
     first: Place,
     last: Place,
 ) -> bool:
     """Say whether N·n is positive somewhere between two places of the parameter plane."""
 
     def towards(u: Fraction, v: Fraction) -> Fraction:
-        field = plain(formulas.tangents)(*vectors, u, v)[6:]
+        _, _, field = python_function(formulas.tangents)(patch, u, v)
         return sum((x * y for x, y in zip(field, n, strict=True)), start=Fraction(0))
 
     start, end = towards(*first), towards(*last)

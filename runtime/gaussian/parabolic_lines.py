@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...generated import gaussian_image as formulas
 from ...generated import patch as patch_formulas
+from ...generated.vectors import Vector
 from .patches import Patches, checked_control_points
 
 __all__ = [
@@ -142,10 +143,9 @@ def singular_points(patch: Patches) -> Array:
             x * math.cos(angle) - math.sin(angle),
             x * math.sin(angle) + math.cos(angle),
         )
-        candidates = np.array([y[0] for y in patch.apply(formulas.parabolic_normal, s, t)])
-        normals = candidates.reshape(3, 3)
+        normals = np.array(patch.apply(formulas.parabolic_normal, s, t))[..., 0]
         normal = normals[int(np.argmax(np.abs(normals).max(axis=1)))]
-        lines.append([y[0] for y in patch.apply(formulas.parabolic_line, *normal, s, t)])
+        lines.append([y[0] for y in patch.apply(formulas.parabolic_line, Vector(*normal), s, t)])
     found: list[Array] = []
     for left, right in combinations(lines, 2):
         meeting = np.cross(np.array(left), np.array(right))
@@ -172,7 +172,8 @@ def _singular_point(patch: Patches, place: Array) -> Array:
 
 def _normal_at(patch: Patches, place: Array) -> Array:
     """Return N(u,v), not of unit length."""
-    return np.array([float(x[0]) for x in patch.apply(patch_formulas.tangents, *place)[6:]])
+    _, _, N = patch.apply(patch_formulas.tangents, *place)
+    return np.array(N)[:, 0]
 
 
 # --- one line -------------------------------------------------------------------------------------
@@ -231,13 +232,14 @@ def _merged(angles: list[float]) -> list[tuple[float, int]]:
 
 def _line(patch: Patches, s: float, t: float) -> tuple[float, Array] | None:
     """Return ρ and the normal of the line with a direction; None if it is at infinity."""
-    candidates = np.array([float(x[0]) for x in patch.apply(formulas.parabolic_normal, s, t)])
-    normals = candidates.reshape(3, 3)
+    normals = np.array(patch.apply(formulas.parabolic_normal, s, t))[..., 0]
     lengths = np.linalg.norm(normals, axis=1)
     if lengths.max() <= float(patch.normal_noise[0]):
         return None
     normal = normals[int(np.argmax(lengths))] / lengths.max()
-    l_u, l_v, l_1 = (float(x[0]) for x in patch.apply(formulas.parabolic_line, *normal, s, t))
+    l_u, l_v, l_1 = (
+        float(x[0]) for x in patch.apply(formulas.parabolic_line, Vector(*normal), s, t)
+    )
     slope = l_u * s + l_v * t
     if abs(slope) <= 2.0**-40 * float(patch.tangent[0]):
         return None

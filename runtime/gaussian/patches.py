@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -13,9 +13,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...generated import patch as formulas
 from ...generated import sampler
+from ...generated.spline import NEIGHBOURS, SCALE, TRIANGLE_NEIGHBOURS, triangle
+from ...generated.vectors import Vector
 from ..checks import real_array
 from ..errors import InputError
-from ..plain import plain
+from ..formula_calls import patch, python_function, vector
 from ..spline import LARGEST_EXPONENT, Spline
 
 __all__ = ["Patches", "checked_control_points", "checked_nets"]
@@ -44,24 +46,24 @@ class Patches:
         """Return the patches of Bézier nets (k, 6, 3)."""
         differences = nets - nets[:, 2:3]
         scale = _units(np.abs(differences).max(axis=(1, 2)))
-        columns = (differences * scale[:, None, None]).reshape(len(nets), 18).T
-        vectors = plain(formulas.power_form)(*columns)[:15]
+        net = np.moveaxis(differences * scale[:, None, None], 1, 0)
+        vectors = python_function(formulas.power_form)(*map(vector, net))
         noise = sampler.DATA_ERROR * np.abs(nets).max(axis=(1, 2)) * scale
-        return cls(_stacked(vectors, len(nets)), noise)
+        return cls(_stacked(vectors[:5], len(nets)), noise)
 
     @classmethod
     def of_spline(cls, spline: Spline) -> Patches:
         """Return all patches of a spline, from differences of its coefficients."""
         cell, turn = np.divmod(np.arange(spline.patches), 4)
         i, j = np.divmod(cell, spline.cells[1])
-        steps = sampler.NEIGHBOURS[turn][:, sampler.TRIANGLE_NEIGHBOURS]
+        steps = NEIGHBOURS[turn][:, TRIANGLE_NEIGHBOURS]
         around = spline.coefficients[i[:, None] + 1 + steps[..., 0], j[:, None] + 1 + steps[..., 1]]
         centre = spline.coefficients[i + 1, j + 1][:, None]
-        columns = (spline.scale * (around - centre)).reshape(spline.patches, -1).T
-        vectors = plain(sampler.triangle)(*columns)[:15]
+        differences = np.moveaxis(spline.scale * (around - centre), 1, 0)
+        vectors = python_function(triangle)(*map(vector, differences))
         largest = float(np.abs(spline.coefficients * spline.scale).max())
-        noise = sampler.SCALE * sampler.DATA_ERROR * largest
-        return cls(_stacked(vectors, spline.patches), np.full(spline.patches, noise))
+        noise = SCALE * sampler.DATA_ERROR * largest
+        return cls(_stacked(vectors[:5], spline.patches), np.full(spline.patches, noise))
 
     def __len__(self) -> int:
         """Return the number of patches."""
@@ -71,9 +73,9 @@ class Patches:
         """Return some of the patches."""
         return Patches(self.vectors[rows], self.noise[rows])
 
-    def apply(self, formula: Callable[..., Any], *more: ArrayLike) -> list[Any]:
-        """Return the outputs of a formula of a, b, c, d, e, each (k,), for all patches."""
-        return list(plain(formula)(*self.vectors.reshape(len(self), 15).T, *more))
+    def apply(self, formula: Callable[..., Any], *more: ArrayLike | Vector) -> Any:  # noqa: ANN401
+        """Return the outputs of a formula of patches; each number in them is an array (k,)."""
+        return python_function(formula)(patch(self.vectors), *more)
 
     @cached_property
     def normals(self) -> Array:
@@ -153,9 +155,10 @@ def _computable(array: Array, name: str) -> Array:
     return array
 
 
-def _stacked(columns: Any, count: int) -> Array:  # noqa: ANN401 - numbers or arrays
-    """Return 3 m columns as vectors (count, m, 3)."""
-    return np.stack(np.broadcast_arrays(*columns), axis=1).reshape(count, -1, 3).copy()
+def _stacked(vectors: Iterable[Vector], count: int) -> Array:
+    """Return vectors whose components are numbers or arrays as an array (count, m, 3)."""
+    rows = [np.broadcast_to(x, count) for vector in vectors for x in vector]
+    return np.stack(rows, axis=1).reshape(count, -1, 3).copy()
 
 
 def _units(largest: Array) -> Array:

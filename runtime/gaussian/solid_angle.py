@@ -8,8 +8,9 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from ...generated import gaussian_image as kernels
-from ..plain import plain
+from ...generated.gaussian_image import boundary_arc
+from ..formula_calls import python_function, vector
+from ..kernels.solid_angle import integrate_arcs
 
 __all__ = ["boundary_of", "by_boundary", "is_wide", "solid_angles", "triangle_of"]
 
@@ -63,8 +64,9 @@ def by_boundary(normals: Array, about: float) -> float:
     where subdivision has to leave something out. `about` itself if the boundary is not closed.
     """
     arcs = np.concatenate(boundary_of(normals[None]))
-    columns = arcs.reshape(len(arcs), 9, 1).swapaxes(0, 1)
-    curve = np.stack(plain(kernels.boundary_arc)(*columns, np.linspace(0.0, 1.0, SAMPLES))[:3])
+    columns = map(vector, np.moveaxis(arcs[..., None, :], 1, 0))
+    arc, _ = python_function(boundary_arc)(*columns, np.linspace(0.0, 1.0, SAMPLES))
+    curve = np.stack(arc)
     lengths = np.linalg.norm(curve, axis=0)
     curve = np.divide(curve, lengths, out=np.zeros_like(curve), where=lengths > 0.0)
     pole = POLES[int((POLES @ curve.reshape(3, -1)).min(axis=1).argmax())]
@@ -110,7 +112,7 @@ def integrate(arcs: Array, poles: Array) -> Array:
 
     def once(arcs: Array, poles: Array) -> Array:
         integrals = np.empty(len(arcs))
-        kernels.integrate_arcs(arcs, poles, nodes, weights, integrals)
+        integrate_arcs(arcs, poles, nodes, weights, integrals)
         return integrals
 
     result = np.zeros(len(arcs))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
 import numpy as np
@@ -13,9 +14,9 @@ from ...generated import patch as formulas
 from ...generated import support as kernels
 from ..bins import NormalBins
 from ..errors import InputError
+from ..formula_calls import python_function, vector
 from ..gaussian.membership import PatchNormals
 from ..gaussian.patches import checked_control_points
-from ..plain import plain
 from ..search import fill, find
 from ..spline import Spline
 from .branches import Sheets
@@ -100,10 +101,10 @@ class PatchSource:
         """Make one; InputError unless the patch has a support function."""
         source = cls(checked_control_points(control_points))
         vectors = source._normals.exact_vectors
-        D, *_ = plain(formulas.forms)(*vectors, *np.array(FOR_QUADRATICS, object).T)
+        D, *_ = python_function(formulas.forms)(vectors, vector(np.array(FOR_QUADRATICS, object)))
         if not D.any():
             raise InputError("the patch is flat or developable: it has no support function.")
-        c3 = plain(formulas.orientation)(*vectors, *np.array(FOR_CUBICS, object).T)
+        c3 = python_function(formulas.orientation)(vectors, vector(np.array(FOR_CUBICS, object)))
         if not c3.any():
             raise InputError("the patch has no regular point, so it has no normals.")
         return source
@@ -116,8 +117,8 @@ class PatchSource:
         points, hessian = np.empty((count, 3)), np.empty((count, 3, 3))
         gaussian, mean = np.empty(count), np.empty(count)
         kernels.fill_branches(
-            self._normals.vectors, self.control_points[2], self._normals.scale, normals[rows], uv,
-            points, hessian, gaussian, mean,
+            tuple(chain(*self._normals.vectors[:5])), self.control_points[2], self._normals.scale,
+            normals[rows], uv, points, hessian, gaussian, mean,
         )  # fmt: skip
         gaussian = np.where(signs != 0, np.copysign(gaussian, signs), gaussian)
         return Sheets(rows, points, hessian, gaussian, mean, np.zeros(count, dtype=np.int64), uv)

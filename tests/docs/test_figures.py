@@ -10,9 +10,9 @@ import pytest
 from gaussmap.docs import curve_figures, figures, patch_figures
 from gaussmap.docs.curves import by_normals
 from gaussmap.generated import patch as kernels
+from gaussmap.runtime.formula_calls import python_function, vector
 from gaussmap.runtime.pictures.palette import ELLIPTIC, HYPERBOLIC
 from gaussmap.runtime.pictures.scene import quadrangles
-from gaussmap.runtime.plain import plain
 from matplotlib.colors import to_rgb
 from matplotlib.image import imread
 
@@ -174,7 +174,7 @@ def test_solid_angles_are_those_of_polyhedra(captions, name, pattern):
 
 def test_the_patches_are_what_their_titles_say():
     def parabolic(patch):
-        return np.array(plain(kernels.parabolic_cubic)(*patch.vectors))
+        return np.array(python_function(kernels.parabolic_cubic)(patch.vectors))
 
     patches = (patch_figures.PATCH, patch_figures.BESIDE, patch_figures.ACROSS)
     assert [x.image.kind for x in patches] == ["triangle", "biangle", "bow tie"]
@@ -187,7 +187,9 @@ def test_the_patches_are_what_their_titles_say():
     inside = patch_figures.bezier(
         patch_figures.BESIDE.control_normals, np.array([[0.3, 0.3, 0.4], [0.1, 0.8, 0.1]])
     )
-    assert (plain(kernels.forms)(*patch_figures.BESIDE.vectors, *inside.T)[0] > 0.0).all()
+    assert (
+        python_function(kernels.forms)(patch_figures.BESIDE.vectors, vector(inside))[0] > 0.0
+    ).all()
     signs = np.sign(parabolic(patch_figures.ACROSS))
     assert {-1.0, 1.0} <= set(signs)
 

@@ -23,7 +23,10 @@ from typing import Any
 
 import pytest
 from gaussmap.generated import patch
+from gaussmap.generated.vectors import Patch, Vector
 from gaussmap.symbolic import formulas
+from gaussmap.symbolic.emit import arguments
+from gaussmap.symbolic.formula import VectorSymbol
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -87,8 +90,27 @@ class Term:
 quotients: list[Term] = []
 
 
-def as_tuple(result: Any) -> tuple[Any, ...]:
-    return result if isinstance(result, tuple) else (result,)
+def flat(result: Any) -> list[Any]:
+    """Return the numbers in nested tuples, one after the other."""
+    return [x for y in result for x in flat(y)] if isinstance(result, tuple) else [result]
+
+
+def grouped(name: str, inputs: dict[str, Any]) -> list[Any]:
+    """Return the arguments of the function of a formula: patches, vectors and numbers."""
+
+    def vector(symbol: Any) -> Vector:
+        return Vector(*(inputs[x.name] for x in symbol.components))
+
+    result = []
+    for argument, symbols in arguments(formulas[name]).items():
+        if argument == "patch":
+            held = {x.name: vector(x) for x in symbols}
+            result.append(Patch(**({"p": held["a"]} | held)))
+        else:
+            (symbol,) = symbols
+            is_vector = isinstance(symbol, VectorSymbol)
+            result.append(vector(symbol) if is_vector else inputs[symbol.name])
+    return result
 
 
 def inputs_of(name: str) -> list[str]:
@@ -100,14 +122,14 @@ def exact(name: str, inputs: dict[str, float]) -> list[Term]:
     function = getattr(patch, name)
     quotients.clear()
     terms = {key: Term.of(x) for key, x in inputs.items()}
-    return list(as_tuple(getattr(function, "py_func", function)(**terms)))
+    return flat(getattr(function, "py_func", function)(*grouped(name, terms)))
 
 
 def check(name: str, inputs: dict[str, float]) -> None:
     """Compare a compiled function with its exact values."""
     k = ROUNDINGS[name]
     gamma = k * UNIT / (1 - k * UNIT)
-    computed = as_tuple(getattr(patch, name)(*inputs.values()))
+    computed = flat(getattr(patch, name)(*grouped(name, inputs)))
     for term, result in zip(exact(name, inputs), computed, strict=True):
         slack = 1 + Fraction(len(quotients), 1000)  # second order of the denominators
         assert math.isfinite(result)
@@ -202,7 +224,7 @@ def test_small_integers_are_exact(name, data):
     """Without a quotient all values on the way are integers or halves below 2⁵³."""
     inputs = data.draw(numbers(name, st.integers(-15, 15).map(float)))
     for term, result in zip(
-        exact(name, inputs), as_tuple(getattr(patch, name)(*inputs.values())), strict=True
+        exact(name, inputs), flat(getattr(patch, name)(*grouped(name, inputs))), strict=True
     ):
         assert Fraction(result) == term.value
 
@@ -223,14 +245,14 @@ def test_nearly_parabolic_patches_do_cancel():
     inputs |= {"a_x": 1.0, "b_x": third, "c_x": third * third, "n_x": 1.0}
     D = exact("forms", inputs)[0]
     assert 0 < abs(D.value) < D.size / 2**50
-    assert Fraction(patch.forms(*inputs.values())[0]) != D.value
+    assert Fraction(patch.forms(*grouped("forms", inputs))[0]) != D.value
     check("forms", inputs)
 
 
 def test_a_wrong_result_is_noticed(monkeypatch):
     """Twelve ULPs of the size of the terms are too much for D, whose terms have 8 roundings."""
     inputs = {key: float(7 * k % 13 - 6) for k, key in enumerate(inputs_of("forms"))}
-    D, *others = as_tuple(patch.forms(*inputs.values()))
+    D, *others = flat(patch.forms(*grouped("forms", inputs)))
     size = float(exact("forms", inputs)[0].size)
     source = patch.forms
 

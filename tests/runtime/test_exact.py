@@ -9,8 +9,8 @@ import pytest
 from gaussmap.generated import exact as kernels_of_pairs
 from gaussmap.generated import sampler as kernels
 from gaussmap.runtime import exact, long_integers
+from gaussmap.runtime.formula_calls import python_function
 from gaussmap.runtime.integers import integers, sign
-from gaussmap.runtime.plain import plain
 from gaussmap.runtime.surface import Ends
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -69,7 +69,7 @@ def test_forms_on_integers_are_those_of_fractions() -> None:
             for di, dj in kernels.NEIGHBOURS[turn]
         ]
         read = [around[k][x] - around[4][x] for k in kernels.TRIANGLE_NEIGHBOURS for x in range(3)]
-        expected = plain(kernels.triangle)(*read)[:15]
+        expected = python_function(kernels.triangle)(*read)[:15]
         assert [int(x) * unit for x in vectors[:, patch]] == list(expected)
 
 

@@ -1,6 +1,7 @@
 """What is emitted computes the formulas, exactly; generated/ is up to date."""
 
 import ast
+import inspect
 import math
 import os
 import random
@@ -13,8 +14,10 @@ from typing import Any
 
 import pytest
 import sympy as sp
+from gaussmap.generated import vectors
 from gaussmap.symbolic import curve, emit, files, formulas, gaussian_image, mesh, patch, surfaces
 from gaussmap.symbolic.__main__ import main
+from gaussmap.symbolic.formula import PlaneVector, VectorSymbol
 from gaussmap.symbolic.positions import position
 
 PYTHON_FILES = sorted(path.name for path in files.GENERATED.glob("*.py"))
@@ -44,7 +47,8 @@ def exact_root(value: Fraction) -> Fraction:
 
 
 PI = Fraction(22, 7)  # stands for π
-EXACT = {"Number": Fraction, "math": SimpleNamespace(sqrt=exact_root, pi=PI)}
+TYPES = {x.__name__: x for x in (vectors.Arc, vectors.Patch, vectors.PlaneVector, vectors.Vector)}
+EXACT = {"Number": Fraction, "math": SimpleNamespace(sqrt=exact_root, pi=PI), **TYPES}
 
 
 def executed(source: str, names: dict[str, Any]) -> dict[str, Any]:
@@ -103,6 +107,31 @@ def in_a_plane(inputs: dict[str, Fraction]) -> dict[str, Fraction]:
     }
 
 
+def grouped(formula, inputs: dict[str, Fraction]) -> dict[str, Any]:
+    """Return the arguments of the function of a formula, vectors as named tuples."""
+
+    def value(symbol: sp.Symbol) -> Any:
+        if not isinstance(symbol, VectorSymbol):
+            return inputs[symbol.name]
+        kind = vectors.PlaneVector if isinstance(symbol, PlaneVector) else vectors.Vector
+        return kind(*(inputs[x.name] for x in symbol.components))
+
+    types = {"patch": vectors.Patch, "arc": vectors.Arc}
+    result = {}
+    for name, symbols in emit.arguments(formula).items():
+        if name in types:
+            held = dict.fromkeys(types[name]._fields) | {x.name: value(x) for x in symbols}
+            result[name] = types[name](**held)
+        else:
+            result[name] = value(symbols[0])
+    return result
+
+
+def flat(result: Any) -> list[Any]:
+    """Return the numbers in nested tuples, one after the other."""
+    return [x for y in result for x in flat(y)] if isinstance(result, tuple) else [result]
+
+
 def expected(formula, inputs: dict[str, Fraction]) -> list[Fraction]:
     """Evaluate the undecomposed expressions of the outputs in SymPy."""
     numbers = {
@@ -132,16 +161,15 @@ def test_generated_functions_are_exact(name, source):
     function = executed(source, EXACT)[name]
     for seed in range(2):
         inputs = exact_inputs(formula, seed)
-        result = function(**inputs)
-        outputs = result if isinstance(result, tuple) else (result,)
-        assert list(outputs) == expected(formula, inputs)
+        of_vectors = [*inspect.signature(function).parameters] == [*emit.arguments(formula)]
+        result = function(**(grouped(formula, inputs) if of_vectors else inputs))
+        assert flat(result) == expected(formula, inputs)
 
 
 def test_every_formula_of_a_patch_is_a_function():
     text = (files.GENERATED / "patch.py").read_text(encoding="utf-8")
     names = [x.name for x in ast.parse(text).body if isinstance(x, ast.FunctionDef)]
-    composed = {"sample", "curvature_at"}
-    assert names == ["jit", *(x.name for x in patch.FORMULAS if x.name not in composed)]
+    assert names == [x.name for x in patch.FORMULAS]
 
 
 @pytest.mark.parametrize("formula", formulas.values(), ids=formulas)
@@ -175,7 +203,7 @@ def test_no_powers(file):
 def test_generated_files_import_math_numpy_numba_and_one_another(file):
     tree = ast.parse((files.GENERATED / file).read_text(encoding="utf-8"))
     siblings = [node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
-    assert siblings == (["sampler"] if file == "icosphere.py" else [])
+    assert set(siblings) <= {"typing", "sampler" if file == "icosphere.py" else "vectors"}
     imported = [
         x.name for node in ast.walk(tree) if isinstance(node, ast.Import) for x in node.names
     ]
@@ -188,6 +216,13 @@ def test_headers_say_who_wrote_them(file):
     assert "make generate" in head
     assert f"SymPy {sp.__version__}" in head
     assert "no fast-math" in " ".join(head.split())
+
+
+def test_functions_take_and_return_vectors():
+    source = emit.vector_function(formulas["arc_tangent"])
+    assert source.startswith("@inline\ndef arc_tangent(arc, t):\n")
+    assert "    a_x, a_y = arc.a\n    b_x, b_y = arc.b\n" in source
+    assert source.endswith("    return PlaneVector(p_t_x, p_t_y), N_x, N_y")
 
 
 def operations_in(source: str) -> int:

@@ -181,12 +181,12 @@ def test_each_block_of_a_kernel_is_listed(path):
             "sampler.py: evaluate_tile (in sample), fill_known (in curvature_at); "
             "called by fill_samples, fill_tile",
         ),
-        ("forms", "patch.py: forms, support_function"),
+        ("forms", "patch.py: forms, support_function, sample"),
         ("sample", "sampler.py: evaluate_tile; called by fill_samples, fill_tile"),
         # by calls, at once and through others
-        ("measure", "spline.py: measure; called by measure_patches"),
-        ("triangle", "spline.py: triangle; called by patch_vectors, evaluate, measure_patches"),
-        ("coefficient_from_centres", "none"),
+        ("measure", "patch.py: measure"),
+        ("triangle", "spline.py: triangle"),
+        ("coefficient_from_centres", "spline.py: coefficient_from_centres"),
     ],
 )
 def test_kernels(name, kernels):

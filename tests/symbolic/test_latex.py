@@ -225,9 +225,9 @@ def test_entries_name_source_inputs_and_operations(formula):
     [
         ("curvature", "`sampler.py`: `evaluate_tile` (in `sample`), `fill_known` (in "
          "`curvature_at`), called by `fill_samples`"),
-        ("forms", "`patch.py`: `forms`, `support_function`; `sampler.py`"),
-        ("boundary_arc", "`gaussian_image.py`: `boundary_arc`, `integrate_arcs`."),
-        ("coefficient_from_centres", "none."),
+        ("forms", "`patch.py`: `forms`, `support_function`, `sample`; `sampler.py`"),
+        ("boundary_arc", "`gaussian_image.py`: `boundary_arc`."),
+        ("coefficient_from_centres", "`spline.py`: `coefficient_from_centres`."),
         ("torus", "`surfaces.py`: `torus`."),
     ],
 )  # fmt: skip

@@ -4,8 +4,8 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.generated import patch as formulas
+from gaussmap.runtime.formula_calls import patch, python_function, vector
 from gaussmap.runtime.gaussian.patches import Patches
-from gaussmap.runtime.plain import plain
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -49,8 +49,8 @@ ON_EDGES = (lambda t: (0 * t, 1 - t), lambda t: (t, 0 * t), lambda t: (1 - t, t)
 
 def field(net: Array, u: Array, v: Array) -> Array:
     """Return the unit normals (k, 3) at places u, v (k,)."""
-    vectors = Patches.of_control_points(net[None]).vectors.ravel()
-    N = np.array(np.broadcast_arrays(*plain(formulas.tangents)(*vectors, u, v)[6:])).T
+    vectors = patch(Patches.of_control_points(net[None]).vectors[0])
+    N = np.array(np.broadcast_arrays(*python_function(formulas.tangents)(vectors, u, v)[2])).T
     return N / np.linalg.norm(N, axis=1, keepdims=True)
 
 
@@ -144,9 +144,10 @@ def test_integer_normals_of_a_cut_edge_are_members() -> None:
     """Exact normals of the edge v = 0 at u = 1/8, …, 7/8; at 1/2 it has none."""
     net = np.array(CASES["generic"][0], dtype=float)
     image = gm.GaussianImage.of_patch(net)
-    vectors = plain(formulas.power_form)(*net.ravel())[:15]
+    vectors = python_function(formulas.power_form)(*map(vector, net))
     u = np.array([1, 2, 3, 5, 6, 7]) / 8
-    normals = np.array(np.broadcast_arrays(*plain(formulas.tangents)(*vectors, u, 0.0)[6:])).T
+    N = python_function(formulas.tangents)(vectors, u, 0.0)[2]
+    normals = np.array(np.broadcast_arrays(*N)).T
     assert image.contains(normals).all()
     assert not image.contains(-normals).any()
 

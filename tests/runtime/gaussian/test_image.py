@@ -7,8 +7,9 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.generated import patch as formulas
+from gaussmap.generated.vectors import Vector
+from gaussmap.runtime.formula_calls import patch, python_function, vector
 from gaussmap.runtime.gaussian.patches import Patches
-from gaussmap.runtime.plain import plain
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -52,9 +53,9 @@ def measured(net: Array, corners: Array, order: int = 60) -> float:
     barycentric = np.stack([x * (1.0 - y), y, (1.0 - x) * (1.0 - y)])
     u, v = (corners.T @ barycentric)[:2]
     area = abs(np.linalg.det(np.column_stack([corners, np.ones(3)])))
-    vectors = Patches.of_control_points(net[None]).vectors.ravel()
-    N = np.array(np.broadcast_arrays(*plain(formulas.tangents)(*vectors, u, v)[6:]))
-    A, B, C = (vectors[k : k + 3] @ N for k in (0, 3, 6))
+    vectors = Patches.of_control_points(net[None]).vectors[0]
+    N = np.array(np.broadcast_arrays(*python_function(formulas.tangents)(patch(vectors), u, v)[2]))
+    A, B, C = (vectors[k] @ N for k in range(3))
     return float((weight * (A * C - B * B) / np.linalg.norm(N, axis=0) ** 3).sum() * area)
 
 
@@ -82,11 +83,11 @@ def test_arcs_are_the_normals_of_the_edges_and_lie_on_the_cones() -> None:
     for seed in range(20):
         net = random_patch(seed, 3.0)
         image = gm.GaussianImage.of_patch(net)
-        vectors = Patches.of_control_points(net[None]).vectors.ravel()
+        vectors = patch(Patches.of_control_points(net[None]).vectors[0])
         share = np.linspace(0.0, 1.0, 9)
         edges = [(0 * share, 1 - share), (share, 0 * share), (1 - share, share)]
         for arc, cone, (u, v) in zip(image.arcs, image.cones, edges, strict=True):
-            normals = np.array(plain(formulas.tangents)(*vectors, u, v)[6:]).T
+            normals = np.array(python_function(formulas.tangents)(vectors, u, v)[2]).T
             normals /= np.linalg.norm(normals, axis=1)[:, None]
             points = arc.points(9)
             np.testing.assert_allclose(points, normals, rtol=0, atol=1e-13)
@@ -167,12 +168,13 @@ def test_solid_angle_is_additive_where_singular_points_are_inside() -> None:
 
 def by_definition(net: Array, n: list[int]) -> bool:
     """Solve n·p_u = n·p_v = 0 in fractions; D must not vanish."""
-    vectors = [Fraction(int(x)) for x in np.array(plain(formulas.power_form)(*net.ravel())[:15])]
-    a, b, c, d, e = (vectors[k : k + 3] for k in range(0, 15, 3))
+    integers = net.astype(int).astype(object) * Fraction(1)
+    vectors = python_function(formulas.power_form)(*map(vector, integers))
+    a, b, c, d, e, _ = vectors
     A, B, C, P, Q = (sum(x * y for x, y in zip(n, z, strict=True)) for z in (a, b, c, d, e))
     determinant = A * C - B * B
     u, v = (B * Q - C * P) / Fraction(determinant), (B * P - A * Q) / Fraction(determinant)
-    field = plain(formulas.tangents)(*vectors, u, v)[6:]
+    field = python_function(formulas.tangents)(vectors, u, v)[2]
     towards = sum(x * y for x, y in zip(field, n, strict=True))
     return bool(u >= 0 and v >= 0 and u + v <= 1 and towards > 0)
 
@@ -184,8 +186,8 @@ def by_definition(net: Array, n: list[int]) -> bool:
 )
 def test_membership_is_that_of_the_definition(seed: int, normals: list) -> None:
     net = np.random.default_rng(seed).integers(-3, 4, (6, 3)).astype(float)
-    vectors = plain(formulas.power_form)(*net.ravel())[:15]
-    D = [plain(formulas.forms)(*vectors, *n)[0] for n in normals]
+    vectors = python_function(formulas.power_form)(*map(vector, net))
+    D = [python_function(formulas.forms)(vectors, Vector(*n))[0] for n in normals]
     asked = [n for n, value in zip(normals, D, strict=True) if value != 0]
     if asked:
         found = gm.GaussianImage.of_patch(net).contains(asked)
@@ -195,9 +197,9 @@ def test_membership_is_that_of_the_definition(seed: int, normals: list) -> None:
 def test_border_belongs_to_the_image_and_what_lies_beyond_does_not() -> None:
     """Normals on an edge of an integer patch, moved by one part in 2⁵⁰ along the gradient of V."""
     image = gm.GaussianImage.of_patch(2 * BIANGLE)
-    normals = np.array(plain(formulas.tangents)(
-        *plain(formulas.power_form)(*(2 * BIANGLE).ravel())[:15], np.array([0.25, 0.5, 0.75]), 0.0
-    )[6:]).T  # fmt: skip
+    vectors = python_function(formulas.power_form)(*map(vector, 2 * BIANGLE))
+    u = np.array([0.25, 0.5, 0.75])
+    normals = np.array(python_function(formulas.tangents)(vectors, u, 0.0)[2]).T
     assert image.contains(normals).all()
     away = normals @ image.cones[1]
     away /= np.abs(away).max(axis=1, keepdims=True)

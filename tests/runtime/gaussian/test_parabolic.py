@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 import sympy as sp
 from gaussmap.generated import patch as formulas
+from gaussmap.runtime.formula_calls import patch, python_function
 from gaussmap.runtime.gaussian.chains import joined
 from gaussmap.runtime.gaussian.curvature_field import CurvatureField
 from gaussmap.runtime.gaussian.patches import Patches
-from gaussmap.runtime.plain import plain
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -44,7 +44,7 @@ def distances(points: Array, polylines: list[Array]) -> Array:
 def test_lines_hold_parabolic_points_with_one_normal() -> None:
     for seed in range(40):
         net = np.random.default_rng(seed).integers(-9, 10, (6, 3)).astype(float)
-        vectors = Patches.of_control_points(net[None]).vectors.ravel()
+        vectors = patch(Patches.of_control_points(net[None]).vectors[0])
         lines = gm.parabolic_lines(net)
         assert len(lines) in (1, 3)
         for line in lines:
@@ -52,7 +52,7 @@ def test_lines_hold_parabolic_points_with_one_normal() -> None:
             along = np.linspace(-2.0, 2.0, 7)
             u = -line.rho * line.s - along * line.t
             v = -line.rho * line.t + along * line.s
-            N = np.array(plain(formulas.tangents)(*vectors, u, v)[6:])
+            N = np.array(python_function(formulas.tangents)(vectors, u, v)[2])
             size = 1.0 + np.abs(N).max()
             assert np.abs(np.cross(N.T, line.normal)).max() <= 1e-11 * size
             if line.segment is not None:
@@ -85,7 +85,7 @@ def test_pieces_make_up_the_triangle_and_have_one_sign() -> None:
         net = generator.integers(-9, 10, (6, 3)).astype(float)
         pieces = gm.split_patch(net)
         numbers.append(len(pieces))
-        vectors = Patches.of_control_points(net[None]).vectors.ravel()
+        vectors = Patches.of_control_points(net[None]).vectors[0]
         total = 0.0
         for piece in pieces:
             x, y = piece.corners.T
@@ -94,8 +94,8 @@ def test_pieces_make_up_the_triangle_and_have_one_sign() -> None:
             total += area
             weights = generator.dirichlet(np.ones(len(x)), 20)
             u, v = (weights @ piece.corners).T
-            N = np.array(plain(formulas.tangents)(*vectors, u, v)[6:])
-            A, B, C = (vectors[k : k + 3] @ N for k in (0, 3, 6))
+            N = np.array(python_function(formulas.tangents)(patch(vectors), u, v)[2])
+            A, B, C = (vectors[k] @ N for k in range(3))
             assert (np.sign(A * C - B * B) == piece.sign).all()
         assert total == pytest.approx(0.5, abs=1e-13)
     assert set(numbers) >= {1, 2, 3}
@@ -256,7 +256,7 @@ def signs_at(spline: gm.Spline, patches: Patches, places: Array) -> Array:
         s, t = np.where(turn >= k, t, s), np.where(turn >= k, -s, t)
     vectors = patches.vectors[4 * (cell[:, 0] * spline.cells[1] + cell[:, 1]) + turn]
     u, v = -t - s, -t + s
-    N = np.stack(plain(formulas.tangents)(*vectors.reshape(-1, 15).T, u, v)[6:], axis=1)
+    N = np.stack(python_function(formulas.tangents)(patch(vectors), u, v)[2], axis=1)
     A, B, C = (np.einsum("kx,kx->k", N, vectors[:, k]) for k in range(3))
     return np.sign(A * C - B * B)
 

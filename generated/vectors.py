@@ -1,0 +1,48 @@
+"""The vectors that formulas take and return, and the decorator that inlines formulas.
+
+Written by `make generate` (python -m gaussmap.symbolic): do not edit, change symbolic/ instead.
+SymPy 1.14.0. Passes: common subexpressions of all outputs together, in canonical order;
+temporaries that are used once or are another name with a sign written back. float64, no
+fast-math.
+"""
+
+from typing import NamedTuple
+
+import numba
+
+# A formula is put into its callers before types are known, and not compiled by itself.
+inline = numba.njit(inline="always", nogil=True, error_model="numpy", fastmath=False)
+
+
+class Vector(NamedTuple):
+    """A vector of R³."""
+
+    x: float
+    y: float
+    z: float
+
+
+class PlaneVector(NamedTuple):
+    """A vector of R²."""
+
+    x: float
+    y: float
+
+
+class Patch(NamedTuple):
+    """The vectors of a quadratic patch, eq. (8)."""
+
+    a: Vector
+    b: Vector
+    c: Vector
+    d: Vector
+    e: Vector
+    p: Vector
+
+
+class Arc(NamedTuple):
+    """The vectors of a quadratic arc, as those of a patch."""
+
+    a: PlaneVector
+    b: PlaneVector
+    c: PlaneVector

@@ -1,0 +1,149 @@
+"""The C¹ quadratic spline: fitting its coefficients, its control nets, evaluation and measure."""
+
+from __future__ import annotations
+
+import math
+
+from ...generated.patch import NODE, envelope, measure, tangents
+from ...generated.spline import (
+    NEIGHBOURS,
+    SCALE,
+    VERTICES,
+    coefficient,
+    coefficient_from_vertices,
+    control_net,
+)
+from .jit import inline, jit
+from .patch import patch_vectors, place_of, vector_at
+
+__all__ = [
+    "control_nets",
+    "evaluate",
+    "fit_centres_and_vertices",
+    "fit_vertices",
+    "measure_patches",
+]
+
+
+# --- fitting --------------------------------------------------------------------------------------
+
+
+@jit
+def fit_centres_and_vertices(centres, vertices, coefficients):
+    """Write coefficients (m, n, 3) from values at centres (m, n, 3) and vertices (m+1, n+1, 3)."""
+    for i in range(coefficients.shape[0]):
+        for j in range(coefficients.shape[1]):
+            for x in range(3):
+                coefficients[i, j, x] = coefficient(
+                    centres[i, j, x],
+                    vertices[i, j, x],
+                    vertices[i, j + 1, x],
+                    vertices[i + 1, j, x],
+                    vertices[i + 1, j + 1, x],
+                )
+
+
+@inline
+def value_round_cell(values, i, j, k, x):
+    """Return component x of the value at vertex k round a cell."""
+    return values[i + VERTICES[k, 0], j + VERTICES[k, 1], x]
+
+
+@jit
+def fit_vertices(values, coefficients):
+    """Write coefficients (m, n, 3) from values (m+3, n+3, 3) at the vertices and one ring more."""
+    for i in range(coefficients.shape[0]):
+        for j in range(coefficients.shape[1]):
+            for x in range(3):
+                coefficients[i, j, x] = coefficient_from_vertices(
+                    value_round_cell(values, i, j, 0, x),
+                    value_round_cell(values, i, j, 1, x),
+                    value_round_cell(values, i, j, 2, x),
+                    value_round_cell(values, i, j, 3, x),
+                    value_round_cell(values, i, j, 4, x),
+                    value_round_cell(values, i, j, 5, x),
+                    value_round_cell(values, i, j, 6, x),
+                    value_round_cell(values, i, j, 7, x),
+                    value_round_cell(values, i, j, 8, x),
+                    value_round_cell(values, i, j, 9, x),
+                    value_round_cell(values, i, j, 10, x),
+                    value_round_cell(values, i, j, 11, x),
+                )
+
+
+# --- reading the spline ---------------------------------------------------------------------------
+
+
+@inline
+def coefficient_near(mu, i, j, turn, k):
+    """Return neighbour k of a coefficient."""
+    return vector_at(mu, i + NEIGHBOURS[turn, k, 0], j + NEIGHBOURS[turn, k, 1])
+
+
+@jit
+def control_nets(mu, nets):
+    """Write the Bézier nets (4 m n, 6, 3) of all patches."""
+    columns = mu.shape[1] - 2
+    for patch in range(nets.shape[0]):
+        i, j, turn = place_of(patch, columns)
+        net = control_net(
+            coefficient_near(mu, i + 1, j + 1, turn, 0),
+            coefficient_near(mu, i + 1, j + 1, turn, 1),
+            coefficient_near(mu, i + 1, j + 1, turn, 2),
+            coefficient_near(mu, i + 1, j + 1, turn, 3),
+            coefficient_near(mu, i + 1, j + 1, turn, 4),
+            coefficient_near(mu, i + 1, j + 1, turn, 5),
+            coefficient_near(mu, i + 1, j + 1, turn, 7),
+        )
+        for k in range(6):
+            nets[patch, k, 0], nets[patch, k, 1], nets[patch, k, 2] = net[k]
+
+
+@inline
+def locate(s, t):
+    """Return the triangle of a cell and u, v in it; s, t are in cells from the centre."""
+    turn = 0
+    if abs(s) > abs(t):
+        turn = 1 if s > 0.0 else 3
+    elif t > 0.0:
+        turn = 2
+    for _ in range(turn):
+        s, t = t, -s
+    return turn, -t - s, -t + s
+
+
+@jit
+def evaluate(mu, scale, cells, points, normals):
+    """Write points (k, 3) and unnormalized normals (k, 3) at places (k, 2) in cells."""
+    size = SCALE * scale
+    for k in range(cells.shape[0]):
+        i = min(max(int(math.floor(cells[k, 0])), 0), mu.shape[0] - 3)
+        j = min(max(int(math.floor(cells[k, 1])), 0), mu.shape[1] - 3)
+        turn, u, v = locate(cells[k, 0] - i - 0.5, cells[k, 1] - j - 0.5)
+        patch = patch_vectors(mu, i + 1, j + 1, turn, scale)
+        x = envelope(patch, u, v)
+        points[k, 0] = mu[i + 1, j + 1, 0] + x.x / size
+        points[k, 1] = mu[i + 1, j + 1, 1] + x.y / size
+        points[k, 2] = mu[i + 1, j + 1, 2] + x.z / size
+        _, _, N = tangents(patch, u, v)
+        normals[k, 0], normals[k, 1], normals[k, 2] = N
+
+
+@jit
+def measure_patches(mu, scale, first, last, areas, solid_angles):
+    """Write area (scaled) and signed solid angle of the patches first, …, last − 1."""
+    columns = mu.shape[1] - 2
+    for number in range(first, last):
+        i, j, turn = place_of(number, columns)
+        patch = patch_vectors(mu, i + 1, j + 1, turn, scale)
+        area = 0.0
+        solid_angle = 0.0
+        for node in range(3):
+            u = 1.0 - 2.0 * NODE if node == 0 else NODE
+            v = 1.0 - 2.0 * NODE if node == 1 else NODE
+            dA, dS = measure(patch, u, v)
+            if dA > 0.0:
+                area += dA / 6.0
+                solid_angle += dS / 6.0
+        areas[number - first] = area / (SCALE * SCALE)
+        solid_angles[number - first] = solid_angle
