@@ -1,47 +1,73 @@
-"""Saying that kernels are being compiled: the first run ever takes some seconds longer."""
+"""Saying on a terminal that kernels are being compiled, which makes their first call slow.
+
+Importing this module is enough: modules whose kernels users call import it.
+"""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
-from typing import TextIO
+import time
+from contextlib import suppress
 
 from numba.core import event
 
-__all__ = ["compilation_shown"]
+__all__ = ["NOTICE", "Notice"]
 
+PACKAGE = __name__.partition(".")[0]
 ERASE = "\r\033[K"  # to the start of the line, and clear it
+# Seconds of compilation that nobody needs to be told about.
+PATIENCE = 2.0
 
 
-class _Notice(event.Listener):
-    """Shows on a terminal which kernel is being compiled, until that is done."""
+class Notice(event.Listener):
+    """Shows a line on standard error, if that is a terminal, while kernels of gaussmap compile.
 
-    def __init__(self, stream: TextIO) -> None:
-        self.stream = stream
-        self.depth = 0  # a kernel has those compiled that it calls; Numba does it under a lock
+    The line appears when that has taken longer than `PATIENCE` in this process. Numba sends events
+    under a lock, so there is one compilation at a time; its passes serve as a clock.
+    """
+
+    def __init__(self) -> None:
+        self.quiet = False
+        self.kernels: list[str] = []  # a kernel has those compiled that it calls
+        self.seconds = 0.0  # spent on earlier kernels
+        self.since = 0.0
+        self.line = ""
 
     def on_start(self, event: event.Event) -> None:
-        if self.depth == 0 and event.data is not None:
-            name = event.data["dispatcher"].py_func.__name__
-            self._write(f"{ERASE}compiling {name} (the first time only)")
-        self.depth += 1
+        """Note which kernel begins, or that time has passed."""
+        if event.kind == "numba:compile" and event.data is not None:
+            function = event.data["dispatcher"].py_func
+            if self.kernels or function.__module__.startswith(f"{PACKAGE}."):
+                self.kernels.append(function.__name__)
+            if len(self.kernels) == 1:
+                self.since = time.monotonic()
+        if self.kernels:
+            self._tell()
 
     def on_end(self, event: event.Event) -> None:
-        self.depth -= 1
-        if self.depth == 0:
-            self._write(ERASE)
+        """Note that a kernel is done."""
+        if event.kind == "numba:compile" and self.kernels:
+            self.kernels.pop()
+            if not self.kernels:
+                self.seconds += time.monotonic() - self.since
+                self._show("")
 
-    def _write(self, text: str) -> None:
-        self.stream.write(text)
-        self.stream.flush()
+    def _tell(self) -> None:
+        seconds = self.seconds + time.monotonic() - self.since
+        if seconds > PATIENCE:
+            name = self.kernels[0]
+            self._show(f"gaussmap: compiling kernels, only once here ({seconds:.0f} s): {name}")
+
+    def _show(self, line: str) -> None:
+        """Replace the line by another one."""
+        if line == self.line or self.quiet or sys.stderr is None or not sys.stderr.isatty():
+            return
+        self.line = line
+        with suppress(OSError, ValueError):  # nobody hears it
+            sys.stderr.write(f"{ERASE}{line}")
+            sys.stderr.flush()
 
 
-@contextmanager
-def compilation_shown(progress: bool) -> Iterator[None]:
-    """With `progress`, show on standard error, if that is a terminal, what is being compiled."""
-    if not progress or sys.stderr is None or not sys.stderr.isatty():
-        yield
-        return
-    with event.install_listener("numba:compile", _Notice(sys.stderr)):
-        yield
+NOTICE = Notice()
+for kind in ("numba:compile", "numba:run_pass"):
+    event.register(kind, NOTICE)

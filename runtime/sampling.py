@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from .bins import NormalBins
 from .choice import choose
-from .compiling import compilation_shown
 from .density.filling import filled_samples
 from .density.request import Request, checked_request
 from .errors import GaussmapError, GaussmapWarning, InputError
@@ -114,10 +113,9 @@ def sample_and_normals(
     """Return what `sample` returns, and the unit normals that were asked."""
     wanted, number = checked_fields(fields), checked_dtype(dtype)
     filled = request.density != "gauss"
-    with compilation_shown(progress):
-        spline = spline_of(surface, cells)
-        sampled = filled_samples if filled else _by_normals
-        samples, normals = sampled(spline, request, wanted, number, threads, progress)
+    spline = spline_of(surface, cells)
+    sampled = filled_samples if filled else _by_normals
+    samples, normals = sampled(spline, request, wanted, number, threads, progress)
     warn_of(samples.report, request.count, 4, coverage=request.coverage, filled=filled)
     return samples, normals
 

@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from .bins import NormalBins
 from .checks import whole_number
 from .choice import NEAR_ENOUGH, NORMALS_PER_SAMPLE
-from .compiling import compilation_shown
 from .curves.circle import circle
 from .fields import checked_dtype, checked_fields
 from .report import sampling_report, warn_of
@@ -57,10 +56,9 @@ def silhouette(
     wanted, number = checked_fields(fields), checked_dtype(dtype)
     axis, asked = unit_vector(direction, "direction"), whole_number(count, "count")
     thread_count(threads)
-    with compilation_shown(progress):
-        spline = spline_of(surface, cells)
-        bins, hits = _by_count(spline, axis, asked, threads, progress)
-        arrays = fill(spline, bins, hits, threads, wanted, number)
+    spline = spline_of(surface, cells)
+    bins, hits = _by_count(spline, axis, asked, threads, progress)
+    arrays = fill(spline, bins, hits, threads, wanted, number)
     order = np.argsort(hits.normal_index, kind="stable")
     asked_normals = len(bins.normals)
     density = asked_normals / (4 * math.pi)

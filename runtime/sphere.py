@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..generated import icosphere as icosahedron
+from . import compiling  # noqa: F401 - it tells that kernels are compiled
 from .checks import finite_array, real_values, whole_number
 from .errors import InputError
 from .extras import from_extra

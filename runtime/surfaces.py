@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..generated.surfaces import CATALOGUE as _GENERATED
+from . import compiling  # noqa: F401 - it tells that kernels are compiled
 from .errors import InputError, UnknownNameError
 from .surface import Domain, Ends, Surface
 

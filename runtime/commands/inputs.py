@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..checks import known_name
+from ..compiling import NOTICE
 from ..errors import InputError
 from ..sphere import healpix, icosphere, random_normals
 from ..surface import Surface
@@ -25,6 +26,7 @@ PERIODIC = {"none": (False, False), "u": (True, False), "v": (False, True), "uv"
 
 def arguments(options: SimpleNamespace, default_count: int) -> dict[str, Any]:
     """Return the arguments of `sampling.sample` that were given."""
+    NOTICE.quiet = options.quiet
     _spare_inputs(options)
     surface_, normals = _surface(options), _normals(options)
     asked = normals, options.count, options.angle, options.coverage

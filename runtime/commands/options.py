@@ -1,4 +1,4 @@
-"""What commands and options are made of: help in groups, exclusive options, kinds of numbers."""
+"""What commands are made of: work that is imported late, options in groups, kinds of values."""
 
 from __future__ import annotations
 
@@ -11,29 +11,49 @@ import click
 from click.core import ParameterSource
 from click.shell_completion import CompletionItem
 
-__all__ = ["Command", "Density", "Number", "Option", "Program", "Setting", "SurfaceName", "Whole"]
+__all__ = [
+    "Command",
+    "Option",
+    "Program",
+    "densities",
+    "density",
+    "number",
+    "setting",
+    "surface_names",
+    "surfaces_and_files",
+    "whole",
+]  # fmt: skip
 
 
 class Option(click.Option):
-    """An option that stands in a group of the help; only one of the exclusive ones may be given."""
+    """An option written as in its help, such as "--spacing DX DY"; without values it is a flag.
+
+    The help shows it in its group. No two options that are `exclusive` may be given together.
+    """
 
     def __init__(
         self,
-        declarations: list[str],
+        usage: str,
+        text: str,
+        kind: Callable[[str], object] | click.ParamType = str,
         *,
         group: str = "options",
         exclusive: bool = False,
         **settings: Any,  # noqa: ANN401
     ) -> None:
-        super().__init__(declarations, **settings)
+        words = usage.split()
+        names = [word for word in words if word.startswith("-")]
+        values = words[len(names) :]
+        valued = {"type": kind, "metavar": " ".join(values), "nargs": len(values)}
+        super().__init__(names, help=text, **(valued if values else {"is_flag": True}), **settings)
         self.group, self.exclusive = group, exclusive
 
 
 class Command(click.Command):
     """A command whose work is `run` in the module of its name, imported when it is called.
 
-    So help, errors of usage and completion need neither NumPy nor Numba. `ctx.obj` is
-    called when the imports are done.
+    So help, errors of usage and completion need neither NumPy nor Numba. `ctx.obj` is called when
+    the imports are done.
     """
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
@@ -43,12 +63,12 @@ class Command(click.Command):
         except click.UsageError as error:
             error.ctx = error.ctx or ctx
             raise
+        exclusive = [x for x in self.params if isinstance(x, Option) and x.exclusive]
+        sources = [ctx.get_parameter_source(x.name or "") for x in exclusive]
         given = [
             x.opts[-1]
-            for x in self.params
-            if isinstance(x, Option)
-            and x.exclusive
-            and ctx.get_parameter_source(x.name or "") is ParameterSource.COMMANDLINE
+            for x, source in zip(exclusive, sources, strict=True)
+            if source is ParameterSource.COMMANDLINE
         ]
         if len(given) > 1:
             raise click.UsageError(f"{given[1]} is not allowed with {given[0]}", ctx)
@@ -57,18 +77,16 @@ class Command(click.Command):
     def invoke(self, ctx: click.Context) -> None:
         """Import the module that does the work, and have it done."""
         module = import_module(f".{self.name}", __package__)
-        ready: Callable[[], object] = ctx.obj
-        ready()
+        ctx.obj()
         module.run(SimpleNamespace(**ctx.params))
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the options under the headings of their groups."""
         groups: dict[str, list[tuple[str, str]]] = {}
-        for parameter in self.get_params(ctx):
-            record = parameter.get_help_record(ctx)
-            if record is not None and isinstance(parameter, click.Option):
-                group = parameter.group if isinstance(parameter, Option) else "options"
-                groups.setdefault(group, []).append(record)
+        for option in self.get_params(ctx):
+            record = option.get_help_record(ctx)
+            if record is not None and isinstance(option, click.Option):
+                groups.setdefault(getattr(option, "group", "options"), []).append(record)
         for group, records in groups.items():
             with formatter.section(group):
                 formatter.write_dl(records)
@@ -82,84 +100,62 @@ class Program(click.Group):
         return [*self.commands]
 
 
-class Number(click.ParamType):
-    """A number of any size, infinite or not: what is sensible is known where it is used."""
+def number(text: str) -> float:
+    """Return a number of any size: what is sensible is known where it is used."""
+    try:
+        return float(text)
+    except ValueError:
+        raise click.BadParameter(f"it must be a number, not {text!r}") from None
 
-    name = "number"
 
-    def convert(self, value: Any, param: Any, ctx: Any) -> float:  # noqa: ANN401
-        """Return the number."""
+def whole(most: int, least: int = 1) -> Callable[[str], int]:
+    """Return what reads whole numbers within bounds."""
+
+    def read(text: str) -> int:
         try:
-            return float(value)
+            value = int(text)
         except ValueError:
-            self.fail(f"it must be a number, not {value!r}", param, ctx)
+            value = least - 1
+        if not least <= value <= most:
+            bounds = f"from {least} to {most:,}"
+            raise click.BadParameter(f"it must be a whole number {bounds}, not {text!r}")
+        return value
+
+    return read
 
 
-class Whole(click.ParamType):
-    """A whole number within bounds."""
-
-    name = "whole number"
-
-    def __init__(self, most: int, least: int = 1) -> None:
-        self.most, self.least = most, least
-
-    def convert(self, value: Any, param: Any, ctx: Any) -> int:  # noqa: ANN401
-        """Return the number."""
-        try:
-            number = int(value)
-        except ValueError:
-            number = self.least - 1
-        if not self.least <= number <= self.most:
-            bounds = f"from {self.least} to {self.most:,}"
-            self.fail(f"it must be a whole number {bounds}, not {value!r}", param, ctx)
-        return number
+def setting(text: str) -> tuple[str, float]:
+    """Return the name and the value of NAME=VALUE."""
+    name, _, value = text.partition("=")
+    if not (name and value):
+        raise click.BadParameter(f"it must be NAME=VALUE, such as minor=0.2, not {text!r}")
+    return name, number(value)
 
 
-class Setting(click.ParamType):
-    """NAME=VALUE."""
-
-    name = "setting"
-
-    def convert(self, value: Any, param: Any, ctx: Any) -> tuple[str, float]:  # noqa: ANN401
-        """Return the name and the value."""
-        name, _, number = value.partition("=")
-        if not (name and number):
-            self.fail(f"it must be NAME=VALUE, such as minor=0.2, not {value!r}", param, ctx)
-        return name, Number().convert(number, param, ctx)
+def density(text: str) -> str | float:
+    """Return the power of |K| if it is a number, else a name."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
-class Density(click.ParamType):
-    """A name, or the power of |K|."""
-
-    name = "density"
-
-    def convert(self, value: Any, param: Any, ctx: Any) -> str | float:  # noqa: ANN401
-        """Return a number if it is one."""
-        try:
-            return float(value)
-        except ValueError:
-            return value
-
-    def shell_complete(self, ctx: Any, param: Any, incomplete: str) -> list[CompletionItem]:  # noqa: ANN401
-        """Return the names."""
-        return _completed(("balanced", "gauss", "uniform"), incomplete)
+def densities(_: click.Context, __: click.Parameter, begun: str) -> list[str]:
+    """Complete the name of a density."""
+    return [name for name in ("balanced", "gauss", "uniform") if name.startswith(begun)]
 
 
-class SurfaceName(click.ParamType):
-    """The name of a surface of the catalogue, or with `files` also a file."""
+def surface_names(_: click.Context, __: click.Parameter, begun: str) -> list[CompletionItem]:
+    """Complete the name of a surface."""
+    from ..surfaces import names
 
-    name = "surface"
-
-    def __init__(self, files: bool) -> None:
-        self.files = files
-
-    def shell_complete(self, ctx: Any, param: Any, incomplete: str) -> list[CompletionItem]:  # noqa: ANN401
-        """Return the names, and leave files to the shell."""
-        from ..surfaces import names
-
-        file = [CompletionItem(incomplete, type="file")]
-        return _completed(names(), incomplete) + (file if self.files else [])
+    return [CompletionItem(name) for name in names() if name.startswith(begun)]
 
 
-def _completed(names: tuple[str, ...], incomplete: str) -> list[CompletionItem]:
-    return [CompletionItem(name) for name in names if name.startswith(incomplete)]
+def surfaces_and_files(
+    context: click.Context, parameter: click.Parameter, begun: str
+) -> list[CompletionItem]:
+    """Complete the name of a surface, or let the shell complete that of a file."""
+    return [
+        *surface_names(context, parameter, begun), CompletionItem(begun, type="file")
+    ]  # fmt: skip

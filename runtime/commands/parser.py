@@ -13,7 +13,18 @@ import click
 from ... import __version__
 from ..fields import ARRAY_NAMES
 from ..limits import MOST, MOST_FREQUENCY, MOST_STEPS
-from .options import Command, Density, Number, Option, Program, Setting, SurfaceName, Whole
+from .options import (
+    Command,
+    Option,
+    Program,
+    densities,
+    density,
+    number,
+    setting,
+    surface_names,
+    surfaces_and_files,
+    whole,
+)  # fmt: skip
 
 __all__ = ["PROGRAM", "parser"]
 
@@ -75,74 +86,60 @@ FILE = click.Path(readable=False)  # for completion; files are checked where the
 
 def parser() -> click.Group:
     """Return the program with all of its commands."""
-    program = Program(
-        PROGRAM,
-        help="Sample surfaces by the normals of their points, so that the density of the samples "
-        "follows the curvature.",
-        epilog=EXAMPLES,
-        context_settings=SETTINGS,
-    )
+    text = "Sample surfaces by the normals of their points, so that density follows curvature."
+    program = Program(PROGRAM, help=text, epilog=EXAMPLES, context_settings=SETTINGS)
     click.version_option(__version__, message=f"{PROGRAM} %(version)s")(program)
     for command in (_sample(), _mesh(), _plot(), _surfaces(), _formulas()):
         program.add_command(command)
     return program
 
 
-def _command(name: str, parameters: list[click.Parameter], **texts: Any) -> Command:  # noqa: ANN401
-    return Command(name, params=parameters, context_settings=SETTINGS, **texts)
+def _command(
+    name: str, short: str, text: str, *parameters: click.Parameter, epilog: str = ""
+) -> Command:
+    return Command(
+        name,
+        params=[*parameters],
+        short_help=short,
+        help=text,
+        epilog=epilog,
+        context_settings=SETTINGS,
+    )
 
 
 def _sample() -> Command:
     group = "contents of the file"
-    contents: list[click.Parameter] = [
-        Option(
-            ["--fields"],
-            group=group,
-            metavar="NAME,NAME",
-            help=f"Write these arrays only (default: all). They are {', '.join(ARRAY_NAMES)}.",
-        ),
-        Option(
-            ["--progressive"],
-            group=group,
-            is_flag=True,
-            help="Order the samples such that every prefix of them is well distributed.",
-        ),
-        Option(
-            ["--float32"],
-            group=group,
-            is_flag=True,
-            help="Write single precision: 7 digits instead of 16.",
-        ),
-    ]
+    names = f"Write these arrays only (default: all). They are {', '.join(ARRAY_NAMES)}."
+    prefixes = "Order the samples such that every prefix of them is well distributed."
+    single = "Write single precision: 7 digits instead of 16."
     return _command(
         "sample",
-        [*_sampling(default_count=10_000), _output(".npz, .ply, .csv, .vtp or .xyz"), *contents],
-        short_help="Sample a surface and write the samples to a file.",
-        help="Sample a surface and write the samples to a file: points with normals, parameters "
-        "and curvatures. Samples are the points that have prescribed normals, and samples that "
-        "fill the gaps between these, where the surface is flat or developable.",
+        "Sample a surface and write the samples to a file.",
+        "Sample a surface and write the samples to a file: points with normals, parameters and "
+        "curvatures. Samples are the points that have prescribed normals, and samples that fill "
+        "the gaps between these, where the surface is flat or developable.",
+        *_sampling(default_count=10_000),
+        _output(".npz, .ply, .csv, .vtp or .xyz"),
+        Option("--fields NAME,NAME", names, group=group),
+        Option("--progressive", prefixes, group=group),
+        Option("--float32", single, group=group),
         epilog=SAMPLE_EXAMPLES,
     )
 
 
 def _mesh() -> Command:
-    deviation = Option(
-        ["--deviation"],
-        type=Number(),
-        metavar="DEGREES",
-        help="Leave out triangles whose normal deviates by more from a normal at their corners; "
-        "for samples of a part of the surface.",
+    deviation = (
+        "Leave out triangles whose normal deviates by more from a normal at their corners; for "
+        "samples of a part of the surface."
     )
     return _command(
         "mesh",
-        [
-            *_sampling(default_count=10_000),
-            _output(".ply, .obj, .stl, .vtk, .vtu or .vtp"),
-            deviation,
-        ],
-        short_help="Sample a surface and write a triangle mesh of it.",
-        help="Sample a surface and write a triangle mesh of it. The vertices are the samples, and "
+        "Sample a surface and write a triangle mesh of it.",
+        "Sample a surface and write a triangle mesh of it. The vertices are the samples, and "
         "points on open borders and at poles.",
+        *_sampling(default_count=10_000),
+        _output(".ply, .obj, .stl, .vtk, .vtu or .vtp"),
+        Option("--deviation DEGREES", deviation, number),
         epilog=MESH_EXAMPLES,
     )
 
@@ -150,192 +147,133 @@ def _mesh() -> Command:
 def _plot() -> Command:
     return _command(
         "plot",
-        [*_sampling(default_count=2_000), _output(".png, .pdf or .svg")],
-        short_help="Draw a surface, its samples and their normals.",
-        help="Draw a surface with its samples, coloured by Gaussian curvature, and the unit sphere "
-        "with their normals. Needs Matplotlib: pip install 'gaussmap[plot]'.",
+        "Draw a surface, its samples and their normals.",
+        "Draw a surface with its samples, coloured by Gaussian curvature, and the unit sphere with "
+        "their normals. Needs Matplotlib: pip install 'gaussmap[plot]'.",
+        *_sampling(default_count=2_000),
+        _output(".png, .pdf or .svg"),
         epilog=PLOT_EXAMPLES,
     )
 
 
 def _surfaces() -> Command:
-    name = click.Argument(["name"], required=False, type=SurfaceName(files=False))
     return _command(
         "surfaces",
-        [name],
-        short_help="List the surfaces of the catalogue, or explain one.",
-        help="List the surfaces of the catalogue; with NAME, its parameters.",
+        "List the surfaces of the catalogue, or explain one.",
+        "List the surfaces of the catalogue; with NAME, its parameters.",
+        click.Argument(["name"], required=False, shell_complete=surface_names),
     )
 
 
 def _formulas() -> Command:
-    options = [
-        click.Argument(["name"], required=False),
-        Option(
-            ["--latex"], exclusive=True, is_flag=True, help="Show LaTeX (of all without a NAME)."
-        ),
-        Option(
-            ["--html"],
-            exclusive=True,
-            type=FILE,
-            metavar="FILE.html",
-            help="Write all formulas, and the surfaces, to one page for browsers. Needs "
-            "pip install 'gaussmap[html]'.",
-        ),
-    ]
+    page = (
+        "Write all formulas, and the surfaces, to one page for browsers. Needs pip install "
+        "'gaussmap[html]'."
+    )
     return _command(
         "formulas",
-        options,
-        short_help="List the formulas that the program computes with, or show one.",
-        help="List the formulas that the program computes with; with NAME, show it.",
+        "List the formulas that the program computes with, or show one.",
+        "List the formulas that the program computes with; with NAME, show it.",
+        click.Argument(["name"], required=False),
+        Option("--latex", "Show LaTeX (of all without a NAME).", exclusive=True),
+        Option("--html FILE.html", page, FILE, exclusive=True),
     )
 
 
 def _output(suffixes: str) -> Option:
-    return Option(
-        ["-o", "--output"],
-        required=True,
-        type=FILE,
-        metavar="OUT",
-        help=f"The file to write: {suffixes}",
-    )
+    return Option("-o --output OUT", f"The file to write: {suffixes}.", FILE, required=True)
 
 
 def _quiet() -> Option:
-    return Option(
-        ["--quiet"],
-        group="the run",
-        is_flag=True,
-        help="Print nothing but warnings and errors: no summary, no progress.",
-    )
+    text = "Print nothing but warnings and errors: no summary, no progress."
+    return Option("--quiet", text, group="the run")
 
 
 def _sampling(default_count: int) -> list[click.Parameter]:
     """Return the arguments that `sample`, `mesh` and `plot` share."""
-    options = [*_amount(default_count), *_distribution(), *_surface_options(), *_run()]
-    return [click.Argument(["surface"], type=SurfaceName(files=True)), *options]
+    surface = click.Argument(["surface"], shell_complete=surfaces_and_files)
+    threads = "How many threads to use (default: one for each core)."
+    run = [Option("--threads T", threads, whole(MOST), group="the run"), _quiet()]
+    return [surface, *_amount(default_count), *_distribution(), *_surface_options(), *run]
 
 
 def _amount(default_count: int) -> list[Option]:
-    group = "how many samples (one of these; --coverage alone or with another one)"
-
-    def one_of(declaration: str, kind: click.ParamType, metavar: str, text: str) -> Option:
-        return Option(
-            [declaration], group=group, exclusive=True, type=kind, metavar=metavar, help=text
-        )
-
+    one_of: dict[str, Any] = {
+        "group": "how many samples (one of these; --coverage alone or with another one)",
+        "exclusive": True,
+    }
+    beside = {**one_of, "exclusive": False}
     return [
-        one_of("--count", Whole(MOST), "N", f"N samples (default: {default_count})."),
-        one_of(
-            "--angle",
-            Number(),
-            "DEGREES",
+        Option("--count N", f"N samples (default: {default_count}).", whole(MOST), **one_of),
+        Option(
+            "--angle DEGREES",
             "As many samples as it takes for the normal of every point to lie within this angle of "
             "the normal of a sample.",
+            number,
+            **one_of,
         ),
         Option(
-            ["--coverage"],
-            group=group,
-            type=Number(),
-            metavar="LENGTH",
-            help="As many samples as it takes for every point to lie within this distance of a "
-            "sample.",
+            "--coverage LENGTH",
+            "As many samples as it takes for every point to lie within this distance of a sample.",
+            number,
+            **beside,
         ),
-        one_of(
-            "--frequency",
-            Whole(MOST_FREQUENCY),
-            "NU",
+        Option(
+            "--frequency NU",
             "Normals: the 10 NU^2 + 2 vertices of an icosphere, an icosahedron whose edges are "
             "divided into NU.",
+            whole(MOST_FREQUENCY),
+            **one_of,
         ),
-        one_of(
-            "--healpix",
-            Whole(MOST_FREQUENCY),
-            "NSIDE",
+        Option(
+            "--healpix NSIDE",
             "Normals: the 12 NSIDE^2 centres of the HEALPix pixels, NSIDE a power of 2. Needs pip "
             "install 'gaussmap[spheres]'.",
+            whole(MOST_FREQUENCY),
+            **one_of,
         ),
-        one_of("--random", Whole(MOST), "COUNT", "Normals: COUNT random ones, uniform."),
-        Option(
-            ["--seed"],
-            group=group,
-            type=Whole(MOST, least=0),
-            metavar="N",
-            help="The seed of --random (default: 0).",
-        ),
-        one_of("--normals", FILE, "FILE.npy", "Normals: an array (S, 3), of any lengths."),
+        Option("--random COUNT", "Normals: COUNT random ones, uniform.", whole(MOST), **one_of),
+        Option("--seed N", "The seed of --random (default: 0).", whole(MOST, least=0), **beside),
+        Option("--normals FILE.npy", "Normals: an array (S, 3), of any lengths.", FILE, **one_of),
     ]
 
 
 def _distribution() -> list[Option]:
-    group = "how dense"
     return [
         Option(
-            ["--density"],
-            group=group,
-            type=Density(),
+            "--density HOW",
+            "gauss: proportional to |K|, prescribed normals only. balanced (default): that, with "
+            "samples that fill the gaps. uniform: the same everywhere. A number A: proportional to "
+            "|K|^A.",
+            density,
+            group="how dense",
             default="balanced",
-            metavar="HOW",
-            help="gauss: proportional to |K|, prescribed normals only. balanced (default): that, "
-            "with samples that fill the gaps. uniform: the same everywhere. A number A: "
-            "proportional to |K|^A.",
+            shell_complete=densities,
         ),
         Option(
-            ["--relax"],
-            group=group,
-            type=Whole(MOST_STEPS, least=0),
-            default=0,
-            metavar="STEPS",
-            help="Distribute the samples that fill gaps more evenly, in 2 or 3 steps, at more cost "
+            "--relax STEPS",
+            "Distribute the samples that fill gaps more evenly, in 2 or 3 steps, at more cost "
             "(default: 0).",
+            whole(MOST_STEPS, least=0),
+            group="how dense",
+            default="0",
         ),
     ]
 
 
 def _surface_options() -> list[Option]:
     group = "the surface"
-    return [
-        Option(
-            ["--set"],
-            group=group,
-            multiple=True,
-            type=Setting(),
-            metavar="NAME=VALUE",
-            help="A parameter of a surface of the catalogue; may be repeated.",
-        ),
-        Option(
-            ["--spacing"],
-            group=group,
-            nargs=2,
-            type=Number(),
-            metavar="DX DY",
-            help="The grid spacing of elevations; DY < 0 if rows run from north to south.",
-        ),
-        Option(
-            ["--periodic"],
-            group=group,
-            type=click.Choice(("none", "u", "v", "uv")),
-            metavar="AXES",
-            help="In which directions a grid of points is periodic: none (default), u, v or uv. "
-            "Do not repeat the first row at the end.",
-        ),
-        Option(
-            ["--cells"],
-            group=group,
-            nargs=2,
-            type=Whole(MOST),
-            metavar="M N",
-            help="The cells of the spline along u and v (default: 64 64, or those of the grid).",
-        ),
-    ]
-
-
-def _run() -> list[Option]:
-    threads = Option(
-        ["--threads"],
-        group="the run",
-        type=Whole(MOST),
-        metavar="T",
-        help="How many threads to use (default: one for each core).",
+    parameter = "A parameter of a surface of the catalogue; may be repeated."
+    spacing = "The grid spacing of elevations; DY < 0 if rows run from north to south."
+    periodic = (
+        "In which directions a grid of points is periodic: none (default), u, v or uv. Do not "
+        "repeat the first row at the end."
     )
-    return [threads, _quiet()]
+    cells = "The cells of the spline along u and v (default: 64 64, or those of the grid)."
+    axes = click.Choice(("none", "u", "v", "uv"))
+    return [
+        Option("--set NAME=VALUE", parameter, setting, group=group, multiple=True),
+        Option("--spacing DX DY", spacing, number, group=group),
+        Option("--periodic AXES", periodic, axes, group=group),
+        Option("--cells M N", cells, whole(MOST), group=group),
+    ]

@@ -20,6 +20,7 @@ import numba
 from numba.core import config
 
 from ...generated.vectors import inline
+from .. import compiling  # noqa: F401 - it tells that kernels are compiled
 
 __all__ = ["inline", "jit", "loop"]
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated import support as kernels
+from .. import compiling  # noqa: F401 - it tells that kernels are compiled
 
 __all__ = ["Branches", "Sheets", "curvatures"]
 

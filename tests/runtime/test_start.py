@@ -2,14 +2,16 @@
 
 import io
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
+import gaussmap as gm
 import numba
 import pytest
-from gaussmap.runtime.compiling import ERASE, compilation_shown
+from gaussmap.runtime import compiling
 from gaussmap.runtime.kernels import jit
 from numba.core import config
 
@@ -75,44 +77,83 @@ class Terminal(io.StringIO):
         return True
 
 
-def compiled_now() -> Any:
+def compiled_now(module: str = "gaussmap.kernels") -> Any:
     """Return a function that calls another; both have still to be compiled."""
 
     @numba.njit
     def inner(x):
         return x + 1
 
-    @numba.njit
     def outer(x):
         return inner(x) + 1
 
-    return outer
+    outer.__module__ = module
+    return numba.njit(outer)
 
 
 @pytest.mark.compiled
 def test_compilation_is_shown_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    terminal, outer = Terminal(), compiled_now()
+    terminal = Terminal()
     monkeypatch.setattr(sys, "stderr", terminal)
-    with compilation_shown(True):
-        assert outer(1) == 3
-        assert outer(2) == 4
-    assert terminal.getvalue() == f"{ERASE}compiling outer (the first time only){ERASE}"
-    with compilation_shown(True):
-        assert outer(1.5) == 3.5
-    assert terminal.getvalue().count("compiling outer") == 2
-    assert compiled_now()(1) == 3
-    with compilation_shown(False):
-        assert compiled_now()(1) == 3
-    assert terminal.getvalue().count("compiling") == 2
+    monkeypatch.setattr(compiling, "PATIENCE", 0.0)
+    outer = compiled_now()
+    assert outer(1) == 3
+    assert outer(2) == 4
+    first, *lines, last = terminal.getvalue().split(compiling.ERASE)
+    assert (first, last) == ("", "")
+    pattern = r"gaussmap: compiling kernels, only once here \(\d+ s\): outer"
+    assert lines
+    assert all(re.fullmatch(pattern, line) for line in lines)
+    assert outer(1.5) == 3.5
+    assert terminal.getvalue().count("outer") > len(lines)
+    assert terminal.getvalue().endswith(compiling.ERASE)
 
 
 @pytest.mark.compiled
-def test_compilation_is_not_shown_in_files(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_compilation_is_not_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Not in files, not if it is quick, not if it is of others, and not to who wants quiet."""
+    monkeypatch.setattr(compiling, "PATIENCE", 0.0)
     for stream in (io.StringIO(), None):
         monkeypatch.setattr(sys, "stderr", stream)
-        with compilation_shown(True):
-            assert compiled_now()(1) == 3
+        assert compiled_now()(1) == 3
         assert stream is None or stream.getvalue() == ""
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    assert compiled_now(module="somebody.else")(1) == 3
+    with monkeypatch.context() as patch:
+        patch.setattr(compiling.NOTICE, "quiet", True)
+        assert compiled_now()(1) == 3
+    monkeypatch.setattr(compiling, "PATIENCE", 1e9)
+    assert compiled_now()(1) == 3
+    assert terminal.getvalue() == ""
+
+
+PUBLIC = [name for name in gm.__all__ if name != "symbolic"]
+
+
+@pytest.mark.compiled
+def test_who_compiles_tells() -> None:
+    """Whichever name is used first, the notice is there if kernels are."""
+    code = (
+        "import os, sys, gaussmap as gm\n"
+        "KERNELS = 'gaussmap.generated.', 'gaussmap.runtime.kernels.'\n"
+        "for name in sys.argv[1:]:\n"
+        "    if os.fork():\n"
+        "        assert os.wait()[1] == 0\n"
+        "        continue\n"
+        "    getattr(gm, name)\n"
+        "    kernels = [x for x in sys.modules if x.startswith(KERNELS)]\n"
+        "    print(name, len(kernels), 'gaussmap.runtime.compiling' in sys.modules)\n"
+        "    sys.exit()"
+    )
+    if not hasattr(os, "fork"):
+        pytest.skip("needs fork")
+    command = [sys.executable, "-c", code, *PUBLIC]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    rows = [line.split() for line in done.stdout.splitlines()]
+    assert {row[0] for row in rows} == {*PUBLIC}
+    assert [row for row in rows if row[1] != "0" and row[2] != "True"] == []
+    assert sum(row[1] != "0" for row in rows) > 10
 
 
 @pytest.mark.compiled
