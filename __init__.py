@@ -30,6 +30,7 @@ if TYPE_CHECKING:
         SurfaceError,
         UnknownNameError,
     )
+    from .runtime.files.formats import read_samples
     from .runtime.formulas import formulas
     from .runtime.gaussian.boundary import BoundaryArc
     from .runtime.gaussian.classes import PatchClass, classify_patches
@@ -41,7 +42,6 @@ if TYPE_CHECKING:
         parabolic_points,
     )
     from .runtime.gaussian.parabolic_lines import ParabolicLine, Piece, parabolic_lines, split_patch
-    from .runtime.io import read_samples
     from .runtime.meshes.mesh import Mesh
     from .runtime.regions import cap, spherical_polygon
     from .runtime.samples import Samples, SamplingReport
@@ -132,7 +132,7 @@ _NAMES = {
     "runtime.gaussian.image": "GaussianImage GaussianImages",
     "runtime.gaussian.parabolic": "ParabolicCurve ParabolicPoint ParabolicPoints parabolic_points",
     "runtime.gaussian.parabolic_lines": "ParabolicLine Piece parabolic_lines split_patch",
-    "runtime.io": "read_samples",
+    "runtime.files.formats": "read_samples",
     "runtime.regions": "cap spherical_polygon",
     "runtime.meshes.mesh": "Mesh",
     "runtime.samples": "Samples SamplingReport",

@@ -1,9 +1,8 @@
-"""The fields of samples: their names, shapes and types, and which of them somebody wants."""
+"""The fields of samples: their names, columns, shapes and types, and which are wanted."""
 
 from __future__ import annotations
 
-import difflib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
@@ -15,29 +14,31 @@ if TYPE_CHECKING:  # names of fields stand in the help of commands, which is qui
 
 __all__ = [
     "ARRAY_NAMES",
+    "COLUMNS",
     "DERIVED",
     "FLOAT_NAMES",
     "INDEX_NAMES",
     "checked_dtype",
     "checked_fields",
+    "columns_of",
     "new_field",
     "row_shape",
 ]
 
-# Every array of `Samples`: how many numbers belong to one sample.
-_ROWS: dict[str, tuple[int, ...]] = {
-    "points": (3,),
-    "normals": (3,),
-    "uv": (2,),
-    "support": (),
-    "gaussian_curvature": (),
-    "mean_curvature": (),
-    "normal_index": (),
-    "patch_index": (),
+# Every array of `Samples`, and the columns that it has in a table: one for each of its numbers.
+COLUMNS: dict[str, tuple[str, ...]] = {
+    "points": ("x", "y", "z"),
+    "normals": ("nx", "ny", "nz"),
+    "uv": ("u", "v"),
+    "support": ("support",),
+    "gaussian_curvature": ("gaussian_curvature",),
+    "mean_curvature": ("mean_curvature",),
+    "normal_index": ("normal_index",),
+    "patch_index": ("patch_index",),
 }
-ARRAY_NAMES: tuple[str, ...] = tuple(_ROWS)
+ARRAY_NAMES: tuple[str, ...] = tuple(COLUMNS)
 INDEX_NAMES = ("normal_index", "patch_index")
-FLOAT_NAMES: tuple[str, ...] = tuple(name for name in _ROWS if name not in INDEX_NAMES)
+FLOAT_NAMES: tuple[str, ...] = tuple(name for name in COLUMNS if name not in INDEX_NAMES)
 # What is computed from fields when it is read.
 DERIVED: dict[str, tuple[str, ...]] = {
     "elliptic": ("gaussian_curvature",),
@@ -49,21 +50,34 @@ DERIVED: dict[str, tuple[str, ...]] = {
 
 def row_shape(name: str) -> tuple[int, ...]:
     """Return the shape of what a field holds of one sample."""
-    return _ROWS[name]
+    width = len(COLUMNS[name])
+    return (width,) if width > 1 else ()
 
 
 def new_field(name: str, count: int, dtype: DTypeLike) -> NDArray[Any]:
     """Return an array for the field of `count` samples, not yet filled."""
     import numpy as np
 
-    return np.empty((count, *_ROWS[name]), dtype=dtype)
+    return np.empty((count, *row_shape(name)), dtype=dtype)
+
+
+def columns_of(arrays: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+    """Return the columns of fields, each (N,), as views."""
+    return {
+        column: part
+        for name, array in arrays.items()
+        for column, part in zip(COLUMNS[name], array.T if array.ndim > 1 else [array], strict=True)
+    }
 
 
 def checked_fields(fields: Sequence[str] | None) -> tuple[str, ...]:
     """Return the fields that are wanted, in the order of `ARRAY_NAMES`; None stands for all.
 
-    Raises InputError for a string, for no names, and for names that are unknown or come twice.
+    Raises UnknownNameError for an unknown name, InputError for what is no tuple of names, for no
+    names, for a name that comes twice, and for one that is computed from fields.
     """
+    from .checks import known_name
+
     if fields is None:
         return ARRAY_NAMES
     if isinstance(fields, str):
@@ -77,8 +91,12 @@ def checked_fields(fields: Sequence[str] | None) -> tuple[str, ...]:
     for k, name in enumerate(names):
         if name in names[:k]:
             raise InputError(f"fields names {name!r} twice; name it once.")
-        if not isinstance(name, str) or name not in _ROWS:
-            raise InputError(_unknown(name))
+        if isinstance(name, str) and name in DERIVED:
+            needed = " and ".join(repr(x) for x in DERIVED[name])
+            raise InputError(
+                f"{name} is computed when it is read, from {needed}; name what it needs."
+            )
+        known_name(name, ARRAY_NAMES, "field")
     return tuple(name for name in ARRAY_NAMES if name in names)
 
 
@@ -91,12 +109,3 @@ def checked_dtype(dtype: DTypeLike) -> np.dtype[np.floating]:
         if dtype is not None and np.dtype(dtype) in known:
             return known[known.index(np.dtype(dtype))]
     raise InputError(f"dtype must be float32 or float64, not {dtype!r}.")
-
-
-def _unknown(name: object) -> str:
-    if name in DERIVED:
-        needed = " and ".join(repr(x) for x in DERIVED[str(name)])
-        return f"{name} is computed when it is read, from {needed}; name what it needs."
-    near = difflib.get_close_matches(str(name).lower(), ARRAY_NAMES, n=1)
-    hint = f"did you mean {near[0]!r}?" if near else f"there is {', '.join(ARRAY_NAMES)}."
-    return f"there is no field {name!r}; {hint}"

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .extras import from_extra
+from .fields import columns_of
 
 if TYPE_CHECKING:
     import open3d  # pyright: ignore[reportMissingImports]
@@ -31,10 +32,9 @@ __all__ = [
 
 def samples_to_dataframe(samples: Samples) -> pandas.DataFrame:
     """Return what `Samples.to_dataframe` returns."""
-    from .io import columns_of
-
+    columns = columns_of(samples.arrays())
     pandas = from_extra("pandas", "pandas", "this")
-    return pandas.DataFrame({name: column.copy() for name, column in columns_of(samples).items()})
+    return pandas.DataFrame({name: column.copy() for name, column in columns.items()})
 
 
 def samples_to_pyvista(samples: Samples) -> pyvista.PolyData:

@@ -151,7 +151,7 @@ class Samples:
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _rebuilt, (self._arrays(), self.report, self.spline)
+        return _rebuilt, (self.arrays(), self.report, self.spline)
 
     @classmethod
     def concatenate(cls, parts: Iterable[Samples]) -> Samples:
@@ -175,15 +175,24 @@ class Samples:
         common = all(part.spline is pieces[0].spline for part in pieces)
         return cls(**arrays, report=report, spline=pieces[0].spline if common else None)
 
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Return the fields that there are by their names, as they are and not as copies."""
+        found: dict[str, NDArray[Any]] = {}
+        for name in ARRAY_NAMES:
+            with suppress(AttributeError):
+                # Past __getattr__, which asks here what there is.
+                found[name] = object.__getattribute__(self, name)
+        return found
+
     @property
     def fields(self) -> tuple[str, ...]:
         """The names of the arrays that these samples hold."""
-        return tuple(self._arrays())
+        return tuple(self.arrays())
 
     @property
     def dtype(self) -> np.dtype[np.floating]:
         """The type of all numbers but the indices: float64 or float32."""
-        return _common_dtype(self._arrays())
+        return _common_dtype(self.arrays())
 
     @property
     def elliptic(self) -> NDArray[np.bool_]:
@@ -269,8 +278,8 @@ class Samples:
         return offset(self, distance)
 
     def write(self, path: str | os.PathLike[str]) -> None:
-        """Write the samples to a .ply, .csv, .npz, .vtp or .xyz file; see `io.write_samples`."""
-        from .io import write_samples
+        """Write the samples to a .ply, .csv, .npz, .vtp or .xyz file; see `write_samples`."""
+        from .files.formats import write_samples
 
         write_samples(self, path)
 
@@ -358,11 +367,11 @@ class Samples:
         return samples_to_open3d(self)
 
     def __len__(self) -> int:
-        return len(next(iter(self._arrays().values())))
+        return len(next(iter(self.arrays().values())))
 
     def __getitem__(self, key: ArrayLike | slice) -> Samples:
         rows = key if isinstance(key, slice) else rows_of(key, len(self))
-        arrays = {name: array[rows] for name, array in self._arrays().items()}
+        arrays = {name: array[rows] for name, array in self.arrays().items()}
         return Samples(**arrays, report=self.report, spline=self.spline)
 
     def __repr__(self) -> str:
@@ -386,14 +395,6 @@ class Samples:
             return f" ({', '.join(self.fields)} only)"
         hyperbolic = int(np.count_nonzero(self.hyperbolic))
         return f": {len(self) - hyperbolic:,} elliptic, {hyperbolic:,} hyperbolic"
-
-    def _arrays(self) -> dict[str, NDArray[Any]]:
-        found: dict[str, NDArray[Any]] = {}
-        for name in ARRAY_NAMES:
-            with suppress(AttributeError):
-                # Past __getattr__, which asks here what there is.
-                found[name] = object.__getattribute__(self, name)
-        return found
 
 
 def _rebuilt(

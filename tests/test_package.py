@@ -32,14 +32,14 @@ def test_names_are_where_type_checkers_look_for_them() -> None:
 
 
 def test_import_loads_nothing_heavy() -> None:
-    heavy = "('numba', 'numpy', 'sympy', 'matplotlib', 'meshio', 'pyvista', 'tqdm')"
+    heavy = "('numba', 'numpy', 'sympy', 'matplotlib', 'pyvista', 'tqdm')"
     code = f"import sys, gaussmap; print([x for x in {heavy} if x in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
 
 
 def test_sampling_loads_neither_sympy_nor_matplotlib() -> None:
-    heavy = "('sympy', 'matplotlib', 'meshio', 'pyvista', 'tqdm')"
+    heavy = "('sympy', 'matplotlib', 'pyvista', 'tqdm')"
     code = f"import sys; from gaussmap import *; print([x for x in {heavy} if x in sys.modules])"
     names = "SupportFunction, parabolic_points, read_samples, sample_stream, surfaces"
     done = subprocess.run(

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 
 from ..errors import InputError
 from ..extras import check_extra
+from ..files.paths import atomic_path, check_target
 from ..formulas import formulas
-from ..io import atomic_path, check_target
 from ..surfaces import names
 from .console import say, table
 

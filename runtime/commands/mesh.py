@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
-from ..io import check_target
-from ..meshes.files import MESH_SUFFIXES
+from ..files.formats import MESH_SUFFIXES
+from ..files.paths import check_target
 from ..sampling import sample
 from .console import summarize
 from .inputs import arguments

@@ -8,7 +8,8 @@ import numpy as np
 
 from ..errors import InputError
 from ..fields import checked_fields
-from ..io import check_fields, check_target
+from ..files.formats import SUFFIXES, check_fields
+from ..files.paths import check_target
 from ..sampling import sample
 from .console import summarize
 from .inputs import arguments
@@ -18,7 +19,7 @@ __all__ = ["run"]
 
 def run(options: SimpleNamespace) -> None:
     """Sample a surface and write the samples to a file."""
-    check_target(options.output)
+    check_target(options.output, SUFFIXES)
     fields = checked_fields(options.fields.split(",") if options.fields is not None else None)
     check_fields(options.output, fields)
     if options.progressive and not {"points", "normals"} <= {*fields}:

@@ -130,8 +130,8 @@ class Mesh:
         return f"{line}; they deviate from the normals by {mean:.2f}° (mean), {worst:.2f}° (worst)"
 
     def write(self, path: str | os.PathLike[str]) -> None:
-        """Write the mesh to a .ply, .obj, .stl, .vtk, .vtu or .vtp file; see `files.write_mesh`."""
-        from .files import write_mesh
+        """Write the mesh to a .ply, .obj, .stl, .vtk, .vtu or .vtp file; see `write_mesh`."""
+        from ..files.formats import write_mesh
 
         write_mesh(self, path)
 

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .. import io
 from ..density.request import checked_request
 from ..errors import InputError
 from ..extras import check_extra
+from ..files import paths
 from ..samples import Samples
 from ..sampling import sample_and_normals
 from ..sphere import as_normals
@@ -112,13 +112,13 @@ def plot_samples(
         _write(figure, WIDTH / 2, 4.43, samples.summary(), fontsize=7.5, color=PALE)
         _draw_surface(figure, samples, spline)
         _draw_sphere(figure, samples, directions)
-        with io.atomic_path(path) as temporary:
+        with paths.atomic_path(path) as temporary:
             figure.savefig(temporary, format=suffix[1:], metadata=undated)
 
 
 def check_target(path: str | os.PathLike[str]) -> None:
     """Raise now what `plot_samples` would raise later: for its path, or for lack of matplotlib."""
-    io.check_target(path, SUFFIXES)
+    paths.check_target(path, SUFFIXES)
     check_extra("matplotlib", "plot", "a picture")
 
 

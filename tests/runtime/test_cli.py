@@ -14,9 +14,9 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime import io
 from gaussmap.runtime.cli import main
 from gaussmap.runtime.commands import sample as sampling
+from gaussmap.runtime.files import formats
 
 FEW = ["--count", "60", "--cells", "8", "8"]
 
@@ -494,7 +494,7 @@ def test_interrupted_while_writing(
         path.write_text("half")
         raise KeyboardInterrupt
 
-    monkeypatch.setitem(io._WRITERS, ".npz", half)
+    monkeypatch.setitem(formats._WRITERS, ".npz", half)
     Path("a.npz").write_text("old")
     assert main(["sample", "torus", *FEW, "-o", "a.npz"]) == 130
     assert capsys.readouterr() == ("", "gaussmap: interrupted\n")
@@ -584,7 +584,7 @@ def test_an_old_terminal() -> None:
 def test_heavy_imports_are_lazy() -> None:
     code = (
         "import sys, gaussmap.runtime.cli, gaussmap.runtime.pictures.plot\n"
-        "print({'matplotlib', 'sympy', 'meshio', 'pyvista', 'tqdm'} & set(sys.modules))"
+        "print({'matplotlib', 'sympy', 'pyvista', 'tqdm'} & set(sys.modules))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "set()\n"

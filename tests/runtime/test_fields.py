@@ -125,7 +125,7 @@ def test_pictures_say_what_they_need(tmp_path):
         ([], "fields is empty"),
         (3, "must be a tuple of names, not 3"),
         (("points", "points"), "names 'points' twice"),
-        (("points", "normal"), "no field 'normal'; did you mean 'normals'"),
+        (("points", "normal"), "no field 'normal'; did you mean normals"),
         (("colour",), "no field 'colour'; there is points, normals, uv"),
         ((1,), "no field 1"),
         ((None,), "no field None"),
@@ -134,12 +134,13 @@ def test_pictures_say_what_they_need(tmp_path):
     ],
 )
 def test_fields_that_are_none(fields, message):
+    error = gm.UnknownNameError if "no field" in message else gm.InputError
     for call in (
         lambda: narrow(fields),
         lambda: next(gm.sample_many([SPLINE], NORMALS, fields=fields)),
         lambda: gm.sample_stream(SPLINE, NORMALS, fields=fields),
     ):
-        with pytest.raises(gm.InputError, match=message):
+        with pytest.raises(error, match=message):
             call()
 
 

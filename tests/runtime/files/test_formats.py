@@ -17,10 +17,8 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
-import meshio
 import numpy as np
 import pytest
-from gaussmap.runtime import io
 from gaussmap.runtime.errors import (
     FileError,
     GaussmapError,
@@ -28,14 +26,13 @@ from gaussmap.runtime.errors import (
     MissingExtraError,
     UnknownNameError,
 )
-from gaussmap.runtime.io import (
+from gaussmap.runtime.files.formats import (
     READABLE_SUFFIXES,
     SUFFIXES,
-    atomic_path,
-    check_target,
     read_samples,
     write_samples,
 )
+from gaussmap.runtime.files.paths import atomic_path, check_target
 from gaussmap.runtime.samples import ARRAY_NAMES, Samples, SamplingReport
 
 COLUMNS = [
@@ -91,6 +88,17 @@ def assert_same(samples: Samples, other: Samples) -> None:
 def assert_bits(actual: np.ndarray, expected: np.ndarray) -> None:
     np.testing.assert_array_equal(actual, expected)
     np.testing.assert_array_equal(np.signbit(actual), np.signbit(expected))
+
+
+def vertices_by_trimesh(path: Path) -> np.ndarray:
+    """Read the vertices of a .ply file as rows with names."""
+    trimesh = pytest.importorskip("trimesh")
+    with open(path, "rb") as file:
+        return trimesh.exchange.ply.load_ply(file)["metadata"]["_ply_raw"]["vertex"]["data"]
+
+
+def check(path: Any) -> None:
+    check_target(path, SUFFIXES)
 
 
 def litter(folder: Path, *expected: str) -> list[str]:
@@ -243,23 +251,21 @@ class TestOtherReaders:
         np.testing.assert_array_equal(cloud.points, samples.points)
         np.testing.assert_array_equal(cloud.point_data["Normals"], samples.normals)
 
-    def test_ply_with_meshio(self, tmp_path):
+    def test_ply_with_trimesh(self, tmp_path):
         samples = make()
         write_samples(samples, tmp_path / "file.ply")
-        with open(tmp_path / "file.ply", "rb") as file:
-            mesh = meshio.read(file, "ply")
-        assert_bits(mesh.points, samples.points)
+        vertices = vertices_by_trimesh(tmp_path / "file.ply")
         expected = columns_of(samples)
-        assert list(mesh.point_data) == COLUMNS[3:]
-        for name, column in mesh.point_data.items():
-            assert_bits(column, expected[name])
+        assert list(vertices.dtype.names or ()) == COLUMNS
+        for name in COLUMNS:
+            assert_bits(vertices[name], expected[name])
 
     def test_ply_header(self, tmp_path):
         write_samples(make(), tmp_path / "file.ply")
         header, body = (tmp_path / "file.ply").read_bytes().split(b"end_header\n", 1)
         lines = header.decode("ascii").splitlines()
         assert lines[:2] == ["ply", f"format binary_{sys.byteorder}_endian 1.0"]
-        assert lines[2] == "comment written by gaussmap with meshio"
+        assert lines[2] == "comment written by gaussmap"
         plain = [line for line in lines[2:] if not line.startswith("comment ")]
         types = ["double"] * 11 + ["int"] * 2
         assert plain == [
@@ -292,22 +298,29 @@ class TestOtherReaders:
 
     def test_ply_without_samples(self, tmp_path):
         write_samples(make(0), tmp_path / "file.ply")
-        with open(tmp_path / "file.ply", "rb") as file:
-            mesh = meshio.read(file, "ply")
-        assert mesh.points.shape == (0, 3)
-        assert list(mesh.point_data) == COLUMNS[3:]
+        vertices = vertices_by_trimesh(tmp_path / "file.ply")
+        assert vertices.shape == (0,)
+        assert list(vertices.dtype.names or ()) == COLUMNS
 
 
 class TestForeignPly:
     """.ply files that another program rewrote."""
 
-    def rewrite(self, path: Path, **columns: np.ndarray) -> Samples:
-        """Write samples with meshio alone, with some columns changed."""
+    def rewrite(self, path: Path, faces: bytes = b"", **columns: np.ndarray) -> Samples:
+        """Write samples as others do, with some columns changed."""
         samples = make()
-        data: dict[str, Any] = {name: columns_of(samples)[name] for name in COLUMNS[3:]} | columns
-        mesh = meshio.Mesh(samples.points, [], point_data=data)
+        data = columns_of(samples) | columns
+        rows = np.empty(12, [(name, column.dtype) for name, column in data.items()])
+        for name, column in data.items():
+            rows[name] = column
+        header = [f"format binary_{sys.byteorder}_endian 1.0", "comment by another program"]
+        header += ["obj_info and more of it", "element vertex 12"]
+        header += [f"property {column.dtype} {name}" for name, column in data.items()]
+        if faces:
+            header += ["element face 4", "property list uint8 int32 vertex_indices"]
         with open(path, "wb") as file:
-            meshio.write(file, mesh, "ply")
+            file.write("\n".join(["ply", *header, "end_header\n"]).encode())
+            file.write(rows.tobytes() + faces)
         return samples
 
     def test_the_report_is_unknown_then(self, tmp_path):
@@ -329,11 +342,7 @@ class TestForeignPly:
         assert_bits(read_samples(tmp_path / "file.ply").support, single.astype(float))
 
     def test_faces(self, tmp_path):
-        samples = make()
-        data: dict[str, Any] = {name: columns_of(samples)[name] for name in COLUMNS[3:]}
-        triangles = np.arange(12, dtype=np.int32).reshape(4, 3)
-        with open(tmp_path / "file.ply", "wb") as file:
-            meshio.write(file, meshio.Mesh(samples.points, [("triangle", triangles)], data), "ply")
+        samples = self.rewrite(tmp_path / "file.ply", faces=4 * (b"\3" + bytes(12)))
         assert_bits(read_samples(tmp_path / "file.ply").points, samples.points)
 
     def test_the_other_byte_order(self, tmp_path):
@@ -367,8 +376,9 @@ class TestForeignPly:
             read_samples(tmp_path / "file.ply")
 
     def test_text_ply(self, tmp_path):
-        with open(tmp_path / "file.ply", "wb") as file:
-            meshio.write(file, meshio.Mesh(np.ones((2, 3)), []), "ply", binary=False)
+        columns = [f"property double {name}" for name in "xyz"]
+        header = ["ply", "format ascii 1.0", "element vertex 2", *columns, "end_header"]
+        (tmp_path / "file.ply").write_text("\n".join([*header, "1 1 1", "1 1 1\n"]))
         with pytest.raises(FileError, match=r"is a text \.ply file"):
             read_samples(tmp_path / "file.ply")
 
@@ -641,9 +651,9 @@ class TestNpzContent:
 
 
 class TestNames:
-    def test_every_suffix_has_a_writer(self):
-        assert tuple(io._WRITERS) == SUFFIXES
-        assert tuple(io._READERS) == READABLE_SUFFIXES
+    def test_the_suffixes(self):
+        assert SUFFIXES == (".npz", ".ply", ".csv", ".vtp", ".xyz")
+        assert READABLE_SUFFIXES == (".npz", ".ply")
 
     def test_no_name(self):
         for call in (lambda: write_samples(make(), ""), lambda: read_samples("")):
@@ -658,7 +668,7 @@ class TestNames:
         with pytest.raises(UnknownNameError, match=r"use one of \.npz, \.ply\.$"):
             read_samples(name)
         with pytest.raises(UnknownNameError):
-            check_target(name)
+            check(name)
         assert litter(tmp_path) == []
 
     @pytest.mark.parametrize("suffix", sorted(set(SUFFIXES) - set(READABLE_SUFFIXES)))
@@ -668,9 +678,7 @@ class TestNames:
             read_samples(tmp_path / f"file{suffix}")
 
     @pytest.mark.parametrize("bad", [None, 3, b"file.npz", "fi\0le.npz"])
-    @pytest.mark.parametrize(
-        "call", [lambda p: write_samples(make(), p), read_samples, check_target]
-    )
+    @pytest.mark.parametrize("call", [lambda p: write_samples(make(), p), read_samples, check])
     def test_not_a_path(self, bad, call):
         with pytest.raises(InputError, match="path"):
             call(bad)
@@ -683,7 +691,7 @@ def write_by_hand(path: Any) -> None:
 
 every_writer = pytest.mark.parametrize(
     "write",
-    [lambda p: write_samples(make(), p), check_target, write_by_hand],
+    [lambda p: write_samples(make(), p), check, write_by_hand],
     ids=["write_samples", "check_target", "atomic_path"],
 )
 
@@ -756,10 +764,10 @@ class TestBadTargets:
 class TestCheckTarget:
     @every_suffix
     def test_good_targets_leave_no_trace(self, tmp_path, suffix):
-        check_target(tmp_path / f"file{suffix.upper()}")
+        check(tmp_path / f"file{suffix.upper()}")
         assert litter(tmp_path) == []
         (tmp_path / f"file{suffix}").write_text("old")
-        check_target(str(tmp_path / f"file{suffix}"))
+        check(str(tmp_path / f"file{suffix}"))
         assert litter(tmp_path) == [f"file{suffix}"]
         assert (tmp_path / f"file{suffix}").read_text() == "old"
 
@@ -770,7 +778,7 @@ class TestCheckTarget:
 
     def test_the_longest_name(self, tmp_path):
         name = "n" * 251 + ".npz"
-        check_target(tmp_path / name)
+        check(tmp_path / name)
         write_samples(make(), tmp_path / name)
         assert litter(tmp_path) == [name]
 
@@ -934,25 +942,17 @@ class TestPermissionsAndLinks:
 
 
 class TestExtras:
-    def test_without_pyvista(self, tmp_path, monkeypatch):
-        monkeypatch.setitem(sys.modules, "pyvista", None)
-        (tmp_path / "file.vtp").write_text("old")
-        for write in (check_target, lambda path: write_samples(make(), path)):
-            with pytest.raises(MissingExtraError, match=r'pip install "gaussmap\[vtk\]"'):
-                write(tmp_path / "file.vtp")
-        assert (tmp_path / "file.vtp").read_text() == "old"
-        assert litter(tmp_path) == ["file.vtp"]
-
-    def test_the_other_formats_need_no_pyvista(self, tmp_path, monkeypatch):
-        monkeypatch.setitem(sys.modules, "pyvista", None)
-        for suffix in sorted(set(SUFFIXES) - {".vtp"}):
-            check_target(tmp_path / f"file{suffix}")
-            write_samples(make(), tmp_path / f"file{suffix}")
+    @every_suffix
+    def test_no_format_needs_another_library(self, tmp_path, monkeypatch, suffix):
+        for library in ("pyvista", "vtkmodules", "trimesh", "meshio", "pandas"):
+            monkeypatch.setitem(sys.modules, library, None)
+        write_samples(make(), tmp_path / f"file{suffix}")
+        assert (tmp_path / f"file{suffix}").stat().st_size > 500
 
     def test_heavy_modules_are_imported_late(self):
         code = (
-            "import sys, gaussmap.runtime.io\n"
-            "print(sorted({'meshio', 'pyvista', 'vtkmodules', 'sympy'} & sys.modules.keys()))"
+            "import sys, gaussmap.runtime.files.formats\n"
+            "print(sorted({'trimesh', 'pyvista', 'vtkmodules', 'sympy'} & sys.modules.keys()))"
         )
         run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
         assert (run.stdout, run.stderr) == ("[]\n", "")

@@ -1,0 +1,1 @@
+"""Files of samples and meshes; `formats` lists the formats."""

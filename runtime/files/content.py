@@ -1,0 +1,39 @@
+"""What files say of samples beside their numbers: the report, and which fields there are."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict
+
+from ..fields import ARRAY_NAMES
+from ..samples import SamplingReport
+
+__all__ = ["UnusableError", "known_fields", "lacks", "report_from_json", "report_to_json"]
+
+
+class UnusableError(Exception):
+    """A file's content is not what it should be; the text continues "'path' …"."""
+
+
+def report_to_json(report: SamplingReport) -> str:
+    """Return a report as a line of ASCII."""
+    return json.dumps(asdict(report))
+
+
+def report_from_json(text: str) -> SamplingReport:
+    """Return the report that `report_to_json` was given."""
+    return SamplingReport(**json.loads(text))
+
+
+def known_fields(names: Iterable[str]) -> tuple[str, ...]:
+    """Return the fields that a file says to hold, in the order of `ARRAY_NAMES`."""
+    held = set(names)
+    if not held or not held <= set(ARRAY_NAMES):
+        raise UnusableError("holds fields that gaussmap does not know; update gaussmap.")
+    return tuple(name for name in ARRAY_NAMES if name in held)
+
+
+def lacks(what: str, missing: Sequence[str]) -> UnusableError:
+    """Return the error for a file without some arrays or columns."""
+    return UnusableError(f"lacks the {what} {', '.join(missing)}; read a file that gaussmap wrote.")

@@ -1,0 +1,184 @@
+"""The formats of files: which there are, by their suffixes, and what writes and reads them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from io import BufferedReader
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..errors import FileError, InputError
+from ..samples import Samples
+from .content import UnusableError
+from .npz import read_npz, write_npz
+from .paths import PathLike, atomic_path, checked_path, known_suffix, reason_of
+from .ply import read_ply, write_mesh_ply, write_ply
+from .tables import write_csv, write_xyz
+from .triangles import write_obj, write_stl
+from .vtk import write_mesh_vtp, write_vtk, write_vtp, write_vtu
+
+if TYPE_CHECKING:
+    from ..meshes.mesh import Mesh
+
+__all__ = [
+    "MESH_SUFFIXES",
+    "READABLE_SUFFIXES",
+    "SUFFIXES",
+    "check_fields",
+    "read_samples",
+    "write_mesh",
+    "write_samples",
+]
+
+_WRITERS: dict[str, Callable[[Samples, Path], None]] = {
+    ".npz": write_npz,
+    ".ply": write_ply,
+    ".csv": write_csv,
+    ".vtp": write_vtp,
+    ".xyz": write_xyz,
+}
+_READERS: dict[str, Callable[[BufferedReader], Samples]] = {".npz": read_npz, ".ply": read_ply}
+_MESH_WRITERS: dict[str, Callable[[Mesh, Path], None]] = {
+    ".ply": write_mesh_ply,
+    ".obj": write_obj,
+    ".stl": write_stl,
+    ".vtk": write_vtk,
+    ".vtu": write_vtu,
+    ".vtp": write_mesh_vtp,
+}
+SUFFIXES, READABLE_SUFFIXES = tuple(_WRITERS), tuple(_READERS)
+MESH_SUFFIXES = tuple(_MESH_WRITERS)
+
+# The fields that a format cannot do without.
+_NEEDED = {".ply": ("points",), ".vtp": ("points",), ".xyz": ("points", "normals")}
+
+
+def write_samples(samples: Samples, path: PathLike) -> None:
+    """Write samples to a file; its suffix, in any case, chooses the format.
+
+    An existing file is replaced once the new one is complete; if anything fails, it stays as it
+    was. Files hold the fields that the samples hold, float32 as float32.
+
+    Parameters
+    ----------
+    samples : Samples
+        The samples.
+    path : str or os.PathLike
+        Name of the file. The suffix is one of
+
+        - `.npz`: everything, the report included; reads back bit for bit.
+        - `.ply`: binary, one vertex a sample, all columns and the report (in comments); reads back
+          bit for bit. Indices are 32-bit. Needs the field `points`.
+        - `.csv`: a header row and one row a sample, 17 significant digits (9 of float32), so that
+          floats survive.
+        - `.xyz`: rows `x y z nx ny nz`, digits as in `.csv`, no header. Needs `points` and
+          `normals`.
+        - `.vtp`: VTK PolyData with all arrays, and the report as field data; needs `points`.
+
+    Raises
+    ------
+    UnknownNameError
+        If the suffix is none of these.
+    FileError
+        If the file cannot be written.
+    InputError
+        If an index does not fit into a `.ply` file, or the format needs a field that is not there.
+
+    """
+    suffix = known_suffix(path, SUFFIXES)
+    check_fields(path, samples.fields)
+    with atomic_path(path) as temporary:
+        _WRITERS[suffix](samples, temporary)
+
+
+def write_mesh(mesh: Mesh, path: PathLike) -> None:
+    """Write a mesh to a file; its suffix, in any case, chooses the format.
+
+    An existing file is replaced once the new one is complete; if anything fails, it stays as it
+    was. The same mesh gives the same bytes.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    path : str or os.PathLike
+        Name of the file. The suffix is one of
+
+        - `.ply`: binary; vertices with normals and u, v.
+        - `.obj`: text of 17 digits; vertices with normals.
+        - `.stl`: binary, float32; triangles alone.
+        - `.vtk`, `.vtu`: VTK's unstructured grid with normals, u, v and `sample`.
+        - `.vtp`: VTK's PolyData with normals, uv and `sample`.
+
+    Raises
+    ------
+    UnknownNameError
+        If the suffix is none of these.
+    FileError
+        If the file cannot be written.
+    InputError
+        If the mesh has no triangles, or more vertices than a `.ply` file can number.
+
+    """
+    suffix = known_suffix(path, MESH_SUFFIXES)
+    if not len(mesh.triangles):
+        raise InputError("this mesh has no triangles, and so there is nothing to write.")
+    with atomic_path(path) as temporary:
+        _MESH_WRITERS[suffix](mesh, temporary)
+
+
+def check_fields(path: PathLike, fields: Sequence[str]) -> None:
+    """Raise InputError if the format of a file, told by its suffix, needs other fields too."""
+    suffix = checked_path(path).suffix.lower()
+    lacking = [repr(name) for name in _NEEDED.get(suffix, ()) if name not in fields]
+    if lacking:
+        raise InputError(
+            f"a {suffix} file needs {' and '.join(lacking)}; add that to the fields, or write a "
+            ".npz or .csv file."
+        )
+
+
+def read_samples(path: PathLike) -> Samples:
+    """Read samples from a `.npz` or `.ply` file that `write_samples` wrote.
+
+    A `.ply` file that another program rewrote is read as long as it is binary and has all the
+    columns; if it has lost the comments that hold the report, the report's numbers are None. A file
+    of fewer fields says in a comment which these are. Nothing is ever unpickled.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        Name of the file.
+
+    Returns
+    -------
+    Samples
+        The samples and their report, without the spline.
+
+    Raises
+    ------
+    UnknownNameError
+        If the suffix is neither `.npz` nor `.ply`.
+    FileError
+        If the file is missing, unreadable, damaged, or not from gaussmap.
+
+    """
+    path = checked_path(path)
+    suffix = known_suffix(path, READABLE_SUFFIXES)
+    try:
+        file = open(path, "rb")  # noqa: SIM115 - an error here differs from one in the content
+    except OSError as error:
+        raise FileError(f"'{path}' cannot be read: {reason_of(error)}.") from error
+    with file:
+        try:
+            return _READERS[suffix](file)
+        except UnusableError as error:
+            raise FileError(f"'{path}' {error}") from error
+        except InputError as error:
+            raise FileError(f"'{path}' holds unusable samples: {error}") from error
+        except Exception as error:  # NumPy, zipfile and json raise a dozen kinds on bad bytes
+            reason = " ".join(f"{type(error).__name__}: {error}".split())
+            raise FileError(
+                f"'{path}' is damaged or is no {suffix} file of gaussmap ({reason}); "
+                "write it again."
+            ) from error
