@@ -18,10 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..generated import exact as kernels
-from ..generated import sampler
+from .kernels.patch import normals_at
 from .long_integers import forms_of_pairs
 from .spline import Spline
 from .threads import over_ranges
+from .tolerances import SINGULAR_POINT
 
 __all__ = ["Decision", "decide"]
 
@@ -32,8 +33,6 @@ LONG_PAIRS_AT_A_TIME = 1 << 14
 MOST_SHIFTED = 512
 # Two samples of one normal at the open border that are closer than this (in cells) are one.
 SAME_PLACE = 1e-6
-# A point is singular where the normal is this short, beside that at the centre of its patch.
-SINGULAR = 2.0**-20
 
 
 @dataclass(frozen=True)
@@ -131,13 +130,13 @@ def _regular_places(
 
     def normals(places: NDArray[np.float64]) -> NDArray[np.float64]:
         result = np.empty((len(patches), 3))
-        sampler.normals_at(spline.coefficients, spline.scale, patches, places, result)
+        normals_at(spline.coefficients, spline.scale, patches, places, result)
         return result
 
     centre = np.full_like(local, 1 / 3)
     lengths = (np.linalg.norm(normals(x), axis=1) for x in (local, centre))
-    singular = np.less_equal(next(lengths), SINGULAR * next(lengths))
-    places = np.where(singular[:, None], local + SINGULAR * (centre - local), local)
+    singular = np.less_equal(next(lengths), SINGULAR_POINT * next(lengths))
+    places = np.where(singular[:, None], local + SINGULAR_POINT * (centre - local), local)
     return places, normals(places)
 
 

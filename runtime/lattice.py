@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..generated import sampler as kernels
+from .kernels.cone import least_cosine
 from .sphere import in_pieces, part_of_fibonacci, perpendicular, spiral_angle
 from .spline import Spline
 
@@ -36,7 +36,7 @@ class Lattice:
         length = float(np.linalg.norm(mean))
         if length > 0.0:
             axis = mean / length
-            cosine = kernels.least_cosine(spline.coefficients, spline.scale, axis)
+            cosine = least_cosine(spline.coefficients, spline.scale, axis, np.empty((6, 3)))
             if cosine > 0.0:
                 return cls(axis, cosine - 1e-12)
         return cls.everywhere()

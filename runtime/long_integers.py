@@ -9,8 +9,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..generated import sampler as kernels
-from .formula_calls import python_function
+from ..generated.patch import forms
+from ..generated.spline import NEIGHBOURS, TRIANGLE_NEIGHBOURS, triangle
+from .formula_calls import patch, python_function, vector
 from .integers import Integers, integers, integers_by_row, ratio, sign
 from .spline import Spline
 
@@ -28,35 +29,36 @@ def forms_of_pairs(
     vectors, exponent = _patch_vectors(spline, patches)
     n, exponents = integers_by_row(normals)
     n = n * _leading_sign(n)
-    forms = _forms(vectors, n)
-    signs = sign(forms[1:])
+    values = _forms(vectors, n)
+    signs = sign(values[1:])
     tied = (signs == 0).any(axis=0) & ((signs.min(axis=0) >= 0) | (signs.max(axis=0) <= 0))
     if tied.any():
-        forms[:, tied], signs[:, tied] = _moved_forms(vectors[:, tied], n[:, tied])
-    size = _scaled(np.abs(forms[0]), 2 * (exponent + exponents))
+        values[:, tied], signs[:, tied] = _moved_forms(vectors[..., tied], n[:, tied])
+    size = _scaled(np.abs(values[0]), 2 * (exponent + exponents))
     local = np.full((len(patches), 2), np.nan)
-    some = np.asarray(forms[0] != 0, dtype=bool)
+    some = np.asarray(values[0] != 0, dtype=bool)
     for k in (0, 1):
-        local[some, k] = ratio(forms[k + 1, some], forms[0, some])
+        local[some, k] = ratio(values[k + 1, some], values[0, some])
     return local, size, signs.T
 
 
 def _patch_vectors(spline: Spline, patches: NDArray[np.int64]) -> tuple[Integers, int]:
-    """Return a, b, c, d, e (15, k) of each patch as integers, and the exponent of their unit."""
+    """Return a, b, c, d, e (5, 3, k) of each patch as integers, and the exponent of their unit."""
     cell, turn = np.divmod(patches, 4)
     i, j = np.divmod(cell, spline.cells[1])
-    steps = kernels.NEIGHBOURS[turn]
+    steps = NEIGHBOURS[turn]
     around = spline.coefficients[i[:, None] + 1 + steps[..., 0], j[:, None] + 1 + steps[..., 1]]
     values, exponent = integers(around)
     differences = values - values[:, 4:5]
-    read = differences[:, kernels.TRIANGLE_NEIGHBOURS].reshape(len(patches), -1)
-    vectors = python_function(kernels.triangle)(*read.T)
-    return np.array(vectors[:15], dtype=object), exponent + int(np.log2(spline.scale))
+    read = np.moveaxis(differences[:, TRIANGLE_NEIGHBOURS], 1, 0)
+    vectors = python_function(triangle)(*map(vector, read))
+    return np.array(vectors[:5], dtype=object), exponent + int(np.log2(spline.scale))
 
 
 def _forms(vectors: Integers, n: Integers) -> Integers:
     """Return D, U, V, W (4, k), exactly."""
-    return np.array(python_function(kernels.forms)(*vectors, *n), dtype=object)
+    values = python_function(forms)(patch(np.moveaxis(vectors, -1, 0)), vector(n.T))
+    return np.array(values, dtype=object)
 
 
 def _moved_forms(vectors: Integers, n: Integers) -> tuple[Integers, NDArray[np.int8]]:

@@ -15,6 +15,7 @@ from ..generated import sampler as kernels
 from .bins import NormalBins
 from .exact import decide
 from .fields import ARRAY_NAMES, FLOAT_NAMES, INDEX_NAMES, new_field
+from .kernels.developable import all_developable
 from .spline import Spline
 from .threads import over_ranges, thread_count
 
@@ -177,7 +178,7 @@ class Search:
     def hopeless(self) -> bool:
         """Whether all patches are developable, up to the rounding of their coordinates."""
         spline = self.spline
-        return kernels.all_developable(spline.coefficients, spline.scale, spline.noise)
+        return all_developable(spline.coefficients, spline.scale, spline.noise, np.empty((6, 3)))
 
     @cached_property
     def kernel(self) -> tuple[Callable[..., tuple[int, int]], tuple[Any, ...]]:

@@ -10,13 +10,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..generated.sampler import DATA_ERROR
 from .checks import parameter_arrays, whole_number
 from .errors import InputError, SurfaceError
 from .kernels import spline as kernels
 from .ring import Border, Sides, coefficients_with_ring, vertices_with_ring
 from .surface import Domain, Ends, Surface
 from .threads import over_ranges
+from .tolerances import DATA_ERROR
 
 __all__ = [
     "DEFAULT_CELLS",

@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 
 from ...generated import gaussian_image as lines
 from ...generated import patch as formulas
-from ...generated import sampler
 from ...generated import support as kernels
 from ...generated.vectors import Patch, Vector
 from ..formula_calls import python_function, vector
 from ..integers import integers, integers_by_row, ratio, sign
 from ..spline import LARGEST_EXPONENT
+from ..tolerances import ACCURATE, FORM_ERROR
 
 __all__ = ["Members", "PatchNormals"]
 
@@ -59,7 +59,7 @@ class PatchNormals:
         exponents = np.frexp(np.abs(normals).max(axis=1, keepdims=True))[1]
         scaled = np.ldexp(normals, -exponents)
         kernels.classify(
-            tuple(chain(*self.vectors[:5])), self._bound, sampler.ACCURATE * self._bound,
+            tuple(chain(*self.vectors[:5])), self._bound, ACCURATE * self._bound,
             self._shortest, scaled, kinds, uv,
         )  # fmt: skip
         result = Members(
@@ -110,7 +110,7 @@ class PatchNormals:
 
         It is that of differences of control points, of size 1, which a, b, c may be far below.
         """
-        error = sampler.FORM_ERROR * (sum(self._sizes) + sampler.FORM_ERROR)
+        error = FORM_ERROR * (sum(self._sizes) + FORM_ERROR)
         return 32.0 * LONGEST_SQUARED * error
 
     @cached_property

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ...generated import sampler
+from ...generated import spline as grid
 from ..spline import Spline
 from .chains import Segment, joined
 from .classes import PatchClass, classes_of
@@ -84,7 +84,7 @@ class _Plane:
 
     def __init__(self, spline: Spline) -> None:
         self.columns = spline.cells[1]
-        self.corners = sampler.CORNERS
+        self.corners = grid.CORNERS
         self.periods = [
             2 * count if ends[0] == "wrap" else 0
             for count, ends in zip(spline.cells, spline.ends, strict=True)

@@ -12,13 +12,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...generated import patch as formulas
-from ...generated import sampler
 from ...generated.spline import NEIGHBOURS, SCALE, TRIANGLE_NEIGHBOURS, triangle
 from ...generated.vectors import Vector
 from ..checks import real_array
 from ..errors import InputError
 from ..formula_calls import patch, python_function, vector
 from ..spline import LARGEST_EXPONENT, Spline
+from ..tolerances import DATA_ERROR
 
 __all__ = ["Patches", "checked_control_points", "checked_nets"]
 
@@ -48,7 +48,7 @@ class Patches:
         scale = _units(np.abs(differences).max(axis=(1, 2)))
         net = np.moveaxis(differences * scale[:, None, None], 1, 0)
         vectors = python_function(formulas.power_form)(*map(vector, net))
-        noise = sampler.DATA_ERROR * np.abs(nets).max(axis=(1, 2)) * scale
+        noise = DATA_ERROR * np.abs(nets).max(axis=(1, 2)) * scale
         return cls(_stacked(vectors[:5], len(nets)), noise)
 
     @classmethod
@@ -62,7 +62,7 @@ class Patches:
         differences = np.moveaxis(spline.scale * (around - centre), 1, 0)
         vectors = python_function(triangle)(*map(vector, differences))
         largest = float(np.abs(spline.coefficients * spline.scale).max())
-        noise = SCALE * sampler.DATA_ERROR * largest
+        noise = SCALE * DATA_ERROR * largest
         return cls(_stacked(vectors[:5], spline.patches), np.full(spline.patches, noise))
 
     def __len__(self) -> int:

@@ -2,22 +2,27 @@
 
 Numba's own cache looks at the file of a kernel only, and not at the formulas and helpers that it
 calls (https://github.com/numba/numba/issues/1833). Machine code is kept in a folder named after a
-digest of all sources that it may be made of instead: a changed formula is compiled again.
+digest of all sources that it may be made of instead: a changed formula is compiled again, and one
+that is changed back is found again. What is damaged is compiled again, too.
 """
 
 from __future__ import annotations
 
 import hashlib
 import os
+import pickle
+import shutil
 import tempfile
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+import time
+from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
-from numba.core import config
+from numba.core import config as numba_config
+from numba.core.caching import FunctionCache, IndexDataCacheFile
 
 from ...generated.vectors import inline
 from .. import compiling  # noqa: F401 - it tells that kernels are compiled
@@ -26,8 +31,11 @@ __all__ = ["inline", "jit", "loop"]
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
+config: Any = numba_config  # Numba makes its attributes at run time
 PACKAGE = Path(__file__).parents[2]
-SOURCES = ("generated", "runtime/kernels")
+SOURCES = ("generated/*.py", "runtime/kernels/*.py", "runtime/tolerances.py")
+# Folders of other sources are removed when they were not used for so many days.
+DAYS_KEPT = 30
 # Kernels are called from Python and from one another, and never from C.
 OPTIONS = {"nogil": True, "error_model": "numpy", "fastmath": False, "no_cfunc_wrapper": True}
 
@@ -46,11 +54,52 @@ def jit(function: Function) -> Function:
 
     Kernels allocate no memory either: Python hands them the arrays that they need.
     """
+    kernel = numba.njit(_nrt=False, **OPTIONS)(function)  # pyright: ignore
     folder = cache_folder()
-    if folder is None:
-        return numba.njit(_nrt=False, **OPTIONS)(function)  # pyright: ignore
-    with _cache_in(folder):
-        return numba.njit(_nrt=False, cache=True, **OPTIONS)(function)  # pyright: ignore
+    if folder is not None and not config.DISABLE_JIT:
+        kernel._cache = KernelCache(function, folder)
+    return kernel
+
+
+class KernelCache(FunctionCache):
+    """The machine code of one kernel, in the folder of the digest."""
+
+    def __init__(self, function: Callable[..., Any], folder: Path) -> None:
+        """Let Numba choose names inside the folder; files of the same digest are never stale."""
+        before = config.CACHE_DIR
+        config.CACHE_DIR = str(folder)
+        try:
+            super().__init__(function)
+        finally:
+            config.CACHE_DIR = before
+        self._cache_file = CheckedFile(self.cache_path, self._impl.filename_base, "")
+
+
+class CheckedFile(IndexDataCacheFile):
+    """Machine code on disk with a checksum: what cannot be read counts as missing."""
+
+    def _load_index(self) -> dict[Any, str]:
+        try:
+            return super()._load_index()
+        except Exception:  # damaged pickles raise anything
+            return {}
+
+    def _load_data(self, name: str) -> object:
+        stored = Path(self._data_path(name)).read_bytes()
+        checksum, data = stored[:32], stored[32:]
+        if hashlib.sha256(data).digest() != checksum:
+            raise OSError(f"{name} is damaged")  # which `load` takes as missing
+        return pickle.loads(data)
+
+    def _save_data(self, name: str, data: object) -> None:
+        dumped = self._dump(data)
+        with self._open_for_write(self._data_path(name)) as file:
+            file.write(hashlib.sha256(dumped).digest() + dumped)
+
+    def save(self, key: object, data: object) -> None:
+        """Save machine code, if the disk takes it."""
+        with suppress(OSError):
+            super().save(key, data)
 
 
 @cache
@@ -69,6 +118,7 @@ def cache_folder() -> Path | None:
             tempfile.TemporaryFile(dir=folder).close()
         except OSError:
             continue
+        remove_unused(folder)
         return folder
     return None
 
@@ -76,16 +126,15 @@ def cache_folder() -> Path | None:
 @cache
 def digest() -> str:
     """Return a digest of all sources that kernels are made of."""
-    paths = sorted(path for name in SOURCES for path in (PACKAGE / name).glob("*.py"))
+    paths = sorted(path for name in SOURCES for path in PACKAGE.glob(name))
     return hashlib.sha256(b"\0".join(path.read_bytes() for path in paths)).hexdigest()[:16]
 
 
-@contextmanager
-def _cache_in(folder: Path) -> Iterator[None]:
-    """Let Numba keep machine code in a folder; it chooses that when a function is decorated."""
-    before = config.CACHE_DIR
-    config.CACHE_DIR = str(folder)
-    try:
-        yield
-    finally:
-        config.CACHE_DIR = before
+def remove_unused(folder: Path) -> None:
+    """Note that a folder is used; remove the folders of other digests that long were not."""
+    oldest = time.time() - DAYS_KEPT * 24 * 3600
+    with suppress(OSError):
+        os.utime(folder)
+        for other in folder.parent.glob("kernels-" + 16 * "[0-9a-f]"):
+            if other.stat().st_mtime < oldest:
+                shutil.rmtree(other, ignore_errors=True)

@@ -6,11 +6,13 @@ which are 0 to 3 quarter turns of the southern one.
 
 from __future__ import annotations
 
+from ...generated.patch import tangents
 from ...generated.spline import NEIGHBOURS, triangle
 from ...generated.vectors import Patch, Vector
-from .jit import inline, loop
+from .jit import inline, jit, loop
+from .vectors import set_row
 
-__all__ = ["patch_vectors", "place_of", "vector_at"]
+__all__ = ["normals_at", "patch_vectors", "place_of", "vector_at"]
 
 
 @inline
@@ -53,3 +55,14 @@ def patch_vectors(mu, i, j, turn, scale) -> Patch:
         neighbour(mu, i, j, turn, 5, centre, scale),
         neighbour(mu, i, j, turn, 7, centre, scale),
     )
+
+
+@jit
+def normals_at(mu, scale, patches, places, normals):
+    """Write the unnormalized oriented normals (k, 3) of patches (k) at places u, v (k, 2)."""
+    columns = mu.shape[1] - 2
+    for k in range(patches.size):
+        i, j, turn = place_of(patches[k], columns)
+        patch = patch_vectors(mu, i + 1, j + 1, turn, scale)
+        _, _, N = tangents(patch, places[k, 0], places[k, 1])
+        set_row(normals, k, N)

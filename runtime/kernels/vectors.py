@@ -1,0 +1,42 @@
+"""Vectors in arrays, and the little algebra that algorithms need besides the formulas."""
+
+from __future__ import annotations
+
+import math
+
+from ...generated.vectors import Vector
+from .jit import inline
+
+__all__ = ["dot", "largest_component", "length", "row_vector", "set_row"]
+
+
+@inline
+def row_vector(array, k):
+    """Return row k of an array (…, 3)."""
+    return Vector(array[k, 0], array[k, 1], array[k, 2])
+
+
+@inline
+def set_row(array, k, v):
+    """Write a vector to row k of an array (…, 3)."""
+    array[k, 0] = v.x
+    array[k, 1] = v.y
+    array[k, 2] = v.z
+
+
+@inline
+def dot(v, w):
+    """Return the scalar product of two vectors."""
+    return v.x * w.x + v.y * w.y + v.z * w.z
+
+
+@inline
+def length(v):
+    """Return the length of a vector."""
+    return math.sqrt(v.x * v.x + v.y * v.y + v.z * v.z)
+
+
+@inline
+def largest_component(v):
+    """Return the largest modulus of the components of a vector."""
+    return max(abs(v.x), abs(v.y), abs(v.z))

@@ -1,0 +1,175 @@
+"""The machine code of kernels: made of these sources, kept, and made again when it is damaged."""
+
+import os
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numba
+import pytest
+from gaussmap.runtime.kernels import jit
+from numba.core import event
+
+PACKAGE = Path(__file__).parents[3]
+# Prints the normal at the centre of a patch of a plane, and how many functions were compiled.
+NORMAL = """
+import numpy as np
+from gaussmap.runtime.kernels.patch import normals_at
+from numba.core import event
+
+mu = np.stack(np.meshgrid(np.arange(3.0), np.arange(3.0), [0.0], indexing="ij"), axis=-1)[:, :, 0]
+normals = np.empty((1, 3))
+with event.install_recorder("numba:compile") as compiled:
+    normals_at(mu, 0.125, np.array([0]), np.full((1, 2), 1 / 3), normals)
+print(*normals[0], len(compiled.buffer) // 2)
+"""
+FORMULA = "N_z = p_u_x * p_v_y - p_u_y * p_v_x"
+
+
+def normal_of_copy(folder: Path) -> tuple[list[float], int]:
+    """Return a normal that the package in a folder computes, and how much it compiled."""
+    environment = os.environ | {"PYTHONPATH": str(folder), "NUMBA_CACHE_DIR": str(folder / "cache")}
+    done = subprocess.run(
+        [sys.executable, "-c", NORMAL],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    *normal, compiled = done.stdout.split()
+    return [float(x) for x in normal], int(compiled)
+
+
+@pytest.mark.compiled
+def test_a_changed_formula_is_compiled_again(tmp_path: Path) -> None:
+    package = tmp_path / "gaussmap"
+    for name in ("generated", "runtime"):
+        ignored = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(PACKAGE / name, package / name, ignore=ignored)
+    for path in PACKAGE.glob("__init__.py*"):
+        shutil.copy(path, package)
+    normal, compiled = normal_of_copy(tmp_path)
+    assert normal[:2] == [0.0, 0.0]
+    assert normal[2] != 0.0
+    assert compiled > 0
+    assert normal_of_copy(tmp_path) == (normal, 0)
+
+    formulas = package / "generated" / "patch.py"
+    source = formulas.read_text(encoding="utf-8")
+    assert FORMULA in source
+    formulas.write_text(source.replace(FORMULA, FORMULA + " + 7.0"), encoding="utf-8")
+    changed, compiled = normal_of_copy(tmp_path)
+    assert changed == [0.0, 0.0, normal[2] + 7.0]
+    assert compiled > 0
+
+    formulas.write_text(source, encoding="utf-8")
+    assert normal_of_copy(tmp_path) == (normal, 0)
+
+
+def triple(x: float) -> float:
+    return 3.0 * x
+
+
+def compiled_when(kernel: Callable[[float], float]) -> int:
+    """Return how many functions are compiled when a kernel that triples is called."""
+    with event.install_recorder("numba:compile") as compiled:
+        assert kernel(2.0) == 6.0
+    return len(compiled.buffer) // 2
+
+
+def nothing(content: bytes) -> bytes:
+    return b""
+
+
+def half(content: bytes) -> bytes:
+    return content[: len(content) // 2]
+
+
+def garbage(content: bytes) -> bytes:
+    return b"garbage" * 100
+
+
+def one_bit(content: bytes) -> bytes:
+    k = 3 * len(content) // 4
+    return content[:k] + bytes([content[k] ^ 1]) + content[k + 1 :]
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("damage", [nothing, half, garbage, one_bit])
+@pytest.mark.parametrize("suffix", ["nbi", "nbc"])
+def test_damaged_machine_code_is_compiled_again(
+    damage: Callable[[bytes], bytes], suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(jit, "cache_folder", lambda: tmp_path)
+    assert compiled_when(jit.jit(triple)) == 1
+    assert compiled_when(jit.jit(triple)) == 0
+    (path,) = tmp_path.rglob(f"*.{suffix}")
+    path.write_bytes(damage(path.read_bytes()))
+    assert compiled_when(jit.jit(triple)) == 1
+    assert compiled_when(jit.jit(triple)) == 0
+
+
+@pytest.mark.compiled
+def test_machine_code_that_cannot_be_saved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(jit, "cache_folder", lambda: tmp_path)
+    kernel: Any = jit.jit(triple)
+
+    def full(path: str) -> None:
+        raise OSError("No space left on device")
+
+    monkeypatch.setattr(kernel._cache._cache_file, "_open_for_write", full)
+    assert compiled_when(kernel) == 1
+    assert compiled_when(jit.jit(triple)) == 1
+
+
+def test_folders_that_were_not_used_for_long_are_removed(tmp_path: Path) -> None:
+    ours, recent, old, others = (
+        tmp_path / name
+        for name in (
+            "kernels-" + "0" * 16,
+            "kernels-" + "1" * 16,
+            "kernels-" + "2" * 16,
+            "kernels-of-somebody",
+        )
+    )
+    now = time.time()
+    for folder, days in (
+        (ours, 90),
+        (recent, jit.DAYS_KEPT - 1),
+        (old, jit.DAYS_KEPT + 1),
+        (others, 90),
+    ):
+        folder.mkdir()
+        (folder / "code").write_text("")
+        used = now - days * 24 * 3600
+        os.utime(folder, (used, used))
+    jit.remove_unused(ours)
+    assert {*tmp_path.iterdir()} == {ours, recent, others}
+    assert ours.stat().st_mtime > now - 60
+    jit.remove_unused(tmp_path / "missing" / "folder")
+
+
+def test_the_digest_covers_all_that_kernels_are_made_of() -> None:
+    """Whatever a kernel imports from this package is among the sources of the digest."""
+    code = (
+        "import sys, importlib, pathlib, gaussmap.runtime.kernels as kernels\n"
+        "for path in pathlib.Path(kernels.__file__).parent.glob('*.py'):\n"
+        "    importlib.import_module(f'gaussmap.runtime.kernels.{path.stem}')\n"
+        "print(*(x.__file__ for name, x in sys.modules.items() if name.startswith('gaussmap')))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    loaded = {Path(name) for name in done.stdout.split() if not name.endswith("__init__.py")}
+    sources = {path for name in jit.SOURCES for path in jit.PACKAGE.glob(name)}
+    assert {x.resolve() for x in loaded} <= {x.resolve() for x in sources}
+
+
+def test_without_compilation_kernels_are_functions() -> None:
+    if numba.config.DISABLE_JIT:  # pyright: ignore
+        assert jit.jit(triple) is triple
+    else:
+        assert jit.jit(triple).py_func is triple  # pyright: ignore
