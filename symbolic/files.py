@@ -12,7 +12,6 @@ from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from itertools import combinations
 from pathlib import Path
-from typing import cast
 
 import sympy as sp
 
@@ -20,7 +19,7 @@ from . import curve, gaussian_image, icosahedron, latex, mesh, patch, spline, su
 from .double_double import double_double_function
 from .emit import block, call, functions, named_tuples, render, vector_functions
 from .expression import hessian_entries
-from .formula import Formula, PlaneVector
+from .formula import Formula
 from .positions import position
 from .printer import source_of
 
@@ -198,26 +197,9 @@ def cover_source() -> str:
 
 
 def curve_source() -> str:
-    """Return generated/curve.py: the formulas of curves, evaluation, what a sample holds."""
-    load = "\n".join(
-        f"{component} = scale * (mu[{place}, {x}] - mu[i + 1, {x}])"
-        for place, symbol in zip(("i", "i + 2"), curve.ARC.inputs, strict=True)
-        for x, component in enumerate(cast(PlaneVector, symbol).components)
-    )
-    return render(
-        "curve.py",
-        {
-            "header": header("Planar curves: arcs, evaluation, what a sample holds."),
-            "formulas": functions([x for x in curve.FORMULAS if x is not curve.SAMPLE]),
-            "load": load,
-            "arc": block(curve.ARC),
-            "envelope": block(curve.ENVELOPE),
-            "tangent": block(curve.TANGENT),
-            "curvature_at": block(curve.CURVATURE_AT),
-            "parameter": block(curve.PARAMETER),
-            "sample": block(curve.SAMPLE),
-        },
-    )
+    """Return generated/curve.py: the formulas of planar curves."""
+    title = "Planar curves: the formulas of symbolic/curve.py as functions of vectors."
+    return mathematics(title, vector_functions(curve.FORMULAS))
 
 
 def gaussian_image_source() -> str:

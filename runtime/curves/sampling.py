@@ -20,9 +20,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...generated import curve as kernels
 from ..checks import whole_number
 from ..errors import GaussmapWarning, InputError
+from ..kernels import curve as kernels
 from ..sphere import as_normals
 from .circle import arc_of_normals, circle
 from .curve import Curve
@@ -117,7 +117,7 @@ def _places(spline: CurveSpline, angles: Array) -> NDArray[np.int64]:
     with np.errstate(divide="ignore"):
         errors = spline.noise / np.hypot(*spline.joint_normals.T)
     start = int(bent[0]) + 1 if len(bent) else 1
-    kernels.settle(ends, turns, errors, start if spline.periodic else 0)
+    kernels.merge_joints(ends, turns, errors, start if spline.periodic else 0)
     if not spline.periodic:
         for joint, outwards in ((0, -1.0), (-1, 1.0)):
             if not spline.straight[joint]:

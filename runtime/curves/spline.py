@@ -8,11 +8,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...generated import curve as kernels
-from ...generated import spline as edge_kernels
+from ...generated import curve as formulas
+from ...generated import spline as edge_formulas
+from ...generated.vectors import Arc, PlaneVector
 from ..checks import real_array, whole_number
 from ..errors import InputError, SurfaceError
-from ..formula_calls import python_function
+from ..formula_calls import plane_vector, python_function
+from ..kernels import curve as kernels
 from ..spline import apart, not_too_large, scale_to_one, short_label
 from .curve import Curve, Interval
 
@@ -62,8 +64,10 @@ class CurveSpline:
     def control_points(self) -> Array:
         """The control points (P, 3, 2) of the arcs, each from its first to its last point."""
         mu = self.coefficients
-        columns = python_function(kernels.arc_control_points)(*mu[:-2].T, *mu[1:-1].T, *mu[2:].T)
-        return np.stack(columns, axis=-1).reshape(-1, 3, 2)
+        points = python_function(formulas.arc_control_points)(
+            *map(plane_vector, (mu[:-2], mu[1:-1], mu[2:]))
+        )
+        return np.stack([np.stack(x, axis=-1) for x in points], axis=1)
 
     @cached_property
     def scale(self) -> float:
@@ -105,8 +109,10 @@ class CurveSpline:
         Both arcs at a joint share this one vector, and so do both ends of a closed curve.
         """
         tangents = self.scale * np.diff(self.coefficients, axis=0)
-        columns = python_function(kernels.arc_tangent)(0.0, 0.0, *tangents.T, 0.0)[2:]
-        return np.stack(columns, axis=-1)
+        zero = PlaneVector(0.0, 0.0)
+        arcs = Arc(zero, plane_vector(tangents), zero)
+        _, *normals = python_function(formulas.arc_tangent)(arcs, 0.0)
+        return np.stack(normals, axis=-1)
 
     @cached_property
     def angles(self) -> tuple[Array, NDArray[np.int64]]:
@@ -233,7 +239,7 @@ def fit_curve(curve: Curve, pieces: int | None = None) -> CurveSpline:
         if apart(values[-1], values[0], values[:, None]):
             raise SurfaceError(f"curve {curve.name!r} does not close: its two ends differ.")
         values[-1] = values[0]
-    inner = python_function(edge_kernels.edge_point)(values[1::2], values[:-1:2], values[2::2])
+    inner = python_function(edge_formulas.edge_point)(values[1::2], values[:-1:2], values[2::2])
     coefficients = _with_ends(inner, values[[0, -1]], curve.periodic)
     return CurveSpline(coefficients, curve.domain, curve.periodic, curve.name)
 
@@ -265,10 +271,10 @@ def _fit_points(points: Array, domain: Interval, closed: bool, name: str) -> Cur
     if closed:
         values = np.concatenate([points[-1:], points, points[:2]])
     else:
-        before = python_function(edge_kernels.extrapolation)(*points[:3])
-        after = python_function(edge_kernels.extrapolation)(*points[:-4:-1])
+        before = python_function(edge_formulas.extrapolation)(*points[:3])
+        after = python_function(edge_formulas.extrapolation)(*points[:-4:-1])
         values = np.concatenate([before[None], points, after[None]])
-    inner = python_function(edge_kernels.edge_point_from_vertices)(
+    inner = python_function(edge_formulas.edge_point_from_vertices)(
         values[1:-2], values[2:-1], values[:-3], values[3:]
     )
     return CurveSpline(_with_ends(inner, points[[0, -1]], closed), domain, closed, name)
@@ -278,5 +284,5 @@ def _with_ends(inner: Array, ends: Array, closed: bool) -> Array:
     """Return the coefficients (P + 2, 2): copies beyond the ends, or what the end points ask."""
     if closed:
         return np.concatenate([inner[-1:], inner, inner[:1]])
-    before, after = python_function(kernels.beyond_end)(ends, inner[[0, -1]])
+    before, after = python_function(formulas.beyond_end)(ends, inner[[0, -1]])
     return np.concatenate([before[None], inner, after[None]])

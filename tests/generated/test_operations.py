@@ -1,4 +1,4 @@
-"""How much arithmetic each kernel does is recorded in operations.json: no change goes unnoticed.
+"""The arithmetic of each formula and kernel is recorded in operations.json: changes are seen.
 
 `make operations` writes the record. Counted is the source, each loop once, without what only
 computes an index: [sums, differences and products; divisions; calls].
@@ -11,7 +11,9 @@ from textwrap import dedent
 
 import pytest
 
-GENERATED = Path(__file__).parents[2] / "generated"
+ROOT = Path(__file__).parents[2]
+# The folders whose functions are counted, with what stands before the names of their files.
+FOLDERS = {"generated": "", "runtime/kernels": "kernels."}
 RECORD = Path(__file__).with_name("operations.json")
 
 
@@ -60,10 +62,12 @@ def operations(function: ast.FunctionDef) -> list[int]:
 
 
 def counted() -> dict[str, list[int]]:
-    """Return the counts of all kernels of generated/."""
+    """Return the counts of all formulas and kernels."""
     return {
-        f"{path.stem}.{node.name}": operations(node)
-        for path in sorted(GENERATED.glob("*.py"))
+        f"{prefix}{path.stem}.{node.name}": operations(node)
+        for folder, prefix in FOLDERS.items()
+        for path in sorted((ROOT / folder).glob("*.py"))
+        if (folder, path.name) != ("runtime/kernels", "jit.py")  # decorators
         for node in ast.parse(path.read_text(encoding="utf-8")).body
         if isinstance(node, ast.FunctionDef) and node.name != "jit"
     }
