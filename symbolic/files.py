@@ -214,7 +214,7 @@ def icosphere_source() -> str:
     sides = [tuple(combinations(face, 2)) for face in faces]
     owners = [next(k for k, pairs in enumerate(sides) if edge in pairs) for edge in edges]
     holders = [next(k for k, face in enumerate(faces) if corner in face) for corner in range(12)]
-    bars = [_floats(icosahedron.bars(face)) for face in faces]
+    bars = [_floats(icosahedron.barycentric(face)) for face in faces]
     frames = [_floats(icosahedron.frame(face)) for face in faces]
     corners = ([icosahedron.CORNERS[x] for x in face] for face in faces)
     lines = [[i, j - i, k - i] for i, j, k in corners]

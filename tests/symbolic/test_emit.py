@@ -114,7 +114,8 @@ def grouped(formula, inputs: dict[str, Fraction]) -> dict[str, Any]:
         if not isinstance(symbol, VectorSymbol):
             return inputs[symbol.name]
         kind = vectors.PlaneVector if isinstance(symbol, PlaneVector) else vectors.Vector
-        return kind(*(inputs[x.name] for x in symbol.components))
+        components: list[Any] = [inputs[x.name] for x in symbol.components]
+        return kind(*components)
 
     types = {"patch": vectors.Patch, "arc": vectors.Arc}
     result = {}
