@@ -7,9 +7,9 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.generated import exact as kernels_of_pairs
-from gaussmap.generated import sampler as kernels
+from gaussmap.generated.spline import NEIGHBOURS, TRIANGLE_NEIGHBOURS, triangle
 from gaussmap.runtime import exact, long_integers
-from gaussmap.runtime.formula_calls import python_function
+from gaussmap.runtime.formula_calls import python_function, vector
 from gaussmap.runtime.integers import integers, sign
 from gaussmap.runtime.surface import Ends
 from hypothesis import given, settings
@@ -66,11 +66,11 @@ def test_forms_on_integers_are_those_of_fractions() -> None:
         i, j = divmod(cell, spline.cells[1])
         around = [
             [Fraction(float(x)) for x in spline.coefficients[i + 1 + di, j + 1 + dj]]
-            for di, dj in kernels.NEIGHBOURS[turn]
+            for di, dj in NEIGHBOURS[turn]
         ]
-        read = [around[k][x] - around[4][x] for k in kernels.TRIANGLE_NEIGHBOURS for x in range(3)]
-        expected = python_function(kernels.triangle)(*read)[:15]
-        assert [int(x) * unit for x in vectors[:, patch]] == list(expected)
+        read = np.array([around[k] for k in TRIANGLE_NEIGHBOURS]) - np.array(around[4])
+        expected = python_function(triangle)(*map(vector, read))[:5]
+        assert (vectors[..., patch] * unit == np.array(expected)).all()
 
 
 def test_moved_normal_agrees_with_a_slightly_moved_one() -> None:
@@ -79,7 +79,7 @@ def test_moved_normal_agrees_with_a_slightly_moved_one() -> None:
     n = np.array([[int(x) for x in row] for row in rng.integers(-1, 2, (3, 400))], dtype=object)
     vectors = np.array(
         [[int(x) for x in row] for row in rng.integers(-3, 4, (15, 400))], dtype=object
-    )
+    ).reshape(5, 3, 400)
     _, signs = long_integers._moved_forms(vectors, n)
     # In bits: n 64 · 20, ε 16 · 20, 4 · 20 and 20, so that also n ε₃ ≫ ε₁² and ε₁ ε₃ ≫ ε₂².
     shifts = (1 << 320, 1 << 80, 1 << 20)

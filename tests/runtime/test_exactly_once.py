@@ -5,8 +5,10 @@ import math
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.generated import sampler as kernels
+from gaussmap.generated import patch as formulas
+from gaussmap.generated.vectors import Patch, Vector
 from gaussmap.runtime.bins import NormalBins
+from gaussmap.runtime.formula_calls import python_function, vector
 from gaussmap.runtime.lattice import Lattice
 from gaussmap.runtime.search import find
 from hypothesis import given, settings
@@ -251,10 +253,8 @@ def test_plain_sign_test_fails_where_this_one_does_not() -> None:
     spline = gm.fit(TORUS, (16, 16))
     claims = np.zeros(len(normals), dtype=int)
     for index in range(spline.patches):
-        cell, turn = divmod(index, 4)
-        i, j = divmod(cell, spline.cells[1])
-        vectors = kernels.patch_vectors(spline.coefficients, i + 1, j + 1, turn, spline.scale)[:15]
-        _, U, V, W = _numpy(kernels.forms)(*vectors, *normals.T)
+        patch = vectors_of(spline, index)
+        _, U, V, W = python_function(formulas.forms)(patch, vector(normals))
         claims += (np.minimum(np.minimum(U, V), W) > 0) | (np.maximum(np.maximum(U, V), W) < 0)
     exact = np.bincount(gm.sample(spline, normals).normal_index, minlength=len(normals))
     exact += np.bincount(gm.sample(spline, -normals).normal_index, minlength=len(normals))
@@ -262,8 +262,9 @@ def test_plain_sign_test_fails_where_this_one_does_not() -> None:
     assert (claims != 4).any()
 
 
-def _numpy(function):
-    return getattr(function, "py_func", function)
+def vectors_of(spline: gm.Spline, index: int) -> Patch:
+    net = spline.control_nets[index]
+    return python_function(formulas.power_form)(*(Vector(*point) for point in net))
 
 
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band", "enneper", "helicoid"])
@@ -279,11 +280,9 @@ def test_search_by_bins_finds_what_brute_force_finds(
     normals = lattice.normals(lattice.density_of(4000))
     found = set()
     for index in range(spline.patches):
-        cell, turn = divmod(index, 4)
-        i, j = divmod(cell, spline.cells[1])
-        vectors = kernels.patch_vectors(spline.coefficients, i + 1, j + 1, turn, spline.scale)[:15]
-        D, U, V, W = _numpy(kernels.forms)(*vectors, *normals.T)
-        c3 = _numpy(kernels.orientation)(*vectors, *normals.T)
+        patch = vectors_of(spline, index)
+        D, U, V, W = python_function(formulas.forms)(patch, vector(normals))
+        c3 = python_function(formulas.orientation)(patch, vector(normals))
         inside = (np.minimum(np.minimum(U, V), W) > 0) | (np.maximum(np.maximum(U, V), W) < 0)
         found |= {(index, int(k)) for k in np.flatnonzero(inside & (c3 > 0) & (D != 0))}
     samples = gm.sample(spline, normals)
