@@ -86,8 +86,8 @@ def sample(
 
     A GaussmapWarning says when the surface has flat or developable parts, of which normals see
     nothing, and nothing else was asked to cover them; or when a `count` or a `coverage` cannot be
-    met. Raises InputError for unusable arguments; SurfaceError for a surface that cannot be
-    evaluated, or that has no area to be covered.
+    met. Raises InputError for unusable arguments, UnknownNameError for unknown fields; SurfaceError
+    for a surface that cannot be evaluated, or that has no area to be covered.
     """
     return sample_and_normals(
         surface,

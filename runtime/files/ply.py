@@ -43,7 +43,7 @@ _REPORT = "gaussmap report "
 _FIELDS = "gaussmap fields "
 # Some readers hold a header line in a buffer of 256 or 1,024 bytes.
 _CHUNK = 200
-_LARGEST_HEADER = 1 << 24
+_LARGEST_HEADER = 1 << 20
 _LARGEST_INTEGER = 2**31 - 1
 # Rows that are packed or unpacked at once: they fit into a cache.
 _ROWS = 4096
@@ -162,8 +162,8 @@ def _read_header(file: BufferedReader) -> _Header:
     end = re.search(rb"^end_header\r?\n", start, re.MULTILINE)
     if end is None:
         raise UnusableError("ends within its header; write it again.")
-    order = ""
     header = _Header(end.end(), [], [])
+    order, columns = "", {}
     for line in start[: end.start()].decode().split("\n")[1:]:
         match line.split():
             case ["comment", *_]:
@@ -175,15 +175,16 @@ def _read_header(file: BufferedReader) -> _Header:
             case ["format", "binary_little_endian" | "binary_big_endian" as name, "1.0"]:
                 order = "<" if "little" in name else ">"
             case ["element", name, count] if count.isdecimal():
-                header.elements.append(_Element(name, int(count), {}))
+                columns: dict[str, np.dtype[Any]] = {}
+                header.elements.append(_Element(name, int(count), columns))
             case ["property", "list", _, _, _] if len(header.elements) > 1:
                 pass
-            case ["property", kind, name] if name not in header.elements[-1].columns:
-                header.elements[-1].columns[name] = np.dtype(order + _TYPES[kind])
+            case ["property", kind, name] if order and kind in _TYPES and name not in columns:
+                columns[name] = np.dtype(order + _TYPES[kind])
             case ["obj_info", *_] | []:
                 pass
             case _:
-                raise UnusableError(f"has the line {line!r} in its header; write it again.")
+                raise UnusableError(f"has {line[:50]!r} in its header; write it again.")
     if not order or not header.elements or header.elements[0].name != "vertex":
         raise UnusableError("does not begin with vertices; read a file that gaussmap wrote.")
     return header
