@@ -27,7 +27,7 @@ from gaussmap.generated.vectors import Patch, Vector
 from gaussmap.symbolic import formulas
 from gaussmap.symbolic.emit import arguments
 from gaussmap.symbolic.formula import VectorSymbol
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 UNIT = Fraction(1, 2**53)
@@ -190,35 +190,30 @@ EACH = pytest.mark.parametrize("name", ROUNDINGS)
 
 
 @EACH
-@settings(max_examples=40, deadline=None)
 @given(data=st.data())
 def test_integer_patches(name, data):
     check_where_bounded(name, data.draw(numbers(name, integers)))
 
 
 @EACH
-@settings(max_examples=40, deadline=None)
 @given(data=st.data())
 def test_patches_of_any_floats(name, data):
     check_where_bounded(name, data.draw(numbers(name, floats)))
 
 
 @pytest.mark.parametrize("name", ["forms", "support_function", "orientation"])
-@settings(max_examples=80, deadline=None)
 @given(data=st.data())
 def test_nearly_parabolic_patches(name, data):
     check_where_bounded(name, data.draw(nearly_parabolic(name)))
 
 
 @pytest.mark.parametrize("name", ["forms", "envelope", "orientation", "control_normals"])
-@settings(max_examples=40, deadline=None)
 @given(data=st.data())
 def test_nearly_flat_patches(name, data):
     check_where_bounded(name, data.draw(nearly_flat(name)))
 
 
 @pytest.mark.parametrize("name", ["forms", "envelope", "orientation", "control_normals"])
-@settings(max_examples=40, deadline=None)
 @given(data=st.data())
 def test_small_integers_are_exact(name, data):
     """Without a quotient all values on the way are integers or halves below 2⁵³."""

@@ -6,7 +6,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.regions import angles_between
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -139,7 +139,6 @@ def check(normals: Array) -> None:
     assert low - 1e-9 <= gm.covering_radius(normals) <= high + 1e-9
 
 
-@settings(max_examples=60, deadline=None)
 @given(
     count=st.integers(1, 30),
     seed=st.integers(0, 10**6),

@@ -12,7 +12,7 @@ from gaussmap.runtime import exact, long_integers
 from gaussmap.runtime.formula_calls import python_function, vector
 from gaussmap.runtime.integers import integers, sign
 from gaussmap.runtime.surface import Ends
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 ALIGNED = np.array([n for n in product((-1.0, 0.0, 1.0), repeat=3) if any(n)])
@@ -46,7 +46,6 @@ def test_integer_torus(size: int, cells: tuple[int, int]) -> None:
 
 
 @pytest.mark.compiled
-@settings(max_examples=60, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), height=st.integers(0, 4))
 def test_dented_integer_torus(seed: int, height: int) -> None:
     noise = np.random.default_rng(seed).integers(-height, height + 1, (12, 10, 3))

@@ -11,7 +11,7 @@ from gaussmap.runtime.bins import NormalBins
 from gaussmap.runtime.formula_calls import python_function, vector
 from gaussmap.runtime.lattice import Lattice
 from gaussmap.runtime.search import find
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -106,7 +106,6 @@ def test_torus_moved_and_scaled(shift: float, factor: float, turned: bool) -> No
         check_torus(gm.sample(surface, normals, cells=cells), normals, rotation[:, 2])
 
 
-@settings(max_examples=25, deadline=None)
 @given(of_surface=quaternions, of_normals=quaternions, exponent=st.integers(-9, 9))
 def test_torus_turned_at_random(
     of_surface: tuple[float, float, float, float],

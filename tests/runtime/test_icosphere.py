@@ -7,7 +7,7 @@ from gaussmap.runtime.bins import NormalBins
 from gaussmap.runtime.fields import INDEX_NAMES
 from gaussmap.runtime.search import fill, find
 from gaussmap.runtime.sphere import as_normals
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 SURFACES = [x for x in gm.surfaces.names() if x not in ("plane", "cylinder", "cone")]
@@ -42,7 +42,6 @@ def test_scan_finds_what_bins_find(name: str, cells: tuple[int, int], frequency:
 
 
 @pytest.mark.compiled
-@settings(max_examples=40, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), roughness=st.floats(-6, 1), frequency=st.integers(1, 30))
 def test_rough_splines(seed: int, roughness: float, frequency: int) -> None:
     """From gentle waves to patches with normals all round: cones of every width."""

@@ -9,7 +9,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.sphere import as_normals
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -171,7 +171,6 @@ def samples_normals(samples: gm.CurveSamples, normals: Array) -> Array:
 points = st.lists(st.tuples(st.integers(-3, 3), st.integers(-3, 3)), min_size=3, max_size=12)
 
 
-@settings(max_examples=200, deadline=None)
 @given(polygon=points, is_closed=st.booleans())
 def test_any_small_integers(polygon: list[tuple[int, int]], is_closed: bool) -> None:
     """Straight arcs, cusps, stops and returns are all among these."""

@@ -10,7 +10,7 @@ from gaussmap.generated import patch as formulas
 from gaussmap.generated.vectors import Vector
 from gaussmap.runtime.formula_calls import patch, python_function, vector
 from gaussmap.runtime.gaussian.patches import Patches
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -179,7 +179,6 @@ def by_definition(net: Array, n: list[int]) -> bool:
     return bool(u >= 0 and v >= 0 and u + v <= 1 and towards > 0)
 
 
-@settings(max_examples=60, deadline=None)
 @given(
     seed=st.integers(0, 10**6),
     normals=st.lists(st.tuples(*[st.integers(-4, 4)] * 3), min_size=5, max_size=20),
