@@ -2,7 +2,10 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+# What `make demo` needs, and what developers need beside it.
+DEMO := $(VENV)/.demo
 READY := $(VENV)/.ready
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 GAUSSMAP := $(BIN)/gaussmap
 # Matplotlib's elevation model of the Jacksboro fault: 344 x 403 heights in metres, 3 arc seconds
 # apart, rows from north to south. One cell for 8 x 8 heights leaves out their smallest folds.
@@ -11,24 +14,30 @@ DEM = from matplotlib.cbook import get_sample_data as f; \
 TERRAIN = "$$($(BIN)/python -c '$(DEM)'):elevation" --spacing 74.5 -92.5 --cells 50 43
 
 .DEFAULT_GOAL := help
-.PHONY: help demo generate check-generated test coverage bench bench-guard bench-record bench-peers \
+.PHONY: help install demo generate check-generated warm test coverage verify bench bench-guard bench-record bench-peers \
 	quality operations lint typecheck formulas orders errata curves figures gallery meshes registration \
 	clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
-$(READY): pyproject.toml
+$(DEMO): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
 		|| { echo "gaussmap needs Python 3.11 or newer: make PYTHON=python3.12 …" >&2; exit 1; }
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade pip
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	$(PIP) --upgrade pip
+	$(PIP) --editable '.[plot]'
+	touch $@
+
+$(READY): $(DEMO)
+	$(PIP) --editable '.[dev]'
 	mkdir -p $(VENV)/typing
 	ln -sfn ../.. $(VENV)/typing/gaussmap
 	touch $@
 
-demo: $(READY) ## sample a torus and real terrain: a PLY and a PNG of each in out/
+install: $(READY) ## make .venv with all that developers need
+
+demo: $(DEMO) ## sample a torus and real terrain: a PLY and a PNG of each in out/
 	@mkdir -p out
 	$(GAUSSMAP) sample torus --count 10000 -o out/torus.ply
 	$(GAUSSMAP) plot torus --count 2000 -o out/torus.png
@@ -41,11 +50,20 @@ generate: $(READY) ## derive all formulas and write generated/
 check-generated: $(READY) ## show a diff and fail if generated/ is stale
 	$(BIN)/python -m gaussmap.symbolic --check
 
-test: $(READY) ## run all tests
-	$(BIN)/python -m pytest
+warm: $(READY) ## compile all kernels ahead, for all processes that come
+	$(GAUSSMAP) warm
 
-coverage: $(READY) ## run all tests without compilation, with the coverage of every line
-	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q -rfE -W ignore::RuntimeWarning --cov --cov-report=term
+test: $(READY) ## run the tests, but for those that are slow and seldom fail
+	$(BIN)/python -m pytest -q -m "not slow" --numprocesses auto
+
+coverage: $(READY) ## run kernels and formulas without compilation; fail if few of their lines ran
+	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q -m "kernels and not compiled and not slow" \
+		--numprocesses auto -W ignore::RuntimeWarning --cov --cov-report=term:skip-covered
+
+verify: $(READY) ## run what is slow: all tests with many random examples, browsers, products
+	$(BIN)/python -m pytest -q -m slow --hypothesis-profile=large --numprocesses auto
+	$(BIN)/python -m pytest -q -m "not slow" --hypothesis-profile=large --numprocesses auto
+	.ci/check-html
 
 bench: $(READY) ## run the benchmarks (ratios against the machine's own limit)
 	$(BIN)/python -m pytest benchmarks -o python_files='bench_*.py' --benchmark-only --benchmark-quiet
@@ -72,9 +90,10 @@ quality: $(VENV)/peers/.ready meshes ## judge samples, and meshes, beside those 
 	$(VENV)/peers/bin/python -m gaussmap.benchmarks.quality > docs/quality.tmp
 	mv docs/quality.tmp docs/quality.md
 
-lint: $(READY) ## check style
+lint: $(READY) ## check style, and that imports go one way
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	$(BIN)/lint-imports
 
 typecheck: $(READY) ## check types
 	$(BIN)/pyright

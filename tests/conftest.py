@@ -1,6 +1,7 @@
 """What all tests share: which of them are slow, and how many random examples they try."""
 
 import os
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -10,16 +11,24 @@ settings.register_profile("quick", max_examples=20, deadline=None)
 settings.register_profile("large", max_examples=200, deadline=None)
 settings.load_profile("quick")
 
+HERE = Path(__file__).parent
+# The tests that run formulas and kernels: `make coverage` runs them without compilation.
+OF_KERNELS = ("generated", "runtime/curves", "runtime/density", "runtime/meshes", "runtime/support")
+
 
 def pytest_configure(config: pytest.Config) -> None:
     for marker in (
         "compiled: needs compiled kernels (too slow under NUMBA_DISABLE_JIT=1)",
+        "kernels: runs formulas and kernels; `make coverage` runs it without compilation",
         "slow: takes long and seldom fails; run by `make verify`, and not by `make test`",
     ):
         config.addinivalue_line("markers", marker)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    for item in items:
+        if item.path.relative_to(HERE).as_posix().startswith(OF_KERNELS):
+            item.add_marker("kernels")
     if os.environ.get("NUMBA_DISABLE_JIT", "0") != "0":
         skip = pytest.mark.skip(reason="too slow without compilation")
         for item in items:
