@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 __all__ = ["Segment", "joined"]
 
 Array = NDArray[np.float64]
-# The nodes at both ends of a segment, and its ends (2, 2).
+# The nodes at both ends of a piece of a polyline, and its vertices (k, 2).
 Segment = tuple[Hashable, Hashable, Array]
 
 
@@ -54,7 +54,7 @@ def _walk(
             start, end, ends = end, start, ends[::-1]
         if not places:
             places.append(ends[0])
-        places.append(ends[1] + (places[-1] - ends[0]))
+        places.extend(ends[1:] + (places[-1] - ends[0]))
         node = end
         following = [x for x in at_node[node] if x in unused]
         if len(at_node[node]) != 2 or not following:

@@ -150,6 +150,11 @@ class CurvatureField:
         """Return the derivatives (k, 2) of K by u and v."""
         return np.stack([self.evaluate(places, 1, 0), self.evaluate(places, 0, 1)], axis=1)
 
+    def hessian(self, places: Array) -> Array:
+        """Return the second derivatives (k, 2, 2) of K by u and v."""
+        uu, uv, vv = (self.evaluate(places, *by) for by in ((2, 0), (1, 1), (0, 2)))
+        return np.stack([uu, uv, uv, vv], axis=1).reshape(-1, 2, 2)
+
 
 def _lines(low: float, high: float, count: int, periodic: bool) -> Array:
     shares = (np.arange(count + 1) + OFFSET) / count

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,14 +17,13 @@ from .classes import PatchClass, classify_patches
 from .curvature_field import CurvatureField
 from .parabolic_spline import polylines_of
 from .parabolic_surface import field_of, search
+from .polylines import refined
 from .rectangles import merged
+from .saddles import critical_points
 
 __all__ = ["ParabolicCurve", "ParabolicPoint", "ParabolicPoints", "parabolic_points"]
 
 Array = NDArray[np.float64]
-Evaluation = Callable[[Array], Array]
-# Polylines are refined at most so many times, each time halving what departs from the curve.
-REFINEMENTS = 14
 NEWTON_STEPS = 6
 MOST_CELLS = 128
 # A share of the domain that is worth a warning.
@@ -127,7 +126,7 @@ def _of_spline(spline: Spline, tolerance: float) -> ParabolicPoints:
     curves = []
     size = tolerance * _size(spline.coefficients[1:-1, 1:-1].reshape(-1, 3))
     for uv, closed in polylines_of(spline):
-        finer = _subdivided(uv, lambda x: _evaluated(spline, x), size)
+        finer = refined(uv, lambda x: _evaluated(spline, x), size, lambda x: x)
         curves.append(ParabolicCurve(finer, _evaluated(spline, finer), closed))
     flat = np.isin(classes, (PatchClass.PLANAR, PatchClass.DEVELOPABLE, PatchClass.SINGULAR))
     i, j = np.divmod(np.flatnonzero(flat.all(axis=1)), spline.cells[1])
@@ -153,11 +152,16 @@ def _of_surface(
         )
     grid = surface.evaluate(*np.meshgrid(*(np.linspace(*ends, 17) for ends in surface.domain)))
     size = tolerance * _size(grid.reshape(-1, 3))
-    finer = _refined([uv for uv, _ in found.polylines], field, surface, size)
-    curves = [
-        ParabolicCurve(uv, _evaluated(surface, uv), closed)
-        for uv, (_, closed) in zip(finer, found.polylines, strict=True)
-    ]
+    limits = _limits(surface)
+    curves = []
+    for uv, closed in found.polylines:
+        finer = refined(
+            uv,
+            lambda x: _evaluated(surface, x),
+            size,
+            lambda x: np.clip(_onto_curve(field, x), *limits),
+        )
+        curves.append(ParabolicCurve(finer, _evaluated(surface, finer), closed))
     isolated = []
     for box in found.boxes:
         uv = _lowest(field, box)
@@ -165,47 +169,7 @@ def _of_surface(
     return ParabolicPoints(tuple(curves), tuple(isolated), found.flat, bool(field.flat.all()))
 
 
-# --- polylines ------------------------------------------------------------------------------------
-
-
-def _subdivided(uv: Array, evaluate: Evaluation, size: float) -> Array:
-    """Cut the segments of a polyline that are arcs of parabolas in space, until these are flat."""
-    points, middle = evaluate(uv), evaluate(0.5 * (uv[1:] + uv[:-1]))
-    height = np.linalg.norm(middle - 0.5 * (points[1:] + points[:-1]), axis=1)
-    parts = np.ceil(np.sqrt(height / size)).astype(int) if size > 0.0 else np.zeros(len(height))
-    pieces = [
-        start + (end - start) * np.arange(count)[:, None] / count
-        for start, end, count in zip(uv, uv[1:], np.clip(parts, 1, 1000).astype(int), strict=False)
-    ]
-    return np.concatenate([*pieces, uv[-1:]])
-
-
-def _refined(
-    polylines: list[Array], field: CurvatureField, surface: Surface, size: float
-) -> list[Array]:
-    """Insert points of the curve K = 0 where polylines depart from it by more than `size`."""
-    if not polylines:
-        return []
-    uv = np.concatenate(polylines)
-    owner = np.repeat(np.arange(len(polylines)), [len(x) for x in polylines])
-    open_ = owner[1:] == owner[:-1]
-    for _ in range(REFINEMENTS):
-        which = np.flatnonzero(open_)
-        if len(which) == 0:
-            break
-        start, end = uv[which], uv[which + 1]
-        middle = _onto_curve(field, 0.5 * (start + end))
-        near = np.abs(middle - 0.5 * (start + end)).max(axis=1) <= np.abs(end - start).max(axis=1)
-        middle = np.clip(middle, *_limits(surface))
-        p, q, r = (_evaluated(surface, x) for x in (start, middle, end))
-        far = near & (_distance(q, p, r) > size)
-        insert = which[far]
-        places = insert + 1 + np.arange(len(insert))
-        uv = np.insert(uv, insert + 1, middle[far], axis=0)
-        owner = np.insert(owner, insert + 1, owner[insert])
-        open_ = np.zeros(len(uv) - 1, dtype=bool)
-        open_[places - 1] = open_[places] = True
-    return np.split(uv, np.flatnonzero(np.diff(owner)) + 1)
+# --- places on the curves and points K = 0 --------------------------------------------------------
 
 
 def _onto_curve(field: CurvatureField, places: Array) -> Array:
@@ -218,23 +182,10 @@ def _onto_curve(field: CurvatureField, places: Array) -> Array:
     return places
 
 
-def _distance(points: Array, start: Array, end: Array) -> Array:
-    """Return the distances (k,) of points from segments."""
-    along = end - start
-    square = np.einsum("kx,kx->k", along, along)
-    share = np.einsum("kx,kx->k", points - start, along)
-    share = np.clip(np.divide(share, square, out=np.zeros_like(share), where=square > 0.0), 0, 1)
-    return np.linalg.norm(points - start - share[:, None] * along, axis=1)
-
-
 def _lowest(field: CurvatureField, box: Array) -> Array:
     """Return the place in a rectangle where the gradient of K vanishes, else its middle."""
     middle = box.mean(axis=0)
-    place = middle[None]
-    for _ in range(NEWTON_STEPS):
-        uu, uv, vv = (float(field.evaluate(place, *by)[0]) for by in ((2, 0), (1, 1), (0, 2)))
-        step = np.linalg.lstsq(np.array([[uu, uv], [uv, vv]]), field.gradient(place)[0], rcond=None)
-        place = place - step[0]
+    place = critical_points(field, middle[None], box[1] - box[0])
     inside = ((box[0] <= place[0]) & (place[0] <= box[1])).all()
     return place[0] if inside else middle
 

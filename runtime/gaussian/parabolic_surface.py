@@ -13,12 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..surface import Surface
-from .chains import joined
-from .crossings import segments
 from .curvature_field import CurvatureField
 from .rectangles import clusters, merged, touching
 from .sign_grid import SignGrid
 from .touching_zeros import TouchingZeros, parted, touching_zeros
+from .zero_curves import zero_curves
 
 __all__ = ["Search", "field_of", "search"]
 
@@ -65,7 +64,7 @@ def _known(field: CurvatureField) -> tuple[float, float]:
 def search(field: CurvatureField, size: Array) -> Search:
     """Find the zeros of K; `size` (2,) is how small rectangles have to become, in parameters."""
     grid, found = _fine_enough(field, size)
-    curves, near_crossing = segments(grid, size)
+    polylines, near_crossing = zero_curves(grid, size)
     small, large = parted(grid, merged(np.concatenate([grid.rectangles(grid.flat), found.zero])))
     flat = merged(np.concatenate([grid.rectangles(grid.panels(field.flat)), large]))
     boxes = np.concatenate([found.boxes, small])
@@ -74,7 +73,7 @@ def search(field: CurvatureField, size: Array) -> Search:
     beside = np.array([touching(group, flat, size).any() for group in groups], dtype=bool)
     rim = [boxes[touching(group, boxes, 0.0 * size)] for group in groups[beside]]
     return Search(
-        joined(curves),
+        polylines,
         groups[~beside],
         np.concatenate([flat, *rim]),
         field.share(field.unresolved),

@@ -1,8 +1,7 @@
-"""K at the corners of equal cells in each panel: its signs, and where it changes them."""
+"""K at the corners of equal cells in each panel, and its signs there."""
 
 from __future__ import annotations
 
-from collections.abc import Hashable
 from functools import cached_property
 from typing import Any
 
@@ -12,15 +11,9 @@ from numpy.typing import NDArray
 
 from .curvature_field import ORDER, SURE, CurvatureField
 
-__all__ = ["Side", "SignGrid"]
+__all__ = ["SignGrid"]
 
 Array = NDArray[np.float64]
-# A side of a cell, along "u" or "v" from the corner (i, j) on.
-Side = tuple[str, int, int]
-# Zeros on the sides of cells: their accuracy, beside a side, and when the search for them bisects.
-ACCURACY = 1e-11
-MOST_STEPS = 60
-BISECT_EVERY = 4
 
 
 class SignGrid:
@@ -111,36 +104,6 @@ class SignGrid:
         places = (along, across) if axis else (across, along)
         return self.field.evaluate(np.stack(places, axis=1))
 
-    def node(self, side: Side) -> Hashable:
-        """Return the name of a side, the same for both places of it in a periodic direction."""
-        along, i, j = side
-        m, n = (len(line) - 1 for line in self.lines)
-        return (
-            along,
-            int(i % m if self.field.wraps[0] else i),
-            int(j % n if self.field.wraps[1] else j),
-        )
-
-    @cached_property
-    def places(self) -> dict[Side, Array]:
-        """The zero of K on each side of a cell at whose ends it has two signs."""
-        sides, low, high, positive = [], [], [], []
-        for along, axis in (("u", 0), ("v", 1)):
-            width = [(0, 0) if k == axis else (1, 1) for k in (0, 1)]
-            beside = np.pad(self.crossed, width)
-            beside = beside[:, 1:] | beside[:, :-1] if along == "u" else beside[1:] | beside[:-1]
-            change = np.diff(self.signs, axis=axis) & beside
-            step = (1, 0) if along == "u" else (0, 1)
-            for i, j in zip(*(x.tolist() for x in np.nonzero(change)), strict=True):
-                sides.append((along, i, j))
-                low.append((self.lines[0][i], self.lines[1][j]))
-                high.append((self.lines[0][i + step[0]], self.lines[1][j + step[1]]))
-                positive.append(self.signs[i, j])
-        if not sides:
-            return {}
-        found = _zeros_between(self.field, np.array(low), np.array(high), np.array(positive))
-        return dict(zip(sides, found, strict=True))
-
 
 def _of_corners(x: NDArray[Any]) -> NDArray[Any]:
     """Return what is at the four corners (4, …) of cells, in turn."""
@@ -168,35 +131,3 @@ def _refined(line: Array, cells: int) -> Array:
     steps = np.arange(cells) / cells
     inner = line[:-1, None] + np.diff(line)[:, None] * steps
     return np.append(inner.ravel(), line[-1])
-
-
-def _zeros_between(
-    field: CurvatureField, low: Array, high: Array, positive: NDArray[np.bool_]
-) -> Array:
-    """Return the zeros (k, 2) of K between places where it has two signs; the `low` one's is given.
-
-    The sign of a place where K is zero up to its error was taken from its neighbours. This is false
-    position (the Illinois rule), with a bisection now and then, for zeros of any order.
-    """
-    ends = np.zeros(len(low)), np.ones(len(low))
-    sign = np.where(positive, 1.0, -1.0)
-    values = sign * np.abs(field.evaluate(low)), -sign * np.abs(field.evaluate(high))
-    result, active = np.full(len(low), np.inf), np.arange(len(low))
-    for step in range(1, MOST_STEPS + 1):
-        (a, b), (f, g) = ends, values
-        with np.errstate(divide="ignore", invalid="ignore"):
-            share = 0.5 if step % BISECT_EVERY == 0 else f / (f - g)
-        x = a + np.where(np.isfinite(share), share, 0.5) * (b - a)
-        K = field.evaluate(low[active] + x[:, None] * (high - low)[active])
-        same = K * sign[active] > 0.0
-        # An end that stays is halved in value, so that it does not stay again.
-        values = np.where(same, K, 0.5 * f), np.where(same, 0.5 * g, K)
-        ends = np.where(same, x, a), np.where(same, b, x)
-        moved = np.abs(x - result[active]) > ACCURACY
-        result[active] = x
-        active, ends, values = (
-            active[moved],
-            (ends[0][moved], ends[1][moved]),
-            (values[0][moved], values[1][moved]),
-        )
-    return low + result[:, None] * (high - low)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d
 
 from .curvature_field import NODES, ORDER, SURE, CurvatureField
 from .rectangles import clusters, merged, quarters, touching
@@ -85,13 +86,9 @@ def _near_curves(grid: SignGrid) -> NDArray[np.bool_]:
     near = grid.crossed | ~grid.mask
     for (i, j), _ in grid.borders:
         near[min(i, near.shape[0] - 1), min(j, near.shape[1] - 1)] = True
-    for axis in (0, 1):
-        ends = "wrap" if grid.field.wraps[axis] else "constant"
-        width = [(1, 1) if k == axis else (0, 0) for k in (0, 1)]
-        padded = np.pad(near, width, mode=ends)
-        stretch = [np.take(padded, np.arange(k, k + near.shape[axis]), axis) for k in range(3)]
-        near = np.logical_or.reduce(stretch)
-    return near
+    for axis, periodic in enumerate(grid.field.wraps):
+        near = maximum_filter1d(near, 3, axis, mode="wrap" if periodic else "nearest")
+    return near.astype(bool)
 
 
 def _may_vanish(grid: SignGrid, cells: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -471,6 +471,47 @@ def test_curves_cross_across_the_ends_of_a_periodic_surface() -> None:
 
 
 @pytest.mark.compiled
+def test_curves_behind_a_crossing_near_the_border_are_whole() -> None:
+    """K of z = sin u sin v vanishes where u ± v is an odd multiple of π/2: at a crossing that is
+    1.2 cells from a border four arcs end, and two of them are that short.
+    """
+    low, high = np.array([-3.0, -3.0]), np.array([3.1, 3.2])
+    found = gm.parabolic_points(
+        graph(lambda u, v: np.sin(u) * np.sin(v), tuple(zip(low, high, strict=True)))
+    )
+    exact = 0.0
+    for sign in (1.0, -1.0):
+        for constant in np.pi / 2 * np.arange(-5, 6, 2):
+            ends = sorted(sign * (constant - np.array([low[1], high[1]])))
+            exact += np.sqrt(2.0) * max(0.0, min(high[0], ends[1]) - max(low[0], ends[0]))
+    lengths = [np.linalg.norm(np.diff(x.uv, axis=0), axis=1).sum() for x in found.curves]
+    assert sum(lengths) == pytest.approx(exact, abs=1e-6)
+    places = np.array([(-1, 0), (0, -1), (0, 1), (1, 0), (-1, 2), (1, 2)]) * np.pi / 2
+    ends = np.concatenate([curve.uv[[0, -1]] for curve in found.curves])
+    for place in places:
+        assert (np.abs(ends - place).max(axis=1) < 1e-8).sum() == 4
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("ratio", [2, 3, 4])
+def test_two_curves_in_one_cell_are_joined_the_right_way(ratio: int) -> None:
+    """z = 20u² + h with h_vv = p² − r q² + 0.002: branches of a hyperbola less than a cell apart.
+
+    K = 40 h_vv − h_uv² is positive on the line q = 0: there is a curve on each side of it.
+    """
+    u, v = sp.symbols("u v")
+    s, t = u - sp.Rational(1, 10), v + sp.Rational(13, 100)
+    p, q = s + t / 2, t - s / 2
+    target = p**2 - ratio * q**2 + sp.Rational(1, 500)
+    z = 20 * u * u + sp.integrate(sp.integrate(sp.expand(target), v), v)
+    found = gm.parabolic_points(graph(sp.lambdify((u, v), z)), cells=(2, 2))
+    assert len(found.curves) == 2
+    sides = [sp.lambdify((u, v), q)(*curve.uv.T) > 0.0 for curve in found.curves]
+    assert sorted(bool(side.all()) for side in sides) == [False, True]
+    assert sorted(bool(side.any()) for side in sides) == [False, True]
+
+
+@pytest.mark.compiled
 def test_steep_waves_are_resolved() -> None:
     """z = sin 50u sin 40v: K vanishes where cos(50u + 40v) cos(50u − 40v) = 0, however steep."""
     found = gm.parabolic_points(

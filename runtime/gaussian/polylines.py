@@ -1,0 +1,53 @@
+"""Polylines of the parameter plane, refined until they follow a curve in space."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Evaluation", "refined"]
+
+Array = NDArray[np.float64]
+Evaluation = Callable[[Array], Array]
+# A segment whose middle departs from the curve by h is cut into √(h / size) parts, as the arc of a
+# parabola needs; other curves need a second pass, or a third.
+PASSES = 3
+MOST_PARTS = 1000
+
+
+def refined(uv: Array, evaluate: Evaluation, size: float, onto_curve: Evaluation) -> Array:
+    """Insert vertices where a polyline (k, 2) departs from its curve by more than `size` in space.
+
+    `evaluate` returns the points (k, 3) of parameters (k, 2), `onto_curve` the parameters of points
+    of the curve near those it is given; what it moves by more than a segment is not used.
+    """
+    for _ in range(PASSES):
+        start, along = uv[:-1], np.diff(uv, axis=0)
+        longest = np.abs(along).max(axis=1)
+        straight = start + 0.5 * along
+        middle = onto_curve(straight)
+        height = _distance(evaluate(middle), evaluate(start), evaluate(uv[1:]))
+        near = np.abs(middle - straight).max(axis=1) <= longest
+        cut = near & (height > size) & (size > 0.0)
+        if not cut.any():
+            break
+        parts = np.ones(len(start), dtype=np.int64)
+        parts[cut] = np.minimum(np.ceil(np.sqrt(height[cut] / size)), MOST_PARTS)
+        owner = np.repeat(np.arange(len(start)), parts)
+        number = np.arange(len(owner)) - (np.cumsum(parts) - parts)[owner]
+        straight = start[owner] + (number / parts[owner])[:, None] * along[owner]
+        moved = np.where(number[:, None] > 0, onto_curve(straight), straight)
+        near = np.abs(moved - straight).max(axis=1) <= longest[owner]
+        uv = np.concatenate([moved[near], uv[-1:]])
+    return uv
+
+
+def _distance(points: Array, start: Array, end: Array) -> Array:
+    """Return the distances (k,) of points from segments."""
+    along = end - start
+    square = np.einsum("kx,kx->k", along, along)
+    share = np.einsum("kx,kx->k", points - start, along)
+    share = np.clip(np.divide(share, square, out=np.zeros_like(share), where=square > 0.0), 0, 1)
+    return np.linalg.norm(points - start - share[:, None] * along, axis=1)
