@@ -23,8 +23,22 @@ __all__ = [
     "parameter_arrays",
     "real_array",
     "real_values",
+    "shown",
     "whole_number",
 ]
+
+
+LONGEST_SHOWN = 60
+
+
+def shown(value: object) -> str:
+    """Return a value as a message shows it: on one line, not too long, and never an error."""
+    try:
+        text = " ".join(repr(value).split())
+    except Exception:  # whole numbers of many digits, and what objects of users raise
+        text = f"something of type {type(value).__name__}"
+    text = text.encode("utf-8", "backslashreplace").decode()
+    return text if len(text) <= LONGEST_SHOWN else f"{text[: LONGEST_SHOWN - 1]}…"
 
 
 def known_name(name: str, known: Sequence[str], kind: str, command: str = "") -> str:

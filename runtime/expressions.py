@@ -1,22 +1,32 @@
-"""SymPy expressions of a user as a fast callable; SymPy is imported only here, on first use."""
+"""Texts and SymPy expressions of a user, and fast callables of them: the way from runtime to SymPy.
+
+What texts may hold stands in `symbolic.reading`. SymPy is imported on first use.
+"""
 
 from __future__ import annotations
 
-import ast
-import builtins
 from collections.abc import Callable, Sequence
-from contextlib import suppress
+from numbers import Number
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .checks import shown
 from .errors import InputError
 
 if TYPE_CHECKING:
     import sympy
 
-__all__ = ["as_expression", "compiled", "interval", "numbers", "one_symbol", "two_symbols"]
+__all__ = [
+    "as_condition",
+    "as_expression",
+    "compiled",
+    "interval",
+    "numbers",
+    "one_symbol",
+    "two_symbols",
+]
 
 
 def compiled(
@@ -31,7 +41,7 @@ def compiled(
     by_name = {symbol.name: symbol for symbol in symbols}
     expressions = [as_expression(entry, by_name) for entry in _coordinates(position, len(symbols))]
     if any(e.has(sp.nan, sp.zoo) for e in expressions):
-        raise InputError(f"position is not finite: {position!r}.")
+        raise InputError(f"position is not finite: {shown(position)}.")
     expressions = [
         e.subs({s: by_name[s.name] for s in e.free_symbols if s.name in by_name})
         for e in expressions
@@ -40,7 +50,7 @@ def compiled(
     if unknown:
         names = ", ".join(sorted(map(str, unknown)))
         raise InputError(f"position holds symbols that are neither parameter nor number: {names}.")
-    function = sp.lambdify(symbols, expressions, modules="numpy", cse=True)
+    function = _lambdified(symbols, expressions)
 
     def evaluate(*values: NDArray[np.float64]) -> NDArray[np.float64]:
         shape = values[0].shape
@@ -49,13 +59,26 @@ def compiled(
     return evaluate
 
 
+def _lambdified(symbols: Sequence[sympy.Symbol], expressions: Sequence[Any]) -> Callable[..., Any]:
+    """Return a NumPy function of expressions; InputError if NumPy lacks one of their functions."""
+    import sympy as sp
+
+    if lacking := set().union(*(e.atoms(sp.erf, sp.erfc) for e in expressions)):
+        name = min(x.func.__name__ for x in lacking)
+        raise InputError(f"position uses {name}, which NumPy does not have.")
+    try:
+        return sp.lambdify(symbols, expressions, modules="numpy", cse=True, dummify=True)
+    except (RecursionError, MemoryError, SyntaxError):  # SyntaxError: too many brackets
+        raise InputError("position is nested too deeply to be compiled.") from None
+
+
 def numbers(domain: Sequence[Sequence[Any]]) -> list[list[float]]:
     """Return a domain whose ends may be expressions as floats; raise InputError if it is none."""
     try:
         return [[float(as_expression(end, {})) for end in ends] for ends in domain]
     except (TypeError, ValueError, OverflowError):
         raise InputError(
-            f"domain must be ((u0, u1), (v0, v1)) in numbers, not {domain!r}."
+            f"domain must be ((u0, u1), (v0, v1)) in numbers, not {shown(domain)}."
         ) from None
 
 
@@ -64,7 +87,7 @@ def interval(domain: Sequence[Any]) -> list[float]:
     try:
         return [float(as_expression(end, {})) for end in domain]
     except (TypeError, ValueError, OverflowError):
-        raise InputError(f"domain must be (t0, t1) in numbers, not {domain!r}.") from None
+        raise InputError(f"domain must be (t0, t1) in numbers, not {shown(domain)}.") from None
 
 
 def _coordinates(position: Sequence[Any], parameters: int) -> tuple[Any, ...]:
@@ -76,7 +99,9 @@ def _coordinates(position: Sequence[Any], parameters: int) -> tuple[Any, ...]:
         coordinates = ()
     if len(coordinates) != parameters + 1:
         number = "three" if parameters == 2 else "two"
-        raise InputError(f"position must be {number} SymPy expressions {names}, not {position!r}.")
+        raise InputError(
+            f"position must be {number} SymPy expressions {names}, not {shown(position)}."
+        )
     return coordinates
 
 
@@ -87,7 +112,7 @@ def two_symbols(parameters: Sequence[Any]) -> list[sympy.Symbol]:
     except (TypeError, ValueError):
         u = v = None
     if u is None or v is None or u.name == v.name:
-        raise InputError(f"parameters must be two SymPy symbols (u, v), not {parameters!r}.")
+        raise InputError(f"parameters must be two SymPy symbols (u, v), not {shown(parameters)}.")
     return [u, v]
 
 
@@ -95,7 +120,7 @@ def one_symbol(parameter: sympy.Symbol | str) -> list[sympy.Symbol]:
     """Return the parameter of a curve, a symbol or its name; InputError if it is not."""
     symbol = _symbol(parameter)
     if symbol is None:
-        raise InputError(f"the parameter must be a SymPy symbol such as t, not {parameter!r}.")
+        raise InputError(f"the parameter must be a SymPy symbol such as t, not {shown(parameter)}.")
     return [symbol]
 
 
@@ -108,44 +133,48 @@ def _symbol(entry: object) -> sympy.Symbol | None:
 
 
 def as_expression(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401 - SymPy has no types
-    """Return an expression or the one that a text stands for, in which `symbols` come first."""
+    """Return an expression or the one that a text stands for, in which `symbols` come first.
+
+    Raises InputError with the reason if it is none, or holds what kernels cannot compute.
+    """
     import sympy as sp
 
-    sympify: Any = sp.sympify  # its type hints forget `locals`
-    expression = None
-    if not isinstance(entry, str) or _is_mathematics(entry):
-        with suppress(Exception):  # SymPy runs the text as Python, which may raise anything
-            expression = sympify(entry, locals=symbols)
-    if not isinstance(expression, sp.Expr):
-        raise InputError(f"{entry!r} is not a SymPy expression.")
+    expression = _read(entry, symbols)
+    if not isinstance(expression, sp.Expr | sp.MatrixBase):
+        raise InputError(f"{shown(entry)} is not a SymPy expression.")
     return expression
 
 
-# What a text may hold besides names, numbers and calls of functions by their names.
-_SYNTAX = (
-    ast.Expression, ast.BinOp, ast.UnaryOp, ast.BoolOp, ast.Compare, ast.Tuple, ast.Load,
-    ast.operator, ast.unaryop, ast.boolop, ast.cmpop,
-)  # fmt: skip
+def as_condition(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401 - SymPy has no types
+    """Return the Boolean of SymPy that is given, or that a text stands for; InputError if none."""
+    from sympy.logic.boolalg import Boolean
+
+    condition = _read(entry, symbols)
+    if not isinstance(condition, Boolean) or condition.is_Symbol:
+        raise InputError(f"{shown(entry)} is not a condition.")
+    return condition
 
 
-def _is_mathematics(text: str) -> bool:
-    """Say whether a text is arithmetic with SymPy's functions: SymPy would run any Python."""
+def _read(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401
+    """Return what SymPy makes of a text, a number or an expression; None for anything else.
+
+    SymPy itself would run texts as Python, those in lists as well, so that it gets none.
+    """
     import sympy as sp
 
-    def is_harmless(node: ast.AST) -> bool:
-        if isinstance(node, ast.Call):
-            name = node.func.id if isinstance(node.func, ast.Name) else ""
-            function = getattr(sp, name, None)
-            known = isinstance(function, type) and issubclass(function, sp.Basic)
-            unknown = name != "" and not hasattr(sp, name) and not hasattr(builtins, name)
-            known = known or hasattr(sp.functions, name) or name == "abs"
-            return (known or unknown) and not node.keywords
-        if isinstance(node, ast.Constant):
-            return isinstance(node.value, int | float | complex)
-        return isinstance(node, (ast.Name, *_SYNTAX))
+    from ..symbolic.reading import ReadingError, read, refuse_unusable
 
     try:
-        tree = ast.parse(text.strip(), mode="eval")
-    except (SyntaxError, ValueError):
-        return False
-    return all(map(is_harmless, ast.walk(tree)))
+        if isinstance(entry, str):
+            return read(entry, symbols)
+        if not isinstance(entry, sp.Basic | sp.MatrixBase | Number | np.bool_):
+            return None
+        expression = sp.sympify(entry, strict=True)
+        refuse_unusable(expression)
+    except ReadingError as error:
+        raise InputError(
+            f"{shown(entry)} is not a SymPy expression that can be compiled: {error}."
+        ) from None
+    except (sp.SympifyError, ValueError, TypeError, RecursionError):
+        return None
+    return expression

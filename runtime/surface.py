@@ -77,8 +77,13 @@ class Surface:
         """Make a surface of three SymPy expressions (or strings) in the two `parameters`.
 
         `domain` and `periodic` are as in `from_callable`; the domain may hold SymPy numbers, or
-        strings such as "2*pi". Raises InputError unless there are three expressions without further
-        symbols.
+        strings such as "2*pi".
+
+        Texts are arithmetic with `+ - * / ** ^ // %`, SymPy's elementary functions, `Piecewise`,
+        `Max`, `Sum(f, (k, 0, 9))`, and what SymPy computes exactly, such as `legendre(4, u)` or
+        `factorial(5)`. They are never run as Python. Raises InputError unless there are three
+        expressions without further symbols, and if one uses another function, is longer than
+        20,000 characters, nested too deeply, or holds numbers such as 9**9**9.
         """
         from .expressions import compiled, numbers, two_symbols
 

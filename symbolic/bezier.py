@@ -21,6 +21,7 @@ from .patch import (
     u,
     v,
 )
+from .reading import ReadingError, read
 
 __all__ = ["BezierTriangle"]
 
@@ -45,7 +46,10 @@ class BezierTriangle:
         control_points: Iterable[Iterable[object]],
         normal: Sequence[sp.Symbol] = PAPER_NORMAL,
     ) -> None:
-        """Raise ValueError unless there are six points of three real coordinates."""
+        """Raise ValueError unless there are six points of three real coordinates.
+
+        Texts are read by `reading.read`, which runs nothing.
+        """
         self.normal = tuple(normal)
         reserved = {*normal, u, v}
         rows = [[_exact(x, reserved) for x in point] for point in _six_points(control_points)]
@@ -204,8 +208,9 @@ def _exact(value: object, reserved: set[sp.Symbol]) -> sp.Expr:
     Raises ValueError unless it is real and finite (or a symbol) and leaves n, u, v alone.
     """
     try:
-        expression = cast(Any, sp.sympify)(value, rational=isinstance(value, str))
-    except Exception:  # SymPy runs the text as Python, which may raise anything
+        text = isinstance(value, str)
+        expression = read(value, exact=True) if text else cast(Any, sp.sympify)(value, strict=True)
+    except (ReadingError, sp.SympifyError, ValueError, TypeError):
         expression = None
     if not isinstance(expression, sp.Expr) or expression.is_Matrix:
         raise ValueError(f"{value!r} is not a coordinate")

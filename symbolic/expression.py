@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from typing import Any, cast
+from typing import cast
 
 import sympy as sp
 from sympy.logic.boolalg import Boolean
@@ -27,6 +28,8 @@ __all__ = ["hessian_entries", "is_homogeneous", "kernel_source"]
 NORMAL = n.components
 # Longer expressions are not proved to be homogeneous; the general formula serves them too.
 LONGEST_PROOF = 2000
+MOST_EXPANDED = 10_000  # terms that the proof may write down
+ROUNDING = 1e-9  # relative to h
 GENERIC = sp.Rational(3, 7), sp.Rational(5, 11), sp.Rational(8, 13)
 
 
@@ -89,13 +92,39 @@ def is_homogeneous(h: sp.Expr, gradient: Sequence[sp.Expr] | None = None) -> boo
     defect = dot(sp.Matrix(gradient), n.column) - h
     if defect.count_ops() > LONGEST_PROOF:
         return False
-    place: Any = dict(zip(NORMAL, GENERIC, strict=True))
-    value = defect.evalf(30, subs=place)
-    if not value.is_number or abs(value) > sp.Float("1e-15"):
+    if not _vanishes(defect, h):
         return False
     signs = {s: sp.Abs(s.args[0]) / s.args[0] for s in defect.atoms(sp.sign)}
     quotient = cast(sp.Expr, sp.together(defect.xreplace(signs)))
-    return sp.expand(quotient.as_numer_denom()[0]) == 0
+    numerator = quotient.as_numer_denom()[0]
+    return _expanded_terms(numerator) <= MOST_EXPANDED and sp.expand(numerator) == 0
+
+
+def _vanishes(defect: sp.Expr, h: sp.Expr) -> bool:
+    """Say whether the defect is rounding at a place: most that are not homogeneous go here.
+
+    In float64, as evalf takes exponential time where sums and products are nested, and longer for
+    exp(exp(exp(n_x))).
+    """
+    try:
+        evaluate = sp.lambdify(NORMAL, [defect, h], modules="math", cse=True)
+        value, size = (float(x) for x in evaluate(*map(float, GENERIC)))
+    except (ArithmeticError, ValueError, TypeError, NameError, RecursionError, SyntaxError):
+        return False
+    return abs(value) <= ROUNDING * abs(size)
+
+
+def _expanded_terms(expression: sp.Expr) -> float:
+    """Return at least as many terms as the expression or an argument in it expands to."""
+    inner = [_expanded_terms(cast(sp.Expr, x)) for x in expression.args]
+    if expression.is_Add:
+        return sum(inner)
+    if expression.is_Mul:
+        return math.prod(inner)
+    if isinstance(expression, sp.Pow) and expression.exp.is_Integer:
+        degree, terms = abs(int(cast(sp.Integer, expression.exp))), inner[0]
+        return math.comb(degree + int(terms) - 1, degree) if terms < MOST_EXPANDED else math.inf
+    return max(inner, default=1)
 
 
 def _derivative(expression: sp.Expr, by: sp.Symbol) -> sp.Expr:

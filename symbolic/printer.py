@@ -1,7 +1,7 @@
 """SymPy expressions as Python source for Numba: products instead of powers, exact numbers.
 
-Other powers than products and square roots, which only the expressions of users have, are calls of
-`math.pow`.
+Other powers than short products and square roots, which only the expressions of users have, are
+calls of `math.pow`.
 """
 
 from __future__ import annotations
@@ -15,6 +15,8 @@ from sympy.printing.precedence import PRECEDENCE
 from sympy.printing.pycode import PythonCodePrinter
 
 __all__ = ["PositiveFirst", "operations", "source_of"]
+
+LONGEST_PRODUCT = 64  # higher powers are calls of `math.pow`
 
 
 class PositiveFirst:
@@ -58,7 +60,7 @@ class KernelPrinter(PositiveFirst, PythonCodePrinter):
     def _factors(self, base: sp.Expr, exponent: sp.Expr) -> list[str]:
         """Return a power whose exponent is not known to be negative as factors."""
         whole, half = divmod(exponent, 1)
-        if not whole.is_Integer or half not in (0, sp.S.Half):
+        if not whole.is_Integer or half not in (0, sp.S.Half) or whole > LONGEST_PRODUCT:
             return [f"math.pow({self._print(base)}, {self._print(exponent)})"]
         roots = [f"math.sqrt({self._print(base)})"] if half else []
         return [self.parenthesize(base, PRECEDENCE["Mul"])] * int(whole) + roots

@@ -68,8 +68,8 @@ class Curve:
         """Make a curve of two SymPy expressions (or strings) in one `parameter`.
 
         `domain` and `periodic` are as in `from_callable`; the domain may hold SymPy numbers, or
-        strings such as "2*pi". Raises InputError unless there are two expressions without further
-        symbols.
+        strings such as "2*pi". Texts are read as in `Surface.from_sympy`. Raises InputError unless
+        there are two expressions without further symbols, and for texts that are refused there.
         """
         from ..expressions import compiled, interval, one_symbol
 

@@ -12,8 +12,9 @@ import numpy as np
 from numba.core.errors import NumbaError
 from numpy.typing import NDArray
 
+from ..checks import shown
 from ..errors import InputError
-from ..expressions import as_expression
+from ..expressions import as_condition, as_expression
 from .branches import Sheets, curvatures
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["ExpressionSource"]
 
 LONGEST_TEXT = 60
+DEEPEST = 40  # second derivatives of deeper expressions take minutes
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,12 +41,22 @@ class ExpressionSource:
     def checked(cls, h: object, normal: Sequence[Any], domain: object) -> ExpressionSource:
         """Make one from what a user gives; InputError if it cannot be used."""
         from ...symbolic.expression import kernel_source
+        from ...symbolic.reading import depth
 
         names = _names(normal)
         expression = _in_normal(as_expression(h, _symbols(names)), names, "h")
         condition = _condition(domain, names)
+        if max(depth(expression), depth(condition)) > DEEPEST:
+            raise InputError(
+                f"h = {_short(expression)} is nested too deeply to be differentiated; expand it."
+            )
         try:
             source = kernel_source(expression, condition)
+            compile(source, "<support function>", "exec")
+        except (RecursionError, MemoryError, SyntaxError):  # SyntaxError: too many brackets
+            raise InputError(
+                f"h = {_short(expression)} is nested too deeply to be compiled."
+            ) from None
         except (NotImplementedError, ValueError, TypeError, AttributeError) as error:
             raise InputError(
                 f"h = {_short(expression)} cannot be compiled: {_culprits(expression, condition)}, "
@@ -103,7 +115,7 @@ def _names(normal: Sequence[Any]) -> list[str]:
         names = []
     usable = all(isinstance(x, str) and x.isidentifier() and not iskeyword(x) for x in names)
     if len(names) != 3 or len(set(names)) != 3 or not usable:
-        raise InputError(f"normal must be three symbols, or their names, not {normal!r}.")
+        raise InputError(f"normal must be three symbols, or their names, not {shown(normal)}.")
     return names
 
 
@@ -136,19 +148,14 @@ def _in_normal(expression: Any, names: Sequence[str], what: str) -> Any:  # noqa
 
 def _condition(domain: object, names: Sequence[str]) -> Any:  # noqa: ANN401 - SymPy has no types
     """Return a Boolean of SymPy from one, a text or None; InputError if it is none."""
-    import sympy as sp
-    from sympy.logic.boolalg import Boolean
-
-    sympify: Any = sp.sympify  # its type hints forget `locals`
+    if domain is None:
+        domain = True
     try:
-        condition = sympify(True if domain is None else domain, locals=_symbols(names))
-    except Exception:  # SymPy runs the text as Python, which may raise anything
-        condition = None
-    if not isinstance(condition, Boolean) or condition.is_Symbol:
+        condition = as_condition(domain, _symbols(names))
+    except InputError as error:
         raise InputError(
-            f"domain must be a condition such as 'n_z > 0' or '(n_x > 0) & (n_y > 0)', "
-            f"not {domain!r}."
-        )
+            f"domain must be a condition such as 'n_z > 0' or '(n_x > 0) & (n_y > 0)': {error}"
+        ) from None
     return _in_normal(condition, names, "domain")
 
 
@@ -173,5 +180,8 @@ def _culprits(*expressions: Any) -> str:  # noqa: ANN401 - SymPy has no types
 
 
 def _short(expression: object) -> str:
-    text = str(expression)
+    try:
+        text = str(expression)
+    except RecursionError:
+        return "…"
     return text if len(text) <= LONGEST_TEXT else f"{text[: LONGEST_TEXT - 1]}…"

@@ -84,8 +84,8 @@ class SupportFunction:
         Normals where h or its gradient is not real and finite have no branch. A kink, such as that
         of |n_x|, stands for a flat part of the surface, which normals cannot see.
 
-        Raises InputError for what is no real expression in the three components, or uses functions
-        that cannot be compiled.
+        Texts are read as in `Surface.from_sympy`. Raises InputError for what is no real expression
+        in the three components, uses functions that cannot be compiled, or is too large.
         """
         from .expression import ExpressionSource
 

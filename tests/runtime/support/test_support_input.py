@@ -8,6 +8,7 @@ import pytest
 import sympy as sp
 
 given = gm.SupportFunction.from_sympy
+k = sp.Symbol("k")
 SPHERE = gm.SupportFunction.from_sympy(1)
 
 
@@ -47,8 +48,8 @@ def test_expressions(h: Any, message: str) -> None:
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("h", ["Sum(n_x**k, (k, 0, 3))"])
-def test_what_only_the_compiler_refuses(h: str) -> None:
+@pytest.mark.parametrize("h", [sp.Sum(sp.Symbol("n_x") ** k, (k, 0, 3))])
+def test_what_only_the_compiler_refuses(h: sp.Expr) -> None:
     with pytest.raises(gm.InputError, match="no function that Numba knows"):
         given(h).branches([[0.0, 0.0, 1.0]])
 

@@ -1,0 +1,243 @@
+"""Texts of users run nothing, and what cannot be computed is refused in one sentence."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any, cast
+
+import gaussmap as gm
+import numpy as np
+import pytest
+import sympy as sp
+from gaussmap.symbolic import BezierTriangle
+from gaussmap.symbolic.reading import MOST_TERMS, ReadingError, read
+
+SQUARE = ((0.0, 1.0), (0.0, 1.0))
+CODE = "__import__('os').system('touch ran')"
+
+RUNS = [
+    CODE,
+    f"u + {CODE}",
+    f"Piecewise((u, {CODE} == 0))",
+    "open('ran', 'w')",
+    'exec(\'open("ran", "w")\')',
+    "eval('1')",
+    "exit()",
+    "quit()",
+    "breakpoint()",
+    "print(u)",
+    "show_config() + u",
+    "save(u, v)",
+    "fromfile(u)",
+    "ImmutableMatrix(1, 1, print)",
+    "Matrix(1, 1, print)",
+    "Lambda(u, u)(print)",
+    "Function('f')(u)",
+    "Symbol('u')",
+    "sympify('1')",
+    "lambdify(u, u)",
+    "u.__class__.__mro__",
+    "sin.__globals__",
+    "u[0]",
+    "[u for u in (1, 2)]",
+    "(lambda: u)()",
+    "(u := 1)",
+    "u if u else v",
+    "f'{u}'",
+    "sin(u, evaluate=False)",
+    "sin(*(u, v))",
+    "await u",
+    "u; import os",
+    "u\nimport os",
+    "u # \x00",
+    "\udc80",
+]
+
+TOO_LARGE = [
+    "9**9**9",
+    "2**(10**9)",
+    "2**-(10**9)",
+    "2.0**(2.0**(2.0**100))",
+    "sqrt(2)**(10**9)",
+    "(2*u)**(10**9)",
+    "u**(10**9)",
+    "((u**2000)**2000)**2000",
+    "Pow(9, Pow(9, 9))",
+    "root(u, 10**-9)",
+    "exp(10**9*log(2))",
+    "exp(10**9*log(2) + u)",
+    "2**(10**9*log(3)/log(2))",
+    "exp(exp(exp(exp(10))))",
+    "floor(exp(exp(exp(10))))",
+    "Max(exp(exp(exp(10))), 3)",
+    "factorial(10**7)*u",
+    "factorial(factorial(factorial(9)))",
+    "binomial(10**8, 10**7)",
+    "gamma(10**7)",
+    "fibonacci(10**8)",
+    "legendre(10**6, u)",
+    "Sum(9**9**k, (k, 0, 9))",
+    "Rational(1, 10**5000)",
+    "1e999*u",
+    "1" * 5000,
+]
+
+TOO_LONG = [
+    "(" * 5000 + "u" + ")" * 5000,
+    "sin(" * 2000 + "u" + ")" * 2000,
+    "-" * 10_000 + "u",
+    "~" * 10_000 + "u",
+    "not " * 4000 + "u",
+    "u" + "**u" * 5000,
+    "u" + "+u" * 9000,
+    "u" + "+u" * 10**6,
+    "Sum(u, (k, 1, 10**9))",
+    "Sum(Sum(Sum(u*k*j*i, (k, 1, 999)), (j, 1, 999)), (i, 1, 999))",
+]
+
+NOT_COMPILED = [
+    "Integral(u, u)",
+    "Derivative(u**2, u)",
+    "O(u)",
+    "Limit(u, u, 0)",
+    "factorial(u)",
+    "besselj(0, u)",
+    "f(u)",
+]
+
+HOSTILE = [*RUNS, *TOO_LARGE, *TOO_LONG, *NOT_COMPILED]
+
+
+def refused(call: Any, *arguments: Any, **named: Any) -> None:
+    """Check that a call raises InputError with one short line that can be printed."""
+    with pytest.raises(gm.InputError) as caught:
+        call(*arguments, **named)
+    message = str(caught.value)
+    assert "\n" not in message
+    assert len(message.encode()) < 400
+    assert message.endswith(".")
+
+
+@pytest.fixture(autouse=True)
+def nothing_runs(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> Any:
+    """Fail if a text calls what a text has no business to call, or leaves a file."""
+    monkeypatch.chdir(tmp_path)
+    calls: list[str] = []
+    for module, name in ((os, "system"), (np, "show_config"), (np, "save")):
+        monkeypatch.setattr(module, name, lambda *_, name=name, **__: calls.append(name))
+    yield
+    assert calls == []
+    assert capfd.readouterr().out == ""
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("text", HOSTILE, ids=lambda x: ascii(x[:30]))
+def test_texts_of_surfaces_and_curves(text: str) -> None:
+    refused(gm.Surface.from_sympy, ("u", "v", text), "uv", SQUARE)
+    refused(gm.Surface.from_sympy, ("u", "v", "u*v"), "uv", ((0, text), (0, 1)))
+    refused(gm.Surface.from_sympy, ("u", "v", "u*v"), ("u", text), SQUARE)
+    refused(gm.Surface.from_sympy, text, "uv", SQUARE)
+    refused(gm.Curve.from_sympy, ("u", text), "u", (0, 1))
+    refused(gm.Curve.from_sympy, ("u", "u**2"), "u", (0, text))
+    refused(gm.Curve.from_sympy, ("u", "u**2"), text, (0, 1))
+
+
+@pytest.mark.parametrize("text", HOSTILE, ids=lambda x: ascii(x[:30]))
+def test_texts_of_support_functions(text: str) -> None:
+    normal = ("u", "v", "w")
+    refused(gm.SupportFunction.from_sympy, text, normal)
+    refused(gm.SupportFunction.from_sympy, "u", normal, domain=text)
+    refused(gm.SupportFunction.from_sympy, "u", normal, domain=f"{text} > 0")
+    refused(gm.SupportFunction.from_sympy, "u", ("u", "v", text))
+
+
+@pytest.mark.parametrize("text", RUNS, ids=lambda x: ascii(x[:30]))
+def test_texts_in_lists_and_arrays(text: str) -> None:
+    """SymPy's own `sympify` looks into lists, and runs what stands there."""
+    for entry in (
+        [text],
+        (text,),
+        {text},
+        {text: 1},
+        np.array(text),
+        np.array([text], dtype=object),
+    ):
+        refused(gm.SupportFunction.from_sympy, entry)
+        refused(gm.SupportFunction.from_sympy, "1", domain=entry)
+        refused(gm.Surface.from_sympy, ("u", "v", entry), "uv", SQUARE)
+        refused(gm.Surface.from_sympy, ("u", "v", "u"), "uv", ((0, entry), (0, 1)))
+
+
+@pytest.mark.parametrize("text", [*RUNS, *TOO_LARGE, *TOO_LONG], ids=lambda x: ascii(x[:30]))
+def test_texts_of_control_points(text: str) -> None:
+    with pytest.raises(ValueError, match=r"is not a coordinate|is not a real number"):
+        BezierTriangle([[text] * 3] * 6)
+    with pytest.raises(ValueError, match="is not a coordinate"):
+        BezierTriangle([[[text]] * 3] * 6)
+
+
+def test_symbols_of_users_are_no_code() -> None:
+    u, code = sp.symbols("u"), sp.Symbol(CODE)
+    surface = gm.Surface.from_sympy((u, code, u * code), (u, code), SQUARE)
+    assert surface.evaluate(0.5, 0.25).tolist() == [0.5, 0.25, 0.125]
+    refused(gm.SupportFunction.from_sympy, code)
+
+
+def test_deep_expressions_are_refused() -> None:
+    x, deep = sp.Symbol("n_x"), sp.Symbol("n_x")
+    for _ in range(1000):
+        deep = sp.sin(deep, evaluate=False)
+    refused(gm.SupportFunction.from_sympy, deep)
+    refused(gm.SupportFunction.from_sympy, "1", domain=sp.Gt(deep, 0, evaluate=False))
+    refused(gm.Curve.from_sympy, (x, deep), x, (0, 1))
+
+
+@pytest.mark.parametrize(
+    ("text", "expression"),
+    [
+        ("u^2 + 1/3", "u**2 + 1/3"),
+        ("-2*u % 3", "Mod(-2*u, 3)"),
+        ("7*u // 2", "floor(7*u/2)"),
+        ("root(u, 3) + cbrt(u) + sqrt(u)", "sqrt(u) + 2*u**Rational(1, 3)"),
+        ("Sum(cos(k*u)/k, (k, 1, 3))", "cos(u) + cos(2*u)/2 + cos(3*u)/3"),
+        ("Product(u + k, (k, 0, 1))", "u*(u + 1)"),
+        ("Piecewise((u, u < 1/2), (1, True))", "Piecewise((u, u < 1/2), (1, True))"),
+        ("(u > 0) & ~(u > 1) | (u == 3)", "Eq(u, 3) | ((u > 0) & (u <= 1))"),
+        ("legendre(2, u)", "3*u**2/2 - 1/2"),
+        ("factorial(5)*binomial(4, 2)", "720"),
+        ("exp(-3)*E**3*pi", "pi"),
+        ("abs(u) - Abs(u) + ln(u)/log(u)", "1"),
+        ("re(2 + 3j)", "2"),
+    ],
+)
+def test_mathematics_is_read(text: str, expression: str) -> None:
+    symbols = {"u": sp.Symbol("u", real=True)}
+    assert read(text, symbols) == cast(Any, sp.sympify)(expression, locals=symbols)
+
+
+def test_sums_are_bounded() -> None:
+    assert read(f"Sum(k, (k, 1, {MOST_TERMS}))") == MOST_TERMS * (MOST_TERMS + 1) // 2
+    with pytest.raises(ReadingError, match="whole limits"):
+        read(f"Sum(k, (k, 0, {MOST_TERMS}))")
+
+
+def test_decimals_are_exact_where_asked() -> None:
+    assert read("0.1 + 2.5e-3", exact=True) == sp.Rational(41, 400)
+
+
+def test_high_powers_are_compiled() -> None:
+    """A power is no product of a thousand factors."""
+    support = gm.SupportFunction.from_sympy("n_x**1000 + 1")
+    assert "math.pow(n_x, 1000)" in support._source.source  # pyright: ignore
+
+
+def test_command_line_reads_no_mathematics() -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "gaussmap", "sample", "torus", "--set", f"minor={CODE}", "-o", "x"],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
