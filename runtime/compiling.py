@@ -37,7 +37,7 @@ class Notice(event.Listener):
         """Note which kernel begins, or that time has passed."""
         if event.kind == "numba:compile" and event.data is not None:
             function = event.data["dispatcher"].py_func
-            if self.kernels or function.__module__.startswith(f"{PACKAGE}."):
+            if self.kernels or str(function.__module__).startswith(f"{PACKAGE}."):
                 self.kernels.append(function.__name__)
             if len(self.kernels) == 1:
                 self.since = time.monotonic()

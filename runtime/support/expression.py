@@ -102,7 +102,7 @@ class ExpressionSource:
 @lru_cache(maxsize=128)
 def _kernel(source: str) -> Callable[..., None]:
     """Compile a module that defines `evaluate`, once in a process."""
-    namespace: dict[str, Any] = {}
+    namespace: dict[str, Any] = {"__name__": __name__}  # whose kernel it is
     exec(compile(source, "<support function>", "exec"), namespace)
     return namespace["evaluate"]
 
