@@ -5,19 +5,16 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..tolerances import DOUBLE_ROOT, PARAMETER_ERROR, VANISHING
 from .boundary import BoundaryArc
 from .classes import PatchClass
-from .parabolic_lines import NEAR, TRIANGLE, pieces_of, singular_points
+from .parabolic_lines import TRIANGLE, pieces_of, singular_points
 from .patches import Patches
 from .solid_angle import by_boundary, is_wide, solid_angles, triangle_of
 
 __all__ = ["measures_of"]
 
 Array = NDArray[np.float64]
-# A corner is a singular point if its normal is this short beside the others of the patch.
-SINGULAR = 2.0**-40
-# Singular points that are nearer to each other than this are one, found in two ways.
-SAME = 1e-6
 
 
 def measures_of(patches: Patches, classes: NDArray[np.int8]) -> tuple[Array, Array]:
@@ -59,7 +56,7 @@ def _fans_of(patch: Patches) -> list[Array]:
         corners = _barycentric(_fan(polygon, places))
         normals = triangle_of(np.repeat(patch.normals, len(corners), axis=0), corners)
         lengths = np.linalg.norm(normals, axis=3)
-        normals[lengths <= SINGULAR * lengths.max()] = 0.0
+        normals[lengths <= VANISHING * lengths.max()] = 0.0
         fans.append(normals)
     return fans
 
@@ -83,7 +80,7 @@ def _different(places: list[Array]) -> list[Array]:
     """Return places without those that are nearly one before them."""
     result: list[Array] = []
     for place in places:
-        if all(np.abs(place - other).max() > SAME for other in result):
+        if all(np.abs(place - other).max() > DOUBLE_ROOT for other in result):
             result.append(place)
     return result
 
@@ -92,7 +89,7 @@ def _snapped(polygon: Array, places: list[Array]) -> Array:
     """Move corners that are nearly singular points there: multiple lines are not known so well."""
     polygon = polygon.copy()
     for place in places:
-        polygon[np.abs(polygon - place).max(axis=1) <= SAME] = place
+        polygon[np.abs(polygon - place).max(axis=1) <= DOUBLE_ROOT] = place
     return polygon
 
 
@@ -109,11 +106,11 @@ def _fan(polygon: Array, places: list[Array]) -> Array:
         cut = []
         for triangle in triangles:
             weights = np.linalg.solve(np.vstack([triangle.T, np.ones(3)]), [*place, 1.0])
-            if weights.min() < -NEAR or weights.max() > 1.0 - NEAR:
+            if weights.min() < -PARAMETER_ERROR or weights.max() > 1.0 - PARAMETER_ERROR:
                 cut.append(triangle)
                 continue
             for k in range(3):
-                if weights[k] > NEAR:
+                if weights[k] > PARAMETER_ERROR:
                     part = triangle.copy()
                     part[k] = place
                     cut.append(part)

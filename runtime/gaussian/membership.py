@@ -18,7 +18,7 @@ from ...generated.vectors import Patch, Vector
 from ..formula_calls import python_function, vector
 from ..integers import integers, integers_by_row, ratio, sign
 from ..spline import LARGEST_EXPONENT
-from ..tolerances import ACCURATE, FORM_ERROR
+from ..tolerances import ACCURATE, FORM_ERROR, NEAR_SINGULAR_POINT
 
 __all__ = ["Members", "PatchNormals"]
 
@@ -26,9 +26,6 @@ Array = NDArray[np.float64]
 Place = tuple[Fraction, Fraction]
 # Vectors whose largest component is at least ½ and below 1 are shorter than √3.
 LONGEST_SQUARED = 3.0
-# Near a singular point, where N is this short beside the square of the tangents, the few digits of
-# the parameters that are known do not give its direction.
-SINGULAR = 2.0**-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +113,7 @@ class PatchNormals:
     @cached_property
     def _shortest(self) -> float:
         """How long N has to be, in the sum of its components, for its direction to be sure."""
-        return SINGULAR * (2.0 * self._sizes[0] + self._sizes[1]) ** 2
+        return NEAR_SINGULAR_POINT * (2.0 * self._sizes[0] + self._sizes[1]) ** 2
 
     def _decide(self, members: Members, rows: NDArray[np.intp], normals: Array) -> None:
         """Decide exactly, on integers, and write that into these rows of the result."""

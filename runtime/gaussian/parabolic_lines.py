@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ...generated import gaussian_image as formulas
 from ...generated import patch as patch_formulas
 from ...generated.vectors import Vector
+from ..tolerances import CUBIC_ERROR, DOUBLE_ROOT, PARAMETER_ERROR, VANISHING
 from .patches import Patches, checked_control_points
 
 __all__ = [
@@ -27,10 +28,6 @@ __all__ = [
 
 Array = NDArray[np.float64]
 TRIANGLE = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
-# Directions (as angles) nearer than this are one double direction: rounding parts a double root.
-DOUBLE = 1e-6
-# What a line cuts off is nothing if the corners are nearer to the line than this.
-NEAR = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +114,7 @@ def pieces_of(patch: Patches) -> tuple[Piece, ...]:
 def clipped(polygon: Array, line: Array) -> Array | None:
     """Return the part of a convex polygon (k, 2) where line · (u, v, 1) ≥ 0; None if it is thin."""
     heights = polygon @ line[:2] + line[2]
-    heights[np.abs(heights) <= NEAR * (1.0 + abs(line[2]))] = 0.0
+    heights[np.abs(heights) <= PARAMETER_ERROR * (1.0 + abs(line[2]))] = 0.0
     if heights.max() <= 0.0:
         return None
     corners = []
@@ -151,7 +148,7 @@ def singular_points(patch: Patches) -> Array:
         meeting = np.cross(np.array(left), np.array(right))
         with np.errstate(divide="ignore", invalid="ignore"):
             place = meeting[:2] / meeting[2]
-        if np.isfinite(place).all() and np.abs(place.imag).max() <= 1e-6:
+        if np.isfinite(place).all() and np.abs(place.imag).max() <= DOUBLE_ROOT:
             found.append(_singular_point(patch, place.real))
     places = [x for x in found if np.isfinite(x).all()]
     return np.array(places).reshape(-1, 2)
@@ -166,7 +163,7 @@ def _singular_point(patch: Patches, place: Array) -> Array:
         here = _normal_at(patch, place)
         place = place - np.linalg.lstsq(np.column_stack(slopes), here, rcond=None)[0]
     size = float(patch.tangent[0]) ** 2 * (1.0 + float(np.abs(place).max())) ** 2
-    vanishes = np.abs(_normal_at(patch, place)).max() <= 2.0**-40 * size
+    vanishes = np.abs(_normal_at(patch, place)).max() <= VANISHING * size
     return place if vanishes else np.full(2, np.nan)
 
 
@@ -182,7 +179,7 @@ def _normal_at(patch: Patches, place: Array) -> Array:
 def _directions(patch: Patches) -> list[tuple[float, float, int]]:
     """Return the real directions (s, t), of unit length, with their multiplicities."""
     angle, roots = _roots(patch)
-    angles = [math.atan2(1.0, float(x.real)) + angle for x in roots if abs(x.imag) <= DOUBLE]
+    angles = [math.atan2(1.0, float(x.real)) + angle for x in roots if abs(x.imag) <= DOUBLE_ROOT]
     return [(math.cos(x), math.sin(x), count) for x, count in _merged(sorted(angles))]
 
 
@@ -194,7 +191,7 @@ def _roots(patch: Patches) -> tuple[float, NDArray[np.complex128]]:
     """
     coefficients = np.array([float(x[0]) for x in patch.apply(formulas.parabolic_directions)])
     error = (
-        (2.0**-44 * patch.tangent[0] + 8.0 * patch.noise[0]) * patch.second[0] * patch.tangent[0]
+        (CUBIC_ERROR * patch.tangent[0] + 8.0 * patch.noise[0]) * patch.second[0] * patch.tangent[0]
     )
     if np.abs(coefficients).max() <= error:
         return 0.0, np.empty(0, dtype=np.complex128)
@@ -223,7 +220,7 @@ def _merged(angles: list[float]) -> list[tuple[float, int]]:
     """Join directions (as angles, modulo π) that are nearly the same."""
     groups: list[list[float]] = []
     for angle in angles:
-        if groups and angle - groups[-1][-1] <= DOUBLE:
+        if groups and angle - groups[-1][-1] <= DOUBLE_ROOT:
             groups[-1].append(angle)
         else:
             groups.append([angle])
@@ -241,7 +238,7 @@ def _line(patch: Patches, s: float, t: float) -> tuple[float, Array] | None:
         float(x[0]) for x in patch.apply(formulas.parabolic_line, Vector(*normal), s, t)
     )
     slope = l_u * s + l_v * t
-    if abs(slope) <= 2.0**-40 * float(patch.tangent[0]):
+    if abs(slope) <= VANISHING * float(patch.tangent[0]):
         return None
     return l_1 / slope, normal
 
@@ -252,14 +249,14 @@ def _segment(s: float, t: float, rho: float) -> Array | None:
     low, high = -math.inf, math.inf
     for form in np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, -1.0, 1.0]]):
         height, slope = float(form[:2] @ foot + form[2]), float(form[:2] @ along)
-        if abs(slope) <= NEAR:
-            if height < -NEAR:
+        if abs(slope) <= PARAMETER_ERROR:
+            if height < -PARAMETER_ERROR:
                 return None
         elif slope > 0.0:
             low = max(low, -height / slope)
         else:
             high = min(high, -height / slope)
-    if high - low <= NEAR:
+    if high - low <= PARAMETER_ERROR:
         return None
     return np.clip(foot + np.array([[low], [high]]) * along, 0.0, 1.0)
 

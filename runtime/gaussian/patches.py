@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
@@ -18,7 +17,7 @@ from ..checks import real_array
 from ..errors import InputError
 from ..formula_calls import patch, python_function, vector
 from ..spline import LARGEST_EXPONENT, Spline
-from ..tolerances import DATA_ERROR
+from ..tolerances import CUBIC_ERROR, DATA_ERROR
 
 __all__ = ["Patches", "checked_control_points", "checked_nets"]
 
@@ -26,8 +25,6 @@ Array = NDArray[np.float64]
 # The control normals N200, N110, N101, N020, N011, N002 as pairs of corners of the triangle.
 INDEX_PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 ORDER = "in the order b200, b020, b002, b110, b101, b011"
-# Rounding of a coefficient of the parabolic cubic, beside the product of the lengths in its terms.
-CUBIC_ERROR = math.ldexp(1.0, -44)
 
 
 @dataclass(frozen=True, eq=False)
