@@ -64,9 +64,8 @@ def mesh_to_pyvista(mesh: Mesh) -> pyvista.PolyData:
     """Return what `Mesh.to_pyvista` returns."""
     pv = from_extra("pyvista", "vtk", "this")
     data = pv.PolyData.from_regular_faces(mesh.vertices.copy(), mesh.triangles)
-    return _polydata(
-        pv, data, {"normals": mesh.normals, "uv": mesh.uv, "sample": mesh.sample}
-    )  # fmt: skip
+    arrays = {"normals": mesh.normals, "uv": mesh.uv, "sample": mesh.sample}
+    return _polydata(pv, data, arrays)
 
 
 def mesh_to_trimesh(mesh: Mesh) -> trimesh.Trimesh:

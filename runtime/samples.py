@@ -278,7 +278,36 @@ class Samples:
         return offset(self, distance)
 
     def write(self, path: str | os.PathLike[str]) -> None:
-        """Write the samples to a .ply, .csv, .npz, .vtp or .xyz file; see `write_samples`."""
+        """Write the samples to a file; its suffix, in any case, chooses the format.
+
+        An existing file is replaced once the new one is complete; if anything fails, it stays as it
+        was. Files hold the fields that the samples hold, float32 as float32.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            Name of the file. The suffix is one of
+
+            - `.npz`: everything, the report included; reads back bit for bit.
+            - `.ply`: binary, one vertex a sample, all columns and the report (in comments); reads
+              back bit for bit. Indices are 32-bit. Needs the field `points`.
+            - `.csv`: a header row and one row a sample; 17 significant digits (9 of float32), so
+              that floats survive.
+            - `.xyz`: rows `x y z nx ny nz`, digits as in `.csv`, no header. Needs `points` and
+              `normals`.
+            - `.vtp`: VTK PolyData with all arrays, and the report as field data; needs `points`.
+
+        Raises
+        ------
+        UnknownNameError
+            If the suffix is none of these.
+        FileError
+            If the file cannot be written.
+        InputError
+            If an index does not fit into a `.ply` file, or the format needs a field that is not
+            there.
+
+        """
         from .files.formats import write_samples
 
         write_samples(self, path)

@@ -54,37 +54,7 @@ _NEEDED = {".ply": ("points",), ".vtp": ("points",), ".xyz": ("points", "normals
 
 
 def write_samples(samples: Samples, path: PathLike) -> None:
-    """Write samples to a file; its suffix, in any case, chooses the format.
-
-    An existing file is replaced once the new one is complete; if anything fails, it stays as it
-    was. Files hold the fields that the samples hold, float32 as float32.
-
-    Parameters
-    ----------
-    samples : Samples
-        The samples.
-    path : str or os.PathLike
-        Name of the file. The suffix is one of
-
-        - `.npz`: everything, the report included; reads back bit for bit.
-        - `.ply`: binary, one vertex a sample, all columns and the report (in comments); reads back
-          bit for bit. Indices are 32-bit. Needs the field `points`.
-        - `.csv`: a header row and one row a sample, 17 significant digits (9 of float32), so that
-          floats survive.
-        - `.xyz`: rows `x y z nx ny nz`, digits as in `.csv`, no header. Needs `points` and
-          `normals`.
-        - `.vtp`: VTK PolyData with all arrays, and the report as field data; needs `points`.
-
-    Raises
-    ------
-    UnknownNameError
-        If the suffix is none of these.
-    FileError
-        If the file cannot be written.
-    InputError
-        If an index does not fit into a `.ply` file, or the format needs a field that is not there.
-
-    """
+    """Write samples to a file; see `Samples.write`."""
     suffix = known_suffix(path, SUFFIXES)
     check_fields(path, samples.fields)
     with atomic_path(path) as temporary:
@@ -92,34 +62,7 @@ def write_samples(samples: Samples, path: PathLike) -> None:
 
 
 def write_mesh(mesh: Mesh, path: PathLike) -> None:
-    """Write a mesh to a file; its suffix, in any case, chooses the format.
-
-    An existing file is replaced once the new one is complete; if anything fails, it stays as it
-    was. The same mesh gives the same bytes.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        The mesh.
-    path : str or os.PathLike
-        Name of the file. The suffix is one of
-
-        - `.ply`: binary; vertices with normals and u, v.
-        - `.obj`: text of 17 digits; vertices with normals.
-        - `.stl`: binary, float32; triangles alone.
-        - `.vtk`, `.vtu`: VTK's unstructured grid with normals, u, v and `sample`.
-        - `.vtp`: VTK's PolyData with normals, uv and `sample`.
-
-    Raises
-    ------
-    UnknownNameError
-        If the suffix is none of these.
-    FileError
-        If the file cannot be written.
-    InputError
-        If the mesh has no triangles, or more vertices than a `.ply` file can number.
-
-    """
+    """Write a mesh to a file; see `Mesh.write`."""
     suffix = known_suffix(path, MESH_SUFFIXES)
     if not len(mesh.triangles):
         raise InputError("this mesh has no triangles, and so there is nothing to write.")

@@ -130,7 +130,32 @@ class Mesh:
         return f"{line}; they deviate from the normals by {mean:.2f}° (mean), {worst:.2f}° (worst)"
 
     def write(self, path: str | os.PathLike[str]) -> None:
-        """Write the mesh to a .ply, .obj, .stl, .vtk, .vtu or .vtp file; see `write_mesh`."""
+        """Write the mesh to a file; its suffix, in any case, chooses the format.
+
+        An existing file is replaced once the new one is complete; if anything fails, it stays as it
+        was. The same mesh gives the same bytes.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            Name of the file. The suffix is one of
+
+            - `.ply`: binary; vertices with normals and u, v.
+            - `.obj`: text of 17 digits; vertices with normals.
+            - `.stl`: binary, float32; triangles alone.
+            - `.vtk`, `.vtu`: VTK's unstructured grid with normals, u, v and `sample`.
+            - `.vtp`: VTK's PolyData with normals, uv and `sample`.
+
+        Raises
+        ------
+        UnknownNameError
+            If the suffix is none of these.
+        FileError
+            If the file cannot be written.
+        InputError
+            If the mesh has no triangles, or more vertices than a `.ply` file can number.
+
+        """
         from ..files.formats import write_mesh
 
         write_mesh(self, path)
