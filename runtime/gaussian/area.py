@@ -1,4 +1,4 @@
-"""Solid angles and areas of the Gaussian images of patches, cut where their normals stand still."""
+"""Solid angles and areas of the Gaussian images of patches, cut at singular points."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def _different(places: list[Array]) -> list[Array]:
 
 
 def _snapped(polygon: Array, places: list[Array]) -> Array:
-    """Move corners that are nearly singular points there: multiple lines are not known so well."""
+    """Move corners that are nearly singular points there: multiple lines have fewer digits."""
     polygon = polygon.copy()
     for place in places:
         polygon[np.abs(polygon - place).max(axis=1) <= DOUBLE_ROOT] = place

@@ -1,4 +1,4 @@
-"""Joining segments of the parameter plane into polylines."""
+"""Joining pieces of curves in the parameter plane into polylines."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Segment = tuple[Hashable, Hashable, Array]
 
 
 def joined(segments: Sequence[Segment]) -> list[tuple[Array, bool]]:
-    """Return the polylines (k, 2) that segments with common nodes make, and which are closed.
+    """Join segments at common nodes; return polylines (k, 2) and whether each is closed.
 
     Polylines end where more or fewer than two segments meet. In a periodic direction a node may
     have several places: each segment is moved to where the one before it ends, so that a polyline

@@ -23,19 +23,20 @@ __all__ = ["NODES", "ORDER", "SURE", "CurvatureField"]
 Array = NDArray[np.float64]
 # Nodes along a side of a panel, for K; and for the finer bounds on a small part of one.
 ORDER = 16
-# Panels are cut at no special place: what is symmetric has its parabolic curves in special ones.
+# Panels are shifted by this share of one: parabolic curves of symmetric surfaces often lie on lines
+# of symmetry, which should not be borders of panels.
 OFFSET = 0.2360679774997897
-# K is resolved where its error is less than this, beside its largest value on the panel.
+# K is resolved where its error is less than this, relative to its largest value on the panel.
 RESOLVED = 1e-2
-# It is known well where its error is less than this, beside how much the surface bends.
-WELL = 1e-8
+# K is accurate where its error is less than this, relative to the squared curvature of the surface.
+ACCURATE = 1e-8
 # Where |p_u × p_v| on a panel falls below this share of its largest value, K has a denominator.
 LEAST_AREA = 1e-2
 NODES = chebyshev.chebpts1(ORDER)
 TO_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(NODES, ORDER - 1))
 # How much more a polynomial can be off at the end of a panel than at its nodes (Lebesgue constant).
 LEBESGUE = float(np.abs(chebyshev.chebvander(np.ones(1), ORDER - 1) @ TO_COEFFICIENTS).sum())
-# K has a sign where it is so many times its error, which is an estimate.
+# The sign of K is used where |K| exceeds its estimated error by this factor.
 SURE = 4.0
 
 
@@ -57,17 +58,17 @@ class CurvatureField:
 
     `coefficients` (m, n, ORDER, ORDER) are those of K in products of Chebyshev polynomials of the
     two coordinates of a panel, −1 … 1; on some panels those of K |p_u × p_v|⁴, scaled, which has
-    the same zeros and signs and is nearer to a polynomial where the surface is steep. `noise`
-    (m, n) bounds the error of K; `bending` (m, n) is what that has to be compared with where K is
-    small: the square of the curvature of the parameter lines in the direction of the normal, and of
-    one over the size of the surface.
+    the same zeros and signs and is closer to a polynomial where the surface is steep. `noise`
+    (m, n) bounds the error of K; `curvature_scale` (m, n) is what it is compared with where K is
+    small: the square of the normal curvature of the parameter lines, plus that of one over the size
+    of the surface.
     """
 
     lines: tuple[Array, Array]
     wraps: tuple[bool, bool]
     coefficients: Array
     noise: Array
-    bending: Array
+    curvature_scale: Array
 
     @classmethod
     def of_surface(cls, surface: Surface, panels: tuple[int, int]) -> CurvatureField:
@@ -83,10 +84,13 @@ class CurvatureField:
         ]
         x = surface.evaluate(inside[0][:, None], inside[1])
         x = x.reshape(panels[0], ORDER, panels[1], ORDER, 3).transpose(0, 2, 1, 3, 4)
-        K, rounding, bending, area = _curvature(x, *(np.diff(line) for line in lines))
+        K, rounding, curvature_scale, area = _curvature(x, *(np.diff(line) for line in lines))
         fields = [
             cls((lines[0], lines[1]), wraps, *_polynomials(K * weight, rounding * weight), rest)
-            for weight, rest in ((np.ones_like(K), bending), _weights(area, bending))
+            for weight, rest in (
+                (np.ones_like(K), curvature_scale),
+                _weights(area, curvature_scale),
+            )
         ]
         return _better(*fields)
 
@@ -99,18 +103,18 @@ class CurvatureField:
     def flat(self) -> NDArray[np.bool_]:
         """Where (m, n) K is zero up to its error, although that is small."""
         bound = 4.0 * ORDER * self.noise
-        return (self.largest <= bound) & (bound <= RESOLVED * self.bending)
+        return (self.largest <= bound) & (bound <= RESOLVED * self.curvature_scale)
 
     @cached_property
     def unresolved(self) -> NDArray[np.bool_]:
-        """Where (m, n) the error of K is large beside K, and beside how much the surface bends."""
-        least = np.maximum(self.largest, RESOLVED * self.bending)
+        """Where (m, n) the error of K is large relative to K and to the squared curvature."""
+        least = np.maximum(self.largest, RESOLVED * self.curvature_scale)
         return ~self.flat & ~(self.noise <= RESOLVED * least)
 
     @cached_property
     def rough(self) -> NDArray[np.bool_]:
         """Where (m, n) the error of K is one that smaller panels may lessen."""
-        return ~(self.noise <= WELL * self.bending)
+        return ~(self.noise <= ACCURATE * self.curvature_scale)
 
     def share(self, which: NDArray[np.bool_]) -> float:
         """Return the share of the domain that panels (m, n) take."""
@@ -177,9 +181,9 @@ def _tail(coefficients: Array) -> Array:
 
 
 def _curvature(x: Array, sizes_u: Array, sizes_v: Array) -> tuple[Array, Array, Array, Array]:
-    """Return K, its rounding error, bending (m, n) and |p_u × p_v| at the nodes of points.
+    """Return K, its rounding error, curvature scale (m, n) and |p_u × p_v| at the nodes of points.
 
-    All but the bending are (m, n, ORDER, ORDER).
+    All but the scale are (m, n, ORDER, ORDER).
 
     The parameters are those of the panels, scaled to the surface, so that nothing overflows.
     """
@@ -210,21 +214,21 @@ def _curvature(x: Array, sizes_u: Array, sizes_v: Array) -> tuple[Array, Array, 
         rounding = (uu * of_vv + vv * of_uu + 2.0 * uv * of_uv + of_uu * of_vv) / area**2
     bad = ~np.isfinite(K) | ~np.isfinite(rounding)
     K[bad], rounding[bad] = 0.0, np.inf
-    bending = 1.0 + np.nan_to_num(np.maximum(*along), posinf=0.0).max(axis=(2, 3)) ** 2
-    return K / scale**2, rounding / scale**2, bending / scale**2, area
+    curvature_scale = 1.0 + np.nan_to_num(np.maximum(*along), posinf=0.0).max(axis=(2, 3)) ** 2
+    return K / scale**2, rounding / scale**2, curvature_scale / scale**2, area
 
 
-def _weights(area: Array, bending: Array) -> tuple[Array, Array]:
-    """Return the weights (m, n, ORDER, ORDER) that rid K of its denominator, and the bending then.
+def _weights(area: Array, curvature_scale: Array) -> tuple[Array, Array]:
+    """Return weights (m, n, ORDER, ORDER) that cancel the denominator of K, and the scale then.
 
-    They are at most 1. Near a singular point, where |p_u × p_v| vanishes, they would too: there the
-    weights are 1 and the bending 0, so that nothing is known.
+    They are at most 1. Near a singular point, where |p_u × p_v| vanishes, the weights are 1 and the
+    scale of the curvature 0, so that the panel counts as unresolved.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         weights = (area / area.max(axis=(2, 3), keepdims=True)) ** 4
     singular = ~(weights.min(axis=(2, 3)) >= LEAST_AREA**4)
     weights[singular] = 1.0
-    return weights, np.where(singular, 0.0, bending * weights.min(axis=(2, 3)))
+    return weights, np.where(singular, 0.0, curvature_scale * weights.min(axis=(2, 3)))
 
 
 def _polynomials(K: Array, rounding: Array) -> tuple[Array, Array]:
@@ -235,11 +239,11 @@ def _polynomials(K: Array, rounding: Array) -> tuple[Array, Array]:
 
 
 def _better(plain: CurvatureField, weighted: CurvatureField) -> CurvatureField:
-    """Take K with weights on the panels where K alone is not known well, but is so with them."""
+    """Take K with weights on the panels where K alone is not accurate, but is with them."""
     better = plain.rough & ~weighted.flat & ~weighted.unresolved
     with np.errstate(invalid="ignore"):
         better &= weighted.noise * plain.largest < plain.noise * weighted.largest
     coefficients = np.where(better[..., None, None], weighted.coefficients, plain.coefficients)
     noise = np.where(better, weighted.noise, plain.noise)
-    bending = np.where(better, weighted.bending, plain.bending)
-    return replace(plain, coefficients=coefficients, noise=noise, bending=bending)
+    curvature_scale = np.where(better, weighted.curvature_scale, plain.curvature_scale)
+    return replace(plain, coefficients=coefficients, noise=noise, curvature_scale=curvature_scale)

@@ -32,10 +32,18 @@ WORTH_A_WARNING = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class ParabolicCurve:
-    """A polyline of parabolic points: `uv` (k, 2) in the parameters, `points` (k, 3) in space.
+    """A polyline of parabolic points.
 
-    A closed curve repeats its first point at the end. In a periodic direction the parameters run on
-    beyond the end of the domain, so that they do not jump.
+    Attributes
+    ----------
+    uv : (k, 2) float array
+        Parameters of the vertices. In a periodic direction they continue beyond the end of the
+        domain, without jumps.
+    points : (k, 3) float array
+        The vertices in space.
+    closed : bool
+        Whether the curve is closed; its last vertex then repeats the first.
+
     """
 
     uv: Array
@@ -50,10 +58,17 @@ class ParabolicCurve:
 class ParabolicPoint:
     """A place where the curvature touches zero without a change of sign.
 
-    `uv` (2,) are its parameters, `point` (3,) its place in space. `box` (2, 2) holds the lowest and
-    the highest parameters of the rectangle that isolates it; one that is longer than the tolerance
-    holds whole curves of such points, or a closed curve too small to follow, or K is zero up to
-    its error on all of it.
+    Attributes
+    ----------
+    uv : (2,) float array
+        Its parameters.
+    point : (3,) float array
+        The point in space.
+    box : (2, 2) float array
+        Lowest and highest parameters of the rectangle that isolates it. A rectangle longer than the
+        tolerance contains a curve of such points, or a closed curve too small to trace, or K is
+        zero up to its error on all of it.
+
     """
 
     uv: Array
@@ -65,11 +80,19 @@ class ParabolicPoint:
 class ParabolicPoints:
     """The parabolic points of a surface.
 
-    `curves` are those across which the Gaussian curvature changes its sign; they end at the
-    border of the surface, at a "flip" seam, and where they meet or cross, and one may lie on the
-    border. `isolated` are those where it only touches zero. `flat` (k, 2, 2) are rectangles of the
-    parameter plane (lowest and highest corner) in which it vanishes up to its error; `developable`
-    says that it does so everywhere.
+    Attributes
+    ----------
+    curves : tuple of ParabolicCurve
+        Curves across which the Gaussian curvature changes its sign. They end at the border of the
+        surface, at a "flip" seam, and where they meet or cross; one may lie on the border.
+    isolated : tuple of ParabolicPoint
+        Places where the curvature touches zero without a change of sign.
+    flat : (k, 2, 2) float array
+        Rectangles of the parameter plane (lowest and highest corner) in which it vanishes up to
+        its error.
+    developable : bool
+        Whether it vanishes up to its error everywhere.
+
     """
 
     curves: tuple[ParabolicCurve, ...]
@@ -91,23 +114,54 @@ def parabolic_points(
 ) -> ParabolicPoints:
     """Find the parabolic points of a surface or a spline (paper, Sect. 3.2 and Remark 3.1).
 
-    Of a `Spline`, and of a surface that was given by a grid of points, which is a spline: the lines
-    inside patches and the edges across which the curvature changes its sign; they are exact.
+    Parameters
+    ----------
+    surface : Surface or Spline
+        Of a `Spline`, and of a surface given by a grid of points, which is a spline, exact lines
+        inside patches and the edges across which the curvature changes its sign. Any other
+        `Surface` has to be smooth; its own curvature is used.
+    tolerance : float, default 1e-4
+        Largest distance of polylines from the curves in space, and largest size of the rectangles
+        that isolate points, relative to the size of the surface and of its domain; 1e-7 to 0.1.
+    cells : pair of int, optional
+        Numbers (m, n) of panels on which a smooth surface is interpolated, at most 128 each. By
+        default 8 × 8, or as many as it takes to resolve the surface, at most 64 × 64. For a grid of
+        points, the cells of its spline (see `fit`).
 
-    Of any other `Surface`: of the surface itself, which has to be smooth. It is interpolated on
-    `cells` = (m, n) panels by polynomials of degree 15 and differentiated; without `cells` 8 × 8
-    panels, or as many more as it takes, at most 64 × 64. The error of K is estimated: it is about
-    1e-9 where the surface is resolved, and up to 1 % of K on the panel where it is not. Where K is
-    less than its error, its sign is not used: such places are `flat`. Where K has a zero of a
-    higher order, its place is known no better than K. Two curves that are nearer than one cell of a
-    grid (1/16 of a panel) may be missed, and so may a crossing from which they part by less than a
-    cell in 16. Parts of the domain where the curvature cannot be computed (a pole, a crease) are
-    left out, with a GaussmapWarning if they are more than 0.01 % of it.
+    Returns
+    -------
+    ParabolicPoints
+        Curves across which K changes its sign, places where it only touches zero, flat rectangles.
 
-    `tolerance` is relative to the size of the surface and of its domain: so far may polylines be
-    from the curves in space, and so small are the rectangles that isolate points. Raises InputError
-    unless it lies between 1e-7 and 0.1, for unusable `cells`, and for `cells` beside a spline;
-    SurfaceError if the surface cannot be evaluated.
+    Raises
+    ------
+    InputError
+        For a tolerance out of range, unusable `cells`, `cells` together with a spline, or anything
+        but a surface or a spline.
+    SurfaceError
+        If the surface cannot be evaluated.
+
+    Warns
+    -----
+    GaussmapWarning
+        If the curvature cannot be computed on more than 0.01 % of the domain (a pole, a crease);
+        these parts are left out.
+
+    Notes
+    -----
+    A smooth surface is interpolated on each panel by polynomials of degree 15 and differentiated.
+    The error of K is estimated: it is about 1e-9 where the surface is resolved, and up to 1 % of K
+    on the panel where it is not. Where K is less than its error, its sign is not used: such places
+    are `flat`. Zeros of K of higher order are located only as accurately as K is known. Curves
+    closer to each other than a cell (1/16 of a panel) may be missed or joined wrongly; so may a
+    crossing at which they are separated by less than 1/16 of a cell.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> gm.parabolic_points(gm.surfaces.torus())
+    ParabolicPoints(2 curves, 0 isolated, 0 flat rectangles)
+
     """
     limit = _tolerance(tolerance)
     if isinstance(surface, Spline):

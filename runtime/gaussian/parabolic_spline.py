@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 # The corners of the triangle by their parameters, and its edges.
 CORNERS = np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]])
 EDGES = ((0, 1), (1, 2), (2, 0))
-# A place on an edge nearer to a corner than this (as a share of the edge) is the corner.
+# A place on an edge closer to a corner than this, relative to the edge, is the corner.
 AT_CORNER = 1e-9
 SIGNS = {PatchClass.ELLIPTIC: 1, PatchClass.HYPERBOLIC: -1}
 

@@ -1,8 +1,8 @@
 """The parabolic points of a smooth surface: K = 0 by subdivision (paper, Remark 3.1).
 
-A grid finds the curves across which K changes its sign; each vertex of theirs is then improved to
-the accuracy of K. Rectangles in which K keeps its sign are subdivided as long as the bounds of K
-leave a zero open: what remains at the tolerance are points or curves where K only touches zero.
+Contour lines on a grid find the curves across which K changes its sign; each vertex is then moved
+to a zero of K. Rectangles in which K keeps its sign are subdivided as long as K may vanish there,
+by its bounds: those left at the tolerance hold points or curves where K touches zero.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ MOST_LINES = 512
 
 @dataclass(frozen=True, eq=False)
 class Search:
-    """What a search found, all in parameters.
+    """The zeros of K, all in parameters.
 
     `polylines` are (k, 2) with whether they are closed; `boxes` (k, 2, 2) are rectangles (low and
     high corner) that hold zeros of K without a change of sign, and `flat` (k, 2, 2) those where K
@@ -57,12 +57,12 @@ def field_of(surface: Surface, cells: tuple[int, int] | None) -> CurvatureField:
 
 
 def _known(field: CurvatureField) -> tuple[float, float]:
-    """Return on how much of the domain K is not known, and not well: less is better."""
+    """Return the shares of the domain where K is unresolved, and where it is not accurate."""
     return field.share(field.unresolved), field.share(field.rough)
 
 
 def search(field: CurvatureField, size: Array) -> Search:
-    """Find the zeros of K; `size` (2,) is how small rectangles have to become, in parameters."""
+    """Find the zeros of K; rectangles are subdivided to the `size` (2,), in parameters."""
     grid, found = _fine_enough(field, size)
     polylines, near_crossing = zero_curves(grid, size)
     small, large = parted(grid, merged(np.concatenate([grid.rectangles(grid.flat), found.zero])))
@@ -70,11 +70,11 @@ def search(field: CurvatureField, size: Array) -> Search:
     boxes = np.concatenate([found.boxes, small])
     boxes = boxes[~near_crossing[grid.cells_at(boxes.mean(axis=1))]]
     groups = clusters(boxes, size)
-    beside = np.array([touching(group, flat, size).any() for group in groups], dtype=bool)
-    rim = [boxes[touching(group, boxes, 0.0 * size)] for group in groups[beside]]
+    at_flat = np.array([touching(group, flat, size).any() for group in groups], dtype=bool)
+    rim = [boxes[touching(group, boxes, 0.0 * size)] for group in groups[at_flat]]
     return Search(
         polylines,
-        groups[~beside],
+        groups[~at_flat],
         np.concatenate([flat, *rim]),
         field.share(field.unresolved),
     )

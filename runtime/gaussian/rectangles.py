@@ -23,13 +23,13 @@ def quarters(rectangles: Array) -> Array:
 
 
 def touching(rectangle: Array, others: Array, size: Array) -> NDArray[np.bool_]:
-    """Say which of the others are nearer to a rectangle (2, 2) than `size` (2,)."""
+    """Return which of the others are closer to a rectangle (2, 2) than `size` (2,)."""
     low, high = rectangle[0] - size, rectangle[1] + size
     return ((others[:, 0] <= high) & (others[:, 1] >= low)).all(axis=1)
 
 
 def clusters(rectangles: Array, size: Array) -> Array:
-    """Join rectangles that are nearer to each other than `size`; return the hulls of groups."""
+    """Join rectangles that are closer to each other than `size`; return the hulls of groups."""
     groups = np.empty((0, 2, 2))
     for rectangle in rectangles:
         near = touching(rectangle, groups, size)

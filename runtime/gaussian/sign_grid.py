@@ -17,7 +17,12 @@ Array = NDArray[np.float64]
 
 
 class SignGrid:
-    """K at the corners of equal cells in each panel, and what its signs say."""
+    """K at the corners of equal cells in each panel, and where it changes its sign.
+
+    `values` are those of K, `signs` say where it is positive, `zero` where it is zero up to its
+    error. In the cells of `mask` K is known and not zero up to its error; those of them that are
+    `crossed` have corners of both signs, and on `flat` ones K is zero up to its error.
+    """
 
     def __init__(self, field: CurvatureField, cells: int) -> None:
         self.field, self.cells = field, cells
@@ -57,7 +62,7 @@ class SignGrid:
         return result, noise
 
     def panels(self, values: NDArray[Any]) -> NDArray[Any]:
-        """Return for each cell what is given of its panel (m, n)."""
+        """Return for each cell the value of its panel (m, n)."""
         return np.repeat(np.repeat(values, self.cells, axis=0), self.cells, axis=1)
 
     def rectangles(self, which: NDArray[np.bool_]) -> Array:
@@ -106,12 +111,12 @@ class SignGrid:
 
 
 def _of_corners(x: NDArray[Any]) -> NDArray[Any]:
-    """Return what is at the four corners (4, …) of cells, in turn."""
+    """Return the values at the four corners (4, …) of cells, counter-clockwise."""
     return np.stack([x[:-1, :-1], x[1:, :-1], x[1:, 1:], x[:-1, 1:]])
 
 
 def _signs(values: Array, zero: NDArray[np.bool_], wraps: tuple[bool, bool]) -> NDArray[np.bool_]:
-    """Say where K is positive; where it is `zero` up to its error, as it is beside that place.
+    """Return where K is positive; where it is `zero` up to its error, it has a neighbour's sign.
 
     So a curve through corners, or along a border, is crossed once or not at all, whatever the
     signs of the rounding. Two steps reach all corners of a cell from one that has a sign.
@@ -119,8 +124,8 @@ def _signs(values: Array, zero: NDArray[np.bool_], wraps: tuple[bool, bool]) -> 
     signs = np.where(zero, 0, np.sign(values)).astype(np.int8)
     for _ in range(2):
         padded = np.pad(signs, 1)
-        for beside in (padded[:-2, 1:-1], padded[2:, 1:-1], padded[1:-1, :-2], padded[1:-1, 2:]):
-            signs = np.where(signs == 0, beside, signs)
+        for neighbour in (padded[:-2, 1:-1], padded[2:, 1:-1], padded[1:-1, :-2], padded[1:-1, 2:]):
+            signs = np.where(signs == 0, neighbour, signs)
     for axis in (0, 1):
         if wraps[axis]:
             np.swapaxes(signs, 0, axis)[-1] = np.swapaxes(signs, 0, axis)[0]

@@ -17,6 +17,7 @@ __all__ = ["boundary_of", "by_boundary", "is_wide", "solid_angles", "triangle_of
 Array = NDArray[np.float64]
 # Normals of one triangle must be this near to their mean (as a cosine); wider ones are subdivided.
 NARROW = 0.5
+# A sum of unit normals shorter than this has no direction.
 SMALL = 1e-9
 # Round a singular point inside, wide triangles remain for ever. Those that are left after so many
 # subdivisions are left out, a solid angle of about 2^-26 (deeper, rounding costs more); along a

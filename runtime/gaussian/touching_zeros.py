@@ -1,6 +1,6 @@
 """Zeros of K in cells without a change of sign: points and curves where K only touches zero.
 
-Rectangles are subdivided as long as the bounds of K leave a zero open.
+Rectangles are subdivided as long as K may vanish on them, by its bounds.
 """
 
 from __future__ import annotations
@@ -21,7 +21,8 @@ __all__ = ["TouchingZeros", "parted", "touching_zeros"]
 Array = NDArray[np.float64]
 MOST_BOXES = 16384
 DEEPEST = 40
-# Where K is zero up to its error on a rectangle after so few cuts of a cell, it is no single point.
+# A rectangle on which K is zero up to its error after at most this many subdivisions of a cell is
+# no single point.
 FLAT_LEVELS = 1
 # Cells along a side of a group in which K is zero up to its error that counts as a point.
 FEW_CELLS = 4
@@ -82,7 +83,7 @@ def parted(grid: SignGrid, zero: Array) -> tuple[Array, Array]:
 
 
 def _near_curves(grid: SignGrid) -> NDArray[np.bool_]:
-    """Say which cells touch one with a sign change, or one in which K is not to be had."""
+    """Return which cells touch one with a sign change, or one in which K is not known."""
     near = grid.crossed | ~grid.mask
     for (i, j), _ in grid.borders:
         near[min(i, near.shape[0] - 1), min(j, near.shape[1] - 1)] = True
@@ -92,7 +93,7 @@ def _near_curves(grid: SignGrid) -> NDArray[np.bool_]:
 
 
 def _may_vanish(grid: SignGrid, cells: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Say in which of the cells the bounds of K leave a zero open."""
+    """Return in which of the cells K may vanish, by its bounds."""
     field, result = grid.field, np.zeros_like(cells)
     rest = field.largest - 2.0 * np.abs(field.coefficients[..., 0, 0]) + field.noise
     for i, j in np.argwhere(grid.usable & (rest >= 0.0)) * grid.cells:
@@ -105,7 +106,7 @@ def _may_vanish(grid: SignGrid, cells: NDArray[np.bool_]) -> NDArray[np.bool_]:
 def _bounded(
     field: CurvatureField, rectangles: Array, signs: NDArray[np.bool_]
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_], NDArray[np.bool_]]:
-    """Say which rectangles may hold a zero of K; have another sign too; are zero up to error."""
+    """Return on which rectangles K may vanish; has another sign too; is zero up to its error."""
     middle = 0.5 * (rectangles[:, 1] + rectangles[:, 0])
     half = 0.5 * (rectangles[:, 1] - rectangles[:, 0])
     index, basis = [], []

@@ -33,7 +33,7 @@ DECISIVE = 3.0
 def zero_curves(grid: SignGrid, size: Array) -> tuple[list[tuple[Array, bool]], Mask]:
     """Return the curves K = 0 as polylines (k, 2), whether each is closed, and the cells cut out.
 
-    Curves that are nearer to each other than `size` (2,) at a saddle of K cross there, and end.
+    Curves whose distance at a saddle of K is less than `size` (2,) cross there, and end.
     """
     contours = _Contours(grid)
     for saddle in crossings(grid, size):
@@ -144,8 +144,9 @@ def _name(code: Integers) -> Hashable:
 def _contour_lines(grid: SignGrid) -> list[Array]:
     """Return the lines (k, 2) between corners of different sign, in cells.
 
-    Two curves may pass through a cell whose four sides are crossed: the sign at its centre says
-    which way. contourpy takes the mean of the corners for that, so two of them are made larger.
+    Two curves pass through a cell whose four sides are crossed. The sign of K at its centre decides
+    how they are joined; contourpy takes the mean of the corners instead, so that two of these are
+    made larger.
     """
     from contourpy import LineType, contour_generator  # not needed for splines
 
