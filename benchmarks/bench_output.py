@@ -22,7 +22,7 @@ OUTPUTS = {
 @pytest.fixture(params=SPLINES, ids=lambda cells: f"{cells}-cells")
 def sample(request):
     """Sample a spline with a million normals."""
-    return partial(gm.sample, SPLINES[request.param], NORMALS)
+    return partial(gm.sample, SPLINES[request.param], normals=NORMALS)
 
 
 @pytest.mark.parametrize("output", OUTPUTS.values(), ids=list(OUTPUTS))
@@ -40,7 +40,7 @@ def test_stream(compare, sample, chunk):
     spline, normals = sample.args
 
     def stream():
-        for _ in gm.sample_stream(spline, normals, chunk=chunk):
+        for _ in gm.sample_stream(spline, normals=normals, chunk=chunk):
             pass
 
     compare(stream, baselines={"sample": sample}, units={"samples": 2_000_000}, rounds=9)

@@ -90,7 +90,7 @@ def against_limit(compare, limits, case, hits):
 
 def test_sample(against_limit, case):
     """All of gm.sample for a spline that has never been read."""
-    against_limit(lambda: gm.sample(replace(case.spline), case.normals))
+    against_limit(lambda: gm.sample(replace(case.spline), normals=case.normals))
 
 
 def test_find_and_fill(against_limit, case):

@@ -65,7 +65,9 @@ def by_samples(largest: int) -> Series:
             taken, samples = _time(lambda size=size: _streamed(spline, size), size)
         else:
             normals = gm.fibonacci(size // 2)  # the torus has every normal twice
-            taken, samples = _time(lambda normals=normals: len(gm.sample(spline, normals)), size)
+            taken, samples = _time(
+                lambda normals=normals: len(gm.sample(spline, normals=normals)), size
+            )
         rows.append((spline.patches, samples, taken))
     return Series(f"samples, {spline.patches:,} patches", rows, missing)
 
@@ -80,7 +82,9 @@ def by_patches(largest: int) -> Series:
             break
         cells = round(math.sqrt(size / 4))
         spline = gm.fit(TORUS, (cells, cells))
-        taken, samples = _time(lambda spline=spline: len(gm.sample(_fresh(spline), normals)), size)
+        taken, samples = _time(
+            lambda spline=spline: len(gm.sample(_fresh(spline), normals=normals)), size
+        )
         rows.append((spline.patches, samples, taken))
     return Series(f"patches, {len(normals):,} normals", rows, missing)
 

@@ -32,8 +32,8 @@ def figure_4() -> tuple[Figure, str]:
     figure, ((left, right),) = panels(
         6.6, 2.9, 1, 2, left=0.0, right=1.0, bottom=0.0, top=0.9, wspace=0.0, width_ratios=(1, 1.5)
     )
-    normals = gm.circle(NORMALS)
-    samples = gm.sample_curve(DROP.curve, normals, pieces=PIECES)
+    normals = gm.directions.circle(NORMALS)
+    samples = gm.curves.sample(DROP.curve, normals=normals, pieces=PIECES)
     left.set_title(f"{NORMALS} uniform normals", pad=4)
     draw_normals(left, normals, normals[samples.normal_index[samples.curvature < 0.0]])
     left.set(xlim=(-1.3, 1.3), ylim=(-1.3, 1.26), anchor="N")
@@ -47,13 +47,13 @@ def draw_normals(axes: Axes, normals: Floats, negative: Floats) -> None:
     """Draw unit normals, marked orange where one belongs to a point with κ < 0."""
     segments(axes, np.zeros_like(normals), normals, colors=NO_SAMPLE, linewidths=0.6)
     axes.scatter(0.0, 0.0, s=8, color=INK, linewidths=0, zorder=3)
-    draw_curve(axes, gm.circle(SMOOTH), closed=True)
+    draw_curve(axes, gm.directions.circle(SMOOTH), closed=True)
     dots(axes, normals, normals[::EVERY], ELLIPTIC)
     axes.scatter(*negative.T, s=4, color=HYPERBOLIC, linewidths=0, zorder=6)
     labels(axes, normals[::EVERY], normals[::EVERY], np.arange(0, NORMALS, EVERY))
 
 
-def draw_samples(axes: Axes, samples: gm.CurveSamples) -> None:
+def draw_samples(axes: Axes, samples: gm.curves.CurveSamples) -> None:
     """Draw the curve, and samples with their normals, blue where κ > 0 and orange where κ < 0."""
     draw_curve(axes, DROP.derivatives(DROP.places(SMOOTH))[0])
     tips = samples.points + 0.17 * samples.normals
@@ -67,7 +67,7 @@ def draw_samples(axes: Axes, samples: gm.CurveSamples) -> None:
     labels(axes, tips[numbered], samples.normals[numbered], samples.normal_index[numbered])
 
 
-def caption_4(samples: gm.CurveSamples) -> str:
+def caption_4(samples: gm.curves.CurveSamples) -> str:
     """Return the caption, with the numbers of points that a normal has."""
     points = np.bincount(samples.normal_index, minlength=NORMALS)
     counts = listed(f"{(points == k).sum()} belong to {k}" for k in np.unique(points))

@@ -39,9 +39,11 @@ class TrueCurve:
     sentence: str
 
     @cached_property
-    def curve(self) -> gm.Curve:
+    def curve(self) -> gm.curves.Curve:
         """The curve as gaussmap takes it."""
-        return gm.Curve.from_sympy(self.position, t, self.ends, self.periodic, name=self.name)
+        return gm.curves.Curve.from_sympy(
+            self.position, t, self.ends, self.periodic, name=self.name
+        )
 
     @cached_property
     def _function(self):  # noqa: ANN202 - lambdify has no types
@@ -128,7 +130,7 @@ class Polygon:
         edge = np.clip(np.searchsorted(parameters, dense) - 1, 0, len(parameters) - 2)
         return cls(
             len(parameters) - true.periodic,
-            float(gm.polygon_distance(point, vertices).max()),
+            float(gm.curves.polygon_distance(point, vertices).max()),
             float(angles(np.diff(vertices, axis=0)[edge], tangent).max()),
         )
 
@@ -153,7 +155,7 @@ def by_normals(true: TrueCurve, count: int) -> Array:
     """Return the parameters of about `count` points with uniform normals, as `through` has them."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", gm.GaussmapWarning)
-        samples = gm.sample_curve(
+        samples = gm.curves.sample(
             true.curve, count=count if true.periodic else count - 2, pieces=PIECES
         )
     low, high = true.curve.domain
@@ -171,7 +173,7 @@ def slope(numbers: Sequence[float], errors: Sequence[float]) -> float:
 
 def spline_errors(true: TrueCurve, pieces: int) -> list[float]:
     """Return the largest errors of positions, normals (in degrees) and support function."""
-    spline = gm.fit_curve(true.curve, pieces)
+    spline = gm.curves.fit(true.curve, pieces)
     places = true.places(PARTS * pieces + 1)
     point, tangent, _ = true.derivatives(places)
     normals = np.column_stack([tangent[:, 1], -tangent[:, 0]])
@@ -182,13 +184,13 @@ def spline_errors(true: TrueCurve, pieces: int) -> list[float]:
     ]
 
 
-def support_error(true: TrueCurve, spline: gm.CurveSpline) -> float:
+def support_error(true: TrueCurve, spline: gm.curves.CurveSpline) -> float:
     """Return the largest difference of the support functions at equal normals.
 
     Newton's method on n·x_t = 0 leads from the parameter of a sample to the point of the true curve
     with its normal. ArithmeticError if that fails for more than LOST of the samples.
     """
-    samples = gm.sample_curve(spline, gm.circle(NORMALS))
+    samples = gm.curves.sample(spline, normals=gm.directions.circle(NORMALS))
     normals, places = samples.normals, samples.parameters
     for _ in range(STEPS):
         _, first, second = true.derivatives(places)
@@ -217,7 +219,7 @@ the circle. Here both are measured, for these curves:
 """
 
 METHOD = """\
-The points come from `gaussmap.sample_curve` with {pieces:,} pieces. Both polygons of an open curve
+The points come from `gaussmap.curves.sample` with {pieces:,} pieces. Both polygons of an open curve
 have its two ends. M is the number of vertices; where a curve has inflections, uniform normals
 cannot give every number, and M is one near the number that was asked.
 
@@ -243,7 +245,7 @@ M^(−2).
 ORDERS = """\
 ## Orders of the spline
 
-The C¹ quadratic spline of `gaussmap.fit_curve` with P equal pieces against the exact curve. The
+The C¹ quadratic spline of `gaussmap.curves.fit` with P equal pieces against the exact curve. The
 error of **positions** (in the unit of the curve) and of **normals** (in degrees) is the largest at
 {parts} steps of each piece and both ends, at equal parameters; that of the **support function** the
 largest over the preimages of {normals:,} normals, at equal normals, found on the exact curve by

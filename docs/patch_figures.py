@@ -63,9 +63,9 @@ class Patch:
         return np.stack([s * (1 - t), s * t, 1 - s], axis=-1)
 
     @cached_property
-    def image(self) -> gm.GaussianImage:
+    def image(self) -> gm.gauss_map.GaussianImage:
         """The Gaussian image."""
-        return gm.GaussianImage.of_patch(self.net)
+        return gm.gauss_map.GaussianImage.of_patch(self.net)
 
     @cached_property
     def tints(self) -> Floats:
@@ -157,7 +157,9 @@ def add_legend(figure: Figure) -> None:
 
 
 def caption_3(
-    triangle: gm.GaussianImage, biangle: gm.GaussianImage, bow_tie: gm.GaussianImage
+    triangle: gm.gauss_map.GaussianImage,
+    biangle: gm.gauss_map.GaussianImage,
+    bow_tie: gm.gauss_map.GaussianImage,
 ) -> str:
     """Return the caption, with the solid angles of the images."""
     elliptic = (bow_tie.area + bow_tie.solid_angle) / 2

@@ -79,7 +79,7 @@ def ball() -> Part:
     """Return a sphere of radius 30 mm."""
 
     def places(rng: np.random.Generator, count: int) -> Array:
-        return 30.0 * gm.random_normals(count, seed=int(rng.integers(10**9)))
+        return 30.0 * gm.directions.random(count, seed=int(rng.integers(10**9)))
 
     surface = gm.surfaces.ellipsoid(a=30.0, b=30.0, c=30.0)
     return Part("a sphere of radius 30 mm", surface, places, (64, 64))
@@ -139,7 +139,7 @@ class Errors:
 
 def start(rng: np.random.Generator, slide: float) -> Array:
     """Return a random rigid motion (4, 4)."""
-    axis = gm.random_normals(1, seed=int(rng.integers(10**9)))[0]
+    axis = gm.directions.random(1, seed=int(rng.integers(10**9)))[0]
     across = np.cross(np.eye(3), axis)  # across @ x = axis × x
     angle = np.radians(TURN)
     motion = np.eye(4)

@@ -37,7 +37,7 @@ def figure_6() -> tuple[Figure, str]:
     image_of(axes[1, 0], spline, seen_from, "Its Gaussian image")
     for k, frequency in enumerate((10, 20), start=1):
         normals = gm.icosphere(frequency)
-        samples = gm.sample(spline, normals)
+        samples = gm.sample(spline, normals=normals)
         picture = surface_picture(axes[0, k], spline, seen_from, f"{len(samples):,} samples", 0.75)
         size = 10.0 / k**1.5
         picture.points(samples.points, s=size, color=ELLIPTIC)
@@ -69,7 +69,7 @@ def figure_7() -> tuple[Figure, str]:
     picture = surface_picture(axes[0, 0], spline, seen_from, "The approximating spline", lines=0)
     picture.lines(crisscross(spline), colors=INK, linewidths=0.3, zorder=3)
     normals = gm.icosphere(12)
-    samples = gm.sample(spline, normals)
+    samples = gm.sample(spline, normals=normals)
     picture = surface_picture(axes[0, 1], spline, seen_from, f"{len(samples):,} samples", lines=0)
     globe = image_of(axes[0, 2], spline, view(62.0, -65.0), "Their normals")
     for kind, colour in (("elliptic", ELLIPTIC), ("hyperbolic", HYPERBOLIC)):

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from ..generated import icosphere
 from ..generated import sampler as kernels
-from .sphere import PARTS, PARTS_AT_A_TIME, perpendicular
+from .directions.sets import PARTS, PARTS_AT_A_TIME
+from .directions.unit import perpendicular
 from .threads import over_ranges, thread_count
 
 __all__ = ["NormalBins"]

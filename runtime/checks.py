@@ -17,6 +17,7 @@ from .limits import MOST
 
 __all__ = [
     "checked_array",
+    "checked_count",
     "finite_array",
     "finite_number",
     "known_name",
@@ -64,6 +65,13 @@ def whole_number(value: object, name: str, least: int = 1) -> int:
     if value > MOST:
         raise InputError(f"{name} must be a whole number of at most {MOST:,}, not larger.")
     return int(value)
+
+
+def checked_count(value: object) -> int:
+    """Return how many samples are asked for; InputError, also for normals in place of a count."""
+    if isinstance(value, list | tuple) or getattr(value, "ndim", 0) > 0:
+        raise InputError("the second argument is the count; normals go by keyword: normals=…")
+    return whole_number(value, "count")
 
 
 def finite_number(value: SupportsFloat, name: str) -> float:

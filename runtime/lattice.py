@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .directions.sets import part_of_fibonacci, spiral_angle
+from .directions.unit import in_pieces, perpendicular
 from .kernels.cone import least_cosine
-from .sphere import in_pieces, part_of_fibonacci, perpendicular, spiral_angle
 from .spline import Spline
 
 __all__ = ["Lattice"]

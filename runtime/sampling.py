@@ -29,9 +29,9 @@ __all__ = [
 
 def sample(
     surface: Surface | Spline,
-    normals: ArrayLike | None = None,
-    *,
     count: int | None = None,
+    *,
+    normals: ArrayLike | None = None,
     angle: float | None = None,
     coverage: float | None = None,
     density: str | float | None = None,
@@ -140,10 +140,10 @@ def _by_normals(
 
 def sample_many(
     surfaces: Iterable[Surface | Spline],
-    normals: ArrayLike | None = None,
-    *,
-    progress: bool = True,
     count: int | None = None,
+    *,
+    normals: ArrayLike | None = None,
+    progress: bool = True,
     angle: float | None = None,
     coverage: float | None = None,
     density: str | float | None = None,

@@ -11,12 +11,12 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from .bins import NormalBins
 from .checks import whole_number
 from .choice import NEAR_ENOUGH, NORMALS_PER_SAMPLE
-from .curves.circle import circle
+from .directions.circle import circle
+from .directions.unit import as_normals, perpendicular, unit_vector
 from .fields import checked_dtype, checked_fields
 from .report import sampling_report, warn_of
 from .samples import Samples
 from .search import Hits, fill, find
-from .sphere import as_normals, perpendicular, unit_vector
 from .spline import Spline, spline_of
 from .surface import Surface
 from .threads import thread_count

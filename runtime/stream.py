@@ -28,9 +28,9 @@ NORMALS_AT_A_TIME = 1 << 20
 
 def sample_stream(
     surface: Surface | Spline,
-    normals: ArrayLike | None = None,
-    *,
     count: int | None = None,
+    *,
+    normals: ArrayLike | None = None,
     chunk: int = 1_000_000,
     cells: Sequence[int] | None = None,
     fields: Sequence[str] | None = None,

@@ -68,7 +68,7 @@ def normals_for(form: ClosedForm, count: int) -> Array:
 def sampling(form: ClosedForm, on_net: bool, count: int) -> Callable[[], gm.Samples]:
     """Return the sampling of about `count` points from the surface itself, the fit included."""
     source, normals = surface(form, on_net), normals_for(form, count)
-    return lambda: gm.sample(source, normals)
+    return lambda: gm.sample(source, normals=normals)
 
 
 def measure(form: ClosedForm, places: Places, peer: Peer) -> Measured:
@@ -95,13 +95,13 @@ def measure_own(form: ClosedForm) -> list[Own]:
     """Time what a user of gaussmap calls; each call once before, untimed."""
     source, spline, normals = form.surface, gm.fit(form.surface), normals_for(form, MILLION)
     calls: list[tuple[str, Callable[[], gm.Samples]]] = [
-        ("gm.sample(surface, normals)", sampling(form, False, 100_000)),
-        ("gm.sample(surface, normals)", sampling(form, False, MILLION)),
+        ("gm.sample(surface, normals=normals)", sampling(form, False, 100_000)),
+        ("gm.sample(surface, normals=normals)", sampling(form, False, MILLION)),
         (
             'gm.sample(surface, count=…, density="gauss")',
             lambda: gm.sample(source, count=MILLION, density="gauss"),
         ),
-        ("gm.sample(spline, normals)", lambda: gm.sample(spline, normals)),
+        ("gm.sample(spline, normals=normals)", lambda: gm.sample(spline, normals=normals)),
     ]
     rows = []
     for call, work in calls:

@@ -48,9 +48,9 @@ Points **with normals**, as NumPy arrays, of three surfaces. Columns:
   same surface: the mesh of 205,000 triangles (trimesh, Open3D, PyMeshLab), the curvature on a grid
   of 512 × 512 (Splipy, |K|), the model, and the search for the setting that gives this count
   (Gmsh, Open CASCADE, PyMeshLab);
-- **gaussmap, same count** and **10⁶**: how many times as fast `gm.sample(surface, normals)` is,
-  timed in turns, with the fit of 64 × 64 cells from the surface's values, for the same count and
-  for 10⁶ points;
+- **gaussmap, same count** and **10⁶**: how many times as fast is
+  `gm.sample(surface, normals=normals)`, timed in turns, with the fit of 64 × 64 cells from the
+  surface's values, for the same count and for 10⁶ points;
 - **E** and **G**, in degrees: how badly {judged} points stand for the surface at the worst of
   {places:,} places that are uniform by area. E is the angle between the normal of a place and that
   of the sample nearest in space; G the angle to the sample nearest in normal, among those with the
@@ -69,9 +69,9 @@ package uses the threads that it uses by default; for gaussmap that is one for e
 SCALE = """\
 ## Scale
 
-`gm.sample(spline, normals)` on the torus, for growing numbers of samples and of patches. The slope
-is that of log(time) against log(patches + samples), by least squares, over all sizes and over the
-{last} largest: at most {steepest} is wanted, 1 is linear. {streamed}
+`gm.sample(spline, normals=normals)` on the torus, for growing numbers of samples and of patches.
+The slope is that of log(time) against log(patches + samples), by least squares, over all sizes and
+over the {last} largest: at most {steepest} is wanted, 1 is linear. {streamed}
 """
 
 

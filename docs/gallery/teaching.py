@@ -88,7 +88,7 @@ print("0 for each of the", len(normals), "normals")
 
 # %%
 waves = gm.surfaces.wavy_graph()
-parabolic = gm.parabolic_points(waves)
+parabolic = gm.gauss_map.parabolic_points(waves)
 samples = gm.sample(waves, count=2000, density="uniform")
 
 figure, axes = plt.subplots(1, 2, figsize=(8, 3.8), dpi=65, layout="constrained")

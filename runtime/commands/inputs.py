@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import directions
 from ..checks import known_name
 from ..compiling import NOTICE
 from ..errors import InputError
-from ..sphere import healpix, icosphere, random_normals
 from ..surface import Surface
 from ..surfaces import CATALOGUE, names, surface
 from .arrays import array_file, is_array_file, read_array
@@ -87,11 +87,11 @@ def _normals(options: SimpleNamespace) -> NDArray[np.float64] | None:
     if options.seed is not None and options.random is None:
         raise InputError("--seed is for --random COUNT, which is not there.")
     if options.frequency is not None:
-        return icosphere(options.frequency)
+        return directions.icosphere(options.frequency)
     if options.healpix is not None:
-        return healpix(options.healpix)
+        return directions.healpix(options.healpix)
     if options.random is not None:
-        return random_normals(options.random, seed=options.seed or 0)
+        return directions.random(options.random, seed=options.seed or 0)
     return None if options.normals is None else read_array(options.normals)
 
 

@@ -1,1 +1,17 @@
 """Planar curves (paper, Sect. 4.1): fitting, sampling by normals, polygons."""
+
+from .curve import Curve
+from .polygon import polygon_distance
+from .samples import CurveReport, CurveSamples
+from .sampling import sample
+from .spline import CurveSpline, fit
+
+__all__ = [
+    "Curve",
+    "CurveReport",
+    "CurveSamples",
+    "CurveSpline",
+    "fit",
+    "polygon_distance",
+    "sample",
+]

@@ -82,7 +82,7 @@ class Curve:
 
         Its parameter is t = k beside points[k]; the spline does not interpolate the points.
         A closed curve must not repeat its first point at its end. One spline piece stands between
-        any two neighbouring points; `fit_curve(pieces=...)` chooses otherwise. Raises InputError
+        any two neighbouring points; `fit(pieces=...)` chooses otherwise. Raises InputError
         for another shape, fewer than 3 points, or NaN or infinity (and says where).
         """
         from .spline import curve_of_points

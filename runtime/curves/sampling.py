@@ -1,4 +1,4 @@
-"""`sample_curve`: every point of a planar curve that has one of the normals, exactly once.
+"""`sample`: every point of a planar curve that has one of the normals, exactly once.
 
 The normals are sorted by angle, and each joint of the spline has one place among them. The normals
 of an arc are those between the places of its two joints, passed upwards where κ > 0 and downwards
@@ -20,16 +20,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import whole_number
+from ..checks import checked_count
+from ..directions.circle import arc_of_normals, circle
+from ..directions.unit import as_normals
 from ..errors import GaussmapWarning, InputError
 from ..kernels import curve as kernels
-from ..sphere import as_normals
-from .circle import arc_of_normals, circle
 from .curve import Curve
 from .samples import CurveReport, CurveSamples
-from .spline import CurveSpline, angles_of, fit_curve
+from .spline import CurveSpline, angles_of, fit
 
-__all__ = ["sample_curve"]
+__all__ = ["sample"]
 
 Array = NDArray[np.float64]
 
@@ -52,18 +52,18 @@ class Hits:
         return len(self.signs)
 
 
-def sample_curve(
+def sample(
     curve: Curve | CurveSpline,
-    normals: ArrayLike | None = None,
-    *,
     count: int | None = None,
+    *,
+    normals: ArrayLike | None = None,
     pieces: int | None = None,
 ) -> CurveSamples:
     """Return every point of a planar curve that has one of the given normals, each exactly once.
 
     Normals spread evenly over the circle make the samples dense where the curve bends: their
     density is |κ| (paper, Sect. 4.1). The curve is first approximated by a spline of `pieces` arcs
-    (see `fit_curve`); a `CurveSpline` is taken as it is.
+    (see `fit`); a `CurveSpline` is taken as it is.
 
     Give either `normals`, an array (S, 2) of directions of any length such as `circle(100)`, or
     `count`, about how many samples shall come, from evenly spread normals.
@@ -74,11 +74,11 @@ def sample_curve(
     """
     if (normals is None) == (count is None):
         raise InputError("give either normals=... or count=..., and not both.")
-    asked = None if count is None else whole_number(count, "count")
+    asked = None if count is None else checked_count(count)
     directions = None if normals is None else as_normals(normals, 2)
     if isinstance(curve, CurveSpline) and pieces is not None:
         raise InputError("pieces=... is for curves; this spline has its pieces already.")
-    spline = curve if isinstance(curve, CurveSpline) else fit_curve(curve, pieces)
+    spline = curve if isinstance(curve, CurveSpline) else fit(curve, pieces)
     if directions is None:
         assert asked is not None
         directions, hits = _by_count(spline, asked)

@@ -18,7 +18,7 @@ from ..kernels import curve as kernels
 from ..spline import apart, not_too_large, scale_to_one, short_label
 from .curve import Curve, Interval
 
-__all__ = ["DEFAULT_PIECES", "CurveSpline", "curve_of_points", "fit_curve"]
+__all__ = ["DEFAULT_PIECES", "CurveSpline", "curve_of_points", "fit"]
 
 Array = NDArray[np.float64]
 
@@ -31,7 +31,7 @@ REPEATED = 1e-3
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CurveSpline:
-    """A planar C¹ quadratic spline with equal pieces of the parameter; made by `fit_curve`.
+    """A planar C¹ quadratic spline with equal pieces of the parameter; made by `fit`.
 
     `coefficients` (P + 2, 2) holds one vector for each of the P pieces and one beyond each end;
     those of a closed curve are copies. Joint k is the beginning of piece k.
@@ -212,7 +212,7 @@ def _lengths(vectors: Array) -> Array:
 # --- fitting --------------------------------------------------------------------------------------
 
 
-def fit_curve(curve: Curve, pieces: int | None = None) -> CurveSpline:
+def fit(curve: Curve, pieces: int | None = None) -> CurveSpline:
     """Approximate a planar curve by a C¹ quadratic spline with `pieces` arcs.
 
     The quasi-interpolant is exact on quadratics; the error of positions falls with the third power
@@ -224,7 +224,7 @@ def fit_curve(curve: Curve, pieces: int | None = None) -> CurveSpline:
     not close although it is periodic.
     """
     if not isinstance(curve, Curve):
-        raise InputError(f"fit_curve takes a Curve, not {type(curve).__name__}.")
+        raise InputError(f"fit takes a Curve, not {type(curve).__name__}.")
     if pieces is None and curve.points is not None:
         return _fit_points(curve.points, curve.domain, curve.periodic, curve.name)
     count = whole_number(DEFAULT_PIECES if pieces is None else pieces, "pieces")

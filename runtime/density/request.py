@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import known_name, whole_number
+from ..checks import checked_count, known_name, whole_number
+from ..directions.sets import frequency_within, icosphere
+from ..directions.unit import as_normals
 from ..errors import InputError
 from ..limits import MOST_STEPS
-from ..sphere import as_normals, frequency_within, icosphere
 from ..threads import thread_count
 
 __all__ = ["DENSITIES", "Request", "checked_request"]
@@ -60,6 +61,7 @@ def checked_request(
 ) -> Request:
     """Return what is asked; InputError (or UnknownNameError) if it makes no sense."""
     thread_count(threads)
+    number = None if count is None else checked_count(count)
     amounts = {"normals": normals, "count": count, "angle": angle, "coverage": coverage}
     given = [name for name, value in amounts.items() if value is not None]
     if not given or len({*given} - {"coverage"}) > 1:
@@ -78,7 +80,7 @@ def checked_request(
         )
     return Request(
         None if normals is None else as_normals(normals, threads=threads),
-        None if count is None else whole_number(count, "count"),
+        number,
         None if angle is None else _positive(angle, "angle", " degrees", most=90.0),
         None if coverage is None else _positive(coverage, "coverage"),
         kind,

@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..density.request import checked_request
+from ..directions.unit import as_normals
 from ..errors import InputError
 from ..extras import check_extra
 from ..files import paths
 from ..samples import Samples
 from ..sampling import sample_and_normals
-from ..sphere import as_normals
 from ..spline import Spline, spline_of
 from ..surface import Surface
 from .globe import draw_globe, view_of

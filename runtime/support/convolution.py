@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..directions.unit import as_normals
 from ..errors import GaussmapWarning, InputError
 from ..fields import new_field
 from ..report import sampling_report, warn_of
 from ..samples import Samples, SamplingReport, rows_of
-from ..sphere import as_normals
 from ..spline import Spline, short_label, spline_of
 from ..surface import Surface
 from ..threads import over_ranges

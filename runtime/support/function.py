@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..checks import finite_array, finite_number
+from ..directions.unit import as_normals
 from ..errors import InputError
-from ..sphere import as_normals
 from ..spline import Spline, spline_of
 from ..surface import Surface
 from .branches import Branches, Sheets

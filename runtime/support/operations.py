@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated import support as kernels
-from ..sphere import as_normals
+from ..directions.unit import as_normals
 from .branches import Sheets, curvatures
 from .sources import Source
 

@@ -15,8 +15,8 @@ from ...generated import support as kernels
 from ..bins import NormalBins
 from ..errors import InputError
 from ..formula_calls import python_function, vector
-from ..gaussian.membership import PatchNormals
-from ..gaussian.patches import checked_control_points
+from ..gauss_map.membership import PatchNormals
+from ..gauss_map.patches import checked_control_points
 from ..search import fill, find
 from ..spline import Spline
 from .branches import Sheets

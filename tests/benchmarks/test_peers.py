@@ -298,7 +298,7 @@ def measured(missing=()):
 
 @pytest.fixture
 def text():
-    own = [Own("gm.sample(surface, normals)", 1_000_000, 1.23e7)]
+    own = [Own("gm.sample(surface, normals=normals)", 1_000_000, 1.23e7)]
     surfaces = [
         page.OnSurface(FORMS[0], measured(), own, (10_010, 12.0, 2.5)),
         page.OnSurface(FORMS[1], measured(missing=(GMSH,)), own, (10_000, 4.0, 1.5)),

@@ -122,7 +122,7 @@ def test_words_follow_from_the_numbers():
 
 
 def test_newton_that_fails_is_said():
-    spline = gm.fit_curve(CIRCLE.curve, 64)
+    spline = gm.curves.fit(CIRCLE.curve, 64)
     other = curves.TrueCurve("other", (curves.t, curves.t**2), curves.TURN, False, "")
     with pytest.raises(ArithmeticError, match="fails on other"):
         curves.support_error(other, spline)

@@ -204,7 +204,7 @@ def test_the_points_that_normals_have(captions):
     """Count on the exact curve where n·x_t changes its sign and the normal is n, not −n."""
     _, tangent, _ = TRUE.derivatives(TURN)
     counts, sums = [], []
-    for x, y in gm.circle(curve_figures.NORMALS):
+    for x, y in gm.directions.circle(curve_figures.NORMALS):
         height = tangent @ [x, y]
         outward = x * tangent[:, 1] - y * tangent[:, 0] > 0.0
         steps = np.diff(np.sign(height))[outward[:-1]]
@@ -312,7 +312,7 @@ def preimages(p: np.ndarray, q: np.ndarray) -> np.ndarray:
 def test_waves(captions):
     spline = gm.fit(gm.surfaces.wavy_graph(amplitude=0.35), cells=(16, 16))
     normals = gm.icosphere(12)
-    samples = gm.sample(spline, normals)
+    samples = gm.sample(spline, normals=normals)
     counts = np.stack(
         [
             np.bincount(samples.normal_index[x], minlength=len(normals))

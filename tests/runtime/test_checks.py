@@ -5,8 +5,8 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from gaussmap import InputError
 from gaussmap.runtime.checks import parameter_arrays, real_array, whole_number
+from gaussmap.runtime.errors import InputError
 
 
 @pytest.mark.parametrize("value", [1, 7, np.int8(7), np.uint64(7), 10**9])

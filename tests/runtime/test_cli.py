@@ -124,10 +124,10 @@ def test_the_normals_of_an_icosphere() -> None:
 @pytest.mark.parametrize(
     ("arguments", "normals"),
     [
-        (["--healpix", "4"], gm.healpix(4)),
-        (["--random", "150"], gm.random_normals(150)),
-        (["--random", "150", "--seed", "7"], gm.random_normals(150, seed=7)),
-        (["--seed", "0", "--random", "150"], gm.random_normals(150, seed=0)),
+        (["--healpix", "4"], gm.directions.healpix(4)),
+        (["--random", "150"], gm.directions.random(150)),
+        (["--random", "150", "--seed", "7"], gm.directions.random(150, seed=7)),
+        (["--seed", "0", "--random", "150"], gm.directions.random(150, seed=0)),
     ],
 )
 def test_other_sets_of_normals(arguments: list[str], normals: np.ndarray) -> None:
@@ -229,7 +229,7 @@ def test_the_default_is_a_count(monkeypatch: pytest.MonkeyPatch) -> None:
 
     def spy(**options: object) -> gm.Samples:
         asked.update(options)
-        raise gm.InputError("enough")
+        raise gm.errors.InputError("enough")
 
     monkeypatch.setattr(sampling, "sample", spy)
     assert main(["sample", "torus", "-o", "a.npz"]) == 2

@@ -31,7 +31,7 @@ def torus_of_integers(m: int, n: int, size: int, noise: np.ndarray) -> gm.Spline
 
 
 def sign_sums(spline: gm.Spline, normals: np.ndarray) -> np.ndarray:
-    samples = gm.sample(spline, normals)
+    samples = gm.sample(spline, normals=normals)
     signs = np.where(samples.elliptic, 1, -1)
     return np.bincount(samples.normal_index, weights=signs, minlength=len(normals))
 
@@ -160,7 +160,7 @@ def test_numbers_come_back_from_their_residues(values: list[int]) -> None:
 
 def test_parabolic_normal_of_a_torus_has_a_sensible_place() -> None:
     """n = ±z touches the torus along whole circles: one point of each sign remains."""
-    samples = gm.sample(gm.surfaces.torus(), [[0, 0, 1], [0, 0, -1]], cells=(16, 16))
+    samples = gm.sample(gm.surfaces.torus(), normals=[[0, 0, 1], [0, 0, -1]], cells=(16, 16))
     assert sorted(samples.normal_index.tolist()) == [0, 0, 1, 1]
     assert int(samples.elliptic.sum()) == int(samples.hyperbolic.sum()) == 2
     np.testing.assert_allclose(np.abs(samples.points[:, 2]), 0.35, atol=2e-3)
@@ -173,7 +173,7 @@ def test_border_vertices_of_a_closed_ring_count_once(name: str) -> None:
     spline = gm.fit(gm.surfaces.surface(name), (12, 8))
     for v in spline.domain[1]:
         normals = spline.normals(np.linspace(*spline.domain[0], 13), v)
-        samples = gm.sample(spline, normals)
+        samples = gm.sample(spline, normals=normals)
         np.testing.assert_array_equal(np.bincount(samples.normal_index, minlength=13), 1)
 
 
@@ -184,7 +184,7 @@ def test_equal_normals_are_answered_alike() -> None:
     u, v = np.linspace(u_0, u_1, 13), np.linspace(v_0, v_1, 9)
     normals = np.concatenate([spline.normals(u, end) for end in (v_0, v_1)])
     normals = np.concatenate([normals, *(spline.normals(end, v) for end in (u_0, u_1))])
-    samples = gm.sample(spline, np.concatenate([normals, normals]))
+    samples = gm.sample(spline, normals=np.concatenate([normals, normals]))
     counts = np.bincount(samples.normal_index, minlength=2 * len(normals))
     np.testing.assert_array_equal(counts[: len(normals)], 1)
     np.testing.assert_array_equal(counts[len(normals) :], 1)

@@ -67,7 +67,7 @@ quaternions = st.tuples(*[st.floats(-1.0, 1.0)] * 4).filter(lambda q: np.linalg.
 @pytest.mark.parametrize("frequency", [10, 32, 100])
 def test_torus_icosphere(cells: int, frequency: int) -> None:
     normals = gm.icosphere(frequency)
-    samples = gm.sample(TORUS, normals, cells=(cells, cells))
+    samples = gm.sample(TORUS, normals=normals, cells=(cells, cells))
     check_torus(samples, normals, np.array([0.0, 0.0, 1.0]))
 
 
@@ -76,7 +76,9 @@ def test_torus_icosphere(cells: int, frequency: int) -> None:
     "normals", [gm.icosphere(9), gm.fibonacci(20_000)], ids=["aligned", "generic"]
 )
 def test_patches_that_bend_far(cells: tuple[int, int], normals: Array) -> None:
-    elliptic, hyperbolic = count_preimages(gm.sample(TORUS, normals, cells=cells), len(normals))
+    elliptic, hyperbolic = count_preimages(
+        gm.sample(TORUS, normals=normals, cells=cells), len(normals)
+    )
     assert (elliptic == hyperbolic).all()
     assert elliptic.sum() >= len(normals)
 
@@ -84,14 +86,19 @@ def test_patches_that_bend_far(cells: tuple[int, int], normals: Array) -> None:
 @pytest.mark.parametrize("cells", [16, 32, 64, 96])
 def test_torus_fibonacci(cells: int) -> None:
     normals = gm.fibonacci(10**6)
-    samples = gm.sample(TORUS, normals, cells=(cells, cells))
+    samples = gm.sample(TORUS, normals=normals, cells=(cells, cells))
     check_torus(samples, normals, np.array([0.0, 0.0, 1.0]))
 
 
 @pytest.mark.parametrize("cells", [16, 40, 64])
 def test_torus_healpix(cells: int) -> None:
-    for normals in (gm.healpix(1), gm.healpix(8), gm.healpix(64), gm.random_normals(50_000)):
-        samples = gm.sample(TORUS, normals, cells=(cells, cells))
+    for normals in (
+        gm.directions.healpix(1),
+        gm.directions.healpix(8),
+        gm.directions.healpix(64),
+        gm.directions.random(50_000),
+    ):
+        samples = gm.sample(TORUS, normals=normals, cells=(cells, cells))
         check_torus(samples, normals, np.array([0.0, 0.0, 1.0]))
 
 
@@ -103,7 +110,7 @@ def test_torus_moved_and_scaled(shift: float, factor: float, turned: bool) -> No
     normals = gm.icosphere(10) @ rotation.T
     for cells in ((16, 16), (40, 24), (96, 96)):
         surface = moved(TORUS, rotation, shift * factor, factor)
-        check_torus(gm.sample(surface, normals, cells=cells), normals, rotation[:, 2])
+        check_torus(gm.sample(surface, normals=normals, cells=cells), normals, rotation[:, 2])
 
 
 @given(of_surface=quaternions, of_normals=quaternions, exponent=st.integers(-9, 9))
@@ -115,14 +122,14 @@ def test_torus_turned_at_random(
     turn = rotation_of(of_surface)
     normals = gm.icosphere(8) @ rotation_of(of_normals).T
     surface = moved(TORUS, turn, 0.0, 10.0**exponent)
-    check_torus(gm.sample(surface, normals, cells=(32, 20)), normals, turn[:, 2])
+    check_torus(gm.sample(surface, normals=normals, cells=(32, 20)), normals, turn[:, 2])
 
 
 @pytest.mark.parametrize("name", ["sphere", "ellipsoid"])
 @pytest.mark.parametrize("cells", [(16, 16), (32, 20), (64, 64), (96, 96)])
 def test_sphere_like_surfaces_have_every_normal_once(name: str, cells: tuple[int, int]) -> None:
     for normals in (gm.icosphere(10), gm.icosphere(32), gm.fibonacci(10**5)):
-        samples = gm.sample(gm.surfaces.surface(name), normals, cells=cells)
+        samples = gm.sample(gm.surfaces.surface(name), normals=normals, cells=cells)
         elliptic, hyperbolic = count_preimages(samples, len(normals))
         assert (elliptic - hyperbolic == 1).all()
 
@@ -133,7 +140,7 @@ def test_sphere_like_surfaces_have_every_normal_once(name: str, cells: tuple[int
 def test_sphere_so_far_away_that_patches_are_mostly_rounding(cells: int, shift: float) -> None:
     normals = gm.fibonacci(20_000)
     surface = moved(gm.surfaces.sphere(), np.eye(3), shift, 1.0)
-    samples = gm.sample(surface, normals, cells=(cells, cells))
+    samples = gm.sample(surface, normals=normals, cells=(cells, cells))
     assert samples.report.degenerate_patches
     elliptic, hyperbolic = count_preimages(samples, len(normals))
     assert (elliptic - hyperbolic == 1).all()
@@ -145,7 +152,7 @@ def test_sphere_so_far_away_that_patches_are_mostly_rounding(cells: int, shift: 
 def test_torus_that_is_mostly_rounding(minor: float, shift: float, cells: int) -> None:
     surface = moved(gm.surfaces.torus(minor=minor), np.eye(3), shift, 1.0)
     normals = gm.fibonacci(20_000)
-    samples = gm.sample(surface, normals, cells=(cells, cells))
+    samples = gm.sample(surface, normals=normals, cells=(cells, cells))
     assert samples.report.degenerate_patches
     elliptic, hyperbolic = count_preimages(samples, len(normals))
     assert (elliptic == hyperbolic).all()
@@ -171,7 +178,7 @@ def test_seam_of_a_moebius_band() -> None:
     """A normal on the seam belongs to one side, which the other side sees as its opposite."""
     band = gm.surfaces.moebius_band()
     for cells in ((16, 5), (64, 64), (33, 12)):
-        samples = gm.sample(band, [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]], cells=cells)
+        samples = gm.sample(band, normals=[[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]], cells=cells)
         assert len(samples) == 1
 
 
@@ -191,7 +198,9 @@ def test_klein_bottle(cells: tuple[int, int], frequency: int) -> None:
         eight, domain=((0.0, 2 * np.pi), (-np.pi, np.pi)), periodic=("flip", True)
     )
     normals = gm.icosphere(frequency)
-    elliptic, hyperbolic = count_preimages(gm.sample(bottle, normals, cells=cells), len(normals))
+    elliptic, hyperbolic = count_preimages(
+        gm.sample(bottle, normals=normals, cells=cells), len(normals)
+    )
     order = np.lexsort(normals.T)
     signed = elliptic - hyperbolic
     assert (normals[order] == -normals[order[::-1]]).all()  # the set is symmetric, bit for bit
@@ -201,7 +210,7 @@ def test_klein_bottle(cells: tuple[int, int], frequency: int) -> None:
 @pytest.mark.parametrize("cells", [16, 32, 64])
 def test_cyclide(cells: int) -> None:
     for normals in (gm.icosphere(32), gm.fibonacci(10**5)):
-        samples = gm.sample(gm.surfaces.dupin_cyclide(), normals, cells=(cells, cells))
+        samples = gm.sample(gm.surfaces.dupin_cyclide(), normals=normals, cells=(cells, cells))
         elliptic, hyperbolic = count_preimages(samples, len(normals))
         assert (elliptic == hyperbolic).all()
 
@@ -213,7 +222,7 @@ def test_symmetric_ellipsoid_patch(cells: tuple[int, int], frequency: int) -> No
     normals = gm.icosphere(frequency)
     planes = (np.abs(normals) == 0.0).any(axis=1)
     assert planes.any()
-    samples = gm.sample(gm.surfaces.ellipsoid_patch(), normals, cells=cells)
+    samples = gm.sample(gm.surfaces.ellipsoid_patch(), normals=normals, cells=cells)
     axes = np.array([1.0, 0.6, 0.3])
     height = np.abs(axes[2] * normals[:, 2]) / np.linalg.norm(axes * normals, axis=1)
     latitude = np.degrees(np.arcsin(height))
@@ -232,7 +241,7 @@ def test_developable_surfaces(
 ) -> None:
     surface = moved(gm.surfaces.surface(name), rotation_of(quaternion), shift * factor, factor)
     with pytest.warns(gm.GaussmapWarning, match="flat or developable"):
-        samples = gm.sample(surface, gm.icosphere(32), cells=(32, 32))
+        samples = gm.sample(surface, normals=gm.icosphere(32), cells=(32, 32))
     assert np.isfinite(samples.points).all()
     assert np.isfinite(samples.gaussian_curvature).all()
     assert samples.report.invisible_share == pytest.approx(1.0)
@@ -255,8 +264,8 @@ def test_plain_sign_test_fails_where_this_one_does_not() -> None:
         patch = vectors_of(spline, index)
         _, U, V, W = python_function(formulas.forms)(patch, vector(normals))
         claims += (np.minimum(np.minimum(U, V), W) > 0) | (np.maximum(np.maximum(U, V), W) < 0)
-    exact = np.bincount(gm.sample(spline, normals).normal_index, minlength=len(normals))
-    exact += np.bincount(gm.sample(spline, -normals).normal_index, minlength=len(normals))
+    exact = np.bincount(gm.sample(spline, normals=normals).normal_index, minlength=len(normals))
+    exact += np.bincount(gm.sample(spline, normals=-normals).normal_index, minlength=len(normals))
     assert (exact == 4).all()  # two sheets, each seen by n and by −n
     assert (claims != 4).any()
 
@@ -284,7 +293,7 @@ def test_search_by_bins_finds_what_brute_force_finds(
         c3 = python_function(formulas.orientation)(patch, vector(normals))
         inside = (np.minimum(np.minimum(U, V), W) > 0) | (np.maximum(np.maximum(U, V), W) < 0)
         found |= {(index, int(k)) for k in np.flatnonzero(inside & (c3 > 0) & (D != 0))}
-    samples = gm.sample(spline, normals)
+    samples = gm.sample(spline, normals=normals)
     pairs = list(zip(samples.patch_index.tolist(), samples.normal_index.tolist(), strict=True))
     assert pairs == sorted(found)
     assert len(pairs) > 500
@@ -298,7 +307,7 @@ def test_open_border_belongs_to_the_surface() -> None:
     v = np.linspace(-0.99, 0.99, 777)
     normals = np.column_stack([0.0 * v, -1.5 * v, np.ones_like(v)])
     for cells in ((3, 3), (7, 5), (16, 16), (37, 41)):
-        samples = gm.sample(half, normals, cells=cells)
+        samples = gm.sample(half, normals=normals, cells=cells)
         assert (np.bincount(samples.normal_index, minlength=len(v)) == 1).all()
         assert np.abs(samples.uv[:, 0]).max() < 1e-12
         np.testing.assert_allclose(np.sort(samples.uv[:, 1]), v, rtol=0, atol=1e-12)
@@ -310,5 +319,5 @@ def test_corners_of_the_border_come_once() -> None:
     )
     corners = np.array([[-x, -y, 1.0] for x in (0.0, 1.0) for y in (0.0, 1.0)])
     for cells in ((3, 3), (8, 8), (5, 9)):
-        samples = gm.sample(bowl, corners, cells=cells)
+        samples = gm.sample(bowl, normals=corners, cells=cells)
         assert sorted(samples.normal_index.tolist()) == [0, 1, 2, 3]

@@ -19,7 +19,7 @@ from gaussmap.runtime.search import fill, find
 # The vertices of the icosphere lie in planes of symmetry: some samples are decided exactly.
 NORMALS = gm.icosphere(6)
 SPLINE = gm.fit(gm.surfaces.torus(), (12, 8))
-FULL = gm.sample(SPLINE, NORMALS)
+FULL = gm.sample(SPLINE, normals=NORMALS)
 SUBSETS = [(name,) for name in ARRAY_NAMES] + [
     ("points", "normals"),
     ("mean_curvature", "uv"),
@@ -29,7 +29,7 @@ SUBSETS = [(name,) for name in ARRAY_NAMES] + [
 
 
 def narrow(fields: Any = ("points",), **options: Any) -> Samples:
-    return gm.sample(SPLINE, NORMALS, fields=fields, **options)
+    return gm.sample(SPLINE, normals=NORMALS, fields=fields, **options)
 
 
 # --- what is stored -------------------------------------------------------------------------------
@@ -94,16 +94,16 @@ def test_principal_curvatures_of_float32():
 def test_a_missing_field_is_said_to_be():
     samples = narrow(("points", "normals"))
     with pytest.raises(
-        gm.MissingFieldError, match=r"hold points, normals only; add 'uv' to fields="
+        gm.errors.MissingFieldError, match=r"hold points, normals only; add 'uv' to fields="
     ):
         _ = samples.uv
     for name in ("elliptic", "hyperbolic", "principal_curvatures"):
         assert not hasattr(samples, name)
-        with pytest.raises(gm.MissingFieldError, match=f"^{name} needs gaussian_curvature"):
+        with pytest.raises(gm.errors.MissingFieldError, match=f"^{name} needs gaussian_curvature"):
             getattr(samples, name)
     lacks_mean = narrow(("gaussian_curvature",))
     assert lacks_mean.elliptic.any()
-    with pytest.raises(gm.MissingFieldError, match="needs mean_curvature, but"):
+    with pytest.raises(gm.errors.MissingFieldError, match="needs mean_curvature, but"):
         _ = lacks_mean.principal_curvatures
     with pytest.raises(AttributeError, match="has no attribute 'curvature'") as caught:
         _ = samples.curvature  # pyright: ignore[reportAttributeAccessIssue]
@@ -111,7 +111,7 @@ def test_a_missing_field_is_said_to_be():
 
 
 def test_pictures_say_what_they_need(tmp_path):
-    with pytest.raises(gm.MissingFieldError, match="add 'normal_index' to fields"):
+    with pytest.raises(gm.errors.MissingFieldError, match="add 'normal_index' to fields"):
         plot_samples(narrow(), SPLINE, NORMALS, tmp_path / "a.png")
     assert not any(tmp_path.iterdir())
 
@@ -134,11 +134,11 @@ def test_pictures_say_what_they_need(tmp_path):
     ],
 )
 def test_fields_that_are_none(fields, message):
-    error = gm.UnknownNameError if "no field" in message else gm.InputError
+    error = gm.errors.UnknownNameError if "no field" in message else gm.errors.InputError
     for call in (
         lambda: narrow(fields),
-        lambda: next(gm.sample_many([SPLINE], NORMALS, fields=fields)),
-        lambda: gm.sample_stream(SPLINE, NORMALS, fields=fields),
+        lambda: next(gm.sample_many([SPLINE], normals=NORMALS, fields=fields)),
+        lambda: gm.sample_stream(SPLINE, normals=NORMALS, fields=fields),
     ):
         with pytest.raises(error, match=message):
             call()
@@ -150,10 +150,10 @@ def test_fields_that_are_none(fields, message):
 def test_types_that_are_none(dtype):
     for call in (
         lambda: narrow(dtype=dtype),
-        lambda: next(gm.sample_many([SPLINE], NORMALS, dtype=dtype)),
-        lambda: gm.sample_stream(SPLINE, NORMALS, dtype=dtype),
+        lambda: next(gm.sample_many([SPLINE], normals=NORMALS, dtype=dtype)),
+        lambda: gm.sample_stream(SPLINE, normals=NORMALS, dtype=dtype),
     ):
-        with pytest.raises(gm.InputError, match="dtype must be float32 or float64, not"):
+        with pytest.raises(gm.errors.InputError, match="dtype must be float32 or float64, not"):
             call()
 
 
@@ -190,15 +190,15 @@ def test_concatenation():
     assert (report.surface, report.normals) == ("several surfaces", None)
     assert (report.samples, report.patches) == (2 * len(FULL), FULL.report.patches)
     for unusable in ([], [FULL, narrow()], [FULL, narrow(None, dtype="f4")], [1], [FULL, None]):
-        with pytest.raises(gm.InputError):
+        with pytest.raises(gm.errors.InputError):
             Samples.concatenate(unusable)  # pyright: ignore[reportArgumentType]
 
 
 def test_samples_need_one_array_and_one_type():
-    with pytest.raises(gm.InputError, match="need at least one array"):
+    with pytest.raises(gm.errors.InputError, match="need at least one array"):
         Samples(report=FULL.report)
     single = narrow(dtype=np.float32)
-    with pytest.raises(gm.InputError, match="points must be a float64 array"):
+    with pytest.raises(gm.errors.InputError, match="points must be a float64 array"):
         Samples(points=single.points, normals=FULL.normals, report=FULL.report)
 
 
@@ -250,7 +250,7 @@ def test_vtp_of_few_fields(tmp_path):
     ],
 )
 def test_formats_say_what_they_need(tmp_path, suffix, fields, lacking):
-    with pytest.raises(gm.InputError, match=f"a {suffix} file needs {lacking}; add"):
+    with pytest.raises(gm.errors.InputError, match=f"a {suffix} file needs {lacking}; add"):
         narrow(fields).write(tmp_path / f"a{suffix}")
     assert not any(tmp_path.iterdir())
 
@@ -264,7 +264,7 @@ def test_a_file_that_lacks_what_it_promises(tmp_path):
         (b"comment gaussmap fields points uv\n", b"", "lacks the columns nx"),
     ):
         (tmp_path / "b.ply").write_bytes(whole.replace(old, new))
-        with pytest.raises(gm.FileError, match=message):
+        with pytest.raises(gm.errors.FileError, match=message):
             gm.read_samples(tmp_path / "b.ply")
 
 

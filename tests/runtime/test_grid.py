@@ -15,7 +15,7 @@ def rng():
 
 def refused(complaint, *arguments, **named):
     """Check that from_grid raises InputError with one line that matches `complaint`."""
-    with pytest.raises(gm.InputError, match=complaint) as caught:
+    with pytest.raises(gm.errors.InputError, match=complaint) as caught:
         gm.Surface.from_grid(*arguments, **named)
     assert "\n" not in str(caught.value)
 
@@ -379,7 +379,7 @@ def test_spacing_is_for_elevations_and_ends_are_for_points():
     "periodic", [(False, False), (True, True), ("flip", False), (True, "pole")]
 )
 def test_points_too_large_to_compute_with(periodic):
-    with pytest.raises(gm.SurfaceError, match="coordinates of 'grid' are too large"):
+    with pytest.raises(gm.errors.SurfaceError, match="coordinates of 'grid' are too large"):
         gm.Surface.from_grid(1.7e308 * (2 * POINTS[:4] - 1), periodic=periodic)
 
 
@@ -406,5 +406,7 @@ def test_mirrored_both_ways():
 def test_parameters_outside_the_grid():
     surface = gm.Surface.from_grid(POINTS)
     for u, v in ((4.1, 0.0), (0.0, -0.1), (np.nan, 0.0), (0.0, np.inf)):
-        with pytest.raises(gm.InputError, match=r"lies outside the domain \(0.0, \d.0\) of 'grid'"):
+        with pytest.raises(
+            gm.errors.InputError, match=r"lies outside the domain \(0.0, \d.0\) of 'grid'"
+        ):
             surface.evaluate(u, v)

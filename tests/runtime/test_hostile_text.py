@@ -111,7 +111,7 @@ HOSTILE = [*RUNS, *TOO_LARGE, *TOO_LONG, *NOT_COMPILED]
 
 def refused(call: Any, *arguments: Any, **named: Any) -> None:
     """Check that a call raises InputError with one short line that can be printed."""
-    with pytest.raises(gm.InputError) as caught:
+    with pytest.raises(gm.errors.InputError) as caught:
         call(*arguments, **named)
     message = str(caught.value)
     assert "\n" not in message
@@ -140,9 +140,9 @@ def test_texts_of_surfaces_and_curves(text: str) -> None:
     refused(gm.Surface.from_sympy, ("u", "v", "u*v"), "uv", ((0, text), (0, 1)))
     refused(gm.Surface.from_sympy, ("u", "v", "u*v"), ("u", text), SQUARE)
     refused(gm.Surface.from_sympy, text, "uv", SQUARE)
-    refused(gm.Curve.from_sympy, ("u", text), "u", (0, 1))
-    refused(gm.Curve.from_sympy, ("u", "u**2"), "u", (0, text))
-    refused(gm.Curve.from_sympy, ("u", "u**2"), text, (0, 1))
+    refused(gm.curves.Curve.from_sympy, ("u", text), "u", (0, 1))
+    refused(gm.curves.Curve.from_sympy, ("u", "u**2"), "u", (0, text))
+    refused(gm.curves.Curve.from_sympy, ("u", "u**2"), text, (0, 1))
 
 
 @pytest.mark.parametrize("text", HOSTILE, ids=lambda x: ascii(x[:30]))
@@ -192,7 +192,7 @@ def test_deep_expressions_are_refused() -> None:
         deep = sp.sin(deep, evaluate=False)
     refused(gm.SupportFunction.from_sympy, deep)
     refused(gm.SupportFunction.from_sympy, "1", domain=sp.Gt(deep, 0, evaluate=False))
-    refused(gm.Curve.from_sympy, (x, deep), x, (0, 1))
+    refused(gm.curves.Curve.from_sympy, (x, deep), x, (0, 1))
 
 
 @pytest.mark.parametrize(

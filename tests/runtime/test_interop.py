@@ -173,19 +173,20 @@ class TestOpen3d:
 def test_a_library_that_is_not_installed(library, extra, convert, monkeypatch):
     monkeypatch.setitem(sys.modules, library, None)
     message = rf'^this needs {library}, but it is not installed; run: .* "gaussmap\[{extra}\]"$'
-    with pytest.raises(gm.MissingExtraError, match=message):
+    with pytest.raises(gm.errors.MissingExtraError, match=message):
         convert()
 
 
 @pytest.mark.parametrize("convert", ["to_pyvista", "to_trimesh", "to_open3d"])
 def test_points_are_needed(convert):
-    with pytest.raises(gm.MissingFieldError, match="add 'points' to fields"):
+    with pytest.raises(gm.errors.MissingFieldError, match="add 'points' to fields"):
         getattr(samples(fields=("uv",)), convert)()
 
 
 def test_meshes_load_what_triangulates_and_nothing_heavier():
     code = (
-        "import sys, gaussmap as gm; samples = gm.sample(gm.surfaces.torus(), gm.icosphere(8));"
+        "import sys, gaussmap as gm;"
+        "samples = gm.sample(gm.surfaces.torus(), normals=gm.icosphere(8));"
         "before = 'scipy.spatial' in sys.modules; samples.mesh();"
         "heavy = ('sympy', 'pandas', 'pyvista', 'trimesh', 'open3d', 'matplotlib');"
         "print(before, 'scipy.spatial' in sys.modules, [x for x in heavy if x in sys.modules])"

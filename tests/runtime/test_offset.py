@@ -95,7 +95,7 @@ def test_there_and_back(d: float) -> None:
 def test_it_is_the_offset_of_the_support_function(d: float) -> None:
     """The same kernel for K and H; its points are moved as here."""
     spline, normals = gm.fit(gm.surfaces.torus(), (32, 24)), gm.fibonacci(1500)
-    moved = gm.sample(spline, normals).offset(d)
+    moved = gm.sample(spline, normals=normals).offset(d)
     assert moved.spline is None
     order = np.lexsort((moved.patch_index, moved.normal_index))
     branches = gm.SupportFunction.of_spline(spline).offset(d).branches(normals)
@@ -109,8 +109,8 @@ def test_it_is_the_offset_of_the_support_function(d: float) -> None:
 @pytest.mark.compiled
 def test_float32_is_rounded_once() -> None:
     spline, normals = gm.fit(gm.surfaces.torus(), (32, 24)), gm.fibonacci(500)
-    narrow = gm.sample(spline, normals, dtype=np.float32).offset(0.1)
-    wide = gm.sample(spline, normals).offset(0.1)
+    narrow = gm.sample(spline, normals=normals, dtype=np.float32).offset(0.1)
+    wide = gm.sample(spline, normals=normals).offset(0.1)
     assert narrow.dtype == np.float32
     for name in FIELDS:
         a, b = getattr(narrow, name), getattr(wide, name)
@@ -236,13 +236,13 @@ def test_fields_that_are_there_are_moved(names: tuple[str, ...]) -> None:
     ],
 )
 def test_fields_that_are_needed(names: tuple[str, ...], missing: str) -> None:
-    with pytest.raises(gm.MissingFieldError, match=missing):
+    with pytest.raises(gm.errors.MissingFieldError, match=missing):
         only(*names).offset(0.1)
 
 
 @pytest.mark.parametrize("distance", [np.nan, np.inf, "1", None, [1.0, 2.0], 1j])
 def test_distances_that_are_none(distance: Any) -> None:
-    with pytest.raises(gm.InputError, match=r"^distance must be a finite number, not "):
+    with pytest.raises(gm.errors.InputError, match=r"^distance must be a finite number, not "):
         exact_torus().offset(distance)
 
 

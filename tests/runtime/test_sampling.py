@@ -7,8 +7,8 @@ import gaussmap as gm
 import numpy as np
 import pytest
 import sympy as sp
+from gaussmap.runtime.directions.unit import as_normals
 from gaussmap.runtime.samples import ARRAY_NAMES
-from gaussmap.runtime.sphere import as_normals
 from gaussmap.symbolic.surfaces import CATALOGUE
 
 DEVELOPABLE = ("plane", "cylinder", "cone")
@@ -108,7 +108,9 @@ def test_counts_that_are_none(count):
         lambda: next(gm.sample_many([TORUS], count=count)),
     ]
     for call in calls:
-        with pytest.raises(gm.InputError, match="count must be a whole number of at least 1, not"):
+        with pytest.raises(
+            gm.errors.InputError, match="count must be a whole number of at least 1, not"
+        ):
             call()
 
 
@@ -117,7 +119,9 @@ def test_normals_or_a_count_or_an_angle_or_a_coverage():
     pairs = [("normals", "count"), ("normals", "angle"), ("count", "angle")]
     for asked in ({}, *({x: amounts[x] for x in pair} for pair in pairs), amounts):
         for call in (gm.sample, lambda x, **asked: next(gm.sample_many([x], **asked))):
-            with pytest.raises(gm.InputError, match="say how many samples by one of normals=") as e:
+            with pytest.raises(
+                gm.errors.InputError, match="say how many samples by one of normals="
+            ) as e:
                 call(BROKEN, **asked)
             assert ("none is given" in str(e.value)) == (not asked)
             assert all(name in str(e.value).split(";")[1] for name in asked)
@@ -125,7 +129,7 @@ def test_normals_or_a_count_or_an_angle_or_a_coverage():
 
 def test_cells_are_for_surfaces():
     spline = gm.fit(TORUS, (4, 4))
-    with pytest.raises(gm.InputError, match="this spline has its cells already"):
+    with pytest.raises(gm.errors.InputError, match="this spline has its cells already"):
         gm.sample(spline, count=5, cells=(4, 4))
     assert gm.sample(spline, count=50).report.patches == 64
     assert gm.sample(TORUS, count=50, cells=(5, 4)).report.patches == 80
@@ -140,7 +144,7 @@ def test_developable_surfaces_are_warned_of(name):
     surface = gm.surfaces.surface(name)
     why = f"surface '{name}': 100 % of its area is flat or developable, where normals see nothing"
     with pytest.warns(gm.GaussmapWarning, match=why) as caught:
-        samples = gm.sample(surface, gm.icosphere(8))
+        samples = gm.sample(surface, normals=gm.icosphere(8))
     assert len(caught) == 1
     assert caught[0].filename == __file__
     assert samples.report.invisible_share == pytest.approx(1.0)
@@ -151,7 +155,9 @@ def test_developable_surfaces_are_warned_of(name):
 @pytest.mark.compiled
 def test_normals_outside_the_gaussian_image_are_warned_of():
     with pytest.warns(gm.GaussmapWarning, match="none of the normals lies in its Gaussian image"):
-        samples = gm.sample(gm.surfaces.wavy_graph(), [[0, 0, -1], [1, 0, 0]], cells=(16, 16))
+        samples = gm.sample(
+            gm.surfaces.wavy_graph(), normals=[[0, 0, -1], [1, 0, 0]], cells=(16, 16)
+        )
     assert len(samples) == 0
     assert samples.points.shape == (0, 3)
     assert samples.report.normals == 2
@@ -161,9 +167,12 @@ def test_normals_outside_the_gaussian_image_are_warned_of():
 def test_a_surface_whose_bending_is_lost_in_rounding_is_warned_of():
     wire = gm.surfaces.torus(minor=1e-14)
     with pytest.warns(gm.GaussmapWarning, match="developable up to the rounding"):
-        samples = gm.sample(wire, gm.icosphere(8), cells=(16, 16))
+        samples = gm.sample(wire, normals=gm.icosphere(8), cells=(16, 16))
     assert len(samples) == 0
-    assert len(gm.sample(gm.surfaces.torus(minor=1e-6), gm.icosphere(8), cells=(16, 16))) > 1200
+    assert (
+        len(gm.sample(gm.surfaces.torus(minor=1e-6), normals=gm.icosphere(8), cells=(16, 16)))
+        > 1200
+    )
 
 
 @pytest.mark.compiled
@@ -188,7 +197,7 @@ SURFACES = ["torus", "moebius_band", "wavy_graph", "dupin_cyclide", "catenoid", 
 def test_samples_answer_their_normals(name, cells):
     spline = gm.fit(gm.surfaces.surface(name), cells)
     normals = as_normals(gm.fibonacci(700) @ np.array([[2, -1, 2], [2, 2, -1], [-1, 2, 2.0]]))
-    samples = gm.sample(spline, normals)
+    samples = gm.sample(spline, normals=normals)
     assert len(samples) > 100
     report = samples.report
     assert (report.surface, report.normals, report.samples) == (name, 700, len(samples))
@@ -212,7 +221,7 @@ def test_samples_answer_their_normals(name, cells):
 @pytest.mark.parametrize("cells", [(10, 7), (7, 12)])
 def test_patch_index_is_that_of_uv(name, cells):
     spline = gm.fit(gm.surfaces.surface(name), cells)
-    samples = gm.sample(spline, gm.icosphere(10))
+    samples = gm.sample(spline, normals=gm.icosphere(10))
     assert (samples.patch_index >= 0).all()
     assert (samples.patch_index < spline.patches).all()
     place = (samples.uv - spline.frame[:2]) / spline.frame[2:]
@@ -229,9 +238,9 @@ def test_patch_index_is_that_of_uv(name, cells):
 
 @pytest.mark.compiled
 def test_samples_of_a_list_and_of_one_normal():
-    several = gm.sample(TORUS, [[0, 0, 1], [3, 0, 0], [0, 1, 1]], cells=(16, 16))
+    several = gm.sample(TORUS, normals=[[0, 0, 1], [3, 0, 0], [0, 1, 1]], cells=(16, 16))
     assert np.bincount(several.normal_index).tolist()[1:] == [2, 2]
-    single = gm.sample(TORUS, ((1, 2, 3),), cells=(16, 16))
+    single = gm.sample(TORUS, normals=((1, 2, 3),), cells=(16, 16))
     assert len(single) == 2
     np.testing.assert_allclose(
         single.normals, [np.array([1, 2, 3]) / math.sqrt(14)] * 2, rtol=1e-15
@@ -240,9 +249,9 @@ def test_samples_of_a_list_and_of_one_normal():
 
 def test_a_normal_that_is_asked_twice_is_answered_twice():
     normals = np.repeat(gm.fibonacci(50), 3, axis=0)
-    samples = gm.sample(TORUS, normals, cells=(12, 12))
+    samples = gm.sample(TORUS, normals=normals, cells=(12, 12))
     assert np.bincount(samples.normal_index).tolist() == [2] * 150
-    single = gm.sample(TORUS, gm.fibonacci(50), cells=(12, 12))
+    single = gm.sample(TORUS, normals=gm.fibonacci(50), cells=(12, 12))
     order = np.argsort(samples.normal_index, kind="stable").reshape(50, 3, 2)
     points = samples.points[order]
     assert (points == points[:, :1]).all()
@@ -254,8 +263,8 @@ def test_a_normal_that_is_asked_twice_is_answered_twice():
 def test_the_length_of_normals_does_not_matter(factor):
     normals = gm.fibonacci(300)
     factors = factor * np.linspace(0.5, 1.0, 300)[:, None]
-    plain = gm.sample(TORUS, normals, cells=(12, 12))
-    scaled = gm.sample(TORUS, factors * normals, cells=(12, 12))
+    plain = gm.sample(TORUS, normals=normals, cells=(12, 12))
+    scaled = gm.sample(TORUS, normals=factors * normals, cells=(12, 12))
     for name in ("normal_index", "patch_index"):
         np.testing.assert_array_equal(getattr(scaled, name), getattr(plain, name))
     for name in ("points", "normals", "uv", "support"):
@@ -267,8 +276,8 @@ def test_the_length_of_normals_does_not_matter(factor):
 @pytest.mark.parametrize("name", ["torus", "moebius_band", "sphere"])
 def test_powers_of_two_change_no_bit(name, exponent):
     surface, factor = gm.surfaces.surface(name), 2.0**exponent
-    plain = gm.sample(surface, gm.icosphere(6), cells=(12, 12))
-    scaled = gm.sample(moved(surface, factor), gm.icosphere(6), cells=(12, 12))
+    plain = gm.sample(surface, normals=gm.icosphere(6), cells=(12, 12))
+    scaled = gm.sample(moved(surface, factor), normals=gm.icosphere(6), cells=(12, 12))
     powers = {"points": 1, "support": 1, "gaussian_curvature": -2, "mean_curvature": -1}
     for array in ARRAY_NAMES:
         expected = getattr(plain, array) * factor ** powers.get(array, 0)
@@ -279,8 +288,8 @@ def test_opposite_normals_see_the_other_side():
     """Exchanging u and v turns the surface inside out: n and −n give the same points."""
     turned = gm.Surface("turned", lambda u, v: TORUS.evaluate(v, u), TORUS.domain, TORUS.ends)
     normals = gm.fibonacci(200)
-    outside = gm.sample(TORUS, normals, cells=(12, 16))
-    inside = gm.sample(turned, -normals, cells=(16, 12))
+    outside = gm.sample(TORUS, normals=normals, cells=(12, 16))
+    inside = gm.sample(turned, normals=-normals, cells=(16, 12))
     first, second = (np.lexsort((x.gaussian_curvature, x.normal_index)) for x in (outside, inside))
     for name, sign in (("points", 1), ("gaussian_curvature", 1), ("mean_curvature", -1),
                        ("support", -1)):  # fmt: skip
@@ -296,21 +305,21 @@ def test_arrays_and_surfaces_are_left_alone():
     normals.setflags(write=False)
     spline = gm.fit(TORUS, (8, 8))
     before = spline.coefficients.copy()
-    samples = gm.sample(spline, normals)
+    samples = gm.sample(spline, normals=normals)
     assert (spline.coefficients == before).all()
-    again = gm.sample(spline, normals)
+    again = gm.sample(spline, normals=normals)
     samples.points[:] = 0.0
     samples.normals[:] = 0.0
     assert np.abs(again.points).max() > 1.0
-    np.testing.assert_array_equal(gm.sample(spline, normals).points, again.points)
+    np.testing.assert_array_equal(gm.sample(spline, normals=normals).points, again.points)
 
 
 @pytest.mark.compiled
 def test_sizes_at_the_end_of_double_precision():
     """Down to subnormal numbers: the same normals, and curvatures that overflow with their sign."""
-    plain = gm.sample(TORUS, gm.icosphere(5), cells=(16, 16))
+    plain = gm.sample(TORUS, normals=gm.icosphere(5), cells=(16, 16))
     for factor in (2.0**-1030, 2.0**990):
-        samples = gm.sample(moved(TORUS, factor), gm.icosphere(5), cells=(16, 16))
+        samples = gm.sample(moved(TORUS, factor), normals=gm.icosphere(5), cells=(16, 16))
         assert np.isfinite(samples.points).all()
         assert len(samples) == len(plain)
         assert samples.elliptic.sum() == plain.elliptic.sum()
@@ -324,7 +333,7 @@ def test_sizes_at_the_end_of_double_precision():
 @pytest.mark.compiled
 def test_the_torus_is_sampled_by_solid_angle():
     """The outer half has more area than the inner one, and the same curvature in total."""
-    samples = gm.sample(TORUS, gm.fibonacci(20_000))
+    samples = gm.sample(TORUS, normals=gm.fibonacci(20_000))
     outer = np.hypot(samples.points[:, 0], samples.points[:, 1]) > 1.0
     assert outer.sum() == pytest.approx(20_000, abs=60)
     assert (~outer).sum() == pytest.approx(20_000, abs=60)
@@ -381,7 +390,7 @@ def test_total_curvature_counts_samples():
     """With S normals, S/4π samples come for each steradian of the Gaussian image."""
     normals = gm.fibonacci(50_000)
     for name, solid_angle in (("catenoid", 4 * math.pi * math.tanh(1)), ("torus", 8 * math.pi)):
-        samples = gm.sample(gm.surfaces.surface(name), normals)
+        samples = gm.sample(gm.surfaces.surface(name), normals=normals)
         assert len(samples) == pytest.approx(50_000 * solid_angle / (4 * math.pi), rel=2e-3)
 
 
@@ -428,7 +437,7 @@ def test_other_errors_go_through():
         yield TORUS
         raise RuntimeError("the end of the file")
 
-    stream = gm.sample_many(surfaces(), [[1, 1, 1]], cells=(5, 5), progress=False)
+    stream = gm.sample_many(surfaces(), normals=[[1, 1, 1]], cells=(5, 5), progress=False)
     assert len(next(stream)) > 0
     with pytest.raises(RuntimeError, match="the end of the file"):
         next(stream)
@@ -436,14 +445,16 @@ def test_other_errors_go_through():
 
 @pytest.mark.parametrize("surfaces", [TORUS, None, "torus", 5])
 def test_what_is_not_several_surfaces(surfaces):
-    with pytest.raises(gm.InputError, match="sample_many takes surfaces to go through, not "):
+    with pytest.raises(
+        gm.errors.InputError, match="sample_many takes surfaces to go through, not "
+    ):
         many(surfaces, count=10)
 
 
 def test_many_of_nothing():
     assert many([], count=10) == []
     for asked in ({"count": 0}, {"normals": []}, {"count": 5, "threads": 0}):
-        with pytest.raises(gm.InputError):
+        with pytest.raises(gm.errors.InputError):
             many([], **asked)
 
 

@@ -192,7 +192,7 @@ def test_no_silhouette() -> None:
     ],
 )
 def test_directions_that_are_none(direction: Any, message: str) -> None:
-    with pytest.raises(gm.InputError, match=message):
+    with pytest.raises(gm.errors.InputError, match=message):
         gm.silhouette(TORUS, direction, count=10)
 
 
@@ -204,5 +204,5 @@ def test_directions_of_any_length(scale: float) -> None:
 
 @pytest.mark.parametrize("count", [0, -1, 1.5, None, "9"])
 def test_counts_that_are_none(count: Any) -> None:
-    with pytest.raises(gm.InputError, match="count must be a whole number of at least 1"):
+    with pytest.raises(gm.errors.InputError, match="count must be a whole number of at least 1"):
         gm.silhouette(TORUS, [0, 0, 1], count=count)

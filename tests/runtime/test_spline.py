@@ -399,13 +399,13 @@ def test_outside_an_open_domain():
     ):
         complaint = rf"^{name} = .* lies outside the domain \(0.0, 1.0\) of 'surface'\.$"
         for read_ in (spline.evaluate, spline.normals):
-            with pytest.raises(gm.InputError, match=complaint):
+            with pytest.raises(gm.errors.InputError, match=complaint):
                 read_([0.5, u], [0.5, v])
     spline.evaluate([0.0, 1.0], [1.0, 0.0])
 
 
 def test_infinite_periodic_parameters():
-    with pytest.raises(gm.InputError, match="u = inf lies outside"):
+    with pytest.raises(gm.errors.InputError, match="u = inf lies outside"):
         gm.fit(TORUS, (5, 5)).evaluate(np.inf, 0.0)
 
 
@@ -560,12 +560,12 @@ def test_cells(cells):
 )
 def test_cells_that_are_none(cells, complaint):
     for call in (gm.fit, lambda surface, cells: gm.sample(surface, count=5, cells=cells)):
-        with pytest.raises(gm.InputError, match=complaint):
+        with pytest.raises(gm.errors.InputError, match=complaint):
             call(CUBE, cells)
 
 
 def test_an_odd_number_of_cells_at_a_pole():
-    with pytest.raises(gm.InputError, match="even number of cells along u, not 5"):
+    with pytest.raises(gm.errors.InputError, match="even number of cells along u, not 5"):
         gm.fit(gm.surfaces.sphere(), (5, 4))
     assert gm.fit(gm.surfaces.sphere(), (4, 5)).cells == (4, 5)
 
@@ -573,13 +573,13 @@ def test_an_odd_number_of_cells_at_a_pole():
 @pytest.mark.parametrize("surface", [None, "torus", 5, np.zeros((5, 5, 3)), TORUS.evaluate])
 def test_what_cannot_be_fitted(surface):
     for call in (gm.fit, lambda surface: gm.sample(surface, count=5)):
-        with pytest.raises(gm.InputError, match="fit takes a Surface, not "):
+        with pytest.raises(gm.errors.InputError, match="fit takes a Surface, not "):
             call(surface)
 
 
 @pytest.mark.parametrize("domain", [((0, 5e-324), (0, 1)), ((1, 1 + 2**-50), (0, 1))])
 def test_domains_too_narrow_for_the_cells(domain):
-    with pytest.raises(gm.InputError, match="domain of u is too narrow for 8 cells"):
+    with pytest.raises(gm.errors.InputError, match="domain of u is too narrow for 8 cells"):
         gm.fit(gm.Surface.from_callable(cube, domain), (8, 8))
 
 
@@ -601,5 +601,5 @@ def test_a_spline_is_one_line_at_a_prompt():
     assert repr(gm.fit(TORUS, (8, 6))) == f"Spline(8 × 6 cells of {TORUS.name})"
     surface = gm.Surface.from_sympy(("u", "v", "u*v"), ("u", "v"), SQUARE, name="long\n" * 50)
     assert len(repr(gm.fit(surface, (4, 4)))) < 80
-    curve = gm.Curve.from_points([[0, 0], [1, 0], [2, 1], [3, 3]], name="hook")
-    assert repr(gm.fit_curve(curve, pieces=5)) == "CurveSpline(5 pieces of hook)"
+    curve = gm.curves.Curve.from_points([[0, 0], [1, 0], [2, 1], [3, 3]], name="hook")
+    assert repr(gm.curves.fit(curve, pieces=5)) == "CurveSpline(5 pieces of hook)"

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from gaussmap.runtime import choice, search, stream
 from gaussmap.runtime.bins import NormalBins
+from gaussmap.runtime.directions.unit import as_normals
 from gaussmap.runtime.samples import Samples
 from gaussmap.runtime.search import Search, find
-from gaussmap.runtime.sphere import as_normals
 
 TORUS = gm.fit(gm.surfaces.torus(), (12, 8))
 
@@ -71,9 +71,9 @@ def test_fields_and_types(fields, dtype):
 
 def test_one_patch_with_more_samples_than_a_chunk():
     spline = gm.fit(gm.surfaces.torus(), (3, 3))
-    whole = gm.sample(spline, gm.fibonacci(500))
+    whole = gm.sample(spline, normals=gm.fibonacci(500))
     assert np.bincount(whole.patch_index).max() > 3 * 5
-    chunks = list(gm.sample_stream(spline, gm.fibonacci(500), chunk=5))
+    chunks = list(gm.sample_stream(spline, normals=gm.fibonacci(500), chunk=5))
     assert max(map(len, chunks)) == 5
     same(Samples.concatenate(chunks), whole)
 
@@ -86,11 +86,11 @@ def test_a_sample_of_two_ranges_comes_once(name, monkeypatch):
     u, v = np.linspace(u0, u1, 13), np.linspace(v0, v1, 9)
     ends = [spline.normals(u, x) for x in (v0, v1)] + [spline.normals(x, v) for x in (u0, u1)]
     normals = as_normals(np.concatenate(ends))  # those at the corners of border cells
-    whole = gm.sample(spline, normals)
+    whole = gm.sample(spline, normals=normals)
     monkeypatch.setattr(search, "FEWEST_PATCHES", 1)
     monkeypatch.setattr(search, "MOST_PATCHES", 1)
     for threads in (1, 2):
-        same(Samples.concatenate(gm.sample_stream(spline, normals, threads=threads)), whole)
+        same(Samples.concatenate(gm.sample_stream(spline, normals=normals, threads=threads)), whole)
     alone, apart = Search(spline, NormalBins(normals)), 0
     for patch in range(spline.patches):
         for found in alone.pairs(patch, patch + 1):
@@ -134,7 +134,9 @@ def test_a_count_is_concluded_from_a_smaller_one(name, monkeypatch):
 
 
 def test_no_samples_are_one_empty_chunk():
-    empty = gm.sample_stream(gm.surfaces.plane(), gm.icosphere(2), cells=(8, 8), fields=("uv",))
+    empty = gm.sample_stream(
+        gm.surfaces.plane(), normals=gm.icosphere(2), cells=(8, 8), fields=("uv",)
+    )
     with pytest.warns(gm.GaussmapWarning, match="flat or developable") as caught:
         chunks = [*empty]
     assert [len(x) for x in chunks] == [0]
@@ -146,15 +148,15 @@ def test_no_samples_are_one_empty_chunk():
 def test_no_samples_of_several_blocks(monkeypatch):
     monkeypatch.setattr(stream, "NORMALS_AT_A_TIME", 1)
     with pytest.warns(gm.GaussmapWarning, match="none of the normals lies in its Gaussian image"):
-        chunks = list(gm.sample_stream(QUARTER, [[-1, -1, 0]] * 3))
+        chunks = list(gm.sample_stream(QUARTER, normals=[[-1, -1, 0]] * 3))
     assert [len(x) for x in chunks] == [0]
     # nothing in the first and in the last block
     normals = [[-1, -1, 0], [1, 2, 3], [-1, -1, 0]]
-    assert [len(x) for x in gm.sample_stream(QUARTER, normals)] == [1]
+    assert [len(x) for x in gm.sample_stream(QUARTER, normals=normals)] == [1]
 
 
 def test_reports_count_their_chunk():
-    chunks = list(gm.sample_stream(TORUS, gm.icosphere(4), chunk=50))
+    chunks = list(gm.sample_stream(TORUS, normals=gm.icosphere(4), chunk=50))
     for chunk in chunks:
         assert chunk.report.samples == len(chunk)
         assert chunk.report.degenerate_patches is None
@@ -169,18 +171,18 @@ def broken(u, v):
 @pytest.mark.parametrize(
     ("arguments", "error"),
     [
-        ({}, gm.InputError),
-        ({"count": 5, "normals": [[0, 0, 1]]}, gm.InputError),
-        ({"count": 0}, gm.InputError),
-        ({"normals": [[0, 0, 0]]}, gm.InputError),
-        ({"count": 5, "chunk": 0}, gm.InputError),
-        ({"count": 5, "chunk": 2.5}, gm.InputError),
-        ({"count": 5, "chunk": "many"}, gm.InputError),
-        ({"count": 5, "threads": 0}, gm.InputError),
-        ({"count": 5, "cells": (4, 4)}, gm.InputError),
+        ({}, gm.errors.InputError),
+        ({"count": 5, "normals": [[0, 0, 1]]}, gm.errors.InputError),
+        ({"count": 0}, gm.errors.InputError),
+        ({"normals": [[0, 0, 0]]}, gm.errors.InputError),
+        ({"count": 5, "chunk": 0}, gm.errors.InputError),
+        ({"count": 5, "chunk": 2.5}, gm.errors.InputError),
+        ({"count": 5, "chunk": "many"}, gm.errors.InputError),
+        ({"count": 5, "threads": 0}, gm.errors.InputError),
+        ({"count": 5, "cells": (4, 4)}, gm.errors.InputError),
         (
             {"count": 5, "surface": gm.Surface.from_callable(broken, ((0, 1), (0, 1)))},
-            gm.SurfaceError,
+            gm.errors.SurfaceError,
         ),
     ],
 )
@@ -205,13 +207,13 @@ def test_closing_ends_the_work(threads, monkeypatch):
 
     monkeypatch.setattr(Search, "pairs", recorded)
     before = threading.active_count()
-    chunks = gm.sample_stream(TORUS, gm.icosphere(8), chunk=5, threads=threads)
+    chunks = gm.sample_stream(TORUS, normals=gm.icosphere(8), chunk=5, threads=threads)
     next(chunks)
     chunks.close()
     assert len(searched) < TORUS.patches / 4
     assert threading.active_count() == before
     # and without a word of farewell
-    chunks = gm.sample_stream(TORUS, gm.icosphere(8), chunk=5, threads=threads)
+    chunks = gm.sample_stream(TORUS, normals=gm.icosphere(8), chunk=5, threads=threads)
     next(chunks)
     del chunks
     gc.collect()
@@ -233,14 +235,14 @@ def test_an_error_ends_the_work(threads, error, monkeypatch):
     monkeypatch.setattr(Search, "pairs", failing)
     before = threading.active_count()
     with pytest.raises(error, match="one hundred"):
-        list(gm.sample_stream(TORUS, gm.icosphere(8), chunk=5, threads=threads))
+        list(gm.sample_stream(TORUS, normals=gm.icosphere(8), chunk=5, threads=threads))
     assert threading.active_count() == before
 
 
 @pytest.mark.compiled
 def test_streams_in_several_python_threads():
-    whole = gm.sample(TORUS, gm.icosphere(8))
-    narrow = gm.sample(TORUS, gm.icosphere(8), fields=("points",), dtype=np.float32)
+    whole = gm.sample(TORUS, normals=gm.icosphere(8))
+    narrow = gm.sample(TORUS, normals=gm.icosphere(8), fields=("points",), dtype=np.float32)
     found: list[Samples] = [whole] * 6
     start = threading.Barrier(6, timeout=30)
 
@@ -248,7 +250,9 @@ def test_streams_in_several_python_threads():
         options = {"fields": ("points",), "dtype": np.float32} if k % 2 else {}
         start.wait()
         found[k] = Samples.concatenate(
-            gm.sample_stream(TORUS, gm.icosphere(8), chunk=100 + k, threads=1 + k % 3, **options)
+            gm.sample_stream(
+                TORUS, normals=gm.icosphere(8), chunk=100 + k, threads=1 + k % 3, **options
+            )
         )
 
     workers = [threading.Thread(target=work, args=(k,)) for k in range(6)]
@@ -261,11 +265,11 @@ def test_streams_in_several_python_threads():
 
 
 def test_streams_may_be_interleaved():
-    first = gm.sample_stream(TORUS, gm.icosphere(6), chunk=20)
-    second = gm.sample_stream(QUARTER, gm.icosphere(6), chunk=7)
+    first = gm.sample_stream(TORUS, normals=gm.icosphere(6), chunk=20)
+    second = gm.sample_stream(QUARTER, normals=gm.icosphere(6), chunk=7)
     parts = [one for one, _ in zip(first, second, strict=False)]
     assert len(parts) > 3
-    same(Samples.concatenate(parts), gm.sample(TORUS, gm.icosphere(6))[: 20 * len(parts)])
+    same(Samples.concatenate(parts), gm.sample(TORUS, normals=gm.icosphere(6))[: 20 * len(parts)])
 
 
 # --- memory ---------------------------------------------------------------------------------------

@@ -72,7 +72,7 @@ def test_domains(domain):
     ],
 )
 def test_domains_that_are_none(domain, complaint):
-    refused(gm.InputError, complaint, gm.Surface.from_callable, saddle, domain)
+    refused(gm.errors.InputError, complaint, gm.Surface.from_callable, saddle, domain)
 
 
 @pytest.mark.parametrize(
@@ -111,12 +111,12 @@ def test_ends(periodic, ends):
     ],
 )
 def test_ends_that_do_not_match(periodic, complaint):
-    refused(gm.InputError, complaint, gm.Surface.from_callable, tube, TURN, periodic)
+    refused(gm.errors.InputError, complaint, gm.Surface.from_callable, tube, TURN, periodic)
 
 
 @pytest.mark.parametrize("f", [None, 5, "saddle", np.zeros((5, 5, 3))], ids=lambda f: str(type(f)))
 def test_what_is_not_callable(f):
-    refused(gm.InputError, "f must be callable", gm.Surface.from_callable, f, SQUARE)
+    refused(gm.errors.InputError, "f must be callable", gm.Surface.from_callable, f, SQUARE)
 
 
 # --- callables ------------------------------------------------------------------------------------
@@ -193,13 +193,13 @@ def test_the_callable_gets_arrays_of_its_own():
 )
 def test_callables_that_return_no_surface(returned, complaint):
     surface = gm.Surface.from_callable(returned, SQUARE, name="mine")
-    refused(gm.SurfaceError, complaint, gm.fit, surface, (4, 5))
-    refused(gm.SurfaceError, "mine", gm.sample, surface, count=10, cells=(4, 5))
+    refused(gm.errors.SurfaceError, complaint, gm.fit, surface, (4, 5))
+    refused(gm.errors.SurfaceError, "mine", gm.sample, surface, count=10, cells=(4, 5))
 
 
 def test_the_error_of_a_callable_is_kept():
     surface = gm.Surface.from_callable(lambda u, v: 1 / 0, SQUARE)
-    with pytest.raises(gm.SurfaceError) as caught:
+    with pytest.raises(gm.errors.SurfaceError) as caught:
         gm.fit(surface)
     assert isinstance(caught.value.__cause__, ZeroDivisionError)
 
@@ -226,9 +226,9 @@ def test_interrupts_go_through():
 )
 def test_parameters_that_are_none(u, v, complaint):
     surface = gm.Surface.from_callable(saddle, SQUARE)
-    refused(gm.InputError, complaint, surface.evaluate, u, v)
-    refused(gm.InputError, complaint, gm.fit(surface, (3, 3)).evaluate, u, v)
-    refused(gm.InputError, complaint, gm.fit(surface, (3, 3)).normals, u, v)
+    refused(gm.errors.InputError, complaint, surface.evaluate, u, v)
+    refused(gm.errors.InputError, complaint, gm.fit(surface, (3, 3)).evaluate, u, v)
+    refused(gm.errors.InputError, complaint, gm.fit(surface, (3, 3)).normals, u, v)
 
 
 # --- what the ends promise ------------------------------------------------------------------------
@@ -250,7 +250,7 @@ def test_parameters_that_are_none(u, v, complaint):
 )
 def test_ends_that_the_surface_does_not_have(f, domain, periodic, complaint):
     surface = gm.Surface.from_callable(f, domain, periodic)
-    refused(gm.SurfaceError, complaint, gm.fit, surface, (8, 9))
+    refused(gm.errors.SurfaceError, complaint, gm.fit, surface, (8, 9))
 
 
 @pytest.mark.parametrize("factor", [1.0, 1e-200, 1e200])
@@ -363,7 +363,7 @@ def test_constants_and_functions_of_one_parameter():
     ],
 )
 def test_expressions_that_are_none(position, complaint):
-    refused(gm.InputError, complaint, gm.Surface.from_sympy, position, ("u", "v"), SQUARE)
+    refused(gm.errors.InputError, complaint, gm.Surface.from_sympy, position, ("u", "v"), SQUARE)
 
 
 @pytest.mark.parametrize(
@@ -373,10 +373,9 @@ def test_expressions_that_are_none(position, complaint):
 )  # fmt: skip
 def test_texts_are_not_run_as_python(text, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    refused(
-        gm.InputError, "is not a SymPy expression", gm.Surface.from_sympy, ("u", "v", text), "uv",
-        SQUARE,
-    )  # fmt: skip
+    position = ("u", "v", text)
+    complaint = "is not a SymPy expression"
+    refused(gm.errors.InputError, complaint, gm.Surface.from_sympy, position, "uv", SQUARE)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -396,7 +395,9 @@ def test_texts_are_not_run_as_python(text, tmp_path, monkeypatch):
 )
 def test_parameters_of_expressions_that_are_none(parameters):
     complaint = "parameters must be two SymPy symbols"
-    refused(gm.InputError, complaint, gm.Surface.from_sympy, ("u", "v", "u"), parameters, SQUARE)
+    refused(
+        gm.errors.InputError, complaint, gm.Surface.from_sympy, ("u", "v", "u"), parameters, SQUARE
+    )
 
 
 @pytest.mark.parametrize(
@@ -416,7 +417,7 @@ def test_parameters_of_expressions_that_are_none(parameters):
     ],
 )
 def test_domains_of_expressions_that_are_none(domain, complaint):
-    refused(gm.InputError, complaint, gm.Surface.from_sympy, ("u", "v", "u*v"), "uv", domain)
+    refused(gm.errors.InputError, complaint, gm.Surface.from_sympy, ("u", "v", "u*v"), "uv", domain)
 
 
 @pytest.mark.parametrize(
@@ -430,7 +431,7 @@ def test_domains_of_expressions_that_are_none(domain, complaint):
 )
 def test_expressions_that_cannot_be_evaluated(height, complaint):
     surface = gm.Surface.from_sympy(("u", "v", height), "uv", SQUARE)
-    refused(gm.SurfaceError, complaint, gm.fit, surface, (4, 4))
+    refused(gm.errors.SurfaceError, complaint, gm.fit, surface, (4, 4))
 
 
 def test_complex_detours_to_a_real_surface():

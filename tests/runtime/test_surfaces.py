@@ -69,7 +69,9 @@ def test_descriptions(name):
 @pytest.mark.parametrize("name", ["Torus", "", "toruS", " torus", None, 3, ["torus"], ("torus",)])
 def test_unknown_surfaces(name):
     for call in (gm.surfaces.surface, gm.surfaces.describe):
-        with pytest.raises(gm.UnknownNameError, match=r"^there is no surface .* there are torus,"):
+        with pytest.raises(
+            gm.errors.UnknownNameError, match=r"^there is no surface .* there are torus,"
+        ):
             call(name)
 
 
@@ -97,23 +99,25 @@ def test_unknown_attributes():
 )
 def test_unusable_parameters(parameters, complaint):
     for call in (gm.surfaces.torus, lambda **named: gm.surfaces.surface("torus", **named)):
-        with pytest.raises(gm.InputError, match=complaint):
+        with pytest.raises(gm.errors.InputError, match=complaint):
             call(**parameters)
 
 
 def test_parameters_that_may_be_negative_or_zero():
     surface = gm.surfaces.plane(slope_u=-2.0, slope_v=0)
     assert surface.evaluate(0.5, 0.25).tolist() == [0.5, 0.25, -1.0]
-    with pytest.raises(gm.InputError, match="slope_u of plane must be a finite number, not nan"):
+    with pytest.raises(
+        gm.errors.InputError, match="slope_u of plane must be a finite number, not nan"
+    ):
         gm.surfaces.plane(slope_u=float("nan"))
 
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("call", [gm.fit, lambda surface: gm.sample(surface, count=10)])
 def test_parameters_that_make_no_surface(call):
-    with pytest.raises(gm.SurfaceError, match="'dupin_cyclide' is not finite at u = "):
+    with pytest.raises(gm.errors.SurfaceError, match="'dupin_cyclide' is not finite at u = "):
         call(gm.surfaces.dupin_cyclide(a=0.5, b=0.96))
-    with pytest.raises(gm.SurfaceError, match="'torus' is not finite at u = "):
+    with pytest.raises(gm.errors.SurfaceError, match="'torus' is not finite at u = "):
         call(gm.surfaces.torus(major=1e308, minor=1e308))
 
 

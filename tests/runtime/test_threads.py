@@ -36,7 +36,7 @@ def test_one_thread_is_the_calling_one():
 
 
 @pytest.mark.parametrize("threads", [1, 2])
-@pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt, gm.InputError])
+@pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt, gm.errors.InputError])
 def test_an_error_ends_the_work(threads, error):
     done = []
 
@@ -73,7 +73,9 @@ def test_threads_that_are_none(threads):
         lambda: next(gm.sample_many([gm.surfaces.torus()], count=10, threads=threads)),
     ]
     for call in calls:
-        with pytest.raises(gm.InputError, match=r"^threads must be a whole number of at least 1"):
+        with pytest.raises(
+            gm.errors.InputError, match=r"^threads must be a whole number of at least 1"
+        ):
             call()
 
 
@@ -98,11 +100,11 @@ def test_any_number_of_threads_gives_the_same_bits(name, monkeypatch):
 
 @pytest.mark.compiled
 def test_ranges_do_not_show_in_the_result(monkeypatch):
-    whole = gm.sample(gm.surfaces.torus(), gm.icosphere(16), cells=(24, 24), threads=1)
+    whole = gm.sample(gm.surfaces.torus(), normals=gm.icosphere(16), cells=(24, 24), threads=1)
     monkeypatch.setattr("gaussmap.runtime.search.MOST_PATCHES", 7)
     monkeypatch.setattr("gaussmap.runtime.search.ROOM", 1)
     monkeypatch.setattr("gaussmap.runtime.search.SAMPLES_AT_A_TIME", 11)
-    pieces = gm.sample(gm.surfaces.torus(), gm.icosphere(16), cells=(24, 24), threads=2)
+    pieces = gm.sample(gm.surfaces.torus(), normals=gm.icosphere(16), cells=(24, 24), threads=2)
     for array in ARRAY_NAMES:
         assert getattr(whole, array).tobytes() == getattr(pieces, array).tobytes()
 
@@ -113,7 +115,9 @@ def test_several_python_threads_at_once():
     names = ["torus", "sphere", "wavy_graph", "catenoid"]
     shared = gm.fit(gm.surfaces.torus(), (24, 24))
     expected = [gm.sample(gm.surfaces.surface(x), count=500, cells=(24, 24)).points for x in names]
-    expected += [gm.sample(gm.fit(gm.surfaces.torus(), (24, 24)), gm.icosphere(8)).points] * 4
+    expected += [
+        gm.sample(gm.fit(gm.surfaces.torus(), (24, 24)), normals=gm.icosphere(8)).points
+    ] * 4
     found: list[object] = [None] * 8
     start = threading.Barrier(8, timeout=30)
 
@@ -123,7 +127,7 @@ def test_several_python_threads_at_once():
             surface = gm.surfaces.surface(names[k])
             found[k] = gm.sample(surface, count=500, cells=(24, 24)).points
         else:
-            found[k] = gm.sample(shared, gm.icosphere(8)).points
+            found[k] = gm.sample(shared, normals=gm.icosphere(8)).points
 
     workers = [threading.Thread(target=work, args=(k,)) for k in range(8)]
     for worker in workers:

@@ -21,9 +21,9 @@ def parabola(t):
     return np.stack([t, 1 - 2 * t + 3 * t * t], axis=-1)
 
 
-ELLIPSE = gm.Curve.from_callable(ellipse, TURN, periodic=True, name="ellipse")
-EIGHT = gm.Curve.from_callable(eight, TURN, periodic=True, name="eight")
-PARABOLA = gm.Curve.from_callable(parabola, (-1.0, 2.0), name="parabola")
+ELLIPSE = gm.curves.Curve.from_callable(ellipse, TURN, periodic=True, name="ellipse")
+EIGHT = gm.curves.Curve.from_callable(eight, TURN, periodic=True, name="eight")
+PARABOLA = gm.curves.Curve.from_callable(parabola, (-1.0, 2.0), name="parabola")
 
 
 def refused(kind, complaint, call, *arguments, **named):
@@ -39,8 +39,8 @@ def refused(kind, complaint, call, *arguments, **named):
 
 def test_sympy_and_callable_are_the_same_curve():
     t = sp.Symbol("t")
-    by_text = gm.Curve.from_sympy(("2*cos(t)", "sin(t)"), "t", (0, "2*pi"), True)
-    by_symbol = gm.Curve.from_sympy((2 * sp.cos(t), sp.sin(t)), t, (0, 2 * sp.pi), True)
+    by_text = gm.curves.Curve.from_sympy(("2*cos(t)", "sin(t)"), "t", (0, "2*pi"), True)
+    by_symbol = gm.curves.Curve.from_sympy((2 * sp.cos(t), sp.sin(t)), t, (0, 2 * sp.pi), True)
     places = np.linspace(0, 6, 17).reshape(1, 17)
     for curve in (by_text, by_symbol):
         assert (curve.domain, curve.periodic) == (TURN, True)
@@ -48,10 +48,10 @@ def test_sympy_and_callable_are_the_same_curve():
 
 
 def test_constant_expressions_and_scalars():
-    curve = gm.Curve.from_sympy((1, "s**2"), "s", (0, 1))
+    curve = gm.curves.Curve.from_sympy((1, "s**2"), "s", (0, 1))
     assert curve.evaluate(0.5).tolist() == [1.0, 0.25]
     assert curve.evaluate([[0.0], [1.0]]).shape == (2, 1, 2)
-    assert gm.fit_curve(curve).evaluate(0.5).shape == (2,)
+    assert gm.curves.fit(curve).evaluate(0.5).shape == (2,)
 
 
 @pytest.mark.parametrize(
@@ -61,27 +61,43 @@ def test_constant_expressions_and_scalars():
      (("t", "("), "not a SymPy expression"), (("t", "zoo"), "not finite")],
 )  # fmt: skip
 def test_unusable_expressions(position, complaint):
-    refused(gm.InputError, complaint, gm.Curve.from_sympy, position, "t", (0, 1))
+    refused(gm.errors.InputError, complaint, gm.curves.Curve.from_sympy, position, "t", (0, 1))
 
 
 @pytest.mark.parametrize("parameter", ["", "2t", 3, None, ("t",)])
 def test_unusable_parameters(parameter):
-    refused(gm.InputError, "symbol such as t", gm.Curve.from_sympy, ("t", "t"), parameter, (0, 1))
+    refused(
+        gm.errors.InputError,
+        "symbol such as t",
+        gm.curves.Curve.from_sympy,
+        ("t", "t"),
+        parameter,
+        (0, 1),
+    )
 
 
 @pytest.mark.parametrize(
     "domain", [(0,), (0, 1, 2), (1, 0), (0, 0), (0, np.inf), (np.nan, 1), None, "ab", (0, 1 + 1j)]
 )
 def test_unusable_domains(domain):
-    refused(gm.InputError, "domain", gm.Curve.from_callable, ellipse, domain)
-    refused(gm.InputError, "domain", gm.Curve.from_sympy, ("t", "t"), "t", domain)
+    refused(gm.errors.InputError, "domain", gm.curves.Curve.from_callable, ellipse, domain)
+    refused(gm.errors.InputError, "domain", gm.curves.Curve.from_sympy, ("t", "t"), "t", domain)
 
 
 def test_unusable_arguments():
-    refused(gm.InputError, "callable as f", gm.Curve.from_callable, 3, (0, 1))
+    refused(gm.errors.InputError, "callable as f", gm.curves.Curve.from_callable, 3, (0, 1))
     for word in ("wrap", None, 1, (True, True)):
-        refused(gm.InputError, "True or False", gm.Curve.from_callable, ellipse, (0, 1), word)
-        refused(gm.InputError, "True or False", gm.Curve.from_points, np.eye(4, 2), word)
+        refused(
+            gm.errors.InputError,
+            "True or False",
+            gm.curves.Curve.from_callable,
+            ellipse,
+            (0, 1),
+            word,
+        )
+        refused(
+            gm.errors.InputError, "True or False", gm.curves.Curve.from_points, np.eye(4, 2), word
+        )
 
 
 @pytest.mark.parametrize(
@@ -92,8 +108,8 @@ def test_unusable_arguments():
      (lambda t: np.stack([t, 1 / (t - 0.5)], -1), r"'curve' is not finite at t = 0\.5")],
 )  # fmt: skip
 def test_unusable_callables(f, complaint):
-    curve = gm.Curve.from_callable(f, (0, 1))
-    refused(gm.SurfaceError, complaint, gm.fit_curve, curve, 4)
+    curve = gm.curves.Curve.from_callable(f, (0, 1))
+    refused(gm.errors.SurfaceError, complaint, gm.curves.fit, curve, 4)
 
 
 # --- points ---------------------------------------------------------------------------------------
@@ -102,23 +118,23 @@ def test_unusable_callables(f, complaint):
 def test_points_lie_near_the_curve_through_them():
     """On a quadratic they lie on it; else the spline is off by its error of order 3."""
     points = parabola(np.linspace(-1, 2, 7))
-    curve = gm.Curve.from_points(points)
+    curve = gm.curves.Curve.from_points(points)
     assert (curve.domain, curve.periodic) == ((0.0, 6.0), False)
-    assert gm.fit_curve(curve).pieces == 6
+    assert gm.curves.fit(curve).pieces == 6
     np.testing.assert_allclose(curve.evaluate(np.arange(7)), points, rtol=0, atol=100 * ULP)
     errors = []
     for count in (32, 64):
         points = ellipse(2 * np.pi * np.arange(count) / count)
-        closed = gm.Curve.from_points(points, closed=True)
+        closed = gm.curves.Curve.from_points(points, closed=True)
         assert closed.domain == (0.0, float(count))
         errors.append(np.abs(closed.evaluate(np.arange(count)) - points).max())
     assert errors[0] / errors[1] > 7.5
 
 
 def test_points_can_be_fitted_with_other_pieces():
-    curve = gm.Curve.from_points(ellipse(2 * np.pi * np.arange(50) / 50), closed=True)
-    assert gm.fit_curve(curve).pieces == 50
-    spline = gm.fit_curve(curve, pieces=200)
+    curve = gm.curves.Curve.from_points(ellipse(2 * np.pi * np.arange(50) / 50), closed=True)
+    assert gm.curves.fit(curve).pieces == 50
+    spline = gm.curves.fit(curve, pieces=200)
     assert spline.turning_number == 1
     places = np.linspace(0, 50, 77)
     assert np.abs(spline.evaluate(places) - curve.evaluate(places)).max() < 1e-4
@@ -132,13 +148,19 @@ def test_points_can_be_fitted_with_other_pieces():
      (np.ma.masked_equal(np.eye(4, 2), 1), "masked")],
 )  # fmt: skip
 def test_unusable_points(points, complaint):
-    refused(gm.InputError, complaint, gm.Curve.from_points, points)
+    refused(gm.errors.InputError, complaint, gm.curves.Curve.from_points, points)
 
 
 def test_closed_points_do_not_repeat_the_first():
     points = ellipse(np.linspace(0, 2 * np.pi, 20))
-    refused(gm.InputError, "repeats its first point", gm.Curve.from_points, points, closed=True)
-    assert gm.Curve.from_points(points).periodic is False
+    refused(
+        gm.errors.InputError,
+        "repeats its first point",
+        gm.curves.Curve.from_points,
+        points,
+        closed=True,
+    )
+    assert gm.curves.Curve.from_points(points).periodic is False
 
 
 # --- fitting --------------------------------------------------------------------------------------
@@ -147,7 +169,7 @@ def test_closed_points_do_not_repeat_the_first():
 @pytest.mark.parametrize("pieces", [1, 2, 3, 64])
 def test_quadratics_are_reproduced(pieces):
     """Up to rounding: a few roundings of each of a few terms."""
-    spline = gm.fit_curve(PARABOLA, pieces)
+    spline = gm.curves.fit(PARABOLA, pieces)
     places = np.linspace(-1, 2, 101)
     np.testing.assert_allclose(spline.evaluate(places), parabola(places), rtol=0, atol=200 * ULP)
     kappa = 6 / np.hypot(1, 6 * places - 2) ** 3
@@ -158,21 +180,21 @@ def test_quadratics_are_reproduced(pieces):
 
 
 def test_ends_of_an_open_curve_are_met():
-    spline = gm.fit_curve(gm.Curve.from_callable(ellipse, (0.0, 2.0)), 10)
+    spline = gm.curves.fit(gm.curves.Curve.from_callable(ellipse, (0.0, 2.0)), 10)
     ends = spline.evaluate(spline.domain)
     np.testing.assert_allclose(ends, ellipse(np.array([0.0, 2.0])), rtol=0, atol=8 * ULP)
 
 
 @pytest.mark.parametrize("domain", [(0.3, 2.0), TURN], ids=["open", "closed"])
 def test_orders(domain):
-    curve = gm.Curve.from_callable(eight, domain, periodic=domain is TURN)
+    curve = gm.curves.Curve.from_callable(eight, domain, periodic=domain is TURN)
     t = np.linspace(domain[0], domain[1], 4001)
     tangent = np.stack([np.cos(t), 2 * np.cos(2 * t)], axis=-1)
     exact = np.stack([tangent[:, 1], -tangent[:, 0]], axis=-1)
     exact /= np.linalg.norm(exact, axis=-1, keepdims=True)
     errors = []
     for pieces in (64, 128):
-        spline = gm.fit_curve(curve, pieces)
+        spline = gm.curves.fit(curve, pieces)
         errors.append(
             (np.abs(spline.evaluate(t) - eight(t)).max(), np.abs(spline.normals(t) - exact).max())
         )
@@ -182,7 +204,7 @@ def test_orders(domain):
 
 
 def test_control_points_give_the_spline():
-    spline = gm.fit_curve(EIGHT, 24)
+    spline = gm.curves.fit(EIGHT, 24)
     assert spline.control_points.shape == (24, 3, 2)
     ends = spline.evaluate(spline.joints)
     np.testing.assert_allclose(spline.control_points[:, 0], ends[:-1], rtol=0, atol=8 * ULP)
@@ -194,7 +216,7 @@ def test_control_points_give_the_spline():
 
 
 def test_closed_splines_wrap():
-    spline = gm.fit_curve(ELLIPSE, 16)
+    spline = gm.curves.fit(ELLIPSE, 16)
     t = np.array([0.5, 3.0])
     for turns in (-2, 1):
         moved = spline.evaluate(t + 2 * np.pi * turns)
@@ -206,10 +228,10 @@ def test_closed_splines_wrap():
 def test_curvature_of_circles():
     """Positive with outward normals (counter-clockwise), negative with inward ones."""
     for sign in (1.0, -1.0):
-        circle = gm.Curve.from_callable(
+        circle = gm.curves.Curve.from_callable(
             lambda t, sign=sign: 5 * np.stack([np.cos(t), sign * np.sin(t)], -1), TURN, True
         )
-        spline = gm.fit_curve(circle, 256)
+        spline = gm.curves.fit(circle, 256)
         t = np.linspace(0, 6, 50)
         outward = np.einsum("kx,kx->k", spline.normals(t), spline.evaluate(t))
         assert (np.sign(outward) == sign).all()
@@ -223,26 +245,26 @@ def test_curvature_of_circles():
      (2, "at least 3 pieces")],
 )  # fmt: skip
 def test_unusable_pieces(pieces, complaint):
-    refused(gm.InputError, complaint, gm.fit_curve, ELLIPSE, pieces)
+    refused(gm.errors.InputError, complaint, gm.curves.fit, ELLIPSE, pieces)
 
 
 def test_what_cannot_be_fitted():
-    refused(gm.InputError, "takes a Curve, not", gm.fit_curve, gm.surfaces.torus())
-    open_ = gm.Curve.from_callable(ellipse, (0.0, 3.0), periodic=True)
-    refused(gm.SurfaceError, "does not close", gm.fit_curve, open_)
-    narrow = gm.Curve.from_callable(ellipse, (1.0, 1.0 + 8 * ULP))
-    refused(gm.InputError, "too narrow", gm.fit_curve, narrow)
-    huge = gm.Curve.from_callable(lambda t: 1e305 * ellipse(t), (0.0, 1.0))
-    refused(gm.SurfaceError, "too large", gm.fit_curve, huge)
+    refused(gm.errors.InputError, "takes a Curve, not", gm.curves.fit, gm.surfaces.torus())
+    open_ = gm.curves.Curve.from_callable(ellipse, (0.0, 3.0), periodic=True)
+    refused(gm.errors.SurfaceError, "does not close", gm.curves.fit, open_)
+    narrow = gm.curves.Curve.from_callable(ellipse, (1.0, 1.0 + 8 * ULP))
+    refused(gm.errors.InputError, "too narrow", gm.curves.fit, narrow)
+    huge = gm.curves.Curve.from_callable(lambda t: 1e305 * ellipse(t), (0.0, 1.0))
+    refused(gm.errors.SurfaceError, "too large", gm.curves.fit, huge)
 
 
 def test_parameters_outside():
-    spline = gm.fit_curve(PARABOLA)
-    refused(gm.InputError, r"t = 2\.1 lies outside", spline.evaluate, [0.0, 2.1])
+    spline = gm.curves.fit(PARABOLA)
+    refused(gm.errors.InputError, r"t = 2\.1 lies outside", spline.evaluate, [0.0, 2.1])
     for place in (np.nan, np.inf):
-        refused(gm.InputError, "lies outside", spline.normals, place)
-        refused(gm.InputError, "lies outside", gm.fit_curve(ELLIPSE).curvature, place)
-    refused(gm.InputError, "real numbers", spline.evaluate, "x")
+        refused(gm.errors.InputError, "lies outside", spline.normals, place)
+        refused(gm.errors.InputError, "lies outside", gm.curves.fit(ELLIPSE).curvature, place)
+    refused(gm.errors.InputError, "real numbers", spline.evaluate, "x")
 
 
 # --- how the normal turns -------------------------------------------------------------------------
@@ -257,7 +279,7 @@ def test_parameters_outside():
 )  # fmt: skip
 @pytest.mark.parametrize("pieces", [48, 63, 200])
 def test_turning_number_and_inflections(position, turning, inflections, pieces):
-    spline = gm.fit_curve(gm.Curve.from_sympy(position, "t", (0, "2*pi"), True), pieces)
+    spline = gm.curves.fit(gm.curves.Curve.from_sympy(position, "t", (0, "2*pi"), True), pieces)
     assert spline.turning_number == turning
     assert spline.bends.sum() == pytest.approx(2 * np.pi * turning, abs=1e-12)
     assert len(spline.inflections) == inflections
@@ -265,8 +287,8 @@ def test_turning_number_and_inflections(position, turning, inflections, pieces):
 
 def test_inflections_are_where_the_curvature_changes_its_sign():
     """sin t has them at multiples of π; the spline finds them to within a piece."""
-    sine = gm.Curve.from_callable(lambda t: np.stack([t, np.sin(t)], -1), (-1.0, 9.0))
-    spline = gm.fit_curve(sine, 100)
+    sine = gm.curves.Curve.from_callable(lambda t: np.stack([t, np.sin(t)], -1), (-1.0, 9.0))
+    spline = gm.curves.fit(sine, 100)
     np.testing.assert_allclose(spline.inflections, np.pi * np.arange(3), atol=spline.step)
     assert spline.turning_number is None
     for place in spline.inflections:
@@ -278,6 +300,6 @@ def test_a_straight_stretch_between_bends_is_one_inflection():
     def f(t):
         return np.stack([t, np.sign(t) * np.maximum(np.abs(t) - 1.0, 0.0) ** 2], axis=-1)
 
-    spline = gm.fit_curve(gm.Curve.from_callable(f, (-2.0, 2.0)), 40)
+    spline = gm.curves.fit(gm.curves.Curve.from_callable(f, (-2.0, 2.0)), 40)
     assert spline.straight[11:29].all()
     assert spline.inflections == pytest.approx([0.0], abs=1e-12)

@@ -8,7 +8,7 @@ from itertools import pairwise
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.sphere import as_normals
+from gaussmap.runtime.directions.unit import as_normals
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -39,7 +39,7 @@ def closed(name: str, turn: Array | None = None, factor: float = 1.0, shift: flo
     """Return a closed curve, turned, moved and scaled."""
     matrix = np.eye(2) if turn is None else turn
     f = CLOSED[name][0]
-    return gm.Curve.from_callable(
+    return gm.curves.Curve.from_callable(
         lambda t: factor * (f(t) @ matrix.T + shift), TURN, True, name=name
     )
 
@@ -48,20 +48,22 @@ def rotation(angle: float) -> Array:
     return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
 
-def sampled(curve: gm.Curve | gm.CurveSpline, normals: Array, pieces: int | None = None):
+def sampled(
+    curve: gm.curves.Curve | gm.curves.CurveSpline, normals: Array, pieces: int | None = None
+):
     """Sample without the warnings, which have their own tests."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", gm.GaussmapWarning)
-        return gm.sample_curve(curve, normals, pieces=pieces)
+        return gm.curves.sample(curve, normals=normals, pieces=pieces)
 
 
-def sums(samples: gm.CurveSamples, count: int) -> NDArray[np.int64]:
+def sums(samples: gm.curves.CurveSamples, count: int) -> NDArray[np.int64]:
     """Return Σ sign κ over the preimages of each normal."""
     signs = np.where(np.signbit(samples.curvature), -1, 1)
     return np.bincount(samples.normal_index, signs, minlength=count).astype(np.int64)
 
 
-def is_sane(samples: gm.CurveSamples) -> None:
+def is_sane(samples: gm.curves.CurveSamples) -> None:
     fields = (samples.points, samples.normals, samples.parameters, samples.support)
     assert all(np.isfinite(x).all() for x in (*fields, samples.curvature))
     # two normals that differ by rounding may share a place
@@ -76,10 +78,10 @@ def is_sane(samples: gm.CurveSamples) -> None:
 SETS = {
     "axes": AXES,
     "one": np.array([[1.0, 0.0]]),
-    "few": gm.circle(3),
-    "off the axes": gm.circle(1000),
+    "few": gm.directions.circle(3),
+    "off the axes": gm.directions.circle(1000),
     "on the axes": np.column_stack([f(2 * np.pi * np.arange(720) / 720) for f in (np.cos, np.sin)]),
-    "twice": np.repeat(gm.circle(64), 2, axis=0),
+    "twice": np.repeat(gm.directions.circle(64), 2, axis=0),
 }
 
 
@@ -104,7 +106,7 @@ def test_sum_of_signs_is_the_turning_number(name: str, normals: Array, pieces: i
 def test_moved_and_scaled(name: str, factor: float, shift: float) -> None:
     for angle in (0.0, 0.7):
         turn = rotation(angle)
-        normals = np.concatenate([gm.circle(500), AXES]) @ turn.T
+        normals = np.concatenate([gm.directions.circle(500), AXES]) @ turn.T
         for pieces in (64, 99):
             samples = sampled(closed(name, turn, factor, shift), normals, pieces)
             is_sane(samples)
@@ -113,7 +115,8 @@ def test_moved_and_scaled(name: str, factor: float, shift: float) -> None:
 
 def test_scaling_by_a_power_of_two_changes_nothing_else() -> None:
     first, second = (
-        gm.sample_curve(closed("star", factor=x), gm.circle(300)) for x in (1.0, 2.0**40)
+        gm.curves.sample(closed("star", factor=x), normals=gm.directions.circle(300))
+        for x in (1.0, 2.0**40)
     )
     assert (first.parameters == second.parameters).all()
     assert (first.points * 2.0**40 == second.points).all()
@@ -122,7 +125,7 @@ def test_scaling_by_a_power_of_two_changes_nothing_else() -> None:
 
 def test_more_pieces_than_the_coordinates_can_tell_apart() -> None:
     """Beside a shift of 10⁶ the turn of an arc is rounding; still no normal is lost or doubled."""
-    normals = gm.circle(360)
+    normals = gm.directions.circle(360)
     near, far = (sampled(closed("star", shift=x), normals, 200_000) for x in (0.0, 1e6))
     for samples in (near, far):
         assert (sums(samples, 360) == 1).all()
@@ -134,7 +137,7 @@ def test_more_pieces_than_the_coordinates_can_tell_apart() -> None:
 # --- against exact arithmetic ---------------------------------------------------------------------
 
 
-def exact_hits(spline: gm.CurveSpline, normals: Array) -> set[tuple[int, int]]:
+def exact_hits(spline: gm.curves.CurveSpline, normals: Array) -> set[tuple[int, int]]:
     """Return (piece, normal) by exact signs of n·p' at the ends of arcs, for generic normals."""
     mu = [[Fraction(x) for x in row] for row in spline.coefficients.tolist()]
     tangents = [(q[0] - p[0], q[1] - p[1]) for p, q in pairwise(mu)]
@@ -153,15 +156,15 @@ def exact_hits(spline: gm.CurveSpline, normals: Array) -> set[tuple[int, int]]:
 
 @pytest.mark.parametrize("name", CLOSED)
 def test_hits_are_those_of_exact_arithmetic(name: str) -> None:
-    spline = gm.fit_curve(closed(name), 40)
-    normals = gm.circle(97) @ rotation(0.123).T
+    spline = gm.curves.fit(closed(name), 40)
+    normals = gm.directions.circle(97) @ rotation(0.123).T
     samples = sampled(spline, normals)
     pairs = list(zip(samples.piece_index.tolist(), samples.normal_index.tolist(), strict=True))
     assert set(pairs) == exact_hits(spline, samples_normals(samples, normals))
     assert len(set(pairs)) == len(pairs) > 0
 
 
-def samples_normals(samples: gm.CurveSamples, normals: Array) -> Array:
+def samples_normals(samples: gm.curves.CurveSamples, normals: Array) -> Array:
     """Return the normals as they were taken; the samples hold them bit for bit."""
     unit = as_normals(normals, 2)
     assert (samples.normals == unit[samples.normal_index]).all()
@@ -177,10 +180,10 @@ def test_any_small_integers(polygon: list[tuple[int, int]], is_closed: bool) -> 
     mu = np.array(polygon, dtype=np.float64)
     if is_closed:
         mu = np.concatenate([mu[-1:], mu, mu[:1]])
-    spline = gm.CurveSpline(mu, (0.0, float(len(mu) - 2)), is_closed, "integers")
+    spline = gm.curves.CurveSpline(mu, (0.0, float(len(mu) - 2)), is_closed, "integers")
     aligned = np.unique(spline.joint_normals, axis=0)
     aligned = aligned[aligned.any(axis=1)]
-    generic = gm.circle(13) @ rotation(0.1).T
+    generic = gm.directions.circle(13) @ rotation(0.1).T
     normals = as_normals(np.concatenate([aligned, -aligned, generic]), 2)
     samples = sampled(spline, normals)
     is_sane(samples)
@@ -202,14 +205,14 @@ def test_any_small_integers(polygon: list[tuple[int, int]], is_closed: bool) -> 
 
 def test_samples_of_an_ellipse() -> None:
     """Convex curves at the distance d have support functions at most d apart."""
-    curve = gm.Curve.from_callable(
+    curve = gm.curves.Curve.from_callable(
         lambda t: np.stack([3 * np.cos(t), 2 * np.sin(t)], -1), TURN, True
     )
-    spline = gm.fit_curve(curve, 100)
+    spline = gm.curves.fit(curve, 100)
     dense = np.linspace(*TURN, 10_001)
     apart = np.linalg.norm(spline.evaluate(dense) - curve.evaluate(dense), axis=1).max()
-    normals = gm.circle(333)
-    samples = gm.sample_curve(spline, normals)
+    normals = gm.directions.circle(333)
+    samples = gm.curves.sample(spline, normals=normals)
     assert (samples.normals == normals[samples.normal_index]).all()
     exact = np.hypot(3 * samples.normals[:, 0], 2 * samples.normals[:, 1])
     assert np.abs(samples.support - exact).max() < 1.01 * apart
@@ -223,7 +226,7 @@ def test_samples_of_an_ellipse() -> None:
 
 def test_density_is_the_curvature() -> None:
     """Between two samples on a convex curve the normal turns by the same angle."""
-    samples = gm.sample_curve(closed("ellipse"), gm.circle(60), pieces=256)
+    samples = gm.curves.sample(closed("ellipse"), normals=gm.directions.circle(60), pieces=256)
     turns = np.einsum("kx,kx->k", samples.normals[1:], samples.normals[:-1])
     np.testing.assert_allclose(np.arccos(turns), 2 * np.pi / 60, rtol=1e-9)
     lengths = np.linalg.norm(np.diff(samples.points, axis=0), axis=1)
@@ -233,7 +236,10 @@ def test_density_is_the_curvature() -> None:
 def test_normals_of_any_length() -> None:
     curve = closed("eight")
     lengths = np.geomspace(1e-300, 1e300, 100)[:, None]
-    long, unit = (gm.sample_curve(curve, x) for x in (gm.circle(100) * lengths, gm.circle(100)))
+    long, unit = (
+        gm.curves.sample(curve, normals=x)
+        for x in (gm.directions.circle(100) * lengths, gm.directions.circle(100))
+    )
     np.testing.assert_allclose(long.normals, unit.normals, rtol=0, atol=4 * ULP)
     assert (long.normal_index == unit.normal_index).all()
 
@@ -247,13 +253,13 @@ def test_normals_of_any_length() -> None:
 def test_ends_belong_to_an_open_curve(angle: float, pieces: int, sign: float) -> None:
     """The normals of both ends of a parabola; those against them and beyond them are not there."""
     turn = rotation(angle)
-    parabola = gm.Curve.from_callable(
+    parabola = gm.curves.Curve.from_callable(
         lambda t: np.stack([t, sign * t * t], axis=-1) @ turn.T, (0.0, 1.0)
     )
     ends = np.array([[0.0, -1.0], [2.0 * sign, -1.0]])
     beyond = np.array([[-1e-6 * sign, -1.0], [(2.0 + 1e-5) * sign, -1.0]])
-    samples = gm.sample_curve(
-        parabola, np.concatenate([ends, -ends, beyond]) @ turn.T, pieces=pieces
+    samples = gm.curves.sample(
+        parabola, normals=np.concatenate([ends, -ends, beyond]) @ turn.T, pieces=pieces
     )
     assert samples.normal_index.tolist() == [0, 1]
     assert (np.signbit(samples.curvature) == (sign < 0)).all()
@@ -261,11 +267,11 @@ def test_ends_belong_to_an_open_curve(angle: float, pieces: int, sign: float) ->
 
 
 def test_polygon() -> None:
-    open_ = gm.Curve.from_callable(CLOSED["ellipse"][0], (0.0, 3.0))
-    samples = gm.sample_curve(open_, count=20)
+    open_ = gm.curves.Curve.from_callable(CLOSED["ellipse"][0], (0.0, 3.0))
+    samples = gm.curves.sample(open_, count=20)
     assert len(samples.polygon) == len(samples) + 2
     np.testing.assert_allclose(samples.polygon[[0, -1]], open_.evaluate([0.0, 3.0]), atol=1e-14)
-    samples = gm.sample_curve(closed("ellipse"), count=20)
+    samples = gm.curves.sample(closed("ellipse"), count=20)
     assert len(samples.polygon) == 21
     assert (samples.polygon[0] == samples.polygon[-1]).all()
 
@@ -273,7 +279,7 @@ def test_polygon() -> None:
 # --- straight pieces ------------------------------------------------------------------------------
 
 
-def stadium(turn: Array, shift: float = 0.0, start: float = 0.0) -> gm.Curve:
+def stadium(turn: Array, shift: float = 0.0, start: float = 0.0) -> gm.curves.Curve:
     """Two straight sides of length 2 and two half circles of radius 1, each a quarter of it."""
 
     def f(t: Array) -> Array:
@@ -284,13 +290,13 @@ def stadium(turn: Array, shift: float = 0.0, start: float = 0.0) -> gm.Curve:
         side = np.where((quarter % 2 == 0)[..., None], straight, bend)
         return np.where((quarter < 2)[..., None], side, -side) @ turn.T + shift
 
-    return gm.Curve.from_callable(f, (start, start + 4.0), True, name="stadium")
+    return gm.curves.Curve.from_callable(f, (start, start + 4.0), True, name="stadium")
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.3, 1.234])
 @pytest.mark.parametrize("shift", [0.0, 1e6])
 @pytest.mark.parametrize("start", [0.0, 0.5, 1.5])
-@pytest.mark.parametrize("normals", [AXES, gm.circle(100)], ids=["axes", "circle"])
+@pytest.mark.parametrize("normals", [AXES, gm.directions.circle(100)], ids=["axes", "circle"])
 def test_stadium(angle: float, shift: float, start: float, normals: Array) -> None:
     """Every normal once, also the one that a whole side has; the warning says how much is straight.
 
@@ -298,7 +304,7 @@ def test_stadium(angle: float, shift: float, start: float, normals: Array) -> No
     """
     turn = rotation(angle)
     with pytest.warns(gm.GaussmapWarning, match=r"3\d % of its length is straight"):
-        samples = gm.sample_curve(stadium(turn, shift, start), normals @ turn.T, pieces=64)
+        samples = gm.curves.sample(stadium(turn, shift, start), normals=normals @ turn.T, pieces=64)
     is_sane(samples)
     assert (np.bincount(samples.normal_index, minlength=len(normals)) == 1).all()
     length = 4 + 2 * np.pi
@@ -311,24 +317,26 @@ def test_stadium(angle: float, shift: float, start: float, normals: Array) -> No
 @pytest.mark.parametrize("shift", [0.0, 0.1, 1e6])
 def test_a_straight_line_has_no_samples(angle: float, shift: float) -> None:
     turn = rotation(angle)
-    line = gm.Curve.from_callable(
+    line = gm.curves.Curve.from_callable(
         lambda t: np.stack([t, 0 * t], axis=-1) @ turn.T + shift, (0.0, 1.0), name="line"
     )
     with pytest.warns(gm.GaussmapWarning, match="'line': 100 % of its length is straight"):
-        samples = gm.sample_curve(line, AXES @ turn.T)
+        samples = gm.curves.sample(line, normals=AXES @ turn.T)
     assert len(samples) == 0
     assert samples.report.straight_share == 1.0
     assert len(samples.polygon) == 2
     with pytest.warns(gm.GaussmapWarning, match="0 samples came where 50 were asked"):
-        assert len(gm.sample_curve(line, count=50)) == 0
+        assert len(gm.curves.sample(line, count=50)) == 0
 
 
 @pytest.mark.parametrize("pieces", [4, 5])
 def test_curves_that_stop_or_come_back(pieces: int) -> None:
     for f in (lambda t: np.full((*t.shape, 2), 3.0), lambda t: np.stack([t * t, 0 * t], axis=-1)):
         with pytest.warns(gm.GaussmapWarning, match="100 % of its length is straight"):
-            samples = gm.sample_curve(
-                gm.Curve.from_callable(f, (-1.0, 1.0)), gm.circle(12), pieces=pieces
+            samples = gm.curves.sample(
+                gm.curves.Curve.from_callable(f, (-1.0, 1.0)),
+                normals=gm.directions.circle(12),
+                pieces=pieces,
             )
         assert len(samples) == 0
 
@@ -336,9 +344,9 @@ def test_curves_that_stop_or_come_back(pieces: int) -> None:
 def test_points_of_a_square() -> None:
     """A C¹ spline through the corners and middles of a square rounds the corners."""
     corners = [[0, 0], [1, 0], [2, 0], [2, 1], [2, 2], [1, 2], [0, 2], [0, 1]]
-    square = gm.Curve.from_points(corners, closed=True)
-    for normals in (AXES, gm.circle(4), gm.circle(100)):
-        samples = gm.sample_curve(square, normals)
+    square = gm.curves.Curve.from_points(corners, closed=True)
+    for normals in (AXES, gm.directions.circle(4), gm.directions.circle(100)):
+        samples = gm.curves.sample(square, normals=normals)
         assert (np.bincount(samples.normal_index, minlength=len(normals)) == 1).all()
 
 
@@ -347,29 +355,29 @@ def test_points_of_a_square() -> None:
 
 @pytest.mark.parametrize("count", [1, 2, 7, 100, 1000])
 def test_count_is_exact_without_inflections(count: int) -> None:
-    assert len(gm.sample_curve(closed("ellipse"), count=count)) == count
-    assert len(gm.sample_curve(closed("limacon"), count=2 * count)) == 2 * count
-    arc = gm.Curve.from_callable(CLOSED["circle"][0], (3.0, 3.5))  # across the angle π
-    samples = gm.sample_curve(arc, count=count)
+    assert len(gm.curves.sample(closed("ellipse"), count=count)) == count
+    assert len(gm.curves.sample(closed("limacon"), count=2 * count)) == 2 * count
+    arc = gm.curves.Curve.from_callable(CLOSED["circle"][0], (3.0, 3.5))  # across the angle π
+    samples = gm.curves.sample(arc, count=count)
     assert len(samples) == samples.report.normals == count
 
 
 @pytest.mark.parametrize("name", ["eight", "star"])
 @pytest.mark.parametrize("count", [20, 100, 1000])
 def test_count_is_nearly_met_with_inflections(name: str, count: int) -> None:
-    assert abs(len(gm.sample_curve(closed(name), count=count)) - count) <= 0.05 * count + 1
+    assert abs(len(gm.curves.sample(closed(name), count=count)) - count) <= 0.05 * count + 1
 
 
 def test_count_that_cannot_be_met_is_said() -> None:
     with pytest.warns(gm.GaussmapWarning, match="samples came where 1 were asked"):
-        samples = gm.sample_curve(closed("star"), count=1)
+        samples = gm.curves.sample(closed("star"), count=1)
     assert len(samples) > 2
 
 
 def test_no_such_normal() -> None:
-    arc = gm.Curve.from_callable(CLOSED["circle"][0], (0.0, 1.0), name="arc")
+    arc = gm.curves.Curve.from_callable(CLOSED["circle"][0], (0.0, 1.0), name="arc")
     with pytest.warns(gm.GaussmapWarning, match="'arc': it has none of the normals"):
-        assert len(gm.sample_curve(arc, [[-1.0, 0.0]])) == 0
+        assert len(gm.curves.sample(arc, normals=[[-1.0, 0.0]])) == 0
 
 
 # --- arguments, words -----------------------------------------------------------------------------
@@ -385,21 +393,21 @@ def test_no_such_normal() -> None:
      ({"count": 9, "pieces": 2}, "at least 3 pieces"), ({"count": 9, "pieces": 0}, "pieces must")],
 )  # fmt: skip
 def test_unusable_arguments(arguments: dict, complaint: str) -> None:
-    with pytest.raises(gm.InputError, match=complaint):
-        gm.sample_curve(closed("circle"), **arguments)
+    with pytest.raises(gm.errors.InputError, match=complaint):
+        gm.curves.sample(closed("circle"), **arguments)
 
 
 def test_a_spline_has_its_pieces() -> None:
-    spline = gm.fit_curve(closed("circle"), 10)
-    with pytest.raises(gm.InputError, match="has its pieces already"):
-        gm.sample_curve(spline, AXES, pieces=10)
-    assert len(gm.sample_curve(spline, AXES)) == 4
-    with pytest.raises(gm.InputError, match="takes a Curve, not Surface"):
-        gm.sample_curve(gm.surfaces.torus(), AXES)  # pyright: ignore[reportArgumentType]
+    spline = gm.curves.fit(closed("circle"), 10)
+    with pytest.raises(gm.errors.InputError, match="has its pieces already"):
+        gm.curves.sample(spline, normals=AXES, pieces=10)
+    assert len(gm.curves.sample(spline, normals=AXES)) == 4
+    with pytest.raises(gm.errors.InputError, match="takes a Curve, not Surface"):
+        gm.curves.sample(gm.surfaces.torus(), normals=AXES)  # pyright: ignore[reportArgumentType]
 
 
 def test_words() -> None:
-    samples = gm.sample_curve(closed("eight"), gm.circle(10))
+    samples = gm.curves.sample(closed("eight"), normals=gm.directions.circle(10))
     assert repr(samples) == f"CurveSamples({len(samples)} points on eight)"
     assert samples.summary() == (
         f"10 normals asked, {len(samples)} samples came; 2 inflections; "

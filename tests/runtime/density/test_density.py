@@ -86,7 +86,7 @@ def test_what_has_no_area_is_refused():
     line = gm.Surface.from_callable(lambda u, v: np.stack([u, 0 * u, 0 * u], axis=-1), SQUARE)
     amounts = [{"count": 10}, {"coverage": 0.1}, {"angle": 20.0}, {"normals": [[0, 0, 1]]}]
     for asked in cast("list[dict[str, Any]]", amounts):
-        with pytest.raises(gm.SurfaceError, match="has no area"):
+        with pytest.raises(gm.errors.SurfaceError, match="has no area"):
             gm.sample(line, cells=(3, 3), density="balanced", **asked)
 
 
@@ -99,8 +99,8 @@ def test_what_has_no_area_is_refused():
 def test_all_samples_of_the_normals_are_kept(name, relax):
     spline = gm.fit(gm.surfaces.surface(name), (16, 16))
     for normals in (gm.icosphere(8), gm.fibonacci(500)):
-        plain = gm.sample(spline, normals)
-        samples = gm.sample(spline, normals, density="balanced", relax=relax)
+        plain = gm.sample(spline, normals=normals)
+        samples = gm.sample(spline, normals=normals, density="balanced", relax=relax)
         same(samples[: len(plain)], plain)
         assert len(samples) > len(plain)
         assert (samples.kind[: len(plain)] == "normal").all()

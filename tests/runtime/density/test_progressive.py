@@ -74,5 +74,5 @@ def test_samples_at_one_place() -> None:
 
 def test_normals_are_needed() -> None:
     samples = gm.sample(WAVES, count=50, fields=("points",))
-    with pytest.raises(gm.MissingFieldError, match="'normals'"):
+    with pytest.raises(gm.errors.MissingFieldError, match="'normals'"):
         samples.progressive()

@@ -10,7 +10,7 @@ PLANE = gm.fit(gm.surfaces.plane(), (3, 3))
 BAD_NUMBERS = [0, 0.0, -1.0, np.nan, np.inf, "3", True, [1.0], None, 1j, np.array([1.0, 2.0])]
 
 
-def refused(match: str, error: type[Exception] = gm.InputError, **asked: Any) -> None:
+def refused(match: str, error: type[Exception] = gm.errors.InputError, **asked: Any) -> None:
     with pytest.raises(error, match=match):
         gm.sample(PLANE, **asked)
     with pytest.raises(error, match=match):
@@ -34,8 +34,13 @@ def test_powers_that_are_none(value):
 
 
 def test_densities_that_are_unknown():
-    refused("no density 'gaus'.* did you mean gauss", gm.UnknownNameError, count=5, density="gaus")
-    refused("no density ''", gm.UnknownNameError, count=5, density="")
+    refused(
+        "no density 'gaus'.* did you mean gauss",
+        gm.errors.UnknownNameError,
+        count=5,
+        density="gaus",
+    )
+    refused("no density ''", gm.errors.UnknownNameError, count=5, density="")
 
 
 @pytest.mark.parametrize(
@@ -66,11 +71,11 @@ def test_relaxing_needs_samples_that_may_move():
 def test_defaults():
     """Normals alone give the paper's density, all else is balanced."""
     torus = gm.fit(gm.surfaces.torus(), (8, 8))
-    assert set(gm.sample(torus, gm.icosphere(4)).kind) == {"normal"}
+    assert set(gm.sample(torus, normals=gm.icosphere(4)).kind) == {"normal"}
     amounts: list[dict[str, Any]] = [{"count": 100}, {"angle": 20.0}, {"coverage": 0.4}]
     for asked in amounts:
         assert set(gm.sample(torus, **asked).kind) == {"normal", "coverage"}
     gauss = gm.sample(torus, angle=20.0, density="gauss")
     assert set(gauss.kind) == {"normal"}
     frequency = round((((gauss.report.normals or 0) - 2) / 10) ** 0.5)
-    assert gm.covering_radius(gm.icosphere(frequency)) <= 20.0
+    assert gm.directions.covering_radius(gm.icosphere(frequency)) <= 20.0

@@ -77,7 +77,7 @@ def test_elements_behind_the_vertices_are_left_out(tmp_path):
 )
 def test_hostile_headers(tmp_path, lines, message):
     write(tmp_path / "a.ply", FIELDS, *lines)
-    with pytest.raises(gm.FileError, match=message) as caught:
+    with pytest.raises(gm.errors.FileError, match=message) as caught:
         gm.read_samples(tmp_path / "a.ply")
     assert "\n" not in str(caught.value)
     assert len(str(caught.value)) < 1000
@@ -89,11 +89,11 @@ def test_the_format_comes_first(tmp_path):
     line = b"format binary_little_endian 1.0\n"
     late = content.replace(line, b"").replace(b"end_header\n", line + b"end_header\n")
     (tmp_path / "a.ply").write_bytes(late)
-    with pytest.raises(gm.FileError, match="has 'property float x' in its header"):
+    with pytest.raises(gm.errors.FileError, match="has 'property float x' in its header"):
         gm.read_samples(tmp_path / "a.ply")
 
 
 def test_a_file_without_lines(tmp_path):
     (tmp_path / "a.ply").write_bytes(b"ply\n" + bytes(1 << 24))
-    with pytest.raises(gm.FileError, match="ends within its header"):
+    with pytest.raises(gm.errors.FileError, match="ends within its header"):
         gm.read_samples(tmp_path / "a.ply")

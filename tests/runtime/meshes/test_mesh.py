@@ -90,7 +90,7 @@ class TestMesh:
         ],
     )
     def test_unusable_arrays(self, changes, message):
-        with pytest.raises(gm.InputError, match=message):
+        with pytest.raises(gm.errors.InputError, match=message):
             square(**changes)
 
 
@@ -153,7 +153,7 @@ class TestFiles:
             raise OSError(28, "No space left on device")
 
         monkeypatch.setattr(os, "replace", fail)
-        with pytest.raises(gm.FileError, match="cannot be written: No space left"):
+        with pytest.raises(gm.errors.FileError, match="cannot be written: No space left"):
             square().write(path)
         assert path.read_text() == "older"
         assert os.listdir(tmp_path) == [path.name]
@@ -164,16 +164,16 @@ class TestFiles:
 
     @pytest.mark.parametrize("name", ["square", "square.npz", "square.xyz"])
     def test_unknown_suffixes(self, tmp_path, name):
-        with pytest.raises(gm.UnknownNameError, match=r"use one of \.ply, \.obj, \.stl"):
+        with pytest.raises(gm.errors.UnknownNameError, match=r"use one of \.ply, \.obj, \.stl"):
             square().write(tmp_path / name)
 
     def test_a_folder_that_is_not_there(self, tmp_path):
-        with pytest.raises(gm.FileError, match="create the folder first"):
+        with pytest.raises(gm.errors.FileError, match="create the folder first"):
             square().write(tmp_path / "no" / "square.ply")
 
     def test_no_triangles(self, tmp_path):
         empty = square(triangles=np.empty((0, 3), dtype=np.int64))
-        with pytest.raises(gm.InputError, match="has no triangles"):
+        with pytest.raises(gm.errors.InputError, match="has no triangles"):
             empty.write(tmp_path / "square.ply")
         assert not list(Path(tmp_path).iterdir())
 

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from gaussmap.runtime.meshes.meshing import Triangulated
 from gaussmap.runtime.meshes.triangulation import neighbours
+from gaussmap.runtime.samples import SamplingReport
 
 pytestmark = pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
 compiled = pytest.mark.compiled
@@ -107,7 +108,7 @@ def samples_at(name: str, count: int) -> gm.Samples:
     uv = np.random.default_rng(1).uniform(low, high, (count, 2))
     return gm.Samples(
         points=spline.evaluate(*uv.T), normals=spline.normals(*uv.T), uv=uv,
-        report=gm.SamplingReport(name, None, count, None, None, None), spline=spline,
+        report=SamplingReport(name, None, count, None, None, None), spline=spline,
     )  # fmt: skip
 
 
@@ -222,7 +223,9 @@ class TestBorders:
             lambda u, v: np.stack([u, v, u * v], axis=-1), ((-1, 1), (-1, 1))
         )
         u, v = (x.ravel() for x in np.meshgrid(*[np.linspace(-1, 1, 9)] * 2, indexing="ij"))
-        samples = gm.sample(saddle, np.stack([-v, -u, np.ones_like(u)], axis=1), cells=(4, 4))
+        samples = gm.sample(
+            saddle, normals=np.stack([-v, -u, np.ones_like(u)], axis=1), cells=(4, 4)
+        )
         on_border = (np.abs(samples.uv) > 1 - 1e-9).any(axis=1).sum()
         assert on_border > 8
         mesh = samples.mesh()
@@ -351,7 +354,9 @@ class TestInput:
             lambda u, v: scale * small.evaluate(u, v), small.domain, (True, True)
         )
         normals = gm.fibonacci(300)
-        ours, theirs = (gm.sample(x, normals, cells=(32, 32)).mesh() for x in (large, small))
+        ours, theirs = (
+            gm.sample(x, normals=normals, cells=(32, 32)).mesh() for x in (large, small)
+        )
         np.testing.assert_array_equal(ours.triangles, theirs.triangles)
 
     def test_far_from_the_origin(self):
@@ -359,7 +364,7 @@ class TestInput:
         far = gm.Surface.from_callable(
             lambda u, v: near.evaluate(u, v) + 1e6, near.domain, (True, True)
         )
-        ours, theirs = (gm.sample(x, gm.fibonacci(300)).mesh() for x in (far, near))
+        ours, theirs = (gm.sample(x, normals=gm.fibonacci(300)).mesh() for x in (far, near))
         assert ours.euler_characteristic == 0
         # points are rounded to 1e-10, which turns triangles of the size 0.1 by 1e-9
         assert ours.angles.max() == pytest.approx(theirs.angles.max(), abs=1e-4)
@@ -376,7 +381,7 @@ class TestInput:
 
     def test_part_of_the_surface(self):
         """Normals in a cap give an upper ring of the torus; triangles across the rest go."""
-        samples = gm.sample(gm.surfaces.torus(), CAP)
+        samples = gm.sample(gm.surfaces.torus(), normals=CAP)
         whole, part = samples.mesh(), samples.mesh(angle=20)
         assert (len(whole.boundary), whole.euler_characteristic) == (0, 0)
         assert part.angles.max() <= 20.0
@@ -392,7 +397,7 @@ class TestInput:
 
     @pytest.mark.parametrize("angle", [0, -1, 181, np.nan, np.inf, "20", True])
     def test_unusable_angles(self, angle):
-        with pytest.raises(gm.InputError, match=r"^angle must "):
+        with pytest.raises(gm.errors.InputError, match=r"^angle must "):
             gm.sample(gm.surfaces.torus(), count=100).mesh(angle=angle)
 
     @pytest.mark.parametrize("name", ["torus", "sphere", "klein"])
@@ -403,7 +408,7 @@ class TestInput:
             mesh = samples.mesh()  # and two poles
             assert mesh.euler_characteristic == 2
         else:
-            with pytest.raises(gm.InputError, match="too few, or leave too large gaps"):
+            with pytest.raises(gm.errors.InputError, match="too few, or leave too large gaps"):
                 samples.mesh()
 
     @pytest.mark.parametrize("name", ["graph", "belt", "moebius"])
@@ -423,10 +428,10 @@ class TestInput:
         samples = gm.Samples(
             points=spline.evaluate(u, v), normals=spline.normals(u, v),
             uv=np.stack([u, v], axis=1),
-            report=gm.SamplingReport(name, None, 18, None, None, None), spline=spline,
+            report=SamplingReport(name, None, 18, None, None, None), spline=spline,
         )  # fmt: skip
         if name == "torus":  # on one circle: triangles would have a corner twice
-            with pytest.raises(gm.InputError, match="leave too large gaps"):
+            with pytest.raises(gm.errors.InputError, match="leave too large gaps"):
                 samples.mesh()
         else:
             assert samples.mesh().euler_characteristic == surfaces[name][1]
@@ -438,7 +443,7 @@ class TestInput:
 
     def test_no_samples(self):
         samples = gm.sample(gm.surfaces.plane(), count=100)
-        with pytest.raises(gm.InputError, match="there are no samples"):
+        with pytest.raises(gm.errors.InputError, match="there are no samples"):
             samples[:0].mesh()
 
     def test_samples_of_a_file_need_their_spline(self, tmp_path):
@@ -447,11 +452,11 @@ class TestInput:
         samples.write(tmp_path / "torus.npz")
         again = gm.read_samples(tmp_path / "torus.npz")
         with pytest.raises(
-            gm.InputError, match=r"give it, as in samples\.mesh\(gm\.fit\(surface\)"
+            gm.errors.InputError, match=r"give it, as in samples\.mesh\(gm\.fit\(surface\)"
         ):
             again.mesh()
         np.testing.assert_array_equal(again.mesh(spline).triangles, samples.mesh().triangles)
-        with pytest.raises(gm.InputError, match="spline must be a Spline, not Surface"):
+        with pytest.raises(gm.errors.InputError, match="spline must be a Spline, not Surface"):
             again.mesh(gm.surfaces.torus())  # pyright: ignore[reportArgumentType]
 
     def test_a_spline_with_another_domain(self):
@@ -459,11 +464,11 @@ class TestInput:
         square = gm.Surface.from_callable(
             lambda u, v: np.stack([u, v, u * v], axis=-1), ((0, 1), (0, 1))
         )
-        with pytest.raises(gm.InputError, match="lies outside the domain"):
+        with pytest.raises(gm.errors.InputError, match="lies outside the domain"):
             samples.mesh(gm.fit(square))
 
     @pytest.mark.parametrize("lacking", ["points", "normals", "uv"])
     def test_fields_that_lack(self, lacking):
         fields = [name for name in ("points", "normals", "uv") if name != lacking]
-        with pytest.raises(gm.MissingFieldError, match=lacking):
+        with pytest.raises(gm.errors.MissingFieldError, match=lacking):
             gm.sample(gm.surfaces.torus(), count=100, fields=fields).mesh()

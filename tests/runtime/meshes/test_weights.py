@@ -87,5 +87,5 @@ def test_a_part_of_a_surface_needs_an_angle() -> None:
 
 
 def test_what_is_needed() -> None:
-    with pytest.raises(gm.MissingFieldError, match="'uv'"):
+    with pytest.raises(gm.errors.MissingFieldError, match="'uv'"):
         gm.sample(TORUS, count=100, fields=("points", "normals")).weights()

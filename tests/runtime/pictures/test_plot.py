@@ -188,21 +188,21 @@ def test_samples_that_no_normal_gave(name: str, tmp_path: Path) -> None:
 
 
 def test_bad_targets(torus: gm.Spline, tmp_path: Path) -> None:
-    with pytest.raises(gm.UnknownNameError, match=r"use one of \.png, \.pdf, \.svg"):
+    with pytest.raises(gm.errors.UnknownNameError, match=r"use one of \.png, \.pdf, \.svg"):
         plot.plot(torus, tmp_path / "a.jpg", count=50)
-    with pytest.raises(gm.FileError, match="does not exist"):
+    with pytest.raises(gm.errors.FileError, match="does not exist"):
         plot.plot(torus, tmp_path / "missing" / "a.png", count=50)
 
 
 def test_bad_arguments(torus: gm.Spline, tmp_path: Path) -> None:
     path = tmp_path / "a.png"
-    with pytest.raises(gm.InputError, match="has its cells already"):
+    with pytest.raises(gm.errors.InputError, match="has its cells already"):
         plot.plot(torus, path, count=50, cells=(8, 8))
-    with pytest.raises(gm.InputError, match="say how many samples"):
+    with pytest.raises(gm.errors.InputError, match="say how many samples"):
         plot.plot(torus, path)
-    with pytest.raises(gm.InputError, match=r"\(S, 3\) with S >= 1"):
-        plot.plot_samples(gm.sample(torus, [[0, 0, 1]])[:0], torus, [], path)
-    with pytest.raises(gm.InputError, match="too few normals"):
+    with pytest.raises(gm.errors.InputError, match=r"\(S, 3\) with S >= 1"):
+        plot.plot_samples(gm.sample(torus, normals=[[0, 0, 1]])[:0], torus, [], path)
+    with pytest.raises(gm.errors.InputError, match="too few normals"):
         plot.plot_samples(gm.sample(torus, count=50), torus, [(0, 0, 1)], path)
     assert not path.exists()
 
@@ -211,7 +211,7 @@ def test_without_matplotlib(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    with pytest.raises(gm.MissingExtraError, match=r'pip install "gaussmap\[plot\]"'):
+    with pytest.raises(gm.errors.MissingExtraError, match=r'pip install "gaussmap\[plot\]"'):
         plot.check_target(tmp_path / "a.png")
     assert main(["plot", "torus", "-o", str(tmp_path / "a.png")]) == 2
     assert 'pip install "gaussmap[plot]"' in capsys.readouterr().err

@@ -200,7 +200,7 @@ def test_a_convolution_is_written_and_picked(tmp_path: Any) -> None:
         5,
         len(sums),
     ]
-    with pytest.raises(gm.InputError, match="index is out of range"):
+    with pytest.raises(gm.errors.InputError, match="index is out of range"):
         sums[[len(sums)]]
     outer.samples.write(tmp_path / "sum.ply")
     assert len(gm.read_samples(tmp_path / "sum.ply")) == len(outer) > 100
@@ -241,7 +241,7 @@ def test_one_normal() -> None:
     ],
 )
 def test_what_is_refused(arguments: Any, message: str) -> None:
-    with pytest.raises(gm.InputError, match=message):
+    with pytest.raises(gm.errors.InputError, match=message):
         gm.convolve(*arguments)
-    with pytest.raises(gm.InputError, match="neither of these is a Surface"):
+    with pytest.raises(gm.errors.InputError, match="neither of these is a Surface"):
         gm.convolve(ELLIPSOID, ELLIPSOID, NORMALS, cells=(8, 8))

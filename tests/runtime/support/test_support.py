@@ -178,7 +178,7 @@ def torus() -> gm.Spline:
 @pytest.mark.parametrize("normals", [gm.icosphere(12), gm.fibonacci(5000)], ids=["ico", "fib"])
 def test_spline_has_the_branches_that_sampling_finds(torus: gm.Spline, normals: Array) -> None:
     branches = gm.SupportFunction.of_spline(torus).branches(normals)
-    samples = gm.sample(torus, normals)
+    samples = gm.sample(torus, normals=normals)
     order = np.lexsort([samples.patch_index, samples.normal_index])
     for name in ("normal_index", "patch_index", "points", "uv", "normals", "gaussian_curvature"):
         assert (getattr(branches, name) == getattr(samples, name)[order]).all()
@@ -290,7 +290,7 @@ def test_small_spline_without_compilation() -> None:
 def test_several_branches_are_no_single_value(torus: gm.Spline) -> None:
     support = gm.SupportFunction.of_spline(torus)
     for call in (support, support.envelope):
-        with pytest.raises(gm.InputError, match=r"normals\[0\] has 2 branches"):
+        with pytest.raises(gm.errors.InputError, match=r"normals\[0\] has 2 branches"):
             call([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 
 

@@ -43,14 +43,14 @@ SPHERE = gm.SupportFunction.from_sympy(1)
     ],
 )
 def test_expressions(h: Any, message: str) -> None:
-    with pytest.raises(gm.InputError, match=message):
+    with pytest.raises(gm.errors.InputError, match=message):
         given(h)
 
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("h", [sp.Sum(sp.Symbol("n_x") ** k, (k, 0, 3))])
 def test_what_only_the_compiler_refuses(h: sp.Expr) -> None:
-    with pytest.raises(gm.InputError, match="no function that Numba knows"):
+    with pytest.raises(gm.errors.InputError, match="no function that Numba knows"):
         given(h).branches([[0.0, 0.0, 1.0]])
 
 
@@ -59,7 +59,7 @@ def test_what_only_the_compiler_refuses(h: sp.Expr) -> None:
     ["xy", "xyzw", ("x", "x", "z"), (1, 2, 3), None, 3, ("a b", "y", "z"), ("if", "y", "z")],
 )  # fmt: skip
 def test_names_of_the_normal(normal: Any) -> None:
-    with pytest.raises(gm.InputError, match="normal must be three symbols, or their names"):
+    with pytest.raises(gm.errors.InputError, match="normal must be three symbols, or their names"):
         given("1", normal=normal)
 
 
@@ -77,7 +77,7 @@ def test_names_of_the_normal(normal: Any) -> None:
     ],
 )
 def test_domains(domain: Any, message: str) -> None:
-    with pytest.raises(gm.InputError, match=message):
+    with pytest.raises(gm.errors.InputError, match=message):
         given("1", domain=domain)
 
 
@@ -97,15 +97,15 @@ def test_domains(domain: Any, message: str) -> None:
 def test_normals(normals: Any, message: str) -> None:
     calls = (SPHERE, SPHERE.branches, SPHERE.envelope, SPHERE.sheets, SPHERE.contains)
     for call in calls:
-        with pytest.raises(gm.InputError, match=message):
+        with pytest.raises(gm.errors.InputError, match=message):
             call(normals)
 
 
 def test_of_spline_takes_surfaces_and_splines() -> None:
-    with pytest.raises(gm.InputError, match="of_spline takes a Spline or Surface, not str"):
+    with pytest.raises(gm.errors.InputError, match="of_spline takes a Spline or Surface, not str"):
         gm.SupportFunction.of_spline("torus")  # pyright: ignore
     spline = gm.Spline(np.zeros((5, 5, 3)), ((0, 1), (0, 1)), (("none",) * 2,) * 2, "flat")  # pyright: ignore
-    with pytest.raises(gm.InputError, match="cells="):
+    with pytest.raises(gm.errors.InputError, match="cells="):
         gm.SupportFunction.of_spline(spline, (4, 4))
 
 
@@ -114,14 +114,14 @@ NOT_A_NUMBER = [float("nan"), float("inf"), "1", None, [1.0, 2.0], 1j]
 
 @pytest.mark.parametrize("value", NOT_A_NUMBER)
 def test_numbers(value: Any) -> None:
-    with pytest.raises(gm.InputError, match="distance must be a finite number"):
+    with pytest.raises(gm.errors.InputError, match="distance must be a finite number"):
         SPHERE.offset(value)
-    with pytest.raises(gm.InputError, match="factor must be a finite number"):
+    with pytest.raises(gm.errors.InputError, match="factor must be a finite number"):
         SPHERE.scaled(value)
 
 
 def test_scaling_by_zero() -> None:
-    with pytest.raises(gm.InputError, match="factor must not be 0"):
+    with pytest.raises(gm.errors.InputError, match="factor must not be 0"):
         SPHERE.scaled(0)
 
 
@@ -131,7 +131,7 @@ def test_scaling_by_zero() -> None:
      ([1.0, np.nan, 0.0], "NaN or infinity"), ("abc", "real numbers")],
 )  # fmt: skip
 def test_shifts(shift: Any, message: str) -> None:
-    with pytest.raises(gm.InputError, match=message):
+    with pytest.raises(gm.errors.InputError, match=message):
         SPHERE.translated(shift)
 
 
@@ -149,7 +149,7 @@ def test_shifts(shift: Any, message: str) -> None:
     ],
 )
 def test_rotations(rotation: Any, message: str) -> None:
-    with pytest.raises(gm.InputError, match=message):
+    with pytest.raises(gm.errors.InputError, match=message):
         SPHERE.rotated(rotation)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import sympy as sp
 from gaussmap.runtime.support import operations
+from gaussmap.runtime.support.branches import Branches
 from gaussmap.symbolic.expression import NORMAL
 from numpy.typing import NDArray
 
@@ -40,13 +41,13 @@ def rotation(axis: list[float], angle: float) -> Array:
     return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
 
 
-def by_kind(branches: gm.Branches) -> gm.Branches:
+def by_kind(branches: Branches) -> Branches:
     """Sort by normal and sign of curvature: on a torus that is one branch each."""
     order = np.lexsort([branches.hyperbolic, branches.normal_index])
-    return gm.Branches(*(getattr(branches, x.name)[order] for x in dataclasses.fields(branches)))
+    return Branches(*(getattr(branches, x.name)[order] for x in dataclasses.fields(branches)))
 
 
-def check_same(actual: gm.Branches, expected: gm.Branches, size: float) -> None:
+def check_same(actual: Branches, expected: Branches, size: float) -> None:
     """Compare branches of two splines that differ by the rounding of their coefficients.
 
     A coefficient that is off by ε·size turns a normal by a few ε·size beside a cell of 2π·0.35/24,

@@ -180,7 +180,7 @@ def test_next_to_a_singular_point() -> None:
     found = N[np.linalg.norm(N, axis=1) > 0]
     normals = unit(np.concatenate([found, -found]))
     branches = gm.SupportFunction.of_patch(net).branches(normals)
-    image = gm.GaussianImage.of_patch(net).contains(normals)
+    image = gm.gauss_map.GaussianImage.of_patch(net).contains(normals)
     inside = [exact_place(net.tolist(), n) is not None for n in normals]
     assert np.flatnonzero(inside).tolist() == branches.normal_index.tolist()
     assert inside == image.tolist()
@@ -292,11 +292,11 @@ FLAT = [[1, 0, 0], [0, 1, 0], [0, 0, 0], [0.5, 0.5, 0], [0.5, 0, 0], [0, 0.5, 0]
     ],
 )  # fmt: skip
 def test_what_is_no_patch(net: Any, message: str) -> None:
-    with pytest.raises(gm.InputError, match=message):
+    with pytest.raises(gm.errors.InputError, match=message):
         gm.SupportFunction.of_patch(net)
 
 
 def test_a_patch_folded_into_a_plane_has_no_support_function() -> None:
     folded = [[1, 0, 0], [0, 1, 0], [0, 0, 0], [0, 1, 0], [1, 1, 0], [1, 0, 0]]
-    with pytest.raises(gm.InputError, match="no regular point"):
+    with pytest.raises(gm.errors.InputError, match="no regular point"):
         gm.SupportFunction.of_patch(folded)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .checks import finite_number
-from .errors import InputError
-from .sphere import as_normals, unit_vector
+from ..checks import finite_number
+from ..errors import InputError
+from .unit import as_normals, unit_vector
 
-__all__ = ["angles_between", "cap", "spherical_polygon"]
+__all__ = ["angles_between", "cap", "polygon"]
 
 # Of triple products of unit vectors: what is on a border up to rounding belongs to the region.
 ROUNDING = 2.0**-50
@@ -20,7 +20,7 @@ def cap(normals: ArrayLike, axis: ArrayLike, angle: float) -> NDArray[np.float64
 
     They come as unit normals in the same order; 90 gives the closed hemisphere, 180 all of them.
     The result may be empty. Any other region is a mask on the array, such as
-    `normals[normals[:, 2] > 0.5]`, or a `spherical_polygon`.
+    `normals[normals[:, 2] > 0.5]`, or a `polygon`.
 
     Raises InputError for normals as `sample` does, an axis that is not three finite numbers or
     zero, and an angle that is not between 0 and 180.
@@ -32,7 +32,7 @@ def cap(normals: ArrayLike, axis: ArrayLike, angle: float) -> NDArray[np.float64
     return directions[angles_between(directions, middle) <= degrees]
 
 
-def spherical_polygon(normals: ArrayLike, corners: ArrayLike) -> NDArray[np.float64]:
+def polygon(normals: ArrayLike, corners: ArrayLike) -> NDArray[np.float64]:
     """Return those of the normals (S, 3) that lie in a convex polygon on the sphere, (k, 3).
 
     Its edges are arcs of great circles, each shorter than half of one, between the `corners`

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .regions import angles_between
-from .sphere import as_normals
+from .unit import as_normals
 
 __all__ = ["covering_radius"]
 

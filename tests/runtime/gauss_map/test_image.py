@@ -9,7 +9,7 @@ import pytest
 from gaussmap.generated import patch as formulas
 from gaussmap.generated.vectors import Vector
 from gaussmap.runtime.formula_calls import patch, python_function, vector
-from gaussmap.runtime.gaussian.patches import Patches
+from gaussmap.runtime.gauss_map.patches import Patches
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -66,9 +66,9 @@ TRIANGLE = np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]])
 
 
 def test_octant() -> None:
-    image = gm.GaussianImage.of_patch(OCTANT)
+    image = gm.gauss_map.GaussianImage.of_patch(OCTANT)
     assert image.kind == "triangle"
-    assert image.patch_class == gm.PatchClass.ELLIPTIC
+    assert image.patch_class == gm.gauss_map.PatchClass.ELLIPTIC
     assert all(arc.is_great_circle and not arc.is_point for arc in image.arcs)
     assert image.solid_angle == pytest.approx(np.pi / 2, rel=1e-14)
     assert image.area == image.solid_angle
@@ -82,7 +82,7 @@ def test_octant() -> None:
 def test_arcs_are_the_normals_of_the_edges_and_lie_on_the_cones() -> None:
     for seed in range(20):
         net = random_patch(seed, 3.0)
-        image = gm.GaussianImage.of_patch(net)
+        image = gm.gauss_map.GaussianImage.of_patch(net)
         vectors = patch(Patches.of_control_points(net[None]).vectors[0])
         share = np.linspace(0.0, 1.0, 9)
         edges = [(0 * share, 1 - share), (share, 0 * share), (1 - share, share)]
@@ -97,7 +97,7 @@ def test_arcs_are_the_normals_of_the_edges_and_lie_on_the_cones() -> None:
 
 
 def test_cones_have_one_sign_at_the_normals_inside() -> None:
-    image = gm.GaussianImage.of_patch(OCTANT)
+    image = gm.gauss_map.GaussianImage.of_patch(OCTANT)
     forms = np.einsum("x,kxy,y->k", [1.0, 2.0, 3.0], image.cones, [1.0, 2.0, 3.0])
     assert (forms > 0).all() or (forms < 0).all()
 
@@ -106,14 +106,14 @@ def test_cones_have_one_sign_at_the_normals_inside() -> None:
 def test_solid_angle_is_the_integral_of_the_curvature(seed: int) -> None:
     """Nearly flat patches: there 60 × 60 nodes are exact up to rounding."""
     net = random_patch(seed, 1.5)
-    image = gm.GaussianImage.of_patch(net)
+    image = gm.gauss_map.GaussianImage.of_patch(net)
     assert image.solid_angle == pytest.approx(measured(net, TRIANGLE), abs=1e-13)
 
 
 @pytest.mark.parametrize("seed", range(12))
 def test_area_is_the_integral_of_the_absolute_curvature(seed: int) -> None:
     net = random_patch(seed, 1.5)
-    image = gm.GaussianImage.of_patch(net)
+    image = gm.gauss_map.GaussianImage.of_patch(net)
     total = 0.0
     for piece in image.pieces:
         fan = [piece.corners[[0, k, k + 1]] for k in range(1, len(piece.corners) - 1)]
@@ -128,7 +128,7 @@ def test_area_is_the_integral_of_the_absolute_curvature(seed: int) -> None:
 def test_area_is_the_share_of_the_sphere_that_it_contains(seed: int) -> None:
     """Wild patches, with singular points inside: 100 000 normals count the area to 1 %."""
     net = np.random.default_rng(seed).integers(-9, 10, (6, 3)).astype(float)
-    image = gm.GaussianImage.of_patch(net)
+    image = gm.gauss_map.GaussianImage.of_patch(net)
     share = image.contains(gm.fibonacci(100_000)).mean()
     assert image.area == pytest.approx(4 * np.pi * share, abs=0.01)
 
@@ -154,7 +154,7 @@ def test_solid_angle_is_additive_where_singular_points_are_inside() -> None:
             [uw, vw, b002, near_w, (b002 + b101) / 2, (b002 + b011) / 2],
             [vw, uw, uv, near_w, near_v, near_u],
         ]
-        images = [gm.GaussianImage.of_patch(x) for x in (net, *quarters)]
+        images = [gm.gauss_map.GaussianImage.of_patch(x) for x in (net, *quarters)]
         mixed += images[0].kind == "bow tie"
         whole, *parts = (image.solid_angle for image in images)
         assert whole == pytest.approx(sum(parts), abs=1e-10)
@@ -189,13 +189,13 @@ def test_membership_is_that_of_the_definition(seed: int, normals: list) -> None:
     D = [python_function(formulas.forms)(vectors, Vector(*n))[0] for n in normals]
     asked = [n for n, value in zip(normals, D, strict=True) if value != 0]
     if asked:
-        found = gm.GaussianImage.of_patch(net).contains(asked)
+        found = gm.gauss_map.GaussianImage.of_patch(net).contains(asked)
         assert found.tolist() == [by_definition(net, list(n)) for n in asked]
 
 
 def test_border_belongs_to_the_image_and_what_lies_beyond_does_not() -> None:
     """Normals on an edge of an integer patch, moved by one part in 2⁵⁰ along the gradient of V."""
-    image = gm.GaussianImage.of_patch(2 * BIANGLE)
+    image = gm.gauss_map.GaussianImage.of_patch(2 * BIANGLE)
     vectors = python_function(formulas.power_form)(*map(vector, 2 * BIANGLE))
     u = np.array([0.25, 0.5, 0.75])
     normals = np.array(python_function(formulas.tangents)(vectors, u, 0.0)[2]).T
@@ -210,7 +210,7 @@ def test_parabolic_line_inside_has_its_normal() -> None:
     """Moved to u = −½ … ½ the patch has the line u = 0 inside: all of it has the normal e_x."""
     a, b, c, d, e = np.eye(3)[0], np.eye(3)[1], np.eye(3)[2], [0, 2, 0], [0, 1, 2]
     moved = net_of(4 * a, 4 * b, 4 * c, 2 * (np.array(d) - a), 2 * (np.array(e) - b))
-    image = gm.GaussianImage.of_patch(moved)
+    image = gm.gauss_map.GaussianImage.of_patch(moved)
     assert image.kind == "bow tie"
     assert image.contains([[1, 0, 0]]).all()
     assert not image.contains([[-1, 0, 0], [0, 1, 0]]).any()
@@ -220,7 +220,7 @@ def test_parabolic_line_inside_has_its_normal() -> None:
 
 
 def test_biangle() -> None:
-    image = gm.GaussianImage.of_patch(BIANGLE)
+    image = gm.gauss_map.GaussianImage.of_patch(BIANGLE)
     assert image.kind == "biangle"
     assert [arc.is_point for arc in image.arcs] == [True, False, False]
     np.testing.assert_allclose(image.arcs[0].points(5), np.tile([1.0, 0.0, 0.0], (5, 1)))
@@ -229,8 +229,8 @@ def test_biangle() -> None:
 
 
 def test_developable_patch_is_an_arc() -> None:
-    image = gm.GaussianImage.of_patch(CYLINDER)
-    assert (image.kind, image.patch_class) == ("arc", gm.PatchClass.DEVELOPABLE)
+    image = gm.gauss_map.GaussianImage.of_patch(CYLINDER)
+    assert (image.kind, image.patch_class) == ("arc", gm.gauss_map.PatchClass.DEVELOPABLE)
     assert image.solid_angle == image.area == 0.0
     assert all(arc.is_great_circle for arc in image.arcs)
     np.testing.assert_array_equal(
@@ -240,20 +240,24 @@ def test_developable_patch_is_an_arc() -> None:
 
 
 def test_plane_is_a_point() -> None:
-    image = gm.GaussianImage.of_patch(PLANE)
-    assert (image.kind, image.patch_class, image.area) == ("point", gm.PatchClass.PLANAR, 0.0)
+    image = gm.gauss_map.GaussianImage.of_patch(PLANE)
+    assert (image.kind, image.patch_class, image.area) == (
+        "point",
+        gm.gauss_map.PatchClass.PLANAR,
+        0.0,
+    )
     assert all(arc.is_point and arc.is_great_circle for arc in image.arcs)
     asked = [[-2, -3, 1], [-4, -6, 2], [2, 3, -1], [-2, -3, 1 + 1e-15]]
     assert image.contains(asked).tolist() == [True, True, False, False]
-    folded = gm.GaussianImage.of_patch(FOLDED_PLANE)
+    folded = gm.gauss_map.GaussianImage.of_patch(FOLDED_PLANE)
     assert folded.kind == "point"
     assert folded.contains([[0, 0, 1], [0, 0, -1], [0, 1, 1]]).tolist() == [True, True, False]
 
 
 @pytest.mark.parametrize("net", [LINE, np.zeros((6, 3)), np.ones((6, 3))])
 def test_what_has_no_normals_is_empty(net: Array) -> None:
-    image = gm.GaussianImage.of_patch(net)
-    assert (image.kind, image.patch_class) == ("empty", gm.PatchClass.SINGULAR)
+    image = gm.gauss_map.GaussianImage.of_patch(net)
+    assert (image.kind, image.patch_class) == ("empty", gm.gauss_map.PatchClass.SINGULAR)
     assert image.solid_angle == image.area == 0.0
     assert not image.contains([[1, 0, 0], [3, -2, 1]]).any()
     assert np.isnan(image.arcs[0].points(3)).all()
@@ -263,7 +267,7 @@ def test_what_has_no_normals_is_empty(net: Array) -> None:
 def test_singular_corner_adds_a_side() -> None:
     """With p_u and p_v parallel at a corner, the normals near it fill part of a great circle."""
     net = net_of([2, 3, -1], [1, 3, 1], [2, 1, 1], [1, 0, 0], [2, 0, 0])
-    image = gm.GaussianImage.of_patch(net)
+    image = gm.gauss_map.GaussianImage.of_patch(net)
     assert image.kind == "polygon"
     share = image.contains(gm.fibonacci(200_000)).mean()
     assert image.area == pytest.approx(4 * np.pi * share, abs=0.005)
@@ -276,7 +280,7 @@ def test_singular_corner_adds_a_side() -> None:
 @pytest.mark.compiled
 def test_images_at_a_pole() -> None:
     """One triangle of a cell has a whole edge in the pole, two have one corner there."""
-    images = gm.GaussianImages.of_spline(gm.surfaces.sphere(), (8, 6))
+    images = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.sphere(), (8, 6))
     cell = 5  # the northernmost one for the first step of u
     kinds = [images[4 * cell + turn].kind for turn in range(4)]
     assert kinds == ["triangle", "triangle", "arc", "triangle"]
@@ -286,7 +290,7 @@ def test_images_at_a_pole() -> None:
 
 
 def test_developable_patch_with_a_curve_of_singular_points_is_an_arc() -> None:
-    image = gm.GaussianImage.of_patch(
+    image = gm.gauss_map.GaussianImage.of_patch(
         net_of([-1, 0, -1], [0, -2, 2], [-3, -1, -2], [1, 0, 0], [2, 0, 0])
     )
     assert (image.kind, image.area) == ("arc", 0.0)
@@ -297,7 +301,7 @@ def test_developable_patch_with_a_curve_of_singular_points_is_an_arc() -> None:
 def test_scale_does_not_matter(factor: float) -> None:
     for seed in range(5):
         net = random_patch(seed)
-        image, other = (gm.GaussianImage.of_patch(x) for x in (net, net * factor))
+        image, other = (gm.gauss_map.GaussianImage.of_patch(x) for x in (net, net * factor))
         assert image.kind == other.kind
         assert other.area == pytest.approx(image.area, rel=1e-11)
         normals = gm.fibonacci(500)
@@ -307,10 +311,12 @@ def test_scale_does_not_matter(factor: float) -> None:
 def test_translation_costs_only_its_rounding() -> None:
     for net, kind in ((OCTANT, "triangle"), (CYLINDER, "arc"), (PLANE, "point")):
         moved = net / 3.0 + 1e6
-        image = gm.GaussianImage.of_patch(moved)
+        image = gm.gauss_map.GaussianImage.of_patch(moved)
         assert image.kind == kind
-        assert image.area == pytest.approx(gm.GaussianImage.of_patch(net).area, abs=1e-8)
-    assert all(arc.is_great_circle for arc in gm.GaussianImage.of_patch(OCTANT / 3 + 1e6).arcs)
+        assert image.area == pytest.approx(gm.gauss_map.GaussianImage.of_patch(net).area, abs=1e-8)
+    assert all(
+        arc.is_great_circle for arc in gm.gauss_map.GaussianImage.of_patch(OCTANT / 3 + 1e6).arcs
+    )
 
 
 # --- all patches of a spline ----------------------------------------------------------------------
@@ -319,22 +325,22 @@ def test_translation_costs_only_its_rounding() -> None:
 @pytest.mark.compiled
 @pytest.mark.parametrize("cells", [(16, 16), (33, 17), (64, 64)])
 def test_closed_surfaces_have_the_solid_angle_of_their_topology(cells: tuple[int, int]) -> None:
-    torus = gm.GaussianImages.of_spline(gm.surfaces.torus(), cells)
+    torus = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.torus(), cells)
     assert torus.solid_angles.sum() == pytest.approx(0.0, abs=1e-11)
-    cyclide = gm.GaussianImages.of_spline(gm.surfaces.dupin_cyclide(), cells)
+    cyclide = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.dupin_cyclide(), cells)
     assert cyclide.solid_angles.sum() == pytest.approx(0.0, abs=1e-9)
     assert cyclide.areas.sum() == pytest.approx(8 * np.pi, rel=0.01)
     even = (cells[0] + cells[0] % 2, cells[1])
     for name in ("sphere", "ellipsoid"):
-        images = gm.GaussianImages.of_spline(gm.surfaces.surface(name), even)
+        images = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.surface(name), even)
         assert images.solid_angles.sum() == pytest.approx(4 * np.pi, abs=1e-11)
 
 
 @pytest.mark.compiled
 def test_torus_covers_the_sphere_twice() -> None:
     """Where cells end at the parabolic circles no patch is mixed, and each half covers 4π."""
-    images = gm.GaussianImages.of_spline(gm.surfaces.torus(), (32, 32))
-    elliptic = images.patch_classes == gm.PatchClass.ELLIPTIC
+    images = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.torus(), (32, 32))
+    elliptic = images.patch_classes == gm.gauss_map.PatchClass.ELLIPTIC
     assert images.solid_angles[elliptic].sum() == pytest.approx(4 * np.pi, abs=1e-11)
     assert images.solid_angles[~elliptic].sum() == pytest.approx(-4 * np.pi, abs=1e-11)
     assert images.areas.sum() == pytest.approx(8 * np.pi, abs=1e-11)
@@ -343,20 +349,20 @@ def test_torus_covers_the_sphere_twice() -> None:
 
 @pytest.mark.compiled
 def test_sheets() -> None:
-    images = gm.GaussianImages.of_spline(gm.surfaces.torus(), (16, 16))
+    images = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.torus(), (16, 16))
     normals = gm.icosphere(10)
     assert (images.sheets(normals, 1) == images.sheets(normals, -1)).all()
     assert (images.sheets(normals) == images.sheets(normals, 1) + images.sheets(normals, -1)).all()
     away = np.abs(normals[:, 2]) < 0.999
     assert (images.sheets(normals)[away] == 2).all()
-    sphere = gm.GaussianImages.of_spline(gm.surfaces.sphere(), (16, 16))
+    sphere = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.sphere(), (16, 16))
     assert (sphere.sheets(normals, 1) - sphere.sheets(normals, -1) == 1).all()
 
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("name", ["wavy_graph", "moebius_band"])
 def test_sheets_are_the_images_that_contain_a_normal(name: str) -> None:
-    images = gm.GaussianImages.of_spline(gm.surfaces.surface(name), (4, 3))
+    images = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.surface(name), (4, 3))
     normals = gm.fibonacci(1500) + np.array([0.01, 0.02, 0.03])  # no tie with a symmetry
     count = np.sum([image.contains(normals) for image in images], axis=0)
     np.testing.assert_array_equal(images.sheets(normals), count)
@@ -365,7 +371,7 @@ def test_sheets_are_the_images_that_contain_a_normal(name: str) -> None:
 
 @pytest.mark.compiled
 def test_solid_angles_of_a_spline_are_those_of_its_patches() -> None:
-    images = gm.GaussianImages.of_spline(gm.surfaces.dupin_cyclide(), (8, 6))
+    images = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.dupin_cyclide(), (8, 6))
     single = np.array([(x.solid_angle, x.area) for x in images])
     np.testing.assert_allclose(images.solid_angles, single[:, 0], rtol=0, atol=1e-12)
     np.testing.assert_allclose(images.areas, single[:, 1], rtol=0, atol=1e-12)
@@ -377,7 +383,7 @@ def test_quadrature_of_the_sampler_agrees() -> None:
     errors = []
     for cells in (16, 32):
         spline = gm.fit(gm.surfaces.ellipsoid_patch(), (cells, cells))
-        exact = gm.GaussianImages.of_spline(spline).solid_angles
+        exact = gm.gauss_map.GaussianImages.of_spline(spline).solid_angles
         errors.append(np.abs(spline.measure[1] - exact).max() / exact.max())
     assert errors[1] < 0.35 * errors[0] < 0.01
 
@@ -394,8 +400,12 @@ def test_quadrature_of_the_sampler_agrees() -> None:
     ],
 )  # fmt: skip
 def test_bad_control_points(points) -> None:
-    for call in (gm.GaussianImage.of_patch, gm.parabolic_lines, gm.split_patch):
-        with pytest.raises(gm.InputError, match="control_points"):
+    for call in (
+        gm.gauss_map.GaussianImage.of_patch,
+        gm.gauss_map.parabolic_lines,
+        gm.gauss_map.split_patch,
+    ):
+        with pytest.raises(gm.errors.InputError, match="control_points"):
             call(points)
 
 
@@ -403,40 +413,42 @@ def test_bad_control_points(points) -> None:
     "normals", [[], [[0, 0, 0]], [[np.nan, 0, 1]], [1, 2, 3], [[1, 2]], "n", [[1j, 0, 0]]]
 )
 def test_bad_normals(normals) -> None:
-    image = gm.GaussianImage.of_patch(OCTANT)
-    with pytest.raises(gm.InputError, match="normals"):
+    image = gm.gauss_map.GaussianImage.of_patch(OCTANT)
+    with pytest.raises(gm.errors.InputError, match="normals"):
         image.contains(normals)
 
 
 def test_other_bad_input() -> None:
     spline = gm.fit(gm.surfaces.torus(), (4, 4))
-    images = gm.GaussianImages.of_spline(spline)
-    with pytest.raises(gm.InputError, match="cells"):
-        gm.GaussianImages.of_spline(spline, (4, 4))
-    with pytest.raises(gm.InputError, match="Surface"):
-        gm.GaussianImages.of_spline("torus")  # pyright: ignore[reportArgumentType]
-    with pytest.raises(gm.InputError, match="sign"):
+    images = gm.gauss_map.GaussianImages.of_spline(spline)
+    with pytest.raises(gm.errors.InputError, match="cells"):
+        gm.gauss_map.GaussianImages.of_spline(spline, (4, 4))
+    with pytest.raises(gm.errors.InputError, match="Surface"):
+        gm.gauss_map.GaussianImages.of_spline("torus")  # pyright: ignore[reportArgumentType]
+    with pytest.raises(gm.errors.InputError, match="sign"):
         images.sheets([[0, 0, 1]], 2)
-    with pytest.raises(gm.InputError, match="normals"):
+    with pytest.raises(gm.errors.InputError, match="normals"):
         images.sheets([[0, 0, 0]])
     with pytest.raises(IndexError):
         images[len(images)]
     for count in (1, 0, 2.5, None):
-        with pytest.raises(gm.InputError, match="count must be a whole number of at least 2"):
-            gm.GaussianImage.of_patch(OCTANT).arcs[0].points(count)  # pyright: ignore[reportArgumentType]
+        with pytest.raises(
+            gm.errors.InputError, match="count must be a whole number of at least 2"
+        ):
+            gm.gauss_map.GaussianImage.of_patch(OCTANT).arcs[0].points(count)  # pyright: ignore[reportArgumentType]
 
 
 def test_a_double_parabolic_line_inside_pinches_the_image() -> None:
     points = [
         [1, 0, 0.2], [-0.3, 1, 0], [0, 0, 0], [0.85, 0.5, -0.15], [0.5, 0, -0.15], [-0.15, 0.5, 0]
     ]  # fmt: skip
-    image = gm.GaussianImage.of_patch(points)
+    image = gm.gauss_map.GaussianImage.of_patch(points)
     assert [piece.sign for piece in image.pieces] == [-1, -1]
     assert image.kind == "bow tie"
 
 
 @pytest.mark.parametrize("sign", [np.array([1, 1]), "1", 1.0, True, None, 2])
 def test_a_sign_is_one_whole_number(sign: Any) -> None:
-    images = gm.GaussianImages.of_spline(gm.surfaces.torus(), (8, 8))
-    with pytest.raises(gm.InputError, match="sign must be 1, -1 or 0"):
+    images = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.torus(), (8, 8))
+    with pytest.raises(gm.errors.InputError, match="sign must be 1, -1 or 0"):
         images.sheets([[0.0, 0.0, 1.0]], sign=sign)

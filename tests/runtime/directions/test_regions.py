@@ -6,7 +6,7 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.regions import angles_between
+from gaussmap.runtime.directions.regions import angles_between
 
 NORMALS = gm.fibonacci(20_000)
 OCTANT = [[1, 0, 0], [0, 2, 0], [0, 0, 3]]
@@ -33,54 +33,54 @@ def test_angles_are_accurate_near_0_and_180(degrees: float) -> None:
 @pytest.mark.parametrize("angle", [1.0, 30.0, 90.0, 150.0])
 @pytest.mark.parametrize("axis", [[0, 0, 1], [-3, 0, 0], [1, 2, -3]])
 def test_a_cap_has_its_share(angle: float, axis: Any) -> None:
-    part = gm.cap(NORMALS, axis, angle)
+    part = gm.directions.cap(NORMALS, axis, angle)
     cosines = part @ axis / np.linalg.norm(axis)
     assert cosines.min() >= np.cos(np.radians(angle)) - 1e-15
     area = (1 - np.cos(np.radians(angle))) / 2
     assert abs(shares(part) - area) < 3 * len(NORMALS) ** -0.75
-    rest = gm.cap(NORMALS, -np.asarray(axis), np.nextafter(180 - angle, 0))
+    rest = gm.directions.cap(NORMALS, -np.asarray(axis), np.nextafter(180 - angle, 0))
     assert len(part) + len(rest) == len(NORMALS)
 
 
 def test_a_cap_keeps_order_and_bits() -> None:
-    part = gm.cap(NORMALS, [0, 0, 1], 40)
+    part = gm.directions.cap(NORMALS, [0, 0, 1], 40)
     assert (part == NORMALS[: len(part)]).all()
-    scaled = gm.cap(8 * NORMALS, [0, 0, 1e-300], np.float64(40))
+    scaled = gm.directions.cap(8 * NORMALS, [0, 0, 1e-300], np.float64(40))
     assert (scaled == part).all()
 
 
 def test_its_border_belongs_to_a_cap() -> None:
     axes = np.concatenate([np.eye(3), -np.eye(3)])
-    assert len(gm.cap(axes, [0, 0, 1], 90)) == 5
-    assert gm.cap(axes, [0, 0, 1], 0).tolist() == [[0, 0, 1]]
-    assert len(gm.cap(axes, [0, 0, 1], 180)) == 6
-    assert gm.cap(axes, [1, 1, 1], 54).shape == (0, 3)
-    assert len(gm.cap(axes, [1, 1, 1], 55)) == 3
+    assert len(gm.directions.cap(axes, [0, 0, 1], 90)) == 5
+    assert gm.directions.cap(axes, [0, 0, 1], 0).tolist() == [[0, 0, 1]]
+    assert len(gm.directions.cap(axes, [0, 0, 1], 180)) == 6
+    assert gm.directions.cap(axes, [1, 1, 1], 54).shape == (0, 3)
+    assert len(gm.directions.cap(axes, [1, 1, 1], 55)) == 3
 
 
 def test_a_small_cap_of_close_normals() -> None:
     t = np.array([0.5e-9, 1.5e-9])
     close = np.stack([np.sin(t), 0 * t, np.cos(t)], axis=1)
-    assert len(gm.cap(close, [0, 0, 1], np.degrees(1e-9))) == 1
+    assert len(gm.directions.cap(close, [0, 0, 1], np.degrees(1e-9))) == 1
 
 
 @pytest.mark.parametrize("angle", [-1, 180.1, np.nan, np.inf, "30", None])
 def test_angles_that_are_none(angle: Any) -> None:
-    with pytest.raises(gm.InputError, match=r"^angle must"):
-        gm.cap(NORMALS, [0, 0, 1], angle)
+    with pytest.raises(gm.errors.InputError, match=r"^angle must"):
+        gm.directions.cap(NORMALS, [0, 0, 1], angle)
 
 
 @pytest.mark.parametrize("axis", [[0, 0, 0], [0, np.nan, 1], [0, 1], "z"])
 def test_axes_that_are_none(axis: Any) -> None:
-    with pytest.raises(gm.InputError, match=r"^axis "):
-        gm.cap(NORMALS, axis, 30)
+    with pytest.raises(gm.errors.InputError, match=r"^axis "):
+        gm.directions.cap(NORMALS, axis, 30)
 
 
 # --- polygons -------------------------------------------------------------------------------------
 
 
 def test_an_octant() -> None:
-    part = gm.spherical_polygon(NORMALS, OCTANT)
+    part = gm.directions.polygon(NORMALS, OCTANT)
     assert (part >= 0).all()
     assert len(part) == (NORMALS >= 0).all(axis=1).sum()
 
@@ -95,7 +95,7 @@ def test_the_faces_of_an_icosahedron_cover_the_sphere() -> None:
     for face in faces:
         triangle = corners[list(face)]
         turned = triangle if np.linalg.det(triangle) > 0 else triangle[::-1]
-        parts.append(gm.spherical_polygon(NORMALS, turned))
+        parts.append(gm.directions.polygon(NORMALS, turned))
     assert len(np.concatenate(parts)) == len(NORMALS)
     assert len(np.unique(np.concatenate(parts), axis=0)) == len(NORMALS)
 
@@ -103,24 +103,26 @@ def test_the_faces_of_an_icosahedron_cover_the_sphere() -> None:
 def test_many_corners_are_nearly_a_cap() -> None:
     t = np.linspace(0, 2 * np.pi, 200, endpoint=False)
     ring = np.stack([np.cos(t), np.sin(t), 0 * t + 1], axis=1)
-    part = gm.spherical_polygon(NORMALS, ring)
+    part = gm.directions.polygon(NORMALS, ring)
     assert (
-        len(gm.cap(NORMALS, [0, 0, 1], 44.98)) <= len(part) <= len(gm.cap(NORMALS, [0, 0, 1], 45))
+        len(gm.directions.cap(NORMALS, [0, 0, 1], 44.98))
+        <= len(part)
+        <= len(gm.directions.cap(NORMALS, [0, 0, 1], 45))
     )
 
 
 def test_corners_on_one_great_circle_bound_a_hemisphere() -> None:
     corners = [[1, 0, 0], [-1, 2, 0], [-1, -2, 0]]
-    assert (gm.spherical_polygon(NORMALS, corners)[:, 2] >= 0).all()
-    assert len(gm.spherical_polygon(NORMALS, corners)) == len(NORMALS) // 2
+    assert (gm.directions.polygon(NORMALS, corners)[:, 2] >= 0).all()
+    assert len(gm.directions.polygon(NORMALS, corners)) == len(NORMALS) // 2
 
 
 def test_its_corners_belong_to_a_polygon() -> None:
     triangle = gm.fibonacci(50)[[3, 20, 9]]
     turned = triangle if np.linalg.det(triangle) > 0 else triangle[::-1]
-    inside = gm.spherical_polygon(np.concatenate([turned, -turned]), turned)
+    inside = gm.directions.polygon(np.concatenate([turned, -turned]), turned)
     assert (inside == turned).all()
-    assert gm.spherical_polygon(-turned, turned).shape == (0, 3)
+    assert gm.directions.polygon(-turned, turned).shape == (0, 3)
 
 
 @pytest.mark.parametrize(
@@ -136,12 +138,12 @@ def test_its_corners_belong_to_a_polygon() -> None:
     ],
 )
 def test_corners_that_are_none(corners: Any, message: str) -> None:
-    with pytest.raises(gm.InputError, match=message):
-        gm.spherical_polygon(NORMALS, corners)
+    with pytest.raises(gm.errors.InputError, match=message):
+        gm.directions.polygon(NORMALS, corners)
 
 
 def test_a_star_is_not_convex() -> None:
     t = 2 * np.pi * np.arange(5) * 2 / 5
     star = np.stack([np.cos(t), np.sin(t), 0 * t + 1], axis=1)
-    with pytest.raises(gm.InputError, match="convex"):
-        gm.spherical_polygon(NORMALS, star)
+    with pytest.raises(gm.errors.InputError, match="convex"):
+        gm.directions.polygon(NORMALS, star)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from gaussmap.generated import patch as formulas
 from gaussmap.runtime.formula_calls import patch, python_function, vector
-from gaussmap.runtime.gaussian.patches import Patches
+from gaussmap.runtime.gauss_map.patches import Patches
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -65,7 +65,7 @@ def of_polygon(points: Array, pole: Array) -> float:
 @pytest.mark.parametrize("name", CASES)
 def test_an_edge_is_cut_at_its_singular_points(name: str) -> None:
     points, edge, zeros, kind, sides = CASES[name]
-    image = gm.GaussianImage.of_patch(points)
+    image = gm.gauss_map.GaussianImage.of_patch(points)
     assert image.kind == kind
     assert len(image.boundary) == sides
     assert [len(x.singular_points) for x in image.arcs] == [
@@ -80,7 +80,7 @@ def test_parts_are_the_normals_of_the_edge(name: str) -> None:
     """Sampled along the edge, between the singular points; rounding is divided by |N| > 1e-3."""
     points, edge, zeros, _, _ = CASES[name]
     net = np.array(points, dtype=float)
-    arc = gm.GaussianImage.of_patch(net).arcs[edge]
+    arc = gm.gauss_map.GaussianImage.of_patch(net).arcs[edge]
     for part, start, end in zip(arc.parts, [0.0, *zeros], [*zeros, 1.0], strict=True):
         along = part.points(11)
         inner = np.linspace(start, end, 11)[1:-1]
@@ -99,7 +99,7 @@ def test_the_boundary_is_closed_and_has_the_solid_angle(name: str) -> None:
     In the third order a triple parabolic line ends in the singular point: a triple root, which is
     known to the cube root of 2⁻⁵² only, 6e-6.
     """
-    image = gm.GaussianImage.of_patch(CASES[name][0])
+    image = gm.gauss_map.GaussianImage.of_patch(CASES[name][0])
     curves = [arc.points(4001) for arc in image.boundary]
     for before, after in zip(curves, curves[1:] + curves[:1], strict=True):
         np.testing.assert_allclose(before[-1], after[0], rtol=0, atol=1e-12)
@@ -113,7 +113,7 @@ def test_the_boundary_is_closed_and_has_the_solid_angle(name: str) -> None:
 @pytest.mark.compiled
 @pytest.mark.parametrize("name", CASES)
 def test_membership_and_area_of_an_image_with_a_singular_point_inside_an_edge(name: str) -> None:
-    image = gm.GaussianImage.of_patch(CASES[name][0])
+    image = gm.gauss_map.GaussianImage.of_patch(CASES[name][0])
     share = image.contains(gm.fibonacci(100_000)).mean()
     assert image.area == pytest.approx(4 * np.pi * share, abs=0.01)
 
@@ -124,7 +124,7 @@ def test_normals_round_a_singular_point_turn_through_half_a_great_circle(name: s
     """Sampled on a half circle round it, of radius 1e-7; one side of the arc is in the image."""
     points, _, zeros, _, _ = CASES[name]
     net = np.array(points, dtype=float)
-    image = gm.GaussianImage.of_patch(net)
+    image = gm.gauss_map.GaussianImage.of_patch(net)
     halves = [x for x in image.boundary if np.linalg.norm(x.points(2).sum(axis=0)) < 1e-12]
     assert len(halves) == 1
     assert halves[0].is_great_circle
@@ -143,7 +143,7 @@ def test_normals_round_a_singular_point_turn_through_half_a_great_circle(name: s
 def test_integer_normals_of_a_cut_edge_are_members() -> None:
     """Exact normals of the edge v = 0 at u = 1/8, …, 7/8; at 1/2 it has none."""
     net = np.array(CASES["generic"][0], dtype=float)
-    image = gm.GaussianImage.of_patch(net)
+    image = gm.gauss_map.GaussianImage.of_patch(net)
     vectors = python_function(formulas.power_form)(*map(vector, net))
     u = np.array([1, 2, 3, 5, 6, 7]) / 8
     N = python_function(formulas.tangents)(vectors, u, 0.0)[2]
@@ -159,17 +159,17 @@ def test_scale_and_rotation_do_not_matter_for_the_cuts(name: str, factor: float)
     points, edge, zeros, kind, sides = CASES[name]
     turn = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))[0]
     turn *= np.sign(np.linalg.det(turn))
-    image = gm.GaussianImage.of_patch(factor * np.array(points) @ turn.T)
+    image = gm.gauss_map.GaussianImage.of_patch(factor * np.array(points) @ turn.T)
     assert (image.kind, len(image.boundary)) == (kind, sides)
     np.testing.assert_allclose(image.arcs[edge].singular_points, zeros, rtol=0, atol=1e-7)
-    original = gm.GaussianImage.of_patch(points).boundary
+    original = gm.gauss_map.GaussianImage.of_patch(points).boundary
     for mine, other in zip(image.boundary, original, strict=True):
         np.testing.assert_allclose(mine.points(9), other.points(9) @ turn.T, rtol=0, atol=1e-6)
 
 
 def test_arcs_without_a_singular_point_inside() -> None:
     octant = [[2, 0, 0], [0, 2, 0], [0, 0, 2], [2, 2, 1], [2, 1, 2], [1, 2, 2]]
-    image = gm.GaussianImage.of_patch(octant)
+    image = gm.gauss_map.GaussianImage.of_patch(octant)
     assert len(image.boundary) == 3
     for arc, side in zip(image.arcs, image.boundary, strict=True):
         assert arc.singular_points == ()
@@ -180,7 +180,7 @@ def test_arcs_without_a_singular_point_inside() -> None:
 def test_a_double_zero_is_one_singular_point_without_a_jump() -> None:
     """(t − 0.3)² n: rounding may leave a negative discriminant."""
     normal = np.array([1.0, 2.0, 3.0])
-    arc = gm.BoundaryArc(np.outer([0.09, -0.21, 0.49], normal), 1e-15)
+    arc = gm.gauss_map.BoundaryArc(np.outer([0.09, -0.21, 0.49], normal), 1e-15)
     assert arc.singular_points == pytest.approx((0.3,), abs=1e-7)
     for part in arc.parts:
         np.testing.assert_allclose(part.points(3), np.tile(normal, (3, 1)) / np.sqrt(14), atol=1e-7)
@@ -189,6 +189,6 @@ def test_a_double_zero_is_one_singular_point_without_a_jump() -> None:
 def test_folded_plane_has_no_boundary() -> None:
     """Its normals jump, but through no others: the image is two opposite points."""
     folded = [[1, 0, 0], [0, 1, 0], [0, 0, 0], [0, 1, 0], [1, 1, 0], [1, 0, 0]]
-    image = gm.GaussianImage.of_patch(folded)
+    image = gm.gauss_map.GaussianImage.of_patch(folded)
     assert image.boundary == ()
     assert image.kind == "point"

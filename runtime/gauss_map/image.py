@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 from ...generated import gaussian_image as formulas
 from ..bins import NormalBins
 from ..checks import real_array
+from ..directions.unit import as_normals
 from ..errors import InputError
 from ..search import fill, find
-from ..sphere import as_normals
 from ..spline import Spline, spline_of
 from ..surface import Surface
 from .area import measures_of

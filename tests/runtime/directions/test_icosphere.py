@@ -4,9 +4,9 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.bins import NormalBins
+from gaussmap.runtime.directions.unit import as_normals
 from gaussmap.runtime.fields import INDEX_NAMES
 from gaussmap.runtime.search import fill, find
-from gaussmap.runtime.sphere import as_normals
 from hypothesis import given
 from hypothesis import strategies as st
 

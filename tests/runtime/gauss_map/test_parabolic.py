@@ -9,13 +9,13 @@ import pytest
 import sympy as sp
 from gaussmap.generated import patch as formulas
 from gaussmap.runtime.formula_calls import patch, python_function
-from gaussmap.runtime.gaussian.chains import joined
-from gaussmap.runtime.gaussian.curvature_field import CurvatureField
-from gaussmap.runtime.gaussian.patches import Patches
+from gaussmap.runtime.gauss_map.chains import joined
+from gaussmap.runtime.gauss_map.curvature_field import CurvatureField
+from gaussmap.runtime.gauss_map.patches import Patches
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-PatchClass = gm.PatchClass
+PatchClass = gm.gauss_map.PatchClass
 
 
 def net_of(a, b, c, d, e) -> Array:
@@ -45,7 +45,7 @@ def test_lines_hold_parabolic_points_with_one_normal() -> None:
     for seed in range(40):
         net = np.random.default_rng(seed).integers(-9, 10, (6, 3)).astype(float)
         vectors = patch(Patches.of_control_points(net[None]).vectors[0])
-        lines = gm.parabolic_lines(net)
+        lines = gm.gauss_map.parabolic_lines(net)
         assert len(lines) in (1, 3)
         for line in lines:
             assert np.hypot(line.s, line.t) == pytest.approx(1.0, abs=1e-15)
@@ -65,7 +65,9 @@ def test_lines_hold_parabolic_points_with_one_normal() -> None:
 
 def test_lines_given_in_advance() -> None:
     """p = (½u², uv, ½v²) + d u + e v with D(N) = (v + 2)² u, see `test_gaussian_image`."""
-    lines = gm.parabolic_lines(net_of([1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 2, 0], [0, 1, 2]))
+    lines = gm.gauss_map.parabolic_lines(
+        net_of([1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 2, 0], [0, 1, 2])
+    )
     by_place = {round(line.rho * (line.s + line.t)): line for line in lines}
     assert sorted(by_place) == [0, 2]
     single, double = by_place[0], by_place[2]
@@ -83,7 +85,7 @@ def test_pieces_make_up_the_triangle_and_have_one_sign() -> None:
     numbers = []
     for _ in range(60):
         net = generator.integers(-9, 10, (6, 3)).astype(float)
-        pieces = gm.split_patch(net)
+        pieces = gm.gauss_map.split_patch(net)
         numbers.append(len(pieces))
         vectors = Patches.of_control_points(net[None]).vectors[0]
         total = 0.0
@@ -105,7 +107,10 @@ def test_pieces_make_up_the_triangle_and_have_one_sign() -> None:
 def test_scale_does_not_matter(factor: float) -> None:
     for seed in range(10):
         net = np.random.default_rng(seed).integers(-9, 10, (6, 3)).astype(float)
-        lines, others = gm.parabolic_lines(net), gm.parabolic_lines(net * factor)
+        lines, others = (
+            gm.gauss_map.parabolic_lines(net),
+            gm.gauss_map.parabolic_lines(net * factor),
+        )
         assert len(lines) == len(others)
         for line, other in zip(lines, others, strict=True):
             assert (line.s, line.t, line.rho) == pytest.approx(
@@ -115,7 +120,9 @@ def test_scale_does_not_matter(factor: float) -> None:
 
 def test_translation_costs_only_its_rounding() -> None:
     net = np.random.default_rng(1).integers(-9, 10, (6, 3)).astype(float)
-    for line, other in zip(gm.parabolic_lines(net), gm.parabolic_lines(net / 3 + 1e6), strict=True):
+    for line, other in zip(
+        gm.gauss_map.parabolic_lines(net), gm.gauss_map.parabolic_lines(net / 3 + 1e6), strict=True
+    ):
         assert (line.s, line.t, line.rho) == pytest.approx((other.s, other.t, other.rho), abs=1e-7)
 
 
@@ -143,21 +150,21 @@ X, Y, Z, O = (1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, 0)  # noqa: E741
 def test_classes(vectors, expected) -> None:
     net = net_of(*vectors)
     nets = [net, net * 1e-12, net * 1e12, net[[1, 2, 0, 5, 3, 4]], net[[1, 0, 2, 3, 5, 4]]]
-    assert gm.classify_patches(np.array(nets)).tolist() == [expected] * 5
-    assert gm.classify_patches([net / 3 + 1e5]).tolist() == [expected]
+    assert gm.gauss_map.classify_patches(np.array(nets)).tolist() == [expected] * 5
+    assert gm.gauss_map.classify_patches([net / 3 + 1e5]).tolist() == [expected]
     if expected in (PatchClass.PLANAR, PatchClass.DEVELOPABLE, PatchClass.SINGULAR):
-        assert gm.parabolic_lines(net) == ()
-        assert [piece.sign for piece in gm.split_patch(net)] == [0]
+        assert gm.gauss_map.parabolic_lines(net) == ()
+        assert [piece.sign for piece in gm.gauss_map.split_patch(net)] == [0]
 
 
 def test_an_isolated_parabolic_point_has_no_say() -> None:
     """In the middle of the piece v < 2/3, at u = v = 1/3, the curvature vanishes."""
     net = [[1, -1, 0], [1, 0, -1], [-1, 1, 1], [-1, 1, 0], [1, 1, -1], [1, -1, -1]]
-    assert [line.multiplicity for line in gm.parabolic_lines(net)] == [1]
-    pieces = gm.split_patch(net)
+    assert [line.multiplicity for line in gm.gauss_map.parabolic_lines(net)] == [1]
+    pieces = gm.gauss_map.split_patch(net)
     assert [np.sign(piece.corners[:, 1].mean() - 0.6) for piece in pieces] == [-1, 1]
     assert [piece.sign for piece in pieces] == [-1, 1]
-    assert gm.classify_patches([net]).tolist() == [PatchClass.MIXED]
+    assert gm.gauss_map.classify_patches([net]).tolist() == [PatchClass.MIXED]
 
 
 def test_classes_of_many_patches_are_those_of_each() -> None:
@@ -172,21 +179,21 @@ def test_classes_of_many_patches_are_those_of_each() -> None:
     nets = np.concatenate([*kinds, bent, planes, lines, cones, np.ones((1, 6, 3))])
     nets = nets * 10.0 ** rng.integers(-12, 13, (len(nets), 1, 1)) + 0.0
     nets[::7] += np.abs(nets[::7]).max(axis=(1, 2), keepdims=True) * 100.0
-    classes = gm.classify_patches(nets)
+    classes = gm.gauss_map.classify_patches(nets)
     assert set(classes.tolist()) == set(PatchClass)
-    assert classes.tolist() == [gm.classify_patches(net[None])[0] for net in nets]
+    assert classes.tolist() == [gm.gauss_map.classify_patches(net[None])[0] for net in nets]
     for net, found in zip(nets, classes.tolist(), strict=True):
-        signs = {piece.sign for piece in gm.split_patch(net)}
+        signs = {piece.sign for piece in gm.gauss_map.split_patch(net)}
         assert (found == PatchClass.MIXED) == (signs == {1, -1})
 
 
 def test_messages_name_the_net() -> None:
     nets = np.ones((4, 6, 3))
     nets[2, 3, 1] = np.nan
-    with pytest.raises(gm.InputError, match=r"nets\[2\] holds NaN or infinity"):
-        gm.classify_patches(nets)
-    with pytest.raises(gm.InputError, match="nets are too large"):
-        gm.classify_patches(np.full((2, 6, 3), 1e305))
+    with pytest.raises(gm.errors.InputError, match=r"nets\[2\] holds NaN or infinity"):
+        gm.gauss_map.classify_patches(nets)
+    with pytest.raises(gm.errors.InputError, match="nets are too large"):
+        gm.gauss_map.classify_patches(np.full((2, 6, 3), 1e305))
 
 
 @pytest.mark.compiled
@@ -203,7 +210,7 @@ def test_messages_name_the_net() -> None:
 )
 def test_classes_of_splines(name: str, allowed: set) -> None:
     spline = gm.fit(gm.surfaces.surface(name), (32, 32))
-    classes = gm.classify_patches(spline)
+    classes = gm.gauss_map.classify_patches(spline)
     assert classes.shape == (spline.patches,)
     assert set(classes.tolist()) == allowed
 
@@ -215,7 +222,7 @@ def test_classes_of_splines(name: str, allowed: set) -> None:
 @pytest.mark.parametrize("cells", [(16, 16), (24, 17), (64, 48)])
 def test_parabolic_circles_of_a_torus_spline(cells: tuple[int, int]) -> None:
     """Two closed polylines, each within one cell of the exact circle, going round once."""
-    found = gm.parabolic_points(gm.fit(gm.surfaces.torus(), cells))
+    found = gm.gauss_map.parabolic_points(gm.fit(gm.surfaces.torus(), cells))
     assert [curve.closed for curve in found.curves] == [True, True]
     assert not found.isolated
     assert not found.developable
@@ -233,7 +240,7 @@ def test_curvature_changes_sign_across_the_polylines_of_a_spline(name: str) -> N
     """On both sides of the middle of every segment K has two signs, by the spline's own samples."""
     spline = gm.fit(gm.surfaces.surface(name), (12, 10))
     patches, steps = Patches.of_spline(spline), []
-    found = gm.parabolic_points(spline, tolerance=0.1)
+    found = gm.gauss_map.parabolic_points(spline, tolerance=0.1)
     for curve in found.curves:
         along = np.diff(curve.uv, axis=0)
         across = np.stack([-along[:, 1], along[:, 0]], axis=1)
@@ -266,7 +273,7 @@ def test_spline_of_a_wavy_graph_comes_nearer_with_finer_cells() -> None:
     """K of the spline is of order 1: its parabolic net is within two cells of the exact one."""
     for cells in (16, 48):
         spline = gm.fit(gm.surfaces.wavy_graph(), (cells, cells))
-        found = gm.parabolic_points(spline, tolerance=0.01)
+        found = gm.gauss_map.parabolic_points(spline, tolerance=0.01)
         size = 2.0 / cells
         vertices = np.concatenate([curve.uv for curve in found.curves])
         assert off_the_net(vertices).max() <= 2.0 * size
@@ -277,7 +284,7 @@ def test_spline_of_a_wavy_graph_comes_nearer_with_finer_cells() -> None:
 @pytest.mark.compiled
 def test_polylines_of_a_spline_follow_it_in_space() -> None:
     spline = gm.fit(gm.surfaces.dupin_cyclide(), (12, 12))
-    coarse, fine = (gm.parabolic_points(spline, tolerance=x) for x in (0.1, 1e-5))
+    coarse, fine = (gm.gauss_map.parabolic_points(spline, tolerance=x) for x in (0.1, 1e-5))
     vertices = [sum(len(curve.uv) for curve in found.curves) for found in (coarse, fine)]
     assert vertices[1] > vertices[0]
     for left, right in zip(coarse.curves, fine.curves, strict=True):
@@ -298,7 +305,7 @@ def along(polyline: Array, parts: int) -> Array:
 @pytest.mark.compiled
 @pytest.mark.parametrize("name", ["cylinder", "plane"])
 def test_developable_splines_have_no_curves(name: str) -> None:
-    found = gm.parabolic_points(gm.fit(gm.surfaces.surface(name), (16, 12)))
+    found = gm.gauss_map.parabolic_points(gm.fit(gm.surfaces.surface(name), (16, 12)))
     assert found.developable
     assert found.curves == ()
     assert len(found.flat) == 1
@@ -309,7 +316,10 @@ def test_grids_are_splines() -> None:
     u, v = np.meshgrid(np.linspace(-1, 1, 40), np.linspace(-1, 1, 40), indexing="ij")
     points = np.stack([u, v, 0.2 * np.sin(3 * u) * np.cos(3 * v)], axis=-1)
     surface = gm.Surface.from_grid(points)
-    found, expected = gm.parabolic_points(surface), gm.parabolic_points(gm.fit(surface))
+    found, expected = (
+        gm.gauss_map.parabolic_points(surface),
+        gm.gauss_map.parabolic_points(gm.fit(surface)),
+    )
     assert len(found.curves) == len(expected.curves) > 5
     for left, right in zip(found.curves, expected.curves, strict=True):
         np.testing.assert_array_equal(left.uv, right.uv)
@@ -332,7 +342,7 @@ def test_curvature_field_of_the_torus_is_exact_up_to_its_noise() -> None:
 @pytest.mark.compiled
 @pytest.mark.parametrize("factor", [1e-12, 1.0, 1e12])
 def test_torus(factor: float) -> None:
-    found = gm.parabolic_points(gm.surfaces.torus(major=factor, minor=0.35 * factor))
+    found = gm.gauss_map.parabolic_points(gm.surfaces.torus(major=factor, minor=0.35 * factor))
     assert [curve.closed for curve in found.curves] == [True, True]
     assert found.isolated == ()
     for curve in found.curves:
@@ -348,7 +358,7 @@ def test_torus(factor: float) -> None:
 def test_torus_far_from_the_origin_has_the_accuracy_of_its_coordinates() -> None:
     torus = gm.surfaces.torus()
     moved = gm.Surface("moved", lambda u, v: torus.evaluate(u, v) + 1e4, torus.domain, torus.ends)
-    found = gm.parabolic_points(moved)
+    found = gm.gauss_map.parabolic_points(moved)
     assert [curve.closed for curve in found.curves] == [True, True]
     for curve in found.curves:
         place = np.mod(curve.uv[:, 1], 2 * np.pi)
@@ -359,7 +369,7 @@ def test_torus_far_from_the_origin_has_the_accuracy_of_its_coordinates() -> None
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-4, 1e-5])
 def test_polylines_are_within_the_tolerance_of_the_curve(tolerance: float) -> None:
     """The circle of the torus, in space: the polyline departs from it by no more than asked."""
-    found = gm.parabolic_points(gm.surfaces.torus(), tolerance=tolerance)
+    found = gm.gauss_map.parabolic_points(gm.surfaces.torus(), tolerance=tolerance)
     size = np.linalg.norm([2.7, 2.7, 0.7])
     for curve in found.curves:
         angle = np.linspace(0.0, 2 * np.pi, 1000)
@@ -371,7 +381,7 @@ def test_polylines_are_within_the_tolerance_of_the_curve(tolerance: float) -> No
 @pytest.mark.compiled
 @pytest.mark.parametrize("scale", [0.5, 1e-6, 10.0])
 def test_monkey_saddle_has_one_point(scale: float) -> None:
-    found = gm.parabolic_points(gm.surfaces.monkey_saddle(scale=scale))
+    found = gm.gauss_map.parabolic_points(gm.surfaces.monkey_saddle(scale=scale))
     assert found.curves == ()
     (point,) = found.isolated
     assert np.abs(point.uv).max() < 2e-4  # the tolerance, of a domain of size 2
@@ -383,7 +393,7 @@ def test_monkey_saddle_has_one_point(scale: float) -> None:
 def test_isolated_point_anywhere_is_isolated_to_the_tolerance() -> None:
     for tolerance in (1e-2, 1e-4):
         saddle = graph(lambda u, v: (u - 0.3) ** 3 - 3 * (u - 0.3) * (v + 0.2) ** 2)
-        (point,) = gm.parabolic_points(saddle, tolerance=tolerance).isolated
+        (point,) = gm.gauss_map.parabolic_points(saddle, tolerance=tolerance).isolated
         np.testing.assert_allclose(point.uv, [0.3, -0.2], atol=1e-7)
         assert np.ptp(point.box, axis=0).max() <= 2.0 * tolerance
 
@@ -409,7 +419,7 @@ def off_the_net(places: Array) -> Array:
 
 @pytest.mark.compiled
 def test_wavy_graph_has_a_net_of_curves() -> None:
-    found = gm.parabolic_points(gm.surfaces.wavy_graph(), tolerance=1e-4)
+    found = gm.gauss_map.parabolic_points(gm.surfaces.wavy_graph(), tolerance=1e-4)
     vertices = np.concatenate([curve.uv for curve in found.curves])
     assert off_the_net(vertices).max() < 1e-8
     size = np.linalg.norm([2.0, 2.0, 0.4])
@@ -420,7 +430,7 @@ def test_wavy_graph_has_a_net_of_curves() -> None:
     assert found.isolated == ()
 
 
-def crossings(curves: Sequence[gm.ParabolicCurve]) -> Array:
+def crossings(curves: Sequence[gm.gauss_map.ParabolicCurve]) -> Array:
     """Return the places (k, 2) at which four polylines end."""
     ends = np.concatenate([curve.uv[[0, -1]] for curve in curves])
     places, counts = np.unique(np.round(ends, 9), axis=0, return_counts=True)
@@ -430,7 +440,7 @@ def crossings(curves: Sequence[gm.ParabolicCurve]) -> Array:
 @pytest.mark.compiled
 def test_curves_end_where_they_cross() -> None:
     """The 6 lines of the wavy graph cross at 5 places inside: 6 + 2·5 arcs."""
-    found = gm.parabolic_points(gm.surfaces.wavy_graph())
+    found = gm.gauss_map.parabolic_points(gm.surfaces.wavy_graph())
     assert len(found.curves) == 16
     step = np.pi / 6
     expected = [[-step, -step], [-step, step], [0.0, 0.0], [step, -step], [step, step]]
@@ -444,7 +454,7 @@ def test_curves_cross_at_any_angle(slope: float) -> None:
     u, v = sp.symbols("u v")
     z = u**4 / 12 - (slope * u * v) ** 2 / 2 + 5 * v * v
     K = sp.diff(z, u, 2) * sp.diff(z, v, 2) - sp.diff(z, u, v) ** 2
-    found = gm.parabolic_points(graph(sp.lambdify((u, v), z)), tolerance=1e-4)
+    found = gm.gauss_map.parabolic_points(graph(sp.lambdify((u, v), z)), tolerance=1e-4)
     assert len(found.curves) == 4
     assert found.isolated == ()
     np.testing.assert_allclose(crossings(found.curves), [[0.0, 0.0]], atol=1e-6)
@@ -465,7 +475,7 @@ def test_curves_cross_across_the_ends_of_a_periodic_surface() -> None:
 
         return gm.Surface.from_callable(f, ((0.0, 2 * np.pi), (-1.0, 1.0)), periodic=(True, False))
 
-    found = [gm.parabolic_points(waves(shift)) for shift in (0.0, 0.1, 0.3)]
+    found = [gm.gauss_map.parabolic_points(waves(shift)) for shift in (0.0, 0.1, 0.3)]
     assert len({len(x.curves) for x in found}) == 1
     assert len({sum(curve.closed for curve in x.curves) for x in found}) == 1
 
@@ -476,7 +486,7 @@ def test_curves_behind_a_crossing_near_the_border_are_whole() -> None:
     1.2 cells from a border four arcs end, and two of them are that short.
     """
     low, high = np.array([-3.0, -3.0]), np.array([3.1, 3.2])
-    found = gm.parabolic_points(
+    found = gm.gauss_map.parabolic_points(
         graph(lambda u, v: np.sin(u) * np.sin(v), tuple(zip(low, high, strict=True)))
     )
     exact = 0.0
@@ -504,7 +514,7 @@ def test_two_curves_in_one_cell_are_joined_the_right_way(ratio: int) -> None:
     p, q = s + t / 2, t - s / 2
     target = p**2 - ratio * q**2 + sp.Rational(1, 500)
     z = 20 * u * u + sp.integrate(sp.integrate(sp.expand(target), v), v)
-    found = gm.parabolic_points(graph(sp.lambdify((u, v), z)), cells=(2, 2))
+    found = gm.gauss_map.parabolic_points(graph(sp.lambdify((u, v), z)), cells=(2, 2))
     assert len(found.curves) == 2
     sides = [sp.lambdify((u, v), q)(*curve.uv.T) > 0.0 for curve in found.curves]
     assert sorted(bool(side.all()) for side in sides) == [False, True]
@@ -514,7 +524,7 @@ def test_two_curves_in_one_cell_are_joined_the_right_way(ratio: int) -> None:
 @pytest.mark.compiled
 def test_steep_waves_are_resolved() -> None:
     """z = sin 50u sin 40v: K vanishes where cos(50u + 40v) cos(50u − 40v) = 0, however steep."""
-    found = gm.parabolic_points(
+    found = gm.gauss_map.parabolic_points(
         graph(lambda u, v: np.sin(50 * u) * np.sin(40 * v), ((0.0, 0.25),) * 2), tolerance=1e-3
     )
     for curve in found.curves:
@@ -525,7 +535,7 @@ def test_steep_waves_are_resolved() -> None:
 
 def test_small_closed_curve() -> None:
     """A dent of 1/20 of the domain in a paraboloid: its rings are found, and are closed."""
-    found = gm.parabolic_points(
+    found = gm.gauss_map.parabolic_points(
         graph(lambda u, v: u * u + v * v + 0.01 * np.exp(-300 * ((u - 0.3) ** 2 + (v - 0.2) ** 2)))
     )
     assert len(found.curves) == 2
@@ -545,7 +555,7 @@ def test_bump_has_one_circle_and_is_flat_far_from_it(
 ) -> None:
     """z = f exp(−a r²): K changes its sign at r = 1/√(2a) alone; far out it is zero up to error."""
     bump = graph(lambda u, v: factor * np.exp(-sharp * (u * u + v * v)), ((-size, size),) * 2)
-    found = gm.parabolic_points(bump)
+    found = gm.gauss_map.parabolic_points(bump)
     (circle,) = found.curves
     assert circle.closed
     np.testing.assert_allclose(np.linalg.norm(circle.uv, axis=1), np.sqrt(0.5 / sharp), rtol=1e-4)
@@ -570,7 +580,7 @@ def test_curves_on_the_border_are_curves(domain, ends: bool) -> None:
         return torus.evaluate(np.mod(u, 2 * np.pi), np.mod(v, 2 * np.pi))
 
     half = gm.Surface.from_callable(f, domain, periodic=(ends, False))
-    found = gm.parabolic_points(half)
+    found = gm.gauss_map.parabolic_points(half)
     assert [curve.closed for curve in found.curves] == [ends, ends]
     assert sorted(curve.uv[0, 1] for curve in found.curves) == list(domain[1])
     for curve in found.curves:
@@ -585,7 +595,9 @@ def test_curves_on_the_border_are_curves(domain, ends: bool) -> None:
 def test_closed_curve_smaller_than_all_cells_is_isolated() -> None:
     """z = x³ − 3 x y² + e r²: K vanishes on the circle r = e/3, which one rectangle has to meet."""
     e = 1e-3
-    found = gm.parabolic_points(graph(lambda x, y: x**3 - 3 * x * y * y + e * (x * x + y * y)))
+    found = gm.gauss_map.parabolic_points(
+        graph(lambda x, y: x**3 - 3 * x * y * y + e * (x * x + y * y))
+    )
     assert found.curves == ()
     (ring,) = found.isolated
     assert (ring.box[0] <= e / 3).all()
@@ -596,7 +608,7 @@ def test_closed_curve_smaller_than_all_cells_is_isolated() -> None:
 @pytest.mark.compiled
 def test_fine_waves_have_no_false_points() -> None:
     """Two families of lines 10x ± 10y = kπ are all there is, and K is known well there."""
-    found = gm.parabolic_points(gm.surfaces.wavy_graph(frequency=10.0), tolerance=1e-3)
+    found = gm.gauss_map.parabolic_points(gm.surfaces.wavy_graph(frequency=10.0), tolerance=1e-3)
     assert found.isolated == ()
     assert len(found.flat) == 0
     for curve in found.curves:
@@ -606,7 +618,7 @@ def test_fine_waves_have_no_false_points() -> None:
 
 def test_touching_curve_is_isolated_in_one_rectangle() -> None:
     """z = u⁴ + v²: K ≥ 0 vanishes along the line u = 0 without a change of sign."""
-    found = gm.parabolic_points(graph(lambda u, v: u**4 + v * v), tolerance=1e-2)
+    found = gm.gauss_map.parabolic_points(graph(lambda u, v: u**4 + v * v), tolerance=1e-2)
     assert found.curves == ()
     (line,) = found.isolated
     np.testing.assert_allclose(line.box[:, 1], [-1.0, 1.0])
@@ -623,7 +635,7 @@ def test_touching_curve_is_isolated_in_one_rectangle() -> None:
 )
 def test_zeros_in_too_many_rectangles_are_not_lost(f, box) -> None:
     """K > 0 but on a line, or at a point where it is of order 4: K ≈ 48 r⁴ is lost in rounding."""
-    (zero,) = gm.parabolic_points(graph(f)).isolated
+    (zero,) = gm.gauss_map.parabolic_points(graph(f)).isolated
     low, high = np.array(box)
     assert (low <= zero.box[0]).all()
     assert (zero.box[1] <= high).all()
@@ -638,7 +650,7 @@ def test_panels_with_a_large_error_are_not_flat() -> None:
          "v/2*sin(u/2) + v**2/3"),
         ("u", "v"), domain=((0, "2*pi"), (-1, 1)),
     )  # fmt: skip
-    found = gm.parabolic_points(band)
+    found = gm.gauss_map.parabolic_points(band)
     assert len(found.flat) == 0
     ends = np.concatenate([curve.uv[[0, -1]] for curve in found.curves])
     assert ends[:, 1].min() == -1.0  # one of them reaches the lower border
@@ -652,7 +664,7 @@ def test_panels_with_a_large_error_are_not_flat() -> None:
 def test_surfaces_of_one_sign_have_none(name: str) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        found = gm.parabolic_points(gm.surfaces.surface(name))
+        found = gm.gauss_map.parabolic_points(gm.surfaces.surface(name))
     assert found.curves == found.isolated == ()
     assert len(found.flat) == 0
     assert not found.developable
@@ -661,7 +673,7 @@ def test_surfaces_of_one_sign_have_none(name: str) -> None:
 @pytest.mark.compiled
 @pytest.mark.parametrize("name", ["cylinder", "cone", "plane"])
 def test_developable_surfaces_say_so(name: str) -> None:
-    found = gm.parabolic_points(gm.surfaces.surface(name))
+    found = gm.gauss_map.parabolic_points(gm.surfaces.surface(name))
     assert found.developable
     assert found.curves == found.isolated == ()
     assert len(found.flat) == 1
@@ -670,7 +682,7 @@ def test_developable_surfaces_say_so(name: str) -> None:
 @pytest.mark.compiled
 def test_planes_touch_a_dupin_cyclide_along_its_parabolic_curves() -> None:
     """A parabolic curve of a ring cyclide is a circle, in which one plane touches it."""
-    found = gm.parabolic_points(gm.surfaces.dupin_cyclide())
+    found = gm.gauss_map.parabolic_points(gm.surfaces.dupin_cyclide())
     assert [curve.closed for curve in found.curves] == [True, True]
     for curve in found.curves:
         centred = curve.points - curve.points[:-1].mean(axis=0)
@@ -685,7 +697,7 @@ def test_planes_touch_a_dupin_cyclide_along_its_parabolic_curves() -> None:
 def test_a_crease_is_left_out_with_a_warning() -> None:
     surface = graph(lambda u, v: np.abs(u - 0.111) + u * u * v + v * v)
     with pytest.warns(gm.GaussmapWarning, match="cannot be computed"):
-        found = gm.parabolic_points(surface, cells=(12, 12))
+        found = gm.gauss_map.parabolic_points(surface, cells=(12, 12))
     assert found.developable is False
 
 
@@ -694,24 +706,24 @@ def test_a_crease_between_panels_gives_nothing_false() -> None:
     """z = |x − 0.1| + r² has K = 4 / (1 + z_x² + z_y²)² > 0 on both sides of the crease."""
     surface = graph(lambda u, v: np.abs(u - 0.1) + u * u + v * v)
     with pytest.warns(gm.GaussmapWarning, match="cannot be computed"):
-        found = gm.parabolic_points(surface)
+        found = gm.gauss_map.parabolic_points(surface)
     assert found.curves == found.isolated == ()
     assert len(found.flat) == 0
 
 
 def test_cells_are_panels() -> None:
-    found = gm.parabolic_points(gm.surfaces.torus(), cells=(3, 5))
+    found = gm.gauss_map.parabolic_points(gm.surfaces.torus(), cells=(3, 5))
     assert [curve.closed for curve in found.curves] == [True, True]
 
 
 def test_results_print_in_one_line() -> None:
     torus = gm.surfaces.torus()
-    found = gm.parabolic_points(torus, cells=(8, 8))
+    found = gm.gauss_map.parabolic_points(torus, cells=(8, 8))
     assert repr(found) == "ParabolicPoints(2 curves, 0 isolated, 0 flat rectangles)"
     assert repr(found.curves[0]) == f"ParabolicCurve(closed, {len(found.curves[0].uv):,} vertices)"
-    flat = gm.parabolic_points(gm.surfaces.plane(), cells=(2, 3))
+    flat = gm.gauss_map.parabolic_points(gm.surfaces.plane(), cells=(2, 3))
     assert repr(flat) == "ParabolicPoints(0 curves, 0 isolated, 1 flat rectangles, developable)"
-    images = gm.GaussianImages.of_spline(gm.fit(gm.surfaces.plane(), (8, 8)))
+    images = gm.gauss_map.GaussianImages.of_spline(gm.fit(gm.surfaces.plane(), (8, 8)))
     assert repr(images) == "GaussianImages(256 patches)"
     assert repr(images[0]) == "GaussianImage(point)"
 
@@ -739,28 +751,28 @@ def test_chains() -> None:
 
 @pytest.mark.parametrize("tolerance", [0.0, -1.0, 1.0, np.nan, "small", None, 1e-9])
 def test_bad_tolerance(tolerance) -> None:
-    with pytest.raises(gm.InputError, match="tolerance"):
-        gm.parabolic_points(gm.surfaces.torus(), tolerance=tolerance)
+    with pytest.raises(gm.errors.InputError, match="tolerance"):
+        gm.gauss_map.parabolic_points(gm.surfaces.torus(), tolerance=tolerance)
 
 
 @pytest.mark.parametrize("cells", [3, (0, 4), (4,), (2.5, 3), "ab", (1000, 4)])
 def test_bad_cells(cells) -> None:
-    with pytest.raises(gm.InputError, match="cells"):
-        gm.parabolic_points(gm.surfaces.torus(), cells=cells)
+    with pytest.raises(gm.errors.InputError, match="cells"):
+        gm.gauss_map.parabolic_points(gm.surfaces.torus(), cells=cells)
 
 
 def test_other_bad_input() -> None:
-    with pytest.raises(gm.InputError, match="Surface"):
-        gm.parabolic_points("torus")  # pyright: ignore[reportArgumentType]
-    with pytest.raises(gm.InputError, match="cells"):
-        gm.parabolic_points(gm.fit(gm.surfaces.torus(), (8, 8)), cells=(8, 8))
-    with pytest.raises(gm.SurfaceError, match="not finite"):
-        gm.parabolic_points(graph(lambda u, v: np.log(u)))
+    with pytest.raises(gm.errors.InputError, match="Surface"):
+        gm.gauss_map.parabolic_points("torus")  # pyright: ignore[reportArgumentType]
+    with pytest.raises(gm.errors.InputError, match="cells"):
+        gm.gauss_map.parabolic_points(gm.fit(gm.surfaces.torus(), (8, 8)), cells=(8, 8))
+    with pytest.raises(gm.errors.SurfaceError, match="not finite"):
+        gm.gauss_map.parabolic_points(graph(lambda u, v: np.log(u)))
     for nets in ([], np.zeros((6, 3)), np.zeros((2, 5, 3)), "abc", None):
-        with pytest.raises(gm.InputError, match="nets"):
-            gm.classify_patches(nets)  # pyright: ignore[reportArgumentType]
-    with pytest.raises(gm.InputError, match="NaN"):
-        gm.classify_patches(np.full((1, 6, 3), np.nan))
+        with pytest.raises(gm.errors.InputError, match="nets"):
+            gm.gauss_map.classify_patches(nets)  # pyright: ignore[reportArgumentType]
+    with pytest.raises(gm.errors.InputError, match="NaN"):
+        gm.gauss_map.classify_patches(np.full((1, 6, 3), np.nan))
 
 
 @pytest.mark.parametrize("shift", [0.0, 1e9])
@@ -772,6 +784,6 @@ def test_what_cannot_be_known_is_said(shift: float) -> None:
 
     surface = gm.Surface.from_callable(f, ((-1, 1), (-1, 1)))
     with pytest.warns(gm.GaussmapWarning, match="cannot be computed on 100 %"):
-        found = gm.parabolic_points(surface, cells=(8, 8))
+        found = gm.gauss_map.parabolic_points(surface, cells=(8, 8))
     assert found.curves == found.isolated == ()
     assert not found.developable

@@ -5,7 +5,7 @@ import sys
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.sphere import as_normals
+from gaussmap.runtime.directions.unit import as_normals
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -82,13 +82,13 @@ def test_icosphere_begins_with_vertices_then_edges():
     assert {tuple(x) for x in (edge.round(9) + 0.0).tolist()} == expected
 
 
-MAKERS = [gm.icosphere, gm.fibonacci, gm.healpix, gm.random_normals]
+MAKERS = [gm.icosphere, gm.fibonacci, gm.directions.healpix, gm.directions.random]
 
 
 @pytest.mark.parametrize("make", MAKERS)
 @pytest.mark.parametrize("number", [0, -1, 1.0, True, "4", None, np.nan, [4], 4j])
 def test_numbers_that_are_none(make, number):
-    with pytest.raises(gm.InputError, match=r"must be a whole number of at least 1, not "):
+    with pytest.raises(gm.errors.InputError, match=r"must be a whole number of at least 1, not "):
         make(number)
 
 
@@ -97,9 +97,11 @@ def test_numpy_integers_are_numbers(make):
     assert (make(np.int16(8)) == make(8)).all()
 
 
-@pytest.mark.parametrize("make", [gm.icosphere, gm.healpix])
+@pytest.mark.parametrize("make", [gm.icosphere, gm.directions.healpix])
 def test_refinements_that_no_memory_holds(make):
-    with pytest.raises(gm.InputError, match=r"must be a whole number of at most 10,000, not 10001"):
+    with pytest.raises(
+        gm.errors.InputError, match=r"must be a whole number of at most 10,000, not 10001"
+    ):
         make(10_001)
 
 
@@ -147,7 +149,7 @@ def test_fibonacci_is_in_general_position():
 @pytest.mark.parametrize("nside", [1, 2, 8, 32])
 def test_healpix_lies_on_rings(nside):
     """z = 1 − i²/3N² in the caps, 4/3 − 2i/3N between them (Gorski et al. 2005, eqs. 4 and 8)."""
-    normals = gm.healpix(nside)
+    normals = gm.directions.healpix(nside)
     assert normals.shape == (12 * nside**2, 3)
     assert normals.flags.c_contiguous
     np.testing.assert_allclose(lengths(normals), 1.0, rtol=0, atol=2 * ULP)
@@ -164,39 +166,41 @@ def test_healpix_lies_on_rings(nside):
 
 
 def test_healpix_gives_equal_areas_equal_shares():
-    normals = gm.healpix(32)
+    normals = gm.directions.healpix(32)
     np.testing.assert_allclose(normals.mean(axis=0), 0, rtol=0, atol=16 * ULP)
     np.testing.assert_allclose(normals.T @ normals / len(normals), np.eye(3) / 3, atol=1e-4)
 
 
 @pytest.mark.parametrize("nside", [3, 6, 100, 9999])
 def test_healpix_is_refined_by_halving(nside):
-    with pytest.raises(gm.InputError, match=f"nside must be a power of 2, not {nside}"):
-        gm.healpix(nside)
+    with pytest.raises(gm.errors.InputError, match=f"nside must be a power of 2, not {nside}"):
+        gm.directions.healpix(nside)
 
 
 def test_healpix_names_what_it_needs(monkeypatch):
     monkeypatch.setitem(sys.modules, "astropy_healpix", None)
-    with pytest.raises(gm.MissingExtraError, match=r'needs astropy-healpix.*"gaussmap\[spheres\]"'):
-        gm.healpix(2)
+    with pytest.raises(
+        gm.errors.MissingExtraError, match=r'needs astropy-healpix.*"gaussmap\[spheres\]"'
+    ):
+        gm.directions.healpix(2)
 
 
 # --- random ---------------------------------------------------------------------------------------
 
 
 def test_random_normals_are_those_of_their_seed():
-    normals = gm.random_normals(1000, seed=3)
+    normals = gm.directions.random(1000, seed=3)
     np.testing.assert_allclose(lengths(normals), 1.0, rtol=0, atol=2 * ULP)
-    assert (gm.random_normals(1000, seed=3) == normals).all()
-    assert (gm.random_normals(10, seed=3) == normals[:10]).all()
-    assert (gm.random_normals(1000, seed=4) != normals).all()
-    assert (gm.random_normals(5) == gm.random_normals(5, seed=0)).all()
+    assert (gm.directions.random(1000, seed=3) == normals).all()
+    assert (gm.directions.random(10, seed=3) == normals[:10]).all()
+    assert (gm.directions.random(1000, seed=4) != normals).all()
+    assert (gm.directions.random(5) == gm.directions.random(5, seed=0)).all()
 
 
 def test_random_normals_are_uniform():
     """Archimedes: each coordinate is uniform in [−1, 1]; 5 σ of the mean and of the shares."""
     count = 100_000
-    normals = gm.random_normals(count, seed=1)
+    normals = gm.directions.random(count, seed=1)
     assert np.abs(normals.mean(axis=0)).max() < 5 / np.sqrt(3 * count)
     for axis in range(3):
         share = np.histogram(normals[:, axis], bins=10, range=(-1, 1))[0] / count
@@ -206,8 +210,10 @@ def test_random_normals_are_uniform():
 
 @pytest.mark.parametrize("seed", [-1, 1.0, None, "3", True])
 def test_seeds_that_are_none(seed):
-    with pytest.raises(gm.InputError, match=r"seed must be a whole number of at least 0, not "):
-        gm.random_normals(5, seed=seed)
+    with pytest.raises(
+        gm.errors.InputError, match=r"seed must be a whole number of at least 0, not "
+    ):
+        gm.directions.random(5, seed=seed)
 
 
 # --- as_normals -----------------------------------------------------------------------------------
@@ -312,6 +318,6 @@ def test_the_array_of_the_user_is_left_alone():
     ],
 )
 def test_directions_that_are_none(directions, complaint):
-    for call in (as_normals, lambda n: gm.sample(gm.surfaces.torus(), n, cells=(4, 4))):
-        with pytest.raises(gm.InputError, match=complaint):
+    for call in (as_normals, lambda n: gm.sample(gm.surfaces.torus(), normals=n, cells=(4, 4))):
+        with pytest.raises(gm.errors.InputError, match=complaint):
             call(directions)

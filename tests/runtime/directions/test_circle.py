@@ -3,14 +3,14 @@
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.sphere import as_normals
+from gaussmap.runtime.directions.unit import as_normals
 
 COUNTS = [1, 2, 3, 4, 5, 6, 8, 12, 20, 100, 1001, 4096]
 
 
 @pytest.mark.parametrize("count", COUNTS)
 def test_angles(count):
-    normals = gm.circle(count)
+    normals = gm.directions.circle(count)
     assert normals.shape == (count, 2)
     assert normals.flags.c_contiguous
     angle = 2 * np.pi * (np.arange(count) + 0.5) / count
@@ -21,7 +21,7 @@ def test_angles(count):
 
 @pytest.mark.parametrize("count", [x for x in COUNTS if x % 2 == 0])
 def test_mirrored_bit_for_bit(count):
-    normals = gm.circle(count)
+    normals = gm.directions.circle(count)
     points = set(map(tuple, normals.tolist()))
     assert len(points) == count
     mirrors = [normals * [1, -1], normals * [-1, 1]] + [normals[:, ::-1]] * (count % 4 == 0)
@@ -31,5 +31,5 @@ def test_mirrored_bit_for_bit(count):
 
 @pytest.mark.parametrize("count", [0, -1, 2.5, None, True])
 def test_unusable_counts(count):
-    with pytest.raises(gm.InputError, match="count must be a whole number"):
-        gm.circle(count)
+    with pytest.raises(gm.errors.InputError, match="count must be a whole number"):
+        gm.directions.circle(count)

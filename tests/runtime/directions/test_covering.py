@@ -5,7 +5,7 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.regions import angles_between
+from gaussmap.runtime.directions.regions import angles_between
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -62,14 +62,14 @@ def by_search(normals: Array) -> tuple[float, float]:
         (CUBE, 3**-0.5),
         (TETRAHEDRON, 1 / 3),
         (gm.icosphere(1), np.sqrt((5 + 2 * np.sqrt(5)) / 15)),
-        (gm.healpix(1), 2 / 3),
+        (gm.directions.healpix(1), 2 / 3),
     ],
     ids=["octahedron", "cube", "tetrahedron", "icosahedron", "healpix"],
 )
 def test_platonic_solids(normals: Array, cosine: float) -> None:
-    assert abs(gm.covering_radius(normals) - np.degrees(np.arccos(cosine))) < ACCURACY
+    assert abs(gm.directions.covering_radius(normals) - np.degrees(np.arccos(cosine))) < ACCURACY
     repeated = np.concatenate([normals, 3 * normals])
-    assert abs(gm.covering_radius(repeated) - np.degrees(np.arccos(cosine))) < ACCURACY
+    assert abs(gm.directions.covering_radius(repeated) - np.degrees(np.arccos(cosine))) < ACCURACY
 
 
 @pytest.mark.parametrize("frequency", [2, 3, 8, 20])
@@ -91,17 +91,19 @@ def test_icosphere_has_the_largest_circle_of_its_triangles(frequency: int) -> No
         centres /= np.linalg.norm(centres, axis=1, keepdims=True)
         radii.append(angles_between(centres, a))
     largest = max(np.minimum(x, 180 - x).max() for x in radii)
-    assert abs(gm.covering_radius(gm.icosphere(frequency)) - largest) < 1e-10  # small triangles
+    assert (
+        abs(gm.directions.covering_radius(gm.icosphere(frequency)) - largest) < 1e-10
+    )  # small triangles
 
 
 @pytest.mark.parametrize("normals", [[[0, 0, 1]], [[0, 3, 4]] * 5])
 def test_one_normal(normals: Any) -> None:
-    assert gm.covering_radius(normals) == 180.0
+    assert gm.directions.covering_radius(normals) == 180.0
 
 
 @pytest.mark.parametrize("angle", [1e-6, 1.0, 90.0, 179.0, 180.0])
 def test_two_normals(angle: float) -> None:
-    assert abs(gm.covering_radius(ring(90, [0, angle])) - (180 - angle / 2)) < ACCURACY
+    assert abs(gm.directions.covering_radius(ring(90, [0, angle])) - (180 - angle / 2)) < ACCURACY
 
 
 @pytest.mark.parametrize(
@@ -120,15 +122,17 @@ def test_two_normals(angle: float) -> None:
     ],
 )
 def test_normals_in_a_plane_or_a_hemisphere(normals: Array, radius: float) -> None:
-    assert abs(gm.covering_radius(normals) - radius) < 1e-10
+    assert abs(gm.directions.covering_radius(normals) - radius) < 1e-10
     turned = normals @ np.linalg.qr(np.random.default_rng(0).standard_normal((3, 3)))[0]
-    assert abs(gm.covering_radius(turned) - radius) < 1e-6  # a plane is one up to rounding only
+    assert (
+        abs(gm.directions.covering_radius(turned) - radius) < 1e-6
+    )  # a plane is one up to rounding only
 
 
 def test_a_cap_leaves_the_rest_of_the_sphere() -> None:
     """The smallest cap of those within 30° of an axis: at most one distance of normals smaller."""
-    part = gm.cap(gm.fibonacci(20_000), [1, 2, 3], 30)
-    assert 150 <= gm.covering_radius(part) < 150.5
+    part = gm.directions.cap(gm.fibonacci(20_000), [1, 2, 3], 30)
+    assert 150 <= gm.directions.covering_radius(part) < 150.5
 
 
 # --- brute force ----------------------------------------------------------------------------------
@@ -136,7 +140,7 @@ def test_a_cap_leaves_the_rest_of_the_sphere() -> None:
 
 def check(normals: Array) -> None:
     low, high = by_search(normals)
-    assert low - 1e-9 <= gm.covering_radius(normals) <= high + 1e-9
+    assert low - 1e-9 <= gm.directions.covering_radius(normals) <= high + 1e-9
 
 
 @given(
@@ -152,14 +156,16 @@ def test_against_a_search(count: int, seed: int, squeezed: float, shift: float) 
     check(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))
 
 
-@pytest.mark.parametrize("normals", [gm.fibonacci(500), gm.random_normals(300), gm.healpix(4)])
+@pytest.mark.parametrize(
+    "normals", [gm.fibonacci(500), gm.directions.random(300), gm.directions.healpix(4)]
+)
 def test_sets_against_a_search(normals: Array) -> None:
     check(normals)
 
 
 def test_adding_normals_never_makes_it_larger() -> None:
-    normals = gm.random_normals(200, seed=5)
-    radii = [gm.covering_radius(normals[:k]) for k in range(1, 200)]
+    normals = gm.directions.random(200, seed=5)
+    radii = [gm.directions.covering_radius(normals[:k]) for k in range(1, 200)]
     assert (np.diff(radii) <= 1e-9).all()
 
 
@@ -170,11 +176,11 @@ def test_adding_normals_never_makes_it_larger() -> None:
 def test_every_surface_point_has_a_sample_with_nearly_its_normal() -> None:
     """The Gaussian image of each half of a torus is the whole sphere."""
     spline, normals = gm.fit(gm.surfaces.torus(), (32, 32)), gm.fibonacci(300)
-    samples = gm.sample(spline, normals)
+    samples = gm.sample(spline, normals=normals)
     places = np.random.default_rng(0).uniform(0, 2 * np.pi, (2, 500))
     distances = nearest(spline.normals(*places), samples.normals)
-    assert distances.max() <= gm.covering_radius(normals)
-    assert distances.max() > 0.7 * gm.covering_radius(normals)
+    assert distances.max() <= gm.directions.covering_radius(normals)
+    assert distances.max() > 0.7 * gm.directions.covering_radius(normals)
 
 
 @pytest.mark.parametrize(
@@ -182,5 +188,5 @@ def test_every_surface_point_has_a_sample_with_nearly_its_normal() -> None:
     [([], "shape"), ([[0, 0, 0]], "zero vector"), ([[0, np.nan, 0]], "NaN"), ([1, 0, 0], "shape")],
 )
 def test_normals_that_are_none(normals: Any, message: str) -> None:
-    with pytest.raises(gm.InputError, match=message):
-        gm.covering_radius(normals)
+    with pytest.raises(gm.errors.InputError, match=message):
+        gm.directions.covering_radius(normals)

@@ -1,0 +1,27 @@
+"""The public names and where they are defined; `__init__.py` loads them from here."""
+
+from . import symbolic as symbolic
+from .runtime import curves as curves
+from .runtime import directions as directions
+from .runtime import errors as errors
+from .runtime import gauss_map as gauss_map
+from .runtime import surfaces as surfaces
+from .runtime.directions import fibonacci as fibonacci
+from .runtime.directions import icosphere as icosphere
+from .runtime.errors import GaussmapError as GaussmapError
+from .runtime.errors import GaussmapWarning as GaussmapWarning
+from .runtime.files.formats import read_samples as read_samples
+from .runtime.formulas import formulas as formulas
+from .runtime.meshes.mesh import Mesh as Mesh
+from .runtime.samples import Samples as Samples
+from .runtime.sampling import sample as sample
+from .runtime.sampling import sample_many as sample_many
+from .runtime.silhouette import silhouette as silhouette
+from .runtime.spline import Spline as Spline
+from .runtime.spline import fit as fit
+from .runtime.stream import sample_stream as sample_stream
+from .runtime.support.convolution import convolve as convolve
+from .runtime.support.function import SupportFunction as SupportFunction
+from .runtime.surface import Surface as Surface
+
+__version__: str

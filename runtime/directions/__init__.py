@@ -1,0 +1,17 @@
+"""Sets of directions on the sphere and on the circle, parts of them, and how well they cover."""
+
+from .circle import circle
+from .covering import covering_radius
+from .regions import cap, polygon
+from .sets import fibonacci, healpix, icosphere, random
+
+__all__ = [
+    "cap",
+    "circle",
+    "covering_radius",
+    "fibonacci",
+    "healpix",
+    "icosphere",
+    "polygon",
+    "random",
+]

@@ -1,0 +1,104 @@
+"""Directions as unit vectors: those that a user brings, checked, and frames round them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import reduce
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..checks import finite_array, real_values
+from ..errors import InputError
+from ..threads import over_ranges
+
+__all__ = ["PIECE", "as_normals", "in_pieces", "normalized", "perpendicular", "unit_vector"]
+
+# So many normals are made at a time: their arrays fit into the cache.
+PIECE = 1 << 15
+
+
+def as_normals(
+    normals: ArrayLike, dimension: int = 3, threads: int | None = None
+) -> NDArray[np.float64]:
+    """Return directions (S, dimension), of any non-zero lengths, as unit normals, float64.
+
+    A vector that has unit length already, up to rounding, is kept bit for bit. Raises InputError
+    for another shape, an empty array, NaN, infinity, or a vector of length 0, and names its row.
+    """
+    array = real_values(normals, "normals")
+    if array.ndim != 2 or array.shape[1] != dimension or array.shape[0] == 0:
+        raise InputError(
+            f"normals must have the shape (S, {dimension}) with S >= 1, not {array.shape}."
+        )
+
+    def rows(begin: int, end: int) -> NDArray[np.float64]:
+        return normalized(_checked_directions(array[begin:end], begin))
+
+    return in_pieces(rows, 0, len(array), threads, dimension)
+
+
+def unit_vector(direction: ArrayLike, name: str) -> NDArray[np.float64]:
+    """Return three numbers, of any length but 0, as a unit vector; InputError with their name."""
+    vector = finite_array(direction, (3,), name)
+    if not vector.any():
+        raise InputError(f"{name} is the zero vector, which has no direction.")
+    return normalized(vector[None])[0]
+
+
+def perpendicular(axis: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return two unit vectors that make a right-handed frame with a unit vector."""
+    least = np.eye(3)[np.argmin(np.abs(axis))]
+    across = np.cross(least, axis)
+    across /= np.linalg.norm(across)
+    return across, np.cross(axis, across)
+
+
+def in_pieces(
+    rows: Callable[[int, int], NDArray[np.float64]],
+    first: int,
+    last: int,
+    threads: int | None = None,
+    width: int = 3,
+) -> NDArray[np.float64]:
+    """Return rows(first, last) (…, width), made in pieces that stay in the cache, on threads."""
+    result = np.empty((last - first, width))
+
+    def work(begin: int, end: int) -> None:
+        result[begin:end] = rows(first + begin, first + end)
+
+    for _ in over_ranges(work, last - first, PIECE, threads):
+        pass
+    return result
+
+
+def normalized(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Divide by the length, safely for the smallest and the largest numbers."""
+    exponents = np.frexp(_largest(vectors))[1]
+    far = np.abs(exponents) > 1
+    if far.any():
+        vectors = np.ldexp(vectors, np.where(far, -exponents, 0)[:, None])
+    length = np.sqrt(np.einsum("ij,ij->i", vectors, vectors))[:, None]
+    near = np.abs(length - 1.0) <= 4.5e-16
+    return vectors if near.all() else np.where(near, vectors, vectors / length)
+
+
+def _checked_directions(values: NDArray[Any], start: int) -> NDArray[np.float64]:
+    """Return directions as float64; InputError names the first unusable row, from `start` on."""
+    with np.errstate(over="ignore"):
+        array = values.astype(np.float64)
+    if not np.isfinite(array).all():
+        bad = int(np.argmin(np.isfinite(array).all(axis=1)))
+        raise InputError(f"normals[{start + bad}] holds NaN or infinity.")
+    zero = _largest(array) == 0.0
+    if zero.any():
+        raise InputError(
+            f"normals[{start + int(zero.argmax())}] is the zero vector, which has no direction."
+        )
+    return array
+
+
+def _largest(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the largest component of each vector, in modulus."""
+    return reduce(np.maximum, np.abs(vectors).T)

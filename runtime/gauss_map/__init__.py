@@ -1,0 +1,23 @@
+"""What the Gauss map does: images of patches, and parabolic points, where it folds."""
+
+from .boundary import BoundaryArc
+from .classes import PatchClass, classify_patches
+from .image import GaussianImage, GaussianImages
+from .parabolic import ParabolicCurve, ParabolicPoint, ParabolicPoints, parabolic_points
+from .parabolic_lines import ParabolicLine, Piece, parabolic_lines, split_patch
+
+__all__ = [
+    "BoundaryArc",
+    "GaussianImage",
+    "GaussianImages",
+    "ParabolicCurve",
+    "ParabolicLine",
+    "ParabolicPoint",
+    "ParabolicPoints",
+    "PatchClass",
+    "Piece",
+    "classify_patches",
+    "parabolic_lines",
+    "parabolic_points",
+    "split_patch",
+]

@@ -1,1 +1,0 @@
-"""What the Gauss map does: images of patches, and parabolic points, where it folds."""
