@@ -60,7 +60,6 @@ def derive() -> dict[str, str]:
     """Return the texts of all generated files by their names."""
     sources = {
         "__init__.py": '"""Kernels and formulas written by `make generate`: never edit these."""\n',
-        "cover.py": cover_source(),
         "curve.py": curve_source(),
         "exact.py": exact_source(),
         "gaussian_image.py": gaussian_image_source(),
@@ -163,39 +162,6 @@ def _options() -> str:
     )
 
 
-def cover_source() -> str:
-    """Return generated/cover.py: samples that come near every point of a spline."""
-    reach = ", ".join(x.name for x in patch.REACH.in_components().outputs)
-    sides = [x.name for x in patch.SIDES.in_components().outputs]
-    corners = (
-        f"{x} = corners[k, {i}, {j}]"
-        for i, corner in enumerate(patch.CORNERS)
-        for j, x in enumerate(corner)
-    )
-    return render(
-        "cover.py",
-        {
-            "header": header("Covering: samples near every point, as near as a density asks."),
-            "constants": f"{_grid_constants()}\nNODE = {source_of(patch.QUADRATURE_NODE)}",
-            "formulas": functions([spline.TRIANGLE, patch.PART_NORMALS]),
-            "patch_vectors": _patch_vectors(),
-            "part_normals": _net_of(patch.PART_NORMALS),
-            "envelope": block(patch.ENVELOPE),
-            "tangents": block(patch.TANGENTS),
-            "curvature_at": block(patch.CURVATURE_AT),
-            "largest_curvature": block(patch.LARGEST_CURVATURE),
-            "reach": block(patch.REACH),
-            "extent": f"extent = math.sqrt(max({reach}))",
-            "sides": block(patch.SIDES),
-            "longest": "\n".join(
-                f"side_{i} = max({first}, {last})"
-                for i, (first, last) in enumerate(zip(sides[::2], sides[1::2], strict=True))
-            ),
-            "load_corners": "\n".join(corners),
-        },
-    )
-
-
 def curve_source() -> str:
     """Return generated/curve.py: the formulas of planar curves."""
     title = "Planar curves: the formulas of symbolic/curve.py as functions of vectors."
@@ -256,51 +222,9 @@ def icosphere_source() -> str:
 
 
 def mesh_source() -> str:
-    """Return generated/mesh.py: border points, and flips of the edges of triangles."""
-    places = {"p": "points", "n": "normals"}
-    load = (
-        f"{letter}{i}_{axis} = {array}[{corner}, {x}]"
-        for letter, array in places.items()
-        for i, corner in enumerate("abc")
-        for x, axis in enumerate("xyz")
-    )
-    power_form = ", ".join(x.name for x in patch.POWER_FORM.in_components().outputs)
-    return render(
-        "mesh.py",
-        {
-            "header": header("Triangles through samples: border points, flips of edges."),
-            "formulas": functions([*mesh.FORMULAS, patch.POWER_FORM]),
-            "power_form": f"{power_form} = {call(patch.POWER_FORM)}",
-            "tangents": block(patch.TANGENTS),
-            "node": f"NODE = {source_of(patch.QUADRATURE_NODE)}",
-            **_edges_over_surface(),
-            "border_spacing": f"d = {call(mesh.BORDER_SPACING)}",
-            "load_corners": "\n".join(load),
-            "corner_products": f"s0, s1, s2, L = {call(mesh.CORNER_PRODUCTS)}",
-        },
-    )
-
-
-def _edges_over_surface() -> dict[str, str]:
-    """Return the calls that find the six Bézier points of a triangle over a surface."""
-    ends = {"b110": (0, 1), "b101": (0, 2), "b011": (1, 2)}
-    names = [f"{name}_{x}" for name in ("p0", "p1", "n0", "n1") for x in "xyz"]
-    function = mesh.EDGE_OVER_SURFACE.name
-
-    def call_of(middle: str, i: int, j: int) -> str:
-        arguments = ", ".join(x.translate({ord("0"): str(i), ord("1"): str(j)}) for x in names)
-        outputs = ", ".join(f"{middle}_{x}" for x in "xyz")
-        return f"{outputs} = {function}(\n    {arguments}\n)"
-
-    corners = {"b200": 0, "b020": 1, "b002": 2}
-    normals = [(k, f"n{k}_{x}") for k in range(3) for x in "xyz"]
-    copies = (f"{name}_{x} = p{k}_{x}" for name, k in corners.items() for x in "xyz")
-    return {
-        "edges_over_surface": "\n".join(call_of(x, *ends[x]) for x in ends),
-        "corners_of_net": "\n".join(copies),
-        "turn_normals": "\n".join(f"{x} *= sides[t, {k}]" for k, x in normals),
-        "flatten_normals": "\n".join(f"{x} = 0.0" for _, x in normals),
-    }
+    """Return generated/mesh.py: the formulas of triangles through samples."""
+    title = "Triangles through samples: the formulas of symbolic/mesh.py."
+    return mathematics(title, vector_functions(mesh.FORMULAS))
 
 
 def patch_source() -> str:

@@ -8,7 +8,9 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ...generated import cover as kernels
+from ..kernels.centres import link_cells, move_to_centres
+from ..kernels.greedy import choose_far, update_distances
+from ..kernels.hash_grids import LEVELS, SQUARE, HashGrids, measure, sort_candidates
 from ..threads import over_ranges
 
 __all__ = ["Candidates"]
@@ -108,11 +110,11 @@ class Candidates:
         times √weight; −1 if there are none. All samples were told at once, and none chosen since.
         """
         heads, links = (np.full(x, -1, dtype=np.int32) for x in (count, len(self._order)))
-        kernels.list_places(self._nearest, heads, links)
+        link_cells(self._nearest, heads, links)
         found = np.empty(count, dtype=np.int64)
 
         def work(first: int, last: int) -> None:
-            kernels.centres(self._places, heads, links, first, last, found)
+            move_to_centres(self._places, heads, links, first, last, found)
 
         for _ in over_ranges(work, count, CENTRES_AT_A_TIME, self._threads):
             pass
@@ -139,35 +141,32 @@ class _Part:
         self, rows: Array, radius: float, order: Numbers, places: Array, nearest: Numbers
     ) -> None:
         """Sort rows into arrays of the same length."""
-        count, self.radius = len(rows), radius
-        self.order, self.places, self.nearest = order, places, nearest
-        self.box = np.empty((2, 3))
-        finest, self.widest = kernels.survey(rows, self.box)
-        self.starts = np.zeros((1 << max(count - 1, 1).bit_length()) + 1, dtype=np.int32)
-        kernels.sort_places(
-            rows, radius, finest, self.widest, self.starts, np.empty(count, dtype=np.int32), order,
-            places,
-        )  # fmt: skip
-        self.asked, self.least = np.empty(0, dtype=np.int32), np.inf
+        count = len(rows)
+        box, sizes = np.empty((2, 3)), np.zeros(LEVELS)
+        finest, coarsest = measure(rows, box, sizes)
+        starts = np.zeros((1 << max(count - 1, 1).bit_length()) + 1, dtype=np.int32)
+        sizes = sizes[finest : coarsest + 1].copy()
+        self.grids = HashGrids(places, nearest, starts, sizes, box, radius)
+        sort_candidates(rows, finest, self.grids, np.empty(count, dtype=np.int32), order)
+        self.order, self.asked, self.least = order, np.empty(0, dtype=np.int32), np.inf
+
+    @property
+    def places(self) -> Array:
+        return self.grids.candidates
 
     def tell(self, samples: Array, radius: float) -> None:
-        kernels.tell_of_samples(
-            self.places, self.nearest, self.starts, self.widest, self.radius, self.box, radius,
-            samples,
-        )  # fmt: skip
+        update_distances(self.grids, radius, samples)
 
     def forget(self) -> None:
-        regular = self.places[:, 7] >= 0.0
-        self.places[regular, 7], self.nearest[:], self.least = np.inf, -1, np.inf
+        squares = self.grids.candidates[:, SQUARE]
+        squares[squares >= 0.0] = np.inf
+        self.grids.nearest[:], self.least = -1, np.inf
 
     def choose(self, radius: float) -> Numbers:
         if radius <= self.least:
             self.least = LEFT_OUT * radius
             self.asked = np.arange(len(self.places), dtype=np.int32)
         chosen = np.empty(len(self.asked), dtype=np.int32)
-        kept, count = kernels.choose_far(
-            self.places, self.nearest, self.starts, self.widest, self.radius, radius, self.least,
-            self.asked, chosen,
-        )  # fmt: skip
+        kept, count = choose_far(self.grids, radius, self.least, self.asked, chosen)
         self.asked = self.asked[:kept]
         return chosen[:count]

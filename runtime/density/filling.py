@@ -116,7 +116,7 @@ class Filling:
         power, count = self.request.density, self.request.count or 0
         if isinstance(power, str) or visible_solid_angle(self.spline, count / (4 * math.pi)) == 0.0:
             return self._wanted(Law(floor=1.0))
-        wanted = self._wanted(Law(power=1.0, alpha=power))
+        wanted = self._wanted(Law(gauss_weight=1.0, exponent=power))
         return wanted.with_floor(wanted.total / wanted.area / WIDEST_GAP**2)
 
     def _wanted(self, law: Law) -> Wanted:
@@ -165,7 +165,7 @@ class Filling:
     # --- balanced ---------------------------------------------------------------------------------
 
     def _balanced(self) -> tuple[Cover, Answers]:
-        request, wanted = self.request, self._wanted(Law(bend=1.0))
+        request, wanted = self.request, self._wanted(Law(curvature_weight=1.0))
         # Normals and angles are absolute: then flat parts are bent as a sphere of this area.
         least = 4 * math.pi if request.normals is not None or request.angle else UNBENT
         floor = FLAT_SHARE * max(wanted.total, least) / wanted.area

@@ -8,7 +8,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ...generated import cover as kernels
+from ...generated.spline import SCALE
+from ..kernels.sizing import TargetDensity as Law
+from ..kernels.sizing import integrate_density
 from ..spline import Spline
 from ..threads import over_ranges
 
@@ -17,25 +19,6 @@ __all__ = ["Law", "Wanted"]
 Array = NDArray[np.float64]
 
 PATCHES_AT_A_TIME = 1 << 12
-
-
-@dataclass(frozen=True)
-class Law:
-    """Samples per area, up to a factor: bend κ² + power |K|^α, but no less than a floor.
-
-    κ is the larger principal curvature, in modulus. Curvatures are those of the surface times its
-    `unit` (see `Wanted`).
-    """
-
-    floor: float = 0.0
-    bend: float = 0.0
-    power: float = 0.0
-    alpha: float = 1.0
-
-    @property
-    def numbers(self) -> Array:
-        """The law as kernels take it."""
-        return np.array([self.floor, self.bend, self.power, self.alpha])
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +35,7 @@ class Wanted:
     @property
     def unit(self) -> float:
         """How long one length of the spline is here."""
-        return kernels.SCALE * self.spline.scale
+        return SCALE * self.spline.scale
 
     def places(self, points: NDArray[np.floating]) -> Array:
         """Return points of the surface (N, 3) relative to the first coefficient, times `unit`."""
@@ -67,7 +50,7 @@ class Wanted:
     @property
     def noise(self) -> float:
         """The rounding of the coordinates."""
-        return kernels.SCALE * self.spline.noise
+        return SCALE * self.spline.noise
 
     @property
     def reaches(self) -> Array:
@@ -97,19 +80,19 @@ class Wanted:
 
     def with_floor(self, floor: float) -> Wanted:
         """Return the same with another floor."""
-        wanted = replace(self, law=replace(self.law, floor=floor))
+        wanted = replace(self, law=self.law._replace(floor=floor))
         wanted.__dict__["_patches"] = self._patches  # which a floor is not in
         return wanted
 
     @cached_property
     def _patches(self) -> tuple[Array, Array, Array]:
         """Reaches (patches,), areas (patches, 3) and weights (patches, 4); see the kernel."""
-        count, law = self.spline.patches, replace(self.law, floor=0.0)
+        count, law = self.spline.patches, self.law._replace(floor=0.0)
         arrays = np.empty(count), np.empty((count, 3)), np.empty((count, 4))
 
         def work(first: int, last: int) -> None:
-            kernels.weigh_patches(
-                self.spline.coefficients, self.spline.scale, law.numbers, first, last, *arrays
+            integrate_density(
+                self.spline.coefficients, self.spline.scale, law, first, last, *arrays
             )
 
         for _ in over_ranges(work, count, PATCHES_AT_A_TIME, self.threads):

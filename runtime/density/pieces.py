@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...generated import cover as kernels
 from ..errors import InputError
+from ..kernels import triangles as kernels
 from ..threads import over_ranges
 from .law import Wanted
 
@@ -59,7 +60,7 @@ class Pieces:
     @property
     def extents(self) -> Array:
         """How far the points of each triangle (M,) are from its middle, at most."""
-        return self._for_each(kernels.extents, np.empty(len(self)))
+        return self._for_each(kernels.radii, np.empty(len(self)))
 
     @property
     def quarters(self) -> Pieces:
@@ -72,7 +73,7 @@ class Pieces:
     @property
     def halves(self) -> Pieces:
         """The halves of all triangles (2 M), cut across their longest sides."""
-        corners = self._for_each(kernels.halve, np.empty((2 * len(self), 3, 2)))
+        corners = self._for_each(kernels.bisect, np.empty((2 * len(self), 3, 2)))
         return Pieces(self.wanted, np.repeat(self.patches, 2), corners)
 
     def middles(self) -> Array:
@@ -81,8 +82,8 @@ class Pieces:
         Points are relative to the first coefficient; all lengths are those of the spline times
         `wanted.unit`. The normal is zero where there is none.
         """
-        law = self.wanted.law.numbers, self.wanted.reaches
-        return self._for_each(kernels.middles, *law, np.empty((len(self), 8)))
+        law = self.wanted.law, self.wanted.reaches
+        return self._for_each(kernels.evaluate_centroids, *law, np.empty((len(self), 8)))
 
     def turns(self, rows: Array) -> Array:
         """Return how far normals of each triangle (M,) are from that in its middle, at most.
@@ -90,20 +91,26 @@ class Pieces:
         That is as the chord between unit vectors: 2 if they may turn by 90 degrees or more. `rows`
         are what `middles` returns.
         """
-        return self._for_each(kernels.turns, rows, np.empty(len(self)))
+        return self._for_each(kernels.normal_chords, rows, np.empty(len(self)))
 
-    def _for_each(self, kernel: Callable[..., None], *arrays: Array) -> Array:
-        """Return the last of some arrays, which a kernel writes."""
+    def _for_each(self, kernel: Callable[..., None], *arguments: object) -> Array:
+        """Return the last of the arguments of a kernel, an array that it writes."""
         spline = self.wanted.spline
 
         def work(first: int, last: int) -> None:
             kernel(
-                spline.coefficients, spline.scale, self.patches, self.corners, first, last, *arrays
+                spline.coefficients,
+                spline.scale,
+                self.patches,
+                self.corners,
+                first,
+                last,
+                *arguments,
             )
 
         for _ in over_ranges(work, len(self), PIECES_AT_A_TIME, self.wanted.threads):
             pass
-        return arrays[-1]
+        return cast(Array, arguments[-1])
 
 
 def cut_patches(wanted: Wanted, radius: float) -> Pieces:

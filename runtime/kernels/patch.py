@@ -12,7 +12,7 @@ from ...generated.vectors import Patch, Vector
 from .jit import inline, jit, loop
 from .vectors import set_row
 
-__all__ = ["normals_at", "patch_vectors", "place_of", "vector_at"]
+__all__ = ["normals_at", "patch_of", "patch_vectors", "place_of", "vector_at"]
 
 
 @inline
@@ -57,12 +57,16 @@ def patch_vectors(mu, i, j, turn, scale) -> Patch:
     )
 
 
+@inline
+def patch_of(mu, scale, number) -> Patch:
+    """Return the vectors of a patch by its number; see `patch_vectors`."""
+    i, j, turn = place_of(number, mu.shape[1] - 2)
+    return patch_vectors(mu, i + 1, j + 1, turn, scale)
+
+
 @jit
 def normals_at(mu, scale, patches, places, normals):
     """Write the unnormalized oriented normals (k, 3) of patches (k) at places u, v (k, 2)."""
-    columns = mu.shape[1] - 2
     for k in range(patches.size):
-        i, j, turn = place_of(patches[k], columns)
-        patch = patch_vectors(mu, i + 1, j + 1, turn, scale)
-        _, _, N = tangents(patch, places[k, 0], places[k, 1])
+        _, _, N = tangents(patch_of(mu, scale, patches[k]), places[k, 0], places[k, 1])
         set_row(normals, k, N)

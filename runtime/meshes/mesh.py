@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...generated import mesh as kernels
 from ..checks import checked_array
 from ..errors import InputError
+from ..kernels.flips import smallest_cosines
 from ..spline import scale_to_one, short_label
 
 if TYPE_CHECKING:
@@ -113,7 +113,7 @@ class Mesh:
         cosines = np.empty(len(self.triangles))
         if len(cosines):
             points = scaled(self.vertices)
-            kernels.smallest_cosines(points, self.normals, self.triangles, self.sides, cosines)
+            smallest_cosines(points, self.normals, self.triangles, self.sides, cosines)
         return np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0)))
 
     def summary(self) -> str:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ...generated import mesh as kernels
 from ..errors import InputError
+from ..kernels.flips import flip_edges, smallest_cosines
 from ..spline import Spline
 from ..surface import Ends
 from .mesh import Mesh, scaled
@@ -77,8 +77,14 @@ class Triangulated:
 
     def flip_edges(self) -> int:
         """Flip edges as long as triangles come nearer to the normals; return how many flips."""
-        return kernels.flip_edges(
-            scaled(self.points), self.normals, self.triangles, self.sides, self.neighbours
+        return flip_edges(
+            scaled(self.points),
+            self.normals,
+            self.triangles,
+            self.sides,
+            self.neighbours,
+            np.arange(len(self.triangles)),
+            np.ones(len(self.triangles), dtype=np.bool_),
         )
 
     def mesh(self, angle: float = WHOLE) -> Mesh:
@@ -89,7 +95,7 @@ class Triangulated:
         triangles, sides = self.triangles, self.sides
         if angle < WHOLE:
             cosines = np.empty(len(triangles))
-            kernels.smallest_cosines(scaled(self.points), self.normals, triangles, sides, cosines)
+            smallest_cosines(scaled(self.points), self.normals, triangles, sides, cosines)
             chosen = cosines >= math.cos(math.radians(angle))
             triangles, sides = triangles[chosen], sides[chosen]
             anywhere = np.ones(len(self.points), dtype=bool)

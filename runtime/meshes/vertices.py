@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ...generated import mesh as kernels
+from ..kernels.spacing import border_spacings
 from ..spline import Spline
 from ..surface import End, Ends
 from ..trees import tree_of
@@ -148,7 +148,7 @@ def _spacings(tree: KDTree, points: Array) -> Array:
     nearest = min(NEAREST, tree.n)
     spacings = np.empty(len(points))
     distances = tree.query(points, k=nearest, workers=-1)[0].reshape(len(points), -1)[:, -1]
-    kernels.border_spacings(distances, float(nearest), spacings)
+    border_spacings(distances, float(nearest), spacings)
     return spacings
 
 

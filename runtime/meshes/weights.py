@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ...generated import mesh as kernels
+from ..kernels.areas import corner_areas
 from ..trees import tree_of
 from .mesh import Mesh, centred
 
@@ -42,7 +42,7 @@ def _areas(mesh: Mesh) -> Array:
     """Return the parts (T, 3) of the area over each triangle that belong to its corners."""
     points, scale = centred(mesh.vertices)
     areas = np.empty(mesh.triangles.shape)
-    kernels.corner_areas(points * scale, mesh.normals, mesh.triangles, mesh.sides, areas)
+    corner_areas(points * scale, mesh.normals, mesh.triangles, mesh.sides, areas)
     return areas / scale / scale
 
 

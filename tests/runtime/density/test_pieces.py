@@ -8,7 +8,7 @@ from gaussmap.runtime.density.pieces import Pieces, cut_patches
 
 
 def wanted_of(name: str, cells: tuple[int, int]) -> Wanted:
-    return Wanted(gm.fit(gm.surfaces.surface(name), cells), Law(floor=1.0, bend=1.0))
+    return Wanted(gm.fit(gm.surfaces.surface(name), cells), Law(floor=1.0, curvature_weight=1.0))
 
 
 def sizes(pieces: Pieces) -> np.ndarray:

@@ -1,0 +1,180 @@
+"""Flips of edges that turn the triangles of a mesh towards the normals at their corners.
+
+In `triangles` (k, 3) are the vertices of triangles, in `sides` (k, 3) for each corner 1 or −1: the
+side of the surface on which the triangle lies there. Along a band of a one-sided surface they
+change. `neighbours` (k, 3) are the triangles across the edges opposite to the corners, −1 for none.
+"""
+
+from __future__ import annotations
+
+from ...generated.mesh import corner_products
+from .jit import inline, jit, loop
+from .vectors import row_vector
+
+__all__ = ["flip_edges", "smallest_cosines"]
+
+# A flip must raise the smallest cosine by more than rounding.
+GAIN = 1e-14
+
+
+@loop
+def smallest_cosine(points, normals, a, b, c, side_a, side_b, side_c):
+    """Return the smallest cosine between the normals of a triangle and at its corners a, b, c.
+
+    It is −2 if the triangle has no normal. The corners are sorted first: then rounding does not
+    depend on which of them comes first, and triangles without area are not flipped for ever.
+    """
+    side = 1.0
+    if a > b:
+        a, b, side_a, side_b, side = b, a, side_b, side_a, -side
+    if b > c:
+        b, c, side_b, side_c, side = c, b, side_c, side_b, -side
+    if a > b:
+        a, b, side_a, side_b, side = b, a, side_b, side_a, -side
+    s0, s1, s2, L = corner_products(
+        row_vector(points, a),
+        row_vector(points, b),
+        row_vector(points, c),
+        row_vector(normals, a),
+        row_vector(normals, b),
+        row_vector(normals, c),
+    )
+    return min(s0 * side_a * side, s1 * side_b * side, s2 * side_c * side) / L if L > 0.0 else -2.0
+
+
+@jit
+def smallest_cosines(points, normals, triangles, sides, cosines):
+    """Write the smallest cosine between the normals of each triangle (k,) and at its corners."""
+    for t in range(triangles.shape[0]):
+        cosines[t] = smallest_cosine(
+            points,
+            normals,
+            triangles[t, 0],
+            triangles[t, 1],
+            triangles[t, 2],
+            sides[t, 0],
+            sides[t, 1],
+            sides[t, 2],
+        )
+
+
+@loop
+def corner_of(triangles, t, vertex):
+    """Return which corner of a triangle is a vertex, −1 if none."""
+    for k in range(3):
+        if triangles[t, k] == vertex:
+            return k
+    return -1
+
+
+@loop
+def are_joined(triangles, neighbours, first, c, d):
+    """Say whether an edge joins the vertices c, a corner of the triangle `first`, and d.
+
+    Goes around c from `first`, in both ways if it meets the border.
+    """
+    for way in range(1, 3):
+        t = first
+        came_over = (corner_of(triangles, t, c) + way) % 3
+        while t >= 0:
+            if corner_of(triangles, t, d) >= 0:
+                return True
+            corner = corner_of(triangles, t, c)
+            over = 3 - corner - came_over
+            following = neighbours[t, over]
+            if following == first:
+                return False
+            if following >= 0:
+                # The edge from c to the third corner is crossed; it lies opposite to another one.
+                shared = triangles[t, came_over]
+                own = corner_of(triangles, following, c)
+                came_over = 3 - own - corner_of(triangles, following, shared)
+            t = following
+    return False
+
+
+@loop
+def replace_neighbour(neighbours, triangles, t, old, new, left, right):
+    """Replace the neighbour of triangle t, unless t is −1, across the edge from left to right."""
+    if t >= 0:
+        for k in range(3):
+            if neighbours[t, k] == old and triangles[t, k] != left and triangles[t, k] != right:
+                neighbours[t, k] = new
+
+
+@inline
+def write_row(array, t, x, y, z):
+    """Write a row of an array (k, 3)."""
+    array[t, 0] = x
+    array[t, 1] = y
+    array[t, 2] = z
+
+
+@loop
+def flip_edge(points, normals, triangles, sides, neighbours, t, k):
+    """Flip the edge of triangle t opposite to its corner k if that raises the smallest cosine.
+
+    The edge a b of the triangles c a b and d b a becomes the edge c d of c a d and d b c. Returns
+    the triangle across the edge, or −1 if there is no flip.
+    """
+    other = neighbours[t, k]
+    if other < 0:
+        return -1
+    ka, kb = (k + 1) % 3, (k + 2) % 3
+    a, b, c = triangles[t, ka], triangles[t, kb], triangles[t, k]
+    oa, ob = corner_of(triangles, other, a), corner_of(triangles, other, b)
+    od = 3 - oa - ob
+    d = triangles[other, od]
+    turned = sides[t, ka] * sides[other, oa]
+    if d == c or turned != sides[t, kb] * sides[other, ob]:
+        return -1
+    side_a, side_b, side_c = sides[t, ka], sides[t, kb], sides[t, k]
+    side_d = turned * sides[other, od]
+    before = min(
+        smallest_cosine(points, normals, c, a, b, side_c, side_a, side_b),
+        smallest_cosine(points, normals, d, b, a, side_d, side_b, side_a),
+    )
+    left = smallest_cosine(points, normals, c, a, d, side_c, side_a, side_d)
+    if left <= before + GAIN:
+        return -1
+    right = smallest_cosine(points, normals, d, b, c, side_d, side_b, side_c)
+    if right <= before + GAIN or are_joined(triangles, neighbours, t, c, d):
+        return -1
+    across_bc, across_ca = neighbours[t, ka], neighbours[t, kb]
+    across_ad, across_db = neighbours[other, ob], neighbours[other, oa]
+    write_row(triangles, t, c, a, d)
+    write_row(sides, t, side_c, side_a, side_d)
+    write_row(neighbours, t, across_ad, other, across_ca)
+    write_row(triangles, other, d, b, c)
+    write_row(sides, other, side_d, side_b, side_c)
+    write_row(neighbours, other, across_bc, t, across_db)
+    replace_neighbour(neighbours, triangles, across_ad, other, t, a, d)
+    replace_neighbour(neighbours, triangles, across_bc, t, other, b, c)
+    return other
+
+
+@jit
+def flip_edges(points, normals, triangles, sides, neighbours, queue, is_queued):
+    """Flip edges as long as that raises the smallest cosine of two triangles; return how many.
+
+    `triangles`, `sides` and `neighbours` (k, 3) are changed. queue (k,) holds all triangles, and
+    is_queued (k,) is True, at the beginning. No flip makes a second edge between two vertices. Each
+    raises the ascending list of the cosines of all triangles in lexicographic order: they end.
+    """
+    count = triangles.shape[0]
+    head, waiting, flips = 0, count, 0
+    while waiting > 0:
+        t = queue[head]
+        head, waiting = (head + 1) % count, waiting - 1
+        is_queued[t] = False
+        for k in range(3):
+            other = flip_edge(points, normals, triangles, sides, neighbours, t, k)
+            if other >= 0:
+                flips += 1
+                for again in (t, other):
+                    if not is_queued[again]:
+                        queue[(head + waiting) % count] = again
+                        waiting += 1
+                        is_queued[again] = True
+                break
+    return flips

@@ -1,0 +1,120 @@
+"""Greedy covering: candidates that are far from all samples become samples themselves.
+
+A sample updates the distances of the candidates around it. That is cheaper than searching the
+nearest sample of each candidate again and again.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ...generated.vectors import Vector
+from .hash_grids import CELL, DENSITY, NORMAL, SQUARE, bucket_of
+from .jit import inline, jit, loop
+from .vectors import dot, row_vector
+
+__all__ = ["choose_far", "update_distances"]
+
+# The number of samples that have none; typed, so that Numba compiles one function for all numbers.
+NO_NUMBER = np.int64(-1)
+
+
+@inline
+def distance_to_cells(i, cell, x):
+    """Return the distance along an axis of the coordinate x from the cells of number i."""
+    return max(i * cell - x, x - (i + 1) * cell, 0.0)
+
+
+@inline
+def normal_of(rows, k):
+    """Return the normal of row k, which follows its point."""
+    return Vector(rows[k, NORMAL], rows[k, NORMAL + 1], rows[k, NORMAL + 2])
+
+
+@loop
+def update_around(grids, radius, number, x, n):
+    """Update the distances of the candidates within radius/√w of a sample x with the normal n.
+
+    A sample counts for candidates on its own side of the surface: n makes an angle of at most 90
+    degrees with theirs.
+    """
+    candidates = grids.candidates
+    buckets = grids.starts.size - 1
+    for level in range(grids.sizes.size):
+        reach = radius * grids.sizes[level]
+        cell = CELL * grids.radius * grids.sizes[level]
+        if cell == 0.0:
+            continue
+        i_last = int(math.floor((x.x + reach) / cell))
+        j_first = int(math.floor((x.y - reach) / cell))
+        j_last = int(math.floor((x.y + reach) / cell))
+        k_first = int(math.floor((x.z - reach) / cell))
+        k_last = int(math.floor((x.z + reach) / cell))
+        for i in range(int(math.floor((x.x - reach) / cell)), i_last + 1):
+            x_gap = distance_to_cells(i, cell, x.x)
+            for j in range(j_first, j_last + 1):
+                y_gap = distance_to_cells(j, cell, x.y)
+                for k in range(k_first, k_last + 1):
+                    z_gap = distance_to_cells(k, cell, x.z)
+                    if x_gap * x_gap + y_gap * y_gap + z_gap * z_gap > reach * reach:
+                        continue
+                    bucket = bucket_of(level, i, j, k, buckets)
+                    for at in range(grids.starts[bucket], grids.starts[bucket + 1]):
+                        dx = candidates[at, 0] - x.x
+                        dy = candidates[at, 1] - x.y
+                        dz = candidates[at, 2] - x.z
+                        square = (dx * dx + dy * dy + dz * dz) * candidates[at, DENSITY]
+                        if square < candidates[at, SQUARE]:
+                            m = normal_of(candidates, at)
+                            if dot(m, n) >= 0.0:
+                                candidates[at, SQUARE] = square
+                                grids.nearest[at] = number
+
+
+@jit
+def update_distances(grids, radius, samples):
+    """Update the distances of candidates within radius/√w of samples (N, 6), point and normal.
+
+    The number of a sample is its row. Samples that are far from all candidates are skipped.
+    """
+    reach = 0.0
+    for level in range(grids.sizes.size):
+        reach = max(reach, radius * grids.sizes[level])
+    for k in range(samples.shape[0]):
+        outside = False
+        for x in range(3):
+            outside |= samples[k, x] < grids.box[0, x] - reach
+            outside |= samples[k, x] > grids.box[1, x] + reach
+        if not outside:
+            update_around(grids, radius, k, row_vector(samples, k), normal_of(samples, k))
+
+
+@jit
+def choose_far(grids, radius, least, searched, chosen):
+    """Choose candidates that are farther than radius/√w from all samples, chosen ones included.
+
+    Only those in `searched` are looked at, in this order. Those of them that are still farther than
+    least/√w are moved to its beginning. Returns how many these are, and how many are chosen.
+    """
+    candidates = grids.candidates
+    kept = 0
+    count = 0
+    for k in range(searched.size):
+        at = searched[k]
+        square = candidates[at, SQUARE]
+        if square > radius * radius:
+            update_around(
+                grids,
+                radius,
+                NO_NUMBER,
+                row_vector(candidates, at),
+                normal_of(candidates, at),
+            )
+            chosen[count] = at
+            count += 1
+        elif square > least * least:
+            searched[kept] = at
+            kept += 1
+    return kept, count
