@@ -10,7 +10,7 @@ import pytest
 import sympy as sp
 from gaussmap.docs import curves
 
-pytestmark = pytest.mark.compiled
+pytestmark = [pytest.mark.compiled, pytest.mark.slow]
 
 PAGE = (Path(curves.__file__).parent / "curves.md").read_text(encoding="utf-8")
 EACH_CURVE = pytest.mark.parametrize("true", curves.CURVES, ids=lambda x: x.name)

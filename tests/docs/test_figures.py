@@ -16,7 +16,7 @@ from gaussmap.runtime.pictures.scene import quadrangles
 from matplotlib.colors import to_rgb
 from matplotlib.image import imread
 
-pytestmark = pytest.mark.compiled
+pytestmark = [pytest.mark.compiled, pytest.mark.slow]
 
 PAGE = figures.FOLDER.with_suffix(".md")
 DPI = 200

@@ -10,7 +10,7 @@ from gaussmap.benchmarks.peers.forms import FORMS, Torus
 from gaussmap.benchmarks.peers.metrics import Places
 from gaussmap.docs import meshes
 
-pytestmark = pytest.mark.compiled
+pytestmark = [pytest.mark.compiled, pytest.mark.slow]
 
 PAGE = (Path(meshes.__file__).parent / "meshes.md").read_text(encoding="utf-8")
 EACH = pytest.mark.parametrize("form", FORMS, ids=lambda x: x.name)

@@ -353,6 +353,7 @@ def test_writing_removes_orphans_only(copy):
     assert (copy / "folder").exists()
 
 
+@pytest.mark.slow
 def test_the_command_checks_the_committed_files():
     """Three interpreters with different seeds of the hash: each derives the committed bytes."""
     runs = [

@@ -109,6 +109,7 @@ def test_nothing_is_loaded_or_run():
     assert not re.search(r"https?:|//[a-z]|javascript:", page())
 
 
+@pytest.mark.slow
 def test_the_same_everywhere():
     code = "import sys; from gaussmap.symbolic import html; "
     code += "sys.stdout.buffer.write(html.page().encode())"
