@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from fractions import Fraction
 from numbers import Rational
 from typing import Any, SupportsFloat
@@ -12,34 +13,22 @@ from typing import Any, SupportsFloat
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .errors import InputError, UnknownNameError
+from .errors import InputError, UnknownNameError, shown
 from .limits import MOST
 
 __all__ = [
+    "as_float",
     "checked_array",
     "checked_count",
     "finite_array",
     "finite_number",
     "known_name",
     "parameter_arrays",
+    "positive_number",
     "real_array",
     "real_values",
-    "shown",
     "whole_number",
 ]
-
-
-LONGEST_SHOWN = 60
-
-
-def shown(value: object) -> str:
-    """Return a value as a message shows it: on one line, not too long, and never an error."""
-    try:
-        text = " ".join(repr(value).split())
-    except Exception:  # whole numbers of many digits, and what objects of users raise
-        text = f"something of type {type(value).__name__}"
-    text = text.encode("utf-8", "backslashreplace").decode()
-    return text if len(text) <= LONGEST_SHOWN else f"{text[: LONGEST_SHOWN - 1]}…"
 
 
 def known_name(name: str, known: Sequence[str], kind: str, command: str = "") -> str:
@@ -47,21 +36,22 @@ def known_name(name: str, known: Sequence[str], kind: str, command: str = "") ->
 
     `command` is one that shows all of them, if they are too many to be named.
     """
-    if name in known:
-        return name
-    near = difflib.get_close_matches(str(name).lower(), known, n=3, cutoff=0.7)
+    text = name if isinstance(name, str) else ""
+    if text and text in known:
+        return text
+    near = difflib.get_close_matches(text.lower(), known, n=3, cutoff=0.7)
     hint = f"; did you mean {' or '.join(near)}?" if near else "."
     if command:
         hint += f" See `{command}` for all names."
     elif not near:
         hint = f"; there is {', '.join(known)}." if known else "; there is none."
-    raise UnknownNameError(f"there is no {kind} {name!r}{hint}")
+    raise UnknownNameError(f"there is no {kind} {shown(name)}{hint}")
 
 
 def whole_number(value: object, name: str, least: int = 1) -> int:
     """Return a whole number from `least` to 10⁹; InputError with its name if it is none."""
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
-        raise InputError(f"{name} must be a whole number of at least {least}, not {value!r}.")
+        raise InputError(f"{name} must be a whole number of at least {least}, not {shown(value)}.")
     if value > MOST:
         raise InputError(f"{name} must be a whole number of at most {MOST:,}, not larger.")
     return int(value)
@@ -74,14 +64,35 @@ def checked_count(value: object) -> int:
     return whole_number(value, "count")
 
 
+def as_float(value: SupportsFloat | str) -> float:
+    """Return float(value); TypeError for complex and masked numbers of NumPy."""
+    if isinstance(value, np.ndarray | np.generic) and (
+        value.dtype.kind == "c" or np.ma.is_masked(value)
+    ):
+        raise TypeError("neither complex nor masked arrays are real numbers")
+    return float(value)
+
+
 def finite_number(value: SupportsFloat, name: str) -> float:
     """Return a number as a float; InputError with its name unless it is a finite one."""
     try:
-        number = float(value) if not isinstance(value, str) else math.nan
+        number = math.nan if isinstance(value, str) else as_float(value)
     except (TypeError, ValueError, OverflowError):
         number = math.nan
     if not math.isfinite(number):
-        raise InputError(f"{name} must be a finite number, not {value!r}.")
+        raise InputError(f"{name} must be a finite number, not {shown(value)}.")
+    return number
+
+
+def positive_number(value: object, name: str, unit: str = "", most: float = math.inf) -> float:
+    """Return a positive number; InputError with its name if it is none, or more than `most`."""
+    number = math.nan
+    if isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool):
+        with suppress(OverflowError):  # of whole numbers beyond float64
+            number = float(value)
+    if not 0.0 < number <= most or math.isinf(number):
+        limit = "" if math.isinf(most) else f" of at most {most:g}{unit}"
+        raise InputError(f"{name} must be a positive number{limit}, not {shown(value)}.")
     return number
 
 
@@ -111,7 +122,7 @@ def real_values(values: ArrayLike, name: str) -> NDArray[Any]:
         raise InputError(f"{name} has masked entries; fill them or leave them out.")
     try:
         array = np.asarray(values)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError, RecursionError):
         raise InputError(f"{name} must be an array of real numbers, with equal rows.") from None
     if _are_fractions(array):
         return array.astype(np.float64)

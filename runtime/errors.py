@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import wraps
+from typing import ParamSpec, TypeVar
+
 __all__ = [
     "FileError",
     "GaussmapError",
@@ -11,6 +15,8 @@ __all__ = [
     "MissingFieldError",
     "SurfaceError",
     "UnknownNameError",
+    "in_memory",
+    "shown",
 ]
 
 
@@ -47,3 +53,35 @@ class MissingFieldError(GaussmapError, AttributeError):
 
 class GaussmapWarning(UserWarning):
     """A result is valid but less than what was asked for; the message says why."""
+
+
+LONGEST_SHOWN = 60
+
+
+def shown(value: object) -> str:
+    """Return a value as a message shows it: on one line, not too long, and never an error."""
+    try:
+        text = " ".join(repr(value).split())
+    except Exception:  # whole numbers of many digits, and what objects of users raise
+        text = f"something of type {type(value).__name__}"
+    text = text.encode("utf-8", "backslashreplace").decode()
+    return text if len(text) <= LONGEST_SHOWN else f"{text[: LONGEST_SHOWN - 1]}…"
+
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def in_memory(function: Callable[P, R]) -> Callable[P, R]:
+    """Have a function raise InputError where there is too little memory for what it is asked."""
+
+    @wraps(function)
+    def guarded(*arguments: P.args, **named: P.kwargs) -> R:
+        try:
+            return function(*arguments, **named)
+        except MemoryError:
+            raise InputError(
+                "there is not enough memory for this; ask for fewer normals, samples or cells."
+            ) from None
+
+    return guarded

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .checks import shown
-from .errors import InputError
+from .errors import InputError, shown
 
 if TYPE_CHECKING:
     import sympy

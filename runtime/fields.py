@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
+from warnings import catch_warnings, simplefilter
 
-from .errors import InputError
+from .errors import InputError, shown
 
 if TYPE_CHECKING:  # names of fields stand in the help of commands, which is quick without NumPy
     import numpy as np
@@ -81,17 +82,21 @@ def checked_fields(fields: Sequence[str] | None) -> tuple[str, ...]:
     if fields is None:
         return ARRAY_NAMES
     if isinstance(fields, str):
-        raise InputError(f"fields must be a tuple of names, such as ({fields!r},), not a string.")
+        raise InputError(
+            f"fields must be a tuple of names, such as ({shown(fields)},), not a string."
+        )
     try:
         names = list(fields)
     except TypeError:
-        raise InputError(f"fields must be a tuple of names, not {fields!r}.") from None
+        raise InputError(f"fields must be a tuple of names, not {shown(fields)}.") from None
     if not names:
         raise InputError("fields is empty; name at least one field, such as ('points',).")
     for k, name in enumerate(names):
+        if not isinstance(name, str):
+            known_name(name, ARRAY_NAMES, "field")
         if name in names[:k]:
-            raise InputError(f"fields names {name!r} twice; name it once.")
-        if isinstance(name, str) and name in DERIVED:
+            raise InputError(f"fields names {shown(name)} twice; name it once.")
+        if name in DERIVED:
             needed = " and ".join(repr(x) for x in DERIVED[name])
             raise InputError(
                 f"{name} is computed when it is read, from {needed}; name what it needs."
@@ -105,7 +110,8 @@ def checked_dtype(dtype: DTypeLike) -> np.dtype[np.floating]:
     import numpy as np
 
     known = np.dtype(np.float32), np.dtype(np.float64)
-    with suppress(TypeError, SyntaxError):  # NumPy reads some texts as Python
+    with suppress(Exception), catch_warnings():  # NumPy reads some texts as Python
+        simplefilter("ignore")
         if dtype is not None and np.dtype(dtype) in known:
             return known[known.index(np.dtype(dtype))]
-    raise InputError(f"dtype must be float32 or float64, not {dtype!r}.")
+    raise InputError(f"dtype must be float32 or float64, not {shown(dtype)}.")

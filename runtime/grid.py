@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import InputError
+from .checks import as_float
+from .errors import InputError, shown
 from .spline import apart, fit_grid
 from .surface import Domain, Ends, Surface
 
@@ -55,10 +56,10 @@ def surface_of_elevations(
 
 def _spacing(spacing: Sequence[float] | None, count: int) -> tuple[float, float]:
     try:
-        dx, dy = (float(x) for x in (() if spacing is None else spacing))
+        dx, dy = (as_float(x) for x in (() if spacing is None else spacing))
     except (TypeError, ValueError, OverflowError):
         raise InputError(
-            f"elevations (m, n) need spacing=(dx, dy), two numbers, not {spacing!r}."
+            f"elevations (m, n) need spacing=(dx, dy), two numbers, not {shown(spacing)}."
         ) from None
     if not np.isfinite([dx * count, dy * count]).all() or dx <= 0.0 or dy == 0.0:
         raise InputError(

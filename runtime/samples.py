@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .checks import checked_array
-from .errors import InputError, MissingFieldError
+from .errors import InputError, MissingFieldError, shown
 from .fields import ARRAY_NAMES, DERIVED, FLOAT_NAMES, row_shape
 from .spline import Spline, short_label
 
@@ -161,7 +161,10 @@ class Samples:
         The spline is kept if all parts have the same.
         Raises InputError if there is no part, or if the parts have different fields or dtypes.
         """
-        pieces = list(parts)
+        try:
+            pieces = list(parts)
+        except TypeError:
+            pieces = []
         if not all(isinstance(part, Samples) for part in pieces) or not pieces:
             raise InputError("concatenate takes Samples, at least one.")
         kinds = {(part.fields, part.dtype) for part in pieces}
@@ -324,8 +327,9 @@ class Samples:
         `spline` is that of the samples, for samples that do not know theirs. With `angle` (degrees)
         triangles that deviate from a normal at a corner by more are left out, for samples of a part
         of the surface only. Needs the fields points, normals and uv, else MissingFieldError. Raises
-        InputError if there are no samples or no spline, if a sample lies outside its domain, and,
-        without `angle`, if there are too few samples for a mesh that closes.
+        InputError if there are no samples or no spline, if a sample lies outside its domain, if
+        `angle` leaves no triangle, and, without it, if there are too few samples for a mesh that
+        closes.
         """
         from .meshes.meshing import mesh_of
 
@@ -459,7 +463,7 @@ def _count(name: str, value: SupportsIndex) -> int:
     try:
         count = operator.index(value)
     except TypeError:
-        raise InputError(f"{name} must be an integer, not {value!r}.") from None
+        raise InputError(f"{name} must be an integer, not {shown(value)}.") from None
     if count < 0:
         raise InputError(f"{name} must not be negative, and is {count}.")
     return count
@@ -470,7 +474,7 @@ def _distance(name: str, value: float) -> float:
     try:
         distance = float(value)
     except (TypeError, ValueError):
-        raise InputError(f"{name} must be a number, not {value!r}.") from None
+        raise InputError(f"{name} must be a number, not {shown(value)}.") from None
     if not distance >= 0.0:
         raise InputError(f"{name} must not be negative, and is {distance!r}.")
     return distance
@@ -480,7 +484,7 @@ def _share(value: float) -> float:
     try:
         share = float(value)
     except (TypeError, ValueError):
-        raise InputError(f"invisible_share must be a number, not {value!r}.") from None
+        raise InputError(f"invisible_share must be a number, not {shown(value)}.") from None
     if not math.isfinite(share) or not -_SHARE_ROUNDING <= share <= 1.0 + _SHARE_ROUNDING:
         raise InputError(f"invisible_share must lie between 0 and 1, and is {share!r}.")
     return min(max(share, 0.0), 1.0)
@@ -488,7 +492,10 @@ def _share(value: float) -> float:
 
 def rows_of(key: ArrayLike, count: int) -> NDArray[Any]:
     """Return a mask (count,) or an array of valid row numbers, (M,)."""
-    rows = np.asarray(key)
+    try:
+        rows = np.asarray(key)
+    except (TypeError, ValueError, RecursionError):  # of ragged lists
+        rows = np.empty(())
     if rows.shape == (0,) and rows.dtype.kind == "f":
         rows = rows.astype(np.intp)  # NumPy takes an empty list for floats
     if rows.ndim != 1 or rows.dtype.kind not in "biu":

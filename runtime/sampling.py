@@ -12,7 +12,7 @@ from .bins import NormalBins
 from .choice import choose
 from .density.filling import filled_samples
 from .density.request import Request, checked_request
-from .errors import GaussmapError, GaussmapWarning, InputError
+from .errors import GaussmapError, GaussmapWarning, InputError, in_memory, shown
 from .fields import checked_dtype, checked_fields
 from .report import sampling_report, warn_of
 from .samples import Samples
@@ -86,8 +86,9 @@ def sample(
 
     A GaussmapWarning says when the surface has flat or developable parts, of which normals see
     nothing, and nothing else was asked to cover them; or when a `count` or a `coverage` cannot be
-    met. Raises InputError for unusable arguments, UnknownNameError for unknown fields; SurfaceError
-    for a surface that cannot be evaluated, or that has no area to be covered.
+    met. Raises InputError for unusable arguments and too little memory, UnknownNameError for
+    unknown fields; SurfaceError for a surface that cannot be evaluated, or that has no area to be
+    covered.
     """
     return sample_and_normals(
         surface,
@@ -100,6 +101,7 @@ def sample(
     )[0]
 
 
+@in_memory
 def sample_and_normals(
     surface: Surface | Spline,
     request: Request,
@@ -165,7 +167,7 @@ def sample_many(
     request = checked_request(normals, count, angle, coverage, density, relax, threads)
     wanted, number = checked_fields(fields), checked_dtype(dtype)
     if isinstance(surfaces, str) or not isinstance(surfaces, Iterable):
-        raise InputError(f"sample_many takes surfaces to go through, not {surfaces!r}.")
+        raise InputError(f"sample_many takes surfaces to go through, not {shown(surfaces)}.")
     bar = tqdm(surfaces, desc="sampling", unit="surface", disable=None if progress else True)
     for place, surface in enumerate(bar):
         try:

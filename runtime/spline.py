@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .checks import parameter_arrays, whole_number
-from .errors import InputError, SurfaceError
+from .errors import InputError, SurfaceError, in_memory, shown
 from .kernels import spline as kernels
 from .ring import Border, Sides, coefficients_with_ring, vertices_with_ring
 from .surface import Domain, Ends, Surface
@@ -188,6 +188,7 @@ class Spline:
         return cells
 
 
+@in_memory
 def fit(surface: Surface, cells: Sequence[int] | None = None) -> Spline:
     """Approximate a surface by a C¹ quadratic spline with `cells` = (m, n) cells along u and v.
 
@@ -297,7 +298,9 @@ def _checked_cells(cells: Sequence[int], ends: Ends) -> tuple[int, int]:
     try:
         m, n = cells
     except (TypeError, ValueError):
-        raise InputError(f"cells must be a pair of whole numbers (m, n), not {cells!r}.") from None
+        raise InputError(
+            f"cells must be a pair of whole numbers (m, n), not {shown(cells)}."
+        ) from None
     m, n = whole_number(m, "cells[0]"), whole_number(n, "cells[1]")
     if min(m, n) < 3:
         raise InputError(f"at least 3 x 3 cells are needed, not {m} x {n}.")

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Literal, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .checks import parameter_arrays, real_array
-from .errors import InputError
+from .checks import as_float, parameter_arrays, real_array
+from .errors import InputError, shown
 from .evaluation import evaluated
 
 if TYPE_CHECKING:
@@ -138,9 +138,9 @@ class Surface:
 def checked_domain(domain: Sequence[Sequence[float]]) -> Domain:
     """Return a domain as floats; InputError unless it is a bounded rectangle with an inside."""
     try:
-        (u0, u1), (v0, v1) = ((float(low), float(high)) for low, high in domain)
+        (u0, u1), (v0, v1) = ((as_float(low), as_float(high)) for low, high in domain)
     except (TypeError, ValueError, OverflowError):
-        raise InputError(f"domain must be ((u0, u1), (v0, v1)), not {domain!r}.") from None
+        raise InputError(f"domain must be ((u0, u1), (v0, v1)), not {shown(domain)}.") from None
     for name, low, high in (("u", u0, u1), ("v", v0, v1)):
         if not 0.0 < high - low < np.inf:
             raise InputError(f"the domain of {name} is empty or infinite: ({low}, {high}).")
@@ -153,7 +153,7 @@ def checked_ends(periodic: Sequence[Periodicity]) -> Ends:
         along_u, along_v = periodic
     except (TypeError, ValueError):
         raise InputError(
-            f"periodic must be a pair, one entry for u and one for v, not {periodic!r}."
+            f"periodic must be a pair, one entry for u and one for v, not {shown(periodic)}."
         ) from None
     ends = _pair(along_u, "u"), _pair(along_v, "v")
     if "pole" in ends[0]:
@@ -171,11 +171,13 @@ def _pair(entry: Periodicity, name: str) -> tuple[End, End]:
     if not isinstance(pair, tuple | list) or len(pair) != 2 or any(x not in known for x in pair):
         raise InputError(
             f"periodic for {name} must be True, False, one of {', '.join(known)}, or a pair of "
-            f"these, not {entry!r}."
+            f"these, not {shown(entry)}."
         )
     low, high = pair
     if low != high and not {low, high} <= {"none", "pole"}:
-        raise InputError(f'"wrap" and "flip" must stand at both ends of {name}, not {entry!r}.')
+        raise InputError(
+            f'"wrap" and "flip" must stand at both ends of {name}, not {shown(entry)}.'
+        )
     return cast(tuple[End, End], (low, high))
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..generated.surfaces import CATALOGUE as _GENERATED
 from . import compiling  # noqa: F401 - it tells that kernels are compiled
-from .errors import InputError, UnknownNameError
+from .errors import InputError, UnknownNameError, shown
 from .surface import Domain, Ends, Surface
 
 __all__ = ["describe", "names", "surface"]
@@ -46,7 +46,7 @@ def surface(name: str, /, **parameters: float) -> Surface:
     for parameter in parameters:
         if parameter not in known:
             raise InputError(
-                f"{name} has no parameter {parameter!r}; it has {', '.join(known) or 'none'}."
+                f"{name} has no parameter {shown(parameter)}; it has {', '.join(known) or 'none'}."
             )
     values = [
         _checked(name, parameter, parameters.get(parameter, default), positive)
@@ -66,7 +66,9 @@ def surface(name: str, /, **parameters: float) -> Surface:
 def __getattr__(name: str) -> Callable[..., Surface]:
     """Return the maker of a surface: `torus(minor=0.2)` is `surface("torus", minor=0.2)`."""
     if name not in CATALOGUE:
-        raise AttributeError(f"gaussmap.surfaces has no {name!r}; it has {', '.join(CATALOGUE)}")
+        raise AttributeError(
+            f"gaussmap.surfaces has no {shown(name)}; it has {', '.join(CATALOGUE)}"
+        )
 
     def make(**parameters: float) -> Surface:
         return surface(name, **parameters)
@@ -82,7 +84,9 @@ def __dir__() -> list[str]:
 
 def _entry(name: str) -> dict[str, Any]:
     if not isinstance(name, str) or name not in CATALOGUE:
-        raise UnknownNameError(f"there is no surface {name!r}; there are {', '.join(CATALOGUE)}.")
+        raise UnknownNameError(
+            f"there is no surface {shown(name)}; there are {', '.join(CATALOGUE)}."
+        )
     return CATALOGUE[name]
 
 
@@ -90,8 +94,8 @@ def _checked(name: str, parameter: str, value: object, positive: bool) -> float:
     try:
         number = float(cast(float, value))
     except (TypeError, ValueError, OverflowError):
-        raise InputError(f"{parameter} of {name} must be a number, not {value!r}.") from None
+        raise InputError(f"{parameter} of {name} must be a number, not {shown(value)}.") from None
     if not math.isfinite(number) or (positive and number <= 0.0):
         wanted = "a positive number" if positive else "a finite number"
-        raise InputError(f"{parameter} of {name} must be {wanted}, not {value!r}.")
+        raise InputError(f"{parameter} of {name} must be {wanted}, not {shown(value)}.")
     return number

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import real_array
-from ..errors import InputError
+from ..checks import as_float, real_array
+from ..errors import InputError, shown
 from ..evaluation import evaluated
 
 if TYPE_CHECKING:
@@ -103,9 +103,9 @@ class Curve:
 
 def _checked_interval(domain: Sequence[float]) -> Interval:
     try:
-        low, high = (float(x) for x in domain)
+        low, high = (as_float(x) for x in domain)
     except (TypeError, ValueError, OverflowError):
-        raise InputError(f"domain must be (t0, t1), not {domain!r}.") from None
+        raise InputError(f"domain must be (t0, t1), not {shown(domain)}.") from None
     if not 0.0 < high - low < np.inf:
         raise InputError(f"the domain of t is empty or infinite: ({low}, {high}).")
     return low, high
@@ -113,5 +113,5 @@ def _checked_interval(domain: Sequence[float]) -> Interval:
 
 def _yes_or_no(answer: object, name: str) -> bool:
     if not isinstance(answer, bool | np.bool_):
-        raise InputError(f"{name} must be True or False, not {answer!r}.")
+        raise InputError(f"{name} must be True or False, not {shown(answer)}.")
     return bool(answer)

@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..checks import checked_count
 from ..directions.circle import arc_of_normals, circle
 from ..directions.unit import as_normals
-from ..errors import GaussmapWarning, InputError
+from ..errors import GaussmapWarning, InputError, in_memory
 from ..kernels import curve as kernels
 from .curve import Curve
 from .samples import CurveReport, CurveSamples
@@ -52,6 +52,7 @@ class Hits:
         return len(self.signs)
 
 
+@in_memory
 def sample(
     curve: Curve | CurveSpline,
     count: int | None = None,

@@ -12,7 +12,7 @@ from ...generated import curve as formulas
 from ...generated import spline as edge_formulas
 from ...generated.vectors import Arc, PlaneVector
 from ..checks import real_array, whole_number
-from ..errors import InputError, SurfaceError
+from ..errors import InputError, SurfaceError, in_memory
 from ..formula_calls import plane_vector, python_function
 from ..kernels import curve as kernels
 from ..spline import apart, not_too_large, scale_to_one, short_label
@@ -212,6 +212,7 @@ def _lengths(vectors: Array) -> Array:
 # --- fitting --------------------------------------------------------------------------------------
 
 
+@in_memory
 def fit(curve: Curve, pieces: int | None = None) -> CurveSpline:
     """Approximate a planar curve by a C¹ quadratic spline with `pieces` arcs.
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import checked_count, known_name, whole_number
+from ..checks import checked_count, known_name, positive_number, whole_number
 from ..directions.sets import frequency_within, icosphere
 from ..directions.unit import as_normals
 from ..errors import InputError
@@ -81,8 +80,8 @@ def checked_request(
     return Request(
         None if normals is None else as_normals(normals, threads=threads),
         number,
-        None if angle is None else _positive(angle, "angle", " degrees", most=90.0),
-        None if coverage is None else _positive(coverage, "coverage"),
+        None if angle is None else positive_number(angle, "angle", " degrees", most=90.0),
+        None if coverage is None else positive_number(coverage, "coverage"),
         kind,
         steps,
     )
@@ -93,7 +92,7 @@ def _density(density: str | float | None, default: str) -> str | float:
         return default
     if isinstance(density, str):
         return known_name(density, DENSITIES, "density")
-    return _positive(density, "density, as the power of |K|,", most=LARGEST_POWER)
+    return positive_number(density, "density, as the power of |K|,", most=LARGEST_POWER)
 
 
 def _check_that_they_fit(density: str | float, given: list[str]) -> None:
@@ -110,12 +109,3 @@ def _check_that_they_fit(density: str | float, given: list[str]) -> None:
             f"density={shown} cannot be asked for by {' and '.join(f'{x}=...' for x in given)}; "
             f"use {' or '.join(f'{x[0]}=...' for x in fitting if len(x) == 1)}."
         )
-
-
-def _positive(value: object, name: str, unit: str = "", most: float = math.inf) -> float:
-    """Return a positive number; InputError if it is none, or is larger than `most`."""
-    number = value if isinstance(value, int | float | np.integer | np.floating) else math.nan
-    if isinstance(value, bool) or not 0.0 < float(number) <= most or math.isinf(float(number)):
-        limit = "" if math.isinf(most) else f" of at most {most:g}{unit}"
-        raise InputError(f"{name} must be a positive number{limit}, not {value!r}.")
-    return float(number)

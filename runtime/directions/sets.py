@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ...generated import icosphere as icosahedron
 from .. import compiling  # noqa: F401 - it tells that kernels are compiled
 from ..checks import whole_number
-from ..errors import InputError
+from ..errors import InputError, in_memory
 from ..extras import from_extra
 from ..threads import over_ranges
 from .unit import PIECE, as_normals, in_pieces, normalized
@@ -32,6 +32,7 @@ PARTS = 1 + 30 + 20
 PARTS_AT_A_TIME = 5
 
 
+@in_memory
 def icosphere(frequency: int) -> NDArray[np.float64]:
     """Return the 10 ν² + 2 vertices (…, 3) of the icosahedron whose edges are cut into ν parts.
 
@@ -63,6 +64,7 @@ def frequency_within(angle: float) -> int:
     return max(1, math.ceil(icosahedron.FACE_RADIUS / tangent))
 
 
+@in_memory
 def fibonacci(count: int) -> NDArray[np.float64]:
     """Return `count` unit normals (count, 3) on a Fibonacci lattice, from +z to −z.
 
@@ -91,6 +93,7 @@ def healpix(nside: int) -> NDArray[np.float64]:
     return as_normals(np.stack(xyz, axis=1))
 
 
+@in_memory
 def random(count: int, *, seed: int = 0) -> NDArray[np.float64]:
     """Return `count` unit normals (count, 3), independent and uniform on the sphere.
 

@@ -14,7 +14,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from ..errors import FileError, GaussmapError, InputError, UnknownNameError
+from ..errors import FileError, GaussmapError, InputError, UnknownNameError, shown
 
 __all__ = ["PathLike", "atomic_path", "check_target", "checked_path", "known_suffix", "reason_of"]
 
@@ -87,7 +87,13 @@ def checked_path(path: PathLike) -> Path:
     try:
         result = Path(path)
     except TypeError:
-        raise InputError(f"a path must be a string or a Path, not {path!r}.") from None
+        raise InputError(f"a path must be a string or a Path, not {shown(path)}.") from None
+    try:
+        os.fsencode(result)
+    except UnicodeEncodeError:
+        raise InputError(
+            f"a path cannot hold lone surrogates, as {shown(str(result))} does."
+        ) from None
     if not os.fspath(path):
         raise InputError("the name of the file is empty.")
     if "\0" in str(result):

@@ -14,7 +14,7 @@ from ...generated import gaussian_image as formulas
 from ..bins import NormalBins
 from ..checks import real_array
 from ..directions.unit import as_normals
-from ..errors import InputError
+from ..errors import InputError, shown
 from ..search import fill, find
 from ..spline import Spline, spline_of
 from ..surface import Surface
@@ -179,8 +179,12 @@ class GaussianImages:
         return self.spline.patches
 
     def __getitem__(self, patch: int) -> GaussianImage:
-        """Return the image of one patch; IndexError if there is none of that number."""
-        return GaussianImage(self.spline.control_nets[operator.index(patch)])
+        """Return the image of one patch; IndexError if there is none, InputError if no number."""
+        try:
+            number = operator.index(patch)
+        except TypeError:
+            raise InputError(f"a patch is picked by its number, not by {shown(patch)}.") from None
+        return GaussianImage(self.spline.control_nets[number])
 
     @cached_property
     def patch_classes(self) -> NDArray[np.int8]:
@@ -210,7 +214,7 @@ class GaussianImages:
         """
         is_whole = isinstance(sign, int | np.integer) and not isinstance(sign, bool)
         if not is_whole or sign not in (-1, 0, 1):
-            raise InputError(f"sign must be 1, -1 or 0 (both), not {sign!r}.")
+            raise InputError(f"sign must be 1, -1 or 0 (both), not {shown(sign)}.")
         directions = as_normals(normals)
         bins = NormalBins(directions)
         hits = find(self.spline, bins, threads)

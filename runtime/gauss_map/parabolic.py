@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..checks import whole_number
-from ..errors import GaussmapWarning, InputError
+from ..errors import GaussmapWarning, InputError, shown
 from ..spline import Spline, fit, spline_of
 from ..surface import Surface
 from .classes import PatchClass, classify_patches
@@ -274,9 +274,9 @@ def _tolerance(tolerance: float) -> float:
     try:
         value = float(tolerance)
     except (TypeError, ValueError):
-        raise InputError(f"tolerance must be a number, not {tolerance!r}.") from None
+        raise InputError(f"tolerance must be a number, not {shown(tolerance)}.") from None
     if not 1e-7 <= value <= 0.1:
-        raise InputError(f"tolerance must lie between 1e-7 and 0.1, and is {tolerance!r}.")
+        raise InputError(f"tolerance must lie between 1e-7 and 0.1, and is {shown(tolerance)}.")
     return value
 
 
@@ -286,7 +286,9 @@ def _panels(cells: Sequence[int] | None) -> tuple[int, int] | None:
     try:
         m, n = cells
     except (TypeError, ValueError):
-        raise InputError(f"cells must be a pair of whole numbers (m, n), not {cells!r}.") from None
+        raise InputError(
+            f"cells must be a pair of whole numbers (m, n), not {shown(cells)}."
+        ) from None
     m, n = whole_number(m, "cells[0]"), whole_number(n, "cells[1]")
     if max(m, n) > MOST_CELLS:
         raise InputError(f"at most {MOST_CELLS} x {MOST_CELLS} cells can be used, not {m} x {n}.")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputError
+from ..errors import InputError, shown
 from ..kernels.flips import flip_edges, smallest_cosines
 from ..spline import Spline
 from ..surface import Ends
@@ -35,14 +35,20 @@ def mesh_of(samples: Samples, spline: Spline, angle: float | None) -> Mesh:
         raise InputError("there are no samples, and so there is nothing to make a mesh of.")
     triangulated = Triangulated.of(samples, spline, to_be_whole=angle is None)
     triangulated.flip_edges()
-    return triangulated.mesh(largest)
+    mesh = triangulated.mesh(largest)
+    if not len(mesh.triangles):
+        raise InputError(
+            f"every triangle deviates by more than {largest:g} degrees from a normal at a corner; "
+            "allow a larger angle, or take more samples."
+        )
+    return mesh
 
 
 def _checked_angle(angle: object) -> float:
     if isinstance(angle, bool) or not isinstance(angle, int | float | np.number):
-        raise InputError(f"angle must be a number of degrees, not {angle!r}.")
+        raise InputError(f"angle must be a number of degrees, not {shown(angle)}.")
     if not 0.0 < angle <= WHOLE:
-        raise InputError(f"angle must lie between 0 and 180 degrees, and is {angle}.")
+        raise InputError(f"angle must lie between 0 and 180 degrees, and is {shown(angle)}.")
     return float(angle)
 
 

@@ -12,8 +12,7 @@ import numpy as np
 from numba.core.errors import NumbaError
 from numpy.typing import NDArray
 
-from ..checks import shown
-from ..errors import InputError
+from ..errors import InputError, shown
 from ..expressions import as_condition, as_expression
 from .branches import Sheets, curvatures
 
