@@ -15,8 +15,6 @@ __all__ = [
     "MissingFieldError",
     "SurfaceError",
     "UnknownNameError",
-    "in_memory",
-    "shown",
 ]
 
 
