@@ -1,4 +1,4 @@
-"""How a sampling went: its report, and the warning where it went otherwise than one may think."""
+"""The report of a sampling, and the warning if it is not what was requested."""
 
 from __future__ import annotations
 
@@ -38,9 +38,9 @@ def warn_of(
     coverage: float | None = None,
     filled: bool = False,
 ) -> None:
-    """Say when samples see less of the surface than the user may think, or miss what was asked.
+    """Warn if samples leave out a part of the surface, or miss a count or a coverage.
 
-    If they are `filled`, what normals do not see was covered.
+    If they are `filled`, the parts that normals cannot sample have samples, too.
     """
     reasons = [] if filled else _unseen(report)
     reasons += _missed(report, count, coverage)
@@ -50,12 +50,12 @@ def warn_of(
 
 
 def _unseen(report: SamplingReport) -> list[str]:
-    """Say what normals do not see."""
+    """Say which part of the surface normals cannot sample."""
     share = report.invisible_share or 0.0
     if share > WORTH_A_WARNING:
         return [
-            f"{100 * share:.0f} % of its area is flat or developable, where normals see nothing "
-            "but the error of the spline"
+            f"{100 * share:.0f} % of its area is flat or developable (K = 0), which no set "
+            "of normals samples"
         ]
     if report.samples == 0 and report.degenerate_patches == report.patches:
         return ["it is flat or developable up to the rounding of its coordinates"]
@@ -63,13 +63,13 @@ def _unseen(report: SamplingReport) -> list[str]:
 
 
 def _missed(report: SamplingReport, count: int | None, coverage: float | None) -> list[str]:
-    """Say which of the numbers that were asked are not met."""
+    """Say which requested numbers are not met."""
     reasons = []
     if count is not None and abs(report.samples - count) > COUNT_TOLERANCE * count + FEW:
-        reasons.append(f"{report.samples} samples came where {count} were asked")
+        reasons.append(f"there are {report.samples} samples instead of the requested {count}")
     if coverage is not None and report.coverage is not None and report.coverage > coverage:
         reasons.append(
-            f"with {report.samples} samples a point can be {report.coverage:.3g} from the nearest "
-            f"one, where {coverage:g} was asked"
+            f"with {report.samples} samples the coverage is {report.coverage:.3g} instead of the "
+            f"requested {coverage:g}"
         )
     return reasons

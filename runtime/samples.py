@@ -244,21 +244,22 @@ class Samples:
         return self[progressive_order(points, normals)]
 
     def summary(self) -> str:
-        """One line: normals asked, samples came, their split, and how near they are to all else."""
-        report, came = self.report, f"{len(self):,} samples came"
+        """One line: how many samples, where they come from, and how far places are from them.
+
+        Such as "10,000 samples: 4,300 at 2,150 prescribed normals, 5,700 filling gaps (6,197
+        elliptic, 3,803 hyperbolic)".
+        """
+        report, split = self.report, self._split().removeprefix(": ").strip(" ()")
+        line = f"{len(self):,} samples{self._origin()} ({split})"
         if len(self) != report.samples:
-            came = f"{len(self):,} of the {report.samples:,} samples that came"
-        asked = "" if report.normals is None else f"{report.normals:,} normals asked, "
-        line = f"{asked}{came}{self._split()}"
+            line = f"{len(self):,} of {report.samples:,}" + line.removeprefix(f"{len(self):,}")
         if report.angle is not None:
-            line += f"; every normal is within {report.angle:.3g} degrees of one"
+            line += f"; every normal is within {report.angle:.3g}° of that of a sample"
         if report.coverage is not None:
-            line += f"; every point is within {report.coverage:.3g} of one"
-        added = int((self.normal_index < 0).sum()) if "normal_index" in self.fields else 0
-        if added:
-            line += f"; {added:,} of them cover what the normals leave"
-        elif report.invisible_share is not None:
-            line += f"; normals cannot see {100.0 * report.invisible_share:.2f} % of the surface"
+            line += f"; every point is within {report.coverage:.3g} of a sample"
+        if report.invisible_share is not None and not self._filling():
+            share = 100.0 * report.invisible_share
+            line += f"; {share:.2f} % of the surface is developable (K = 0)"
         return line
 
     def offset(self, distance: float) -> Samples:
@@ -422,6 +423,22 @@ class Samples:
         if not isinstance(spline, Spline):
             raise InputError(f"spline must be a Spline, not {type(spline).__name__}.")
         return spline
+
+    def _filling(self) -> int:
+        """Return how many samples fill gaps, as far as that is known."""
+        return int((self.normal_index < 0).sum()) if "normal_index" in self.fields else 0
+
+    def _origin(self) -> str:
+        """Say how many samples have prescribed normals, and how many fill gaps."""
+        normals, filling = self.report.normals, self._filling()
+        if filling == len(self) > 0:
+            return " filling gaps" if normals else ""
+        if normals is None:
+            return ""
+        given = f"{normals:,} prescribed normals"
+        if not filling:
+            return f" at {given}" if "normal_index" in self.fields else f", {given}"
+        return f": {len(self) - filling:,} at {given}, {filling:,} filling gaps"
 
     def _split(self) -> str:
         if "gaussian_curvature" not in self.fields:

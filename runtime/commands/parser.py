@@ -89,7 +89,7 @@ def parser() -> click.Group:
     text = "Sample surfaces by the normals of their points, so that density follows curvature."
     program = Program(PROGRAM, help=text, epilog=EXAMPLES, context_settings=SETTINGS)
     click.version_option(__version__, message=f"{PROGRAM} %(version)s")(program)
-    for command in (_sample(), _mesh(), _plot(), _surfaces(), _formulas()):
+    for command in (_sample(), _mesh(), _plot(), _surfaces(), _formulas(), _warm()):
         program.add_command(command)
     return program
 
@@ -177,6 +177,17 @@ def _formulas() -> Command:
         click.Argument(["name"], required=False),
         Option("--latex", "Show LaTeX (of all without a NAME).", exclusive=True),
         Option("--html FILE.html", page, FILE, exclusive=True),
+    )
+
+
+def _warm() -> Command:
+    return _command(
+        "warm",
+        "Compile all kernels ahead of time.",
+        "Compile all kernels ahead of time and keep them on disk, so that neither other commands "
+        "nor Python programs wait for the compiler on this computer. For Dockerfiles and CI. Takes "
+        "some minutes at first, and seconds when everything is compiled.",
+        _quiet(),
     )
 
 

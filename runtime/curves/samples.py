@@ -70,12 +70,12 @@ class CurveSamples:
         return np.concatenate([self.points, self.points[:1]])
 
     def summary(self) -> str:
-        """One line: normals asked, samples came, inflections, what normals cannot see."""
+        """One line: how many samples, normals and inflections, and how much is straight."""
         report = self.report
         return (
-            f"{report.normals:,} normals asked, {report.samples:,} samples came; "
-            f"{report.inflections} inflections; normals cannot see "
-            f"{100.0 * report.straight_share:.2f} % of the curve"
+            f"{report.samples:,} samples at {report.normals:,} prescribed normals; "
+            f"{report.inflections} inflections; {100.0 * report.straight_share:.2f} % of the "
+            "curve is straight"
         )
 
     def __len__(self) -> int:

@@ -205,7 +205,7 @@ def _warn(report: CurveReport, count: int | None) -> None:
     elif report.samples == 0:
         reasons.append("it has none of the normals")
     if count is not None and abs(report.samples - count) > 0.05 * count + 1:
-        reasons.append(f"{report.samples} samples came where {count} were asked")
+        reasons.append(f"there are {report.samples} samples instead of the requested {count}")
     if reasons:
         message = f"curve {report.curve!r}: {'; '.join(reasons)}."
         warnings.warn(message, GaussmapWarning, stacklevel=3)

@@ -78,7 +78,8 @@ def test_sample_a_surface_by_name() -> None:
     done = gaussmap("sample", "torus", "--count", "10000", "-o", "torus.ply")
     assert (done.returncode, done.stderr) == (0, "")
     assert re.fullmatch(
-        r"torus\.ply: [\d,]+ normals asked, 10,000 samples came: .* cover what the normals leave\n",
+        r"torus\.ply: 10,000 samples: [\d,]+ at [\d,]+ prescribed normals, [\d,]+ filling gaps "
+        r"\([\d,]+ elliptic, [\d,]+ hyperbolic\)\n",
         done.stdout,
     )
     samples = gm.read_samples("torus.ply")
@@ -204,7 +205,9 @@ def test_a_periodic_grid(axis: str) -> None:
 def test_every_file_type(suffix: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["sample", "torus", *FEW, "-o", f"a{suffix}"]) == 0
     out, err = capsys.readouterr()
-    assert re.fullmatch(rf"a{suffix}: \d+ normals asked, .* the normals leave\n", out)
+    assert re.fullmatch(
+        rf"a{suffix}: 60 samples: \d+ at \d+ prescribed normals, \d+ filling gaps .*\n", out
+    )
     assert err == ""
     assert Path(f"a{suffix}").stat().st_size > 1000
 
@@ -632,7 +635,7 @@ def completed(words: str) -> list[str]:
 @pytest.mark.parametrize(
     ("words", "offered"),
     [
-        ("gaussmap ", ["sample", "mesh", "plot", "surfaces", "formulas"]),
+        ("gaussmap ", ["sample", "mesh", "plot", "surfaces", "formulas", "warm"]),
         ("gaussmap sample --co", ["--count", "--coverage"]),
         ("gaussmap plot tor", ["torus", "file:tor"]),
         ("gaussmap surfaces tor", ["torus"]),

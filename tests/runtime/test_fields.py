@@ -164,7 +164,7 @@ def test_text():
     samples = narrow(("points", "uv"))
     assert repr(samples) == f"Samples({len(FULL):,} points on torus (points, uv only))"
     assert samples.summary().startswith(
-        f"{len(NORMALS):,} normals asked, {len(FULL):,} samples came (points, uv only); normals"
+        f"{len(FULL):,} samples, {len(NORMALS):,} prescribed normals (points, uv only); "
     )
 
 

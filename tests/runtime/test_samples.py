@@ -307,20 +307,33 @@ class TestText:
 
     def test_summary(self):
         assert self.samples().summary() == (
-            "1,234,567 normals asked, 10,012 samples came: 5,012 elliptic, 5,000 hyperbolic; "
-            "normals cannot see 3.12 % of the surface"
+            "10,012 samples at 1,234,567 prescribed normals (5,012 elliptic, 5,000 hyperbolic); "
+            "3.12 % of the surface is developable (K = 0)"
         )
+
+    def test_summary_of_samples_that_fill_gaps(self):
+        indices = np.arange(10012) - 5012
+        samples = replace(self.samples(), normal_index=np.maximum(indices, -1))
+        assert samples.summary() == (
+            "10,012 samples: 5,000 at 1,234,567 prescribed normals, 5,012 filling gaps "
+            "(5,012 elliptic, 5,000 hyperbolic)"
+        )
+        assert samples[:5012].summary() == (
+            "5,012 of 10,012 samples filling gaps (12 elliptic, 5,000 hyperbolic)"
+        )
+        without = replace(samples, report=replace(samples.report, normals=0))
+        assert without[:10].summary() == "10 of 10,012 samples (0 elliptic, 10 hyperbolic)"
 
     def test_summary_of_a_part(self):
         assert self.samples()[:10].summary() == (
-            "1,234,567 normals asked, 10 of the 10,012 samples that came: "
-            "0 elliptic, 10 hyperbolic; normals cannot see 3.12 % of the surface"
+            "10 of 10,012 samples at 1,234,567 prescribed normals (0 elliptic, 10 hyperbolic); "
+            "3.12 % of the surface is developable (K = 0)"
         )
 
     def test_summary_of_what_is_unknown(self):
         report = SamplingReport("an unknown surface", None, 10012, None, None, None)
         samples = replace(self.samples(), report=report)
-        assert samples.summary() == "10,012 samples came: 5,012 elliptic, 5,000 hyperbolic"
+        assert samples.summary() == "10,012 samples (5,012 elliptic, 5,000 hyperbolic)"
 
 
 def test_write(tmp_path):

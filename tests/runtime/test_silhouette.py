@@ -175,7 +175,10 @@ def test_developable_surfaces_warn(name: str, direction: Any) -> None:
 def test_no_silhouette() -> None:
     """A bowl seen from above has no vertical tangent plane."""
     bowl = gm.surfaces.elliptic_paraboloid()
-    with pytest.warns(gm.GaussmapWarning, match=r"none of the normals.*; 0 samples came where 20"):
+    with pytest.warns(
+        gm.GaussmapWarning,
+        match=r"none of the normals.*; there are 0 samples instead of the requested 20",
+    ):
         samples = gm.silhouette(bowl, [0, 0, 1], count=20)
     assert len(samples) == 0
 

@@ -325,7 +325,7 @@ def test_a_straight_line_has_no_samples(angle: float, shift: float) -> None:
     assert len(samples) == 0
     assert samples.report.straight_share == 1.0
     assert len(samples.polygon) == 2
-    with pytest.warns(gm.GaussmapWarning, match="0 samples came where 50 were asked"):
+    with pytest.warns(gm.GaussmapWarning, match="0 samples instead of the requested 50"):
         assert len(gm.curves.sample(line, count=50)) == 0
 
 
@@ -369,7 +369,7 @@ def test_count_is_nearly_met_with_inflections(name: str, count: int) -> None:
 
 
 def test_count_that_cannot_be_met_is_said() -> None:
-    with pytest.warns(gm.GaussmapWarning, match="samples came where 1 were asked"):
+    with pytest.warns(gm.GaussmapWarning, match="samples instead of the requested 1"):
         samples = gm.curves.sample(closed("star"), count=1)
     assert len(samples) > 2
 
@@ -410,6 +410,6 @@ def test_words() -> None:
     samples = gm.curves.sample(closed("eight"), normals=gm.directions.circle(10))
     assert repr(samples) == f"CurveSamples({len(samples)} points on eight)"
     assert samples.summary() == (
-        f"10 normals asked, {len(samples)} samples came; 2 inflections; "
-        "normals cannot see 0.00 % of the curve"
+        f"{len(samples)} samples at 10 prescribed normals; 2 inflections; "
+        "0.00 % of the curve is straight"
     )

@@ -196,7 +196,7 @@ def test_coverage_beside_a_count(name):
         tight = gm.sample(spline, count=1500, coverage=0.95 * reached)
         assert len(tight) == 1500
         assert farthest(tight, points) <= 0.95 * reached
-    with pytest.warns(gm.GaussmapWarning, match="can be .* from the nearest one, where"):
+    with pytest.warns(gm.GaussmapWarning, match="the coverage is .* instead of the requested"):
         hopeless = gm.sample(spline, count=100, coverage=0.01 * reached)
     assert len(hopeless) == 100
     assert farthest(hopeless, points) <= (hopeless.report.coverage or 0.0)
@@ -215,7 +215,7 @@ def test_what_would_need_too_many_samples_is_refused(coverage):
             gm.sample(spline, coverage=coverage, density=density)
     with pytest.raises(gm.errors.InputError, match="in more than 2e\\+09 places"):
         gm.sample(spline, angle=30.0, coverage=coverage)
-    with pytest.warns(gm.GaussmapWarning, match="where .* was asked"):
+    with pytest.warns(gm.GaussmapWarning, match="the coverage is .* instead of the requested"):
         assert len(gm.sample(spline, count=50, coverage=coverage)) == 50
     with pytest.raises(gm.errors.InputError, match=r"angle must be at least 0\.0044 degrees, not "):
         gm.sample(spline, angle=coverage)

@@ -328,7 +328,7 @@ class TestForeignPly:
         other = read_samples(tmp_path / "file.ply")
         assert other.report == SamplingReport("an unknown surface", None, 12, None, None, None)
         assert_same(replace(samples, report=other.report), other)
-        assert other.summary().startswith("12 samples came: ")
+        assert other.summary().startswith("12 samples (")
         assert repr(other).startswith("Samples(12 points on an unknown surface: ")
 
     def test_more_columns(self, tmp_path):

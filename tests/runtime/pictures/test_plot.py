@@ -93,7 +93,7 @@ def test_what_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     labels = texts_of(waves, tmp_path / "a.png", monkeypatch)
     assert {"x", "y", "z"} <= labels
     assert any(label.startswith("$x$ and some 中文xxx") and len(label) == 80 for label in labels)
-    assert any("normals asked" in label for label in labels)
+    assert any("prescribed normals" in label for label in labels)
     assert any("samples in sight" in label for label in labels)
     assert any(label.startswith("hyperbolic (") for label in labels)
     assert "Gaussian curvature $K$ (1/length²)" in labels
@@ -222,7 +222,7 @@ def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     assert main(["plot", "torus", "--count", "200", "--cells", "16", "16", "-o", str(path)]) == 0
     out, err = capsys.readouterr()
     assert out.startswith(f"{path}: ")
-    assert "normals asked, 200 samples came" in out
+    assert "200 samples: " in out
     assert err == ""
     assert picture(path).shape == SIZE
     assert main(["plot", "torus", "--frequency", "2", "--quiet", "-o", str(path)]) == 0
