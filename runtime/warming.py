@@ -14,20 +14,16 @@ from typing import NamedTuple
 import numpy as np
 from numba.core import config, event
 
+from . import curves
 from .compiling import NOTICE
-from .curves.curve import Curve
-from .curves.polygon import polygon_distance
-from .curves.sampling import sample_curve
+from .directions import fibonacci, icosphere
 from .errors import FileError, GaussmapWarning, InputError
 from .fields import ARRAY_NAMES
-from .gaussian.image import GaussianImages
-from .gaussian.parabolic import parabolic_points
-from .gaussian.parabolic_lines import parabolic_lines, split_patch
+from .gauss_map import GaussianImages, parabolic_lines, parabolic_points, split_patch
 from .kernels.jit import cache_folder
 from .samples import Samples
 from .sampling import sample
 from .silhouette import silhouette
-from .sphere import fibonacci, icosphere
 from .spline import fit
 from .stream import sample_stream
 from .support.convolution import convolve
@@ -164,6 +160,8 @@ def _support_functions() -> None:
         each.branches(icosphere(2))
         each.sheets(icosphere(2))
         each.contains(icosphere(2))
+    corners, middles = [(3, 0, 0), (0, 3, 0), (0, 0, 3)], [(2, 2, 1), (2, 1, 2), (1, 2, 2)]
+    SupportFunction.of_patch([*corners, *middles]).branches([[1, 1, 1]])
     convolve(_torus(), ellipsoid, normals=icosphere(2), cells=CELLS)
 
 
@@ -189,12 +187,12 @@ def _curves() -> None:
         radius = 1 + np.cos(5 * t) / 5
         return np.stack([radius * np.cos(t), radius * np.sin(t)], axis=-1)
 
-    closed = Curve.from_callable(star, (0.0, 2 * np.pi), periodic=True)
+    closed = curves.Curve.from_callable(star, (0.0, 2 * np.pi), periodic=True)
     points = np.stack([np.arange(9.0), np.arange(9.0) ** 2], axis=-1)
-    for curve in (closed, Curve.from_points(points)):
-        samples = sample_curve(curve, count=FEW)
-        polygon_distance(curve.evaluate([0.1, 0.2]), samples.polygon)
-    sample_curve(closed, normals=np.eye(2))
+    for curve in (closed, curves.Curve.from_points(points)):
+        samples = curves.sample(curve, count=FEW)
+        curves.polygon_distance(curve.evaluate([0.1, 0.2]), samples.polygon)
+    curves.sample(closed, normals=np.eye(2))
 
 
 WORK: tuple[Callable[[], None], ...] = (

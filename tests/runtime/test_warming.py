@@ -50,6 +50,7 @@ def watched(*arguments: str, folder: Path) -> list[str]:
     return done.stdout.splitlines()
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_nothing_is_left_to_compile(tmp_path: Path) -> None:
     np.save(tmp_path / "heights.npy", np.hypot(*np.mgrid[-1:1:20j, -1:1:30j]) ** 3)
