@@ -15,7 +15,7 @@ TERRAIN = "$$($(BIN)/python -c '$(DEM)'):elevation" --spacing 74.5 -92.5 --cells
 
 .DEFAULT_GOAL := help
 .PHONY: help install demo generate check-generated warm test coverage verify bench bench-guard bench-record bench-peers \
-	quality operations lint typecheck formulas orders errata curves figures gallery meshes registration \
+	quality cold-start operations lint typecheck formulas orders errata curves figures gallery meshes registration \
 	clean
 
 help: ## list the targets
@@ -73,6 +73,10 @@ bench-guard: $(READY) ## fail if sampling is 30 % slower than recorded, beside t
 
 bench-record: $(READY) ## record the ratios that bench-guard compares with
 	$(BIN)/python -m gaussmap.benchmarks.guard --record
+
+cold-start: $(READY) ## measure what the first call compiles again (docs/cold_start.md)
+	$(BIN)/python -m gaussmap.benchmarks.cold_start > docs/cold_start.tmp
+	mv docs/cold_start.tmp docs/cold_start.md
 
 operations: $(READY) ## record the operation counts of all kernels
 	$(BIN)/python tests/generated/test_operations.py
