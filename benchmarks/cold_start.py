@@ -66,8 +66,8 @@ PAGE = """\
 # The first call: what compilation costs
 
 Written by `make cold-start`: do not edit. Numba compiles kernels when they are first called, and
-keeps the machine code on disk: only the first process pays, and after it the first one that sees changed
-kernels, another Numba or another processor. `gaussmap warm` compiles everything ahead.
+keeps the machine code on disk: only the first process pays, and after it the first one that sees
+changed kernels, another Numba or another processor. `gaussmap warm` compiles everything ahead.
 
 Seconds of the processor (one core), from the start of Python to the end of the call, in a
 process whose cache is empty, and in one that finds all machine code there; and the number of
