@@ -118,7 +118,7 @@ def sample_and_normals(
     spline = spline_of(surface, cells)
     sampled = filled_samples if filled else _by_normals
     samples, normals = sampled(spline, request, wanted, number, threads, progress)
-    warn_of(samples.report, request.count, 4, coverage=request.coverage, filled=filled)
+    warn_of(samples.report, request.count, 5, coverage=request.coverage, filled=filled)
     return samples, normals
 
 
