@@ -344,7 +344,7 @@ class Samples:
         all cores. Infinite if there are no samples. Needs the field points, else MissingFieldError.
         Raises InputError if there is no spline.
         """
-        from .density.gaps import coverage_of
+        from .density.coverage import coverage_of
 
         return coverage_of(self.points, self._spline_or(spline), threads)
 

@@ -10,59 +10,60 @@ from ..threads import thread_count
 from ..trees import tree_of
 from .candidates import Candidates
 from .cover import STEP, Cover
-from .pieces import Array, Indices, cut_patches
+from .triangles import Array, Indices, cut_patches
 
-# A normal is near enough if it is nearer by this part of an angle. Triangles are not cut to sides
-# that are shorter than DEEPEST of those of a patch: next to singular points normals turn at once.
-SMALL, DEEPEST = 0.02, 2.0**-10
-# Where normals are far from all others, first come those that are so many times as far as allowed.
+# Normals at centroids are covered within an angle that is smaller by this part, which is left for
+# the normals around them. Triangles are not cut to sides shorter than DEEPEST of those of a patch:
+# next to singular points normals turn at once.
+MARGIN, DEEPEST = 0.02, 2.0**-10
+# Where normals are far from all others, the radii of the choice fall from this multiple on.
 FIRST = 2.0
-# The gaps between normals are searched from the widest ones to this part of them.
+# The widest gaps between normals are searched down to this part of the widest radius.
 LEAST = 0.1
-# Of so many pieces one is looked at.
+# The widest angles are searched at one of this number of triangles.
 EACH = 3
 
-__all__ = ["cover_normals", "widest_angles"]
+__all__ = ["cover_normals", "fill_widest_angles"]
 
 
 def cover_normals(cover: Cover, angle: float) -> float:
     """Add samples until every normal of the surface is within `angle` degrees of one of theirs.
 
-    Where the normals that were asked lie as dense as that, only places at the border of the
-    Gaussian image are farther from all of them: their nearest normal may lie outside it. Returns
-    the largest angle of any normal, in degrees: `angle` if there are singular points, next to which
-    only normals in the middles of triangles are known.
+    If the samples are at normals as dense as that, only points at the border of the Gaussian image
+    are missing: the nearest of these normals may lie outside of it. Returns the largest angle of
+    any normal, in degrees: `angle` if there are singular points, next to which normals are known at
+    the centroids of triangles only.
     """
     limit = 2.0 * math.sin(math.radians(angle) / 2.0)
-    near, largest, pieces = (1.0 - SMALL) * limit, 0.0, cut_patches(cover.wanted, math.inf)
-    while len(pieces):
-        rows = pieces.middles()
-        turns = pieces.turns(rows)
+    near, largest, triangles = (1.0 - MARGIN) * limit, 0.0, cut_patches(cover.sizing, math.inf)
+    while len(triangles):
+        rows = triangles.at_centroids()
+        within = triangles.normal_chords(rows)
         distances = _distances(cover, 0, rows)
         far = distances > near
         if far.any():
             first = cover.count
-            cover.add(pieces[far][_spread(rows[far, 3:6], near, cover.wanted.threads)])
+            cover.add(triangles[far][_choose_apart(rows[far, 3:6], near, cover.sizing.threads)])
             distances[far] = _distances(cover, first, rows[far])
-        deepest = np.ptp(pieces.corners[:, :, 0], axis=1) <= DEEPEST
-        chords = distances + turns
+        deepest = np.ptp(triangles.corners[:, :, 0], axis=1) <= DEEPEST
+        chords = distances + within
         far = (chords > limit) & ~deepest
         largest = max(largest, float(chords[~far].max(initial=0.0)))
-        pieces = pieces[far].quarters
+        triangles = triangles[far].quarters
     return math.degrees(2.0 * math.asin(min(largest, limit) / 2.0))
 
 
 def _distances(cover: Cover, first: int, rows: Array) -> Array:
-    """Return how far normals of rows are from those of the samples from number `first` on.
+    """Return the chords (M,) from normals of rows to those of the samples from number `first` on.
 
-    That is 0 where there is no normal.
+    They are 0 where there is no normal.
     """
-    tree, threads = tree_of(cover.points[first:, 3:]), thread_count(cover.wanted.threads)
+    tree, threads = tree_of(cover.points[first:, 3:]), thread_count(cover.sizing.threads)
     return np.where(rows[:, 3:6].any(axis=1), tree.query(rows[:, 3:6], workers=threads)[0], 0.0)
 
 
-def _spread(normals: Array, near: float, threads: int | None) -> Indices:
-    """Choose some of normals (M, 3), so that all others are as near to one."""
+def _choose_apart(normals: Array, near: float, threads: int | None) -> Indices:
+    """Choose some of normals (M, 3), so that each is within the chord `near` of a chosen one."""
     candidates = Candidates(_in_normal_space(normals, np.zeros(len(normals))), near, threads)
     chosen, radius = np.empty(0, dtype=np.int64), FIRST * near
     while radius > near:
@@ -71,24 +72,28 @@ def _spread(normals: Array, near: float, threads: int | None) -> Indices:
     return chosen
 
 
-def widest_angles(cover: Cover, number: int, widest: float) -> None:
+def fill_widest_angles(cover: Cover, number: int, widest: float) -> None:
     """Add samples where normals are farthest from those of all samples with the same sign of K.
 
-    Distances are searched from `widest` on. If there is no such place any more, fewer are added.
+    Distances are searched from `widest` on. If the gaps get too narrow, fewer samples are added.
     """
-    pieces = cover.pieces[np.arange(0, len(cover.pieces), EACH)]
-    rows = pieces.middles()
+    triangles = cover.triangles[np.arange(0, len(cover.triangles), EACH)]
+    rows = triangles.at_centroids()
     candidates = Candidates(_in_normal_space(rows[:, 3:6], rows[:, 7]), widest)
-    candidates.tell(_in_normal_space(cover.points[:, 3:], cover.curvatures)[:, :6], widest)
+    samples = _in_normal_space(cover.points[:, 3:], cover.curvatures)[:, :6]
+    candidates.update_distances(samples, widest)
     chosen, radius = np.empty(0, dtype=np.int64), widest
     while len(chosen) < number and radius > LEAST * widest:
         radius *= STEP
         chosen = np.append(chosen, candidates.choose(radius, number - len(chosen)))
-    cover.add(pieces[chosen])
+    cover.add(triangles[chosen])
 
 
 def _in_normal_space(normals: Array, K: Array) -> Array:
-    """Return normals as places (M, 8), with the sign of K for a normal: a side of its own."""
+    """Return normals as points of candidates (M, 8), with opposite normals for the signs of K.
+
+    Then samples count for candidates with the same sign of K only.
+    """
     rows = np.zeros((len(normals), 8))
     rows[:, :3], rows[:, 3], rows[:, 6] = normals, np.where(np.signbit(K), -1.0, 1.0), 1.0
     return rows

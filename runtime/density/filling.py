@@ -1,4 +1,4 @@
-"""Sampling by normals and filling what they leave, as dense as a density asks."""
+"""Samples at normals, and samples that fill the gaps between them, for a target density."""
 
 from __future__ import annotations
 
@@ -20,35 +20,36 @@ from ..spline import Spline
 from ..threads import counted
 from ..visibility import visible_solid_angle
 from .angles import cover_normals
-from .answers import Answers, answers_of, answers_of_lattice, no_answers
+from .at_normals import SamplesAtNormals, no_samples, sample_at_lattice, sample_at_normals
 from .cover import Cover
-from .gaps import coverage
-from .law import Law, Wanted
-from .pieces import parts_of_patches
+from .coverage import coverage
 from .relaxation import relax
 from .request import Request
+from .sizing import SizingFunction, TargetDensity
+from .triangles import subdivisions
 
 __all__ = ["filled_samples"]
 
-# Twice the area of a hexagon whose corners are 1 from its centre.
+# Twice the area of a hexagon of circumradius 1.
 HEXAGON = 3.0 * math.sqrt(3.0)
-# Balanced: what is filled are gaps that are wider than those between the normals by this factor.
+# Balanced: the covering radius of the added samples, relative to that of the normals.
 WIDER = 2.0
-# n samples that bring every place within a radius r have n r² times this as what is wanted of them.
+# For n samples that cover the surface within a radius r, relative to the sizing function, the
+# integral of the target density is n r² times this.
 GREEDY = 1.85
-# Balanced: the floor of the density, beside the mean of what bending asks.
+# Balanced: the floor of the target density, relative to the mean of κ².
 FLAT_SHARE = 0.25
-# Less bending than this, as the integral of κ² over the surface, is rounding.
-UNBENT = 1e-9
-# Distances less than this part of the size of a surface are rounding.
+# An integral of κ² over the surface below this is rounding.
+FLAT = 1e-9
+# Distances below this part of the size of a surface are rounding.
 ROUNDING = 1e-15
-# |K|^α vanishes where K does; there no gap is wider than this many others.
+# |K|^α vanishes where K does; gaps there are wider than the mean by at most this factor.
 WIDEST_GAP = 1000.0
-# So many samples of a cover each sample of the normals is taken to save. They save up to 0.7; with
-# less, more is left for the gaps, where |K| alone leaves wide ones.
+# The number of added samples that a sample at a normal is taken to save. It saves up to 0.7; with
+# less, more samples are left for gaps, of which |K| alone leaves wide ones.
 SAVED = 0.25
-# Steps of the bisection for how many normals leave room for a coverage, and when it ends; it begins
-# with exp(−FEWEST_NORMALS) of them.
+# The bisection for the number of normals that leaves enough samples for a coverage: its steps, the
+# part of the count at which it ends, and the logarithm of the ratio of its bounds.
 BISECTIONS, NEAR_ENOUGH, FEWEST_NORMALS = 10, 0.97, 10.0
 
 
@@ -60,46 +61,46 @@ def filled_samples(
     threads: int | None,
     progress: bool,
 ) -> tuple[Samples, NDArray[np.float64]]:
-    """Return samples of any density but "gauss", and the normals that were asked."""
+    """Return samples for any density but "gauss", and the normals that were searched."""
     angle = None
-    with counted(request.count, progress) as tell:
-        filling = Filling(spline, request, threads, progress, tell)
-        cover, answers = filling.cover()
+    with counted(request.count, progress) as show_count:
+        filling = Filling(spline, request, threads, progress, show_count)
+        cover, at_normals = filling.cover()
         cover = filling.relaxed(cover)
         if request.angle is not None:
             angle = cover_normals(cover, request.angle)
-        return filling.samples(cover, answers, fields, dtype, angle), answers.normals
+        return filling.samples(cover, at_normals, fields, dtype, angle), at_normals.normals
 
 
 @dataclass(frozen=True, eq=False)
 class Filling:
-    """Samples of any density but "gauss", in two parts: what normals give, and a cover of the rest.
+    """Samples for any density but "gauss": those at normals, and those that fill gaps between them.
 
-    `tell` is told how many samples there are.
+    `show_count` is called with the number of samples when it has grown.
     """
 
     spline: Spline
     request: Request
     threads: int | None
     progress: bool
-    tell: Callable[[int], object]
+    show_count: Callable[[int], object]
 
-    def cover(self) -> tuple[Cover, Answers]:
-        """Return the cover that is asked, and what normals gave of it.
+    def cover(self) -> tuple[Cover, SamplesAtNormals]:
+        """Return the cover that is asked for, and the samples at normals in it.
 
-        Raises SurfaceError if there is nothing to cover.
+        Raises SurfaceError if the surface has no area.
         """
         if self.request.density == "balanced":
             return self._balanced()
-        cover = Cover(self._law(), None, self.tell)
+        cover = Cover(self._sizing_of_power(), None, self.show_count)
         if self.request.count is not None:
             cover.to_count(self.request.count)
         elif self.request.coverage is not None:
-            cover.to_radius(self._distance(cover.wanted, self.request.coverage))
-        return cover, no_answers()
+            cover.to_radius(self._distance(cover.sizing, self.request.coverage))
+        return cover, no_samples()
 
     def relaxed(self, cover: Cover) -> Cover:
-        """Return the cover after the steps that are asked; as it is, if they miss what it kept."""
+        """Return the cover relaxed; as it is, if it would not keep the coverage any more."""
         if self.request.relax == 0 or cover.count == cover.given:
             return cover
         relaxed, asked = copy(cover), self.request.coverage
@@ -108,37 +109,37 @@ class Filling:
             return relaxed
         return relaxed if self._coverage(relaxed, asked) <= asked else cover
 
-    def _law(self) -> Wanted:
-        """Return what "uniform" or a power of |K| wants.
+    def _sizing_of_power(self) -> SizingFunction:
+        """Return the sizing function of "uniform" or a power of |K|.
 
-        That power is the same everywhere if what bends is the error of the spline alone.
+        A power is uniform, too, if all curvature is an error of the spline.
         """
         power, count = self.request.density, self.request.count or 0
         if isinstance(power, str) or visible_solid_angle(self.spline, count / (4 * math.pi)) == 0.0:
-            return self._wanted(Law(floor=1.0))
-        wanted = self._wanted(Law(gauss_weight=1.0, exponent=power))
-        return wanted.with_floor(wanted.total / wanted.area / WIDEST_GAP**2)
+            return self._sizing(TargetDensity(floor=1.0))
+        sizing = self._sizing(TargetDensity(gauss_weight=1.0, exponent=power))
+        return sizing.with_floor(sizing.integral / sizing.area / WIDEST_GAP**2)
 
-    def _wanted(self, law: Law) -> Wanted:
-        """Return a law on the spline; SurfaceError if that has no area but that of rounding."""
-        wanted = Wanted(self.spline, law, self.threads)
-        if not wanted.area > wanted.size * wanted.noise:
+    def _sizing(self, target: TargetDensity) -> SizingFunction:
+        """Return a sizing function; SurfaceError if the area of the spline is rounding."""
+        sizing = SizingFunction(self.spline, target, self.threads)
+        if not sizing.area > sizing.size * sizing.noise:
             raise SurfaceError(
                 f"surface {self.spline.name!r} has no area beyond rounding: all its points lie on "
                 'one curve or are one point; only density="gauss" takes it.'
             )
-        return wanted
+        return sizing
 
     def samples(
         self,
         cover: Cover,
-        answers: Answers,
+        at_normals: SamplesAtNormals,
         fields: Sequence[str],
         dtype: DTypeLike,
         angle: float | None,
     ) -> Samples:
-        """Return what normals gave, and after it the samples that were added."""
-        arrays, given = added_fields(cover, fields, dtype), answers.samples
+        """Return the samples at normals, followed by the added ones."""
+        arrays, given = added_fields(cover, fields, dtype), at_normals.samples
         if given is not None:
             arrays = {
                 name: np.concatenate([getattr(given, name).astype(x.dtype, copy=False), x])
@@ -146,7 +147,7 @@ class Filling:
             }
         developable = None if given is None else given.report.degenerate_patches
         report = sampling_report(
-            self.spline, len(answers.normals), cover.count, answers.density, developable
+            self.spline, len(at_normals.normals), cover.count, at_normals.density, developable
         )
         asked = self.request.coverage
         reached = None if asked is None else self._coverage(cover, asked)
@@ -154,99 +155,101 @@ class Filling:
         return Samples(**arrays, report=report, spline=self.spline)
 
     def _coverage(self, cover: Cover, asked: float) -> float:
-        """Return how far a point of the surface can be from the nearest sample."""
-        unit = cover.wanted.unit
-        return coverage(cover.wanted, cover.points[:, :3], asked * unit) / unit
+        """Return a bound of the distance of a point of the surface from the nearest sample."""
+        unit = cover.sizing.unit
+        return coverage(cover.sizing, cover.points[:, :3], asked * unit) / unit
 
-    def _distance(self, wanted: Wanted, coverage: float) -> float:
-        """Return a coverage that is asked as a length of covers, between rounding and the size."""
-        return min(max(coverage * wanted.unit, ROUNDING * wanted.size), wanted.size)
+    def _distance(self, sizing: SizingFunction, coverage: float) -> float:
+        """Return a coverage as a scaled length, between rounding and the size of the surface."""
+        return min(max(coverage * sizing.unit, ROUNDING * sizing.size), sizing.size)
 
     # --- balanced ---------------------------------------------------------------------------------
 
-    def _balanced(self) -> tuple[Cover, Answers]:
-        request, wanted = self.request, self._wanted(Law(curvature_weight=1.0))
-        # Normals and angles are absolute: then flat parts are bent as a sphere of this area.
-        least = 4 * math.pi if request.normals is not None or request.angle else UNBENT
-        floor = FLAT_SHARE * max(wanted.total, least) / wanted.area
+    def _balanced(self) -> tuple[Cover, SamplesAtNormals]:
+        request, sizing = self.request, self._sizing(TargetDensity(curvature_weight=1.0))
+        # Normals and angles are absolute: flat parts then count as parts of a sphere.
+        least = 4 * math.pi if request.normals is not None or request.angle else FLAT
+        floor = FLAT_SHARE * max(sizing.integral, least) / sizing.area
         if request.count is None:
-            return self._by_radius(wanted, floor)
-        cover, answers = self._by_count(wanted.with_floor(floor), request.count)
+            return self._by_radius(sizing, floor)
+        cover, at_normals = self._by_count(sizing.with_floor(floor), request.count)
         if request.coverage is None or self._coverage(cover, request.coverage) <= request.coverage:
-            return cover, answers
-        return self._by_count_and_coverage(wanted, request.count, request.coverage)
+            return cover, at_normals
+        return self._by_count_and_coverage(sizing, request.count, request.coverage)
 
-    def _by_radius(self, wanted: Wanted, floor: float) -> tuple[Cover, Answers]:
-        """Search the normals that are asked, or fit a coverage, and cover the rest as they do."""
+    def _by_radius(self, sizing: SizingFunction, floor: float) -> tuple[Cover, SamplesAtNormals]:
+        """Sample at the normals asked for, or at as many as fit a coverage, and fill the gaps."""
         request = self.request
         if request.angle is not None:
-            answers = self._answers(request.directions)
+            at_normals = self._at_normals(request.directions)
             radius = WIDER * math.radians(request.angle)
         elif request.normals is not None:
-            answers = self._answers(request.directions)
-            radius = WIDER * spacing(answers.density_met)
+            at_normals = self._at_normals(request.directions)
+            radius = WIDER * spacing(at_normals.samples_per_steradian)
         else:
             assert request.coverage is not None
-            least = float(wanted.largest.min())
-            radius = self._distance(wanted, request.coverage) * math.sqrt(max(floor, least))
-            parts_of_patches(wanted.with_floor(floor), radius)  # or InputError, before the search
-            answers = self._answers(density_of(radius / WIDER))
+            least = float(sizing.largest.min())
+            radius = self._distance(sizing, request.coverage) * math.sqrt(max(floor, least))
+            subdivisions(sizing.with_floor(floor), radius)  # or InputError, before the search
+            at_normals = self._at_normals(density_of(radius / WIDER))
         if request.coverage is not None:
-            floor = (radius / self._distance(wanted, request.coverage)) ** 2
-        cover = Cover(wanted.with_floor(floor), answers.samples, self.tell)
+            floor = (radius / self._distance(sizing, request.coverage)) ** 2
+        cover = Cover(sizing.with_floor(floor), at_normals.samples, self.show_count)
         cover.to_radius(radius)
-        return cover, answers
+        return cover, at_normals
 
-    def _by_count(self, wanted: Wanted, count: int) -> tuple[Cover, Answers]:
-        """Search as many normals as fit the gaps that are left for the others, and fill these."""
+    def _by_count(self, sizing: SizingFunction, count: int) -> tuple[Cover, SamplesAtNormals]:
+        """Divide a count between samples at normals and samples that fill the gaps."""
         seen = visible_solid_angle(self.spline, count / (4 * math.pi))
         density = 1.0
-        # How many samples there are at one normal per steradian; all of them grow in proportion.
-        filling = wanted.total / (GREEDY * (WIDER * spacing(density)) ** 2)
+        # The number of samples at one normal per steradian; it is proportional to their density.
+        filling = sizing.integral / (GREEDY * (WIDER * spacing(density)) ** 2)
         each = seen + max(0.0, filling - SAVED * seen)
-        answers = self._answers(count / each, count)
-        cover = Cover(wanted, answers.samples, self.tell)
+        at_normals = self._at_normals(count / each, count)
+        cover = Cover(sizing, at_normals.samples, self.show_count)
         cover.to_count(count)
-        return cover, answers
+        return cover, at_normals
 
     def _by_count_and_coverage(
-        self, wanted: Wanted, count: int, coverage: float
-    ) -> tuple[Cover, Answers]:
-        """Find the most normals that leave room for a coverage, by bisection, and then fill up."""
+        self, sizing: SizingFunction, count: int, coverage: float
+    ) -> tuple[Cover, SamplesAtNormals]:
+        """Find the most normals that leave enough samples for a coverage, by bisection."""
         seen = visible_solid_angle(self.spline, count / (4 * math.pi))
-        distance = self._distance(wanted, coverage)
+        distance = self._distance(sizing, coverage)
         high = math.log(count / seen) if seen > 0.0 else 0.0
         low, best = high - FEWEST_NORMALS, None
         for _ in range(BISECTIONS):
             radius = WIDER * spacing(math.exp((low + high) / 2))
-            answers = self._answers(math.exp((low + high) / 2))
+            at_normals = self._at_normals(math.exp((low + high) / 2))
             floor = (radius / distance) ** 2
-            cover = Cover(wanted.with_floor(floor), answers.samples, self.tell)
+            cover = Cover(sizing.with_floor(floor), at_normals.samples, self.show_count)
             cover.to_radius(radius, count + 1)
             if cover.count > count:
                 high = (low + high) / 2
                 continue
-            low, best = (low + high) / 2, (cover, answers)
+            low, best = (low + high) / 2, (cover, at_normals)
             if cover.count > NEAR_ENOUGH * count:
                 break
-        if best is None:  # not even a cover alone is so small
-            cover = Cover(replace(wanted, law=Law(floor=1.0)), None, self.tell)
+        if best is None:  # not even without normals
+            cover = Cover(replace(sizing, target=TargetDensity(floor=1.0)), None, self.show_count)
             cover.to_count(count)
-            return cover, no_answers()
+            return cover, no_samples()
         best[0].fill_up(count)
         return best
 
-    def _answers(self, asked: NDArray[np.float64] | float, most: int | None = None) -> Answers:
-        """Return what normals give, or a lattice of so many per steradian."""
+    def _at_normals(
+        self, asked: NDArray[np.float64] | float, most: int | None = None
+    ) -> SamplesAtNormals:
+        """Return the samples at normals, or at a lattice with a density per steradian."""
         if isinstance(asked, np.ndarray):
-            return answers_of(self.spline, asked, self.threads, self.progress)
-        return answers_of_lattice(self.spline, asked, self.threads, self.progress, most)
+            return sample_at_normals(self.spline, asked, self.threads, self.progress)
+        return sample_at_lattice(self.spline, asked, self.threads, self.progress, most)
 
 
 def added_fields(cover: Cover, fields: Sequence[str], dtype: DTypeLike) -> dict[str, NDArray[Any]]:
-    """Return fields of the samples that a cover has added; see `Samples`."""
+    """Return fields of the added samples of a cover; see `Samples`."""
     patch_index, uv = cover.added.patches, cover.added.uv
-    count, spline, K = len(patch_index), cover.wanted.spline, cover.curvatures[cover.given :]
+    count, spline, K = len(patch_index), cover.sizing.spline, cover.curvatures[cover.given :]
     filled = {x: new_field(x, count, dtype) for x in FLOAT_NAMES if x in fields}
     here = np.arange(count)
     kernels.fill_known(
@@ -259,10 +262,10 @@ def added_fields(cover: Cover, fields: Sequence[str], dtype: DTypeLike) -> dict[
 
 
 def spacing(density: float) -> float:
-    """Return the covering radius of so many points per area, laid out as hexagons."""
+    """Return the covering radius of a hexagonal lattice of `density` points per area."""
     return math.sqrt(2.0 / (HEXAGON * density))
 
 
 def density_of(radius: float) -> float:
-    """Return how many points per area have this covering radius, laid out as hexagons."""
+    """Return the points per area of a hexagonal lattice with a covering radius."""
     return 2.0 / (HEXAGON * radius * radius)

@@ -1,4 +1,4 @@
-"""An order of samples in which the first ones, however many, are a good sampling themselves."""
+"""A progressive order of samples: every prefix is well distributed."""
 
 from __future__ import annotations
 
@@ -12,38 +12,39 @@ from .candidates import Candidates
 
 __all__ = ["progressive_order"]
 
-# Radii within which no two samples are chosen, one after the other, in spacings of the samples.
+# Samples are chosen no closer to one another than a radius that falls by STEP, from one that holds
+# all to FINEST, in spacings of the samples.
 STEP, FINEST = 2.0**-0.5, 0.25
-# The spacing at a sample is the mean distance to so many others.
+# The spacing at a sample is the mean distance to this number of nearest others.
 NEIGHBOURS = 6
 
 
 def progressive_order(
     points: NDArray[np.float64], normals: NDArray[np.float64]
 ) -> NDArray[np.int64]:
-    """Return the numbers (N,) of points (N, 3) with normals (N, 3): coarse ones first.
+    """Return the numbers (N,) of points (N, 3) with normals (N, 3) in progressive order.
 
-    Distances are taken beside the spacing of the samples there, so that as many come early where
-    the samples are dense as where they are sparse, in proportion.
+    Distances are relative to the local spacing of the samples: a prefix has the density of the
+    whole, up to a factor.
     """
     count = len(points)
-    left = np.random.default_rng(0).permutation(count)  # no direction goes first
+    left = np.random.default_rng(0).permutation(count)  # no direction is preferred
     if count <= NEIGHBOURS:
         return left
     order, radius = left[:0], 2.0 * math.sqrt(count)
-    weights = 1.0 / _spacings(points) ** 2
-    rows = np.column_stack([points - points.min(axis=0), normals, weights, weights])
+    densities = 1.0 / _spacings(points) ** 2
+    rows = np.column_stack([points - points.min(axis=0), normals, densities, densities])
     while len(left) and radius > FINEST:
         candidates = Candidates(rows[left], radius)
-        candidates.tell(rows[order, :6], radius)
+        candidates.update_distances(rows[order, :6], radius)
         chosen = candidates.choose(radius, len(left))
         order, left = np.append(order, left[chosen]), np.delete(left, chosen)
         radius *= STEP
-    return np.append(order, left)  # those that are almost at one place with others
+    return np.append(order, left)  # those that all but coincide with others
 
 
 def _spacings(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the mean distance (N,) of each point to the next ones, nowhere zero."""
+    """Return the mean distance (N,) of each point from its nearest others, nowhere zero."""
     distances = tree_of(points).query(points, k=NEIGHBOURS + 1, workers=-1)[0][:, 1:].mean(axis=1)
     least = float(np.median(distances)) * 1e-3
     return np.maximum(distances, least if least > 0.0 else 1.0)

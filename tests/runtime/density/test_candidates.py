@@ -31,14 +31,14 @@ def squares(rows: Array, samples: Array) -> Array:
 def test_places_know_the_nearest_sample_within_a_radius(spread, radius, made):
     rows, samples = rows_of(600, 1, spread), rows_of(80, 2, 0.0)[:, :6]
     candidates = Candidates(rows, made * radius)
-    candidates.tell(samples[:30], radius)
-    candidates.tell(samples[30:], radius)
+    candidates.update_distances(samples[:30], radius)
+    candidates.update_distances(samples[30:], radius)
     exact = np.sqrt(squares(rows, samples).min(axis=1))
     found = candidates.distances
     near = exact <= radius
     np.testing.assert_allclose(found[near], exact[near], rtol=1e-14)
     assert (found[~near] >= exact[~near] * (1 - 1e-14)).all()
-    candidates.forget()
+    candidates.reset_distances()
     assert np.isinf(candidates.distances).all()
 
 
@@ -46,7 +46,7 @@ def test_places_know_the_nearest_sample_within_a_radius(spread, radius, made):
 def test_chosen_are_far_from_all_others_and_near_to_what_is_left(spread):
     rows, samples = rows_of(2000, 3, spread), rows_of(20, 4, 0.0)[:, :6]
     candidates, radius = Candidates(rows, 0.2), 0.2
-    candidates.tell(samples, 0.4)
+    candidates.update_distances(samples, 0.4)
     chosen = np.empty(0, dtype=np.int64)
     for step in (0.4, 0.3, 0.2):
         chosen = np.append(chosen, candidates.choose(step, len(rows)))
@@ -96,10 +96,10 @@ def test_parts_know_of_one_another(threads, monkeypatch):
     assert len(chosen) < 1.05 * len(fewest)
     samples = rows[chosen, :6]
     for each in (candidates, whole):
-        each.forget()
-        each.tell(samples, 0.3)
+        each.reset_distances()
+        each.update_distances(samples, 0.3)
     np.testing.assert_array_equal(candidates.distances, whole.distances)
-    np.testing.assert_array_equal(candidates.weights, rows[:, 6])
+    np.testing.assert_array_equal(candidates.densities, rows[:, 6])
     count = len(samples)
     assert (candidates.centres(count) == whole.centres(count)).mean() > 0.98  # but for ties
 
@@ -116,7 +116,7 @@ def test_places_without_a_normal_are_never_chosen():
 def test_a_sample_without_a_normal_is_on_every_side():
     rows = rows_of(200, 7, 0.0)
     candidates = Candidates(rows, 5.0)
-    candidates.tell(np.zeros((1, 6)), 5.0)
+    candidates.update_distances(np.zeros((1, 6)), 5.0)
     np.testing.assert_allclose(
         candidates.distances, np.linalg.norm(rows[:, :3], axis=1) * np.sqrt(rows[:, 6]), rtol=1e-14
     )
@@ -132,7 +132,7 @@ def test_centres_are_those_of_the_smallest_balls():
     samples[:, 0], samples[:, 3] = [0.0, 150.0, 40.0], 1.0
     samples[2, 1] = 90.0
     candidates = Candidates(rows, 50.0)
-    candidates.tell(samples, 90.0)
+    candidates.update_distances(samples, 90.0)
     np.testing.assert_array_equal(candidates.centres(3), [4, 9 + 6, -1])
 
 
@@ -142,6 +142,6 @@ def test_weights_move_centres():
     rows[:, 0], rows[:, 3], rows[:, 6] = np.linspace(0.0, 4.0, 41), 1.0, 1e-3
     rows[[0, 40], 6] = 9.0, 1.0
     candidates = Candidates(rows, 10.0)
-    candidates.tell(rows[20:21, :6], 100.0)
+    candidates.update_distances(rows[20:21, :6], 100.0)
     centre = candidates.centres(1)[0]
     assert abs(rows[centre, 0] - 1.0) <= 0.3  # 12 steps come that near

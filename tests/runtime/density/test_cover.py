@@ -4,16 +4,16 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.density.cover import Cover
-from gaussmap.runtime.density.law import Law, Wanted
+from gaussmap.runtime.density.sizing import SizingFunction, TargetDensity
 
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "plane"])
 def test_what_is_filled_up_is_far_from_all_samples(name):
     """Also from those that came for places between the candidates."""
-    wanted = Wanted(gm.fit(gm.surfaces.surface(name), (16, 16)), Law(floor=1.0))
-    cover = Cover(wanted, None)
-    cover.to_radius(0.1 * np.sqrt(wanted.area))
+    sizing = SizingFunction(gm.fit(gm.surfaces.surface(name), (16, 16)), TargetDensity(floor=1.0))
+    cover = Cover(sizing, None)
+    cover.to_radius(0.1 * np.sqrt(sizing.area))
     before = cover.count
     cover.fill_up(before + 100)
     assert cover.count == before + 100

@@ -6,7 +6,7 @@ from typing import Any, cast
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.density import candidates, pieces
+from gaussmap.runtime.density import candidates, triangles
 from gaussmap.symbolic.surfaces import CATALOGUE
 from numpy.typing import NDArray
 
@@ -135,8 +135,8 @@ def test_covers_alone_answer_no_normals(density):
      {"count": 900, "coverage": 0.12}, {"normals": gm.icosphere(5), "density": "balanced"}],
 )  # fmt: skip
 def test_the_same_for_any_number_of_threads(asked: dict[str, Any], monkeypatch):
-    monkeypatch.setattr(pieces, "PIECES_AT_A_TIME", 1 << 9)
-    monkeypatch.setattr(pieces, "PATCHES_AT_A_TIME", 100)
+    monkeypatch.setattr(triangles, "TRIANGLES_AT_A_TIME", 1 << 9)
+    monkeypatch.setattr(triangles, "PATCHES_AT_A_TIME", 100)
     monkeypatch.setattr(candidates, "CENTRES_AT_A_TIME", 50)
     monkeypatch.setattr(candidates, "PART", 1 << 9)
     for surface in (TORUS, DENTS):

@@ -1,0 +1,70 @@
+"""The coverage: the largest distance of a point of the surface from the nearest sample."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..spline import Spline
+from ..trees import tree_of
+from .candidates import Candidates
+from .sizing import SizingFunction, TargetDensity
+from .triangles import Array, Triangles, cut_patches
+
+__all__ = ["coverage", "coverage_of"]
+
+# The search ends when the bound is within this factor of the largest distance found.
+TIGHT = 1.1
+# Samples are searched within this multiple of their mean spacing first.
+SPACINGS = 2.0
+MOST_CUTS = 40
+
+
+def coverage_of(points: NDArray[np.floating], spline: Spline, threads: int | None) -> float:
+    """Return what `Samples.coverage` returns."""
+    sizing = SizingFunction(spline, TargetDensity(floor=1.0), threads)
+    return coverage(sizing, sizing.scaled_points(points)) / sizing.unit
+
+
+def coverage(sizing: SizingFunction, points: Array, asked: float = math.inf) -> float:
+    """Return a bound of the distance of points of the surface from the nearest of points (N, 3).
+
+    Points and the distance are scaled as in `SizingFunction`. This is branch and bound: triangles
+    are cut that may hold a point farther away than TIGHT times the farthest centroid, or than
+    `asked` if no centroid is. Infinite if there are no points.
+    """
+    if len(points) == 0:
+        return math.inf
+    samples = np.column_stack([points, np.zeros_like(points)])
+    triangles = cut_patches(sizing, math.inf)
+    radius = SPACINGS * math.sqrt(sizing.area / len(points)) or 1.0
+    largest = found = 0.0
+    for _ in range(MOST_CUTS):
+        distances = _distances(triangles, samples, radius)
+        bounds, found = distances + triangles.radii, max(found, float(distances.max()))
+        far = bounds > (asked if found <= asked < TIGHT * found else TIGHT * found)
+        largest = max(largest, float(bounds[~far].max(initial=0.0)))
+        if not far.any():
+            break
+        radius, triangles = float(bounds.max()), triangles[far].halves.halves
+    else:
+        largest = max(largest, radius)
+    return largest
+
+
+def _distances(triangles: Triangles, samples: Array, radius: float) -> Array:
+    """Return the distances (M,) of centroids from the nearest of samples (N, 6) without normals.
+
+    That is fast where there is one within a radius.
+    """
+    rows = triangles.at_centroids()
+    rows[:, 3:7] = 1.0  # the same density for all; a sample without a normal counts for both sides
+    candidates = Candidates(rows, radius)
+    candidates.update_distances(samples, radius)
+    distances = candidates.distances
+    unknown = distances > radius
+    if unknown.any():
+        distances[unknown] = tree_of(samples[:, :3]).query(rows[unknown, :3])[0]
+    return distances

@@ -1,0 +1,171 @@
+"""Triangles in the parameter domains of the patches; samples are chosen among their centroids."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..kernels import triangles as kernels
+from ..threads import over_ranges
+from .sizing import SizingFunction
+
+__all__ = ["Array", "Indices", "Triangles", "cut_patches", "refuse_more", "subdivisions"]
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+TRIANGLES_AT_A_TIME = 1 << 13
+PATCHES_AT_A_TIME = 1 << 11
+# The smallest area of a triangle, relative to the square of the radius asked for: long and narrow
+# patches would be cut into too many triangles otherwise.
+SMALLEST_AREA = 0.5
+# A patch is narrow if its area is less than this part of the square of its own radius. Its
+# triangles are bisected, instead of cut into similar ones.
+NARROW = 0.1
+# Triangles are numbered by 32 bits.
+MOST = 2e9
+
+
+@dataclass(frozen=True, eq=False)
+class Triangles:
+    """Triangles of the patches (M,), with corners (M, 3, 2) in the parameters u, v of the patch."""
+
+    sizing: SizingFunction
+    patches: Indices
+    corners: Array
+
+    def __len__(self) -> int:
+        return len(self.patches)
+
+    def __getitem__(self, chosen: Indices | NDArray[np.bool_]) -> Triangles:
+        """Return some of the triangles."""
+        return Triangles(self.sizing, self.patches[chosen], self.corners[chosen])
+
+    def __add__(self, other: Triangles) -> Triangles:
+        """Return these triangles, followed by others of the same spline."""
+        return Triangles(
+            self.sizing,
+            np.concatenate([self.patches, other.patches]),
+            np.concatenate([self.corners, other.corners]),
+        )
+
+    @property
+    def uv(self) -> Array:
+        """The parameters (M, 2) of the centroids."""
+        return self.corners.sum(axis=1) / 3.0
+
+    @property
+    def radii(self) -> Array:
+        """Radii (M,) of balls around the images of the centroids that hold the triangles."""
+        return self._written_by(kernels.radii, np.empty(len(self)))
+
+    @property
+    def quarters(self) -> Triangles:
+        """The triangles cut into four similar ones each (4 M), which follow one another."""
+        midpoints = (self.corners + np.roll(self.corners, 1, axis=1)) / 2.0
+        points = np.concatenate([self.corners, midpoints], axis=1)
+        corners = points[:, [[0, 4, 3], [4, 1, 5], [3, 5, 2], [5, 3, 4]]].reshape(-1, 3, 2)
+        return Triangles(self.sizing, np.repeat(self.patches, 4), corners)
+
+    @property
+    def halves(self) -> Triangles:
+        """The triangles bisected at the midpoints of their longest sides (2 M)."""
+        corners = self._written_by(kernels.bisect, np.empty((2 * len(self), 3, 2)))
+        return Triangles(self.sizing, np.repeat(self.patches, 2), corners)
+
+    def at_centroids(self) -> Array:
+        """Return scaled point, unit normal, target density and K (M, 8) at the centroids.
+
+        At a singular point, the normal and K are 0.
+        """
+        sizing = self.sizing.target, self.sizing.radii
+        return self._written_by(kernels.evaluate_centroids, *sizing, np.empty((len(self), 8)))
+
+    def normal_chords(self, rows: Array) -> Array:
+        """Return how far normals of each triangle (M,) are from that at its centroid, at most.
+
+        That is the length of the chord between the unit vectors, or 2 if no bound below √2 is
+        known. `rows` are those of `at_centroids`.
+        """
+        return self._written_by(kernels.normal_chords, rows, np.empty(len(self)))
+
+    def _written_by(self, kernel: Callable[..., None], *arguments: object) -> Array:
+        """Return the last argument of a kernel, an array that it writes."""
+        spline = self.sizing.spline
+
+        def work(first: int, last: int) -> None:
+            kernel(
+                spline.coefficients,
+                spline.scale,
+                self.patches,
+                self.corners,
+                first,
+                last,
+                *arguments,
+            )
+
+        for _ in over_ranges(work, len(self), TRIANGLES_AT_A_TIME, self.sizing.threads):
+            pass
+        return cast(Array, arguments[-1])
+
+
+def cut_patches(sizing: SizingFunction, radius: float) -> Triangles:
+    """Cut all patches into triangles that lie within radius/√w of the images of their centroids.
+
+    w is the largest target density of the patch. Triangles of long and narrow patches may reach
+    farther. Raises InputError if there were more than MOST triangles.
+    """
+    parts, narrow = subdivisions(sizing, radius)
+    ends = np.cumsum(parts * parts)
+    patches, corners = np.empty(ends[-1], dtype=np.int64), np.empty((ends[-1], 3, 2))
+
+    def work(first: int, last: int) -> None:
+        kernels.cut_patches(parts, ends, first, last, patches, corners)
+
+    for _ in over_ranges(work, len(parts), PATCHES_AT_A_TIME, sizing.threads):
+        pass
+    triangles = Triangles(sizing, patches, corners)
+    return _bisect_narrow(triangles, narrow, radius) if narrow.any() else triangles
+
+
+def _bisect_narrow(triangles: Triangles, narrow: NDArray[np.bool_], radius: float) -> Triangles:
+    """Bisect the triangles of narrow patches until their radii or their areas are small enough."""
+    sizing, left = triangles.sizing, narrow[triangles.patches]
+    rates, share = np.sqrt(sizing.largest) / radius, 1.0
+    areas = sizing.areas * rates * rates
+    done, triangles = triangles[~left], triangles[left]
+    while len(triangles):
+        here = triangles.patches
+        left = (triangles.radii * rates[here] > 1.0) & (share * areas[here] > SMALLEST_AREA)
+        done, triangles, share = done + triangles[~left], triangles[left].halves, share / 2.0
+    return done
+
+
+def subdivisions(sizing: SizingFunction, radius: float) -> tuple[Indices, NDArray[np.bool_]]:
+    """Return into how many parts `cut_patches` divides the sides of each patch (patches,).
+
+    And which patches are narrow: these are not divided. Raises InputError if there were more than
+    MOST triangles.
+    """
+    with np.errstate(divide="ignore", over="ignore"):
+        rates = np.sqrt(sizing.largest) / radius
+        by_area = np.sqrt(sizing.areas / SMALLEST_AREA) * rates
+        parts = np.maximum(np.ceil(np.minimum(sizing.radii * rates, by_area)), 1.0)
+        total = float((parts * parts).sum())
+    refuse_more(sizing, total, MOST)
+    narrow = sizing.areas < NARROW * sizing.radii**2
+    return np.where(narrow, 1, parts.astype(np.int64)), narrow
+
+
+def refuse_more(sizing: SizingFunction, number: float, most: float) -> None:
+    """Raise InputError if a number of triangles is too large."""
+    if not number <= most:
+        raise InputError(
+            f"surface {sizing.spline.name!r} would have to be searched in more than {most:.0e} "
+            "places; ask for a larger coverage or angle, or for fewer samples or normals."
+        )
