@@ -8,7 +8,7 @@ fast-math.
 
 import math
 
-from .vectors import Patch, Vector, inline
+from .vectors import Hessian, Patch, Vector, inline
 
 NODE = 1.0 / 6.0
 
@@ -284,7 +284,7 @@ def hessian(A, B, C, D, p_u, p_v):
     H_xy = p_u_x * s_y + p_v_x * t_y
     H_xz = p_u_x * s_z + p_v_x * t_z
     H_yz = p_u_y * s_z + p_v_y * t_z
-    return H_xx, H_yy, H_zz, H_xy, H_xz, H_yz
+    return Hessian(H_xx, H_yy, H_zz, H_xy, H_xz, H_yz)
 
 
 @inline

@@ -1,4 +1,4 @@
-"""The catalogue of parametric surfaces: evaluation loops and data.
+"""The catalogue of parametric surfaces: positions at many parameters, and data.
 
 Written by `make generate` (python -m gaussmap.symbolic): do not edit, change symbolic/ instead.
 SymPy 1.14.0. Passes: common subexpressions of all outputs together, in canonical order;
@@ -8,242 +8,309 @@ fast-math.
 
 import math
 
-import numba
 
-OPTIONS = {"nogil": True, "error_model": "numpy", "fastmath": False}
-
-
-def jit(function):
-    """Compile on the first call; keep the machine code on disk where a folder can be written."""
-    try:
-        return numba.njit(cache=True, **OPTIONS)(function)
-    except RuntimeError:  # no writable cache folder
-        return numba.njit(**OPTIONS)(function)
-
-
-@jit
-def torus(parameters, points, major, minor):
+def torus(major, minor, u_values, v_values, points):
     """The torus round the z axis, u being the angle round the axis and v the angle round the
     tube, from its outer equator upwards, with normals pointing out of the tube.
+
+        x_x = (major + minor*cos(v))*cos(u)
+        x_y = (major + minor*cos(v))*sin(u)
+        x_z = minor*sin(v)
+
+    Source: beyond the paper; 12 operations as written, 9 here.
+
+    Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
-    for k in range(points.shape[0]):
-        u = parameters[k, 0]
-        v = parameters[k, 1]
-        # torus (beyond the paper): 12 operations as written, 9 here
+    for row in range(u_values.shape[0]):
+        u = u_values[row]
+        v = v_values[row]
         t0 = major + minor * math.cos(v)
         x_x = t0 * math.cos(u)
         x_y = t0 * math.sin(u)
         x_z = minor * math.sin(v)
-        points[k, 0] = x_x
-        points[k, 1] = x_y
-        points[k, 2] = x_z
+        points[row, 0] = x_x
+        points[row, 1] = x_y
+        points[row, 2] = x_z
 
 
-@jit
-def ellipsoid(parameters, points, a, b, c):
+def ellipsoid(a, b, c, u_values, v_values, points):
     """The whole ellipsoid x²/a² + y²/b² + z²/c² = 1, with the longitude u, the latitude v
     (angles on the unit sphere that is stretched), poles at z = ±c, and outward normals.
+
+        x_x = a*cos(u)*cos(v)
+        x_y = b*sin(u)*cos(v)
+        x_z = c*sin(v)
+
+    Source: beyond the paper; 10 operations as written, 9 here.
+
+    Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
-    for k in range(points.shape[0]):
-        u = parameters[k, 0]
-        v = parameters[k, 1]
-        # ellipsoid (beyond the paper): 10 operations as written, 9 here
+    for row in range(u_values.shape[0]):
+        u = u_values[row]
+        v = v_values[row]
         t0 = math.cos(v)
         x_x = a * t0 * math.cos(u)
         x_y = b * t0 * math.sin(u)
         x_z = c * math.sin(v)
-        points[k, 0] = x_x
-        points[k, 1] = x_y
-        points[k, 2] = x_z
+        points[row, 0] = x_x
+        points[row, 1] = x_y
+        points[row, 2] = x_z
 
 
-@jit
-def ellipsoid_patch(parameters, points, a, b, c):
+def ellipsoid_patch(a, b, c, u_values, v_values, points):
     """The belt of the ellipsoid between the latitudes v = ±π/3, so without its poles, with the
     longitude u and outward normals.
+
+        x_x = a*cos(u)*cos(v)
+        x_y = b*sin(u)*cos(v)
+        x_z = c*sin(v)
+
+    Source: beyond the paper; 10 operations as written, 9 here.
+
+    Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
-    for k in range(points.shape[0]):
-        u = parameters[k, 0]
-        v = parameters[k, 1]
-        # ellipsoid_patch (beyond the paper): 10 operations as written, 9 here
+    for row in range(u_values.shape[0]):
+        u = u_values[row]
+        v = v_values[row]
         t0 = math.cos(v)
         x_x = a * t0 * math.cos(u)
         x_y = b * t0 * math.sin(u)
         x_z = c * math.sin(v)
-        points[k, 0] = x_x
-        points[k, 1] = x_y
-        points[k, 2] = x_z
+        points[row, 0] = x_x
+        points[row, 1] = x_y
+        points[row, 2] = x_z
 
 
-@jit
-def sphere(parameters, points, radius):
+def sphere(radius, u_values, v_values, points):
     """The whole sphere round the origin, with the longitude u, the latitude v, poles on the z
     axis, and outward normals.
+
+        x_x = radius*cos(u)*cos(v)
+        x_y = radius*sin(u)*cos(v)
+        x_z = radius*sin(v)
+
+    Source: beyond the paper; 10 operations as written, 8 here.
+
+    Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
-    for k in range(points.shape[0]):
-        u = parameters[k, 0]
-        v = parameters[k, 1]
-        # sphere (beyond the paper): 10 operations as written, 8 here
+    for row in range(u_values.shape[0]):
+        u = u_values[row]
+        v = v_values[row]
         t0 = radius * math.cos(v)
         x_x = t0 * math.cos(u)
         x_y = t0 * math.sin(u)
         x_z = radius * math.sin(v)
-        points[k, 0] = x_x
-        points[k, 1] = x_y
-        points[k, 2] = x_z
+        points[row, 0] = x_x
+        points[row, 1] = x_y
+        points[row, 2] = x_z
 
 
-@jit
-def hyperboloid(parameters, points, a, b, c):
+def hyperboloid(a, b, c, u_values, v_values, points):
     """The hyperboloid of one sheet x²/a² + y²/b² − z²/c² = 1, cut off at z = ±c sinh 1, u going
     round the z axis and v along it, with normals pointing away from the axis.
+
+        x_x = a*cos(u)*cosh(v)
+        x_y = b*sin(u)*cosh(v)
+        x_z = c*sinh(v)
+
+    Source: beyond the paper; 10 operations as written, 9 here.
+
+    Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
-    for k in range(points.shape[0]):
-        u = parameters[k, 0]
-        v = parameters[k, 1]
-        # hyperboloid (beyond the paper): 10 operations as written, 9 here
+    for row in range(u_values.shape[0]):
+        u = u_values[row]
+        v = v_values[row]
         t0 = math.cosh(v)
         x_x = a * t0 * math.cos(u)
         x_y = b * t0 * math.sin(u)
         x_z = c * math.sinh(v)
-        points[k, 0] = x_x
-        points[k, 1] = x_y
-        points[k, 2] = x_z
+        points[row, 0] = x_x
+        points[row, 1] = x_y
+        points[row, 2] = x_z
 
 
-@jit
-def elliptic_paraboloid(parameters, points, a, b):
+def elliptic_paraboloid(a, b, u_values, v_values, points):
     """The graph z = x²/a² + y²/b² of x = u and y = v, with upward normals, which point to its
     inside.
+
+        x_x = u
+        x_y = v
+        x_z = v**2/b**2 + u**2/a**2
+
+    Source: beyond the paper; 7 operations as written, 7 here.
+
+    Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
-    for k in range(points.shape[0]):
-        u = parameters[k, 0]
-        v = parameters[k, 1]
-        # elliptic_paraboloid (beyond the paper): 7 operations as written, 7 here
+    for row in range(u_values.shape[0]):
+        u = u_values[row]
+        v = v_values[row]
         x_x = u
         x_y = v
         x_z = v * v / (b * b) + u * u / (a * a)
-        points[k, 0] = x_x
-        points[k, 1] = x_y
-        points[k, 2] = x_z
+        points[row, 0] = x_x
+        points[row, 1] = x_y
+        points[row, 2] = x_z
 
 
-@jit
-def hyperbolic_paraboloid(parameters, points, a, b):
-    """The saddle z = x²/a² − y²/b², a graph of x = u and y = v with upward normals."""
-    for k in range(points.shape[0]):
-        u = parameters[k, 0]
-        v = parameters[k, 1]
-        # hyperbolic_paraboloid (beyond the paper): 7 operations as written, 7 here
+def hyperbolic_paraboloid(a, b, u_values, v_values, points):
+    """The saddle z = x²/a² − y²/b², a graph of x = u and y = v with upward normals.
+
+        x_x = u
+        x_y = v
+        x_z = u**2/a**2 - v**2/b**2
+
+    Source: beyond the paper; 7 operations as written, 7 here.
+
+    Arrays: u_values (k,), v_values (k,), points (k, 3).
+    """
+    for row in range(u_values.shape[0]):
+        u = u_values[row]
+        v = v_values[row]
         x_x = u
         x_y = v
         x_z = u * u / (a * a) - v * v / (b * b)
-        points[k, 0] = x_x
-        points[k, 1] = x_y
-        points[k, 2] = x_z
+        points[row, 0] = x_x
+        points[row, 1] = x_y
+        points[row, 2] = x_z
 
 
-@jit
-def monkey_saddle(parameters, points, scale):
+def monkey_saddle(scale, u_values, v_values, points):
     """The monkey saddle z = scale (x³ − 3 x y²), a graph of x = u and y = v with upward normals
     and a flat point at the origin.
+
+        x_x = u
+        x_y = v
+        x_z = scale*(u**3 - 3*u*v**2)
+
+    Source: beyond the paper; 7 operations as written, 7 here.
+
+    Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
-    for k in range(points.shape[0]):
-        u = parameters[k, 0]
-        v = parameters[k, 1]
-        # monkey_saddle (beyond the paper): 7 operations as written, 7 here
+    for row in range(u_values.shape[0]):
+        u = u_values[row]
+        v = v_values[row]
         x_x = u
         x_y = v
         x_z = scale * (u * u * u - 3 * u * v * v)
-        points[k, 0] = x_x
-        points[k, 1] = x_y
-        points[k, 2] = x_z
+        points[row, 0] = x_x
+        points[row, 1] = x_y
+        points[row, 2] = x_z
 
 
-@jit
-def enneper(parameters, points, scale):
+def enneper(scale, u_values, v_values, points):
     """Enneper's minimal surface, without the self-intersections that it has farther out, in
     conformal parameters, with its normal at the origin pointing upwards.
+
+        x_x = scale*(u*v**2 - u**3/3 + u)
+        x_y = scale*(u**2*v - v**3/3 + v)
+        x_z = scale*(u**2 - v**2)
+
+    Source: beyond the paper; 20 operations as written, 18 here.
+
+    Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
-    for k in range(points.shape[0]):
-        u = parameters[k, 0]
-        v = parameters[k, 1]
-        # enneper (beyond the paper): 20 operations as written, 18 here
+    for row in range(u_values.shape[0]):
+        u = u_values[row]
+        v = v_values[row]
         t0 = v * v
         x_x = scale * (t0 * u - (1.0 / 3.0) * u * u * u + u)
         t1 = u * u
         x_y = scale * (t1 * v - (1.0 / 3.0) * v * v * v + v)
         x_z = scale * (t1 - t0)
-        points[k, 0] = x_x
-        points[k, 1] = x_y
-        points[k, 2] = x_z
+        points[row, 0] = x_x
+        points[row, 1] = x_y
+        points[row, 2] = x_z
 
 
-@jit
-def catenoid(parameters, points, radius):
+def catenoid(radius, u_values, v_values, points):
     """The minimal surface √(x² + y²) = radius cosh(z/radius), cut off at z = ±radius, u being
     the angle round the z axis and v = z/radius, with normals pointing away from the axis.
+
+        x_x = radius*cos(u)*cosh(v)
+        x_y = radius*sin(u)*cosh(v)
+        x_z = radius*v
+
+    Source: beyond the paper; 9 operations as written, 7 here.
+
+    Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
-    for k in range(points.shape[0]):
-        u = parameters[k, 0]
-        v = parameters[k, 1]
-        # catenoid (beyond the paper): 9 operations as written, 7 here
+    for row in range(u_values.shape[0]):
+        u = u_values[row]
+        v = v_values[row]
         t0 = radius * math.cosh(v)
         x_x = t0 * math.cos(u)
         x_y = t0 * math.sin(u)
         x_z = radius * v
-        points[k, 0] = x_x
-        points[k, 1] = x_y
-        points[k, 2] = x_z
+        points[row, 0] = x_x
+        points[row, 1] = x_y
+        points[row, 2] = x_z
 
 
-@jit
-def helicoid(parameters, points, pitch):
+def helicoid(pitch, u_values, v_values, points):
     """One turn of the right-handed helicoid, u being the signed distance from the z axis and v
     the angle, with normals pointing upwards where u > 0 and downwards where u < 0.
+
+        x_x = u*cos(v)
+        x_y = u*sin(v)
+        x_z = pitch*v
+
+    Source: beyond the paper; 5 operations as written, 5 here.
+
+    Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
-    for k in range(points.shape[0]):
-        u = parameters[k, 0]
-        v = parameters[k, 1]
-        # helicoid (beyond the paper): 5 operations as written, 5 here
+    for row in range(u_values.shape[0]):
+        u = u_values[row]
+        v = v_values[row]
         x_x = u * math.cos(v)
         x_y = u * math.sin(v)
         x_z = pitch * v
-        points[k, 0] = x_x
-        points[k, 1] = x_y
-        points[k, 2] = x_z
+        points[row, 0] = x_x
+        points[row, 1] = x_y
+        points[row, 2] = x_z
 
 
-@jit
-def moebius_band(parameters, points, radius, half_width):
+def moebius_band(radius, half_width, u_values, v_values, points):
     """The Möbius band round the z axis, u being the angle round the axis and v running across,
     upright at u = 0 with its normal there pointing away from the axis, and with the opposite
     normal after one turn.
+
+        x_x = (half_width*v*sin(u/2) + radius)*cos(u)
+        x_y = (half_width*v*sin(u/2) + radius)*sin(u)
+        x_z = half_width*v*cos(u/2)
+
+    Source: beyond the paper; 18 operations as written, 11 here.
+
+    Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
-    for k in range(points.shape[0]):
-        u = parameters[k, 0]
-        v = parameters[k, 1]
-        # moebius_band (beyond the paper): 18 operations as written, 11 here
+    for row in range(u_values.shape[0]):
+        u = u_values[row]
+        v = v_values[row]
         t0 = 0.5 * u
         t1 = half_width * v
         t2 = radius + t1 * math.sin(t0)
         x_x = t2 * math.cos(u)
         x_y = t2 * math.sin(u)
         x_z = t1 * math.cos(t0)
-        points[k, 0] = x_x
-        points[k, 1] = x_y
-        points[k, 2] = x_z
+        points[row, 0] = x_x
+        points[row, 1] = x_y
+        points[row, 2] = x_z
 
 
-@jit
-def dupin_cyclide(parameters, points, a, b, d):
+def dupin_cyclide(a, b, d, u_values, v_values, points):
     """The ring cyclide round the ellipse x²/a² + y²/b² = 1, on which spheres of radius d − x
     √(a² − b²)/a are centred, in lines of curvature u, v, with normals pointing outwards.
+
+        x_x = (b**2*cos(u) + d*(sqrt(a**2 - b**2) - a*cos(u)*cos(v)))/(a - sqrt(a**2 - b**2)*cos(u)*cos(v))
+        x_y = b*(a - d*cos(v))*sin(u)/(a - sqrt(a**2 - b**2)*cos(u)*cos(v))
+        x_z = b*(sqrt(a**2 - b**2)*cos(u) - d)*sin(v)/(a - sqrt(a**2 - b**2)*cos(u)*cos(v))
+
+    Source: beyond the paper; 60 operations as written, 28 here.
+
+    Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
-    for k in range(points.shape[0]):
-        u = parameters[k, 0]
-        v = parameters[k, 1]
-        # dupin_cyclide (beyond the paper): 60 operations as written, 28 here
+    for row in range(u_values.shape[0]):
+        u = u_values[row]
+        v = v_values[row]
         t0 = math.cos(v)
         t1 = math.cos(u)
         t2 = b * b
@@ -253,81 +320,106 @@ def dupin_cyclide(parameters, points, a, b, d):
         t5 = b * t4
         x_y = t5 * (a - d * t0) * math.sin(u)
         x_z = t5 * (t1 * t3 - d) * math.sin(v)
-        points[k, 0] = x_x
-        points[k, 1] = x_y
-        points[k, 2] = x_z
+        points[row, 0] = x_x
+        points[row, 1] = x_y
+        points[row, 2] = x_z
 
 
-@jit
-def wavy_graph(parameters, points, amplitude, frequency):
+def wavy_graph(amplitude, frequency, u_values, v_values, points):
     """The graph z = amplitude sin(frequency x) cos(frequency y) of x = u and y = v, with upward
     normals.
+
+        x_x = u
+        x_y = v
+        x_z = amplitude*sin(frequency*u)*cos(frequency*v)
+
+    Source: beyond the paper; 6 operations as written, 6 here.
+
+    Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
-    for k in range(points.shape[0]):
-        u = parameters[k, 0]
-        v = parameters[k, 1]
-        # wavy_graph (beyond the paper): 6 operations as written, 6 here
+    for row in range(u_values.shape[0]):
+        u = u_values[row]
+        v = v_values[row]
         x_x = u
         x_y = v
         x_z = amplitude * math.sin(frequency * u) * math.cos(frequency * v)
-        points[k, 0] = x_x
-        points[k, 1] = x_y
-        points[k, 2] = x_z
+        points[row, 0] = x_x
+        points[row, 1] = x_y
+        points[row, 2] = x_z
 
 
-@jit
-def cylinder(parameters, points, radius, height):
+def cylinder(radius, height, u_values, v_values, points):
     """The circular cylinder round the z axis, u being the angle and v = z/height, with normals
     pointing away from the axis.
+
+        x_x = radius*cos(u)
+        x_y = radius*sin(u)
+        x_z = height*v
+
+    Source: beyond the paper; 5 operations as written, 5 here.
+
+    Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
-    for k in range(points.shape[0]):
-        u = parameters[k, 0]
-        v = parameters[k, 1]
-        # cylinder (beyond the paper): 5 operations as written, 5 here
+    for row in range(u_values.shape[0]):
+        u = u_values[row]
+        v = v_values[row]
         x_x = radius * math.cos(u)
         x_y = radius * math.sin(u)
         x_z = height * v
-        points[k, 0] = x_x
-        points[k, 1] = x_y
-        points[k, 2] = x_z
+        points[row, 0] = x_x
+        points[row, 1] = x_y
+        points[row, 2] = x_z
 
 
-@jit
-def cone(parameters, points, bottom, top, height):
+def cone(bottom, top, height, u_values, v_values, points):
     """The frustum of a circular cone round the z axis, which does not reach the apex, u being
     the angle and v = z/height, with normals pointing away from the axis.
+
+        x_x = (bottom + v*(top - bottom))*cos(u)
+        x_y = (bottom + v*(top - bottom))*sin(u)
+        x_z = height*v
+
+    Source: beyond the paper; 11 operations as written, 8 here.
+
+    Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
-    for k in range(points.shape[0]):
-        u = parameters[k, 0]
-        v = parameters[k, 1]
-        # cone (beyond the paper): 11 operations as written, 8 here
+    for row in range(u_values.shape[0]):
+        u = u_values[row]
+        v = v_values[row]
         t0 = bottom + v * (top - bottom)
         x_x = t0 * math.cos(u)
         x_y = t0 * math.sin(u)
         x_z = height * v
-        points[k, 0] = x_x
-        points[k, 1] = x_y
-        points[k, 2] = x_z
+        points[row, 0] = x_x
+        points[row, 1] = x_y
+        points[row, 2] = x_z
 
 
-@jit
-def plane(parameters, points, slope_u, slope_v):
-    """The plane z = slope_u x + slope_v y, a graph of x = u and y = v with upward normals."""
-    for k in range(points.shape[0]):
-        u = parameters[k, 0]
-        v = parameters[k, 1]
-        # plane (beyond the paper): 3 operations as written, 3 here
+def plane(slope_u, slope_v, u_values, v_values, points):
+    """The plane z = slope_u x + slope_v y, a graph of x = u and y = v with upward normals.
+
+        x_x = u
+        x_y = v
+        x_z = slope_u*u + slope_v*v
+
+    Source: beyond the paper; 3 operations as written, 3 here.
+
+    Arrays: u_values (k,), v_values (k,), points (k, 3).
+    """
+    for row in range(u_values.shape[0]):
+        u = u_values[row]
+        v = v_values[row]
         x_x = u
         x_y = v
         x_z = slope_u * u + slope_v * v
-        points[k, 0] = x_x
-        points[k, 1] = x_y
-        points[k, 2] = x_z
+        points[row, 0] = x_x
+        points[row, 1] = x_y
+        points[row, 2] = x_z
 
 
 CATALOGUE = {
     "torus": {
-        "kernel": torus,
+        "position": torus,
         "sentence": "The torus round the z axis, u being the angle round the axis and v the angle round the tube, from its outer equator upwards, with normals pointing out of the tube.",
         "parameters": {
             "major": (1.0, True, "The radius of the circle in the middle of the tube."),
@@ -337,7 +429,7 @@ CATALOGUE = {
         "ends": (("wrap", "wrap"), ("wrap", "wrap")),
     },
     "ellipsoid": {
-        "kernel": ellipsoid,
+        "position": ellipsoid,
         "sentence": "The whole ellipsoid x²/a² + y²/b² + z²/c² = 1, with the longitude u, the latitude v (angles on the unit sphere that is stretched), poles at z = ±c, and outward normals.",
         "parameters": {
             "a": (1.0, True, "The semi-axis along x."),
@@ -348,7 +440,7 @@ CATALOGUE = {
         "ends": (("wrap", "wrap"), ("pole", "pole")),
     },
     "ellipsoid_patch": {
-        "kernel": ellipsoid_patch,
+        "position": ellipsoid_patch,
         "sentence": "The belt of the ellipsoid between the latitudes v = ±π/3, so without its poles, with the longitude u and outward normals.",
         "parameters": {
             "a": (1.0, True, "The semi-axis along x."),
@@ -359,14 +451,14 @@ CATALOGUE = {
         "ends": (("wrap", "wrap"), ("none", "none")),
     },
     "sphere": {
-        "kernel": sphere,
+        "position": sphere,
         "sentence": "The whole sphere round the origin, with the longitude u, the latitude v, poles on the z axis, and outward normals.",
         "parameters": {"radius": (1.0, True, "The radius.")},
         "domain": ((0, 2 * math.pi), (-0.5 * math.pi, 0.5 * math.pi)),
         "ends": (("wrap", "wrap"), ("pole", "pole")),
     },
     "hyperboloid": {
-        "kernel": hyperboloid,
+        "position": hyperboloid,
         "sentence": "The hyperboloid of one sheet x²/a² + y²/b² − z²/c² = 1, cut off at z = ±c sinh 1, u going round the z axis and v along it, with normals pointing away from the axis.",
         "parameters": {
             "a": (1.0, True, "The semi-axis of the waist along x."),
@@ -377,7 +469,7 @@ CATALOGUE = {
         "ends": (("wrap", "wrap"), ("none", "none")),
     },
     "elliptic_paraboloid": {
-        "kernel": elliptic_paraboloid,
+        "position": elliptic_paraboloid,
         "sentence": "The graph z = x²/a² + y²/b² of x = u and y = v, with upward normals, which point to its inside.",
         "parameters": {
             "a": (1.0, True, "The semi-axis along x of the ellipse at z = 1."),
@@ -387,7 +479,7 @@ CATALOGUE = {
         "ends": (("none", "none"), ("none", "none")),
     },
     "hyperbolic_paraboloid": {
-        "kernel": hyperbolic_paraboloid,
+        "position": hyperbolic_paraboloid,
         "sentence": "The saddle z = x²/a² − y²/b², a graph of x = u and y = v with upward normals.",
         "parameters": {
             "a": (1.0, True, "The semi-axis along x of the hyperbola at z = 1."),
@@ -397,35 +489,35 @@ CATALOGUE = {
         "ends": (("none", "none"), ("none", "none")),
     },
     "monkey_saddle": {
-        "kernel": monkey_saddle,
+        "position": monkey_saddle,
         "sentence": "The monkey saddle z = scale (x³ − 3 x y²), a graph of x = u and y = v with upward normals and a flat point at the origin.",
         "parameters": {"scale": (0.5, True, "The factor of the heights.")},
         "domain": ((-1, 1), (-1, 1)),
         "ends": (("none", "none"), ("none", "none")),
     },
     "enneper": {
-        "kernel": enneper,
+        "position": enneper,
         "sentence": "Enneper's minimal surface, without the self-intersections that it has farther out, in conformal parameters, with its normal at the origin pointing upwards.",
         "parameters": {"scale": (1.0, True, "The factor of the size.")},
         "domain": ((-1, 1), (-1, 1)),
         "ends": (("none", "none"), ("none", "none")),
     },
     "catenoid": {
-        "kernel": catenoid,
+        "position": catenoid,
         "sentence": "The minimal surface √(x² + y²) = radius cosh(z/radius), cut off at z = ±radius, u being the angle round the z axis and v = z/radius, with normals pointing away from the axis.",
         "parameters": {"radius": (1.0, True, "The radius of the waist.")},
         "domain": ((0, 2 * math.pi), (-1, 1)),
         "ends": (("wrap", "wrap"), ("none", "none")),
     },
     "helicoid": {
-        "kernel": helicoid,
+        "position": helicoid,
         "sentence": "One turn of the right-handed helicoid, u being the signed distance from the z axis and v the angle, with normals pointing upwards where u > 0 and downwards where u < 0.",
         "parameters": {"pitch": (0.5, True, "The rise per radian.")},
         "domain": ((-1, 1), (-math.pi, math.pi)),
         "ends": (("none", "none"), ("none", "none")),
     },
     "moebius_band": {
-        "kernel": moebius_band,
+        "position": moebius_band,
         "sentence": "The Möbius band round the z axis, u being the angle round the axis and v running across, upright at u = 0 with its normal there pointing away from the axis, and with the opposite normal after one turn.",
         "parameters": {
             "radius": (1.0, True, "The radius of the circle in the middle of the band."),
@@ -435,7 +527,7 @@ CATALOGUE = {
         "ends": (("flip", "flip"), ("none", "none")),
     },
     "dupin_cyclide": {
-        "kernel": dupin_cyclide,
+        "position": dupin_cyclide,
         "sentence": "The ring cyclide round the ellipse x²/a² + y²/b² = 1, on which spheres of radius d − x √(a² − b²)/a are centred, in lines of curvature u, v, with normals pointing outwards.",
         "parameters": {
             "a": (1.0, True, "The semi-axis of the ellipse along x."),
@@ -446,7 +538,7 @@ CATALOGUE = {
         "ends": (("wrap", "wrap"), ("wrap", "wrap")),
     },
     "wavy_graph": {
-        "kernel": wavy_graph,
+        "position": wavy_graph,
         "sentence": "The graph z = amplitude sin(frequency x) cos(frequency y) of x = u and y = v, with upward normals.",
         "parameters": {
             "amplitude": (0.2, False, "The height of the waves."),
@@ -456,14 +548,14 @@ CATALOGUE = {
         "ends": (("none", "none"), ("none", "none")),
     },
     "cylinder": {
-        "kernel": cylinder,
+        "position": cylinder,
         "sentence": "The circular cylinder round the z axis, u being the angle and v = z/height, with normals pointing away from the axis.",
         "parameters": {"radius": (1.0, True, "The radius."), "height": (2.0, True, "The height.")},
         "domain": ((0, 2 * math.pi), (0, 1)),
         "ends": (("wrap", "wrap"), ("none", "none")),
     },
     "cone": {
-        "kernel": cone,
+        "position": cone,
         "sentence": "The frustum of a circular cone round the z axis, which does not reach the apex, u being the angle and v = z/height, with normals pointing away from the axis.",
         "parameters": {
             "bottom": (1.0, True, "The radius at z = 0."),
@@ -474,7 +566,7 @@ CATALOGUE = {
         "ends": (("wrap", "wrap"), ("none", "none")),
     },
     "plane": {
-        "kernel": plane,
+        "position": plane,
         "sentence": "The plane z = slope_u x + slope_v y, a graph of x = u and y = v with upward normals.",
         "parameters": {
             "slope_u": (0.0, False, "The slope along x."),

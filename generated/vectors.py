@@ -46,3 +46,14 @@ class Arc(NamedTuple):
     a: PlaneVector
     b: PlaneVector
     c: PlaneVector
+
+
+class Hessian(NamedTuple):
+    """The entries of a Hessian, a symmetric matrix."""
+
+    H_xx: float
+    H_yy: float
+    H_zz: float
+    H_xy: float
+    H_xz: float
+    H_yz: float

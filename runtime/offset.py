@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..generated import support as kernels
 from .checks import finite_number
 from .errors import GaussmapWarning, MissingFieldError
+from .kernels import support as kernels
 from .samples import Samples
 
 __all__ = ["offset"]

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ..generated.surfaces import CATALOGUE as _GENERATED
 from . import compiling  # noqa: F401 - it tells that kernels are compiled
 from .errors import InputError, UnknownNameError, shown
+from .kernels.surfaces import positions
 from .surface import Domain, Ends, Surface
 
 __all__ = ["describe", "names", "surface"]
@@ -52,11 +53,11 @@ def surface(name: str, /, **parameters: float) -> Surface:
         _checked(name, parameter, parameters.get(parameter, default), positive)
         for parameter, (default, positive, _) in known.items()
     ]
-    kernel = entry["kernel"]
+    write = positions(name)
 
     def evaluate(u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
         points = np.empty((u.size, 3))
-        kernel(np.stack([u.ravel(), v.ravel()], axis=1), points, *values)
+        write(*values, u.ravel(), v.ravel(), points)
         return points.reshape(*u.shape, 3)
 
     domain = tuple((float(low), float(high)) for low, high in entry["domain"])

@@ -4,37 +4,47 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import sympy as sp
 
-from .formula import Formula, PlaneVector, VectorSymbol, plane_vectors, vectors
+from .formula import Formula, PlaneVector, VectorSymbol, plane_vectors, scalar, vectors
 from .printer import source_of
 from .simplify import straight_line
 
 __all__ = [
     "arguments",
+    "assignments",
     "block",
     "call",
+    "described",
     "function",
     "functions",
+    "grouped",
     "named_tuples",
     "render",
+    "unpacked",
     "vector_functions",
 ]
 
 TEMPLATES = Path(__file__).parent / "templates"
 PLACEHOLDER = re.compile(r"^(?P<indent> *)\{\{(?P<key>\w+)\}\}$", re.MULTILINE)
 WIDTH = 92
-# The tuples that stand for several vectors: their argument's name, type, sentence and fields.
-Group = tuple[str, str, str, tuple[VectorSymbol, ...]]
+# The tuples of several vectors or numbers: their argument's name, type, sentence and fields.
+Group = tuple[str, str, str, tuple[sp.Symbol, ...]]
+HESSIAN = tuple(scalar(f"H_{x}") for x in ("xx", "yy", "zz", "xy", "xz", "yz"))
 GROUPS: tuple[Group, ...] = (
     ("patch", "Patch", "The vectors of a quadratic patch, eq. (8).", vectors("abcdep")),
     ("arc", "Arc", "The vectors of a quadratic arc, as those of a patch.", plane_vectors("abc")),
+    ("hessian", "Hessian", "The entries of a Hessian, a symmetric matrix.", HESSIAN),
 )
 # What an argument has to hold for a formula to take the whole tuple.
-NEEDED = {"patch": set(vectors("abcde")), "arc": set(plane_vectors("ab"))}
+NEEDED = {
+    "patch": set(vectors("abcde")),
+    "arc": set(plane_vectors("ab")),
+    "hessian": set(HESSIAN),
+}
 
 
 def assignments(formula: Formula) -> list[str]:
@@ -73,7 +83,7 @@ def function(formula: Formula) -> str:
 def arguments(formula: Formula) -> dict[str, tuple[sp.Symbol, ...]]:
     """Return the arguments of the function of a formula, each with the inputs that it holds.
 
-    An argument is a scalar or a vector, or a `Patch` or `Arc` that holds several vectors.
+    An argument is a scalar or a vector, or a `Patch`, `Arc` or `Hessian` that holds several.
     """
     result: dict[str, tuple[sp.Symbol, ...]] = {}
     for symbol in formula.inputs:
@@ -86,41 +96,70 @@ def _takes(formula: Formula, group: Group) -> bool:
     return NEEDED[group[0]] <= {*formula.inputs}
 
 
-def vector_function(formula: Formula) -> str:
-    """Return a formula as an inlined function of vectors and scalars that returns its outputs."""
-    taken = arguments(formula)
-    docstring = [
+def described(formula: Formula) -> list[str]:
+    """Return the lines of a docstring, without its end: sentence, definitions, source, counts."""
+    return [
         *textwrap.wrap(f'"""{formula.sentence}', WIDTH),
         "",
         *(f"    {line}" for line in formula.text().splitlines()),
         "",
         *textwrap.wrap(f"Source: {formula.source}; {counts(formula)}.", WIDTH),
-        '"""',
     ]
-    loads = [
-        f"{', '.join(x.name for x in symbol.components)} = "
-        + (name if name == symbol.name else f"{name}.{symbol.name}")
-        for name, symbols in taken.items()
-        for symbol in symbols
-        if isinstance(symbol, VectorSymbol)
-    ]
+
+
+def vector_function(formula: Formula) -> str:
+    """Return a formula as an inlined function of vectors and scalars that returns its outputs."""
+    taken = arguments(formula)
+    docstring = [*described(formula), '"""']
+    loads = [x for name, symbols in taken.items() for x in unpacked(name, symbols)]
     body = [*docstring, *loads, *assignments(formula), f"return {_returned(formula)}"]
     definition = f"@inline\ndef {formula.name}({', '.join(taken)}):\n"
     return definition + textwrap.indent("\n".join(body), "    ")
 
 
+def unpacked(argument: str, symbols: Sequence[sp.Symbol]) -> list[str]:
+    """Return assignments that read the numbers in an argument: a vector or a tuple of several."""
+    if symbols == HESSIAN:
+        return [f"{', '.join(x.name for x in symbols)} = {argument}"]
+    return [
+        f"{', '.join(x.name for x in symbol.components)} = "
+        + (argument if argument == symbol.name else f"{argument}.{symbol.name}")
+        for symbol in symbols
+        if isinstance(symbol, VectorSymbol)
+    ]
+
+
+def grouped(symbols: Sequence[sp.Symbol]) -> list[tuple[Group | None, tuple[sp.Symbol, ...]]]:
+    """Return symbols in their order, those that fill a tuple together with its group."""
+    result: list[tuple[Group | None, tuple[sp.Symbol, ...]]] = []
+    place = 0
+    while place < len(symbols):
+        rest = tuple(symbols[place:])
+        group = next((g for g in GROUPS if rest[: len(g[3])] == g[3]), None)
+        result.append((group, group[3] if group else rest[:1]))
+        place += len(result[-1][1])
+    return result
+
+
 def _returned(formula: Formula) -> str:
-    """Return the outputs of a formula as an expression: one value, several, or a named tuple."""
-    values = ", ".join(_constructed(x) for x in formula.outputs)
-    group = next((g for g in GROUPS if g[3] == formula.outputs), None)
-    return f"{group[1]}({values})" if group else values
+    """Return the outputs of a formula as an expression: one value or several."""
+    parts = []
+    for group, symbols in grouped(formula.outputs):
+        values = ", ".join(map(_constructed, symbols))
+        parts.append(f"{group[1]}({values})" if group else values)
+    return ", ".join(parts)
 
 
 def _constructed(symbol: sp.Symbol) -> str:
     if not isinstance(symbol, VectorSymbol):
         return symbol.name
-    kind = "PlaneVector" if isinstance(symbol, PlaneVector) else "Vector"
-    return f"{kind}({', '.join(x.name for x in symbol.components)})"
+    return f"{_kind(symbol)}({', '.join(x.name for x in symbol.components)})"
+
+
+def _kind(symbol: sp.Symbol) -> str:
+    if not isinstance(symbol, VectorSymbol):
+        return "float"
+    return "PlaneVector" if isinstance(symbol, PlaneVector) else "Vector"
 
 
 def vector_functions(formulas: Iterable[Formula]) -> str:
@@ -135,8 +174,7 @@ def named_tuples() -> str:
         ("PlaneVector", "A vector of R².", [(x, "float") for x in PlaneVector.AXES]),
     ]
     for _, name, sentence, fields in GROUPS:
-        kind = "PlaneVector" if isinstance(fields[0], PlaneVector) else "Vector"
-        types.append((name, sentence, [(x.name, kind) for x in fields]))
+        types.append((name, sentence, [(x.name, _kind(x)) for x in fields]))
     return "\n\n\n".join(
         "\n".join(
             [f"class {name}(NamedTuple):", f'    """{sentence}"""', ""]

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Sequence
 from typing import cast
 
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
-from .emit import block, render
 from .formula import Definition, Formula, compose, dot, flat, scalar
+from .loops import row_loop
 from .patch import n
 from .printer import source_of
 from .support import (
@@ -23,7 +24,7 @@ from .support import (
     x,
 )
 
-__all__ = ["hessian_entries", "is_homogeneous", "kernel_source"]
+__all__ = ["is_homogeneous", "kernel_source"]
 
 NORMAL = n.components
 # Longer expressions are not proved to be homogeneous; the general formula serves them too.
@@ -36,29 +37,16 @@ GENERIC = sp.Rational(3, 7), sp.Rational(5, 11), sp.Rational(8, 13)
 def kernel_source(h: sp.Expr, domain: Boolean | bool = True) -> str:
     """Return a Python module whose `evaluate` writes envelope and Hessian of h for many normals.
 
+    Its arguments are unit normals (k, 3), and what it fills: whether they lie in the domain (k,),
+    points (k, 3), Hessians (k, 3, 3).
+
     `h` and `domain` are in the real symbols n_x, n_y, n_z. Raises NotImplementedError for functions
     that `math` does not have.
     """
-    return render(
-        "expression.py",
-        {
-            "domain": f"inside[row] = {source_of(cast(sp.Expr, sp.sympify(domain)))}",
-            "branch": block(branch(_exact(h))),
-            "store_hessian": hessian_entries("{entry} = {name}"),
-        },
-    )
-
-
-def hessian_entries(statement: str, both: bool = True) -> str:
-    """Return a statement for each {entry} of hessians[row] and its {name}, H_xx and so on.
-
-    Entries off the diagonal stand in two places; with both=False one of them is left out.
-    """
-    return "\n".join(
-        statement.format(entry=f"hessians[row, {i}, {j}]", name=f"H_{key}")
-        for key, place in ENTRIES.items()
-        for i, j in dict.fromkeys((place, place[::-1]) if both else (place,))
-    )
+    condition = f"inside[row] = {source_of(cast(sp.Expr, sp.sympify(domain)))}"
+    loop = row_loop(branch(_exact(h)), {"n": (n,)}, {"x": (x,), "hessian": ()}, condition)
+    body = textwrap.indent(loop, "    ")
+    return f"import math\n\n\ndef evaluate(normals, inside, points, hessians):\n{body}\n"
 
 
 def branch(h: sp.Expr) -> Formula:

@@ -18,8 +18,8 @@ import sympy as sp
 from . import curve, gaussian_image, icosahedron, latex, mesh, patch, spline, support, surfaces
 from .double_double import double_double_function
 from .emit import block, call, functions, named_tuples, render, vector_functions
-from .expression import hessian_entries
 from .formula import Formula
+from .loops import array_function
 from .positions import position
 from .printer import source_of
 
@@ -69,6 +69,7 @@ def derive() -> dict[str, str]:
         "spline.py": spline_source(),
         "sampler.py": sampler_source(),
         "support.py": support_source(),
+        "support_function.py": support_function_source(),
         "surfaces.py": surfaces_source(),
         "vectors.py": vectors_source(),
     }
@@ -132,9 +133,14 @@ def mathematics(title: str, *parts: str) -> str:
     """Return a file of formulas and constants, without a loop."""
     imports = (
         "import math\n\nimport numpy as np\n\n"
-        "from .vectors import Arc, Patch, PlaneVector, Vector, inline"
+        "from .vectors import Arc, Hessian, Patch, PlaneVector, Vector, inline"
     )
     return "\n\n".join([_docstring(title), imports, "\n\n\n".join(parts)]) + "\n"
+
+
+def loops(title: str, *parts: str) -> str:
+    """Return a file of loops over arrays, which the runtime compiles."""
+    return "\n\n".join([_docstring(title), "import math", "\n\n\n".join(parts)]) + "\n"
 
 
 def vectors_source() -> str:
@@ -307,39 +313,31 @@ def exact_source() -> str:
 
 
 def support_source() -> str:
-    """Return generated/support.py: support functions of patches, their offsets and curvatures."""
-    return render(
-        "support.py",
-        {
-            "header": header("Support functions: envelope, Hessian, curvatures."),
-            "constants": _grid_constants(),
-            "formulas": functions([spline.TRIANGLE]),
-            "patch_vectors": _patch_vectors(),
-            "forms": block(patch.FORMS),
-            "parameters": block(patch.PARAMETERS),
-            "tangents": block(patch.TANGENTS),
-            "branch": block(support.BRANCH),
-            "parameters_at": block(support.PARAMETERS_AT),
-            "hessian_at": block(support.HESSIAN_AT),
-            "offset": block(support.OFFSET),
-            "offset_curvature": block(support.OFFSET_CURVATURE),
-            "offset_growth": block(support.OFFSET_GROWTH),
-            "tangent_plane": block(support.TANGENT_PLANE),
-            "curvature_from_hessian": block(support.CURVATURE_FROM_HESSIAN),
-            "store_hessian_of_size": hessian_entries("{entry} = {name} / size"),
-            "add_hessian": hessian_entries("{entry} += {name}"),
-            "load_hessian": hessian_entries("{name} = {entry}", both=False),
-        },
+    """Return generated/support.py: formulas of support functions, offsets and curvatures."""
+    title = "Support functions: the formulas of symbolic/support.py as functions of vectors."
+    alone = [x for x in support.FORMULAS if x not in support.LOOPS]
+    return mathematics(title, vector_functions(alone))
+
+
+def support_function_source() -> str:
+    """Return generated/support_function.py: that of a patch and its derivatives, over normals."""
+    title = (
+        "The support function of a patch, its gradient, its Hessian and the curvatures, at many "
+        "normals."
     )
+    return loops(title, *(array_function(x, over) for x, over in support.LOOPS.items()))
 
 
 def surfaces_source() -> str:
-    """Return generated/surfaces.py: the evaluation loop of each surface, and the catalogue."""
+    """Return generated/surfaces.py: the positions of each surface, and the catalogue."""
     catalogue = surfaces.CATALOGUE.values()
-    head = header("The catalogue of parametric surfaces: evaluation loops and data.")
-    kernels = "\n\n\n".join(_surface_kernel(x) for x in catalogue)
-    entries = "\n".join(_surface_entry(x) for x in catalogue)
-    return f"{head}\n\n\n{kernels}\n\n\nCATALOGUE = {{\n{entries}\n}}\n"
+    positions = (array_function(position(x), (x.u, x.v)) for x in catalogue)
+    entries = "\n".join(map(_surface_entry, catalogue))
+    return loops(
+        "The catalogue of parametric surfaces: positions at many parameters, and data.",
+        *positions,
+        f"CATALOGUE = {{\n{entries}\n}}",
+    )
 
 
 # --- parts of the templates -----------------------------------------------------------------------
@@ -465,18 +463,6 @@ def _patch_vectors() -> str:
     ).rstrip()
 
 
-def _surface_kernel(surface: surfaces.ParametricSurface) -> str:
-    arguments = ", ".join(["parameters", "points", *(x.symbol.name for x in surface.parameters)])
-    return render(
-        "surface.py",
-        {
-            "definition": f"def {surface.name}({arguments}):",
-            "docstring": textwrap.fill(f'"""{surface.sentence}', 92) + '\n"""',
-            "position": block(position(surface)),
-        },
-    ).rstrip()
-
-
 def _surface_entry(surface: surfaces.ParametricSurface) -> str:
     parameters = ", ".join(
         f'"{x.symbol.name}": ({float(x.default)!r}, {x.positive}, {x.sentence!r})'
@@ -487,6 +473,6 @@ def _surface_entry(surface: surfaces.ParametricSurface) -> str:
         for low, high in surface.domain
     )
     return (
-        f'    "{surface.name}": {{"kernel": {surface.name}, "sentence": {surface.sentence!r}, '
+        f'    "{surface.name}": {{"position": {surface.name}, "sentence": {surface.sentence!r}, '
         f'"parameters": {{{parameters}}}, "domain": ({domain}), "ends": {surface.continuation!r}}},'
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .formula import Formula
+from .formula import BEYOND_THE_PAPER, Formula, vectors
 from .surfaces import ParametricSurface
 
 __all__ = ["position"]
@@ -10,9 +10,12 @@ __all__ = ["position"]
 
 def position(surface: ParametricSurface) -> Formula:
     """Return x(u,v) of a surface as a formula of u, v and its parameters."""
-    return Formula.build(
+    (x,) = vectors("x")
+    return Formula(
         surface.name,
         surface.sentence,
-        inputs=[surface.u, surface.v, *surface.defaults],
-        outputs=list(zip(("x_x", "x_y", "x_z"), surface.position, strict=True)),
+        BEYOND_THE_PAPER,
+        (surface.u, surface.v, *surface.defaults),
+        tuple(zip(x.components, surface.position, strict=True)),
+        (x,),
     )

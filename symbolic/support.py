@@ -8,12 +8,13 @@ extension is eq. (5) with eq. (6), and its Hessian is derived here.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import cast
 
 import sympy as sp
 
 from .formula import Dot, Formula, compose, dot, scalar, substitute, vectors
-from .patch import CURVATURE, ENVELOPE, FORMS, HESSIAN, PARAMETERS, TANGENTS
+from .patch import CURVATURE, ENVELOPE, FORMS, HESSIAN, PARAMETERS, SUPPORT_FUNCTION, TANGENTS
 
 __all__ = [
     "BRANCH",
@@ -25,6 +26,7 @@ __all__ = [
     "HESSIAN_OF_EXTENSION",
     "HESSIAN_SYMBOLS",
     "INTRINSIC_GRADIENT",
+    "LOOPS",
     "OFFSET",
     "OFFSET_CURVATURE",
     "OFFSET_GROWTH",
@@ -187,12 +189,12 @@ def _curvature_from_hessian() -> Formula:
     _, minus_trace, minors, _ = HESSIAN_MATRIX.charpoly().all_coeffs()
     m, q = scalar("m"), scalar("q")
     squares = (x**2 for x in symmetric(named("T")).flat())
-    return Formula.build(
+    formula = Formula.build(
         "curvature_from_hessian",
         "Curvature from the Hessian of a support function at a unit normal $n$: half the sum $m$ "
         "of the principal radii, their product $q$, and the square $S$ of half their difference, "
         "so that they are $m$ plus and minus its root; Gaussian and mean curvature.",
-        inputs=[*n.components, *HESSIAN_SYMBOLS],
+        inputs=[n, *HESSIAN_SYMBOLS],
         terms=[("m", -minus_trace / 2), *entries("T", HESSIAN_MATRIX - m * TANGENTIAL)],
         outputs=[
             ("q", minors),
@@ -201,6 +203,7 @@ def _curvature_from_hessian() -> Formula:
             ("H", m / q),
         ],
     )
+    return replace(formula, outputs=(m, *formula.outputs))
 
 
 CURVATURE_FROM_HESSIAN = _curvature_from_hessian()
@@ -219,8 +222,8 @@ def _in_radii(value: sp.Expr, change: sp.Expr = sp.S.Zero) -> sp.Expr:
 def _offset_curvature() -> Formula:
     """Add R to both radii, and write the result in the curvatures."""
     s = scalar("s")
-    outputs = [("K_offset", K / s), ("H_offset", (H + R * K) / s)]
-    for (_, target), curvature in zip(outputs, (K, H), strict=True):
+    outputs = [("s", AREA_GROWTH), ("K_offset", K / s), ("H_offset", (H + R * K) / s)]
+    for (_, target), curvature in zip(outputs[1:], (K, H), strict=True):
         moved = _in_radii(curvature, R)
         if sp.cancel(_in_radii(substitute(target, {s: AREA_GROWTH})) - moved) != 0:
             raise ArithmeticError(f"{target} is not {moved}")
@@ -229,7 +232,6 @@ def _offset_curvature() -> Formula:
         "Gaussian and mean curvature of the offset at the distance $R$, of use also where a radius "
         "is infinite. $s$ is how much the product of the radii grows: 0 where one becomes 0.",
         inputs=[K, H, R],
-        terms=[("s", AREA_GROWTH)],
         outputs=outputs,
     )
 
@@ -280,6 +282,41 @@ HESSIAN_AT = compose(
     outputs=HESSIAN_SYMBOLS,
 )
 
+GRADIENT_AT_NORMAL = compose(
+    "gradient_at_normal",
+    "The gradient of the support function of a patch at the normal $n$: the point of the patch "
+    "that has this normal.",
+    [FORMS, PARAMETERS, ENVELOPE],
+    source="eqs. (5)-(9)",
+    outputs=[x],
+)
+
+HESSIAN_AT_NORMAL = compose(
+    "hessian_at_normal",
+    "The Hessian of the support function of a patch at the normal $n$.",
+    [FORMS, PARAMETERS, TANGENTS, HESSIAN],
+    source="eqs. (1), (9); Hessian beyond the paper",
+    outputs=HESSIAN_SYMBOLS,
+)
+
+CURVATURE_AT_NORMAL = compose(
+    "curvature_at_normal",
+    "Gaussian and mean curvature of a patch at the point that has the unit normal $n$.",
+    [FORMS, PARAMETERS, TANGENTS, CURVATURE],
+    source="eqs. (1), (9); curvatures beyond the paper",
+    outputs=[K, H],
+)
+
+# What is emitted as loops over arrays, with the inputs that have a row for each evaluation.
+LOOPS = {
+    SUPPORT_FUNCTION: (n,),
+    GRADIENT_AT_NORMAL: (n,),
+    HESSIAN_AT_NORMAL: (n,),
+    CURVATURE_AT_NORMAL: (n,),
+    BRANCH: (n, scalar("u"), scalar("v")),
+    TANGENT_PLANE: (n, x),
+}
+
 FORMULAS = (
     TANGENT_PLANE,
     INTRINSIC_GRADIENT,
@@ -292,4 +329,7 @@ FORMULAS = (
     BRANCH,
     PARAMETERS_AT,
     HESSIAN_AT,
+    GRADIENT_AT_NORMAL,
+    HESSIAN_AT_NORMAL,
+    CURVATURE_AT_NORMAL,
 )

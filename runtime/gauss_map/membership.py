@@ -6,17 +6,16 @@ import math
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...generated import gaussian_image as lines
 from ...generated import patch as formulas
-from ...generated import support as kernels
 from ...generated.vectors import Patch, Vector
 from ..formula_calls import python_function, vector
 from ..integers import integers, integers_by_row, ratio, sign
+from ..kernels import support as kernels
 from ..spline import LARGEST_EXPONENT
 from ..tolerances import ACCURATE, FORM_ERROR, NEAR_SINGULAR_POINT
 
@@ -56,7 +55,7 @@ class PatchNormals:
         exponents = np.frexp(np.abs(normals).max(axis=1, keepdims=True))[1]
         scaled = np.ldexp(normals, -exponents)
         kernels.classify(
-            tuple(chain(*self.vectors[:5])), self._bound, ACCURATE * self._bound,
+            self.vectors, self._bound, ACCURATE * self._bound,
             self._shortest, scaled, kinds, uv,
         )  # fmt: skip
         result = Members(

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...generated.surfaces import CATALOGUE
+from ..kernels.surfaces import positions
 from ..surface import Ends
 
 __all__ = ["Triangulation", "neighbours", "triangulations"]
@@ -148,11 +148,10 @@ def _on_sphere(places: Array, ends: Ends, lengths: Array, axis: int) -> Triangul
         sign * (math.pi / 2.0 if end == "pole" else wide)
         for sign, end in zip((-1.0, 1.0), ends[1 - axis], strict=True)
     ]
-    angles = np.empty_like(places)
-    angles[:, 0] = places[:, axis] * turn
-    angles[:, 1] = latitudes[0] + places[:, 1 - axis] * (latitudes[1] - latitudes[0])
+    longitude = places[:, axis] * turn
+    latitude = latitudes[0] + places[:, 1 - axis] * (latitudes[1] - latitudes[0])
     points = np.empty((len(places), 3))
-    CATALOGUE["sphere"]["kernel"](angles, points, 1.0)
+    positions("sphere")(1.0, longitude, latitude, points)
     if is_mirrored:
         points = np.concatenate([points, -points])
     hull = ConvexHull(points)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...generated import support as kernels
 from .. import compiling  # noqa: F401 - it tells that kernels are compiled
+from ..kernels import support as kernels
 
 __all__ = ["Branches", "Sheets", "curvatures"]
 
@@ -83,7 +83,7 @@ class Sheets:
         """Return the branches at unit normals (S, 3)."""
         mine = normals[self.normal_index]
         support = np.empty(len(mine))
-        kernels.fill_support(mine, self.points, support)
+        kernels.support_values(mine, self.points, support)
         radii, _, _ = curvatures(mine, self.hessian)
         return Branches(
             self.normal_index, mine, support, self.points, self.hessian, radii,
@@ -97,5 +97,5 @@ def curvatures(
     """Return principal radii (k, 2), Gaussian and mean curvature at unit normals (k, 3)."""
     count = len(normals)
     radii, gaussian, mean = np.empty((count, 2)), np.empty(count), np.empty(count)
-    kernels.fill_curvatures(normals, hessian, radii, gaussian, mean)
+    kernels.curvatures_from_hessians(normals, hessian, radii, gaussian, mean)
     return radii, gaussian, mean

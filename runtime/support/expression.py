@@ -8,6 +8,7 @@ from functools import cached_property, lru_cache
 from keyword import iskeyword
 from typing import TYPE_CHECKING, Any
 
+import numba
 import numpy as np
 from numba.core.errors import NumbaError
 from numpy.typing import NDArray
@@ -103,7 +104,7 @@ def _kernel(source: str) -> Callable[..., None]:
     """Compile a module that defines `evaluate`, once in a process."""
     namespace: dict[str, Any] = {"__name__": __name__}  # whose kernel it is
     exec(compile(source, "<support function>", "exec"), namespace)
-    return namespace["evaluate"]
+    return numba.njit(nogil=True, error_model="numpy")(namespace["evaluate"])
 
 
 def _names(normal: Sequence[Any]) -> list[str]:

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...generated import support as kernels
 from ..directions.unit import as_normals
+from ..kernels import support as kernels
 from .branches import Sheets, curvatures
 from .sources import Source
 

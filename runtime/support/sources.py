@@ -4,19 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import chain
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...generated import patch as formulas
-from ...generated import support as kernels
 from ..bins import NormalBins
 from ..errors import InputError
 from ..formula_calls import python_function, vector
 from ..gauss_map.membership import PatchNormals
 from ..gauss_map.patches import checked_control_points
+from ..kernels import support as kernels
 from ..search import fill, find
 from ..spline import Spline
 from .branches import Sheets
@@ -63,7 +62,7 @@ class SplineSource:
         order = np.argsort(hits.normal_index, kind="stable")
         patches, rows = hits.patch_index[order], hits.normal_index[order]
         hessian = np.empty((len(hits), 3, 3))
-        kernels.fill_hessians(
+        kernels.hessians_of_patches(
             self.spline.coefficients,
             self.spline.scale,
             patches,
@@ -116,10 +115,11 @@ class PatchSource:
         count, uv, signs = len(rows), members.uv[rows], members.signs[rows]
         points, hessian = np.empty((count, 3)), np.empty((count, 3, 3))
         gaussian, mean = np.empty(count), np.empty(count)
-        kernels.fill_branches(
-            tuple(chain(*self._normals.vectors[:5])), self.control_points[2], self._normals.scale,
-            normals[rows], uv, points, hessian, gaussian, mean,
-        )  # fmt: skip
+        u, v = np.ascontiguousarray(uv.T)
+        vectors, scale = self._normals.vectors, self._normals.scale
+        kernels.branches_of_patch(vectors, normals[rows], u, v, points, hessian, gaussian, mean)
+        points, hessian = self.control_points[2] + points / scale, hessian / scale
+        gaussian, mean = gaussian * scale * scale, mean * scale
         gaussian = np.where(signs != 0, np.copysign(gaussian, signs), gaussian)
         return Sheets(rows, points, hessian, gaussian, mean, np.zeros(count, dtype=np.int64), uv)
 

@@ -12,14 +12,27 @@ from fractions import Fraction
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 import sympy as sp
 from gaussmap.generated import vectors
-from gaussmap.symbolic import curve, emit, files, formulas, gaussian_image, mesh, patch, surfaces
+from gaussmap.symbolic import (
+    curve,
+    emit,
+    files,
+    formulas,
+    gaussian_image,
+    loops,
+    mesh,
+    patch,
+    support,
+    surfaces,
+)
 from gaussmap.symbolic.__main__ import main
-from gaussmap.symbolic.formula import PlaneVector, VectorSymbol
+from gaussmap.symbolic.formula import Formula, PlaneVector, VectorSymbol, scalar
 from gaussmap.symbolic.positions import position
 
+LOOPS = "support_function.py"
 PYTHON_FILES = sorted(path.name for path in files.GENERATED.glob("*.py"))
 POSITIONS = {name: position(surface) for name, surface in surfaces.CATALOGUE.items()}
 
@@ -47,7 +60,10 @@ def exact_root(value: Fraction) -> Fraction:
 
 
 PI = Fraction(22, 7)  # stands for π
-TYPES = {x.__name__: x for x in (vectors.Arc, vectors.Patch, vectors.PlaneVector, vectors.Vector)}
+TYPES = {
+    x.__name__: x
+    for x in (vectors.Arc, vectors.Hessian, vectors.Patch, vectors.PlaneVector, vectors.Vector)
+}
 EXACT = {"Number": Fraction, "math": SimpleNamespace(sqrt=exact_root, pi=PI), **TYPES}
 
 
@@ -117,7 +133,7 @@ def grouped(formula, inputs: dict[str, Fraction]) -> dict[str, Any]:
         components: list[Any] = [inputs[x.name] for x in symbol.components]
         return kind(*components)
 
-    types = {"patch": vectors.Patch, "arc": vectors.Arc}
+    types = {"patch": vectors.Patch, "arc": vectors.Arc, "hessian": vectors.Hessian}
     result = {}
     for name, symbols in emit.arguments(formula).items():
         if name in types:
@@ -150,7 +166,7 @@ def emitted_functions() -> list[Any]:
     for file in PYTHON_FILES:
         text = (files.GENERATED / file).read_text(encoding="utf-8")
         for node in ast.parse(text).body:
-            if isinstance(node, ast.FunctionDef) and node.name in formulas:
+            if isinstance(node, ast.FunctionDef) and node.name in formulas and file != LOOPS:
                 source = ast.get_source_segment(text, node)
                 cases.append(pytest.param(node.name, source, id=f"{file}:{node.name}"))
     return cases
@@ -165,6 +181,64 @@ def test_generated_functions_are_exact(name, source):
         of_vectors = [*inspect.signature(function).parameters] == [*emit.arguments(formula)]
         result = function(**(grouped(formula, inputs) if of_vectors else inputs))
         assert flat(result) == expected(formula, inputs)
+
+
+def filled(formula, function, inputs: list[dict[str, Any]], over) -> list[list[Any]]:
+    """Run a loop over these inputs, and return its outputs, a list for each row."""
+    rows = [grouped(formula, x) for x in inputs]
+    arguments = emit.arguments(formula)
+    given = [rows[0][x] for x, symbols in arguments.items() if not {*symbols} <= {*over}]
+    looped = [
+        np.array([flat(row[x]) if len(flat(row[x])) > 1 else row[x] for row in rows], dtype=object)
+        for x, symbols in arguments.items()
+        if {*symbols} <= {*over}
+    ]
+    outputs = []
+    for group, symbols in emit.grouped(formula.outputs):
+        shape = (3, 3) if group else (3,) if isinstance(symbols[0], VectorSymbol) else ()
+        outputs.append(np.empty((len(rows), *shape), dtype=object))
+    function(*given, *looped, *outputs)
+    entries = np.triu_indices(3)
+    order = [0, 3, 5, 1, 2, 4]  # xx, yy, zz, xy, xz, yz
+    columns = [
+        x[(slice(None), *entries)][:, order] if x.ndim == 3 else x.reshape(len(rows), -1)
+        for x in outputs
+    ]
+    return np.concatenate(columns, axis=1).tolist()
+
+
+@pytest.mark.parametrize("formula", support.LOOPS, ids=lambda x: x.name)
+def test_loops_over_normals_are_exact(formula):
+    """One patch, and five rows of what the loop is over."""
+    over = support.LOOPS[formula]
+    source = (files.GENERATED / "support_function.py").read_text(encoding="utf-8")
+    function = executed(source, EXACT)[formula.name]
+    looped = {x.name for symbol in over for x in getattr(symbol, "components", (symbol,))}
+    first = exact_inputs(formula, 0)
+    inputs = [
+        first | {x: y for x, y in exact_inputs(formula, seed).items() if x in looped}
+        for seed in range(5)
+    ]
+    assert filled(formula, function, inputs, over) == [expected(formula, x) for x in inputs]
+
+
+@pytest.mark.parametrize("surface", surfaces.CATALOGUE.values(), ids=surfaces.CATALOGUE)
+def test_loops_of_surfaces_are_exact(surface):
+    """Run on symbols, with the functions of SymPy in the place of those of `math`."""
+    formula = POSITIONS[surface.name]
+    source = (files.GENERATED / "surfaces.py").read_text(encoding="utf-8")
+    definition = source[source.index(f"def {surface.name}(") :].partition("\n\n\n")[0]
+    function = executed(definition, {"Number": sp.Rational, "math": sp})[surface.name]
+    inputs = {symbol.name: symbol for symbol in formula.inputs}
+    (row,) = filled(formula, function, [inputs], (surface.u, surface.v))
+    for found, value in zip(row, formula.expanded().values(), strict=True):
+        assert sp.expand(found - value) == 0 or sp.simplify(found - value) == 0
+
+
+def test_a_loop_does_not_share_its_names_with_the_formula():
+    row = Formula.build("f", "", inputs=[scalar("a")], outputs=[("row", 2 * scalar("a"))])
+    with pytest.raises(ValueError, match=r"f and its loop both name \['row'\]"):
+        loops.array_function(row, row.inputs)
 
 
 def test_every_formula_of_a_patch_is_a_function():

@@ -125,7 +125,8 @@ def test_lines_of_latex(name, line):
 @EACH_FORMULA
 def test_vectors_are_bold(formula):
     latex = formula.latex()
-    for symbol in {*formula.inputs, *(x for x, _ in formula.definitions)}:
+    whole = {x for pair in formula.definitions for side in pair for x in side.free_symbols}
+    for symbol in whole:  # and not in components alone
         if isinstance(symbol, VectorSymbol):
             assert latex_name(symbol.name, bold=True) in latex
 

@@ -100,6 +100,7 @@ def test_curvature_from_hessian_against_eigenvalues():
     formula = formulas["curvature_from_hessian"]
     result = {name: v.xreplace(values) for name, v in formula.expanded().items()}
     assert result == {
+        "m": 1,
         "q": -15,
         "S": 16,
         "K": sp.Rational(-1, 15),

@@ -1,0 +1,93 @@
+"""Formulas as loops over arrays: one row for each set of inputs, the formula written out inside.
+
+They are plain Python; `runtime` compiles them. A loop holds all that it computes, so that it can be
+read, and taken away, by itself.
+"""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Collection, Mapping, Sequence
+
+import sympy as sp
+
+from .emit import WIDTH, arguments, assignments, described, grouped, unpacked
+from .formula import Formula, VectorSymbol
+from .simplify import straight_line
+
+__all__ = ["array_function", "row_loop"]
+
+Symbols = Sequence[sp.Symbol]
+
+# What the arrays of some symbols are called; others are called after the symbol.
+ARRAYS = {"n": "normals", "x": "points", "hessian": "hessians"}
+
+
+def array_function(formula: Formula, over: Collection[sp.Symbol]) -> str:
+    """Return a formula as a function of arrays, which fills those of its outputs.
+
+    The inputs in `over` are arrays with a row for each evaluation; the others are what they are to
+    `emit.vector_function`.
+    """
+    given = {x: y for x, y in arguments(formula).items() if not {*y} <= {*over}}
+    inputs = {x: y for x, y in arguments(formula).items() if x not in given}
+    outputs = {g[0] if g else x[0].name: x for g, x in grouped(formula.outputs)}
+    arrays = {_array(name): _shape(name, x) for name, x in (inputs | outputs).items()}
+    body = [
+        *described(formula),
+        "",
+        *textwrap.wrap(f"Arrays: {', '.join(f'{x} {y}' for x, y in arrays.items())}.", WIDTH),
+        '"""',
+        *(line for item in given.items() for line in unpacked(*item)),
+        row_loop(formula, inputs, outputs),
+    ]
+    definition = f"def {formula.name}({', '.join([*given, *arrays])}):\n"
+    return definition + textwrap.indent("\n".join(body), "    ")
+
+
+def row_loop(
+    formula: Formula, inputs: Mapping[str, Symbols], outputs: Mapping[str, Symbols], *more: str
+) -> str:
+    """Return the loop that reads each row of the inputs, computes, and writes that of the outputs.
+
+    Inputs and outputs are named as arguments; `more` are statements after those that read. Raises
+    ValueError if the formula has a name that the loop needs itself.
+    """
+    taken = {"row", *map(_array, inputs), *map(_array, outputs)}
+    names = {x.name for x, _ in straight_line(formula).assignments}
+    if clash := taken & (names | {x.name for x in formula.in_components().inputs}):
+        raise ValueError(f"{formula.name} and its loop both name {sorted(clash)}")
+    lines = [
+        *(f"{x} = {y}" for item in inputs.items() for x, y in _entries(*item)),
+        *more,
+        *assignments(formula),
+        *(f"{y} = {x}" for item in outputs.items() for x, y in _entries(*item)),
+    ]
+    count = f"{_array(next(iter(inputs)))}.shape[0]"
+    return f"for row in range({count}):\n" + textwrap.indent("\n".join(lines), "    ")
+
+
+def _array(argument: str) -> str:
+    return ARRAYS.get(argument, f"{argument}_values")
+
+
+def _entries(argument: str, symbols: Symbols) -> list[tuple[str, str]]:
+    """Return the numbers in an argument by their names, and where they stand in its array."""
+    array = _array(argument)
+    if argument == "hessian":
+        return [
+            (f"H_{''.join(sorted((x, y)))}", f"{array}[row, {i}, {j}]")
+            for i, x in enumerate("xyz")
+            for j, y in enumerate("xyz")
+        ]
+    (symbol,) = symbols
+    if isinstance(symbol, VectorSymbol):
+        return [(x.name, f"{array}[row, {i}]") for i, x in enumerate(symbol.components)]
+    return [(symbol.name, f"{array}[row]")]
+
+
+def _shape(argument: str, symbols: Symbols) -> str:
+    if argument == "hessian":
+        return "(k, 3, 3)"
+    (symbol,) = symbols
+    return f"(k, {len(symbol.components)})" if isinstance(symbol, VectorSymbol) else "(k,)"
