@@ -1,4 +1,4 @@
-"""Every example of the README runs, in the order in which it stands there."""
+"""Every example of the README runs, and its figures are those of the pages in docs/."""
 
 import re
 import shlex
@@ -9,7 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
+ROOT = Path(__file__).parent.parent
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+SAME_MESH = {
+    "**balanced**": "**`samples.mesh()`**",
+    "NumPy, (u,v) grid, closed form": "grid of parameters",
+}
 
 
 def blocks(language: str) -> list[str]:
@@ -43,6 +48,42 @@ def test_command_line(tmp_path: Path) -> None:
 
 
 def test_the_two_commands_are_targets() -> None:
-    makefile = (Path(__file__).parent.parent / "Makefile").read_text(encoding="utf-8")
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
     for line in blocks("console")[0].splitlines():
         assert re.search(rf"^{line.removeprefix('make ')}:", makefile, re.MULTILINE)
+
+
+def tables(page: str) -> list[dict[str, list[list[str]]]]:
+    """Return the rows of each table of a page, the cells after the first by the first one."""
+    found = []
+    for block in re.findall(r"(?:^\|.*\n)+", page, re.MULTILINE):
+        table: dict[str, list[list[str]]] = {}
+        for line in block.splitlines():
+            first, *cells = (x.strip() for x in line.strip("|").split(" | "))
+            table.setdefault(first.strip(), []).append(cells)
+        found.append(table)
+    return found
+
+
+def figures(title: str, surface: int) -> tuple[str, str, str, str]:
+    """Return E, G, mean angle of the mesh and points/s of a row, from the pages in docs/."""
+    quality, performance, meshes = (
+        tables((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8"))
+        for name in ("quality", "performance", "meshes")
+    )
+    mesh = meshes[surface].get(SAME_MESH.get(title, title), [["–"]])[-1][-1]  # of 10,000 vertices
+    if title in quality[1 + surface]:
+        E, G, rate = quality[1 + surface][title][0][6:9]
+    else:
+        (rate, E, G) = (performance[surface][title][0][k] for k in (2, -2, -1))
+    return E, G, mesh, rate
+
+
+def test_figures_are_those_of_the_pages() -> None:
+    (table,) = (x for x in tables(README) if "E / G / M" in x)
+    rows = {title: cells for title, (cells,) in table.items() if not title.startswith((":", "E /"))}
+    assert len(rows) == 8
+    for title, (*surfaces, speed) in rows.items():
+        for k, cell in enumerate(surfaces):
+            assert tuple(cell.replace("*", "").split(" / ")) == figures(title, k)[:3], (title, k)
+        assert speed.replace("*", "") == figures(title, 0)[3], title
