@@ -423,7 +423,11 @@ CATALOGUE = {
         "sentence": "The torus round the z axis, u being the angle round the axis and v the angle round the tube, from its outer equator upwards, with normals pointing out of the tube.",
         "parameters": {
             "major": (1.0, True, "The radius of the circle in the middle of the tube."),
-            "minor": (0.35, True, "The radius of the tube, less than major."),
+            "minor": (
+                0.35,
+                True,
+                "The radius of the tube; from major on, the torus meets itself on the axis, where it has singular points.",
+            ),
         },
         "domain": ((0, 2 * math.pi), (0, 2 * math.pi)),
         "ends": (("wrap", "wrap"), ("wrap", "wrap")),

@@ -28,7 +28,7 @@ __all__ = [
 
 
 def sample(
-    surface: Surface | Spline,
+    surface: Surface | Spline | str,
     count: int | None = None,
     *,
     normals: ArrayLike | None = None,
@@ -103,7 +103,7 @@ def sample(
 
 @in_memory
 def sample_and_normals(
-    surface: Surface | Spline,
+    surface: Surface | Spline | str,
     request: Request,
     *,
     cells: Sequence[int] | None,
@@ -141,7 +141,7 @@ def _by_normals(
 
 
 def sample_many(
-    surfaces: Iterable[Surface | Spline],
+    surfaces: Iterable[Surface | Spline | str],
     count: int | None = None,
     *,
     normals: ArrayLike | None = None,
@@ -181,7 +181,8 @@ def sample_many(
                 progress=False,
             )
         except GaussmapError as error:
-            name = getattr(surface, "name", type(surface).__name__)
+            name = getattr(surface, "name", surface if isinstance(surface, str) else None)
+            name = name or type(surface).__name__
             warnings.warn(
                 f"surface {place} ({name}) is left out: {error}", GaussmapWarning, stacklevel=2
             )

@@ -28,7 +28,7 @@ TRIES = 6
 
 
 def silhouette(
-    surface: Surface | Spline,
+    surface: Surface | Spline | str,
     direction: ArrayLike,
     *,
     count: int = 1000,

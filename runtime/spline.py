@@ -15,6 +15,7 @@ from .errors import InputError, SurfaceError, in_memory, shown
 from .kernels import spline as kernels
 from .ring import Border, Sides, coefficients_with_ring, vertices_with_ring
 from .surface import Domain, Ends, Surface
+from .surfaces import named
 from .threads import over_ranges
 from .tolerances import DATA_ERROR
 
@@ -42,8 +43,11 @@ LARGEST_EXPONENT = 1000
 ROUNDING = 1e-12
 
 
-def spline_of(surface: Surface | Spline, cells: Sequence[int] | None) -> Spline:
-    """Return a spline as it is, or that of a surface; InputError for `cells` beside a spline."""
+def spline_of(surface: Surface | Spline | str, cells: Sequence[int] | None) -> Spline:
+    """Return a spline as it is, or that of a surface or of the name of one.
+
+    Raises InputError for `cells` beside a spline.
+    """
     if isinstance(surface, Spline):
         if cells is not None:
             raise InputError("cells=... is for surfaces; this spline has its cells already.")
@@ -189,7 +193,7 @@ class Spline:
 
 
 @in_memory
-def fit(surface: Surface, cells: Sequence[int] | None = None) -> Spline:
+def fit(surface: Surface | str, cells: Sequence[int] | None = None) -> Spline:
     """Approximate a surface by a C¹ quadratic spline with `cells` = (m, n) cells along u and v.
 
     The quasi-interpolant (paper, Sect. 3.1) is exact on quadratics; the error of positions falls
@@ -200,6 +204,7 @@ def fit(surface: Surface, cells: Sequence[int] | None = None) -> Spline:
     cells than a narrow domain can hold; SurfaceError if the surface cannot be evaluated (see
     `Surface.evaluate`) or does not close where its ends say so.
     """
+    surface = named(surface)
     if not isinstance(surface, Surface):
         raise InputError(f"fit takes a Surface, not {type(surface).__name__}.")
     if cells is None and surface.grid is not None:

@@ -27,7 +27,7 @@ NORMALS_AT_A_TIME = 1 << 20
 
 
 def sample_stream(
-    surface: Surface | Spline,
+    surface: Surface | Spline | str,
     count: int | None = None,
     *,
     normals: ArrayLike | None = None,

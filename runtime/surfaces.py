@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
+import inspect
 import math
+import textwrap
 from collections.abc import Callable
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..generated.surfaces import CATALOGUE as _GENERATED
 from . import compiling  # noqa: F401 - it tells that kernels are compiled
-from .errors import InputError, UnknownNameError, shown
+from .checks import known_name
+from .errors import InputError, shown
 from .kernels.surfaces import positions
 from .surface import Domain, Ends, Surface
 
+if TYPE_CHECKING:
+    from ..generated.surfaces_signatures import *  # noqa: F403  # pyright: ignore[reportMissingModuleSource]
+
 __all__ = ["describe", "names", "surface"]
+
+T = TypeVar("T")
 
 CATALOGUE = cast(dict[str, dict[str, Any]], _GENERATED)
 
@@ -64,19 +72,63 @@ def surface(name: str, /, **parameters: float) -> Surface:
     return Surface(name, evaluate, cast(Domain, domain), cast(Ends, entry["ends"]))
 
 
-def __getattr__(name: str) -> Callable[..., Surface]:
-    """Return the maker of a surface: `torus(minor=0.2)` is `surface("torus", minor=0.2)`."""
-    if name not in CATALOGUE:
+def named(value: T | str) -> T | Surface:
+    """Return what is no text as it is, and for a text the surface of the catalogue of that name.
+
+    Every function that takes a surface calls this first. Raises UnknownNameError for other names.
+    """
+    return surface(value) if isinstance(value, str) else value
+
+
+def _maker(name: str) -> Callable[..., Surface]:
+    """Return the function `gaussmap.surfaces.NAME`, with the signature of the catalogue."""
+    known = CATALOGUE[name]["parameters"]
+
+    def make(*values: float, **named: float) -> Surface:
+        if len(values) > len(known):
+            raise InputError(
+                f"{name} takes at most {len(known)} numbers: {', '.join(known)}; not {len(values)}."
+            )
+        first = dict(zip(known, values, strict=False))
+        for parameter in first:
+            if parameter in named:
+                raise InputError(f"{name} takes one value of {parameter}, not two.")
+        return surface(name, **first, **named)
+
+    arguments = [
+        inspect.Parameter(
+            x, inspect.Parameter.POSITIONAL_OR_KEYWORD, default=default, annotation="float"
+        )
+        for x, (default, *_) in known.items()
+    ]
+    make.__name__ = make.__qualname__ = name
+    make.__signature__ = inspect.Signature(arguments, return_annotation="Surface")  # pyright: ignore[reportFunctionMemberAccess]
+    make.__doc__ = _docstring(name)
+    return make
+
+
+def _docstring(name: str) -> str:
+    """Return the documentation of a maker in the form of numpydoc."""
+    entry = CATALOGUE[name]
+    lines = [textwrap.fill(entry["sentence"], 88), "", "Parameters", "----------"]
+    for parameter, (default, positive, sentence) in entry["parameters"].items():
+        lines.append(f"{parameter} : float, default {default:g}")
+        text = sentence + (" Positive." if positive else "")
+        lines.append(textwrap.fill(text, 84, initial_indent="    ", subsequent_indent="    "))
+    example = f"gm.surfaces.{name}({', '.join(f'{x[0]:g}' for x in entry['parameters'].values())})"
+    lines += ["", "Returns", "-------", "Surface", f"    A surface with the name {name!r}."]
+    lines += ["", "Examples", "--------", ">>> import gaussmap as gm", f">>> {example}.name"]
+    return "\n".join([*lines, repr(name)])
+
+
+globals().update({name: _maker(name) for name in CATALOGUE})
+
+if not TYPE_CHECKING:  # its tools know the names from generated/surfaces_signatures.pyi
+
+    def __getattr__(name: str) -> None:
         raise AttributeError(
             f"gaussmap.surfaces has no {shown(name)}; it has {', '.join(CATALOGUE)}"
         )
-
-    def make(**parameters: float) -> Surface:
-        return surface(name, **parameters)
-
-    make.__name__ = make.__qualname__ = name
-    make.__doc__ = describe(name)
-    return make
 
 
 def __dir__() -> list[str]:
@@ -84,11 +136,7 @@ def __dir__() -> list[str]:
 
 
 def _entry(name: str) -> dict[str, Any]:
-    if not isinstance(name, str) or name not in CATALOGUE:
-        raise UnknownNameError(
-            f"there is no surface {shown(name)}; there are {', '.join(CATALOGUE)}."
-        )
-    return CATALOGUE[name]
+    return CATALOGUE[known_name(name, names(), "surface")]
 
 
 def _checked(name: str, parameter: str, value: object, positive: bool) -> float:

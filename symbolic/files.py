@@ -71,9 +71,10 @@ def derive() -> dict[str, str]:
         "support.py": support_source(),
         "support_function.py": support_function_source(),
         "surfaces.py": surfaces_source(),
+        "surfaces_signatures.pyi": signatures_source(),
         "vectors.py": vectors_source(),
     }
-    modules = {name: formatted(text) for name, text in sources.items()}
+    modules = {name: formatted(text, name) for name, text in sources.items()}
     pages = {"formulas.md": latex.markdown(modules), "formulas.tex": latex.document(modules)}
     return modules | pages
 
@@ -103,12 +104,12 @@ def existing(folder: Path) -> dict[str, str]:
     return {path.name: path.read_text(encoding="utf-8", errors="replace") for path in paths}
 
 
-def formatted(source: str) -> str:
+def formatted(source: str, name: str = "module.py") -> str:
     """Return Python source without unused imports, formatted by the settings of this project.
 
     Raises CalledProcessError if ruff is not installed or the source is no Python.
     """
-    options = ["--config", str(PROJECT), "--no-cache", "--quiet", "-"]
+    options = ["--config", str(PROJECT), "--no-cache", "--quiet", "--stdin-filename", name, "-"]
     for command in (["check", "--fix-only", "--select", "F401,I001"], ["format"]):
         run = subprocess.run(
             [sys.executable, "-m", "ruff", *command, *options],
@@ -340,6 +341,16 @@ def surfaces_source() -> str:
     )
 
 
+def signatures_source() -> str:
+    """Return generated/surfaces_signatures.pyi: how the functions of gaussmap.surfaces are called.
+
+    They are made at run time, from the catalogue; type checkers and completion read this file.
+    """
+    title = "Signatures of gaussmap.surfaces for type checkers and completion; nothing runs this."
+    functions = "\n\n".join(_signature(x) for x in surfaces.CATALOGUE.values())
+    return f"{_docstring(title)}\n\nfrom ..runtime.surface import Surface\n\n{functions}\n"
+
+
 # --- parts of the templates -----------------------------------------------------------------------
 
 
@@ -461,6 +472,14 @@ def _patch_vectors() -> str:
             "call": f"return {call(spline.TRIANGLE)}",
         },
     ).rstrip()
+
+
+def _signature(surface: surfaces.ParametricSurface) -> str:
+    arguments = ", ".join(
+        f"{x.symbol.name}: float = {float(x.default)!r}" for x in surface.parameters
+    )
+    sentence = textwrap.indent(textwrap.fill(f'"""{surface.sentence}', 92), "    ")
+    return f'def {surface.name}({arguments}) -> Surface:\n{sentence}\n    """'
 
 
 def _surface_entry(surface: surfaces.ParametricSurface) -> str:

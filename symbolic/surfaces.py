@@ -144,7 +144,12 @@ TORUS = ParametricSurface(
     v=v,
     parameters=(
         Parameter(major, sp.Rational(1), "The radius of the circle in the middle of the tube."),
-        Parameter(minor, sp.Rational(7, 20), "The radius of the tube, less than major."),
+        Parameter(
+            minor,
+            sp.Rational(7, 20),
+            "The radius of the tube; from major on, the torus meets itself on the axis, where it "
+            "has singular points.",
+        ),
     ),
     domain=(TURN, TURN),
     continuation=(WRAP, WRAP),

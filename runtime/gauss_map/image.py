@@ -166,7 +166,7 @@ class GaussianImages:
 
     @classmethod
     def of_spline(
-        cls, spline: Spline | Surface, cells: Sequence[int] | None = None
+        cls, spline: Spline | Surface | str, cells: Sequence[int] | None = None
     ) -> GaussianImages:
         """Return the Gaussian images of a spline, or of the spline of a surface (see `fit`).
 

@@ -13,6 +13,7 @@ from ..checks import whole_number
 from ..errors import GaussmapWarning, InputError, shown
 from ..spline import Spline, fit, spline_of
 from ..surface import Surface
+from ..surfaces import named
 from .classes import PatchClass, classify_patches
 from .curvature_field import CurvatureField
 from .parabolic_spline import polylines_of
@@ -107,7 +108,7 @@ class ParabolicPoints:
 
 
 def parabolic_points(
-    surface: Surface | Spline,
+    surface: Surface | Spline | str,
     *,
     tolerance: float = 1e-4,
     cells: Sequence[int] | None = None,
@@ -163,7 +164,7 @@ def parabolic_points(
     ParabolicPoints(2 curves, 0 isolated, 0 flat rectangles)
 
     """
-    limit = _tolerance(tolerance)
+    limit, surface = _tolerance(tolerance), named(surface)
     if isinstance(surface, Spline):
         return _of_spline(spline_of(surface, cells), limit)
     if not isinstance(surface, Surface):

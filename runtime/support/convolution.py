@@ -18,6 +18,7 @@ from ..report import sampling_report, warn_of
 from ..samples import Samples, SamplingReport, rows_of
 from ..spline import Spline, short_label, spline_of
 from ..surface import Surface
+from ..surfaces import named
 from ..threads import over_ranges
 from .branches import Branches, curvatures
 from .function import SupportFunction
@@ -71,8 +72,8 @@ class Convolution:
 
 
 def convolve(
-    first: Surface | Spline | SupportFunction,
-    second: Surface | Spline | SupportFunction,
+    first: Surface | Spline | SupportFunction | str,
+    second: Surface | Spline | SupportFunction | str,
     normals: ArrayLike,
     *,
     cells: Sequence[int] | None = None,
@@ -98,6 +99,7 @@ def convolve(
     surface; SurfaceError as `fit` does.
     """
     directions = as_normals(normals)
+    first, second = named(first), named(second)
     if cells is not None and not any(isinstance(x, Surface) for x in (first, second)):
         raise InputError("cells=... is for surfaces, and neither of these is a Surface.")
     one, first_name = _branches(first, directions, cells)

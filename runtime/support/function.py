@@ -14,6 +14,7 @@ from ..directions.unit import as_normals
 from ..errors import InputError
 from ..spline import Spline, spline_of
 from ..surface import Surface
+from ..surfaces import named
 from .branches import Branches, Sheets
 from .operations import Offset, Reversed, Rotated, Scaled, Sum, Translated
 from .sources import PatchSource, Source, SplineSource
@@ -42,7 +43,7 @@ class SupportFunction:
 
     @classmethod
     def of_spline(
-        cls, surface: Spline | Surface, cells: Sequence[int] | None = None
+        cls, surface: Spline | Surface | str, cells: Sequence[int] | None = None
     ) -> SupportFunction:
         """Return the support function of a spline, with the branches of all its patches.
 
@@ -50,6 +51,7 @@ class SupportFunction:
         point with a given normal is one branch, exactly once. Flat and developable patches have no
         support function, and so no branch. Raises InputError for `cells` with a spline.
         """
+        surface = named(surface)
         if not isinstance(surface, Spline | Surface):
             raise InputError(f"of_spline takes a Spline or Surface, not {_kind(surface)}.")
         return cls(SplineSource(spline_of(surface, cells)))

@@ -1,9 +1,15 @@
 """The catalogue at runtime: its compiled surfaces are those of symbolic/, by name and by number."""
 
+import ast
+import inspect
+from pathlib import Path
+from typing import Any
+
 import gaussmap as gm
 import numpy as np
 import pytest
 import sympy as sp
+from gaussmap import generated
 from gaussmap.symbolic.surfaces import CATALOGUE
 
 NAMES = list(CATALOGUE)
@@ -50,7 +56,7 @@ def test_domain_and_ends_are_those_of_the_derivation(name):
 def test_makers(name):
     maker = getattr(gm.surfaces, name)
     assert maker.__name__ == name
-    assert CATALOGUE[name].sentence in maker.__doc__
+    assert CATALOGUE[name].sentence in " ".join(maker.__doc__.split())
     first, second = maker(**changed(name)), gm.surfaces.surface(name, **changed(name))
     assert (first.evaluate(0.5, 0.25) == second.evaluate(0.5, 0.25)).all()
 
@@ -66,19 +72,86 @@ def test_descriptions(name):
         assert line.endswith(parameter.sentence)
 
 
-@pytest.mark.parametrize("name", ["Torus", "", "toruS", " torus", None, 3, ["torus"], ("torus",)])
+UNKNOWN = r"^there is no surface .*(; did you mean torus\?|; there is torus, ellipsoid, .*\.)$"
+TAKERS = [
+    gm.surfaces.surface,
+    gm.surfaces.describe,
+    gm.fit,
+    lambda name: gm.sample(name, 10),
+    lambda name: gm.sample_stream(name, 10),
+    lambda name: gm.silhouette(name, (0, 0, 1)),
+    lambda name: gm.convolve("sphere", name, [[0, 0, 1]]),
+    gm.SupportFunction.of_spline,
+    gm.gauss_map.GaussianImages.of_spline,
+    gm.gauss_map.parabolic_points,
+]
+
+
+@pytest.mark.parametrize("name", ["Torus", "", "toruS", " torus", "torsu"])
 def test_unknown_surfaces(name):
-    for call in (gm.surfaces.surface, gm.surfaces.describe):
-        with pytest.raises(
-            gm.errors.UnknownNameError, match=r"^there is no surface .* there are torus,"
-        ):
+    for call in TAKERS:
+        with pytest.raises(gm.errors.UnknownNameError, match=UNKNOWN):
             call(name)
+    with pytest.warns(
+        gm.GaussmapWarning, match=r"^surface 0 \(.*\) is left out: there is no surface "
+    ):
+        assert list(gm.sample_many([name], 10, progress=False)) == []
+
+
+@pytest.mark.parametrize("name", [None, 3, ["torus"], ("torus",)])
+def test_what_is_no_name(name):
+    for call in TAKERS[:2]:
+        with pytest.raises(gm.errors.UnknownNameError, match=UNKNOWN):
+            call(name)
+
+
+@pytest.mark.compiled
+def test_a_name_stands_for_the_surface():
+    torus, normals = gm.surfaces.torus(), gm.icosphere(2)
+    by_name, by_surface = gm.sample("torus", 50), gm.sample(torus, 50)
+    assert (by_name.points == by_surface.points).all()
+    assert by_name.report == by_surface.report
+    assert (gm.fit("torus").coefficients == gm.fit(torus).coefficients).all()
+    assert [len(x) for x in gm.sample_many(["torus", torus], 50, progress=False)] == [50, 50]
+    assert len(gm.convolve("torus", "sphere", normals)) == len(
+        gm.convolve(torus, "sphere", normals)
+    )
+    assert gm.gauss_map.GaussianImages.of_spline("torus").sheets(normals).sum() > 0
+    assert len(gm.gauss_map.parabolic_points("torus").curves) == 2
+    assert len(gm.silhouette("torus", (0, 1, 1), count=50)) > 0
+    assert sum(map(len, gm.sample_stream("torus", 50))) > 0
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_signatures_are_those_of_the_catalogue(name):
+    """At run time, and in the file that type checkers read."""
+    expected = {p.symbol.name: float(p.default) for p in CATALOGUE[name].parameters}
+    maker = getattr(gm.surfaces, name)
+    found = inspect.signature(maker).parameters
+    assert {x: p.default for x, p in found.items()} == expected
+    assert {p.kind for p in found.values()} == {inspect.Parameter.POSITIONAL_OR_KEYWORD}
+    stub = ast.parse(
+        (Path(generated.__file__).parent / "surfaces_signatures.pyi").read_text("utf-8")
+    )
+    (function,) = (x for x in ast.walk(stub) if isinstance(x, ast.FunctionDef) and x.name == name)
+    assert [x.arg for x in function.args.args] == list(expected)
+    assert [ast.literal_eval(x) for x in function.args.defaults] == list(expected.values())
+    values = changed(name)
+    by_place, by_name = maker(*values.values()), maker(**values)
+    assert (by_place.evaluate(0.5, 0.25) == by_name.evaluate(0.5, 0.25)).all()
+
+
+def test_values_that_are_too_many():
+    with pytest.raises(gm.errors.InputError, match="takes at most 2 numbers: major, minor; not 3"):
+        gm.surfaces.torus(1.0, 0.5, 0.25)  # pyright: ignore[reportCallIssue]
+    with pytest.raises(gm.errors.InputError, match="torus takes one value of major, not two"):
+        gm.surfaces.torus(1.0, major=2.0)  # pyright: ignore[reportCallIssue]
 
 
 def test_unknown_attributes():
     assert not hasattr(gm.surfaces, "donut")
     with pytest.raises(AttributeError, match="has no 'donut'; it has torus, ellipsoid"):
-        _ = gm.surfaces.donut
+        _ = gm.surfaces.donut  # pyright: ignore[reportAttributeAccessIssue]
 
 
 @pytest.mark.parametrize(
@@ -124,7 +197,8 @@ def test_parameters_that_make_no_surface(call):
 def test_numpy_numbers_are_parameters_too():
     reference = gm.surfaces.torus(minor=0.25).evaluate(1.0, 2.0)
     for minor in (np.float32(0.25), np.float64(0.25), np.array(0.25), sp.Rational(1, 4)):
-        assert (gm.surfaces.torus(minor=minor).evaluate(1.0, 2.0) == reference).all()
+        maker: Any = gm.surfaces.torus
+        assert (maker(minor=minor).evaluate(1.0, 2.0) == reference).all()
 
 
 def test_each_surface_keeps_its_own_parameters():

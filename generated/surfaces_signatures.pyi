@@ -1,0 +1,91 @@
+"""Signatures of gaussmap.surfaces for type checkers and completion; nothing runs this.
+
+Written by `make generate` (python -m gaussmap.symbolic): do not edit, change symbolic/ instead.
+SymPy 1.14.0. Passes: common subexpressions of all outputs together, in canonical order;
+temporaries that are used once or are another name with a sign written back. float64, no
+fast-math.
+"""
+
+from ..runtime.surface import Surface
+
+def torus(major: float = 1.0, minor: float = 0.35) -> Surface:
+    """The torus round the z axis, u being the angle round the axis and v the angle round the
+    tube, from its outer equator upwards, with normals pointing out of the tube.
+    """
+
+def ellipsoid(a: float = 1.0, b: float = 0.6, c: float = 0.3) -> Surface:
+    """The whole ellipsoid x²/a² + y²/b² + z²/c² = 1, with the longitude u, the latitude v
+    (angles on the unit sphere that is stretched), poles at z = ±c, and outward normals.
+    """
+
+def ellipsoid_patch(a: float = 1.0, b: float = 0.6, c: float = 0.3) -> Surface:
+    """The belt of the ellipsoid between the latitudes v = ±π/3, so without its poles, with the
+    longitude u and outward normals.
+    """
+
+def sphere(radius: float = 1.0) -> Surface:
+    """The whole sphere round the origin, with the longitude u, the latitude v, poles on the z
+    axis, and outward normals.
+    """
+
+def hyperboloid(a: float = 1.0, b: float = 0.8, c: float = 1.0) -> Surface:
+    """The hyperboloid of one sheet x²/a² + y²/b² − z²/c² = 1, cut off at z = ±c sinh 1, u going
+    round the z axis and v along it, with normals pointing away from the axis.
+    """
+
+def elliptic_paraboloid(a: float = 1.0, b: float = 1.5) -> Surface:
+    """The graph z = x²/a² + y²/b² of x = u and y = v, with upward normals, which point to its
+    inside.
+    """
+
+def hyperbolic_paraboloid(a: float = 1.0, b: float = 1.5) -> Surface:
+    """The saddle z = x²/a² − y²/b², a graph of x = u and y = v with upward normals."""
+
+def monkey_saddle(scale: float = 0.5) -> Surface:
+    """The monkey saddle z = scale (x³ − 3 x y²), a graph of x = u and y = v with upward normals
+    and a flat point at the origin.
+    """
+
+def enneper(scale: float = 1.0) -> Surface:
+    """Enneper's minimal surface, without the self-intersections that it has farther out, in
+    conformal parameters, with its normal at the origin pointing upwards.
+    """
+
+def catenoid(radius: float = 1.0) -> Surface:
+    """The minimal surface √(x² + y²) = radius cosh(z/radius), cut off at z = ±radius, u being
+    the angle round the z axis and v = z/radius, with normals pointing away from the axis.
+    """
+
+def helicoid(pitch: float = 0.5) -> Surface:
+    """One turn of the right-handed helicoid, u being the signed distance from the z axis and v
+    the angle, with normals pointing upwards where u > 0 and downwards where u < 0.
+    """
+
+def moebius_band(radius: float = 1.0, half_width: float = 0.4) -> Surface:
+    """The Möbius band round the z axis, u being the angle round the axis and v running across,
+    upright at u = 0 with its normal there pointing away from the axis, and with the opposite
+    normal after one turn.
+    """
+
+def dupin_cyclide(a: float = 1.0, b: float = 0.96, d: float = 0.5) -> Surface:
+    """The ring cyclide round the ellipse x²/a² + y²/b² = 1, on which spheres of radius d − x
+    √(a² − b²)/a are centred, in lines of curvature u, v, with normals pointing outwards.
+    """
+
+def wavy_graph(amplitude: float = 0.2, frequency: float = 3.0) -> Surface:
+    """The graph z = amplitude sin(frequency x) cos(frequency y) of x = u and y = v, with upward
+    normals.
+    """
+
+def cylinder(radius: float = 1.0, height: float = 2.0) -> Surface:
+    """The circular cylinder round the z axis, u being the angle and v = z/height, with normals
+    pointing away from the axis.
+    """
+
+def cone(bottom: float = 1.0, top: float = 0.5, height: float = 1.0) -> Surface:
+    """The frustum of a circular cone round the z axis, which does not reach the apex, u being
+    the angle and v = z/height, with normals pointing away from the axis.
+    """
+
+def plane(slope_u: float = 0.0, slope_v: float = 0.0) -> Surface:
+    """The plane z = slope_u x + slope_v y, a graph of x = u and y = v with upward normals."""
