@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Mesh", "centred", "scaled"]
 
-# What `sides` is set to that are not given.
+# The default of `sides`: 1 everywhere.
 _ALL_ALIKE: Any = None
 
 
@@ -36,8 +36,8 @@ class Mesh:
     - `uv`: (M, 2) float64, the parameters. They jump where a triangle crosses a seam.
     - `triangles`: (T, 3) int64, rows of vertices, counterclockwise as seen from where the normals
       point; on a one-sided surface that at the first corner.
-    - `sample`: (M,) int64, which sample a vertex is, −1 for points that were added on open borders
-      and at poles.
+    - `sample`: (M,) int64, the number of the sample at a vertex, −1 for points added on open
+      borders and at poles.
     - `name`: label of the surface.
     - `sides`: (T, 3) int64, 1, or −1 where the normal at a corner points to the other side than
       that at the first corner: on a one-sided surface normals change sides somewhere. By default 1.
@@ -186,13 +186,13 @@ class Mesh:
 
 
 def scaled(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return points (k, 3) round the origin and of the size 1 or so: products do not overflow."""
+    """Return points (k, 3) centred and scaled to a size of about 1: products do not overflow."""
     around, scale = centred(points)
     return around * scale
 
 
 def centred(points: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
-    """Return points (k, 3) moved round the origin, and a power of two that makes them about 1."""
+    """Return points (k, 3) centred, and a power of two that scales them to about 1."""
     low, high = points.min(axis=0), points.max(axis=0)
     around = points - (low / 2.0 + high / 2.0)
     return around, scale_to_one(float(np.abs(around).max()))

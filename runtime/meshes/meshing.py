@@ -1,4 +1,4 @@
-"""From samples to a mesh: vertices, triangles between them, and flips that follow the normals."""
+"""From samples to a mesh: vertices, their triangulation, and flips that follow the normals."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def mesh_of(samples: Samples, spline: Spline, angle: float | None) -> Mesh:
     largest = WHOLE if angle is None else _checked_angle(angle)
     if not len(samples):
         raise InputError("there are no samples, and so there is nothing to make a mesh of.")
-    triangulated = Triangulated.of(samples, spline, to_be_whole=angle is None)
+    triangulated = Triangulated.of(samples, spline, must_be_whole=angle is None)
     triangulated.flip_edges()
     mesh = triangulated.mesh(largest)
     if not len(mesh.triangles):
@@ -54,10 +54,10 @@ def _checked_angle(angle: object) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Triangulated:
-    """Samples, and vertices added to them, in a Delaunay triangulation over (u, v).
+    """Samples and added vertices in a Delaunay triangulation of the parameter domain.
 
-    `sides` and `neighbours` (k, 3) are those of the kernel `flip_edges`, which changes them and
-    `triangles` in place.
+    `triangles`, `sides` and `neighbours` (k, 3) are those of `kernels.flips`; `flip_edges` changes
+    them in place.
     """
 
     name: str
@@ -70,19 +70,19 @@ class Triangulated:
     neighbours: Indices
 
     @classmethod
-    def of(cls, samples: Samples, spline: Spline, to_be_whole: bool = True) -> Triangulated:
-        """Triangulate; InputError if that is to be the whole surface and fails."""
+    def of(cls, samples: Samples, spline: Spline, must_be_whole: bool = True) -> Triangulated:
+        """Triangulate; InputError if the whole surface is required and that fails."""
         ends = ends_of(spline)
         vertices = Vertices.of(samples, spline, ends)
-        triangles, sides, beyond = _triangles(vertices, spline, ends, to_be_whole)
+        triangles, sides, adjacent = _triangles(vertices, spline, ends, must_be_whole)
         uv, points, normals = _on_surface(vertices, samples, spline)
-        _complete(normals, triangles, sides)
+        _fill_missing(normals, triangles, sides)
         return cls(
-            spline.name, uv, vertices.sample, points, normals, triangles, sides, beyond
+            spline.name, uv, vertices.sample, points, normals, triangles, sides, adjacent
         )  # fmt: skip
 
     def flip_edges(self) -> int:
-        """Flip edges as long as triangles come nearer to the normals; return how many flips."""
+        """Flip edges until none turns triangles towards the normals; return the number of flips."""
         return flip_edges(
             scaled(self.points),
             self.normals,
@@ -94,7 +94,7 @@ class Triangulated:
         )
 
     def mesh(self, angle: float = WHOLE) -> Mesh:
-        """Return the mesh without triangles that deviate by more than an angle, in degrees.
+        """Return the mesh without triangles that deviate by more than `angle` degrees from normals.
 
         Raises InputError if an edge is then in more than two triangles.
         """
@@ -124,34 +124,35 @@ class Triangulated:
 
 
 def _triangles(
-    vertices: Vertices, spline: Spline, ends: Ends, to_be_whole: bool
+    vertices: Vertices, spline: Spline, ends: Ends, must_be_whole: bool
 ) -> tuple[Indices, Indices, Indices]:
-    """Return triangles, the sides of the surface on which they lie, and their neighbours.
+    """Return triangles (k, 3), their sides of the surface, and their neighbours.
 
-    Raises InputError if there are none, or if they are to be the whole surface and are not: each
-    edge in two of them, or on an open side of the domain, and the Euler characteristic right.
+    Raises InputError if there is no triangulation, or if the whole surface is required and is not
+    triangulated: each edge in two triangles or on an open side of the domain, with the Euler
+    characteristic of the surface.
     """
     found = None
     lengths = _lengths(spline)
-    for triangles, sides in triangulations(vertices.places, vertices.is_free, ends, lengths):
-        beyond, is_closed = neighbours(triangles, ~vertices.is_free)
-        found = triangles, sides, beyond
-        if is_closed and _characteristic(triangles, beyond) == _characteristic_of(ends):
+    for triangles, sides in triangulations(vertices.positions, vertices.is_free, ends, lengths):
+        adjacent, is_closed = neighbours(triangles, ~vertices.is_free)
+        found = triangles, sides, adjacent
+        if is_closed and _characteristic(triangles, adjacent) == _characteristic_of(ends):
             return found
-    if found is None or to_be_whole:
+    if found is None or must_be_whole:
         raise _too_few(len(vertices.sample), spline.name)
     return found
 
 
-def _characteristic(triangles: Indices, beyond: Indices) -> int:
-    """Return the Euler characteristic of triangles with the neighbours `beyond`."""
-    edges = (beyond.size + int(np.count_nonzero(beyond < 0))) // 2
+def _characteristic(triangles: Indices, adjacent: Indices) -> int:
+    """Return the Euler characteristic of triangles with their neighbours."""
+    edges = (adjacent.size + int(np.count_nonzero(adjacent < 0))) // 2
     used = int(np.count_nonzero(np.bincount(triangles.ravel())))
     return used - edges + len(triangles)
 
 
 def _characteristic_of(ends: Ends) -> int:
-    """Return the Euler characteristic of a surface: each pole closes a hole of a band."""
+    """Return the Euler characteristic of a surface; each pole closes a hole of a band."""
     closing = [kinds[0] in ("wrap", "flip") for kinds in ends]
     if all(closing):
         return int(ends[0][0] == ends[1][0] == "flip")  # the projective plane
@@ -167,7 +168,7 @@ def _too_few(count: int, name: str) -> InputError:
 
 
 def _lengths(spline: Spline) -> Array:
-    """Return the mean lengths of a spline along u and along v, 1 where they vanish."""
+    """Return the mean lengths (2,) of a spline along u and along v, 1 where they vanish."""
     inner = spline.coefficients[1:-1, 1:-1] * spline.scale
     steps = [np.linalg.norm(np.diff(inner, axis=axis), axis=2).mean() for axis in (0, 1)]
     lengths = np.array(steps) * spline.cells
@@ -175,7 +176,7 @@ def _lengths(spline: Spline) -> Array:
 
 
 def _on_surface(vertices: Vertices, samples: Samples, spline: Spline) -> tuple[Array, Array, Array]:
-    """Return parameters, points and unit normals of vertices; NaN for normals that lack."""
+    """Return parameters, points and unit normals of vertices; NaN for missing normals."""
     is_sample = vertices.sample >= 0
     own = vertices.sample[is_sample]
     uv = vertices.uv(spline)
@@ -187,16 +188,16 @@ def _on_surface(vertices: Vertices, samples: Samples, spline: Spline) -> tuple[A
     return uv, points, normals
 
 
-def _complete(normals: Array, triangles: Indices, sides: Indices) -> None:
-    """Give vertices without a normal, such as poles, the mean of those round them.
+def _fill_missing(normals: Array, triangles: Indices, sides: Indices) -> None:
+    """Give vertices without a normal, such as poles, the mean of the normals around them.
 
-    It is 0 where there is none either.
+    It is 0 if these are missing, too.
     """
-    lacking = np.asarray(~np.isfinite(normals).all(axis=1))
-    normals[lacking] = 0.0
-    beside = lacking[triangles].any(axis=1)
-    corners, side = triangles[beside], sides[beside, :, None]
+    missing = np.asarray(~np.isfinite(normals).all(axis=1))
+    normals[missing] = 0.0
+    touching = missing[triangles].any(axis=1)
+    corners, side = triangles[touching], sides[touching, :, None]
     sums = np.zeros_like(normals)
     np.add.at(sums, corners, side * (side * normals[corners]).sum(axis=1, keepdims=True))
-    lengths = np.linalg.norm(sums[lacking], axis=1, keepdims=True)
-    normals[lacking] = sums[lacking] / np.where(lengths > 0.0, lengths, 1.0)
+    lengths = np.linalg.norm(sums[missing], axis=1, keepdims=True)
+    normals[missing] = sums[missing] / np.where(lengths > 0.0, lengths, 1.0)

@@ -1,10 +1,11 @@
-"""Triangles between places of a domain, closed where the surface closes.
+"""Delaunay triangulations of points in the parameter domain, across its seams.
 
-Qhull triangulates them where no seam is left. What closes one way is laid round a sphere, with a
-pole as one point and an open end as a circle of latitude; the convex hull is the Delaunay
-triangulation there, and the plane faces inside these circles are left out. A Möbius band is the
-half of a band that is symmetric about the centre. What closes both ways is continued into the
-plane, and one of all copies of each triangle is taken. An open domain is a rectangle.
+Qhull triangulates points of a surface without seams. A domain that is periodic in one parameter is
+mapped to a sphere, a pole to one point and an open end to a circle of latitude; the convex hull is
+the Delaunay triangulation of the sphere, and its plane faces inside these circles are left out. A
+Möbius band is half of a band that is symmetric about the centre. A domain that is periodic in both
+parameters is continued periodically in the plane, and one copy of each triangle is taken. An open
+domain is a rectangle.
 """
 
 from __future__ import annotations
@@ -17,64 +18,65 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kernels.surfaces import positions
+from ..kernels import surfaces as kernels
 from ..surface import Ends
 
 __all__ = ["Triangulation", "neighbours", "triangulations"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
-# Triangles, and for each of their corners 1, or -1 where the copy of the corner is a mirror image.
+# Triangles (k, 3), and for their corners (k, 3) 1, or −1 where the corner is a mirrored copy.
 Triangulation = tuple[Indices, Indices]
 
-# Between which latitudes a circle stands for an open end; at a pole opposite it is the mean.
+# The latitude of an open end: the lowest, that opposite to a pole, and the highest.
 LATITUDES = (math.pi / 18, math.pi / 3, math.pi / 2.25)
-# Places are moved by these parts of their mean distance, one after the other if that is no good:
-# points of a lattice, of which four and more lie on one circle, would be triangulated in another
-# way in each of their copies. Where there are no copies the first displacement is none.
+# Points are displaced by these parts of their mean distance, by the next one if a triangulation
+# fails: four and more points of a lattice on one circle would be triangulated in different ways in
+# their copies. Without copies the first attempt is without displacement.
 DISPLACEMENTS = (1e-6, 1e-3)
-# The height of a circle of latitude is known to this, and that of a free place is farther away.
+# The rounding of the height of a circle of latitude; free points are farther away.
 ROUNDING = 1e-12
-# None gets nearer to an open side than this, or on it.
+# Free points keep this distance from open sides.
 INSIDE = 5e-10
-# The sides of a rectangle are bent outwards by this part of it, so that their points are extreme.
+# The sides of a rectangle are curved outwards by this part of it: their points become extreme.
 BULGE = 0.05
-# A surface that closes both ways is continued by so many mean distances of places, at first; by
-# these parts of a period if that was not enough.
+# A domain that is periodic in both parameters is continued by this number of mean distances of
+# points first, then by these parts of a period.
 MARGIN_IN_STEPS, MARGINS = 30.0, (0.25, 1.0)
 
 
 def triangulations(
-    places: Array, is_free: NDArray[np.bool_], ends: Ends, lengths: Array
+    positions: Array, is_free: NDArray[np.bool_], ends: Ends, lengths: Array
 ) -> Iterator[Triangulation]:
-    """Yield triangulations of places (k, 2) in the unit square, the next one if one is no good.
+    """Yield triangulations of positions (k, 2) in the unit square, one after another if one fails.
 
-    Places that are not free lie on an open side or at a pole, and do not move. `lengths` are those
-    of the surface along u and v. Triangles run counterclockwise where their corner of the smallest
-    number is. A place that coincides with another one may belong to no triangle.
+    Positions that are not free lie on an open side or at a pole, and are not displaced. `ends` are
+    the boundary conditions, `lengths` those of the surface along u and v. Triangles run
+    counterclockwise where their corner of the smallest number is no copy. A position that coincides
+    with another one may belong to no triangle.
     """
     from scipy.spatial import QhullError
 
     closing = [axis for axis in (0, 1) if ends[axis][0] in ("wrap", "flip")]
     has_copies = len(closing) == 2 or any(ends[axis][0] == "flip" for axis in closing)
-    distance = 1.0 / math.sqrt(len(places))
+    distance = 1.0 / math.sqrt(len(positions))
     for displacement, margin in _attempts(has_copies, MARGIN_IN_STEPS * distance):
-        rng = np.random.default_rng(len(places))
-        moved = places + displacement * distance * rng.uniform(-1.0, 1.0, places.shape)
+        rng = np.random.default_rng(len(positions))
+        moved = positions + displacement * distance * rng.uniform(-1.0, 1.0, positions.shape)
         for axis in {0, 1} - set(closing):
             moved[:, axis] = np.clip(moved[:, axis], INSIDE, 1.0 - INSIDE)
-        moved = np.where(is_free[:, None], moved, places)
+        moved = np.where(is_free[:, None], moved, positions)
         with suppress(QhullError):  # fewer points than a triangulation needs, or all in line
             if len(closing) == 2:
                 yield _by_copies(moved, ends, lengths, margin)
             elif closing:
                 yield _on_sphere(moved, ends, lengths, closing[0])
             else:
-                yield _in_rectangle(np.where(is_free[:, None], moved, _bent(moved)) * lengths)
+                yield _in_rectangle(np.where(is_free[:, None], moved, _curved(moved)) * lengths)
 
 
 def _attempts(has_copies: bool, near: float) -> list[tuple[float, float]]:
-    """Return displacements and margins that are tried."""
+    """Return the displacements and margins that are tried."""
     if not has_copies:
         return [(x, 0.0) for x in (0.0, *DISPLACEMENTS)]
     first = [(x, near) for x in DISPLACEMENTS if near < MARGINS[0]]
@@ -82,10 +84,10 @@ def _attempts(has_copies: bool, near: float) -> list[tuple[float, float]]:
 
 
 def neighbours(triangles: Indices, may_end: NDArray[np.bool_]) -> tuple[Indices, bool]:
-    """Return the triangles (k, 3) opposite to the corners, −1 for none, and whether none lacks.
+    """Return the triangles (k, 3) opposite to the corners, −1 for none, and whether all are there.
 
-    None lacks if each edge is in two triangles, or in one between two vertices where the surface
-    `may_end`. Triangles at an edge of three and more are no neighbours.
+    All are there if each edge is in two triangles, or in one between two vertices where the surface
+    `may_end`. Triangles at an edge of three or more are no neighbours.
     """
     pairs = np.sort(triangles[:, [[1, 2], [2, 0], [0, 1]]].reshape(-1, 2), axis=1)
     keys = pairs[:, 0] * len(may_end) + pairs[:, 1]
@@ -93,21 +95,21 @@ def neighbours(triangles: Indices, may_end: NDArray[np.bool_]) -> tuple[Indices,
     starts = np.flatnonzero(np.diff(keys[order], prepend=-1))
     counts = np.diff(starts, append=len(keys))
     first = starts[counts == 2]
-    beyond = np.full(len(keys), -1)
-    beyond[order[first]], beyond[order[first + 1]] = order[first + 1] // 3, order[first] // 3
+    adjacent = np.full(len(keys), -1)
+    adjacent[order[first]], adjacent[order[first + 1]] = order[first + 1] // 3, order[first] // 3
     single = pairs[order[starts[counts == 1]]]
     complete = bool(len(keys) and counts.max() == 2 and may_end[single].all())
-    return beyond.reshape(-1, 3), complete
+    return adjacent.reshape(-1, 3), complete
 
 
 # --- open rectangles ------------------------------------------------------------------------------
 
 
-def _bent(places: Array) -> Array:
-    """Return places on the sides of the unit square, moved outwards by a parabola."""
-    heights = 4.0 * BULGE * places * (1.0 - places)
-    outwards = np.where(places == 0.0, -1.0, np.where(places == 1.0, 1.0, 0.0))
-    return places + outwards * heights[:, ::-1]
+def _curved(positions: Array) -> Array:
+    """Return positions on the sides of the unit square, moved outwards by a parabola."""
+    heights = 4.0 * BULGE * positions * (1.0 - positions)
+    outwards = np.where(positions == 0.0, -1.0, np.where(positions == 1.0, 1.0, 0.0))
+    return positions + outwards * heights[:, ::-1]
 
 
 def _in_rectangle(points: Array) -> Triangulation:
@@ -117,7 +119,7 @@ def _in_rectangle(points: Array) -> Triangulation:
 
 
 def _counterclockwise(points: Array, triangles: NDArray[Any]) -> Indices:
-    """Return triangles of the plane in one orientation."""
+    """Return triangles of the plane, oriented counterclockwise."""
     a, b, c = np.moveaxis(points[triangles], 1, 0)
     is_clockwise = np.linalg.det(np.stack([b - a, c - a], axis=1)) < 0.0
     return _turned(triangles, is_clockwise)
@@ -133,10 +135,10 @@ def _all_in_front(triangles: Indices) -> Triangulation:
     return triangles, np.ones_like(triangles)
 
 
-# --- spheres, disks, bands: what closes one way ---------------------------------------------------
+# --- spheres, disks, bands: periodic in one parameter ---------------------------------------------
 
 
-def _on_sphere(places: Array, ends: Ends, lengths: Array, axis: int) -> Triangulation:
+def _on_sphere(positions: Array, ends: Ends, lengths: Array, axis: int) -> Triangulation:
     from scipy.spatial import ConvexHull
 
     is_mirrored = ends[axis][0] == "flip"
@@ -148,10 +150,10 @@ def _on_sphere(places: Array, ends: Ends, lengths: Array, axis: int) -> Triangul
         sign * (math.pi / 2.0 if end == "pole" else wide)
         for sign, end in zip((-1.0, 1.0), ends[1 - axis], strict=True)
     ]
-    longitude = places[:, axis] * turn
-    latitude = latitudes[0] + places[:, 1 - axis] * (latitudes[1] - latitudes[0])
-    points = np.empty((len(places), 3))
-    positions("sphere")(1.0, longitude, latitude, points)
+    longitude = positions[:, axis] * turn
+    latitude = latitudes[0] + positions[:, 1 - axis] * (latitudes[1] - latitudes[0])
+    points = np.empty((len(positions), 3))
+    kernels.positions("sphere")(1.0, longitude, latitude, points)
     if is_mirrored:
         points = np.concatenate([points, -points])
     hull = ConvexHull(points)
@@ -163,42 +165,43 @@ def _on_sphere(places: Array, ends: Ends, lengths: Array, axis: int) -> Triangul
             off_circle = np.abs(points[:, 2] - math.sin(latitude)) > ROUNDING
             triangles = triangles[off_circle[triangles].any(axis=1)]
     number = np.arange(len(points))
-    return _one_of_each(triangles, number % len(places), len(places), number >= len(places))
+    count = len(positions)
+    return _one_of_each(triangles, number % count, count, number >= count)
 
 
 def _one_of_each(
-    triangles: Indices, place: Indices, count: int, is_mirrored: NDArray[np.bool_]
+    triangles: Indices, original: Indices, count: int, is_mirrored: NDArray[np.bool_]
 ) -> Triangulation:
-    """Return those of all copies whose corner of the smallest number is no copy.
+    """Return one copy of each triangle: the one whose corner of the smallest number is no copy.
 
-    `place` are the numbers of what is copied; the first `count` are no copies. A triangle that has
-    two copies of one place is left out.
+    `original` are the numbers of the originals of points, of which the first `count` are no copies.
+    A triangle with two copies of one point is left out.
     """
-    numbers = place[triangles]
+    numbers = original[triangles]
     first = np.take_along_axis(triangles, numbers.argmin(axis=1)[:, None], axis=1)[:, 0]
     ordered = np.sort(numbers, axis=1)
     chosen = (first < count) & (ordered[:, :-1] < ordered[:, 1:]).all(axis=1)
     return numbers[chosen], np.where(is_mirrored[triangles[chosen]], -1, 1)
 
 
-# --- tori and Klein bottles: what closes both ways ------------------------------------------------
+# --- tori and Klein bottles: periodic in both parameters ------------------------------------------
 
 
-def _by_copies(places: Array, ends: Ends, lengths: Array, margin: float) -> Triangulation:
+def _by_copies(positions: Array, ends: Ends, lengths: Array, margin: float) -> Triangulation:
     from scipy.spatial import Delaunay
 
-    points, place = places, np.arange(len(places))
-    is_mirrored = np.zeros(len(places), dtype=bool)
+    points, original = positions, np.arange(len(positions))
+    is_mirrored = np.zeros(len(positions), dtype=bool)
     for axis in (0, 1):
         flips = ends[axis][0] == "flip"
-        copies = [(points, place, is_mirrored)]
+        copies = [(points, original, is_mirrored)]
         for step, near in ((1.0, points[:, axis] < margin), (-1.0, points[:, axis] > 1.0 - margin)):
             copy = points[near]
             copy[:, axis] += step
             if flips:
                 copy[:, 1 - axis] = 1.0 - copy[:, 1 - axis]
-            copies.append((copy, place[near], is_mirrored[near] ^ flips))
-        points, place, is_mirrored = (np.concatenate(x) for x in zip(*copies, strict=True))
+            copies.append((copy, original[near], is_mirrored[near] ^ flips))
+        points, original, is_mirrored = (np.concatenate(x) for x in zip(*copies, strict=True))
     points = points * lengths
     triangles = _counterclockwise(points, Delaunay(points).simplices)
-    return _one_of_each(triangles, place, len(places), is_mirrored)
+    return _one_of_each(triangles, original, len(positions), is_mirrored)

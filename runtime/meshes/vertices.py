@@ -1,4 +1,4 @@
-"""The vertices of a mesh: samples, points added along open borders, and poles."""
+"""The vertices of a mesh: samples, and points added on open sides of the domain and at poles."""
 
 from __future__ import annotations
 
@@ -25,37 +25,39 @@ __all__ = ["Vertices", "ends_of"]
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-# The spacing of a border follows from the distance of the sample that is the so many nearest.
+# The spacing of points on a side follows from the distance of the k-th nearest sample, with this k.
 NEAREST = 4
-# A border is looked at in so many steps a cell at least, and so many for each sample along it.
+# A side is measured in at least this number of steps per cell, and per sample along it.
 STEPS_A_CELL, STEPS_A_SAMPLE = 16, 4
-# A sample that is nearer to the border than this part of the spacing there has a border point
-# beside it: the angle of a triangle between a sample and two border points must not be flat.
-BESIDE = 0.25
-# Such samples are looked for in this part of the domain.
+# A sample closer to a side than this part of the spacing there gets a point of the side opposite to
+# it: no triangle of a sample and two points of the side must be flat. At a pole, a sample that
+# close stands for the pole.
+CLOSE = 0.25
+# Such samples are searched in this part of the domain.
 DEEPEST = 0.125
-# A sample that is nearer to the border than this part of the domain lies on it.
+# A sample closer to a side than this part of the domain lies on it.
 ON_BORDER = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class Vertices:
-    """Vertices of a mesh: places (k, 2) in the unit square, and the sample of each, or −1.
+    """Vertices of a mesh, by positions (k, 2) in the unit square, the domain scaled to it.
 
-    `is_free` says which do not lie on an open side or at a pole.
+    `sample` (k,) are the numbers of their samples, or −1; `is_free` (k,) says which of them lie
+    neither on an open side nor at a pole.
     """
 
-    places: Array
+    positions: Array
     sample: Indices
     is_free: NDArray[np.bool_]
 
     @classmethod
     def of(cls, samples: Samples, spline: Spline, ends: Ends) -> Vertices:
-        """Take the samples, of those at one place the first, and add open sides and poles."""
-        places = np.clip(spline.in_cells(samples.uv.astype(np.float64)) / spline.cells, 0.0, 1.0)
-        pairs = _unique(places, ends).view(np.complex128)[:, 0]
+        """Take the samples, the first one of those that coincide; add open sides and poles."""
+        positions = np.clip(spline.in_cells(samples.uv.astype(np.float64)) / spline.cells, 0.0, 1.0)
+        pairs = _unique(positions, ends).view(np.complex128)[:, 0]
         sample = np.sort(np.unique(pairs, return_index=True)[1])
-        inner = cls(places[sample], sample, np.ones(len(sample), dtype=bool))
+        inner = cls(positions[sample], sample, np.ones(len(sample), dtype=bool))
         if all(end in ("wrap", "flip") for end, _ in ends):
             return inner
         points = samples.points.astype(np.float64)
@@ -66,29 +68,29 @@ class Vertices:
         return cls.joined([inner, *fixed])
 
     @classmethod
-    def fixed(cls, places: Array, sample: Indices) -> Vertices:
-        """Return vertices that are not free."""
-        return cls(places, sample, np.zeros(len(places), dtype=bool))
+    def fixed(cls, positions: Array, sample: Indices) -> Vertices:
+        """Return vertices on open sides or at poles."""
+        return cls(positions, sample, np.zeros(len(positions), dtype=bool))
 
     @classmethod
     def joined(cls, parts: list[Vertices]) -> Vertices:
         """Return the vertices of all parts."""
-        names = ("places", "sample", "is_free")
+        names = ("positions", "sample", "is_free")
         return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
     def without(self, sample: Indices) -> Vertices:
         """Return these vertices without some samples."""
         kept = ~np.isin(self.sample, sample)
-        return Vertices(self.places[kept], self.sample[kept], self.is_free[kept])
+        return Vertices(self.positions[kept], self.sample[kept], self.is_free[kept])
 
     def uv(self, spline: Spline) -> Array:
-        """Return the parameters of the places."""
+        """Return the parameters (k, 2) of the vertices."""
         low, high = np.array(spline.domain).T
-        return np.where(self.places == 1.0, high, low + self.places * (high - low))
+        return np.where(self.positions == 1.0, high, low + self.positions * (high - low))
 
 
 def ends_of(spline: Spline) -> Ends:
-    """Return what lies beyond the ends of a spline, with a closed side that is one point a pole."""
+    """Return the boundary conditions of a spline; an end that is a single point is a pole."""
     size = float(np.ptp(spline.coefficients, axis=(0, 1)).max())
     found: list[tuple[End, End]] = []
     for axis, ends in enumerate(spline.ends):
@@ -102,9 +104,9 @@ def ends_of(spline: Spline) -> Ends:
     return found[0], found[1]
 
 
-def _unique(places: Array, ends: Ends) -> Array:
-    """Return places that are equal where the points of the surface are: on seams, at poles."""
-    unique = np.ascontiguousarray(places).copy()
+def _unique(positions: Array, ends: Ends) -> Array:
+    """Return positions that are equal where points of the surface are: on seams and at poles."""
+    unique = np.ascontiguousarray(positions).copy()
     for axis in (0, 1):
         for place, end in enumerate(ends[axis]):
             if end == "pole":
@@ -118,33 +120,33 @@ def _unique(places: Array, ends: Ends) -> Array:
 
 
 def _on_side(axis: int, place: int, t: Array) -> Array:
-    """Return places (k, 2) where u (axis 0) or v (axis 1) is at an end, and the other one is t."""
+    """Return positions (k, 2) with u (axis 0) or v (axis 1) at an end and the other at t (k,)."""
     fixed = np.full_like(t, float(place))
     return np.stack([fixed, t] if axis == 0 else [t, fixed], axis=1)
 
 
-def _points(spline: Spline, places: Array) -> Array:
-    """Return the points (k, 3) of a spline at places."""
-    vertices = Vertices.fixed(places, np.empty(0, dtype=np.int64))
+def _points(spline: Spline, positions: Array) -> Array:
+    """Return the points (k, 3) of a spline at positions."""
+    vertices = Vertices.fixed(positions, np.empty(0, dtype=np.int64))
     return spline.evaluate(*vertices.uv(spline).T)
 
 
 def _poles(inner: Vertices, tree: KDTree, spline: Spline, ends: Ends) -> Iterator[Vertices]:
-    """Yield the poles, each one place: a sample that is there, or one of no sample near by."""
+    """Yield the poles: a sample that is there, or a new vertex if no sample is close."""
     for axis, kinds in enumerate(ends):
         for place, end in enumerate(kinds):
             if end == "pole":
-                there = np.abs(inner.places[:, axis] - place) <= ON_BORDER
+                there = np.abs(inner.positions[:, axis] - place) <= ON_BORDER
                 at = _on_side(axis, place, np.zeros(1))
                 point = _points(spline, at)
                 if there.any():
                     yield Vertices.fixed(at, inner.sample[there])
-                elif tree.query(point)[0][0] >= BESIDE * _spacings(tree, point)[0]:
+                elif tree.query(point)[0][0] >= CLOSE * _spacings(tree, point)[0]:
                     yield Vertices.fixed(at, np.array([-1]))
 
 
 def _spacings(tree: KDTree, points: Array) -> Array:
-    """Return how far apart vertices are to be at points (k, 3) where there are no samples."""
+    """Return spacings (k,) of vertices at points (k, 3), from the distances of samples there."""
     nearest = min(NEAREST, tree.n)
     spacings = np.empty(len(points))
     distances = tree.query(points, k=nearest, workers=-1)[0].reshape(len(points), -1)[:, -1]
@@ -158,7 +160,7 @@ def _spacings(tree: KDTree, points: Array) -> Array:
 def _sides(
     inner: Vertices, points: Array, tree: KDTree, spline: Spline, ends: Ends
 ) -> Iterator[Vertices]:
-    """Yield the vertices of each open side, where samples lie on it those.
+    """Yield the vertices of each open side: samples on it, and added points between them.
 
     A corner of the domain belongs to the side that begins there, counterclockwise.
     """
@@ -172,7 +174,7 @@ class _Side:
     """An open side of the domain, where u (axis 0) or v (axis 1) is at its low or high end."""
 
     def __init__(self, spline: Spline, axis: int, place: int, tree: KDTree) -> None:
-        """Measure the side in units of the spacing that its points are to have."""
+        """Measure the side by its length relative to the spacing of its points."""
         self.spline, self.axis, self.place = spline, axis, place
         self.closes = spline.ends[1 - axis][0] != "none"
         steps = STEPS_A_CELL * spline.cells[1 - axis]
@@ -186,7 +188,7 @@ class _Side:
         self.measure = np.concatenate([[0.0], np.cumsum(lengths / middle)])
 
     def vertices(self, inner: Vertices, points: Array) -> Vertices:
-        """Return the vertices of the side: the samples on it, and points between them."""
+        """Return the vertices of the side: the samples on it, and added points between them."""
         total = float(self.measure[-1])
         count = max(round(total), 3 if self.closes else 1) if total > 0.0 else 1
         t = np.interp(total * (np.arange(count + 1) / count), self.measure, self.t)
@@ -209,23 +211,23 @@ class _Side:
         return Vertices.joined([added, own])
 
     def _owned(self, t: Array) -> NDArray[np.bool_]:
-        """Say which positions belong to this side: of an open one but one of its ends."""
+        """Say which parameters t belong to this side: one of its ends belongs to the next one."""
         if self.closes:
             return np.ones(len(t), dtype=bool)
         return t < 1.0 if self.axis + self.place == 1 else t > 0.0
 
     def _near(self, inner: Vertices, points: Array) -> tuple[Indices, Array, NDArray[np.bool_]]:
-        """Return the samples near the side, where along it they are, and which lie on it.
+        """Return the samples close to the side, their parameters t, and which lie on it.
 
-        The nearest one comes last. A sample on a corner is exactly there.
+        The closest one comes last. For a sample at a corner, t is exactly 0 or 1.
         """
-        depth = np.abs(inner.places[:, self.axis] - self.place)
+        depth = np.abs(inner.positions[:, self.axis] - self.place)
         near = np.flatnonzero(depth < DEEPEST)
-        along = inner.places[near, 1 - self.axis]
+        along = inner.positions[near, 1 - self.axis]
         feet = _points(self.spline, _on_side(self.axis, self.place, along))
         gaps = np.linalg.norm(points[inner.sample[near]] - feet, axis=1)
         is_on = depth[near] <= ON_BORDER
-        chosen = is_on | (gaps < BESIDE * np.interp(along, self.t, self.spacings))
+        chosen = is_on | (gaps < CLOSE * np.interp(along, self.t, self.spacings))
         order = np.flatnonzero(chosen)[np.argsort(-depth[near[chosen]], kind="stable")]
         ends = np.rint(along)
         along = np.where(np.abs(along - ends) <= ON_BORDER, ends, along)

@@ -1,4 +1,4 @@
-"""How much of the area of a surface belongs to each of its samples."""
+"""The area of the surface that belongs to each sample."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def area_weights(samples: Samples, angle: float | None) -> Array:
     parts, triangles = _areas(mesh), mesh.triangles
     is_sample = mesh.sample[triangles] >= 0
     number = is_sample.sum(axis=1)
-    # Vertices that were added give their part to the samples at the other corners.
+    # The parts of added vertices go to the samples at the other corners.
     added = np.where(is_sample, 0.0, parts).sum(axis=1) / np.maximum(number, 1)
     shares = np.where(is_sample, parts + added[:, None], 0.0)
     samples_of, parts_of = mesh.sample[triangles[is_sample]], shares[is_sample]
@@ -33,20 +33,20 @@ def area_weights(samples: Samples, angle: float | None) -> Array:
     np.add.at(weights, samples_of, parts_of)
     lost = number == 0
     if lost.any():
-        middles = mesh.vertices[triangles[lost]].mean(axis=1)
-        weights += _nearest(samples.points, middles, parts[lost].sum(axis=1))
+        centroids = mesh.vertices[triangles[lost]].mean(axis=1)
+        weights += _nearest(samples.points, centroids, parts[lost].sum(axis=1))
     return weights
 
 
 def _areas(mesh: Mesh) -> Array:
-    """Return the parts (T, 3) of the area over each triangle that belong to its corners."""
+    """Return the parts (T, 3) of the areas over triangles that belong to their corners."""
     points, scale = centred(mesh.vertices)
     areas = np.empty(mesh.triangles.shape)
     corner_areas(points * scale, mesh.normals, mesh.triangles, mesh.sides, areas)
     return areas / scale / scale
 
 
-def _nearest(points: Array, places: Array, areas: Array) -> Array:
-    """Return the areas of places, summed at the nearest points (N, 3)."""
-    nearest = tree_of(points).query(places)[1]
+def _nearest(points: Array, centroids: Array, areas: Array) -> Array:
+    """Return areas (N,): those at `centroids`, each added to the nearest of points (N, 3)."""
+    nearest = tree_of(points).query(centroids)[1]
     return np.bincount(nearest, areas, minlength=len(points)).astype(np.float64)
