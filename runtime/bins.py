@@ -9,10 +9,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..generated import icosphere
-from ..generated import sampler as kernels
 from .directions.sets import PARTS, PARTS_AT_A_TIME
 from .directions.unit import perpendicular
+from .kernels import bins as kernels
+from .kernels.icosphere import is_icosphere, new_line
+from .kernels.runs import MOST_FREQUENT
 from .threads import over_ranges, thread_count
 
 __all__ = ["NormalBins"]
@@ -39,12 +40,12 @@ class NormalBins:
     def frequency(self) -> int:
         """That of `icosphere` if these are its normals, bit for bit; 0 if they are not."""
         frequency = math.isqrt(max(len(self.normals) - 2, 0) // 10)
-        known = 0 < frequency <= icosphere.MOST_FREQUENT
+        known = 0 < frequency <= MOST_FREQUENT
         if not known or 10 * frequency**2 + 2 != len(self.normals):
             return 0
 
         def work(first: int, last: int) -> bool:
-            return icosphere.is_icosphere(self.normals, frequency, first, last)
+            return is_icosphere(self.normals, frequency, first, last, *new_line())
 
         threads = 1 if len(self.normals) < FEWEST_NORMALS else self.threads
         return frequency if all(over_ranges(work, PARTS, PARTS_AT_A_TIME, threads)) else 0

@@ -10,12 +10,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from ..generated import icosphere
-from ..generated import sampler as kernels
 from .bins import NormalBins
 from .exact import decide
 from .fields import ARRAY_NAMES, FLOAT_NAMES, INDEX_NAMES, new_field
 from .kernels.developable import all_developable
+from .kernels.fill import fill_samples
+from .kernels.runs import LONGEST, SIZE, fill_runs
+from .kernels.scan import scan_in
+from .kernels.search import Bins, Coefficients, Found, search_in
+from .kernels.sort import merge_hits
+from .kernels.tile import STEP, fill_known, new_tile
 from .spline import Spline
 from .threads import over_ranges, thread_count
 
@@ -45,7 +49,7 @@ class Notes:
         """The number of samples up to the end of each note (k,)."""
         if not self.runs:
             return np.arange(1, len(self.rows) + 1)
-        return np.cumsum(self.rows[:, 1] >> icosphere.SIZE & icosphere.LONGEST)
+        return np.cumsum(self.rows[:, 1] >> SIZE & LONGEST)
 
     def __len__(self) -> int:
         """Return the number of samples."""
@@ -68,9 +72,9 @@ class Notes:
             return Notes(self.rows[first:last], self.runs)
         low, high = np.searchsorted(self.ends, (first, last - 1), side="right")
         rows = self.rows[low : high + 1].copy()
-        rows[-1, 1] -= (int(self.ends[high]) - last) << icosphere.SIZE
+        rows[-1, 1] -= (int(self.ends[high]) - last) << SIZE
         skipped = first - (int(self.ends[low - 1]) if low else 0)
-        rows[0, 1] += (skipped << 32) - (skipped << icosphere.SIZE)
+        rows[0, 1] += (skipped << 32) - (skipped << SIZE)
         return Notes(rows, self.runs)
 
 
@@ -181,27 +185,29 @@ class Search:
         return all_developable(spline.coefficients, spline.scale, spline.noise, np.empty((6, 3)))
 
     @cached_property
-    def kernel(self) -> tuple[Callable[..., tuple[int, int]], tuple[Any, ...]]:
-        """What searches patches, and what it is told of the normals."""
+    def coefficients(self) -> Coefficients:
+        """What kernels read of the spline."""
+        spline = self.spline
+        return Coefficients(spline.coefficients, spline.scale, spline.noise, self.border)
+
+    def kernel(self) -> Callable[[int, int, Found], tuple[int, int]]:
+        """Return what searches patches for these normals, with memory of its own."""
         bins = self.bins
         if bins.frequency > 0:
-            return icosphere.scan_patches, (bins.normals, bins.frequency)
-        return kernels.search_patches, (bins.frame, bins.stretch, bins.grid, *bins.sorted)
+            return scan_in(self.coefficients, bins.normals, bins.frequency)
+        ordered = Bins(bins.frame, bins.stretch, bins.grid, *bins.sorted)
+        return search_in(self.coefficients, ordered)
 
     def pairs(self, first: int, last: int) -> list[Pairs]:
         """Return what the patches first, …, last − 1 yield, in one or more parts."""
-        (patches_with, arguments), spline = self.kernel, self.spline
+        search = self.kernel()
         parts, room, begin = [], ROOM, first
         while begin < last:
-            found, doubtful = (np.empty((room, 2), dtype=np.int64) for _ in range(2))
-            bounds, counts = np.empty(room), np.zeros(3, dtype=np.int64)
-            end, needed = patches_with(
-                spline.coefficients, spline.scale, spline.noise, self.border, *arguments,
-                begin, last, found, doubtful, bounds, counts,
-            )  # fmt: skip
-            sure, open_, developable = counts.tolist()
-            rows = found[:sure] if 2 * sure > room else found[:sure].copy()
-            doubts = doubtful[:open_].copy(), bounds[:open_].copy()
+            found = Found.new(room)
+            end, needed = search(begin, last, found)
+            sure, open_, developable = found.counts.tolist()
+            rows = found.certain[:sure] if 2 * sure > room else found.certain[:sure].copy()
+            doubts = found.undecided[:open_].copy(), found.bounds[:open_].copy()
             parts.append(Pairs(end, rows, *doubts, developable))
             # What is left will have about as many, and some more.
             rate = 1.2 * (sure / (end - begin)) if end > begin else 0.0
@@ -264,7 +270,7 @@ def fill(
     for _ in over_ranges(work, len(pieces), 1, threads):
         pass
     if len(hits.exact) and any(name in filled for name in FLOAT_NAMES):
-        kernels.fill_known(
+        fill_known(
             spline.coefficients, spline.scale, bins.normals, spline.frame,
             hits.exact, hits.pairs, hits.local, *arrays[: len(FLOAT_NAMES)],
         )  # fmt: skip
@@ -280,12 +286,16 @@ def fill_notes(
 ) -> None:
     """Fill arrays, in the order of FLOAT_NAMES and INDEX_NAMES, from number `start` on."""
     patches = spline.coefficients, spline.scale
+    tile, indices = new_tile()
     if notes.runs:
-        icosphere.fill_runs(
-            *patches, bins.normals, spline.frame, bins.frequency, notes.rows, start, *arrays
-        )
+        fill_runs(
+            *patches, bins.normals, spline.frame, bins.frequency, notes.rows, start,
+            tile, indices, np.zeros(2 * STEP, np.int64), *arrays,
+        )  # fmt: skip
     else:
-        kernels.fill_samples(*patches, bins.sorted[1], spline.frame, notes.rows, start, *arrays)
+        fill_samples(
+            *patches, bins.sorted[1], spline.frame, notes.rows, start, tile, indices, *arrays
+        )
 
 
 def merged(
@@ -299,7 +309,7 @@ def merged(
         if last > first:
             rows = np.empty((len(part.sure) + last - first, 2), dtype=np.int64)
             places = np.empty(last - first, dtype=np.int64)
-            kernels.merge_pairs(part.sure, decided[first:last], rows, places)
+            merge_hits(part.sure, decided[first:last], rows, places)
             notes = Notes(rows, runs)
             exact.append(start + notes.ends[places] - 1)
         found.append(notes)

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import difflib
-import hashlib
-import math
 import subprocess
 import sys
 import textwrap
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from fractions import Fraction
-from itertools import combinations
 from pathlib import Path
 
 import sympy as sp
@@ -27,31 +24,6 @@ __all__ = ["GENERATED", "derive", "differences", "existing", "write"]
 
 # Enough for coefficients and normals of 340 bits together.
 PRIMES = 24
-# What the search among bins and that among the points of an icosahedron share.
-SCANNED = (
-    "ACCURATE",
-    "TILE",
-    "TILE_STEP",
-    "bound_of_forms",
-    "box_of",
-    "classify",
-    "cone_of_normals",
-    "control_normals",
-    "count_open",
-    "empty",
-    "face_window",
-    "fill_tile",
-    "inner",
-    "is_developable",
-    "largest_tangent",
-    "load_patch",
-    "look_again",
-    "map_net",
-    "new_tile",
-    "patch_vectors",
-    "spans_of_hull",
-    "whole_vectors",
-)
 GENERATED = Path(__file__).parent.parent / "generated"
 PROJECT = GENERATED.parent / "pyproject.toml"
 
@@ -63,11 +35,10 @@ def derive() -> dict[str, str]:
         "curve.py": curve_source(),
         "exact.py": exact_source(),
         "gaussian_image.py": gaussian_image_source(),
-        "icosphere.py": icosphere_source(),
+        "icosahedron.py": icosahedron_source(),
         "mesh.py": mesh_source(),
         "patch.py": patch_source(),
         "spline.py": spline_source(),
-        "sampler.py": sampler_source(),
         "support.py": support_source(),
         "support_function.py": support_function_source(),
         "surfaces.py": surfaces_source(),
@@ -181,51 +152,14 @@ def gaussian_image_source() -> str:
     return mathematics(title, vector_functions(gaussian_image.FORMULAS))
 
 
-def icosphere_source() -> str:
-    """Return generated/icosphere.py: the normals of patches among the points of an icosahedron."""
-    faces, edges = icosahedron.FACES, icosahedron.EDGES
-    sides = [tuple(combinations(face, 2)) for face in faces]
-    owners = [next(k for k, pairs in enumerate(sides) if edge in pairs) for edge in edges]
-    holders = [next(k for k, face in enumerate(faces) if corner in face) for corner in range(12)]
-    bars = [_floats(icosahedron.barycentric(face)) for face in faces]
-    frames = [_floats(icosahedron.frame(face)) for face in faces]
-    corners = ([icosahedron.CORNERS[x] for x in face] for face in faces)
-    lines = [[i, j - i, k - i] for i, j, k in corners]
-    digest = hashlib.sha256(sampler_source().encode()).hexdigest()[:16]
-    arrays = {
-        "LINES": [
-            [[float(part) for x in icosahedron.golden_parts(y) for part in x] for y in line]
-            for line in lines
-        ],
-        "POSITIONS": [[float(x.evalf(40)) for x in corner] for corner in icosahedron.CORNERS],
-        "FACES": faces,
-        "CORNER_PLACES": [
-            (k, *((0, 0), (0, 1), (1, 0))[faces[k].index(corner)])
-            for corner, k in enumerate(holders)
-        ],
-        "EDGE_PLACES": [(k, sides[k].index(edge)) for edge, k in zip(edges, owners, strict=True)],
-        "BARS": bars,
-        "LENGTHS": [[math.hypot(*row) for row in matrix] for matrix in bars],
-        "FRAMES": frames,
-        "STRETCHES": [max(math.hypot(*row) for row in matrix) for matrix in frames],
-    }
-    numbers = {"PHI": icosahedron.PHI, "FACE_RADIUS": icosahedron.face_radius()}
-    constants = [f"{name} = {float(x.evalf(40))!r}" for name, x in numbers.items()]
-    constants += [f"{name} = np.array({x})" for name, x in arrays.items()]
-    return render(
-        "icosphere.py",
-        {
-            "header": header(
-                "Sampling by the points of a refined icosahedron, row by row.",
-                f"\nfrom .sampler import {', '.join(SCANNED)}\n",
-            ),
-            "constants": "\n".join(constants),
-            "digest": f"# sampler.py, digest {digest}: Numba's cache looks at this file alone.",
-            "cone_of_patch": _cone_of_patch(),
-            "linear_forms": block(patch.LINEAR_FORMS_OF_NORMAL),
-            "eliminated_forms": block(patch.ELIMINATED_FORMS),
-        },
+def icosahedron_source() -> str:
+    """Return generated/icosahedron.py: the tables of the icosahedron."""
+    tables = "\n".join(
+        f"{textwrap.fill(comment, 96, initial_indent='# ', subsequent_indent='# ')}\n{name} = "
+        + (repr(table) if isinstance(table, float) else f"np.array({table})")
+        for name, (comment, table) in icosahedron.tables().items()
     )
+    return mathematics("The regular icosahedron: tables of its corners, edges and faces.", tables)
 
 
 def mesh_source() -> str:
@@ -247,39 +181,6 @@ def spline_source() -> str:
         "The C1 quadratic spline: the grid, and the formulas of symbolic/spline.py.",
         f"{_grid_constants()}\n{_triangle_neighbours()}\n{_vertices()}",
         vector_functions(spline.FORMULAS),
-    )
-
-
-def sampler_source() -> str:
-    """Return generated/sampler.py: the loops that find the normals of patches and fill samples."""
-    called = [
-        spline.TRIANGLE,
-        patch.FORMS,
-        patch.ORIENTATION,
-        patch.CONTROL_NORMALS,
-        patch.PARABOLIC_CUBIC,
-    ]
-    return render(
-        "sampler.py",
-        {
-            "header": header("Sampling by normals: which patch has which normal, and where."),
-            "constants": f"{_grid_constants()}\n{_triangle_neighbours()}",
-            "formulas": functions(called),
-            "patch_vectors": _patch_vectors(),
-            "control_normals": _net_of(patch.CONTROL_NORMALS),
-            "cone_of_patch": _cone_of_patch(),
-            "parabolic_cubic": f"cubic = {call(patch.PARABOLIC_CUBIC)}",
-            "tangents": block(patch.TANGENTS),
-            "forms": block(patch.FORMS),
-            "forms_called": f"D, U, V, W = {call(patch.FORMS)}",
-            "parameters": block(patch.PARAMETERS),
-            "sample": block(patch.SAMPLE),
-            "envelope": block(patch.ENVELOPE),
-            "curvature_at": block(patch.CURVATURE_AT),
-            **_tile(),
-            "place_sample": render("place_sample.py", {}).rstrip(),
-            "store_sample": render("store_sample.py", {}).rstrip(),
-        },
     )
 
 
@@ -405,61 +306,6 @@ def _vertices() -> str:
         for s, t in points
     ]
     return f"VERTICES = np.array({places})"
-
-
-def _floats(matrix: sp.Matrix) -> list[list[float]]:
-    """Return a matrix, correctly rounded."""
-    return [[float(x.evalf(40)) for x in matrix.row(k)] for k in range(matrix.rows)]
-
-
-def _net_of(normals: Formula) -> str:
-    """Return the call of a formula of control normals that fills `net` (6, 3)."""
-    net = ", ".join(f"net[{k}, {x}]" for k in range(6) for x in range(3))
-    return f"{net} = {call(normals)}"
-
-
-def _cone_of_patch() -> str:
-    """Return the beginning of a search: the vectors of a patch and the cone of its normals."""
-    return render("cone_of_patch.py", {"control_normals": _net_of(patch.CONTROL_NORMALS)}).rstrip()
-
-
-def _tile() -> dict[str, str]:
-    """Return the parts that write and read the rows of a tile, numbers of samples side by side."""
-    vectors = [x.name for x in spline.TRIANGLE.in_components().outputs]
-    place = {f"centre_{x}": f"mu[i + 1, j + 1, {k}]" for k, x in enumerate("xyz")}
-    place |= {"cell_u": "i + 0.5", "cell_v": "j + 0.5"}
-    place |= {
-        f"{x}_{y}": f"CORNERS[turn, {i}, {j}]"
-        for i, x in enumerate("uv")
-        for j, y in enumerate("st")
-    }
-    normal = {f"n_{x}": f"normals[at, {k}]" for k, x in enumerate("xyz")}
-    points = [f"point_{x}" for x in "xyz"]
-    names = [*normal, *vectors, *place, *points, *"sthKH"]
-
-    def rows(chosen: Iterable[str]) -> dict[str, str]:
-        return {x: f"tile[{names.index(x)} * TILE_STEP + k]" for x in chosen}
-
-    def load(values: Mapping[str, str]) -> str:
-        return "\n".join(f"{name} = {value}" for name, value in values.items())
-
-    def save(chosen: Iterable[str]) -> str:
-        return "\n".join(f"{value} = {name}" for name, value in rows(chosen).items())
-
-    return {
-        "tile_rows": f"TILE_ROWS = {len(names)}",
-        "load_place": load(place),
-        "save_patch": save([*vectors, *place]),
-        "load_normal": load(normal),
-        "save_normal": save(normal),
-        "load_tile": load(rows([*normal, *vectors, *place])),
-        "save_points": save(points),
-        "save_uv": save("st"),
-        "save_support": save("h"),
-        "save_gaussian": save("K"),
-        "save_mean": save("H"),
-        "load_sample": load(rows([*normal, *points, *"sthKH"])).replace("+ k]", "+ row]"),
-    }
 
 
 def _patch_vectors() -> str:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from functools import cache
 from itertools import combinations
+from typing import Any
 
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
@@ -17,6 +19,7 @@ __all__ = [
     "face_radius",
     "frame",
     "golden_parts",
+    "tables",
 ]
 
 PHI = sp.GoldenRatio
@@ -82,3 +85,59 @@ def face_radius() -> sp.Expr:
             )
         )
     )
+
+
+def tables() -> dict[str, tuple[str, Any]]:
+    """Return what algorithms need, by name: a sentence, and numbers correctly rounded."""
+    sides = [tuple(combinations(face, 2)) for face in FACES]
+    owners = [next(k for k, pairs in enumerate(sides) if edge in pairs) for edge in EDGES]
+    holders = [next(k for k, face in enumerate(FACES) if corner in face) for corner in range(12)]
+    coordinates = [_floats(barycentric(face)) for face in FACES]
+    frames = [_floats(frame(face)) for face in FACES]
+    corners = ([CORNERS[x] for x in face] for face in FACES)
+    lines = [[i, j - i, k - i] for i, j, k in corners]
+    return {
+        "PHI": ("The golden ratio φ.", _float(PHI)),
+        "FACE_RADIUS": (
+            "The tangent of the angle between the middle of a face and its corners.",
+            _float(face_radius()),
+        ),
+        "LINES": (
+            "For each face its first corner and the steps from there to the two others: "
+            "x, y, z as a + b φ, each as a, b.",
+            [[[float(y) for x in golden_parts(v) for y in x] for v in line] for line in lines],
+        ),
+        "POSITIONS": ("The corners.", [[_float(x) for x in corner] for corner in CORNERS]),
+        "FACES": ("The numbers of the corners of each face.", FACES),
+        "CORNER_PLACES": (
+            "One face of each corner, and t/ν and s/ν of the corner on it: the points of frequency "
+            "ν on a face are (ν − s − t, s, t).",
+            [
+                (k, *((0, 0), (0, 1), (1, 0))[FACES[k].index(corner)])
+                for corner, k in enumerate(holders)
+            ],
+        ),
+        "EDGE_PLACES": (
+            "One face of each edge, and the side of it: t = 0, s = 0 or s + t = ν.",
+            [(k, sides[k].index(edge)) for edge, k in zip(EDGES, owners, strict=True)],
+        ),
+        "BARYCENTRIC": (
+            "Maps of a normal to α, β, γ, with which the corners of a face are added to give it.",
+            coordinates,
+        ),
+        "LENGTHS": ("The lengths of their rows.", [[*_lengths(x)] for x in coordinates]),
+        "FRAMES": ("Maps of a normal to 2γ − h, 2β − h and h = α + β + γ.", frames),
+        "STRETCHES": ("The largest lengths of their rows.", [max(_lengths(x)) for x in frames]),
+    }
+
+
+def _float(x: sp.Expr) -> float:
+    return float(x.evalf(40))
+
+
+def _floats(matrix: sp.Matrix) -> list[list[float]]:
+    return [[_float(x) for x in matrix.row(k)] for k in range(matrix.rows)]
+
+
+def _lengths(matrix: list[list[float]]) -> list[float]:
+    return [math.hypot(*row) for row in matrix]

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from ...generated import sampler as kernels
 from ..errors import SurfaceError
 from ..fields import FLOAT_NAMES, new_field
+from ..kernels.tile import fill_known
 from ..report import sampling_report
 from ..samples import Samples
 from ..spline import Spline
@@ -252,7 +252,7 @@ def added_fields(cover: Cover, fields: Sequence[str], dtype: DTypeLike) -> dict[
     count, spline, K = len(patch_index), cover.sizing.spline, cover.curvatures[cover.given :]
     filled = {x: new_field(x, count, dtype) for x in FLOAT_NAMES if x in fields}
     here = np.arange(count)
-    kernels.fill_known(
+    fill_known(
         spline.coefficients, spline.scale, cover.points[cover.given :, 3:].copy(), spline.frame,
         here, np.column_stack([patch_index, here]), np.column_stack([uv, K, uv]),
         *(filled.get(x) for x in FLOAT_NAMES),

@@ -7,11 +7,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ...generated import icosphere as icosahedron
+from ...generated.icosahedron import FACE_RADIUS
 from .. import compiling  # noqa: F401 - it tells that kernels are compiled
 from ..checks import whole_number
 from ..errors import InputError, in_memory
 from ..extras import from_extra
+from ..kernels.icosphere import new_line, write_points
 from ..threads import over_ranges
 from .unit import PIECE, as_normals, in_pieces, normalized
 
@@ -46,7 +47,7 @@ def icosphere(frequency: int) -> NDArray[np.float64]:
     normals = np.empty((10 * nu**2 + 2, 3))
 
     def work(first: int, last: int) -> None:
-        icosahedron.write_points(nu, first, last, normals)
+        write_points(nu, first, last, normals, *new_line())
 
     list(over_ranges(work, PARTS, PARTS_AT_A_TIME, 1 if len(normals) < PIECE else None))
     return normals
@@ -58,10 +59,10 @@ def frequency_within(angle: float) -> int:
     Raises InputError if there is none.
     """
     tangent = math.tan(math.radians(angle))
-    if tangent * MOST_FREQUENT < icosahedron.FACE_RADIUS:
-        least = math.degrees(math.atan(icosahedron.FACE_RADIUS / MOST_FREQUENT))
+    if tangent * MOST_FREQUENT < FACE_RADIUS:
+        least = math.degrees(math.atan(FACE_RADIUS / MOST_FREQUENT))
         raise InputError(f"angle must be at least {least:.4f} degrees, not {angle:g}.")
-    return max(1, math.ceil(icosahedron.FACE_RADIUS / tangent))
+    return max(1, math.ceil(FACE_RADIUS / tangent))
 
 
 @in_memory

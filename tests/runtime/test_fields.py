@@ -59,7 +59,7 @@ def test_nothing_is_filled_that_is_not_wanted(monkeypatch):
     def filled(*arguments):
         raise AssertionError("what was decided exactly has its indices already")
 
-    monkeypatch.setattr("gaussmap.generated.sampler.fill_known", filled)
+    monkeypatch.setattr("gaussmap.runtime.search.fill_known", filled)
     assert narrow(("patch_index",)).fields == ("patch_index",)
 
 

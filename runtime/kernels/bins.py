@@ -1,0 +1,110 @@
+"""Bins of directions: the six faces of a cube, each cut into grid × grid squares.
+
+The cube may stand round the directions as a linear map (3, 3), the frame, maps them.
+"""
+
+from __future__ import annotations
+
+from ...generated.vectors import Vector
+from .jit import inline, jit
+from .vectors import row_vector
+
+__all__ = [
+    "count_bins",
+    "cube_face",
+    "mapped",
+    "nearest_bin",
+    "on_face",
+    "place_normals",
+    "start_bins",
+]
+
+
+@inline
+def cube_face(n):
+    """Return the face of the cube that a vector meets, and its coordinates there (in −1 … 1)."""
+    if abs(n.x) >= abs(n.y) and abs(n.x) >= abs(n.z):
+        return (0, n.y / n.x, n.z / n.x) if n.x > 0.0 else (1, n.y / -n.x, n.z / -n.x)
+    if abs(n.y) >= abs(n.z):
+        return (2, n.z / n.y, n.x / n.y) if n.y > 0.0 else (3, n.z / -n.y, n.x / -n.y)
+    return (4, n.x / n.z, n.y / n.z) if n.z > 0.0 else (5, n.x / -n.z, n.y / -n.z)
+
+
+@inline
+def on_face(face, n):
+    """Return a vector in the axes of a face: two coordinates along it, the third towards it."""
+    if face == 0:
+        return n.y, n.z, n.x
+    if face == 1:
+        return n.y, n.z, -n.x
+    if face == 2:
+        return n.z, n.x, n.y
+    if face == 3:
+        return n.z, n.x, -n.y
+    if face == 4:
+        return n.x, n.y, n.z
+    return n.x, n.y, -n.z
+
+
+@inline
+def nearest_bin(position, grid):
+    """Return the bin at a position along an edge of the grid, the first or last beyond its ends."""
+    return min(max(int(position), 0), grid - 1)
+
+
+@inline
+def bin_index(s, grid):
+    """Return the row or column of a face coordinate; monotone, also in rounding."""
+    return nearest_bin((s + 1.0) * (0.5 * grid), grid)
+
+
+@inline
+def mapped(frame, n):
+    """Return a vector as a linear map (3, 3) maps it."""
+    return Vector(
+        frame[0, 0] * n.x + frame[0, 1] * n.y + frame[0, 2] * n.z,
+        frame[1, 0] * n.x + frame[1, 1] * n.y + frame[1, 2] * n.z,
+        frame[2, 0] * n.x + frame[2, 1] * n.y + frame[2, 2] * n.z,
+    )
+
+
+@jit
+def count_bins(normals, frame, grid, first, last, bins, counts):
+    """Write the bins (S) of the normals first, …, last − 1, and how many of them each bin has.
+
+    The bins are those of `frame` for the normals (S, 3).
+    """
+    for b in range(counts.size):
+        counts[b] = 0
+    for k in range(first, last):
+        face, s, t = cube_face(mapped(frame, row_vector(normals, k)))
+        bins[k] = (face * grid + bin_index(t, grid)) * grid + bin_index(s, grid)
+        counts[bins[k]] += 1
+
+
+@jit
+def start_bins(counts, starts):
+    """Write where each bin starts; counts (ranges, bins) become the places of the ranges in it."""
+    start = 0
+    for b in range(counts.shape[1]):
+        starts[b] = start
+        for part in range(counts.shape[0]):
+            count = counts[part, b]
+            counts[part, b] = start
+            start += count
+    starts[counts.shape[1]] = start
+
+
+@jit
+def place_normals(normals, bins, first, last, places, ordered):
+    """Sort the normals first, …, last − 1 by bins: a counting sort, stable in each bin.
+
+    ordered[starts[b]:starts[b + 1]] become those of bin b. `places` are those of this range in each
+    bin. The rows of ordered (S, 4) are a normal (as it is) and its number.
+    """
+    for k in range(first, last):
+        at = places[bins[k]]
+        places[bins[k]] += 1
+        for axis in range(3):
+            ordered[at, axis] = normals[k, axis]
+        ordered[at, 3] = k

@@ -1,0 +1,117 @@
+"""Whether a patch has a normal: by the signs of its forms, as far as they are certain.
+
+A normal is one of the patch where U, V, W have one sign (Sect. 3.2), which is that of D. A code
+says what is known of it: NO, YES, or UNDECIDED where rounding leaves it open.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ...generated.patch import forms, parameters, tangents
+from ...generated.spline import NEIGHBOURS
+from ...generated.vectors import Vector
+from ..tolerances import ACCURATE, FORM_ERROR
+from .cone import tangent_bounds
+from .jit import inline, loop
+from .vectors import dot
+
+__all__ = ["NO", "UNDECIDED", "YES", "bound_of_forms", "classify", "count_undecided", "look_again"]
+
+# They have a type: Numba compiles functions once for each literal number that they are called with.
+NO, YES, UNDECIDED = np.int8(0), np.int8(1), np.int8(2)
+
+
+@loop
+def bound_of_forms(mu, i, j, turn, scale, noise, border, axis, sine, patch):
+    """Return the error of U, V, W of a patch; the components of its normals bound it too.
+
+    The normals lie in the cone round the axis (3), if its sine is not infinite. On an open side of
+    the domain (`border` (4) says which are) the error includes the rounding of coordinates,
+    `noise`.
+    """
+    n = Vector(1.0, 1.0, 1.0)  # a little more does no harm
+    if sine < math.inf:
+        n = Vector(abs(axis[0]) + sine, abs(axis[1]) + sine, abs(axis[2]) + sine)
+    form = dot(n, tangent_bounds(patch))
+    error = FORM_ERROR * scale * dot(n, largest_differences(mu, i + 1, j + 1, turn))
+    if (
+        (turn == 0 and j == 0 and border[0])
+        or (turn == 1 and i == mu.shape[0] - 3 and border[1])
+        or (turn == 2 and j == mu.shape[1] - 3 and border[2])
+        or (turn == 3 and i == 0 and border[3])
+    ):
+        error += noise
+    return 32.0 * error * (form + error)
+
+
+@inline
+def largest_differences(mu, i, j, turn):
+    """Return the largest differences, by component, of a coefficient and those around it."""
+    s, t, w = 0.0, 0.0, 0.0
+    for k in range(9):
+        p = i + NEIGHBOURS[turn, k, 0]
+        q = j + NEIGHBOURS[turn, k, 1]
+        s = max(s, abs(mu[p, q, 0] - mu[i, j, 0]))
+        t = max(t, abs(mu[p, q, 1] - mu[i, j, 1]))
+        w = max(w, abs(mu[p, q, 2] - mu[i, j, 2]))
+    return Vector(s, t, w)
+
+
+@loop
+def classify(patch, axis, sine, bound, x, y, z, codes, count):
+    """Write the codes of normals x, y, z (…): whether a patch has them.
+
+    `bound` is the error of the forms. The normals of the patch lie in the cone with the sine round
+    the axis, if that is not infinite. The loop has no branches, so that it runs on vectors.
+    """
+    least = ACCURATE * bound
+    lowest = 0.0 if sine < math.inf else -math.inf
+    widest = sine * sine
+    r = Vector(axis[0], axis[1], axis[2])
+    for k in range(count):
+        n = Vector(x[k], y[k], z[k])
+        D, U, V, W = forms(patch, n)
+        low = U if U < V else V
+        low = low if low < W else W
+        high = U if U > V else V
+        high = high if high > W else W
+        s = n.y * r.z - n.z * r.y
+        t = n.z * r.x - n.x * r.z
+        w = n.x * r.y - n.y * r.x
+        apart = (s * s + t * t + w * w > widest) | (n.x * r.x + n.y * r.y + n.z * r.z < lowest)
+        outside = (low < -bound) & (high > bound)
+        sure = ((low > bound) | (high < -bound)) & (abs(D) > least)
+        codes[k] = NO if outside | apart else YES if sure else UNDECIDED
+
+
+@loop
+def look_again(patch, x, y, z, codes, count):
+    """Compare the normals of a wide cone that a patch has with the normal at their parameters.
+
+    The forms are even in n: they do not tell a normal from its opposite, which a cone does.
+    """
+    for k in range(count):
+        if codes[k] != YES:
+            continue
+        n = Vector(x[k], y[k], z[k])
+        D, U, V, _ = forms(patch, n)
+        u, v = parameters(D, U, V)
+        _, _, N = tangents(patch, u, v)
+        towards = dot(n, N)
+        size = abs(N.x) + abs(N.y) + abs(N.z)
+        if not (abs(towards) > 0.25 * size and size > 0.0):
+            codes[k] = UNDECIDED
+        elif towards < 0.0:
+            codes[k] = NO
+
+
+@inline
+def count_undecided(codes, count):
+    """Return how many codes are UNDECIDED."""
+    found = 0
+    for k in range(count):
+        found += codes[k] == UNDECIDED
+    return found

@@ -1,0 +1,282 @@
+"""Which patch of a spline has which points of an icosphere: face by face, row by row.
+
+The points of a face lie on a lattice in its plane, where the linear forms of a patch are linear in
+row and column: normals that are clearly in or out need not be computed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...generated.icosahedron import FACES, PHI, POSITIONS
+from ...generated.patch import eliminated_forms, linear_forms
+from ...generated.vectors import Vector
+from ..tolerances import ACCURATE, LATTICE_ERROR
+from .classify import (
+    NO,
+    UNDECIDED,
+    YES,
+    bound_of_forms,
+    classify,
+    count_undecided,
+    look_again,
+)
+from .developable import is_developable
+from .icosphere import ONE, ZERO, write_line
+from .jit import inline, jit, loop
+from .patch import patch_vectors, place_of
+from .rows import FaceMemory, border_points, count_points, points_inside
+from .runs import store_border, store_runs, store_undecided
+from .search import FEW, Coefficients, Found
+from .tile import STEP, TILE
+from .vectors import dot, row_vector
+from .windows import Cone, load_cone, whole_vectors
+
+__all__ = ["scan_in"]
+
+# The square of the length of the corners of the icosahedron.
+SQUARE = 1.0 + PHI * PHI
+
+
+class LatticeMemory(NamedTuple):
+    """Memory for the linear forms on a face (3, 6), and for normals that are looked at again."""
+
+    forms: NDArray[np.float64]
+    tile: NDArray[np.float64]
+    places: NDArray[np.int64]
+    codes: NDArray[np.int8]
+
+    @classmethod
+    def new(cls) -> LatticeMemory:
+        """Return new memory."""
+        return cls(
+            np.empty((3, 6)),
+            np.zeros(3 * STEP),
+            np.empty(2 * STEP, np.int64),
+            np.empty(STEP, np.int8),
+        )
+
+
+class LatticeCandidates(NamedTuple):
+    """Memory for the points that a patch may have: numbers, rows and columns, codes and changes."""
+
+    numbers: NDArray[np.int64]
+    s: NDArray[np.float64]
+    t: NDArray[np.float64]
+    codes: NDArray[np.int8]
+    marks: NDArray[np.int8]
+    words: NDArray[np.int64]
+
+    @classmethod
+    def new(cls, count: int, frequency: int) -> LatticeCandidates:
+        """Return memory for so many points, in so many rows."""
+        size = count + frequency + 64
+        marks = np.zeros((size + 7) // 8 * 8, np.int8)
+        return cls(
+            np.empty(size, np.int64),
+            np.empty(size),
+            np.empty(size),
+            np.zeros(size, np.int8),
+            marks,
+            marks.view(np.int64),
+        )
+
+    def room(self, frequency: int) -> int:
+        """Return how many points there is room for."""
+        return self.s.size - frequency - 64
+
+
+def scan_in(
+    spline: Coefficients, normals: NDArray[np.float64], frequency: int
+) -> Callable[[int, int, Found], tuple[int, int]]:
+    """Return a function that calls `scan_patches`, with the memory that this needs."""
+    cone, faces, memory = Cone.new(), FaceMemory.new(frequency), LatticeMemory.new()
+    candidates = LatticeCandidates.new(FEW, frequency)
+
+    def scan(first: int, last: int, found: Found) -> tuple[int, int]:
+        nonlocal candidates
+        while True:
+            first, needed = scan_patches(
+                spline, normals, frequency, first, last, found, cone, faces, memory, candidates
+            )
+            if needed <= candidates.room(frequency):
+                return first, needed
+            candidates = LatticeCandidates.new(2 * needed, frequency)
+
+    return scan
+
+
+@jit
+def scan_patches(
+    spline, normals, frequency, first_patch, last_patch, found, cone, faces, memory, candidates
+):
+    """Find the points of an icosphere that are normals of patches, in ascending order for each.
+
+    As `search_patches`, for the points (S, 3) of frequency ν; what is found are packed runs.
+    """
+    mu, scale, noise, border = spline
+    columns = mu.shape[1] - 2
+    certain, undecided, bounds, counts = found
+    numbers, s, t, codes, marks, words = candidates
+    for number in range(first_patch, last_patch):
+        i, j, turn = place_of(number, columns)
+        patch = patch_vectors(mu, i + 1, j + 1, turn, scale)
+        sine = load_cone(patch, cone)
+        face_count, total, at_border = count_points(cone, sine, frequency, faces)
+        if total > 0 and (
+            counts[0] + total + 1 > certain.shape[0]
+            or counts[1] + total + 1 > undecided.shape[0]
+            or total + frequency + 64 > s.size
+        ):
+            return number, total + 1
+        counts[2] += is_developable(patch, cone.net, noise)
+        if total == 0:
+            continue
+        bound = bound_of_forms(mu, i, j, turn, scale, noise, border, cone.axis, sine, patch)
+        before = counts[1]
+        if at_border:
+            count = border_points(faces, frequency, numbers)
+            classify_border(patch, cone.axis, sine, bound, normals, numbers, count, memory, codes)
+            store_border(codes, numbers, count, number, certain, undecided, counts)
+        for k in range(face_count):
+            face = faces.met[k]
+            count = points_inside(face, faces, frequency, s, t)
+            forms_on_face(patch, cone.axis, sine, face, frequency, memory.forms)
+            open_ = classify_points(
+                memory.forms, bound if sine < math.inf else math.inf, frequency, s, t, count, codes
+            )
+            if open_ > 0:
+                classify_again(
+                    patch, cone.axis, sine, bound, face, frequency, s, t, count, memory, codes
+                )
+                counts[1] = store_undecided(
+                    face, frequency, s, t, count, codes, number, undecided, counts[1]
+                )
+            counts[0] = store_runs(
+                face,
+                frequency,
+                s,
+                t,
+                count,
+                codes,
+                marks,
+                words,
+                numbers,
+                number,
+                certain,
+                counts[0],
+            )
+        for k in range(before, counts[1]):
+            bounds[k] = bound
+    return last_patch, 0
+
+
+@loop
+def forms_on_face(patch, axis, sine, face, frequency, forms):
+    """Write the linear forms (3, 6): at the point (0, 0) of a face, and their steps by row, column.
+
+    A, B, C, P, Q and the height along the axis, which is 1 without a cone.
+    """
+    r = Vector(axis[0], axis[1], axis[2])
+    corner = row_vector(POSITIONS, FACES[face, 0])
+    for k in range(3):
+        n, factor = corner, frequency
+        if k > 0:
+            other = row_vector(POSITIONS, FACES[face, k])
+            n, factor = Vector(other.x - corner.x, other.y - corner.y, other.z - corner.z), 1
+        A, B, C, P, Q = linear_forms(patch, n)
+        forms[k, 0] = A * factor
+        forms[k, 1] = B * factor
+        forms[k, 2] = C * factor
+        forms[k, 3] = P * factor
+        forms[k, 4] = Q * factor
+        forms[k, 5] = factor * dot(n, r)
+    if sine == math.inf:
+        forms[0, 5], forms[1, 5], forms[2, 5] = 1.0, 0.0, 0.0
+
+
+@loop
+def classify_points(forms, bound, frequency, s, t, count, codes):
+    """Write the codes of the points of a face, as `classify` does; return how many are undecided.
+
+    Their normals are not normalized and their forms have other errors: what is certain is so by
+    more than twice the bound. Where the column is NaN the code is NO.
+    """
+    largest = 0.0
+    for k in range(5):
+        steps = max(abs(forms[1, k]), abs(forms[2, k]))
+        largest = max(largest, abs(forms[0, k]) + frequency * steps)
+    error = LATTICE_ERROR * largest * largest
+    bound = 2.0 * bound * SQUARE * frequency * frequency
+    least = ACCURATE * bound + error
+    bound += error
+    A_0, B_0, C_0, P_0, Q_0, height_0 = row_of_forms(forms, 0)
+    A_s, B_s, C_s, P_s, Q_s, height_s = row_of_forms(forms, 1)
+    A_t, B_t, C_t, P_t, Q_t, height_t = row_of_forms(forms, 2)
+    for k in range(whole_vectors(count + 1)):
+        p, q = s[k], t[k]
+        A = A_0 + p * A_s + q * A_t
+        B = B_0 + p * B_s + q * B_t
+        C = C_0 + p * C_s + q * C_t
+        P = P_0 + p * P_s + q * P_t
+        Q = Q_0 + p * Q_s + q * Q_t
+        height = height_0 + p * height_s + q * height_t
+        D, U, V, W = eliminated_forms(A, B, C, P, Q)
+        low = U if U < V else V
+        low = low if low < W else W
+        high = U if U > V else V
+        high = high if high > W else W
+        outside = ((low < -bound) & (high > bound)) | (not (height > 0.0))
+        sure = ((low > bound) | (high < -bound)) & (abs(D) > least)
+        codes[k] = NO if outside else YES if sure else UNDECIDED
+    return count_undecided(codes, count)
+
+
+@inline
+def row_of_forms(forms, k):
+    """Return one row of the linear forms on a face."""
+    return forms[k, 0], forms[k, 1], forms[k, 2], forms[k, 3], forms[k, 4], forms[k, 5]
+
+
+@loop
+def classify_again(patch, axis, sine, bound, face, frequency, s, t, count, memory, codes):
+    """Classify the undecided points of a face by their normals."""
+    k = 0
+    while k < count:
+        size = 0
+        while codes[k + size] == UNDECIDED and size < TILE:
+            size += 1
+        if size > 0:
+            write_line(
+                face, frequency, int(s[k]), int(t[k]), ZERO, ONE, size, memory.places, memory.tile
+            )
+            classify_tile(patch, axis, sine, bound, memory, codes, k, size)
+        k += max(size, 1)
+
+
+@loop
+def classify_border(patch, axis, sine, bound, normals, numbers, count, memory, codes):
+    """Write the codes of the normals of some numbers."""
+    for begin in range(0, count, TILE):
+        size = min(TILE, count - begin)
+        for k in range(size):
+            for x in range(3):
+                memory.tile[x * STEP + k] = normals[numbers[begin + k], x]
+        classify_tile(patch, axis, sine, bound, memory, codes, begin, size)
+
+
+@loop
+def classify_tile(patch, axis, sine, bound, memory, codes, first, size):
+    """Write the codes of the normals of a tile from codes[first] on; see `classify`."""
+    _, x, _, found = memory
+    y, z = x[STEP:], x[2 * STEP :]
+    classify(patch, axis, sine, bound, x, y, z, found, whole_vectors(size))
+    if sine == math.inf:
+        look_again(patch, x, y, z, found, size)
+    for k in range(size):
+        codes[first + k] = found[k]

@@ -1,0 +1,293 @@
+"""Which patch of a spline has which of the normals in bins.
+
+For each patch: the cone of its normals, the bins that the cone may meet, the normals in these bins,
+and the signs of the forms of the patch at each.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...generated.vectors import Vector
+from .bins import on_face
+from .classify import UNDECIDED, YES, bound_of_forms, classify, count_undecided, look_again
+from .developable import is_developable
+from .jit import inline, jit, loop
+from .patch import patch_vectors, place_of
+from .sort import pack_hits, store_sorted
+from .windows import (
+    VECTOR,
+    Cone,
+    face_window,
+    load_cone,
+    map_cone,
+    set_empty,
+    spans_of_hull,
+    whole_vectors,
+)
+
+__all__ = ["Bins", "Coefficients", "Found", "search_in"]
+
+# A unit vector on a face of the cube is 1/√3 high; one in a cone at most this times its sine less
+# high than its axis.
+FACE_HEIGHT, SLOPE = 0.577, 1.1
+# Windows with more rows and columns than this are cut to the hull inside.
+SMALL_WINDOW = 3
+# Rows of bins are one square high. It has a type: a literal number is compiled for itself.
+ROW_HEIGHT = np.int64(1)
+# Room for so many candidates at first.
+FEW = 1 << 10
+
+
+class Coefficients(NamedTuple):
+    """What a search reads of a spline.
+
+    Coefficients mu (m, n, 3) with their ring, the scale that brings them to about 1, the rounding
+    of the scaled coordinates, and which sides of the domain are open (4).
+    """
+
+    mu: NDArray[np.float64]
+    scale: float
+    noise: float
+    border: NDArray[np.bool_]
+
+
+class Bins(NamedTuple):
+    """Normals in the order of bins: `starts` of these, `normals` (S, 4) with their numbers.
+
+    The bins are those of `frame`, of norm `stretch`, with `grid` squares along an edge.
+    """
+
+    frame: NDArray[np.float64]
+    stretch: float
+    grid: int
+    starts: NDArray[np.int64]
+    normals: NDArray[np.float64]
+
+
+class Found(NamedTuple):
+    """What a search finds: rows (…, 2) of patch and packed hit, certain and undecided.
+
+    `bounds` (…) are the errors of the forms of undecided ones. `counts` (3) are the numbers of
+    both, and that of the developable patches.
+    """
+
+    certain: NDArray[np.int64]
+    undecided: NDArray[np.int64]
+    bounds: NDArray[np.float64]
+    counts: NDArray[np.int64]
+
+    @classmethod
+    def new(cls, room: int) -> Found:
+        """Return memory for so many hits of each kind."""
+        return cls(
+            np.empty((room, 2), np.int64),
+            np.empty((room, 2), np.int64),
+            np.empty(room),
+            np.zeros(3, np.int64),
+        )
+
+
+class BinMemory(NamedTuple):
+    """Memory for the bins that a cone may meet: windows of the faces, and rows of bins."""
+
+    windows: NDArray[np.int64]
+    hulls: NDArray[np.float64]
+    errors: NDArray[np.float64]
+    sizes: NDArray[np.int64]
+    rows: NDArray[np.int64]
+    low: NDArray[np.float64]
+    high: NDArray[np.float64]
+
+    @classmethod
+    def new(cls, grid: int) -> BinMemory:
+        """Return memory for bins with `grid` squares along an edge."""
+        return cls(
+            np.empty((6, 4), np.int64),
+            np.empty((6, 12, 2)),
+            np.empty(6),
+            np.empty(6, np.int64),
+            np.empty((6 * grid, 2), np.int64),
+            np.empty(grid + VECTOR),
+            np.empty(grid + VECTOR),
+        )
+
+
+class Candidates(NamedTuple):
+    """Memory for the normals that a patch may have."""
+
+    places: NDArray[np.int64]
+    numbers: NDArray[np.float64]
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    z: NDArray[np.float64]
+    codes: NDArray[np.int8]
+    hits: NDArray[np.int64]
+    scratch: NDArray[np.int64]
+    digits: NDArray[np.int64]
+
+    @classmethod
+    def new(cls, count: int) -> Candidates:
+        """Return memory for so many normals."""
+        size = count + VECTOR
+        return cls(
+            np.empty(size, np.int64),
+            np.empty(size),
+            *(np.ones(size) for _ in range(3)),
+            np.empty(size, np.int8),
+            np.empty(size, np.int64),
+            np.empty(size, np.int64),
+            np.empty(size + 1, np.int64),
+        )
+
+    @property
+    def room(self) -> int:
+        """How many normals there is room for."""
+        return self.x.size - VECTOR
+
+
+def search_in(spline: Coefficients, bins: Bins) -> Callable[[int, int, Found], tuple[int, int]]:
+    """Return a function that calls `search_patches`, with the memory that this needs."""
+    cone, memory, candidates = Cone.new(), BinMemory.new(bins.grid), Candidates.new(FEW)
+
+    def search(first: int, last: int, found: Found) -> tuple[int, int]:
+        nonlocal candidates
+        while True:
+            first, needed = search_patches(
+                spline, bins, first, last, found, cone, memory, candidates
+            )
+            if needed <= candidates.room:
+                return first, needed
+            candidates = Candidates.new(2 * needed)
+
+    return search
+
+
+@jit
+def search_patches(spline, bins, first, last, found, cone, memory, candidates):
+    """Find the normals of the patches first, …, last − 1, in ascending order for each patch.
+
+    Returns the patch before which it stopped for lack of room, and the number of normals for which
+    that needs room.
+    """
+    mu, scale, noise, border = spline
+    columns = mu.shape[1] - 2
+    certain, undecided, bounds, counts = found
+    places, numbers, x, y, z, codes, hits, scratch, digits = candidates
+    for number in range(first, last):
+        i, j, turn = place_of(number, columns)
+        patch = patch_vectors(mu, i + 1, j + 1, turn, scale)
+        sine = load_cone(patch, cone)
+        total = count_normals(bins, cone, sine, memory)
+        if (
+            counts[0] + total > certain.shape[0]
+            or counts[1] + total > undecided.shape[0]
+            or total + VECTOR > x.size
+        ):
+            return number, total
+        counts[2] += is_developable(patch, cone.net, noise)
+        if total == 0:
+            continue
+        size = rows_of_bins(bins.grid, bins.starts, memory)
+        count = gather(memory.rows, size, bins.normals, places, numbers, x, y, z)
+        bound = bound_of_forms(mu, i, j, turn, scale, noise, border, cone.axis, sine, patch)
+        classify(patch, cone.axis, sine, bound, x, y, z, codes, whole_vectors(count))
+        if sine == math.inf:
+            look_again(patch, x, y, z, codes, count)
+        chosen = pack_hits(codes, YES, numbers, places, hits, count)
+        counts[0] = store_sorted(hits, chosen, scratch, digits, number, certain, counts[0])
+        if count_undecided(codes, count) > 0:
+            chosen = pack_hits(codes, UNDECIDED, numbers, places, hits, count)
+            for k in range(chosen):
+                bounds[counts[1] + k] = bound
+            counts[1] = store_sorted(hits, chosen, scratch, digits, number, undecided, counts[1])
+    return last, 0
+
+
+@loop
+def count_normals(bins, cone, sine, memory):
+    """Write the windows of the faces that a cone may meet; return how many normals are in them."""
+    frame, stretch, grid, starts, _ = bins
+    windows, hulls, errors, sizes, _, _, _ = memory
+    axis = Vector(cone.axis[0], cone.axis[1], cone.axis[2])
+    map_cone(cone, frame, stretch)
+    total = 0
+    for face in range(6):
+        window = windows[face]
+        set_empty(window)
+        if starts[face * grid * grid] == starts[(face + 1) * grid * grid]:
+            continue
+        _, _, height = on_face(face, axis)
+        if stretch == 1.0 and height + SLOPE * sine < FACE_HEIGHT:
+            continue
+        errors[face], sizes[face] = face_window(
+            cone.shown, cone.angles, sine < math.inf, face, grid, window, hulls[face]
+        )
+        total += count_window(window, face, grid, starts)
+    return total
+
+
+@inline
+def count_window(window, face, grid, starts):
+    """Return the number of normals in a window."""
+    total = 0
+    if window[1] >= window[0]:
+        for row in range(window[2], window[3] + 1):
+            base = (face * grid + row) * grid
+            total += starts[base + window[1] + 1] - starts[base + window[0]]
+    return total
+
+
+@loop
+def rows_of_bins(grid, starts, memory):
+    """Write where rows of bins that a cone may meet begin and end; return how many there are."""
+    windows, hulls, errors, sizes, rows, low, high = memory
+    count = 0
+    for face in range(6):
+        window, error = windows[face], errors[face]
+        left, right, below, above = window[0], window[1], window[2], window[3]
+        cut = right > left + SMALL_WINDOW and above > below + SMALL_WINDOW and error < math.inf
+        if cut:
+            spans_of_hull(hulls[face], sizes[face], error, ROW_HEIGHT, below, above, low, high)
+        for row in range(below, above + 1):
+            begin, end = left, right
+            if cut:
+                least = max(low[row - below] - error, left)
+                most = min(high[row - below] + error, right + 1.0)
+                if least > most:
+                    continue
+                begin, end = int(least), min(int(most), right)
+            base = (face * grid + row) * grid
+            if begin <= end:
+                rows[count, 0] = starts[base + begin]
+                rows[count, 1] = starts[base + end + 1]
+                count += 1
+    return count
+
+
+@loop
+def gather(rows, size, normals, places, numbers, x, y, z):
+    """Copy the normals of rows of bins, their places and numbers; return how many there are."""
+    prefetched = 0.0
+    for row in range(size):
+        # The memory of all rows is asked for at once, and not waited for one by one.
+        for k in range(rows[row, 0], rows[row, 1], 2):
+            prefetched += normals[np.uint64(k), 0]
+    count = 0
+    for row in range(size):
+        begin = rows[row, 0]
+        for k in range(rows[row, 1] - begin):
+            at, place = np.uint64(count + k), np.uint64(begin + k)
+            places[at] = begin + k
+            x[at] = normals[place, 0]
+            y[at] = normals[place, 1]
+            z[at] = normals[place, 2]
+            numbers[at] = normals[place, 3]
+        count += rows[row, 1] - begin
+    x[count] = prefetched  # else the compiler drops it; sums of integers it makes slower
+    return count

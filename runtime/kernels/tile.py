@@ -1,0 +1,219 @@
+"""A tile: samples computed side by side, in rows of an array that loops without branches run along.
+
+The rows hold the normal, the vectors of the patch and its place, and what is computed from them.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...generated.patch import curvature_at, envelope, sample, tangents
+from ...generated.spline import CORNERS, SCALE
+from ...generated.vectors import Patch, Vector
+from .jit import inline, jit, loop
+from .patch import patch_vectors, place_of, vector_at
+from .vectors import dot, length, row_vector, set_row
+from .windows import VECTOR, whole_vectors
+
+__all__ = ["NORMAL", "STEP", "TILE", "fill_known", "fill_tile", "load_patch", "new_tile", "put"]
+
+# Samples are computed so many at a time, then stored. Rows of a tile have room for some more.
+TILE = 64
+STEP = TILE + VECTOR
+# The first rows of the parts of a tile, and how many rows there are.
+NORMAL, PATCH, PLACE, POINT, UV, SUPPORT, GAUSSIAN, MEAN, ROWS = 0, 3, 21, 30, 33, 35, 36, 37, 38
+
+
+class Place(NamedTuple):
+    """Where a patch is: centre and number of its cell, and its corners u = 1, v = 1 in the cell."""
+
+    centre: Vector
+    cell_u: float
+    cell_v: float
+    u_s: float
+    u_t: float
+    v_s: float
+    v_t: float
+
+
+def new_tile() -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Return the rows of a tile, one after the other, and two rows for indices."""
+    return np.zeros(ROWS * STEP), np.zeros(2 * STEP, np.int64)
+
+
+@inline
+def vector_in(tile, row, k):
+    """Return vector k in three rows of a tile."""
+    return Vector(tile[row * STEP + k], tile[(row + 1) * STEP + k], tile[(row + 2) * STEP + k])
+
+
+@inline
+def put(tile, row, k, v):
+    """Write vector k to three rows of a tile."""
+    tile[row * STEP + k] = v.x
+    tile[(row + 1) * STEP + k] = v.y
+    tile[(row + 2) * STEP + k] = v.z
+
+
+@inline
+def place_in(mu, i, j, turn):
+    """Return where a patch is."""
+    return Place(
+        vector_at(mu, i + 1, j + 1),
+        i + 0.5,
+        j + 0.5,
+        CORNERS[turn, 0, 0],
+        CORNERS[turn, 0, 1],
+        CORNERS[turn, 1, 0],
+        CORNERS[turn, 1, 1],
+    )
+
+
+@loop
+def load_patch(mu, number, scale, tile, start, end):
+    """Write a patch for the samples start, …, end − 1 of a tile, and up to VECTOR − 1 more."""
+    i, j, turn = place_of(number, mu.shape[1] - 2)
+    patch = patch_vectors(mu, i + 1, j + 1, turn, scale)
+    place = place_in(mu, i, j, turn)
+    tile = tile[start:]
+    for k in range(whole_vectors(end - start)):  # from 0, so that no sign is checked
+        put(tile, PATCH, k, patch.a)
+        put(tile, PATCH + 3, k, patch.b)
+        put(tile, PATCH + 6, k, patch.c)
+        put(tile, PATCH + 9, k, patch.d)
+        put(tile, PATCH + 12, k, patch.e)
+        put(tile, PATCH + 15, k, patch.p)
+        put(tile, PLACE, k, place.centre)
+        tile[(PLACE + 3) * STEP + k] = place.cell_u
+        tile[(PLACE + 4) * STEP + k] = place.cell_v
+        tile[(PLACE + 5) * STEP + k] = place.u_s
+        tile[(PLACE + 6) * STEP + k] = place.u_t
+        tile[(PLACE + 7) * STEP + k] = place.v_s
+        tile[(PLACE + 8) * STEP + k] = place.v_t
+
+
+@inline
+def on_surface(place, frame, size, n, u, v, x, K, H):
+    """Return point, parameters, support and curvatures of a sample in the unit of the surface."""
+    unit = 1.0 / size
+    point = Vector(
+        place.centre.x + x.x * unit, place.centre.y + x.y * unit, place.centre.z + x.z * unit
+    )
+    s = frame[0] + frame[2] * (place.cell_u + u * place.u_s + v * place.v_s)
+    t = frame[1] + frame[3] * (place.cell_v + u * place.u_t + v * place.v_t)
+    return point, s, t, dot(n, point), K * size * size, H * size
+
+
+@loop
+def evaluate_tile(tile, count, frame, size, points, uv, support, gaussian, mean):
+    """Evaluate `count` samples of a tile; the loop has no branches, so that it runs on vectors.
+
+    Of the last five is asked only whether they are None, and so not wanted: no branch is left of
+    it.
+    """
+    frame = (frame[0], frame[1], frame[2], frame[3])
+    for k in range(count):
+        n = vector_in(tile, NORMAL, k)
+        patch = Patch(
+            vector_in(tile, PATCH, k),
+            vector_in(tile, PATCH + 3, k),
+            vector_in(tile, PATCH + 6, k),
+            vector_in(tile, PATCH + 9, k),
+            vector_in(tile, PATCH + 12, k),
+            vector_in(tile, PATCH + 15, k),
+        )
+        place = Place(
+            vector_in(tile, PLACE, k),
+            tile[(PLACE + 3) * STEP + k],
+            tile[(PLACE + 4) * STEP + k],
+            tile[(PLACE + 5) * STEP + k],
+            tile[(PLACE + 6) * STEP + k],
+            tile[(PLACE + 7) * STEP + k],
+            tile[(PLACE + 8) * STEP + k],
+        )
+        u, v, x, _, K, H = sample(patch, n)
+        point, s, t, h, K, H = on_surface(place, frame, size, n, u, v, x, K, H)
+        if points is not None:
+            put(tile, POINT, k, point)
+        if uv is not None:
+            tile[UV * STEP + k] = s
+            tile[(UV + 1) * STEP + k] = t
+        if support is not None:
+            tile[SUPPORT * STEP + k] = h
+        if gaussian is not None:
+            tile[GAUSSIAN * STEP + k] = K
+        if mean is not None:
+            tile[MEAN * STEP + k] = H
+
+
+@inline
+def store(k, point, n, s, t, h, K, H, points, directions, uv, support, gaussian, mean):
+    """Write what is wanted of sample k."""
+    if points is not None:
+        set_row(points, k, point)
+    if directions is not None:
+        set_row(directions, k, n)
+    if uv is not None:
+        uv[k, 0] = s
+        uv[k, 1] = t
+    if support is not None:
+        support[k] = h
+    if gaussian is not None:
+        gaussian[k] = K
+    if mean is not None:
+        mean[k] = H
+
+
+@loop
+def fill_tile(
+    tile, indices, count, start, scale, frame,
+    points, directions, uv, support, gaussian, mean, normal_index, patch_index,
+):  # fmt: skip
+    """Evaluate and store `count` samples of a tile, from number `start` on."""
+    # Vectors are filled with a few samples more: they are not stored.
+    full = whole_vectors(count)
+    evaluate_tile(tile, full, frame, SCALE * scale, points, uv, support, gaussian, mean)
+    for row in range(count):
+        k = np.uint64(start + row)  # unsigned, so that no sign is checked
+        store(
+            k, vector_in(tile, POINT, row), vector_in(tile, NORMAL, row),
+            tile[UV * STEP + row], tile[(UV + 1) * STEP + row], tile[SUPPORT * STEP + row],
+            tile[GAUSSIAN * STEP + row], tile[MEAN * STEP + row],
+            points, directions, uv, support, gaussian, mean,
+        )  # fmt: skip
+        if normal_index is not None:
+            normal_index[k] = indices[row]
+        if patch_index is not None:
+            patch_index[k] = indices[STEP + row]
+
+
+@jit
+def fill_known(
+    mu, scale, normals, frame, which, pairs, local,
+    points, directions, uv, support, gaussian, mean,
+):  # fmt: skip
+    """Fill the samples which[0], which[1], … at known parameters; see `fill_samples`.
+
+    pairs (k, 2) are their patches and the numbers of their normals. local (k, 5) holds u, v, the
+    sign of K, and the parameters at which the curvatures are taken: u, v themselves but at a
+    singular point.
+    """
+    columns = mu.shape[1] - 2
+    for row in range(which.size):
+        i, j, turn = place_of(pairs[row, 0], columns)
+        patch = patch_vectors(mu, i + 1, j + 1, turn, scale)
+        u, v = local[row, 3], local[row, 4]
+        _, _, N = tangents(patch, u, v)
+        size = length(N)
+        K, H = curvature_at(patch, Vector(N.x / size, N.y / size, N.z / size), u, v)
+        K = math.copysign(K, local[row, 2])
+        u, v = local[row, 0], local[row, 1]
+        n = row_vector(normals, pairs[row, 1])
+        x = envelope(patch, u, v)
+        place = place_in(mu, i, j, turn)
+        point, s, t, h, K, H = on_surface(place, frame, SCALE * scale, n, u, v, x, K, H)
+        store(which[row], point, n, s, t, h, K, H, points, directions, uv, support, gaussian, mean)
