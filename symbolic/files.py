@@ -14,7 +14,7 @@ import sympy as sp
 
 from . import curve, gaussian_image, icosahedron, latex, mesh, patch, spline, support, surfaces
 from .double_double import double_double_function
-from .emit import block, call, functions, named_tuples, render, vector_functions
+from .emit import call, functions, named_tuples, render, vector_functions
 from .formula import Formula
 from .loops import array_function
 from .positions import position
@@ -306,18 +306,6 @@ def _vertices() -> str:
         for s, t in points
     ]
     return f"VERTICES = np.array({places})"
-
-
-def _patch_vectors() -> str:
-    """Return a function that loads the differences of the coefficients and calls `triangle`."""
-    difference = "scale * (mu[{place}, {x}] - mu[i, j, {x}])"
-    return render(
-        "patch_vectors.py",
-        {
-            "load_differences": _load(spline.TRIANGLE, difference),
-            "call": f"return {call(spline.TRIANGLE)}",
-        },
-    ).rstrip()
 
 
 def _signature(surface: surfaces.ParametricSurface) -> str:

@@ -171,19 +171,9 @@ def test_each_block_of_a_kernel_is_listed(path):
     ("name", "kernels"),
     [
         # in a loop of its own, in one of a larger formula, in another function
-        (
-            "forms",
-            "sampler.py: forms, classify, evaluate_tile (in sample); "
-            "called by search_patches, all_developable, is_developable, look_again, fill_samples, "
-            "fill_tile",
-        ),
-        (
-            "curvature",
-            "sampler.py: evaluate_tile (in sample), fill_known (in curvature_at); "
-            "called by fill_samples, fill_tile",
-        ),
+        ("curvature", "patch.py: curvature, sample, curvature_at"),
         ("forms", "patch.py: forms, support_function, sample"),
-        ("sample", "sampler.py: evaluate_tile; called by fill_samples, fill_tile"),
+        ("sample", "patch.py: sample"),
         # by calls, at once and through others
         ("measure", "patch.py: measure"),
         ("triangle", "spline.py: triangle"),

@@ -224,9 +224,8 @@ def test_entries_name_source_inputs_and_operations(formula):
 @pytest.mark.parametrize(
     ("name", "kernels"),
     [
-        ("curvature", "`sampler.py`: `evaluate_tile` (in `sample`), `fill_known` (in "
-         "`curvature_at`), called by `fill_samples`"),
-        ("forms", "`patch.py`: `forms`, `support_function`, `sample`; `sampler.py`"),
+        ("curvature", "`patch.py`: `curvature`, `sample`, `curvature_at`"),
+        ("forms", "`patch.py`: `forms`, `support_function`, `sample`"),
         ("boundary_arc", "`gaussian_image.py`: `boundary_arc`."),
         ("coefficient_from_centres", "`spline.py`: `coefficient_from_centres`."),
         ("torus", "`surfaces.py`: `torus`."),
