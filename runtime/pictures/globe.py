@@ -1,4 +1,4 @@
-"""The unit sphere in a picture: a translucent globe, and the side from which it is seen."""
+"""The unit sphere in a picture: a translucent globe, and the direction of view."""
 
 from __future__ import annotations
 
@@ -50,10 +50,10 @@ def draw_globe(axes: Axes, view: NDArray[np.float64]) -> None:
 
 
 def view_of(normals: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the rows right, up, and towards a viewer who sees most of the normals.
+    """Return the rows (3, 3) right, up, and towards a viewer who sees most of the normals.
 
     That is the viewer of `view()`, turned towards the mean normal, the further the more the
-    normals agree.
+    normals are concentrated.
     """
     old = view()
     mean = normals.mean(axis=0)

@@ -34,7 +34,7 @@ __all__ = ["SUFFIXES", "check_target", "plot", "plot_samples"]
 
 SUFFIXES = (".png", ".pdf", ".svg")
 
-# The layout, in inches: the middles of both halves, and how much room their contents have.
+# The layout, in inches: the centres of both halves, and the size of their contents.
 WIDTH, HEIGHT, MIDDLE, TITLES, LEGENDS = 9.0, 4.9, 2.45, 4.17, 0.56
 LEFT, ROOM_WIDTH, ROOM_HEIGHT = 2.4, 4.1, 3.1
 RIGHT, RADIUS = 6.8, 1.35
@@ -60,8 +60,8 @@ def plot(
 ) -> Samples:
     """Sample a surface, draw it with its samples to a .png, .pdf or .svg file, return the samples.
 
-    The other arguments are those of `sample`. Raises what `sample` and `plot_samples` raise; what
-    is wrong with the path is known before any work is done.
+    The other arguments are those of `sample`. Raises what `sample` and `plot_samples` raise; the
+    path is checked before any work is done.
     """
     check_target(path)
     spline = spline_of(surface, cells)
@@ -76,19 +76,19 @@ def plot(
 def plot_samples(
     samples: Samples, spline: Spline, normals: ArrayLike, path: str | os.PathLike[str]
 ) -> None:
-    """Draw samples of a spline, and the normals that were asked, to a .png, .pdf or .svg file.
+    """Draw samples of a spline, and the prescribed normals, to a .png, .pdf or .svg file.
 
-    On the left are the samples that the surface does not hide, coloured by Gaussian curvature. On
-    the right is the unit sphere with the normals, seen from the same side or, if they point into
-    similar directions, more from theirs. A surface whose height is very small or large against its
-    width is drawn with other heights, and the axis says so.
+    On the left are the visible samples, coloured by Gaussian curvature. On the right is the unit
+    sphere with the normals, seen from the same direction, or turned towards their mean if they are
+    concentrated. The heights of a surface that are very small or large relative to its width are
+    rescaled, and the label of the axis gives the factor.
 
     Raises UnknownNameError for another suffix, FileError if the file cannot be written, InputError
     if the samples do not belong to the normals, and MissingExtraError if matplotlib is not
     installed.
     """
     check_target(path)
-    alone = len(samples) > 0 and np.size(normals) == 0  # of samples that no normal gave
+    alone = len(samples) > 0 and np.size(normals) == 0  # no prescribed normals
     directions = samples.normals[:0] if alone else as_normals(normals)
     if len(samples) and int(samples.normal_index.max()) >= len(directions):
         raise InputError("the samples do not belong to these normals: there are too few normals.")
@@ -98,7 +98,7 @@ def plot_samples(
 
     suffix = Path(path).suffix.lower()
     undated = {".png": {}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}[suffix]
-    # From matplotlib's defaults: a picture does not depend on the settings of who makes it.
+    # From matplotlib's defaults, so that a picture does not depend on the user's settings.
     with (
         matplotlib.style.context(["default", STYLE]),
         warnings.catch_warnings(),
@@ -117,18 +117,18 @@ def plot_samples(
 
 
 def check_target(path: str | os.PathLike[str]) -> None:
-    """Raise now what `plot_samples` would raise later: for its path, or for lack of matplotlib."""
+    """Raise what `plot_samples` would raise later, for its path or if matplotlib is missing."""
     paths.check_target(path, SUFFIXES)
     check_extra("matplotlib", "plot", "a picture")
 
 
 def _write(figure: Figure, x: float, y: float, text: str, **style: Any) -> None:  # noqa: ANN401
-    """Write a text at a place in inches, whatever dollars it holds."""
+    """Write a text at a position in inches; dollar signs in it are not mathematics."""
     figure.text(x / WIDTH, y / HEIGHT, text, ha="center", parse_math=False, **style)
 
 
 def _box(x: float, y: float, width: float, height: float) -> tuple[float, float, float, float]:
-    """Return the rectangle round a place, all in inches, in parts of the figure."""
+    """Return a rectangle, given by its centre and size in inches, in fractions of the figure."""
     return (x - width / 2) / WIDTH, (y - height / 2) / HEIGHT, width / WIDTH, height / HEIGHT
 
 
@@ -143,7 +143,7 @@ def _draw_surface(figure: Figure, samples: Samples, spline: Spline) -> None:
     axes.computed_zorder = False
     _frame(axes, scene)
     greys = (0.60 + 0.33 * scene.brightness)[:, None] * [0.98, 0.99, 1.0]
-    # Quadrangles as an image, also in .pdf and .svg files: fine seams would show between them.
+    # Quadrangles are rasterized, also in .pdf and .svg files: seams would show between them.
     axes.add_collection3d(
         Poly3DCollection(
             scene.quadrangles, facecolors=greys, edgecolors=greys, linewidths=0.3,
@@ -164,7 +164,7 @@ def _draw_surface(figure: Figure, samples: Samples, spline: Spline) -> None:
         depthshade=False, edgecolors=INK, linewidths=min(0.2, 0.09 * math.sqrt(area)), zorder=3,
     )  # fmt: skip
     _draw_scale(figure, norm, scale, clipped)
-    _write(figure, LEFT, TITLES, f"{len(visible):,} of {len(samples):,} samples in sight")
+    _write(figure, LEFT, TITLES, f"{len(visible):,} of {len(samples):,} samples visible")
 
 
 def _frame(axes: Any, scene: Scene) -> None:  # noqa: ANN401
@@ -186,7 +186,7 @@ def _frame(axes: Any, scene: Scene) -> None:  # noqa: ANN401
     if scene.factor != 1.0:
         by = max(scene.factor, 1 / scene.factor)
         label = f"z ({'exaggerated' if scene.factor > 1.0 else 'reduced'} {by:g}×)"
-    low = extent[2] < 0.7 * extent.max()  # matplotlib puts the label of z far away then
+    low = extent[2] < 0.7 * extent.max()  # then matplotlib puts the label of z far away
     names = (axes.xaxis, "x", 1), (axes.yaxis, "y", 1), (axes.zaxis, label, -4 if low else 3)
     for k, (axis, name, distance) in enumerate(names):
         axis.set_label_text(name)
@@ -198,7 +198,7 @@ def _frame(axes: Any, scene: Scene) -> None:  # noqa: ANN401
 
 
 def _zoom(axes: Any, aspect: NDArray[np.float64]) -> float:  # noqa: ANN401
-    """Return the zoom at which the box fills the room it has."""
+    """Return the zoom at which the box fills its part of the figure."""
     from mpl_toolkits.mplot3d.proj3d import proj_transform
 
     axes.set_box_aspect(aspect)
@@ -211,7 +211,7 @@ def _zoom(axes: Any, aspect: NDArray[np.float64]) -> float:  # noqa: ANN401
 
 
 def _isolines(scene: Scene) -> NDArray[np.float64]:
-    """Return the visible pieces (…, 2, 3) of some parameter lines."""
+    """Return the visible segments (k, 2, 3) of some parameter lines."""
     pieces = []
     for mesh in (scene.mesh, np.swapaxes(scene.mesh, 0, 1)):
         lines = mesh[np.linspace(0, len(mesh) - 1, ISOLINES + 1).round().astype(int)]
@@ -222,7 +222,7 @@ def _isolines(scene: Scene) -> NDArray[np.float64]:
 
 
 def _colours(K: NDArray[np.float64]) -> tuple[Normalize, Colormap, bool]:
-    """Return the colour scale of curvatures, symmetric to zero, and whether some lie beyond it."""
+    """Return the colour scale of curvatures, symmetric to zero, and whether some exceed it."""
     from matplotlib.colors import LinearSegmentedColormap, Normalize
 
     sizes = np.append(np.abs(K[np.isfinite(K)]), 0.0)
@@ -255,7 +255,7 @@ def _draw_scale(figure: Figure, norm: Normalize, scale: Colormap, clipped: bool)
 
 
 class _Kind(NamedTuple):
-    """Normals that are drawn alike: in a colour, as rings or as discs."""
+    """Normals that are drawn in the same way: in a colour, as rings or as discs."""
 
     label: str
     normals: NDArray[np.float64]
@@ -291,7 +291,7 @@ def _draw_sphere(figure: Figure, samples: Samples, normals: NDArray[np.float64])
             front[:, 0], front[:, 1], s=size, zorder=6 + 0.1 * height,
             facecolors=face, edgecolors=kind.colour, linewidths=line,
         )  # fmt: skip
-        # What lies behind shines through the globe.
+        # Normals on the far side are seen through the globe.
         axes.scatter(
             back[:, 0], back[:, 1], s=0.7 * area, zorder=1 + 0.1 * height,
             color=kind.colour, linewidths=0.0,
@@ -309,12 +309,12 @@ def _draw_sphere(figure: Figure, samples: Samples, normals: NDArray[np.float64])
         loc="center", bbox_to_anchor=(RIGHT / WIDTH, LEGENDS / HEIGHT), ncols=3,
         frameon=False, handletextpad=0.1, columnspacing=1.4,
     )  # fmt: skip
-    whose = "their normals" if len(samples) else "the normals that were asked"
+    whose = "their normals" if len(samples) else "the prescribed normals"
     _write(figure, RIGHT, TITLES, f"{whose}, on the unit sphere")
 
 
 def _marker_area(normals: NDArray[np.float64]) -> float:
-    """Return the area of a marker in points², such that the normals have room on the sphere."""
+    """Return the area of a marker in points², such that markers do not overlap on the sphere."""
     mean = normals.mean(axis=0)
     length = float(np.linalg.norm(mean))
     depth = 1.0 - float((normals @ mean).min()) / length if length > 1e-3 else 2.0

@@ -1,7 +1,7 @@
-"""What hides what in a picture.
+"""Visibility of points in a picture.
 
-Matplotlib draws in three dimensions without a depth test. It is therefore decided here, by the
-triangles of a mesh of the surface that lie between a point and the viewer.
+Matplotlib draws in three dimensions without a depth test. Here a point is hidden if a triangle of
+a mesh of the surface lies between it and the viewer.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ from ..spline import Spline
 __all__ = ["AZIMUTH", "ELEVATION", "Scene", "front", "height_factor", "quadrangles", "view"]
 
 ELEVATION, AZIMUTH = 28.0, -55.0  # of the viewer, in degrees
-MESH, MOST_MESH = 112, 224  # quadrangles along u and v: as many as cells, within this
-# A surface hides a sample if it is nearer to the viewer by this part of the picture's diameter.
+MESH, MOST_MESH = 112, 224  # quadrangles along u and v: the number of cells, within these limits
+# A surface hides a sample if it is nearer to the viewer by this fraction of its diameter.
 HIDING = 0.01
-# A height below or above these parts of the width is exaggerated or reduced, to about the second.
+# A ratio of height to width below LOW or above HIGH is changed to about the second number.
 LOW, LOW_WANTED = 0.1, 0.25
 HIGH, HIGH_WANTED = 10.0, 2.0
 
 
 def view(elevation: float = ELEVATION, azimuth: float = AZIMUTH) -> NDArray[np.float64]:
-    """Return the rows right, up, and towards a viewer at two angles in degrees."""
+    """Return the rows (3, 3) right, up, and towards a viewer at two angles in degrees."""
     angles = math.radians(elevation), math.radians(azimuth)
     s, c, S, C = (f(angle) for angle in angles for f in (math.sin, math.cos))
     return np.array([[-S, C, 0.0], [-s * C, -s * S, c], [c * C, c * S, s]])
@@ -35,7 +35,7 @@ def view(elevation: float = ELEVATION, azimuth: float = AZIMUTH) -> NDArray[np.f
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """A mesh (m + 1, n + 1, 3) of a surface, to be seen with its heights times `factor`.
+    """A mesh (m + 1, n + 1, 3) of a surface, drawn with its heights times `factor`.
 
     `view` holds the rows right, up, and towards the viewer.
     """
@@ -46,7 +46,7 @@ class Scene:
 
     @classmethod
     def of(cls, spline: Spline) -> Scene:
-        """Return the scene of a spline, with heights that can be seen."""
+        """Return the scene of a spline, with heights rescaled if necessary."""
         u, v = (
             np.linspace(low, high, min(max(MESH, count), MOST_MESH) + 1)
             for (low, high), count in zip(spline.domain, spline.cells, strict=True)
@@ -60,42 +60,42 @@ class Scene:
 
     @cached_property
     def quadrangles(self) -> NDArray[np.float64]:
-        """The quadrangles (Q, 4, 3) of the mesh, their corners going round."""
+        """The quadrangles (Q, 4, 3) of the mesh, their corners in cyclic order."""
         return quadrangles(self.mesh)
 
     @cached_property
     def triangles(self) -> NDArray[np.float64]:
-        """The halves (T, 3, 3) of the quadrangles as they are seen."""
+        """The halves (T, 3, 3) of the quadrangles, in the coordinates of `seen`."""
         seen = self.seen(self.quadrangles)
         return np.concatenate([seen[:, [0, 1, 2]], seen[:, [0, 2, 3]]])
 
     @cached_property
     def brightness(self) -> NDArray[np.float64]:
-        """How much light each quadrangle gets, 0 … 1, from behind the viewer's left shoulder."""
+        """The brightness (Q,) of the quadrangles, 0 … 1; the light comes from the upper left."""
         a, b, c, d = np.moveaxis(self.seen(self.quadrangles), 1, 0)
         size = np.abs([c - a, d - b]).max() or 1.0
         normals = np.cross((c - a) / size, (d - b) / size)
         length = np.linalg.norm(normals, axis=1, keepdims=True)
         normals /= np.where(length > 0.0, length, 1.0)
-        normals *= np.where(normals[:, 2:] < 0.0, -1.0, 1.0)  # both sides of a surface are lit
+        normals *= np.where(normals[:, 2:] < 0.0, -1.0, 1.0)  # both sides are lit
         lamp = np.array([-0.45, 0.6, 0.7])
         return np.clip(normals @ (lamp / np.linalg.norm(lamp)), 0.0, 1.0)
 
     def visible(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Say which points (P, 3) of the surface the surface does not hide."""
+        """Return which points (P, 3) of the surface are visible, as booleans (P,)."""
         seen = self.seen(points)
         diameter = float(np.linalg.norm(np.ptp(self.triangles.reshape(-1, 3), axis=0)))
         return seen[:, 2] >= front(self.triangles, seen[:, :2]) - HIDING * diameter
 
 
 def quadrangles(mesh: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the quadrangles (Q, 4, 3) of a mesh (m + 1, n + 1, 3), their corners going round."""
+    """Return the quadrangles (Q, 4, 3) of a mesh (m + 1, n + 1, 3), corners in cyclic order."""
     corners = mesh[:-1, :-1], mesh[1:, :-1], mesh[1:, 1:], mesh[:-1, 1:]
     return np.stack([x.reshape(-1, 3) for x in corners], axis=1)
 
 
 def front(triangles: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return how near the nearest of the triangles (T, 3, 3) is at places (P, 2); −∞ at none."""
+    """Return the depth of the front one of triangles (T, 3, 3) at places (P, 2); −∞ without one."""
     flat = triangles[..., :2]
     grid = max(1, round(math.sqrt(len(triangles)) / 2))
     lowest, highest = flat.min(axis=(0, 1)), flat.max(axis=(0, 1))
@@ -104,14 +104,14 @@ def front(triangles: NDArray[np.float64], places: NDArray[np.float64]) -> NDArra
     def square(points: NDArray[np.float64]) -> NDArray[np.int64]:
         return np.clip(np.floor((points - lowest) / step), 0, grid - 1).astype(np.int64)
 
-    # Every triangle is noted in all squares that its bounding box meets.
+    # Every triangle is listed in all squares that its bounding box meets.
     first, last = square(flat.min(axis=1)), square(flat.max(axis=1))
     sizes = last - first + 1
     owner, k = _runs(sizes.prod(axis=1))
     i, j = np.divmod(k, sizes[owner, 1])
-    noted = (first[owner, 0] + i) * grid + first[owner, 1] + j
-    order = np.argsort(noted, kind="stable")
-    starts = np.searchsorted(noted[order], np.arange(grid * grid + 1))
+    listed = (first[owner, 0] + i) * grid + first[owner, 1] + j
+    order = np.argsort(listed, kind="stable")
+    starts = np.searchsorted(listed[order], np.arange(grid * grid + 1))
 
     own = square(places) @ [grid, 1]
     place, k = _runs(starts[own + 1] - starts[own])
@@ -127,7 +127,7 @@ def front(triangles: NDArray[np.float64], places: NDArray[np.float64]) -> NDArra
 
 
 def _runs(counts: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return each k, repeated counts[k] times, and beside it the numbers 0 … counts[k] − 1."""
+    """Return each k repeated counts[k] times, and the numbers 0 … counts[k] − 1 for each k."""
     which = np.repeat(np.arange(len(counts)), counts)
     return which, np.arange(len(which)) - (np.cumsum(counts) - counts)[which]
 
@@ -137,7 +137,7 @@ def _cross(left: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.
 
 
 def height_factor(extent: NDArray[np.float64]) -> float:
-    """Return the factor for heights: 1, unless the surface is very low or very high."""
+    """Return the factor of heights: 1, unless the surface is very flat or very high."""
     width, height = float(extent[:2].max()), float(extent[2])
     if LOW * width <= height <= HIGH * width or height <= 1e-9 * width or width <= 1e-9 * height:
         return 1.0

@@ -94,7 +94,7 @@ def test_what_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     assert {"x", "y", "z"} <= labels
     assert any(label.startswith("$x$ and some 中文xxx") and len(label) == 80 for label in labels)
     assert any("prescribed normals" in label for label in labels)
-    assert any("samples in sight" in label for label in labels)
+    assert any("samples visible" in label for label in labels)
     assert any(label.startswith("hyperbolic (") for label in labels)
     assert "Gaussian curvature $K$ (1/length²)" in labels
 
