@@ -42,53 +42,95 @@ def sample(
     threads: int | None = None,
     progress: bool = False,
 ) -> Samples:
-    """Return points of a surface with their normals, dense where it bends.
+    """Return points of a surface with their normals, dense where it is curved.
 
-    The surface is first approximated by a spline of `cells` = (m, n) cells (see `fit`); a `Spline`
-    is taken as it is. Say how many samples there shall be by one of
+    The number of samples follows from one of `count`, `normals`, `angle` and `coverage`; the
+    surface is first approximated by a spline (see `fit`).
 
-    - `normals`, an array (S, 3) of directions of any length such as `icosphere(32)` or
-      `fibonacci(10_000)`: every point that has one of them comes, each exactly once;
-    - `count`, how many samples;
-    - `angle`, in degrees, at most 90: how far the normal of any point may be from that of the
-      sample nearest in normal (next to singular points of the spline, such as cusps, only as far as
-      triangles of a thousandth of a patch resolve it);
-    - `coverage`, a length of the surface: how far any point may be from the nearest sample.
+    Parameters
+    ----------
+    surface : Surface, Spline or str
+        The surface, or its name in the catalogue (see `gaussmap.surfaces`). A spline is taken as it
+        is.
+    count : int, optional
+        The number of samples. It is met exactly, but for ``density="gauss"``: within 2 % (or 5
+        samples) where the Gaussian image is resolved.
+    normals : (S, 3) array_like, optional
+        Directions of any length but 0, such as ``icosphere(32)``: every point that has one of these
+        normals, each exactly once.
+    angle : float, optional
+        The largest angle, in degrees and at most 90, between the normal of any point of the surface
+        and that of the sample nearest in normal. Next to singular points of the spline, such as
+        cusps, it holds as far as triangles of a thousandth of a patch resolve them.
+    coverage : float, optional
+        The largest distance, in the unit L of the surface, from any point of it to the nearest
+        sample. Alone, or beside one of the others.
+    density : {"gauss", "balanced", "uniform"} or float, optional
+        The target density. "gauss", the default with `normals` alone: |K|, from normals alone
+        (paper, Sect. 4.2); developable regions get no samples. "balanced", the default otherwise:
+        the same from fewer normals, and samples that fill the gaps, so that no point is farther
+        from a sample than r/κ, nor than r/√λ (see Notes). "uniform": the same everywhere, for
+        `count` or `coverage`. A number α, 0 < α ≤ 8: |K|^α, for `count`; uniform where the
+        curvature is below the error of the spline.
+    relax : int, default 0
+        Steps, at most 10, that move the samples that fill gaps to better places. Two or three are
+        enough; they take 20 to 40 times as long as the sampling and 30 kB of memory for each sample
+        instead of 2 kB.
+    cells : (int, int), optional
+        The numbers of cells of the spline along u and v, see `fit`.
+    fields : sequence of str, optional
+        The arrays of `Samples` that are computed and stored, such as ``("points", "normals")``; all
+        by default.
+    dtype : dtype_like, default numpy.float64
+        With numpy.float32, all numbers but the indices are rounded when they are stored; they are
+        computed in float64.
+    threads : int, optional
+        The number of threads, by default one for each core. The samples do not depend on it.
+    progress : bool, default False
+        Show a bar on standard error for work that takes longer than a second.
 
-    `density` says where they are:
+    Returns
+    -------
+    Samples
+        The samples at normals, by patch and then by normal, and after them those that fill gaps:
+        their `kind` is "coverage" and their `normal_index` −1. The report gives the angle and the
+        coverage that were reached, if they were asked for.
 
-    - "gauss", the default of `normals`: as many as |K|, from normals alone (paper, Sect. 4.2).
-      Unbeaten in normal space, but parts that bend in one direction only, or not at all, get none.
-      A count is met within 2 % (or 5 samples) where the Gaussian image is resolved.
-    - "balanced", the default otherwise: the same from fewer normals, and samples that fill what
-      these leave. Their `kind` is "coverage", their `normal_index` −1. No point is farther from a
-      sample than r / κ, nor than r / √λ: κ is the larger principal curvature, so that normals turn
-      by about r, which is twice the angle between the normals. λ is a quarter of the mean of
-      κ², or follows from `coverage`, which may be given beside normals, an angle or a count.
-    - "uniform": the same everywhere; for `count` or `coverage`.
-    - a number α > 0, at most 8: as |K|^α; for `count`. Uniform where the surface has no curvature
-      but the error of the spline.
+    Raises
+    ------
+    InputError
+        For unusable arguments, and too little memory.
+    UnknownNameError
+        For an unknown surface, field or density.
+    SurfaceError
+        If the surface cannot be evaluated, or has no area.
 
-    But for "gauss", a count is met exactly. The report tells the angle and the coverage that were
-    reached, if they were asked; `Samples.coverage` tells that of any samples. `relax` steps, 10 at
-    most, place what is added better: two or three are enough. They take 20 to 40 times as long as
-    the sampling, and 30 kB of memory for each sample, which takes 2 kB else.
+    Warns
+    -----
+    GaussmapWarning
+        If developable regions get no samples, or if `count` or `coverage` cannot be met.
 
-    `fields` are the arrays of `Samples` that are wanted, such as ("points", "normals"); by default
-    all. The others are neither computed nor stored, which takes less time and memory. With
-    `dtype=numpy.float32` all numbers but the indices, which stay int64, are rounded to float32 when
-    they are stored; they are computed in float64.
+    See Also
+    --------
+    sample_many : the samples of several surfaces.
+    sample_stream : samples in chunks, in bounded memory.
+    Samples.coverage : the coverage of any samples.
 
-    With `progress`, work that takes longer than a second shows a bar on standard error.
+    Notes
+    -----
+    For ``density="balanced"``, κ is the larger principal curvature: neighbouring normals differ by
+    about r, twice the angle. λ is a quarter of the mean of κ², or follows from `coverage`.
 
-    Samples of normals are ordered by patch and then by normal; those that were added come after
-    them. They are the same for any number of `threads` (by default one for each core).
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> samples = gm.sample("torus", 500)
+    >>> samples.points.shape
+    (500, 3)
+    >>> torus = gm.surfaces.torus(major=1.0, minor=0.35)
+    >>> gm.sample(torus, normals=[[1, 0, 0], [0, 1, 1]]).normal_index.tolist().count(1)
+    2
 
-    A GaussmapWarning says when the surface has flat or developable parts, of which normals see
-    nothing, and nothing else was asked to cover them; or when a `count` or a `coverage` cannot be
-    met. Raises InputError for unusable arguments and too little memory, UnknownNameError for
-    unknown fields; SurfaceError for a surface that cannot be evaluated, or that has no area to be
-    covered.
     """
     return sample_and_normals(
         surface,
@@ -155,12 +197,40 @@ def sample_many(
     dtype: DTypeLike = np.float64,
     threads: int | None = None,
 ) -> Iterator[Samples]:
-    """Yield the samples of each surface, in order; the arguments are those of `sample`.
+    """Yield the samples of each of several surfaces, in order.
 
-    Progress goes to standard error if that is a terminal. A surface that raises a GaussmapError is
-    reported by a GaussmapWarning, with its number and name, and left out; the others go on.
-    `samples.report.surface` tells which surface the samples are of. Raises InputError for
-    arguments that no surface can be sampled with.
+    Parameters
+    ----------
+    surfaces : iterable of Surface, Spline or str
+        The surfaces; they may be made one by one.
+    count, normals, angle, coverage, density, relax, cells, fields, dtype, threads : optional
+        As in `sample`.
+    progress : bool, default True
+        Show a bar on standard error, if that is a terminal.
+
+    Yields
+    ------
+    Samples
+        The samples of the next surface; ``samples.report.surface`` is its name.
+
+    Raises
+    ------
+    InputError
+        For arguments with which no surface can be sampled.
+
+    Warns
+    -----
+    GaussmapWarning
+        If a surface cannot be sampled: it is left out, and the others go on.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> for samples in gm.sample_many(["torus", "sphere"], 500):
+    ...     print(samples.report.surface, len(samples))
+    torus 500
+    sphere 500
+
     """
     from tqdm import tqdm
 

@@ -38,20 +38,51 @@ def silhouette(
     threads: int | None = None,
     progress: bool = False,
 ) -> Samples:
-    """Return points of a surface whose normals are perpendicular to a direction, about `count`.
+    """Return points of a surface whose normals are perpendicular to a direction.
 
-    They lie on the contour generator, which a parallel projection along `direction` (three numbers
-    of any length) shows as the outline: all of it, also where the surface hides it. Where K < 0
-    the outline is concave. The normals are spread evenly over a great circle: points crowd where
-    the outline bends.
+    They lie on the contour generator, which a parallel projection along `direction` shows as the
+    outline: all of it, also where the surface hides it. Where K < 0 the outline is concave.
 
-    Samples are ordered by normal, round the circle (`normal_index`) from the angle 0 to 2π, and
-    then by patch; each point comes exactly once. Along a piece of the outline where K keeps its
-    sign, that is the order along it. Parts of the outline along which the normal stays the same,
-    straight ones and the whole circle on top of a lying torus, are seen as points at most.
+    Parameters
+    ----------
+    surface : Surface, Spline or str
+        The surface, or its name in the catalogue.
+    direction : (3,) array_like
+        The direction of the projection, of any length but 0.
+    count : int, default 1000
+        The approximate number of points. Their normals are spread evenly over a great circle, so
+        points are dense where the outline is curved.
+    cells, fields, dtype, threads, progress : optional
+        As in `sample`.
 
-    The other arguments are those of `sample`, and so is what is raised and warned of; InputError
-    also for a direction that is zero, NaN or infinite.
+    Returns
+    -------
+    Samples
+        The points by normal, round the circle (`normal_index`) from the angle 0 to 2π, and then by
+        patch, each exactly once. Where K keeps its sign, that is the order along the outline.
+
+    Raises
+    ------
+    GaussmapError
+        As `sample`; InputError also for a direction that is zero, NaN or infinite.
+
+    Warns
+    -----
+    GaussmapWarning
+        As `sample`.
+
+    Notes
+    -----
+    Parts of the contour generator along which the normal stays the same, such as straight ones and
+    the circle on top of a lying torus, give points at most.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> outline = gm.silhouette("torus", (1, 2, 3), count=200)
+    >>> bool((abs(outline.normals @ [1, 2, 3]) < 1e-12).all())
+    True
+
     """
     wanted, number = checked_fields(fields), checked_dtype(dtype)
     axis, asked = unit_vector(direction, "direction"), whole_number(count, "count")

@@ -194,15 +194,39 @@ class Spline:
 
 @in_memory
 def fit(surface: Surface | str, cells: Sequence[int] | None = None) -> Spline:
-    """Approximate a surface by a C¹ quadratic spline with `cells` = (m, n) cells along u and v.
+    """Approximate a surface by a C¹ quadratic spline.
 
-    The quasi-interpolant (paper, Sect. 3.1) is exact on quadratics; the error of positions falls
-    with the third power of the cell size, that of normals with the second (13). Without `cells`: 64
-    × 64, or one cell between any four neighbouring points of a grid.
+    The quasi-interpolant (paper, Sect. 3.1) is exact on quadratics. The error of positions falls
+    with the third power of the cell size, that of normals with the second (13).
 
-    Raises InputError for fewer than 3 cells in a direction, for an odd m at a pole and for more
-    cells than a narrow domain can hold; SurfaceError if the surface cannot be evaluated (see
-    `Surface.evaluate`) or does not close where its ends say so.
+    Parameters
+    ----------
+    surface : Surface or str
+        The surface, or its name in the catalogue (see `gaussmap.surfaces`).
+    cells : (int, int), optional
+        The numbers of cells along u and v, at least 3; along u an even one if the surface has a
+        pole. By default 64 × 64, or one cell between any four neighbouring points of a grid.
+
+    Returns
+    -------
+    Spline
+        The spline, with four quadratic patches in each cell.
+
+    Raises
+    ------
+    InputError
+        For unusable `cells`, and more of them than a narrow domain can hold.
+    UnknownNameError
+        If there is no surface of that name.
+    SurfaceError
+        If the surface cannot be evaluated, or does not close where its ends say so.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> gm.fit("torus", (16, 16))
+    Spline(16 × 16 cells of torus)
+
     """
     surface = named(surface)
     if not isinstance(surface, Surface):

@@ -38,21 +38,51 @@ def sample_stream(
     threads: int | None = None,
     progress: bool = False,
 ) -> Generator[Samples, None, None]:
-    """Yield what `sample` returns with density="gauss", in chunks of at most `chunk` samples.
+    """Return the samples of a surface in chunks, in bounded memory.
 
-    Memory is bounded: a thousand million samples that are reduced on the fly take less than 1 GiB.
-    With `count`, not even the normals are ever in memory all at once.
+    They are those of `sample` with ``density="gauss"``. 10⁹ samples that are reduced on the fly
+    take less than 1 GiB; with `count`, not even the normals are ever in memory all at once.
 
-    `Samples.concatenate(sample_stream(…))` is `sample(…, density="gauss")`, bit for bit and in the
-    same order, for up to 1,048,576 normals. More of them are searched in blocks of so many: the
-    samples are the same, but ordered by block of normals, then by patch, then by normal.
+    Parameters
+    ----------
+    surface : Surface, Spline or str
+        The surface, or its name in the catalogue.
+    count, normals, cells, fields, dtype, threads, progress : optional
+        As in `sample`: either `count` or `normals`.
+    chunk : int, default 1,000,000
+        The largest number of samples in a chunk.
 
-    There is at least one chunk, and all but the last of each block are full. A chunk's report
-    counts the samples of the chunk, and no degenerate patches; a GaussmapWarning comes at the end.
-    Closing the generator ends the work.
+    Returns
+    -------
+    generator of Samples
+        The chunks; there is at least one, and all but the last of each block are full. The
+        report of a chunk counts its samples, and no degenerate patches.
 
-    The other arguments, and what is raised, are those of `sample`. `chunk` is a whole number. All
-    arguments are checked, and the surface is evaluated, before the first chunk is asked for.
+    Raises
+    ------
+    GaussmapError
+        As `sample`; all arguments are checked, and the surface is evaluated, before the first chunk
+        is asked for.
+
+    Warns
+    -----
+    GaussmapWarning
+        As `sample`, after the last chunk.
+
+    Notes
+    -----
+    ``Samples.concatenate(sample_stream(…))`` is ``sample(…, density="gauss")``, bit for bit and in
+    the same order, for up to 1,048,576 normals. More of them are searched in blocks of this size:
+    the samples are the same, but ordered by block, then by patch, then by normal. Closing the
+    generator ends the work.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> chunks = gm.sample_stream("torus", normals=gm.icosphere(4), chunk=100)
+    >>> sum(len(chunk) for chunk in chunks) == len(gm.sample("torus", normals=gm.icosphere(4)))
+    True
+
     """
     size = whole_number(chunk, "chunk")
     wanted, number = checked_fields(fields), checked_dtype(dtype)

@@ -29,12 +29,48 @@ CATALOGUE = cast(dict[str, dict[str, Any]], _GENERATED)
 
 
 def names() -> tuple[str, ...]:
-    """Return the names of all surfaces."""
+    """Return the names of all surfaces.
+
+    Returns
+    -------
+    tuple of str
+        The names, each of which is a function of this module.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> gm.surfaces.names()[:2]
+    ('torus', 'ellipsoid')
+
+    """
     return tuple(CATALOGUE)
 
 
 def describe(name: str) -> str:
-    """Return what a surface is and what its parameters mean; UnknownNameError if there is none."""
+    """Return what a surface is and what its parameters mean.
+
+    Parameters
+    ----------
+    name : str
+        The name of a surface.
+
+    Returns
+    -------
+    str
+        A line for the surface, and one for each parameter with its default.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is no surface of that name.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> print(gm.surfaces.describe("sphere").splitlines()[1])
+        radius = 1: The radius.
+
+    """
     entry = _entry(name)
     lines = [f"{name}: {entry['sentence']}"]
     lines += [
@@ -47,8 +83,32 @@ def describe(name: str) -> str:
 def surface(name: str, /, **parameters: float) -> Surface:
     """Return a surface of the catalogue by its name.
 
-    Raises UnknownNameError for an unknown name, InputError for a parameter that the surface does
-    not have, that is not finite, or that must be positive and is not.
+    Parameters
+    ----------
+    name : str
+        The name of a surface, see `names`.
+    **parameters : float
+        Values of its parameters; the others have their defaults.
+
+    Returns
+    -------
+    Surface
+        What ``gm.surfaces.NAME(**parameters)`` returns.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is no surface of that name.
+    InputError
+        For a parameter that the surface does not have, that is not finite, or that must be positive
+        and is not.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> gm.surfaces.surface("torus", minor=0.2).name
+    'torus'
+
     """
     entry = _entry(name)
     known = entry["parameters"]

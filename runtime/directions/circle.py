@@ -11,11 +11,31 @@ __all__ = ["arc_of_normals", "circle"]
 
 
 def circle(count: int) -> NDArray[np.float64]:
-    """Return `count` unit normals (count, 2) on the circle, normal k at the angle 2π (k + ½)/count.
+    """Return unit normals spread evenly over the circle, for planar curves.
 
-    They are as symmetric as the set of angles is, bit for bit: mirrored in both axes if `count` is
-    even, and in the diagonals too if it is a multiple of 4. Raises InputError unless `count` is a
-    whole number of at least 1.
+    Parameters
+    ----------
+    count : int
+        The number of normals, at least 1.
+
+    Returns
+    -------
+    (count, 2) float64 array
+        Unit normals; normal k is at the angle 2π (k + ½)/count. They are as symmetric as the set of
+        angles is, bit for bit: mirrored in both axes if `count` is even, and in the diagonals too
+        if it is a multiple of 4.
+
+    Raises
+    ------
+    InputError
+        If `count` is not such a number.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> gm.directions.circle(4).round(3).tolist()
+    [[0.707, 0.707], [-0.707, 0.707], [-0.707, -0.707], [0.707, -0.707]]
+
     """
     total = whole_number(count, "count")
     # Angles in 8 count parts of a turn: a quarter has 2 count of them, and half of it is mirrored.

@@ -19,18 +19,41 @@ ROUNDING = 1e-12
 
 
 def covering_radius(normals: ArrayLike) -> float:
-    """Return the largest angle in degrees from any direction to the nearest of the normals (S, 3).
+    """Return the largest angle from any direction to the nearest of some normals.
 
-    It is exact, up to rounding: each facet of the convex hull of the normals stands for the largest
-    empty cap round its own normal, and the covering radius is the largest angle of these caps. A
-    surface point whose Gaussian image is covered by the set has a sample whose normal is no farther
-    from its own than that.
+    A surface point whose Gaussian image is covered by the set has a sample whose normal is no
+    farther from its own than that.
 
-    The whole sphere is what is to be covered. For normals that fill a part of it only, such as a
-    `cap`, that is 180° minus the radius of the smallest cap that holds them: how well they cover
-    that part is another question, which this function does not answer.
+    Parameters
+    ----------
+    normals : (S, 3) array_like
+        Directions of any length but 0.
 
-    Raises InputError for normals as `sample` does.
+    Returns
+    -------
+    float
+        The angle in degrees, exact up to rounding.
+
+    Raises
+    ------
+    InputError
+        For unusable normals (see `sample`).
+
+    Notes
+    -----
+    Each facet of the convex hull of the normals bounds an empty cap round its own normal; the
+    covering radius is the largest angle of these caps. It is that of the whole sphere: for normals
+    that fill a part of it only, such as a `cap`, it is 180° minus the radius of the smallest cap
+    that holds them.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> round(gm.directions.covering_radius([[1, 0, 0], [-1, 0, 0]]), 6)
+    90.0
+    >>> print(f"{gm.directions.covering_radius(gm.icosphere(16)):.2f}")
+    2.73
+
     """
     directions = as_normals(normals)
     from scipy.spatial import ConvexHull, QhullError

@@ -16,14 +16,44 @@ ROUNDING = 2.0**-50
 
 
 def cap(normals: ArrayLike, axis: ArrayLike, angle: float) -> NDArray[np.float64]:
-    """Return those of the normals (S, 3) that are within `angle` degrees of an axis, (k, 3).
+    """Return those of some normals that are within an angle of an axis.
 
-    They come as unit normals in the same order; 90 gives the closed hemisphere, 180 all of them.
-    The result may be empty. Any other region is a mask on the array, such as
-    `normals[normals[:, 2] > 0.5]`, or a `polygon`.
+    Parameters
+    ----------
+    normals : (S, 3) array_like
+        Directions of any length but 0.
+    axis : (3,) array_like
+        The direction of the middle of the cap.
+    angle : float
+        The radius of the cap in degrees, from 0 to 180: 90 gives the closed hemisphere, 180 all
+        normals.
 
-    Raises InputError for normals as `sample` does, an axis that is not three finite numbers or
-    zero, and an angle that is not between 0 and 180.
+    Returns
+    -------
+    (k, 3) float64 array
+        Unit normals in the order of `normals`; there may be none.
+
+    Raises
+    ------
+    InputError
+        For unusable normals (see `sample`), an axis that is not three finite numbers or is zero,
+        and another angle.
+
+    See Also
+    --------
+    polygon : the normals in a convex polygon on the sphere.
+
+    Notes
+    -----
+    Any other region is a mask on the array, such as ``normals[normals[:, 2] > 0.5]``.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> upper = gm.directions.cap(gm.icosphere(8), axis=(0, 0, 1), angle=60)
+    >>> bool((upper[:, 2] >= 0.5 - 1e-15).all())
+    True
+
     """
     directions, middle = as_normals(normals), unit_vector(axis, "axis")
     degrees = finite_number(angle, "angle")
@@ -33,14 +63,38 @@ def cap(normals: ArrayLike, axis: ArrayLike, angle: float) -> NDArray[np.float64
 
 
 def polygon(normals: ArrayLike, corners: ArrayLike) -> NDArray[np.float64]:
-    """Return those of the normals (S, 3) that lie in a convex polygon on the sphere, (k, 3).
+    """Return those of some normals that lie in a convex polygon on the sphere.
 
-    Its edges are arcs of great circles, each shorter than half of one, between the `corners`
-    (c, 3), c >= 3, directions of any length, which go round anticlockwise as seen from outside. The
-    border belongs to it. The result, in the same order, may be empty.
+    Parameters
+    ----------
+    normals : (S, 3) array_like
+        Directions of any length but 0.
+    corners : (c, 3) array_like
+        At least three directions of any length, anticlockwise as seen from outside. The edges are
+        arcs of great circles, each shorter than half of one; the border belongs to the polygon.
 
-    Raises InputError for normals and corners that are unusable, neighbouring corners that are equal
-    or opposite, and corners that do not go round a convex polygon anticlockwise.
+    Returns
+    -------
+    (k, 3) float64 array
+        Unit normals in the order of `normals`; there may be none.
+
+    Raises
+    ------
+    InputError
+        For unusable normals and corners, neighbouring corners that are equal or opposite, and
+        corners that do not go round a convex polygon anticlockwise.
+
+    See Also
+    --------
+    cap : the normals within an angle of an axis.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> octant = gm.directions.polygon(gm.icosphere(8), [[1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    >>> bool((octant >= -1e-15).all())
+    True
+
     """
     directions, around = as_normals(normals), as_normals(corners)
     if len(around) < 3:

@@ -35,13 +35,37 @@ PARTS_AT_A_TIME = 5
 
 @in_memory
 def icosphere(frequency: int) -> NDArray[np.float64]:
-    """Return the 10 ν² + 2 vertices (…, 3) of the icosahedron whose edges are cut into ν parts.
+    """Return the vertices of an icosahedron whose edges are cut into equal parts.
 
     Every face carries a planar triangular lattice that is projected from the centre to the unit
-    sphere ("uniform refinement", paper, Sect. 4.2). The 12 vertices come first, then the points
-    inside the 30 edges, then those inside the 20 faces. Many of them lie in common symmetry planes.
+    sphere ("uniform refinement", paper, Sect. 4.2).
 
-    Raises InputError unless `frequency` is a whole number from 1 to 10,000.
+    Parameters
+    ----------
+    frequency : int
+        The number ν of parts of an edge, from 1 to 10,000.
+
+    Returns
+    -------
+    (10 ν² + 2, 3) float64 array
+        Unit normals: the 12 vertices of the icosahedron, then the points inside its 30 edges, then
+        those inside its 20 faces.
+
+    Raises
+    ------
+    InputError
+        If `frequency` is not such a number.
+
+    Notes
+    -----
+    Many of the points lie in common symmetry planes; those of `fibonacci` do not.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> gm.icosphere(32).shape
+    (10242, 3)
+
     """
     nu = _refinement(frequency, "frequency")
     normals = np.empty((10 * nu**2 + 2, 3))
@@ -67,24 +91,69 @@ def frequency_within(angle: float) -> int:
 
 @in_memory
 def fibonacci(count: int) -> NDArray[np.float64]:
-    """Return `count` unit normals (count, 3) on a Fibonacci lattice, from +z to −z.
+    """Return unit normals on a Fibonacci lattice, from +z to −z.
 
-    The points are spread evenly (every one stands for the same area of the sphere) and in general
-    position: no symmetry aligns them with a surface. Raises InputError unless `count` is a whole
-    number of at least 1.
+    The points are spread evenly (every one represents the same area of the sphere) and in general
+    position: no symmetry aligns them with a surface.
+
+    Parameters
+    ----------
+    count : int
+        The number of normals, at least 1.
+
+    Returns
+    -------
+    (count, 3) float64 array
+        Unit normals.
+
+    Raises
+    ------
+    InputError
+        If `count` is not such a number.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> normals = gm.fibonacci(1000)
+    >>> normals.shape
+    (1000, 3)
+    >>> bool((normals[:-1, 2] > normals[1:, 2]).all())
+    True
+
     """
     total = whole_number(count, "count")
     return part_of_fibonacci(total, 0, total)
 
 
 def healpix(nside: int) -> NDArray[np.float64]:
-    """Return the 12 nside² centres (…, 3) of the pixels of HEALPix, ring by ring from +z to −z.
+    """Return the centres of the pixels of HEALPix, ring by ring from +z to −z.
 
-    Pixels have equal areas, and their centres lie on rings of equal latitude; those on the equator
-    and on some meridians lie in planes of symmetry. `nside` is a power of 2 up to 8,192.
+    Pixels have equal areas, and their centres lie on rings of equal latitude. Those on the equator
+    and on some meridians lie in planes of symmetry.
 
-    Needs astropy-healpix, which the extra "spheres" brings: MissingExtraError if it is not
-    installed. Raises InputError unless `nside` is such a number.
+    Parameters
+    ----------
+    nside : int
+        The resolution, a power of 2 up to 8,192.
+
+    Returns
+    -------
+    (12 nside², 3) float64 array
+        Unit normals.
+
+    Raises
+    ------
+    InputError
+        If `nside` is not such a number.
+    MissingExtraError
+        If astropy-healpix is not installed, which the extra "spheres" brings.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> gm.directions.healpix(16).shape
+    (3072, 3)
+
     """
     size = _refinement(nside, "nside")
     if size & (size - 1):
@@ -96,11 +165,38 @@ def healpix(nside: int) -> NDArray[np.float64]:
 
 @in_memory
 def random(count: int, *, seed: int = 0) -> NDArray[np.float64]:
-    """Return `count` unit normals (count, 3), independent and uniform on the sphere.
+    """Return unit normals that are independent and uniform on the sphere.
 
-    The same seed gives the same normals (with the same version of NumPy), and fewer of them are the
-    first of more. They are less even than those of a lattice: about 1/e of the pieces of 4π/count
-    stay empty. Raises InputError unless `count` and `seed` are whole numbers, of at least 1 and 0.
+    Parameters
+    ----------
+    count : int
+        The number of normals, at least 1.
+    seed : int, default 0
+        Another seed gives other normals; at least 0. The same seed gives the same normals (with the
+        same version of NumPy), and fewer of them are the first of more.
+
+    Returns
+    -------
+    (count, 3) float64 array
+        Unit normals.
+
+    Raises
+    ------
+    InputError
+        If `count` or `seed` is not such a number.
+
+    Notes
+    -----
+    They are less even than those of a lattice: of pieces of the area 4π/count, about 1/e stay
+    empty.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> normals = gm.directions.random(500, seed=1)
+    >>> bool((normals[:10] == gm.directions.random(10, seed=1)).all())
+    True
+
     """
     total, start = whole_number(count, "count"), whole_number(seed, "seed", least=0)
     return as_normals(np.random.default_rng(start).standard_normal((total, 3)))

@@ -105,6 +105,13 @@ def read_samples(path: PathLike) -> Samples:
     FileError
         If the file is missing, unreadable, damaged, or not from gaussmap.
 
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> gm.sample("torus", 500).write("torus.npz")
+    >>> len(gm.read_samples("torus.npz"))
+    500
+
     """
     path = checked_path(path)
     suffix = known_suffix(path, READABLE_SUFFIXES)

@@ -78,25 +78,58 @@ def convolve(
     *,
     cells: Sequence[int] | None = None,
 ) -> Convolution:
-    """Return the convolution of two surfaces: every sum of two points that share a given normal.
+    """Return every sum of two points of two surfaces that have the same normal.
 
     Support functions add, h = h₁ + h₂ (7), and so do points and Hessians. A normal with i points on
     the first surface and j on the second has i j sums; on folded surfaces these are very many.
-    `normals` (S, 3) are directions of any length, such as `icosphere(32)`. A `Surface` is
-    approximated by a spline of `cells` first (see `fit`; other cells for the second surface: fit it
-    before).
 
-    For two convex bodies whose normals point outwards this is the boundary of their Minkowski sum.
-    For others it is the convolution surface, of which that boundary is a part: other sheets lie
-    inside the sum. A body B, moved by t, meets a body A where t lies in the sum of A and −B, that
-    is B reflected in the origin. The outward normals of −B are −n, so it is
-    `SupportFunction.of_spline(B).scaled(-1).reversed()`.
+    Parameters
+    ----------
+    first, second : Surface, Spline, SupportFunction or str
+        The two surfaces, or their names in the catalogue.
+    normals : (S, 3) array_like
+        Directions of any length but 0, such as ``icosphere(32)``.
+    cells : (int, int), optional
+        The cells of the splines of what is a `Surface`, see `fit`.
 
-    K and H come from the sum of the Hessians: a radius that is infinite (a parabolic point) makes
-    them NaN, a sum of radii that is 0 infinite or NaN. Flat and developable parts are not seen by
-    normals, and neither are their sums: a GaussmapWarning says so, or that no sums came. Raises
-    InputError for unusable normals, for `cells` where no `Surface` takes them and for what is no
-    surface; SurfaceError as `fit` does.
+    Returns
+    -------
+    Convolution
+        The sums as samples, and the points of both surfaces.
+
+    Raises
+    ------
+    InputError
+        For unusable normals, for `cells` where no `Surface` takes them, and for what is no surface.
+    UnknownNameError
+        If there is no surface of that name.
+    SurfaceError
+        As `fit`.
+
+    Warns
+    -----
+    GaussmapWarning
+        If developable regions are left out, or if there are no sums.
+
+    Notes
+    -----
+    For two convex bodies whose normals point outwards the result lies on the boundary of their
+    Minkowski sum. For others it lies on the convolution surface, of which that boundary is a part:
+    other sheets lie inside the sum. A body B, moved by t, meets a body A where t lies in the sum of
+    A and −B, that is B reflected in the origin. The outward normals of −B are −n, so it is
+    ``SupportFunction.of_spline(B).scaled(-1).reversed()``.
+
+    K and H come from the sum of the Hessians: an infinite radius (a parabolic point) makes them
+    NaN, a sum of radii that is 0 infinite or NaN.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> ball = gm.SupportFunction.from_sympy("1/10")
+    >>> sums = gm.convolve("torus", ball, gm.icosphere(2))
+    >>> bool((abs(sums.samples.support - sums.first.support[sums.rows[:, 0]] - 0.1) < 1e-15).all())
+    True
+
     """
     directions = as_normals(normals)
     first, second = named(first), named(second)
