@@ -54,8 +54,12 @@ class ExactLiterals(ast.NodeTransformer):
 
 
 def exact_root(value: Fraction) -> Fraction:
-    root = Fraction(math.isqrt(value.numerator), math.isqrt(value.denominator))
-    assert root**2 == value, "choose inputs whose square root is rational"
+    """Return the root of the square of a fraction."""
+    root = Fraction(math.isqrt(abs(value.numerator)), math.isqrt(value.denominator))
+    assert root**2 == value, (
+        f"this test computes with fractions, and the square root of {value} is no fraction: "
+        "have `exact_inputs` return inputs of this formula for which all square roots are rational"
+    )
     return root
 
 
