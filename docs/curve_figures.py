@@ -73,7 +73,7 @@ def caption_4(samples: gm.curves.CurveSamples) -> str:
     counts = listed(f"{(points == k).sum()} belong to {k}" for k in np.unique(points))
     return (
         f"Uniform normals on the circle (left) are mapped to points of a curve (right) that are "
-        f"dense where it bends; equal numbers belong together. Blue points have a positive "
+        f"dense where |κ| is large; equal numbers belong together. Blue points have a positive "
         f"curvature, orange ones a negative one. Of the {NORMALS} normals {counts} points; "
         f"as the curve turns round once, each has one blue point more than orange ones. The curve "
         f"has {samples.report.inflections} inflections; in polar coordinates it is "

@@ -221,25 +221,26 @@ the circle. Here both are measured, for these curves:
 METHOD = """\
 The points come from `gaussmap.curves.sample` with {pieces:,} pieces. Both polygons of an open curve
 have its two ends. M is the number of vertices; where a curve has inflections, uniform normals
-cannot give every number, and M is one near the number that was asked.
+cannot give every number, and M is close to a power of 2.
 
 - **Distance**: the largest distance of a point of the curve from the polygon (the one-sided
   Hausdorff distance), in the unit of the curve, over {dense:,} points;
-- **Angle**: the largest angle between the curve and the edge of the polygon beside it, in degrees.
+- **Angle**: the largest angle between the curve and the edge of the polygon that spans it, in
+  degrees.
 
 The last columns are quotients, parameter / normal: above 1, uniform normals are better.
 """
 
 MEANING = """\
-**What this says.** An edge that spans an arc of length ℓ and curvature κ turns by κ ℓ and is off by
-κ ℓ²/8. Uniform normals make κ ℓ equal for all edges. No other choice makes the largest angle
-smaller, and so the polygon keeps every bend, however sharp. It is not the best choice for the
-distance: that is then proportional to ℓ, and the flattest part decides. Uniform normals have the
-smaller distance where uniform parameters cut off sharp bends, on {better} for some M. They have the
-larger one where the parameter is denser in the bends anyway, or once M resolves the bends: on
-{worse} for M ≈ {last}. At an inflection samples are rare: the two beside it are O(M^(−1/2)) apart,
-elsewhere O(M^(−1)), so that on a curve with inflections the distance falls as M^(−3/2), not as
-M^(−2).
+**Results.** An edge that spans an arc of length ℓ and curvature κ turns by κ ℓ, and its distance
+from the arc is κ ℓ²/8. Uniform normals make κ ℓ equal for all edges. No other choice has a smaller
+largest angle, so that the polygon resolves each sharp corner. For the distance it is not the best
+choice: the distance is then proportional to ℓ, and largest where the curve is flattest. Uniform
+normals have the smaller distance where uniform parameters cut off sharp corners, on {better} for
+some M. They have the larger one where the parameter is denser at the corners anyway, or once M
+resolves the corners: on {worse} for M ≈ {last}. At an inflection samples are rare: the two next to
+it are O(M^(−1/2)) apart, elsewhere O(M^(−1)), so that on a curve with inflections the distance
+decreases as M^(−3/2), not as M^(−2).
 """
 
 ORDERS = """\

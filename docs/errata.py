@@ -217,8 +217,8 @@ def net_latex(triangle: BezierTriangle) -> str:
 COMPOSITION = """\
 ## Eq. (3): the composition is the other way round
 
-(3) says h = N⁻¹ ∘ H, which as it is usually read, (f ∘ g)(x) = f(g(x)), means N⁻¹(H(u, v)). That
-does not make sense: H gives a number, and N⁻¹ takes a normal.
+(3) says h = N⁻¹ ∘ H, which in the usual notation, (f ∘ g)(x) = f(g(x)), means N⁻¹(H(u, v)). That is
+not defined: H gives a number, and N⁻¹ takes a normal.
 
 {table}
 It should read **h = H ∘ N⁻¹**, first from the normal to the parameters, then to the distance.

@@ -1,4 +1,4 @@
-"""Print docs/meshes.md: meshes through samples, measured beside Gmsh and Open CASCADE."""
+"""Print docs/meshes.md: meshes through samples, compared with Gmsh and Open CASCADE."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ MESHERS: dict[str, Callable[[ClosedForm, int], Triangles]] = {
 
 @dataclass(frozen=True)
 class Quality:
-    """How a mesh of `vertices` and `triangles` stands for a surface.
+    """How well a mesh of `vertices` and `triangles` represents a surface.
 
     Distances are the largest from the surface to the mesh and back, in the unit of the surface;
     `worst` and `mean` are angles between the normals of both, in degrees.
@@ -178,27 +178,27 @@ HEAD = """\
 
 Written by `make meshes`: do not edit.
 
-Triangle meshes of three surfaces with M vertices, about {counts}. `samples.mesh()` of gaussmap
-joins what `gm.sample(count=…)` gives ("balanced") with points on open borders, M in all; edges are
-flipped until no flip brings two triangles nearer to the normals at their corners. Below it stands
-the triangulation from which the flips start. Of a grid of parameters each cell is cut along one
-diagonal. Gmsh meshes by curvature, Open CASCADE by angular deflection: the torus is one of their
-own shapes, the other two surfaces are given to them as cubic B-splines through 61 × 61 points.
-Vertices at one place count once. Columns:
+Triangle meshes of three surfaces with M vertices, about {counts}. The vertices of `samples.mesh()`
+are the samples of `gm.sample(count=…)` ("balanced") and points on open borders, M in all; edges are
+flipped until no flip reduces the angles between two triangles and the normals at their corners. The
+row below it is the triangulation from which the flips start. In a grid of parameters, each cell is
+cut along one diagonal. Gmsh meshes by curvature, Open CASCADE by angular deflection: the torus is
+one of their primitives, the other two surfaces are given to them as cubic B-splines through 61 × 61
+points. Vertices that coincide count once. Columns:
 
-- **surface → mesh**: the largest distance of {places:,} places on the exact surface (uniform by
+- **surface → mesh**: the largest distance of {places:,} points of the exact surface (uniform by
   area) from the mesh, in the unit of the surface;
-- **mesh → surface**: the largest distance from the surface of {lattice} places on each triangle;
+- **mesh → surface**: the largest distance of {lattice} points on each triangle from the surface;
   the larger one of both is the Hausdorff distance;
-- **worst** and **mean angle**: between the normal of a place and that of the triangle nearest to
-  it, in degrees.
+- **worst** and **mean angle**: between the normal of a point of the surface and that of the nearest
+  triangle, in degrees.
 """
 
 MEANING = """\
-## What this says
+## Results
 
 With M ≈ {last:,} the mean angle is smaller than that of Gmsh on {mean}, the worst angle on {worst},
-the distance on {distance}. The flips make the mean angle smaller by {saved}.
+the distance on {distance}. The flips reduce the mean angle by {saved}.
 """
 
 TIME = """\
@@ -210,7 +210,7 @@ triangulation:
 
 
 def lattice() -> int:
-    """Return how many places of a triangle are compared."""
+    """Return how many points of a triangle are compared."""
     return (PARTS + 1) * (PARTS + 2) // 2
 
 

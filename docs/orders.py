@@ -359,18 +359,18 @@ size of a cell when the domain is scaled to the unit square. Measured are
 
 {quantities}
 
-The first three are taken over {places} places of each of the 4 N² patches: the barycentric lattice
-of step 1/{parts}, so with the vertices and edges of the cells and with the border of the domain.
+The first three are taken over {places} points of each of the 4 N² patches: the barycentric lattice
+of step 1/{parts}, which includes vertices and edges of the cells and the border of the domain.
 
 The tables give the error on each grid, the slope of log(error) against log(k) by least squares,
 over all grids and over the {last} finest, and the constant: the largest error / kʳ of all grids, r
 being the order that is claimed, and its value on the finest grid. A slope above r, with a constant
-that falls towards the finest grid, means that a term of higher order is still felt on coarse grids.
+that decreases towards the finest grid, means that terms of higher order contribute on coarse grids.
 
 {exact} have quadratic polynomials for coordinates. The spline reproduces them
-exactly; what is left is rounding, shown by a power of ten above it.
+exactly; the remaining rounding error is given as a power of ten above it.
 
-Left out are {singular}. At their poles x_u × x_v = 0 (checked
+Not included are {singular}. At their poles x_u × x_v = 0 (checked
 exactly): these are singular points of the parameterization, without a normal by (1), and an error
 of the derivatives, divided by |x_u × x_v|, does not bound that of the normals there.
 """
@@ -380,7 +380,7 @@ h_p comes from `gaussmap.sample`, which returns the support value of every point
 has one of {normals:,} normals (a Fibonacci lattice on the sphere). h_x is exact: Newton's method on
 n·x_u = n·x_v = 0, with exact derivatives, leads from the parameters of the sample to the point of
 the true surface with the same normal n, and h_x(n) = n·x there. For {closed}
-this was compared with the closed form of the support function: the largest difference is
+it agrees with the closed form of the support function: the largest difference is
 below {difference}.
 
 Where K is near zero a normal does not determine its point, or has none on one of the two surfaces.
@@ -388,7 +388,7 @@ Samples are left out, and counted below, in this order, as
 
 - **flat**, if |K| of the true surface at the parameters of the sample is less than
   {flat:g} % of the largest |K| of the surface;
-- **lost**, if Newton's method does not come to a point of normal n within {near:g} cells of the
+- **lost**, if Newton's method does not converge to a point of normal n within {near:g} cells of the
   sample;
 - **turned**, if K has another sign at that point than at the sample;
 - **outside**, if that point lies beyond the border of the domain.
@@ -399,8 +399,8 @@ normal.
 Why the order is 3: with n the normal of p at s′ and of x at s,
 h_p(n) − h_x(n) = n·(p − x)(s′) + [n·x(s′) − n·x(s)]. The first term is an error of positions. In
 the second n·x is stationary at s, and s′ − s is of the order of the error of the normals, k², so
-it is O(k⁴). In the limit Ĉ is therefore not larger than C̃ (but for the third digit: each is the
-largest over finitely many places).
+it is O(k⁴). In the limit Ĉ is therefore not larger than C̃ (up to the third digit: each is a
+maximum over finitely many points).
 """
 
 FASTER = """\

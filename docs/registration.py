@@ -196,37 +196,37 @@ HEAD = """\
 
 Written by `make registration`: do not edit.
 
-A part is laid into a scan of it: point-to-plane ICP of Open3D {version} moves N points of the exact
-part onto {scan:,} noisy points (σ = {noise} mm in each coordinate, normals estimated by Open3D from
-{neighbours} neighbours). The three sets of points differ in nothing but the `density=` of
-`gm.sample`. Every row is {seeds} scans with noise and starts of their own, the same for all three
-sets: turned by {turn:g}° about a random axis, lifted by up to {lift} mm and moved along each side
-by up to the given slide. The plates are {size:g} mm wide, and bent to a paraboloid of radius
-{radius:g} mm; bumps and grooves are 1 mm high and about 10 mm wide. Columns:
+A part is registered with a scan of it: point-to-plane ICP of Open3D {version} moves N points of the
+exact part onto {scan:,} noisy points (σ = {noise} mm in each coordinate, normals estimated by
+Open3D from {neighbours} neighbours). The three sets of points differ in nothing but the `density=`
+of `gm.sample`. Every row is {seeds} scans, each with another noise and initial position, the same
+for all three sets: rotated by {turn:g}° about a random axis, lifted by up to {lift} mm and moved
+along each side by up to the given slide. The plates are {size:g} mm wide paraboloids with the
+radius of curvature {radius:g} mm; bumps and grooves are 1 mm high and about 10 mm wide. Columns:
 
-- **turn** and **shift**: what is left of rotation (degrees) and translation of the origin (mm), the
-  median and the 90 % quantile;
-- **points**: how far points of the part are from their true place on average (mm), the median;
-- **failed**: how often that is more than {failed} mm.
+- **turn** and **shift**: the errors of the rotation (degrees) and of the translation of the origin
+  (mm), median and 90 % quantile;
+- **points**: the mean distance of points of the part from their true positions (mm), median;
+- **failed**: how often this distance is more than {failed} mm.
 """
 
 MEANING = """\
-## What this says
+## Results
 
-Where small features hold a part, samples that are dense on them hold it better: with N = {few},
-{half} and {many} the points of the part are {ratios} times as far off with uniform samples as with
-"gauss", and {balanced} times as far as with "balanced" (by the medians).
+Where small features determine the position of a part, samples that are dense on them are better:
+with N = {few}, {half} and {many} the error of the points is {ratios} times as large with uniform
+samples as with "gauss", and {balanced} times as large as with "balanced" (by the medians).
 
-It has a price. Points on a feature do not find it in the scan if the start is farther off than it
-is wide: with slides of up to {far:g} mm there fail {failed} of {seeds} runs. Uniform samples first
-and the others from where these end (the rows with an arrow) have both, the basin of the one and
-the accuracy of the other.
+This has a price. ICP does not find a feature in the scan if the initial error is larger than the
+feature: with slides of up to {far:g} mm, {failed} of {seeds} runs fail. Uniform samples first, and
+the others from the result (the rows with an arrow), combine the basin of attraction of the former
+with the accuracy of the latter.
 
-Grooves hold a part along all their length. They bend in one direction only, of which normals see
-little: the points are off by {grooves} mm.
+Grooves determine the position along all their length. They are curved in one direction only, so
+that K ≈ 0 and few normals are theirs: the errors of the points are {grooves} mm.
 
-Where nothing holds a part no choice of points does: the plate alone slides and turns, the sphere
-turns, and what is left of that is about as much as the start was off, or more.
+Where no feature determines the position no choice of points does: the plate alone slides and turns,
+the sphere turns, and the remaining error is about as large as the initial one, or larger.
 """
 
 COLUMNS = ["turn 50 %", "90 %", "shift 50 %", "90 %", "points", "failed"]

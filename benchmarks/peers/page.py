@@ -1,4 +1,4 @@
-"""docs/performance.md: gaussmap beside others, how its time grows, and the machine."""
+"""docs/performance.md: gaussmap compared with others, how its time grows, and the machine."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .splines import NET
 
 __all__ = ["OnSurface", "page"]
 
-# gaussmap at 10⁶ points shall be at least so many times as fast.
+# The least speed of gaussmap at 10⁶ points, relative to others.
 TARGETS: tuple[tuple[Peer, int], ...] = ((RECIPE, 20), (SPLIPY_RECIPE, 200), (GMSH, 1000))
 STEEPEST = 1.05
 
@@ -36,34 +36,34 @@ class OnSurface:
 HEAD = """\
 # Performance, measured
 
-Written by `make bench-peers`: do not edit. The speed of a machine that others use drifts; ratios
-are medians of ratios of two times that were taken right after each other.
+Written by `make bench-peers`: do not edit. The speed of a shared machine drifts; each ratio is the
+median of ratios of two times that were taken right after each other.
 
-## Beside others
+## Compared with other packages
 
 Points **with normals**, as NumPy arrays, of three surfaces. Columns:
 
-- **points/s**: of so many points as the table says, the median of several runs;
-- **preparation**: seconds that are not in it, for what need not be repeated for more points of the
-  same surface: the mesh of 205,000 triangles (trimesh, Open3D, PyMeshLab), the curvature on a grid
+- **points/s**: for the number of points in the table, the median of several runs;
+- **preparation**: seconds that points/s leaves out, for work that more points of the same surface
+  do not repeat: the mesh of 205,000 triangles (trimesh, Open3D, PyMeshLab), the curvature on a grid
   of 512 × 512 (Splipy, |K|), the model, and the search for the setting that gives this count
   (Gmsh, Open CASCADE, PyMeshLab);
-- **gaussmap, same count** and **10⁶**: how many times as fast is
-  `gm.sample(surface, normals=normals)`, timed in turns, with the fit of 64 × 64 cells from the
-  surface's values, for the same count and for 10⁶ points;
-- **E** and **G**, in degrees: how badly {judged} points stand for the surface at the worst of
-  {places:,} places that are uniform by area. E is the angle between the normal of a place and that
-  of the sample nearest in space; G the angle to the sample nearest in normal, among those with the
-  same sign of K.
+- **gaussmap, same count** and **10⁶**: the speed of `gm.sample(surface, normals=normals)` relative
+  to that of the row, timed in turns, for the same count and for 10⁶ points, including the fit of
+  64 × 64 cells to values of the surface;
+- **E** and **G**, in degrees: the largest angles between the normals of {places:,} points of the
+  surface, uniform by area, and the normals of {judged} samples. For E the sample is the nearest
+  one in space; for G it is the nearest one in normal, among those with the same sign of K.
 
-Splipy and geomdl have a cubic B-spline that interpolates the surface at {net} × {net} points; in
-their rows gaussmap samples the same B-spline, by Splipy's evaluation. Gmsh and Open CASCADE mesh
-this B-spline, too, but for the torus, which is one of their own shapes. NumPy's grid computes
+Splipy and geomdl use a cubic B-spline that interpolates the surface at {net} × {net} points; in
+their rows gaussmap samples the same B-spline, evaluated by Splipy. Gmsh and Open CASCADE mesh this
+B-spline, too, except for the torus, which is one of their primitives. NumPy's grid computes
 trigonometric functions along its two sides only. Meshes have exact normals at their vertices, and
-samples those, interpolated. gaussmap is given normals of a Fibonacci lattice that were made before;
-with `count=…, density="gauss"` it makes them, and finds out how many are needed. The recipes draw
-points at random; gaussmap's also have curvatures and parameters, and so has NumPy's recipe. Each
-package uses the threads that it uses by default; for gaussmap that is one for each core.
+their samples have interpolated ones. gaussmap is given the normals of a Fibonacci lattice, which
+are not timed; with `count=…, density="gauss"` it computes them, and finds the number that is
+needed. The recipes draw points at random; samples of gaussmap also have curvatures and parameters,
+and so have those of NumPy's recipe. Each package uses its default number of threads; that of
+gaussmap is one for each core.
 """
 
 SCALE = """\
@@ -71,7 +71,7 @@ SCALE = """\
 
 `gm.sample(spline, normals=normals)` on the torus, for growing numbers of samples and of patches.
 The slope is that of log(time) against log(patches + samples), by least squares, over all sizes and
-over the {last} largest: at most {steepest} is wanted, 1 is linear. {streamed}
+over the {last} largest; 1 is linear, and the target is at most {steepest}. {streamed}
 """
 
 
@@ -125,24 +125,24 @@ def _row(x: Measured) -> list[str]:
 
 
 def targets(surfaces: Sequence[OnSurface]) -> str:
-    """Return the table of what is wanted, and what is reached on each surface."""
-    header = ["10⁶ points of gaussmap, as many times as fast as", "wanted"]
+    """Return the table of targets, and of what is reached on each surface."""
+    header = ["speed of gaussmap for 10⁶ points, relative to", "target"]
     header += [x.form.name for x in surfaces]
     rows = []
-    for peer, wanted in TARGETS:
+    for peer, target in TARGETS:
         found = [next(x for x in on.peers if x.peer is peer) for on in surfaces]
-        rows.append([peer.title, f"≥ {wanted}", *(_reached(x, wanted) for x in found)])
+        rows.append([peer.title, f"≥ {target}", *(_reached(x, target) for x in found)])
     return markdown(header, rows)
 
 
-def _reached(x: Measured, wanted: int) -> str:
+def _reached(x: Measured, target: int) -> str:
     if x.missing:
         return "missing"
-    return f"{times(x.times_million)}, {'met' if x.times_million >= wanted else 'not met'}"
+    return f"{times(x.times_million)}, {'met' if x.times_million >= target else 'not met'}"
 
 
 def streamed() -> str:
-    """Say how more samples than can be held were counted."""
+    """Return how samples that do not fit into memory were counted."""
     if STREAM is None:
         return ""
     return f"More than {STREAMED:,} samples come from `gm.sample_stream`, and are only counted."

@@ -1,4 +1,4 @@
-"""What was asked of gaussmap's densities, and whether it is met."""
+"""Targets for the densities of gaussmap, and whether they are met."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ Measure = Callable[[Found, Found], float]
 
 @dataclass(frozen=True)
 class Criterion:
-    """A ratio of what `own` does to what `other` does; it is met up to `limit`.
+    """A ratio of a quantity of `own` to that of `other`; it is met up to `limit`.
 
-    With `at_least`, from `limit` on. `goal` marks what was hoped for, not asked.
+    With `at_least`, from `limit` on. A `goal` is to be approached, not met.
     """
 
     title: str
@@ -38,7 +38,7 @@ class Criterion:
         return value < self.limit if self.strict else value <= self.limit
 
     @property
-    def asked(self) -> str:
+    def target(self) -> str:
         """The limit in words."""
         sign = "≥" if self.at_least else "<" if self.strict else "≤"
         return f"{sign} {self.limit:g}"
@@ -70,7 +70,7 @@ def of_G(own: Found, other: Found) -> float:
 
 
 def speed(own: Found, other: Found) -> float:
-    """Points a second, over the same; own is balanced, which other was timed beside."""
+    """The ratio of points per second; `own` is balanced, and was timed in turns with `other`."""
     return other.times
 
 
@@ -109,6 +109,6 @@ def worst(found: list[Verdict]) -> Verdict:
 
 
 def share(found: list[Verdict]) -> str:
-    """Say how many of the verdicts are met: "3 of 4"; those that are not known do not count."""
+    """Return how many of the known verdicts are met, such as "3 of 4"."""
     known = [x.met for x in found if x.met is not None]
     return f"{sum(known)} of {len(known)}"

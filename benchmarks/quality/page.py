@@ -1,4 +1,4 @@
-"""docs/quality.md: how well samples stand for surfaces, beside others, and what was asked."""
+"""docs/quality.md: how well samples represent surfaces, compared with others, and the targets."""
 
 from __future__ import annotations
 
@@ -16,38 +16,38 @@ from .measure import CLOUDS, COUNTS, FEASIBLE, LARGE, OnSurface
 __all__ = ["page"]
 
 HEAD = """\
-# How well samples stand for a surface, measured
+# How well samples represent a surface, measured
 
 Written by `make quality`: do not edit. Points **with normals** of five surfaces; the constants of
-gaussmap were chosen on the first three, and nothing was tuned for the other two. Columns:
+gaussmap were chosen on the first three, and were not changed for the other two. Columns:
 
-- **E** and **G**, in degrees, at the worst of {places:,} places that are uniform by area. E is the
-  angle between the normal of a place and that of the sample nearest in space; G the angle to the
-  sample nearest in normal, among those with the same sign of K. Flat parts have one normal, so
-  that neither sees whether they are sampled;
-- **points/s**: the median of several runs (relaxed: one); of {large:,} points one run, after the
-  others and only where that takes less than about {feasible:g} s;
-- **balanced**: how many times as fast `gm.sample(surface, count=…)` is for the same count: the
-  median of ratios of two times that were taken right after each other, as the speed of a machine
-  that others use drifts.
+- **E** and **G**, in degrees: the largest angles between the normals of {places:,} points of the
+  surface, uniform by area, and the normals of samples. For E the sample is the nearest one in
+  space; for G it is the nearest one in normal, among those with the same sign of K. A plane has one
+  normal, so that neither E nor G shows whether it is sampled;
+- **points/s**: the median of several runs (relaxed: one run); for {large:,} points one run, after
+  the others, and only if it takes less than about {feasible:g} s;
+- **balanced**: the speed of `gm.sample(surface, count=…)` for the same count, relative to that of
+  the row: the median of ratios of two times that were taken right after each other, as the speed of
+  a shared machine drifts.
 
 The bold rows are `gm.sample(surface, count=…, density=…)`, each call with the fit of a spline to
-the surface. *The paper's method, exact* takes the same normals as **gauss**, and the inverse of the
-Gauss map in closed form instead of a spline; below it are the normals of a refined icosahedron, as
-in the paper.
-Meshes, models and the search for the setting that gives a count are not in the time of others.
-Poisson disks are random: E and G are the medians of {clouds} clouds. The B-splines, meshes and
-normals of other packages are those of [performance.md](performance.md); the boss is made by Gmsh
-and Open CASCADE as a solid of revolution, with five faces.
+the surface. *The paper's method, exact* uses the same normals as **gauss**, and the inverse Gauss
+map in closed form instead of a spline; the row below it uses the normals of a refined icosahedron,
+as in the paper.
+The times of others leave out meshes, models and the search for the setting that gives a count.
+Poisson disks are random: E and G are the medians of {clouds} samplings. The B-splines, meshes and
+normals of other packages are those of [performance.md](performance.md); in Gmsh and Open CASCADE
+the boss is a solid of revolution with five faces.
 """
 
-ASKED = """\
-## What was asked
+TARGETS = """\
+## Targets
 
 Ratios at {counts} points; *relaxed* is `relax={steps}` on every surface. The last columns are the
-worst ratio, and how often it is met. The goal was asked for as one to come near to. With the same
-normals, G of **gauss** can differ from the exact one only by points that appear or vanish, or
-change the sign of K, because of the spline.
+worst ratio, and in how many cases the target is met. The goal is to be approached, not met. With
+the same normals, G of **gauss** can differ from the exact one only by points that appear or vanish,
+or change the sign of K, because of the spline.
 """
 
 
@@ -55,7 +55,7 @@ def page(surfaces: Sequence[OnSurface], ways: Sequence[Peer]) -> str:
     """Return the page."""
     head = HEAD.format(places=PLACES, large=LARGE, feasible=FEASIBLE, clouds=CLOUDS)
     counts = " and ".join(f"{x:,}" for x in COUNTS)
-    parts = [wrapped(head), wrapped(ASKED.format(counts=counts, steps=JUDGED_STEPS))]
+    parts = [wrapped(head), wrapped(TARGETS.format(counts=counts, steps=JUDGED_STEPS))]
     parts.append(acceptance(surfaces))
     for on in surfaces:
         parts += [f"## {on.form.label}\n", table(on, ways)]
@@ -64,15 +64,15 @@ def page(surfaces: Sequence[OnSurface], ways: Sequence[Peer]) -> str:
 
 
 def acceptance(surfaces: Sequence[OnSurface]) -> str:
-    """Return the table of what was asked."""
-    header = ["", "asked", *(x.form.name for x in surfaces), "worst", "met"]
+    """Return the table of targets."""
+    header = ["", "target", *(x.form.name for x in surfaces), "worst", "met"]
     rows = []
     for criterion in CRITERIA:
         found = [verdicts(criterion, on, COUNTS) for on in surfaces]
         cells = [", ".join(verdict(x) for x in row) for row in found]
         every = [x for row in found for x in row]
         last = [ratio(worst(every)), share(every)]
-        rows.append([criterion.title, criterion.asked, *cells, *last])
+        rows.append([criterion.title, criterion.target, *cells, *last])
     return markdown(header, rows)
 
 

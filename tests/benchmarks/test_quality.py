@@ -122,20 +122,20 @@ def surface(found, missing=()):
 
 
 @pytest.mark.parametrize(
-    ("limit", "strict", "at_least", "good", "bad", "asked"),
+    ("limit", "strict", "at_least", "good", "bad", "target"),
     [
         (1.05, False, False, 1.05, 1.0501, "≤ 1.05"),
         (1.0, True, False, 0.999, 1.0, "< 1"),
         (20.0, False, True, 20.0, 19.9, "≥ 20"),
     ],
 )
-def test_limits(limit, strict, at_least, good, bad, asked):
+def test_limits(limit, strict, at_least, good, bad, target):
     criterion = criteria.Criterion(
         "x", ways.GAUSS, ways.PERFECT, criteria.of_E, limit, strict, at_least
     )
     assert criterion.met(good)
     assert not criterion.met(bad)
-    assert criterion.asked == asked
+    assert criterion.target == target
 
 
 def test_each_criterion_compares_what_its_title_says():
@@ -169,7 +169,7 @@ def test_what_is_missing_is_neither_met_nor_not():
     assert criteria.share(found) == "0 of 0"
 
 
-def test_the_worst_is_farthest_from_what_is_asked():
+def test_the_worst_is_farthest_from_the_target():
     """Speeds shall be large, errors small; what is missing is never the worst."""
     found = [
         criteria.verdicts(x, on, measure.COUNTS)[0]

@@ -113,8 +113,8 @@ def test_words_follow_from_the_numbers():
     for (name, second), row in committed().items():
         if second.isdigit():
             ratios.setdefault(name, []).append(float(row[2]))
-    better = re.search(r"cut off sharp bends, on (.*?) for some M", text)
-    worse = re.search(r"M resolves the bends: on (.*?) for M ≈ 256", text)
+    better = re.search(r"cut off sharp corners, on (.*?) for some M", text)
+    worse = re.search(r"M resolves the corners: on (.*?) for M ≈ 256", text)
     assert better is not None
     assert worse is not None
     assert re.findall(r"`(\w+)`", better[1]) == [x for x, y in ratios.items() if max(y) > 1.0]
