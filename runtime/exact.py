@@ -17,7 +17,9 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from ..generated import exact as kernels
+from ..generated.primes import PRIMES
+from ..generated.spline import CORNERS
+from .kernels import decide as kernels
 from .kernels.patch import normals_at
 from .long_integers import forms_of_pairs
 from .spline import Spline
@@ -93,12 +95,13 @@ def _forms(
     count = len(patches)
     local, size = np.empty((count, 2)), np.empty(count)
     signs, known = np.empty((count, 3), dtype=np.int8), np.empty(count, dtype=np.bool_)
+    pairs = kernels.Pairs(patches, normals, bounds, forgiven)
+    decided, tables = kernels.Decided(local, size, signs, known), prime_tables()
 
     def work(first: int, last: int) -> None:
         kernels.decide_pairs(
-            spline.coefficients, spline.scale, patches, normals, bounds, forgiven,
-            kernels.PRIMES, *_tables(), first, last, local, size, signs, known,
-        )  # fmt: skip
+            spline.coefficients, spline.scale, pairs, tables, first, last, _workspace(), decided
+        )
 
     for _ in over_ranges(work, count, PAIRS_AT_A_TIME, threads):
         pass
@@ -112,11 +115,19 @@ def _forms(
 
 
 @cache
-def _tables() -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return 2^k modulo each prime (m, …), and the inverses (m, m) of primes modulo larger ones."""
-    primes = kernels.PRIMES.tolist()
+def prime_tables() -> kernels.PrimeTables:
+    """Return the primes, and what computing modulo them needs."""
+    primes = PRIMES.tolist()
     powers = np.array([[pow(2, k, p) for k in range(MOST_SHIFTED)] for p in primes])
-    return powers, np.array([[pow(p, -1, q) if p != q else 0 for q in primes] for p in primes])
+    inverses = np.array([[pow(p, -1, q) if p != q else 0 for q in primes] for p in primes])
+    return kernels.PrimeTables(PRIMES, powers, inverses)
+
+
+def _workspace() -> kernels.Workspace:
+    """Return room for the residues of one pair."""
+    count = len(PRIMES)
+    shapes = (count, 5, 3), (count, 3), (4, count), (count,)
+    return kernels.Workspace(*(np.empty(x, dtype=np.int64) for x in shapes), np.empty(4))
 
 
 def _regular_places(
@@ -155,7 +166,7 @@ def _first_of_each_place(
     if not near.any():
         return keep
     cell, turn = np.divmod(patches, 4)
-    corners = kernels.CORNERS[turn]
+    corners = CORNERS[turn]
     place = np.stack(np.divmod(cell, spline.cells[1]), axis=1) + np.einsum(
         "kc,kcx->kx", local, corners
     )

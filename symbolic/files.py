@@ -13,9 +13,7 @@ from pathlib import Path
 import sympy as sp
 
 from . import curve, gaussian_image, icosahedron, latex, mesh, patch, spline, support, surfaces
-from .double_double import double_double_function
-from .emit import call, functions, named_tuples, render, vector_functions
-from .formula import Formula
+from .emit import named_tuples, render, vector_functions
 from .loops import array_function
 from .positions import position
 from .printer import source_of
@@ -33,7 +31,7 @@ def derive() -> dict[str, str]:
     sources = {
         "__init__.py": '"""Kernels and formulas written by `make generate`: never edit these."""\n',
         "curve.py": curve_source(),
-        "exact.py": exact_source(),
+        "primes.py": primes_source(),
         "gaussian_image.py": gaussian_image_source(),
         "icosahedron.py": icosahedron_source(),
         "mesh.py": mesh_source(),
@@ -94,11 +92,6 @@ def formatted(source: str, name: str = "module.py") -> str:
 
 
 # --- the files ------------------------------------------------------------------------------------
-
-
-def header(title: str, imports: str = "") -> str:
-    """Return the head of a Python file: docstring with generator and options, imports, `jit`."""
-    return render("header.py", {"docstring": _docstring(title), "imports": imports}).rstrip()
 
 
 def mathematics(title: str, *parts: str) -> str:
@@ -184,34 +177,10 @@ def spline_source() -> str:
     )
 
 
-def exact_source() -> str:
-    """Return generated/exact.py: the forms of patches, exact enough to know their signs."""
-    names = [x.name for x in spline.TRIANGLE.in_components().outputs]
-    vectors, outputs = ", ".join(names[:15]), ", ".join(names)
-    difference = "multiple(plus((mu[{place}, {x}], 0.0), (-mu[i, j, {x}], 0.0)), scale)"
-    residue = "residue(around[{k}, {x}], lowest, prime, powers)"
-    centre = (f"centre_{x} = {residue.format(k=4, x=x)}" for x in range(3))
-    precise = [spline.TRIANGLE, patch.FORMS]
-    modular = [spline.TRIANGLE, patch.LINEAR_FORMS_OF_NORMAL, patch.ELIMINATED_FORMS]
-    return render(
-        "exact.py",
-        {
-            "header": header("Exact decisions: the signs of the forms of a patch and a normal."),
-            "constants": f"{_grid_constants()}\nPRIMES = np.array({_primes()})",
-            "formulas": functions(modular),
-            "double_double_formulas": "\n\n\n".join(map(double_double_function, precise)),
-            "load_pairs": _load(spline.TRIANGLE, difference),
-            "triangle_of_pairs": f"{outputs} = double_double_{call(spline.TRIANGLE)}",
-            "forms_of_pairs": f"return double_double_{call(patch.FORMS)}",
-            "load_centre": "\n".join(centre),
-            "load_residues": _load(spline.TRIANGLE, f"({residue} - centre_{{x}})"),
-            "triangle_of_residues": f"{outputs} = {call(spline.TRIANGLE)}",
-            "return_vectors": f"return {', '.join(f'{x} % prime' for x in names[:15])}",
-            "name_vectors": f"{vectors} = vectors",
-            "linear_forms": f"A, B, C, P, Q = {call(patch.LINEAR_FORMS_OF_NORMAL)}",
-            "eliminated_forms": f"D, U, V, W = {call(patch.ELIMINATED_FORMS)}",
-        },
-    )
+def primes_source() -> str:
+    """Return generated/primes.py: moduli for exact integers."""
+    title = "The largest primes of which sums of twelve products of two fit into 64 bits."
+    return mathematics(title, f"PRIMES = np.array({_primes()})")
 
 
 def support_source() -> str:
@@ -282,17 +251,6 @@ def _triangle_neighbours() -> str:
     """Return which of the nine coefficients the formula `triangle` reads, in its order."""
     places = [k for k, x in enumerate(spline.MU.values()) if x in spline.TRIANGLE.inputs]
     return f"TRIANGLE_NEIGHBOURS = np.array({places})"
-
-
-def _load(formula: Formula, value: str) -> str:
-    """Return assignments to what a formula reads; `value` has {place}, its number {k}, and {x}."""
-    return "\n".join(
-        f"{component} = " + value.format(place=place, k=k, x=x)
-        for k, symbol in enumerate(spline.MU.values())
-        for place in [f"i + NEIGHBOURS[turn, {k}, 0], j + NEIGHBOURS[turn, {k}, 1]"]
-        if symbol in formula.inputs
-        for x, component in enumerate(symbol.components)
-    )
 
 
 def _vertices() -> str:

@@ -6,11 +6,14 @@ from itertools import product
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.generated import exact as kernels_of_pairs
+from gaussmap.generated.primes import PRIMES
 from gaussmap.generated.spline import NEIGHBOURS, TRIANGLE_NEIGHBOURS, triangle
+from gaussmap.generated.vectors import Vector
 from gaussmap.runtime import exact, long_integers
 from gaussmap.runtime.formula_calls import python_function, vector
 from gaussmap.runtime.integers import integers, sign
+from gaussmap.runtime.kernels.decide import precise_forms
+from gaussmap.runtime.kernels.modular import mixed_radix_value
 from gaussmap.runtime.surface import Ends
 from hypothesis import given
 from hypothesis import strategies as st
@@ -133,8 +136,8 @@ def test_double_doubles_carry_106_bits() -> None:
     spline = gm.Spline(rng.standard_normal((4, 4, 3)), ((0, 2), (0, 2)), OPEN, "t")
     for patch, n in zip(range(16), gm.fibonacci(16), strict=True):
         i, j = divmod(patch // 4, 2)
-        forms = kernels_of_pairs.precise_forms(
-            spline.coefficients, i + 1, j + 1, patch % 4, spline.scale, *n
+        forms = precise_forms(
+            spline.coefficients, i + 1, j + 1, patch % 4, spline.scale, Vector(*n)
         )
         vectors, exponent = long_integers._patch_vectors(spline, np.array([patch]))
         whole, unit = integers(n)
@@ -149,11 +152,11 @@ def test_double_doubles_carry_106_bits() -> None:
 
 @given(values=st.lists(st.integers(-(2**200), 2**200), min_size=1, max_size=5))
 def test_numbers_come_back_from_their_residues(values: list[int]) -> None:
-    primes = kernels_of_pairs.PRIMES[:9]
-    inverses = exact._tables()[1]
+    primes = PRIMES[:9]
+    inverses = exact.prime_tables().inverses
     for value in values:
         residues = np.array([value % int(p) for p in primes])
-        found = kernels_of_pairs.value_of(residues, primes, inverses, np.empty(9, dtype=np.int64))
+        found = mixed_radix_value(residues, primes, inverses, np.empty(9, dtype=np.int64))
         # Nine digits are added, with two roundings each.
         assert abs(Fraction(found) - value) <= 18 * Fraction(2) ** -53 * abs(value)
 
