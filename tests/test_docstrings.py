@@ -18,7 +18,9 @@ def functions() -> dict[str, Callable[..., Any]]:
     found = {
         f"{space}.{name}": getattr(getattr(gm, space), name)
         for space, names in {
+            "curves": ["fit", "polygon_distance", "sample"],
             "directions": gm.directions.__all__,
+            "gauss_map": ["classify_patches", "parabolic_lines", "parabolic_points", "split_patch"],
             "surfaces": [*gm.surfaces.__all__, *gm.surfaces.names()],
         }.items()
         for name in names

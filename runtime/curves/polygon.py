@@ -16,11 +16,34 @@ PAIRS_AT_A_TIME = 1 << 18
 
 
 def polygon_distance(points: ArrayLike, polygon: ArrayLike) -> NDArray[np.float64]:
-    """Return the distances (k,) of points (k, 2) from a polygon with the vertices (m, 2), in turn.
+    """Return the distances of points from a polygon.
 
-    A closed polygon repeats its first vertex at its end. The largest distance of many points of a
-    curve is the (one-sided) Hausdorff distance between curve and polygon. Raises InputError for
-    other shapes, an empty polygon, NaN or infinity.
+    The largest distance of many points of a curve is the (one-sided) Hausdorff distance between
+    curve and polygon.
+
+    Parameters
+    ----------
+    points : (k, 2) array_like
+        The points.
+    polygon : (m, 2) array_like
+        The vertices in turn; a closed polygon repeats its first vertex at its end.
+
+    Returns
+    -------
+    (k,) float64 array
+        The distances.
+
+    Raises
+    ------
+    InputError
+        For other shapes, an empty polygon, NaN or infinity.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> gm.curves.polygon_distance([[0, 1], [3, 0]], [[0, 0], [2, 0]]).tolist()
+    [1.0, 1.0]
+
     """
     places, vertices = _plane(points, "points"), _plane(polygon, "polygon")
     if len(vertices) == 0:

@@ -62,16 +62,44 @@ def sample(
 ) -> CurveSamples:
     """Return every point of a planar curve that has one of the given normals, each exactly once.
 
-    Normals spread evenly over the circle make the samples dense where the curve bends: their
-    density is |κ| (paper, Sect. 4.1). The curve is first approximated by a spline of `pieces` arcs
-    (see `fit`); a `CurveSpline` is taken as it is.
+    Normals spread evenly over the circle give samples with the density |κ| (paper, Sect. 4.1).
 
-    Give either `normals`, an array (S, 2) of directions of any length such as `circle(100)`, or
-    `count`, about how many samples shall come, from evenly spread normals.
+    Parameters
+    ----------
+    curve : Curve or CurveSpline
+        The curve; a `Curve` is first approximated by a spline.
+    count : int, optional
+        The approximate number of samples, at evenly spread normals. Either this or `normals`.
+    normals : (S, 2) array_like, optional
+        Directions of any length but 0, such as ``gm.directions.circle(100)``.
+    pieces : int, optional
+        The number of arcs of the spline, see `fit`.
 
-    Samples are ordered along the curve. Normals see nothing of straight parts, and a
-    GaussmapWarning says how much of the length that is, or that `count` cannot be met. Raises
-    InputError for unusable arguments and SurfaceError for a curve that cannot be evaluated.
+    Returns
+    -------
+    CurveSamples
+        The samples in order along the curve.
+
+    Raises
+    ------
+    InputError
+        For unusable arguments.
+    SurfaceError
+        For a curve that cannot be evaluated.
+
+    Warns
+    -----
+    GaussmapWarning
+        If parts of the curve are straight, so that no set of normals can sample them, or if `count`
+        cannot be met.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> circle = gm.curves.Curve.from_sympy(("cos(t)", "sin(t)"), "t", (0, "2*pi"), True)
+    >>> len(gm.curves.sample(circle, normals=gm.directions.circle(10)))
+    10
+
     """
     if (normals is None) == (count is None):
         raise InputError("give either normals=... or count=..., and not both.")

@@ -214,15 +214,38 @@ def _lengths(vectors: Array) -> Array:
 
 @in_memory
 def fit(curve: Curve, pieces: int | None = None) -> CurveSpline:
-    """Approximate a planar curve by a C¹ quadratic spline with `pieces` arcs.
+    """Approximate a planar curve by a C¹ quadratic spline.
 
-    The quasi-interpolant is exact on quadratics; the error of positions falls with the third power
-    of the length of a piece, that of normals with the second (docs/curves.md). Without `pieces`:
-    64, or one between any two neighbouring points of a curve that was given by points.
+    The quasi-interpolant is exact on quadratics. The error of positions falls with the third power
+    of the length of a piece, that of normals with the second (docs/curves.md).
 
-    Raises InputError for no piece, fewer than 3 pieces of a closed curve, and more than a narrow
-    domain can hold; SurfaceError if the curve cannot be evaluated (see `Curve.evaluate`) or does
-    not close although it is periodic.
+    Parameters
+    ----------
+    curve : Curve
+        The curve.
+    pieces : int, optional
+        The number of arcs, at least 3 for a closed curve. By default 64, or one between any two
+        neighbouring points of a curve that was given by points.
+
+    Returns
+    -------
+    CurveSpline
+        The spline.
+
+    Raises
+    ------
+    InputError
+        For unusable `pieces`, and more of them than a narrow domain can hold.
+    SurfaceError
+        If the curve cannot be evaluated, or does not close although it is periodic.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> circle = gm.curves.Curve.from_sympy(("cos(t)", "sin(t)"), "t", (0, "2*pi"), True)
+    >>> gm.curves.fit(circle, 16).turning_number
+    1
+
     """
     if not isinstance(curve, Curve):
         raise InputError(f"fit takes a Curve, not {type(curve).__name__}.")

@@ -33,15 +33,39 @@ class PatchClass(IntEnum):
 
 
 def classify_patches(patches: Spline | ArrayLike) -> NDArray[np.int8]:
-    """Return a `PatchClass` for each patch (k,) int8 of a spline, or of Bézier nets (k, 6, 3).
+    """Return the classes of quadratic patches by the sign of their Gaussian curvature.
 
-    PLANAR: the normal is constant. DEVELOPABLE: the Gaussian curvature vanishes everywhere.
-    ELLIPTIC, HYPERBOLIC: it has one sign inside. MIXED: a parabolic line separates elliptic from
-    hyperbolic parts (paper, Remark 3.1). SINGULAR: no point has a normal. The signs of the ten
-    Bézier coefficients of the cubic `parabolic_cubic` decide where they agree, the parabolic lines
-    elsewhere; what is zero up to the rounding of the coordinates counts as zero.
+    Parameters
+    ----------
+    patches : Spline or (k, 6, 3) array_like
+        The patches of a spline, or Bézier nets in the order b200, b020, b002, b110, b101, b011.
 
-    Raises InputError for nets of another shape, NaN, infinity, or numbers too large.
+    Returns
+    -------
+    (k,) int8 array
+        A `PatchClass` for each patch. PLANAR: the normal is constant. DEVELOPABLE: the Gaussian
+        curvature vanishes everywhere. ELLIPTIC, HYPERBOLIC: it has one sign inside. MIXED: a
+        parabolic line separates elliptic from hyperbolic parts (paper, Remark 3.1). SINGULAR: no
+        point has a normal.
+
+    Raises
+    ------
+    InputError
+        For nets of another shape, NaN, infinity, or numbers too large.
+
+    Notes
+    -----
+    The signs of the ten Bézier coefficients of the cubic `parabolic_cubic` decide where they agree,
+    the parabolic lines elsewhere; what is zero up to the rounding of the coordinates counts as
+    zero.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> classes = gm.gauss_map.classify_patches(gm.fit("sphere", (8, 8)))
+    >>> gm.gauss_map.PatchClass.ELLIPTIC in classes.tolist()
+    True
+
     """
     if isinstance(patches, Spline):
         return classes_of(Patches.of_spline(patches))

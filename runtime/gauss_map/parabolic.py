@@ -117,7 +117,7 @@ def parabolic_points(
 
     Parameters
     ----------
-    surface : Surface or Spline
+    surface : Surface, Spline or str
         Of a `Spline`, and of a surface given by a grid of points, which is a spline, exact lines
         inside patches and the edges across which the curvature changes its sign. Any other
         `Surface` has to be smooth; its own curvature is used.
@@ -160,7 +160,7 @@ def parabolic_points(
     Examples
     --------
     >>> import gaussmap as gm
-    >>> gm.parabolic_points(gm.surfaces.torus())
+    >>> gm.gauss_map.parabolic_points(gm.surfaces.torus())
     ParabolicPoints(2 curves, 0 isolated, 0 flat rectangles)
 
     """

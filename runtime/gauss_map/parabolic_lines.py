@@ -63,10 +63,30 @@ class Piece:
 def parabolic_lines(control_points: ArrayLike) -> tuple[ParabolicLine, ...]:
     """Return the parabolic lines of one quadratic patch (paper, Sect. 3.2), at most three.
 
-    `control_points` (6, 3) are in the order b200, b020, b002, b110, b101, b011. Lines outside the
-    triangle are returned too. A patch that is developable or planar up to the rounding of its
-    coordinates has no lines, since all its points are parabolic; see `classify_patches`. Raises
-    InputError for control points that are no six finite points.
+    Parameters
+    ----------
+    control_points : (6, 3) array_like
+        The control points in the order b200, b020, b002, b110, b101, b011.
+
+    Returns
+    -------
+    tuple of ParabolicLine
+        The lines, also those outside the triangle. A patch that is developable or planar up to the
+        rounding of its coordinates has none, since all its points are parabolic; see
+        `classify_patches`.
+
+    Raises
+    ------
+    InputError
+        For control points that are not six finite points.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> net = gm.fit("torus", (8, 8)).control_nets[0]
+    >>> len(gm.gauss_map.parabolic_lines(net)) <= 3
+    True
+
     """
     return lines_of(Patches.of_control_points(checked_control_points(control_points)[None]))
 
@@ -74,8 +94,28 @@ def parabolic_lines(control_points: ArrayLike) -> tuple[ParabolicLine, ...]:
 def split_patch(control_points: ArrayLike) -> tuple[Piece, ...]:
     """Return the pieces into which the parabolic lines split a patch (paper, Sect. 3.2).
 
-    Each piece is elliptic or hyperbolic as a whole; together they are the parameter triangle. Takes
-    and raises what `parabolic_lines` does.
+    Parameters
+    ----------
+    control_points : (6, 3) array_like
+        The control points in the order b200, b020, b002, b110, b101, b011.
+
+    Returns
+    -------
+    tuple of Piece
+        Pieces that are elliptic or hyperbolic as a whole; together they are the parameter triangle.
+
+    Raises
+    ------
+    InputError
+        For control points that are not six finite points.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> net = gm.fit("torus", (8, 8)).control_nets[0]
+    >>> all(piece.sign in (-1, 0, 1) for piece in gm.gauss_map.split_patch(net))
+    True
+
     """
     return pieces_of(Patches.of_control_points(checked_control_points(control_points)[None]))
 
