@@ -1,9 +1,9 @@
 # %% [markdown]
-# # Inspection: where a probe shall touch a part
+# # Inspection: where a probe should touch a part
 #
 # A coordinate measuring machine touches a part at chosen points and compares them with the drawing.
 # It needs two things for each point: the place, and the **normal**, along which it approaches.
-# gaussmap gives both, exactly, with more points where the surface bends more.
+# gaussmap gives both, with more points where the curvature is larger.
 
 # %%
 import gaussmap as gm
@@ -27,7 +27,7 @@ part = gm.Surface.from_callable(lid, domain=((-40, 40), (-30, 30)), name="lid")
 # %% [markdown]
 # ## How many points?
 #
-# There are three ways to say it. The first one is a number.
+# There are three ways to prescribe it. The first one is a number.
 
 # %%
 by_count = gm.sample(part, count=300)
@@ -35,24 +35,24 @@ print(by_count.summary())
 
 # %% [markdown]
 # The second one is a distance: no point of the part may be farther than 6 mm from the nearest probe
-# point. `report.coverage` says which distance is kept.
+# point. `report.coverage` is the distance that was reached.
 
 # %%
 by_coverage = gm.sample(part, coverage=6.0)
 print(f"{len(by_coverage)} points; all of the lid is within {by_coverage.report.coverage:.2f} mm")
 
 # %% [markdown]
-# The third one is an angle: whichever way a piece of the lid faces, some probe point faces nearly
-# the same way, here within 3 degrees.
+# The third one is an angle: every normal of the lid is within this angle, here 3 degrees, of the
+# normal of a probe point.
 
 # %%
 by_angle = gm.sample(part, angle=3.0)
 print(f"{len(by_angle)} points; every normal is within {by_angle.report.angle:.2f}° of one")
 
 # %% [markdown]
-# The three side by side, from above. `kind` tells where a point comes from: from normals that are
-# spread evenly over the sphere, or added where these leave gaps. Normals see what bends in two
-# directions. A rib bends in one direction only, so most of its points are added.
+# The three samplings, from above. `kind` is the origin of a point: a point with one of the
+# prescribed normals, which are uniform on the sphere, or one that fills a gap between these. A rib
+# is nearly developable (K ≈ 0), so that most of its points fill gaps.
 
 # %%
 figure, axes = plt.subplots(1, 3, figsize=(9, 2.9), dpi=70, layout="constrained")
@@ -68,10 +68,10 @@ axes[0].legend(loc="lower left", fontsize=7)
 plt.show()
 
 # %% [markdown]
-# ## Where the ball is
+# ## The centre of the probe
 #
-# The machine knows the middle of the ball at the tip of its probe. When the ball (radius 1.5 mm)
-# touches a point, its middle is 1.5 mm away along the normal: on the *offset surface*.
+# The machine knows the centre of the ball at the tip of its probe. When the ball (radius 1.5 mm)
+# touches a point, its centre is 1.5 mm away along the normal: on the *offset surface*.
 
 # %%
 probe = by_coverage.offset(1.5)
@@ -79,9 +79,9 @@ np.testing.assert_allclose(probe.points, by_coverage.points + 1.5 * by_coverage.
 print(probe.summary())
 
 # %% [markdown]
-# A ball that is larger than the sharpest hollow cannot touch it everywhere. Then the offset folds,
-# and gaussmap warns. The normals point up, and hollows have negative curvatures: the radius of
-# the sharpest one is −1 / κ, with the smallest principal curvature κ.
+# A ball whose radius exceeds the smallest radius of curvature of a concave region cannot touch all
+# of it. Then the offset folds, and gaussmap warns. The normals point up, and concave regions have
+# negative curvatures: the smallest radius is −1 / κ, with the smallest principal curvature κ.
 
 # %%
 radius = -1 / by_coverage.principal_curvatures.min()
@@ -107,7 +107,7 @@ axis.set(xlabel="x / mm", ylabel="z / mm", title="points within 4 mm of the midd
 plt.show()
 
 # %% [markdown]
-# A .csv file has a line for each point; .ply, .npz, .xyz and .vtp work, too.
+# A .csv file has a line for each point; .ply, .npz, .xyz and .vtp are possible, too.
 
 # %%
 by_coverage.write("probe_points.csv")

@@ -1,8 +1,8 @@
 # %% [markdown]
-# # Data sets for learning: points that know everything about themselves
+# # Data sets for learning: points with exact normals and curvatures
 #
 # A network that estimates normals or curvatures from points needs points whose normals and
-# curvatures are known. gaussmap has them in closed form, not from differences of neighbours.
+# curvatures are known. gaussmap computes them in closed form, not from differences of neighbours.
 
 # %%
 import gaussmap as gm
@@ -13,8 +13,8 @@ from scipy.spatial import KDTree
 # %% [markdown]
 # ## Many shapes, one call
 #
-# Twelve random rings and ellipsoids. `sample_many` goes through them, one after the other; `fields`
-# says what to compute, and `dtype` halves the memory. The arguments are those of `gm.sample`.
+# Twelve random tori and ellipsoids. `sample_many` samples them one after the other; `fields` are
+# the arrays to compute, and `dtype` halves the memory. The arguments are those of `gm.sample`.
 
 # %%
 rng = np.random.default_rng(1)
@@ -30,7 +30,7 @@ clouds = list(
 print(len(clouds), "clouds, the first one with", clouds[0].points.shape, clouds[0].points.dtype)
 
 # %% [markdown]
-# A table for those who like tables:
+# The same as a table of pandas:
 
 # %%
 table = clouds[0].to_dataframe()
@@ -39,8 +39,8 @@ print(table.describe().loc[["count", "mean", "min", "max"]].round(3).T)
 # %% [markdown]
 # ## Progressive order: one sampling, all sizes
 #
-# Taking the first rows of a sampling gives a corner of the surface: its order is by patch. After
-# `progressive()` the first 100 rows are a good sampling, and so are the first 500.
+# Samples are ordered by patch, so that the first rows are samples of one corner of the surface.
+# After `progressive()` every prefix is well distributed: the first 100 rows, and the first 500.
 
 # %%
 samples = gm.sample(gm.surfaces.torus(), count=4000)
@@ -64,17 +64,17 @@ for axis, (rows, title) in zip(
 plt.show()
 
 # %% [markdown]
-# So clouds of one size, for a batch, are the beginnings of clouds in progressive order.
+# So clouds of the same size, for a batch, are prefixes of clouds in progressive order.
 
 # %%
 batch = np.stack([cloud.progressive().points[:1024] for cloud in clouds])
 print(batch.shape, batch.dtype)
 
 # %% [markdown]
-# ## Weights: what a mean is a mean over
+# ## Weights: means over the area
 #
-# Samples are dense where the surface bends, so a plain mean over them is biased: it is no mean over
-# the area. `weights()` says how much area belongs to each sample. Use them in a loss, too.
+# Samples are dense where the curvature is large, so that their mean is not the mean over the area.
+# `weights()` is the area that belongs to each sample. Use it in a loss, too.
 #
 # On a torus of radii 1 and r the mean of K over the area is 0, and that of H is 1/(2r).
 
@@ -92,8 +92,8 @@ print(f"area: {weights.sum():.5f}, true {4 * np.pi**2 * r:.5f}")
 # %% [markdown]
 # ## A test for an estimator
 #
-# The classical way to a normal: fit a plane to the nearest neighbours. How wrong is it? Here each
-# point knows the answer, so the error can be measured instead of guessed.
+# The classical estimate of a normal: fit a plane to the nearest neighbours. How large is its error?
+# Here the true normals are known, so that it can be measured.
 
 
 # %%
@@ -111,7 +111,7 @@ for neighbours in (8, 16, 32, 64):
     print(f"{neighbours:2} neighbours: {mean:5.2f}° on average over the area")
 
 # %% [markdown]
-# ## Keep it
+# ## Storing it
 #
 # An .npz file holds all arrays and the report; `gm.read_samples` reads it again.
 

@@ -1,8 +1,8 @@
 # %% [markdown]
-# # Meshing: triangles where they are needed
+# # Meshing: small triangles where the curvature is large
 #
-# A mesh with M vertices stands for a smooth surface. How good it is depends on where the vertices
-# are. Here the same mesher gets two sets of them: spread evenly, and dense where the surface bends.
+# A mesh with M vertices approximates a smooth surface. Its quality depends on the positions of the
+# vertices. Here the same mesher gets two sets: uniform, and dense where the curvature is large.
 
 # %%
 import gaussmap as gm
@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 # %% [markdown]
-# The surface is a thin ring with a fat side, a *Dupin cyclide*.
+# The surface is a ring of varying thickness, a *Dupin cyclide*.
 
 # %%
 surface = gm.surfaces.dupin_cyclide()
@@ -24,8 +24,8 @@ for samples in (even, balanced):
     print(samples.summary())
 
 # %% [markdown]
-# `mesh()` joins the samples to triangles. It closes where the surface closes; both meshes have no
-# border, and the Euler characteristic 0 of a ring.
+# `mesh()` connects the samples by triangles. The mesh is closed if the surface is; both meshes have
+# no border, and the Euler characteristic 0 of a torus.
 
 # %%
 meshes = {"uniform": even.mesh(), "balanced": balanced.mesh()}
@@ -51,8 +51,8 @@ plt.show()
 # %% [markdown]
 # ## How good are they?
 #
-# Each vertex knows the true normal of the surface. A triangle deviates from the normals at its
-# corners by an angle; `angles` is the largest of the three. One sees it as facets in a reflection.
+# The true normal of the surface is known at each vertex. `angles` are the largest angles between
+# the normal of a triangle and the normals at its corners. They are seen as facets in a reflection.
 
 # %%
 for name, mesh in meshes.items():
@@ -60,9 +60,9 @@ for name, mesh in meshes.items():
     print(f"{name:9} median {middle:5.2f}°, 99 % below {most:5.2f}°, largest {worst:5.2f}°")
 
 # %% [markdown]
-# Uniform samples give slightly better triangles on average: most of them lie on the fat side, where
-# anything is good enough. Where the ring is thin they are too large. The balanced mesh has no such
-# place: its worst triangles are about half as bad.
+# Uniform samples give slightly smaller angles on average: most triangles lie on the thick side,
+# where the curvature is small. Where the ring is thin they are too large. In the balanced mesh the
+# largest angles are about half as large.
 
 # %%
 figure, axis = plt.subplots(figsize=(6, 2.6), dpi=75, layout="constrained")
@@ -74,7 +74,7 @@ plt.show()
 
 # %% [markdown]
 # The volume is another test. `weights()` gives it from the samples and their normals, more
-# accurately than the flat triangles do; many more samples tell what is right.
+# accurately than the flat triangles do; a much larger sampling is the reference.
 
 # %%
 many = gm.sample(surface, count=50_000, density="uniform")
@@ -90,8 +90,8 @@ for name, mesh, samples in (
 # %% [markdown]
 # ## To other programs
 #
-# `write` knows .ply, .obj, .stl, .vtk, .vtu and .vtp. `to_trimesh`, `to_pyvista` and `to_open3d`
-# hand the mesh on without a file.
+# `write` has the formats .ply, .obj, .stl, .vtk, .vtu and .vtp. `to_trimesh`, `to_pyvista` and
+# `to_open3d` convert the mesh without a file.
 
 # %%
 meshes["balanced"].write("cyclide.obj")

@@ -1,12 +1,13 @@
 # %% [markdown]
-# # Registration: which points hold a part in place
+# # Registration: which points determine the position of a part
 #
 # A scanner has measured a part: a cloud of noisy points, somewhere in space. Where does the part
-# lie? *ICP* (iterative closest points) finds out: it takes points of the known part, looks for the
-# nearest scanned point of each, moves the part towards them, and does it again.
+# lie? *ICP* (iterative closest points) finds out: it takes points of the known part, searches the
+# nearest scanned point of each, moves the part towards them, and repeats this.
 #
-# On a smooth part most points say little. A plate can slide along itself, and a point on its flat
-# area does not notice. Only points on the small features do. Does it help to choose those?
+# On a smooth part most points contribute little. If a plate slides along itself, the distances of
+# points on its flat area do not change. Only those of points on small features do. Does it help to
+# choose these?
 
 # %%
 import warnings
@@ -37,9 +38,9 @@ part = gm.Surface.from_callable(plate, square, name="plate")
 # %% [markdown]
 # Three ways to choose 300 points, which differ in nothing but `density`:
 #
-# - "uniform": the same everywhere;
-# - "gauss": from normals spread evenly over the sphere, *normal-space sampling*;
-# - "balanced": the same from fewer normals, and points that fill what these leave.
+# - "uniform": the same density everywhere;
+# - "gauss": the points with normals that are uniform on the sphere, *normal-space sampling*;
+# - "balanced": the same with fewer normals, and points that fill the gaps.
 
 # %%
 COUNT = 300
@@ -56,7 +57,7 @@ plt.show()
 # ## The scan, and the start
 #
 # The scan has 40,000 points with noise of 0.05 mm. The part starts turned by 1 degree about a
-# random axis, and moved by up to 1 mm each way. The right answer is no motion at all.
+# random axis, and moved by up to 1 mm along each axis. The true position is the identity.
 
 
 # %%
@@ -75,10 +76,10 @@ def start(rng):
 # %% [markdown]
 # ## Point-to-plane ICP
 #
-# This is the textbook's, in a few lines. Each sample p with normal n wants to have the nearest
-# scanned point q in its tangent plane: n·(p − q) = 0. A small turn w and shift t change that by
-# n·(w × p + t), which gives linear equations for w and t. Points that are farther than 10 mm from
-# the scan have no say.
+# This is the textbook's, in a few lines. For each sample p with normal n, the nearest scanned point
+# q should lie in its tangent plane: n·(p − q) = 0. A small rotation w and translation t change that
+# by n·(w × p + t), which gives linear equations for w and t. Points that are farther than 10 mm
+# from the scan are left out.
 
 
 # %%
@@ -98,9 +99,9 @@ def icp(samples, tree, turn, shift, steps=60):
 
 
 # %% [markdown]
-# Twenty scans, each with a start of its own, the same for all three sets of points. What is left of
-# the turn and of the shift is the error. A run has failed if points of the part are more than
-# 0.5 mm from their place on average.
+# Twenty scans, each with its own initial position, the same for all three sets of points. The error
+# is the remaining rotation and translation. A run has failed if points of the part are more than
+# 0.5 mm from their true positions on average.
 
 
 # %%
@@ -128,8 +129,8 @@ def compare(sets, height=1.0, runs=20):
 errors = compare(chosen)
 
 # %% [markdown]
-# Points on the features hold the part better, against sliding and against turning about the upright
-# axis. In the picture each dot is one run.
+# With points on the features, both sliding and rotation about the vertical axis are smaller. In the
+# picture each dot is one run.
 
 # %%
 figure, axis = plt.subplots(figsize=(5, 3), dpi=65, layout="constrained")
@@ -143,22 +144,22 @@ plt.show()
 # %% [markdown]
 # ## Where it does not help
 #
-# **Many points.** With 10,000 points each feature has enough of them anyhow. What is left is the
-# noise of the scan, and the choice of points hardly matters.
+# **Many points.** With 10,000 points each feature has enough of them anyway. The remaining error is
+# due to the noise of the scan, and the choice of points hardly matters.
 
 # %%
 many = {x: gm.sample(part, count=10_000, density=x, cells=(128, 128)) for x in DENSITIES}
 _ = compare(many, runs=6)
 
 # %% [markdown]
-# **No features.** A plate without bumps slides and turns until its points leave the scan, whatever
-# they are: what could hold it is not there, and no choice of points changes that.
+# **No features.** A plate without bumps slides and turns until its points leave the scan: nothing
+# determines its position, and no choice of points changes that.
 
 # %%
 smooth = gm.Surface.from_callable(lambda u, v: plate(u, v, 0.0), square, name="smooth plate")
 _ = compare({x: gm.sample(smooth, count=COUNT, density=x) for x in DENSITIES}, 0.0, runs=6)
 
 # %% [markdown]
-# **A bad start.** A start that is farther off than a feature is wide does not find the feature.
+# **A bad start.** If the initial error is larger than a feature, ICP does not find the feature.
 # Then uniform points are better. [docs/registration.md](../registration.md) measures that, and more
 # parts and numbers of points, with the ICP of Open3D.

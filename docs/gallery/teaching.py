@@ -1,9 +1,9 @@
 # %% [markdown]
-# # Teaching: the Gauss map, seen
+# # Teaching: the Gauss map in pictures
 #
 # Each point of a smooth surface has a unit normal. Take that normal as a point of the unit sphere:
-# this is the **Gauss map**, from the surface to the sphere. gaussmap goes the other way. It is
-# given a normal and finds *all* points that have it.
+# this is the **Gauss map**, from the surface to the sphere. gaussmap computes its inverse: *all*
+# points that have a given normal.
 
 # %%
 import gaussmap as gm
@@ -18,8 +18,8 @@ for point, K in zip(one.points, one.gaussian_curvature, strict=True):
 
 # %% [markdown]
 # Two points of a torus have the normal (1, 2, 2)/3: one on the outside, where K > 0, one on the
-# inside, where K < 0. That is so for every normal but ±(0, 0, 1), which all points of the top
-# circle share.
+# inside, where K < 0. That is so for every normal except ±(0, 0, 1), the normals of all points of
+# the top and the bottom circle.
 
 # %%
 samples = gm.sample(torus, count=1500, density="gauss")
@@ -47,16 +47,16 @@ for axis, part, title in (
 plt.show()
 
 # %% [markdown]
-# The outside covers the whole sphere, and so does the inside. Where normals are spread evenly, the
-# points are as dense as |K|: this is what K means. A small piece of area dA has normals that fill
-# |K| dA of the sphere.
+# The outside covers the whole sphere, and so does the inside. If the normals are uniform, the
+# density of the points is proportional to |K|, which is the meaning of K: the normals of an element
+# of area dA fill the area |K| dA of the sphere.
 
 # %% [markdown]
 # ## Gauss and Bonnet
 #
-# So the integral of K over a closed surface counts how often the sphere is covered, with a sign. It
-# is 2π times the Euler characteristic χ, whatever the shape is. `weights()` are the dA of the
-# samples.
+# So the integral of K over a closed surface is 4π times the number of times that the sphere is
+# covered, with signs. It is 2π times the Euler characteristic χ, for each shape. `weights()` are
+# the dA of the samples.
 
 # %%
 for surface, euler in (
@@ -69,8 +69,8 @@ for surface, euler in (
     print(f"{surface.name:10} ∫ K dA / 2π = {total / (2 * np.pi):7.4f}, χ = {euler}")
 
 # %% [markdown]
-# There is a version without any integral: for every normal the signs of K at the points that have
-# it sum up to half the Euler characteristic.
+# There is a version without an integral: for every normal, the sum of the signs of K at the points
+# with this normal is half the Euler characteristic.
 
 # %%
 normals = gm.fibonacci(1000)
@@ -82,9 +82,9 @@ print("0 for each of the", len(normals), "normals")
 # %% [markdown]
 # ## Parabolic curves
 #
-# Between K > 0 and K < 0 there are curves with K = 0. The waves below have many. gaussmap follows
-# them. At these curves the Gauss map folds: on both sides of the curve are points with the same
-# normals.
+# Between regions with K > 0 and K < 0 there are curves with K = 0. The waves below have many, which
+# gaussmap computes. At these curves the Gauss map folds: points on both sides of the curve have the
+# same normals.
 
 # %%
 waves = gm.surfaces.wavy_graph()
@@ -109,8 +109,8 @@ plt.show()
 # ## The support function
 #
 # The tangent plane with normal n has a distance h(n) from the origin: the **support function**. The
-# surface can be found from it, as the envelope of its tangent planes: the point is the gradient of
-# h. For the ellipsoid with half axes 2, 1, 1 that is
+# surface is the envelope of its tangent planes: the point with normal n is the gradient of h. For
+# the ellipsoid with semi-axes 2, 1, 1, h is
 
 # %%
 ellipsoid = gm.SupportFunction.from_sympy("sqrt(4*n_x**2 + n_y**2 + n_z**2)")
@@ -119,7 +119,7 @@ point = ellipsoid.envelope([n])[0]
 print("point", point, "on the ellipsoid:", point @ (point / [4, 1, 1]))
 
 # %% [markdown]
-# Offsets and sums are simple on support functions: one adds them. A ball of radius 0.3 has h = 0.3.
+# For offsets and Minkowski sums, support functions are added. A ball of radius 0.3 has h = 0.3.
 
 # %%
 ball = gm.SupportFunction.from_sympy("3*sqrt(n_x**2 + n_y**2 + n_z**2)/10")
@@ -129,8 +129,8 @@ print((ellipsoid + ball).expression)
 # %% [markdown]
 # ## Silhouettes
 #
-# One sees the outline of a surface where the normal is perpendicular to the direction of view: the
-# normals form a great circle. Each piece of the sphere has its points; so does this circle.
+# The outline of a surface consists of points whose normals are perpendicular to the direction of
+# view. These normals form a great circle, and gaussmap computes the points that have them.
 
 # %%
 direction = np.array([1, 0.4, 0.7])
