@@ -117,7 +117,7 @@ class Filling:
         power, count = self.request.density, self.request.count or 0
         if isinstance(power, str) or visible_solid_angle(self.spline, count / (4 * math.pi)) == 0.0:
             return self._sizing(TargetDensity(floor=1.0))
-        sizing = self._sizing(TargetDensity(gauss_weight=1.0, exponent=power))
+        sizing = self._sizing(TargetDensity(gauss_weight=1.0, exponent=float(power)))
         return sizing.with_floor(sizing.integral / sizing.area / WIDEST_GAP**2)
 
     def _sizing(self, target: TargetDensity) -> SizingFunction:

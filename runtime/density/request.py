@@ -1,4 +1,4 @@
-"""What a sampling is asked for: which normals, how many samples, how near, and how dense where."""
+"""The checked arguments of a sampling: normals, count, angle, coverage, density and relaxation."""
 
 from __future__ import annotations
 
@@ -17,15 +17,16 @@ from ..threads import thread_count
 __all__ = ["DENSITIES", "Request", "checked_request"]
 
 DENSITIES = ("gauss", "balanced", "uniform")
-# Beyond this |K|^α is so uneven that all samples crowd round the point that bends most.
+# Beyond this |K|^α is so uneven that all samples crowd around the point of the largest |K|.
 LARGEST_POWER = 8.0
 
 
 @dataclass(frozen=True, eq=False)
 class Request:
-    """One of normals (S, 3), a count, an angle in degrees and a coverage, or a coverage beside one.
+    """What to sample: one of normals (S, 3), a count, an angle in degrees and a coverage.
 
-    `density` is one of `DENSITIES`, or α for |K|^α.
+    A coverage may also be given with one of the others. `density` is one of `DENSITIES`, or α for
+    |K|^α; `relax` is the number of steps of relaxation.
     """
 
     normals: NDArray[np.float64] | None
@@ -37,12 +38,12 @@ class Request:
 
     @property
     def asked(self) -> NDArray[np.float64] | int:
-        """What normals alone are asked for: the normals, or a count."""
+        """The normals, or the count, for samples at normals alone."""
         return self.directions if self.count is None else self.count
 
     @property
     def directions(self) -> NDArray[np.float64]:
-        """The normals, or as many as an angle needs."""
+        """The normals, or those of an icosphere that is fine enough for the angle."""
         if self.normals is not None:
             return self.normals
         assert self.angle is not None
@@ -58,7 +59,7 @@ def checked_request(
     relax: int,
     threads: int | None,
 ) -> Request:
-    """Return what is asked; InputError (or UnknownNameError) if it makes no sense."""
+    """Return a request; InputError (or UnknownNameError) if the arguments are invalid."""
     thread_count(threads)
     number = None if count is None else checked_count(count)
     amounts = {"normals": normals, "count": count, "angle": angle, "coverage": coverage}
@@ -96,7 +97,7 @@ def _density(density: str | float | None, default: str) -> str | float:
 
 
 def _check_that_they_fit(density: str | float, given: list[str]) -> None:
-    """Refuse what a density cannot be asked for."""
+    """Raise InputError for amounts that a density does not support."""
     fitting = {
         "gauss": [["normals"], ["count"], ["angle"]],
         "balanced": [[x] for x in ("normals", "count", "angle", "coverage")]
