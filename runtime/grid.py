@@ -1,4 +1,4 @@
-"""Surfaces that are given by points on a grid: scans, elevation models, images."""
+"""Points on a grid that are to be a surface: scans, elevation models, images."""
 
 from __future__ import annotations
 
@@ -8,20 +8,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .checks import as_float
+from .domain import Domain, Ends
 from .errors import InputError, shown
-from .spline import apart, fit_grid
-from .surface import Domain, Ends, Surface
+from .quasi_interpolant import apart, fit_grid
+from .spline import Spline
 
-__all__ = ["surface_of_elevations", "surface_of_points"]
+__all__ = ["points_of_elevations", "spline_of_points"]
 
-# A last row this near to the first, beside the distance of two rows, is the first row again.
+# A last row this near to the first, relative to the distance of two rows, is the first row again.
 REPEATED = 1e-3
 
 
-def surface_of_points(
+def spline_of_points(
     points: NDArray[np.float64], ends: Ends, name: str, domain: Domain | None = None
-) -> Surface:
-    """Make a surface of points (m, n, 3) at the vertices of the cells."""
+) -> Spline:
+    """Return the spline of points (m, n, 3) at the vertices of its cells."""
     _check(points, ends, name)
     cells = tuple(
         count if "wrap" in end or "flip" in end else count - 1
@@ -31,13 +32,16 @@ def surface_of_points(
         domain = (0.0, float(cells[0])), (0.0, float(cells[1]))
     spline = fit_grid(points, domain, ends, name)
     _check_ends(points, ends, name)
-    return Surface(name, spline.evaluate, domain, ends, points)
+    return spline
 
 
-def surface_of_elevations(
+def points_of_elevations(
     elevations: NDArray[np.float64], spacing: Sequence[float] | None, ends: Ends, name: str
-) -> Surface:
-    """Make the graph of elevations (rows along y, columns along x), with upward normals."""
+) -> tuple[NDArray[np.float64], Domain]:
+    """Return the points (m, n, 3) of elevations (rows along y, columns along x), and their domain.
+
+    They are ordered such that normals point upward.
+    """
     if ends != (("none", "none"), ("none", "none")):
         raise InputError("elevations are a graph and cannot be periodic.")
     rows, columns = elevations.shape
@@ -50,8 +54,7 @@ def surface_of_elevations(
     points[..., 0] = x[:, None]
     points[..., 1] = y
     points[..., 2] = elevations.T
-    domain = (float(x[0]), float(x[-1])), (float(y[0]), float(y[-1]))
-    return surface_of_points(points, ends, name, domain)
+    return points, ((float(x[0]), float(x[-1])), (float(y[0]), float(y[-1])))
 
 
 def _spacing(spacing: Sequence[float] | None, count: int) -> tuple[float, float]:

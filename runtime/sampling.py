@@ -14,10 +14,11 @@ from .density.filling import filled_samples
 from .density.request import Request, checked_request
 from .errors import GaussmapError, GaussmapWarning, InputError, in_memory, shown
 from .fields import checked_dtype, checked_fields
+from .fitting import spline_of
 from .report import sampling_report, warn_of
 from .samples import Samples
 from .search import fill, find
-from .spline import Spline, spline_of
+from .spline import Spline
 from .surface import Surface
 
 __all__ = [

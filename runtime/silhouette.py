@@ -14,10 +14,11 @@ from .choice import NEAR_ENOUGH, NORMALS_PER_SAMPLE
 from .directions.circle import circle
 from .directions.unit import as_normals, perpendicular, unit_vector
 from .fields import checked_dtype, checked_fields
+from .fitting import spline_of
 from .report import sampling_report, warn_of
 from .samples import Samples
 from .search import Hits, fill, find
-from .spline import Spline, spline_of
+from .spline import Spline
 from .surface import Surface
 from .threads import thread_count
 

@@ -13,10 +13,11 @@ from .checks import whole_number
 from .choice import choose
 from .density.request import Request, checked_request
 from .fields import checked_dtype, checked_fields
+from .fitting import spline_of
 from .report import sampling_report, warn_of
 from .samples import Samples, SamplingReport
 from .search import Hits, Search, fill, merged
-from .spline import Spline, spline_of
+from .spline import Spline
 from .surface import Surface
 from .threads import over_ranges, shown
 

@@ -4,24 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .checks import as_float, parameter_arrays, real_array
-from .errors import InputError, shown
+from .checks import parameter_arrays, real_array
+from .domain import Domain, Ends, Periodicity, checked_domain, checked_ends
+from .errors import InputError
 from .evaluation import evaluated
 
 if TYPE_CHECKING:
     import sympy
 
-__all__ = ["Domain", "End", "Ends", "Periodicity", "Surface"]
+__all__ = ["Surface"]
 
-End = Literal["none", "wrap", "flip", "pole"]
-Ends = tuple[tuple[End, End], tuple[End, End]]
-Domain = tuple[tuple[float, float], tuple[float, float]]
-Periodicity = bool | End | tuple[End, End]
 Evaluation = Callable[[NDArray[np.float64], NDArray[np.float64]], ArrayLike]
 
 
@@ -112,16 +109,17 @@ class Surface:
         (and says where), fewer than 4 points in a direction that is not periodic (3 if it is), or
         spacing that is missing, zero or not wanted.
         """
-        from .grid import surface_of_elevations, surface_of_points
+        from .grid import points_of_elevations, spline_of_points
 
-        array = _grid(points)
+        array, ends, domain = _grid(points), checked_ends(periodic), None
         if array.ndim == 2:
-            return surface_of_elevations(array, spacing, checked_ends(periodic), name)
-        if spacing is not None:
+            array, domain = points_of_elevations(array, spacing, ends, name)
+        elif spacing is not None:
             raise InputError(
                 "spacing is for elevations of shape (m, n); points (m, n, 3) need none."
             )
-        return surface_of_points(array, checked_ends(periodic), name)
+        spline = spline_of_points(array, ends, name, domain)
+        return cls(name, spline.evaluate, spline.domain, ends, array)
 
     def evaluate(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
         """Return the points x(u, v), shape (..., 3), for parameters that broadcast together.
@@ -133,52 +131,6 @@ class Surface:
         u_array, v_array = parameter_arrays(u, v)
         parameters = {"u": u_array, "v": v_array}
         return evaluated(self.function, parameters, 3, f"surface {self.name!r}")
-
-
-def checked_domain(domain: Sequence[Sequence[float]]) -> Domain:
-    """Return a domain as floats; InputError unless it is a bounded rectangle with an inside."""
-    try:
-        (u0, u1), (v0, v1) = ((as_float(low), as_float(high)) for low, high in domain)
-    except (TypeError, ValueError, OverflowError):
-        raise InputError(f"domain must be ((u0, u1), (v0, v1)), not {shown(domain)}.") from None
-    for name, low, high in (("u", u0, u1), ("v", v0, v1)):
-        if not 0.0 < high - low < np.inf:
-            raise InputError(f"the domain of {name} is empty or infinite: ({low}, {high}).")
-    return (u0, u1), (v0, v1)
-
-
-def checked_ends(periodic: Sequence[Periodicity]) -> Ends:
-    """Return what lies beyond the ends, from the short forms of a user; InputError on a clash."""
-    try:
-        along_u, along_v = periodic
-    except (TypeError, ValueError):
-        raise InputError(
-            f"periodic must be a pair, one entry for u and one for v, not {shown(periodic)}."
-        ) from None
-    ends = _pair(along_u, "u"), _pair(along_v, "v")
-    if "pole" in ends[0]:
-        raise InputError('only v can end in a "pole": exchange the parameters u and v.')
-    if "pole" in ends[1] and ends[0] != ("wrap", "wrap"):
-        raise InputError('a "pole" of v needs u to be periodic ("wrap").')
-    return ends
-
-
-def _pair(entry: Periodicity, name: str) -> tuple[End, End]:
-    if isinstance(entry, bool | np.bool_):
-        return ("wrap", "wrap") if entry else ("none", "none")
-    pair = (entry, entry) if isinstance(entry, str) else entry
-    known = ("none", "wrap", "flip", "pole")
-    if not isinstance(pair, tuple | list) or len(pair) != 2 or any(x not in known for x in pair):
-        raise InputError(
-            f"periodic for {name} must be True, False, one of {', '.join(known)}, or a pair of "
-            f"these, not {shown(entry)}."
-        )
-    low, high = pair
-    if low != high and not {low, high} <= {"none", "pole"}:
-        raise InputError(
-            f'"wrap" and "flip" must stand at both ends of {name}, not {shown(entry)}.'
-        )
-    return cast(tuple[End, End], (low, high))
 
 
 def _grid(points: ArrayLike) -> NDArray[np.float64]:

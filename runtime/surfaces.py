@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 from ..generated.surfaces import CATALOGUE as _GENERATED
 from . import compiling  # noqa: F401 - it tells that kernels are compiled
 from .checks import known_name
+from .domain import Domain, Ends
 from .errors import InputError, shown
 from .kernels.surfaces import positions
-from .surface import Domain, Ends, Surface
+from .surface import Surface
 
 if TYPE_CHECKING:
     from ..generated.surfaces_signatures import *  # noqa: F403  # pyright: ignore[reportMissingModuleSource]

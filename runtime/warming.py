@@ -19,12 +19,12 @@ from .compiling import NOTICE
 from .directions import fibonacci, icosphere
 from .errors import FileError, GaussmapWarning, InputError
 from .fields import ARRAY_NAMES
+from .fitting import fit
 from .gauss_map import GaussianImages, parabolic_lines, parabolic_points, split_patch
 from .kernels.jit import cache_folder
 from .samples import Samples
 from .sampling import sample
 from .silhouette import silhouette
-from .spline import fit
 from .stream import sample_stream
 from .support.convolution import convolve
 from .support.function import SupportFunction

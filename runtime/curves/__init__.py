@@ -1,10 +1,11 @@
 """Planar curves (paper, Sect. 4.1): fitting, sampling by normals, polygons."""
 
 from .curve import Curve
+from .fitting import fit
 from .polygon import polygon_distance
 from .samples import CurveReport, CurveSamples
 from .sampling import sample
-from .spline import CurveSpline, fit
+from .spline import CurveSpline
 
 __all__ = [
     "Curve",

@@ -10,15 +10,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..checks import as_float, real_array
+from ..domain import Interval
 from ..errors import InputError, shown
 from ..evaluation import evaluated
 
 if TYPE_CHECKING:
     import sympy
 
-__all__ = ["Curve", "Interval"]
-
-Interval = tuple[float, float]
+__all__ = ["Curve"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,10 +84,13 @@ class Curve:
         any two neighbouring points; `fit(pieces=...)` chooses otherwise. Raises InputError
         for another shape, fewer than 3 points, or NaN or infinity (and says where).
         """
-        from .spline import curve_of_points
+        from .quasi_interpolant import checked_points, spline_of_points
 
-        array = real_array(points, "points of a curve")
-        return curve_of_points(array, _yes_or_no(closed, "closed"), name)
+        is_closed = _yes_or_no(closed, "closed")
+        array = checked_points(real_array(points, "points of a curve"), is_closed, name)
+        domain = 0.0, float(len(array) if is_closed else len(array) - 1)
+        spline = spline_of_points(array, domain, is_closed, name)
+        return cls(name, spline.evaluate, domain, is_closed, array)
 
     def evaluate(self, t: ArrayLike) -> NDArray[np.float64]:
         """Return the points x(t), shape (..., 2).

@@ -26,8 +26,9 @@ from ..directions.unit import as_normals
 from ..errors import GaussmapWarning, InputError, in_memory
 from ..kernels import curve as kernels
 from .curve import Curve
+from .fitting import fit
 from .samples import CurveReport, CurveSamples
-from .spline import CurveSpline, angles_of, fit
+from .spline import CurveSpline, angles_of
 
 __all__ = ["sample"]
 

@@ -1,4 +1,4 @@
-"""The C¹ quadratic spline that approximates a planar curve: fitting it, and reading it."""
+"""The C¹ quadratic spline that approximates a planar curve: its arcs, joints and normals."""
 
 from __future__ import annotations
 
@@ -9,24 +9,20 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...generated import curve as formulas
-from ...generated import spline as edge_formulas
 from ...generated.vectors import Arc, PlaneVector
-from ..checks import real_array, whole_number
-from ..errors import InputError, SurfaceError, in_memory
+from ..checks import real_array
+from ..domain import Interval
+from ..errors import InputError
 from ..formula_calls import plane_vector, python_function
 from ..kernels import curve as kernels
-from ..spline import apart, not_too_large, scale_to_one, short_label
-from .curve import Curve, Interval
+from ..spline import scale_to_one, short_label
 
-__all__ = ["DEFAULT_PIECES", "CurveSpline", "curve_of_points", "fit"]
+__all__ = ["CurveSpline", "angles_of"]
 
 Array = NDArray[np.float64]
 
-DEFAULT_PIECES = 64
 # A difference of two coefficients carries fewer roundings of the largest coordinate than this.
 ROUNDINGS = 8.0
-# A last point this near to the first, beside the distance of two points, is the first again.
-REPEATED = 1e-3
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -207,106 +203,3 @@ def angles_of(vectors: Array) -> Array:
 
 def _lengths(vectors: Array) -> Array:
     return np.hypot(vectors[:, 0], vectors[:, 1])
-
-
-# --- fitting --------------------------------------------------------------------------------------
-
-
-@in_memory
-def fit(curve: Curve, pieces: int | None = None) -> CurveSpline:
-    """Approximate a planar curve by a C¹ quadratic spline.
-
-    The quasi-interpolant is exact on quadratics. The error of positions falls with the third power
-    of the length of a piece, that of normals with the second (docs/curves.md).
-
-    Parameters
-    ----------
-    curve : Curve
-        The curve.
-    pieces : int, optional
-        The number of arcs, at least 3 for a closed curve. By default 64, or one between any two
-        neighbouring points of a curve that was given by points.
-
-    Returns
-    -------
-    CurveSpline
-        The spline.
-
-    Raises
-    ------
-    InputError
-        For unusable `pieces`, and more of them than a narrow domain can hold.
-    SurfaceError
-        If the curve cannot be evaluated, or does not close although it is periodic.
-
-    Examples
-    --------
-    >>> import gaussmap as gm
-    >>> circle = gm.curves.Curve.from_sympy(("cos(t)", "sin(t)"), "t", (0, "2*pi"), True)
-    >>> gm.curves.fit(circle, 16).turning_number
-    1
-
-    """
-    if not isinstance(curve, Curve):
-        raise InputError(f"fit takes a Curve, not {type(curve).__name__}.")
-    if pieces is None and curve.points is not None:
-        return _fit_points(curve.points, curve.domain, curve.periodic, curve.name)
-    count = whole_number(DEFAULT_PIECES if pieces is None else pieces, "pieces")
-    if curve.periodic and count < 3:
-        raise InputError(f"a closed curve needs at least 3 pieces, not {count}.")
-    low, high = curve.domain
-    places = low + (high - low) * (np.arange(2 * count + 1) / (2 * count))
-    if not (np.diff(places) > 0.0).all():
-        raise InputError(f"the domain of t is too narrow for {count} pieces: ({low}, {high}).")
-    values = not_too_large(curve.evaluate(places), curve.name)
-    if curve.periodic:
-        if apart(values[-1], values[0], values[:, None]):
-            raise SurfaceError(f"curve {curve.name!r} does not close: its two ends differ.")
-        values[-1] = values[0]
-    inner = python_function(edge_formulas.edge_point)(values[1::2], values[:-1:2], values[2::2])
-    coefficients = _with_ends(inner, values[[0, -1]], curve.periodic)
-    return CurveSpline(coefficients, curve.domain, curve.periodic, curve.name)
-
-
-def curve_of_points(points: Array, closed: bool, name: str) -> Curve:
-    """Make a curve of points (m, 2) at the joints; InputError if they are unusable."""
-    if points.ndim != 2 or points.shape[1] != 2:
-        raise InputError(f"points of a curve must have the shape (m, 2), not {points.shape}.")
-    if len(points) < 3:
-        raise InputError(f"a curve needs at least 3 points, not {len(points)}.")
-    bad = ~np.isfinite(points).all(axis=1)
-    if bad.any():
-        raise InputError(
-            f"{name} holds {int(bad.sum())} points with NaN or infinity, the first at "
-            f"[{int(bad.argmax())}]; leave them out."
-        )
-    if closed and np.ptp(points[[0, -1]], axis=0).max() < REPEATED * _lengths(
-        np.diff(points[:2], axis=0)
-    ):
-        raise InputError(f"{name} repeats its first point at its end; leave it out.")
-    domain = 0.0, float(len(points) if closed else len(points) - 1)
-    spline = _fit_points(points, domain, closed, name)
-    return Curve(name, spline.evaluate, domain, closed, points)
-
-
-def _fit_points(points: Array, domain: Interval, closed: bool, name: str) -> CurveSpline:
-    """Return the spline with one piece between any two neighbouring points."""
-    not_too_large(points, name)
-    if closed:
-        values = np.concatenate([points[-1:], points, points[:2]])
-    else:
-        before = python_function(edge_formulas.extrapolation)(*points[:3])
-        after = python_function(edge_formulas.extrapolation)(*points[:-4:-1])
-        values = np.concatenate([before[None], points, after[None]])
-    inner = python_function(edge_formulas.edge_point_from_vertices)(
-        values[1:-2], values[2:-1], values[:-3], values[3:]
-    )
-    return CurveSpline(_with_ends(inner, points[[0, -1]], closed), domain, closed, name)
-
-
-def _with_ends(inner: Array, ends: Array, closed: bool) -> Array:
-    """Return the coefficients (P + 2, 2): copies beyond the ends, or what the end points ask."""
-    if closed:
-        return np.concatenate([inner[-1:], inner, inner[:1]])
-    before, after = python_function(formulas.beyond_end)(ends, inner[[0, -1]])
-    return np.concatenate([before[None], inner, after[None]])

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from ..checks import whole_number
 from ..errors import GaussmapWarning, InputError, shown
-from ..spline import Spline, fit, spline_of
+from ..fitting import fit, spline_of
+from ..spline import Spline
 from ..surface import Surface
 from ..surfaces import named
 from .classes import PatchClass, classify_patches

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ..domain import Ends
 from ..errors import InputError, shown
 from ..kernels.flips import flip_edges, smallest_cosines
 from ..spline import Spline
-from ..surface import Ends
 from .mesh import Mesh, scaled
 from .triangulation import neighbours, triangulations
 from .vertices import Vertices, ends_of

@@ -18,8 +18,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..domain import Ends
 from ..kernels import surfaces as kernels
-from ..surface import Ends
 
 __all__ = ["Triangulation", "neighbours", "triangulations"]
 

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ..domain import End, Ends
 from ..kernels.spacing import border_spacings
 from ..spline import Spline
-from ..surface import End, Ends
 from ..trees import tree_of
 
 if TYPE_CHECKING:

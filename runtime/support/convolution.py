@@ -14,9 +14,10 @@ from numpy.typing import ArrayLike, NDArray
 from ..directions.unit import as_normals
 from ..errors import GaussmapWarning, InputError
 from ..fields import new_field
+from ..fitting import spline_of
 from ..report import sampling_report, warn_of
 from ..samples import Samples, SamplingReport, rows_of
-from ..spline import Spline, short_label, spline_of
+from ..spline import Spline, short_label
 from ..surface import Surface
 from ..surfaces import named
 from ..threads import over_ranges

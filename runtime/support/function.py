@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from ..checks import finite_array, finite_number
 from ..directions.unit import as_normals
 from ..errors import InputError
-from ..spline import Spline, spline_of
+from ..fitting import spline_of
+from ..spline import Spline
 from ..surface import Surface
 from ..surfaces import named
 from .branches import Branches, Sheets

@@ -10,11 +10,11 @@ from gaussmap.generated.primes import PRIMES
 from gaussmap.generated.spline import NEIGHBOURS, TRIANGLE_NEIGHBOURS, triangle
 from gaussmap.generated.vectors import Vector
 from gaussmap.runtime import exact, long_integers
+from gaussmap.runtime.domain import Ends
 from gaussmap.runtime.formula_calls import python_function, vector
 from gaussmap.runtime.integers import integers, sign
 from gaussmap.runtime.kernels.decide import precise_forms
 from gaussmap.runtime.kernels.modular import mixed_radix_value
-from gaussmap.runtime.surface import Ends
 from hypothesis import given
 from hypothesis import strategies as st
 

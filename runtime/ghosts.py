@@ -1,4 +1,4 @@
-"""The ring of values outside the domain: what the ends of a surface demand of its spline."""
+"""Ghost coefficients, one ring outside the domain: what the boundary conditions demand of them."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..generated import spline as formulas
+from .domain import End, Ends
 from .formula_calls import python_function
-from .surface import End, Ends
 
 __all__ = ["Border", "Sides", "coefficients_with_ring", "vertices_with_ring"]
 

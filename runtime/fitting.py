@@ -1,0 +1,128 @@
+"""From a surface to the spline that approximates it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .domain import Domain
+from .errors import InputError, SurfaceError, in_memory
+from .ghosts import Sides
+from .quasi_interpolant import apart, checked_cells, fit_grid, fit_values, not_too_large
+from .spline import Spline
+from .surface import Surface
+from .surfaces import named
+
+__all__ = ["DEFAULT_CELLS", "fit", "spline_of"]
+
+DEFAULT_CELLS = (64, 64)
+
+
+def spline_of(surface: Surface | Spline | str, cells: Sequence[int] | None) -> Spline:
+    """Return a spline as it is, or that of a surface or of the name of one.
+
+    Raises InputError for `cells` beside a spline.
+    """
+    if isinstance(surface, Spline):
+        if cells is not None:
+            raise InputError("cells=... is for surfaces; this spline has its cells already.")
+        return surface
+    return fit(surface, cells)
+
+
+@in_memory
+def fit(surface: Surface | str, cells: Sequence[int] | None = None) -> Spline:
+    """Approximate a surface by a C¹ quadratic spline.
+
+    The quasi-interpolant (paper, Sect. 3.1) is exact on quadratics. The error of positions falls
+    with the third power of the cell size, that of normals with the second (13).
+
+    Parameters
+    ----------
+    surface : Surface or str
+        The surface, or its name in the catalogue (see `gaussmap.surfaces`).
+    cells : (int, int), optional
+        The numbers of cells along u and v, at least 3; along u an even one if the surface has a
+        pole. By default 64 × 64, or one cell between any four neighbouring points of a grid.
+
+    Returns
+    -------
+    Spline
+        The spline, with four quadratic patches in each cell.
+
+    Raises
+    ------
+    InputError
+        For unusable `cells`, and more of them than a narrow domain can hold.
+    UnknownNameError
+        If there is no surface of that name.
+    SurfaceError
+        If the surface cannot be evaluated, or does not close where its ends say so.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> gm.fit("torus", (16, 16))
+    Spline(16 × 16 cells of torus)
+
+    """
+    surface = named(surface)
+    if not isinstance(surface, Surface):
+        raise InputError(f"fit takes a Surface, not {type(surface).__name__}.")
+    if cells is None and surface.grid is not None:
+        return fit_grid(surface.grid, surface.domain, surface.ends, surface.name)
+    m, n = checked_cells(DEFAULT_CELLS if cells is None else cells, surface.ends)
+    lines = _lines(surface.domain, m, n)
+    centres, vertices = _values(surface, *lines)
+    middles = _middles(surface, *lines)
+    return fit_values(centres, vertices, middles, surface.domain, surface.ends, surface.name)
+
+
+def _values(
+    surface: Surface, lines_u: NDArray[np.float64], lines_v: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Evaluate a surface at the centres (m, n, 3) and vertices (m + 1, n + 1, 3) of its cells.
+
+    Vertices on a seam are made bitwise equal, so that the spline closes exactly.
+    """
+    centres = not_too_large(surface.evaluate(lines_u[1::2, None], lines_v[1::2]), surface.name)
+    vertices = not_too_large(surface.evaluate(lines_u[::2, None], lines_v[::2]), surface.name)
+    for axis, (along, ends) in enumerate(zip("uv", surface.ends, strict=True)):
+        rows = np.swapaxes(vertices, 0, axis)
+        if ends[0] in ("wrap", "flip"):
+            first = rows[0] if ends[0] == "wrap" else rows[0, ::-1].copy()
+            if apart(rows[-1], first, vertices):
+                raise SurfaceError(
+                    f"surface {surface.name!r} does not close along {along}: its two ends must be "
+                    f"the same{'' if ends[0] == 'wrap' else ', mirrored'}."
+                )
+            rows[-1] = first
+        for end, place, row in zip(ends, surface.domain[axis], (0, -1), strict=True):
+            if end == "pole" and apart(rows[row], rows[row, :1], vertices):
+                raise SurfaceError(
+                    f"surface {surface.name!r} has no pole at {along} = {place}: it is not "
+                    "one point there."
+                )
+    return centres, vertices
+
+
+def _middles(surface: Surface, lines_u: NDArray[np.float64], lines_v: NDArray[np.float64]) -> Sides:
+    """Evaluate a surface in the middle of the edges at the ends of v, and at the ends of u."""
+    at_v = not_too_large(surface.evaluate(lines_u[1::2], lines_v[[0, -1], None]), surface.name)
+    at_u = not_too_large(surface.evaluate(lines_u[[0, -1], None], lines_v[1::2]), surface.name)
+    return (at_v[0], at_v[1]), (at_u[0], at_u[1])
+
+
+def _lines(domain: Domain, m: int, n: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the parameters of the edges and middles of the cells, in turn, along u and v."""
+    lines = []
+    for along, (low, high), count in zip("uv", domain, (m, n), strict=True):
+        line = low + (high - low) * (np.arange(2 * count + 1) / (2 * count))
+        if not (np.diff(line) > 0.0).all():
+            raise InputError(
+                f"the domain of {along} is too narrow for {count} cells: ({low}, {high})."
+            )
+        lines.append(line)
+    return lines[0], lines[1]

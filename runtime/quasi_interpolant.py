@@ -1,0 +1,84 @@
+"""The coefficients of a spline from values of a surface: local averages (paper, Sect. 3.1)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .checks import whole_number
+from .domain import Domain, Ends
+from .errors import InputError, SurfaceError, shown
+from .ghosts import Border, Sides, coefficients_with_ring, vertices_with_ring
+from .kernels import spline as kernels
+from .spline import LARGEST_EXPONENT, Spline
+
+__all__ = ["apart", "checked_cells", "fit_grid", "fit_values", "not_too_large"]
+
+MOST_CELLS = 10**9
+# What is said to be one point may be this far apart, relative to the size of the surface.
+SAME_POINT = 1e-6
+
+
+def fit_values(
+    centres: NDArray[np.float64],
+    vertices: NDArray[np.float64],
+    middles: Sides,
+    domain: Domain,
+    ends: Ends,
+    name: str,
+) -> Spline:
+    """Return the spline of values at centres (m, n, 3) and vertices (m + 1, n + 1, 3) of cells.
+
+    `middles` are the values in the middle of the edges on the border of the domain.
+    """
+    inner = np.empty_like(centres)
+    kernels.fit_centres_and_vertices(centres, vertices, inner)
+    border = Border.of_values(middles, vertices)
+    return Spline(coefficients_with_ring(inner, border, ends), domain, ends, name)
+
+
+def fit_grid(points: NDArray[np.float64], domain: Domain, ends: Ends, name: str) -> Spline:
+    """Return the spline with one cell between any four neighbouring points (m, n, 3) of a grid."""
+    values = vertices_with_ring(not_too_large(points, name), ends)
+    inner = np.empty((values.shape[0] - 3, values.shape[1] - 3, 3))
+    checked_cells(inner.shape[:2], ends)
+    kernels.fit_vertices(values, inner)
+    border = Border.of_vertices(values)
+    return Spline(coefficients_with_ring(inner, border, ends), domain, ends, name)
+
+
+def apart(
+    first: NDArray[np.float64], second: NDArray[np.float64], points: NDArray[np.float64]
+) -> bool:
+    """Say whether what should be the same differs by more than rounding, beside all points."""
+    extent = points.max(axis=0).max(axis=0) - points.min(axis=0).min(axis=0)  # fastest this way
+    size = float(extent.max())
+    rounding = 64.0 * float(np.spacing(np.abs(points).max()))
+    return float(np.abs(first - second).max()) > SAME_POINT * size + rounding
+
+
+def not_too_large(points: NDArray[np.float64], name: str) -> NDArray[np.float64]:
+    """Return points; SurfaceError if formulas would overflow with them."""
+    if np.abs(points).max() > 2.0**LARGEST_EXPONENT:
+        raise SurfaceError(f"the coordinates of {name!r} are too large to compute with.")
+    return points
+
+
+def checked_cells(cells: Sequence[int], ends: Ends) -> tuple[int, int]:
+    """Return numbers of cells (m, n); InputError unless they suit the boundary conditions."""
+    try:
+        m, n = cells
+    except (TypeError, ValueError):
+        raise InputError(
+            f"cells must be a pair of whole numbers (m, n), not {shown(cells)}."
+        ) from None
+    m, n = whole_number(m, "cells[0]"), whole_number(n, "cells[1]")
+    if min(m, n) < 3:
+        raise InputError(f"at least 3 x 3 cells are needed, not {m} x {n}.")
+    if m * n > MOST_CELLS:
+        raise InputError(f"at most {MOST_CELLS:,} cells are possible, not {m:,} x {n:,}.")
+    if "pole" in ends[1] and m % 2:
+        raise InputError(f"a surface with a pole needs an even number of cells along u, not {m}.")
+    return m, n
