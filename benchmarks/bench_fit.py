@@ -1,4 +1,4 @@
-"""Fitting: cells and patches a second, for a surface with a formula and for grid values alone."""
+"""Fitting: cells and patches per second, for a surface with a formula and for a grid of values."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def units(size):
 
 
 def copying(*arrays):
-    """The yardstick of a loop that reads arrays once: copying them into memory at hand."""
+    """The limit of a loop that reads arrays once: copying them into allocated memory."""
     copies = [x.copy() for x in arrays]
 
     def copy():

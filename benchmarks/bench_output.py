@@ -1,4 +1,4 @@
-"""Less output, streams and fewer threads, each against plain `sample`."""
+"""Fewer fields, streams and fewer threads, each compared with `sample` by default."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 NORMALS = gm.fibonacci(1_000_000)
-# The torus has every normal twice: 2 million samples, 556 or 5 of them a patch.
+# The torus has every normal twice: 2 million samples, 556 or 5 per patch.
 SPLINES = {cells: gm.fit(gm.surfaces.torus(), (cells, cells)) for cells in (30, 320)}
 OUTPUTS = {
     "points": {"fields": ("points",)},

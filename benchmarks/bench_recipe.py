@@ -1,6 +1,6 @@
-"""What users do today: the |K| recipe in NumPy, on a torus whose formulas are known in closed form.
+"""The usual method: the |K| recipe in NumPy, on a torus with formulas in closed form.
 
-The recipe knows the curvature and gives random points; gaussmap knows the positions alone.
+The recipe uses the curvature and draws random points; gaussmap uses positions only.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Sampling, against the time in which the same arrays can be written at all.
+"""Sampling, compared with the time of writing the same arrays.
 
 The writing limit is a compiled loop on the same number of threads that stores constants into arrays
 of the same shapes. It stores into memory it holds (`of_writing_limit`): no sampler that returns new
@@ -77,7 +77,7 @@ def hits(case):
 
 @pytest.fixture
 def against_limit(compare, limits, case, hits):
-    """Compare with the limits of writing as many samples as there are hits."""
+    """Compare with the limits of writing the same number of samples."""
     return partial(
         compare,
         limits=limits(len(hits)),
@@ -89,7 +89,7 @@ def against_limit(compare, limits, case, hits):
 
 
 def test_sample(against_limit, case):
-    """All of gm.sample for a spline that has never been read."""
+    """All of gm.sample for a spline without cached properties."""
     against_limit(lambda: gm.sample(replace(case.spline), normals=case.normals))
 
 

@@ -1,11 +1,11 @@
-"""The first run ever, which compiles, and the start of the command line when that is done."""
+"""The first run, which compiles, and the start of the command line after it."""
 
 from __future__ import annotations
 
 import pytest
 
 SAMPLE = "import gaussmap as gm; gm.sample(gm.surfaces.torus(), count=1000, density='gauss')"
-# The first call of any compiled function makes Numba load itself: nothing that samples is faster.
+# The first call of any compiled function makes Numba load itself: a lower limit for sampling.
 ONE_KERNEL = "import numba\n@numba.njit(cache=True)\ndef f(x):\n    return x\nf(1.0)\n"
 COMMANDS = {
     "surfaces": ["surfaces"],

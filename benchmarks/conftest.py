@@ -56,7 +56,7 @@ class Compare:
     ) -> None:
         """Time `work` in `rounds`; before each, time every one of `limits` and `baselines`.
 
-        A limit is what the machine can do at best: `of_<name>` is the share of its speed that is
+        A limit is the best that the machine can do: `of_<name>` is the share of its speed that is
         reached. It gets an untimed run before each timed one, which `work` does not get. A baseline
         is what users know: `times_<name>` is how many times as long `work` takes. `units` says how
         much is done in one round: 1000 samples give `samples_per_second`. With `warm`, everything
@@ -120,7 +120,7 @@ def compare(benchmark: Any, request: pytest.FixtureRequest) -> Compare:
 
 @pytest.fixture
 def run(tmp_path: Any) -> Callable[..., Work]:
-    """Make work that runs this Python with arguments, or a script beside it, in a fresh process.
+    """Make work that runs this Python with arguments, or a script of its folder, in a new process.
 
     run("-c", "import numpy") runs Python; run("surfaces", script="gaussmap") the console script.
     `cache` is the folder that holds Numba's machine code.
@@ -130,7 +130,9 @@ def run(tmp_path: Any) -> Callable[..., Work]:
         python = Path(sys.executable)
         program = python.with_name(script) if script else python
         environment = os.environ | ({"NUMBA_CACHE_DIR": str(cache)} if cache else {})
-        environment.pop("PYTHONDONTWRITEBYTECODE", None)  # a warm cache is Python's as well
+        environment.pop(
+            "PYTHONDONTWRITEBYTECODE", None
+        )  # the cache of Python's byte code is warm as well
         return partial(
             subprocess.run,
             [str(program), *arguments],

@@ -1,4 +1,4 @@
-"""Fail when sampling is slower, beside the writing limit, than benchmarks/recorded.json says.
+"""Fail if sampling is slower, relative to the writing limit, than benchmarks/recorded.json.
 
 `make bench-guard` compares and `make bench-record` writes the record. What is compared is the time
 of writing the same arrays over that of sampling, both on one thread and in time of the processor,
@@ -31,15 +31,15 @@ __all__ = ["CASES", "RECORD", "compared", "main", "quotient"]
 RECORD = Path(__file__).parent / "recorded.json"
 ROUNDS = 15
 TRIES = 10
-RECORDINGS = 5  # of which the least is recorded: a busy machine shall fail nobody
-SHARE = 0.7  # of what is recorded has to be reached
+RECORDINGS = 5  # the least is recorded, so that a busy machine does not fail
+SHARE = 0.7  # of the recorded ratio has to be reached
 Work = Callable[[], object]
 
 
 def _sampling(normals: np.ndarray, cells: int) -> tuple[Work, Arrays]:
     """Return the search for samples of a spline of the torus and their filling, and their arrays.
 
-    The arrays are held, as they are for the writing: new memory costs what the system wants.
+    The arrays are reused, as they are for the writing: the cost of new memory varies.
     """
     spline, bins = gm.fit(gm.surfaces.torus(), (cells, cells)), NormalBins(normals, 1)
     search, hits = Search(spline, bins), find(spline, bins, 1)
@@ -74,9 +74,9 @@ CASES: Mapping[str, Callable[[], tuple[Work, Arrays]]] = {
 
 
 def quotient(work: Work, limit: Work, rounds: int = ROUNDS) -> float:
-    """Return the best time of `limit` over the best of `work`; 1 is as fast as the limit.
+    """Return the ratio of the best time of `limit` to that of `work`; 1 is as fast as the limit.
 
-    The limit gets an untimed run before each timed one, so that its memory is at hand.
+    The limit has an untimed run before each timed one, so that its memory is in the cache.
     """
     own, writing = [], []
     work()
@@ -92,8 +92,8 @@ def compared(
 ) -> list[tuple[str, float, float, bool]]:
     """Return name, recorded, measured, and whether that is enough, for each case.
 
-    What is not enough is measured again, up to `tries` times. Raises ValueError unless exactly the
-    cases that are measured are recorded.
+    Ratios that are not enough are measured again, up to `tries` times. Raises ValueError unless
+    exactly the cases that are measured are recorded.
     """
     if record.keys() != measure.keys():
         differ = ", ".join(sorted(record.keys() ^ measure.keys()))
@@ -157,7 +157,7 @@ def _store(record: Mapping[str, object]) -> None:
 
 
 def _seconds(work: Work) -> float:
-    """Return the seconds of the processor that work takes."""
+    """Return the processor time of work in seconds."""
     start = process_time()
     result = work()
     taken = process_time() - start

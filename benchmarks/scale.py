@@ -1,4 +1,4 @@
-"""How the time of gm.sample grows with the number of samples, and with that of patches.
+"""Growth of the time of gm.sample with the number of samples, and with that of patches.
 
 The torus, a Fibonacci lattice of normals. A number of samples or patches beyond `largest` is left
 out. Beyond STREAMED samples they come in chunks from gm.sample_stream, and are counted only.
@@ -20,7 +20,7 @@ __all__ = ["LAST", "STREAM", "STREAMED", "Series", "measure", "slope"]
 
 SIZES = tuple(10**k for k in range(3, 9))
 STREAMED = 10**7
-LAST = 3  # so many of the largest sizes make the second slope
+LAST = 3  # the number of the largest sizes for the second slope
 FIXED_CELLS = 64
 FIXED_NORMALS = 500
 TORUS = gm.surfaces.torus()
@@ -90,17 +90,17 @@ def by_patches(largest: int) -> Series:
 
 
 def _fresh(spline: gm.Spline) -> gm.Spline:
-    """Return the spline without what it has already computed about itself."""
+    """Return the spline without cached properties."""
     return gm.Spline(spline.coefficients, spline.domain, spline.ends, spline.name)
 
 
 def _streamed(spline: gm.Spline, count: int) -> int:
-    """Count samples that come in chunks; nothing of them is kept."""
+    """Count the samples of a stream, without keeping them."""
     return sum(len(chunk) for chunk in STREAM(spline, count=count))
 
 
 def _time(work: Callable[[], int], size: int) -> tuple[float, int]:
-    """Return the median seconds of several runs, fewer for large sizes, and what came."""
+    """Return the median seconds of some runs, fewer for large sizes, and the number of samples."""
     samples, times = 0, []
     if size <= 10**6:
         work()

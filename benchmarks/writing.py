@@ -1,6 +1,6 @@
 """The writing limit: a compiled loop that stores constants into the arrays of samples.
 
-No sampler can be faster than that, on the same number of threads.
+It is a limit for samplers on the same number of threads.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Writers:
     """Threads that write samples; a context, and then a function of their arrays."""
 
     def __init__(self, threads: int | None = None) -> None:
-        """Use as many threads as samplers do by default, or so many."""
+        """Use `threads` threads, by default as many as samplers."""
         self.threads = thread_count(threads)
 
     def __enter__(self) -> Writers:

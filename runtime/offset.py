@@ -1,4 +1,4 @@
-"""Offsets of samples: x + d n, with the same normals, and the curvatures that follow."""
+"""Offsets of samples: x + d n, with the same normals, and their curvatures."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ __all__ = ["offset"]
 
 Array = NDArray[np.float64]
 
-# What the fields of an offset are computed from.
+# The fields from which those of an offset are computed.
 NEEDED = {
     "points": ("normals",),
     "gaussian_curvature": ("mean_curvature",),
     "mean_curvature": ("gaussian_curvature",),
 }
-# The rounding of K, H and of 1 + 2 d H + d² K, beside its terms, in units of the last place.
+# The rounding of K, H and 1 + 2 d H + d² K, relative to their terms, in units of the last place.
 ROUNDING = 4.0
 
 
@@ -34,7 +34,7 @@ def offset(samples: Samples, distance: float) -> Samples:
     _check_fields(samples)
     arrays: dict[str, Any] = {x: getattr(samples, x) for x in samples.fields}
     moved: dict[str, Array] = {}
-    with np.errstate(all="ignore"):  # infinite curvatures are answers, too
+    with np.errstate(all="ignore"):  # infinite curvatures are valid
         if "points" in arrays:
             moved["points"] = arrays["points"] + d * arrays["normals"].astype(np.float64)
         if "support" in arrays:
@@ -45,13 +45,13 @@ def offset(samples: Samples, distance: float) -> Samples:
     report = replace(
         samples.report,
         surface=f"{samples.report.surface} offset by {d:g}",
-        invisible_share=None,  # flat parts keep their area, and the others do not
+        invisible_share=None,  # areas change, except those of planar regions
     )
     return Samples(**arrays, report=report)
 
 
 def _curvatures(samples: Samples, d: float) -> dict[str, Array]:
-    """Return K and H of the offset, and warn where it is folded."""
+    """Return K and H of the offset, and warn if it is folded."""
     K = samples.gaussian_curvature.astype(np.float64)
     H = samples.mean_curvature.astype(np.float64)
     folded = np.empty(len(samples), dtype=np.bool_)
@@ -73,7 +73,7 @@ def _check_fields(samples: Samples) -> None:
 
 
 def _warn(samples: Samples, d: float, folded: NDArray[np.bool_]) -> None:
-    """Say where the distance has reached a radius of curvature, and which is the smallest."""
+    """Warn of samples at which the offset is folded, with the smallest radius of curvature."""
     towards = -np.sign(d) * samples[folded].principal_curvatures
     largest = np.where(np.isnan(towards), np.inf, towards).max()  # NaN: a curvature is infinite
     warnings.warn(

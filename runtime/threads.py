@@ -1,4 +1,4 @@
-"""Running a compiled loop over ranges on several threads: kernels hold no lock."""
+"""Compiled loops over ranges on several threads: kernels release the global lock."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ __all__ = ["counted", "over_ranges", "shown", "thread_count"]
 
 Result = TypeVar("Result")
 
-# So many ranges for each thread are computed before their results are taken.
+# Ranges for each thread that are computed before their results are used.
 AHEAD = 4
 
 
 def thread_count(threads: int | None) -> int:
-    """Return how many threads to use: as asked, else NUMBA_NUM_THREADS, else one a core."""
+    """Return the number of threads: `threads`, else NUMBA_NUM_THREADS, else one for each core."""
     if threads is not None:
         return whole_number(threads, "threads")
     cores = (
@@ -41,8 +41,8 @@ def over_ranges(
 ) -> Iterator[Result]:
     """Yield work(first, last) for the consecutive ranges of `size` in 0 … total, in order.
 
-    No more than a few results for each thread wait for who takes them; closing the iterator ends
-    the work. With `progress`, a bar on standard error shows work that takes longer than a second.
+    At most a few results for each thread are computed ahead; closing the iterator ends the work.
+    With `progress`, a bar on standard error shows work that takes longer than a second.
     """
     starts = range(0, total, size)
     workers = min(thread_count(threads), len(starts))
@@ -56,7 +56,7 @@ def over_ranges(
 def _in_threads(
     work: Callable[[int], Result], starts: Iterable[int], workers: int
 ) -> Iterator[Result]:
-    """Yield work(start) in order, computed by threads that are only a little ahead."""
+    """Yield work(start) in order, computed by threads that are at most AHEAD ranges ahead."""
     waiting = iter(starts)
     with ThreadPoolExecutor(workers) as pool:
         try:
@@ -65,15 +65,15 @@ def _in_threads(
                 result = ahead.popleft().result()
                 ahead.extend(pool.submit(work, start) for start in islice(waiting, 1))
                 yield result
-                del result  # it is not to be kept alive while the next one is computed
+                del result  # so that it is not kept alive while the next one is computed
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)  # Ctrl-C must not wait for all ranges
             raise
 
 
 def shown(results: Iterator[Result], count: int, progress: bool) -> Iterator[Result]:
-    """Yield results; with `progress`, a terminal shows how many of `count` are done."""
-    # tqdm shows nothing without a terminal, and its import takes longer than many a sampling.
+    """Yield results; with `progress`, a terminal shows a bar of `count` steps."""
+    # tqdm shows nothing without a terminal, and its import takes longer than a small sampling.
     if not _seen(progress):
         return results
     from tqdm import tqdm
@@ -83,7 +83,7 @@ def shown(results: Iterator[Result], count: int, progress: bool) -> Iterator[Res
 
 @contextmanager
 def counted(count: int | None, progress: bool) -> Iterator[Callable[[int], object]]:
-    """Yield what is told how many are done, of `count` if that is known; see `shown`."""
+    """Yield a function that shows the number of finished steps, of `count` if known."""
     if not _seen(progress):
         yield lambda done: None
         return

@@ -1,7 +1,7 @@
 """Meshes that follow curvature, with the exact normals of their nodes: Gmsh and Open CASCADE.
 
-The torus is their own, and the boss is revolved by them; the other surfaces are given to them as
-the B-spline of a 61 × 61 net.
+The torus is one of their primitives, and the boss is a solid of revolution; the other surfaces are
+given to them as B-splines of a 61 × 61 net.
 """
 
 # Only `make bench-peers` installs these packages.
@@ -30,7 +30,7 @@ __all__ = [
 Mesher = Callable[[float], Points]
 
 MULTIPLICITIES = [4, *[1] * (NET - 4), 4]
-# Large enough that the angle decides; without any bound Open CASCADE leaves out whole turns.
+# Large enough that the angle decides; without a bound Open CASCADE leaves out full turns.
 LINEAR_DEFLECTION = 0.1
 
 
@@ -42,7 +42,7 @@ def gmsh_by_curvature(form: ClosedForm, count: int) -> Work:
 
 
 def gmsh_mesher(form: ClosedForm) -> Mesher:
-    """Return what makes a mesh of so many elements per full turn the mesh of Gmsh's model."""
+    """Return a function that makes a mesh by Gmsh, of a number of elements per full turn."""
     import gmsh
 
     if gmsh.isInitialized():
@@ -114,7 +114,7 @@ def opencascade_by_angle(form: ClosedForm, count: int) -> Work:
 
 
 def opencascade_mesher(form: ClosedForm, shape: Any) -> Mesher:
-    """Return what makes a mesh of some angular deflection the mesh of a shape."""
+    """Return a function that makes a mesh of a shape, of an angular deflection."""
     from OCP.BRep import BRep_Tool
     from OCP.BRepLib import BRepLib_ToolTriangulatedShape
     from OCP.BRepMesh import BRepMesh_IncrementalMesh
@@ -138,7 +138,7 @@ def opencascade_mesher(form: ClosedForm, shape: Any) -> Mesher:
             parts.append(outwards(form, points, normals))
             faces.Next()
         points, normals = (np.concatenate(x) for x in zip(*parts, strict=True))
-        # Nodes on seams and edges come twice.
+        # Nodes on seams and edges occur twice.
         once = np.unique(points.round(9), axis=0, return_index=True)[1]
         return points[once], normals[once]
 

@@ -27,7 +27,7 @@ def _recipe(form: ClosedForm, count: int) -> Work:
 
 
 MILLION = 1_000_000
-K = r"\|K\|"  # as it is written in a table of Markdown
+K = r"\|K\|"  # in a table of Markdown
 RECIPE = Peer(f"NumPy, {K} recipe, closed form", K, "numpy", _recipe, MILLION, rounds=5)
 SPLIPY_RECIPE = Peer(
     f"Splipy, {K} recipe, B-spline", K, "splipy", splipy_by_curvature, 20_000, on_net=True

@@ -1,4 +1,4 @@
-"""The three surfaces, written down in NumPy as a user who knows their formulas would do it."""
+"""The three surfaces in NumPy, as users who know their formulas would write them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Array = NDArray[np.floating[Any]]
 
 
 class ClosedForm(ABC):
-    """A surface of the catalogue with closed forms for all that its samplers have to know.
+    """A surface of the catalogue, with closed forms of all quantities that samplers use.
 
     Parameters broadcast together, so that a grid costs its trigonometry only along its sides.
     """

@@ -1,4 +1,4 @@
-"""How well points with normals stand for a surface: the worst of many places, in degrees."""
+"""Quality of points with normals on a surface: the largest angles over many places, in degrees."""
 
 # Only `make bench-peers` installs these packages.
 # pyright: reportMissingImports=false

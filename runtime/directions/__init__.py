@@ -1,4 +1,4 @@
-"""Sets of directions on the sphere and on the circle, parts of them, and how well they cover."""
+"""Sets of directions on the sphere and on the circle, subsets of them, and covering radii."""
 
 from .circle import circle
 from .covering import covering_radius

@@ -1,4 +1,4 @@
-"""Unit normals in the plane, spread evenly over the circle or a part of it."""
+"""Uniform unit normals in the plane, on the circle or an arc of it."""
 
 from __future__ import annotations
 

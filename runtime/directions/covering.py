@@ -1,4 +1,4 @@
-"""The covering radius of a set of normals: how far a direction can be from the nearest of them."""
+"""The covering radius of a set of directions: the largest angle to the nearest one."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ __all__ = ["covering_radius"]
 
 Array = NDArray[np.float64]
 
-# A cap in degrees that grows by less has stopped growing.
+# A cap whose radius in degrees grows by less has converged.
 ROUNDING = 1e-12
 
 
 def covering_radius(normals: ArrayLike) -> float:
     """Return the largest angle from any direction to the nearest of some normals.
 
-    A surface point whose Gaussian image is covered by the set has a sample whose normal is no
-    farther from its own than that.
+    If the normals cover the Gaussian image of a surface, every normal of the surface is within this
+    angle of that of a sample.
 
     Parameters
     ----------
@@ -60,19 +60,19 @@ def covering_radius(normals: ArrayLike) -> float:
 
     try:
         hull = ConvexHull(directions)
-    except QhullError:  # all in one plane, or fewer than four
+    except QhullError:  # coplanar, or fewer than four
         return 180.0 - _smallest_cap(directions)
     outwards, corners = hull.equations[:, :3], directions[hull.simplices[:, 0]]
     largest = float(angles_between(outwards, corners).max())
-    # Beyond a facet that the centre of the sphere sees, a direction may be farther still.
+    # If the centre of the sphere is outside the hull, the farthest direction belongs to no facet.
     return largest if largest <= 90.0 else 180.0 - _smallest_cap(directions)
 
 
 def _smallest_cap(normals: Array) -> float:
     """Return the radius in degrees, at most 90, of the smallest cap that holds all normals.
 
-    It is the smallest cap of at most three of them. Normals that it leaves out are taken in one by
-    one, the farthest first, and the cap grows with each.
+    It is determined by at most three of them. Normals outside are added one by one, the farthest
+    first, and the cap grows with each.
     """
     basis, radius = normals[:1], -1.0
     while True:
@@ -87,7 +87,7 @@ def _smallest_cap(normals: Array) -> float:
 
 
 def _cap_of_few(normals: Array) -> tuple[Array, Array, float]:
-    """Return centre, those that determine it, and radius of the smallest cap of up to four."""
+    """Return the smallest cap of up to four normals: its centre, those on its border, radius."""
     found: list[tuple[float, Array, Array]] = []
     for size in (1, 2, 3):
         for rows in combinations(normals, size):

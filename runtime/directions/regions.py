@@ -11,7 +11,7 @@ from .unit import as_normals, unit_vector
 
 __all__ = ["angles_between", "cap", "polygon"]
 
-# Of triple products of unit vectors: what is on a border up to rounding belongs to the region.
+# Bound of the rounding of triple products of unit vectors: regions are closed up to rounding.
 ROUNDING = 2.0**-50
 
 

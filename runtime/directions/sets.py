@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated.icosahedron import FACE_RADIUS
-from .. import compiling  # noqa: F401 - it tells that kernels are compiled
+from .. import compiling  # noqa: F401 - announces compilation on terminals
 from ..checks import whole_number
 from ..errors import InputError, in_memory
 from ..extras import from_extra
@@ -93,8 +93,8 @@ def frequency_within(angle: float) -> int:
 def fibonacci(count: int) -> NDArray[np.float64]:
     """Return unit normals on a Fibonacci lattice, from +z to −z.
 
-    The points are spread evenly (every one represents the same area of the sphere) and in general
-    position: no symmetry aligns them with a surface.
+    The points are uniform (each represents the same area of the sphere) and in general position: no
+    symmetry aligns them with a surface.
 
     Parameters
     ----------
@@ -187,8 +187,8 @@ def random(count: int, *, seed: int = 0) -> NDArray[np.float64]:
 
     Notes
     -----
-    They are less even than those of a lattice: of pieces of the area 4π/count, about 1/e stay
-    empty.
+    They are less evenly distributed than a lattice: of regions of the area 4π/count, a fraction of
+    about 1/e contains none.
 
     Examples
     --------

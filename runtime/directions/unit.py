@@ -1,4 +1,4 @@
-"""Directions as unit vectors: those that a user brings, checked, and frames round them."""
+"""Directions as unit vectors: checks of users' directions, and frames perpendicular to them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ..threads import over_ranges
 
 __all__ = ["PIECE", "as_normals", "in_pieces", "normalized", "perpendicular", "unit_vector"]
 
-# So many normals are made at a time: their arrays fit into the cache.
+# The number of normals that are computed at a time, so that their arrays fit into the cache.
 PIECE = 1 << 15
 
 
@@ -62,7 +62,7 @@ def in_pieces(
     threads: int | None = None,
     width: int = 3,
 ) -> NDArray[np.float64]:
-    """Return rows(first, last) (…, width), made in pieces that stay in the cache, on threads."""
+    """Return rows(first, last) (…, width), computed on threads in pieces of the size PIECE."""
     result = np.empty((last - first, width))
 
     def work(begin: int, end: int) -> None:
@@ -74,7 +74,7 @@ def in_pieces(
 
 
 def normalized(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Divide by the length, safely for the smallest and the largest numbers."""
+    """Divide vectors by their lengths, without overflow or underflow."""
     exponents = np.frexp(_largest(vectors))[1]
     far = np.abs(exponents) > 1
     if far.any():
