@@ -127,7 +127,8 @@ def _workspace() -> kernels.Workspace:
     """Return room for the residues of one pair."""
     count = len(PRIMES)
     shapes = (count, 5, 3), (count, 3), (4, count), (count,)
-    return kernels.Workspace(*(np.empty(x, dtype=np.int64) for x in shapes), np.empty(4))
+    patches, directions, residues, digits = (np.empty(x, dtype=np.int64) for x in shapes)
+    return kernels.Workspace(patches, directions, residues, digits, np.empty(4))
 
 
 def _regular_places(

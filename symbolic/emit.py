@@ -16,8 +16,7 @@ from .simplify import straight_line
 __all__ = [
     "arguments",
     "assignments",
-    "block",
-    "call",
+    "counts",
     "described",
     "function",
     "functions",
@@ -25,7 +24,6 @@ __all__ = [
     "named_tuples",
     "render",
     "unpacked",
-    "vector_functions",
 ]
 
 TEMPLATES = Path(__file__).parent / "templates"
@@ -58,28 +56,6 @@ def counts(formula: Formula) -> str:
     return f"{code.operations_before} operations as written, {code.operations_after} here"
 
 
-def block(formula: Formula) -> str:
-    """Return a formula as assignments that read its inputs from local names."""
-    comment = f"# {formula.name} ({formula.source}): {counts(formula)}"
-    return "\n".join([comment, *assignments(formula)])
-
-
-def function(formula: Formula) -> str:
-    """Return a formula as a jitted function of its inputs that returns its outputs."""
-    plain = formula.in_components()
-    docstring = [
-        *textwrap.wrap(f'"""{formula.sentence}', WIDTH),
-        "",
-        *(f"    {line}" for line in formula.text().splitlines()),
-        "",
-        *textwrap.wrap(f"Source: {formula.source}; {counts(formula)}.", WIDTH),
-        '"""',
-    ]
-    body = [*docstring, *assignments(formula), f"return {', '.join(x.name for x in plain.outputs)}"]
-    definition = in_brackets(f"def {formula.name}(", plain.inputs, "):")
-    return f"@jit\n{definition}\n" + textwrap.indent("\n".join(body), "    ")
-
-
 def arguments(formula: Formula) -> dict[str, tuple[sp.Symbol, ...]]:
     """Return the arguments of the function of a formula, each with the inputs that it holds.
 
@@ -107,7 +83,7 @@ def described(formula: Formula) -> list[str]:
     ]
 
 
-def vector_function(formula: Formula) -> str:
+def function(formula: Formula) -> str:
     """Return a formula as an inlined function of vectors and scalars that returns its outputs."""
     taken = arguments(formula)
     docstring = [*described(formula), '"""']
@@ -162,9 +138,9 @@ def _kind(symbol: sp.Symbol) -> str:
     return "PlaneVector" if isinstance(symbol, PlaneVector) else "Vector"
 
 
-def vector_functions(formulas: Iterable[Formula]) -> str:
+def functions(formulas: Iterable[Formula]) -> str:
     """Return several formulas as inlined functions of vectors."""
-    return "\n\n\n".join(map(vector_function, formulas))
+    return "\n\n\n".join(map(function, formulas))
 
 
 def named_tuples() -> str:
@@ -182,24 +158,6 @@ def named_tuples() -> str:
         )
         for name, sentence, fields in types
     )
-
-
-def functions(formulas: Iterable[Formula]) -> str:
-    """Return several formulas as functions."""
-    return "\n\n\n".join(map(function, formulas))
-
-
-def call(formula: Formula) -> str:
-    """Return the call of the function of a formula with local names of its inputs."""
-    return in_brackets(f"{formula.name}(", formula.in_components().inputs, ")")
-
-
-def in_brackets(opening: str, symbols: Iterable[sp.Symbol], closing: str) -> str:
-    """Return names in brackets, on one line or in a block that the formatter leaves alone."""
-    names = ", ".join(symbol.name for symbol in symbols)
-    if len(opening + names + closing) <= 100:
-        return f"{opening}{names}{closing}"
-    return f"{opening}\n{textwrap.indent(textwrap.fill(names, 90), '    ')}\n{closing}  # fmt: skip"
 
 
 def render(template: str, values: Mapping[str, str]) -> str:

@@ -13,7 +13,7 @@ from pathlib import Path
 import sympy as sp
 
 from . import curve, gaussian_image, icosahedron, latex, mesh, patch, spline, support, surfaces
-from .emit import named_tuples, render, vector_functions
+from .emit import functions, named_tuples, render
 from .loops import array_function
 from .positions import position
 from .printer import source_of
@@ -136,13 +136,13 @@ def _options() -> str:
 def curve_source() -> str:
     """Return generated/curve.py: the formulas of planar curves."""
     title = "Planar curves: the formulas of symbolic/curve.py as functions of vectors."
-    return mathematics(title, vector_functions(curve.FORMULAS))
+    return mathematics(title, functions(curve.FORMULAS))
 
 
 def gaussian_image_source() -> str:
     """Return generated/gaussian_image.py: boundary cones and arcs, parabolic lines."""
     title = "Gaussian images of patches: boundaries, solid angles, parabolic lines."
-    return mathematics(title, vector_functions(gaussian_image.FORMULAS))
+    return mathematics(title, functions(gaussian_image.FORMULAS))
 
 
 def icosahedron_source() -> str:
@@ -158,14 +158,14 @@ def icosahedron_source() -> str:
 def mesh_source() -> str:
     """Return generated/mesh.py: the formulas of triangles through samples."""
     title = "Triangles through samples: the formulas of symbolic/mesh.py."
-    return mathematics(title, vector_functions(mesh.FORMULAS))
+    return mathematics(title, functions(mesh.FORMULAS))
 
 
 def patch_source() -> str:
     """Return generated/patch.py: every formula of a patch as a function."""
     title = "One quadratic patch: the formulas of symbolic/patch.py as functions of vectors."
     node = f"NODE = {source_of(patch.QUADRATURE_NODE)}"
-    return mathematics(title, node, vector_functions(patch.FORMULAS))
+    return mathematics(title, node, functions(patch.FORMULAS))
 
 
 def spline_source() -> str:
@@ -173,7 +173,7 @@ def spline_source() -> str:
     return mathematics(
         "The C1 quadratic spline: the grid, and the formulas of symbolic/spline.py.",
         f"{_grid_constants()}\n{_triangle_neighbours()}\n{_vertices()}",
-        vector_functions(spline.FORMULAS),
+        functions(spline.FORMULAS),
     )
 
 
@@ -187,7 +187,7 @@ def support_source() -> str:
     """Return generated/support.py: formulas of support functions, offsets and curvatures."""
     title = "Support functions: the formulas of symbolic/support.py as functions of vectors."
     alone = [x for x in support.FORMULAS if x not in support.LOOPS]
-    return mathematics(title, vector_functions(alone))
+    return mathematics(title, functions(alone))
 
 
 def support_function_source() -> str:

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Iterator
 from functools import cache
 from html import escape, unescape
+from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
@@ -15,14 +16,15 @@ from . import latex, surfaces
 from .display import latex_of
 from .emit import render
 from .files import GENERATED, existing
-from .formula import Formula
-from .uses import Kernels
+from .uses import callers, functions
 
 if TYPE_CHECKING:
     from math_core import LatexToMathML
 
 __all__ = ["page"]
 
+# The text of the kernels is read to say which of them call a formula.
+KERNELS = GENERATED.parent / "runtime" / "kernels"
 GENERATOR = f"Written by `gaussmap formulas --html` with SymPy {sp.__version__}."
 WORD_JOINER = "\u2060"  # no line ends here
 BRACKETS = {"(": "prefix", "[": "prefix", ")": "postfix", "]": "postfix"}
@@ -93,27 +95,26 @@ def _rows(entry: latex.Entry) -> Iterator[tuple[str, str]]:
         if term == "Inputs":
             outputs = entry.formula.outputs
             yield "Outputs", _text(", ".join(f"${latex_of(x)}$" for x in outputs))
-    yield "Kernels", _uses(entry.formula)
+    own = functions(_texts(GENERATED)).get(entry.name, [])
+    yield "Functions", _names(own)
+    if parts := latex.parts_of(entry.formula):
+        yield "Part of", ", ".join(map(_link, parts))
+    if kernels := [x for name in own for x in _callers().get(name, ())]:
+        yield "Kernels", _names(kernels)
 
 
-def _uses(formula: Formula) -> str:
-    """Return where a formula runs, one item a file."""
-    items = []
-    for module, uses in _kernels().uses(formula).items():
-        inside = ", ".join(
-            f"<code>{name}</code>" + (f" (in {_link(whole)})" if whole else "")
-            for name, whole in uses.items(formula)
-        )
-        callers = ", ".join(f"<code>{name}</code>" for name in uses.callers)
-        items.append(
-            f"<code>{module}</code>: {inside}" + (f"; called by {callers}" if callers else "")
-        )
-    return _list(items) if items else "none"
+def _names(names: list[str]) -> str:
+    return ", ".join(f"<code>{x}</code>" for x in names) or "none"
 
 
 @cache
-def _kernels() -> Kernels:
-    return latex.kernels(existing(GENERATED))
+def _callers() -> dict[str, list[str]]:
+    return callers({x: y for x, y in _texts(KERNELS).items() if x.endswith(".py")})
+
+
+@cache
+def _texts(folder: Path) -> dict[str, str]:
+    return existing(folder)
 
 
 def _list(items: Iterable[str]) -> str:

@@ -15,9 +15,9 @@ from .emit import render
 from .formula import Formula, VectorSymbol
 from .positions import position
 from .simplify import straight_line
-from .uses import Kernels
+from .uses import functions, wholes
 
-__all__ = ["document", "kernels", "markdown", "sections"]
+__all__ = ["document", "markdown", "parts_of", "sections"]
 
 GENERATOR = f"Written by `make generate` with SymPy {sp.__version__}: do not edit."
 FORMULAS = {
@@ -51,10 +51,9 @@ class Entry:
         return self.formula.name
 
 
-def kernels(sources: Mapping[str, str]) -> Kernels:
-    """Return what the generated files, given as texts by their names, run of all formulas."""
-    formulas = (x for section in FORMULAS.values() for x in section)
-    return Kernels(sources, formulas, surfaces.CATALOGUE)
+def parts_of(formula: Formula) -> list[str]:
+    """Return the names of the formulas of which one is a part."""
+    return wholes(formula, (x for section in FORMULAS.values() for x in section))
 
 
 def markdown(sources: Mapping[str, str]) -> str:
@@ -62,7 +61,7 @@ def markdown(sources: Mapping[str, str]) -> str:
 
     `sources` are the texts of the generated files by their names.
     """
-    uses = kernels(sources)
+    found = functions(sources)
 
     def converted(sentence: str) -> str:
         return _converted(sentence, mathematics=lambda x: f"$`{x}`$")
@@ -75,14 +74,16 @@ def markdown(sources: Mapping[str, str]) -> str:
                 f"### `{entry.name}`",
                 converted(entry.sentence),
                 f"```math\n{entry.aligned}\n```",
-                "\n".join(f"- {converted(fact)}" for fact in (*entry.facts, _run(entry, uses))),
+                "\n".join(
+                    f"- {converted(fact)}" for fact in (*entry.facts, _functions(entry, found))
+                ),
             ]
     return render("formulas.md", {"generator": GENERATOR, "sections": "\n\n".join(parts)})
 
 
 def document(sources: Mapping[str, str]) -> str:
     """Return generated/formulas.tex, a complete LaTeX document; `sources` as in `markdown`."""
-    uses = kernels(sources)
+    found = functions(sources)
 
     def converted(sentence: str) -> str:
         return _converted(sentence, mathematics=lambda x: f"${x}$", plain=_escaped)
@@ -95,7 +96,7 @@ def document(sources: Mapping[str, str]) -> str:
                 f"\\subsection*{{{_escaped(f'`{entry.name}`')}}}",
                 converted(entry.sentence),
                 entry.aligned.replace("{aligned}", "{align*}"),
-                "\\\\*\n".join(map(converted, (*entry.facts, _run(entry, uses)))) + "\n",
+                "\\\\*\n".join(map(converted, (*entry.facts, _functions(entry, found)))) + "\n",
             ]
     return render("formulas.tex", {"generator": f"% {GENERATOR}", "sections": "\n".join(parts)})
 
@@ -152,8 +153,11 @@ def _surface(surface: surfaces.ParametricSurface) -> Entry:
     )
 
 
-def _run(entry: Entry, kernels: Kernels) -> str:
-    return f"Kernels: {kernels.sentence(entry.formula)}."
+def _functions(entry: Entry, found: Mapping[str, list[str]]) -> str:
+    """Say which generated functions a formula is, and what it is a part of."""
+    own = ", ".join(f"`{x}`" for x in found.get(entry.name, ())) or "none"
+    parts = ", ".join(f"`{x}`" for x in parts_of(entry.formula))
+    return f"Functions: {own}" + (f"; part of {parts}." if parts else ".")
 
 
 def _operations(formula: Formula) -> str:

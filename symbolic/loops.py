@@ -27,7 +27,7 @@ def array_function(formula: Formula, over: Collection[sp.Symbol]) -> str:
     """Return a formula as a function of arrays, which fills those of its outputs.
 
     The inputs in `over` are arrays with a row for each evaluation; the others are what they are to
-    `emit.vector_function`.
+    `emit.function`.
     """
     given = {x: y for x, y in arguments(formula).items() if not {*y} <= {*over}}
     inputs = {x: y for x, y in arguments(formula).items() if x not in given}

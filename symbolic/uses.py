@@ -1,110 +1,80 @@
-"""Which functions of the generated files run a formula."""
+"""Which generated functions a formula is, what it is a part of, and which kernels call it."""
 
 from __future__ import annotations
 
 import ast
-import re
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
 
 from .formula import Formula
 
-__all__ = ["Kernels", "Uses"]
-
-# The first line of a formula in a loop, as `emit.block` writes it.
-BLOCK = re.compile(r"^ *# (\w+) \(.+\): \d+ operations", re.MULTILINE)
+__all__ = ["callers", "functions", "wholes"]
 
 
-@dataclass(frozen=True)
-class Function:
-    """A function of a generated file: which formulas stand in it, and which functions it calls."""
-
-    module: str
-    name: str
-    formulas: frozenset[str]
-    calls: frozenset[str]
-
-
-@dataclass(frozen=True)
-class Uses:
-    """The functions of a file in which a formula stands, and those that call them.
-
-    `inside` also says as what it stands there: as itself, or as a part of another formula.
-    """
-
-    inside: dict[str, str]
-    callers: tuple[str, ...]
-
-    def items(self, formula: Formula) -> list[tuple[str, str | None]]:
-        """Return the functions inside, each with the formula of which this one is a part there."""
-        return [
-            (name, None if whole in (formula.name, name) else whole)
-            for name, whole in self.inside.items()
-        ]
-
-
-class Kernels:
-    """The functions of generated files, given as their texts, and the formulas in them."""
-
-    def __init__(
-        self, sources: Mapping[str, str], formulas: Iterable[Formula], alone: Iterable[str]
-    ) -> None:
-        """Read the files; `alone` are names of formulas that are never part of one another."""
-        self.formulas = {x.name: x for x in formulas}
-        self.names = {*self.formulas, *alone}
-        self.functions = [
-            function
-            for module in sorted(x for x in sources if x.endswith(".py"))
-            for function in self._functions(module, sources[module])
-        ]
-
-    def uses(self, formula: Formula) -> dict[str, Uses]:
-        """Return where a formula stands and is called from, by the names of the files."""
-        composed = (x.name for x in self.formulas.values() if _is_part(formula, x))
-        wholes = [formula.name, *composed]
-        result = {}
-        for module in dict.fromkeys(x.module for x in self.functions):
-            functions = [x for x in self.functions if x.module == module]
-            inside = {
-                x.name: next(whole for whole in wholes if whole in x.formulas)
-                for x in functions
-                if not x.formulas.isdisjoint(wholes)
-            }
-            reached = set(inside)
-            while more := {x.name for x in functions if not x.calls.isdisjoint(reached)} - reached:
-                reached |= more
-            if inside:
-                callers = (x.name for x in functions if x.name in reached - inside.keys())
-                result[module] = Uses(inside, tuple(callers))
-        return result
-
-    def sentence(self, formula: Formula) -> str:
-        """Return the uses in words, names in backquotes: "none" or one part for each file."""
-        parts = []
-        for module, uses in self.uses(formula).items():
-            inside = ", ".join(
-                f"`{name}`" + (f" (in `{whole}`)" if whole else "")
-                for name, whole in uses.items(formula)
-            )
-            callers = ", ".join(f"`{name}`" for name in uses.callers)
-            parts.append(f"`{module}`: {inside}" + (f", called by {callers}" if callers else ""))
-        return "; ".join(parts) or "none"
-
-    def _functions(self, module: str, source: str) -> Iterable[Function]:
-        for node in ast.parse(source).body:
+def functions(sources: Mapping[str, str]) -> dict[str, list[str]]:
+    """Return the functions `file.name` of each name; `sources` are texts by names of files."""
+    result: dict[str, list[str]] = {}
+    for file in sorted(x for x in sources if x.endswith(".py")):
+        for node in ast.parse(sources[file]).body:
             if isinstance(node, ast.FunctionDef):
-                blocks = BLOCK.findall(ast.get_source_segment(source, node) or "")
-                inside = frozenset({node.name, *blocks} & self.names)
-                calls = (x.func for x in ast.walk(node) if isinstance(x, ast.Call))
-                called = frozenset(x.id for x in calls if isinstance(x, ast.Name))
-                yield Function(module, node.name, inside, called)
+                result.setdefault(node.name, []).append(f"{file.removesuffix('.py')}.{node.name}")
+    return result
 
 
-def _is_part(formula: Formula, whole: Formula) -> bool:
-    """Say whether another formula does what this one does, and more.
+def wholes(formula: Formula, formulas: Iterable[Formula]) -> list[str]:
+    """Return the names of the formulas that do what this one does, and more.
 
-    It may leave out a few of the outputs: `compose` drops what is not needed.
+    They may leave out a few of the outputs: `compose` drops what is not needed.
     """
-    outputs = {pair for pair in formula.definitions if pair[0] in formula.outputs}
-    shared, more = outputs & {*whole.definitions}, {*whole.definitions} - {*formula.definitions}
-    return bool(more) and 2 * len(shared) > len(outputs)
+    mine = dict(formula.definitions)
+
+    def is_whole(other: Formula) -> bool:
+        theirs = dict(other.definitions)
+        if any(theirs.get(x, y) != y or x in other.inputs for x, y in mine.items()):
+            return False
+        shared = [x for x in formula.outputs if x in mine and x in theirs]
+        return not theirs.keys() <= mine.keys() and 2 * len(shared) > len(formula.outputs)
+
+    return [x.name for x in formulas if is_whole(x)]
+
+
+def callers(sources: Mapping[str, str]) -> dict[str, list[str]]:
+    """Return the kernels `file.name` that call generated functions, by the names of these.
+
+    `sources` are the texts of the files of kernels by their names.
+    """
+    result: dict[str, list[str]] = {}
+    for file in sorted(sources):
+        tree = ast.parse(sources[file])
+        known = dict(_imported(tree))
+        for node in tree.body:
+            if name := _defined(node):
+                for called in dict.fromkeys(_read(node, known)):
+                    result.setdefault(called, []).append(f"{file.removesuffix('.py')}.{name}")
+    return result
+
+
+def _imported(tree: ast.Module) -> Iterator[tuple[str, str]]:
+    """Yield the names by which a file knows what it imports from generated/, and what that is."""
+    for node in tree.body:
+        folder, _, module = (getattr(node, "module", None) or "").partition(".")
+        if isinstance(node, ast.ImportFrom) and folder == "generated":
+            for x in node.names:
+                yield x.asname or x.name, f"{module}.{x.name}" if module else x.name
+
+
+def _defined(node: ast.stmt) -> str | None:
+    """Return the name that a statement gives to a function, if it does."""
+    if isinstance(node, ast.FunctionDef):
+        return node.name
+    if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+        return node.targets[0].id
+    return None
+
+
+def _read(node: ast.stmt, known: Mapping[str, str]) -> Iterator[str]:
+    """Yield the generated functions in a statement, alone or as parts of their modules."""
+    for x in ast.walk(node):
+        if isinstance(x, ast.Attribute) and isinstance(x.value, ast.Name) and x.value.id in known:
+            yield f"{known[x.value.id]}.{x.attr}"
+        elif isinstance(x, ast.Name) and x.id in known:
+            yield known[x.id]

@@ -86,7 +86,7 @@ class Decided(NamedTuple):
 
 
 @inline
-def precise(x):
+def precise(x) -> Any:
     """Return a number as a double-double."""
     return DoubleDouble(x, 0.0)
 

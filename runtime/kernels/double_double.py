@@ -127,7 +127,7 @@ def scale(power, x):
 
 def is_pair(kind: types.Type) -> bool:
     """Say whether something is a double-double, by its type in compiled code."""
-    return isinstance(kind, types.BaseNamedTuple) and kind.instance_class is DoubleDouble
+    return getattr(kind, "instance_class", None) is DoubleDouble
 
 
 @overload(operator.add)

@@ -222,30 +222,32 @@ def test_entries_name_source_inputs_and_operations(formula):
 
 
 @pytest.mark.parametrize(
-    ("name", "kernels"),
+    ("name", "functions"),
     [
-        ("curvature", "`patch.py`: `curvature`, `sample`, `curvature_at`"),
-        ("forms", "`patch.py`: `forms`, `support_function`, `sample`"),
-        ("boundary_arc", "`gaussian_image.py`: `boundary_arc`."),
-        ("coefficient_from_centres", "`spline.py`: `coefficient_from_centres`."),
-        ("torus", "`surfaces.py`: `torus`."),
+        ("curvature", "`patch.curvature`; part of `sample`, `curvature_at`, `branch`, "
+         "`curvature_at_normal`."),
+        ("support_function", "`patch.support_function`, `support_function.support_function`."),
+        ("boundary_arc", "`gaussian_image.boundary_arc`."),
+        ("coefficient_from_centres", "`spline.coefficient_from_centres`."),
+        ("torus", "`surfaces.torus`."),
+        ("control_normals", "`patch.control_normals`."),  # part_normals has others of these names
+        ("sample", "`patch.sample`."),  # to `branch` u and v are known
     ],
 )  # fmt: skip
-def test_entries_name_the_kernels(name, kernels):
+def test_entries_name_the_functions(name, functions):
     entry = MARKDOWN.partition(f"### `{name}`\n")[2].partition("\n#")[0]
-    assert kernels in entry.partition("\n- Kernels: ")[2]
-    typeset = re.sub(r"`(.*?)`", r"\\texttt{\1}", kernels).replace("_", r"\_")
+    assert entry.partition("\n- Functions: ")[2].strip() == functions
+    typeset = re.sub(r"`(.*?)`", r"\\texttt{\1}", functions).replace("_", r"\_")
     title = f"\\subsection*{{\\texttt{{{name}}}}}".replace("_", r"\_")
-    assert typeset in TEX.partition(title)[2].partition("\\subsection")[0]
+    assert f"Functions: {typeset}" in TEX.partition(title)[2].partition("\\subsection")[0]
 
 
-def test_kernels_are_those_of_the_sources_that_are_given():
+def test_functions_are_those_of_the_sources_that_are_given():
     """The pages are derived beside the files, not from those that were written before."""
-    source = (
-        "def some_kernel():\n    # forms (eq. (9)): 3 operations as written, 3 here\n    pass\n"
-    )
-    entry = markdown({"new.py": source}).partition("### `forms`\n")[2].partition("\n#")[0]
-    assert "- Kernels: `new.py`: `some_kernel`.\n" in entry
+    page = markdown({"new.py": "def orientation(patch, n):\n    pass\n"})
+    entry = page.partition("### `orientation`\n")[2].partition("\n#")[0]
+    assert "- Functions: `new.orientation`.\n" in entry
+    assert "- Functions: none.\n" in page
 
 
 def test_symbols_in_sentences_are_mathematics():
