@@ -13,7 +13,7 @@ from numpy.typing import DTypeLike, NDArray
 from .bins import NormalBins
 from .exact import decide
 from .fields import ARRAY_NAMES, FLOAT_NAMES, INDEX_NAMES, new_field
-from .kernels.developable import all_developable
+from .kernels.developable import count_developable, first_curved
 from .kernels.fill import fill_samples
 from .kernels.runs import LONGEST, SIZE, fill_runs
 from .kernels.scan import scan_in
@@ -181,8 +181,17 @@ class Search:
     @cached_property
     def hopeless(self) -> bool:
         """Whether all patches are developable, up to the rounding of their coordinates."""
-        spline = self.spline
-        return all_developable(spline.coefficients, spline.scale, spline.noise, np.empty((6, 3)))
+        spline, net = self.spline, np.empty((6, 3))
+        if first_curved(spline.coefficients, spline.scale, spline.noise, net) < spline.patches:
+            return False
+        return self.developable(np.arange(spline.patches)) == spline.patches
+
+    def developable(self, patches: NDArray[np.int64]) -> int:
+        """Return how many of the patches, which may be developable, are."""
+        if len(patches) == 0:
+            return 0
+        spline, net = self.spline, np.empty((6, 3))
+        return count_developable(spline.coefficients, spline.scale, spline.noise, patches, net)
 
     @cached_property
     def coefficients(self) -> Coefficients:
@@ -203,9 +212,10 @@ class Search:
         search = self.kernel()
         parts, room, begin = [], ROOM, first
         while begin < last:
-            found = Found.new(room)
+            found = Found.new(room, last - begin)
             end, needed = search(begin, last, found)
-            sure, open_, developable = found.counts.tolist()
+            sure, open_, flat = found.counts.tolist()
+            developable = self.developable(found.flat[:flat])
             rows = found.certain[:sure] if 2 * sure > room else found.certain[:sure].copy()
             doubts = found.undecided[:open_].copy(), found.bounds[:open_].copy()
             parts.append(Pairs(end, rows, *doubts, developable))

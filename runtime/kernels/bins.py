@@ -22,28 +22,24 @@ __all__ = [
 
 @inline
 def cube_face(n):
-    """Return the face of the cube that a vector meets, and its coordinates there (in −1 … 1)."""
-    if abs(n.x) >= abs(n.y) and abs(n.x) >= abs(n.z):
-        return (0, n.y / n.x, n.z / n.x) if n.x > 0.0 else (1, n.y / -n.x, n.z / -n.x)
-    if abs(n.y) >= abs(n.z):
-        return (2, n.z / n.y, n.x / n.y) if n.y > 0.0 else (3, n.z / -n.y, n.x / -n.y)
-    return (4, n.x / n.z, n.y / n.z) if n.z > 0.0 else (5, n.x / -n.z, n.y / -n.z)
+    """Return the face of the cube that a vector meets, and its coordinates there (in −1 … 1).
+
+    The faces are +x, −x, +y, −y, +z, −z.
+    """
+    x, y, z = abs(n.x), abs(n.y), abs(n.z)
+    axis = 0 if x >= y and x >= z else 1 if y >= z else 2
+    height = n[axis]
+    size = abs(height)
+    face = 2 * axis if height > 0.0 else 2 * axis + 1
+    return face, n[(axis + 1) % 3] / size, n[(axis + 2) % 3] / size
 
 
 @inline
-def on_face(face, n):
-    """Return a vector in the axes of a face: two coordinates along it, the third towards it."""
-    if face == 0:
-        return n.y, n.z, n.x
-    if face == 1:
-        return n.y, n.z, -n.x
-    if face == 2:
-        return n.z, n.x, n.y
-    if face == 3:
-        return n.z, n.x, -n.y
-    if face == 4:
-        return n.x, n.y, n.z
-    return n.x, n.y, -n.z
+def on_face(face, vectors, k):
+    """Return row k of vectors (…, 3) in the axes of a face: two coordinates, and the height."""
+    axis = face >> 1
+    sign = 1.0 if face & 1 == 0 else -1.0
+    return vectors[k, (axis + 1) % 3], vectors[k, (axis + 2) % 3], sign * vectors[k, axis]
 
 
 @inline

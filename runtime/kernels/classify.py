@@ -32,11 +32,18 @@ def bound_of_forms(mu, i, j, turn, scale, noise, border, axis, sine, patch):
     the domain (`border` (4) says which are) the error includes the rounding of coordinates,
     `noise`.
     """
-    n = Vector(1.0, 1.0, 1.0)  # a little more does no harm
-    if sine < math.inf:
-        n = Vector(abs(axis[0]) + sine, abs(axis[1]) + sine, abs(axis[2]) + sine)
-    form = dot(n, tangent_bounds(patch))
-    error = FORM_ERROR * scale * dot(n, largest_differences(mu, i + 1, j + 1, turn))
+    form = error = 0.0
+    largest = tangent_bounds(patch)
+    for x in range(3):
+        n = abs(axis[x]) + sine if sine < math.inf else 1.0  # a little more does no harm
+        difference = 0.0
+        for k in range(9):
+            p = i + 1 + NEIGHBOURS[turn, k, 0]
+            q = j + 1 + NEIGHBOURS[turn, k, 1]
+            difference = max(difference, abs(mu[p, q, x] - mu[i + 1, j + 1, x]))
+        form += n * largest[x]
+        error += n * difference
+    error *= FORM_ERROR * scale
     if (
         (turn == 0 and j == 0 and border[0])
         or (turn == 1 and i == mu.shape[0] - 3 and border[1])
@@ -45,19 +52,6 @@ def bound_of_forms(mu, i, j, turn, scale, noise, border, axis, sine, patch):
     ):
         error += noise
     return 32.0 * error * (form + error)
-
-
-@inline
-def largest_differences(mu, i, j, turn):
-    """Return the largest differences, by component, of a coefficient and those around it."""
-    s, t, w = 0.0, 0.0, 0.0
-    for k in range(9):
-        p = i + NEIGHBOURS[turn, k, 0]
-        q = j + NEIGHBOURS[turn, k, 1]
-        s = max(s, abs(mu[p, q, 0] - mu[i, j, 0]))
-        t = max(t, abs(mu[p, q, 1] - mu[i, j, 1]))
-        w = max(w, abs(mu[p, q, 2] - mu[i, j, 2]))
-    return Vector(s, t, w)
 
 
 @loop

@@ -1,4 +1,8 @@
-"""Which patches are developable, up to rounding."""
+"""Which patches are developable, up to rounding.
+
+Few patches are: whether a patch may be is decided at its centre, and the rest, which takes much
+longer to compile, is left to a kernel of its own.
+"""
 
 from __future__ import annotations
 
@@ -8,40 +12,61 @@ from .jit import jit, loop
 from .patch import patch_vectors, place_of
 from .vectors import largest_component, length, row_vector
 
-__all__ = ["all_developable", "is_developable"]
+__all__ = ["count_developable", "first_curved", "may_be_developable"]
+
+THIRD = 1.0 / 3.0
 
 
 @loop
-def is_developable(patch, net, noise):
-    """Say whether the Gaussian curvature of a patch is nothing but rounding of its coordinates.
+def curvature_error(patch, net, noise):
+    """Return the error of D(N), of the sign of the Gaussian curvature, by rounding of coordinates.
 
-    `net` (6, 3) are its control normals, `noise` the rounding of the coordinates, in their unit.
+    `net` (6, 3) are the control normals of the patch, `noise` is the rounding, in its unit.
     """
     second = max(largest_component(patch.a), largest_component(patch.b), largest_component(patch.c))
     tangent = second + max(largest_component(patch.d), largest_component(patch.e))
     longest = 0.0
     for k in range(6):
         longest = max(longest, length(row_vector(net, k)))
-    flat = 4.0 * noise * second * longest * (longest + tangent * second)
-    third = 1.0 / 3.0
-    _, _, N = tangents(patch, third, third)
+    return 4.0 * noise * second * longest * (longest + tangent * second)
+
+
+@loop
+def may_be_developable(patch, net, noise):
+    """Say whether the Gaussian curvature at the centre of a patch is nothing but rounding."""
+    _, _, N = tangents(patch, THIRD, THIRD)
     D, _, _, _ = forms(patch, N)
-    if abs(D) > flat:  # already at the centre
-        return False
-    curvature = 0.0
-    for value in parabolic_cubic(patch):
-        curvature = max(curvature, abs(value))
-    return curvature <= flat
+    return not abs(D) > curvature_error(patch, net, noise)
 
 
 @jit
-def all_developable(mu, scale, noise, net):
-    """Say whether all patches are developable; `net` (6, 3) is memory. See `is_developable`."""
+def first_curved(mu, scale, noise, net):
+    """Return the first patch that is curved at its centre, or the number of patches.
+
+    `net` (6, 3) is memory.
+    """
     columns = mu.shape[1] - 2
-    for number in range(4 * (mu.shape[0] - 2) * columns):
+    count = 4 * (mu.shape[0] - 2) * columns
+    for number in range(count):
         i, j, turn = place_of(number, columns)
         patch = patch_vectors(mu, i + 1, j + 1, turn, scale)
         write_control_normals(patch, net)
-        if not is_developable(patch, net, noise):
-            return False
-    return True
+        if not may_be_developable(patch, net, noise):
+            return number
+    return count
+
+
+@jit
+def count_developable(mu, scale, noise, patches, net):
+    """Return how many of the patches (k), which may be developable, are; `net` (6, 3) is memory."""
+    columns = mu.shape[1] - 2
+    found = 0
+    for k in range(patches.size):
+        i, j, turn = place_of(patches[k], columns)
+        patch = patch_vectors(mu, i + 1, j + 1, turn, scale)
+        write_control_normals(patch, net)
+        largest = 0.0
+        for value in parabolic_cubic(patch):
+            largest = max(largest, abs(value))
+        found += largest <= curvature_error(patch, net, noise)
+    return found

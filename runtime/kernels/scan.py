@@ -26,7 +26,7 @@ from .classify import (
     count_undecided,
     look_again,
 )
-from .developable import is_developable
+from .developable import may_be_developable
 from .icosphere import ONE, ZERO, write_line
 from .jit import inline, jit, loop
 from .patch import patch_vectors, place_of
@@ -121,7 +121,7 @@ def scan_patches(
     """
     mu, scale, noise, border = spline
     columns = mu.shape[1] - 2
-    certain, undecided, bounds, counts = found
+    certain, undecided, bounds, flat, counts = found
     numbers, s, t, codes, marks, words = candidates
     for number in range(first_patch, last_patch):
         i, j, turn = place_of(number, columns)
@@ -134,7 +134,9 @@ def scan_patches(
             or total + frequency + 64 > s.size
         ):
             return number, total + 1
-        counts[2] += is_developable(patch, cone.net, noise)
+        if may_be_developable(patch, cone.net, noise):
+            flat[counts[2]] = number
+            counts[2] += 1
         if total == 0:
             continue
         bound = bound_of_forms(mu, i, j, turn, scale, noise, border, cone.axis, sine, patch)

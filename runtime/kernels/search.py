@@ -13,10 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...generated.vectors import Vector
-from .bins import on_face
 from .classify import UNDECIDED, YES, bound_of_forms, classify, count_undecided, look_again
-from .developable import is_developable
+from .developable import may_be_developable
 from .jit import inline, jit, loop
 from .patch import patch_vectors, place_of
 from .sort import pack_hits, store_sorted
@@ -73,22 +71,24 @@ class Bins(NamedTuple):
 class Found(NamedTuple):
     """What a search finds: rows (…, 2) of patch and packed hit, certain and undecided.
 
-    `bounds` (…) are the errors of the forms of undecided ones. `counts` (3) are the numbers of
-    both, and that of the developable patches.
+    `bounds` (…) are the errors of the forms of undecided ones, `flat` (…) the patches that may be
+    developable. `counts` (3) are the numbers of the three.
     """
 
     certain: NDArray[np.int64]
     undecided: NDArray[np.int64]
     bounds: NDArray[np.float64]
+    flat: NDArray[np.int64]
     counts: NDArray[np.int64]
 
     @classmethod
-    def new(cls, room: int) -> Found:
-        """Return memory for so many hits of each kind."""
+    def new(cls, room: int, patches: int) -> Found:
+        """Return memory for so many hits of each kind, of so many patches."""
         return cls(
             np.empty((room, 2), np.int64),
             np.empty((room, 2), np.int64),
             np.empty(room),
+            np.empty(patches, np.int64),
             np.zeros(3, np.int64),
         )
 
@@ -138,7 +138,9 @@ class Candidates(NamedTuple):
         return cls(
             np.empty(size, np.int64),
             np.empty(size),
-            *(np.ones(size) for _ in range(3)),
+            np.ones(size),
+            np.ones(size),
+            np.ones(size),
             np.empty(size, np.int8),
             np.empty(size, np.int64),
             np.empty(size, np.int64),
@@ -177,7 +179,7 @@ def search_patches(spline, bins, first, last, found, cone, memory, candidates):
     """
     mu, scale, noise, border = spline
     columns = mu.shape[1] - 2
-    certain, undecided, bounds, counts = found
+    certain, undecided, bounds, flat, counts = found
     places, numbers, x, y, z, codes, hits, scratch, digits = candidates
     for number in range(first, last):
         i, j, turn = place_of(number, columns)
@@ -190,7 +192,9 @@ def search_patches(spline, bins, first, last, found, cone, memory, candidates):
             or total + VECTOR > x.size
         ):
             return number, total
-        counts[2] += is_developable(patch, cone.net, noise)
+        if may_be_developable(patch, cone.net, noise):
+            flat[counts[2]] = number
+            counts[2] += 1
         if total == 0:
             continue
         size = rows_of_bins(bins.grid, bins.starts, memory)
@@ -214,7 +218,7 @@ def count_normals(bins, cone, sine, memory):
     """Write the windows of the faces that a cone may meet; return how many normals are in them."""
     frame, stretch, grid, starts, _ = bins
     windows, hulls, errors, sizes, _, _, _ = memory
-    axis = Vector(cone.axis[0], cone.axis[1], cone.axis[2])
+    axis = cone.axis
     map_cone(cone, frame, stretch)
     total = 0
     for face in range(6):
@@ -222,7 +226,7 @@ def count_normals(bins, cone, sine, memory):
         set_empty(window)
         if starts[face * grid * grid] == starts[(face + 1) * grid * grid]:
             continue
-        _, _, height = on_face(face, axis)
+        height = axis[face >> 1] if face & 1 == 0 else -axis[face >> 1]
         if stretch == 1.0 and height + SLOPE * sine < FACE_HEIGHT:
             continue
         errors[face], sizes[face] = face_window(

@@ -24,8 +24,11 @@ __all__ = ["NORMAL", "STEP", "TILE", "fill_known", "fill_tile", "load_patch", "n
 # Samples are computed so many at a time, then stored. Rows of a tile have room for some more.
 TILE = 64
 STEP = TILE + VECTOR
-# The first rows of the parts of a tile, and how many rows there are.
-NORMAL, PATCH, PLACE, POINT, UV, SUPPORT, GAUSSIAN, MEAN, ROWS = 0, 3, 21, 30, 33, 35, 36, 37, 38
+# Where the parts of a tile begin, in rows of STEP numbers, and how many rows there are.
+ROWS = 38
+NORMAL, PATCH, PLACE, POINT, U, V, SUPPORT, GAUSSIAN, MEAN = (
+    STEP * row for row in (0, 3, 21, 30, 33, 34, 35, 36, 37)
+)
 
 
 class Place(NamedTuple):
@@ -47,16 +50,16 @@ def new_tile() -> tuple[NDArray[np.float64], NDArray[np.int64]]:
 
 @inline
 def vector_in(tile, row, k):
-    """Return vector k in three rows of a tile."""
-    return Vector(tile[row * STEP + k], tile[(row + 1) * STEP + k], tile[(row + 2) * STEP + k])
+    """Return vector k in three rows of a tile from `row` on."""
+    return Vector(tile[row + k], tile[row + STEP + k], tile[row + 2 * STEP + k])
 
 
 @inline
 def put(tile, row, k, v):
-    """Write vector k to three rows of a tile."""
-    tile[row * STEP + k] = v.x
-    tile[(row + 1) * STEP + k] = v.y
-    tile[(row + 2) * STEP + k] = v.z
+    """Write vector k to three rows of a tile from `row` on."""
+    tile[row + k] = v.x
+    tile[row + STEP + k] = v.y
+    tile[row + 2 * STEP + k] = v.z
 
 
 @inline
@@ -82,18 +85,18 @@ def load_patch(mu, number, scale, tile, start, end):
     tile = tile[start:]
     for k in range(whole_vectors(end - start)):  # from 0, so that no sign is checked
         put(tile, PATCH, k, patch.a)
-        put(tile, PATCH + 3, k, patch.b)
-        put(tile, PATCH + 6, k, patch.c)
-        put(tile, PATCH + 9, k, patch.d)
-        put(tile, PATCH + 12, k, patch.e)
-        put(tile, PATCH + 15, k, patch.p)
+        put(tile, PATCH + 3 * STEP, k, patch.b)
+        put(tile, PATCH + 6 * STEP, k, patch.c)
+        put(tile, PATCH + 9 * STEP, k, patch.d)
+        put(tile, PATCH + 12 * STEP, k, patch.e)
+        put(tile, PATCH + 15 * STEP, k, patch.p)
         put(tile, PLACE, k, place.centre)
-        tile[(PLACE + 3) * STEP + k] = place.cell_u
-        tile[(PLACE + 4) * STEP + k] = place.cell_v
-        tile[(PLACE + 5) * STEP + k] = place.u_s
-        tile[(PLACE + 6) * STEP + k] = place.u_t
-        tile[(PLACE + 7) * STEP + k] = place.v_s
-        tile[(PLACE + 8) * STEP + k] = place.v_t
+        tile[PLACE + 3 * STEP + k] = place.cell_u
+        tile[PLACE + 4 * STEP + k] = place.cell_v
+        tile[PLACE + 5 * STEP + k] = place.u_s
+        tile[PLACE + 6 * STEP + k] = place.u_t
+        tile[PLACE + 7 * STEP + k] = place.v_s
+        tile[PLACE + 8 * STEP + k] = place.v_t
 
 
 @inline
@@ -120,34 +123,34 @@ def evaluate_tile(tile, count, frame, size, points, uv, support, gaussian, mean)
         n = vector_in(tile, NORMAL, k)
         patch = Patch(
             vector_in(tile, PATCH, k),
-            vector_in(tile, PATCH + 3, k),
-            vector_in(tile, PATCH + 6, k),
-            vector_in(tile, PATCH + 9, k),
-            vector_in(tile, PATCH + 12, k),
-            vector_in(tile, PATCH + 15, k),
+            vector_in(tile, PATCH + 3 * STEP, k),
+            vector_in(tile, PATCH + 6 * STEP, k),
+            vector_in(tile, PATCH + 9 * STEP, k),
+            vector_in(tile, PATCH + 12 * STEP, k),
+            vector_in(tile, PATCH + 15 * STEP, k),
         )
         place = Place(
             vector_in(tile, PLACE, k),
-            tile[(PLACE + 3) * STEP + k],
-            tile[(PLACE + 4) * STEP + k],
-            tile[(PLACE + 5) * STEP + k],
-            tile[(PLACE + 6) * STEP + k],
-            tile[(PLACE + 7) * STEP + k],
-            tile[(PLACE + 8) * STEP + k],
+            tile[PLACE + 3 * STEP + k],
+            tile[PLACE + 4 * STEP + k],
+            tile[PLACE + 5 * STEP + k],
+            tile[PLACE + 6 * STEP + k],
+            tile[PLACE + 7 * STEP + k],
+            tile[PLACE + 8 * STEP + k],
         )
         u, v, x, _, K, H = sample(patch, n)
         point, s, t, h, K, H = on_surface(place, frame, size, n, u, v, x, K, H)
         if points is not None:
             put(tile, POINT, k, point)
         if uv is not None:
-            tile[UV * STEP + k] = s
-            tile[(UV + 1) * STEP + k] = t
+            tile[U + k] = s
+            tile[V + k] = t
         if support is not None:
-            tile[SUPPORT * STEP + k] = h
+            tile[SUPPORT + k] = h
         if gaussian is not None:
-            tile[GAUSSIAN * STEP + k] = K
+            tile[GAUSSIAN + k] = K
         if mean is not None:
-            tile[MEAN * STEP + k] = H
+            tile[MEAN + k] = H
 
 
 @inline
@@ -181,8 +184,8 @@ def fill_tile(
         k = np.uint64(start + row)  # unsigned, so that no sign is checked
         store(
             k, vector_in(tile, POINT, row), vector_in(tile, NORMAL, row),
-            tile[UV * STEP + row], tile[(UV + 1) * STEP + row], tile[SUPPORT * STEP + row],
-            tile[GAUSSIAN * STEP + row], tile[MEAN * STEP + row],
+            tile[U + row], tile[V + row], tile[SUPPORT + row],
+            tile[GAUSSIAN + row], tile[MEAN + row],
             points, directions, uv, support, gaussian, mean,
         )  # fmt: skip
         if normal_index is not None:

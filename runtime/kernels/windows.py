@@ -107,7 +107,7 @@ def face_window(shown, angles, narrow, face, grid, window, hull):
     for k in range(6):
         if angles[k] == math.inf:
             continue
-        s, t, height = on_face(face, row_vector(shown, k))
+        s, t, height = on_face(face, shown, k)
         largest = max(largest, angles[k])
         if height <= angles[k]:
             away += 1
@@ -161,7 +161,7 @@ def cut_hull(shown, face, grid, away_s, away_t, hull):
     size = max(length(Vector(away_s, away_t, 0.0)), 0.01)
     count = 0
     for k in range(6):
-        s, t, height = on_face(face, row_vector(shown, k))
+        s, t, height = on_face(face, shown, k)
         before = 3.0 * height - (s * away_s + t * away_t) / size
         if before >= 0.0:
             if height < LEAST_HEIGHT:
@@ -171,7 +171,7 @@ def cut_hull(shown, face, grid, away_s, away_t, hull):
             count += 1
             continue
         for i in range(6):
-            s_i, t_i, height_i = on_face(face, row_vector(shown, i))
+            s_i, t_i, height_i = on_face(face, shown, i)
             before_i = 3.0 * height_i - (s_i * away_s + t_i * away_t) / size
             if before_i >= 0.0:
                 share = before_i / (before_i - before)
