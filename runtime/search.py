@@ -38,7 +38,7 @@ class Notes:
     """Samples by patch and then by normal, as kernels note them: rows (k, 2) of patch and note.
 
     A note is one sample, normal << 32 | place of the normal in the order of the bins; or, if they
-    are `runs`, one or more with consecutive normals (see icosphere.py).
+    are `runs`, one or more with consecutive normals (see kernels/runs.py).
     """
 
     rows: NDArray[np.int64]
