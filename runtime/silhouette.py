@@ -24,7 +24,7 @@ from .threads import thread_count
 
 __all__ = ["great_circle", "silhouette"]
 
-# `count` is met by changing the number of normals, in so many tries.
+# The largest number of attempts to meet `count` by changing the number of normals.
 TRIES = 6
 
 
@@ -51,7 +51,7 @@ def silhouette(
     direction : (3,) array_like
         The direction of the projection, of any length but 0.
     count : int, default 1000
-        The approximate number of points. Their normals are spread evenly over a great circle, so
+        The approximate number of points. Their normals are uniform on a great circle, so that
         points are dense where the outline is curved.
     cells, fields, dtype, threads, progress : optional
         As in `sample`.
@@ -74,8 +74,8 @@ def silhouette(
 
     Notes
     -----
-    Parts of the contour generator along which the normal stays the same, such as straight ones and
-    the circle on top of a lying torus, give points at most.
+    Parts of the contour generator along which the normal is constant, such as straight ones and the
+    circle on top of a torus in the direction of its axis, give isolated points or none.
 
     Examples
     --------
@@ -85,12 +85,12 @@ def silhouette(
     True
 
     """
-    wanted, number = checked_fields(fields), checked_dtype(dtype)
+    names, number = checked_fields(fields), checked_dtype(dtype)
     axis, asked = unit_vector(direction, "direction"), whole_number(count, "count")
     thread_count(threads)
     spline = spline_of(surface, cells)
     bins, hits = _by_count(spline, axis, asked, threads, progress)
-    arrays = fill(spline, bins, hits, threads, wanted, number)
+    arrays = fill(spline, bins, hits, threads, names, number)
     order = np.argsort(hits.normal_index, kind="stable")
     asked_normals = len(bins.normals)
     density = asked_normals / (4 * math.pi)
@@ -111,7 +111,7 @@ def _by_count(
     threads: int | None,
     progress: bool,
 ) -> tuple[NormalBins, Hits]:
-    """Change the number of normals until about `count` samples come."""
+    """Return normals with about `count` samples, and these."""
     size, best = count, None
     for _ in range(TRIES):
         bins = NormalBins(great_circle(axis, size), threads)
@@ -120,7 +120,7 @@ def _by_count(
             best = bins, hits
         if abs(len(hits) - count) <= NEAR_ENOUGH * count or hits.developable == spline.patches:
             break
-        wanted = round(size * count / len(hits)) if len(hits) else 2 * size
-        size = min(max(wanted, 1), NORMALS_PER_SAMPLE * count)
+        next_size = round(size * count / len(hits)) if len(hits) else 2 * size
+        size = min(max(next_size, 1), NORMALS_PER_SAMPLE * count)
     assert best is not None
     return best

@@ -4,7 +4,7 @@
 
 The normal is the tangent p_t turned clockwise by 90°: outward on a circle that is run through
 counter-clockwise. The curvature is positive there, as the mean curvature of a sphere with outward
-normals is, and negative where a curve bends towards its normal.
+normals is, and negative where a curve is curved towards its normal.
 
 The spline has a piece between any two neighbouring integers and one coefficient for each piece; the
 coefficient is the middle control point of the arc there, and so its functional is that of an edge

@@ -1,4 +1,4 @@
-"""A planar curve: how to evaluate x(t), over which interval, and whether it closes."""
+"""A planar curve: a function x(t), its domain, and whether it is closed."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ class Curve:
     """A planar parametric curve x(t).
 
     Make one with `from_callable`, `from_sympy` or `from_points`. `function(t)` gets a float64 array
-    and returns points of its shape + (2,); `periodic` says whether the curve closes smoothly.
-    Normals are the tangent turned clockwise by 90°: outward on a circle that is run through
-    counter-clockwise. `points` holds the points (m, 2) of a curve that was given by points.
+    and returns points of its shape + (2,); a `periodic` curve is closed and smooth at its ends.
+    Normals are the tangent turned clockwise by 90°: outward on a circle with counter-clockwise
+    parameterization. `points` holds the points (m, 2) of a curve that was given by points.
     """
 
     name: str
@@ -77,12 +77,12 @@ class Curve:
 
     @classmethod
     def from_points(cls, points: ArrayLike, closed: bool = False, *, name: str = "points") -> Curve:
-        """Make a curve that passes near points (m, 2), as evenly spaced as they may be.
+        """Make a curve that approximates points (m, 2), which should be almost evenly spaced.
 
-        Its parameter is t = k beside points[k]; the spline does not interpolate the points.
-        A closed curve must not repeat its first point at its end. One spline piece stands between
-        any two neighbouring points; `fit(pieces=...)` chooses otherwise. Raises InputError
-        for another shape, fewer than 3 points, or NaN or infinity (and says where).
+        The parameter is t = k near points[k]; the spline does not interpolate the points. A closed
+        curve must not repeat its first point at its end. There is one piece of the spline between
+        any two neighbouring points, unless `fit(pieces=...)` has another number. Raises InputError
+        for another shape, fewer than 3 points, or NaN or infinity (with its position).
         """
         from .quasi_interpolant import checked_points, spline_of_points
 
@@ -95,9 +95,9 @@ class Curve:
     def evaluate(self, t: ArrayLike) -> NDArray[np.float64]:
         """Return the points x(t), shape (..., 2).
 
-        Raises SurfaceError if the callable raises, returns another shape than (..., 2) or anything
-        but real numbers, or gives NaN or infinity, and says where; InputError if the parameters are
-        no real numbers, or lie outside a curve that was given by points.
+        Raises SurfaceError if the callable raises or returns another shape than (..., 2), values
+        that are not real numbers, NaN or infinity; InputError if the parameters are no real
+        numbers, or lie outside the domain of a curve that was given by points.
         """
         parameters = {"t": real_array(t, "t")}
         return evaluated(self.function, parameters, 2, f"curve {self.name!r}")
@@ -113,7 +113,7 @@ def _checked_interval(domain: Sequence[float]) -> Interval:
     return low, high
 
 
-def _yes_or_no(answer: object, name: str) -> bool:
-    if not isinstance(answer, bool | np.bool_):
-        raise InputError(f"{name} must be True or False, not {shown(answer)}.")
-    return bool(answer)
+def _yes_or_no(value: object, name: str) -> bool:
+    if not isinstance(value, bool | np.bool_):
+        raise InputError(f"{name} must be True or False, not {shown(value)}.")
+    return bool(value)

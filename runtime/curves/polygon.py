@@ -1,4 +1,4 @@
-"""How far points are from a polygon."""
+"""Distances of points from a polygon."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def polygon_distance(points: ArrayLike, polygon: ArrayLike) -> NDArray[np.float6
     if len(vertices) == 0:
         raise InputError("a polygon needs at least one vertex.")
     largest = max(float(np.abs(x).max(initial=0.0)) for x in (places, vertices))
-    exponent = math.frexp(largest)[1]  # squares of what is scaled so neither over- nor underflow
+    exponent = math.frexp(largest)[1]  # so that squares neither overflow nor underflow
     places, vertices = np.ldexp(places, -exponent), np.ldexp(vertices, -exponent)
     starts = vertices[:-1] if len(vertices) > 1 else vertices
     edges = vertices[1:] - starts if len(vertices) > 1 else np.zeros_like(vertices)

@@ -16,7 +16,7 @@ from .spline import CurveSpline
 __all__ = ["checked_points", "spline_of_points", "spline_of_values"]
 
 Array = NDArray[np.float64]
-# A last point this near to the first, relative to the distance of two points, is the first again.
+# A last point nearer to the first than this, relative to the first step, repeats it.
 REPEATED = 1e-3
 
 
@@ -47,7 +47,7 @@ def _is_repeated(points: Array) -> bool:
 
 
 def _with_ends(inner: Array, ends: Array, closed: bool) -> Array:
-    """Return the coefficients (P + 2, 2): copies beyond the ends, or what the end points ask."""
+    """Return the coefficients (P + 2, 2): ghosts are copies, or follow from the end points."""
     if closed:
         return np.concatenate([inner[-1:], inner, inner[:1]])
     before, after = python_function(formulas.beyond_end)(ends, inner[[0, -1]])

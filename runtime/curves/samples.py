@@ -1,4 +1,4 @@
-"""What the sampling of a curve returns: points, normals, parameters, curvatures, how it went."""
+"""Samples of a curve: points, normals, parameters, curvatures, and a report."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ __all__ = ["CurveReport", "CurveSamples"]
 
 @dataclass(frozen=True, slots=True)
 class CurveReport:
-    """How the sampling of a curve went, as plain numbers.
+    """A report on the sampling of a curve.
 
     - `curve`: label of the curve.
-    - `normals`: how many normals were asked.
-    - `samples`: how many samples came.
-    - `pieces`: how many arcs the spline has.
-    - `straight_share`: share of the length that bends so little that normals cannot see it, 0…1.
-    - `inflections`: how often the curvature changes its sign.
-    - `turning_number`: how often the normal of a closed curve turns round; None for an open one.
+    - `normals`: the number of prescribed normals.
+    - `samples`: the number of samples.
+    - `pieces`: the number of arcs of the spline.
+    - `straight_share`: the share (0…1) of the length where κ ≈ 0, so that it has no samples.
+    - `inflections`: the number of changes of the sign of κ.
+    - `turning_number`: the turning number of a closed curve; None for an open one.
     """
 
     curve: str
@@ -41,11 +41,11 @@ class CurveSamples:
     - `parameters`: (N,) float64, the curve's own parameters of the points.
     - `support`: (N,) float64, support function n·x, in L.
     - `curvature`: (N,) float64, in 1/L, positive on a circle with outward normals. Its sign bit
-      tells which way the normal turns, also where rounding leaves nothing of the curvature.
-    - `normal_index`: (N,) int64, row of the normals that were asked.
-    - `piece_index`: (N,) int64, arc of the spline that holds the point.
+      is the sense in which the normal turns, also where the curvature is rounded to 0.
+    - `normal_index`: (N,) int64, row of the prescribed normals.
+    - `piece_index`: (N,) int64, arc of the spline that contains the point.
     - `ends`: (2, 2) float64, the ends of an open curve; (0, 2) for a closed one.
-    - `report`: how the sampling went.
+    - `report`: a report on the sampling.
     """
 
     points: NDArray[np.float64]
@@ -70,7 +70,7 @@ class CurveSamples:
         return np.concatenate([self.points, self.points[:1]])
 
     def summary(self) -> str:
-        """One line: how many samples, normals and inflections, and how much is straight."""
+        """One line: the numbers of samples, normals and inflections, and the straight share."""
         report = self.report
         return (
             f"{report.samples:,} samples at {report.normals:,} prescribed normals; "

@@ -1,14 +1,14 @@
 """`sample`: every point of a planar curve that has one of the normals, exactly once.
 
-The normals are sorted by angle, and each joint of the spline has one place among them. The normals
-of an arc are those between the places of its two joints, passed upwards where κ > 0 and downwards
-where κ < 0. Neighbouring arcs share a joint, and with it its place: so no normal is lost or doubled
-there, whatever rounding did to the place, and on a closed curve the sum of sign κ over the
-preimages of a normal is the turning number, for every normal. A normal that is exactly that of an
-inflection has two preimages there or none, as one close to it has.
+The normals are sorted by angle, and each joint of the spline has one position in this order. The
+normals of an arc are those between the positions of its two joints, ascending where κ > 0 and
+descending where κ < 0. Neighbouring arcs share a joint and its position, so that no normal is lost
+or doubled there, whatever the rounding of the position. On a closed curve the sum of sign κ over
+the preimages of a normal is the turning number, for every normal. A normal that is exactly that of
+an inflection has two preimages there or none, as has one close to it.
 
-Where only the rounding of the coordinates tells the normals of neighbouring joints apart, the curve
-is straight, and they get one place.
+Where the normals of neighbouring joints differ by the rounding of the coordinates only, the curve
+is straight, and the joints get one position.
 """
 
 from __future__ import annotations
@@ -34,16 +34,16 @@ __all__ = ["sample"]
 
 Array = NDArray[np.float64]
 
-# `count` is met by changing the number of normals, until it is exact or after so many tries.
+# The largest number of attempts to meet `count` by changing the number of normals.
 TRIES = 6
-# What this many normals round the circle would see counts as visible, even if fewer were asked.
+# Arcs that this many uniform normals would sample are not straight, even with fewer normals.
 LEAST_NORMALS = 1_000
 WORTH_A_WARNING = 0.01
 
 
 @dataclass(frozen=True, eq=False)
 class Hits:
-    """Which arc has which normal, along the curve, and with which sign of κ."""
+    """Pairs of an arc and a normal that it has, along the curve, with the sign of κ."""
 
     piece_index: NDArray[np.int64]
     normal_index: NDArray[np.int64]
@@ -63,14 +63,14 @@ def sample(
 ) -> CurveSamples:
     """Return every point of a planar curve that has one of the given normals, each exactly once.
 
-    Normals spread evenly over the circle give samples with the density |κ| (paper, Sect. 4.1).
+    Uniform normals give samples with the density |κ| (paper, Sect. 4.1).
 
     Parameters
     ----------
     curve : Curve or CurveSpline
         The curve; a `Curve` is first approximated by a spline.
     count : int, optional
-        The approximate number of samples, at evenly spread normals. Either this or `normals`.
+        The approximate number of samples, at uniform normals. Either this or `normals`.
     normals : (S, 2) array_like, optional
         Directions of any length but 0, such as ``gm.directions.circle(100)``.
     pieces : int, optional
@@ -107,7 +107,7 @@ def sample(
     asked = None if count is None else checked_count(count)
     directions = None if normals is None else as_normals(normals, 2)
     if isinstance(curve, CurveSpline) and pieces is not None:
-        raise InputError("pieces=... is for curves; this spline has its pieces already.")
+        raise InputError("pieces=... is for curves; this spline already has its pieces.")
     spline = curve if isinstance(curve, CurveSpline) else fit(curve, pieces)
     if directions is None:
         assert asked is not None
@@ -120,7 +120,7 @@ def sample(
 
 
 def find(spline: CurveSpline, normals: Array) -> Hits:
-    """Return which arcs of a spline have which of the unit normals."""
+    """Return all pairs of an arc of a spline and one of the unit normals (S, 2) that it has."""
     angles = angles_of(normals)
     order = np.argsort(angles, kind="stable")
     places = _places(spline, angles[order])
@@ -137,21 +137,21 @@ def find(spline: CurveSpline, normals: Array) -> Hits:
 
 
 def _places(spline: CurveSpline, angles: Array) -> NDArray[np.int64]:
-    """Return how many of the sorted angles come before each joint, full turns included.
+    """Return the number of sorted angles before each joint, full turns included.
 
-    Along straight stretches the normal does not turn. The ends of an open curve belong to it: they
-    are moved outwards by the rounding of their normal.
+    Along straight arcs the normal is constant. The ends of an open curve belong to it: they are
+    moved outwards by the rounding of their normal.
     """
     ends, turns = spline.angles[0].copy(), spline.angles[1].copy()
-    bent = np.flatnonzero(~spline.straight)
+    curved = np.flatnonzero(~spline.straight)
     with np.errstate(divide="ignore"):
         errors = spline.noise / np.hypot(*spline.joint_normals.T)
-    start = int(bent[0]) + 1 if len(bent) else 1
+    start = int(curved[0]) + 1 if len(curved) else 1
     kernels.merge_joints(ends, turns, errors, start if spline.periodic else 0)
     if not spline.periodic:
         for joint, outwards in ((0, -1.0), (-1, 1.0)):
             if not spline.straight[joint]:
-                ends[joint] += outwards * math.copysign(errors[joint], spline.bends[joint])
+                ends[joint] += outwards * math.copysign(errors[joint], spline.turning_angles[joint])
         beyond = (ends > np.pi).astype(np.int64) - (ends <= -np.pi)
         ends -= 2 * np.pi * beyond
         turns += beyond
@@ -159,14 +159,14 @@ def _places(spline: CurveSpline, angles: Array) -> NDArray[np.int64]:
 
 
 def _by_count(spline: CurveSpline, count: int) -> tuple[Array, Hits]:
-    """Choose evenly spread normals so that about `count` samples come."""
-    bent = np.flatnonzero(~spline.straight)
-    total = float(np.abs(spline.bends[bent]).sum())
+    """Return uniform normals with about `count` samples, and these."""
+    curved = np.flatnonzero(~spline.straight)
+    total = float(np.abs(spline.turning_angles[curved]).sum())
     if total == 0.0:
         normals = circle(count)
         return normals, find(spline, normals)
     angles = spline.angles[0] + 2 * np.pi * spline.angles[1]
-    joints = angles[np.concatenate([bent, bent + 1])]
+    joints = angles[np.concatenate([curved, curved + 1])]
     low, high = float(joints.min()), float(joints.max())
     width, density = min(high - low, 2 * np.pi), count / total
     best: tuple[Array, Hits] | None = None
@@ -187,7 +187,7 @@ def _filled(spline: CurveSpline, normals: Array, hits: Hits) -> CurveSamples:
     count = len(hits)
     points, directions = np.empty((count, 2)), np.empty((count, 2))
     parameters, support, curvature = (np.empty(count) for _ in range(3))
-    with np.errstate(all="ignore"):  # what is uncompiled warns where an arc hardly turns
+    with np.errstate(all="ignore"):  # uncompiled code warns where κ ≈ 0
         kernels.fill_samples(
             spline.coefficients, spline.scale, normals, spline.domain[0], spline.step,
             hits.piece_index, hits.normal_index, hits.signs,
@@ -210,9 +210,9 @@ def _filled(spline: CurveSpline, normals: Array, hits: Hits) -> CurveSamples:
 
 
 def _straight_share(spline: CurveSpline, normals: int) -> float:
-    """Return the share of the length that bends so little that normals leave no trace.
+    """Return the share of the length where κ ≈ 0, so that it has no samples.
 
-    That is where a curve as long as this one and bent like that everywhere gets no sample.
+    An arc is straight if a curve with its curvature and the length of this one gets no sample.
     """
     joints = spline.scale * spline.evaluate(spline.joints)
     lengths = np.hypot(*np.diff(joints, axis=0).T)
@@ -220,17 +220,17 @@ def _straight_share(spline: CurveSpline, normals: int) -> float:
     if total == 0.0:
         return 1.0
     density = max(normals, LEAST_NORMALS) / (2 * np.pi)
-    bends = np.where(spline.reversing, 0.0, np.abs(spline.bends))
-    unseen = bends * total * density < lengths
-    return float(lengths[unseen].sum()) / total
+    angles = np.where(spline.reversing, 0.0, np.abs(spline.turning_angles))
+    straight = angles * total * density < lengths
+    return float(lengths[straight].sum()) / total
 
 
 def _warn(report: CurveReport, count: int | None) -> None:
-    """Say when normals see less of the curve than the user may think."""
+    """Warn of straight parts, and of a count that is not met."""
     reasons = []
     if report.straight_share > WORTH_A_WARNING:
         share = 100 * report.straight_share
-        reasons.append(f"{share:.0f} % of its length is straight, where normals see nothing")
+        reasons.append(f"{share:.0f} % of its length is straight and has no samples")
     elif report.samples == 0:
         reasons.append("it has none of the normals")
     if count is not None and abs(report.samples - count) > 0.05 * count + 1:

@@ -29,8 +29,8 @@ ROUNDINGS = 8.0
 class CurveSpline:
     """A planar C¹ quadratic spline with equal pieces of the parameter; made by `fit`.
 
-    `coefficients` (P + 2, 2) holds one vector for each of the P pieces and one beyond each end;
-    those of a closed curve are copies. Joint k is the beginning of piece k.
+    `coefficients` (P + 2, 2) holds one vector for each of the P pieces and a ghost coefficient at
+    each end, which is a copy on closed curves. Joint k is the beginning of piece k.
     """
 
     coefficients: Array
@@ -124,7 +124,7 @@ class CurveSpline:
         return angles, np.concatenate([[0], turns])
 
     @cached_property
-    def bends(self) -> Array:
+    def turning_angles(self) -> Array:
         """The angle (P,) by which the normal turns on each arc; its sign is that of κ there."""
         angles, turns = self.angles
         return np.diff(angles) + 2 * np.pi * np.diff(turns)
@@ -158,13 +158,14 @@ class CurveSpline:
 
         An arc is a parabola and has none: they are joints, or the middles of straight stretches.
         """
-        bent = np.flatnonzero(~self.straight)
-        ends = np.roll(bent, -1)
+        curved = np.flatnonzero(~self.straight)
+        ends = np.roll(curved, -1)
         ends[-1:] += self.pieces
         if not self.periodic:
-            bent, ends = bent[:-1], ends[:-1]
-        changes = (self.bends[bent] > 0.0) != (self.bends[ends % self.pieces] > 0.0)
-        places = np.mod((bent[changes] + 1 + ends[changes]) / 2, self.pieces)
+            curved, ends = curved[:-1], ends[:-1]
+        positive = self.turning_angles > 0.0
+        changes = positive[curved] != positive[ends % self.pieces]
+        places = np.mod((curved[changes] + 1 + ends[changes]) / 2, self.pieces)
         return self.domain[0] + self.step * np.sort(places)
 
     # --- reading ----------------------------------------------------------------------------------

@@ -281,7 +281,7 @@ def test_parameters_outside():
 def test_turning_number_and_inflections(position, turning, inflections, pieces):
     spline = gm.curves.fit(gm.curves.Curve.from_sympy(position, "t", (0, "2*pi"), True), pieces)
     assert spline.turning_number == turning
-    assert spline.bends.sum() == pytest.approx(2 * np.pi * turning, abs=1e-12)
+    assert spline.turning_angles.sum() == pytest.approx(2 * np.pi * turning, abs=1e-12)
     assert len(spline.inflections) == inflections
 
 
