@@ -14,7 +14,7 @@ from typing import cast
 
 import sympy as sp
 from gaussmap.symbolic import BezierTriangle, formulas
-from gaussmap.symbolic.formula import dot, substitute
+from gaussmap.symbolic.notation import dot, substitute
 from gaussmap.symbolic.spline import box_spline_net, middle, triangles
 from gaussmap.symbolic.surfaces import CATALOGUE, ParametricSurface
 from sympy.polys.matrices import DomainMatrix

@@ -18,7 +18,7 @@ from itertools import product
 import gaussmap as gm
 import numpy as np
 import sympy as sp
-from gaussmap.symbolic.formula import dot
+from gaussmap.symbolic.notation import dot
 from gaussmap.symbolic.spline import triangles
 from gaussmap.symbolic.surfaces import CATALOGUE, ParametricSurface
 from numpy.typing import NDArray

@@ -9,7 +9,8 @@ from typing import Any, cast
 
 import sympy as sp
 
-from .formula import Formula, flat, scalar, substitute
+from .formula import Formula
+from .notation import flat, scalar, substitute
 from .patch import (
     CLOSED_CURVATURE,
     FORMS,

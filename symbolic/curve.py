@@ -17,7 +17,8 @@ from itertools import pairwise
 
 import sympy as sp
 
-from .formula import Det, Dot, Formula, compose, dot, plane_vectors, scalar, substitute
+from .formula import Formula, compose
+from .notation import Det, Dot, dot, plane_vectors, scalar, substitute
 
 __all__ = ["FORMULAS", "NET", "b_spline_net"]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, cast
 
 import sympy as sp
@@ -11,7 +11,7 @@ from sympy.printing.latex import LatexPrinter
 from sympy.printing.precedence import PRECEDENCE
 from sympy.printing.str import StrPrinter
 
-from .formula import Dot, Formula, VectorSymbol, scalar, substitute, vectors
+from .notation import Definition, Dot, VectorSymbol, scalar, substitute, vectors
 from .printer import PositiveFirst
 
 __all__ = ["latex", "latex_name", "latex_of", "text"]
@@ -38,20 +38,20 @@ AS_WRITTEN = {
 }
 
 
-def text(formula: Formula) -> str:
-    """Return the definitions of a formula as plain text, one a line; long lines are continued."""
+def text(definitions: Sequence[Definition]) -> str:
+    """Return definitions as plain text, one a line; long lines are continued."""
     lines = []
-    for left, right in _equations(formula):
+    for left, right in _equations(definitions):
         name = TextPrinter().doprint(left)
         rows = _rows(TextPrinter(), right, TEXT_WIDTH - len(name), len)
         lines += [f"{name} = {rows[0]}", *(f"{'':{len(name)}} {row}" for row in rows[1:])]
     return "\n".join(lines)
 
 
-def latex(formula: Formula) -> str:
-    """Return the definitions of a formula as an `aligned` block of LaTeX."""
+def latex(definitions: Sequence[Definition]) -> str:
+    """Return definitions as an `aligned` block of LaTeX."""
     lines = []
-    for left, right in _equations(formula):
+    for left, right in _equations(definitions):
         rows = _rows(MathPrinter(), right, LATEX_WIDTH, _typeset_length)
         lines += [f"{latex_of(left)} &= {rows[0]}", *(f"&\\quad {{}} {row}" for row in rows[1:])]
     return "\\begin{aligned}\n" + " \\\\\n".join(lines) + "\n\\end{aligned}"
@@ -150,9 +150,9 @@ def _as_written(value: sp.Expr) -> sp.Expr:
     return substitute(value, {**AS_WRITTEN, **squares})
 
 
-def _equations(formula: Formula) -> list[tuple[sp.Expr, sp.Expr]]:
-    """Return the two sides of the definitions as people write them, without x = x."""
-    pairs = ((_as_written(x), _as_written(value)) for x, value in formula.definitions)
+def _equations(definitions: Sequence[Definition]) -> list[tuple[sp.Expr, sp.Expr]]:
+    """Return the two sides of definitions as people write them, without x = x."""
+    pairs = ((_as_written(x), _as_written(value)) for x, value in definitions)
     return [(left, right) for left, right in pairs if left != right]
 
 

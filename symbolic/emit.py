@@ -9,7 +9,8 @@ from pathlib import Path
 
 import sympy as sp
 
-from .formula import Formula, PlaneVector, VectorSymbol, plane_vectors, scalar, vectors
+from .formula import Formula
+from .notation import PlaneVector, VectorSymbol, plane_vectors, scalar, vectors
 from .printer import source_of
 from .simplify import straight_line
 

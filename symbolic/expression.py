@@ -10,8 +10,9 @@ from typing import cast
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
-from .formula import Definition, Formula, compose, dot, flat, scalar
+from .formula import Formula, compose
 from .loops import row_loop
+from .notation import Definition, dot, flat, scalar
 from .patch import n
 from .printer import source_of
 from .support import (

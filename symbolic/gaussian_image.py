@@ -21,7 +21,8 @@ from itertools import product
 
 import sympy as sp
 
-from .formula import Cross, Det, Dot, Formula, scalar, vectors
+from .formula import Formula
+from .notation import Cross, Det, Dot, scalar, vectors
 from .patch import FORM_TERMS, LINEAR_FORMS, SOLUTION, VECTORS, A, B, C, P, Q, a, b, c, d, e, n
 
 __all__ = ["FORMULAS"]

@@ -12,7 +12,8 @@ import sympy as sp
 from . import curve, gaussian_image, mesh, patch, spline, support, surfaces
 from .display import latex_name, latex_of
 from .emit import render
-from .formula import Formula, VectorSymbol
+from .formula import Formula
+from .notation import VectorSymbol
 from .positions import position
 from .simplify import straight_line
 from .uses import functions, wholes

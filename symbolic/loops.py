@@ -12,7 +12,8 @@ from collections.abc import Collection, Mapping, Sequence
 import sympy as sp
 
 from .emit import WIDTH, arguments, assignments, described, grouped, unpacked
-from .formula import Formula, VectorSymbol
+from .formula import Formula
+from .notation import VectorSymbol
 from .simplify import straight_line
 
 __all__ = ["array_function", "row_loop"]

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import sympy as sp
 
-from .formula import Cross, Dot, Formula, scalar, vectors
+from .formula import Formula
+from .notation import Cross, Dot, scalar, vectors
 
 __all__ = ["FORMULAS"]
 

@@ -14,7 +14,8 @@ from itertools import chain, combinations, product
 
 import sympy as sp
 
-from .formula import Cross, Det, Dot, Formula, compose, scalar, substitute, vectors
+from .formula import Formula, compose
+from .notation import Cross, Det, Dot, scalar, substitute, vectors
 
 __all__ = ["FORMULAS", "Elimination", "bernstein", "eliminate"]
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from .formula import BEYOND_THE_PAPER, Formula, vectors
+from .formula import BEYOND_THE_PAPER, Formula
+from .notation import vectors
 from .surfaces import ParametricSurface
 
 __all__ = ["position"]

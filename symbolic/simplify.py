@@ -10,7 +10,8 @@ from typing import cast
 
 import sympy as sp
 
-from .formula import Definition, Formula, substitute
+from .formula import Formula
+from .notation import Definition, substitute
 from .printer import operations
 
 __all__ = ["StraightLine", "straight_line"]

@@ -21,7 +21,8 @@ import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
 from . import patch
-from .formula import Formula, VectorSymbol, scalar, substitute
+from .formula import Formula
+from .notation import VectorSymbol, scalar, substitute
 
 __all__ = ["FORMULAS", "NEIGHBOURS", "SCALE", "box_spline_net", "coefficient_weights"]
 

@@ -13,7 +13,8 @@ from typing import cast
 
 import sympy as sp
 
-from .formula import Dot, Formula, compose, dot, scalar, substitute, vectors
+from .formula import Formula, compose
+from .notation import Dot, dot, scalar, substitute, vectors
 from .patch import CURVATURE, ENVELOPE, FORMS, HESSIAN, PARAMETERS, SUPPORT_FUNCTION, TANGENTS
 
 __all__ = [

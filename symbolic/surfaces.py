@@ -8,7 +8,7 @@ from typing import Literal, get_args
 
 import sympy as sp
 
-from .formula import dot
+from .notation import dot
 
 __all__ = ["CATALOGUE", "Continuation", "End", "Parameter", "ParametricSurface", "u", "v"]
 

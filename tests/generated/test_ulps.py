@@ -31,7 +31,7 @@ from gaussmap.runtime.kernels.jit import jit
 from gaussmap.symbolic import formulas
 from gaussmap.symbolic.emit import arguments
 from gaussmap.symbolic.emit import grouped as outputs_in_groups
-from gaussmap.symbolic.formula import VectorSymbol
+from gaussmap.symbolic.notation import VectorSymbol
 from hypothesis import assume, given
 from hypothesis import strategies as st
 

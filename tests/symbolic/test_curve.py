@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 import sympy as sp
 from gaussmap.symbolic import curve, spline
-from gaussmap.symbolic.formula import scalar
+from gaussmap.symbolic.notation import scalar
 
 t = sp.Symbol("t", real=True)
 n: Any = sp.Matrix(sp.symbols("n_x n_y", real=True))

@@ -28,7 +28,8 @@ from gaussmap.symbolic import (
     surfaces,
 )
 from gaussmap.symbolic.__main__ import main
-from gaussmap.symbolic.formula import Formula, PlaneVector, VectorSymbol, scalar
+from gaussmap.symbolic.formula import Formula
+from gaussmap.symbolic.notation import PlaneVector, VectorSymbol, scalar
 from gaussmap.symbolic.positions import position
 
 LOOPS = "support_function.py"

@@ -5,15 +5,14 @@ from dataclasses import FrozenInstanceError
 import pytest
 import sympy as sp
 from gaussmap.symbolic import Formula, curve, formulas, gaussian_image, mesh, patch, spline, support
-from gaussmap.symbolic.formula import (
-    BEYOND_THE_PAPER,
+from gaussmap.symbolic.formula import BEYOND_THE_PAPER, compose
+from gaussmap.symbolic.notation import (
     Cross,
     Det,
     Dot,
     PlaneVector,
     VectorSymbol,
     components,
-    compose,
     dot,
     flat,
     is_vector,

@@ -8,18 +8,10 @@ import pytest
 import sympy as sp
 from gaussmap.symbolic import files, formulas, surfaces
 from gaussmap.symbolic.display import latex_name
-from gaussmap.symbolic.formula import (
-    Cross,
-    Det,
-    Dot,
-    Formula,
-    VectorSymbol,
-    scalar,
-    substitute,
-    vectors,
-)
+from gaussmap.symbolic.formula import Formula
 from gaussmap.symbolic.latex import FORMULAS as SECTIONS
 from gaussmap.symbolic.latex import markdown
+from gaussmap.symbolic.notation import Cross, Det, Dot, VectorSymbol, scalar, substitute, vectors
 from gaussmap.symbolic.simplify import straight_line
 
 MARKDOWN = (files.GENERATED / "formulas.md").read_text(encoding="utf-8")

@@ -4,7 +4,7 @@ import math
 
 import sympy as sp
 from gaussmap.symbolic import formulas
-from gaussmap.symbolic.formula import scalar, substitute
+from gaussmap.symbolic.notation import scalar, substitute
 
 
 def values(name: str, numbers: dict[str, sp.Expr]) -> dict[str, sp.Expr]:

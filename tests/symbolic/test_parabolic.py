@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 import sympy as sp
 from gaussmap.symbolic import BezierTriangle, gaussian_image, patch
-from gaussmap.symbolic.formula import dot, scalar
+from gaussmap.symbolic.notation import dot, scalar
 
 u, v, s, t = (scalar(x) for x in "uvst")
 n: Any = sp.Matrix(patch.n.components)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import sympy as sp
 from gaussmap.symbolic import BezierTriangle, patch
-from gaussmap.symbolic.formula import dot, scalar
+from gaussmap.symbolic.notation import dot, scalar
 
 u, v, t = sp.symbols("u v t", real=True)
 n: Any = sp.Matrix(sp.symbols("n_x n_y n_z", real=True))

@@ -5,7 +5,7 @@ from collections import Counter
 import pytest
 import sympy as sp
 from gaussmap.symbolic import Formula, formulas
-from gaussmap.symbolic.formula import scalar, substitute
+from gaussmap.symbolic.notation import scalar, substitute
 from gaussmap.symbolic.simplify import straight_line
 
 x, y, z = (scalar(name) for name in "xyz")

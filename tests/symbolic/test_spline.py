@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 import sympy as sp
 from gaussmap.symbolic import patch, spline
-from gaussmap.symbolic.formula import substitute
+from gaussmap.symbolic.notation import substitute
 
 HALF = Fraction(1, 2)
 NET: Any = spline.NET

@@ -6,7 +6,7 @@ import pytest
 import sympy as sp
 from gaussmap.symbolic import formulas, support
 from gaussmap.symbolic.expression import NORMAL, branch, is_homogeneous, kernel_source
-from gaussmap.symbolic.formula import scalar
+from gaussmap.symbolic.notation import scalar
 
 x, y, z = NORMAL
 LENGTH = sp.sqrt(x**2 + y**2 + z**2)
