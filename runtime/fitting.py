@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from .domain import Domain
 from .errors import InputError, SurfaceError, in_memory
@@ -20,16 +20,24 @@ __all__ = ["DEFAULT_CELLS", "fit", "spline_of"]
 DEFAULT_CELLS = (64, 64)
 
 
-def spline_of(surface: Surface | Spline | str, cells: Sequence[int] | None) -> Spline:
+def spline_of(
+    surface: Surface | Spline | str, cells: Sequence[int] | None, dtype: DTypeLike = np.float64
+) -> Spline:
     """Return a spline as it is, or that of a surface or of the name of one.
 
-    Raises InputError for `cells` beside a spline.
+    Raises InputError for `cells` beside a spline; SurfaceError if its points, which are to be
+    stored as `dtype`, are beyond the range of that.
     """
-    if isinstance(surface, Spline):
-        if cells is not None:
-            raise InputError("cells=... is for surfaces; this spline has its cells already.")
-        return surface
-    return fit(surface, cells)
+    if isinstance(surface, Spline) and cells is not None:
+        raise InputError("cells=... is for surfaces; this spline has its cells already.")
+    spline = surface if isinstance(surface, Spline) else fit(surface, cells)
+    largest, limits = float(np.abs(spline.coefficients).max()), np.finfo(np.zeros(0, dtype).dtype)
+    if not float(limits.tiny) <= largest <= float(limits.max) and largest > 0.0:
+        raise SurfaceError(
+            f"the coordinates of {spline.name!r} are too {'large' if largest > 1.0 else 'small'} "
+            f"for {limits.dtype}; choose another unit of length or dtype=numpy.float64."
+        )
+    return spline
 
 
 @in_memory

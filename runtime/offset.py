@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .checks import finite_number
-from .errors import GaussmapWarning, MissingFieldError
+from .errors import GaussmapWarning, InputError, MissingFieldError
 from .kernels import support as kernels
-from .samples import Samples
+from .samples import Samples, count_infinite, have_large_squares
 
 __all__ = ["offset"]
 
@@ -46,6 +46,7 @@ def offset(samples: Samples, distance: float) -> Samples:
         samples.report,
         surface=f"{samples.report.surface} offset by {d:g}",
         invisible_share=None,  # areas change, except those of planar regions
+        infinite_curvatures=count_infinite(arrays),
     )
     return Samples(**arrays, report=report)
 
@@ -54,12 +55,27 @@ def _curvatures(samples: Samples, d: float) -> dict[str, Array]:
     """Return K and H of the offset, and warn if it is folded."""
     K = samples.gaussian_curvature.astype(np.float64)
     H = samples.mean_curvature.astype(np.float64)
+    _check_squares(samples, H)
     folded = np.empty(len(samples), dtype=np.bool_)
     rounding = ROUNDING * float(np.finfo(samples.dtype).eps)
     kernels.offset_curvatures(d, rounding, K, H, folded)
     if folded.any():
         _warn(samples, d, folded)
     return {"gaussian_curvature": K, "mean_curvature": H}
+
+
+def _check_squares(samples: Samples, H: Array) -> None:
+    """Raise InputError if K, about the square of H, is not what it should be for its range."""
+    K = samples.gaussian_curvature
+    too_large = have_large_squares(H, K.dtype)
+    squares = np.maximum(np.abs(K), H * H)
+    too_small = float(np.abs(H).max(initial=0.0)) > 0.0 and squares.max() < np.finfo(K.dtype).tiny
+    if too_large or too_small:
+        raise InputError(
+            f"the curvatures of the offset cannot be computed: squares of those of the samples are "
+            f"too {'small' if too_small else 'large'} for {K.dtype}; choose another unit of "
+            "length, or sample without curvatures."
+        )
 
 
 def _check_fields(samples: Samples) -> None:

@@ -36,7 +36,7 @@ def fit_values(
     inner = np.empty_like(centres)
     kernels.fit_centres_and_vertices(centres, vertices, inner)
     border = Border.of_values(middles, vertices)
-    return Spline(coefficients_with_ring(inner, border, ends), domain, ends, name)
+    return _spline(inner, border, domain, ends, name)
 
 
 def fit_grid(points: NDArray[np.float64], domain: Domain, ends: Ends, name: str) -> Spline:
@@ -46,7 +46,20 @@ def fit_grid(points: NDArray[np.float64], domain: Domain, ends: Ends, name: str)
     checked_cells(inner.shape[:2], ends)
     kernels.fit_vertices(values, inner)
     border = Border.of_vertices(values)
-    return Spline(coefficients_with_ring(inner, border, ends), domain, ends, name)
+    return _spline(inner, border, domain, ends, name)
+
+
+def _spline(
+    inner: NDArray[np.float64], border: Border, domain: Domain, ends: Ends, name: str
+) -> Spline:
+    """Return a spline; SurfaceError if its numbers are so small that they have fewer digits."""
+    coefficients = coefficients_with_ring(inner, border, ends)
+    if 0.0 < float(np.abs(coefficients).max()) < 2.0**-LARGEST_EXPONENT:
+        raise SurfaceError(
+            f"the coordinates of {name!r} are too small to compute with: choose another unit of "
+            "length, in which some are larger than 1e-301."
+        )
+    return Spline(coefficients, domain, ends, name)
 
 
 def apart(
@@ -62,7 +75,10 @@ def apart(
 def not_too_large(points: NDArray[np.float64], name: str) -> NDArray[np.float64]:
     """Return points; SurfaceError if formulas would overflow with them."""
     if np.abs(points).max() > 2.0**LARGEST_EXPONENT:
-        raise SurfaceError(f"the coordinates of {name!r} are too large to compute with.")
+        raise SurfaceError(
+            f"the coordinates of {name!r} are too large to compute with: choose another unit of "
+            "length, in which they are smaller than 1e301."
+        )
     return points
 
 

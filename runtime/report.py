@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+from numpy.typing import NDArray
 
 from .errors import GaussmapWarning
-from .samples import SamplingReport
+from .samples import SamplingReport, count_infinite
 from .spline import Spline
 from .visibility import invisible_share
 
@@ -18,9 +23,14 @@ COUNT_TOLERANCE, FEW = 0.02, 5
 
 
 def sampling_report(
-    spline: Spline, normals: int, samples: int, density: float, developable: int | None
+    spline: Spline,
+    normals: int,
+    samples: int,
+    density: float,
+    developable: int | None,
+    arrays: Mapping[str, NDArray[Any]] = MappingProxyType({}),
 ) -> SamplingReport:
-    """Return how a sampling with `density` normals per steradian went."""
+    """Return how a sampling with `density` normals per steradian went, which gave `arrays`."""
     return SamplingReport(
         surface=spline.name,
         normals=normals,
@@ -28,6 +38,7 @@ def sampling_report(
         patches=spline.patches,
         invisible_share=invisible_share(spline, density),
         degenerate_patches=developable,
+        infinite_curvatures=count_infinite(arrays),
     )
 
 

@@ -27,7 +27,14 @@ if TYPE_CHECKING:
 
     from .meshes.mesh import Mesh
 
-__all__ = ["ARRAY_NAMES", "Samples", "SamplingReport", "rows_of"]
+__all__ = [
+    "ARRAY_NAMES",
+    "Samples",
+    "SamplingReport",
+    "count_infinite",
+    "have_large_squares",
+    "rows_of",
+]
 
 # What a field is set to that was not asked for; reading it raises MissingFieldError.
 _NOT_ASKED: Any = None
@@ -54,6 +61,10 @@ class SamplingReport:
       if a coverage was asked; see also `Samples.coverage`.
     - `angle`: how large the angle, in degrees, between the normal of a point of the surface and
       that of the sample nearest in normal is, at most. Known if an angle was asked.
+    - `infinite_curvatures`: at how many samples the Gaussian curvature is infinite: at singular
+      points of the spline, which a coarse one may have, and where 1/L² is beyond the largest
+      number of its type, on surfaces smaller than 1e-154 (1e-19 with float32). Known if
+      `gaussian_curvature` was asked.
 
     Raises InputError if a count is not an integer or is negative, the share is outside 0…1, or the
     label is not a string.
@@ -67,11 +78,12 @@ class SamplingReport:
     degenerate_patches: int | None
     coverage: float | None = None
     angle: float | None = None
+    infinite_curvatures: int | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.surface, str):
             raise InputError(f"surface must be a string, not {type(self.surface).__name__}.")
-        for name in ("normals", "patches", "degenerate_patches"):
+        for name in ("normals", "patches", "degenerate_patches", "infinite_curvatures"):
             value = getattr(self, name)
             object.__setattr__(self, name, None if value is None else _count(name, value))
         object.__setattr__(self, "samples", _count("samples", self.samples))
@@ -95,7 +107,8 @@ class Samples:
     - `uv`: (N, 2) float64, the surface's own parameters of the points.
     - `support`: (N,) float64, support function n·x, in L.
     - `gaussian_curvature`: (N,) float64, in 1/L². Its sign bit tells elliptic from hyperbolic, so
-      −0.0 counts as hyperbolic.
+      −0.0 counts as hyperbolic. On surfaces smaller than 1e-154 it may be infinite, on those larger
+      than 1e154 zero: float64 does not hold it.
     - `mean_curvature`: (N,) float64, in 1/L, positive for a sphere with outward normals.
     - `normal_index`: (N,) int64, row of the normals that were asked; −1 for a sample that was
       added for coverage.
@@ -218,12 +231,15 @@ class Samples:
 
         They are computed from K and H. Where the two nearly agree, K and H determine their
         difference only to about 1e-8 relative to H (3e-4 if they are float32); elsewhere both are
-        accurate, however different their sizes. NaN where H² − K is not finite.
+        accurate, however different their sizes. NaN where H² − K is not finite, or where H² and K
+        are too small for float64.
         """
         K, H = (x.astype(np.float64) for x in (self.gaussian_curvature, self.mean_curvature))
         with np.errstate(all="ignore"):
             square = H * H - K
-            root = np.where(np.isfinite(square), np.sqrt(np.maximum(square, 0.0)), np.nan)
+            least = np.finfo(np.float64).tiny
+            known = np.isfinite(square) & ((np.maximum(H * H, np.abs(K)) >= least) | (H == 0.0))
+            root = np.where(known, np.sqrt(np.maximum(square, 0.0)), np.nan)
             # H − root would cancel when |K| is small against H²; K / (H + root) does not.
             far = H + np.copysign(root, H)
             near = np.where(root > 0.0, K / far, H)
@@ -260,7 +276,7 @@ class Samples:
         if report.invisible_share is not None and not self._filling():
             share = 100.0 * report.invisible_share
             line += f"; {share:.2f} % of the surface is developable (K = 0)"
-        return line
+        return line + self._infinite()
 
     def offset(self, distance: float) -> Samples:
         """Return the samples moved along their normals: the offset surface x + d n.
@@ -274,8 +290,9 @@ class Samples:
         and the smallest radius. Where a radius becomes 0, the offset is singular: K is infinite
         with its old sign, or NaN if it was 0, and H is NaN.
 
-        Raises InputError unless the distance is a finite number; MissingFieldError if points lack
-        their normals, or one of the curvatures the other one.
+        Raises InputError unless the distance is a finite number, and for curvatures whose squares
+        their type does not hold (of surfaces smaller than 1e-154 or larger than 1e154);
+        MissingFieldError if points lack their normals, or one of the curvatures the other one.
         """
         from .offset import offset
 
@@ -358,7 +375,8 @@ class Samples:
         a weight: all but one of them have 0.
 
         They are taken from the mesh of the samples, bent by the normals. The arguments, what fields
-        are needed and what is raised are those of `mesh`.
+        are needed and what is raised are those of `mesh`; SurfaceError also if float64 does not
+        hold the areas, of surfaces larger than about 1e150 or smaller than 1e-150.
         """
         from .meshes.weights import area_weights
 
@@ -440,11 +458,34 @@ class Samples:
             return f" at {given}" if "normal_index" in self.fields else f", {given}"
         return f": {len(self) - filling:,} at {given}, {filling:,} filling gaps"
 
+    def _infinite(self) -> str:
+        """Say at how many samples K is infinite, and why."""
+        if not count_infinite(self.arrays()):
+            return ""
+        infinite = np.isinf(self.gaussian_curvature)
+        reason = "the spline is singular"
+        if "mean_curvature" in self.fields and have_large_squares(self.mean_curvature, self.dtype):
+            reason = f"it is too large for {self.dtype}"
+        return f"; K is infinite at {int(infinite.sum()):,} samples, where {reason}"
+
     def _split(self) -> str:
         if "gaussian_curvature" not in self.fields:
             return f" ({', '.join(self.fields)} only)"
         hyperbolic = int(np.count_nonzero(self.hyperbolic))
         return f": {len(self) - hyperbolic:,} elliptic, {hyperbolic:,} hyperbolic"
+
+
+def count_infinite(arrays: Mapping[str, NDArray[Any]]) -> int | None:
+    """Return at how many samples K is infinite; None if K is not among their fields."""
+    if "gaussian_curvature" not in arrays:
+        return None
+    return int(np.isinf(arrays["gaussian_curvature"]).sum())
+
+
+def have_large_squares(H: NDArray[np.floating], dtype: np.dtype[Any]) -> bool:
+    """Say whether the curvatures H, where they are finite, have squares that a type cannot hold."""
+    finite = np.abs(H[np.isfinite(H)].astype(np.float64))
+    return float(finite.max(initial=0.0)) > math.sqrt(float(np.finfo(dtype).max))
 
 
 def _rebuilt(
@@ -472,6 +513,7 @@ def _common_report(
     }
     common["surface"] = common["surface"] or "several surfaces"
     common["samples"] = len(next(iter(arrays.values())))
+    common["infinite_curvatures"] = count_infinite(arrays)
     return SamplingReport(**common)
 
 

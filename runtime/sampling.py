@@ -158,7 +158,7 @@ def sample_and_normals(
     """Return what `sample` returns, and the unit normals that were asked."""
     wanted, number = checked_fields(fields), checked_dtype(dtype)
     filled = request.density != "gauss"
-    spline = spline_of(surface, cells)
+    spline = spline_of(surface, cells, number)
     sampled = filled_samples if filled else _by_normals
     samples, normals = sampled(spline, request, wanted, number, threads, progress)
     warn_of(samples.report, request.count, 5, coverage=request.coverage, filled=filled)
@@ -179,7 +179,9 @@ def _by_normals(
     if hits is None:
         hits = find(spline, bins, threads, progress)
     arrays = fill(spline, bins, hits, threads, fields, dtype)
-    report = sampling_report(spline, len(bins.normals), len(hits), chosen.density, hits.developable)
+    report = sampling_report(
+        spline, len(bins.normals), len(hits), chosen.density, hits.developable, arrays
+    )
     return Samples(**arrays, report=report, spline=spline), bins.normals
 
 

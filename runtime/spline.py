@@ -16,7 +16,7 @@ from .kernels import spline as kernels
 from .threads import over_ranges
 from .tolerances import DATA_ERROR
 
-__all__ = ["LARGEST_EXPONENT", "Spline", "scale_to_one", "short_label"]
+__all__ = ["LARGEST_EXPONENT", "Spline", "scale_to_one", "scales_to_one", "short_label"]
 
 LONGEST_LABEL = 40
 PATCHES_AT_A_TIME = 1 << 14
@@ -166,3 +166,8 @@ class Spline:
 def scale_to_one(largest: float) -> float:
     """Return a power of two that brings a number to about 1."""
     return math.ldexp(1.0, min(-math.frexp(largest)[1], LARGEST_EXPONENT)) if largest else 1.0
+
+
+def scales_to_one(largest: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return powers of two that bring numbers to about 1; 1 for zero, infinity and NaN."""
+    return np.ldexp(1.0, np.minimum(-np.frexp(largest)[1], LARGEST_EXPONENT))

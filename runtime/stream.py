@@ -15,7 +15,7 @@ from .density.request import Request, checked_request
 from .fields import checked_dtype, checked_fields
 from .fitting import spline_of
 from .report import sampling_report, warn_of
-from .samples import Samples, SamplingReport
+from .samples import Samples, SamplingReport, count_infinite
 from .search import Hits, Search, fill, merged
 from .spline import Spline
 from .surface import Surface
@@ -88,7 +88,9 @@ def sample_stream(
     size = whole_number(chunk, "chunk")
     wanted, number = checked_fields(fields), checked_dtype(dtype)
     request = checked_request(normals, count, None, None, "gauss", 0, threads)
-    stream = _Stream(spline_of(surface, cells), request, size, wanted, number, threads, progress)
+    stream = _Stream(
+        spline_of(surface, cells, number), request, size, wanted, number, threads, progress
+    )
     return stream.chunks()
 
 
@@ -129,7 +131,7 @@ class _Stream:
         arrays = fill(self.spline, bins, hits, self.threads, self.fields, self.dtype)
         if start and "normal_index" in arrays:
             arrays["normal_index"] = arrays["normal_index"] + start
-        report = replace(report, samples=len(hits))
+        report = replace(report, samples=len(hits), infinite_curvatures=count_infinite(arrays))
         return Samples(**arrays, report=report, spline=self.spline)
 
 

@@ -36,7 +36,8 @@ class Cover:
     A point is covered if a sample is within radius/√w, with the target density w of a sizing
     function. All lengths are scaled as in `SizingFunction`. Rows of `points` (N, 6), point and unit
     normal, and `curvatures` (N,), K, are the samples; the first `given` ones are those that were
-    given, the others lie at the centroids of the triangles `added`.
+    given (only the sign of their K counts, which is not scaled), the others lie at the centroids of
+    the triangles `added`.
 
     Samples are chosen among the centroids of `triangles`. `show_count` is called with the number of
     samples when it has grown.
@@ -59,7 +60,7 @@ class Cover:
         self.points, self.curvatures = np.empty((0, 6)), np.empty(0)
         if given is not None:
             self.points = np.column_stack([sizing.scaled_points(given.points), given.normals])
-            self.curvatures = given.gaussian_curvature / sizing.unit**2
+            self.curvatures = given.gaussian_curvature
         self.given, self.fine = len(self.points), FINE
         self.radius_asked, self.count_asked = 0.0, None
         self.remove_added()

@@ -147,8 +147,9 @@ class Filling:
             }
         developable = None if given is None else given.report.degenerate_patches
         report = sampling_report(
-            self.spline, len(at_normals.normals), cover.count, at_normals.density, developable
-        )
+            self.spline, len(at_normals.normals), cover.count, at_normals.density, developable,
+            arrays,
+        )  # fmt: skip
         asked = self.request.coverage
         reached = None if asked is None else self._coverage(cover, asked)
         report = replace(report, coverage=reached, angle=angle)

@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from ..spline import scale_to_one
 from ..trees import tree_of
 from .candidates import Candidates
 
@@ -32,6 +33,7 @@ def progressive_order(
     if count <= NEIGHBOURS:
         return left
     order, radius = left[:0], 2.0 * math.sqrt(count)
+    points = points * scale_to_one(float(np.ptp(points, axis=0).max()))
     densities = 1.0 / _spacings(points) ** 2
     rows = np.column_stack([points - points.min(axis=0), normals, densities, densities])
     while len(left) and radius > FINEST:

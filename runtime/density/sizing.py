@@ -46,7 +46,7 @@ class SizingFunction:
     def size(self) -> float:
         """The diagonal of a box that holds the surface."""
         points = self.spline.coefficients.reshape(-1, 3)
-        return float(np.linalg.norm(np.ptp(points, axis=0))) * self.unit
+        return float(np.linalg.norm(np.ptp(points, axis=0) * self.unit))
 
     @property
     def noise(self) -> float:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..spline import scale_to_one
 from .tables import write_rows
 
 if TYPE_CHECKING:
@@ -33,7 +34,8 @@ def write_stl(mesh: Mesh, path: Path) -> None:
     corners = mesh.vertices[mesh.triangles]
     rows = np.zeros(len(corners), _STL_ROW)
     with np.errstate(all="ignore"):  # what single precision does not hold, triangles without area
-        across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        scale = scale_to_one(float(np.abs(mesh.vertices).max()))
+        across = np.cross(*((corners[:, k] - corners[:, 0]) * scale for k in (1, 2)))
         size = np.sqrt(np.einsum("ij,ij->i", across, across))[:, None]
         np.divide(across, size, out=rows["normal"], where=size > 0.0, casting="same_kind")
         rows["corners"] = corners

@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 
 from ...generated import gaussian_image as formulas
 from ..formula_calls import python_function, vector
+from ..quasi_interpolant import not_too_large
+from ..spline import scale_to_one
 from ..surface import Surface
 
 __all__ = ["NODES", "ORDER", "SURE", "CurvatureField"]
@@ -61,7 +63,8 @@ class CurvatureField:
     the same zeros and signs and is closer to a polynomial where the surface is steep. `noise`
     (m, n) bounds the error of K; `curvature_scale` (m, n) is what it is compared with where K is
     small: the square of the normal curvature of the parameter lines, plus that of one over the size
-    of the surface.
+    of the surface. K is that of the surface times a power of two that makes its
+    coordinates about 1.
     """
 
     lines: tuple[Array, Array]
@@ -82,7 +85,7 @@ class CurvatureField:
             low + np.mod(_nodes(x) - low, high - low) if periodic else _nodes(x)
             for x, (low, high), periodic in zip(lines, surface.domain, wraps, strict=True)
         ]
-        x = surface.evaluate(inside[0][:, None], inside[1])
+        x = not_too_large(surface.evaluate(inside[0][:, None], inside[1]), surface.name)
         x = x.reshape(panels[0], ORDER, panels[1], ORDER, 3).transpose(0, 2, 1, 3, 4)
         K, rounding, curvature_scale, area = _curvature(x, *(np.diff(line) for line in lines))
         fields = [
@@ -185,8 +188,9 @@ def _curvature(x: Array, sizes_u: Array, sizes_v: Array) -> tuple[Array, Array, 
 
     All but the scale are (m, n, ORDER, ORDER).
 
-    The parameters are those of the panels, scaled to the surface, so that nothing overflows.
+    Lengths are relative to the size of the surface, so that nothing overflows.
     """
+    x = x * scale_to_one(float(np.abs(x).max()))
     scale = float(np.abs(x - x.mean(axis=(0, 1, 2, 3))).max()) or 1.0
     error = 4.0 * float(np.spacing(np.abs(x).max())) / scale
     x = (x - x.mean(axis=(0, 1, 2, 3))) / scale

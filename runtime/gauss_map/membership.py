@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -16,7 +15,7 @@ from ...generated.vectors import Patch, Vector
 from ..formula_calls import python_function, vector
 from ..integers import integers, integers_by_row, ratio, sign
 from ..kernels import support as kernels
-from ..spline import LARGEST_EXPONENT
+from ..spline import scale_to_one
 from ..tolerances import ACCURATE, FORM_ERROR, NEAR_SINGULAR_POINT
 
 __all__ = ["Members", "PatchNormals"]
@@ -79,7 +78,7 @@ class PatchNormals:
     def scale(self) -> float:
         """A power of two that brings the differences of control points to about 1."""
         largest = float(np.abs(self.control_points - self.control_points[2]).max())
-        return math.ldexp(1.0, min(-math.frexp(largest)[1], LARGEST_EXPONENT))
+        return scale_to_one(largest)
 
     @cached_property
     def vectors(self) -> Patch:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..checks import whole_number
 from ..errors import GaussmapWarning, InputError, shown
 from ..fitting import fit, spline_of
-from ..spline import Spline
+from ..spline import Spline, scale_to_one
 from ..surface import Surface
 from ..surfaces import named
 from .classes import PatchClass, classify_patches
@@ -180,9 +180,10 @@ def parabolic_points(
 def _of_spline(spline: Spline, tolerance: float) -> ParabolicPoints:
     classes = classify_patches(spline).reshape(-1, 4)
     curves = []
-    size = tolerance * _size(spline.coefficients[1:-1, 1:-1].reshape(-1, 3))
+    scale = spline.scale
+    size = tolerance * _size(spline.coefficients[1:-1, 1:-1].reshape(-1, 3) * scale)
     for uv, closed in polylines_of(spline):
-        finer = refined(uv, lambda x: _evaluated(spline, x), size, lambda x: x)
+        finer = refined(uv, lambda x: scale * _evaluated(spline, x), size, lambda x: x)
         curves.append(ParabolicCurve(finer, _evaluated(spline, finer), closed))
     flat = np.isin(classes, (PatchClass.PLANAR, PatchClass.DEVELOPABLE, PatchClass.SINGULAR))
     i, j = np.divmod(np.flatnonzero(flat.all(axis=1)), spline.cells[1])
@@ -207,13 +208,14 @@ def _of_surface(
             stacklevel=3,
         )
     grid = surface.evaluate(*np.meshgrid(*(np.linspace(*ends, 17) for ends in surface.domain)))
-    size = tolerance * _size(grid.reshape(-1, 3))
+    scale = scale_to_one(float(np.ptp(grid, axis=(0, 1)).max()))
+    size = tolerance * _size(grid.reshape(-1, 3) * scale)
     limits = _limits(surface)
     curves = []
     for uv, closed in found.polylines:
         finer = refined(
             uv,
-            lambda x: _evaluated(surface, x),
+            lambda x: scale * _evaluated(surface, x),
             size,
             lambda x: np.clip(_onto_curve(field, x), *limits),
         )

@@ -16,7 +16,7 @@ from ...generated.vectors import Vector
 from ..checks import real_array
 from ..errors import InputError
 from ..formula_calls import patch, python_function, vector
-from ..spline import LARGEST_EXPONENT, Spline
+from ..spline import LARGEST_EXPONENT, Spline, scales_to_one
 from ..tolerances import CUBIC_ERROR, DATA_ERROR
 
 __all__ = ["Patches", "checked_control_points", "checked_nets"]
@@ -42,7 +42,7 @@ class Patches:
     def of_control_points(cls, nets: Array) -> Patches:
         """Return the patches of Bézier nets (k, 6, 3)."""
         differences = nets - nets[:, 2:3]
-        scale = _units(np.abs(differences).max(axis=(1, 2)))
+        scale = scales_to_one(np.abs(differences).max(axis=(1, 2)))
         net = np.moveaxis(differences * scale[:, None, None], 1, 0)
         vectors = python_function(formulas.power_form)(*map(vector, net))
         noise = DATA_ERROR * np.abs(nets).max(axis=(1, 2)) * scale
@@ -156,8 +156,3 @@ def _stacked(vectors: Iterable[Vector], count: int) -> Array:
     """Return vectors whose components are numbers or arrays as an array (count, m, 3)."""
     rows = [np.broadcast_to(x, count) for vector in vectors for x in vector]
     return np.stack(rows, axis=1).reshape(count, -1, 3).copy()
-
-
-def _units(largest: Array) -> Array:
-    """Return powers of two that bring numbers to about 1; 1 for zero."""
-    return np.ldexp(1.0, np.minimum(-np.frexp(largest)[1], LARGEST_EXPONENT))

@@ -60,7 +60,7 @@ class Vertices:
         inner = cls(positions[sample], sample, np.ones(len(sample), dtype=bool))
         if all(end in ("wrap", "flip") for end, _ in ends):
             return inner
-        points = samples.points.astype(np.float64)
+        points = samples.points.astype(np.float64) * spline.scale
         tree = tree_of(points[sample])
         fixed = [*_poles(inner, tree, spline, ends), *_sides(inner, points, tree, spline, ends)]
         for part in fixed:
@@ -91,7 +91,7 @@ class Vertices:
 
 def ends_of(spline: Spline) -> Ends:
     """Return the boundary conditions of a spline; an end that is a single point is a pole."""
-    size = float(np.ptp(spline.coefficients, axis=(0, 1)).max())
+    size = float(np.ptp(spline.coefficients, axis=(0, 1)).max()) * spline.scale
     found: list[tuple[End, End]] = []
     for axis, ends in enumerate(spline.ends):
         kinds = list(ends)
@@ -126,9 +126,9 @@ def _on_side(axis: int, place: int, t: Array) -> Array:
 
 
 def _points(spline: Spline, positions: Array) -> Array:
-    """Return the points (k, 3) of a spline at positions."""
+    """Return the points (k, 3) of a spline at positions, times its scale."""
     vertices = Vertices.fixed(positions, np.empty(0, dtype=np.int64))
-    return spline.evaluate(*vertices.uv(spline).T)
+    return spline.evaluate(*vertices.uv(spline).T) * spline.scale
 
 
 def _poles(inner: Vertices, tree: KDTree, spline: Spline, ends: Ends) -> Iterator[Vertices]:

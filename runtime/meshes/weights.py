@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import SurfaceError
 from ..kernels.areas import corner_areas
+from ..spline import scale_to_one
 from ..trees import tree_of
 from .mesh import Mesh, centred
 
@@ -17,6 +19,9 @@ if TYPE_CHECKING:
 __all__ = ["area_weights"]
 
 Array = NDArray[np.float64]
+
+# Areas that are smaller than the mean one by this factor need not be accurate.
+SMALLEST = 1e-6
 
 
 def area_weights(samples: Samples, angle: float | None) -> Array:
@@ -43,10 +48,19 @@ def _areas(mesh: Mesh) -> Array:
     points, scale = centred(mesh.vertices)
     areas = np.empty(mesh.triangles.shape)
     corner_areas(points * scale, mesh.normals, mesh.triangles, mesh.sides, areas)
+    least, limits = SMALLEST * float(areas.sum()) / len(areas), np.finfo(np.float64)
+    with np.errstate(over="ignore", under="ignore"):
+        smallest, total = least / scale / scale, float(areas.sum()) / scale / scale
+    if (total > limits.max or smallest < limits.tiny) and least > 0.0:
+        raise SurfaceError(
+            f"the areas of {mesh.name!r} are too {'large' if scale < 1.0 else 'small'} for "
+            "float64; choose another unit of length."
+        )
     return areas / scale / scale
 
 
 def _nearest(points: Array, centroids: Array, areas: Array) -> Array:
     """Return areas (N,): those at `centroids`, each added to the nearest of points (N, 3)."""
-    nearest = tree_of(points).query(centroids)[1]
+    scale = scale_to_one(float(np.abs(points).max()))
+    nearest = tree_of(points * scale).query(centroids * scale)[1]
     return np.bincount(nearest, areas, minlength=len(points)).astype(np.float64)

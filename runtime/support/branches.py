@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from .. import compiling  # noqa: F401 - it tells that kernels are compiled
 from ..kernels import support as kernels
+from ..spline import scales_to_one
 
 __all__ = ["Branches", "Sheets", "curvatures"]
 
@@ -97,5 +98,8 @@ def curvatures(
     """Return principal radii (k, 2), Gaussian and mean curvature at unit normals (k, 3)."""
     count = len(normals)
     radii, gaussian, mean = np.empty((count, 2)), np.empty(count), np.empty(count)
-    kernels.curvatures_from_hessians(normals, hessian, radii, gaussian, mean)
-    return radii, gaussian, mean
+    scale = scales_to_one(np.abs(hessian).max(axis=(1, 2)))  # whose determinants do not overflow
+    scaled = hessian * scale[:, None, None]
+    kernels.curvatures_from_hessians(normals, scaled, radii, gaussian, mean)
+    with np.errstate(over="ignore", under="ignore"):
+        return radii / scale[:, None], gaussian * scale * scale, mean * scale

@@ -16,7 +16,7 @@ from ..errors import GaussmapWarning, InputError
 from ..fields import new_field
 from ..fitting import spline_of
 from ..report import sampling_report, warn_of
-from ..samples import Samples, SamplingReport, rows_of
+from ..samples import Samples, SamplingReport, count_infinite, rows_of
 from ..spline import Spline, short_label
 from ..surface import Surface
 from ..surfaces import named
@@ -143,8 +143,12 @@ def convolve(
     if len(one) and len(two) and not len(i):
         message = f"surface {name!r}: no normal has points on both of the two."
         warnings.warn(message, GaussmapWarning, stacklevel=2)
-    report = SamplingReport(name, len(directions), len(i), None, None, None)
-    samples = Samples(**_sums(one, two, i, j), report=report)
+    arrays = _sums(one, two, i, j)
+    infinite = count_infinite(arrays)
+    report = SamplingReport(
+        name, len(directions), len(i), None, None, None, infinite_curvatures=infinite
+    )
+    samples = Samples(**arrays, report=report)
     return Convolution(samples, one, two, np.stack([i, j], axis=1))
 
 

@@ -107,17 +107,20 @@ class Offset(Changed):
         sheets = self.of.sheets(normals)
         mine = normals[sheets.normal_index]
         doubtful = np.empty(len(mine), dtype=np.bool_)
+        # Of large surfaces float64 does not hold K, about the square of H.
+        squares = np.maximum(np.abs(sheets.gaussian), sheets.mean * sheets.mean)
+        lost = (squares < np.finfo(np.float64).tiny) & (sheets.mean != 0.0)
         kernels.add_offset(
             self.distance, mine, sheets.points, sheets.hessian, sheets.gaussian, sheets.mean,
             doubtful,
         )  # fmt: skip
         # Where a radius was 0, the old curvatures say nothing of the new ones; where one becomes 0,
         # they say it with the rounding of 1 + 2 H d + K d².
-        rows = np.flatnonzero(doubtful)
+        rows = np.flatnonzero(doubtful | lost)
         radii, gaussian, mean = curvatures(mine[rows], sheets.hessian[rows])
         sizes = np.abs(radii)
         vanishing = sizes.min(axis=1) <= RADIUS_ERROR * (sizes.max(axis=1) + abs(self.distance))
-        singular = ~np.isfinite(sheets.gaussian[rows]) | vanishing
+        singular = ~np.isfinite(sheets.gaussian[rows]) | vanishing | lost[rows]
         sheets.gaussian[rows[singular]] = gaussian[singular]
         sheets.mean[rows[singular]] = mean[singular]
         return sheets

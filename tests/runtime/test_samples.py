@@ -128,9 +128,14 @@ class TestConstruction:
 class TestReport:
     def test_numpy_numbers_become_plain(self):
         numbers: Any = np.int64(3), np.int32(2), np.uint8(1), np.float32(0.5), 0
-        report = SamplingReport("s", *numbers, coverage=np.float32(2), angle=np.int64(3))  # pyright: ignore[reportArgumentType]
+        more: Any = {
+            "coverage": np.float32(2),
+            "angle": np.int64(3),
+            "infinite_curvatures": np.int8(4),
+        }
+        report = SamplingReport("s", *numbers, **more)
         assert [type(getattr(report, f.name)) for f in fields(report)] == [
-            str, int, int, int, float, int, float, float,
+            str, int, int, int, float, int, float, float, int,
         ]  # fmt: skip
 
     @pytest.mark.parametrize("name", ["normals", "samples", "patches", "degenerate_patches"])
