@@ -22,7 +22,6 @@ def support_function(patch, normals, h_values):
         h = n·p + (P*U + Q*V)/(2*D)
 
     Source: eqs. (3) and (9); 45 operations as written, 45 here.
-
     Arrays: normals (k, 3), h_values (k,).
     """
     a_x, a_y, a_z = patch.a
@@ -65,7 +64,6 @@ def gradient_at_normal(patch, normals, points):
         x = a*u**2/2 + b*u*v + c*v**2/2 + d*u + e*v + p
 
     Source: eqs. (5)-(9); 82 operations as written, 72 here.
-
     Arrays: normals (k, 3), points (k, 3).
     """
     a_x, a_y, a_z = patch.a
@@ -126,7 +124,6 @@ def hessian_at_normal(patch, normals, hessians):
         H_yz = p_u_y*s_z + p_v_y*t_z
 
     Source: eqs. (1), (9); Hessian beyond the paper; 103 operations as written, 103 here.
-
     Arrays: normals (k, 3), hessians (k, 3, 3).
     """
     a_x, a_y, a_z = patch.a
@@ -204,7 +201,6 @@ def curvature_at_normal(patch, normals, K_values, H_values):
         H = g*(2*B*F - A*G - C*E)/2
 
     Source: eqs. (1), (9); curvatures beyond the paper; 100 operations as written, 100 here.
-
     Arrays: normals (k, 3), K_values (k,), H_values (k,).
     """
     a_x, a_y, a_z = patch.a
@@ -274,7 +270,6 @@ def branch(patch, normals, u_values, v_values, points, hessians, K_values, H_val
         H = g*(2*B*F - A*G - C*E)/2
 
     Source: eqs. (1), (5)-(9); curvatures beyond the paper; 168 operations as written, 158 here.
-
     Arrays: normals (k, 3), u_values (k,), v_values (k,), points (k, 3), hessians (k, 3, 3),
     K_values (k,), H_values (k,).
     """
@@ -353,7 +348,6 @@ def tangent_plane(normals, points, h_values):
         h = n·x
 
     Source: eqs. (2) and (4); 5 operations as written, 5 here.
-
     Arrays: normals (k, 3), points (k, 3), h_values (k,).
     """
     for row in range(normals.shape[0]):

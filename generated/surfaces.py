@@ -18,7 +18,6 @@ def torus(major, minor, u_values, v_values, points):
         x_z = minor*sin(v)
 
     Source: beyond the paper; 12 operations as written, 9 here.
-
     Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
     for row in range(u_values.shape[0]):
@@ -42,7 +41,6 @@ def ellipsoid(a, b, c, u_values, v_values, points):
         x_z = c*sin(v)
 
     Source: beyond the paper; 10 operations as written, 9 here.
-
     Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
     for row in range(u_values.shape[0]):
@@ -66,7 +64,6 @@ def ellipsoid_patch(a, b, c, u_values, v_values, points):
         x_z = c*sin(v)
 
     Source: beyond the paper; 10 operations as written, 9 here.
-
     Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
     for row in range(u_values.shape[0]):
@@ -90,7 +87,6 @@ def sphere(radius, u_values, v_values, points):
         x_z = radius*sin(v)
 
     Source: beyond the paper; 10 operations as written, 8 here.
-
     Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
     for row in range(u_values.shape[0]):
@@ -114,7 +110,6 @@ def hyperboloid(a, b, c, u_values, v_values, points):
         x_z = c*sinh(v)
 
     Source: beyond the paper; 10 operations as written, 9 here.
-
     Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
     for row in range(u_values.shape[0]):
@@ -138,7 +133,6 @@ def elliptic_paraboloid(a, b, u_values, v_values, points):
         x_z = v**2/b**2 + u**2/a**2
 
     Source: beyond the paper; 7 operations as written, 7 here.
-
     Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
     for row in range(u_values.shape[0]):
@@ -160,7 +154,6 @@ def hyperbolic_paraboloid(a, b, u_values, v_values, points):
         x_z = u**2/a**2 - v**2/b**2
 
     Source: beyond the paper; 7 operations as written, 7 here.
-
     Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
     for row in range(u_values.shape[0]):
@@ -183,7 +176,6 @@ def monkey_saddle(scale, u_values, v_values, points):
         x_z = scale*(u**3 - 3*u*v**2)
 
     Source: beyond the paper; 7 operations as written, 7 here.
-
     Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
     for row in range(u_values.shape[0]):
@@ -206,7 +198,6 @@ def enneper(scale, u_values, v_values, points):
         x_z = scale*(u**2 - v**2)
 
     Source: beyond the paper; 20 operations as written, 18 here.
-
     Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
     for row in range(u_values.shape[0]):
@@ -231,7 +222,6 @@ def catenoid(radius, u_values, v_values, points):
         x_z = radius*v
 
     Source: beyond the paper; 9 operations as written, 7 here.
-
     Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
     for row in range(u_values.shape[0]):
@@ -255,7 +245,6 @@ def helicoid(pitch, u_values, v_values, points):
         x_z = pitch*v
 
     Source: beyond the paper; 5 operations as written, 5 here.
-
     Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
     for row in range(u_values.shape[0]):
@@ -279,7 +268,6 @@ def moebius_band(radius, half_width, u_values, v_values, points):
         x_z = half_width*v*cos(u/2)
 
     Source: beyond the paper; 18 operations as written, 11 here.
-
     Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
     for row in range(u_values.shape[0]):
@@ -305,7 +293,6 @@ def dupin_cyclide(a, b, d, u_values, v_values, points):
         x_z = b*(sqrt(a**2 - b**2)*cos(u) - d)*sin(v)/(a - sqrt(a**2 - b**2)*cos(u)*cos(v))
 
     Source: beyond the paper; 60 operations as written, 28 here.
-
     Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
     for row in range(u_values.shape[0]):
@@ -334,7 +321,6 @@ def wavy_graph(amplitude, frequency, u_values, v_values, points):
         x_z = amplitude*sin(frequency*u)*cos(frequency*v)
 
     Source: beyond the paper; 6 operations as written, 6 here.
-
     Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
     for row in range(u_values.shape[0]):
@@ -357,7 +343,6 @@ def cylinder(radius, height, u_values, v_values, points):
         x_z = height*v
 
     Source: beyond the paper; 5 operations as written, 5 here.
-
     Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
     for row in range(u_values.shape[0]):
@@ -380,7 +365,6 @@ def cone(bottom, top, height, u_values, v_values, points):
         x_z = height*v
 
     Source: beyond the paper; 11 operations as written, 8 here.
-
     Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
     for row in range(u_values.shape[0]):
@@ -403,7 +387,6 @@ def plane(slope_u, slope_v, u_values, v_values, points):
         x_z = slope_u*u + slope_v*v
 
     Source: beyond the paper; 3 operations as written, 3 here.
-
     Arrays: u_values (k,), v_values (k,), points (k, 3).
     """
     for row in range(u_values.shape[0]):

@@ -7,12 +7,11 @@ import subprocess
 import sys
 import textwrap
 from collections.abc import Mapping
-from fractions import Fraction
 from pathlib import Path
 
 import sympy as sp
 
-from . import curve, gaussian_image, icosahedron, latex, mesh, patch, spline, support, surfaces
+from . import curve, gaussian_image, latex, mesh, patch, spline, support, surfaces, tables
 from .emit import functions, named_tuples, render
 from .loops import array_function
 from .positions import position
@@ -20,8 +19,6 @@ from .printer import source_of
 
 __all__ = ["GENERATED", "derive", "differences", "existing", "write"]
 
-# Enough for coefficients and normals of 340 bits together.
-PRIMES = 24
 GENERATED = Path(__file__).parent.parent / "generated"
 PROJECT = GENERATED.parent / "pyproject.toml"
 
@@ -147,12 +144,8 @@ def gaussian_image_source() -> str:
 
 def icosahedron_source() -> str:
     """Return generated/icosahedron.py: the tables of the icosahedron."""
-    tables = "\n".join(
-        f"{textwrap.fill(comment, 96, initial_indent='# ', subsequent_indent='# ')}\n{name} = "
-        + (repr(table) if isinstance(table, float) else f"np.array({table})")
-        for name, (comment, table) in icosahedron.tables().items()
-    )
-    return mathematics("The regular icosahedron: tables of its corners, edges and faces.", tables)
+    title = "The regular icosahedron: tables of its corners, edges and faces."
+    return mathematics(title, tables.icosahedron_tables())
 
 
 def mesh_source() -> str:
@@ -172,7 +165,7 @@ def spline_source() -> str:
     """Return generated/spline.py: where patches are on the grid, and the formulas of fitting."""
     return mathematics(
         "The C1 quadratic spline: the grid, and the formulas of symbolic/spline.py.",
-        f"{_grid_constants()}\n{_triangle_neighbours()}\n{_vertices()}",
+        tables.grid(),
         functions(spline.FORMULAS),
     )
 
@@ -180,7 +173,7 @@ def spline_source() -> str:
 def primes_source() -> str:
     """Return generated/primes.py: moduli for exact integers."""
     title = "The largest primes of which sums of twelve products of two fit into 64 bits."
-    return mathematics(title, f"PRIMES = np.array({_primes()})")
+    return mathematics(title, tables.primes())
 
 
 def support_source() -> str:
@@ -221,49 +214,7 @@ def signatures_source() -> str:
     return f"{_docstring(title)}\n\nfrom ..runtime.surface import Surface\n\n{functions}\n"
 
 
-# --- parts of the templates -----------------------------------------------------------------------
-
-
-def _grid_constants() -> str:
-    neighbours, corners = (
-        [[list(spline.quarter_turns(x, turns)) for x in places] for turns in range(4)]
-        for places in (
-            spline.NEIGHBOURS.values(),
-            [[float(x) for x in spline.SOUTH[key]] for key in ("200", "020")],
-        )
-    )
-    return (
-        f"SCALE = {spline.SCALE}.0\n"
-        f"NEIGHBOURS = np.array({neighbours})\n"
-        f"CORNERS = np.array({corners})"
-    )
-
-
-def _primes() -> list[int]:
-    """Return the largest primes of which sums of twelve products of two fit into 64 bits."""
-    primes = [2**29]
-    while len(primes) <= PRIMES:
-        primes.append(int(sp.prevprime(primes[-1])))
-    return primes[1:]
-
-
-def _triangle_neighbours() -> str:
-    """Return which of the nine coefficients the formula `triangle` reads, in its order."""
-    places = [k for k, x in enumerate(spline.MU.values()) if x in spline.TRIANGLE.inputs]
-    return f"TRIANGLE_NEIGHBOURS = np.array({places})"
-
-
-def _vertices() -> str:
-    """Return where the vertices round a cell are, in the order of `coefficient_from_vertices`.
-
-    They are counted from the vertex one step south and one step west of those of the cell.
-    """
-    places = [
-        [int(s + Fraction(3, 2)), int(t + Fraction(3, 2))]
-        for points in spline.VERTEX_ORBITS.values()
-        for s, t in points
-    ]
-    return f"VERTICES = np.array({places})"
+# --- the catalogue of surfaces --------------------------------------------------------------------
 
 
 def _signature(surface: surfaces.ParametricSurface) -> str:

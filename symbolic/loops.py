@@ -36,7 +36,6 @@ def array_function(formula: Formula, over: Collection[sp.Symbol]) -> str:
     arrays = {_array(name): _shape(name, x) for name, x in (inputs | outputs).items()}
     body = [
         *described(formula),
-        "",
         *textwrap.wrap(f"Arrays: {', '.join(f'{x} {y}' for x, y in arrays.items())}.", WIDTH),
         '"""',
         *(line for item in given.items() for line in unpacked(*item)),

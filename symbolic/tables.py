@@ -1,0 +1,80 @@
+"""Tables of constants, as source for Numba: the grid, the icosahedron, primes."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Sequence
+from fractions import Fraction
+
+import sympy as sp
+
+from . import icosahedron, spline
+
+__all__ = ["grid", "icosahedron_tables", "primes"]
+
+# Enough for coefficients and normals of 340 bits together.
+PRIMES = 24
+WIDTH = 106  # of the longest row of small numbers
+SHORT = 20
+
+
+def grid() -> str:
+    """Return where things are round a cell: what patches and fitting read, in their order.
+
+    NEIGHBOURS and CORNERS are given for each of the four patches. VERTICES are those that the
+    formula `coefficient_from_vertices` reads, counted from the vertex one step south and one step
+    west of those of the cell; TRIANGLE_NEIGHBOURS are those of the nine coefficients that the
+    formula `triangle` reads.
+    """
+    neighbours, corners = (
+        [[list(spline.quarter_turns(x, turns)) for x in places] for turns in range(4)]
+        for places in (
+            spline.NEIGHBOURS.values(),
+            [[float(x) for x in spline.SOUTH[key]] for key in ("200", "020")],
+        )
+    )
+    read = [k for k, x in enumerate(spline.MU.values()) if x in spline.TRIANGLE.inputs]
+    vertices = [
+        [int(s + Fraction(3, 2)), int(t + Fraction(3, 2))]
+        for points in spline.VERTEX_ORBITS.values()
+        for s, t in points
+    ]
+    return "\n".join(
+        [
+            f"SCALE = {spline.SCALE}.0",
+            _array("NEIGHBOURS", neighbours),
+            _array("CORNERS", corners),
+            _array("TRIANGLE_NEIGHBOURS", read),
+            _array("VERTICES", vertices),
+        ]
+    )
+
+
+def icosahedron_tables() -> str:
+    """Return the tables of the icosahedron, each after a comment."""
+    return "\n".join(
+        f"{textwrap.fill(comment, 96, initial_indent='# ', subsequent_indent='# ')}\n"
+        + (f"{name} = {table!r}" if isinstance(table, float) else _array(name, table))
+        for name, (comment, table) in icosahedron.tables().items()
+    )
+
+
+def primes() -> str:
+    """Return the largest primes of which sums of twelve products of two fit into 64 bits."""
+    found = [2**29]
+    while len(found) <= PRIMES:
+        found.append(int(sp.prevprime(found[-1])))
+    return _array("PRIMES", found[1:])
+
+
+def _array(name: str, values: Sequence[object]) -> str:
+    """Return an array as a constant: long rows one a line, short ones and numbers side by side."""
+    text = f"{name} = np.array({values})"
+    if len(text) <= WIDTH:
+        return text
+    rows = [repr(x) for x in values]
+    if min(map(len, rows)) < SHORT:
+        rows = [", ".join(rows)]
+    lines = [line for x in rows for line in textwrap.wrap(f"{x},", WIDTH, break_on_hyphens=False)]
+    filled = textwrap.indent("\n".join(lines), "    ")
+    return f"{name} = np.array([\n{filled}\n])  # fmt: skip"
