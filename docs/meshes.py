@@ -179,12 +179,12 @@ HEAD = """\
 Written by `make meshes`: do not edit.
 
 Triangle meshes of three surfaces with M vertices, about {counts}. The vertices of `samples.mesh()`
-are the samples of `gm.sample(count=…)` ("balanced") and points on open borders, M in all; edges are
-flipped until no flip reduces the angles between two triangles and the normals at their corners. The
-row below it is the triangulation from which the flips start. In a grid of parameters, each cell is
-cut along one diagonal. Gmsh meshes by curvature, Open CASCADE by angular deflection: the torus is
-one of their primitives, the other two surfaces are given to them as cubic B-splines through 61 × 61
-points. Vertices that coincide count once. Columns:
+are the samples of `gm.sample(count=…)` ("balanced", see the [glossary](glossary.md)) and points on
+open borders, M in all; edges are flipped until no flip reduces the angles between two triangles and
+the normals at their corners. The row below it is the triangulation from which the flips start. In a
+grid of parameters, each cell is cut along one diagonal. Gmsh meshes by curvature, Open CASCADE by
+angular deflection: the torus is one of their primitives, the other two surfaces are given to them
+as cubic B-splines through 61 × 61 points. Vertices that coincide count once. Columns:
 
 - **surface → mesh**: the largest distance of {places:,} points of the exact surface (uniform by
   area) from the mesh, in the unit of the surface;

@@ -53,7 +53,8 @@ Points **with normals**, as NumPy arrays, of three surfaces. Columns:
   64 × 64 cells to values of the surface;
 - **E** and **G**, in degrees: the largest angles between the normals of {places:,} points of the
   surface, uniform by area, and the normals of {judged} samples. For E the sample is the nearest
-  one in space; for G it is the nearest one in normal, among those with the same sign of K.
+  one in space; for G it is the nearest one in normal, among those with the same sign of K
+  ([glossary](glossary.md)).
 
 Splipy and geomdl use a cubic B-spline that interpolates the surface at {net} × {net} points; in
 their rows gaussmap samples the same B-spline, evaluated by Splipy. Gmsh and Open CASCADE mesh this

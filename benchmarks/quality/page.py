@@ -24,7 +24,8 @@ gaussmap were chosen on the first three, and were not changed for the other two.
 - **E** and **G**, in degrees: the largest angles between the normals of {places:,} points of the
   surface, uniform by area, and the normals of samples. For E the sample is the nearest one in
   space; for G it is the nearest one in normal, among those with the same sign of K. A plane has one
-  normal, so that neither E nor G shows whether it is sampled;
+  normal, so that neither E nor G shows whether it is sampled
+  ([glossary](glossary.md));
 - **points/s**: the median of several runs (relaxed: one run); for {large:,} points one run, after
   the others, and only if it takes less than about {feasible:g} s;
 - **balanced**: the speed of `gm.sample(surface, count=…)` for the same count, relative to that of
