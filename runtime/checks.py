@@ -28,6 +28,7 @@ __all__ = [
     "real_array",
     "real_values",
     "whole_number",
+    "yes_or_no",
 ]
 
 
@@ -71,6 +72,14 @@ def as_float(value: SupportsFloat | str) -> float:
     ):
         raise TypeError("neither complex nor masked arrays are real numbers")
     return float(value)
+
+
+def yes_or_no(value: object, name: str) -> bool:
+    """Return whether a value is true; InputError with its name for arrays, which are not."""
+    try:
+        return bool(value)
+    except Exception:
+        raise InputError(f"{name} must be True or False, not {shown(value)}.") from None
 
 
 def finite_number(value: SupportsFloat, name: str) -> float:

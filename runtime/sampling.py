@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from .bins import NormalBins
+from .checks import yes_or_no
 from .choice import choose
 from .density.filling import filled_samples
 from .density.request import Request, checked_request
@@ -239,9 +240,11 @@ def sample_many(
 
     request = checked_request(normals, count, angle, coverage, density, relax, threads)
     wanted, number = checked_fields(fields), checked_dtype(dtype)
-    if isinstance(surfaces, str) or not isinstance(surfaces, Iterable):
+    shows = yes_or_no(progress, "progress")
+    flat = isinstance(surfaces, np.ndarray) and surfaces.ndim == 0
+    if isinstance(surfaces, str) or flat or not isinstance(surfaces, Iterable):
         raise InputError(f"sample_many takes surfaces to go through, not {shown(surfaces)}.")
-    bar = tqdm(surfaces, desc="sampling", unit="surface", disable=None if progress else True)
+    bar = tqdm(surfaces, desc="sampling", unit="surface", disable=None if shows else True)
     for place, surface in enumerate(bar):
         try:
             samples, _ = sample_and_normals(

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from itertools import islice
 from typing import TypeVar
 
-from .checks import whole_number
+from .checks import whole_number, yes_or_no
 
 __all__ = ["counted", "over_ranges", "shown", "thread_count"]
 
@@ -94,4 +94,4 @@ def counted(count: int | None, progress: bool) -> Iterator[Callable[[int], objec
 
 
 def _seen(progress: bool) -> bool:
-    return progress and sys.stderr is not None and sys.stderr.isatty()
+    return yes_or_no(progress, "progress") and sys.stderr is not None and sys.stderr.isatty()

@@ -3,19 +3,7 @@
 `formulas` holds every formula by its name. `BezierTriangle` does the algebra for one given patch.
 """
 
-from collections.abc import Mapping
-from types import MappingProxyType
+import lazy_loader
 
-from . import curve, gaussian_image, mesh, patch, spline, support
-from .bezier import BezierTriangle
-from .formula import Formula
-
-__all__ = ["BezierTriangle", "Formula", "formulas"]
-
-formulas: Mapping[str, Formula] = MappingProxyType(
-    {
-        formula.name: formula
-        for module in (patch, gaussian_image, spline, support, mesh, curve)
-        for formula in module.FORMULAS
-    }
-)
+# The names are in __init__.pyi: to read a text of a user takes no derivation.
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

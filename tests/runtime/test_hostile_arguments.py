@@ -6,6 +6,7 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.runtime.cli import main
 from gaussmap.runtime.errors import in_memory, shown
 
 TORUS = gm.surfaces.torus()
@@ -193,3 +194,77 @@ def test_values_are_shown_on_one_short_line() -> None:
     assert shown(Unprintable()) == "something of type Unprintable"
     assert len(shown("x" * 1000)) == 60
     assert shown("\ud800").encode() == rb"'\ud800'"
+
+
+def consumed(call: Any, *arguments: Any, **named: Any) -> None:
+    """Go through what a call yields."""
+    for _ in call(*arguments, **named):
+        pass
+
+
+@pytest.mark.parametrize("value", HOSTILE, ids=NAMES)
+def test_progress(value: Any, samples: gm.Samples) -> None:
+    spline = samples.spline
+    assert spline is not None
+    answered(gm.sample, spline, 50, progress=value)
+    answered(gm.silhouette, spline, (0, 0, 1), count=10, progress=value)
+    answered(consumed, gm.sample_many, [spline], 50, progress=value)
+    answered(consumed, gm.sample_stream, spline, 50, progress=value)
+
+
+@pytest.mark.parametrize("value", HOSTILE, ids=NAMES)
+def test_many_surfaces_and_streams(value: Any, samples: gm.Samples) -> None:
+    spline = samples.spline
+    assert spline is not None
+    answered(consumed, gm.sample_many, value, 10, progress=False)
+    answered(consumed, gm.sample_many, [value], 10, progress=False)
+    answered(consumed, gm.sample_stream, value, 10)
+    for name in ("count", "normals", "fields", "dtype", "threads"):
+        arguments = {"count": None if name == "normals" else 10, name: value}
+        answered(consumed, gm.sample_many, [spline], **arguments, progress=False)
+        answered(consumed, gm.sample_stream, spline, **arguments)
+    answered(consumed, gm.sample_stream, spline, 10, chunk=value)
+    answered(consumed, gm.sample_stream, TORUS, 10, cells=value)
+
+
+@pytest.mark.parametrize("value", HOSTILE, ids=NAMES)
+def test_methods_of_splines(value: Any, samples: gm.Samples) -> None:
+    spline = samples.spline
+    assert spline is not None
+    for call in (spline.evaluate, spline.normals):
+        answered(call, value, 0.5)
+        answered(call, 0.5, value)
+    answered(samples.mesh, value)
+    answered(samples.coverage, value)
+    answered(samples.coverage, threads=value)
+
+
+@pytest.mark.parametrize("value", HOSTILE, ids=NAMES)
+def test_healpix(value: Any) -> None:
+    pytest.importorskip("astropy_healpix")
+    answered(gm.directions.healpix, value)
+
+
+LONE = "\udc80"
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        [LONE], ["sample", LONE], ["sample", LONE, "-o", "x.npz"], ["sample", "torus", "-o", LONE],
+        ["sample", "torus", f"--{LONE}"], ["sample", "torus", "--set", f"minor={LONE}"],
+        ["sample", "torus", "--count", LONE, "-o", "x.npz"], ["surfaces", LONE],
+        ["sample", f"{LONE}.npy", "-o", "x.npz"], ["formulas", LONE], ["mesh", f"{LONE}.npz"],
+        ["sample", "torus", "-o", f"nowhere/{LONE}.ply"],
+    ],
+    ids=lambda x: ascii(" ".join(x)),
+)  # fmt: skip
+def test_lone_surrogates_on_the_command_line(
+    arguments: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A byte that is no UTF-8 arrives as a lone surrogate."""
+    assert main(arguments) == 2
+    message = capsys.readouterr().err
+    assert message.startswith("gaussmap: error: ")
+    assert message.count("\n") == 1
+    assert message.encode()

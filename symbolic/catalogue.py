@@ -1,0 +1,17 @@
+"""Every formula by its name."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from . import curve, gaussian_image, mesh, patch, spline, support
+from .formula import Formula
+
+__all__ = ["formulas"]
+
+formulas: Mapping[str, Formula] = MappingProxyType(
+    {
+        formula.name: formula
+        for module in (patch, gaussian_image, spline, support, mesh, curve)
+        for formula in module.FORMULAS
+    }
+)
