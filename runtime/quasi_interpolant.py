@@ -12,6 +12,7 @@ from .domain import Domain, Ends
 from .errors import InputError, SurfaceError, shown
 from .ghosts import Border, Sides, coefficients_with_ring, vertices_with_ring
 from .kernels import spline as kernels
+from .memory import check_memory
 from .spline import LARGEST_EXPONENT, Spline
 
 __all__ = ["apart", "checked_cells", "fit_grid", "fit_values", "not_too_large"]
@@ -19,6 +20,8 @@ __all__ = ["apart", "checked_cells", "fit_grid", "fit_values", "not_too_large"]
 MOST_CELLS = 10**9
 # What is said to be one point may be this far apart, relative to the size of the surface.
 SAME_POINT = 1e-6
+# The values at centres and vertices, and the coefficients of a cell, of three numbers each.
+BYTES_A_CELL = 72
 
 
 def fit_values(
@@ -95,6 +98,7 @@ def checked_cells(cells: Sequence[int], ends: Ends) -> tuple[int, int]:
         raise InputError(f"at least 3 x 3 cells are needed, not {m} x {n}.")
     if m * n > MOST_CELLS:
         raise InputError(f"at most {MOST_CELLS:,} cells are possible, not {m:,} x {n:,}.")
+    check_memory(BYTES_A_CELL * m * n, f"{m:,} x {n:,} cells")
     if "pole" in ends[1] and m % 2:
         raise InputError(f"a surface with a pole needs an even number of cells along u, not {m}.")
     return m, n

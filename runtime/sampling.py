@@ -14,8 +14,9 @@ from .choice import choose
 from .density.filling import filled_samples
 from .density.request import Request, checked_request
 from .errors import GaussmapError, GaussmapWarning, InputError, in_memory, shown
-from .fields import checked_dtype, checked_fields
+from .fields import COLUMNS, checked_dtype, checked_fields
 from .fitting import spline_of
+from .memory import check_memory
 from .report import sampling_report, warn_of
 from .samples import Samples
 from .search import fill, find
@@ -159,6 +160,9 @@ def sample_and_normals(
     """Return what `sample` returns, and the unit normals that were asked."""
     wanted, number = checked_fields(fields), checked_dtype(dtype)
     filled = request.density != "gauss"
+    if request.count is not None:
+        row = sum(len(COLUMNS[name]) for name in wanted) * number.itemsize
+        check_memory(request.count * row, f"{request.count:,} samples")
     spline = spline_of(surface, cells, number)
     sampled = filled_samples if filled else _by_normals
     samples, normals = sampled(spline, request, wanted, number, threads, progress)

@@ -24,6 +24,7 @@ DEEPEST_TREE = 200
 MOST_STEPS = 10_000  # operations and calls, those of sums counted for each term
 MOST_BITS = 2048  # twice what a float64 can hold
 MOST_TERMS = 1000  # of a Sum or a Product
+MOST_COMPARED = 12  # values in Min and Max, which SymPy compares in pairs, at 5 ms each
 LARGEST_ARGUMENT = 100  # of functions that SymPy computes exactly, such as factorial
 
 CONSTANTS = {
@@ -161,7 +162,7 @@ class _Reader:
 
     def __init__(self, source: str, symbols: Mapping[str, Any], exact: bool) -> None:
         self.source, self.symbols, self.exact = source, dict(symbols), exact
-        self.depth = self.steps = 0
+        self.depth = self.steps = self.pairs = 0
         self.operations: dict[type, Callable[[Any], Any]] = {
             ast.Constant: self._number,
             ast.Name: self._name,
@@ -275,11 +276,20 @@ class _Reader:
         if name not in FUNCTIONS | EXACT | SPECIAL:
             _refuse_function(name)
         arguments = [self._of(x) for x in node.args]
+        if name in ("Min", "Max"):
+            self._count_compared(arguments)
         if name in EXACT and any(
             x.is_number and not abs(_value(x)) <= LARGEST_ARGUMENT for x in arguments
         ):
             _refuse_size()
         return (FUNCTIONS | EXACT | SPECIAL)[name](*arguments)
+
+    def _count_compared(self, arguments: list[Any]) -> None:
+        """Refuse more pairs in all Min and Max than there are of MOST_COMPARED values."""
+        values = sum(len(x.args) if isinstance(x, sp.Min | sp.Max) else 1 for x in arguments)
+        self.pairs += values * values
+        if self.pairs > MOST_COMPARED**2:
+            raise ReadingError(f"its Min and Max compare more than {MOST_COMPARED} values")
 
     def _pair(self, node: ast.AST) -> tuple[Any, Any]:
         """Return a value and its condition, in Piecewise."""

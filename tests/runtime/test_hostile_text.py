@@ -93,6 +93,9 @@ TOO_LONG = [
     "u" + "+u" * 9000,
     "u" + "+u" * 10**6,
     "Sum(u, (k, 1, 10**9))",
+    f"Min({', '.join(f'sin({k}*u)' for k in range(100))})",
+    f"Max({', '.join(f'Max(u, cos({k}*u))' for k in range(7))})",
+    "Sum(Min(u, k), (k, 1, 999))",
     "Sum(Sum(Sum(u*k*j*i, (k, 1, 999)), (j, 1, 999)), (i, 1, 999))",
 ]
 
