@@ -19,9 +19,9 @@ from .threads import over_ranges, thread_count
 __all__ = ["NormalBins"]
 
 NORMALS_PER_BIN = 4
-# Normals are sorted by a thread for so many at least, and by so many threads at most.
+# The least number of normals for each thread that sorts them, and the largest number of threads.
 FEWEST_NORMALS, MOST_COUNTS = 1 << 16, 8
-# A cap of normals is not taken for narrower than this, the tangent of half its angle.
+# The least radius of a cap of normals, as the tangent of half its angle.
 NARROWEST = 2.0**-20
 
 
@@ -30,7 +30,7 @@ class NormalBins:
     """Unit normals (S, 3), sorted into the squares of a cube round the sphere.
 
     Normals that all lie in a cap are first mapped linearly, so that they fill a face of the cube.
-    The points of a refined icosahedron need no bins: each is where its number says.
+    The points of a refined icosahedron need no bins: their positions follow from their numbers.
     """
 
     normals: NDArray[np.float64]

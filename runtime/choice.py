@@ -17,15 +17,15 @@ from .visibility import visible_solid_angle
 
 __all__ = ["Chosen", "choose"]
 
-# `count` is met by changing the number of normals, until it is this near or after so many tries.
+# The accuracy to which `count` is met by changing the number of normals, and the most attempts.
 NEAR_ENOUGH = 0.01
 TRIES = 20
-# The first tries follow the proportion, the others change the density by this up and down: few
-# samples come and go several at once.
+# The first attempts change the density in proportion, the others by this factor up and down: if
+# there are few samples, several appear or vanish at once.
 IN_PROPORTION, DITHER = 6, 0.008
-# At most this many normals for each sample that was asked (a thin Gaussian image catches few).
+# At most this many normals for each requested sample (a thin Gaussian image has few of them).
 NORMALS_PER_SAMPLE = 100
-# A larger count is not tried, but concluded from this one.
+# For a larger count, the density is extrapolated from this one.
 PILOT = 1_000_000
 
 
@@ -33,7 +33,7 @@ PILOT = 1_000_000
 class Chosen:
     """The normals to search for, `density` of them per steradian: an array, or those of a lattice.
 
-    If they have been searched already, `found` is what came.
+    If they have been searched already, `found` is the result.
     """
 
     source: NDArray[np.float64] | Lattice
@@ -56,9 +56,9 @@ class Chosen:
 def choose(
     spline: Spline, asked: NDArray[np.float64] | int, threads: int | None, progress: bool
 ) -> Chosen:
-    """Return the normals that are asked, or those that bring about so many samples.
+    """Return the prescribed normals `asked`, or normals with about `asked` samples.
 
-    More samples than `PILOT` are not tried: how many normals they need follows from so many.
+    For more samples than `PILOT`, the number of normals is extrapolated from that.
     """
     if not isinstance(asked, int):
         return Chosen(asked, len(asked) / (4 * math.pi))

@@ -1,12 +1,12 @@
-"""Deciding exactly what rounding leaves open: whether a patch has a normal.
+"""Exact decisions whether a patch has a normal, where rounding leaves that open.
 
 Coefficients and normals are binary fractions, and the formulas need only +, − and ×: computed with
-more bits, and at last on integers, they give the exact sign of every form. What is exactly zero (a
-normal on the boundary of two patches, or at a parabolic line) is decided as if the normal were
-moved by an infinitesimal generic vector, the same for all patches: the moved normal lies on no
-boundary at all, so that exactly one of the patches that meet there claims it. Only at the open
-border of the domain is rounding forgiven: a normal that leaves the domain by no more than the error
-of the data belongs to it.
+more bits, and finally on integers, they give the exact sign of every form. Exact zeros (a normal on
+the common boundary of two Gaussian images, or of a parabolic line) are decided by simulation of
+simplicity, as if the normal were moved by an infinitesimal generic vector, the same for all
+patches: the moved normal lies on no boundary, so that exactly one of the patches has it. Only at
+the open border of the domain there is a tolerance: a normal whose point lies outside of the domain
+by no more than the error of the data belongs to it.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ from .tolerances import SINGULAR_POINT
 __all__ = ["Decision", "decide"]
 
 PAIRS_AT_A_TIME = 1 << 8
-# Python integers take memory: some hundred bytes for each of the many that a pair needs.
+# Python integers take memory: about a hundred bytes for each of the many of a pair.
 LONG_PAIRS_AT_A_TIME = 1 << 14
-# Numbers in one pair may differ by so many powers of two, if they are not to be long.
+# The exponents in one pair may differ by this before integers of any length are needed.
 MOST_SHIFTED = 512
 # Two samples of one normal at the open border that are closer than this (in cells) are one.
 SAME_PLACE = 1e-6

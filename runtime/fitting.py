@@ -23,13 +23,13 @@ DEFAULT_CELLS = (64, 64)
 def spline_of(
     surface: Surface | Spline | str, cells: Sequence[int] | None, dtype: DTypeLike = np.float64
 ) -> Spline:
-    """Return a spline as it is, or that of a surface or of the name of one.
+    """Return a spline unchanged, or the spline of a surface or of a surface's name.
 
-    Raises InputError for `cells` beside a spline; SurfaceError if its points, which are to be
-    stored as `dtype`, are beyond the range of that.
+    Raises InputError for `cells` with a spline; SurfaceError if its points are beyond the range of
+    `dtype`.
     """
     if isinstance(surface, Spline) and cells is not None:
-        raise InputError("cells=... is for surfaces; this spline has its cells already.")
+        raise InputError("cells=... is for surfaces; this spline already has its cells.")
     spline = surface if isinstance(surface, Spline) else fit(surface, cells)
     largest, limits = float(np.abs(spline.coefficients).max()), np.finfo(np.zeros(0, dtype).dtype)
     if not float(limits.tiny) <= largest <= float(limits.max) and largest > 0.0:

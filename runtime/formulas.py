@@ -1,4 +1,4 @@
-"""All formulas by their names, for people: a name that is none is answered with those near it."""
+"""All formulas by their names; for an unknown name, the error has the similar ones."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ __all__ = ["Formulas", "formulas"]
 
 
 class Formulas(Mapping[str, "Formula"]):
-    """The formulas of `gaussmap.symbolic` by their names; SymPy is loaded when they are asked for.
+    """The formulas of `gaussmap.symbolic` by their names; SymPy is loaded at the first use.
 
-    `formulas[name]` raises UnknownNameError, with the names that are near, if there is none.
+    `formulas[name]` raises UnknownNameError, with similar names, if there is none.
     """
 
     @cached_property

@@ -1,4 +1,4 @@
-"""The normals for a wanted number of samples: a Fibonacci lattice round the mean normal."""
+"""The normals for a requested number of samples: a Fibonacci lattice round the mean normal."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ __all__ = ["Lattice"]
 
 @dataclass(frozen=True, eq=False)
 class Lattice:
-    """A Fibonacci lattice round `axis`, cut off where the cosine to the axis falls below `cosine`.
+    """A Fibonacci lattice round `axis`, on the cap of cosines to the axis of at least `cosine`.
 
-    A cap that is not much smaller than the sphere is taken as the whole sphere round +z.
+    Caps larger than a hemisphere are replaced by the whole sphere round +z.
     """
 
     axis: NDArray[np.float64]
@@ -57,7 +57,7 @@ class Lattice:
         return count / self.solid_angle
 
     def size(self, density: float) -> int:
-        """Return how many normals there are if `density` of them are asked per steradian."""
+        """Return the number of normals for a `density` per steradian."""
         if self.cosine == -1.0:
             return max(1, round(4 * math.pi * density))
         return max(1, math.floor(max(density, self.density_of(1)) * self.solid_angle))

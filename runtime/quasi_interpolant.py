@@ -68,7 +68,7 @@ def _spline(
 def apart(
     first: NDArray[np.float64], second: NDArray[np.float64], points: NDArray[np.float64]
 ) -> bool:
-    """Say whether what should be the same differs by more than rounding, beside all points."""
+    """Return whether equal points differ by more than rounding, relative to all points."""
     extent = points.max(axis=0).max(axis=0) - points.min(axis=0).min(axis=0)  # fastest this way
     size = float(extent.max())
     rounding = 64.0 * float(np.spacing(np.abs(points).max()))

@@ -17,8 +17,8 @@ from .visibility import invisible_share
 __all__ = ["sampling_report", "warn_of"]
 
 WORTH_A_WARNING = 0.01
-# A count is missed if it is by more than this share of it and so many samples: on a symmetric
-# surface several come and go at once.
+# A count is missed if the difference exceeds this share of it plus this number of samples: on a
+# symmetric surface several appear or vanish at once.
 COUNT_TOLERANCE, FEW = 0.02, 5
 
 
@@ -30,7 +30,7 @@ def sampling_report(
     developable: int | None,
     arrays: Mapping[str, NDArray[Any]] = MappingProxyType({}),
 ) -> SamplingReport:
-    """Return how a sampling with `density` normals per steradian went, which gave `arrays`."""
+    """Return the report of a sampling with `density` normals per steradian and its `arrays`."""
     return SamplingReport(
         surface=spline.name,
         normals=normals,
@@ -61,7 +61,7 @@ def warn_of(
 
 
 def _unseen(report: SamplingReport) -> list[str]:
-    """Say which part of the surface normals cannot sample."""
+    """Return reasons: the part of the surface that no set of normals samples."""
     share = report.invisible_share or 0.0
     if share > WORTH_A_WARNING:
         return [
@@ -74,7 +74,7 @@ def _unseen(report: SamplingReport) -> list[str]:
 
 
 def _missed(report: SamplingReport, count: int | None, coverage: float | None) -> list[str]:
-    """Say which requested numbers are not met."""
+    """Return reasons: the requested numbers that are not met."""
     reasons = []
     if count is not None and abs(report.samples - count) > COUNT_TOLERANCE * count + FEW:
         reasons.append(f"there are {report.samples} samples instead of the requested {count}")

@@ -45,26 +45,27 @@ _SHARE_ROUNDING = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class SamplingReport:
-    """How a sampling went, as plain numbers.
+    """A report on a sampling.
 
-    A number is None when nobody knows it: a .ply file that another program rewrote holds the
-    samples, but no longer the report.
+    A number is None if it is unknown: a .ply file that another program rewrote has the samples, but
+    not the report.
 
     - `surface`: label of the surface.
-    - `normals`: how many normals were asked.
-    - `samples`: how many samples came.
-    - `patches`: how many patches the surface was cut into.
-    - `invisible_share`: share of the surface's area that normals cannot see, from 0 to 1.
-    - `degenerate_patches`: how many patches are developable up to the rounding of their
-      coordinates, and so have no support function (those round a pole are among them).
-    - `coverage`: how far any point of the surface is from the nearest sample, at most, in L. Known
-      if a coverage was asked; see also `Samples.coverage`.
-    - `angle`: how large the angle, in degrees, between the normal of a point of the surface and
-      that of the sample nearest in normal is, at most. Known if an angle was asked.
-    - `infinite_curvatures`: at how many samples the Gaussian curvature is infinite: at singular
-      points of the spline, which a coarse one may have, and where 1/L² is beyond the largest
-      number of its type, on surfaces smaller than 1e-154 (1e-19 with float32). Known if
-      `gaussian_curvature` was asked.
+    - `normals`: the number of prescribed normals.
+    - `samples`: the number of samples.
+    - `patches`: the number of patches of the spline.
+    - `invisible_share`: the developable share of the area (K ≈ 0), from 0 to 1, which no set of
+      normals samples.
+    - `degenerate_patches`: the number of patches that are developable up to the rounding of their
+      coordinates, and so have no support function (those at a pole are among them).
+    - `coverage`: a bound of the distance of any point of the surface from the nearest sample, in L.
+      Known if a coverage was requested; see also `Samples.coverage`.
+    - `angle`: a bound of the angle, in degrees, between the normal of any point of the surface and
+      that of the sample nearest in normal. Known if an angle was requested.
+    - `infinite_curvatures`: the number of samples with infinite Gaussian curvature: at singular
+      points of the spline, which a coarse one may have, and where 1/L² exceeds the largest number
+      of its type, on surfaces smaller than 1e-154 (1e-19 with float32). Known if
+      `gaussian_curvature` was requested.
 
     Raises InputError if a count is not an integer or is negative, the share is outside 0…1, or the
     label is not a string.
@@ -106,18 +107,18 @@ class Samples:
     - `normals`: (N, 3) float64, unit normals at the points.
     - `uv`: (N, 2) float64, the surface's own parameters of the points.
     - `support`: (N,) float64, support function n·x, in L.
-    - `gaussian_curvature`: (N,) float64, in 1/L². Its sign bit tells elliptic from hyperbolic, so
+    - `gaussian_curvature`: (N,) float64, in 1/L². It is hyperbolic where the sign bit is set, so
       −0.0 counts as hyperbolic. On surfaces smaller than 1e-154 it may be infinite, on those larger
       than 1e154 zero: float64 does not hold it.
     - `mean_curvature`: (N,) float64, in 1/L, positive for a sphere with outward normals.
-    - `normal_index`: (N,) int64, row of the normals that were asked; −1 for a sample that was
-      added for coverage.
-    - `patch_index`: (N,) int64, patch of the surface that holds the point.
-    - `report`: how the sampling went.
-    - `spline`: the spline that was sampled; None if nobody knows it, as for samples from a file.
+    - `normal_index`: (N,) int64, row of the prescribed normals; −1 for a sample that fills a gap.
+    - `patch_index`: (N,) int64, patch of the spline that contains the point.
+    - `report`: a report on the sampling.
+    - `spline`: the spline that was sampled; None if it is unknown, as for samples from a file.
 
-    All numbers but the indices may be float32 instead, if that was asked. What was not asked
-    (`fields` of `sample`) is not there: reading it raises MissingFieldError, an AttributeError.
+    With `dtype=numpy.float32`, all numbers except the indices are float32. Fields that were not
+    requested (`fields` of `sample`) are missing: reading them raises MissingFieldError, an
+    AttributeError.
 
     All arrays are C-contiguous; an array that is not is copied. Raises InputError if an array has
     another shape or dtype, or if there is none.
@@ -247,11 +248,11 @@ class Samples:
             return both.astype(self.dtype, copy=False)
 
     def progressive(self) -> Samples:
-        """Return the same samples in an order of which every beginning is a good sampling itself.
+        """Return the same samples in an order in which every prefix is well distributed.
 
-        The first ones are far apart, beside the spacing of the samples round them; those that come
-        next halve the gaps, and so on. Take as many of them as you like: `samples[:1000]`. Spacings
-        below a thousandth of the median count as such. Needs the fields points and normals, else
+        The first ones are far apart relative to the local spacing of the samples; the next ones
+        halve the gaps, and so on. Any prefix can be used: `samples[:1000]`. Spacings below a
+        thousandth of the median count as that. Needs the fields points and normals, else
         MissingFieldError.
         """
         from .density.progressive import progressive_order

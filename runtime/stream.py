@@ -23,7 +23,7 @@ from .threads import over_ranges, shown
 
 __all__ = ["sample_stream"]
 
-# So many normals are searched at a time: with what is found they take some 150 MB.
+# The number of normals that are searched at a time: with their samples they take about 150 MB.
 NORMALS_AT_A_TIME = 1 << 20
 
 

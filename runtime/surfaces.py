@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..generated.surfaces import CATALOGUE as _GENERATED
-from . import compiling  # noqa: F401 - it tells that kernels are compiled
+from . import compiling  # noqa: F401 - announces compilation on terminals
 from .checks import known_name
 from .domain import Domain, Ends
 from .errors import InputError, shown
@@ -134,7 +134,7 @@ def surface(name: str, /, **parameters: float) -> Surface:
 
 
 def named(value: T | str) -> T | Surface:
-    """Return what is no text as it is, and for a text the surface of the catalogue of that name.
+    """Return the surface of the catalogue for a name, and any other value unchanged.
 
     Every function that takes a surface calls this first. Raises UnknownNameError for other names.
     """

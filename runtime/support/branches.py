@@ -1,4 +1,4 @@
-"""What a support function has at given normals: one row for each branch."""
+"""The values of a support function at given normals: one row for each branch."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import compiling  # noqa: F401 - it tells that kernels are compiled
+from .. import compiling  # noqa: F401 - announces compilation on terminals
 from ..kernels import support as kernels
 from ..spline import scales_to_one
 
@@ -20,7 +20,7 @@ class Branches:
 
     Lengths are in the unit L of the surface.
 
-    - `normal_index`: (k,) int64, row of the normals that were asked.
+    - `normal_index`: (k,) int64, row of the prescribed normals.
     - `normals`: (k, 3) float64, these normals, of unit length.
     - `support`: (k,) float64, the support function h(n) = n·x (4), in L.
     - `points`: (k, 3) float64, the point x(n) of the envelope (5), in L.
@@ -28,7 +28,7 @@ class Branches:
       degree 1) in L: hessian @ n = 0, and the eigenvalues in the tangent plane are the radii.
     - `principal_radii`: (k, 2) float64, signed principal radii of curvature in L, the larger one
       first; positive on a sphere with outward normals.
-    - `gaussian_curvature`: (k,) float64, in 1/L². Its sign bit tells elliptic from hyperbolic.
+    - `gaussian_curvature`: (k,) float64, in 1/L². It is hyperbolic where the sign bit is set.
     - `mean_curvature`: (k,) float64, in 1/L, positive on a sphere with outward normals.
     - `patch_index`: (k,) int64, patch of the spline; −1 where there is none or more than one.
     - `uv`: (k, 2) float64, parameters of the point; NaN where patch_index is −1.

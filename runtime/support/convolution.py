@@ -27,7 +27,7 @@ from .operations import pairs
 
 __all__ = ["Convolution", "convolve"]
 
-# So many sums are made at a time: there may be many more of them than branches.
+# The number of sums that are computed at a time; there may be many more of them than branches.
 PIECE = 1 << 14
 
 
@@ -40,7 +40,7 @@ class Convolution:
 
     - `samples`: `Samples` of the convolution surface; no `uv` and `patch_index`, of which there are
       two.
-    - `first`, `second`: the `Branches` of both surfaces at the normals that were asked.
+    - `first`, `second`: the `Branches` of both surfaces at the prescribed normals.
     - `rows`: (k, 2) int64, which row of `first` and which of `second` a sample is the sum of:
       samples.points = first.points[rows[:, 0]] + second.points[rows[:, 1]].
     """
@@ -91,7 +91,7 @@ def convolve(
     normals : (S, 3) array_like
         Directions of any length but 0, such as ``icosphere(32)``.
     cells : (int, int), optional
-        The cells of the splines of what is a `Surface`, see `fit`.
+        The cells of the splines, if a surface is a `Surface`; see `fit`.
 
     Returns
     -------
@@ -101,7 +101,7 @@ def convolve(
     Raises
     ------
     InputError
-        For unusable normals, for `cells` where no `Surface` takes them, and for what is no surface.
+        For unusable normals, for `cells` without a `Surface`, and for objects that are no surface.
     UnknownNameError
         If there is no surface of that name.
     SurfaceError
@@ -180,7 +180,7 @@ def _branches(
     normals: NDArray[np.float64],
     cells: Sequence[int] | None,
 ) -> tuple[Branches, str]:
-    """Return what a surface has at the normals, and its name; warn of what normals cannot see."""
+    """Return the branches of a surface at normals, and its name; warn of developable regions."""
     if isinstance(surface, SupportFunction):
         return surface.branches(normals), repr(surface)
     if not isinstance(surface, Surface | Spline):

@@ -78,14 +78,14 @@ class SupportFunction:
         normal: Sequence[sympy.Symbol | str] = ("n_x", "n_y", "n_z"),
         domain: object = None,
     ) -> SupportFunction:
-        """Return the support function that a SymPy expression (or text) says, on the unit sphere.
+        """Return the support function given by a SymPy expression (or text) on the unit sphere.
 
-        `h` is read at unit normals only, so that any function of the components of the normal will
-        do; if it is homogeneous of degree 1, its gradient is the envelope. Else that is (5), with
-        the intrinsic gradient (6). Derivatives are taken by SymPy and compiled. `domain` is a
-        condition, such as "n_z > 0" or "(n_x > 0) & (n_y > 0)"; without it every normal is asked.
-        Normals where h or its gradient is not real and finite have no branch. A kink, such as that
-        of |n_x|, stands for a flat part of the surface, which normals cannot see.
+        `h` is evaluated at unit normals only, so that it may be any function of the components of
+        the normal; if it is homogeneous of degree 1, its gradient is the envelope. Otherwise that
+        is (5), with the intrinsic gradient (6). Derivatives are taken by SymPy and compiled.
+        `domain` is a condition, such as "n_z > 0" or "(n_x > 0) & (n_y > 0)"; without it the domain
+        is the whole sphere. Normals where h or its gradient is not real and finite have no branch.
+        A kink, such as that of |n_x|, is a planar region of the surface, which has no samples.
 
         Texts are read as in `Surface.from_sympy`. Raises InputError for what is no real expression
         in the three components, uses functions that cannot be compiled, or is too large.
@@ -133,7 +133,7 @@ class SupportFunction:
         return values
 
     def _sheets(self, directions: NDArray[np.float64]) -> Sheets:
-        with np.errstate(all="ignore"):  # infinite curvatures and radii are answers, too
+        with np.errstate(all="ignore"):  # infinite curvatures and radii are valid
             return self._source.sheets(directions)
 
     def _single_valued(self, normals: ArrayLike) -> tuple[Branches, int]:

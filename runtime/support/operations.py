@@ -23,7 +23,7 @@ __all__ = ["Offset", "Reversed", "Rotated", "Scaled", "Sum", "Translated", "pair
 Vector = NDArray[np.float64]
 
 
-# A radius of curvature is 0 up to rounding if it is this small beside the other and the distance.
+# A radius of curvature is 0 up to rounding if it is this small relative to its terms.
 RADIUS_ERROR = 2.0**-46
 
 

@@ -129,7 +129,7 @@ def test_normals_or_a_count_or_an_angle_or_a_coverage():
 
 def test_cells_are_for_surfaces():
     spline = gm.fit(TORUS, (4, 4))
-    with pytest.raises(gm.errors.InputError, match="this spline has its cells already"):
+    with pytest.raises(gm.errors.InputError, match="this spline already has its cells"):
         gm.sample(spline, count=5, cells=(4, 4))
     assert gm.sample(spline, count=50).report.patches == 64
     assert gm.sample(TORUS, count=50, cells=(5, 4)).report.patches == 80

@@ -196,7 +196,7 @@ def test_bad_targets(torus: gm.Spline, tmp_path: Path) -> None:
 
 def test_bad_arguments(torus: gm.Spline, tmp_path: Path) -> None:
     path = tmp_path / "a.png"
-    with pytest.raises(gm.errors.InputError, match="has its cells already"):
+    with pytest.raises(gm.errors.InputError, match="already has its cells"):
         plot.plot(torus, path, count=50, cells=(8, 8))
     with pytest.raises(gm.errors.InputError, match="say how many samples"):
         plot.plot(torus, path)
