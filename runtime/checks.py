@@ -59,9 +59,12 @@ def whole_number(value: object, name: str, least: int = 1) -> int:
 
 
 def checked_count(value: object) -> int:
-    """Return how many samples are asked for; InputError, also for normals in place of a count."""
+    """Return a number of samples; InputError for others, also for normals in place of a count."""
     if isinstance(value, list | tuple) or getattr(value, "ndim", 0) > 0:
-        raise InputError("the second argument is the count; normals go by keyword: normals=…")
+        raise InputError(
+            f"count must be a whole number of at least 1, not {shown(value)}; normals go by "
+            "keyword: normals=…"
+        )
     return whole_number(value, "count")
 
 
