@@ -91,7 +91,7 @@ def by_patches(largest: int) -> Series:
 
 def _fresh(spline: gm.Spline) -> gm.Spline:
     """Return the spline without cached properties."""
-    return gm.Spline(spline.coefficients, spline.domain, spline.ends, spline.name)
+    return gm.Spline(spline.coefficients, spline.domain, spline.boundary, spline.name)
 
 
 def _streamed(spline: gm.Spline, count: int) -> int:

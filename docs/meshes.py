@@ -146,7 +146,7 @@ def to_surface(form: ClosedForm, points: Array) -> Array:
     """
     true = exact(form)
     place = true.unit(np.stack(form.parameters(points), axis=-1).astype(np.float64))
-    is_open = np.array([ends[0] == "none" for ends in form.surface.ends])
+    is_open = np.array([ends[0] == "open" for ends in form.surface.boundary])
     step, away = np.zeros_like(place), points
     for _ in range(STEPS):
         place = np.where(is_open, np.clip(place, 0.0, 1.0), place)

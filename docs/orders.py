@@ -126,13 +126,13 @@ class TrueSurface:
 
     def inside(self, places: Array) -> NDArray[np.bool_]:
         """Say which parameters lie in the domain, whose periodic directions have no ends."""
-        cut = np.array([ends[0] == "none" for ends in self.entry.continuation])
+        cut = np.array([ends[0] == "open" for ends in self.entry.boundary])
         return np.all(~cut | ((places >= 0.0) & (places <= 1.0)), axis=1)
 
 
 def regular_surfaces() -> list[str]:
     """Return the names of the surfaces of the catalogue without poles."""
-    return [name for name, x in CATALOGUE.items() if "pole" not in x.continuation[1]]
+    return [name for name, x in CATALOGUE.items() if "pole" not in x.boundary[1]]
 
 
 def singular_surfaces() -> list[str]:

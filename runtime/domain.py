@@ -10,15 +10,25 @@ import numpy as np
 from .checks import as_float
 from .errors import InputError, shown
 
-__all__ = ["Domain", "End", "Ends", "Interval", "Periodicity", "checked_domain", "checked_ends"]
+__all__ = [
+    "Boundary",
+    "BoundaryCondition",
+    "BoundaryPair",
+    "Domain",
+    "Interval",
+    "Periodicity",
+    "checked_boundary",
+    "checked_domain",
+]
 
 # The boundary condition of a side: open, periodic, mirrored (periodic, with the other parameter
 # reversed) or pole.
-End = Literal["none", "wrap", "flip", "pole"]
-Ends = tuple[tuple[End, End], tuple[End, End]]
+BoundaryCondition = Literal["open", "periodic", "mirrored", "pole"]
+BoundaryPair = tuple[BoundaryCondition, BoundaryCondition]  # at the low and at the high end
+Boundary = tuple[BoundaryPair, BoundaryPair]  # for u and for v
 Interval = tuple[float, float]
 Domain = tuple[Interval, Interval]
-Periodicity = bool | End | tuple[End, End]
+Periodicity = bool | BoundaryCondition | BoundaryPair
 
 
 def checked_domain(domain: Sequence[Sequence[float]]) -> Domain:
@@ -33,35 +43,35 @@ def checked_domain(domain: Sequence[Sequence[float]]) -> Domain:
     return (u0, u1), (v0, v1)
 
 
-def checked_ends(periodic: Sequence[Periodicity]) -> Ends:
-    """Return what lies beyond the ends, from the short forms of a user; InputError on a clash."""
+def checked_boundary(periodic: Sequence[Periodicity]) -> Boundary:
+    """Return the boundary conditions from their short forms; InputError on a clash."""
     try:
         along_u, along_v = periodic
     except (TypeError, ValueError):
         raise InputError(
             f"periodic must be a pair, one entry for u and one for v, not {shown(periodic)}."
         ) from None
-    ends = _pair(along_u, "u"), _pair(along_v, "v")
-    if "pole" in ends[0]:
+    boundary = _pair(along_u, "u"), _pair(along_v, "v")
+    if "pole" in boundary[0]:
         raise InputError('only v can end in a "pole": exchange the parameters u and v.')
-    if "pole" in ends[1] and ends[0] != ("wrap", "wrap"):
-        raise InputError('a "pole" of v needs u to be periodic ("wrap").')
-    return ends
+    if "pole" in boundary[1] and boundary[0] != ("periodic", "periodic"):
+        raise InputError('a "pole" of v needs u to be periodic ("periodic").')
+    return boundary
 
 
-def _pair(entry: Periodicity, name: str) -> tuple[End, End]:
+def _pair(entry: Periodicity, name: str) -> BoundaryPair:
     if isinstance(entry, bool | np.bool_):
-        return ("wrap", "wrap") if entry else ("none", "none")
+        return ("periodic", "periodic") if entry else ("open", "open")
     pair = (entry, entry) if isinstance(entry, str) else entry
-    known = ("none", "wrap", "flip", "pole")
+    known = ("open", "periodic", "mirrored", "pole")
     if not isinstance(pair, tuple | list) or len(pair) != 2 or any(x not in known for x in pair):
         raise InputError(
             f"periodic for {name} must be True, False, one of {', '.join(known)}, or a pair of "
             f"these, not {shown(entry)}."
         )
     low, high = pair
-    if low != high and not {low, high} <= {"none", "pole"}:
+    if low != high and not {low, high} <= {"open", "pole"}:
         raise InputError(
-            f'"wrap" and "flip" must stand at both ends of {name}, not {shown(entry)}.'
+            f'"periodic" and "mirrored" must stand at both ends of {name}, not {shown(entry)}.'
         )
-    return cast(tuple[End, End], (low, high))
+    return cast(BoundaryPair, (low, high))

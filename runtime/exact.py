@@ -173,8 +173,8 @@ def _first_of_each_place(
     )
     for k in np.flatnonzero(near):
         apart = place - place[k]
-        for axis, (ends, cells) in enumerate(zip(spline.ends, spline.cells, strict=True)):
-            if ends[0] == "wrap":
+        for axis, (ends, cells) in enumerate(zip(spline.boundary, spline.cells, strict=True)):
+            if ends[0] == "periodic":
                 apart[:, axis] -= cells * np.round(apart[:, axis] / cells)
         others = (numbers == numbers[k]) & (np.abs(apart).max(axis=1) < SAME_PLACE) & keep
         others[k] = False

@@ -80,12 +80,12 @@ def fit(surface: Surface | str, cells: Sequence[int] | None = None) -> Spline:
     if not isinstance(surface, Surface):
         raise InputError(f"fit takes a Surface, not {type(surface).__name__}.")
     if cells is None and surface.grid is not None:
-        return fit_grid(surface.grid, surface.domain, surface.ends, surface.name)
-    m, n = checked_cells(DEFAULT_CELLS if cells is None else cells, surface.ends)
+        return fit_grid(surface.grid, surface.domain, surface.boundary, surface.name)
+    m, n = checked_cells(DEFAULT_CELLS if cells is None else cells, surface.boundary)
     lines = _lines(surface.domain, m, n)
     centres, vertices = _values(surface, *lines)
     middles = _middles(surface, *lines)
-    return fit_values(centres, vertices, middles, surface.domain, surface.ends, surface.name)
+    return fit_values(centres, vertices, middles, surface.domain, surface.boundary, surface.name)
 
 
 def _values(
@@ -97,14 +97,14 @@ def _values(
     """
     centres = not_too_large(surface.evaluate(lines_u[1::2, None], lines_v[1::2]), surface.name)
     vertices = not_too_large(surface.evaluate(lines_u[::2, None], lines_v[::2]), surface.name)
-    for axis, (along, ends) in enumerate(zip("uv", surface.ends, strict=True)):
+    for axis, (along, ends) in enumerate(zip("uv", surface.boundary, strict=True)):
         rows = np.swapaxes(vertices, 0, axis)
-        if ends[0] in ("wrap", "flip"):
-            first = rows[0] if ends[0] == "wrap" else rows[0, ::-1].copy()
+        if ends[0] in ("periodic", "mirrored"):
+            first = rows[0] if ends[0] == "periodic" else rows[0, ::-1].copy()
             if apart(rows[-1], first, vertices):
                 raise SurfaceError(
                     f"surface {surface.name!r} does not close along {along}: its two ends must be "
-                    f"the same{'' if ends[0] == 'wrap' else ', mirrored'}."
+                    f"the same{'' if ends[0] == 'periodic' else ', mirrored'}."
                 )
             rows[-1] = first
         for end, place, row in zip(ends, surface.domain[axis], (0, -1), strict=True):

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..generated import spline as formulas
-from .domain import End, Ends
+from .domain import Boundary, BoundaryPair
 from .formula_calls import python_function
 
 __all__ = ["Border", "Sides", "coefficients_with_ring", "vertices_with_ring"]
@@ -54,7 +54,7 @@ class Border:
         return cls(((sides[0], sides[1]), (sides[2], sides[3])), corners)
 
 
-def coefficients_with_ring(inner: Array, border: Border, ends: Ends) -> Array:
+def coefficients_with_ring(inner: Array, border: Border, boundary: Boundary) -> Array:
     """Return the coefficients (m + 2, n + 2, 3) with one ring outside the inner ones (m, n, 3).
 
     Open sides follow the border, periodic ones are copied. At a pole the outer coefficients are the
@@ -63,11 +63,11 @@ def coefficients_with_ring(inner: Array, border: Border, ends: Ends) -> Array:
     """
     result = np.pad(inner, [(1, 1), (1, 1), (0, 0)])
     turned = np.swapaxes(result, 0, 1)
-    _open_rows(result, ends[0], border.sides[1])
-    _open_rows(turned, ends[1], border.sides[0])
-    _close(result, turned, ends)
+    _open_rows(result, boundary[0], border.sides[1])
+    _open_rows(turned, boundary[1], border.sides[0])
+    _close(result, turned, boundary)
     for i, j in ((0, 0), (0, -1), (-1, 0), (-1, -1)):
-        if ends[0][i] == ends[1][j] == "none":
+        if boundary[0][i] == boundary[1][j] == "open":
             a, b = (1, -2)[i], (1, -2)[j]
             result[i, j] = python_function(formulas.beyond_corner)(
                 border.corners[i, j], result[a, j], result[i, b], result[a, b]
@@ -75,21 +75,21 @@ def coefficients_with_ring(inner: Array, border: Border, ends: Ends) -> Array:
     return result
 
 
-def _open_rows(rows: Array, ends: tuple[End, End], sides: tuple[Array, Array]) -> None:
+def _open_rows(rows: Array, boundary: BoundaryPair, sides: tuple[Array, Array]) -> None:
     """Write the rows outside the open ends of the first axis."""
-    for end, side, outside, first in zip(ends, sides, (0, -1), (1, -2), strict=True):
-        if end == "none":
+    for end, side, outside, first in zip(boundary, sides, (0, -1), (1, -2), strict=True):
+        if end == "open":
             rows[outside, 1:-1] = python_function(formulas.beyond_edge)(side, rows[first, 1:-1])
 
 
-def _close(result: Array, turned: Array, ends: Ends) -> None:
+def _close(result: Array, turned: Array, boundary: Boundary) -> None:
     """Write the rows outside periodic ends and poles.
 
     What runs along v is closed first where u is open: then its copies hold the ring along u too.
     """
-    for rows, end in ((turned, ends[1]), (result, ends[0])):
-        if end[0] in ("wrap", "flip"):
-            step = 1 if end[0] == "wrap" else -1
+    for rows, end in ((turned, boundary[1]), (result, boundary[0])):
+        if end[0] in ("periodic", "mirrored"):
+            step = 1 if end[0] == "periodic" else -1
             rows[0], rows[-1] = rows[-2, ::step].copy(), rows[1, ::step].copy()
         for kind, outside, first in zip(end, (0, -1), (1, -2), strict=True):
             if kind == "pole":
@@ -109,7 +109,7 @@ def _close_pole(rows: Array, outside: int, first: int) -> None:
 # --- vertices -------------------------------------------------------------------------------------
 
 
-def vertices_with_ring(values: Array, ends: Ends) -> Array:
+def vertices_with_ring(values: Array, boundary: Boundary) -> Array:
     """Add the values (m, n, 3) at the vertices one step outside the domain.
 
     Values of a periodic direction come without the repeated last row and get two rows at the high
@@ -117,27 +117,27 @@ def vertices_with_ring(values: Array, ends: Ends) -> Array:
     """
     turned = np.swapaxes(values, 0, 1)
     reverse = values[::-1]  # of vertices that close, the first stays the first
-    reverse = np.roll(reverse, 1, axis=0) if ends[0][0] in ("wrap", "flip") else reverse
+    reverse = np.roll(reverse, 1, axis=0) if boundary[0][0] in ("periodic", "mirrored") else reverse
     opposite = np.roll(turned, len(values) // 2, axis=1)
-    low, high = _beyond(turned, np.swapaxes(reverse, 0, 1), opposite, ends[1])
+    low, high = _beyond(turned, np.swapaxes(reverse, 0, 1), opposite, boundary[1])
     ringed = np.swapaxes(np.concatenate([low, turned, high]), 0, 1)
-    low, high = _beyond(ringed, ringed[:, ::-1], ringed, ends[0])
+    low, high = _beyond(ringed, ringed[:, ::-1], ringed, boundary[0])
     return np.ascontiguousarray(np.concatenate([low, ringed, high]))
 
 
 def _beyond(
-    rows: Array, mirrored: Array, opposite: Array, ends: tuple[End, End]
+    rows: Array, mirrored: Array, opposite: Array, boundary: BoundaryPair
 ) -> tuple[Array, Array]:
     """Return the rows before the first and after the last one.
 
     `mirrored` are the same rows with the other parameter reversed, `opposite` those half a period
     away along it.
     """
-    if ends[0] in ("wrap", "flip"):
-        source = rows if ends[0] == "wrap" else mirrored
+    if boundary[0] in ("periodic", "mirrored"):
+        source = rows if boundary[0] == "periodic" else mirrored
         return source[-1:], source[:2]
     parts = []
-    for end, step, first in zip(ends, (1, -1), (0, -1), strict=True):
+    for end, step, first in zip(boundary, (1, -1), (0, -1), strict=True):
         if end == "pole":
             parts.append(opposite[first + step][None])
         else:

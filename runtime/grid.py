@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .checks import as_float
-from .domain import Domain, Ends
+from .domain import Boundary, Domain
 from .errors import InputError, shown
 from .quasi_interpolant import apart, fit_grid
 from .spline import Spline
@@ -20,33 +20,33 @@ REPEATED = 1e-3
 
 
 def spline_of_points(
-    points: NDArray[np.float64], ends: Ends, name: str, domain: Domain | None = None
+    points: NDArray[np.float64], boundary: Boundary, name: str, domain: Domain | None = None
 ) -> Spline:
     """Return the spline of points (m, n, 3) at the vertices of its cells."""
-    _check(points, ends, name)
+    _check(points, boundary, name)
     cells = tuple(
-        count if "wrap" in end or "flip" in end else count - 1
-        for count, end in zip(points.shape, ends, strict=False)
+        count if "periodic" in end or "mirrored" in end else count - 1
+        for count, end in zip(points.shape, boundary, strict=False)
     )
     if domain is None:
         domain = (0.0, float(cells[0])), (0.0, float(cells[1]))
-    spline = fit_grid(points, domain, ends, name)
-    _check_ends(points, ends, name)
+    spline = fit_grid(points, domain, boundary, name)
+    _check_closed(points, boundary, name)
     return spline
 
 
 def points_of_elevations(
-    elevations: NDArray[np.float64], spacing: Sequence[float] | None, ends: Ends, name: str
+    elevations: NDArray[np.float64], spacing: Sequence[float] | None, boundary: Boundary, name: str
 ) -> tuple[NDArray[np.float64], Domain]:
     """Return the points (m, n, 3) of elevations (rows along y, columns along x), and their domain.
 
     They are ordered such that normals point upward.
     """
-    if ends != (("none", "none"), ("none", "none")):
+    if boundary != (("open", "open"), ("open", "open")):
         raise InputError("elevations are a graph and cannot be periodic.")
     rows, columns = elevations.shape
     dx, dy = _spacing(spacing, max(rows, columns))
-    _check(elevations[..., None], ends, name)
+    _check(elevations[..., None], boundary, name)
     x, y = dx * np.arange(columns), dy * np.arange(rows) + 0.0
     if dy < 0.0:
         elevations, y = elevations[::-1], y[::-1]
@@ -71,9 +71,9 @@ def _spacing(spacing: Sequence[float] | None, count: int) -> tuple[float, float]
     return dx, dy
 
 
-def _check(points: NDArray[np.float64], ends: Ends, name: str) -> None:
-    for axis, end in enumerate(ends):
-        least = 3 if end[0] in ("wrap", "flip") else 4
+def _check(points: NDArray[np.float64], boundary: Boundary, name: str) -> None:
+    for axis, end in enumerate(boundary):
+        least = 3 if end[0] in ("periodic", "mirrored") else 4
         if points.shape[axis] < least:
             raise InputError(
                 f"{name} has {points.shape[0]} x {points.shape[1]} points; it needs at least "
@@ -88,16 +88,16 @@ def _check(points: NDArray[np.float64], ends: Ends, name: str) -> None:
         )
 
 
-def _check_ends(points: NDArray[np.float64], ends: Ends, name: str) -> None:
-    if "flip" in ends[0] and "flip" in ends[1]:
+def _check_closed(points: NDArray[np.float64], boundary: Boundary, name: str) -> None:
+    if "mirrored" in boundary[0] and "mirrored" in boundary[1]:
         raise InputError(
             f"{name} cannot be mirrored along both axes: one of its corners would be missing; use "
             "a callable."
         )
-    for axis, (low, high) in enumerate(ends):
+    for axis, (low, high) in enumerate(boundary):
         rows = np.swapaxes(points, 0, axis)
-        if low in ("wrap", "flip"):
-            first = rows[0] if low == "wrap" else rows[0, ::-1]
+        if low in ("periodic", "mirrored"):
+            first = rows[0] if low == "periodic" else rows[0, ::-1]
             if np.abs(rows[-1] - first).max() < REPEATED * np.abs(rows[1] - rows[0]).max():
                 raise InputError(
                     f"{name} repeats its first points at the end of axis {axis}, which is "

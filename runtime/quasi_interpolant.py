@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .checks import whole_number
-from .domain import Domain, Ends
+from .domain import Boundary, Domain
 from .errors import InputError, SurfaceError, shown
 from .ghosts import Border, Sides, coefficients_with_ring, vertices_with_ring
 from .kernels import spline as kernels
@@ -29,7 +29,7 @@ def fit_values(
     vertices: NDArray[np.float64],
     middles: Sides,
     domain: Domain,
-    ends: Ends,
+    boundary: Boundary,
     name: str,
 ) -> Spline:
     """Return the spline of values at centres (m, n, 3) and vertices (m + 1, n + 1, 3) of cells.
@@ -39,30 +39,30 @@ def fit_values(
     inner = np.empty_like(centres)
     kernels.fit_centres_and_vertices(centres, vertices, inner)
     border = Border.of_values(middles, vertices)
-    return _spline(inner, border, domain, ends, name)
+    return _spline(inner, border, domain, boundary, name)
 
 
-def fit_grid(points: NDArray[np.float64], domain: Domain, ends: Ends, name: str) -> Spline:
+def fit_grid(points: NDArray[np.float64], domain: Domain, boundary: Boundary, name: str) -> Spline:
     """Return the spline with one cell between any four neighbouring points (m, n, 3) of a grid."""
-    values = vertices_with_ring(not_too_large(points, name), ends)
+    values = vertices_with_ring(not_too_large(points, name), boundary)
     inner = np.empty((values.shape[0] - 3, values.shape[1] - 3, 3))
-    checked_cells(inner.shape[:2], ends)
+    checked_cells(inner.shape[:2], boundary)
     kernels.fit_vertices(values, inner)
     border = Border.of_vertices(values)
-    return _spline(inner, border, domain, ends, name)
+    return _spline(inner, border, domain, boundary, name)
 
 
 def _spline(
-    inner: NDArray[np.float64], border: Border, domain: Domain, ends: Ends, name: str
+    inner: NDArray[np.float64], border: Border, domain: Domain, boundary: Boundary, name: str
 ) -> Spline:
     """Return a spline; SurfaceError if its numbers are so small that they have fewer digits."""
-    coefficients = coefficients_with_ring(inner, border, ends)
+    coefficients = coefficients_with_ring(inner, border, boundary)
     if 0.0 < float(np.abs(coefficients).max()) < 2.0**-LARGEST_EXPONENT:
         raise SurfaceError(
             f"the coordinates of {name!r} are too small to compute with: choose another unit of "
             "length, in which some are larger than 1e-301."
         )
-    return Spline(coefficients, domain, ends, name)
+    return Spline(coefficients, domain, boundary, name)
 
 
 def apart(
@@ -85,7 +85,7 @@ def not_too_large(points: NDArray[np.float64], name: str) -> NDArray[np.float64]
     return points
 
 
-def checked_cells(cells: Sequence[int], ends: Ends) -> tuple[int, int]:
+def checked_cells(cells: Sequence[int], boundary: Boundary) -> tuple[int, int]:
     """Return numbers of cells (m, n); InputError unless they suit the boundary conditions."""
     try:
         m, n = cells
@@ -99,6 +99,6 @@ def checked_cells(cells: Sequence[int], ends: Ends) -> tuple[int, int]:
     if m * n > MOST_CELLS:
         raise InputError(f"at most {MOST_CELLS:,} cells are possible, not {m:,} x {n:,}.")
     check_memory(BYTES_A_CELL * m * n, f"{m:,} x {n:,} cells")
-    if "pole" in ends[1] and m % 2:
+    if "pole" in boundary[1] and m % 2:
         raise InputError(f"a surface with a pole needs an even number of cells along u, not {m}.")
     return m, n

@@ -175,8 +175,8 @@ class Search:
     @cached_property
     def border(self) -> NDArray[np.bool_]:
         """Which sides of the domain are open, in the order of a cell's triangles: s, e, n, w."""
-        (west, east), (south, north) = self.spline.ends
-        return np.array([end == "none" for end in (south, east, north, west)])
+        (west, east), (south, north) = self.spline.boundary
+        return np.array([end == "open" for end in (south, east, north, west)])
 
     @cached_property
     def hopeless(self) -> bool:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .checks import parameter_arrays
-from .domain import Domain, Ends
+from .domain import Boundary, Domain
 from .errors import InputError
 from .kernels import spline as kernels
 from .threads import over_ranges
@@ -43,7 +43,7 @@ class Spline:
 
     coefficients: NDArray[np.float64]
     domain: Domain
-    ends: Ends
+    boundary: Boundary
     name: str
 
     def __repr__(self) -> str:
@@ -129,7 +129,7 @@ class Spline:
         cells = self.in_cells(places)
         points, normals = np.empty_like(places, shape=(len(places), 3)), np.empty((len(places), 3))
         kernels.evaluate(self.coefficients, self.scale, cells, points, normals)
-        for end, place in zip(self.ends[1], (0, self.cells[1]), strict=True):
+        for end, place in zip(self.boundary[1], (0, self.cells[1]), strict=True):
             if end == "pole":  # all but rounding
                 normals[np.abs(cells[:, 1] - place) <= ROUNDING * self.cells[1]] = 0.0
         return points.reshape(*u_array.shape, 3), normals.reshape(*u_array.shape, 3)
@@ -144,11 +144,11 @@ class Spline:
         """Bring periodic coordinates (in cells) back into the domain; refuse others outside it."""
         for axis, name in enumerate("uv"):
             count = self.cells[axis]
-            if self.ends[axis][0] in ("wrap", "flip"):
+            if self.boundary[axis][0] in ("periodic", "mirrored"):
                 with np.errstate(invalid="ignore"):
                     turns = np.where(cells[:, axis] == count, 0.0, np.floor(cells[:, axis] / count))
                     cells[:, axis] -= turns * count
-                if self.ends[axis][0] == "flip":
+                if self.boundary[axis][0] == "mirrored":
                     other = 1 - axis
                     odd = np.mod(turns, 2.0) == 1.0
                     cells[odd, other] = self.cells[other] - cells[odd, other]

@@ -1,4 +1,4 @@
-"""A surface: how to evaluate x(u,v), over which rectangle, and what lies beyond its ends."""
+"""A surface: how to evaluate x(u,v), over which rectangle, with which boundary conditions."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .checks import parameter_arrays, real_array
-from .domain import Domain, Ends, Periodicity, checked_domain, checked_ends
+from .domain import Boundary, Domain, Periodicity, checked_boundary, checked_domain
 from .errors import InputError
 from .evaluation import evaluated
 
@@ -29,16 +29,16 @@ class Surface:
     Make one with `from_callable`, `from_sympy` or `from_grid`, or take one of `gaussmap.surfaces`.
 
     `function(u, v)` gets two float64 arrays of one shape and returns points of that shape + (3,).
-    `ends` holds, for u and for v, what lies beyond the low and the high end: "none" (an edge),
-    "wrap" (periodic), "flip" (periodic with the other parameter mirrored, as on the Möbius band) or
-    "pole" (for v: the end is one point and the opposite meridian continues the surface). Normals
+    `boundary` holds, for u and for v, the boundary conditions at the low and the high end: "open"
+    (an edge), "periodic", "mirrored" (periodic with the other parameter reversed, as on the Möbius
+    band) or "pole" (for v: the end is one point and the opposite meridian continues it). Normals
     point along x_u × x_v. `grid` holds the points (m, n, 3) of a surface that was given by points.
     """
 
     name: str
     function: Evaluation
     domain: Domain
-    ends: Ends
+    boundary: Boundary
     grid: NDArray[np.float64] | None = None
 
     @classmethod
@@ -53,13 +53,13 @@ class Surface:
         """Make a surface of a vectorized callable f(u, v) → (..., 3).
 
         `domain` is ((u0, u1), (v0, v1)); `periodic` says for u and for v whether the surface
-        closes: True or False, or in words as in `ends` above, one for both ends or a pair (low,
+        closes: True or False, or in words as in `boundary` above, one for both ends or a pair (low,
         high). Raises InputError for an empty or infinite domain or an unknown word. The callable is
         first called when the surface is fitted or evaluated (see `evaluate`).
         """
         if not callable(f):
             raise InputError(f"f must be callable as f(u, v), and {type(f).__name__} is not.")
-        return cls(name, f, checked_domain(domain), checked_ends(periodic))
+        return cls(name, f, checked_domain(domain), checked_boundary(periodic))
 
     @classmethod
     def from_sympy(
@@ -85,7 +85,7 @@ class Surface:
         from .expressions import compiled, numbers, two_symbols
 
         f = compiled(position, two_symbols(parameters))
-        return cls(name, f, checked_domain(numbers(domain)), checked_ends(periodic))
+        return cls(name, f, checked_domain(numbers(domain)), checked_boundary(periodic))
 
     @classmethod
     def from_grid(
@@ -111,15 +111,15 @@ class Surface:
         """
         from .grid import points_of_elevations, spline_of_points
 
-        array, ends, domain = _grid(points), checked_ends(periodic), None
+        array, boundary, domain = _grid(points), checked_boundary(periodic), None
         if array.ndim == 2:
-            array, domain = points_of_elevations(array, spacing, ends, name)
+            array, domain = points_of_elevations(array, spacing, boundary, name)
         elif spacing is not None:
             raise InputError(
                 "spacing is for elevations of shape (m, n); points (m, n, 3) need none."
             )
-        spline = spline_of_points(array, ends, name, domain)
-        return cls(name, spline.evaluate, spline.domain, ends, array)
+        spline = spline_of_points(array, boundary, name, domain)
+        return cls(name, spline.evaluate, spline.domain, boundary, array)
 
     def evaluate(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
         """Return the points x(u, v), shape (..., 3), for parameters that broadcast together.

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ..generated.surfaces import CATALOGUE as _GENERATED
 from . import compiling  # noqa: F401 - announces compilation on terminals
 from .checks import known_name
-from .domain import Domain, Ends
+from .domain import Boundary, Domain
 from .errors import InputError, shown
 from .kernels.surfaces import positions
 from .surface import Surface
@@ -130,7 +130,7 @@ def surface(name: str, /, **parameters: float) -> Surface:
         return points.reshape(*u.shape, 3)
 
     domain = tuple((float(low), float(high)) for low, high in entry["domain"])
-    return Surface(name, evaluate, cast(Domain, domain), cast(Ends, entry["ends"]))
+    return Surface(name, evaluate, cast(Domain, domain), cast(Boundary, entry["boundary"]))
 
 
 def named(value: T | str) -> T | Surface:

@@ -236,5 +236,5 @@ def _surface_entry(surface: surfaces.ParametricSurface) -> str:
     )
     return (
         f'    "{surface.name}": {{"position": {surface.name}, "sentence": {surface.sentence!r}, '
-        f'"parameters": {{{parameters}}}, "domain": ({domain}), "ends": {surface.continuation!r}}},'
+        f'"parameters": {{{parameters}}}, "domain": ({domain}), "boundary": {surface.boundary!r}}},'
     )

@@ -30,9 +30,9 @@ FORMULAS = {
     "Planar curves": curve.FORMULAS,
 }
 ENDS = {
-    "none": "has edges",
-    "wrap": "is periodic",
-    "flip": "is periodic with a mirror image",
+    "open": "has edges",
+    "periodic": "is periodic",
+    "mirrored": "is periodic with a mirror image",
     "pole": "ends in poles",
 }
 
@@ -144,7 +144,7 @@ def _surface(surface: surfaces.ParametricSurface) -> Entry:
     parameters = (f"${latex_of(x.symbol)} = {x.default}$: {x.sentence}" for x in surface.parameters)
     ends = ", ".join(
         f"${name}$ {' and '.join(ENDS[x] for x in dict.fromkeys(ends))}"
-        for name, ends in zip("uv", surface.continuation, strict=True)
+        for name, ends in zip("uv", surface.boundary, strict=True)
     )
     return Entry(
         position(surface),

@@ -1,4 +1,4 @@
-"""The catalogue of parametric surfaces: exact positions, domains, and what lies beyond the ends."""
+"""The catalogue of parametric surfaces: exact positions, domains, boundary conditions."""
 
 from __future__ import annotations
 
@@ -10,16 +10,17 @@ import sympy as sp
 
 from .notation import dot
 
-__all__ = ["CATALOGUE", "Continuation", "End", "Parameter", "ParametricSurface", "u", "v"]
+__all__ = ["CATALOGUE", "Boundary", "BoundaryCondition", "Parameter", "ParametricSurface", "u", "v"]
 
 Triple = tuple[sp.Expr, sp.Expr, sp.Expr]
-End = Literal["none", "wrap", "flip", "pole"]
-Continuation = tuple[tuple[End, End], tuple[End, End]]
+BoundaryCondition = Literal["open", "periodic", "mirrored", "pole"]
+BoundaryPair = tuple[BoundaryCondition, BoundaryCondition]
+Boundary = tuple[BoundaryPair, BoundaryPair]
 
-NONE: tuple[End, End] = ("none", "none")
-WRAP: tuple[End, End] = ("wrap", "wrap")
-FLIP: tuple[End, End] = ("flip", "flip")
-POLES: tuple[End, End] = ("pole", "pole")
+OPEN: BoundaryPair = ("open", "open")
+PERIODIC: BoundaryPair = ("periodic", "periodic")
+MIRRORED: BoundaryPair = ("mirrored", "mirrored")
+POLES: BoundaryPair = ("pole", "pole")
 
 u, v = sp.symbols("u v", real=True)
 
@@ -36,13 +37,13 @@ class Parameter:
 
 @dataclass(frozen=True)
 class ParametricSurface:
-    """A surface x(u,v) over the rectangle [u0,u1] × [v0,v1], and what lies beyond the rectangle.
+    """A surface x(u,v) over the rectangle [u0,u1] × [v0,v1], and its boundary conditions.
 
-    `continuation` holds, for u and for v, what stands at the low and at the high end:
+    `boundary` holds, for u and for v, the conditions at the low and at the high end:
 
-    - "none": the surface has an edge here, or is cut off;
-    - "wrap": periodic, x(u1 + s, v) = x(u0 + s, v);
-    - "flip": periodic with a mirror image, x(u1 + s, v) = x(u0 + s, v0 + v1 − v);
+    - "open": the surface has an edge here, or is cut off;
+    - "periodic": periodic, x(u1 + s, v) = x(u0 + s, v);
+    - "mirrored": periodic with a mirror image, x(u1 + s, v) = x(u0 + s, v0 + v1 − v);
     - "pole": the whole end of v is one point, and the surface goes on along the opposite meridian,
       x(u, v1 − s) = x(u + (u1 − u0)/2, v1 + s).
     """
@@ -54,10 +55,10 @@ class ParametricSurface:
     v: sp.Symbol
     parameters: tuple[Parameter, ...]
     domain: tuple[tuple[sp.Expr, sp.Expr], tuple[sp.Expr, sp.Expr]]
-    continuation: Continuation
+    boundary: Boundary
 
     def __post_init__(self) -> None:
-        """Refuse unknown symbols, a domain that is no rectangle, and ends that do not match."""
+        """Refuse unknown symbols, a domain that is no rectangle, boundary conditions that clash."""
         if not self.name.isidentifier():
             raise ValueError(f"{self.name!r} is not an identifier")
         known = {self.u, self.v, *self.defaults}
@@ -66,14 +67,16 @@ class ParametricSurface:
         for low, high in self.domain:
             if low.free_symbols | high.free_symbols or not (high - low).is_positive:
                 raise ValueError(f"{self.name}: [{low}, {high}] is not an interval of numbers")
-        along_u, along_v = self.continuation
-        for low, high in self.continuation:
-            if unknown := {low, high} - set(get_args(End)):
-                raise ValueError(f"{self.name}: unknown ends {sorted(unknown)}")
-            if low != high and not {low, high} <= {"none", "pole"}:
+        along_u, along_v = self.boundary
+        for low, high in self.boundary:
+            if unknown := {low, high} - set(get_args(BoundaryCondition)):
+                raise ValueError(f"{self.name}: unknown boundary conditions {sorted(unknown)}")
+            if low != high and not {low, high} <= {"open", "pole"}:
                 raise ValueError(f"{self.name}: {low!r} cannot stand opposite {high!r}")
-        if "pole" in along_u or ("pole" in along_v and along_u != WRAP):
-            raise ValueError(f"{self.name}: a pole needs to be at an end of v, and u to wrap")
+        if "pole" in along_u or ("pole" in along_v and along_u != PERIODIC):
+            raise ValueError(
+                f"{self.name}: a pole needs to be at an end of v, and u to be periodic"
+            )
 
     @property
     def defaults(self) -> dict[sp.Symbol, sp.Expr]:
@@ -152,7 +155,7 @@ TORUS = ParametricSurface(
         ),
     ),
     domain=(TURN, TURN),
-    continuation=(WRAP, WRAP),
+    boundary=(PERIODIC, PERIODIC),
 )
 
 SEMI_AXES = (
@@ -170,7 +173,7 @@ ELLIPSOID = ParametricSurface(
     v=v,
     parameters=SEMI_AXES,
     domain=(TURN, (-sp.pi / 2, sp.pi / 2)),
-    continuation=(WRAP, POLES),
+    boundary=(PERIODIC, POLES),
 )
 
 ELLIPSOID_PATCH = ParametricSurface(
@@ -182,7 +185,7 @@ ELLIPSOID_PATCH = ParametricSurface(
     v=v,
     parameters=SEMI_AXES,
     domain=(TURN, (-sp.pi / 3, sp.pi / 3)),
-    continuation=(WRAP, NONE),
+    boundary=(PERIODIC, OPEN),
 )
 
 SPHERE = ParametricSurface(
@@ -198,7 +201,7 @@ SPHERE = ParametricSurface(
     v=v,
     parameters=(Parameter(radius, sp.Rational(1), "The radius."),),
     domain=(TURN, (-sp.pi / 2, sp.pi / 2)),
-    continuation=(WRAP, POLES),
+    boundary=(PERIODIC, POLES),
 )
 
 HYPERBOLOID = ParametricSurface(
@@ -214,7 +217,7 @@ HYPERBOLOID = ParametricSurface(
         Parameter(c, sp.Rational(1), "The semi-axis along z, imaginary: the waist is at z = 0."),
     ),
     domain=(TURN, SYMMETRIC),
-    continuation=(WRAP, NONE),
+    boundary=(PERIODIC, OPEN),
 )
 
 ELLIPTIC_PARABOLOID = ParametricSurface(
@@ -229,7 +232,7 @@ ELLIPTIC_PARABOLOID = ParametricSurface(
         Parameter(b, sp.Rational(3, 2), "The semi-axis along y of the ellipse at z = 1."),
     ),
     domain=(SYMMETRIC, SYMMETRIC),
-    continuation=(NONE, NONE),
+    boundary=(OPEN, OPEN),
 )
 
 HYPERBOLIC_PARABOLOID = ParametricSurface(
@@ -243,7 +246,7 @@ HYPERBOLIC_PARABOLOID = ParametricSurface(
         Parameter(b, sp.Rational(3, 2), "The semi-axis along y of the hyperbola at z = −1."),
     ),
     domain=(SYMMETRIC, SYMMETRIC),
-    continuation=(NONE, NONE),
+    boundary=(OPEN, OPEN),
 )
 
 MONKEY_SADDLE = ParametricSurface(
@@ -255,7 +258,7 @@ MONKEY_SADDLE = ParametricSurface(
     v=v,
     parameters=(Parameter(scale, sp.Rational(1, 2), "The factor of the heights."),),
     domain=(SYMMETRIC, SYMMETRIC),
-    continuation=(NONE, NONE),
+    boundary=(OPEN, OPEN),
 )
 
 ENNEPER = ParametricSurface(
@@ -271,7 +274,7 @@ ENNEPER = ParametricSurface(
     v=v,
     parameters=(Parameter(scale, sp.Rational(1), "The factor of the size."),),
     domain=(SYMMETRIC, SYMMETRIC),
-    continuation=(NONE, NONE),
+    boundary=(OPEN, OPEN),
 )
 
 CATENOID = ParametricSurface(
@@ -287,7 +290,7 @@ CATENOID = ParametricSurface(
     v=v,
     parameters=(Parameter(radius, sp.Rational(1), "The radius of the waist."),),
     domain=(TURN, SYMMETRIC),
-    continuation=(WRAP, NONE),
+    boundary=(PERIODIC, OPEN),
 )
 
 HELICOID = ParametricSurface(
@@ -299,7 +302,7 @@ HELICOID = ParametricSurface(
     v=v,
     parameters=(Parameter(pitch, sp.Rational(1, 2), "The rise per radian."),),
     domain=(SYMMETRIC, (-sp.pi, sp.pi)),
-    continuation=(NONE, NONE),
+    boundary=(OPEN, OPEN),
 )
 
 MOEBIUS_BAND = ParametricSurface(
@@ -319,7 +322,7 @@ MOEBIUS_BAND = ParametricSurface(
         Parameter(half_width, sp.Rational(2, 5), "Half the width of the band, less than radius."),
     ),
     domain=(TURN, SYMMETRIC),
-    continuation=(FLIP, NONE),
+    boundary=(MIRRORED, OPEN),
 )
 
 _focus = sp.sqrt(a**2 - b**2)
@@ -344,7 +347,7 @@ DUPIN_CYCLIDE = ParametricSurface(
         ),
     ),
     domain=(TURN, TURN),
-    continuation=(WRAP, WRAP),
+    boundary=(PERIODIC, PERIODIC),
 )
 
 WAVY_GRAPH = ParametricSurface(
@@ -359,7 +362,7 @@ WAVY_GRAPH = ParametricSurface(
         Parameter(frequency, sp.Rational(3), "Radians per unit of length.", positive=False),
     ),
     domain=(SYMMETRIC, SYMMETRIC),
-    continuation=(NONE, NONE),
+    boundary=(OPEN, OPEN),
 )
 
 CYLINDER = ParametricSurface(
@@ -374,7 +377,7 @@ CYLINDER = ParametricSurface(
         Parameter(height, sp.Rational(2), "The height."),
     ),
     domain=(TURN, UNIT),
-    continuation=(WRAP, NONE),
+    boundary=(PERIODIC, OPEN),
 )
 
 _distance = bottom + (top - bottom) * v
@@ -392,7 +395,7 @@ CONE = ParametricSurface(
         Parameter(height, sp.Rational(1), "The height."),
     ),
     domain=(TURN, UNIT),
-    continuation=(WRAP, NONE),
+    boundary=(PERIODIC, OPEN),
 )
 
 PLANE = ParametricSurface(
@@ -406,7 +409,7 @@ PLANE = ParametricSurface(
         Parameter(slope_v, sp.Rational(0), "The slope along y.", positive=False),
     ),
     domain=(SYMMETRIC, SYMMETRIC),
-    continuation=(NONE, NONE),
+    boundary=(OPEN, OPEN),
 )
 
 CATALOGUE: dict[str, ParametricSurface] = {

@@ -59,9 +59,9 @@ class ClosedForm(ABC):
         """Return u (m, 1) and v (1, n), `count` places or so, each of a closed direction once."""
         m, n = (max(2, round(math.sqrt(count * x))) for x in (self.aspect, 1.0 / self.aspect))
         lines = [
-            np.linspace(low, high, count, endpoint=ends[0] == "none")
+            np.linspace(low, high, count, endpoint=ends[0] == "open")
             for (low, high), ends, count in zip(
-                self.surface.domain, self.surface.ends, (m, n), strict=True
+                self.surface.domain, self.surface.boundary, (m, n), strict=True
             )
         ]
         return lines[0][:, None], lines[1][None, :]

@@ -24,8 +24,8 @@ def triangles(form: ClosedForm, cells: int = CELLS) -> tuple[Array, Array, np.nd
     """Return vertices, their normals, and triangles (2 cells or a little less, 3)."""
     u, v = form.lattice(cells)
     numbers = np.arange(u.size * v.size).reshape(u.size, v.size)
-    for axis, ends in enumerate(form.surface.ends):
-        if ends[0] == "wrap":
+    for axis, ends in enumerate(form.surface.boundary):
+        if ends[0] == "periodic":
             numbers = np.concatenate([numbers, numbers.take([0], axis=axis)], axis=axis)
     a, b, c, d = (
         x.ravel() for x in (numbers[:-1, :-1], numbers[1:, :-1], numbers[1:, 1:], numbers[:-1, 1:])
@@ -80,8 +80,8 @@ def _on_border(form: ClosedForm) -> np.ndarray:
     """Say which vertices of the mesh lie on an open border of the domain."""
     u, v = form.lattice(CELLS)
     border = np.zeros((u.size, v.size), dtype=bool)
-    for axis, ends in enumerate(form.surface.ends):
-        if ends[0] == "none":
+    for axis, ends in enumerate(form.surface.boundary):
+        if ends[0] == "open":
             np.moveaxis(border, axis, 0)[[0, -1]] = True
     return border.ravel()
 

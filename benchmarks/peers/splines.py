@@ -55,7 +55,7 @@ def surface_of_net(form: ClosedForm) -> gm.Surface:
         return spline(u.ravel(), v.ravel(), tensor=False).reshape(*u.shape, 3)
 
     return gm.Surface.from_callable(
-        evaluate, surface.domain, surface.ends, name=f"B-spline of {form.name}"
+        evaluate, surface.domain, surface.boundary, name=f"B-spline of {form.name}"
     )
 
 

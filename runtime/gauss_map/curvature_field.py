@@ -76,7 +76,7 @@ class CurvatureField:
     @classmethod
     def of_surface(cls, surface: Surface, panels: tuple[int, int]) -> CurvatureField:
         """Interpolate a surface; SurfaceError if it cannot be evaluated."""
-        wraps = surface.ends[0][0] == "wrap", surface.ends[1][0] == "wrap"
+        wraps = surface.boundary[0][0] == "periodic", surface.boundary[1][0] == "periodic"
         lines = [
             _lines(low, high, count, periodic)
             for (low, high), count, periodic in zip(surface.domain, panels, wraps, strict=True)

@@ -86,7 +86,7 @@ class ParabolicPoints:
     ----------
     curves : tuple of ParabolicCurve
         Curves across which the Gaussian curvature changes its sign. They end at the border of the
-        surface, at a "flip" seam, and where they meet or cross; one may lie on the border.
+        surface, at a "mirrored" seam, and where they meet or cross; one may lie on the border.
     isolated : tuple of ParabolicPoint
         Places where the curvature touches zero without a change of sign.
     flat : (k, 2, 2) float array
@@ -254,8 +254,8 @@ def _lowest(field: CurvatureField, box: Array) -> Array:
 def _evaluated(surface: Surface | Spline, uv: Array) -> Array:
     """Return the points (k, 3) at parameters (k, 2), which may lie beyond a periodic end."""
     inside = uv.copy()
-    for axis, ((low, high), ends) in enumerate(zip(surface.domain, surface.ends, strict=True)):
-        if ends[0] == "wrap":
+    for axis, ((low, high), ends) in enumerate(zip(surface.domain, surface.boundary, strict=True)):
+        if ends[0] == "periodic":
             inside[:, axis] = low + np.mod(inside[:, axis] - low, high - low)
     return surface.evaluate(inside[:, 0], inside[:, 1])
 
@@ -263,8 +263,8 @@ def _evaluated(surface: Surface | Spline, uv: Array) -> Array:
 def _limits(surface: Surface) -> tuple[Array, Array]:
     """Return the lowest and highest parameters, infinite where the surface is periodic."""
     pairs = [
-        (-np.inf, np.inf) if ends[0] == "wrap" else domain
-        for domain, ends in zip(surface.domain, surface.ends, strict=True)
+        (-np.inf, np.inf) if ends[0] == "periodic" else domain
+        for domain, ends in zip(surface.domain, surface.boundary, strict=True)
     ]
     low, high = np.array(pairs).T
     return low, high

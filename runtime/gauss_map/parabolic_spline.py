@@ -86,8 +86,8 @@ class _Plane:
         self.columns = spline.cells[1]
         self.corners = grid.CORNERS
         self.periods = [
-            2 * count if ends[0] == "wrap" else 0
-            for count, ends in zip(spline.cells, spline.ends, strict=True)
+            2 * count if ends[0] == "periodic" else 0
+            for count, ends in zip(spline.cells, spline.boundary, strict=True)
         ]
 
     def place(self, patch: int, local: Array) -> Array:

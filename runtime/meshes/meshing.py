@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..domain import Ends
+from ..domain import Boundary
 from ..errors import InputError, shown
 from ..kernels.flips import flip_edges, smallest_cosines
 from ..spline import Spline
 from .mesh import Mesh, scaled
 from .triangulation import neighbours, triangulations
-from .vertices import Vertices, ends_of
+from .vertices import Vertices, boundary_of
 
 if TYPE_CHECKING:
     from ..samples import Samples
@@ -72,9 +72,9 @@ class Triangulated:
     @classmethod
     def of(cls, samples: Samples, spline: Spline, must_be_whole: bool = True) -> Triangulated:
         """Triangulate; InputError if the whole surface is required and that fails."""
-        ends = ends_of(spline)
-        vertices = Vertices.of(samples, spline, ends)
-        triangles, sides, adjacent = _triangles(vertices, spline, ends, must_be_whole)
+        boundary = boundary_of(spline)
+        vertices = Vertices.of(samples, spline, boundary)
+        triangles, sides, adjacent = _triangles(vertices, spline, boundary, must_be_whole)
         uv, points, normals = _on_surface(vertices, samples, spline)
         _fill_missing(normals, triangles, sides)
         return cls(
@@ -124,7 +124,7 @@ class Triangulated:
 
 
 def _triangles(
-    vertices: Vertices, spline: Spline, ends: Ends, must_be_whole: bool
+    vertices: Vertices, spline: Spline, boundary: Boundary, must_be_whole: bool
 ) -> tuple[Indices, Indices, Indices]:
     """Return triangles (k, 3), their sides of the surface, and their neighbours.
 
@@ -134,10 +134,10 @@ def _triangles(
     """
     found = None
     lengths = _lengths(spline)
-    for triangles, sides in triangulations(vertices.positions, vertices.is_free, ends, lengths):
+    for triangles, sides in triangulations(vertices.positions, vertices.is_free, boundary, lengths):
         adjacent, is_closed = neighbours(triangles, ~vertices.is_free)
         found = triangles, sides, adjacent
-        if is_closed and _characteristic(triangles, adjacent) == _characteristic_of(ends):
+        if is_closed and _characteristic(triangles, adjacent) == _characteristic_of(boundary):
             return found
     if found is None or must_be_whole:
         raise _too_few(len(vertices.sample), spline.name)
@@ -151,12 +151,12 @@ def _characteristic(triangles: Indices, adjacent: Indices) -> int:
     return used - edges + len(triangles)
 
 
-def _characteristic_of(ends: Ends) -> int:
+def _characteristic_of(boundary: Boundary) -> int:
     """Return the Euler characteristic of a surface; each pole closes a hole of a band."""
-    closing = [kinds[0] in ("wrap", "flip") for kinds in ends]
+    closing = [kinds[0] in ("periodic", "mirrored") for kinds in boundary]
     if all(closing):
-        return int(ends[0][0] == ends[1][0] == "flip")  # the projective plane
-    return sum(end == "pole" for kinds in ends for end in kinds) if any(closing) else 1
+        return int(boundary[0][0] == boundary[1][0] == "mirrored")  # the projective plane
+    return sum(end == "pole" for kinds in boundary for end in kinds) if any(closing) else 1
 
 
 def _too_few(count: int, name: str) -> InputError:

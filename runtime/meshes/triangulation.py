@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..domain import Ends
+from ..domain import Boundary
 from ..kernels import surfaces as kernels
 
 __all__ = ["Triangulation", "neighbours", "triangulations"]
@@ -46,19 +46,19 @@ MARGIN_IN_STEPS, MARGINS = 30.0, (0.25, 1.0)
 
 
 def triangulations(
-    positions: Array, is_free: NDArray[np.bool_], ends: Ends, lengths: Array
+    positions: Array, is_free: NDArray[np.bool_], boundary: Boundary, lengths: Array
 ) -> Iterator[Triangulation]:
     """Yield triangulations of positions (k, 2) in the unit square, one after another if one fails.
 
-    Positions that are not free lie on an open side or at a pole, and are not displaced. `ends` are
-    the boundary conditions, `lengths` those of the surface along u and v. Triangles run
+    Positions that are not free lie on an open side or at a pole, and are not displaced. `boundary`
+    are the boundary conditions, `lengths` those of the surface along u and v. Triangles run
     counterclockwise where their corner of the smallest number is no copy. A position that coincides
     with another one may belong to no triangle.
     """
     from scipy.spatial import QhullError
 
-    closing = [axis for axis in (0, 1) if ends[axis][0] in ("wrap", "flip")]
-    has_copies = len(closing) == 2 or any(ends[axis][0] == "flip" for axis in closing)
+    closing = [axis for axis in (0, 1) if boundary[axis][0] in ("periodic", "mirrored")]
+    has_copies = len(closing) == 2 or any(boundary[axis][0] == "mirrored" for axis in closing)
     distance = 1.0 / math.sqrt(len(positions))
     for displacement, margin in _attempts(has_copies, MARGIN_IN_STEPS * distance):
         rng = np.random.default_rng(len(positions))
@@ -68,9 +68,9 @@ def triangulations(
         moved = np.where(is_free[:, None], moved, positions)
         with suppress(QhullError):  # fewer points than a triangulation needs, or all in line
             if len(closing) == 2:
-                yield _by_copies(moved, ends, lengths, margin)
+                yield _by_copies(moved, boundary, lengths, margin)
             elif closing:
-                yield _on_sphere(moved, ends, lengths, closing[0])
+                yield _on_sphere(moved, boundary, lengths, closing[0])
             else:
                 yield _in_rectangle(np.where(is_free[:, None], moved, _curved(moved)) * lengths)
 
@@ -138,17 +138,17 @@ def _all_in_front(triangles: Indices) -> Triangulation:
 # --- spheres, disks, bands: periodic in one parameter ---------------------------------------------
 
 
-def _on_sphere(positions: Array, ends: Ends, lengths: Array, axis: int) -> Triangulation:
+def _on_sphere(positions: Array, boundary: Boundary, lengths: Array, axis: int) -> Triangulation:
     from scipy.spatial import ConvexHull
 
-    is_mirrored = ends[axis][0] == "flip"
+    is_mirrored = boundary[axis][0] == "mirrored"
     turn = math.pi if is_mirrored else 2.0 * math.pi
     lowest, middle, highest = LATITUDES
     wide = float(np.clip(turn * lengths[1 - axis] / lengths[axis] / 2.0, lowest, highest))
-    wide = middle if "pole" in ends[1 - axis] else wide
+    wide = middle if "pole" in boundary[1 - axis] else wide
     latitudes = [
         sign * (math.pi / 2.0 if end == "pole" else wide)
-        for sign, end in zip((-1.0, 1.0), ends[1 - axis], strict=True)
+        for sign, end in zip((-1.0, 1.0), boundary[1 - axis], strict=True)
     ]
     longitude = positions[:, axis] * turn
     latitude = latitudes[0] + positions[:, 1 - axis] * (latitudes[1] - latitudes[0])
@@ -160,8 +160,8 @@ def _on_sphere(positions: Array, ends: Ends, lengths: Array, axis: int) -> Trian
     a, b, c = np.moveaxis(points[hull.simplices], 1, 0)
     is_inwards = np.einsum("kx,kx->k", np.cross(b - a, c - a), hull.equations[:, :3]) < 0.0
     triangles = _turned(hull.simplices, is_inwards == (axis == 0))
-    for end, latitude in zip(ends[1 - axis], latitudes, strict=True):
-        if end == "none":
+    for end, latitude in zip(boundary[1 - axis], latitudes, strict=True):
+        if end == "open":
             off_circle = np.abs(points[:, 2] - math.sin(latitude)) > ROUNDING
             triangles = triangles[off_circle[triangles].any(axis=1)]
     number = np.arange(len(points))
@@ -187,13 +187,15 @@ def _one_of_each(
 # --- tori and Klein bottles: periodic in both parameters ------------------------------------------
 
 
-def _by_copies(positions: Array, ends: Ends, lengths: Array, margin: float) -> Triangulation:
+def _by_copies(
+    positions: Array, boundary: Boundary, lengths: Array, margin: float
+) -> Triangulation:
     from scipy.spatial import Delaunay
 
     points, original = positions, np.arange(len(positions))
     is_mirrored = np.zeros(len(positions), dtype=bool)
     for axis in (0, 1):
-        flips = ends[axis][0] == "flip"
+        flips = boundary[axis][0] == "mirrored"
         copies = [(points, original, is_mirrored)]
         for step, near in ((1.0, points[:, axis] < margin), (-1.0, points[:, axis] > 1.0 - margin)):
             copy = points[near]

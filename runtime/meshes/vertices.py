@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..domain import End, Ends
+from ..domain import Boundary, BoundaryPair
 from ..kernels.spacing import border_spacings
 from ..spline import Spline
 from ..trees import tree_of
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from ..samples import Samples
 
-__all__ = ["Vertices", "ends_of"]
+__all__ = ["Vertices", "boundary_of"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -52,17 +52,20 @@ class Vertices:
     is_free: NDArray[np.bool_]
 
     @classmethod
-    def of(cls, samples: Samples, spline: Spline, ends: Ends) -> Vertices:
+    def of(cls, samples: Samples, spline: Spline, boundary: Boundary) -> Vertices:
         """Take the samples, the first one of those that coincide; add open sides and poles."""
         positions = np.clip(spline.in_cells(samples.uv.astype(np.float64)) / spline.cells, 0.0, 1.0)
-        pairs = _unique(positions, ends).view(np.complex128)[:, 0]
+        pairs = _unique(positions, boundary).view(np.complex128)[:, 0]
         sample = np.sort(np.unique(pairs, return_index=True)[1])
         inner = cls(positions[sample], sample, np.ones(len(sample), dtype=bool))
-        if all(end in ("wrap", "flip") for end, _ in ends):
+        if all(end in ("periodic", "mirrored") for end, _ in boundary):
             return inner
         points = samples.points.astype(np.float64) * spline.scale
         tree = tree_of(points[sample])
-        fixed = [*_poles(inner, tree, spline, ends), *_sides(inner, points, tree, spline, ends)]
+        fixed = [
+            *_poles(inner, tree, spline, boundary),
+            *_sides(inner, points, tree, spline, boundary),
+        ]
         for part in fixed:
             inner = inner.without(part.sample)
         return cls.joined([inner, *fixed])
@@ -89,14 +92,14 @@ class Vertices:
         return np.where(self.positions == 1.0, high, low + self.positions * (high - low))
 
 
-def ends_of(spline: Spline) -> Ends:
+def boundary_of(spline: Spline) -> Boundary:
     """Return the boundary conditions of a spline; an end that is a single point is a pole."""
     size = float(np.ptp(spline.coefficients, axis=(0, 1)).max()) * spline.scale
-    found: list[tuple[End, End]] = []
-    for axis, ends in enumerate(spline.ends):
+    found: list[BoundaryPair] = []
+    for axis, ends in enumerate(spline.boundary):
         kinds = list(ends)
         for place, end in enumerate(ends):
-            if end == "none" and spline.ends[1 - axis][0] == "wrap":
+            if end == "open" and spline.boundary[1 - axis][0] == "periodic":
                 t = np.linspace(0.0, 1.0, spline.cells[1 - axis] + 1)
                 side = _points(spline, _on_side(axis, place, t))
                 kinds[place] = "pole" if np.ptp(side, axis=0).max() <= ON_BORDER * size else end
@@ -104,17 +107,17 @@ def ends_of(spline: Spline) -> Ends:
     return found[0], found[1]
 
 
-def _unique(positions: Array, ends: Ends) -> Array:
+def _unique(positions: Array, boundary: Boundary) -> Array:
     """Return positions that are equal where points of the surface are: on seams and at poles."""
     unique = np.ascontiguousarray(positions).copy()
     for axis in (0, 1):
-        for place, end in enumerate(ends[axis]):
+        for place, end in enumerate(boundary[axis]):
             if end == "pole":
                 unique[np.abs(unique[:, axis] - place) <= ON_BORDER] = float(place)
         on_seam = unique[:, axis] == 1.0
-        if ends[axis][0] in ("wrap", "flip"):
+        if boundary[axis][0] in ("periodic", "mirrored"):
             unique[on_seam, axis] = 0.0
-            if ends[axis][0] == "flip":
+            if boundary[axis][0] == "mirrored":
                 unique[on_seam, 1 - axis] = 1.0 - unique[on_seam, 1 - axis]
     return unique
 
@@ -131,9 +134,9 @@ def _points(spline: Spline, positions: Array) -> Array:
     return spline.evaluate(*vertices.uv(spline).T) * spline.scale
 
 
-def _poles(inner: Vertices, tree: KDTree, spline: Spline, ends: Ends) -> Iterator[Vertices]:
+def _poles(inner: Vertices, tree: KDTree, spline: Spline, boundary: Boundary) -> Iterator[Vertices]:
     """Yield the poles: a sample that is there, or a new vertex if no sample is close."""
-    for axis, kinds in enumerate(ends):
+    for axis, kinds in enumerate(boundary):
         for place, end in enumerate(kinds):
             if end == "pole":
                 there = np.abs(inner.positions[:, axis] - place) <= ON_BORDER
@@ -158,15 +161,15 @@ def _spacings(tree: KDTree, points: Array) -> Array:
 
 
 def _sides(
-    inner: Vertices, points: Array, tree: KDTree, spline: Spline, ends: Ends
+    inner: Vertices, points: Array, tree: KDTree, spline: Spline, boundary: Boundary
 ) -> Iterator[Vertices]:
     """Yield the vertices of each open side: samples on it, and added points between them.
 
     A corner of the domain belongs to the side that begins there, counterclockwise.
     """
     for axis in (0, 1):
-        for place, end in enumerate(ends[axis]):
-            if end == "none":
+        for place, end in enumerate(boundary[axis]):
+            if end == "open":
                 yield _Side(spline, axis, place, tree).vertices(inner, points)
 
 
@@ -176,7 +179,7 @@ class _Side:
     def __init__(self, spline: Spline, axis: int, place: int, tree: KDTree) -> None:
         """Measure the side by its length relative to the spacing of its points."""
         self.spline, self.axis, self.place = spline, axis, place
-        self.closes = spline.ends[1 - axis][0] != "none"
+        self.closes = spline.boundary[1 - axis][0] != "open"
         steps = STEPS_A_CELL * spline.cells[1 - axis]
         steps = max(steps, STEPS_A_SAMPLE * math.isqrt(tree.n))
         self.t = np.linspace(0.0, 1.0, steps + 1)

@@ -150,10 +150,10 @@ def test_lattices_have_no_point_twice_and_reach_open_ends(form):
     np.fill_diagonal(apart, 1.0)
     assert apart.min() > 1e-3
     for line, ends, domain in zip(
-        form.lattice(900), form.surface.ends, form.surface.domain, strict=True
+        form.lattice(900), form.surface.boundary, form.surface.domain, strict=True
     ):
         assert line.min() == domain[0]
-        assert (line.max() == domain[1]) == (ends[0] == "none")
+        assert (line.max() == domain[1]) == (ends[0] == "open")
 
 
 def test_random_places_have_their_density():
@@ -182,7 +182,7 @@ def test_the_net_is_evaluated_at_any_parameters(form, monkeypatch):
     for pair in ((u[:, None], v), (u, v[:5, None]), (u, v), (u.reshape(3, 4), v.reshape(3, 4))):
         expected = form.surface.evaluate(*pair)
         assert surface.evaluate(*pair) == pytest.approx(expected, abs=1e-15)
-    assert surface.ends == form.surface.ends
+    assert surface.boundary == form.surface.boundary
     assert gm.fit(surface, (8, 8)).coefficients == pytest.approx(
         gm.fit(form.surface, (8, 8)).coefficients, abs=1e-14
     )

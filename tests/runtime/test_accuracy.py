@@ -49,9 +49,9 @@ def random_places(name: str, count: int = 20_000, margin: float = 0.0) -> Array:
     """Return parameters, at open ends no nearer to them than `margin` of the domain."""
     surface = gm.surfaces.surface(name)
     places = np.random.default_rng(1).random((count, 2))
-    for axis, ends in enumerate(surface.ends):
+    for axis, ends in enumerate(surface.boundary):
         low, high = surface.domain[axis]
-        inside = margin if "none" in ends else 0.0
+        inside = margin if "open" in ends else 0.0
         if "pole" in ends:
             inside = FAR_FROM_THE_POLES / (high - low)
         places[:, axis] = low + (high - low) * (inside + (1 - 2 * inside) * places[:, axis])
@@ -123,7 +123,7 @@ def support_of_samples(name: str, uv: Array, m: int) -> tuple[Array, Array]:
     samples = gm.sample(surface, normals=Exact(name).normals(uv), cells=(m, m))
     low, high = np.array(surface.domain).T
     gaps = np.abs(samples.uv - uv[samples.normal_index]) / (high - low)
-    closed = np.array(["none" not in ends for ends in surface.ends])
+    closed = np.array(["open" not in ends for ends in surface.boundary])
     gaps = np.where(closed, np.minimum(gaps, 1.0 - gaps), gaps).max(axis=1)
     nearest = np.full(len(uv), np.inf)
     np.minimum.at(nearest, samples.normal_index, gaps)
@@ -181,7 +181,7 @@ def test_curvatures_have_order_one(name: str) -> None:
     cells, gaussian, mean = [24, 48, 96, 192], [], []
     for m in cells:
         samples = gm.sample(gm.surfaces.surface(name), normals=normals, cells=(m, m))
-        if "pole" in gm.surfaces.surface(name).ends[1]:
+        if "pole" in gm.surfaces.surface(name).boundary[1]:
             samples = samples[np.abs(samples.uv[:, 1]) < np.pi / 2 - FAR_FROM_THE_POLES]
         K, H = exact.curvatures(samples.uv).T
         size = np.sqrt(np.abs(K).max())

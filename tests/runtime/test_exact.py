@@ -10,7 +10,7 @@ from gaussmap.generated.primes import PRIMES
 from gaussmap.generated.spline import NEIGHBOURS, TRIANGLE_NEIGHBOURS, triangle
 from gaussmap.generated.vectors import Vector
 from gaussmap.runtime import exact, long_integers
-from gaussmap.runtime.domain import Ends
+from gaussmap.runtime.domain import Boundary
 from gaussmap.runtime.formula_calls import python_function, vector
 from gaussmap.runtime.integers import integers, sign
 from gaussmap.runtime.kernels.decide import precise_forms
@@ -19,8 +19,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 ALIGNED = np.array([n for n in product((-1.0, 0.0, 1.0), repeat=3) if any(n)])
-WRAP: Ends = (("wrap", "wrap"), ("wrap", "wrap"))
-OPEN: Ends = (("none", "none"), ("none", "none"))
+PERIODIC: Boundary = (("periodic", "periodic"), ("periodic", "periodic"))
+OPEN: Boundary = (("open", "open"), ("open", "open"))
 
 
 def torus_of_integers(m: int, n: int, size: int, noise: np.ndarray) -> gm.Spline:
@@ -29,7 +29,7 @@ def torus_of_integers(m: int, n: int, size: int, noise: np.ndarray) -> gm.Spline
     ring = 2.0 + np.cos(v)
     inner = np.round(size * np.stack([ring * np.cos(u), ring * np.sin(u), np.sin(v)], -1)) + noise
     return gm.Spline(
-        np.pad(inner, [(1, 1), (1, 1), (0, 0)], mode="wrap"), ((0, m), (0, n)), WRAP, "t"
+        np.pad(inner, [(1, 1), (1, 1), (0, 0)], mode="wrap"), ((0, m), (0, n)), PERIODIC, "t"
     )
 
 

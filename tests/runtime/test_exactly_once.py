@@ -46,7 +46,7 @@ def moved(surface: gm.Surface, rotation: Array, shift: float, factor: float) -> 
     def evaluate(u: Array, v: Array) -> Array:
         return factor * (surface.evaluate(u, v) @ rotation.T) + shift
 
-    return gm.Surface(surface.name, evaluate, surface.domain, surface.ends)
+    return gm.Surface(surface.name, evaluate, surface.domain, surface.boundary)
 
 
 def rotation_of(quaternion: tuple[float, float, float, float]) -> Array:
@@ -195,7 +195,7 @@ def test_klein_bottle(cells: tuple[int, int], frequency: int) -> None:
         )
 
     bottle = gm.Surface.from_callable(
-        eight, domain=((0.0, 2 * np.pi), (-np.pi, np.pi)), periodic=("flip", True)
+        eight, domain=((0.0, 2 * np.pi), (-np.pi, np.pi)), periodic=("mirrored", True)
     )
     normals = gm.icosphere(frequency)
     elliptic, hyperbolic = count_preimages(

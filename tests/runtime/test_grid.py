@@ -70,19 +70,19 @@ CLOSED = {
     "torus": (torus, (True, True), (12, 8)),
     "tube": (tube, (True, False), (12, 5)),
     "tube_swapped": (swapped(tube), (False, True), (5, 12)),
-    "moebius": (moebius, ("flip", False), (12, 5)),
-    "moebius_swapped": (swapped(moebius), (False, "flip"), (5, 12)),
-    "klein": (klein, ("flip", True), (14, 11)),
-    "klein_swapped": (swapped(klein), (True, "flip"), (11, 14)),
+    "moebius": (moebius, ("mirrored", False), (12, 5)),
+    "moebius_swapped": (swapped(moebius), (False, "mirrored"), (5, 12)),
+    "klein": (klein, ("mirrored", True), (14, 11)),
+    "klein_swapped": (swapped(klein), (True, "mirrored"), (11, 14)),
     "ball": (ball, (True, "pole"), (12, 7)),
-    "cap": (cap, (True, ("none", "pole")), (12, 7)),
+    "cap": (cap, (True, ("open", "pole")), (12, 7)),
 }
 
 
 def grid_of(f, periodic, cells):
     """Return the points of a grid with so many cells: a periodic direction has no last row."""
     u, v = (
-        np.arange(count + (kind not in (True, "flip"))) / count
+        np.arange(count + (kind not in (True, "mirrored"))) / count
         for count, kind in zip(cells, periodic, strict=True)
     )
     return f(u[:, None], v)
@@ -152,12 +152,12 @@ def test_smallest_grids(rng):
         ((True, False), (3, 4)),
         ((False, True), (4, 3)),
         ((True, True), (3, 3)),
-        (("flip", False), (3, 4)),
+        (("mirrored", False), (3, 4)),
     ]:
         surface = gm.Surface.from_grid(rng.random((*shape, 3)), periodic=periodic)
         assert gm.fit(surface).cells == (3, 3)
     pole = np.concatenate([np.zeros((4, 1, 3)), rng.random((4, 3, 3))], axis=1)
-    surface = gm.Surface.from_grid(pole, periodic=(True, ("pole", "none")))
+    surface = gm.Surface.from_grid(pole, periodic=(True, ("pole", "open")))
     assert gm.fit(surface).cells == (4, 3)
 
 
@@ -320,7 +320,7 @@ def test_not_finite_and_where(value):
         ((3, 6), (False, False), "grid has 3 x 6 points; it needs at least 4 along axis 0"),
         ((6, 3), (False, False), "grid has 6 x 3 points; it needs at least 4 along axis 1"),
         ((2, 6), (True, False), "grid has 2 x 6 points; it needs at least 3 along axis 0"),
-        ((6, 2), (False, "flip"), "grid has 6 x 2 points; it needs at least 3 along axis 1"),
+        ((6, 2), (False, "mirrored"), "grid has 6 x 2 points; it needs at least 3 along axis 1"),
         ((0, 0), (False, False), "grid has 0 x 0 points"),
         ((1, 1), (True, True), "grid has 1 x 1 points"),
     ],
@@ -371,12 +371,12 @@ def test_spacing_out_of_range(spacing):
 
 def test_spacing_is_for_elevations_and_ends_are_for_points():
     refused("spacing is for elevations", POINTS, spacing=(1.0, 1.0))
-    for periodic in ((True, False), (False, "flip"), (True, "pole")):
+    for periodic in ((True, False), (False, "mirrored"), (True, "pole")):
         refused("cannot be periodic", HEIGHTS, spacing=(1.0, 1.0), periodic=periodic)
 
 
 @pytest.mark.parametrize(
-    "periodic", [(False, False), (True, True), ("flip", False), (True, "pole")]
+    "periodic", [(False, False), (True, True), ("mirrored", False), (True, "pole")]
 )
 def test_points_too_large_to_compute_with(periodic):
     with pytest.raises(gm.errors.SurfaceError, match="coordinates of 'grid' are too large"):
@@ -400,7 +400,7 @@ def test_poles_that_are_none():
 
 def test_mirrored_both_ways():
     """The corner (0, n) of such a surface is a point of its own, and not in the grid."""
-    refused("cannot be mirrored along both axes", POINTS, periodic=("flip", "flip"))
+    refused("cannot be mirrored along both axes", POINTS, periodic=("mirrored", "mirrored"))
 
 
 def test_parameters_outside_the_grid():

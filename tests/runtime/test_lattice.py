@@ -13,7 +13,7 @@ FULL_NAMES = ["torus", "sphere", "moebius_band", "catenoid", "ellipsoid_patch"]
 def spline_of(name, turned):
     surface = gm.surfaces.surface(name)
     moved = gm.Surface(
-        name, lambda u, v: surface.evaluate(u, v) @ turned.T, surface.domain, surface.ends
+        name, lambda u, v: surface.evaluate(u, v) @ turned.T, surface.domain, surface.boundary
     )
     return gm.fit(moved, (16, 16))
 

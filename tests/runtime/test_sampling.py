@@ -24,7 +24,7 @@ def moved(surface, factor=1.0, shift=0.0):
         surface.name,
         lambda u, v: factor * surface.evaluate(u, v) + shift,
         surface.domain,
-        surface.ends,
+        surface.boundary,
     )
 
 
@@ -286,7 +286,7 @@ def test_powers_of_two_change_no_bit(name, exponent):
 
 def test_opposite_normals_see_the_other_side():
     """Exchanging u and v turns the surface inside out: n and −n give the same points."""
-    turned = gm.Surface("turned", lambda u, v: TORUS.evaluate(v, u), TORUS.domain, TORUS.ends)
+    turned = gm.Surface("turned", lambda u, v: TORUS.evaluate(v, u), TORUS.domain, TORUS.boundary)
     normals = gm.fibonacci(200)
     outside = gm.sample(TORUS, normals=normals, cells=(12, 16))
     inside = gm.sample(turned, normals=-normals, cells=(16, 12))

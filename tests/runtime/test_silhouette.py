@@ -133,7 +133,7 @@ def test_the_order_is_that_along_the_outline(direction: Any, outside: bool) -> N
 @pytest.mark.parametrize(("factor", "shift"), [(1e12, 0.0), (1e-12, 0.0), (1.0, 1e6)])
 def test_far_and_of_any_size(factor: float, shift: float) -> None:
     moved = gm.Surface(
-        "moved", lambda u, v: factor * TORUS.evaluate(u, v) + shift, TORUS.domain, TORUS.ends
+        "moved", lambda u, v: factor * TORUS.evaluate(u, v) + shift, TORUS.domain, TORUS.boundary
     )
     samples = gm.silhouette(moved, [0, 0, 1], count=100, cells=(24, 24))
     assert (np.bincount(samples.normal_index) == 2).all()

@@ -25,7 +25,7 @@ def sized(surface: gm.Surface, exponent: int) -> gm.Surface:
     def f(u: Any, v: Any) -> Any:
         return np.ldexp(surface.evaluate(u, v) + 2.0, exponent)
 
-    return gm.Surface.from_callable(f, surface.domain, surface.ends, name=surface.name)
+    return gm.Surface.from_callable(f, surface.domain, surface.boundary, name=surface.name)
 
 
 def torus(exponent: int) -> gm.Surface:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 SQUARE = ((0.0, 1.0), (0.0, 1.0))
-OPEN = (("none", "none"), ("none", "none"))
+OPEN = (("open", "open"), ("open", "open"))
 TORUS = gm.surfaces.torus(major=1.0, minor=0.35)
 
 # The corners u = 1 and v = 1 of the triangles south, east, north, west of a cell, from its centre.
@@ -43,7 +43,7 @@ def made(name):
                 axis=-1,
             ),
             ((0, np.pi), (-np.pi, np.pi)),
-            ("flip", "wrap"),
+            ("mirrored", "periodic"),
         )
     if name == "grid":
         points = np.random.default_rng(0).random((7, 6, 3))
@@ -192,7 +192,7 @@ def test_noise_does_not_grow_at_the_border():
 def test_constants_stay_constant(name):
     surface = made(name)
     constant = gm.Surface(
-        name, lambda u, v: np.full((*u.shape, 3), 0.75), surface.domain, surface.ends
+        name, lambda u, v: np.full((*u.shape, 3), 0.75), surface.domain, surface.boundary
     )
     spline = gm.fit(constant, (6, 5))
     assert (spline.coefficients == 0.75).all()
@@ -229,15 +229,15 @@ def test_c1_over_seams(name, rng):
     spline = gm.fit(surface, None if name == "grid" else (6, 5))
     m, n = spline.cells
     along = rng.random(4)
-    if surface.ends[0][0] in ("wrap", "flip"):
-        flip = surface.ends[0][0] == "flip"
+    if surface.boundary[0][0] in ("periodic", "mirrored"):
+        flip = surface.boundary[0][0] == "mirrored"
         for j in range(n):
             place = np.column_stack([np.full(4, float(m)), j + along])
             other = np.column_stack([np.zeros(4), n - j - along if flip else j + along])
             cell = n - 1 - j if flip else j
             patches = np.full(4, 4 * ((m - 1) * n + j) + 1), np.full(4, 4 * cell + 3)
             check_smooth(spline, patches[0], place, patches[1], other, (1.0, -1.0 if flip else 1.0))
-    if surface.ends[1][0] == "wrap":
+    if surface.boundary[1][0] == "periodic":
         for i in range(m):
             place = np.column_stack([i + along, np.full(4, float(n))])
             other = np.column_stack([i + along, np.zeros(4)])
@@ -248,7 +248,7 @@ def test_c1_over_seams(name, rng):
 def test_c1_over_a_mirrored_seam_of_v(rng):
     band = gm.surfaces.moebius_band()
     turned = gm.Surface.from_callable(
-        lambda u, v: band.evaluate(v, u), (band.domain[1], band.domain[0]), (False, "flip")
+        lambda u, v: band.evaluate(v, u), (band.domain[1], band.domain[0]), (False, "mirrored")
     )
     spline = gm.fit(turned, (5, 6))
     for i in range(5):
@@ -301,7 +301,7 @@ def test_poles_are_one_point(name, cells, shift):
 def test_half_a_sphere_has_one_pole():
     ball = gm.surfaces.sphere()
     half = gm.Surface.from_callable(
-        ball.function, ((0, 2 * np.pi), (0, np.pi / 2)), (True, ("none", "pole"))
+        ball.function, ((0, 2 * np.pi), (0, np.pi / 2)), (True, ("open", "pole"))
     )
     spline = gm.fit(half, (32, 16))
     u = np.linspace(0, 2 * np.pi, 50)
@@ -417,7 +417,7 @@ def moved(surface, matrix, shift):
         surface.name,
         lambda u, v: surface.evaluate(u, v) @ np.asarray(matrix).T + shift,
         surface.domain,
-        surface.ends,
+        surface.boundary,
     )
 
 
@@ -435,7 +435,7 @@ def test_powers_of_two_change_no_bit(name, exponent):
     assert (scaled.measure[0] == plain.measure[0]).all()
 
 
-@pytest.mark.parametrize("ends", [(False, False), (True, False), (True, True), ("flip", False)])
+@pytest.mark.parametrize("ends", [(False, False), (True, False), (True, True), ("mirrored", False)])
 def test_affine_maps_commute_with_fitting(ends):
     """On binary fractions nothing is rounded, so that the coefficients map exactly."""
 

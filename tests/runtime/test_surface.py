@@ -78,17 +78,17 @@ def test_domains_that_are_none(domain, complaint):
 @pytest.mark.parametrize(
     ("periodic", "ends"),
     [
-        ((False, False), (("none", "none"), ("none", "none"))),
-        ((True, False), (("wrap", "wrap"), ("none", "none"))),
-        ((np.True_, "none"), (("wrap", "wrap"), ("none", "none"))),
-        ([False, "flip"], (("none", "none"), ("flip", "flip"))),
-        ((True, "pole"), (("wrap", "wrap"), ("pole", "pole"))),
-        (("wrap", ["none", "pole"]), (("wrap", "wrap"), ("none", "pole"))),
-        (("wrap", ("pole", "none")), (("wrap", "wrap"), ("pole", "none"))),
+        ((False, False), (("open", "open"), ("open", "open"))),
+        ((True, False), (("periodic", "periodic"), ("open", "open"))),
+        ((np.True_, "open"), (("periodic", "periodic"), ("open", "open"))),
+        ([False, "mirrored"], (("open", "open"), ("mirrored", "mirrored"))),
+        ((True, "pole"), (("periodic", "periodic"), ("pole", "pole"))),
+        (("periodic", ["open", "pole"]), (("periodic", "periodic"), ("open", "pole"))),
+        (("periodic", ("pole", "open")), (("periodic", "periodic"), ("pole", "open"))),
     ],
 )
 def test_ends(periodic, ends):
-    assert gm.Surface.from_callable(tube, TURN, periodic).ends == ends
+    assert gm.Surface.from_callable(tube, TURN, periodic).boundary == ends
 
 
 @pytest.mark.parametrize(
@@ -96,18 +96,18 @@ def test_ends(periodic, ends):
     [
         (True, "must be a pair"),
         (None, "must be a pair"),
-        ("wrap", "must be a pair"),
+        ("periodic", "must be a pair"),
         ((True,), "must be a pair"),
         ((1, 0), "periodic for u must be True, False"),
         ((None, False), "periodic for u must be True, False"),
         ((False, "poles"), "periodic for v must be True, False"),
-        ((("wrap",), False), "periodic for u must be True, False"),
-        ((("wrap", "none"), False), "both ends of u"),
-        ((True, ("wrap", "pole")), "both ends of v"),
-        ((("wrap", "flip"), False), "both ends of u"),
+        ((("periodic",), False), "periodic for u must be True, False"),
+        ((("periodic", "open"), False), "both ends of u"),
+        ((True, ("periodic", "pole")), "both ends of v"),
+        ((("periodic", "mirrored"), False), "both ends of u"),
         (("pole", True), "only v can end"),
         ((False, "pole"), "needs u to be periodic"),
-        (("flip", ("pole", "none")), "needs u to be periodic"),
+        (("mirrored", ("pole", "open")), "needs u to be periodic"),
     ],
 )
 def test_ends_that_do_not_match(periodic, complaint):
@@ -241,11 +241,11 @@ def test_parameters_that_are_none(u, v, complaint):
         (saddle, SQUARE, (False, True), "does not close along v"),
         (tube, ((0, np.pi), (0, 2 * np.pi)), (True, True), "does not close along u"),
         (tube, ((0, 6.28), (0, 2 * np.pi)), (True, True), "does not close along u"),
-        (tube, TURN, ("flip", False), "does not close along u: .* mirrored"),
-        (tube, TURN, (False, "flip"), "does not close along v: .* mirrored"),
+        (tube, TURN, ("mirrored", False), "does not close along u: .* mirrored"),
+        (tube, TURN, (False, "mirrored"), "does not close along v: .* mirrored"),
         (tube, TURN, (True, "pole"), "has no pole at v = 0.0"),
         (bowl, ((0, 2 * np.pi), (0, 1)), (True, "pole"), "has no pole at v = 0.0"),
-        (bowl, ((0, 2 * np.pi), (0, 0.9)), (True, ("none", "pole")), "has no pole at v = 0.9"),
+        (bowl, ((0, 2 * np.pi), (0, 0.9)), (True, ("open", "pole")), "has no pole at v = 0.9"),
     ],
 )
 def test_ends_that_the_surface_does_not_have(f, domain, periodic, complaint):
@@ -263,7 +263,7 @@ def test_ends_close_up_to_rounding(factor, shift):
     half = gm.Surface.from_callable(
         lambda u, v: factor * (bowl(u, v) + shift),
         ((0, 2 * np.pi), (0, 1)),
-        (True, ("none", "pole")),
+        (True, ("open", "pole")),
     )
     gm.fit(half, (8, 9))
 

@@ -47,7 +47,7 @@ def test_domain_and_ends_are_those_of_the_derivation(name):
     surface, exact = gm.surfaces.surface(name), CATALOGUE[name]
     assert surface.name == name
     assert surface.grid is None
-    assert surface.ends == exact.continuation
+    assert surface.boundary == exact.boundary
     exact_domain = [[float(end) for end in interval] for interval in exact.domain]
     np.testing.assert_allclose(surface.domain, exact_domain, rtol=3e-16)
 

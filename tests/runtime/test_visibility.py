@@ -15,7 +15,7 @@ def moved(surface, factor=1.0, shift=0.0):
         surface.name,
         lambda u, v: factor * surface.evaluate(u, v) + shift,
         surface.domain,
-        surface.ends,
+        surface.boundary,
     )
 
 

@@ -146,7 +146,7 @@ def is_zero_on_cyclide(expression) -> bool:
 def grid(surface: ParametricSurface, cells: int = 36) -> tuple[np.ndarray, np.ndarray]:
     """Return a grid of the domain: its ends belong to it, but for the poles."""
     lines = []
-    for interval, ends in zip(surface.domain, surface.continuation, strict=True):
+    for interval, ends in zip(surface.domain, surface.boundary, strict=True):
         low, high = map(float, interval)
         line = np.linspace(low, high, cells + 1)
         lines.append(line[int(ends[0] == "pole") : cells + 1 - int(ends[1] == "pole")])
@@ -197,11 +197,11 @@ def test_one_sentence_each(surface):
         ({"parameters": ()}, "unknown symbols"),
         ({"domain": ((0, 1), (1, 1))}, "not an interval"),
         ({"domain": ((0, 1), (0, major))}, "not an interval"),
-        ({"continuation": (("wrap", "wrap"), ("loop", "loop"))}, "unknown ends"),
-        ({"continuation": (("wrap", "none"), ("none", "none"))}, "cannot stand opposite"),
-        ({"continuation": (("wrap", "flip"), ("none", "none"))}, "cannot stand opposite"),
-        ({"continuation": (("pole", "pole"), ("wrap", "wrap"))}, "a pole needs"),
-        ({"continuation": (("none", "none"), ("pole", "none"))}, "a pole needs"),
+        ({"boundary": (("periodic", "periodic"), ("loop", "loop"))}, "unknown boundary conditions"),
+        ({"boundary": (("periodic", "open"), ("open", "open"))}, "cannot stand opposite"),
+        ({"boundary": (("periodic", "mirrored"), ("open", "open"))}, "cannot stand opposite"),
+        ({"boundary": (("pole", "pole"), ("periodic", "periodic"))}, "a pole needs"),
+        ({"boundary": (("open", "open"), ("pole", "open"))}, "a pole needs"),
     ],
 )
 def test_what_is_no_surface_is_refused(change, complaint):
@@ -227,13 +227,13 @@ def test_the_equation_holds(surface):
 @each_surface()
 def test_what_lies_beyond_the_ends(surface):
     (u0, u1), (v0, v1) = surface.domain
-    along_u, along_v = surface.continuation
+    along_u, along_v = surface.boundary
     beyond_u, beyond_v = place(surface, u1 + s, v), place(surface, u, v1 + s)
     # Where nothing is said to be beyond an end, the surface does not close there in secret.
-    assert same(beyond_u, place(surface, u0 + s, v)) == ("wrap" in along_u)
-    assert same(beyond_v, place(surface, u, v0 + s)) == ("wrap" in along_v)
-    assert same(beyond_u, place(surface, u0 + s, v0 + v1 - v)) == ("flip" in along_u)
-    assert same(beyond_v, place(surface, u0 + u1 - u, v0 + s)) == ("flip" in along_v)
+    assert same(beyond_u, place(surface, u0 + s, v)) == ("periodic" in along_u)
+    assert same(beyond_v, place(surface, u, v0 + s)) == ("periodic" in along_v)
+    assert same(beyond_u, place(surface, u0 + s, v0 + v1 - v)) == ("mirrored" in along_u)
+    assert same(beyond_v, place(surface, u0 + u1 - u, v0 + s)) == ("mirrored" in along_v)
     for end, kind in zip((v0, v1), along_v, strict=True):
         opposite = place(surface, u + (u1 - u0) / 2, end + s)
         assert same(place(surface, u, end - s), opposite) == (kind == "pole")

@@ -86,7 +86,7 @@ def test_unusable_domains(domain):
 
 def test_unusable_arguments():
     refused(gm.errors.InputError, "callable as f", gm.curves.Curve.from_callable, 3, (0, 1))
-    for word in ("wrap", None, 1, (True, True)):
+    for word in ("periodic", None, 1, (True, True)):
         refused(
             gm.errors.InputError,
             "True or False",

@@ -31,7 +31,7 @@ def klein_bottle():
         )
 
     return gm.Surface.from_callable(
-        eight, ((0.0, 2 * np.pi), (-np.pi, np.pi)), periodic=("flip", True)
+        eight, ((0.0, 2 * np.pi), (-np.pi, np.pi)), periodic=("mirrored", True)
     )
 
 

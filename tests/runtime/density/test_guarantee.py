@@ -34,13 +34,16 @@ def widest_angle(samples: gm.Samples, normals: Array) -> float:
 def scaled(name: str, factor: float, shift: float = 0.0) -> gm.Surface:
     surface = gm.surfaces.surface(name)
     return gm.Surface(
-        name, lambda u, v: factor * (surface.evaluate(u, v) + shift), surface.domain, surface.ends
+        name,
+        lambda u, v: factor * (surface.evaluate(u, v) + shift),
+        surface.domain,
+        surface.boundary,
     )
 
 
 def even(name: str, cells: tuple[int, int]) -> tuple[int, int]:
     """Return cells that suit a surface with poles, too."""
-    poles = "pole" in gm.surfaces.surface(name).ends[1]
+    poles = "pole" in gm.surfaces.surface(name).boundary[1]
     return (cells[0] + cells[0] % 2, cells[1]) if poles else cells
 
 

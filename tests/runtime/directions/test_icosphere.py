@@ -49,7 +49,7 @@ def test_rough_splines(seed: int, roughness: float, frequency: int) -> None:
     u, v = np.meshgrid(np.linspace(-1, 1, 7), np.linspace(-1, 1, 6), indexing="ij")
     heights = 10.0**roughness * rng.standard_normal(u.shape)
     points = np.stack([u, v, heights], axis=-1) @ np.linalg.qr(rng.standard_normal((3, 3)))[0]
-    ends = ("none", "none")
+    ends = ("open", "open")
     assert_same(gm.Spline(points, ((0, 5), (0, 4)), (ends, ends), "rough"), frequency)
 
 

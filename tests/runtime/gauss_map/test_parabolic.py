@@ -255,7 +255,7 @@ def test_curvature_changes_sign_across_the_polylines_of_a_spline(name: str) -> N
 def signs_at(spline: gm.Spline, patches: Patches, places: Array) -> Array:
     """Return the sign of D(N) of the patch at each place, by its definition."""
     x = (places - spline.frame[:2]) / spline.frame[2:]
-    x = np.where([e[0] == "wrap" for e in spline.ends], np.mod(x, spline.cells), x)
+    x = np.where([e[0] == "periodic" for e in spline.boundary], np.mod(x, spline.cells), x)
     cell = np.clip(np.floor(x).astype(int), 0, np.array(spline.cells) - 1)
     s, t = (x - cell - 0.5).T
     turn = np.where(np.abs(s) > np.abs(t), np.where(s > 0, 1, 3), np.where(t > 0, 2, 0))
@@ -358,7 +358,9 @@ def test_torus(factor: float) -> None:
 @pytest.mark.compiled
 def test_torus_far_from_the_origin_has_the_accuracy_of_its_coordinates() -> None:
     torus = gm.surfaces.torus()
-    moved = gm.Surface("moved", lambda u, v: torus.evaluate(u, v) + 1e4, torus.domain, torus.ends)
+    moved = gm.Surface(
+        "moved", lambda u, v: torus.evaluate(u, v) + 1e4, torus.domain, torus.boundary
+    )
     found = gm.gauss_map.parabolic_points(moved)
     assert [curve.closed for curve in found.curves] == [True, True]
     for curve in found.curves:

@@ -42,21 +42,21 @@ surfaces: dict[str, tuple[Callable[[], gm.Surface], int, int]] = {
     "catenoid": (gm.surfaces.catenoid, 0, 2),
     "moebius": (gm.surfaces.moebius_band, 0, 1),
     "klein": (
-        lambda: gm.Surface.from_callable(klein, (TURN, (-np.pi, np.pi)), ("flip", True)), 0, 0,
+        lambda: gm.Surface.from_callable(klein, (TURN, (-np.pi, np.pi)), ("mirrored", True)), 0, 0,
     ),
     "klein, v flips": (
         lambda: gm.Surface.from_callable(
-            lambda u, v: klein(v, u), ((-np.pi, np.pi), TURN), (True, "flip")
+            lambda u, v: klein(v, u), ((-np.pi, np.pi), TURN), (True, "mirrored")
         ), 0, 0,
     ),
     "dome": (
         lambda: gm.Surface.from_callable(
-            latitude, (TURN, (0.0, np.pi / 2)), (True, ("none", "pole"))
+            latitude, (TURN, (0.0, np.pi / 2)), (True, ("open", "pole"))
         ), 1, 1,
     ),
     "dome, pole first": (
         lambda: gm.Surface.from_callable(
-            latitude, (TURN, (-np.pi / 2, 0.0)), (True, ("pole", "none"))
+            latitude, (TURN, (-np.pi / 2, 0.0)), (True, ("pole", "open"))
         ), 1, 1,
     ),
     "belt, v closes": (

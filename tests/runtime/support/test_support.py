@@ -303,7 +303,7 @@ def test_text_and_latex() -> None:
     assert support._repr_latex_() == r"$\displaystyle h(\mathbf{n}) = n_{x}^{3} + 2 n_{y}$"
     assert support.domain == sp.true
     assert repr(support.branches(NORMALS)).startswith("Branches(")
-    spline = gm.Spline(np.zeros((5, 5, 3)), ((0, 1), (0, 1)), (("none",) * 2,) * 2, "flat")  # pyright: ignore
+    spline = gm.Spline(np.zeros((5, 5, 3)), ((0, 1), (0, 1)), (("open",) * 2,) * 2, "flat")  # pyright: ignore
     flat = gm.SupportFunction.of_spline(spline)
     assert repr(flat) == "SupportFunction(flat, 36 patches)"
     assert flat.expression is flat.domain is flat._repr_latex_() is None

@@ -137,7 +137,7 @@ def test_reversal(torus: gm.Spline) -> None:
     swapped = gm.Spline(
         np.ascontiguousarray(torus.coefficients.transpose(1, 0, 2)),
         (torus.domain[1], torus.domain[0]),
-        (torus.ends[1], torus.ends[0]),
+        (torus.boundary[1], torus.boundary[0]),
         "swapped",
     )
     reversed_ = of_spline(torus).reversed().branches(NORMALS)
