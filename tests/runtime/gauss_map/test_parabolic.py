@@ -766,7 +766,7 @@ def test_bad_cells(cells) -> None:
 
 def test_other_bad_input() -> None:
     with pytest.raises(gm.errors.InputError, match="Surface"):
-        gm.gauss_map.parabolic_points("torus")  # pyright: ignore[reportArgumentType]
+        gm.gauss_map.parabolic_points(3.0)  # pyright: ignore[reportArgumentType]
     with pytest.raises(gm.errors.InputError, match="cells"):
         gm.gauss_map.parabolic_points(gm.fit(gm.surfaces.torus(), (8, 8)), cells=(8, 8))
     with pytest.raises(gm.errors.SurfaceError, match="not finite"):
