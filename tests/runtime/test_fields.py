@@ -43,7 +43,8 @@ def test_some_samples_are_decided_exactly():
 def test_fields_are_those_of_a_full_sampling(fields):
     samples = narrow(fields)
     assert len(samples) == len(FULL)
-    assert samples.report == FULL.report
+    known = FULL.report.infinite_curvatures if "gaussian_curvature" in fields else None
+    assert samples.report == replace(FULL.report, infinite_curvatures=known)
     assert samples.fields == tuple(name for name in ARRAY_NAMES if name in fields)
     for name in ARRAY_NAMES:
         assert hasattr(samples, name) == (name in fields)

@@ -316,15 +316,17 @@ def test_arrays_and_surfaces_are_left_alone():
 
 @pytest.mark.compiled
 def test_sizes_at_the_end_of_double_precision():
-    """Down to subnormal numbers: the same normals, and curvatures that overflow with their sign."""
+    """The same normals, and curvatures that overflow with their sign; smaller ones are refused."""
     plain = gm.sample(TORUS, normals=gm.icosphere(5), cells=(16, 16))
-    for factor in (2.0**-1030, 2.0**990):
+    for factor in (2.0**-990, 2.0**990):
         samples = gm.sample(moved(TORUS, factor), normals=gm.icosphere(5), cells=(16, 16))
         assert np.isfinite(samples.points).all()
         assert len(samples) == len(plain)
         assert samples.elliptic.sum() == plain.elliptic.sum()
         assert not np.isnan(samples.gaussian_curvature).any()
         assert not np.isnan(samples.mean_curvature).any()
+    with pytest.raises(gm.errors.SurfaceError, match="too small to compute with"):
+        gm.sample(moved(TORUS, 2.0**-1030), normals=gm.icosphere(5), cells=(16, 16))
 
 
 # --- density --------------------------------------------------------------------------------------
@@ -414,7 +416,7 @@ def test_many_is_one_after_the_other(asked: dict[str, Any]):
 
 @pytest.mark.compiled
 def test_a_bad_surface_does_not_stop_the_others():
-    surfaces = [gm.surfaces.sphere(), BROKEN, gm.surfaces.torus(), "torus", gm.surfaces.catenoid()]
+    surfaces = [gm.surfaces.sphere(), BROKEN, gm.surfaces.torus(), 3.0, gm.surfaces.catenoid()]
     with pytest.warns(gm.GaussmapWarning) as caught:
         found = many(surfaces, count=100, cells=(16, 16))
     assert [samples.report.surface for samples in found] == ["sphere", "torus", "catenoid"]
@@ -422,13 +424,13 @@ def test_a_bad_surface_does_not_stop_the_others():
     assert len(messages) == 2
     assert messages[0].startswith("surface 1 (broken) is left out: the callable of surface")
     assert "RuntimeError: no such surface" in messages[0]
-    assert messages[1] == "surface 3 (str) is left out: fit takes a Surface, not str."
+    assert messages[1] == "surface 3 (float) is left out: fit takes a Surface, not float."
 
 
 def test_a_surface_that_does_not_suit_the_cells_is_left_out():
     surfaces = [gm.surfaces.sphere(), TORUS]
     with pytest.warns(gm.GaussmapWarning, match=r"surface 0 \(sphere\) is left out: .* even"):
-        found = many(surfaces, [[0, 0, 1], [1, 1, 1]], cells=(5, 5))
+        found = many(surfaces, normals=[[0, 0, 1], [1, 1, 1]], cells=(5, 5))
     assert [samples.report.surface for samples in found] == ["torus"]
 
 
