@@ -13,7 +13,17 @@ settings.load_profile("quick")
 
 HERE = Path(__file__).parent
 # The tests that run formulas and kernels: `make coverage` runs them without compilation.
-OF_KERNELS = ("generated", "runtime/curves", "runtime/density", "runtime/meshes", "runtime/support")
+OF_KERNELS = (
+    "generated",
+    "runtime/curves",
+    "runtime/density",
+    "runtime/gauss_map",
+    "runtime/kernels",
+    "runtime/meshes",
+    "runtime/support",
+    "runtime/test_exact.py",
+    "runtime/test_spline.py",
+)
 
 
 def pytest_configure(config: pytest.Config) -> None:

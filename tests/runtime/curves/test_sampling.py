@@ -123,6 +123,7 @@ def test_scaling_by_a_power_of_two_changes_nothing_else() -> None:
     assert (first.curvature == second.curvature * 2.0**40).all()
 
 
+@pytest.mark.compiled
 def test_more_pieces_than_the_coordinates_can_tell_apart() -> None:
     """Beside a shift of 10⁶ the turn of an arc is rounding; still no normal is lost or doubled."""
     normals = gm.directions.circle(360)

@@ -79,6 +79,7 @@ def test_nothing_is_chosen_twice():
     assert not set(first) & set(again)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("threads", [1, 2, 3])
 def test_parts_know_of_one_another(threads, monkeypatch):
     """Rows that follow one another are neighbours; parts are shells of 100 of them."""

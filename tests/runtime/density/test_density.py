@@ -110,6 +110,7 @@ def test_all_samples_of_the_normals_are_kept(name, relax):
         assert (plain.kind == "normal").all()
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("asked", [{"count": 300}, {"angle": 15.0}, {"coverage": 0.3}])
 def test_samples_of_normals_come_first(asked):
     samples = gm.sample(gm.fit(TORUS, (12, 12)), **asked)

@@ -18,6 +18,7 @@ def gaps(points: np.ndarray, beside: np.ndarray, first: np.ndarray) -> np.ndarra
     return KDTree(first).query(points)[0] / beside
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("density", ["gauss", "balanced", "uniform"])
 def test_every_beginning_is_spread_as_the_whole(density: str) -> None:
     # All normals of a graph are on one side, so that only distances count. Those chosen within a
@@ -35,6 +36,7 @@ def test_every_beginning_is_spread_as_the_whole(density: str) -> None:
         assert left <= min(nearest[: count - 1]) / STEP * (1.0 + 1e-12)
 
 
+@pytest.mark.compiled
 def test_the_samples_are_the_same_in_another_order() -> None:
     samples = gm.sample(gm.surfaces.torus(), count=1_000)
     ordered = samples.progressive()

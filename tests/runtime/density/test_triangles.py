@@ -42,6 +42,7 @@ def test_parts_are_their_shares_of_the_whole(name, radius):
         np.testing.assert_allclose(shares, 1 / number, rtol=1e-9)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "ellipsoid", "cone"])
 def test_no_point_of_a_triangle_is_outside_of_its_radius(name):
     triangles = cut_patches(sizing_of(name, (6, 4)), 0.3)
@@ -65,6 +66,7 @@ def points_towards_corners(triangles: Triangles, share: float) -> np.ndarray:
     return np.stack([x.at_centroids()[:, :3] for x in points], axis=1)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("width", [1e-2, 1e-5])
 def test_narrow_patches_are_bisected(width):
     """Until they are short enough, or so small that there would be too many of them."""

@@ -50,6 +50,7 @@ def test_integrals_converge(surface: gm.Surface, volume: float, density: str) ->
     assert curvature > 4.0 or fine[2] < 2e-3  # next to poles K is that of the spline
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("scale", [1e-12, 1.0, 1e12])
 def test_a_plane_is_exact(scale: float) -> None:
     plane = gm.Surface.from_sympy(
@@ -72,6 +73,7 @@ def test_all_kinds_of_surfaces(name: str) -> None:
     assert samples.weights().sum() == pytest.approx(area_of(spline), rel=2e-3)
 
 
+@pytest.mark.compiled
 def test_samples_at_one_place_share_a_weight() -> None:
     samples = gm.sample(TORUS, count=500)
     twice = gm.Samples.concatenate([samples, samples])
@@ -80,12 +82,14 @@ def test_samples_at_one_place_share_a_weight() -> None:
     assert (np.minimum(weights[:500], weights[500:]) == 0.0).all()
 
 
+@pytest.mark.compiled
 def test_a_part_of_a_surface_needs_an_angle() -> None:
     samples = gm.sample(TORUS, count=2_000)
     half = samples[samples.points[:, 0] > 0.0]
     assert half.weights(angle=30.0).sum() == pytest.approx(samples.weights().sum() / 2.0, rel=0.1)
 
 
+@pytest.mark.compiled
 def test_what_is_needed() -> None:
     with pytest.raises(gm.errors.MissingFieldError, match="'uv'"):
         gm.sample(TORUS, count=100, fields=("points", "normals")).weights()
