@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from . import bridge
 from .errors import InputError, shown
 
 if TYPE_CHECKING:
@@ -161,16 +162,15 @@ def _read(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401
     """
     import sympy as sp
 
-    from ..symbolic.reading import ReadingError, read, refuse_unusable
-
+    reading = bridge.reading()
     try:
         if isinstance(entry, str):
-            return read(entry, symbols)
+            return reading.read(entry, symbols)
         if not isinstance(entry, sp.Basic | sp.MatrixBase | Number | np.bool_):
             return None
         expression = sp.sympify(entry, strict=True)
-        refuse_unusable(expression)
-    except ReadingError as error:
+        reading.refuse_unusable(expression)
+    except reading.ReadingError as error:
         raise InputError(
             f"{shown(entry)} is not a SymPy expression that can be compiled: {error}."
         ) from None

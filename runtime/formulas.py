@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from . import bridge
 from .checks import known_name
 
 if TYPE_CHECKING:
@@ -22,9 +23,7 @@ class Formulas(Mapping[str, "Formula"]):
 
     @cached_property
     def _formulas(self) -> Mapping[str, Formula]:
-        from ..symbolic import formulas
-
-        return formulas
+        return bridge.formulas()
 
     def __getitem__(self, name: str) -> Formula:
         """Return a formula; UnknownNameError if there is none of that name."""

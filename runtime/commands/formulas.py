@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
+from ..bridge import formula_page
 from ..errors import InputError
 from ..extras import check_extra
 from ..files.paths import atomic_path, check_target
@@ -33,9 +34,7 @@ def _write(options: SimpleNamespace) -> None:
         raise InputError("--html writes all formulas to one page; leave out the name.")
     check_target(options.html, (".html",))
     check_extra("math_core", "html", "the page")
-    from ...symbolic import html
-
-    page = html.page()
+    page = formula_page()
     with atomic_path(options.html) as temporary:
         temporary.write_text(page, encoding="utf-8", newline="\n")
     say(f"{options.html}: {len(formulas)} formulas and {len(names())} surfaces")

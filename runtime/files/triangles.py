@@ -35,7 +35,8 @@ def write_stl(mesh: Mesh, path: Path) -> None:
     rows = np.zeros(len(corners), _STL_ROW)
     with np.errstate(all="ignore"):  # what single precision does not hold, triangles without area
         scale = scale_to_one(float(np.abs(mesh.vertices).max()))
-        across = np.cross(*((corners[:, k] - corners[:, 0]) * scale for k in (1, 2)))
+        first, second = ((corners[:, k] - corners[:, 0]) * scale for k in (1, 2))
+        across = np.cross(first, second)
         size = np.sqrt(np.einsum("ij,ij->i", across, across))[:, None]
         np.divide(across, size, out=rows["normal"], where=size > 0.0, casting="same_kind")
         rows["corners"] = corners

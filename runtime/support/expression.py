@@ -13,6 +13,7 @@ import numpy as np
 from numba.core.errors import NumbaError
 from numpy.typing import NDArray
 
+from .. import bridge
 from ..errors import InputError, shown
 from ..expressions import as_condition, as_expression
 from .branches import Sheets, curvatures
@@ -40,9 +41,7 @@ class ExpressionSource:
     @classmethod
     def checked(cls, h: object, normal: Sequence[Any], domain: object) -> ExpressionSource:
         """Make one from what a user gives; InputError if it cannot be used."""
-        from ...symbolic.expression import kernel_source
-        from ...symbolic.reading import depth
-
+        depth = bridge.reading().depth
         names = _names(normal)
         expression = _in_normal(as_expression(h, _symbols(names)), names, "h")
         condition = _condition(domain, names)
@@ -51,7 +50,7 @@ class ExpressionSource:
                 f"h = {_short(expression)} is nested too deeply to be differentiated; expand it."
             )
         try:
-            source = kernel_source(expression, condition)
+            source = bridge.kernel_source(expression, condition)
             compile(source, "<support function>", "exec")
         except (RecursionError, MemoryError, SyntaxError):  # SyntaxError: too many brackets
             raise InputError(
@@ -130,8 +129,6 @@ def _in_normal(expression: Any, names: Sequence[str], what: str) -> Any:  # noqa
     """Write an expression in the real symbols n_x, n_y, n_z; InputError if there are others."""
     import sympy as sp
 
-    from ...symbolic.patch import n
-
     if expression.is_Matrix:
         raise InputError(f"{what} must be a number for each normal, not a matrix.")
     if unknown := sorted({x.name for x in expression.free_symbols} - set(names)):
@@ -142,7 +139,7 @@ def _in_normal(expression: Any, names: Sequence[str], what: str) -> Any:  # noqa
         raise InputError(f"{what} is not finite: {_short(expression)}.")
     if expression.has(sp.I):
         raise InputError(f"{what} is not real: {_short(expression)}.")
-    components = dict(zip(names, n.components, strict=True))
+    components = dict(zip(names, bridge.normal_components(), strict=True))
     return expression.xreplace({x: components[x.name] for x in expression.free_symbols})
 
 
@@ -163,11 +160,9 @@ def _culprits(*expressions: Any) -> str:  # noqa: ANN401 - SymPy has no types
     """Say which functions, as the user wrote them, cannot be compiled or differentiated."""
     import sympy as sp
 
-    from ...symbolic.expression import kernel_source
-
     def is_unusable(part: Any) -> bool:  # noqa: ANN401
         try:
-            kernel_source(part)
+            bridge.kernel_source(part)
         except (NotImplementedError, ValueError, TypeError, AttributeError):
             return True
         return False

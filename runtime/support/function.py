@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .. import bridge
 from ..checks import finite_array, finite_number
 from ..directions.unit import as_normals
 from ..errors import InputError
@@ -226,9 +227,7 @@ class SupportFunction:
         expression = self.expression
         if expression is None:
             return None
-        from ...symbolic.display import latex_of
-
-        return rf"$\displaystyle h(\mathbf{{n}}) = {latex_of(expression)}$"
+        return rf"$\displaystyle h(\mathbf{{n}}) = {bridge.latex_of(expression)}$"
 
     def __repr__(self) -> str:
         return f"SupportFunction({self._source})"

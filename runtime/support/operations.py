@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..bridge import normal_components
 from ..directions.unit import as_normals
 from ..kernels import support as kernels
 from .branches import Sheets, curvatures
@@ -72,7 +73,7 @@ class Changed(ABC):
     def expression(self) -> sympy.Expr | None:
         """Return the expression; None if that of the surface is none."""
         given = self.of.expression()
-        return None if given is None else self._written(self._moved(given), _normal())
+        return None if given is None else self._written(self._moved(given), normal_components())
 
     def domain(self) -> Any:  # noqa: ANN401 - a Boolean of SymPy
         """Return the domain; None if that of the surface is none."""
@@ -169,7 +170,7 @@ class Rotated(Changed):
         return "rotated"
 
     def _moved(self, given: Any) -> Any:  # noqa: ANN401
-        n, columns = _normal(), self.rotation.T.tolist()
+        n, columns = normal_components(), self.rotation.T.tolist()
         back = [sum(_exact(c) * s for c, s in zip(column, n, strict=True)) for column in columns]
         return _at(given, n, back)
 
@@ -213,7 +214,7 @@ class Reversed(Changed):
         return "reversed"
 
     def _moved(self, given: Any) -> Any:  # noqa: ANN401
-        n = _normal()
+        n = normal_components()
         return _at(given, n, [-s for s in n])
 
     def _written(self, h: Any, n: Sequence[Any]) -> Any:  # noqa: ANN401
@@ -230,13 +231,6 @@ def pairs(
     i = np.repeat(np.arange(len(first)), repeats)
     within = np.arange(len(i)) - np.repeat(np.cumsum(repeats) - repeats, repeats)
     return i, starts[first[i]] + within
-
-
-def _normal() -> tuple[Any, ...]:
-    """Return n_x, n_y, n_z; SymPy is loaded here only."""
-    from ...symbolic.patch import n
-
-    return n.components
 
 
 def _at(given: Any, n: Sequence[Any], place: Sequence[Any]) -> Any:  # noqa: ANN401

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...generated import patch as formulas
 from ..bins import NormalBins
+from ..bridge import bezier_triangle
 from ..errors import InputError
 from ..formula_calls import python_function, vector
 from ..gauss_map.membership import PatchNormals
@@ -141,10 +142,7 @@ class PatchSource:
 
     @cached_property
     def _symbolic(self) -> Any:  # noqa: ANN401 - SymPy is loaded here only
-        from ...symbolic import BezierTriangle
-        from ...symbolic.patch import n
-
-        return BezierTriangle(self.control_points.tolist(), n.components)
+        return bezier_triangle(self.control_points.tolist())
 
     @cached_property
     def _normals(self) -> PatchNormals:
