@@ -133,7 +133,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def recorded(once: Callable[[], float]) -> float:
-    """Return the least of several measurements, as it is recorded."""
+    """Return the least of several measurements, for the record."""
     return round(min(once() for _ in range(RECORDINGS)), 4)
 
 

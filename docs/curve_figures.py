@@ -17,13 +17,13 @@ from numpy.typing import NDArray
 
 __all__ = ["figure_4", "figure_5"]
 
-# A circle with one sharp bend and two hollows beside it, in polar coordinates.
+# A circle with one sharp corner and two concave arcs next to it, in polar coordinates.
 RADIUS = 1 + sp.sin(2 * t) / 6 + sp.Rational(4, 5) * sp.exp(24 * (sp.cos(t) - 1))
 DROP = TrueCurve("drop", (RADIUS * sp.cos(t), RADIUS * sp.sin(t)), TURN, True, "a drop")
 NORMALS = 24
 EVERY = 3  # so far apart are the numbered ones
 VERTICES = 24
-SMOOTH = 2001  # points of a curve as it is drawn
+SMOOTH = 2001  # points of a drawn curve
 FINE = 100_001  # points at which the length of a curve is measured
 
 

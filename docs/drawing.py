@@ -26,7 +26,7 @@ HALO = [withStroke(linewidth=2.0, foreground="white")]  # keeps a text readable 
 
 
 def panels(width: float, height: float, rows: int, columns: int, **room: Any) -> tuple[Figure, Any]:  # noqa: ANN401
-    """Return a figure of so many inches and its axes (rows, columns), without frames."""
+    """Return a figure of a size in inches, and its axes (rows, columns), without frames."""
     figure = Figure(figsize=(width, height), dpi=200)
     axes = figure.subplots(rows, columns, squeeze=False, gridspec_kw=room)
     for panel in axes.flat:

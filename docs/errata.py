@@ -478,7 +478,7 @@ def signed(value: sp.Expr) -> str:
 
 
 def random_patch(real_lines: int) -> dict[str, tuple[int, ...]]:
-    """Return the first random patch with three distinct lines, so many of them real."""
+    """Return the first random patch with three distinct lines, a given number of them real."""
     random = Random(2024)
     while True:
         vectors = {name: tuple(random.randint(-3, 3) for _ in range(3)) for name in "abcde"}

@@ -1,6 +1,6 @@
-"""Run the scripts of docs/gallery/ as notebooks, and write them with what they show.
+"""Run the scripts of docs/gallery/ as notebooks, and write them with their outputs.
 
-A script is a notebook in Jupytext's percent format: text cells as comments, the others as they are.
+A script is a notebook in Jupytext's percent format, with text cells as comments.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from nbformat import NotebookNode, write
 from PIL import Image
 
 GALLERY = Path(__file__).parent / "gallery"
-SECONDS = 300  # for one cell; the first one that samples may compile
+SECONDS = 300  # for one cell; the first sampling may compile
 
 
 def notebook(script: Path) -> NotebookNode:
@@ -46,7 +46,7 @@ def executed(script: Path, folder: Path) -> NotebookNode:
         pictures = output.get("data", {})
         if "image/png" in pictures:
             pictures["image/png"] = smaller(pictures["image/png"])
-    cells.metadata.pop("language_info", None)  # it names the Python of whoever ran it
+    cells.metadata.pop("language_info", None)  # it has the version of Python
     return cells
 
 

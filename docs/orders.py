@@ -27,10 +27,10 @@ from tqdm import tqdm
 Array = NDArray[np.float64]
 
 GRIDS = (16, 32, 64, 128, 256)
-LAST = 3  # so many of the finest grids make the second slope
+LAST = 3  # the number of the finest grids for the second slope
 NORMALS = 40_000
 PARTS = 4  # every patch is compared at the barycentric lattice of step 1/PARTS
-STRIP = 4  # so many rows of cells at a time, as fit into the cache
+STRIP = 4  # rows of cells at a time, which fit into the cache
 FLAT = 0.01  # of the largest |K|
 NEAR = 2.0  # cells
 STEPS = 8  # of Newton's method
@@ -301,7 +301,7 @@ def has_normal(derivatives: Array, normals: Array) -> NDArray[np.bool_]:
 def closed_form(true: TrueSurface, normals: Array, curvature: Array) -> Array | None:
     """Return the support values of a surface that has a closed form, and None for others.
 
-    The torus has two values for a normal, which the sign of K tells apart.
+    The torus has two values for a normal, one for each sign of K.
     """
     value = {x.symbol.name: float(x.default) for x in true.entry.parameters}
     x, y, z = normals.T
@@ -538,7 +538,7 @@ def number(x: float) -> str:
 
 
 def above(x: float) -> str:
-    """Return zero, or a power of ten above a number: rounding errors have no digits worth it."""
+    """Return zero, or a power of ten above a number: the digits of rounding errors mean nothing."""
     return "0" if x == 0.0 else f"< 1e{math.floor(math.log10(x)) + 1}"
 
 

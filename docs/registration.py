@@ -1,4 +1,4 @@
-"""Print docs/registration.md: which samples fix a part, by the ICP of Open3D."""
+"""Print docs/registration.md: samples for registration, by the ICP of Open3D."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Part:
 
 
 def plate(title: str, relief: Callable[[Array, Array], Array]) -> Part:
-    """Return a plate that is bent to a paraboloid, with a relief on it."""
+    """Return a plate, a part of a paraboloid with a relief on it."""
 
     def position(u: Array, v: Array) -> Array:
         return np.stack([u, v, relief(u, v) - (u * u + v * v) / (2.0 * RADIUS)], axis=-1)
@@ -97,7 +97,7 @@ PARTS = (
 def samples(part: Part, density: str, count: int) -> Array:
     """Return points that gaussmap chooses on a part."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", gm.GaussmapWarning)  # flat parts are what this is about
+        warnings.simplefilter("ignore", gm.GaussmapWarning)  # planar parts are intended
         return gm.sample(
             part.surface, count=count, density=density, cells=part.cells, fields=("points",)
         ).points
@@ -267,7 +267,7 @@ def table(title: str, first: str, rows: Rows) -> str:
 
 
 def meaning(counts: Rows, slides: Rows, parts: Rows) -> str:
-    """Say what the tables say."""
+    """Return the results in words."""
     middle = np.reshape([np.median(result.points) for *_, result in counts], (-1, 3))
     few, half, many = (f"{x:,}" for x in COUNTS)
     text = MEANING.format(

@@ -16,9 +16,9 @@ __all__ = ["CLOUDS", "COUNTS", "LARGE", "Found", "OnSurface", "measured"]
 
 COUNTS = (2_000, 10_000)
 LARGE = 100_000
-# Random points are judged so many times; E and G are the medians.
+# The number of random samplings of which E and G are the medians.
 CLOUDS = 3
-# What would take longer than this for LARGE points is not asked for them.
+# Methods that would take longer than this many seconds for LARGE points are left out.
 FEASIBLE = 8.0  # seconds
 
 

@@ -11,7 +11,7 @@ __all__ = ["arc_of_normals", "circle"]
 
 
 def circle(count: int) -> NDArray[np.float64]:
-    """Return unit normals spread evenly over the circle, for planar curves.
+    """Return uniform unit normals on the circle, for planar curves.
 
     Parameters
     ----------

@@ -223,7 +223,7 @@ def spiral_angle(k: NDArray[np.int64]) -> NDArray[np.float64]:
 
 
 def _refinement(value: int, name: str) -> int:
-    """Return how fine a set shall be; InputError if it is no number, or larger than any memory."""
+    """Return the refinement of a set of normals; InputError if it is no number, or too large."""
     number = whole_number(value, name)
     if number > MOST_FREQUENT:
         raise InputError(

@@ -1,4 +1,4 @@
-"""The notebooks of docs/gallery/ run without an error, and are those of the scripts beside them."""
+"""The notebooks of docs/gallery/ run without an error, and are those of their scripts."""
 
 import os
 import subprocess

@@ -245,7 +245,7 @@ def test_developable_surfaces(
     assert np.isfinite(samples.points).all()
     assert np.isfinite(samples.gaussian_curvature).all()
     assert samples.report.invisible_share == pytest.approx(1.0)
-    if name != "cone":  # a cone is approximated by a spline that bends a little both ways
+    if name != "cone":  # its spline is slightly elliptic and hyperbolic
         assert len(samples) == 0
         assert samples.report.degenerate_patches == samples.report.patches
         return

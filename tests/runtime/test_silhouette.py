@@ -167,7 +167,7 @@ def test_developable_surfaces_warn(name: str, direction: Any) -> None:
     with pytest.warns(gm.GaussmapWarning, match="flat or developable") as said:
         samples = gm.silhouette(gm.surfaces.surface(name), direction, count=50, cells=(16, 16))
     assert said[0].filename == __file__
-    if name != "cone":  # of which the spline bends a little both ways
+    if name != "cone":  # whose spline is slightly elliptic and hyperbolic
         assert len(samples) == 0
 
 

@@ -87,7 +87,7 @@ def test_few_normals_hide_no_more_than_ten_thousand():
 
 
 def test_slight_bending_needs_many_normals():
-    """A graph that bends by 10⁻⁴ radians covers 10⁻⁸ of solid angle."""
+    """A graph whose normals turn by 10⁻⁴ radians covers a solid angle of 10⁻⁸."""
     bowl = gm.fit(gm.surfaces.elliptic_paraboloid(a=100.0, b=100.0), (8, 8))
     assert invisible_share(bowl, DENSE * 1e-1) == pytest.approx(1.0)
     assert invisible_share(bowl, DENSE * 1e6) == 0.0
