@@ -20,6 +20,7 @@ __all__ = [
     "as_float",
     "checked_array",
     "checked_count",
+    "checked_rows",
     "finite_array",
     "finite_number",
     "known_name",
@@ -176,3 +177,20 @@ def checked_array(
             f"not a {array.dtype} array of shape {array.shape}."
         )
     return np.ascontiguousarray(array)
+
+
+def checked_rows(key: ArrayLike, count: int) -> NDArray[Any]:
+    """Return a mask (count,) or valid row numbers (M,) of samples; InputError otherwise."""
+    try:
+        rows = np.asarray(key)
+    except (TypeError, ValueError, RecursionError):  # of ragged lists
+        rows = np.empty(())
+    if rows.shape == (0,) and rows.dtype.kind == "f":
+        rows = rows.astype(np.intp)  # NumPy takes an empty list for floats
+    if rows.ndim != 1 or rows.dtype.kind not in "biu":
+        raise InputError("samples are picked by a slice, a boolean mask or a 1-D index array.")
+    if rows.dtype.kind == "b" and len(rows) != count:
+        raise InputError(f"the mask has {len(rows)} entries, but there are {count} samples.")
+    if rows.dtype.kind != "b" and len(rows) and not -count <= rows.min() <= rows.max() < count:
+        raise InputError(f"an index is out of range: there are {count} samples.")
+    return rows

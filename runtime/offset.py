@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from .checks import finite_number
 from .errors import GaussmapWarning, InputError, MissingFieldError
 from .kernels import support as kernels
-from .samples import Samples, count_infinite, have_large_squares
+from .report import count_infinite, have_large_squares
+from .samples import Samples
 
 __all__ = ["offset"]
 

@@ -2,24 +2,88 @@
 
 from __future__ import annotations
 
+import math
+import operator
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
 from types import MappingProxyType
-from typing import Any
+from typing import Any, SupportsIndex
 
+import numpy as np
 from numpy.typing import NDArray
 
-from .errors import GaussmapWarning
-from .samples import SamplingReport, count_infinite
+from .errors import GaussmapWarning, InputError, shown
 from .spline import Spline
 from .visibility import invisible_share
 
-__all__ = ["sampling_report", "warn_of"]
+__all__ = [
+    "SamplingReport",
+    "common_report",
+    "count_infinite",
+    "have_large_squares",
+    "sampling_report",
+    "warn_of",
+]
 
 WORTH_A_WARNING = 0.01
 # A count is missed if the difference exceeds this share of it plus this number of samples: on a
 # symmetric surface several appear or vanish at once.
 COUNT_TOLERANCE, FEW = 0.02, 5
+# A share is a quotient of sums, so rounding may carry it this far beyond 0 or 1.
+SHARE_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class SamplingReport:
+    """A report on a sampling.
+
+    A number is None if it is unknown: a .ply file that another program rewrote has the samples, but
+    not the report.
+
+    - `surface`: label of the surface.
+    - `normals`: the number of prescribed normals.
+    - `samples`: the number of samples.
+    - `patches`: the number of patches of the spline.
+    - `invisible_share`: the developable share of the area (K ≈ 0), from 0 to 1, which no set of
+      normals samples.
+    - `degenerate_patches`: the number of patches that are developable up to the rounding of their
+      coordinates, and so have no support function (those at a pole are among them).
+    - `coverage`: a bound of the distance of any point of the surface from the nearest sample, in L.
+      Known if a coverage was requested; see also `Samples.coverage`.
+    - `angle`: a bound of the angle, in degrees, between the normal of any point of the surface and
+      that of the sample nearest in normal. Known if an angle was requested.
+    - `infinite_curvatures`: the number of samples with infinite Gaussian curvature: at singular
+      points of the spline, which a coarse one may have, and where 1/L² exceeds the largest number
+      of its type, on surfaces smaller than 1e-154 (1e-19 with float32). Known if
+      `gaussian_curvature` was requested.
+
+    Raises InputError if a count is not an integer or is negative, the share is outside 0…1, or the
+    label is not a string.
+    """
+
+    surface: str
+    normals: int | None
+    samples: int
+    patches: int | None
+    invisible_share: float | None
+    degenerate_patches: int | None
+    coverage: float | None = None
+    angle: float | None = None
+    infinite_curvatures: int | None = None
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.surface, str):
+            raise InputError(f"surface must be a string, not {type(self.surface).__name__}.")
+        for name in ("normals", "patches", "degenerate_patches", "infinite_curvatures"):
+            value = getattr(self, name)
+            object.__setattr__(self, name, None if value is None else _count(name, value))
+        object.__setattr__(self, "samples", _count("samples", self.samples))
+        if self.invisible_share is not None:
+            object.__setattr__(self, "invisible_share", _share(self.invisible_share))
+        for name in ("coverage", "angle"):
+            value = getattr(self, name)
+            object.__setattr__(self, name, None if value is None else _distance(name, value))
 
 
 def sampling_report(
@@ -84,3 +148,64 @@ def _missed(report: SamplingReport, count: int | None, coverage: float | None) -
             f"requested {coverage:g}"
         )
     return reasons
+
+
+def common_report(
+    reports: Sequence[SamplingReport], arrays: Mapping[str, NDArray[Any]]
+) -> SamplingReport:
+    """Return what reports agree about, with the number of all samples."""
+    common: dict[str, Any] = {
+        x.name: getattr(reports[0], x.name)
+        if len({getattr(report, x.name) for report in reports}) == 1
+        else None
+        for x in fields(SamplingReport)
+    }
+    common["surface"] = common["surface"] or "several surfaces"
+    common["samples"] = len(next(iter(arrays.values())))
+    common["infinite_curvatures"] = count_infinite(arrays)
+    return SamplingReport(**common)
+
+
+def count_infinite(arrays: Mapping[str, NDArray[Any]]) -> int | None:
+    """Return at how many samples K is infinite; None if K is not among their fields."""
+    if "gaussian_curvature" not in arrays:
+        return None
+    return int(np.isinf(arrays["gaussian_curvature"]).sum())
+
+
+def have_large_squares(H: NDArray[np.floating], dtype: np.dtype[Any]) -> bool:
+    """Say whether the curvatures H, where they are finite, have squares that a type cannot hold."""
+    finite = np.abs(H[np.isfinite(H)].astype(np.float64))
+    return float(finite.max(initial=0.0)) > math.sqrt(float(np.finfo(dtype).max))
+
+
+def _count(name: str, value: SupportsIndex) -> int:
+    """Return `value` as a plain int ≥ 0: a NumPy integer would not go into JSON."""
+    try:
+        count = operator.index(value)
+    except TypeError:
+        raise InputError(f"{name} must be an integer, not {shown(value)}.") from None
+    if count < 0:
+        raise InputError(f"{name} must not be negative, and is {count}.")
+    return count
+
+
+def _distance(name: str, value: float) -> float:
+    """Return `value` as a plain float ≥ 0."""
+    try:
+        distance = float(value)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} must be a number, not {shown(value)}.") from None
+    if not distance >= 0.0:
+        raise InputError(f"{name} must not be negative, and is {distance!r}.")
+    return distance
+
+
+def _share(value: float) -> float:
+    try:
+        share = float(value)
+    except (TypeError, ValueError):
+        raise InputError(f"invisible_share must be a number, not {shown(value)}.") from None
+    if not math.isfinite(share) or not -SHARE_ROUNDING <= share <= 1.0 + SHARE_ROUNDING:
+        raise InputError(f"invisible_share must lie between 0 and 1, and is {share!r}.")
+    return min(max(share, 0.0), 1.0)

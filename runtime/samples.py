@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-import math
-import operator
 import os
-from collections.abc import Iterable, Mapping, Sequence
-from contextlib import suppress
-from dataclasses import dataclass, field
-from dataclasses import fields as dataclass_fields
-from typing import TYPE_CHECKING, Any, SupportsIndex
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from .checks import checked_array
-from .errors import InputError, MissingFieldError, shown
-from .fields import ARRAY_NAMES, DERIVED, FLOAT_NAMES, row_shape
+from .errors import InputError
+from .sample_arrays import SampleArrays
 from .spline import Spline, short_label
+from .summary import kinds_of_points, summary_of
 
 if TYPE_CHECKING:
     import open3d  # pyright: ignore[reportMissingImports]
@@ -27,76 +22,11 @@ if TYPE_CHECKING:
 
     from .meshes.mesh import Mesh
 
-__all__ = [
-    "ARRAY_NAMES",
-    "Samples",
-    "SamplingReport",
-    "count_infinite",
-    "have_large_squares",
-    "rows_of",
-]
-
-# What a field is set to that was not asked for; reading it raises MissingFieldError.
-_NOT_ASKED: Any = None
-
-# A share is a quotient of sums, so rounding may carry it this far beyond 0 or 1.
-_SHARE_ROUNDING = 1e-9
-
-
-@dataclass(frozen=True, slots=True)
-class SamplingReport:
-    """A report on a sampling.
-
-    A number is None if it is unknown: a .ply file that another program rewrote has the samples, but
-    not the report.
-
-    - `surface`: label of the surface.
-    - `normals`: the number of prescribed normals.
-    - `samples`: the number of samples.
-    - `patches`: the number of patches of the spline.
-    - `invisible_share`: the developable share of the area (K ≈ 0), from 0 to 1, which no set of
-      normals samples.
-    - `degenerate_patches`: the number of patches that are developable up to the rounding of their
-      coordinates, and so have no support function (those at a pole are among them).
-    - `coverage`: a bound of the distance of any point of the surface from the nearest sample, in L.
-      Known if a coverage was requested; see also `Samples.coverage`.
-    - `angle`: a bound of the angle, in degrees, between the normal of any point of the surface and
-      that of the sample nearest in normal. Known if an angle was requested.
-    - `infinite_curvatures`: the number of samples with infinite Gaussian curvature: at singular
-      points of the spline, which a coarse one may have, and where 1/L² exceeds the largest number
-      of its type, on surfaces smaller than 1e-154 (1e-19 with float32). Known if
-      `gaussian_curvature` was requested.
-
-    Raises InputError if a count is not an integer or is negative, the share is outside 0…1, or the
-    label is not a string.
-    """
-
-    surface: str
-    normals: int | None
-    samples: int
-    patches: int | None
-    invisible_share: float | None
-    degenerate_patches: int | None
-    coverage: float | None = None
-    angle: float | None = None
-    infinite_curvatures: int | None = None
-
-    def __post_init__(self) -> None:
-        if not isinstance(self.surface, str):
-            raise InputError(f"surface must be a string, not {type(self.surface).__name__}.")
-        for name in ("normals", "patches", "degenerate_patches", "infinite_curvatures"):
-            value = getattr(self, name)
-            object.__setattr__(self, name, None if value is None else _count(name, value))
-        object.__setattr__(self, "samples", _count("samples", self.samples))
-        if self.invisible_share is not None:
-            object.__setattr__(self, "invisible_share", _share(self.invisible_share))
-        for name in ("coverage", "angle"):
-            value = getattr(self, name)
-            object.__setattr__(self, name, None if value is None else _distance(name, value))
+__all__ = ["Samples"]
 
 
 @dataclass(frozen=True, eq=False, slots=True, repr=False)
-class Samples:
+class Samples(SampleArrays):
     """N samples of a surface, one row each; lengths in the surface's unit L.
 
     Indexing with a boolean mask (N,), an index array or a slice gives the `Samples` of those
@@ -124,129 +54,6 @@ class Samples:
     another shape or dtype, or if there is none.
     """
 
-    points: NDArray[np.float64] = _NOT_ASKED
-    normals: NDArray[np.float64] = _NOT_ASKED
-    uv: NDArray[np.float64] = _NOT_ASKED
-    support: NDArray[np.float64] = _NOT_ASKED
-    gaussian_curvature: NDArray[np.float64] = _NOT_ASKED
-    mean_curvature: NDArray[np.float64] = _NOT_ASKED
-    normal_index: NDArray[np.int64] = _NOT_ASKED
-    patch_index: NDArray[np.int64] = _NOT_ASKED
-    report: SamplingReport = field(kw_only=True)
-    spline: Spline | None = field(default=None, kw_only=True)
-
-    def __post_init__(self) -> None:
-        arrays = {name: getattr(self, name) for name in ARRAY_NAMES}
-        arrays = {name: array for name, array in arrays.items() if array is not None}
-        if not arrays:
-            raise InputError("samples need at least one array, such as points.")
-        count = (np.shape(next(iter(arrays.values()))) or (0,))[0]
-        floating = _common_dtype(arrays)
-        for name in ARRAY_NAMES:
-            if name in arrays:
-                dtype = floating if name in FLOAT_NAMES else np.dtype(np.int64)
-                array = checked_array(name, arrays[name], (count, *row_shape(name)), dtype)
-                object.__setattr__(self, name, array)
-            else:
-                object.__delattr__(self, name)  # an empty slot, for which __getattr__ speaks
-        if not isinstance(self.report, SamplingReport):
-            raise InputError(f"report must be a SamplingReport, not {type(self.report).__name__}.")
-        if not isinstance(self.spline, Spline | None):
-            raise InputError(f"spline must be a Spline or None, not {type(self.spline).__name__}.")
-
-    def __getattr__(self, name: str) -> Any:  # noqa: ANN401
-        if name in ARRAY_NAMES or name in DERIVED:
-            needed = [x for x in DERIVED.get(name, (name,)) if x not in self.fields]
-            subject = "" if name in ARRAY_NAMES else f"{name} needs {' and '.join(needed)}, but "
-            raise MissingFieldError(
-                f"{subject}these samples hold {', '.join(self.fields)} only; "
-                f"add {' and '.join(repr(x) for x in needed)} to fields=... when sampling."
-            )
-        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return _rebuilt, (self.arrays(), self.report, self.spline)
-
-    @classmethod
-    def concatenate(cls, parts: Iterable[Samples]) -> Samples:
-        """Return the samples of several parts, one after the other, such as those of a stream.
-
-        The report counts all of them; what the parts' reports do not agree about is None in it.
-        The spline is kept if all parts have the same.
-        Raises InputError if there is no part, or if the parts have different fields or dtypes.
-        """
-        try:
-            pieces = list(parts)
-        except TypeError:
-            pieces = []
-        if not all(isinstance(part, Samples) for part in pieces) or not pieces:
-            raise InputError("concatenate takes Samples, at least one.")
-        kinds = {(part.fields, part.dtype) for part in pieces}
-        if len(kinds) > 1:
-            raise InputError("these samples do not fit together: they have other fields or dtypes.")
-        arrays = {
-            name: np.concatenate([getattr(part, name) for part in pieces])
-            for name in pieces[0].fields
-        }
-        report = _common_report([part.report for part in pieces], arrays)
-        common = all(part.spline is pieces[0].spline for part in pieces)
-        return cls(**arrays, report=report, spline=pieces[0].spline if common else None)
-
-    def arrays(self) -> dict[str, NDArray[Any]]:
-        """Return the fields that there are by their names, as they are and not as copies."""
-        found: dict[str, NDArray[Any]] = {}
-        for name in ARRAY_NAMES:
-            with suppress(AttributeError):
-                # Past __getattr__, which asks here what there is.
-                found[name] = object.__getattribute__(self, name)
-        return found
-
-    @property
-    def fields(self) -> tuple[str, ...]:
-        """The names of the arrays that these samples hold."""
-        return tuple(self.arrays())
-
-    @property
-    def dtype(self) -> np.dtype[np.floating]:
-        """The type of all numbers but the indices: float64 or float32."""
-        return _common_dtype(self.arrays())
-
-    @property
-    def elliptic(self) -> NDArray[np.bool_]:
-        """(N,) bool: where the Gaussian curvature is positive (its sign bit is clear)."""
-        return ~self.hyperbolic
-
-    @property
-    def hyperbolic(self) -> NDArray[np.bool_]:
-        """(N,) bool: where the Gaussian curvature is negative (its sign bit is set)."""
-        return np.signbit(self.gaussian_curvature)
-
-    @property
-    def kind(self) -> NDArray[np.str_]:
-        """(N,) text: "normal" for what the normals gave, "coverage" for what was added."""
-        return np.where(self.normal_index < 0, "coverage", "normal")
-
-    @property
-    def principal_curvatures(self) -> NDArray[np.floating]:
-        """(N, 2) float64: the principal curvatures, in 1/L, the larger one first.
-
-        They are computed from K and H. Where the two nearly agree, K and H determine their
-        difference only to about 1e-8 relative to H (3e-4 if they are float32); elsewhere both are
-        accurate, however different their sizes. NaN where H² − K is not finite, or where H² and K
-        are too small for float64.
-        """
-        K, H = (x.astype(np.float64) for x in (self.gaussian_curvature, self.mean_curvature))
-        with np.errstate(all="ignore"):
-            square = H * H - K
-            least = np.finfo(np.float64).tiny
-            known = np.isfinite(square) & ((np.maximum(H * H, np.abs(K)) >= least) | (H == 0.0))
-            root = np.where(known, np.sqrt(np.maximum(square, 0.0)), np.nan)
-            # H − root would cancel when |K| is small against H²; K / (H + root) does not.
-            far = H + np.copysign(root, H)
-            near = np.where(root > 0.0, K / far, H)
-            both = np.stack([np.maximum(far, near), np.minimum(far, near)], axis=1)
-            return both.astype(self.dtype, copy=False)
-
     def progressive(self) -> Samples:
         """Return the same samples in an order in which every prefix is well distributed.
 
@@ -266,18 +73,7 @@ class Samples:
         Such as "10,000 samples: 4,300 at 2,150 prescribed normals, 5,700 filling gaps (6,197
         elliptic, 3,803 hyperbolic)".
         """
-        report, split = self.report, self._split().removeprefix(": ").strip(" ()")
-        line = f"{len(self):,} samples{self._origin()} ({split})"
-        if len(self) != report.samples:
-            line = f"{len(self):,} of {report.samples:,}" + line.removeprefix(f"{len(self):,}")
-        if report.angle is not None:
-            line += f"; every normal is within {report.angle:.3g}° of that of a sample"
-        if report.coverage is not None:
-            line += f"; every point is within {report.coverage:.3g} of a sample"
-        if report.invisible_share is not None and not self._filling():
-            share = 100.0 * report.invisible_share
-            line += f"; {share:.2f} % of the surface is developable (K = 0)"
-        return line + self._infinite()
+        return summary_of(self)
 
     def offset(self, distance: float) -> Samples:
         """Return the samples moved along their normals: the offset surface x + d n.
@@ -419,17 +215,9 @@ class Samples:
 
         return samples_to_open3d(self)
 
-    def __len__(self) -> int:
-        return len(next(iter(self.arrays().values())))
-
-    def __getitem__(self, key: ArrayLike | slice) -> Samples:
-        rows = key if isinstance(key, slice) else rows_of(key, len(self))
-        arrays = {name: array[rows] for name, array in self.arrays().items()}
-        return Samples(**arrays, report=self.report, spline=self.spline)
-
     def __repr__(self) -> str:
         label = short_label(self.report.surface)
-        return f"Samples({len(self):,} points on {label}{self._split()})"
+        return f"Samples({len(self):,} points on {label}{kinds_of_points(self)})"
 
     def _spline_or(self, spline: Spline | None) -> Spline:
         """Return the spline that is given, else that of the samples; InputError without one."""
@@ -442,126 +230,3 @@ class Samples:
         if not isinstance(spline, Spline):
             raise InputError(f"spline must be a Spline, not {type(spline).__name__}.")
         return spline
-
-    def _filling(self) -> int:
-        """Return how many samples fill gaps, as far as that is known."""
-        return int((self.normal_index < 0).sum()) if "normal_index" in self.fields else 0
-
-    def _origin(self) -> str:
-        """Say how many samples have prescribed normals, and how many fill gaps."""
-        normals, filling = self.report.normals, self._filling()
-        if filling == len(self) > 0:
-            return " filling gaps" if normals else ""
-        if normals is None:
-            return ""
-        given = f"{normals:,} prescribed normals"
-        if not filling:
-            return f" at {given}" if "normal_index" in self.fields else f", {given}"
-        return f": {len(self) - filling:,} at {given}, {filling:,} filling gaps"
-
-    def _infinite(self) -> str:
-        """Say at how many samples K is infinite, and why."""
-        if not count_infinite(self.arrays()):
-            return ""
-        infinite = np.isinf(self.gaussian_curvature)
-        reason = "the spline is singular"
-        if "mean_curvature" in self.fields and have_large_squares(self.mean_curvature, self.dtype):
-            reason = f"it is too large for {self.dtype}"
-        return f"; K is infinite at {int(infinite.sum()):,} samples, where {reason}"
-
-    def _split(self) -> str:
-        if "gaussian_curvature" not in self.fields:
-            return f" ({', '.join(self.fields)} only)"
-        hyperbolic = int(np.count_nonzero(self.hyperbolic))
-        return f": {len(self) - hyperbolic:,} elliptic, {hyperbolic:,} hyperbolic"
-
-
-def count_infinite(arrays: Mapping[str, NDArray[Any]]) -> int | None:
-    """Return at how many samples K is infinite; None if K is not among their fields."""
-    if "gaussian_curvature" not in arrays:
-        return None
-    return int(np.isinf(arrays["gaussian_curvature"]).sum())
-
-
-def have_large_squares(H: NDArray[np.floating], dtype: np.dtype[Any]) -> bool:
-    """Say whether the curvatures H, where they are finite, have squares that a type cannot hold."""
-    finite = np.abs(H[np.isfinite(H)].astype(np.float64))
-    return float(finite.max(initial=0.0)) > math.sqrt(float(np.finfo(dtype).max))
-
-
-def _rebuilt(
-    arrays: dict[str, NDArray[Any]], report: SamplingReport, spline: Spline | None
-) -> Samples:
-    """Return samples that were copied or pickled."""
-    return Samples(**arrays, report=report, spline=spline)
-
-
-def _common_dtype(arrays: Mapping[str, object]) -> np.dtype[np.floating]:
-    """Return float32 if all that may be float32 is, otherwise float64."""
-    types = {getattr(arrays[name], "dtype", None) for name in FLOAT_NAMES if name in arrays}
-    return np.dtype(np.float32 if types == {np.dtype(np.float32)} else np.float64)
-
-
-def _common_report(
-    reports: Sequence[SamplingReport], arrays: Mapping[str, NDArray[Any]]
-) -> SamplingReport:
-    """Return what reports agree about, with the number of all samples."""
-    common: dict[str, Any] = {
-        x.name: getattr(reports[0], x.name)
-        if len({getattr(report, x.name) for report in reports}) == 1
-        else None
-        for x in dataclass_fields(SamplingReport)
-    }
-    common["surface"] = common["surface"] or "several surfaces"
-    common["samples"] = len(next(iter(arrays.values())))
-    common["infinite_curvatures"] = count_infinite(arrays)
-    return SamplingReport(**common)
-
-
-def _count(name: str, value: SupportsIndex) -> int:
-    """Return `value` as a plain int ≥ 0: a NumPy integer would not go into JSON."""
-    try:
-        count = operator.index(value)
-    except TypeError:
-        raise InputError(f"{name} must be an integer, not {shown(value)}.") from None
-    if count < 0:
-        raise InputError(f"{name} must not be negative, and is {count}.")
-    return count
-
-
-def _distance(name: str, value: float) -> float:
-    """Return `value` as a plain float ≥ 0."""
-    try:
-        distance = float(value)
-    except (TypeError, ValueError):
-        raise InputError(f"{name} must be a number, not {shown(value)}.") from None
-    if not distance >= 0.0:
-        raise InputError(f"{name} must not be negative, and is {distance!r}.")
-    return distance
-
-
-def _share(value: float) -> float:
-    try:
-        share = float(value)
-    except (TypeError, ValueError):
-        raise InputError(f"invisible_share must be a number, not {shown(value)}.") from None
-    if not math.isfinite(share) or not -_SHARE_ROUNDING <= share <= 1.0 + _SHARE_ROUNDING:
-        raise InputError(f"invisible_share must lie between 0 and 1, and is {share!r}.")
-    return min(max(share, 0.0), 1.0)
-
-
-def rows_of(key: ArrayLike, count: int) -> NDArray[Any]:
-    """Return a mask (count,) or an array of valid row numbers, (M,)."""
-    try:
-        rows = np.asarray(key)
-    except (TypeError, ValueError, RecursionError):  # of ragged lists
-        rows = np.empty(())
-    if rows.shape == (0,) and rows.dtype.kind == "f":
-        rows = rows.astype(np.intp)  # NumPy takes an empty list for floats
-    if rows.ndim != 1 or rows.dtype.kind not in "biu":
-        raise InputError("samples are picked by a slice, a boolean mask or a 1-D index array.")
-    if rows.dtype.kind == "b" and len(rows) != count:
-        raise InputError(f"the mask has {len(rows)} entries, but there are {count} samples.")
-    if rows.dtype.kind != "b" and len(rows) and not -count <= rows.min() <= rows.max() < count:
-        raise InputError(f"an index is out of range: there are {count} samples.")
-    return rows

@@ -14,8 +14,8 @@ from .choice import choose
 from .density.request import Request, checked_request
 from .fields import checked_dtype, checked_fields
 from .fitting import spline_of
-from .report import sampling_report, warn_of
-from .samples import Samples, SamplingReport, count_infinite
+from .report import SamplingReport, count_infinite, sampling_report, warn_of
+from .samples import Samples
 from .search import Hits, Search, fill, merged
 from .spline import Spline
 from .surface import Surface

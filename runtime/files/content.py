@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 
 from ..fields import ARRAY_NAMES
-from ..samples import SamplingReport
+from ..report import SamplingReport
 
 __all__ = ["UnusableError", "known_fields", "lacks", "report_from_json", "report_to_json"]
 

@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..fields import ARRAY_NAMES, COLUMNS, FLOAT_NAMES, columns_of, new_field
-from ..samples import Samples, SamplingReport
+from ..report import SamplingReport
+from ..samples import Samples
 from .content import UnusableError, known_fields, lacks, report_from_json, report_to_json
 
 if TYPE_CHECKING:

@@ -11,12 +11,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..checks import checked_rows
 from ..directions.unit import as_normals
 from ..errors import GaussmapWarning, InputError
 from ..fields import new_field
 from ..fitting import spline_of
-from ..report import sampling_report, warn_of
-from ..samples import Samples, SamplingReport, count_infinite, rows_of
+from ..report import SamplingReport, count_infinite, sampling_report, warn_of
+from ..samples import Samples
 from ..spline import Spline, short_label
 from ..surface import Surface
 from ..surfaces import named
@@ -65,7 +66,7 @@ class Convolution:
         return len(self.rows)
 
     def __getitem__(self, key: ArrayLike | slice) -> Convolution:
-        rows = key if isinstance(key, slice) else rows_of(key, len(self))
+        rows = key if isinstance(key, slice) else checked_rows(key, len(self))
         return replace(self, samples=self.samples[rows], rows=self.rows[rows])
 
     def __repr__(self) -> str:

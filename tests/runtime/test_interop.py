@@ -10,7 +10,8 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.fields import ARRAY_NAMES
-from gaussmap.runtime.samples import Samples, SamplingReport
+from gaussmap.runtime.report import SamplingReport
+from gaussmap.runtime.samples import Samples
 
 DTYPES = pytest.mark.parametrize("dtype", [np.float64, np.float32])
 

@@ -8,7 +8,8 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.samples import Samples, SamplingReport
+from gaussmap.runtime.report import SamplingReport
+from gaussmap.runtime.samples import Samples
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]

@@ -9,7 +9,9 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.errors import InputError
-from gaussmap.runtime.samples import ARRAY_NAMES, Samples, SamplingReport
+from gaussmap.runtime.fields import ARRAY_NAMES
+from gaussmap.runtime.report import SamplingReport
+from gaussmap.runtime.samples import Samples
 from hypothesis import given
 from hypothesis import strategies as st
 

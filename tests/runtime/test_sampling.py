@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import sympy as sp
 from gaussmap.runtime.directions.unit import as_normals
-from gaussmap.runtime.samples import ARRAY_NAMES
+from gaussmap.runtime.fields import ARRAY_NAMES
 from gaussmap.symbolic.surfaces import CATALOGUE
 
 DEVELOPABLE = ("plane", "cylinder", "cone")

@@ -8,7 +8,7 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.samples import ARRAY_NAMES
+from gaussmap.runtime.fields import ARRAY_NAMES
 from gaussmap.runtime.threads import over_ranges, thread_count
 
 

@@ -26,6 +26,7 @@ from gaussmap.runtime.errors import (
     MissingExtraError,
     UnknownNameError,
 )
+from gaussmap.runtime.fields import ARRAY_NAMES
 from gaussmap.runtime.files.formats import (
     READABLE_SUFFIXES,
     SUFFIXES,
@@ -33,7 +34,8 @@ from gaussmap.runtime.files.formats import (
     write_samples,
 )
 from gaussmap.runtime.files.paths import atomic_path, check_target
-from gaussmap.runtime.samples import ARRAY_NAMES, Samples, SamplingReport
+from gaussmap.runtime.report import SamplingReport
+from gaussmap.runtime.samples import Samples
 
 COLUMNS = [
     *("x", "y", "z", "nx", "ny", "nz", "u", "v", "support"),

@@ -8,7 +8,7 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.samples import SamplingReport
+from gaussmap.runtime.report import SamplingReport
 
 POINTS = ["property float x", "property float y", "property float z"]
 FIELDS = "comment gaussmap fields points"

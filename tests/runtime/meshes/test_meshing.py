@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from gaussmap.runtime.meshes.meshing import Triangulated
 from gaussmap.runtime.meshes.triangulation import neighbours
-from gaussmap.runtime.samples import SamplingReport
+from gaussmap.runtime.report import SamplingReport
 
 pytestmark = pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
 compiled = pytest.mark.compiled

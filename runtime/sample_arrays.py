@@ -1,0 +1,174 @@
+"""The arrays of samples: their fields, types and shapes; rows; what is missing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .checks import checked_array, checked_rows
+from .errors import InputError, MissingFieldError
+from .fields import ARRAY_NAMES, DERIVED, FLOAT_NAMES, row_shape
+from .report import SamplingReport, common_report
+from .spline import Spline
+
+__all__ = ["SampleArrays"]
+
+# What a field is set to that was not asked for; reading it raises MissingFieldError.
+_NOT_ASKED: Any = None
+
+
+@dataclass(frozen=True, eq=False, slots=True, repr=False)
+class SampleArrays:
+    """The data of `Samples`, whose attributes these are: arrays of N rows, report and spline."""
+
+    points: NDArray[np.float64] = _NOT_ASKED
+    normals: NDArray[np.float64] = _NOT_ASKED
+    uv: NDArray[np.float64] = _NOT_ASKED
+    support: NDArray[np.float64] = _NOT_ASKED
+    gaussian_curvature: NDArray[np.float64] = _NOT_ASKED
+    mean_curvature: NDArray[np.float64] = _NOT_ASKED
+    normal_index: NDArray[np.int64] = _NOT_ASKED
+    patch_index: NDArray[np.int64] = _NOT_ASKED
+    report: SamplingReport = field(kw_only=True)
+    spline: Spline | None = field(default=None, kw_only=True)
+
+    def __post_init__(self) -> None:
+        arrays = {name: getattr(self, name) for name in ARRAY_NAMES}
+        arrays = {name: array for name, array in arrays.items() if array is not None}
+        if not arrays:
+            raise InputError("samples need at least one array, such as points.")
+        count = (np.shape(next(iter(arrays.values()))) or (0,))[0]
+        floating = _common_dtype(arrays)
+        for name in ARRAY_NAMES:
+            if name in arrays:
+                dtype = floating if name in FLOAT_NAMES else np.dtype(np.int64)
+                array = checked_array(name, arrays[name], (count, *row_shape(name)), dtype)
+                object.__setattr__(self, name, array)
+            else:
+                object.__delattr__(self, name)  # an empty slot, for which __getattr__ speaks
+        if not isinstance(self.report, SamplingReport):
+            raise InputError(f"report must be a SamplingReport, not {type(self.report).__name__}.")
+        if not isinstance(self.spline, Spline | None):
+            raise InputError(f"spline must be a Spline or None, not {type(self.spline).__name__}.")
+
+    def __getattr__(self, name: str) -> Any:  # noqa: ANN401
+        if name in ARRAY_NAMES or name in DERIVED:
+            needed = [x for x in DERIVED.get(name, (name,)) if x not in self.fields]
+            subject = "" if name in ARRAY_NAMES else f"{name} needs {' and '.join(needed)}, but "
+            raise MissingFieldError(
+                f"{subject}these samples hold {', '.join(self.fields)} only; "
+                f"add {' and '.join(repr(x) for x in needed)} to fields=... when sampling."
+            )
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _rebuilt, (type(self), self.arrays(), self.report, self.spline)
+
+    @classmethod
+    def concatenate(cls, parts: Iterable[Self]) -> Self:
+        """Return the samples of several parts, one after the other, such as those of a stream.
+
+        The report counts all of them; what the parts' reports do not agree about is None in it.
+        The spline is kept if all parts have the same.
+        Raises InputError if there is no part, or if the parts have different fields or dtypes.
+        """
+        try:
+            pieces = list(parts)
+        except TypeError:
+            pieces = []
+        if not all(isinstance(part, cls) for part in pieces) or not pieces:
+            raise InputError("concatenate takes Samples, at least one.")
+        kinds = {(part.fields, part.dtype) for part in pieces}
+        if len(kinds) > 1:
+            raise InputError("these samples do not fit together: they have other fields or dtypes.")
+        arrays = {
+            name: np.concatenate([getattr(part, name) for part in pieces])
+            for name in pieces[0].fields
+        }
+        report = common_report([part.report for part in pieces], arrays)
+        common = all(part.spline is pieces[0].spline for part in pieces)
+        return cls(**arrays, report=report, spline=pieces[0].spline if common else None)
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Return the fields that there are by their names, as they are and not as copies."""
+        found: dict[str, NDArray[Any]] = {}
+        for name in ARRAY_NAMES:
+            with suppress(AttributeError):
+                # Past __getattr__, which asks here what there is.
+                found[name] = object.__getattribute__(self, name)
+        return found
+
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """The names of the arrays that these samples hold."""
+        return tuple(self.arrays())
+
+    @property
+    def dtype(self) -> np.dtype[np.floating]:
+        """The type of all numbers but the indices: float64 or float32."""
+        return _common_dtype(self.arrays())
+
+    @property
+    def elliptic(self) -> NDArray[np.bool_]:
+        """(N,) bool: where the Gaussian curvature is positive (its sign bit is clear)."""
+        return ~self.hyperbolic
+
+    @property
+    def hyperbolic(self) -> NDArray[np.bool_]:
+        """(N,) bool: where the Gaussian curvature is negative (its sign bit is set)."""
+        return np.signbit(self.gaussian_curvature)
+
+    @property
+    def kind(self) -> NDArray[np.str_]:
+        """(N,) text: "normal" for what the normals gave, "coverage" for what was added."""
+        return np.where(self.normal_index < 0, "coverage", "normal")
+
+    @property
+    def principal_curvatures(self) -> NDArray[np.floating]:
+        """(N, 2) float64: the principal curvatures, in 1/L, the larger one first.
+
+        They are computed from K and H. Where the two nearly agree, K and H determine their
+        difference only to about 1e-8 relative to H (3e-4 if they are float32); elsewhere both are
+        accurate, however different their sizes. NaN where H² − K is not finite, or where H² and K
+        are too small for float64.
+        """
+        K, H = (x.astype(np.float64) for x in (self.gaussian_curvature, self.mean_curvature))
+        with np.errstate(all="ignore"):
+            square = H * H - K
+            least = np.finfo(np.float64).tiny
+            known = np.isfinite(square) & ((np.maximum(H * H, np.abs(K)) >= least) | (H == 0.0))
+            root = np.where(known, np.sqrt(np.maximum(square, 0.0)), np.nan)
+            # H − root would cancel when |K| is small against H²; K / (H + root) does not.
+            far = H + np.copysign(root, H)
+            near = np.where(root > 0.0, K / far, H)
+            both = np.stack([np.maximum(far, near), np.minimum(far, near)], axis=1)
+            return both.astype(self.dtype, copy=False)
+
+    def __len__(self) -> int:
+        return len(next(iter(self.arrays().values())))
+
+    def __getitem__(self, key: ArrayLike | slice) -> Self:
+        rows = key if isinstance(key, slice) else checked_rows(key, len(self))
+        arrays = {name: array[rows] for name, array in self.arrays().items()}
+        return type(self)(**arrays, report=self.report, spline=self.spline)
+
+
+def _rebuilt(
+    cls: type[SampleArrays],
+    arrays: dict[str, NDArray[Any]],
+    report: SamplingReport,
+    spline: Spline | None,
+) -> SampleArrays:
+    """Return samples that were copied or pickled."""
+    return cls(**arrays, report=report, spline=spline)
+
+
+def _common_dtype(arrays: Mapping[str, object]) -> np.dtype[np.floating]:
+    """Return float32 if all that may be float32 is, otherwise float64."""
+    types = {getattr(arrays[name], "dtype", None) for name in FLOAT_NAMES if name in arrays}
+    return np.dtype(np.float32 if types == {np.dtype(np.float32)} else np.float64)

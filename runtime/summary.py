@@ -1,0 +1,69 @@
+"""The summary of samples: one line on their numbers, and on what the report says."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .report import count_infinite, have_large_squares
+
+if TYPE_CHECKING:
+    from .samples import Samples
+
+__all__ = ["kinds_of_points", "summary_of"]
+
+
+def summary_of(samples: Samples) -> str:
+    """Return one line: the number of samples, where they come from, what they cover."""
+    report, split = samples.report, kinds_of_points(samples).removeprefix(": ").strip(" ()")
+    line = f"{len(samples):,} samples{_origin(samples)} ({split})"
+    if len(samples) != report.samples:
+        line = f"{len(samples):,} of {report.samples:,}" + line.removeprefix(f"{len(samples):,}")
+    if report.angle is not None:
+        line += f"; every normal is within {report.angle:.3g}° of that of a sample"
+    if report.coverage is not None:
+        line += f"; every point is within {report.coverage:.3g} of a sample"
+    if report.invisible_share is not None and not _filling(samples):
+        share = 100.0 * report.invisible_share
+        line += f"; {share:.2f} % of the surface is developable (K = 0)"
+    return line + _infinite(samples)
+
+
+def _filling(samples: Samples) -> int:
+    """Return how many samples fill gaps, as far as that is known."""
+    return int((samples.normal_index < 0).sum()) if "normal_index" in samples.fields else 0
+
+
+def _origin(samples: Samples) -> str:
+    """Say how many samples have prescribed normals, and how many fill gaps."""
+    normals, filling = samples.report.normals, _filling(samples)
+    if filling == len(samples) > 0:
+        return " filling gaps" if normals else ""
+    if normals is None:
+        return ""
+    given = f"{normals:,} prescribed normals"
+    if not filling:
+        return f" at {given}" if "normal_index" in samples.fields else f", {given}"
+    return f": {len(samples) - filling:,} at {given}, {filling:,} filling gaps"
+
+
+def _infinite(samples: Samples) -> str:
+    """Say at how many samples K is infinite, and why."""
+    if not count_infinite(samples.arrays()):
+        return ""
+    infinite = np.isinf(samples.gaussian_curvature)
+    reason = "the spline is singular"
+    if "mean_curvature" in samples.fields and have_large_squares(
+        samples.mean_curvature, samples.dtype
+    ):
+        reason = f"it is too large for {samples.dtype}"
+    return f"; K is infinite at {int(infinite.sum()):,} samples, where {reason}"
+
+
+def kinds_of_points(samples: Samples) -> str:
+    """Return the numbers of elliptic and hyperbolic points, or which fields there are."""
+    if "gaussian_curvature" not in samples.fields:
+        return f" ({', '.join(samples.fields)} only)"
+    hyperbolic = int(np.count_nonzero(samples.hyperbolic))
+    return f": {len(samples) - hyperbolic:,} elliptic, {hyperbolic:,} hyperbolic"
