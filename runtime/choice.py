@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .bins import NormalBins
+from .developable import curved_solid_angle
 from .lattice import Lattice
 from .limits import MOST
 from .search import Hits, find
 from .spline import Spline
-from .visibility import visible_solid_angle
 
 __all__ = ["Chosen", "choose"]
 
@@ -75,7 +75,7 @@ def _tried(spline: Spline, count: int, threads: int | None, progress: bool) -> t
     lattice = Lattice.around(spline)
     densest = lattice.density_of(NORMALS_PER_SAMPLE * max(count, 1000))
     everything = float(np.abs(spline.measure[1]).sum())
-    resolved = visible_solid_angle(spline, min(count / max(everything, 1e-300), densest))
+    resolved = curved_solid_angle(spline, min(count / max(everything, 1e-300), densest))
     if resolved == 0.0:
         lattice, density = Lattice.everywhere(), count / (4 * math.pi)
     else:

@@ -46,7 +46,7 @@ def offset(samples: Samples, distance: float) -> Samples:
     report = replace(
         samples.report,
         surface=f"{samples.report.surface} offset by {d:g}",
-        invisible_share=None,  # areas change, except those of planar regions
+        developable_share=None,  # areas change, except those of planar regions
         infinite_curvatures=count_infinite(arrays),
     )
     return Samples(**arrays, report=report)

@@ -13,9 +13,9 @@ from typing import Any, SupportsIndex
 import numpy as np
 from numpy.typing import NDArray
 
+from .developable import developable_share
 from .errors import GaussmapWarning, InputError, shown
 from .spline import Spline
-from .visibility import invisible_share
 
 __all__ = [
     "SamplingReport",
@@ -45,7 +45,7 @@ class SamplingReport:
     - `normals`: the number of prescribed normals.
     - `samples`: the number of samples.
     - `patches`: the number of patches of the spline.
-    - `invisible_share`: the developable share of the area (K ≈ 0), from 0 to 1, which no set of
+    - `developable_share`: the developable share of the area (K ≈ 0), from 0 to 1, which no set of
       normals samples.
     - `degenerate_patches`: the number of patches that are developable up to the rounding of their
       coordinates, and so have no support function (those at a pole are among them).
@@ -66,7 +66,7 @@ class SamplingReport:
     normals: int | None
     samples: int
     patches: int | None
-    invisible_share: float | None
+    developable_share: float | None
     degenerate_patches: int | None
     coverage: float | None = None
     angle: float | None = None
@@ -79,8 +79,8 @@ class SamplingReport:
             value = getattr(self, name)
             object.__setattr__(self, name, None if value is None else _count(name, value))
         object.__setattr__(self, "samples", _count("samples", self.samples))
-        if self.invisible_share is not None:
-            object.__setattr__(self, "invisible_share", _share(self.invisible_share))
+        if self.developable_share is not None:
+            object.__setattr__(self, "developable_share", _share(self.developable_share))
         for name in ("coverage", "angle"):
             value = getattr(self, name)
             object.__setattr__(self, name, None if value is None else _distance(name, value))
@@ -100,7 +100,7 @@ def sampling_report(
         normals=normals,
         samples=samples,
         patches=spline.patches,
-        invisible_share=invisible_share(spline, density),
+        developable_share=developable_share(spline, density),
         degenerate_patches=developable,
         infinite_curvatures=count_infinite(arrays),
     )
@@ -126,7 +126,7 @@ def warn_of(
 
 def _unseen(report: SamplingReport) -> list[str]:
     """Return reasons: the part of the surface that no set of normals samples."""
-    share = report.invisible_share or 0.0
+    share = report.developable_share or 0.0
     if share > WORTH_A_WARNING:
         return [
             f"{100 * share:.0f} % of its area is flat or developable (K = 0), which no set "
@@ -205,7 +205,7 @@ def _share(value: float) -> float:
     try:
         share = float(value)
     except (TypeError, ValueError):
-        raise InputError(f"invisible_share must be a number, not {shown(value)}.") from None
+        raise InputError(f"developable_share must be a number, not {shown(value)}.") from None
     if not math.isfinite(share) or not -SHARE_ROUNDING <= share <= 1.0 + SHARE_ROUNDING:
-        raise InputError(f"invisible_share must lie between 0 and 1, and is {share!r}.")
+        raise InputError(f"developable_share must lie between 0 and 1, and is {share!r}.")
     return min(max(share, 0.0), 1.0)

@@ -24,9 +24,10 @@ def summary_of(samples: Samples) -> str:
         line += f"; every normal is within {report.angle:.3g}° of that of a sample"
     if report.coverage is not None:
         line += f"; every point is within {report.coverage:.3g} of a sample"
-    if report.invisible_share is not None and not _filling(samples):
-        share = 100.0 * report.invisible_share
-        line += f"; {share:.2f} % of the surface is developable (K = 0)"
+    if report.developable_share is not None and not _filling(samples):
+        share = f"{100.0 * report.developable_share:.2f}"
+        if share != "0.00":
+            line += f"; {share} % of the surface is developable (K = 0)"
     return line + _infinite(samples)
 
 

@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 
 from ..bins import NormalBins
 from ..choice import NORMALS_PER_SAMPLE
+from ..developable import curved_solid_angle
 from ..fields import ARRAY_NAMES
 from ..lattice import Lattice
 from ..report import sampling_report
 from ..samples import Samples
 from ..search import fill, find
 from ..spline import Spline
-from ..visibility import visible_solid_angle
 
 __all__ = ["SamplesAtNormals", "no_samples", "sample_at_lattice", "sample_at_normals"]
 
@@ -38,7 +38,7 @@ class SamplesAtNormals:
         """Samples per steradian of the Gaussian image; those of the normals if it is empty."""
         if self.samples is None or self.samples.spline is None:
             return self.density
-        image = visible_solid_angle(self.samples.spline, self.density)
+        image = curved_solid_angle(self.samples.spline, self.density)
         return len(self.samples) / image if len(self.samples) and image > 0.0 else self.density
 
 
@@ -72,7 +72,7 @@ def sample_at_lattice(
     half a sample is expected, there is none.
     """
     lattice = Lattice.around(spline)
-    image = visible_solid_angle(spline, density)
+    image = curved_solid_angle(spline, density)
     densest = lattice.density_of(NORMALS_PER_SAMPLE * max(round(density * image), 1000))
     density = min(density, densest)
     while round(density * image) > 0:

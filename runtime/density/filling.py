@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from ..developable import curved_solid_angle
 from ..errors import SurfaceError
 from ..fields import FLOAT_NAMES, new_field
 from ..kernels.tile import fill_known
@@ -18,7 +19,6 @@ from ..report import sampling_report
 from ..samples import Samples
 from ..spline import Spline
 from ..threads import counted
-from ..visibility import visible_solid_angle
 from .angles import cover_normals
 from .at_normals import SamplesAtNormals, no_samples, sample_at_lattice, sample_at_normals
 from .cover import Cover
@@ -115,7 +115,7 @@ class Filling:
         A power is uniform, too, if all curvature is an error of the spline.
         """
         power, count = self.request.density, self.request.count or 0
-        if isinstance(power, str) or visible_solid_angle(self.spline, count / (4 * math.pi)) == 0.0:
+        if isinstance(power, str) or curved_solid_angle(self.spline, count / (4 * math.pi)) == 0.0:
             return self._sizing(TargetDensity(floor=1.0))
         sizing = self._sizing(TargetDensity(gauss_weight=1.0, exponent=float(power)))
         return sizing.with_floor(sizing.integral / sizing.area / WIDEST_GAP**2)
@@ -201,7 +201,7 @@ class Filling:
 
     def _by_count(self, sizing: SizingFunction, count: int) -> tuple[Cover, SamplesAtNormals]:
         """Divide a count between samples at normals and samples that fill the gaps."""
-        seen = visible_solid_angle(self.spline, count / (4 * math.pi))
+        seen = curved_solid_angle(self.spline, count / (4 * math.pi))
         density = 1.0
         # The number of samples at one normal per steradian; it is proportional to their density.
         filling = sizing.integral / (GREEDY * (WIDER * spacing(density)) ** 2)
@@ -215,7 +215,7 @@ class Filling:
         self, sizing: SizingFunction, count: int, coverage: float
     ) -> tuple[Cover, SamplesAtNormals]:
         """Find the most normals that leave enough samples for a coverage, by bisection."""
-        seen = visible_solid_angle(self.spline, count / (4 * math.pi))
+        seen = curved_solid_angle(self.spline, count / (4 * math.pi))
         distance = self._distance(sizing, coverage)
         high = math.log(count / seen) if seen > 0.0 else 0.0
         low, best = high - FEWEST_NORMALS, None

@@ -244,7 +244,7 @@ def test_developable_surfaces(
         samples = gm.sample(surface, normals=gm.icosphere(32), cells=(32, 32))
     assert np.isfinite(samples.points).all()
     assert np.isfinite(samples.gaussian_curvature).all()
-    assert samples.report.invisible_share == pytest.approx(1.0)
+    assert samples.report.developable_share == pytest.approx(1.0)
     if name != "cone":  # its spline is slightly elliptic and hyperbolic
         assert len(samples) == 0
         assert samples.report.degenerate_patches == samples.report.patches

@@ -73,7 +73,10 @@ def test_what_an_offset_keeps() -> None:
     for name in ("normals", "uv", "normal_index", "patch_index"):
         assert (getattr(moved, name) == getattr(before, name)).all()
     assert moved.report == replace(
-        before.report, surface="torus offset by -0.25", invisible_share=None, infinite_curvatures=0
+        before.report,
+        surface="torus offset by -0.25",
+        developable_share=None,
+        infinite_curvatures=0,
     )
     assert (before.points == exact_torus().points).all()  # and of the old ones nothing is changed
     assert (before.gaussian_curvature == exact_torus().gaussian_curvature).all()

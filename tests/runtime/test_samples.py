@@ -148,8 +148,8 @@ class TestReport:
 
     @pytest.mark.parametrize("bad", [-0.1, 1.1, np.nan, np.inf, "much"])
     def test_bad_shares(self, bad):
-        with pytest.raises(InputError, match=r"^invisible_share must"):
-            replace(REPORT, invisible_share=bad)
+        with pytest.raises(InputError, match=r"^developable_share must"):
+            replace(REPORT, developable_share=bad)
 
     @pytest.mark.parametrize("name", ["coverage", "angle"])
     @pytest.mark.parametrize("bad", [-0.1, np.nan, "much", [1.0]])
@@ -158,8 +158,8 @@ class TestReport:
             replace(REPORT, **{name: bad})
 
     def test_rounding_of_the_share_is_forgiven(self):
-        assert replace(REPORT, invisible_share=-1e-15).invisible_share == 0.0
-        assert replace(REPORT, invisible_share=1.0 + 1e-15).invisible_share == 1.0
+        assert replace(REPORT, developable_share=-1e-15).developable_share == 0.0
+        assert replace(REPORT, developable_share=1.0 + 1e-15).developable_share == 1.0
 
     def test_the_label_must_be_text(self):
         with pytest.raises(InputError, match=r"^surface must be a string, not bytes"):
@@ -167,7 +167,7 @@ class TestReport:
 
     def test_unknown_numbers(self):
         report = SamplingReport("s", None, 0, None, None, None)
-        assert report.normals is report.patches is report.invisible_share is None
+        assert report.normals is report.patches is report.developable_share is None
 
     def test_the_number_of_samples_is_always_known(self):
         with pytest.raises(InputError, match=r"^samples must be an integer"):
@@ -316,6 +316,24 @@ class TestText:
         assert self.samples().summary() == (
             "10,012 samples at 1,234,567 prescribed normals (5,012 elliptic, 5,000 hyperbolic); "
             "3.12 % of the surface is developable (K = 0)"
+        )
+
+    @pytest.mark.parametrize(
+        ("share", "end"),
+        [
+            (0.0, ""),
+            (4.9e-5, ""),
+            (5.1e-5, "; 0.01 % of the surface is developable (K = 0)"),
+            (1.0, "; 100.00 % of the surface is developable (K = 0)"),
+        ],
+    )
+    def test_summary_without_a_developable_part(self, share, end):
+        samples = self.samples()
+        samples = replace(samples, report=replace(samples.report, developable_share=share))
+        assert (
+            samples.summary()
+            == ("10,012 samples at 1,234,567 prescribed normals (5,012 elliptic, 5,000 hyperbolic")
+            + end
         )
 
     def test_summary_of_samples_that_fill_gaps(self):

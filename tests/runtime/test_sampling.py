@@ -46,7 +46,7 @@ def test_count(name):
         samples = gm.sample(spline, count=count, density="gauss")
         assert abs(len(samples) - count) <= 0.05 * count + 1
         assert samples.report.samples == len(samples)
-        assert samples.report.invisible_share == 0.0
+        assert samples.report.developable_share == 0.0
 
 
 @pytest.mark.compiled
@@ -147,7 +147,7 @@ def test_developable_surfaces_are_warned_of(name):
         samples = gm.sample(surface, normals=gm.icosphere(8))
     assert len(caught) == 1
     assert caught[0].filename == __file__
-    assert samples.report.invisible_share == pytest.approx(1.0)
+    assert samples.report.developable_share == pytest.approx(1.0)
     with pytest.warns(gm.GaussmapWarning, match=why + ".* samples instead of the requested 500"):
         gm.sample(surface, count=500, density="gauss")
 

@@ -55,7 +55,7 @@ def test_chunks_make_the_whole(name, threads, monkeypatch):
             assert 0 < len(chunks[-1]) <= size
             joined = Samples.concatenate(chunks)
             same(joined, whole)
-            assert joined.report.invisible_share == whole.report.invisible_share
+            assert joined.report.developable_share == whole.report.developable_share
             assert joined.report.normals == whole.report.normals
             assert joined.report.samples == whole.report.samples
 

@@ -290,4 +290,4 @@ def test_a_surface_without_curvature_is_covered_evenly_by_any_power():
 def test_nothing_warns_of_what_is_covered():
     for name in ("plane", "cylinder", "cone"):
         samples = gm.sample(gm.surfaces.surface(name), count=60, cells=(12, 12))
-        assert samples.report.invisible_share == pytest.approx(1.0)
+        assert samples.report.developable_share == pytest.approx(1.0)

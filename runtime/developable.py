@@ -1,4 +1,4 @@
-"""The share of a surface that is developable (K ≈ 0), where no set of normals gives samples."""
+"""The developable share of a surface (K ≈ 0), which no set of normals samples."""
 
 from __future__ import annotations
 
@@ -9,33 +9,34 @@ from numpy.typing import NDArray
 
 from .spline import Spline
 
-__all__ = ["invisible_share", "visible_solid_angle"]
+__all__ = ["curved_solid_angle", "developable_share"]
 
 
-# Regions that 10,000 normals would sample count as visible, even with fewer normals.
+# Regions that 10,000 normals would sample count as curved, even with fewer normals.
 LEAST_DENSITY = 10_000 / (4 * math.pi)
 
 
-def invisible_share(spline: Spline, density: float) -> float:
+def developable_share(spline: Spline, density: float) -> float:
     """Return the share of the area that `density` normals per steradian do not sample."""
     areas = spline.measure[0].reshape(-1, 4).sum(axis=1)
     total = float(areas.sum())
-    return float(areas[~_visible(spline, density)].sum()) / total if total > 0.0 else 1.0
+    return float(areas[~_curved(spline, density)].sum()) / total if total > 0.0 else 1.0
 
 
-def visible_solid_angle(spline: Spline, density: float) -> float:
-    """Return the solid angle of the Gaussian image of visible cells, with multiplicity."""
+def curved_solid_angle(spline: Spline, density: float) -> float:
+    """Return the solid angle of the Gaussian image of curved cells, with multiplicity."""
     solid_angles = np.abs(spline.measure[1]).reshape(-1, 4).sum(axis=1)
-    return float(solid_angles[_visible(spline, density)].sum())
+    return float(solid_angles[_curved(spline, density)].sum())
 
 
-def _visible(spline: Spline, density: float) -> NDArray[np.bool_]:
+def _curved(spline: Spline, density: float) -> NDArray[np.bool_]:
     """Return which cells are curved enough to be sampled, as booleans (cells,).
 
-    A cell is, if a surface with the area of this one and the |K| of the cell would get a sample.
-    K is the signed solid angle of a cell over its area: on a developable surface the elliptic and
-    hyperbolic errors of the spline cancel in it. It also vanishes where K changes its sign, hence
-    the maximum over the cell and its neighbours.
+    A cell counts if |K| times the density is at least 1, in units of the diagonal of the bounding
+    box: a surface of that size with this |K| would have a sample. K is the signed solid angle of a
+    cell divided by its area: on a developable surface the elliptic and hyperbolic errors of the
+    spline cancel in it. It also vanishes where K changes its sign, hence the maximum over the cell
+    and its neighbours.
     """
     areas, solid_angles = (x.reshape(*spline.cells, 4).sum(axis=2) for x in spline.measure)
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -1,11 +1,11 @@
-"""What normals can see: a share of the area, and the solid angle of the Gaussian image."""
+"""The developable share of the area, and the solid angle of the Gaussian image of the rest."""
 
 import math
 
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.visibility import invisible_share, visible_solid_angle
+from gaussmap.runtime.developable import curved_solid_angle, developable_share
 
 DENSE = 1e5 / (4 * math.pi)
 
@@ -34,29 +34,29 @@ def moved(surface, factor=1.0, shift=0.0):
         ("enneper", None),
     ],
 )
-def test_curved_surfaces_are_visible(name, solid_angle):
+def test_curved_surfaces_are_curved(name, solid_angle):
     spline = gm.fit(gm.surfaces.surface(name))
-    assert invisible_share(spline, DENSE) < 0.005
+    assert developable_share(spline, DENSE) < 0.005
     if solid_angle is not None:
-        assert visible_solid_angle(spline, DENSE) == pytest.approx(solid_angle, rel=0.02)
+        assert curved_solid_angle(spline, DENSE) == pytest.approx(solid_angle, rel=0.02)
 
 
 @pytest.mark.parametrize("name", ["plane", "cylinder", "cone"])
 @pytest.mark.parametrize("factor", [1.0, 1e-12, 1e12])
 @pytest.mark.parametrize("shift", [0.0, 1e6])
-def test_developable_surfaces_are_not(name, factor, shift):
+def test_developable_surfaces_are_so_entirely(name, factor, shift):
     spline = gm.fit(moved(gm.surfaces.surface(name), factor, shift * factor), (32, 32))
-    assert invisible_share(spline, DENSE) == pytest.approx(1.0)
-    assert visible_solid_angle(spline, DENSE) == 0.0
+    assert developable_share(spline, DENSE) == pytest.approx(1.0)
+    assert curved_solid_angle(spline, DENSE) == 0.0
 
 
 def test_a_slanted_plane_and_a_slanted_graph_over_it():
     plane = gm.fit(gm.surfaces.plane(slope_u=0.3, slope_v=-2.0))
-    assert invisible_share(plane, DENSE) == pytest.approx(1.0)
+    assert developable_share(plane, DENSE) == pytest.approx(1.0)
     rolled = gm.Surface.from_callable(
         lambda u, v: np.stack([u, v, np.sin(u + 2 * v)], axis=-1), ((-1, 1), (-1, 1))
     )
-    assert invisible_share(gm.fit(rolled), DENSE) > 0.9
+    assert developable_share(gm.fit(rolled), DENSE) > 0.9
 
 
 @pytest.mark.parametrize("share", [0.25, 0.5, 0.75])
@@ -70,28 +70,30 @@ def test_surfaces_that_are_developable_in_part(share, flat):
         return np.stack([u, v, 0.01 * (height + (v * v if flat == "rolled" else 0.0))], axis=-1)
 
     spline = gm.fit(gm.Surface.from_callable(graph, ((0.0, 1.0), (0.0, 1.0))), (64, 64))
-    assert invisible_share(spline, DENSE) == pytest.approx(share, abs=0.06)
+    assert developable_share(spline, DENSE) == pytest.approx(share, abs=0.06)
 
 
 @pytest.mark.compiled
-def test_a_point_and_a_curve_are_invisible():
+def test_a_point_and_a_curve_are_developable():
     for f in (lambda u, v: np.zeros((*u.shape, 3)), lambda u, v: np.stack([u, u * u, u], axis=-1)):
         spline = gm.fit(gm.Surface.from_callable(f, ((0, 1), (0, 1))), (4, 4))
-        assert invisible_share(spline, DENSE) == 1.0
-        assert visible_solid_angle(spline, DENSE) == 0.0
+        assert developable_share(spline, DENSE) == 1.0
+        assert curved_solid_angle(spline, DENSE) == 0.0
 
 
-def test_few_normals_hide_no_more_than_ten_thousand():
+def test_few_normals_count_as_ten_thousand():
     spline = gm.fit(gm.surfaces.torus())
-    assert invisible_share(spline, 1e-6) == invisible_share(spline, 10_000 / (4 * math.pi)) == 0.0
+    assert (
+        developable_share(spline, 1e-6) == developable_share(spline, 10_000 / (4 * math.pi)) == 0.0
+    )
 
 
-def test_slight_bending_needs_many_normals():
+def test_slight_curvature_needs_many_normals():
     """A graph whose normals turn by 10⁻⁴ radians covers a solid angle of 10⁻⁸."""
     bowl = gm.fit(gm.surfaces.elliptic_paraboloid(a=100.0, b=100.0), (8, 8))
-    assert invisible_share(bowl, DENSE * 1e-1) == pytest.approx(1.0)
-    assert invisible_share(bowl, DENSE * 1e6) == 0.0
-    assert visible_solid_angle(bowl, DENSE * 1e6) == pytest.approx((4e-4) ** 2, rel=1e-3)
+    assert developable_share(bowl, DENSE * 1e-1) == pytest.approx(1.0)
+    assert developable_share(bowl, DENSE * 1e6) == 0.0
+    assert curved_solid_angle(bowl, DENSE * 1e6) == pytest.approx((4e-4) ** 2, rel=1e-3)
 
 
 @pytest.mark.parametrize("name", ["torus", "cylinder", "wavy_graph"])
@@ -99,5 +101,5 @@ def test_slight_bending_needs_many_normals():
 def test_the_unit_of_length_does_not_matter(name, exponent):
     surface = gm.surfaces.surface(name)
     plain, scaled = gm.fit(surface, (16, 16)), gm.fit(moved(surface, 2.0**exponent), (16, 16))
-    assert invisible_share(plain, DENSE) == invisible_share(scaled, DENSE)
-    assert visible_solid_angle(plain, DENSE) == visible_solid_angle(scaled, DENSE)
+    assert developable_share(plain, DENSE) == developable_share(scaled, DENSE)
+    assert curved_solid_angle(plain, DENSE) == curved_solid_angle(scaled, DENSE)
