@@ -19,38 +19,135 @@ __all__ = [
 
 
 class GaussmapError(Exception):
-    """Base class of every error that gaussmap raises on purpose."""
+    """Base class of all errors that gaussmap raises on purpose.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> try:
+    ...     gm.sample("donut", 1000)
+    ... except gm.GaussmapError as error:
+    ...     print(type(error).__name__)
+    UnknownNameError
+
+    """
 
 
 class InputError(GaussmapError, ValueError):
-    """An argument has the wrong shape, type, sign or range, or holds NaN or infinity."""
+    """An argument has the wrong shape, type, sign or range, or holds NaN or infinity.
+
+    It is a ValueError, too.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> try:
+    ...     gm.directions.icosphere(-1)
+    ... except gm.errors.InputError as error:
+    ...     print(isinstance(error, ValueError))
+    True
+
+    """
 
 
 class SurfaceError(GaussmapError):
-    """A surface or a curve cannot be evaluated: its callable raised, or returned no points."""
+    """A surface or a curve cannot be evaluated: its callable raised, or did not return points.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> flat = gm.Surface.from_callable(lambda u, v: u, ((0, 1), (0, 1)))  # no points
+    >>> try:
+    ...     gm.fit(flat)
+    ... except gm.errors.SurfaceError as error:
+    ...     print("surface" in str(error))
+    True
+
+    """
 
 
 class UnknownNameError(GaussmapError, LookupError):
-    """A surface, formula or file type of that name does not exist."""
+    """A surface, formula or file type of that name does not exist.
+
+    It is a LookupError, too; the message has the names that are similar.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> try:
+    ...     gm.fit("tors")
+    ... except gm.errors.UnknownNameError as error:
+    ...     print("torus" in str(error))
+    True
+
+    """
 
 
 class FileError(GaussmapError, OSError):
-    """A file cannot be read or written, or is not what its name says."""
+    """A file cannot be read or written, or is not of the format that its name says.
+
+    It is an OSError, too.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> try:
+    ...     gm.read_samples("missing.ply")
+    ... except gm.errors.FileError as error:
+    ...     print(isinstance(error, OSError))
+    True
+
+    """
 
 
 class MissingExtraError(GaussmapError, ImportError):
-    """An optional dependency is not installed; the message names the extra that brings it."""
+    """An optional dependency is not installed; the message names the extra that installs it.
+
+    It is an ImportError, too.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> samples = gm.sample("torus", 50, cells=(16, 16))
+    >>> try:
+    ...     table = samples.to_dataframe()
+    ... except gm.errors.MissingExtraError:
+    ...     table = samples.arrays()  # without pandas
+    >>> len(table["support"])
+    50
+
+    """
 
 
 class MissingFieldError(GaussmapError, AttributeError):
-    """Samples lack a field that was not asked for when they were made (see `fields` of `sample`).
+    """Samples lack a field that was not requested when they were made (see `fields` of `sample`).
 
-    As an AttributeError it makes `hasattr(samples, name)` false.
+    It is an AttributeError, too, so that `hasattr(samples, name)` is False.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> samples = gm.sample("torus", 50, cells=(16, 16), fields=("points",))
+    >>> hasattr(samples, "points"), hasattr(samples, "support")
+    (True, False)
+
     """
 
 
 class GaussmapWarning(UserWarning):
-    """A result is valid but less than what was asked for; the message says why."""
+    """A result is valid, but less than requested; the message says why.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> import warnings
+    >>> with warnings.catch_warnings(record=True) as caught:
+    ...     warnings.simplefilter("always")
+    ...     samples = gm.sample("cylinder", normals=[[0, 0, 1]])
+    >>> len(samples), [x.category.__name__ for x in caught]
+    (0, ['GaussmapWarning'])
+
+    """
 
 
 LONGEST_SHOWN = 60

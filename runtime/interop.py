@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import trimesh
 
     from .meshes.mesh import Mesh
-    from .samples import Samples
+    from .sample_arrays import SampleArrays
 
 __all__ = [
     "mesh_to_open3d",
@@ -30,28 +30,28 @@ __all__ = [
 ]
 
 
-def samples_to_dataframe(samples: Samples) -> pandas.DataFrame:
+def samples_to_dataframe(samples: SampleArrays) -> pandas.DataFrame:
     """Return what `Samples.to_dataframe` returns."""
     columns = columns_of(samples.arrays())
     pandas = from_extra("pandas", "pandas", "this")
     return pandas.DataFrame({name: column.copy() for name, column in columns.items()})
 
 
-def samples_to_pyvista(samples: Samples) -> pyvista.PolyData:
+def samples_to_pyvista(samples: SampleArrays) -> pyvista.PolyData:
     """Return what `Samples.to_pyvista` returns."""
     points, pv = samples.points, from_extra("pyvista", "vtk", "this")
     arrays = {name: getattr(samples, name) for name in samples.fields if name != "points"}
     return _polydata(pv, pv.PolyData(points.copy()), arrays)
 
 
-def samples_to_trimesh(samples: Samples) -> trimesh.PointCloud:
+def samples_to_trimesh(samples: SampleArrays) -> trimesh.PointCloud:
     """Return what `Samples.to_trimesh` returns."""
     points = samples.points.astype(np.float64)
     arrays = {name: getattr(samples, name).copy() for name in samples.fields if name != "points"}
     return from_extra("trimesh", "trimesh", "this").PointCloud(points, metadata=arrays)
 
 
-def samples_to_open3d(samples: Samples) -> open3d.geometry.PointCloud:
+def samples_to_open3d(samples: SampleArrays) -> open3d.geometry.PointCloud:
     """Return what `Samples.to_open3d` returns."""
     points, library = samples.points, from_extra("open3d", "open3d", "this")
     cloud = library.geometry.PointCloud(_vectors(library, points))

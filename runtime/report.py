@@ -41,25 +41,50 @@ class SamplingReport:
     A number is None if it is unknown: a .ply file that another program rewrote has the samples, but
     not the report.
 
-    - `surface`: label of the surface.
-    - `normals`: the number of prescribed normals.
-    - `samples`: the number of samples.
-    - `patches`: the number of patches of the spline.
-    - `developable_share`: the developable share of the area (K ≈ 0), from 0 to 1, which no set of
-      normals samples.
-    - `degenerate_patches`: the number of patches that are developable up to the rounding of their
-      coordinates, and so have no support function (those at a pole are among them).
-    - `coverage`: a bound of the distance of any point of the surface from the nearest sample, in L.
-      Known if a coverage was requested; see also `Samples.coverage`.
-    - `angle`: a bound of the angle, in degrees, between the normal of any point of the surface and
-      that of the sample nearest in normal. Known if an angle was requested.
-    - `infinite_curvatures`: the number of samples with infinite Gaussian curvature: at singular
-      points of the spline, which a coarse one may have, and where 1/L² exceeds the largest number
-      of its type, on surfaces smaller than 1e-154 (1e-19 with float32). Known if
-      `gaussian_curvature` was requested.
+    Attributes
+    ----------
+    surface : str
+        Label of the surface.
+    normals : int or None
+        The number of prescribed normals.
+    samples : int
+        The number of samples.
+    patches : int or None
+        The number of patches of the spline.
+    developable_share : float or None
+        The developable share of the area (K ≈ 0), from 0 to 1, which no set of normals samples.
+    degenerate_patches : int or None
+        The number of patches that are developable up to the rounding of their coordinates, and so
+        have no support function (those at a pole are among them).
+    coverage : float or None
+        A bound of the distance of any point of the surface from the nearest sample, in the unit of
+        the surface. Known if a coverage was requested; see also `Samples.coverage`.
+    angle : float or None
+        A bound of the angle, in degrees, between the normal of any point of the surface and that of
+        the sample nearest in normal. Known if an angle was requested.
+    infinite_curvatures : int or None
+        The number of samples with infinite Gaussian curvature: at singular points of the spline,
+        which a coarse one may have, and where 1/L² exceeds the largest number of its type, on
+        surfaces smaller than 1e-154 (1e-19 with float32). Known if `gaussian_curvature` was
+        requested.
 
-    Raises InputError if a count is not an integer or is negative, the share is outside 0…1, or the
-    label is not a string.
+    Raises
+    ------
+    InputError
+        If a count is not an integer or is negative, the share is outside 0…1, or the label is not a
+        string.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> report = gm.sample("torus", angle=20.0, cells=(16, 16)).report
+    >>> report.surface, report.patches, report.degenerate_patches, report.infinite_curvatures
+    ('torus', 1024, 0, 0)
+    >>> report.normals <= report.samples, report.angle <= 20.0, report.coverage is None
+    (True, True, True)
+    >>> report.developable_share
+    0.0
+
     """
 
     surface: str

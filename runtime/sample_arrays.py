@@ -1,11 +1,11 @@
-"""The arrays of samples: their fields, types and shapes; rows; what is missing."""
+"""The arrays of samples: fields, types, shapes, rows, conversions to other libraries."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +16,12 @@ from .fields import ARRAY_NAMES, DERIVED, FLOAT_NAMES, row_shape
 from .report import SamplingReport, common_report
 from .spline import Spline
 
+if TYPE_CHECKING:
+    import open3d  # pyright: ignore[reportMissingImports]
+    import pandas
+    import pyvista
+    import trimesh
+
 __all__ = ["SampleArrays"]
 
 # What a field is set to that was not asked for; reading it raises MissingFieldError.
@@ -24,7 +30,7 @@ _NOT_ASKED: Any = None
 
 @dataclass(frozen=True, eq=False, slots=True, repr=False)
 class SampleArrays:
-    """The data of `Samples`, whose attributes these are: arrays of N rows, report and spline."""
+    """The data of `Samples`, which documents them, and their conversions to other libraries."""
 
     points: NDArray[np.float64] = _NOT_ASKED
     normals: NDArray[np.float64] = _NOT_ASKED
@@ -71,11 +77,31 @@ class SampleArrays:
 
     @classmethod
     def concatenate(cls, parts: Iterable[Self]) -> Self:
-        """Return the samples of several parts, one after the other, such as those of a stream.
+        """Join several parts into one, such as the chunks of a stream.
 
-        The report counts all of them; what the parts' reports do not agree about is None in it.
-        The spline is kept if all parts have the same.
-        Raises InputError if there is no part, or if the parts have different fields or dtypes.
+        Parameters
+        ----------
+        parts : iterable of Samples
+            At least one; all with the same fields and dtype.
+
+        Returns
+        -------
+        Samples
+            The rows of all parts, in turn. The report counts all of them; entries that the reports
+            of the parts do not agree about are None. The spline is kept if all parts have the same.
+
+        Raises
+        ------
+        InputError
+            If there is no part, or if the parts have different fields or dtypes.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> chunks = gm.sample_stream("torus", 200, chunk=64, cells=(16, 16))
+        >>> len(gm.Samples.concatenate(chunks))
+        200
+
         """
         try:
             pieces = list(parts)
@@ -95,7 +121,21 @@ class SampleArrays:
         return cls(**arrays, report=report, spline=pieces[0].spline if common else None)
 
     def arrays(self) -> dict[str, NDArray[Any]]:
-        """Return the fields that there are by their names, as they are and not as copies."""
+        """Return the fields by their names.
+
+        Returns
+        -------
+        dict of str to array
+            The fields that the samples hold; not copies.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> samples = gm.sample("torus", 50, fields=("points", "uv"), cells=(16, 16))
+        >>> {name: array.shape for name, array in samples.arrays().items()}
+        {'points': (50, 3), 'uv': (50, 2)}
+
+        """
         found: dict[str, NDArray[Any]] = {}
         for name in ARRAY_NAMES:
             with suppress(AttributeError):
@@ -105,12 +145,12 @@ class SampleArrays:
 
     @property
     def fields(self) -> tuple[str, ...]:
-        """The names of the arrays that these samples hold."""
+        """The names of the arrays that the samples hold, a tuple of str."""
         return tuple(self.arrays())
 
     @property
     def dtype(self) -> np.dtype[np.floating]:
-        """The type of all numbers but the indices: float64 or float32."""
+        """The type of all numbers except the indices: float64 or float32."""
         return _common_dtype(self.arrays())
 
     @property
@@ -125,7 +165,7 @@ class SampleArrays:
 
     @property
     def kind(self) -> NDArray[np.str_]:
-        """(N,) text: "normal" for what the normals gave, "coverage" for what was added."""
+        """(N,) str array: "normal" at prescribed normals, "coverage" for samples that fill gaps."""
         return np.where(self.normal_index < 0, "coverage", "normal")
 
     @property
@@ -148,6 +188,111 @@ class SampleArrays:
             near = np.where(root > 0.0, K / far, H)
             both = np.stack([np.maximum(far, near), np.minimum(far, near)], axis=1)
             return both.astype(self.dtype, copy=False)
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """Return a table with one row for each sample and the columns of a `.csv` file.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A copy, as of the other conversions.
+
+        Raises
+        ------
+        MissingExtraError
+            Without the extra `pandas`.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> table = gm.sample("torus", 200, cells=(16, 16)).to_dataframe()
+        >>> len(table), list(table.columns)[:4]
+        (200, ['x', 'y', 'z', 'nx'])
+
+        """
+        from .interop import samples_to_dataframe
+
+        return samples_to_dataframe(self)
+
+    def to_pyvista(self) -> pyvista.PolyData:
+        """Return the points with all other fields as point data.
+
+        Returns
+        -------
+        pyvista.PolyData
+            The normals are its normals.
+
+        Raises
+        ------
+        MissingExtraError
+            Without the extra `vtk`.
+        MissingFieldError
+            Unless the samples have the field points.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.sample("torus", 200, cells=(16, 16)).to_pyvista().n_points
+        200
+
+        """
+        from .interop import samples_to_pyvista
+
+        return samples_to_pyvista(self)
+
+    def to_trimesh(self) -> trimesh.PointCloud:
+        """Return the points in float64, with all other fields in `metadata`.
+
+        Returns
+        -------
+        trimesh.PointCloud
+            The points.
+
+        Raises
+        ------
+        MissingExtraError
+            Without the extra `trimesh`.
+        MissingFieldError
+            Unless the samples have the field points.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> cloud = gm.sample("torus", 200, cells=(16, 16)).to_trimesh()
+        >>> cloud.vertices.shape, cloud.metadata["normals"].shape
+        ((200, 3), (200, 3))
+
+        """
+        from .interop import samples_to_trimesh
+
+        return samples_to_trimesh(self)
+
+    def to_open3d(self) -> open3d.geometry.PointCloud:
+        """Return the points in float64, with their normals if the samples have them.
+
+        Returns
+        -------
+        open3d.geometry.PointCloud
+            The points.
+
+        Raises
+        ------
+        MissingExtraError
+            Without the extra `open3d`.
+        MissingFieldError
+            Unless the samples have the field points.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> samples = gm.sample("torus", 200, cells=(16, 16))
+        >>> samples.to_open3d().has_normals()  # doctest: +SKIP
+        True
+
+        """
+        from .interop import samples_to_open3d
+
+        return samples_to_open3d(self)
 
     def __len__(self) -> int:
         return len(next(iter(self.arrays().values())))

@@ -15,11 +15,6 @@ from .spline import Spline, short_label
 from .summary import kinds_of_points, summary_of
 
 if TYPE_CHECKING:
-    import open3d  # pyright: ignore[reportMissingImports]
-    import pandas
-    import pyvista
-    import trimesh
-
     from .meshes.mesh import Mesh
 
 __all__ = ["Samples"]
@@ -27,40 +22,97 @@ __all__ = ["Samples"]
 
 @dataclass(frozen=True, eq=False, slots=True, repr=False)
 class Samples(SampleArrays):
-    """N samples of a surface, one row each; lengths in the surface's unit L.
+    """N samples of a surface, one row each; lengths in the unit L of the surface.
 
-    Indexing with a boolean mask (N,), an index array or a slice gives the `Samples` of those
-    rows, with the same report and spline: `samples[samples.elliptic]`. `Samples.concatenate` is
-    the other way.
+    `sample` and the other samplers make them. A boolean mask (N,), an index array or a slice
+    picks rows, with the same report and spline: ``samples[samples.elliptic]``;
+    `Samples.concatenate` joins several.
 
-    - `points`: (N, 3) float64, points of the surface, in L.
-    - `normals`: (N, 3) float64, unit normals at the points.
-    - `uv`: (N, 2) float64, the surface's own parameters of the points.
-    - `support`: (N,) float64, support function n·x, in L.
-    - `gaussian_curvature`: (N,) float64, in 1/L². It is hyperbolic where the sign bit is set, so
-      −0.0 counts as hyperbolic. On surfaces smaller than 1e-154 it may be infinite, on those larger
-      than 1e154 zero: float64 does not hold it.
-    - `mean_curvature`: (N,) float64, in 1/L, positive for a sphere with outward normals.
-    - `normal_index`: (N,) int64, row of the prescribed normals; −1 for a sample that fills a gap.
-    - `patch_index`: (N,) int64, patch of the spline that contains the point.
-    - `report`: a report on the sampling.
-    - `spline`: the spline that was sampled; None if it is unknown, as for samples from a file.
-
-    With `dtype=numpy.float32`, all numbers except the indices are float32. Fields that were not
+    With ``dtype=numpy.float32``, all numbers except the indices are float32. Fields that were not
     requested (`fields` of `sample`) are missing: reading them raises MissingFieldError, an
-    AttributeError.
+    AttributeError. All arrays are C-contiguous; one that is not is copied.
 
-    All arrays are C-contiguous; an array that is not is copied. Raises InputError if an array has
-    another shape or dtype, or if there is none.
+    Attributes
+    ----------
+    points : (N, 3) float64 array
+        Points of the surface, in L.
+    normals : (N, 3) float64 array
+        Unit normals at the points.
+    uv : (N, 2) float64 array
+        Parameters of the points.
+    support : (N,) float64 array
+        Support function h = n·x (4), in L.
+    gaussian_curvature : (N,) float64 array
+        Gaussian curvature K, in 1/L². Points are hyperbolic where its sign bit is set, so −0.0
+        counts as hyperbolic. On surfaces smaller than 1e-154 it may be infinite, on those larger
+        than 1e154 zero: float64 does not hold it.
+    mean_curvature : (N,) float64 array
+        Mean curvature H, in 1/L, positive for a sphere with outward normals.
+    normal_index : (N,) int64 array
+        Rows of the prescribed normals; −1 for a sample that fills a gap.
+    patch_index : (N,) int64 array
+        Patches of the spline that contain the points.
+    report : SamplingReport
+        A report on the sampling.
+    spline : Spline or None
+        The spline that was sampled; None if it is unknown, as for samples from a file.
+
+    Raises
+    ------
+    InputError
+        If an array has another shape or dtype, or if there is none.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> samples = gm.sample("torus", 200, cells=(16, 16))
+    >>> samples
+    Samples(200 points on torus: 126 elliptic, 74 hyperbolic)
+    >>> samples[samples.elliptic][:10]
+    Samples(10 points on torus: 10 elliptic, 0 hyperbolic)
+    >>> samples.points.shape, samples.normals.shape, samples.uv.shape
+    ((200, 3), (200, 3), (200, 2))
+    >>> K, H = samples.gaussian_curvature, samples.mean_curvature
+    >>> bool((samples.principal_curvatures.sum(axis=1) - 2 * H).max() < 1e-12)
+    True
+    >>> bool((K[samples.hyperbolic] < 0).all())
+    True
+    >>> samples.fields
+    ('points', 'normals', 'uv', 'support', ..., 'normal_index', 'patch_index')
+    >>> bool(abs(samples.support).max() < 1.36), bool(samples.patch_index.max() < 1024)
+    (True, True)
+    >>> filling = samples.normal_index == -1
+    >>> bool((samples.kind[filling] == "coverage").all())
+    True
+    >>> samples.dtype, samples.spline, samples.report.samples
+    (dtype('float64'), Spline(16 × 16 cells of torus), 200)
+
     """
 
     def progressive(self) -> Samples:
         """Return the same samples in an order in which every prefix is well distributed.
 
         The first ones are far apart relative to the local spacing of the samples; the next ones
-        halve the gaps, and so on. Any prefix can be used: `samples[:1000]`. Spacings below a
-        thousandth of the median count as that. Needs the fields points and normals, else
-        MissingFieldError.
+        halve the gaps, and so on. Spacings below a thousandth of the median count as that.
+
+        Returns
+        -------
+        Samples
+            The samples in that order. Any prefix can be used: ``samples[:1000]``.
+
+        Raises
+        ------
+        MissingFieldError
+            Unless the samples have the fields points and normals.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> samples = gm.sample("torus", 200, cells=(16, 16))
+        >>> few = samples.progressive()[:50]
+        >>> few.coverage() < 1.2 * samples[:50].coverage()
+        True
+
         """
         from .density.progressive import progressive_order
 
@@ -68,28 +120,59 @@ class Samples(SampleArrays):
         return self[progressive_order(points, normals)]
 
     def summary(self) -> str:
-        """One line: how many samples, where they come from, and how far places are from them.
+        """Return one line: the number of samples, where they come from, what they cover.
 
-        Such as "10,000 samples: 4,300 at 2,150 prescribed normals, 5,700 filling gaps (6,197
-        elliptic, 3,803 hyperbolic)".
+        Returns
+        -------
+        str
+            The line, without a line break.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.sample("torus", 200, cells=(16, 16)).summary()
+        '200 samples: 86 at 43 prescribed normals, 114 filling gaps (126 elliptic, 74 hyperbolic)'
+
         """
         return summary_of(self)
 
     def offset(self, distance: float) -> Samples:
         """Return the samples moved along their normals: the offset surface x + d n.
 
-        For d < 0 it lies inwards, if normals point outwards. Points, support and curvatures are
-        those of the offset, as far as they are there; normals, parameters and indices stay, and
-        `spline` is None. The distance is in the surface's unit L.
+        Points, support and curvatures are those of the offset, if the samples have them; normals,
+        parameters and indices stay, and `spline` is None.
 
-        Normals stay even where the offset folds, because d passes a radius of curvature of that
-        side: a GaussmapWarning says at how many samples it does (if their curvatures are there),
-        and the smallest radius. Where a radius becomes 0, the offset is singular: K is infinite
-        with its old sign, or NaN if it was 0, and H is NaN.
+        Parameters
+        ----------
+        distance : float
+            The distance d, in L. For d < 0 the offset lies inwards, if normals point outwards.
 
-        Raises InputError unless the distance is a finite number, and for curvatures whose squares
-        their type does not hold (of surfaces smaller than 1e-154 or larger than 1e154);
-        MissingFieldError if points lack their normals, or one of the curvatures the other one.
+        Returns
+        -------
+        Samples
+            One for each sample. Where a radius of curvature becomes 0, the offset is singular: K is
+            infinite with its old sign, or NaN if it was 0, and H is NaN.
+
+        Raises
+        ------
+        InputError
+            Unless the distance is a finite number, and for curvatures whose squares their type does
+            not hold (of surfaces smaller than 1e-154 or larger than 1e154).
+        MissingFieldError
+            If points lack their normals, or one of the curvatures the other one.
+
+        Warns
+        -----
+        GaussmapWarning
+            If the offset folds, because d passes a radius of curvature of that side: at how many
+            samples (if they have curvatures), and the smallest radius. Normals stay there, too.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.sample("sphere", normals=[[1, 0, 0]]).offset(0.5).points.round(3) + 0.0
+        array([[1.5, 0. , 0. ]])
+
         """
         from .offset import offset
 
@@ -122,8 +205,14 @@ class Samples(SampleArrays):
         FileError
             If the file cannot be written.
         InputError
-            If an index does not fit into a `.ply` file, or the format needs a field that is not
-            there.
+            If an index does not fit into a `.ply` file, or the format needs a missing field.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.sample("torus", 200, cells=(16, 16)).write("torus.ply")
+        >>> len(gm.read_samples("torus.ply"))
+        200
 
         """
         from .files.formats import write_samples
@@ -133,87 +222,117 @@ class Samples(SampleArrays):
     def mesh(self, spline: Spline | None = None, *, angle: float | None = None) -> Mesh:
         """Return a triangle mesh of the whole surface through the samples.
 
-        Neighbours are found in (u, v): the mesh closes where the surface does, has one vertex at a
-        pole, and reaches open borders by points that are added there, as far apart as samples near
-        them. Then edges are flipped as long as that brings the triangles nearer to the normals: the
-        largest angle between two triangles and the normals at their corners falls. Samples at one
-        place become one vertex.
+        Neighbours are those of a Delaunay triangulation of the parameters: the mesh closes where
+        the surface does, has one vertex at a pole, and reaches open borders by points that are
+        added there, as far apart as the samples near them. Then edges are flipped as long as the
+        largest angle between the two triangles and the normals at their corners falls. Samples that
+        coincide become one vertex.
 
-        `spline` is that of the samples, for samples that do not know theirs. With `angle` (degrees)
-        triangles that deviate from a normal at a corner by more are left out, for samples of a part
-        of the surface only. Needs the fields points, normals and uv, else MissingFieldError. Raises
-        InputError if there are no samples or no spline, if a sample lies outside its domain, if
-        `angle` leaves no triangle, and, without it, if there are too few samples for a mesh that
-        closes.
+        Parameters
+        ----------
+        spline : Spline, optional
+            The spline of the samples, if `spline` of the samples is None.
+        angle : float, optional
+            In degrees. Triangles that deviate from a normal at a corner by more are left out, for
+            samples of a part of the surface only.
+
+        Returns
+        -------
+        Mesh
+            The vertices, normals, parameters and triangles.
+
+        Raises
+        ------
+        MissingFieldError
+            Unless the samples have the fields points, normals and uv.
+        InputError
+            Without samples or spline, if a sample lies outside its domain, if `angle` leaves no
+            triangle, and, without it, if there are too few samples for a mesh that closes.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.sample("torus", 200, cells=(16, 16)).mesh()
+        Mesh(200 vertices, 400 triangles on torus)
+
         """
         from .meshes.meshing import mesh_of
 
         return mesh_of(self, self._spline_or(spline), angle)
 
     def coverage(self, spline: Spline | None = None, *, threads: int | None = None) -> float:
-        """Return how far a point of the surface can be from the nearest sample, in L.
+        """Return a bound of the distance from any point of the surface to the nearest sample, in L.
 
-        It is a bound, at most 10 % above the distance of a point that was found. `spline` is that
-        of the samples, for samples that do not know theirs; `threads` as in `gm.sample`, None for
-        all cores. Infinite if there are no samples. Needs the field points, else MissingFieldError.
-        Raises InputError if there is no spline.
+        Parameters
+        ----------
+        spline : Spline, optional
+            The spline of the samples, if `spline` of the samples is None.
+        threads : int, optional
+            The number of threads; by default all cores.
+
+        Returns
+        -------
+        float
+            The bound, at most 10 % above the distance of a point that was found. Infinite if there
+            are no samples.
+
+        Raises
+        ------
+        MissingFieldError
+            Unless the samples have the field points.
+        InputError
+            If there is no spline.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> samples = gm.sample("torus", coverage=0.3, cells=(16, 16))
+        >>> samples.coverage() <= 0.3
+        True
+
         """
         from .density.coverage import coverage_of
 
         return coverage_of(self.points, self._spline_or(spline), threads)
 
     def weights(self, *, angle: float | None = None) -> NDArray[np.float64]:
-        """Return how much of the area of the surface belongs to each sample: (N,), in L².
+        """Return the area of the surface that each sample stands for.
 
         Σ w f(points) approximates the integral of f over the surface: its area for f = 1, the
         volume of a closed surface for f = support / 3, 2π times the Euler characteristic for f =
         gaussian_curvature. The error falls with the square of the distance between samples, that is
-        as 1 / N; that of the area as 1 / N², down to that of the spline. Samples at one place share
-        a weight: all but one of them have 0.
+        as 1 / N; that of the area as 1 / N², down to that of the spline. The weights are taken from
+        the mesh of the samples; its triangles are curved by the normals.
 
-        They are taken from the mesh of the samples, bent by the normals. The arguments, what fields
-        are needed and what is raised are those of `mesh`; SurfaceError also if float64 does not
-        hold the areas, of surfaces larger than about 1e150 or smaller than 1e-150.
+        Parameters
+        ----------
+        angle : float, optional
+            In degrees, as in `mesh`.
+
+        Returns
+        -------
+        (N,) float64 array
+            Areas in L². Of samples that coincide, all but one have 0.
+
+        Raises
+        ------
+        MissingFieldError, InputError
+            As `mesh`.
+        SurfaceError
+            If float64 does not hold the areas, of surfaces larger than about 1e150 or smaller than
+            1e-150.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> samples = gm.sample("torus", 500)
+        >>> f"{samples.weights().sum():.1f}"  # 4π² · 0.35
+        '13.8'
+
         """
         from .meshes.weights import area_weights
 
         return area_weights(self, angle)
-
-    def to_dataframe(self) -> pandas.DataFrame:
-        """Return a table with a row for each sample and the columns of a `.csv` file.
-
-        As the other conversions, it copies. MissingExtraError without the extra `pandas`.
-        """
-        from .interop import samples_to_dataframe
-
-        return samples_to_dataframe(self)
-
-    def to_pyvista(self) -> pyvista.PolyData:
-        """Return points with all other fields as point data, normals as such.
-
-        Needs the field points. MissingExtraError without the extra `vtk`.
-        """
-        from .interop import samples_to_pyvista
-
-        return samples_to_pyvista(self)
-
-    def to_trimesh(self) -> trimesh.PointCloud:
-        """Return points in float64, with all other fields in `metadata`.
-
-        Needs the field points. MissingExtraError without the extra `trimesh`.
-        """
-        from .interop import samples_to_trimesh
-
-        return samples_to_trimesh(self)
-
-    def to_open3d(self) -> open3d.geometry.PointCloud:
-        """Return points in float64, with their normals if there are any.
-
-        Needs the field points. MissingExtraError without the extra `open3d`.
-        """
-        from .interop import samples_to_open3d
-
-        return samples_to_open3d(self)
 
     def __repr__(self) -> str:
         label = short_label(self.report.surface)

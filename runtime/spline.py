@@ -36,9 +36,40 @@ def short_label(name: str) -> str:
 class Spline:
     """A C¹ quadratic triangular spline on the criss-cross grid (paper, Sect. 3.1); made by `fit`.
 
-    `coefficients` (m + 2, n + 2, 3) holds one vector for each cell and one ring outside. They
-    define the spline exactly; control nets follow from them with rounding. Patches are numbered
-    cell by cell (cell = i n + j, i along u), in each cell south, east, north, west.
+    Patches are numbered cell by cell (cell = i n + j, i along u), in each cell south, east, north,
+    west.
+
+    Attributes
+    ----------
+    coefficients : (m + 2, n + 2, 3) float64 array
+        One vector for each cell and for one ring of ghost cells outside. They define the spline
+        exactly; control nets follow from them with rounding.
+    domain : ((u0, u1), (v0, v1)) of float
+        The rectangle of the parameters.
+    boundary : pair of pairs of str
+        For u and for v, the boundary conditions at the low and the high end, see `Surface`.
+    name : str
+        Label of the surface.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> spline = gm.fit("torus", (16, 12))
+    >>> spline
+    Spline(16 × 12 cells of torus)
+    >>> spline.cells, spline.patches, spline.coefficients.shape, spline.control_nets.shape
+    ((16, 12), 768, (18, 14, 3), (768, 6, 3))
+    >>> spline.boundary, spline.name
+    ((('periodic', 'periodic'), ('periodic', 'periodic')), 'torus')
+    >>> (u0, u1), (v0, v1) = spline.domain
+    >>> bool((spline.frame == [u0, v0, (u1 - u0) / 16, (v1 - v0) / 12]).all())
+    True
+    >>> areas, solid_angles = spline.measure
+    >>> bool(areas.min() > 0), bool(abs(solid_angles.sum()) < 1e-2)  # 2π χ = 0 on a torus
+    (True, True)
+    >>> spline.scale, spline.noise < 1e-13
+    (1.0, True)
+
     """
 
     coefficients: NDArray[np.float64]
@@ -51,7 +82,7 @@ class Spline:
 
     @property
     def cells(self) -> tuple[int, int]:
-        """The number of cells along u and along v."""
+        """The numbers (m, n) of cells along u and along v."""
         return self.coefficients.shape[0] - 2, self.coefficients.shape[1] - 2
 
     @property
@@ -61,14 +92,17 @@ class Spline:
 
     @cached_property
     def control_nets(self) -> NDArray[np.float64]:
-        """The Bézier nets (patches, 6, 3), each in the order b200, b020, b002, b110, b101, b011."""
+        """(patches, 6, 3) float64 array: the Bézier nets.
+
+        Each is in the order b200, b020, b002, b110, b101, b011.
+        """
         nets = np.empty((self.patches, 6, 3))
         kernels.control_nets(self.coefficients, nets)
         return nets
 
     @cached_property
     def frame(self) -> NDArray[np.float64]:
-        """The corner of the domain and the size of a cell in the parameters: (u0, v0, du, dv)."""
+        """(4,) float64 array: the corner of the domain and the size of a cell, (u0, v0, du, dv)."""
         (u0, u1), (v0, v1) = self.domain
         return np.array([u0, v0, (u1 - u0) / self.cells[0], (v1 - v0) / self.cells[1]])
 
@@ -80,21 +114,60 @@ class Spline:
 
     @cached_property
     def noise(self) -> float:
-        """The rounding of the coordinates, times `scale`."""
+        """A bound of the rounding of the coordinates, times `scale`."""
         return DATA_ERROR * float(np.abs(self.coefficients * self.scale).max())
 
     def evaluate(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
-        """Return points (..., 3) at parameters that broadcast together.
+        """Return the points of the spline at parameters.
 
-        Periodic parameters are taken modulo the period; InputError if one that is not periodic lies
-        outside the domain, or any is NaN or infinite.
+        Parameters
+        ----------
+        u, v : array_like
+            Parameters that broadcast together. Periodic ones are taken modulo the period.
+
+        Returns
+        -------
+        (..., 3) float64 array
+            The points.
+
+        Raises
+        ------
+        InputError
+            If a parameter that is not periodic lies outside the domain, or any is NaN or infinite.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.fit("torus", (64, 64)).evaluate([0.0, 0.5], 0.0).shape
+        (2, 3)
+
         """
         return self._evaluate(u, v)[0]
 
     def normals(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
-        """Return unit normals (..., 3) along p_u × p_v; see `evaluate`.
+        """Return the unit normals of the spline at parameters, along p_u × p_v.
 
-        They are NaN at poles, and at singular points where p_u × p_v vanishes exactly.
+        Parameters
+        ----------
+        u, v : array_like
+            As in `evaluate`.
+
+        Returns
+        -------
+        (..., 3) float64 array
+            The normals; NaN at poles, and at singular points where p_u × p_v vanishes exactly.
+
+        Raises
+        ------
+        InputError
+            As `evaluate`.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.fit("torus", (64, 64)).normals(0.0, 0.0).round(6) + 0.0
+        array([1., 0., 0.])
+
         """
         vectors = self._evaluate(u, v)[1]
         with np.errstate(invalid="ignore"):
@@ -103,9 +176,10 @@ class Spline:
 
     @cached_property
     def measure(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Area and signed solid angle of the Gaussian image of each patch, by quadrature.
+        """Areas and solid angles of the patches, by quadrature: two (patches,) float64 arrays.
 
-        Areas are in units of the squared diagonal of the bounding box of the coefficients.
+        Areas are in units of the squared diagonal of the bounding box of the coefficients. Solid
+        angles are signed, and those of the Gaussian images.
         """
         areas, solid_angles = np.empty(self.patches), np.empty(self.patches)
 
@@ -135,7 +209,31 @@ class Spline:
         return points.reshape(*u_array.shape, 3), normals.reshape(*u_array.shape, 3)
 
     def in_cells(self, places: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return parameters (k, 2) in cells from the corner of the domain; see `evaluate`."""
+        """Return parameters as numbers of cells from the corner of the domain.
+
+        Parameters
+        ----------
+        places : (k, 2) float64 array
+            Parameters u, v. Periodic ones are taken modulo the period.
+
+        Returns
+        -------
+        (k, 2) float64 array
+            The cell of a parameter and the place in it: 2.5 is the middle of the third cell.
+
+        Raises
+        ------
+        InputError
+            As `evaluate`.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> import numpy as np
+        >>> gm.fit("torus", (16, 16)).in_cells(np.array([[np.pi, 0.0]]))
+        array([[8., 0.]])
+
+        """
         return self._wrapped((places - self.frame[:2]) / self.frame[2:], places)
 
     def _wrapped(

@@ -27,12 +27,36 @@ class Surface:
     """A parametric surface x(u,v).
 
     Make one with `from_callable`, `from_sympy` or `from_grid`, or take one of `gaussmap.surfaces`.
+    Normals point along x_u × x_v.
 
-    `function(u, v)` gets two float64 arrays of one shape and returns points of that shape + (3,).
-    `boundary` holds, for u and for v, the boundary conditions at the low and the high end: "open"
-    (an edge), "periodic", "mirrored" (periodic with the other parameter reversed, as on the Möbius
-    band) or "pole" (for v: the end is one point and the opposite meridian continues it). Normals
-    point along x_u × x_v. `grid` holds the points (m, n, 3) of a surface that was given by points.
+    Attributes
+    ----------
+    name : str
+        Label of the surface.
+    function : callable
+        ``function(u, v)`` gets two float64 arrays of one shape and returns points of that shape +
+        (3,).
+    domain : ((u0, u1), (v0, v1)) of float
+        The rectangle of the parameters.
+    boundary : pair of pairs of str
+        For u and for v, the boundary conditions at the low and the high end: "open" (an edge),
+        "periodic", "mirrored" (periodic with the other parameter reversed, as on the Möbius band)
+        or "pole" (for v: the end is one point and the opposite meridian continues the surface).
+    grid : (m, n, 3) float64 array or None
+        The points of a surface that was given by points.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> torus = gm.surfaces.torus(major=1.0, minor=0.35)
+    >>> torus.name, torus.boundary, torus.grid
+    ('torus', (('periodic', 'periodic'), ('periodic', 'periodic')), None)
+    >>> double = gm.Surface.from_callable(
+    ...     lambda u, v: 2 * torus.function(u, v), torus.domain, periodic=(True, True)
+    ... )
+    >>> double.evaluate(0.0, 0.0)
+    array([2.7, 0. , 0. ])
+
     """
 
     name: str
@@ -52,10 +76,39 @@ class Surface:
     ) -> Surface:
         """Make a surface of a vectorized callable f(u, v) → (..., 3).
 
-        `domain` is ((u0, u1), (v0, v1)); `periodic` says for u and for v whether the surface
-        closes: True or False, or in words as in `boundary` above, one for both ends or a pair (low,
-        high). Raises InputError for an empty or infinite domain or an unknown word. The callable is
-        first called when the surface is fitted or evaluated (see `evaluate`).
+        Parameters
+        ----------
+        f : callable
+            Gets two float64 arrays of one shape and returns points of that shape + (3,). It is
+            first called when the surface is fitted or evaluated (see `evaluate`).
+        domain : ((u0, u1), (v0, v1)) of float
+            The rectangle of the parameters.
+        periodic : pair, default (False, False)
+            The boundary conditions for u and for v: True (periodic), False (open), one of "open",
+            "periodic", "mirrored", "pole" for both ends, or a pair of these (low end, high end).
+        name : str, default "surface"
+            Label of the surface.
+
+        Returns
+        -------
+        Surface
+            The surface.
+
+        Raises
+        ------
+        InputError
+            For an empty or infinite domain, or unknown or contradictory boundary conditions.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> import numpy as np
+        >>> def f(u, v):
+        ...     return np.stack([u, v, 0.2 * np.sin(3 * u) * np.cos(3 * v)], axis=-1)
+        >>> waves = gm.Surface.from_callable(f, ((-1, 1), (-1, 1)), name="waves")
+        >>> gm.fit(waves, (16, 16))
+        Spline(16 × 16 cells of waves)
+
         """
         if not callable(f):
             raise InputError(f"f must be callable as f(u, v), and {type(f).__name__} is not.")
@@ -71,16 +124,47 @@ class Surface:
         *,
         name: str = "surface",
     ) -> Surface:
-        """Make a surface of three SymPy expressions (or strings) in the two `parameters`.
-
-        `domain` and `periodic` are as in `from_callable`; the domain may hold SymPy numbers, or
-        strings such as "2*pi".
+        """Make a surface of three SymPy expressions, or texts, in two parameters.
 
         Texts are arithmetic with `+ - * / ** ^ // %`, SymPy's elementary functions, `Piecewise`,
         `Max`, `Sum(f, (k, 0, 9))`, and what SymPy computes exactly, such as `legendre(4, u)` or
-        `factorial(5)`. They are never run as Python. Raises InputError unless there are three
-        expressions without further symbols, and if one uses another function, is longer than
-        20,000 characters, nested too deeply, or holds numbers such as 9**9**9.
+        `factorial(5)`. They are never run as Python.
+
+        Parameters
+        ----------
+        position : three of sympy.Expr, str or float
+            The components of x(u,v).
+        parameters : pair of sympy.Symbol or str
+            The parameters u and v.
+        domain : ((u0, u1), (v0, v1))
+            The rectangle of the parameters: numbers, SymPy numbers, or texts such as "2*pi".
+        periodic : pair, default (False, False)
+            As in `from_callable`.
+        name : str, default "surface"
+            Label of the surface.
+
+        Returns
+        -------
+        Surface
+            The surface.
+
+        Raises
+        ------
+        InputError
+            Unless there are three expressions without further symbols, and if one uses another
+            function, is longer than 20,000 characters, nested too deeply, or holds numbers such as
+            9**9**9; for domain and boundary conditions as `from_callable`.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> tube = gm.Surface.from_sympy(
+        ...     ("(2 + cos(v))*cos(u)", "(2 + cos(v))*sin(u)", "sin(v)"), ("u", "v"),
+        ...     domain=((0, "2*pi"), (0, "2*pi")), periodic=(True, True),
+        ... )
+        >>> tube.evaluate(0.0, 0.0)
+        array([3., 0., 0.])
+
         """
         from .expressions import compiled, numbers, two_symbols
 
@@ -96,18 +180,47 @@ class Surface:
         *,
         name: str = "grid",
     ) -> Surface:
-        """Make a surface of points (m, n, 3), or of elevations (m, n) with spacing=(dx, dy).
+        """Make a surface of points, or of elevations.
 
-        Points: u and v are the fractional row and column, u = i and v = j at points[i, j]. A
-        periodic direction must not repeat its first row at its end. Elevations are a map with rows
-        along y and columns along x: elevations[i, j] stands at x = u = j dx, y = v = i dy, in the
-        unit of the elevations, and normals point upward. A negative dy means that rows run from
-        north to south.
+        One spline cell stands between any four neighbouring points, so that no detail is lost;
+        `fit(cells=...)` chooses otherwise.
 
-        One spline cell stands between any four neighbouring points, so that nothing is lost;
-        `fit(cells=...)` chooses otherwise. Raises InputError for another shape, NaN or infinity
-        (and says where), fewer than 4 points in a direction that is not periodic (3 if it is), or
-        spacing that is missing, zero or not wanted.
+        Parameters
+        ----------
+        points : (m, n, 3) or (m, n) array_like
+            Points: u and v are the fractional row and column, u = i and v = j at ``points[i, j]``.
+            A periodic direction must not repeat its first row at its end. Elevations are a map with
+            rows along y and columns along x: ``elevations[i, j]`` is at x = u = j dx, y = v = i dy,
+            in the unit of the elevations, and normals point upward.
+        spacing : (float, float), optional
+            The distances dx, dy of elevations. A negative dy means that rows run from north to
+            south.
+        periodic : pair, default (False, False)
+            As in `from_callable`; for points only.
+        name : str, default "grid"
+            Label of the surface.
+
+        Returns
+        -------
+        Surface
+            The surface: a spline, which approximates the points.
+
+        Raises
+        ------
+        InputError
+            For another shape, NaN or infinity (and says where), fewer than 4 points in a direction
+            that is not periodic (3 if it is), spacing that is zero, missing for elevations or given
+            for points, or boundary conditions as in `from_callable`.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> import numpy as np
+        >>> heights = np.hypot(*np.meshgrid(np.linspace(-1, 1, 6), np.linspace(-1, 1, 4))) ** 3
+        >>> hill = gm.Surface.from_grid(heights, spacing=(30.0, 30.0))
+        >>> hill.grid.shape, hill.domain
+        ((6, 4, 3), ((0.0, 150.0), (0.0, 90.0)))
+
         """
         from .grid import points_of_elevations, spline_of_points
 
@@ -122,11 +235,33 @@ class Surface:
         return cls(name, spline.evaluate, spline.domain, boundary, array)
 
     def evaluate(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
-        """Return the points x(u, v), shape (..., 3), for parameters that broadcast together.
+        """Return the points x(u, v).
 
-        Raises SurfaceError if the callable raises, returns another shape than (..., 3) or anything
-        but real numbers, or gives NaN or infinity, and says where; InputError if the parameters are
-        no real numbers, or lie outside a surface that was given by points.
+        Parameters
+        ----------
+        u, v : array_like
+            Parameters that broadcast together.
+
+        Returns
+        -------
+        (..., 3) float64 array
+            The points.
+
+        Raises
+        ------
+        SurfaceError
+            If the callable raises, returns another shape than (..., 3) or anything but real
+            numbers, or gives NaN or infinity; the message says where.
+        InputError
+            If the parameters are no real numbers, or lie outside a surface that was given by
+            points.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.surfaces.sphere().evaluate([0.0, 1.0], 0.0).shape
+        (2, 3)
+
         """
         u_array, v_array = parameter_arrays(u, v)
         parameters = {"u": u_array, "v": v_array}

@@ -30,20 +30,47 @@ _ALL_ALIKE: Any = None
 class Mesh:
     """A mesh of T triangles between M vertices of a surface; made by `Samples.mesh`.
 
-    - `vertices`: (M, 3) float64, points of the surface.
-    - `normals`: (M, 3) float64, the unit normals of the surface there; at a pole the mean of those
-      round it.
-    - `uv`: (M, 2) float64, the parameters. They jump where a triangle crosses a seam.
-    - `triangles`: (T, 3) int64, rows of vertices, counterclockwise as seen from where the normals
-      point; on a one-sided surface that at the first corner.
-    - `sample`: (M,) int64, the number of the sample at a vertex, −1 for points added on open
-      borders and at poles.
-    - `name`: label of the surface.
-    - `sides`: (T, 3) int64, 1, or −1 where the normal at a corner points to the other side than
-      that at the first corner: on a one-sided surface normals change sides somewhere. By default 1.
+    All arrays are C-contiguous; one that is not is copied.
 
-    All arrays are C-contiguous; one that is not is copied. Raises InputError if an array has
-    another shape or dtype, or a triangle has no such vertex.
+    Attributes
+    ----------
+    vertices : (M, 3) float64 array
+        Points of the surface.
+    normals : (M, 3) float64 array
+        The unit normals of the surface there; at a pole the mean of those around it.
+    uv : (M, 2) float64 array
+        The parameters. They jump where a triangle crosses a seam.
+    triangles : (T, 3) int64 array
+        Rows of `vertices`, counterclockwise as seen from where the normals point; on a one-sided
+        surface from where that at the first corner points.
+    sample : (M,) int64 array
+        The number of the sample at a vertex; −1 for points added on open borders and at poles.
+    name : str
+        Label of the surface.
+    sides : (T, 3) int64 array
+        1, or −1 where the normal at a corner points to the other side than that at the first
+        corner: on a one-sided surface normals change sides somewhere. By default 1.
+
+    Raises
+    ------
+    InputError
+        If an array has another shape or dtype, or a triangle has a vertex that does not exist.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> mesh = gm.sample("torus", 200, cells=(16, 16)).mesh()
+    >>> mesh
+    Mesh(200 vertices, 400 triangles on torus)
+    >>> mesh.vertices.shape, mesh.normals.shape, mesh.uv.shape, mesh.triangles.shape
+    ((200, 3), (200, 3), (200, 2), (400, 3))
+    >>> bool((mesh.sample >= 0).all()), bool((mesh.sides == 1).all()), mesh.name
+    (True, True, 'torus')
+    >>> len(mesh.edges), len(mesh.boundary), mesh.euler_characteristic
+    (600, 0, 0)
+    >>> bool(mesh.angles.mean() < 30)
+    True
+
     """
 
     vertices: NDArray[np.float64]
@@ -90,12 +117,12 @@ class Mesh:
 
     @property
     def edges(self) -> NDArray[np.int64]:
-        """(E, 2) int64: the edges, each once, as pairs of vertices."""
+        """(E, 2) int64 array: the edges, each once, as pairs of vertices."""
         return self._edges[0]
 
     @property
     def boundary(self) -> NDArray[np.int64]:
-        """(B, 2) int64: the edges of only one triangle; none if the mesh is closed."""
+        """(B, 2) int64 array: the edges of only one triangle; none if the mesh is closed."""
         edges, times = self._edges
         return edges[times == 1]
 
@@ -106,7 +133,7 @@ class Mesh:
 
     @cached_property
     def angles(self) -> NDArray[np.float64]:
-        """(T,) float64: the largest angle between a triangle and the normals at its corners.
+        """(T,) float64 array: the largest angle between a triangle and the normals at its corners.
 
         In degrees; 180 for a triangle without area.
         """
@@ -117,7 +144,20 @@ class Mesh:
         return np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0)))
 
     def summary(self) -> str:
-        """One line: vertices, triangles, whether it is closed, how well it fits the normals."""
+        """Return one line: vertices, triangles, whether it is closed, how well it fits the normals.
+
+        Returns
+        -------
+        str
+            The line, without a line break.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.sample("torus", 200, cells=(16, 16)).mesh().summary()
+        '200 vertices, 400 triangles, closed; they deviate from the normals by ...°...'
+
+        """
         added = int(np.count_nonzero(self.sample < 0))
         line = f"{len(self.vertices):,} vertices"
         line += f" ({added:,} of them added)" if added else ""
@@ -155,6 +195,14 @@ class Mesh:
         InputError
             If the mesh has no triangles, or more vertices than a `.ply` file can number.
 
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> from pathlib import Path
+        >>> gm.sample("torus", 200, cells=(16, 16)).mesh().write("torus.stl")
+        >>> Path("torus.stl").stat().st_size  # 84 + 50 · 400
+        20084
+
         """
         from ..files.formats import write_mesh
 
@@ -163,7 +211,22 @@ class Mesh:
     def to_pyvista(self) -> pyvista.PolyData:
         """Return the mesh with normals, uv and sample as point data.
 
-        As the other conversions, it copies. MissingExtraError without the extra `vtk`.
+        Returns
+        -------
+        pyvista.PolyData
+            A copy, as of the other conversions.
+
+        Raises
+        ------
+        MissingExtraError
+            Without the extra `vtk`.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.sample("torus", 200, cells=(16, 16)).mesh().to_pyvista().n_cells
+        400
+
         """
         from ..interop import mesh_to_pyvista
 
@@ -172,14 +235,48 @@ class Mesh:
     def to_trimesh(self) -> trimesh.Trimesh:
         """Return the mesh with its normals, and uv and sample as vertex attributes.
 
-        MissingExtraError without the extra `trimesh`.
+        Returns
+        -------
+        trimesh.Trimesh
+            The mesh.
+
+        Raises
+        ------
+        MissingExtraError
+            Without the extra `trimesh`.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.sample("torus", 200, cells=(16, 16)).mesh().to_trimesh().is_watertight
+        True
+
         """
         from ..interop import mesh_to_trimesh
 
         return mesh_to_trimesh(self)
 
     def to_open3d(self) -> open3d.geometry.TriangleMesh:
-        """Return the mesh with its normals; MissingExtraError without the extra `open3d`."""
+        """Return the mesh with its normals.
+
+        Returns
+        -------
+        open3d.geometry.TriangleMesh
+            The mesh.
+
+        Raises
+        ------
+        MissingExtraError
+            Without the extra `open3d`.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> mesh = gm.sample("torus", 200, cells=(16, 16)).mesh()
+        >>> mesh.to_open3d().is_watertight()  # doctest: +SKIP
+        True
+
+        """
         from ..interop import mesh_to_open3d
 
         return mesh_to_open3d(self)
