@@ -102,8 +102,8 @@ def test_normals(normals: Any, message: str) -> None:
 
 
 def test_of_spline_takes_surfaces_and_splines() -> None:
-    with pytest.raises(gm.errors.InputError, match="of_spline takes a Spline or Surface, not str"):
-        gm.SupportFunction.of_spline("torus")  # pyright: ignore
+    with pytest.raises(gm.errors.InputError, match="of_spline takes a Spline or Surface, not int"):
+        gm.SupportFunction.of_spline(5)  # pyright: ignore
     spline = gm.Spline(np.zeros((5, 5, 3)), ((0, 1), (0, 1)), (("open",) * 2,) * 2, "flat")  # pyright: ignore
     with pytest.raises(gm.errors.InputError, match="cells="):
         gm.SupportFunction.of_spline(spline, (4, 4))
