@@ -46,7 +46,12 @@ def progressive_order(
 
 
 def _spacings(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the mean distance (N,) of each point from its nearest others, nowhere zero."""
+    """Return the mean distance (N,) of each point from its nearest others, nowhere zero.
+
+    Where most points coincide with others, it is at least that of points spread over a square.
+    """
     distances = tree_of(points).query(points, k=NEIGHBOURS + 1, workers=-1)[0][:, 1:].mean(axis=1)
     least = float(np.median(distances)) * 1e-3
-    return np.maximum(distances, least if least > 0.0 else 1.0)
+    if least == 0.0:
+        least = float(np.ptp(points, axis=0).max()) / math.sqrt(len(points))
+    return np.maximum(distances, least or 1.0)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..spline import scale_to_one
+from ..spline import scales_to_one
 from .tables import write_rows
 
 if TYPE_CHECKING:
@@ -34,9 +34,9 @@ def write_stl(mesh: Mesh, path: Path) -> None:
     corners = mesh.vertices[mesh.triangles]
     rows = np.zeros(len(corners), _STL_ROW)
     with np.errstate(all="ignore"):  # what single precision does not hold, triangles without area
-        scale = scale_to_one(float(np.abs(mesh.vertices).max()))
-        first, second = ((corners[:, k] - corners[:, 0]) * scale for k in (1, 2))
-        across = np.cross(first, second)
+        edges = corners[:, 1:] - corners[:, :1]
+        edges *= scales_to_one(np.abs(edges).max(axis=(1, 2)))[:, None, None]
+        across = np.cross(edges[:, 0], edges[:, 1])
         size = np.sqrt(np.einsum("ij,ij->i", across, across))[:, None]
         np.divide(across, size, out=rows["normal"], where=size > 0.0, casting="same_kind")
         rows["corners"] = corners

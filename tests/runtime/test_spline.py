@@ -463,14 +463,16 @@ def test_any_unit_of_length(factor, rng):
 
 
 def test_the_smallest_numbers_there_are(rng):
-    """Sizes at which a coefficient has only a few bits left, or none."""
+    """Sizes at which the last bits of coefficients are lost, most of them, or all."""
     u, v = 2 * np.pi * rng.random((2, 200))
     plain = gm.fit(TORUS, (8, 7))
-    tiny = gm.fit(moved(TORUS, 2.0**-1060 * np.eye(3), 0.0), (8, 7))
+    tiny = gm.fit(moved(TORUS, 2.0**-990 * np.eye(3), 0.0), (8, 7))
     np.testing.assert_allclose(
-        tiny.evaluate(u, v) * 2.0**1000 * 2.0**60, plain.evaluate(u, v), rtol=0, atol=1e-3
+        tiny.evaluate(u, v) * 2.0**990, plain.evaluate(u, v), rtol=0, atol=1e-9
     )
     assert np.isfinite(tiny.normals(u, v)).all()
+    with pytest.raises(gm.errors.SurfaceError, match="too small to compute with"):
+        gm.fit(moved(TORUS, 2.0**-1060 * np.eye(3), 0.0), (8, 7))
     none = gm.fit(moved(TORUS, 0.0 * np.eye(3), 0.0), (8, 7))
     assert (none.evaluate(u, v) == 0.0).all()
     assert np.isnan(none.normals(u, v)).all()

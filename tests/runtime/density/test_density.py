@@ -1,6 +1,7 @@
 """How many samples come, which ones, in which order, and how dense they are where."""
 
 import math
+from dataclasses import replace
 from typing import Any, cast
 
 import gaussmap as gm
@@ -185,7 +186,8 @@ def test_fields_and_types(fields, dtype):
         expected = getattr(whole, name)
         expected = expected if name == "normal_index" else expected.astype(dtype)
         assert getattr(part, name).tobytes() == expected.tobytes()
-    assert part.report == whole.report
+    # Without the curvatures nobody knows which of them are infinite.
+    assert part.report == replace(whole.report, infinite_curvatures=None)
 
 
 @pytest.mark.parametrize("suffix", [".npz", ".ply"])

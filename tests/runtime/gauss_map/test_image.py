@@ -424,7 +424,7 @@ def test_other_bad_input() -> None:
     with pytest.raises(gm.errors.InputError, match="cells"):
         gm.gauss_map.GaussianImages.of_spline(spline, (4, 4))
     with pytest.raises(gm.errors.InputError, match="Surface"):
-        gm.gauss_map.GaussianImages.of_spline("torus")  # pyright: ignore[reportArgumentType]
+        gm.gauss_map.GaussianImages.of_spline(5)  # pyright: ignore[reportArgumentType]
     with pytest.raises(gm.errors.InputError, match="sign"):
         images.sheets([[0, 0, 1]], 2)
     with pytest.raises(gm.errors.InputError, match="normals"):
