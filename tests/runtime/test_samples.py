@@ -327,14 +327,11 @@ class TestText:
             (1.0, "; 100.00 % of the surface is developable (K = 0)"),
         ],
     )
-    def test_summary_without_a_developable_part(self, share, end):
+    def test_summary_of_the_developable_share(self, share, end):
         samples = self.samples()
         samples = replace(samples, report=replace(samples.report, developable_share=share))
-        assert (
-            samples.summary()
-            == ("10,012 samples at 1,234,567 prescribed normals (5,012 elliptic, 5,000 hyperbolic")
-            + end
-        )
+        start = "10,012 samples at 1,234,567 prescribed normals (5,012 elliptic, 5,000 hyperbolic)"
+        assert samples.summary() == start + end
 
     def test_summary_of_samples_that_fill_gaps(self):
         indices = np.arange(10012) - 5012
