@@ -21,7 +21,7 @@ from time import process_time
 import gaussmap as gm
 import numpy as np
 from gaussmap.runtime.bins import NormalBins
-from gaussmap.runtime.search import Search, fill_notes, find
+from gaussmap.runtime.search import Search, fill_packed, find
 from llvmlite.binding import get_host_cpu_name
 
 from .writing import Arrays, Writers, new_arrays
@@ -47,9 +47,9 @@ def _sampling(normals: np.ndarray, cells: int) -> tuple[Work, Arrays]:
     pieces = hits.pieces(0, len(hits))
 
     def work() -> None:
-        search.pairs(0, spline.patches)
-        for start, notes in pieces:
-            fill_notes(spline, bins, notes, start, arrays)
+        search.results(0, spline.patches)
+        for start, packed in pieces:
+            fill_packed(spline, bins, packed, start, arrays)
 
     return work, arrays
 

@@ -23,7 +23,7 @@ from .threads import over_ranges, shown
 
 __all__ = ["sample_stream"]
 
-# The number of normals that are searched at a time: with their samples they take about 150 MB.
+# The number of normals of a block; with their samples they take about 150 MB.
 NORMALS_AT_A_TIME = 1 << 20
 
 
@@ -62,8 +62,8 @@ def sample_stream(
     Raises
     ------
     GaussmapError
-        As `sample`; all arguments are checked, and the surface is evaluated, before the first chunk
-        is asked for.
+        As `sample`; all arguments are checked, and the surface is evaluated, before the generator
+        is returned.
 
     Warns
     -----
@@ -107,7 +107,7 @@ class _Stream:
     def chunks(self) -> Generator[Samples, None, None]:
         """Yield the chunks of all blocks of normals, at least one, and warn at the end."""
         chosen = choose(self.spline, self.request.asked, self.threads, self.progress)
-        chosen, total = replace(chosen, found=None), len(chosen)  # that would stay in memory
+        chosen, total = replace(chosen, found=None), len(chosen)  # frees the hits
         report = sampling_report(self.spline, total, 0, chosen.density, None)
         starts = range(0, total, NORMALS_AT_A_TIME)
         alone = len(starts) == 1
@@ -116,7 +116,7 @@ class _Stream:
             last = min(first + NORMALS_AT_A_TIME, total)
             bins = NormalBins(chosen.part(first, last, self.threads), self.threads)
             found = find_in_turn(self.spline, bins, self.threads, self.progress and alone)
-            developable, hits = 0, Hits.none(0)  # as many as in every block
+            developable, hits = 0, Hits.none(0)  # the same in every block
             for hits in grouped(found, self.size):
                 came += len(hits)
                 developable += hits.developable
@@ -136,7 +136,7 @@ class _Stream:
 
 
 def grouped(parts: Iterator[Hits], size: int) -> Iterator[Hits]:
-    """Join and cut consecutive hits: `size` at a time, and what is left at the end."""
+    """Yield consecutive hits in groups of `size`, and a last group with the remaining ones."""
     group: list[Hits] = []
     room = size
     for hits in parts:
@@ -153,9 +153,9 @@ def grouped(parts: Iterator[Hits], size: int) -> Iterator[Hits]:
 def find_in_turn(
     spline: Spline, bins: NormalBins, threads: int | None, progress: bool
 ) -> Iterator[Hits]:
-    """Yield what `find` returns, for one range of patches after the other."""
+    """Yield the hits of `find` for consecutive ranges of patches."""
     search = Search(spline, bins)
-    if search.hopeless:
+    if search.all_developable:
         yield Hits.none(spline.patches)
         return
     border = _Border.of(search, threads)
@@ -165,15 +165,16 @@ def find_in_turn(
 
 @dataclass(frozen=True, eq=False)
 class _Border:
-    """The cells (m n,) at the open border of the domain, and which of their doubtful pairs count.
+    """The cells (m n,) at the open border of the domain, and the hits in them decided exactly.
 
-    There two patches may both have a sample at one place, of which one is dropped. So these pairs
-    are decided together, before all others, whichever ranges their patches lie in.
+    At the border two patches may both have a hit at one position, of which one is dropped. So the
+    undecided hits of these cells are decided together, before all ranges are searched. `decided`
+    (k, 2) are rows as in `PackedHits`, `local` (k, 5) is that of `Decision`.
     """
 
     search: Search
     cells: NDArray[np.bool_]
-    pairs: NDArray[np.int64]
+    decided: NDArray[np.int64]
     local: NDArray[np.float64]
 
     @classmethod
@@ -184,24 +185,24 @@ class _Border:
         cells[:, 0], cells[:, -1] = south, north
         cells[0] |= west
         cells[-1] |= east
-        doubtful, bounds = [np.empty((0, 2), dtype=np.int64)], [np.empty(0)]
+        undecided, bounds = [np.empty((0, 2), dtype=np.int64)], [np.empty(0)]
         ends = np.flatnonzero(np.diff(cells.ravel(), prepend=False, append=False))
         for first, last in ends.reshape(-1, 2).tolist():
-            for found in search.pairs(4 * first, 4 * last):
-                doubtful.append(found.doubtful)
+            for found in search.results(4 * first, 4 * last):
+                undecided.append(found.undecided)
                 bounds.append(found.bounds)
-        decided = search.decided(np.concatenate(doubtful), np.concatenate(bounds), threads)
+        decided = search.decided(np.concatenate(undecided), np.concatenate(bounds), threads)
         return cls(search, cells.ravel(), *decided)
 
     def hits(self, first: int, last: int) -> Hits:
-        """Return which of the patches first, …, last − 1 have which of the normals."""
-        found = self.search.pairs(first, last)
-        doubtful = np.concatenate([x.doubtful for x in found])
+        """Return the hits of the patches first, …, last − 1."""
+        found = self.search.results(first, last)
+        undecided = np.concatenate([x.undecided for x in found])
         bounds = np.concatenate([x.bounds for x in found])
-        inside = ~self.cells[doubtful[:, 0] // 4]
-        pairs, local = self.search.decided(doubtful[inside], bounds[inside], 1)
-        low, high = np.searchsorted(self.pairs[:, 0], (first, last))
-        pairs = np.concatenate([pairs, self.pairs[low:high]])
-        order = np.lexsort((pairs[:, 1], pairs[:, 0]))
+        inside = ~self.cells[undecided[:, 0] // 4]
+        decided, local = self.search.decided(undecided[inside], bounds[inside], 1)
+        low, high = np.searchsorted(self.decided[:, 0], (first, last))
+        decided = np.concatenate([decided, self.decided[low:high]])
+        order = np.lexsort((decided[:, 1], decided[:, 0]))
         local = np.concatenate([local, self.local[low:high]])
-        return merged(found, pairs[order], local[order], self.search.bins.frequency > 0)
+        return merged(found, decided[order], local[order], self.search.bins.frequency > 0)

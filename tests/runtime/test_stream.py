@@ -93,8 +93,8 @@ def test_a_sample_of_two_ranges_comes_once(name, monkeypatch):
         same(Samples.concatenate(gm.sample_stream(spline, normals=normals, threads=threads)), whole)
     alone, apart = Search(spline, NormalBins(normals)), 0
     for patch in range(spline.patches):
-        for found in alone.pairs(patch, patch + 1):
-            apart += len(found.sure) + len(alone.decided(found.doubtful, found.bounds, 1)[0])
+        for found in alone.results(patch, patch + 1):
+            apart += len(found.certain) + len(alone.decided(found.undecided, found.bounds, 1)[0])
     assert apart > len(whole)  # patch by patch, some would come twice
 
 
@@ -199,13 +199,13 @@ def test_closing_ends_the_work(threads, monkeypatch):
     monkeypatch.setattr(search, "FEWEST_PATCHES", 1)
     monkeypatch.setattr(search, "MOST_PATCHES", 1)
     searched = []
-    pairs = Search.pairs
+    results = Search.results
 
     def recorded(self, first, last):
         searched.append(first)
-        return pairs(self, first, last)
+        return results(self, first, last)
 
-    monkeypatch.setattr(Search, "pairs", recorded)
+    monkeypatch.setattr(Search, "results", recorded)
     before = threading.active_count()
     chunks = gm.sample_stream(TORUS, normals=gm.icosphere(8), chunk=5, threads=threads)
     next(chunks)
@@ -225,14 +225,14 @@ def test_closing_ends_the_work(threads, monkeypatch):
 def test_an_error_ends_the_work(threads, error, monkeypatch):
     monkeypatch.setattr(search, "FEWEST_PATCHES", 1)
     monkeypatch.setattr(search, "MOST_PATCHES", 4)
-    pairs = Search.pairs
+    results = Search.results
 
     def failing(self, first, last):
         if first == 100:
             raise error("one hundred")
-        return pairs(self, first, last)
+        return results(self, first, last)
 
-    monkeypatch.setattr(Search, "pairs", failing)
+    monkeypatch.setattr(Search, "results", failing)
     before = threading.active_count()
     with pytest.raises(error, match="one hundred"):
         list(gm.sample_stream(TORUS, normals=gm.icosphere(8), chunk=5, threads=threads))

@@ -28,7 +28,7 @@ def assert_same(spline: gm.Spline, frequency: int) -> None:
     for name in INDEX_NAMES:
         np.testing.assert_array_equal(getattr(scanned, name), getattr(expected, name))
     np.testing.assert_array_equal(scanned.exact, expected.exact)
-    np.testing.assert_array_equal(scanned.pairs, expected.pairs)
+    np.testing.assert_array_equal(scanned.exact_indices, expected.exact_indices)
     np.testing.assert_array_equal(scanned.local, expected.local)
     assert scanned.developable == expected.developable
 
