@@ -101,6 +101,7 @@ def test_formula_12_of_the_paper() -> None:
     assert r"5 \left(n_{x}^{3} + n_{y}^{3}" in latex
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("net", [OF_12, MIXED], ids=["formula 12", "mixed"])
 def test_branches_are_what_the_formulas_say(net: list[list[Any]]) -> None:
     """Point, Hessian and curvature against the exact expressions, at the exact floats."""
