@@ -155,12 +155,12 @@ class SampleArrays:
 
     @property
     def elliptic(self) -> NDArray[np.bool_]:
-        """(N,) bool: where the Gaussian curvature is positive (its sign bit is clear)."""
+        """(N,) bool array: where the Gaussian curvature is positive (its sign bit is clear)."""
         return ~self.hyperbolic
 
     @property
     def hyperbolic(self) -> NDArray[np.bool_]:
-        """(N,) bool: where the Gaussian curvature is negative (its sign bit is set)."""
+        """(N,) bool array: where the Gaussian curvature is negative (its sign bit is set)."""
         return np.signbit(self.gaussian_curvature)
 
     @property

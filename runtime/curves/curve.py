@@ -24,10 +24,31 @@ __all__ = ["Curve"]
 class Curve:
     """A planar parametric curve x(t).
 
-    Make one with `from_callable`, `from_sympy` or `from_points`. `function(t)` gets a float64 array
-    and returns points of its shape + (2,); a `periodic` curve is closed and smooth at its ends.
-    Normals are the tangent turned clockwise by 90°: outward on a circle with counter-clockwise
-    parameterization. `points` holds the points (m, 2) of a curve that was given by points.
+    Make one with `from_callable`, `from_sympy` or `from_points`. Normals are the tangent turned
+    clockwise by 90°: outward on a circle with counter-clockwise parameterization.
+
+    Attributes
+    ----------
+    name : str
+        Label of the curve.
+    function : callable
+        ``function(t)`` gets a float64 array and returns points of its shape + (2,).
+    domain : (float, float)
+        The interval of the parameter.
+    periodic : bool
+        Whether the curve is closed and smooth at its ends.
+    points : (m, 2) float64 array or None
+        The points of a curve that was given by points.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> corner = gm.curves.Curve.from_points([(0, 0), (1, 0), (2, 1), (2, 2)], name="corner")
+    >>> corner.name, corner.domain, corner.periodic, corner.points.shape
+    ('corner', (0.0, 3.0), False, (4, 2))
+    >>> corner.function([0.0, 3.0]).shape
+    (2, 2)
+
     """
 
     name: str
@@ -45,10 +66,39 @@ class Curve:
         *,
         name: str = "curve",
     ) -> Curve:
-        """Make a curve of a vectorized callable f(t) → (..., 2) over `domain` = (t0, t1).
+        """Make a curve of a vectorized callable f(t) → (..., 2).
 
-        Raises InputError for an empty or infinite domain, or if `periodic` is not True or False.
-        The callable is first called when the curve is fitted or evaluated (see `evaluate`).
+        Parameters
+        ----------
+        f : callable
+            Gets a float64 array and returns points of its shape + (2,). It is first called when the
+            curve is fitted or evaluated (see `evaluate`).
+        domain : (float, float)
+            The interval (t0, t1) of the parameter.
+        periodic : bool, default False
+            Whether the curve is closed and smooth at its ends.
+        name : str, default "curve"
+            Label of the curve.
+
+        Returns
+        -------
+        Curve
+            The curve.
+
+        Raises
+        ------
+        InputError
+            For an empty or infinite domain, or if `periodic` is not True or False.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> import numpy as np
+        >>> def f(t):
+        ...     return np.stack([t, t**2], axis=-1)
+        >>> gm.curves.fit(gm.curves.Curve.from_callable(f, (-1, 1), name="parabola"), 8)
+        CurveSpline(8 pieces of parabola)
+
         """
         if not callable(f):
             raise InputError(f"f must be callable as f(t), and {type(f).__name__} is not.")
@@ -64,11 +114,41 @@ class Curve:
         *,
         name: str = "curve",
     ) -> Curve:
-        """Make a curve of two SymPy expressions (or strings) in one `parameter`.
+        """Make a curve of two SymPy expressions, or texts, in one parameter.
 
-        `domain` and `periodic` are as in `from_callable`; the domain may hold SymPy numbers, or
-        strings such as "2*pi". Texts are read as in `Surface.from_sympy`. Raises InputError unless
-        there are two expressions without further symbols, and for texts that are refused there.
+        Parameters
+        ----------
+        position : pair of sympy.Expr, str or float
+            The components of x(t); texts are read as in `Surface.from_sympy`.
+        parameter : sympy.Symbol or str
+            The parameter t.
+        domain : pair
+            The interval (t0, t1): numbers, SymPy numbers, or texts such as "2*pi".
+        periodic : bool, default False
+            Whether the curve is closed and smooth at its ends.
+        name : str, default "curve"
+            Label of the curve.
+
+        Returns
+        -------
+        Curve
+            The curve.
+
+        Raises
+        ------
+        InputError
+            Unless there are two expressions without further symbols, for texts that
+            `Surface.from_sympy` refuses, and as `from_callable`.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> circle = gm.curves.Curve.from_sympy(
+        ...     ("cos(t)", "sin(t)"), "t", (0, "2*pi"), periodic=True
+        ... )
+        >>> circle.evaluate(0.0)
+        array([1., 0.])
+
         """
         from ..expressions import compiled, interval, one_symbol
 
@@ -77,12 +157,38 @@ class Curve:
 
     @classmethod
     def from_points(cls, points: ArrayLike, closed: bool = False, *, name: str = "points") -> Curve:
-        """Make a curve that approximates points (m, 2), which should be almost evenly spaced.
+        """Make a curve that approximates points, which should be almost evenly spaced.
 
-        The parameter is t = k near points[k]; the spline does not interpolate the points. A closed
-        curve must not repeat its first point at its end. There is one piece of the spline between
-        any two neighbouring points, unless `fit(pieces=...)` has another number. Raises InputError
-        for another shape, fewer than 3 points, or NaN or infinity (with its position).
+        The parameter is t = k near ``points[k]``; the spline does not interpolate the points. There
+        is one piece of the spline between any two neighbouring points, unless `fit(pieces=...)` has
+        another number.
+
+        Parameters
+        ----------
+        points : (m, 2) array_like
+            At least 3 points. A closed curve must not repeat its first point at its end.
+        closed : bool, default False
+            Whether the curve is closed.
+        name : str, default "points"
+            Label of the curve.
+
+        Returns
+        -------
+        Curve
+            The curve.
+
+        Raises
+        ------
+        InputError
+            For another shape, fewer than 3 points, or NaN or infinity (with its position).
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> square = gm.curves.Curve.from_points([(0, 0), (1, 0), (1, 1), (0, 1)], closed=True)
+        >>> square.periodic, square.domain
+        (True, (0.0, 4.0))
+
         """
         from .quasi_interpolant import checked_points, spline_of_points
 
@@ -93,11 +199,35 @@ class Curve:
         return cls(name, spline.evaluate, domain, is_closed, array)
 
     def evaluate(self, t: ArrayLike) -> NDArray[np.float64]:
-        """Return the points x(t), shape (..., 2).
+        """Return the points x(t).
 
-        Raises SurfaceError if the callable raises or returns another shape than (..., 2), values
-        that are not real numbers, NaN or infinity; InputError if the parameters are no real
-        numbers, or lie outside the domain of a curve that was given by points.
+        Parameters
+        ----------
+        t : array_like
+            Parameters.
+
+        Returns
+        -------
+        (..., 2) float64 array
+            The points.
+
+        Raises
+        ------
+        SurfaceError
+            If the callable raises or returns another shape than (..., 2), values that are not real
+            numbers, NaN or infinity.
+        InputError
+            If the parameters are no real numbers, or lie outside the domain of a curve that was
+            given by points.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> line = gm.curves.Curve.from_sympy(("t", "2*t"), "t", (0, 1))
+        >>> line.evaluate([0.0, 0.5])
+        array([[0. , 0. ],
+               [0.5, 1. ]])
+
         """
         parameters = {"t": real_array(t, "t")}
         return evaluated(self.function, parameters, 2, f"curve {self.name!r}")

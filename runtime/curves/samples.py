@@ -14,13 +14,35 @@ __all__ = ["CurveReport", "CurveSamples"]
 class CurveReport:
     """A report on the sampling of a curve.
 
-    - `curve`: label of the curve.
-    - `normals`: the number of prescribed normals.
-    - `samples`: the number of samples.
-    - `pieces`: the number of arcs of the spline.
-    - `straight_share`: the share (0…1) of the length where κ ≈ 0, so that it has no samples.
-    - `inflections`: the number of changes of the sign of κ.
-    - `turning_number`: the turning number of a closed curve; None for an open one.
+    Attributes
+    ----------
+    curve : str
+        Label of the curve.
+    normals : int
+        The number of prescribed normals.
+    samples : int
+        The number of samples.
+    pieces : int
+        The number of arcs of the spline.
+    straight_share : float
+        The share (0…1) of the length where κ ≈ 0, so that it has no samples.
+    inflections : int
+        The number of changes of the sign of κ.
+    turning_number : int or None
+        The turning number of a closed curve; None for an open one.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> circle = gm.curves.Curve.from_sympy(
+    ...     ("cos(t)", "sin(t)"), "t", (0, "2*pi"), periodic=True, name="circle"
+    ... )
+    >>> report = gm.curves.sample(circle, 8).report
+    >>> report.curve, report.normals, report.samples, report.pieces
+    ('circle', 8, 8, 64)
+    >>> report.straight_share, report.inflections, report.turning_number
+    (0.0, 0, 1)
+
     """
 
     curve: str
@@ -36,16 +58,46 @@ class CurveReport:
 class CurveSamples:
     """N samples of a planar curve in the order of their parameters; lengths in its unit L.
 
-    - `points`: (N, 2) float64, points of the curve, in L.
-    - `normals`: (N, 2) float64, unit normals at the points: the tangent turned clockwise.
-    - `parameters`: (N,) float64, the curve's own parameters of the points.
-    - `support`: (N,) float64, support function n·x, in L.
-    - `curvature`: (N,) float64, in 1/L, positive on a circle with outward normals. Its sign bit
-      is the sense in which the normal turns, also where the curvature is rounded to 0.
-    - `normal_index`: (N,) int64, row of the prescribed normals.
-    - `piece_index`: (N,) int64, arc of the spline that contains the point.
-    - `ends`: (2, 2) float64, the ends of an open curve; (0, 2) for a closed one.
-    - `report`: a report on the sampling.
+    Attributes
+    ----------
+    points : (N, 2) float64 array
+        Points of the curve, in L.
+    normals : (N, 2) float64 array
+        Unit normals at the points: the tangent turned clockwise.
+    parameters : (N,) float64 array
+        The parameters of the points.
+    support : (N,) float64 array
+        Support function h = n·x, in L.
+    curvature : (N,) float64 array
+        In 1/L, positive on a circle with outward normals. Its sign bit is the sense in which the
+        normal turns, also where the curvature is rounded to 0.
+    normal_index : (N,) int64 array
+        Rows of the prescribed normals.
+    piece_index : (N,) int64 array
+        Arcs of the spline that contain the points.
+    ends : (2, 2) float64 array
+        The ends of an open curve; (0, 2) for a closed one.
+    report : CurveReport
+        A report on the sampling.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> circle = gm.curves.Curve.from_sympy(
+    ...     ("cos(t)", "sin(t)"), "t", (0, "2*pi"), periodic=True, name="circle"
+    ... )
+    >>> samples = gm.curves.sample(circle, 8)
+    >>> samples
+    CurveSamples(8 points on circle)
+    >>> samples.points.shape, samples.normals.shape, samples.parameters.shape
+    ((8, 2), (8, 2), (8,))
+    >>> samples.support.round(3), samples.curvature.round(2)
+    (array([1., 1., 1., 1., 1., 1., 1., 1.]), array([1., 1., 1., 1., 1., 1., 1., 1.]))
+    >>> sorted(samples.normal_index.tolist()), samples.piece_index.dtype
+    ([0, 1, 2, 3, 4, 5, 6, 7], dtype('int64'))
+    >>> samples.polygon.shape, samples.ends.shape, samples.report.inflections
+    ((9, 2), (0, 2), 0)
+
     """
 
     points: NDArray[np.float64]
@@ -60,7 +112,7 @@ class CurveSamples:
 
     @property
     def polygon(self) -> NDArray[np.float64]:
-        """The vertices (M, 2) of the polygon through all samples in turn.
+        """(M, 2) float64 array: the vertices of the polygon through all samples in turn.
 
         That of an open curve begins and ends with the ends of the curve; that of a closed curve
         repeats its first point at its end.
@@ -70,7 +122,23 @@ class CurveSamples:
         return np.concatenate([self.points, self.points[:1]])
 
     def summary(self) -> str:
-        """One line: the numbers of samples, normals and inflections, and the straight share."""
+        """Return one line: the numbers of samples, normals and inflections, and the straight share.
+
+        Returns
+        -------
+        str
+            The line, without a line break.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> circle = gm.curves.Curve.from_sympy(
+        ...     ("cos(t)", "sin(t)"), "t", (0, "2*pi"), periodic=True
+        ... )
+        >>> gm.curves.sample(circle, 8).summary()
+        '8 samples at 8 prescribed normals; 0 inflections...'
+
+        """
         report = self.report
         return (
             f"{report.samples:,} samples at {report.normals:,} prescribed normals; "

@@ -27,10 +27,45 @@ ROUNDINGS = 8.0
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CurveSpline:
-    """A planar C¹ quadratic spline with equal pieces of the parameter; made by `fit`.
+    """A planar C¹ quadratic spline with P equal pieces of the parameter; made by `fit`.
 
-    `coefficients` (P + 2, 2) holds one vector for each of the P pieces and a ghost coefficient at
-    each end, which is a copy on closed curves. Joint k is the beginning of piece k.
+    Joint k is the beginning of piece k.
+
+    Attributes
+    ----------
+    coefficients : (P + 2, 2) float64 array
+        One vector for each piece, and a ghost coefficient at each end, which is a copy on closed
+        curves.
+    domain : (float, float)
+        The interval of the parameter.
+    periodic : bool
+        Whether the curve is closed.
+    name : str
+        Label of the curve.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> eight = gm.curves.Curve.from_sympy(
+    ...     ("sin(t)", "sin(2*t)"), "t", (0, "2*pi"), periodic=True, name="eight"
+    ... )
+    >>> spline = gm.curves.fit(eight, 32)
+    >>> spline.pieces, spline.name, spline.periodic, spline.coefficients.shape
+    (32, 'eight', True, (34, 2))
+    >>> spline.turning_number, len(spline.inflections)
+    (0, 2)
+    >>> spline.control_points.shape, spline.joints.shape, spline.joint_normals.shape
+    ((32, 3, 2), (33,), (33, 2))
+    >>> abs(spline.domain[1] - 32 * spline.step) < 1e-12
+    True
+    >>> angles, turns = spline.angles
+    >>> bool(abs(spline.turning_angles.sum()) < 1e-12), angles.shape, turns.shape
+    (True, (33,), (33,))
+    >>> bool(spline.straight.any()), bool(spline.reversing.any())
+    (False, False)
+    >>> spline.scale, spline.noise < 1e-12
+    (2.0, True)
+
     """
 
     coefficients: Array
@@ -53,12 +88,12 @@ class CurveSpline:
 
     @property
     def joints(self) -> Array:
-        """The parameters (P + 1,) of the joints, both ends included."""
+        """(P + 1,) float64 array: the parameters of the joints, both ends included."""
         return np.linspace(*self.domain, self.pieces + 1)
 
     @cached_property
     def control_points(self) -> Array:
-        """The control points (P, 3, 2) of the arcs, each from its first to its last point."""
+        """(P, 3, 2) float64 array: the control points of the arcs, from first to last."""
         mu = self.coefficients
         points = python_function(formulas.arc_control_points)(
             *map(plane_vector, (mu[:-2], mu[1:-1], mu[2:]))
@@ -71,17 +106,58 @@ class CurveSpline:
         return scale_to_one(float(np.abs(np.diff(self.coefficients, axis=0)).max()))
 
     def evaluate(self, t: ArrayLike) -> Array:
-        """Return points (..., 2) at parameters.
+        """Return the points of the spline at parameters.
 
-        Those of a closed curve are taken modulo the period; InputError if one of an open curve lies
-        outside the domain, or any is NaN or infinite.
+        Parameters
+        ----------
+        t : array_like
+            Parameters. Those of a closed curve are taken modulo the period.
+
+        Returns
+        -------
+        (..., 2) float64 array
+            The points.
+
+        Raises
+        ------
+        InputError
+            If a parameter of an open curve lies outside the domain, or any is NaN or infinite.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> line = gm.curves.fit(gm.curves.Curve.from_sympy(("t", "2*t"), "t", (0, 1)), 4)
+        >>> line.evaluate(0.5)
+        array([0.5, 1. ])
+
         """
         return self._evaluate(t)[0]
 
     def normals(self, t: ArrayLike) -> Array:
-        """Return unit normals (..., 2), the tangent turned clockwise; NaN at singular points.
+        """Return unit normals at parameters: the tangent turned clockwise by 90°.
 
-        For the parameters see `evaluate`.
+        Parameters
+        ----------
+        t : array_like
+            As in `evaluate`.
+
+        Returns
+        -------
+        (..., 2) float64 array
+            The normals; NaN at singular points.
+
+        Raises
+        ------
+        InputError
+            As `evaluate`.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> line = gm.curves.fit(gm.curves.Curve.from_sympy(("t", "0"), "t", (0, 1)), 4)
+        >>> line.normals(0.5) + 0.0
+        array([ 0., -1.])
+
         """
         vectors = self._evaluate(t)[1]
         with np.errstate(invalid="ignore"):
@@ -89,10 +165,33 @@ class CurveSpline:
             return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
 
     def curvature(self, t: ArrayLike) -> Array:
-        """Return signed curvatures (...), positive on a circle with outward normals, in 1/L.
+        """Return signed curvatures at parameters, positive on a circle with outward normals.
 
-        They jump at joints, where they are those of the following arc. NaN or infinite at singular
-        points. For the parameters see `evaluate`.
+        Parameters
+        ----------
+        t : array_like
+            As in `evaluate`.
+
+        Returns
+        -------
+        (...) float64 array
+            The curvatures, in 1/L. They jump at joints, where they are those of the following arc.
+            NaN or infinite at singular points.
+
+        Raises
+        ------
+        InputError
+            As `evaluate`.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> circle = gm.curves.Curve.from_sympy(
+        ...     ("cos(t)", "sin(t)"), "t", (0, "2*pi"), periodic=True
+        ... )
+        >>> gm.curves.fit(circle).curvature([0.0, 1.0]).round(1)
+        array([1., 1.])
+
         """
         return self._evaluate(t)[2]
 
@@ -100,7 +199,7 @@ class CurveSpline:
 
     @cached_property
     def joint_normals(self) -> Array:
-        """The normals (P + 1, 2) at the joints, not of unit length: in units of 1/`scale`.
+        """(P + 1, 2) float64 array: normals at the joints, of any length, in units of 1/`scale`.
 
         Both arcs at a joint share this one vector, and so do both ends of a closed curve.
         """
@@ -112,9 +211,10 @@ class CurveSpline:
 
     @cached_property
     def angles(self) -> tuple[Array, NDArray[np.int64]]:
-        """The angles (P + 1,) of the normals at the joints in −π … π, and full turns (P + 1,).
+        """Angles of the normals at the joints, and full turns: (P + 1,) float64 and int64 arrays.
 
-        The sum angle + 2π turns follows the curve: on an arc it changes by less than π.
+        Angles are in radians, in −π … π. The sum angle + 2π turns follows the curve: on an arc it
+        changes by less than π.
         """
         angles = angles_of(self.joint_normals)
         if self.periodic:
@@ -125,36 +225,39 @@ class CurveSpline:
 
     @cached_property
     def turning_angles(self) -> Array:
-        """The angle (P,) by which the normal turns on each arc; its sign is that of κ there."""
+        """(P,) float64 array: the angle by which the normal turns on each arc, in radians.
+
+        Its sign is that of κ there.
+        """
         angles, turns = self.angles
         return np.diff(angles) + 2 * np.pi * np.diff(turns)
 
     @property
     def turning_number(self) -> int | None:
-        """How often the normal of a closed curve turns round; None for an open curve."""
+        """The number of turns of the normal along a closed curve; None for an open curve."""
         return int(self.angles[1][-1]) if self.periodic else None
 
     @cached_property
     def noise(self) -> float:
-        """The rounding of the coordinates in a vector of `joint_normals`."""
+        """A bound of the rounding of the coordinates in a vector of `joint_normals`."""
         return ROUNDINGS * float(np.spacing(np.abs(self.coefficients).max())) * self.scale
 
     @cached_property
     def straight(self) -> NDArray[np.bool_]:
-        """Which arcs (P,) are straight, up to the rounding of their coordinates."""
+        """(P,) bool array: arcs that are straight, up to the rounding of their coordinates."""
         before, after = self.joint_normals[:-1], self.joint_normals[1:]
         area = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
         return np.abs(area) <= self.noise * (_lengths(before) + _lengths(after))
 
     @property
     def reversing(self) -> NDArray[np.bool_]:
-        """Which arcs (P,) are straight and come back, or stop: they hold a singular point."""
+        """(P,) bool array: straight arcs that reverse or stop, at a singular point."""
         before, after = self.joint_normals[:-1], self.joint_normals[1:]
         return self.straight & (np.einsum("kx,kx->k", before, after) <= 0.0)
 
     @cached_property
     def inflections(self) -> Array:
-        """The parameters where the curvature changes its sign, ascending.
+        """(k,) float64 array: the parameters where the curvature changes its sign, ascending.
 
         An arc is a parabola and has none: they are joints, or the middles of straight stretches.
         """

@@ -24,20 +24,56 @@ CORNERS = np.eye(3)
 class BoundaryArc:
     """An arc of a Gaussian image: a quadratic Bézier curve of normals, projected to the sphere.
 
-    `control_normals` (3, 3) are its control points, not of unit length: those of an edge are three
-    of the control normals of the patch. `noise` bounds the error that the rounding of the
-    coordinates leaves in them.
+    Attributes
+    ----------
+    control_normals : (3, 3) float64 array
+        The control points, not of unit length: those of an edge are three of the control normals of
+        the patch.
+    noise : float
+        A bound of the error in them that is due to the rounding of the coordinates.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> net = gm.fit("torus", (16, 16)).control_nets[0]
+    >>> arc = gm.gauss_map.GaussianImage.of_patch(net).arcs[0]
+    >>> arc.points(5).shape, arc.control_normals.shape, arc.noise < 1e-12
+    ((5, 3), (3, 3), True)
+    >>> arc.singular_points, len(arc.parts), arc.is_point, arc.is_great_circle
+    ((), 1, False, False)
+
     """
 
     control_normals: Array
     noise: float
 
     def points(self, count: int) -> Array:
-        """Return `count` unit normals (count, 3) along the arc, both ends included.
+        """Return unit normals along the arc, both ends included.
 
-        At a singular end, where the normal vanishes, it is the limit; NaN if the whole arc has no
-        normals, and at a singular point inside, where there is none: the `parts` end there. Raises
-        InputError unless `count` is a whole number of at least 2.
+        Parameters
+        ----------
+        count : int
+            The number of normals, at least 2.
+
+        Returns
+        -------
+        (count, 3) float64 array
+            The normals. At a singular end, where the normal vanishes, it is the limit. NaN if the
+            whole arc has no normals, and at a singular point inside, where there is none: the
+            `parts` end there.
+
+        Raises
+        ------
+        InputError
+            Unless `count` is a whole number of at least 2.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> net = gm.fit("torus", (16, 16)).control_nets[0]
+        >>> gm.gauss_map.GaussianImage.of_patch(net).boundary[0].points(3).shape
+        (3, 3)
+
         """
         t = np.linspace(0.0, 1.0, whole_number(count, "count", 2))
         normals = self._at(t)

@@ -22,7 +22,35 @@ INSIDE = cubic_bernstein(
 
 
 class PatchClass(IntEnum):
-    """What a patch is: by the sign of its Gaussian curvature, see `classify_patches`."""
+    """The class of a patch by the sign of its Gaussian curvature K, see `classify_patches`.
+
+    Attributes
+    ----------
+    PLANAR
+        The normal is constant.
+    DEVELOPABLE
+        K = 0 everywhere.
+    ELLIPTIC
+        K > 0 inside.
+    HYPERBOLIC
+        K < 0 inside.
+    MIXED
+        A parabolic line separates elliptic from hyperbolic parts (paper, Remark 3.1).
+    SINGULAR
+        No point has a normal.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> Class = gm.gauss_map.PatchClass
+    >>> classes = gm.gauss_map.classify_patches(gm.fit("torus", (16, 16))).tolist()
+    >>> sorted(set(classes)) == [Class.ELLIPTIC, Class.HYPERBOLIC]
+    True
+    >>> others = Class.PLANAR, Class.DEVELOPABLE, Class.MIXED, Class.SINGULAR
+    >>> any(x in classes for x in others)
+    False
+
+    """
 
     PLANAR = 0
     DEVELOPABLE = 1

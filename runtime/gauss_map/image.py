@@ -42,9 +42,29 @@ BY_SIDES = {2: "biangle", 3: "triangle"}
 class GaussianImage:
     """The Gaussian image of one quadratic patch: the region of the sphere that its normals fill.
 
-    Make one with `of_patch`, or take one from a `GaussianImages`. `control_points` (6, 3) are in
-    the order b200, b020, b002, b110, b101, b011. What depends on whether something vanishes
-    (`kind`, `patch_class`, `is_great_circle`) is decided up to the rounding of the coordinates.
+    Make one with `of_patch`, or take one from a `GaussianImages`. Whether something vanishes
+    (`kind`, `patch_class`, `is_great_circle` of an arc) is decided up to the rounding of the
+    coordinates.
+
+    Attributes
+    ----------
+    control_points : (6, 3) float64 array
+        The control points in the order b200, b020, b002, b110, b101, b011.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> net = gm.fit("torus", (16, 16)).control_nets[0]
+    >>> image = gm.gauss_map.GaussianImage.of_patch(net)
+    >>> image, image.kind, image.patch_class.name
+    (GaussianImage(triangle), 'triangle', 'ELLIPTIC')
+    >>> image.area == image.solid_angle, f"{image.area:.3f}"  # elliptic; in steradians
+    (True, '0.039')
+    >>> len(image.arcs), len(image.boundary), len(image.pieces), image.cones.shape
+    (3, 3, 1, (3, 3, 3))
+    >>> image.control_points.shape
+    (6, 3)
+
     """
 
     control_points: Array
@@ -54,9 +74,30 @@ class GaussianImage:
 
     @classmethod
     def of_patch(cls, control_points: ArrayLike) -> GaussianImage:
-        """Return the Gaussian image of six control points (6, 3).
+        """Return the Gaussian image of a patch.
 
-        Raises InputError for another shape, NaN, infinity, or numbers too large to compute with.
+        Parameters
+        ----------
+        control_points : (6, 3) array_like
+            The control points in the order b200, b020, b002, b110, b101, b011.
+
+        Returns
+        -------
+        GaussianImage
+            The image.
+
+        Raises
+        ------
+        InputError
+            For another shape, NaN, infinity, or numbers too large to compute with.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> points = [(0, 0, 0), (2, 0, 1), (0, 2, 1), (1, 0, 0), (0, 1, 0), (1, 1, 0)]
+        >>> gm.gauss_map.GaussianImage.of_patch(points)
+        GaussianImage(triangle)
+
         """
         return cls(checked_control_points(control_points))
 
@@ -121,7 +162,7 @@ class GaussianImage:
 
     @cached_property
     def solid_angle(self) -> float:
-        """The integral of the Gaussian curvature over the patch, negative where hyperbolic."""
+        """The integral of the Gaussian curvature over the patch, in steradians."""
         return float(self._measures[0][0])
 
     @cached_property
@@ -130,12 +171,36 @@ class GaussianImage:
         return float(self._measures[1][0])
 
     def contains(self, normals: ArrayLike) -> NDArray[np.bool_]:
-        """Say which of the directions (S, 3), of any length, are oriented normals of the patch.
+        """Return which directions are oriented normals of the patch.
 
-        The border belongs to the image. The answer is exact for the control points and directions
-        as they are: what rounding leaves open is decided on integers. So an image without inside
-        ("arc", "point") holds only the few directions that lie on it exactly. A singular point has
-        no normal. Raises InputError for another shape, NaN, infinity or a zero vector.
+        The border belongs to the image. The result is exact for the control points and directions
+        as they are: signs that rounding leaves open are decided with integers. So an image without
+        inside ("arc", "point") contains only the few directions that lie on it exactly. A singular
+        point has no normal.
+
+        Parameters
+        ----------
+        normals : (S, 3) array_like
+            Directions of any length but 0.
+
+        Returns
+        -------
+        (S,) bool array
+            Whether a direction is a normal.
+
+        Raises
+        ------
+        InputError
+            For another shape, NaN, infinity or a zero vector.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> points = [(0, 0, 0), (2, 0, 1), (0, 2, 1), (1, 0, 0), (0, 1, 0), (1, 1, 0)]
+        >>> image = gm.gauss_map.GaussianImage.of_patch(points)
+        >>> image.contains([[0, 0, 1], [-1, -1, 4], [0, 0, -1]])
+        array([ True,  True, False])
+
         """
         as_normals(normals)
         return PatchNormals(self.control_points).contain(real_array(normals, "normals"))
@@ -157,7 +222,24 @@ class GaussianImage:
 class GaussianImages:
     """The Gaussian images of all patches of a spline: together the domain of its support function.
 
-    Made by `of_spline`. images[k] is the image of patch k; patches are numbered as in `Spline`.
+    Made by `of_spline`. ``images[k]`` is the image of patch k; patches are numbered as in `Spline`.
+
+    Attributes
+    ----------
+    spline : Spline
+        The spline.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> images = gm.gauss_map.GaussianImages.of_spline("torus", (16, 16))
+    >>> len(images), images[0], images.spline
+    (1024, GaussianImage(triangle), Spline(16 × 16 cells of torus))
+    >>> f"{images.areas.sum():.2f}", bool(abs(images.solid_angles.sum()) < 1e-12)  # 8π and 2π χ
+    ('25.13', True)
+    >>> images.patch_classes.shape
+    (1024,)
+
     """
 
     spline: Spline
@@ -169,9 +251,33 @@ class GaussianImages:
     def of_spline(
         cls, spline: Spline | Surface | str, cells: Sequence[int] | None = None
     ) -> GaussianImages:
-        """Return the Gaussian images of a spline, or of the spline of a surface (see `fit`).
+        """Return the Gaussian images of a spline.
 
-        Raises InputError for `cells` beside a spline, and what `fit` raises.
+        Parameters
+        ----------
+        spline : Spline, Surface or str
+            A `Surface`, or the name of one, is approximated by a spline first.
+        cells : (int, int), optional
+            The cells of that spline, see `fit`.
+
+        Returns
+        -------
+        GaussianImages
+            The images.
+
+        Raises
+        ------
+        InputError
+            For `cells` with a spline, and as `fit`.
+        UnknownNameError, SurfaceError
+            As `fit`.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.gauss_map.GaussianImages.of_spline("torus", (16, 16))
+        GaussianImages(1,024 patches)
+
         """
         return cls(spline_of(spline, cells))
 
@@ -189,29 +295,53 @@ class GaussianImages:
 
     @cached_property
     def patch_classes(self) -> NDArray[np.int8]:
-        """The `PatchClass` (k,) of each patch."""
+        """(patches,) int8 array: the `PatchClass` of each patch."""
         return classes_of(self._patches)
 
     @cached_property
     def solid_angles(self) -> Array:
-        """The integral (k,) of the Gaussian curvature over each patch.
+        """(patches,) float64 array: the integral of the Gaussian curvature over each patch.
 
-        On a closed surface they sum to 2π χ: 4π on a sphere-like one, 0 on a torus.
+        On a closed surface they sum to 2π χ: 4π on one of the type of the sphere, 0 on a torus.
         """
         return self._measures[0]
 
     @cached_property
     def areas(self) -> Array:
-        """The area (k,) in steradians of each image: the integral of |K| over each patch."""
+        """(patches,) float64 array: the areas of the images in steradians, integrals of |K|."""
         return self._measures[1]
 
     def sheets(
         self, normals: ArrayLike, sign: int = 0, threads: int | None = None
     ) -> NDArray[np.int64]:
-        """Return how many points (S,) of the spline have each of the directions (S, 3).
+        """Return the number of points of the spline with each of the directions as normal.
 
-        With sign=1 only elliptic points count, with sign=-1 only hyperbolic ones. Raises InputError
-        for unusable normals (see `sample`) or another sign.
+        Parameters
+        ----------
+        normals : (S, 3) array_like
+            Directions of any length but 0.
+        sign : {0, 1, -1}, default 0
+            1 counts elliptic points only, −1 hyperbolic points only.
+        threads : int, optional
+            The number of threads; by default all cores.
+
+        Returns
+        -------
+        (S,) int64 array
+            The numbers.
+
+        Raises
+        ------
+        InputError
+            For unusable normals (see `sample`) or another sign.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> images = gm.gauss_map.GaussianImages.of_spline("torus", (16, 16))
+        >>> images.sheets([[1, 0, 0], [0, 1, 1]]), images.sheets([[1, 0, 0]], sign=-1)
+        (array([2, 2]), array([1]))
+
         """
         is_whole = isinstance(sign, int | np.integer) and not isinstance(sign, bool)
         if not is_whole or sign not in (-1, 0, 1):

@@ -38,13 +38,20 @@ class ParabolicCurve:
 
     Attributes
     ----------
-    uv : (k, 2) float array
+    uv : (k, 2) float64 array
         Parameters of the vertices. In a periodic direction they continue beyond the end of the
         domain, without jumps.
-    points : (k, 3) float array
+    points : (k, 3) float64 array
         The vertices in space.
     closed : bool
         Whether the curve is closed; its last vertex then repeats the first.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> curve = gm.gauss_map.parabolic_points("torus").curves[0]
+    >>> curve.closed, curve.uv.shape == (len(curve.points), 2)
+    (True, True)
 
     """
 
@@ -62,14 +69,25 @@ class ParabolicPoint:
 
     Attributes
     ----------
-    uv : (2,) float array
+    uv : (2,) float64 array
         Its parameters.
-    point : (3,) float array
+    point : (3,) float64 array
         The point in space.
-    box : (2, 2) float array
+    box : (2, 2) float64 array
         Lowest and highest parameters of the rectangle that isolates it. A rectangle longer than the
         tolerance contains a curve of such points, or a closed curve too small to trace, or K is
         zero up to its error on all of it.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> f = ("u", "v", "u**4 + u**2*v**2 + v**4")
+    >>> bowl = gm.Surface.from_sympy(f, ("u", "v"), domain=((-1, "9/10"), (-1, "9/10")))
+    >>> place, = gm.gauss_map.parabolic_points(bowl).isolated
+    >>> place.uv.round(3) + 0.0, place.point.round(3) + 0.0
+    (array([0., 0.]), array([0., 0., 0.]))
+    >>> bool((place.box[0] <= place.uv).all() and (place.uv <= place.box[1]).all())
+    True
 
     """
 
@@ -89,11 +107,20 @@ class ParabolicPoints:
         surface, at a "mirrored" seam, and where they meet or cross; one may lie on the border.
     isolated : tuple of ParabolicPoint
         Places where the curvature touches zero without a change of sign.
-    flat : (k, 2, 2) float array
+    flat : (k, 2, 2) float64 array
         Rectangles of the parameter plane (lowest and highest corner) in which it vanishes up to
         its error.
     developable : bool
         Whether it vanishes up to its error everywhere.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> found = gm.gauss_map.parabolic_points("torus")
+    >>> found
+    ParabolicPoints(2 curves, 0 isolated, 0 flat rectangles)
+    >>> len(found.curves), len(found.isolated), len(found.flat), found.developable
+    (2, 0, 0, False)
 
     """
 

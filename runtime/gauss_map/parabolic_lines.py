@@ -34,10 +34,29 @@ TRIANGLE = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 class ParabolicLine:
     """A line s u + t v + ρ = 0 of parabolic points, with s² + t² = 1; all of it has one normal.
 
-    `normal` (3,) is the unit normal, oriented as in the middle of the part that is nearest to the
-    triangle. `multiplicity` is 1 where the curvature changes sign across the line, 2 where it
-    touches zero, 3 where all three lines are one. `segment` (2, 2) holds the ends (u, v) of what
-    lies in the triangle u, v, 1 − u − v ≥ 0; None if nothing does.
+    Attributes
+    ----------
+    s, t, rho : float
+        The coefficients of the line in the barycentric parameters u, v of the patch.
+    normal : (3,) float64 array
+        The unit normal, oriented as in the middle of the part that is nearest to the triangle.
+    multiplicity : int
+        1 where the curvature changes its sign across the line, 2 where it touches zero, 3 where all
+        three lines are one.
+    segment : (2, 2) float64 array or None
+        The ends (u, v) of the part in the triangle u, v, 1 − u − v ≥ 0; None if there is none.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> net = gm.fit("torus", (8, 8)).control_nets[6]
+    >>> line, = gm.gauss_map.parabolic_lines(net)
+    >>> line.normal.round(6) + 0.0, line.multiplicity  # the upper of the two circles K = 0
+    (array([0., 0., 1.]), 1)
+    >>> u, v = line.segment[0]
+    >>> bool(abs(line.s * u + line.t * v + line.rho) < 1e-12)
+    True
+
     """
 
     s: float
@@ -52,8 +71,20 @@ class ParabolicLine:
 class Piece:
     """A convex part of the parameter triangle without parabolic points inside.
 
-    `corners` (k, 2) are its corners (u, v), counter-clockwise; `sign` is that of the Gaussian
-    curvature: 1 elliptic, −1 hyperbolic, 0 flat or developable.
+    Attributes
+    ----------
+    corners : (k, 2) float64 array
+        Its corners (u, v), counter-clockwise.
+    sign : int
+        The sign of the Gaussian curvature: 1 elliptic, −1 hyperbolic, 0 flat or developable.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> piece, = gm.gauss_map.split_patch(gm.fit("torus", (8, 8)).control_nets[0])
+    >>> piece.corners.shape, piece.sign
+    ((3, 2), 1)
+
     """
 
     corners: Array

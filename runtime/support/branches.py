@@ -16,26 +16,52 @@ __all__ = ["Branches", "Sheets", "curvatures"]
 
 @dataclass(frozen=True, eq=False, slots=True, repr=False)
 class Branches:
-    """The k branches of a support function at S normals, by normal and then by patch.
+    """The k branches of a support function at S normals, by normal, then by patch.
 
-    Lengths are in the unit L of the surface.
+    Lengths are in the unit L of the surface. Where a radius is 0 the surface is singular (a point
+    has two such): Gaussian curvature is infinite and mean curvature infinite or NaN. Where a radius
+    is infinite, at a parabolic point, Hessian and radii are infinite or NaN; Gaussian curvature is
+    then 0, or NaN after a sum.
 
-    - `normal_index`: (k,) int64, row of the prescribed normals.
-    - `normals`: (k, 3) float64, these normals, of unit length.
-    - `support`: (k,) float64, the support function h(n) = n·x (4), in L.
-    - `points`: (k, 3) float64, the point x(n) of the envelope (5), in L.
-    - `hessian`: (k, 3, 3) float64, second derivatives of the support function (homogeneous of
-      degree 1) in L: hessian @ n = 0, and the eigenvalues in the tangent plane are the radii.
-    - `principal_radii`: (k, 2) float64, signed principal radii of curvature in L, the larger one
-      first; positive on a sphere with outward normals.
-    - `gaussian_curvature`: (k,) float64, in 1/L². It is hyperbolic where the sign bit is set.
-    - `mean_curvature`: (k,) float64, in 1/L, positive on a sphere with outward normals.
-    - `patch_index`: (k,) int64, patch of the spline; −1 where there is none or more than one.
-    - `uv`: (k, 2) float64, parameters of the point; NaN where patch_index is −1.
+    Attributes
+    ----------
+    normal_index : (k,) int64 array
+        Rows of the prescribed normals.
+    normals : (k, 3) float64 array
+        These normals, of unit length.
+    support : (k,) float64 array
+        The support function h(n) = n·x (4), in L.
+    points : (k, 3) float64 array
+        The points x(n) of the envelope (5), in L.
+    hessian : (k, 3, 3) float64 array
+        Second derivatives of the support function (homogeneous of degree 1), in L: hessian @ n = 0,
+        and the eigenvalues in the tangent plane are the radii.
+    principal_radii : (k, 2) float64 array
+        Signed principal radii of curvature in L, the larger one first; positive on a sphere with
+        outward normals.
+    gaussian_curvature : (k,) float64 array
+        In 1/L². A point is hyperbolic where its sign bit is set.
+    mean_curvature : (k,) float64 array
+        In 1/L, positive on a sphere with outward normals.
+    patch_index : (k,) int64 array
+        Patches of the spline; −1 where there is none or more than one.
+    uv : (k, 2) float64 array
+        Parameters of the points; NaN where `patch_index` is −1.
 
-    Where a radius is 0 the surface is singular (a point has two such): Gaussian curvature is
-    infinite and mean curvature infinite or NaN. Where a radius is infinite, at a parabolic point,
-    Hessian and radii are infinite or NaN; Gaussian curvature is then 0, or NaN after a sum.
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> h = gm.SupportFunction.from_sympy("sqrt(4*n_x**2 + n_y**2 + n_z**2)")
+    >>> branches = h.branches([[2, 0, 0]])
+    >>> branches.normals, branches.support, branches.points
+    (array([[1., 0., 0.]]), array([2.]), array([[2., 0., 0.]]))
+    >>> branches.principal_radii, branches.gaussian_curvature, branches.mean_curvature
+    (array([[0.5, 0.5]]), array([4.]), array([2.]))
+    >>> branches.hessian.shape, branches.normal_index, branches.patch_index, branches.uv
+    ((1, 3, 3), array([0]), array([-1]), array([[nan, nan]]))
+    >>> branches.elliptic, branches.hyperbolic
+    (array([ True]), array([False]))
+
     """
 
     normal_index: NDArray[np.int64]
@@ -51,12 +77,12 @@ class Branches:
 
     @property
     def elliptic(self) -> NDArray[np.bool_]:
-        """(k,) bool: where the Gaussian curvature is positive (its sign bit is clear)."""
+        """(k,) bool array: where the Gaussian curvature is positive (its sign bit is clear)."""
         return ~self.hyperbolic
 
     @property
     def hyperbolic(self) -> NDArray[np.bool_]:
-        """(k,) bool: where the Gaussian curvature is negative (its sign bit is set)."""
+        """(k,) bool array: where the Gaussian curvature is negative (its sign bit is set)."""
         return np.signbit(self.gaussian_curvature)
 
     def __len__(self) -> int:

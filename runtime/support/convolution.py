@@ -37,13 +37,31 @@ class Convolution:
     """The k sums of two points with the same normal, by normal, then by branch of the first.
 
     A boolean mask (k,), an index array or a slice picks some of them:
-    `sums[sums.samples.elliptic]`.
+    ``sums[sums.samples.elliptic]``.
 
-    - `samples`: `Samples` of the convolution surface; no `uv` and `patch_index`, of which there are
-      two.
-    - `first`, `second`: the `Branches` of both surfaces at the prescribed normals.
-    - `rows`: (k, 2) int64, which row of `first` and which of `second` a sample is the sum of:
-      samples.points = first.points[rows[:, 0]] + second.points[rows[:, 1]].
+    Attributes
+    ----------
+    samples : Samples
+        Samples of the convolution surface, without `uv` and `patch_index`, of which there are two.
+    first, second : Branches
+        The branches of both surfaces at the prescribed normals.
+    rows : (k, 2) int64 array
+        Rows of `first` and of `second` whose points a sample is the sum of.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> import numpy as np
+    >>> ball = gm.surfaces.ellipsoid(a=0.2, b=0.1, c=0.1)
+    >>> sums = gm.convolve("torus", ball, [[1, 0, 0], [0, 1, 1]], cells=(16, 16))
+    >>> sums[sums.samples.elliptic]
+    Convolution(Samples(2 points on torus + ellipsoid: 2 elliptic, 0 hyperbolic))
+    >>> i, j = sums.rows.T
+    >>> np.allclose(sums.samples.points, sums.first.points[i] + sums.second.points[j])
+    True
+    >>> sums.first_uv.shape, sums.second_uv.shape
+    ((4, 2), (4, 2))
+
     """
 
     samples: Samples
@@ -53,12 +71,12 @@ class Convolution:
 
     @property
     def first_uv(self) -> NDArray[np.float64]:
-        """(k, 2) float64: parameters of the point of the first surface; NaN if it has none."""
+        """(k, 2) float64 array: parameters of the point of the first surface, or NaN."""
         return self.first.uv[self.rows[:, 0]]
 
     @property
     def second_uv(self) -> NDArray[np.float64]:
-        """(k, 2) float64: parameters of the point of the second surface; NaN if it has none."""
+        """(k, 2) float64 array: parameters of the point of the second surface, or NaN."""
         return self.second.uv[self.rows[:, 1]]
 
     def __len__(self) -> int:

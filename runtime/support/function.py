@@ -7,19 +7,18 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from .. import bridge
 from ..checks import finite_array, finite_number
-from ..directions.unit import as_normals
 from ..errors import InputError
 from ..fitting import spline_of
 from ..spline import Spline
 from ..surface import Surface
 from ..surfaces import named
-from .branches import Branches, Sheets
 from .operations import Offset, Reversed, Rotated, Scaled, Sum, Translated
-from .sources import PatchSource, Source, SplineSource
+from .sources import PatchSource, SplineSource
+from .values import SupportValues
 
 if TYPE_CHECKING:
     import sympy
@@ -31,17 +30,28 @@ ROTATION_ERROR = 1e-12
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SupportFunction:
+class SupportFunction(SupportValues):
     """A support function h(n): the distance from the origin of the tangent plane with normal n.
 
     Make one with `of_spline`, `of_patch` or `from_sympy`. Several points of a surface may have one
     normal, each on a *branch* of h; `branches` returns all of them. The envelope operator (7) gives
-    the points, so that operations on surfaces are simple ones on support functions: `+`, `offset`,
-    `translated`, `rotated`, `scaled`, `reversed`. They return new objects and compute nothing
-    before these are evaluated.
-    """
+    the points, so that operations on surfaces are simple ones on support functions: `+`
+    (convolution), `offset`, `translated`, `rotated`, `scaled`, `reversed`. They return new objects;
+    computation is deferred until these are evaluated. A call, ``h(normals)``, returns the values of
+    a single-valued h, NaN outside the domain.
 
-    _source: Source
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> h = gm.SupportFunction.from_sympy("sqrt(4*n_x**2 + n_y**2 + n_z**2)")  # an ellipsoid
+    >>> h([[1, 0, 0], [0, 0, 1]])
+    array([2., 1.])
+    >>> h.expression, h.domain
+    (sqrt(4*n_x**2 + n_y**2 + n_z**2), True)
+    >>> (h + h.offset(1.0))([[1, 0, 0]])
+    array([5.])
+
+    """
 
     @classmethod
     def of_spline(
@@ -49,9 +59,35 @@ class SupportFunction:
     ) -> SupportFunction:
         """Return the support function of a spline, with the branches of all its patches.
 
-        A `Surface` is approximated by a spline first; `cells` and errors are those of `fit`. Every
-        point with a given normal is one branch, exactly once. Flat and developable patches have no
-        support function, and so no branch. Raises InputError for `cells` with a spline.
+        Every point with a given normal is one branch, exactly once. Flat and developable patches
+        have no support function, and so no branch.
+
+        Parameters
+        ----------
+        surface : Spline, Surface or str
+            A `Surface`, or the name of one, is approximated by a spline first.
+        cells : (int, int), optional
+            The cells of that spline, see `fit`.
+
+        Returns
+        -------
+        SupportFunction
+            The support function.
+
+        Raises
+        ------
+        InputError
+            For an object that is no surface, and for `cells` with a spline.
+        UnknownNameError, SurfaceError
+            As `fit`.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> h = gm.SupportFunction.of_spline("torus", (16, 16))
+        >>> h.sheets([[1, 0, 0], [0, 1, 1]])
+        array([2, 2])
+
         """
         surface = named(surface)
         if not isinstance(surface, Spline | Surface):
@@ -62,13 +98,34 @@ class SupportFunction:
     def of_patch(cls, control_points: ArrayLike) -> SupportFunction:
         """Return the support function of a quadratic Bézier triangle (10).
 
-        `control_points` (6, 3) are b200, b020, b002, b110, b101, b011. The function is a cubic over
-        a quadratic form on the Gaussian image of the closed triangle, and single-valued there: a
-        normal has one branch or none. Which, is decided exactly, on the boundary too. Normals of
-        parabolic and singular points have no branch.
+        It is a cubic over a quadratic form on the Gaussian image of the closed triangle, and
+        single-valued there: a normal has one branch or none, which is decided exactly, on the
+        boundary too. Normals of parabolic and singular points have no branch.
 
-        Raises InputError for another shape, NaN, infinity, numbers too large to compute with, and
-        for a patch that is flat or developable or has no regular point.
+        Parameters
+        ----------
+        control_points : (6, 3) array_like
+            The control points in the order b200, b020, b002, b110, b101, b011.
+
+        Returns
+        -------
+        SupportFunction
+            The support function.
+
+        Raises
+        ------
+        InputError
+            For another shape, NaN, infinity, numbers too large to compute with, and for a patch
+            that is flat or developable or has no regular point.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> points = [(3, 0, 0), (0, 3, 0), (0, 0, 3), (2, 2, 1), (2, 1, 2), (1, 2, 2)]
+        >>> h = gm.SupportFunction.of_patch(points)
+        >>> h([[1, 1, 1], [-1, 0, 0]]).round(3)
+        array([2.502,   nan])
+
         """
         return cls(PatchSource.checked(control_points))
 
@@ -84,69 +141,40 @@ class SupportFunction:
         `h` is evaluated at unit normals only, so that it may be any function of the components of
         the normal; if it is homogeneous of degree 1, its gradient is the envelope. Otherwise that
         is (5), with the intrinsic gradient (6). Derivatives are taken by SymPy and compiled.
-        `domain` is a condition, such as "n_z > 0" or "(n_x > 0) & (n_y > 0)"; without it the domain
-        is the whole sphere. Normals where h or its gradient is not real and finite have no branch.
-        A kink, such as that of |n_x|, is a planar region of the surface, which has no samples.
+        Normals where h or its gradient is not real and finite have no branch. A kink, such as that
+        of |n_x|, is a planar region of the surface, which has no samples.
 
-        Texts are read as in `Surface.from_sympy`. Raises InputError for what is no real expression
-        in the three components, uses functions that cannot be compiled, or is too large.
+        Parameters
+        ----------
+        h : sympy.Expr, str or float
+            The expression; texts are read as in `Surface.from_sympy`.
+        normal : three of sympy.Symbol or str, default ("n_x", "n_y", "n_z")
+            The components of the normal.
+        domain : sympy condition or str, optional
+            The domain, such as "n_z > 0" or "(n_x > 0) & (n_y > 0)"; by default the whole sphere.
+
+        Returns
+        -------
+        SupportFunction
+            The support function.
+
+        Raises
+        ------
+        InputError
+            For an expression that is not real or has other symbols, uses functions that cannot be
+            compiled, or is too large.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> h = gm.SupportFunction.from_sympy("sqrt(4*n_x**2 + n_y**2 + n_z**2)", domain="n_x > 0")
+        >>> h([[1, 0, 0], [-1, 0, 0]])
+        array([ 2., nan])
+
         """
         from .expression import ExpressionSource
 
         return cls(ExpressionSource.checked(h, normal, domain))
-
-    # --- evaluation -------------------------------------------------------------------------------
-
-    def branches(self, normals: ArrayLike) -> Branches:
-        """Return all branches at normals (S, 3), directions of any length.
-
-        Rows are ordered by normal, then by patch. Raises InputError for normals that have another
-        shape, are empty, zero, NaN or infinite.
-        """
-        directions = as_normals(normals)
-        return self._sheets(directions).branches(directions)
-
-    def sheets(self, normals: ArrayLike) -> NDArray[np.int64]:
-        """Return how many branches each of the normals (S, 3) has, (S,) int64; see `branches`."""
-        directions = as_normals(normals)
-        rows = self._sheets(directions).normal_index
-        return np.bincount(rows, minlength=len(directions)).astype(np.int64)
-
-    def contains(self, normals: ArrayLike) -> NDArray[np.bool_]:
-        """Return which normals (S, 3) lie in the domain of h: (S,) bool; see `branches`."""
-        return self.sheets(normals) > 0
-
-    def envelope(self, normals: ArrayLike) -> NDArray[np.float64]:
-        """Return the points x(n) of the envelope (5), (S, 3), NaN outside the domain.
-
-        Raises InputError if a normal has several branches; `branches` returns all of them.
-        """
-        branches, count = self._single_valued(normals)
-        points = np.full((count, 3), np.nan)
-        points[branches.normal_index] = branches.points
-        return points
-
-    def __call__(self, normals: ArrayLike) -> NDArray[np.float64]:
-        """Return h(n/|n|), (S,), NaN outside the domain; errors as in `envelope`."""
-        branches, count = self._single_valued(normals)
-        values = np.full(count, np.nan)
-        values[branches.normal_index] = branches.support
-        return values
-
-    def _sheets(self, directions: NDArray[np.float64]) -> Sheets:
-        with np.errstate(all="ignore"):  # infinite curvatures and radii are valid
-            return self._source.sheets(directions)
-
-    def _single_valued(self, normals: ArrayLike) -> tuple[Branches, int]:
-        directions = as_normals(normals)
-        branches = self._sheets(directions).branches(directions)
-        sheets = np.bincount(branches.normal_index, minlength=len(directions))
-        if sheets.max() > 1:
-            worst = int(np.argmax(sheets > 1))
-            raise InputError(
-                f"normals[{worst}] has {sheets[worst]} branches; branches(normals) returns them."
-            )
-        return branches, len(directions)
 
     # --- operations -------------------------------------------------------------------------------
 
@@ -165,23 +193,84 @@ class SupportFunction:
         return self if isinstance(other, int) and other == 0 else NotImplemented
 
     def offset(self, distance: float) -> SupportFunction:
-        """Return h + d |n|: the offset surface of the points x + d n, inwards for d < 0.
+        """Return h + d |n|: the offset surface of the points x + d n.
 
-        Raises InputError unless the distance is a finite number.
+        Parameters
+        ----------
+        distance : float
+            The distance d; for d < 0 the offset lies inwards, if normals point outwards.
+
+        Returns
+        -------
+        SupportFunction
+            That of the offset.
+
+        Raises
+        ------
+        InputError
+            Unless the distance is a finite number.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.SupportFunction.from_sympy("1").offset(0.5)([[1, 0, 0]])
+        array([1.5])
+
         """
         return SupportFunction(Offset(self._source, finite_number(distance, "distance")))
 
     def translated(self, shift: ArrayLike) -> SupportFunction:
         """Return h + n·t: the surface of the points x + t.
 
-        Raises InputError unless t is three finite numbers.
+        Parameters
+        ----------
+        shift : (3,) array_like
+            The vector t.
+
+        Returns
+        -------
+        SupportFunction
+            That of the translated surface.
+
+        Raises
+        ------
+        InputError
+            Unless t is three finite numbers.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.SupportFunction.from_sympy("1").translated((2, 0, 0))([[1, 0, 0], [0, 1, 0]])
+        array([3., 1.])
+
         """
         return SupportFunction(Translated(self._source, finite_array(shift, (3,), "shift")))
 
     def rotated(self, rotation: ArrayLike) -> SupportFunction:
-        """Return h(Rᵀn): the surface of the points R x, for a rotation matrix R (3, 3).
+        """Return h(Rᵀn): the surface of the points R x.
 
-        Raises InputError unless R Rᵀ = 1 (up to 1e-12) and det R = 1.
+        Parameters
+        ----------
+        rotation : (3, 3) array_like
+            The rotation matrix R.
+
+        Returns
+        -------
+        SupportFunction
+            That of the rotated surface.
+
+        Raises
+        ------
+        InputError
+            Unless R Rᵀ = 1 (up to 1e-12) and det R = 1.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> h = gm.SupportFunction.from_sympy("sqrt(4*n_x**2 + n_y**2 + n_z**2)")
+        >>> h.rotated([[0, -1, 0], [1, 0, 0], [0, 0, 1]])([[0, 1, 0]])
+        array([2.])
+
         """
         R = finite_array(rotation, (3, 3), "rotation")
         with np.errstate(over="ignore", invalid="ignore"):
@@ -196,7 +285,29 @@ class SupportFunction:
         """Return s h: the surface of the points s x.
 
         For s < 0 the points are also reflected in the origin, and keep their normals (as p_u × p_v
-        does): the radii change their sign. Raises InputError unless s is finite and not 0.
+        does): the radii change their sign.
+
+        Parameters
+        ----------
+        factor : float
+            The factor s.
+
+        Returns
+        -------
+        SupportFunction
+            That of the scaled surface.
+
+        Raises
+        ------
+        InputError
+            Unless s is finite and not 0.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.SupportFunction.from_sympy("1").scaled(-2)([[1, 0, 0]])
+        array([-2.])
+
         """
         s = finite_number(factor, "factor")
         if s == 0.0:
@@ -204,7 +315,20 @@ class SupportFunction:
         return SupportFunction(Scaled(self._source, s))
 
     def reversed(self) -> SupportFunction:
-        """Return −h(−n): the same surface with the opposite orientation."""
+        """Return −h(−n): the same surface with the opposite orientation.
+
+        Returns
+        -------
+        SupportFunction
+            That of the surface with reversed normals.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.SupportFunction.from_sympy("1").reversed()([[1, 0, 0]])
+        array([-1.])
+
+        """
         return SupportFunction(Reversed(self._source))
 
     # --- how it is written ------------------------------------------------------------------------
