@@ -78,7 +78,10 @@ def fit(surface: Surface | str, cells: Sequence[int] | None = None) -> Spline:
     """
     surface = named(surface)
     if not isinstance(surface, Surface):
-        raise InputError(f"fit takes a Surface, not {type(surface).__name__}.")
+        raise InputError(
+            f"a Surface or its name is needed, not {type(surface).__name__}; make one by "
+            "gm.Surface.from_callable, from_sympy or from_grid."
+        )
     if cells is None and surface.grid is not None:
         return fit_grid(surface.grid, surface.domain, surface.boundary, surface.name)
     m, n = checked_cells(DEFAULT_CELLS if cells is None else cells, surface.boundary)

@@ -575,7 +575,7 @@ def test_an_odd_number_of_cells_at_a_pole():
 @pytest.mark.parametrize("surface", [None, ["torus"], 5, np.zeros((5, 5, 3)), TORUS.evaluate])
 def test_what_cannot_be_fitted(surface):
     for call in (gm.fit, lambda surface: gm.sample(surface, count=5)):
-        with pytest.raises(gm.errors.InputError, match="fit takes a Surface, not "):
+        with pytest.raises(gm.errors.InputError, match="a Surface or its name is needed, not "):
             call(surface)
 
 
