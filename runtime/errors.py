@@ -18,6 +18,10 @@ __all__ = [
 ]
 
 
+def __dir__() -> list[str]:
+    return __all__
+
+
 class GaussmapError(Exception):
     """Base class of all errors that gaussmap raises on purpose.
 

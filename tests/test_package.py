@@ -41,6 +41,11 @@ def test_these_are_the_names_of_a_namespace(space: str) -> None:
         assert getattr(module, name) is not None
 
 
+@pytest.mark.parametrize("space", ["curves", "directions", "errors"])
+def test_completion_of_a_namespace_shows_its_names_only(space: str) -> None:
+    assert dir(getattr(gm, space)) == sorted(NAMESPACES[space].split())
+
+
 def test_type_checkers_see_the_public_names() -> None:
     """A stub makes a name public by `as`; the loader reads the names before it."""
     tree = ast.parse(Path(str(gm.__file__)).with_suffix(".pyi").read_text(encoding="ascii"))

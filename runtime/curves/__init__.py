@@ -16,3 +16,7 @@ __all__ = [
     "polygon_distance",
     "sample",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__
