@@ -161,9 +161,9 @@ def _characteristic_of(boundary: Boundary) -> int:
 
 def _too_few(count: int, name: str) -> InputError:
     return InputError(
-        f"{count:,} vertices on {name!r} are too few, or leave too large gaps, for a mesh of the "
-        "whole; take more samples or normals in all directions, or give a smaller angle=... "
-        "(degrees), which leaves out triangles across gaps."
+        f"the vertices on {name!r}, {count:,} in all, are too few, or leave too large gaps, for "
+        "a mesh of the whole; take more samples or normals in all directions, or leave out the "
+        "triangles across gaps, by angle=... of mesh() or --deviation of the command."
     )
 
 
