@@ -27,7 +27,7 @@ def array_file(source: str) -> Path:
 
 
 def _parts(source: str) -> tuple[str, str | None]:
-    match = re.fullmatch(r"(.+\.npz):([^/\\]+)", source, re.IGNORECASE | re.DOTALL)
+    match = re.fullmatch(r"(.+\.np[yz]):([^/\\]+)", source, re.IGNORECASE | re.DOTALL)
     return (match[1], match[2]) if match else (source, None)
 
 
@@ -52,6 +52,8 @@ def read_array(source: str) -> NDArray[Any]:
 
 def _unpacked(file: IO[bytes], source: str, key: str | None) -> NDArray[Any]:
     if Path(file.name).suffix.lower() == ".npy":
+        if key is not None:
+            raise InputError(f"'{file.name}' holds one array, without a name; leave out ':{key}'.")
         return np.lib.format.read_array(file, allow_pickle=False)
     if not zipfile.is_zipfile(file):  # np.load would take it for a pickle
         raise FileError(f"'{file.name}' is damaged or no .npz file; write it again.")

@@ -396,6 +396,7 @@ HEIGHTS = ["--spacing", "1", "1", *TO]
         (["sample", "cut.npz", *HEIGHTS], "'cut.npz' is damaged or no .npz"),
         (["sample", "two.npz", *HEIGHTS], "2 arrays: heights, points; name .* two.npz:heights"),
         (["sample", "none.npz", *HEIGHTS], "'none.npz' holds 0 arrays;"),
+        (["sample", "points.npy:x", *HEIGHTS], "'points.npy' holds one array, without a name"),
         (["sample", "two.npz:point", *HEIGHTS], r"in 'two.npz' 'point'; did you mean points\?"),
         (["sample", "two.npz:x", *HEIGHTS], "in 'two.npz' 'x'; there is heights, points."),
         (["sample", "missing.npz:x", *HEIGHTS], "'missing.npz' cannot be read"),
