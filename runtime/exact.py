@@ -96,12 +96,15 @@ def _forms(
     local, size = np.empty((count, 2)), np.empty(count)
     signs, known = np.empty((count, 3), dtype=np.int8), np.empty(count, dtype=np.bool_)
     pairs = kernels.Pairs(patches, normals, bounds, forgiven)
-    decided, tables = kernels.Decided(local, size, signs, known), prime_tables()
+    decided = kernels.Decided(local, size, signs, known)
 
+    # Kernels for integers take long to compile, and few surfaces need them.
     def work(first: int, last: int) -> None:
-        kernels.decide_pairs(
-            spline.coefficients, spline.scale, pairs, tables, first, last, _workspace(), decided
-        )
+        mu, scale = spline.coefficients, spline.scale
+        kernels.decide_precisely(mu, scale, pairs, first, last, decided)
+        if not known[first:last].all():
+            tables, memory = prime_tables(), _workspace()
+            kernels.decide_exactly(mu, scale, pairs, tables, first, last, memory, decided)
 
     for _ in over_ranges(work, count, PAIRS_AT_A_TIME, threads):
         pass

@@ -6,7 +6,7 @@ The cube may stand round the directions as a linear map (3, 3), the frame, maps 
 from __future__ import annotations
 
 from ...generated.vectors import Vector
-from .jit import inline, jit
+from .jit import inline, jit, loop
 from .vectors import row_vector
 
 __all__ = [
@@ -34,7 +34,7 @@ def cube_face(n):
     return face, n[(axis + 1) % 3] / size, n[(axis + 2) % 3] / size
 
 
-@inline
+@loop
 def on_face(face, vectors, k):
     """Return row k of vectors (…, 3) in the axes of a face: two coordinates, and the height."""
     axis = face >> 1
@@ -42,7 +42,7 @@ def on_face(face, vectors, k):
     return vectors[k, (axis + 1) % 3], vectors[k, (axis + 2) % 3], sign * vectors[k, axis]
 
 
-@inline
+@loop
 def nearest_bin(position, grid):
     """Return the bin at a position along an edge of the grid, the first or last beyond its ends."""
     return min(max(int(position), 0), grid - 1)
@@ -54,7 +54,7 @@ def bin_index(s, grid):
     return nearest_bin((s + 1.0) * (0.5 * grid), grid)
 
 
-@inline
+@loop
 def mapped(frame, n):
     """Return a vector as a linear map (3, 3) maps it."""
     return Vector(

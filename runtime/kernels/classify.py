@@ -10,12 +10,13 @@ import math
 
 import numpy as np
 
-from ...generated.patch import forms, parameters, tangents
+from ...generated.patch import forms, parameters
 from ...generated.spline import NEIGHBOURS
 from ...generated.vectors import Vector
 from ..tolerances import ACCURATE, FORM_ERROR
 from .cone import tangent_bounds
 from .jit import inline, loop
+from .patch import normal_of_patch
 from .vectors import dot
 
 __all__ = ["NO", "UNDECIDED", "YES", "bound_of_forms", "classify", "count_undecided", "look_again"]
@@ -93,7 +94,7 @@ def look_again(patch, x, y, z, codes, count):
         n = Vector(x[k], y[k], z[k])
         D, U, V, _ = forms(patch, n)
         u, v = parameters(D, U, V)
-        _, _, N = tangents(patch, u, v)
+        N = normal_of_patch(patch, u, v)
         towards = dot(n, N)
         size = abs(N.x) + abs(N.y) + abs(N.z)
         if not (abs(towards) > 0.25 * size and size > 0.0):

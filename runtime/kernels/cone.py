@@ -7,7 +7,7 @@ import math
 from ...generated.patch import control_normals
 from ...generated.vectors import Vector
 from ..tolerances import ANGLE_ERROR, SHORT_CONTROL_NORMAL
-from .jit import inline, jit, loop
+from .jit import jit, loop
 from .patch import patch_vectors, place_of
 from .vectors import dot, length, row_vector, set_row
 
@@ -25,7 +25,7 @@ def write_control_normals(patch, net):
         set_row(net, k, normals[k])
 
 
-@inline
+@loop
 def tangent_bounds(patch):
     """Return bounds of the moduli of the components of the tangent vectors of a patch."""
     a, b, c, d, e, _ = patch

@@ -25,10 +25,10 @@ from .modular import (
     residues_of_forms,
     residues_of_patch,
 )
-from .patch import place_of, vector_at
+from .patch import EAST, NORTH, SOUTH, SOUTHEAST, SOUTHWEST, WEST, place_of, vector_at
 from .vectors import row_vector
 
-__all__ = ["Decided", "Pairs", "PrimeTables", "Workspace", "decide_pairs", "precise_forms"]
+__all__ = ["Decided", "Pairs", "PrimeTables", "Workspace", "decide_exactly", "decide_precisely"]
 
 # The error of double-doubles is smaller than that of floating-point numbers by 2⁻⁵¹; this leaves
 # a factor of 64.
@@ -91,28 +91,34 @@ def precise(x) -> Any:
     return DoubleDouble(x, 0.0)
 
 
-@inline
+@loop
+def precise_difference(x, y, scale):
+    """Return (x − y) times a power of two."""
+    return scale * (precise(x) - precise(y))
+
+
+@loop
 def precise_neighbour(mu, i, j, turn, k, scale):
     """Return the difference of neighbour k of a coefficient from it, times a power of two."""
     p = i + NEIGHBOURS[turn, k, 0]
     q = j + NEIGHBOURS[turn, k, 1]
     return Vector(
-        scale * (precise(mu[p, q, 0]) - precise(mu[i, j, 0])),
-        scale * (precise(mu[p, q, 1]) - precise(mu[i, j, 1])),
-        scale * (precise(mu[p, q, 2]) - precise(mu[i, j, 2])),
+        precise_difference(mu[p, q, 0], mu[i, j, 0], scale),
+        precise_difference(mu[p, q, 1], mu[i, j, 1], scale),
+        precise_difference(mu[p, q, 2], mu[i, j, 2], scale),
     )
 
 
-@jit
+@loop
 def precise_forms(mu, i, j, turn, scale, n):
     """Return D, U, V, W of a patch, times `scale`, and a normal as double-doubles."""
     patch = triangle(
-        precise_neighbour(mu, i, j, turn, 0, scale),
-        precise_neighbour(mu, i, j, turn, 1, scale),
-        precise_neighbour(mu, i, j, turn, 2, scale),
-        precise_neighbour(mu, i, j, turn, 3, scale),
-        precise_neighbour(mu, i, j, turn, 5, scale),
-        precise_neighbour(mu, i, j, turn, 7, scale),
+        precise_neighbour(mu, i, j, turn, SOUTHWEST, scale),
+        precise_neighbour(mu, i, j, turn, SOUTH, scale),
+        precise_neighbour(mu, i, j, turn, SOUTHEAST, scale),
+        precise_neighbour(mu, i, j, turn, WEST, scale),
+        precise_neighbour(mu, i, j, turn, EAST, scale),
+        precise_neighbour(mu, i, j, turn, NORTH, scale),
     )
     return forms(patch, Vector(precise(n.x), precise(n.y), precise(n.z)))
 
@@ -242,14 +248,13 @@ def exact_forms(mu, i, j, turn, n, tables, work, signs):
 
 
 @jit
-def decide_pairs(mu, scale, pairs, tables, first, last, work, decided):
+def decide_precisely(mu, scale, pairs, first, last, decided):
     """Decide the pairs first, …, last − 1, whose signs floating-point numbers leave open.
 
     Where `forgiven` is positive, the parameters are needed even outside of the patch. The signs
-    stay unknown where the numbers are too long for the primes.
+    stay unknown where 106 bits leave them open.
     """
     columns = mu.shape[1] - 2
-    exponent = math.frexp(scale)[1] - 1
     for k in range(first, last):
         i, j, turn = place_of(pairs.patches[k], columns)
         n = row_vector(pairs.normals, k)
@@ -259,16 +264,30 @@ def decide_pairs(mu, scale, pairs, tables, first, last, work, decided):
         low = min(U.high, V.high, W.high)
         high = max(U.high, V.high, W.high)
         nearest = min(abs(U.high), abs(V.high), abs(W.high))
-        if (nearest > least and abs(D.high) > bound) or (
+        decided.known[k] = (nearest > least and abs(D.high) > bound) or (
             low < -least and high > least and pairs.forgiven[k] == 0.0
-        ):
+        )
+        if decided.known[k]:
             for form, value in enumerate((U.high, V.high, W.high)):
                 decided.signs[k, form] = int(value > least) - int(value < -least)
             decided.local[k, 0] = U.high / D.high
             decided.local[k, 1] = V.high / D.high
             decided.size[k] = abs(D.high)
-            decided.known[k] = True
+
+
+@jit
+def decide_exactly(mu, scale, pairs, tables, first, last, work, decided):
+    """Decide those of the pairs first, …, last − 1 whose signs are not known.
+
+    They stay unknown where the numbers are too long for the primes.
+    """
+    columns = mu.shape[1] - 2
+    exponent = math.frexp(scale)[1] - 1
+    for k in range(first, last):
+        if decided.known[k]:
             continue
+        i, j, turn = place_of(pairs.patches[k], columns)
+        n = row_vector(pairs.normals, k)
         unit = exact_forms(mu, i + 1, j + 1, turn, n, tables, work, decided.signs[k])
         decided.known[k] = unit < HIGHEST
         decided.local[k, 0] = work.forms[1] / work.forms[0]

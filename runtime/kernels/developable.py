@@ -6,10 +6,10 @@ longer to compile, is left to a kernel of its own.
 
 from __future__ import annotations
 
-from ...generated.patch import forms, parabolic_cubic, tangents
+from ...generated.patch import forms, parabolic_cubic
 from .cone import write_control_normals
 from .jit import jit, loop
-from .patch import patch_vectors, place_of
+from .patch import normal_of_patch, patch_vectors, place_of
 from .vectors import largest_component, length, row_vector
 
 __all__ = ["count_developable", "first_curved", "may_be_developable"]
@@ -34,8 +34,7 @@ def curvature_error(patch, net, noise):
 @loop
 def may_be_developable(patch, net, noise):
     """Say whether the Gaussian curvature at the centre of a patch is nothing but rounding."""
-    _, _, N = tangents(patch, THIRD, THIRD)
-    D, _, _, _ = forms(patch, N)
+    D, _, _, _ = forms(patch, normal_of_patch(patch, THIRD, THIRD))
     return not abs(D) > curvature_error(patch, net, noise)
 
 

@@ -9,12 +9,15 @@ number system, https://doi.org/10.1109/TEC.1959.5219515).
 from __future__ import annotations
 
 import math
+from typing import Any
+
+import numpy as np
 
 from ...generated.patch import eliminated_forms, linear_forms
 from ...generated.spline import NEIGHBOURS, triangle
 from ...generated.vectors import Patch, Vector
-from .jit import inline, jit, loop
-from .patch import vector_at
+from .jit import loop
+from .patch import EAST, NORTH, SOUTH, SOUTHEAST, SOUTHWEST, WEST, vector_at
 
 __all__ = [
     "HIGHEST",
@@ -28,11 +31,11 @@ __all__ = [
 ]
 
 MANTISSA = 53
-# Beyond all exponents.
-HIGHEST = 1 << 30
+# Beyond all exponents. It has a type: a literal number is compiled for itself.
+HIGHEST: Any = np.int64(1 << 30)
 
 
-@inline
+@loop
 def widened(lowest, highest, value):
     """Return the lowest and the highest exponent after one more number; 0 has none."""
     if value != 0.0:
@@ -69,7 +72,7 @@ def residue(value, lowest, prime, powers):
     return int(math.ldexp(mantissa, MANTISSA)) % prime * powers[exponent - lowest] % prime
 
 
-@inline
+@loop
 def residues_of_vector(v, lowest, prime, powers):
     """Return the residues of the components of a vector."""
     return Vector(
@@ -79,7 +82,7 @@ def residues_of_vector(v, lowest, prime, powers):
     )
 
 
-@inline
+@loop
 def neighbour(mu, i, j, turn, k, centre, lowest, prime, powers):
     """Return the difference of neighbour k of a coefficient from it, up to multiples of a prime."""
     value = vector_at(mu, i + NEIGHBOURS[turn, k, 0], j + NEIGHBOURS[turn, k, 1])
@@ -92,12 +95,12 @@ def residues_of_patch(mu, i, j, turn, lowest, prime, powers) -> Patch:
     """Return the vectors of the patch of the coefficient (i, j), up to multiples of a prime."""
     centre = residues_of_vector(vector_at(mu, i, j), lowest, prime, powers)
     return triangle(
-        neighbour(mu, i, j, turn, 0, centre, lowest, prime, powers),
-        neighbour(mu, i, j, turn, 1, centre, lowest, prime, powers),
-        neighbour(mu, i, j, turn, 2, centre, lowest, prime, powers),
-        neighbour(mu, i, j, turn, 3, centre, lowest, prime, powers),
-        neighbour(mu, i, j, turn, 5, centre, lowest, prime, powers),
-        neighbour(mu, i, j, turn, 7, centre, lowest, prime, powers),
+        neighbour(mu, i, j, turn, SOUTHWEST, centre, lowest, prime, powers),
+        neighbour(mu, i, j, turn, SOUTH, centre, lowest, prime, powers),
+        neighbour(mu, i, j, turn, SOUTHEAST, centre, lowest, prime, powers),
+        neighbour(mu, i, j, turn, WEST, centre, lowest, prime, powers),
+        neighbour(mu, i, j, turn, EAST, centre, lowest, prime, powers),
+        neighbour(mu, i, j, turn, NORTH, centre, lowest, prime, powers),
     )
 
 
@@ -109,7 +112,7 @@ def residues_of_forms(patch, n, prime):
     return D % prime, U % prime, V % prime, W % prime
 
 
-@jit
+@loop
 def mixed_radix_value(residues, primes, inverses, digits):
     """Return the number (sign included) that has residues (m,) modulo the first m primes.
 

@@ -6,13 +6,27 @@ which are 0 to 3 quarter turns of the southern one.
 
 from __future__ import annotations
 
-from ...generated.patch import tangents
+import numpy as np
+
+from ...generated.patch import curvature_at, envelope, tangents
 from ...generated.spline import NEIGHBOURS, triangle
 from ...generated.vectors import Patch, Vector
 from .jit import inline, jit, loop
-from .vectors import set_row
+from .vectors import length, set_row
 
-__all__ = ["normals_at", "patch_of", "patch_vectors", "place_of", "vector_at"]
+__all__ = [
+    "curvatures_of_patch",
+    "normal_of_patch",
+    "normals_at",
+    "patch_of",
+    "patch_vectors",
+    "place_of",
+    "point_of_patch",
+    "vector_at",
+]
+
+# The places of neighbours in NEIGHBOURS. They have a type: a literal number is compiled for itself.
+SOUTHWEST, SOUTH, SOUTHEAST, WEST, EAST, NORTH = (np.int64(k) for k in (0, 1, 2, 3, 5, 7))
 
 
 @inline
@@ -28,7 +42,7 @@ def vector_at(mu, i, j):
     return Vector(mu[i, j, 0], mu[i, j, 1], mu[i, j, 2])
 
 
-@inline
+@loop
 def neighbour(mu, i, j, turn, k, centre, scale):
     """Return the difference of neighbour k of a coefficient from it, times `scale`."""
     p = i + NEIGHBOURS[turn, k, 0]
@@ -48,12 +62,12 @@ def patch_vectors(mu, i, j, turn, scale) -> Patch:
     """
     centre = vector_at(mu, i, j)
     return triangle(
-        neighbour(mu, i, j, turn, 0, centre, scale),
-        neighbour(mu, i, j, turn, 1, centre, scale),
-        neighbour(mu, i, j, turn, 2, centre, scale),
-        neighbour(mu, i, j, turn, 3, centre, scale),
-        neighbour(mu, i, j, turn, 5, centre, scale),
-        neighbour(mu, i, j, turn, 7, centre, scale),
+        neighbour(mu, i, j, turn, SOUTHWEST, centre, scale),
+        neighbour(mu, i, j, turn, SOUTH, centre, scale),
+        neighbour(mu, i, j, turn, SOUTHEAST, centre, scale),
+        neighbour(mu, i, j, turn, WEST, centre, scale),
+        neighbour(mu, i, j, turn, EAST, centre, scale),
+        neighbour(mu, i, j, turn, NORTH, centre, scale),
     )
 
 
@@ -64,9 +78,31 @@ def patch_of(mu, scale, number) -> Patch:
     return patch_vectors(mu, i + 1, j + 1, turn, scale)
 
 
+@loop
+def point_of_patch(patch, u, v):
+    """Return the point of a patch at (u, v)."""
+    return envelope(patch, u, v)
+
+
+@loop
+def normal_of_patch(patch, u, v):
+    """Return the unnormalized oriented normal of a patch at (u, v)."""
+    _, _, N = tangents(patch, u, v)
+    return N
+
+
+@loop
+def curvatures_of_patch(patch, N, u, v):
+    """Return the unit normal, K and H of a patch at (u, v), with the normal N there."""
+    size = length(N)
+    n = Vector(N.x / size, N.y / size, N.z / size)
+    K, H = curvature_at(patch, n, u, v)
+    return n, K, H
+
+
 @jit
 def normals_at(mu, scale, patches, places, normals):
     """Write the unnormalized oriented normals (k, 3) of patches (k) at places u, v (k, 2)."""
     for k in range(patches.size):
-        _, _, N = tangents(patch_of(mu, scale, patches[k]), places[k, 0], places[k, 1])
-        set_row(normals, k, N)
+        patch = patch_of(mu, scale, patches[k])
+        set_row(normals, k, normal_of_patch(patch, places[k, 0], places[k, 1]))

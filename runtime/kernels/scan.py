@@ -77,10 +77,12 @@ class LatticeCandidates(NamedTuple):
         """Return memory for so many points, in so many rows."""
         size = count + frequency + 64
         marks = np.zeros((size + 7) // 8 * 8, np.int8)
+        # Vectors of rows and columns are read beyond their ends: what is there by chance may be
+        # subnormal numbers, which are slow.
         return cls(
             np.empty(size, np.int64),
-            np.empty(size),
-            np.empty(size),
+            np.zeros(size),
+            np.zeros(size),
             np.zeros(size, np.int8),
             marks,
             marks.view(np.int64),

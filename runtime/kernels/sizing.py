@@ -9,10 +9,10 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ...generated.patch import NODE, curvature_at, largest_curvature, reach, tangents
+from ...generated.patch import NODE, largest_curvature, reach
 from ...generated.vectors import Vector
 from .jit import inline, jit, loop
-from .patch import patch_of
+from .patch import curvatures_of_patch, normal_of_patch, patch_of
 from .vectors import length
 
 __all__ = ["TargetDensity", "density_and_normal", "enclosing_radius", "integrate_density"]
@@ -63,16 +63,12 @@ def density_and_normal(patch, u, v, radius, target):
     `radius` is that of the whole patch. At a singular point the normal and K are 0 and the density
     is its floor.
     """
-    _, _, N = tangents(patch, u, v)
+    N = normal_of_patch(patch, u, v)
     size = length(N)
-    normal = Vector(0.0, 0.0, 0.0)
-    K = 0.0
-    density = target.floor
     if size > 0.0:
-        normal = Vector(N.x / size, N.y / size, N.z / size)
-        K, H = curvature_at(patch, normal, u, v)
-        density = density_of(K, H, radius, target)
-    return size, normal, K, density
+        normal, K, H = curvatures_of_patch(patch, N, u, v)
+        return size, normal, K, density_of(K, H, radius, target)
+    return size, Vector(0.0, 0.0, 0.0), 0.0, target.floor
 
 
 @loop

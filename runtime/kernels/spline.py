@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ...generated.patch import NODE, envelope, measure, tangents
+from ...generated.patch import NODE, measure
 from ...generated.spline import (
     NEIGHBOURS,
     SCALE,
@@ -14,7 +14,8 @@ from ...generated.spline import (
     control_net,
 )
 from .jit import inline, jit
-from .patch import patch_vectors, place_of, vector_at
+from .patch import normal_of_patch, patch_vectors, place_of, point_of_patch, vector_at
+from .vectors import set_row
 
 __all__ = [
     "control_nets",
@@ -121,12 +122,11 @@ def evaluate(mu, scale, cells, points, normals):
         j = min(max(int(math.floor(cells[k, 1])), 0), mu.shape[1] - 3)
         turn, u, v = locate(cells[k, 0] - i - 0.5, cells[k, 1] - j - 0.5)
         patch = patch_vectors(mu, i + 1, j + 1, turn, scale)
-        x = envelope(patch, u, v)
+        x = point_of_patch(patch, u, v)
         points[k, 0] = mu[i + 1, j + 1, 0] + x.x / size
         points[k, 1] = mu[i + 1, j + 1, 1] + x.y / size
         points[k, 2] = mu[i + 1, j + 1, 2] + x.z / size
-        _, _, N = tangents(patch, u, v)
-        normals[k, 0], normals[k, 1], normals[k, 2] = N
+        set_row(normals, k, normal_of_patch(patch, u, v))
 
 
 @jit

@@ -11,12 +11,19 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...generated.patch import curvature_at, envelope, sample, tangents
+from ...generated.patch import sample
 from ...generated.spline import CORNERS, SCALE
 from ...generated.vectors import Patch, Vector
-from .jit import inline, jit, loop
-from .patch import patch_vectors, place_of, vector_at
-from .vectors import dot, length, row_vector, set_row
+from .jit import jit, loop
+from .patch import (
+    curvatures_of_patch,
+    normal_of_patch,
+    patch_vectors,
+    place_of,
+    point_of_patch,
+    vector_at,
+)
+from .vectors import dot, row_vector, set_row
 from .windows import VECTOR, whole_vectors
 
 __all__ = ["NORMAL", "STEP", "TILE", "fill_known", "fill_tile", "load_patch", "new_tile", "put"]
@@ -24,10 +31,12 @@ __all__ = ["NORMAL", "STEP", "TILE", "fill_known", "fill_tile", "load_patch", "n
 # Samples are computed so many at a time, then stored. Rows of a tile have room for some more.
 TILE = 64
 STEP = TILE + VECTOR
-# Where the parts of a tile begin, in rows of STEP numbers, and how many rows there are.
+# How many rows of STEP numbers there are, and where the parts of a tile begin. These numbers have a
+# type: a literal number is compiled for itself.
 ROWS = 38
+ONE_ROW, TWO_ROWS = np.uint64(STEP), np.uint64(2 * STEP)
 NORMAL, PATCH, PLACE, POINT, U, V, SUPPORT, GAUSSIAN, MEAN = (
-    STEP * row for row in (0, 3, 21, 30, 33, 34, 35, 36, 37)
+    np.int64(STEP * row) for row in (0, 3, 21, 30, 33, 34, 35, 36, 37)
 )
 
 
@@ -48,21 +57,23 @@ def new_tile() -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     return np.zeros(ROWS * STEP), np.zeros(2 * STEP, np.int64)
 
 
-@inline
+@loop
 def vector_in(tile, row, k):
     """Return vector k in three rows of a tile from `row` on."""
-    return Vector(tile[row + k], tile[row + STEP + k], tile[row + 2 * STEP + k])
+    at = np.uint64(row + k)  # unsigned, so that no sign is checked
+    return Vector(tile[at], tile[at + ONE_ROW], tile[at + TWO_ROWS])
 
 
-@inline
+@loop
 def put(tile, row, k, v):
     """Write vector k to three rows of a tile from `row` on."""
-    tile[row + k] = v.x
-    tile[row + STEP + k] = v.y
-    tile[row + 2 * STEP + k] = v.z
+    at = np.uint64(row + k)
+    tile[at] = v.x
+    tile[at + ONE_ROW] = v.y
+    tile[at + TWO_ROWS] = v.z
 
 
-@inline
+@loop
 def place_in(mu, i, j, turn):
     """Return where a patch is."""
     return Place(
@@ -99,7 +110,7 @@ def load_patch(mu, number, scale, tile, start, end):
         tile[PLACE + 8 * STEP + k] = place.v_t
 
 
-@inline
+@loop
 def on_surface(place, frame, size, n, u, v, x, K, H):
     """Return point, parameters, support and curvatures of a sample in the unit of the surface."""
     unit = 1.0 / size
@@ -153,7 +164,7 @@ def evaluate_tile(tile, count, frame, size, points, uv, support, gaussian, mean)
             tile[MEAN + k] = H
 
 
-@inline
+@loop
 def store(k, point, n, s, t, h, K, H, points, directions, uv, support, gaussian, mean):
     """Write what is wanted of sample k."""
     if points is not None:
@@ -206,17 +217,17 @@ def fill_known(
     singular point.
     """
     columns = mu.shape[1] - 2
+    frame = (frame[0], frame[1], frame[2], frame[3])
     for row in range(which.size):
         i, j, turn = place_of(pairs[row, 0], columns)
         patch = patch_vectors(mu, i + 1, j + 1, turn, scale)
         u, v = local[row, 3], local[row, 4]
-        _, _, N = tangents(patch, u, v)
-        size = length(N)
-        K, H = curvature_at(patch, Vector(N.x / size, N.y / size, N.z / size), u, v)
+        _, K, H = curvatures_of_patch(patch, normal_of_patch(patch, u, v), u, v)
         K = math.copysign(K, local[row, 2])
         u, v = local[row, 0], local[row, 1]
         n = row_vector(normals, pairs[row, 1])
-        x = envelope(patch, u, v)
+        x = point_of_patch(patch, u, v)
         place = place_in(mu, i, j, turn)
         point, s, t, h, K, H = on_surface(place, frame, SCALE * scale, n, u, v, x, K, H)
-        store(which[row], point, n, s, t, h, K, H, points, directions, uv, support, gaussian, mean)
+        k = np.uint64(which[row])
+        store(k, point, n, s, t, h, K, H, points, directions, uv, support, gaussian, mean)

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import math
 
-from ...generated.patch import envelope, part_normals, sides
+from ...generated.patch import part_normals, sides
 from ...generated.spline import SCALE
 from ..tolerances import VANISHING
 from .jit import inline, jit, loop
-from .patch import patch_of, place_of
+from .patch import patch_of, place_of, point_of_patch
 from .sizing import density_and_normal, enclosing_radius
 from .vectors import largest_component, length
 
@@ -72,7 +72,7 @@ def evaluate_centroids(mu, scale, patches, corners, first, last, target, patch_r
         for k in range(begin, end):
             u = (corners[k, 0, 0] + corners[k, 1, 0] + corners[k, 2, 0]) / 3.0
             v = (corners[k, 0, 1] + corners[k, 1, 1] + corners[k, 2, 1]) / 3.0
-            x = envelope(patch, u, v)
+            x = point_of_patch(patch, u, v)
             rows[k, 0] = x.x + centre_x
             rows[k, 1] = x.y + centre_y
             rows[k, 2] = x.z + centre_z

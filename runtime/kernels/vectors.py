@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from ...generated.vectors import Vector
-from .jit import inline
+from .jit import inline, loop
 
 __all__ = ["dot", "largest_component", "length", "row_vector", "set_row"]
 
@@ -30,13 +30,13 @@ def dot(v, w):
     return v.x * w.x + v.y * w.y + v.z * w.z
 
 
-@inline
+@loop
 def length(v):
     """Return the length of a vector."""
     return math.sqrt(v.x * v.x + v.y * v.y + v.z * v.z)
 
 
-@inline
+@loop
 def largest_component(v):
     """Return the largest modulus of the components of a vector."""
     return max(abs(v.x), abs(v.y), abs(v.z))

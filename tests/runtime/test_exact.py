@@ -13,14 +13,16 @@ from gaussmap.runtime import exact, long_integers
 from gaussmap.runtime.domain import Boundary
 from gaussmap.runtime.formula_calls import python_function, vector
 from gaussmap.runtime.integers import integers, sign
-from gaussmap.runtime.kernels.decide import precise_forms
-from gaussmap.runtime.kernels.modular import mixed_radix_value
+from gaussmap.runtime.kernels import decide, modular
+from gaussmap.runtime.kernels.jit import jit
 from hypothesis import given
 from hypothesis import strategies as st
 
 ALIGNED = np.array([n for n in product((-1.0, 0.0, 1.0), repeat=3) if any(n)])
 PERIODIC: Boundary = (("periodic", "periodic"), ("periodic", "periodic"))
 OPEN: Boundary = (("open", "open"), ("open", "open"))
+precise_forms = jit(python_function(decide.precise_forms))
+mixed_radix_value = jit(python_function(modular.mixed_radix_value))
 
 
 def torus_of_integers(m: int, n: int, size: int, noise: np.ndarray) -> gm.Spline:
