@@ -64,7 +64,7 @@ def mesh_to_pyvista(mesh: Mesh) -> pyvista.PolyData:
     """Return what `Mesh.to_pyvista` returns."""
     pv = from_extra("pyvista", "vtk", "this")
     data = pv.PolyData.from_regular_faces(mesh.vertices.copy(), mesh.triangles)
-    arrays = {"normals": mesh.normals, "uv": mesh.uv, "sample": mesh.sample}
+    arrays = {"normals": mesh.normals, "uv": mesh.uv, "sample_index": mesh.sample_index}
     return _polydata(pv, data, arrays)
 
 
@@ -74,7 +74,7 @@ def mesh_to_trimesh(mesh: Mesh) -> trimesh.Trimesh:
         mesh.vertices.copy(),
         mesh.triangles.copy(),
         vertex_normals=mesh.normals.copy(),
-        vertex_attributes={"uv": mesh.uv.copy(), "sample": mesh.sample.copy()},
+        vertex_attributes={"uv": mesh.uv.copy(), "sample_index": mesh.sample_index.copy()},
         process=False,
     )
 

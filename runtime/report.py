@@ -53,7 +53,7 @@ class SamplingReport:
         The number of patches of the spline.
     developable_share : float or None
         The developable share of the area (K ≈ 0), from 0 to 1, which no set of normals samples.
-    degenerate_patches : int or None
+    developable_patches : int or None
         The number of patches that are developable up to the rounding of their coordinates, and so
         have no support function (those at a pole are among them).
     coverage : float or None
@@ -78,7 +78,7 @@ class SamplingReport:
     --------
     >>> import gaussmap as gm
     >>> report = gm.sample("torus", angle=20.0, cells=(16, 16)).report
-    >>> report.surface, report.patches, report.degenerate_patches, report.infinite_curvatures
+    >>> report.surface, report.patches, report.developable_patches, report.infinite_curvatures
     ('torus', 1024, 0, 0)
     >>> report.normals <= report.samples, report.angle <= 20.0, report.coverage is None
     (True, True, True)
@@ -92,7 +92,7 @@ class SamplingReport:
     samples: int
     patches: int | None
     developable_share: float | None
-    degenerate_patches: int | None
+    developable_patches: int | None
     coverage: float | None = None
     angle: float | None = None
     infinite_curvatures: int | None = None
@@ -100,7 +100,7 @@ class SamplingReport:
     def __post_init__(self) -> None:
         if not isinstance(self.surface, str):
             raise InputError(f"surface must be a string, not {type(self.surface).__name__}.")
-        for name in ("normals", "patches", "degenerate_patches", "infinite_curvatures"):
+        for name in ("normals", "patches", "developable_patches", "infinite_curvatures"):
             value = getattr(self, name)
             object.__setattr__(self, name, None if value is None else _count(name, value))
         object.__setattr__(self, "samples", _count("samples", self.samples))
@@ -126,7 +126,7 @@ def sampling_report(
         samples=samples,
         patches=spline.patches,
         developable_share=developable_share(spline, density),
-        degenerate_patches=developable,
+        developable_patches=developable,
         infinite_curvatures=count_infinite(arrays),
     )
 
@@ -157,7 +157,7 @@ def _unseen(report: SamplingReport) -> list[str]:
             f"{100 * share:.0f} % of its area is flat or developable (K = 0), which no set "
             "of normals samples"
         ]
-    if report.samples == 0 and report.degenerate_patches == report.patches:
+    if report.samples == 0 and report.developable_patches == report.patches:
         return ["it is flat or developable up to the rounding of its coordinates"]
     return ["none of the normals lies in its Gaussian image"] if report.samples == 0 else []
 

@@ -165,8 +165,8 @@ class SampleArrays:
 
     @property
     def kind(self) -> NDArray[np.str_]:
-        """(N,) str array: "normal" at prescribed normals, "coverage" for samples that fill gaps."""
-        return np.where(self.normal_index < 0, "coverage", "normal")
+        """(N,) str array: "normal" at prescribed normals, "filling" for samples that fill gaps."""
+        return np.where(self.normal_index < 0, "filling", "normal")
 
     @property
     def principal_curvatures(self) -> NDArray[np.floating]:

@@ -82,7 +82,7 @@ class Samples(SampleArrays):
     >>> bool(abs(samples.support).max() < 1.36), bool(samples.patch_index.max() < 1024)
     (True, True)
     >>> filling = samples.normal_index == -1
-    >>> bool((samples.kind[filling] == "coverage").all())
+    >>> bool((samples.kind[filling] == "filling").all())
     True
     >>> samples.dtype, samples.spline, samples.report.samples
     (dtype('float64'), Spline(16 × 16 cells of torus), 200)

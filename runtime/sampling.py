@@ -96,7 +96,7 @@ def sample(
     -------
     Samples
         The samples at normals, by patch and then by normal, and after them those that fill gaps:
-        their `kind` is "coverage" and their `normal_index` −1. The report gives the angle and the
+        their `kind` is "filling" and their `normal_index` −1. The report gives the angle and the
         coverage that were reached, if they were asked for.
 
     Raises

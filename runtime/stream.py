@@ -123,7 +123,7 @@ class _Stream:
                 if len(hits) or (came == 0 and first == starts[-1]):
                     yield self._samples(bins, hits, first, report)
             del bins, found, hits  # before the next ones are made
-        report = replace(report, samples=came, degenerate_patches=developable)
+        report = replace(report, samples=came, developable_patches=developable)
         warn_of(report, self.request.count, stacklevel=3)
 
     def _samples(self, bins: NormalBins, hits: Hits, start: int, report: SamplingReport) -> Samples:

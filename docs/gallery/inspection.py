@@ -59,7 +59,7 @@ figure, axes = plt.subplots(1, 3, figsize=(9, 2.9), dpi=70, layout="constrained"
 for axis, samples, title in zip(
     axes, (by_count, by_coverage, by_angle), ("count", "coverage", "angle"), strict=True
 ):
-    for kind, colour in (("normal", "tab:blue"), ("coverage", "tab:orange")):
+    for kind, colour in (("normal", "tab:blue"), ("filling", "tab:orange")):
         x, y, _ = samples.points[samples.kind == kind].T
         axis.scatter(x, y, s=4, color=colour, label=kind)
     axis.set_title(f"{title}: {len(samples)} points")

@@ -30,7 +30,7 @@ for samples in (even, balanced):
 # %%
 meshes = {"uniform": even.mesh(), "balanced": balanced.mesh()}
 for name, mesh in meshes.items():
-    assert len(mesh.boundary) == 0
+    assert len(mesh.boundary_edges) == 0
     assert mesh.euler_characteristic == 0
     print(f"{name:9}", mesh.summary())
 

@@ -145,7 +145,7 @@ class Filling:
                 name: np.concatenate([getattr(given, name).astype(x.dtype, copy=False), x])
                 for name, x in arrays.items()
             }
-        developable = None if given is None else given.report.degenerate_patches
+        developable = None if given is None else given.report.developable_patches
         report = sampling_report(
             self.spline, len(at_normals.normals), cover.count, at_normals.density, developable,
             arrays,

@@ -35,13 +35,13 @@ def write_vtp(samples: Samples, path: Path) -> None:
 
 
 def write_mesh_vtp(mesh: Mesh, path: Path) -> None:
-    """Write triangles, with normals, uv and sample of their vertices."""
-    data = {"normals": mesh.normals, "uv": mesh.uv, "sample": mesh.sample}
+    """Write triangles, with normals, uv and sample_index of their vertices."""
+    data = {"normals": mesh.normals, "uv": mesh.uv, "sample_index": mesh.sample_index}
     _write_xml(path, "PolyData", mesh.vertices, {"Polys": _topology(mesh.triangles)}, data)
 
 
 def write_vtu(mesh: Mesh, path: Path) -> None:
-    """Write an unstructured grid, with normals, u, v and sample of the vertices."""
+    """Write an unstructured grid, with normals, u, v and sample_index of the vertices."""
     types = np.full(len(mesh.triangles), _TRIANGLE, np.uint8)
     cells = {"Cells": _topology(mesh.triangles) | {"types": types}}
     _write_xml(path, "UnstructuredGrid", mesh.vertices, cells, _vertex_data(mesh))
@@ -68,7 +68,7 @@ def write_vtk(mesh: Mesh, path: Path) -> None:
 
 def _vertex_data(mesh: Mesh) -> Arrays:
     u, v = mesh.uv.T
-    return {"normals": mesh.normals, "sample": mesh.sample, "u": u, "v": v}
+    return {"normals": mesh.normals, "sample_index": mesh.sample_index, "u": u, "v": v}
 
 
 def _topology(cells: NDArray[np.int64]) -> Arrays:

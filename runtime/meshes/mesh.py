@@ -43,7 +43,7 @@ class Mesh:
     triangles : (T, 3) int64 array
         Rows of `vertices`, counterclockwise as seen from where the normals point; on a one-sided
         surface from where that at the first corner points.
-    sample : (M,) int64 array
+    sample_index : (M,) int64 array
         The number of the sample at a vertex; −1 for points added on open borders and at poles.
     name : str
         Label of the surface.
@@ -64,9 +64,9 @@ class Mesh:
     Mesh(200 vertices, 400 triangles on torus)
     >>> mesh.vertices.shape, mesh.normals.shape, mesh.uv.shape, mesh.triangles.shape
     ((200, 3), (200, 3), (200, 2), (400, 3))
-    >>> bool((mesh.sample >= 0).all()), bool((mesh.sides == 1).all()), mesh.name
+    >>> bool((mesh.sample_index >= 0).all()), bool((mesh.sides == 1).all()), mesh.name
     (True, True, 'torus')
-    >>> len(mesh.edges), len(mesh.boundary), mesh.euler_characteristic
+    >>> len(mesh.edges), len(mesh.boundary_edges), mesh.euler_characteristic
     (600, 0, 0)
     >>> bool(mesh.angles.mean() < 30)
     True
@@ -77,7 +77,7 @@ class Mesh:
     normals: NDArray[np.float64]
     uv: NDArray[np.float64]
     triangles: NDArray[np.int64]
-    sample: NDArray[np.int64]
+    sample_index: NDArray[np.int64]
     name: str = "surface"
     sides: NDArray[np.int64] = _ALL_ALIKE
 
@@ -92,7 +92,7 @@ class Mesh:
             "normals": (floating, (count, 3)),
             "uv": (floating, (count, 2)),
             "triangles": (whole, (faces, 3)),
-            "sample": (whole, (count,)),
+            "sample_index": (whole, (count,)),
             "sides": (whole, (faces, 3)),
         }
         for name, (dtype, shape) in wanted.items():
@@ -121,7 +121,7 @@ class Mesh:
         return self._edges[0]
 
     @property
-    def boundary(self) -> NDArray[np.int64]:
+    def boundary_edges(self) -> NDArray[np.int64]:
         """(B, 2) int64 array: the edges of only one triangle; none if the mesh is closed."""
         edges, times = self._edges
         return edges[times == 1]
@@ -158,13 +158,13 @@ class Mesh:
         '200 vertices, 400 triangles, closed; they deviate from the normals by ...°...'
 
         """
-        added = int(np.count_nonzero(self.sample < 0))
+        added = int(np.count_nonzero(self.sample_index < 0))
         line = f"{len(self.vertices):,} vertices"
         line += f" ({added:,} of them added)" if added else ""
         line += f", {len(self.triangles):,} triangles"
         if not len(self.triangles):
             return line
-        border = len(self.boundary)
+        border = len(self.boundary_edges)
         line += f", {border:,} edges on the border" if border else ", closed"
         mean, worst = self.angles.mean(), self.angles.max()
         return f"{line}; they deviate from the normals by {mean:.2f}° (mean), {worst:.2f}° (worst)"
@@ -183,8 +183,8 @@ class Mesh:
             - `.ply`: binary; vertices with normals and u, v.
             - `.obj`: text of 17 digits; vertices with normals.
             - `.stl`: binary, float32; triangles alone.
-            - `.vtk`, `.vtu`: VTK's unstructured grid with normals, u, v and `sample`.
-            - `.vtp`: VTK's PolyData with normals, uv and `sample`.
+            - `.vtk`, `.vtu`: VTK's unstructured grid with normals, u, v and `sample_index`.
+            - `.vtp`: VTK's PolyData with normals, uv and `sample_index`.
 
         Raises
         ------
@@ -209,7 +209,7 @@ class Mesh:
         write_mesh(self, path)
 
     def to_pyvista(self) -> pyvista.PolyData:
-        """Return the mesh with normals, uv and sample as point data.
+        """Return the mesh with normals, uv and sample_index as point data.
 
         Returns
         -------
@@ -233,7 +233,7 @@ class Mesh:
         return mesh_to_pyvista(self)
 
     def to_trimesh(self) -> trimesh.Trimesh:
-        """Return the mesh with its normals, and uv and sample as vertex attributes.
+        """Return the mesh with its normals, and uv and sample_index as vertex attributes.
 
         Returns
         -------

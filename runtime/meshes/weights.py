@@ -28,12 +28,12 @@ def area_weights(samples: Samples, angle: float | None) -> Array:
     """Return what `Samples.weights` returns."""
     mesh = samples.mesh(angle=angle)
     parts, triangles = _areas(mesh), mesh.triangles
-    is_sample = mesh.sample[triangles] >= 0
+    is_sample = mesh.sample_index[triangles] >= 0
     number = is_sample.sum(axis=1)
     # The parts of added vertices go to the samples at the other corners.
     added = np.where(is_sample, 0.0, parts).sum(axis=1) / np.maximum(number, 1)
     shares = np.where(is_sample, parts + added[:, None], 0.0)
-    samples_of, parts_of = mesh.sample[triangles[is_sample]], shares[is_sample]
+    samples_of, parts_of = mesh.sample_index[triangles[is_sample]], shares[is_sample]
     weights = np.zeros(len(samples))
     np.add.at(weights, samples_of, parts_of)
     lost = number == 0

@@ -37,7 +37,7 @@ def check_torus(samples: gm.Samples, normals: Array, axis: Array) -> None:
     assert (elliptic == hyperbolic).all()
     away = np.abs(normals @ axis) < np.cos(np.radians(2.0))
     assert (elliptic[away] == 1).all()
-    assert samples.report.degenerate_patches == 0
+    assert samples.report.developable_patches == 0
     assert np.isfinite(samples.points).all()
     assert np.isfinite(samples.gaussian_curvature).all()
 
@@ -141,7 +141,7 @@ def test_sphere_so_far_away_that_patches_are_mostly_rounding(cells: int, shift: 
     normals = gm.fibonacci(20_000)
     surface = moved(gm.surfaces.sphere(), np.eye(3), shift, 1.0)
     samples = gm.sample(surface, normals=normals, cells=(cells, cells))
-    assert samples.report.degenerate_patches
+    assert samples.report.developable_patches
     elliptic, hyperbolic = count_preimages(samples, len(normals))
     assert (elliptic - hyperbolic == 1).all()
 
@@ -153,7 +153,7 @@ def test_torus_that_is_mostly_rounding(minor: float, shift: float, cells: int) -
     surface = moved(gm.surfaces.torus(minor=minor), np.eye(3), shift, 1.0)
     normals = gm.fibonacci(20_000)
     samples = gm.sample(surface, normals=normals, cells=(cells, cells))
-    assert samples.report.degenerate_patches
+    assert samples.report.developable_patches
     elliptic, hyperbolic = count_preimages(samples, len(normals))
     assert (elliptic == hyperbolic).all()
     if shift < 1e12:
@@ -247,7 +247,7 @@ def test_developable_surfaces(
     assert samples.report.developable_share == pytest.approx(1.0)
     if name != "cone":  # its spline is slightly elliptic and hyperbolic
         assert len(samples) == 0
-        assert samples.report.degenerate_patches == samples.report.patches
+        assert samples.report.developable_patches == samples.report.patches
         return
     # What comes is the error of the spline: pairs of one elliptic and one hyperbolic sample.
     elliptic, hyperbolic = count_preimages(samples, 10242)

@@ -90,7 +90,7 @@ class TestPyvista:
         theirs = ours.to_pyvista()
         np.testing.assert_array_equal(theirs.points, ours.vertices)
         np.testing.assert_array_equal(theirs.regular_faces, ours.triangles)
-        for name in ("normals", "uv", "sample"):
+        for name in ("normals", "uv", "sample_index"):
             np.testing.assert_array_equal(theirs.point_data[name], getattr(ours, name))
 
     def test_it_copies(self):
@@ -120,7 +120,7 @@ class TestTrimesh:
         np.testing.assert_array_equal(theirs.faces, ours.triangles)
         np.testing.assert_allclose(theirs.vertex_normals, ours.normals, rtol=0, atol=1e-15)
         np.testing.assert_array_equal(theirs.vertex_attributes["uv"], ours.uv)
-        np.testing.assert_array_equal(theirs.vertex_attributes["sample"], ours.sample)
+        np.testing.assert_array_equal(theirs.vertex_attributes["sample_index"], ours.sample_index)
 
     @pytest.mark.compiled
     def test_a_torus_is_watertight_and_has_its_volume(self):

@@ -140,7 +140,7 @@ class TestReport:
             str, int, int, int, float, int, float, float, int,
         ]  # fmt: skip
 
-    @pytest.mark.parametrize("name", ["normals", "samples", "patches", "degenerate_patches"])
+    @pytest.mark.parametrize("name", ["normals", "samples", "patches", "developable_patches"])
     @pytest.mark.parametrize("bad", [-1, 1.5, "3"])
     def test_bad_counts_are_named(self, name, bad):
         with pytest.raises(InputError, match=f"^{name} must"):

@@ -159,7 +159,7 @@ def test_reports_count_their_chunk():
     chunks = list(gm.sample_stream(TORUS, normals=gm.icosphere(4), chunk=50))
     for chunk in chunks:
         assert chunk.report.samples == len(chunk)
-        assert chunk.report.degenerate_patches is None
+        assert chunk.report.developable_patches is None
         assert (chunk.report.normals, chunk.report.patches) == (162, TORUS.patches)
     assert "50 samples at 162 prescribed normals (" in chunks[0].summary()
 

@@ -105,7 +105,7 @@ def test_all_samples_of_the_normals_are_kept(name, relax):
         same(samples[: len(plain)], plain)
         assert len(samples) > len(plain)
         assert (samples.kind[: len(plain)] == "normal").all()
-        assert (samples.kind[len(plain) :] == "coverage").all()
+        assert (samples.kind[len(plain) :] == "filling").all()
         assert (samples.normal_index[len(plain) :] == -1).all()
         assert samples.report.normals == len(normals)
         assert (plain.kind == "normal").all()
@@ -125,7 +125,7 @@ def test_samples_of_normals_come_first(asked):
 @pytest.mark.parametrize("density", ["uniform", 1.0])
 def test_covers_alone_answer_no_normals(density):
     samples = gm.sample(gm.fit(TORUS, (8, 8)), count=100, density=density)
-    assert (samples.kind == "coverage").all()
+    assert (samples.kind == "filling").all()
     assert samples.report.normals == 0
 
 
@@ -198,7 +198,7 @@ def test_files_hold_kinds_and_the_report(tmp_path, suffix, asked):
     again = gm.read_samples(tmp_path / f"a{suffix}")
     same(again, samples)
     assert (again.kind == samples.kind).all()
-    assert set(again.kind) == {"normal", "coverage"}
+    assert set(again.kind) == {"normal", "filling"}
     assert again.report == samples.report
 
 

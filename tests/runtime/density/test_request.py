@@ -74,7 +74,7 @@ def test_defaults():
     assert set(gm.sample(torus, normals=gm.icosphere(4)).kind) == {"normal"}
     amounts: list[dict[str, Any]] = [{"count": 100}, {"angle": 20.0}, {"coverage": 0.4}]
     for asked in amounts:
-        assert set(gm.sample(torus, **asked).kind) == {"normal", "coverage"}
+        assert set(gm.sample(torus, **asked).kind) == {"normal", "filling"}
     gauss = gm.sample(torus, angle=20.0, density="gauss")
     assert set(gauss.kind) == {"normal"}
     frequency = round((((gauss.report.normals or 0) - 2) / 10) ** 0.5)

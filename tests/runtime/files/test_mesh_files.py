@@ -83,7 +83,7 @@ def test_vtk_reads_every_bit(tmp_path, suffix):
     connectivity = again.regular_faces if suffix == ".vtp" else again.cells_dict[5]
     np.testing.assert_array_equal(connectivity, mesh.triangles)
     uv = {"uv": mesh.uv} if suffix == ".vtp" else {"u": mesh.uv[:, 0], "v": mesh.uv[:, 1]}
-    expected = {"normals": mesh.normals, "sample": mesh.sample} | uv
+    expected = {"normals": mesh.normals, "sample_index": mesh.sample_index} | uv
     assert set(again.point_data.keys()) == set(expected)
     for name, array in expected.items():
         found = np.asarray(again.point_data[name])
@@ -96,6 +96,6 @@ def test_vtk_reads_every_bit(tmp_path, suffix):
 @pytest.mark.parametrize("suffix", MESH_SUFFIXES)
 def test_large_numbers_warn_of_nothing(tmp_path, suffix):
     mesh = noise(100)
-    huge = gm.Mesh(mesh.vertices * 1e270, mesh.normals, mesh.uv, mesh.triangles, mesh.sample)
+    huge = gm.Mesh(mesh.vertices * 1e270, mesh.normals, mesh.uv, mesh.triangles, mesh.sample_index)
     huge.write(tmp_path / f"a{suffix}")
     assert (tmp_path / f"a{suffix}").stat().st_size > 5000

@@ -25,20 +25,28 @@ def square(**changes: Any) -> gm.Mesh:
         "normals": np.stack([np.sin(angles), np.zeros(4), np.cos(angles)], axis=1),
         "uv": CORNERS[:, :2] / 3,
         "triangles": np.array([[0, 1, 2], [0, 2, 3]]),
-        "sample": np.array([5, 6, 7, -1]),
+        "sample_index": np.array([5, 6, 7, -1]),
     }
     return gm.Mesh(**(arrays | changes))
 
 
+NAMES = ("vertices", "normals", "uv", "triangles", "sample_index")
+
+
 def numbers(mesh: gm.Mesh) -> dict[str, np.ndarray]:
-    return {"normals": mesh.normals, "u": mesh.uv[:, 0], "v": mesh.uv[:, 1], "sample": mesh.sample}
+    return {
+        "normals": mesh.normals,
+        "u": mesh.uv[:, 0],
+        "v": mesh.uv[:, 1],
+        "sample_index": mesh.sample_index,
+    }
 
 
 class TestMesh:
     def test_edges_and_boundary(self):
         mesh = square()
         assert mesh.edges.tolist() == [[0, 1], [0, 2], [0, 3], [1, 2], [2, 3]]
-        assert mesh.boundary.tolist() == [[0, 1], [0, 3], [1, 2], [2, 3]]
+        assert mesh.boundary_edges.tolist() == [[0, 1], [0, 3], [1, 2], [2, 3]]
         assert mesh.euler_characteristic == 1
 
     def test_angles(self):
@@ -58,14 +66,14 @@ class TestMesh:
             "the normals by 52.50° (mean), 60.00° (worst)"
         )
         closed = square(
-            triangles=np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]), sample=np.arange(4)
+            triangles=np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]),
+            sample_index=np.arange(4),
         )
         assert closed.summary().startswith("4 vertices, 4 triangles, closed; they deviate")
         assert repr(square(name="hill")) == "Mesh(4 vertices, 2 triangles on hill)"
 
     def test_an_empty_mesh(self):
-        none = {name: getattr(square(), name)[:0] for name in ("vertices", "normals", "uv",
-                                                               "triangles", "sample")}  # fmt: skip
+        none = {name: getattr(square(), name)[:0] for name in NAMES}
         mesh = gm.Mesh(**none)
         assert mesh.summary() == "0 vertices, 0 triangles"
         assert (len(mesh.edges), len(mesh.angles), mesh.euler_characteristic) == (0, 0, 0)
@@ -85,7 +93,7 @@ class TestMesh:
             ({"triangles": np.zeros((2, 3))}, "triangles must be a int64 array"),
             ({"triangles": np.array([[0, 1, 4]])}, "triangles have vertices that are not there"),
             ({"triangles": np.array([[0, 1, -1]])}, "triangles have vertices that are not there"),
-            ({"sample": np.arange(3)}, r"sample must be a int64 array of shape \(4,\)"),
+            ({"sample_index": np.arange(3)}, r"sample_index must be a int64 array of shape \(4,\)"),
             ({"sides": np.ones((1, 3), dtype=int)}, r"sides must be a int64 array of shape"),
         ],
     )
@@ -133,7 +141,7 @@ class TestFiles:
         again = pv.read(path)
         np.testing.assert_array_equal(again.regular_faces, mesh.triangles)
         np.testing.assert_array_equal(again.points, mesh.vertices)
-        for name in ("normals", "uv", "sample"):
+        for name in ("normals", "uv", "sample_index"):
             np.testing.assert_array_equal(again.point_data[name], getattr(mesh, name))
 
     @EACH

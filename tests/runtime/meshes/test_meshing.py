@@ -117,9 +117,9 @@ def test_samples_anywhere(name):
     _, characteristic, borders = surfaces[name]
     mesh = samples_at(name, 100).mesh()
     assert mesh.euler_characteristic == characteristic
-    assert (components(mesh.boundary) if borders else 0) == borders
+    assert (components(mesh.boundary_edges) if borders else 0) == borders
     assert is_one_fan_at_each_vertex(mesh)
-    assert (mesh.sample >= 0).sum() == 100
+    assert (mesh.sample_index >= 0).sum() == 100
 
 
 @compiled
@@ -133,7 +133,7 @@ class TestTopology:
         times = np.unique(edges, axis=0, return_counts=True)[1]
         assert set(times.tolist()) == ({1, 2} if borders else {2})
         assert mesh.euler_characteristic == characteristic
-        assert (components(mesh.boundary) if borders else 0) == borders
+        assert (components(mesh.boundary_edges) if borders else 0) == borders
         assert is_one_fan_at_each_vertex(mesh)
 
     @EACH
@@ -142,7 +142,7 @@ class TestTopology:
         _, characteristic, borders = surfaces[name]
         mesh = mesh_of(name, normals=gm.icosphere(12))
         assert mesh.euler_characteristic == characteristic
-        assert (components(mesh.boundary) if borders else 0) == borders
+        assert (components(mesh.boundary_edges) if borders else 0) == borders
         # no two vertices at one place, but for those that immersions bring together
         if not name.startswith("klein"):
             size = np.ptp(mesh.vertices, axis=0).max()
@@ -167,9 +167,9 @@ class TestTopology:
     def test_every_sample_is_a_vertex(self):
         samples = gm.sample(gm.surfaces.wavy_graph(), count=500)
         mesh = samples.mesh()
-        is_sample = mesh.sample >= 0
-        assert sorted(mesh.sample[is_sample].tolist()) == list(range(len(samples)))
-        own = mesh.sample[is_sample]
+        is_sample = mesh.sample_index >= 0
+        assert sorted(mesh.sample_index[is_sample].tolist()) == list(range(len(samples)))
+        own = mesh.sample_index[is_sample]
         for ours, theirs in ((mesh.vertices, samples.points), (mesh.normals, samples.normals),
                              (mesh.uv, samples.uv)):  # fmt: skip
             np.testing.assert_array_equal(ours[is_sample], theirs[own])
@@ -177,7 +177,7 @@ class TestTopology:
     def test_a_pole_is_one_vertex_with_the_normal_of_those_round_it(self):
         samples = gm.sample(gm.surfaces.ellipsoid(a=2, b=1, c=1), count=600, density="gauss")
         mesh = samples.mesh()
-        poles = mesh.sample == -1
+        poles = mesh.sample_index == -1
         assert poles.sum() == 2
         assert samples.spline is not None
         ends = samples.spline.evaluate(0.0, [-np.pi / 2, np.pi / 2])
@@ -196,7 +196,7 @@ class TestTopology:
 class TestBorders:
     def test_a_graph_is_meshed_up_to_its_corners(self):
         mesh = mesh_of("graph", count=1000)
-        border = np.unique(mesh.boundary)
+        border = np.unique(mesh.boundary_edges)
         u, v = mesh.uv[border].T
         assert ((np.abs(u) == 1.0) | (np.abs(v) == 1.0)).all()
         corners = mesh.uv[(np.abs(mesh.uv) == 1.0).all(axis=1)]
@@ -213,7 +213,7 @@ class TestBorders:
         """
         mesh = mesh_of("belt, v closes", normals=gm.fibonacci(4000))
         for low in (True, False):
-            added = (mesh.sample < 0) & ((mesh.uv[:, 0] < 0) == low)
+            added = (mesh.sample_index < 0) & ((mesh.uv[:, 0] < 0) == low)
             spacing = 2 * np.pi * np.cos(1.0) / added.sum()
             assert spacing == pytest.approx(np.sqrt(4 * np.pi / 4000), rel=0.5)
 
@@ -229,8 +229,8 @@ class TestBorders:
         on_border = (np.abs(samples.uv) > 1 - 1e-9).any(axis=1).sum()
         assert on_border > 8
         mesh = samples.mesh()
-        border = np.unique(mesh.boundary)
-        assert (mesh.sample[border] >= 0).sum() == on_border
+        border = np.unique(mesh.boundary_edges)
+        assert (mesh.sample_index[border] >= 0).sum() == on_border
         assert mesh.euler_characteristic == 1
         a, b, c = np.moveaxis(mesh.uv[mesh.triangles], 1, 0)
         assert (np.linalg.det(np.stack([b - a, c - a], axis=1)) > 1e-6).all()
@@ -243,7 +243,7 @@ class TestBorders:
         )  # fmt: skip
         mesh = gm.sample(bowl, count=300).mesh()
         assert mesh.euler_characteristic == 1
-        assert components(mesh.boundary) == 1
+        assert components(mesh.boundary_edges) == 1
         assert (np.linalg.norm(mesh.vertices, axis=1) < 1e-9).sum() <= 1
         assert np.isfinite(mesh.normals).all()
 
@@ -279,7 +279,7 @@ class TestFlips:
         """A plane at the distance d from the centre cuts the unit sphere in the angle acos d."""
         mesh = mesh_of("sphere", normals=gm.fibonacci(500))
         on_sphere = gm.Mesh(
-            mesh.normals, mesh.normals, mesh.uv, mesh.triangles, mesh.sample
+            mesh.normals, mesh.normals, mesh.uv, mesh.triangles, mesh.sample_index
         )  # fmt: skip
         a, b, c = np.moveaxis(mesh.normals[mesh.triangles], 1, 0)
         normal = np.cross(b - a, c - a)
@@ -326,7 +326,7 @@ class TestInput:
         twice = samples[np.concatenate([np.arange(len(samples))] * 2)]
         mesh = twice.mesh()
         assert len(mesh.vertices) == len(samples)
-        assert sorted(mesh.sample.tolist()) == list(range(len(samples)))
+        assert sorted(mesh.sample_index.tolist()) == list(range(len(samples)))
 
     def test_a_point_on_the_seam_given_on_both_sides_is_one_vertex(self):
         samples = gm.sample(gm.surfaces.torus(), normals=gm.icosphere(8))
@@ -383,10 +383,10 @@ class TestInput:
         """Normals in a cap give an upper ring of the torus; triangles across the rest go."""
         samples = gm.sample(gm.surfaces.torus(), normals=CAP)
         whole, part = samples.mesh(), samples.mesh(angle=20)
-        assert (len(whole.boundary), whole.euler_characteristic) == (0, 0)
+        assert (len(whole.boundary_edges), whole.euler_characteristic) == (0, 0)
         assert part.angles.max() <= 20.0
         assert len(part.triangles) < len(whole.triangles)
-        assert len(part.boundary) > 0
+        assert len(part.boundary_edges) > 0
         assert whole.angles.max() > 90.0
         # The normals of the cap are up to 25.8° from the axis: they reach r (1 − cos) down.
         assert part.vertices[:, 2].min() > 0.35 * 0.9 - 1e-3
@@ -416,7 +416,7 @@ class TestInput:
     def test_a_border_needs_few_samples(self, name, count):
         mesh = gm.sample(surfaces[name][0](), count=100)[:count].mesh()
         assert mesh.euler_characteristic == surfaces[name][1]
-        assert (mesh.sample >= 0).sum() == count
+        assert (mesh.sample_index >= 0).sum() == count
 
     @pytest.mark.parametrize("name", ["torus", "sphere", "graph", "belt"])
     def test_samples_in_line(self, name):

@@ -183,7 +183,7 @@ def test_nothing_half_written(
 @pytest.mark.parametrize("name", ["plane", "cylinder"])
 def test_samples_that_no_normal_gave(name: str, tmp_path: Path) -> None:
     drawn = plot.plot(gm.surfaces.surface(name), tmp_path / "a.png", count=50, cells=(8, 8))
-    assert set(drawn.kind) == {"coverage"}
+    assert set(drawn.kind) == {"filling"}
     assert picture(tmp_path / "a.png").shape == SIZE
 
 
