@@ -1,4 +1,4 @@
-"""Normals sorted by direction, so that those that a patch may have are near each other."""
+"""Normals sorted by direction into bins, so that neighbouring normals are close in memory."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ __all__ = ["NormalBins"]
 NORMALS_PER_BIN = 4
 # The least number of normals for each thread that sorts them, and the largest number of threads.
 FEWEST_NORMALS, MOST_COUNTS = 1 << 16, 8
-# The least radius of a cap of normals, as the tangent of half its angle.
+# The least radius of a cap of normals, as the tangent of half its opening angle.
 NARROWEST = 2.0**-20
 
 
 @dataclass(frozen=True, eq=False)
 class NormalBins:
-    """Unit normals (S, 3), sorted into the squares of a cube round the sphere.
+    """Unit normals (S, 3), sorted into the squares of a grid on a cube around the sphere.
 
-    Normals that all lie in a cap are first mapped linearly, so that they fill a face of the cube.
-    The points of a refined icosahedron need no bins: their positions follow from their numbers.
+    If all normals lie in a cap, a linear map first spreads the cap over a face of the cube.
+    The points of an icosphere need no bins: their positions follow from their numbers.
     """
 
     normals: NDArray[np.float64]
@@ -38,7 +38,7 @@ class NormalBins:
 
     @cached_property
     def frequency(self) -> int:
-        """That of `icosphere` if these are its normals, bit for bit; 0 if they are not."""
+        """The frequency of `icosphere` if the normals equal its points bit for bit, else 0."""
         frequency = math.isqrt(max(len(self.normals) - 2, 0) // 10)
         known = 0 < frequency <= MOST_FREQUENT
         if not known or 10 * frequency**2 + 2 != len(self.normals):
@@ -52,7 +52,7 @@ class NormalBins:
 
     @cached_property
     def frame(self) -> NDArray[np.float64]:
-        """The linear map (3, 3), the identity unless there is such a cap."""
+        """The linear map (3, 3) of a cap to a face; the identity if the normals fill no cap."""
         mean = self._sum() / len(self.normals)
         length = float(np.linalg.norm(mean))
         if length < 0.8:
@@ -67,7 +67,7 @@ class NormalBins:
         return directions / [[tangent], [tangent], [1.0]] if tangent < 0.8 else np.eye(3)
 
     def _sum(self) -> NDArray[np.float64]:
-        """Return the sum of all normals, added in the same order for any number of threads."""
+        """Return the sum (3,) of all normals, in an order that is independent of the threads."""
         parts = over_ranges(
             lambda first, last: np.ones(last - first) @ self.normals[first:last],
             len(self.normals), FEWEST_NORMALS, self.threads,
@@ -76,7 +76,7 @@ class NormalBins:
 
     @cached_property
     def stretch(self) -> float:
-        """The norm of the frame."""
+        """The norm of the frame: its longest row."""
         return float(np.linalg.norm(self.frame, axis=1).max())
 
     @cached_property
@@ -87,7 +87,7 @@ class NormalBins:
 
     @cached_property
     def sorted(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-        """The start of each bin; the normals in their order, and their numbers (S, 4)."""
+        """The starts of bins (B + 1,); normals and their numbers (S, 4), in the order of bins."""
         total, count = len(self.normals), 6 * self.grid**2
         size = max(FEWEST_NORMALS, -(-total // min(thread_count(self.threads), MOST_COUNTS)))
         bins = np.empty(total, dtype=np.int32)

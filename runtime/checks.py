@@ -1,4 +1,4 @@
-"""What every argument goes through: whole numbers, real arrays, parameters that fit together."""
+"""Checks of arguments: whole numbers, real numbers, arrays, names."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ __all__ = [
 
 
 def known_name(name: str, known: Sequence[str], kind: str, command: str = "") -> str:
-    """Return `name` if it is known; UnknownNameError with those that are near, or with all.
+    """Return `name` if it is known; UnknownNameError with similar names, or with all, otherwise.
 
-    `command` is one that shows all of them, if they are too many to be named.
+    If there are too many names to list, `command` is the command that lists them.
     """
     text = name if isinstance(name, str) else ""
     if text and text in known:
@@ -51,7 +51,7 @@ def known_name(name: str, known: Sequence[str], kind: str, command: str = "") ->
 
 
 def whole_number(value: object, name: str, least: int = 1) -> int:
-    """Return a whole number from `least` to 10⁹; InputError with its name if it is none."""
+    """Return a whole number from `least` to 10⁹; InputError with its name otherwise."""
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
         raise InputError(f"{name} must be a whole number of at least {least}, not {shown(value)}.")
     if value > MOST:
@@ -60,7 +60,7 @@ def whole_number(value: object, name: str, least: int = 1) -> int:
 
 
 def checked_count(value: object) -> int:
-    """Return a number of samples; InputError for others, also for normals in place of a count."""
+    """Return a number of samples; InputError otherwise, for normals with a hint of its own."""
     if isinstance(value, list | tuple) or getattr(value, "ndim", 0) > 0:
         raise InputError(
             f"count must be a whole number of at least 1, not {shown(value)}; normals go by "
@@ -79,7 +79,7 @@ def as_float(value: SupportsFloat | str) -> float:
 
 
 def yes_or_no(value: object, name: str) -> bool:
-    """Return whether a value is true; InputError with its name for arrays, which are not."""
+    """Return the truth value; InputError with its name for values without one, as arrays."""
     try:
         return bool(value)
     except Exception:
@@ -87,7 +87,7 @@ def yes_or_no(value: object, name: str) -> bool:
 
 
 def finite_number(value: SupportsFloat, name: str) -> float:
-    """Return a number as a float; InputError with its name unless it is a finite one."""
+    """Return a finite number as a float; InputError with its name otherwise."""
     try:
         number = math.nan if isinstance(value, str) else as_float(value)
     except (TypeError, ValueError, OverflowError):
@@ -98,7 +98,7 @@ def finite_number(value: SupportsFloat, name: str) -> float:
 
 
 def positive_number(value: object, name: str, unit: str = "", most: float = math.inf) -> float:
-    """Return a positive number; InputError with its name if it is none, or more than `most`."""
+    """Return a positive number up to `most`; InputError with its name otherwise."""
     number = math.nan
     if isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool):
         with suppress(OverflowError):  # of whole numbers beyond float64
@@ -110,7 +110,7 @@ def positive_number(value: object, name: str, unit: str = "", most: float = math
 
 
 def finite_array(values: ArrayLike, shape: tuple[int, ...], name: str) -> NDArray[np.float64]:
-    """Return a float64 array of a shape; InputError with its name if it is not, or not finite."""
+    """Return a finite float64 array of the given shape; InputError with its name otherwise."""
     array = real_array(values, name)
     if array.shape != shape:
         raise InputError(f"{name} must have the shape {shape}, not {array.shape}.")
@@ -120,9 +120,9 @@ def finite_array(values: ArrayLike, shape: tuple[int, ...], name: str) -> NDArra
 
 
 def real_array(values: ArrayLike, name: str) -> NDArray[np.float64]:
-    """Return a C-contiguous float64 copy of an array of real numbers; InputError if it is none.
+    """Return a C-contiguous float64 copy of an array of real numbers; InputError otherwise.
 
-    Text, complex numbers and objects are not taken for numbers, and what is masked has no value.
+    Text, complex numbers, objects and masked entries are not real numbers.
     """
     array = real_values(values, name)
     with np.errstate(over="ignore"):
@@ -130,7 +130,7 @@ def real_array(values: ArrayLike, name: str) -> NDArray[np.float64]:
 
 
 def real_values(values: ArrayLike, name: str) -> NDArray[Any]:
-    """Return an array of real numbers of any type, copied only if it is none; see `real_array`."""
+    """Return real numbers as an array, without a copy where possible; see `real_array`."""
     if np.ma.is_masked(values):
         raise InputError(f"{name} has masked entries; fill them or leave them out.")
     try:
@@ -145,7 +145,7 @@ def real_values(values: ArrayLike, name: str) -> NDArray[Any]:
 
 
 def _are_fractions(array: NDArray[Any]) -> bool:
-    """Say whether an array holds fractions, such as are exact for SymPy, and perhaps integers."""
+    """Return whether an object array holds fractions, and nothing else but integers."""
     values = array.ravel().tolist() if array.dtype.kind == "O" else []
     return any(isinstance(x, Fraction) for x in values) and all(
         isinstance(x, Rational) for x in values
@@ -153,7 +153,7 @@ def _are_fractions(array: NDArray[Any]) -> bool:
 
 
 def parameter_arrays(u: ArrayLike, v: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return parameters as two arrays of one shape; InputError if they are not real numbers."""
+    """Return u and v, broadcast to one shape; InputError if they are not real numbers."""
     u_array, v_array = real_array(u, "u"), real_array(v, "v")
     try:
         shape = np.broadcast_shapes(u_array.shape, v_array.shape)
@@ -168,7 +168,7 @@ def parameter_arrays(u: ArrayLike, v: ArrayLike) -> tuple[NDArray[np.float64], N
 def checked_array(
     name: str, array: object, shape: tuple[int, ...], dtype: np.dtype[Any]
 ) -> NDArray[Any]:
-    """Return an array, C-contiguous; InputError unless it has this shape and type already."""
+    """Return a C-contiguous array; InputError unless it has the given shape and type."""
     if not isinstance(array, np.ndarray):
         raise InputError(f"{name} must be a NumPy array, not {type(array).__name__}.")
     if array.dtype != dtype or array.shape != shape:

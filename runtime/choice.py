@@ -1,4 +1,4 @@
-"""Which normals are searched: those that are given, or as many as bring a number of samples."""
+"""The normals to search for: prescribed ones, or a lattice that yields a number of samples."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ from .spline import Spline
 
 __all__ = ["Chosen", "choose"]
 
-# The accuracy to which `count` is met by changing the number of normals, and the most attempts.
+# The relative accuracy of the number of samples, and the largest number of attempts.
 NEAR_ENOUGH = 0.01
-TRIES = 20
-# The first attempts change the density in proportion, the others by this factor up and down: if
-# there are few samples, several appear or vanish at once.
+ATTEMPTS = 20
+# The first attempts scale the density by the ratio of the counts. The others vary it by this step
+# up and down: if there are few samples, several appear or vanish at once.
 IN_PROPORTION, DITHER = 6, 0.008
-# At most this many normals for each requested sample (a thin Gaussian image has few of them).
+# The largest number of normals per requested sample (a thin Gaussian image has few samples).
 NORMALS_PER_SAMPLE = 100
-# For a larger count, the density is extrapolated from this one.
+# For larger counts, the density is extrapolated from this count.
 PILOT = 1_000_000
 
 
 @dataclass(frozen=True, eq=False)
 class Chosen:
-    """The normals to search for, `density` of them per steradian: an array, or those of a lattice.
+    """The normals to search for: an array, or a lattice with `density` normals per steradian.
 
-    If they have been searched already, `found` is the result.
+    `found` holds the bins and the hits if the search has been made already.
     """
 
     source: NDArray[np.float64] | Lattice
@@ -41,7 +41,7 @@ class Chosen:
     found: tuple[NormalBins, Hits] | None = None
 
     def __len__(self) -> int:
-        """Return how many normals there are."""
+        """Return the number of normals."""
         if isinstance(self.source, Lattice):
             return self.source.size(self.density)
         return len(self.source)
@@ -54,46 +54,46 @@ class Chosen:
 
 
 def choose(
-    spline: Spline, asked: NDArray[np.float64] | int, threads: int | None, progress: bool
+    spline: Spline, request: NDArray[np.float64] | int, threads: int | None, progress: bool
 ) -> Chosen:
-    """Return the prescribed normals `asked`, or normals with about `asked` samples.
+    """Return prescribed normals (S, 3) as they are, or a lattice with about `request` samples.
 
-    For more samples than `PILOT`, the number of normals is extrapolated from that.
+    For more samples than `PILOT`, the density is extrapolated from that of `PILOT` samples.
     """
-    if not isinstance(asked, int):
-        return Chosen(asked, len(asked) / (4 * math.pi))
-    pilot = min(asked, PILOT)
-    chosen, came = _tried(spline, pilot, threads, progress)
-    if pilot == asked or not isinstance(chosen.source, Lattice):
+    if not isinstance(request, int):
+        return Chosen(request, len(request) / (4 * math.pi))
+    pilot = min(request, PILOT)
+    chosen, samples = _adapted(spline, pilot, threads, progress)
+    if pilot == request or not isinstance(chosen.source, Lattice):
         return chosen
-    most = chosen.source.density_of(min(NORMALS_PER_SAMPLE * asked, MOST))
-    return Chosen(chosen.source, min(chosen.density * asked / (came or pilot), most))
+    most = chosen.source.density_of(min(NORMALS_PER_SAMPLE * request, MOST))
+    return Chosen(chosen.source, min(chosen.density * request / (samples or pilot), most))
 
 
-def _tried(spline: Spline, count: int, threads: int | None, progress: bool) -> tuple[Chosen, int]:
-    """Change the density of a lattice until about `count` samples come; return how many came."""
+def _adapted(spline: Spline, count: int, threads: int | None, progress: bool) -> tuple[Chosen, int]:
+    """Adapt the density of a lattice to `count` samples; return it and the number of samples."""
     lattice = Lattice.around(spline)
     densest = lattice.density_of(NORMALS_PER_SAMPLE * max(count, 1000))
-    everything = float(np.abs(spline.measure[1]).sum())
-    resolved = curved_solid_angle(spline, min(count / max(everything, 1e-300), densest))
+    total = float(np.abs(spline.measure[1]).sum())
+    resolved = curved_solid_angle(spline, min(count / max(total, 1e-300), densest))
     if resolved == 0.0:
         lattice, density = Lattice.everywhere(), count / (4 * math.pi)
     else:
         density = count / resolved
     best: Chosen | None = None
-    came = 0
-    for tried in range(1, TRIES + 1):
+    samples = 0
+    for attempt in range(1, ATTEMPTS + 1):
         density = min(density, densest)
         bins = NormalBins(lattice.normals(density, threads=threads), threads)
         hits = find(spline, bins, threads, progress)
-        if best is None or abs(len(hits) - count) < abs(came - count):
-            best, came = Chosen(lattice, density, (bins, hits)), len(hits)
+        if best is None or abs(len(hits) - count) < abs(samples - count):
+            best, samples = Chosen(lattice, density, (bins, hits)), len(hits)
         if abs(len(hits) - count) <= NEAR_ENOUGH * count or resolved == 0.0:
             break
-        if tried < IN_PROPORTION or len(hits) == 0:
+        if attempt < IN_PROPORTION or len(hits) == 0:
             density *= count / len(hits) if len(hits) else 2.0
         else:
-            step = tried - IN_PROPORTION + 1
+            step = attempt - IN_PROPORTION + 1
             density = count / resolved * (1.0 + (-1) ** step * (step // 2) * DITHER)
     assert best is not None
-    return best, came
+    return best, samples

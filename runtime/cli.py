@@ -50,7 +50,7 @@ def main(arguments: Sequence[str] | None = None, ready: Callable[[], object] = b
     except GaussmapError as error:
         console.fail(str(error))
     except MemoryError:
-        console.fail("there is not enough memory for this; ask for fewer samples or cells.")
+        console.fail("there is not enough memory for this; use fewer samples or cells.")
     except OSError as error:  # all other files are handled where they are read or written
         console.give_up_output()
         console.fail(f"standard output cannot be written: {error.strerror or error}.")

@@ -1,6 +1,6 @@
-"""Saying on a terminal that kernels are being compiled, which makes their first call slow.
+"""The notice on a terminal while kernels are compiled, at their first call.
 
-Importing this module is enough: modules whose kernels users call import it.
+Importing this module installs it: modules whose kernels users call import it.
 """
 
 from __future__ import annotations
@@ -15,26 +15,26 @@ __all__ = ["NOTICE", "Notice"]
 
 PACKAGE = __name__.partition(".")[0]
 ERASE = "\r\033[K"  # to the start of the line, and clear it
-# Seconds of compilation that nobody needs to be told about.
+# The notice appears after this many seconds of compilation.
 PATIENCE = 2.0
 
 
 class Notice(event.Listener):
-    """Shows a line on standard error, if that is a terminal, while kernels of gaussmap compile.
+    """Shows a line on standard error, if it is a terminal, while kernels of gaussmap compile.
 
-    The line appears when that has taken longer than `PATIENCE` in this process. Numba sends events
-    under a lock, so there is one compilation at a time; its passes serve as a clock.
+    The line appears when compilation has taken longer than `PATIENCE` in this process. Numba sends
+    events under a lock, so there is one compilation at a time; each of its passes updates the line.
     """
 
     def __init__(self) -> None:
         self.quiet = False
-        self.kernels: list[str] = []  # a kernel has those compiled that it calls
+        self.kernels: list[str] = []  # the kernel and the nested ones that it calls
         self.seconds = 0.0  # spent on earlier kernels
         self.since = 0.0
         self.line = ""
 
     def on_start(self, event: event.Event) -> None:
-        """Note which kernel begins, or that time has passed."""
+        """Record the kernel that begins; update the line."""
         if event.kind == "numba:compile" and event.data is not None:
             function = event.data["dispatcher"].py_func
             if self.kernels or str(function.__module__).startswith(f"{PACKAGE}."):
@@ -42,28 +42,28 @@ class Notice(event.Listener):
             if len(self.kernels) == 1:
                 self.since = time.monotonic()
         if self.kernels:
-            self._tell()
+            self._update()
 
     def on_end(self, event: event.Event) -> None:
-        """Note that a kernel is done."""
+        """Record that a kernel is compiled."""
         if event.kind == "numba:compile" and self.kernels:
             self.kernels.pop()
             if not self.kernels:
                 self.seconds += time.monotonic() - self.since
                 self._show("")
 
-    def _tell(self) -> None:
+    def _update(self) -> None:
         seconds = self.seconds + time.monotonic() - self.since
         if seconds > PATIENCE:
             name = self.kernels[0]
             self._show(f"gaussmap: compiling kernels, only once here ({seconds:.0f} s): {name}")
 
     def _show(self, line: str) -> None:
-        """Replace the line by another one."""
+        """Replace the line on the terminal."""
         if line == self.line or self.quiet or sys.stderr is None or not sys.stderr.isatty():
             return
         self.line = line
-        with suppress(OSError, ValueError):  # nobody hears it
+        with suppress(OSError, ValueError):  # the terminal is closed
             sys.stderr.write(f"{ERASE}{line}")
             sys.stderr.flush()
 

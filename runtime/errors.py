@@ -1,4 +1,4 @@
-"""What gaussmap raises and warns: every error is a `GaussmapError` with a message for users."""
+"""The exceptions and the warning of gaussmap: every error is a `GaussmapError`."""
 
 from __future__ import annotations
 
@@ -158,10 +158,10 @@ LONGEST_SHOWN = 60
 
 
 def shown(value: object) -> str:
-    """Return a value as a message shows it: on one line, not too long, and never an error."""
+    """Return the text of a value for a message: one short line. Raises nothing."""
     try:
         text = " ".join(repr(value).split())
-    except Exception:  # whole numbers of many digits, and what objects of users raise
+    except Exception:  # long integers, and exceptions of users' objects
         text = f"something of type {type(value).__name__}"
     text = text.encode("utf-8", "backslashreplace").decode()
     return text if len(text) <= LONGEST_SHOWN else f"{text[: LONGEST_SHOWN - 1]}…"
@@ -172,7 +172,7 @@ R = TypeVar("R")
 
 
 def in_memory(function: Callable[P, R]) -> Callable[P, R]:
-    """Have a function raise InputError where there is too little memory for what it is asked."""
+    """Make a function raise InputError in place of MemoryError."""
 
     @wraps(function)
     def guarded(*arguments: P.args, **named: P.kwargs) -> R:
@@ -180,7 +180,7 @@ def in_memory(function: Callable[P, R]) -> Callable[P, R]:
             return function(*arguments, **named)
         except MemoryError:
             raise InputError(
-                "there is not enough memory for this; ask for fewer normals, samples or cells."
+                "there is not enough memory for this; use fewer normals, samples or cells."
             ) from None
 
     return guarded

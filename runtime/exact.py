@@ -1,12 +1,12 @@
-"""Exact decisions whether a patch has a normal, where rounding leaves that open.
+"""Exact decisions on undecided hits: whether a patch has a normal.
 
-Coefficients and normals are binary fractions, and the formulas need only +, − and ×: computed with
-more bits, and finally on integers, they give the exact sign of every form. Exact zeros (a normal on
-the common boundary of two Gaussian images, or of a parabolic line) are decided by simulation of
-simplicity, as if the normal were moved by an infinitesimal generic vector, the same for all
-patches: the moved normal lies on no boundary, so that exactly one of the patches has it. Only at
-the open border of the domain there is a tolerance: a normal whose point lies outside of the domain
-by no more than the error of the data belongs to it.
+Coefficients and normals are binary fractions, and the formulas need only +, − and ×. Computed with
+106 bits, and finally on integers, they give the exact sign of every form. Exact zeros (a normal on
+the common boundary of two Gaussian images, or of a parabolic line) are decided by Simulation of
+Simplicity (Edelsbrunner and Mücke, https://doi.org/10.1145/77635.77639): the normal is displaced by
+an infinitesimal vector, the same for all patches. The displaced normal lies on no boundary, so that
+exactly one of the patches has it. There is a tolerance only at the open border of the domain: a
+normal whose point lies outside the domain by at most the error of the data is a hit.
 """
 
 from __future__ import annotations
@@ -29,20 +29,20 @@ from .tolerances import SINGULAR_POINT
 __all__ = ["Decision", "decide"]
 
 PAIRS_AT_A_TIME = 1 << 8
-# Python integers take memory: about a hundred bytes for each of the many of a pair.
+# Fewer at a time on Python integers: a pair has many of them, of about a hundred bytes each.
 LONG_PAIRS_AT_A_TIME = 1 << 14
-# The exponents in one pair may differ by this before integers of any length are needed.
+# The largest difference of exponents within a pair for arithmetic modulo primes.
 MOST_SHIFTED = 512
-# Two samples of one normal at the open border that are closer than this (in cells) are one.
+# Two hits of one normal at the open border are the same if they are closer than this, in cells.
 SAME_PLACE = 1e-6
 
 
 @dataclass(frozen=True)
 class Decision:
-    """The pairs that are samples.
+    """The pairs of a patch and a normal that are hits.
 
-    `which` are their numbers among those asked. `local` (k, 5) holds u, v, the sign of K, and where
-    the curvatures are to be taken: at u, v themselves, or a little inside if that is singular.
+    `which` (k,) are their positions among all pairs. `local` (k, 5) holds u, v, the sign of K, and
+    the parameters at which curvatures are evaluated: u, v, or a nearby point if that is singular.
     """
 
     which: NDArray[np.int64]
@@ -58,12 +58,12 @@ def decide(
     forgiven: NDArray[np.float64],
     threads: int | None = None,
 ) -> Decision:
-    """Decide which of the pairs (patches[k], normals[k]) are samples.
+    """Decide which of the pairs (patches[k], normals[k]) are hits.
 
-    `numbers[k]` is that of the normal: equal normals with different numbers all count. `bounds[k]`
-    is the error of the forms as floating-point numbers; `forgiven[k]` that of W that is forgiven at
-    the open border of the domain, 0 for a patch that does not touch the border. Both are in units
-    of the scaled spline.
+    `numbers[k]` is the number of the normal: equal normals with different numbers are all kept.
+    `bounds[k]` is the error bound of the forms in floating point. `forgiven[k]` is the tolerance of
+    W at the open border of the domain, 0 for a patch that does not touch the border. Both are in
+    units of the scaled spline.
     """
     local, size, signs = _forms(spline, patches, normals, bounds, forgiven, threads)
     inside = (signs[:, 0] != 0) & (signs[:, 0] == signs[:, 1]) & (signs[:, 1] == signs[:, 2])
@@ -91,7 +91,7 @@ def _forms(
     forgiven: NDArray[np.float64],
     threads: int | None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int8]]:
-    """Return U/D, V/D (k, 2), the modulus of D (k,), and the signs of U, V, W (k, 3)."""
+    """Return U/D and V/D (k, 2), |D| (k,), and the signs of U, V, W (k, 3)."""
     count = len(patches)
     local, size = np.empty((count, 2)), np.empty(count)
     signs, known = np.empty((count, 3), dtype=np.int8), np.empty(count, dtype=np.bool_)
@@ -119,7 +119,7 @@ def _forms(
 
 @cache
 def prime_tables() -> kernels.PrimeTables:
-    """Return the primes, and what computing modulo them needs."""
+    """Return the primes and the tables for arithmetic modulo them."""
     primes = PRIMES.tolist()
     powers = np.array([[pow(2, k, p) for k in range(MOST_SHIFTED)] for p in primes])
     inverses = np.array([[pow(p, -1, q) if p != q else 0 for q in primes] for p in primes])
@@ -127,7 +127,7 @@ def prime_tables() -> kernels.PrimeTables:
 
 
 def _workspace() -> kernels.Workspace:
-    """Return room for the residues of one pair."""
+    """Return work arrays for the residues of one pair."""
     count = len(PRIMES)
     shapes = (count, 5, 3), (count, 3), (4, count), (count,)
     patches, directions, residues, digits = (np.empty(x, dtype=np.int64) for x in shapes)
@@ -137,10 +137,10 @@ def _workspace() -> kernels.Workspace:
 def _regular_places(
     spline: Spline, patches: NDArray[np.int64], local: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return places (k, 2) where the patches have a normal, and these normals (not of unit length).
+    """Return regular points (k, 2) and the normals there (k, 3), not of unit length.
 
-    A singular point, where p_u × p_v is nothing beside that at the centre, has none: the place is
-    moved a little towards the centre.
+    A point is singular if p_u × p_v is negligible relative to that at the centre of the patch; it
+    is then moved slightly towards the centre.
     """
 
     def normals(places: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -165,7 +165,7 @@ def _first_of_each_place(
     local: NDArray[np.float64],
     near: NDArray[np.bool_],
 ) -> NDArray[np.bool_]:
-    """Drop what was let in at the border and is, for its normal, in the place of another sample."""
+    """Return which hits to keep: near the border, those that coincide with no other hit."""
     keep = np.ones(len(patches), dtype=bool)
     if not near.any():
         return keep

@@ -1,4 +1,4 @@
-"""The forms of patches and normals as integers of any length: for what is too long for primes.
+"""The forms of patches and normals on integers of any length, beyond the range of the primes.
 
 Coefficients and normals are binary fractions, and the formulas need only +, − and ×: run on Python
 integers they give the exact sign of every form.
@@ -21,10 +21,10 @@ __all__ = ["forms_of_pairs"]
 def forms_of_pairs(
     spline: Spline, patches: NDArray[np.int64], normals: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int8]]:
-    """Return U/D and V/D (k, 2), the modulus of D (k,) and the signs of U, V, W (k, 3) of pairs.
+    """Return U/D and V/D (k, 2), |D| (k,) and the signs of U, V, W (k, 3) of pairs.
 
-    Where one of U, V, W is zero and the others leave open whether the patch has the normal, they
-    are those of a normal that is moved by an infinitesimal vector.
+    Where a zero among U, V, W leaves undecided whether the patch has the normal, the values are
+    those of a normal that is displaced by an infinitesimal vector.
     """
     vectors, exponent = _patch_vectors(spline, patches)
     n, exponents = integers_by_row(normals)
@@ -33,7 +33,7 @@ def forms_of_pairs(
     signs = sign(values[1:])
     tied = (signs == 0).any(axis=0) & ((signs.min(axis=0) >= 0) | (signs.max(axis=0) <= 0))
     if tied.any():
-        values[:, tied], signs[:, tied] = _moved_forms(vectors[..., tied], n[:, tied])
+        values[:, tied], signs[:, tied] = _displaced_forms(vectors[..., tied], n[:, tied])
     size = _scaled(np.abs(values[0]), 2 * (exponent + exponents))
     local = np.full((len(patches), 2), np.nan)
     some = np.asarray(values[0] != 0, dtype=bool)
@@ -43,7 +43,7 @@ def forms_of_pairs(
 
 
 def _patch_vectors(spline: Spline, patches: NDArray[np.int64]) -> tuple[Integers, int]:
-    """Return a, b, c, d, e (5, 3, k) of each patch as integers, and the exponent of their unit."""
+    """Return a, b, c, d, e (5, 3, k) of the patches as integers, and the exponent of their unit."""
     cell, turn = np.divmod(patches, 4)
     i, j = np.divmod(cell, spline.cells[1])
     steps = NEIGHBOURS[turn]
@@ -61,12 +61,12 @@ def _forms(vectors: Integers, n: Integers) -> Integers:
     return np.array(values, dtype=object)
 
 
-def _moved_forms(vectors: Integers, n: Integers) -> tuple[Integers, NDArray[np.int8]]:
+def _displaced_forms(vectors: Integers, n: Integers) -> tuple[Integers, NDArray[np.int8]]:
     """Return D, U, V, W and the signs of U, V, W at n + (ε₁, ε₂, ε₃), with n ≫ ε₁ ≫ ε₂ ≫ ε₃ ≫ ε₁².
 
-    A quadratic form F is there a sum of ten monomials in n, ε₁, ε₂, ε₃, each infinitesimal beside
-    the one before; its coefficients follow from F(x + y) − F(x) − F(y). The first that is not zero
-    gives the sign. Quotients by D need the monomial that leads in D alone: that one is returned.
+    A quadratic form F is then a sum of ten monomials in n, ε₁, ε₂, ε₃, each infinitesimal relative
+    to the one before; its coefficients follow from F(x + y) − F(x) − F(y). The first nonzero one
+    gives the sign. For quotients by D, the coefficients of the leading monomial of D are returned.
     """
     axes = [
         n,
@@ -86,10 +86,10 @@ def _moved_forms(vectors: Integers, n: Integers) -> tuple[Integers, NDArray[np.i
 
 
 def _leading_sign(n: Integers) -> Integers:
-    """Return the sign of the first component that is not zero, for each column.
+    """Return the sign of the first nonzero component of each column.
 
-    The forms are even in n. A normal and its opposite must be moved to opposite normals: where a
-    surface is joined to its own mirror image, one patch has the one and its neighbour the other.
+    The forms are even in n. A normal and its opposite must be displaced to opposite normals: where
+    a surface is joined to its own mirror image, one patch has the one and its neighbour the other.
     """
     signs = sign(n)
     first = np.argmax(signs != 0, axis=0)

@@ -179,7 +179,7 @@ def _by_normals(
     progress: bool,
 ) -> tuple[Samples, NDArray[np.float64]]:
     """Return the points that have the normals that are asked, and these."""
-    chosen = choose(spline, request.asked, threads, progress)
+    chosen = choose(spline, request.normals_or_count, threads, progress)
     bins, hits = chosen.found or (NormalBins(chosen.part(0, len(chosen), threads), threads), None)
     if hits is None:
         hits = find(spline, bins, threads, progress)

@@ -106,7 +106,7 @@ class _Stream:
 
     def chunks(self) -> Generator[Samples, None, None]:
         """Yield the chunks of all blocks of normals, at least one, and warn at the end."""
-        chosen = choose(self.spline, self.request.asked, self.threads, self.progress)
+        chosen = choose(self.spline, self.request.normals_or_count, self.threads, self.progress)
         chosen, total = replace(chosen, found=None), len(chosen)  # frees the hits
         report = sampling_report(self.spline, total, 0, chosen.density, None)
         starts = range(0, total, NORMALS_AT_A_TIME)

@@ -1,7 +1,7 @@
-"""Compiling all kernels ahead of time, by calling what calls them, on small surfaces.
+"""Compilation of all kernels ahead of time, by calls of public functions on small surfaces.
 
 Kernels are compiled for the types of their arguments. Those that fill the fields of samples are
-compiled for each choice of fields and for each dtype: the choices that are common are made here.
+compiled for each selection of fields and each dtype; the common selections are compiled here.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ __all__ = ["Warmed", "warm"]
 
 CELLS = (8, 8)
 FEW = 60
-# The fields that are taken most often: all, those of meshes and plots, and clouds of points.
+# Common selections of fields: all, those of meshes and plots, and point clouds.
 CHOICES = (
     ARRAY_NAMES,
     ("points", "normals", "uv"),
@@ -46,7 +46,7 @@ CHOICES = (
 
 
 class Warmed(NamedTuple):
-    """How many kernels had to be compiled, how long that took in seconds, and where they are."""
+    """The number of compiled kernels, the time in seconds, and the folder of the cache."""
 
     kernels: int
     seconds: float
@@ -54,7 +54,7 @@ class Warmed(NamedTuple):
 
 
 class _Counter(event.Listener):
-    """Counts the kernels that are compiled, and not what they call."""
+    """Counts the kernels that are compiled, without the functions that they call."""
 
     def __init__(self) -> None:
         self.depth = self.count = 0
@@ -68,9 +68,9 @@ class _Counter(event.Listener):
 
 
 def warm(progress: bool = False) -> Warmed:
-    """Compile the kernels that are not on disk yet; with `progress`, a terminal shows a bar.
+    """Compile all kernels that are not in the cache; `progress` shows a bar on a terminal.
 
-    Raises InputError if Numba is told not to compile, FileError if no folder can be written.
+    Raises InputError if NUMBA_DISABLE_JIT is set, FileError if there is no writable folder.
     """
     from tqdm import tqdm
 
@@ -82,7 +82,7 @@ def warm(progress: bool = False) -> Warmed:
             "no folder for compiled kernels can be written; set NUMBA_CACHE_DIR to one that can."
         )
     counter, start, quiet = _Counter(), time.monotonic(), NOTICE.quiet
-    NOTICE.quiet = True  # the bar says enough
+    NOTICE.quiet = True  # the bar takes its place
     bar = tqdm(WORK, desc="compiling", leave=False, disable=None if progress else True)
     try:
         with warnings.catch_warnings(), event.install_listener("numba:compile", counter):

@@ -37,7 +37,7 @@ class Request:
     relax: int
 
     @property
-    def asked(self) -> NDArray[np.float64] | int:
+    def normals_or_count(self) -> NDArray[np.float64] | int:
         """The normals, or the count, for samples at normals alone."""
         return self.directions if self.count is None else self.count
 

@@ -111,14 +111,14 @@ class BoundaryArc:
             if self._lengths(np.array([before, 0.5 * (before + t)])).max() > self._limit:
                 groups.append([])
         groups[-1].append(1.0)
-        # What reaches the first or last group is a singular corner, not inside.
+        # The first and the last group belong to singular corners.
         return tuple(min(x, key=lambda t: self._lengths(np.array([t]))[0]) for x in groups[1:-1])
 
     @cached_property
     def parts(self) -> tuple[BoundaryArc, ...]:
-        """The arcs from one singular point to the next: great-circle arcs; itself if it has none.
+        """The great-circle arcs between singular points; the arc itself if there are none.
 
-        Their normals are finite everywhere: at a singular point they have their limits.
+        At a singular point they have the limits of the normals.
         """
         if not self.singular_points:
             return (self,)
@@ -137,7 +137,7 @@ class BoundaryArc:
     def is_great_circle(self) -> bool:
         """Whether it lies on a great circle, up to rounding: its normals are coplanar.
 
-        Its cone is then a pair of planes. So it is for an edge in a plane of symmetry.
+        Its cone is then a pair of planes, as for an edge in a plane of symmetry.
         """
         longest = float(np.linalg.norm(self.control_normals, axis=1).max())
         volume = abs(float(np.linalg.det(self.control_normals)))
@@ -156,7 +156,7 @@ class BoundaryArc:
         return np.linalg.norm(self._at(t), axis=1)
 
     def _between(self, start: float, end: float) -> Array:
-        """Return the control normals of the part between two parameters, exactly zero at zeros."""
+        """Return the control normals between two parameters, set to zero where they vanish."""
         places = np.array([[1.0 - start, start], [1.0 - end, end]])
         polar = np.stack([self.control_normals[:2], self.control_normals[1:]])
         net = np.einsum("ai,bj,ijx->abx", places, places, polar)
@@ -172,9 +172,9 @@ def edge_arcs(normals: Array, noise: float) -> tuple[BoundaryArc, BoundaryArc, B
 
 
 def boundary_arcs(normals: Array, noise: float) -> tuple[BoundaryArc, ...]:
-    """Return all arcs round a Gaussian image that are no points, see `GaussianImage.boundary`."""
+    """Return the arcs around a Gaussian image, without points; see `GaussianImage.boundary`."""
     arcs: list[BoundaryArc] = []
-    places: list[tuple[Array, Array, Array]] = []  # where each arc ends; which corners lie ahead
+    places: list[tuple[Array, Array, Array]] = []  # the end of each arc; steps to two corners
     for edge, (i, j, k) in zip(edge_arcs(normals, noise), (*EDGES[1:], EDGES[0]), strict=True):
         arcs += edge.parts
         first, last, opposite = CORNERS[[i, j, k]]
@@ -191,10 +191,10 @@ def boundary_arcs(normals: Array, noise: float) -> tuple[BoundaryArc, ...]:
 def _turn(
     normals: Array, arc: BoundaryArc, after: BoundaryArc, where: tuple[Array, Array, Array]
 ) -> BoundaryArc:
-    """Return the limits of the normals round a singular point, from one arc to the next.
+    """Return the arc of the limits of the normals at a singular point, from one arc to the next.
 
-    They are part of a great circle, half of it between opposite normals; one point if the place is
-    regular. `where` holds the place and two directions from there, backwards and inwards.
+    It is an arc of a great circle, half of it between opposite normals; one point if the surface is
+    regular there. `where` holds the point and two directions from it, backwards and inwards.
     """
     start, end = _direction(arc.control_normals[::-1]), _direction(after.control_normals)
     middle = 0.5 * (start + end)
@@ -209,12 +209,12 @@ def _turn(
 def _inner_limit(
     normals: Array, start: Array, noise: float, place: Array, back: Array, inwards: Array
 ) -> Array:
-    """Return a unit vector across `start` in the half-plane that the normals turn through.
+    """Return a unit vector orthogonal to `start`, in the half-plane of the limits of the normals.
 
-    Zero if there is none: what is left of N is parallel to `start`. In its polar form N is
-    2 N(place, x) + N(x, x) at place + x. If the first is always parallel to `start`, then the
-    second decides, in the direction x inwards along which the first vanishes; or the third order,
-    on the curve beside that line where the component along `start` vanishes.
+    Returns zero if there is none: N is parallel to `start` to the third order. In polar form,
+    N(place + x) = 2 N(place, x) + N(x, x). If the first term is always parallel to `start`, the
+    second decides, in the inward direction x along which the first vanishes; or else the third
+    order, on the curve tangent to x along which the component of N along `start` vanishes.
     """
 
     def polar(x: Array, y: Array) -> Array:
@@ -224,9 +224,13 @@ def _inner_limit(
     share = float(inner @ start) / behind if abs(behind) > noise else 0.0
     still = inwards - share * back
     second = polar(still, still)
-    bend = float(second @ start) / behind if abs(behind) > noise else 0.0
+    curvature = float(second @ start) / behind if abs(behind) > noise else 0.0
     size = float(np.abs(still).sum()) ** 2
-    candidates = [(inner, 1.0), (second, size), (-bend * polar(back, still), size * abs(bend))]
+    candidates = [
+        (inner, 1.0),
+        (second, size),
+        (-curvature * polar(back, still), size * abs(curvature)),
+    ]
     for candidate, errors in candidates:
         across = candidate - (candidate @ start) * start
         length = float(np.linalg.norm(across))
@@ -236,7 +240,7 @@ def _inner_limit(
 
 
 def _direction(net: Array) -> Array:
-    """Return the first control normal that is not zero, of unit length; zero if there is none."""
+    """Return the first nonzero control normal, normalized; zero if all are zero."""
     normal = net[int(net.any(axis=1).argmax())]
     length = float(np.linalg.norm(normal))
     return normal / length if length else normal

@@ -40,7 +40,7 @@ BY_SIDES = {2: "biangle", 3: "triangle"}
 
 @dataclass(frozen=True, eq=False)
 class GaussianImage:
-    """The Gaussian image of one quadratic patch: the region of the sphere that its normals fill.
+    """The Gaussian image of one quadratic patch: the set of its unit normals on the sphere.
 
     Make one with `of_patch`, or take one from a `GaussianImages`. Whether something vanishes
     (`kind`, `patch_class`, `is_great_circle` of an arc) is decided up to the rounding of the
@@ -103,13 +103,13 @@ class GaussianImage:
 
     @cached_property
     def kind(self) -> str:
-        """What the image is.
+        """The shape of the image.
 
-        "triangle": bounded by three arcs. "biangle": by two, because the third is one point (its
-        edge is a parabolic line). "polygon": by more, because a corner or a point inside an edge is
-        singular, see `boundary`. "bow tie": a parabolic line inside, pinched to one point. "arc":
-        of a developable patch. "point": of a plane (two opposite ones if it is folded). "empty": no
-        point of the patch has a normal.
+        "triangle": three arcs bound it. "biangle": two arcs, since one edge is a parabolic line,
+        whose image is a point. "polygon": more arcs, since a corner or a point inside an edge is
+        singular, see `boundary`. "bow tie": a parabolic line runs through the patch, and its image
+        is a point. "arc": the patch is developable. "point": it is planar (two opposite points if
+        it is folded). "empty": no point of the patch has a normal.
         """
         if self.patch_class in NAMES:
             return NAMES[self.patch_class]
@@ -126,9 +126,9 @@ class GaussianImage:
     def cones(self) -> Array:
         """The symmetric matrices M (3, 3, 3) of the cones nᵀ M n = 0 on which the sides lie.
 
-        They are U, V, W: those of the edges u = 0, v = 0 and w = 1 − u − v = 0, up to a positive
-        factor that the three have in common. The normals n of the patch, and their opposites, are
-        where the three forms have one sign.
+        They are the matrices of U, V, W, of the edges u = 0, v = 0 and w = 1 − u − v = 0, up to a
+        common positive factor. The three forms have the same sign at the normals of the patch and
+        at their opposites, and only there.
         """
         rows = self._patch.apply(formulas.boundary_cones)
         return np.array([[x[0] for x in row] for row in rows]).reshape(3, 3, 3)
@@ -137,21 +137,21 @@ class GaussianImage:
     def arcs(self) -> tuple[BoundaryArc, BoundaryArc, BoundaryArc]:
         """The normals along the edges u = 0, v = 0 and w = 0, counter-clockwise in (u, v).
 
-        They run from v = 1 to w = 1, from w = 1 to u = 1 and from u = 1 to v = 1. An edge that has
-        no normals, because it is one point, has the limit of the normals near it.
+        They run from v = 1 to w = 1, from w = 1 to u = 1 and from u = 1 to v = 1. An edge that is
+        one point has the limit of the normals nearby.
         """
         return edge_arcs(self._patch.normals[0], self._noise)
 
     @cached_property
     def boundary(self) -> tuple[BoundaryArc, ...]:
-        """The sides of the image, each from the end of the one before, as the border runs.
+        """The sides of the image, in order: each begins where the one before ends.
 
-        They are `arcs` without those that are one point, and cut where an edge has a singular point
-        inside. Round a singular point of the border the normals have all limits along an arc of a
-        great circle, which is a side, too: half a great circle where the normals of an edge jump to
-        the opposite ones. The chain is closed; it has gaps between opposite normals only if the
-        image has no inside, or if a whole curve of singular points ends there. What singular points
-        inside the patch add to the border of the image is not in it.
+        They are the `arcs`, without those that are one point, split at singular points of an edge.
+        At a singular point of the border the limits of the normals form an arc of a great circle,
+        which is a side, too: half a great circle if the normals of an edge change to their
+        opposites. The chain is closed; it has gaps between opposite normals only if the image has
+        no interior, or if a curve of singular points ends there. Parts of the border of the image
+        that come from singular points inside the patch are not included.
         """
         return boundary_arcs(self._patch.normals[0], self._noise)
 
@@ -220,7 +220,7 @@ class GaussianImage:
 
 @dataclass(frozen=True, eq=False)
 class GaussianImages:
-    """The Gaussian images of all patches of a spline: together the domain of its support function.
+    """The Gaussian images of all patches of a spline, the domain of its support function.
 
     Made by `of_spline`. ``images[k]`` is the image of patch k; patches are numbered as in `Spline`.
 
@@ -286,7 +286,7 @@ class GaussianImages:
         return self.spline.patches
 
     def __getitem__(self, patch: int) -> GaussianImage:
-        """Return the image of one patch; IndexError if there is none, InputError if no number."""
+        """Return the image of one patch; IndexError if absent, InputError for other types."""
         try:
             number = operator.index(patch)
         except TypeError:

@@ -1,4 +1,4 @@
-"""Which normals a single patch has: in floating point where that is sure, on integers elsewhere."""
+"""The normals of a single patch: membership in floating point, and exactly where undecided."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ LONGEST_SQUARED = 3.0
 
 @dataclass(frozen=True, eq=False)
 class Members:
-    """What was decided of k vectors: which are normals of regular points that are not parabolic.
+    """The membership of k vectors in the normals of regular points that are not parabolic.
 
-    `inside` (k,) says that, `uv` (k, 2) where; `signs` (k,) is the sign of K where it was decided
-    exactly, else 0. At `vanishing` (k,) all of D, U, V, W are zero: the vector may be the normal of
-    a whole line.
+    `inside` (k,) is true for such normals, and `uv` (k, 2) are the parameters; `signs` (k,) is the
+    sign of K where it was decided exactly, else 0. Where `vanishing` (k,) is true, D, U, V, W are
+    all zero: the vector may be the normal along a parabolic line.
     """
 
     inside: NDArray[np.bool_]
@@ -43,12 +43,12 @@ class Members:
 
 @dataclass(frozen=True, eq=False)
 class PatchNormals:
-    """The oriented normals of one quadratic patch (6, 3), border included; decided exactly."""
+    """The oriented normals of one quadratic patch (6, 3), border included, by exact decisions."""
 
     control_points: Array
 
     def members(self, normals: Array) -> Members:
-        """Decide which of the vectors (k, 3) are normals, of points that are not parabolic."""
+        """Decide which of the vectors (k, 3) are normals of points that are not parabolic."""
         count = len(normals)
         kinds, uv = np.empty(count, dtype=np.int8), np.zeros((count, 2))
         exponents = np.frexp(np.abs(normals).max(axis=1, keepdims=True))[1]
@@ -66,7 +66,7 @@ class PatchNormals:
         return result
 
     def contain(self, normals: Array) -> NDArray[np.bool_]:
-        """Say which of the vectors (k, 3) are normals of any point, parabolic ones included."""
+        """Return which of the vectors (k, 3) are normals of points, parabolic ones included."""
         members = self.members(normals)
         which = np.flatnonzero(members.vanishing)
         n, _ = integers_by_row(normals[which])
@@ -89,7 +89,7 @@ class PatchNormals:
 
     @cached_property
     def exact_vectors(self) -> Patch:
-        """The vectors of eq. (8) as integers, in some unit."""
+        """The vectors of eq. (8) as integers, up to a common power of two."""
         net, _ = integers(self.control_points)
         return python_function(formulas.power_form)(*map(vector, net))
 
@@ -101,20 +101,21 @@ class PatchNormals:
 
     @cached_property
     def _bound(self) -> float:
-        """The rounding error of U, V, W, as for the patches of a spline.
+        """The bound of the rounding error of U, V, W, as for the patches of a spline.
 
-        It is that of differences of control points, of size 1, which a, b, c may be far below.
+        The errors come from differences of control points, which are of size 1; a, b, c may be much
+        smaller.
         """
         error = FORM_ERROR * (sum(self._sizes) + FORM_ERROR)
         return 32.0 * LONGEST_SQUARED * error
 
     @cached_property
     def _shortest(self) -> float:
-        """How long N has to be, in the sum of its components, for its direction to be sure."""
+        """The least length of N, as a sum of moduli, at which its direction is certain."""
         return NEAR_SINGULAR_POINT * (2.0 * self._sizes[0] + self._sizes[1]) ** 2
 
     def _decide(self, members: Members, rows: NDArray[np.intp], normals: Array) -> None:
-        """Decide exactly, on integers, and write that into these rows of the result."""
+        """Decide normals exactly, on integers; write the decisions to `rows` of the result."""
         n, _ = integers_by_row(normals)
         patch, normal = self.exact_vectors, Vector(*n)
         forms = np.array(python_function(formulas.forms)(patch, normal), dtype=object)
@@ -132,7 +133,7 @@ class PatchNormals:
 
 
 def _on_line(patch: Patch, n: Vector) -> bool:
-    """Say whether a normal with U = V = D = 0 is that of a point: of a line of them, or of all."""
+    """Return whether n with U = V = D = 0 is the normal along a line, or of the whole patch."""
     line = python_function(lines.parabolic_line)
     rows = [line(patch, n, s, t) for s, t in ((1, 0), (0, 1))]
     row = next((row for row in rows if row[0] or row[1]), None)
@@ -146,7 +147,7 @@ def _on_line(patch: Patch, n: Vector) -> bool:
 
 
 def _ends(row: tuple[int, int, int], corners: list[Place]) -> list[Place]:
-    """Return the points where a line meets the border of the triangle, from end to end."""
+    """Return the intersections of a line with the border of the triangle, in order."""
     heights = [row[0] * u + row[1] * v + row[2] for u, v in corners]
     found = {corner for corner, height in zip(corners, heights, strict=True) if height == 0}
     for k in range(3):
@@ -164,7 +165,7 @@ def _has_direction(
     first: Place,
     last: Place,
 ) -> bool:
-    """Say whether N·n is positive somewhere between two places of the parameter plane."""
+    """Return whether N·n is positive somewhere between two points of the parameter plane."""
 
     def towards(u: Fraction, v: Fraction) -> Fraction:
         _, _, field = python_function(formulas.tangents)(patch, u, v)

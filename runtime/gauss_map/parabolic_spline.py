@@ -1,4 +1,4 @@
-"""The parabolic points of a spline: lines inside patches, and edges where the curvature jumps."""
+"""The parabolic curves of a spline: lines inside patches, and edges where K changes sign."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ Array = NDArray[np.float64]
 # The corners of the triangle by their parameters, and its edges.
 CORNERS = np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]])
 EDGES = ((0, 1), (1, 2), (2, 0))
-# A place on an edge closer to a corner than this, relative to the edge, is the corner.
+# A point of an edge within this distance of a corner, relative to the edge, is the corner.
 AT_CORNER = 1e-9
 SIGNS = {PatchClass.ELLIPTIC: 1, PatchClass.HYPERBOLIC: -1}
 
 
 def polylines_of(spline: Spline) -> list[tuple[Array, bool]]:
-    """Return where the Gaussian curvature of a spline vanishes or changes sign: polylines (k, 2).
+    """Return the polylines (k, 2) where the Gaussian curvature vanishes or changes sign.
 
-    They are exact: straight in the parameters inside each patch and along the edges.
+    They are exact: in each patch and along its edges these curves are straight in the parameters.
     """
     patches = Patches.of_spline(spline)
     classes = classes_of(patches)
@@ -56,7 +56,7 @@ class _Split:
         self.pieces = pieces_of(patch)
 
     def breaks(self, edge: int) -> list[float]:
-        """Return where segments end on an edge, as shares of it."""
+        """Return the ends of segments on an edge, as parameters between 0 and 1."""
         start, end = CORNERS[list(EDGES[edge])]
         found = []
         for place in (place for ends in self.segments for place in ends):
@@ -67,12 +67,12 @@ class _Split:
         return found
 
     def sign(self, place: Array) -> int:
-        """Return the sign of K at a place: that of the piece which holds it best."""
+        """Return the sign of K at a point: that of the piece in which it lies deepest."""
         return max(self.pieces, key=lambda piece: _depth(piece.corners, place)).sign
 
 
 def _depth(polygon: Array, place: Array) -> float:
-    """Return the least distance of a place from the sides of a convex polygon, negative outside."""
+    """Return the least distance of a point from the sides of a convex polygon, negative outside."""
     along = np.roll(polygon, -1, axis=0) - polygon
     to = place - polygon
     heights = along[:, 0] * to[:, 1] - along[:, 1] * to[:, 0]
@@ -80,7 +80,7 @@ def _depth(polygon: Array, place: Array) -> float:
 
 
 class _Plane:
-    """The parameter plane of a spline in cells, with names for its vertices and edges."""
+    """The parameter plane of a spline in units of cells, with keys for its vertices and edges."""
 
     def __init__(self, spline: Spline) -> None:
         self.columns = spline.cells[1]
@@ -91,19 +91,20 @@ class _Plane:
         ]
 
     def place(self, patch: int, local: Array) -> Array:
-        """Return places (..., 2) in cells from their parameters in a patch."""
+        """Return points (..., 2), in cells, from their parameters in a patch."""
         i, j = divmod(patch // 4, self.columns)
         return np.array([i + 0.5, j + 0.5]) + local @ self.corners[patch % 4]
 
     def vertex(self, patch: int, corner: int) -> tuple[int, ...]:
-        """Return the name of a corner: its coordinates in half cells, modulo the periods."""
+        """Return the key of a corner: its coordinates in half cells, modulo the periods."""
         x = np.round(2.0 * self.place(patch, CORNERS[corner])).astype(int).tolist()
         return tuple(a % period if period else a for a, period in zip(x, self.periods, strict=True))
 
     def edge(self, patch: int, edge: int) -> tuple[Hashable, bool]:
-        """Return the name of an edge, and whether it runs the other way in this patch.
+        """Return the key of an edge, and whether this patch traverses it in reverse.
 
-        Two edges of a periodic direction with few cells may have the same ends: the middle counts.
+        In a periodic direction with few cells two edges may have the same ends; the middle in the
+        key distinguishes them.
         """
         first, last = EDGES[edge]
         ends = self.vertex(patch, first), self.vertex(patch, last)
@@ -116,7 +117,7 @@ class _Plane:
         return ("edge", name, tuple(sorted(ends))), tuple(step.tolist()) < (0.0, 0.0)
 
     def node(self, patch: int, local: Array) -> Hashable:
-        """Return the name of a place on the border of a patch."""
+        """Return the key of a point on the border of a patch."""
         weights = np.array([local[0], local[1], 1.0 - local[0] - local[1]])
         corner = int(weights.argmax())
         if weights[corner] >= 1.0 - AT_CORNER:
@@ -129,7 +130,7 @@ class _Plane:
         return name, round(float(1.0 - share if turned else share) / AT_CORNER)
 
     def segment(self, patch: int, ends: Array) -> Segment:
-        """Return the segment between two places on the border of a patch."""
+        """Return the segment between two points on the border of a patch."""
         return self.node(patch, ends[0]), self.node(patch, ends[1]), self.place(patch, ends)
 
 
@@ -139,10 +140,10 @@ def _edges(plane: _Plane, classes: NDArray[np.int8], splits: dict[int, _Split]) 
     for patch, edge in _interesting(plane, classes):
         sides.setdefault(plane.edge(patch, edge)[0], []).append((patch, edge))
     segments = []
-    for pair in sides.values():
-        if len(pair) != 2:
+    for both in sides.values():
+        if len(both) != 2:
             continue
-        (patch, edge), (other, other_edge) = pair
+        (patch, edge), (other, other_edge) = both
         turned = plane.edge(patch, edge)[1] != plane.edge(other, other_edge)[1]
         breaks = {0.0, 1.0}
         if patch in splits:
@@ -163,7 +164,7 @@ def _edges(plane: _Plane, classes: NDArray[np.int8], splits: dict[int, _Split]) 
 
 
 def _interesting(plane: _Plane, classes: NDArray[np.int8]) -> list[tuple[int, int]]:
-    """Return the edges (patch, edge) that do not lie between patches of one and the same sign."""
+    """Return the edges (patch, edge) that are not surrounded by patches of one sign."""
     curved = np.isin(classes, (PatchClass.ELLIPTIC, PatchClass.HYPERBOLIC, PatchClass.MIXED))
     if len(np.unique(classes[curved])) < 2 and PatchClass.MIXED not in classes:
         return []

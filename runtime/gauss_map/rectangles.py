@@ -1,4 +1,4 @@
-"""Rectangles of the parameter plane, (k, 2, 2): the low and the high corner of each."""
+"""Rectangles (k, 2, 2) of the parameter plane: the lower and the upper corner of each."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ QUARTERS = np.array([[0, 0], [1, 0], [0, 1], [1, 1]], dtype=bool)
 
 
 def quarters(rectangles: Array) -> Array:
-    """Return the four quarters of each: the first of all, then the second of all, and so on."""
+    """Return the quarters (4 k, 2, 2): the first of all, then the second of all, and so on."""
     low, high = rectangles[:, 0], rectangles[:, 1]
     middle = 0.5 * (low + high)
     parts = [
@@ -23,13 +23,13 @@ def quarters(rectangles: Array) -> Array:
 
 
 def touching(rectangle: Array, others: Array, size: Array) -> NDArray[np.bool_]:
-    """Return which of the others are closer to a rectangle (2, 2) than `size` (2,)."""
+    """Return which of the others are within a distance `size` (2,) of a rectangle (2, 2)."""
     low, high = rectangle[0] - size, rectangle[1] + size
     return ((others[:, 0] <= high) & (others[:, 1] >= low)).all(axis=1)
 
 
 def clusters(rectangles: Array, size: Array) -> Array:
-    """Join rectangles that are closer to each other than `size`; return the hulls of groups."""
+    """Group rectangles within a distance `size` of each other; return the hull of each group."""
     groups = np.empty((0, 2, 2))
     for rectangle in rectangles:
         near = touching(rectangle, groups, size)
@@ -40,7 +40,7 @@ def clusters(rectangles: Array, size: Array) -> Array:
 
 
 def merged(rectangles: Array) -> Array:
-    """Merge rectangles that have a whole side in common, first along v and then along u."""
+    """Merge rectangles that share a whole side, first along v and then along u."""
     for axis in (1, 0):
         rectangles = _merged_along(rectangles, axis)
     return rectangles

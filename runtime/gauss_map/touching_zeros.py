@@ -1,6 +1,6 @@
-"""Zeros of K in cells without a change of sign: points and curves where K only touches zero.
+"""Zeros of K in cells without a change of sign: points and curves where K touches zero.
 
-Rectangles are subdivided as long as K may vanish on them, by its bounds.
+Rectangles are subdivided while the bounds of K on them include zero.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ Array = NDArray[np.float64]
 MOST_BOXES = 16384
 DEEPEST = 40
 # A rectangle on which K is zero up to its error after at most this many subdivisions of a cell is
-# no single point.
+# a flat region and not a point.
 FLAT_LEVELS = 1
-# Cells along a side of a group in which K is zero up to its error that counts as a point.
+# A group of cells in which K is zero up to its error counts as a point up to this side, in cells.
 FEW_CELLS = 4
 
 
 @dataclass(frozen=True, eq=False)
 class TouchingZeros:
-    """Rectangles (k, 2, 2) that hold zeros of K; in large ones K is `zero` up to its error."""
+    """Rectangles (k, 2, 2): `boxes` contain zeros of K; on `zero` K is zero up to its error."""
 
     boxes: Array
     zero: Array
@@ -39,10 +39,10 @@ class TouchingZeros:
 def touching_zeros(grid: SignGrid, size: Array, finest: bool) -> TouchingZeros | None:
     """Subdivide the cells without a change of sign that may hold a zero of K, down to `size` (2,).
 
-    None if K has another sign inside a cell away from the curves, so that cells should be smaller.
-    If these are the `finest`, the rectangles with another sign are returned as they are: they hold
-    a closed curve that is too small for the cells. Where there are too many to cut them down to
-    `size`, along a curve or where K is zero up to its error, they stay as large as they are.
+    Returns None if K has another sign inside a cell away from the curves, so that smaller cells are
+    needed. If the cells are the `finest`, the rectangles with another sign are returned: they
+    contain a closed curve that the cells do not resolve. Where there are more than `MOST_BOXES`
+    rectangles, along a curve or where K is zero up to its error, they are not subdivided further.
     """
     open_ = _may_vanish(grid, grid.mask & ~grid.crossed & ~_near_curves(grid))
     rectangles, signs = grid.rectangles(open_), grid.signs[:-1, :-1][open_]
@@ -66,11 +66,11 @@ def touching_zeros(grid: SignGrid, size: Array, finest: bool) -> TouchingZeros |
 
 
 def parted(grid: SignGrid, zero: Array) -> tuple[Array, Array]:
-    """Part rectangles in which K is zero up to its error: small groups in K ≠ 0, and the others."""
+    """Split rectangles with K = 0 up to its error into small groups in K ≠ 0, and the others."""
     cell = np.array([np.diff(line).max() for line in grid.lines])
     groups = clusters(zero, 1e-6 * cell)
     groups = groups[((groups[:, 1] - groups[:, 0]) <= (FEW_CELLS + 0.1) * cell).all(axis=1)]
-    # The borders of a square, 0 … 1: there K has to be known not to vanish.
+    # The border of the unit square, on which K must not vanish.
     share = np.arange(FEW_CELLS * 4) / (FEW_CELLS * 4)
     none, one = 0.0 * share, 0.0 * share + 1.0
     ring = np.stack([np.r_[share, one, 1 - share, none], np.r_[none, share, one, 1 - share]], 1)
@@ -83,7 +83,7 @@ def parted(grid: SignGrid, zero: Array) -> tuple[Array, Array]:
 
 
 def _near_curves(grid: SignGrid) -> NDArray[np.bool_]:
-    """Return which cells touch one with a sign change, or one in which K is not known."""
+    """Return which cells touch a cell with a sign change, or one in which K is unknown."""
     near = grid.crossed | ~grid.mask
     for (i, j), _ in grid.borders:
         near[min(i, near.shape[0] - 1), min(j, near.shape[1] - 1)] = True
@@ -93,7 +93,7 @@ def _near_curves(grid: SignGrid) -> NDArray[np.bool_]:
 
 
 def _may_vanish(grid: SignGrid, cells: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return in which of the cells K may vanish, by its bounds."""
+    """Return the cells in which the bounds of K include zero."""
     field, result = grid.field, np.zeros_like(cells)
     rest = field.largest - 2.0 * np.abs(field.coefficients[..., 0, 0]) + field.noise
     for i, j in np.argwhere(grid.usable & (rest >= 0.0)) * grid.cells:
@@ -106,7 +106,7 @@ def _may_vanish(grid: SignGrid, cells: NDArray[np.bool_]) -> NDArray[np.bool_]:
 def _bounded(
     field: CurvatureField, rectangles: Array, signs: NDArray[np.bool_]
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_], NDArray[np.bool_]]:
-    """Return on which rectangles K may vanish; has another sign too; is zero up to its error."""
+    """Return on which rectangles K may vanish, has the other sign too, is zero up to its error."""
     middle = 0.5 * (rectangles[:, 1] + rectangles[:, 0])
     half = 0.5 * (rectangles[:, 1] - rectangles[:, 0])
     index, basis = [], []
@@ -120,7 +120,7 @@ def _bounded(
     values = basis[0] @ inner @ np.swapaxes(basis[1], 1, 2)
     noise = field.noise[index[0], index[1]]
     largest, smallest = values.max(axis=(1, 2)), values.min(axis=(1, 2))
-    # Between the nodes K departs from their values by less than they differ among themselves.
+    # Between the nodes K exceeds the range of the nodal values by less than that range.
     spread = largest - smallest
     keep = np.where(signs, smallest - spread <= noise, largest + spread >= -noise)
     other = np.where(signs, smallest < -noise, largest > noise)

@@ -77,14 +77,14 @@ def test_forms_on_integers_are_those_of_fractions() -> None:
         assert (vectors[..., patch] * unit == np.array(expected)).all()
 
 
-def test_moved_normal_agrees_with_a_slightly_moved_one() -> None:
+def test_infinitesimal_displacement_agrees_with_a_small_one() -> None:
     """Real displacements in the same order of size give the same signs, for small integers."""
     rng = np.random.default_rng(5)
     n = np.array([[int(x) for x in row] for row in rng.integers(-1, 2, (3, 400))], dtype=object)
     vectors = np.array(
         [[int(x) for x in row] for row in rng.integers(-3, 4, (15, 400))], dtype=object
     ).reshape(5, 3, 400)
-    _, signs = long_integers._moved_forms(vectors, n)
+    _, signs = long_integers._displaced_forms(vectors, n)
     # In bits: n 64 · 20, ε 16 · 20, 4 · 20 and 20, so that also n ε₃ ≫ ε₁² and ε₁ ε₃ ≫ ε₂².
     shifts = (1 << 320, 1 << 80, 1 << 20)
     moved = np.array([(x << 1280) + e for x, e in zip(n, shifts, strict=True)], dtype=object)
