@@ -41,7 +41,7 @@ def test_these_are_the_names_of_a_namespace(space: str) -> None:
         assert getattr(module, name) is not None
 
 
-@pytest.mark.parametrize("space", ["curves", "directions", "errors"])
+@pytest.mark.parametrize("space", NAMESPACES)
 def test_completion_of_a_namespace_shows_its_names_only(space: str) -> None:
     assert dir(getattr(gm, space)) == sorted(NAMESPACES[space].split())
 

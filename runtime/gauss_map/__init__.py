@@ -21,3 +21,7 @@ __all__ = [
     "parabolic_points",
     "split_patch",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -64,7 +64,7 @@ def test_lines_hold_parabolic_points_with_one_normal() -> None:
 
 
 def test_lines_given_in_advance() -> None:
-    """p = (½u², uv, ½v²) + d u + e v with D(N) = (v + 2)² u, see `test_gaussian_image`."""
+    """p = (½u², uv, ½v²) + d u + e v with D(N) = (v + 2)² u, see `test_image`."""
     lines = gm.gauss_map.parabolic_lines(
         net_of([1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 2, 0], [0, 1, 2])
     )
