@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from .classify import UNDECIDED, YES
-from .icosphere import row_start, write_normals
+from .icosphere import ZERO, row_start, write_normals
 from .jit import inline, jit, loop
 from .tile import STEP, TILE, fill_tile, load_patch
 from .windows import whole_vectors
@@ -28,7 +28,8 @@ SIZE, ROW = 18, 13
 LONGEST, BEFORE_SIZE, BEFORE_ROW = (1 << 32 - SIZE) - 1, (1 << SIZE) - 1, (1 << ROW) - 1
 # The rows of a higher frequency do not fit in.
 MOST_FREQUENT = 1 << ROW
-NO_FACE = 20
+# It has a type: a literal number is compiled for itself.
+NO_FACE = np.int64(20)
 # A patch with so many samples begins a tile.
 MANY = 32
 
@@ -101,7 +102,7 @@ def fill_runs(
 
     `places` (2 STEP) is memory for the rows and columns of the normals.
     """
-    at = known = first = 0
+    at = known = first = ZERO
     face = NO_FACE  # of the samples of the tile whose normals are not yet known
     while first < runs.shape[0]:
         patch = runs[first, 0]
@@ -115,7 +116,7 @@ def fill_runs(
                 points, directions, uv, support, gaussian, mean, normal_index, patch_index,
             )  # fmt: skip
             start += at
-            at = known = 0
+            at = known = ZERO
         load_patch(mu, patch, scale, tile, at, TILE if total >= MANY else at + total)
         for k in range(first, last):
             run = runs[k, 1]
@@ -139,7 +140,7 @@ def fill_runs(
                         points, directions, uv, support, gaussian, mean, normal_index, patch_index,
                     )  # fmt: skip
                     start += at
-                    at = known = 0
+                    at = known = ZERO
         first = last
     finish(
         face, frequency, places, known, at, tile, indices, start, scale, frame,

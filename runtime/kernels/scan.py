@@ -250,7 +250,7 @@ def row_of_forms(forms, k):
 @loop
 def classify_again(patch, axis, sine, bound, face, frequency, s, t, count, memory, codes):
     """Classify the undecided points of a face by their normals."""
-    k = 0
+    k = ZERO
     while k < count:
         size = 0
         while codes[k + size] == UNDECIDED and size < TILE:
