@@ -134,7 +134,7 @@ def linear_forms(patch, n):
 
 @inline
 def eliminated_forms(A, B, C, P, Q):
-    """The quadratic forms of a patch from the linear ones: what eliminating u, v leaves.
+    """The quadratic forms of a patch from the linear ones, by elimination of u and v.
 
         D = A*C - B**2
         U = B*Q - C*P
@@ -805,7 +805,7 @@ def measure(patch, u, v):
 
 @inline
 def sample(patch, n):
-    """All that a sample holds: parameters, point, oriented normal, curvatures.
+    """The fields of a sample: parameters, point, oriented normal, curvatures.
 
         A = n·a
         B = n·b
@@ -937,9 +937,9 @@ def largest_curvature(K, H):
 
 @inline
 def reach(patch, u0, v0, u1, v1, u2, v2):
-    """Squares of which the largest bounds the squared distance between any point of a part of
-    the patch and that in the middle of its domain, a triangle: the derivative, linear in u and
-    v, from the middle to a corner, at a corner.
+    """Squares whose maximum bounds the squared radius of a part of the patch over a triangle,
+    around the image of the centroid: the derivative along the step from the centroid to each
+    corner, at each corner.
 
         s0 = a*u0 + b*v0 + d
         t0 = b*u0 + c*v0 + e
@@ -1050,8 +1050,8 @@ def reach(patch, u0, v0, u1, v1, u2, v2):
 
 @inline
 def sides(patch, u0, v0, u1, v1, u2, v2):
-    """Squares that bound those of the lengths of the sides of a part of the patch, whose domain
-    is a triangle: the derivative along each side, at both of its ends.
+    """Bounds of the squared lengths of the sides of a part of the patch over a triangle: the
+    squared derivative along each side, at both of its ends.
 
         s0 = a*u0 + b*v0 + d
         t0 = b*u0 + c*v0 + e

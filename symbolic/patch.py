@@ -78,7 +78,7 @@ class Elimination:
 
 
 def eliminate() -> Elimination:
-    """Solve n·p_u = n·p_v = 0 for u, v and put the solution into n·p(u,v), as eq. (9) asks."""
+    """Solve n·p_u = n·p_v = 0 for u, v and put the solution into n·p(u,v), as in eq. (9)."""
     h = A * u**2 / 2 + B * u * v + C * v**2 / 2 + P * u + Q * v
     (solution,) = sp.solve([sp.diff(h, u), sp.diff(h, v)], [u, v], dict=True)
     determinant = sp.det(sp.hessian(h, (u, v)))
@@ -116,7 +116,7 @@ FORMS = Formula.build(
 
 ELIMINATED_FORMS = Formula.build(
     "eliminated_forms",
-    "The quadratic forms of a patch from the linear ones: what eliminating $u$, $v$ leaves.",
+    "The quadratic forms of a patch from the linear ones, by elimination of $u$ and $v$.",
     source="eq. (9) and Sect. 3.2",
     inputs=LINEAR_FORMS,
     outputs=ELIMINATED,
@@ -399,7 +399,7 @@ K, H = scalar("K"), scalar("H")
 
 SAMPLE = compose(
     "sample",
-    "All that a sample holds: parameters, point, oriented normal, curvatures.",
+    "The fields of a sample: parameters, point, oriented normal, curvatures.",
     [FORMS, PARAMETERS, ENVELOPE, TANGENTS, CURVATURE],
     source="eqs. (1), (5)-(9); curvatures beyond the paper",
     outputs=[u, v, x, N, K, H],
@@ -451,17 +451,17 @@ MIDDLE = sp.Add(*(x for x, _ in CORNERS)) / 3, sp.Add(*(x for _, x in CORNERS)) 
 
 REACH = _squares_along(
     "reach",
-    "Squares of which the largest bounds the squared distance between any point of a part of the "
-    "patch and that in the middle of its domain, a triangle: the derivative, linear in $u$ and "
-    "$v$, from the middle to a corner, at a corner.",
+    "Squares whose maximum bounds the squared radius of a part of the patch over a triangle, "
+    "around the image of the centroid: the derivative along the step from the centroid to each "
+    "corner, at each corner.",
     {str(i): _between(MIDDLE, corner) for i, corner in enumerate(CORNERS)},
     product("012", repeat=2),
 )
 
 SIDES = _squares_along(
     "sides",
-    "Squares that bound those of the lengths of the sides of a part of the patch, whose domain is "
-    "a triangle: the derivative along each side, at both of its ends.",
+    "Bounds of the squared lengths of the sides of a part of the patch over a triangle: the "
+    "squared derivative along each side, at both of its ends.",
     {str(i): _between(CORNERS[i - 2], CORNERS[i - 1]) for i in range(3)},
     [(str((i + k) % 3), str(i)) for i in range(3) for k in (1, 2)],
 )

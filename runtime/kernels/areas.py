@@ -23,7 +23,7 @@ def corner_areas(points, normals, triangles, sides, areas):
 
     The Bézier triangles are as perpendicular to the normals at their corners as possible; their
     area belongs to the corners by barycentric coordinates. If two normals are more than 90 degrees
-    apart, the triangle is flat. `sides` (k, 3) tell on which side of the surface a corner is.
+    apart, the triangle is flat. `sides` (k, 3) are 1 or −1: the side of the surface at a corner.
     """
     for t in range(triangles.shape[0]):
         a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]

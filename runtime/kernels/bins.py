@@ -1,6 +1,6 @@
 """Bins of directions: the six faces of a cube, each cut into grid × grid squares.
 
-The cube may stand round the directions as a linear map (3, 3), the frame, maps them.
+The directions may first be mapped by a linear map (3, 3), the frame.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ __all__ = [
 
 @inline
 def cube_face(n):
-    """Return the face of the cube that a vector meets, and its coordinates there (in −1 … 1).
+    """Return the face of the cube that a ray n meets, and its coordinates there (in −1 … 1).
 
     The faces are +x, −x, +y, −y, +z, −z.
     """
@@ -36,7 +36,7 @@ def cube_face(n):
 
 @loop
 def on_face(face, vectors, k):
-    """Return row k of vectors (…, 3) in the axes of a face: two coordinates, and the height."""
+    """Return row k of vectors (…, 3) in the axes of a face: two coordinates and the height."""
     axis = face >> 1
     sign = 1.0 if face & 1 == 0 else -1.0
     return vectors[k, (axis + 1) % 3], vectors[k, (axis + 2) % 3], sign * vectors[k, axis]
@@ -56,7 +56,7 @@ def bin_index(s, grid):
 
 @loop
 def mapped(frame, n):
-    """Return a vector as a linear map (3, 3) maps it."""
+    """Return the image of a vector under a linear map (3, 3)."""
     return Vector(
         frame[0, 0] * n.x + frame[0, 1] * n.y + frame[0, 2] * n.z,
         frame[1, 0] * n.x + frame[1, 1] * n.y + frame[1, 2] * n.z,
@@ -66,7 +66,7 @@ def mapped(frame, n):
 
 @jit
 def count_bins(normals, frame, grid, first, last, bins, counts):
-    """Write the bins (S) of the normals first, …, last − 1, and how many of them each bin has.
+    """Write the bins (S,) of the normals first, …, last − 1, and their number in each bin.
 
     The bins are those of `frame` for the normals (S, 3).
     """
@@ -80,7 +80,7 @@ def count_bins(normals, frame, grid, first, last, bins, counts):
 
 @jit
 def start_bins(counts, starts):
-    """Write where each bin starts; counts (ranges, bins) become the places of the ranges in it."""
+    """Write the start of each bin; counts (ranges, bins) become the starts of ranges in bins."""
     start = 0
     for b in range(counts.shape[1]):
         starts[b] = start
@@ -95,8 +95,8 @@ def start_bins(counts, starts):
 def place_normals(normals, bins, first, last, places, ordered):
     """Sort the normals first, …, last − 1 by bins: a counting sort, stable in each bin.
 
-    ordered[starts[b]:starts[b + 1]] become those of bin b. `places` are those of this range in each
-    bin. The rows of ordered (S, 4) are a normal (as it is) and its number.
+    ordered[starts[b]:starts[b + 1]] become the normals of bin b. `places` (bins,) are the starts of
+    this range in the bins. A row of ordered (S, 4) is a normal, unchanged, and its number.
     """
     for k in range(first, last):
         at = places[bins[k]]

@@ -1,4 +1,4 @@
-"""The candidates at the centres of the smallest balls around the Voronoi cells of samples."""
+"""The candidates nearest to the centres of the smallest balls around Voronoi cells."""
 
 from __future__ import annotations
 
@@ -51,8 +51,8 @@ def extreme_candidate(candidates, links, head, x, sign):
 def move_to_centres(candidates, heads, links, first, last, found):
     """Write the candidates at the centres of the cells of the samples first, …, last − 1.
 
-    That is the one nearest to the centre of the smallest ball around the cell, which is approached
-    by steps of 1/2, 1/3, … of the way to the farthest candidate. It is −1 for an empty cell.
+    The centre of the smallest ball around a cell is approximated by steps of 1/2, 1/3, … of the way
+    to the farthest candidate; the candidate nearest to it is written, −1 for an empty cell.
     """
     for number in range(first, last):
         head = heads[number]

@@ -1,7 +1,7 @@
-"""Whether a patch has a normal: by the signs of its forms, as far as they are certain.
+"""Classification of normals by the signs of the forms of a patch.
 
-A normal is one of the patch where U, V, W have one sign (Sect. 3.2), which is that of D. A code
-says what is known of it: NO, YES, or UNDECIDED where rounding leaves it open.
+A patch has a normal if U, V, W have one sign there (Sect. 3.2), which is that of D. The code of a
+normal is NO, YES, or UNDECIDED if the signs are uncertain because of rounding.
 """
 
 from __future__ import annotations
@@ -21,22 +21,22 @@ from .vectors import dot
 
 __all__ = ["NO", "UNDECIDED", "YES", "bound_of_forms", "classify", "count_undecided", "look_again"]
 
-# They have a type: Numba compiles functions once for each literal number that they are called with.
+# Typed, since Numba compiles a function anew for each literal number in its arguments.
 NO, YES, UNDECIDED = np.int8(0), np.int8(1), np.int8(2)
 
 
 @loop
 def bound_of_forms(mu, i, j, turn, scale, noise, border, axis, sine, patch):
-    """Return the error of U, V, W of a patch; the components of its normals bound it too.
+    """Return a bound of the rounding error of U, V, W of a patch.
 
-    The normals lie in the cone round the axis (3), if its sine is not infinite. On an open side of
-    the domain (`border` (4) says which are) the error includes the rounding of coordinates,
-    `noise`.
+    The normals lie in the cone with an axis (3,) and a sine, which is infinite without a cone. On
+    an open side of the domain, as `border` (4,) says, the error includes the rounding of
+    coordinates, `noise`.
     """
     form = error = 0.0
     largest = tangent_bounds(patch)
     for x in range(3):
-        n = abs(axis[x]) + sine if sine < math.inf else 1.0  # a little more does no harm
+        n = abs(axis[x]) + sine if sine < math.inf else 1.0  # an upper bound
         difference = 0.0
         for k in range(9):
             p = i + 1 + NEIGHBOURS[turn, k, 0]
@@ -57,10 +57,10 @@ def bound_of_forms(mu, i, j, turn, scale, noise, border, axis, sine, patch):
 
 @loop
 def classify(patch, axis, sine, bound, x, y, z, codes, count):
-    """Write the codes of normals x, y, z (…): whether a patch has them.
+    """Write the codes of normals with components x, y, z (…).
 
-    `bound` is the error of the forms. The normals of the patch lie in the cone with the sine round
-    the axis, if that is not infinite. The loop has no branches, so that it runs on vectors.
+    `bound` is the error of the forms. The normals of the patch lie in the cone with an axis and a
+    sine, which is infinite without a cone. The loop has no branches, so that it is vectorized.
     """
     least = ACCURATE * bound
     lowest = 0.0 if sine < math.inf else -math.inf
@@ -84,9 +84,9 @@ def classify(patch, axis, sine, bound, x, y, z, codes, count):
 
 @loop
 def look_again(patch, x, y, z, codes, count):
-    """Compare the normals of a wide cone that a patch has with the normal at their parameters.
+    """Compare hits of a patch without a narrow cone with the oriented normal at their parameters.
 
-    The forms are even in n: they do not tell a normal from its opposite, which a cone does.
+    The forms are even in n: they do not distinguish a normal from its opposite, as a cone does.
     """
     for k in range(count):
         if codes[k] != YES:
@@ -105,7 +105,7 @@ def look_again(patch, x, y, z, codes, count):
 
 @inline
 def count_undecided(codes, count):
-    """Return how many codes are UNDECIDED."""
+    """Return the number of codes that are UNDECIDED."""
     found = 0
     for k in range(count):
         found += codes[k] == UNDECIDED

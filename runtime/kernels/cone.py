@@ -1,4 +1,4 @@
-"""The cone of normals of a patch: its control normals bound the directions of all its normals."""
+"""The cone of normals of a patch: the convex hull of its control normals contains all normals."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .vectors import dot, length, row_vector, set_row
 
 __all__ = ["cone_of_normals", "least_cosine", "tangent_bounds", "write_control_normals"]
 
-# The control normals are within 37 degrees of the axis of a narrow cone: the cosine of that.
+# The cosine of 37 degrees: control normals within this angle of the axis form a narrow cone.
 NARROW = 0.8
 
 
@@ -41,8 +41,8 @@ def cone_of_normals(net, tangents, unit, errors, axis):
     """Write the directions (6, 3) of control normals, their errors (6) and the axis (3) of a cone.
 
     The errors are angles. `tangents` bounds the components of the tangents. Returns the sine of the
-    angle of the cone round the axis that holds all normals; it is infinite if the cone is not
-    narrow, or the patch has a singular point, which has no direction and an infinite error.
+    angle between the axis and any normal; it is infinite if the cone is not narrow, or if the patch
+    has a singular point, whose direction is undefined and whose error is infinite.
     """
     square = tangents * tangents
     worst = 0.0
@@ -77,8 +77,8 @@ def cone_of_normals(net, tangents, unit, errors, axis):
 def least_cosine(mu, scale, axis, net):
     """Return the least cosine between a unit vector (3) and an oriented normal of the spline.
 
-    The control normals bound it from below. The search ends at the first negative one. `net` (6, 3)
-    is memory.
+    It is a lower bound, from the control normals. The search ends at the first negative cosine.
+    `net` (6, 3) is a work array.
     """
     columns = mu.shape[1] - 2
     towards = Vector(axis[0], axis[1], axis[2])

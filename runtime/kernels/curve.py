@@ -22,8 +22,8 @@ __all__ = ["evaluate", "fill_samples", "merge_joints"]
 def arc_of_piece(mu, i, scale):
     """Return the vectors of the arc of a piece, times `scale`.
 
-    The coefficients mu (P + 2, 2) begin with the one beyond the first piece: that of piece i is
-    mu[i + 1]. c is relative to it.
+    The coefficients mu (P + 2, 2) include ghost coefficients: that of piece i is mu[i + 1], and c
+    is relative to it.
     """
     return arc(
         PlaneVector(scale * (mu[i, 0] - mu[i + 1, 0]), scale * (mu[i, 1] - mu[i + 1, 1])),
@@ -33,9 +33,9 @@ def arc_of_piece(mu, i, scale):
 
 @jit
 def evaluate(mu, scale, places, points, normals, curvatures):
-    """Write points (k, 2), normals of any length (k, 2) and curvatures (k,) at places (k,).
+    """Write points (k, 2), normals of any length (k, 2) and curvatures (k,) at `places` (k,).
 
-    A place is a parameter in pieces, counted from the beginning of the spline.
+    These are parameters in units of pieces, from the beginning of the spline.
     """
     for k in range(places.size):
         i = min(max(int(math.floor(places[k])), 0), mu.shape[0] - 3)
@@ -52,9 +52,9 @@ def evaluate(mu, scale, places, points, normals, curvatures):
 
 @jit
 def merge_joints(angles, turns, errors, start):
-    """Give neighbouring joints one normal where only rounding makes their normals differ.
+    """Give neighbouring joints one normal if their normals differ only by rounding.
 
-    angles + 2 pi turns (P + 1,) are those of the joints, errors (P + 1,) their rounding errors. The
+    angles + 2 pi turns (P + 1,) are the angles at joints, errors (P + 1,) their rounding. The
     joints of a closed curve are visited from the joint `start` > 0 on; start = 0 is the first joint
     of an open curve.
     """
@@ -86,7 +86,7 @@ def fill_samples(
         n = PlaneVector(normals[normal_index[k], 0], normals[normal_index[k], 1])
         vectors = arc_of_piece(mu, i, scale)
         A = n.x * vectors.a.x + n.y * vectors.a.y
-        # Where rounding hides the turn of an arc, it hides the place of the normal on it.
+        # If the turn of an arc is within rounding, so is the parameter of the normal.
         t = min(max(arc_parameter(vectors, n), 0.0), 1.0) if A != 0.0 else 0.5
         x, kappa = arc_sample(vectors, t, A)
         points[k, 0] = mu[i + 1, 0] + x.x / scale

@@ -1,6 +1,6 @@
 """Exact decisions: the signs of the forms U, V, W of a patch and a normal.
 
-They are found with 106 bits first, and where that leaves a sign open, with integers. Exact ties are
+They are computed with 106 bits first, and on integers if a sign is still undecided. Exact ties are
 broken by Simulation of Simplicity (Edelsbrunner and Mücke, https://doi.org/10.1145/77635.77639):
 the normal is displaced by an infinitesimal vector, the same for all patches.
 """
@@ -30,20 +30,20 @@ from .vectors import row_vector
 
 __all__ = ["Decided", "Pairs", "PrimeTables", "Workspace", "decide_exactly", "decide_precisely"]
 
-# The error of double-doubles is smaller than that of floating-point numbers by 2⁻⁵¹; this leaves
-# a factor of 64.
+# The error of double-doubles relative to that of floating-point numbers: 2⁻⁵¹, with a safety factor
+# of 64.
 PRECISE = math.ldexp(1.0, -45)
-# The product of primes grows by so many bits with each of them.
+# The bits that each prime contributes to the product of primes.
 BITS = 28.99
-# Bits that the formulas add: those of the weights, of the sums of products, and of a second normal.
+# Bits that the formulas add: by weights, by sums of products, and by a second normal.
 WEIGHT_BITS, SUM_BITS, FORM_BITS = 6, 2, 6
 
 
 class Pairs(NamedTuple):
     """Pairs of patches (k,) and normals (k, 3), with the errors of their forms.
 
-    `bounds` (k,) are the rounding errors of the forms as floating-point numbers; `forgiven` (k,) is
-    positive at the open border of the domain.
+    `bounds` (k,) are the rounding errors of the forms in floating point; `forgiven` (k,) is the
+    tolerance of W, positive at the open border of the domain and 0 elsewhere.
     """
 
     patches: Any
@@ -61,7 +61,7 @@ class PrimeTables(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """Room for m primes: patches (m, 5, 3), normals (m, 3), residues (4, m), digits (m,).
+    """Work arrays for m primes: patches (m, 5, 3), normals (m, 3), residues (4, m), digits (m,).
 
     forms (4,) are D, U, V, W, in a unit of their own.
     """
@@ -74,7 +74,7 @@ class Workspace(NamedTuple):
 
 
 class Decided(NamedTuple):
-    """What is written: U/D and V/D (k, 2), |D| (k,), signs of U, V, W (k, 3), and if known (k,)."""
+    """The output: U/D and V/D (k, 2), |D| (k,), signs of U, V, W (k, 3), and if known (k,)."""
 
     local: Any
     size: Any
@@ -99,7 +99,7 @@ def precise_difference(x, y, scale):
 
 @loop
 def precise_neighbour(mu, i, j, turn, k, scale):
-    """Return the difference of neighbour k of a coefficient from it, times a power of two."""
+    """Return neighbour k minus the coefficient (i, j), times a power of two."""
     p = i + NEIGHBOURS[turn, k, 0]
     q = j + NEIGHBOURS[turn, k, 1]
     return Vector(
@@ -128,7 +128,7 @@ def precise_forms(mu, i, j, turn, scale, n):
 
 @inline
 def patch_at(patches, k):
-    """Return the vectors a, b, c, d, e of row k of an array (m, 5, 3); p is not held there."""
+    """Return the patch a, b, c, d, e in row k of an array (m, 5, 3); p is arbitrary."""
     a = vector_at(patches, k, 0)
     return Patch(
         a,
@@ -192,7 +192,7 @@ def residues_of_monomial(s, t, count, tables, work):
 
 @inline
 def any_residue(residues, form, count):
-    """Say whether a number is not 0."""
+    """Return whether a number has a nonzero residue."""
     found = False
     for k in range(count):
         found = found or residues[form, k] != 0
@@ -205,10 +205,10 @@ def exact_forms(mu, i, j, turn, n, tables, work, signs):
 
     Returns the exponent of the unit of the forms, or HIGHEST if the numbers are too long.
 
-    Where one of U, V, W is zero and the others leave open whether the patch has the normal, this is
+    Where a zero among U, V, W leaves undecided whether the patch has the normal, the normal is
     displaced to n + (ε₁, ε₂, ε₃), with n ≫ ε₁ ≫ ε₂ ≫ ε₃ ≫ ε₁²: a form is then a sum of ten
-    monomials, each infinitesimal relative to the one before, and the first that is not zero gives
-    its sign. Quotients by D need the leading monomial of D alone: that one is written.
+    monomials, each infinitesimal relative to the one before, and the first nonzero one gives
+    its sign. For quotients by D, the coefficients of the leading monomial of D are written.
     """
     lowest, highest = exponents_around(mu, i, j)
     lowest_n, highest_n = exponents_of(n)
@@ -249,10 +249,10 @@ def exact_forms(mu, i, j, turn, n, tables, work, signs):
 
 @jit
 def decide_precisely(mu, scale, pairs, first, last, decided):
-    """Decide the pairs first, …, last − 1, whose signs floating-point numbers leave open.
+    """Decide the pairs first, …, last − 1, which are undecided in floating point, with 106 bits.
 
-    Where `forgiven` is positive, the parameters are needed even outside of the patch. The signs
-    stay unknown where 106 bits leave them open.
+    If `forgiven` is positive, the parameters are needed outside the patch, too. Signs that are
+    still undecided stay unknown.
     """
     columns = mu.shape[1] - 2
     for k in range(first, last):
@@ -277,9 +277,9 @@ def decide_precisely(mu, scale, pairs, first, last, decided):
 
 @jit
 def decide_exactly(mu, scale, pairs, tables, first, last, work, decided):
-    """Decide those of the pairs first, …, last − 1 whose signs are not known.
+    """Decide those of the pairs first, …, last − 1 whose signs are unknown, on integers.
 
-    They stay unknown where the numbers are too long for the primes.
+    The signs stay unknown if the numbers are too long for the primes.
     """
     columns = mu.shape[1] - 2
     exponent = math.frexp(scale)[1] - 1

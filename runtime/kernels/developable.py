@@ -1,7 +1,7 @@
 """Which patches are developable, up to rounding.
 
-Few patches are: whether a patch may be is decided at its centre, and the rest, which takes much
-longer to compile, is left to a kernel of its own.
+A test at the centre of a patch excludes most patches. The full test, which takes much longer to
+compile, is a kernel of its own.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ THIRD = 1.0 / 3.0
 
 @loop
 def curvature_error(patch, net, noise):
-    """Return the error of D(N), of the sign of the Gaussian curvature, by rounding of coordinates.
+    """Return the error of D(N), which has the sign of K, due to the rounding of coordinates.
 
     `net` (6, 3) are the control normals of the patch, `noise` is the rounding, in its unit.
     """
@@ -33,7 +33,7 @@ def curvature_error(patch, net, noise):
 
 @loop
 def may_be_developable(patch, net, noise):
-    """Say whether the Gaussian curvature at the centre of a patch is nothing but rounding."""
+    """Return whether the Gaussian curvature at the centre of a patch is zero up to rounding."""
     D, _, _, _ = forms(patch, normal_of_patch(patch, THIRD, THIRD))
     return not abs(D) > curvature_error(patch, net, noise)
 
@@ -42,7 +42,7 @@ def may_be_developable(patch, net, noise):
 def first_curved(mu, scale, noise, net):
     """Return the first patch that is curved at its centre, or the number of patches.
 
-    `net` (6, 3) is memory.
+    `net` (6, 3) is a work array.
     """
     columns = mu.shape[1] - 2
     count = 4 * (mu.shape[0] - 2) * columns
@@ -57,7 +57,7 @@ def first_curved(mu, scale, noise, net):
 
 @jit
 def count_developable(mu, scale, noise, patches, net):
-    """Return how many of the patches (k), which may be developable, are; `net` (6, 3) is memory."""
+    """Return the number of patches (k,) that are developable; `net` (6, 3) is a work array."""
     columns = mu.shape[1] - 2
     found = 0
     for k in range(patches.size):

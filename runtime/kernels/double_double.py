@@ -32,7 +32,7 @@ class DoubleDouble(NamedTuple):
     high: float
     low: float
 
-    # What runs without compilation.
+    # The operators without compilation.
 
     def __add__(self, other: Any) -> Any:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Return the sum of two pairs."""

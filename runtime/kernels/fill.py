@@ -1,4 +1,4 @@
-"""What samples hold: from pairs of a patch and one of its normals to points and curvatures."""
+"""The fields of samples, from pairs of a patch and one of its normals."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from .vectors import row_vector
 
 __all__ = ["fill_samples"]
 
-# Normals lie far from each other in memory: so many are read ahead.
+# Normals of consecutive hits are scattered in memory; this many are prefetched.
 PREFETCH_DISTANCE = 512
-# A packed hit holds the place of its normal in the order of the bins in these bits.
+# The bits of a packed hit with the position of its normal in the order of the bins.
 PLACE = 0xFFFFFFFF
-# It has a type: a literal number is compiled for itself.
+# Typed, since Numba compiles a function anew for each literal number in its arguments.
 ZERO = np.int64(0)
 
 
@@ -26,10 +26,10 @@ def fill_samples(
     """Fill the samples from number `start` on from pairs (k, 2) of patch and packed hit.
 
     normals (S, 4) are in the order of the bins. frame = (u0, v0, du, dv): the corner of the domain
-    and the size of a cell in the parameters. What is not wanted of points (k, 3), directions
-    (k, 3), uv (k, 2), support, gaussian, mean and the two indices (k) is None: Numba compiles
-    without it, and the compiler drops what only that needs. `tile` and `indices` are memory, see
-    `new_tile`.
+    and the size of a cell in the parameters. Absent ones of points (k, 3), directions (k, 3),
+    uv (k, 2), support, gaussian, mean and the two indices (k,) are None: Numba compiles a variant
+    without them, and without the computations that only they need. `tile` and `indices` are work
+    arrays, see `new_tile`.
     """
     loaded = -1
     for begin in range(0, pairs.shape[0], TILE):
@@ -50,7 +50,7 @@ def fill_samples(
 
 @inline
 def prefetch(normals, pairs, first):
-    """Read PREFETCH_DISTANCE normals, so that they are in the cache when they are needed."""
+    """Read PREFETCH_DISTANCE normals to bring them into the cache ahead of their use."""
     total = 0.0
     for k in range(first, min(first + PREFETCH_DISTANCE, pairs.shape[0])):
         total += normals[np.uint64(pairs[np.uint64(k), 1] & PLACE), 0]
@@ -59,7 +59,7 @@ def prefetch(normals, pairs, first):
 
 @loop
 def load_patches(mu, scale, pairs, begin, count, tile):
-    """Write the patches of the samples of a tile; return the patch if it is the only one, or −1."""
+    """Write the patches of the samples of a tile; return the patch if all have the same, or −1."""
     first, last = pairs[begin, 0], pairs[begin + count - 1, 0]
     end = ZERO
     while end < count:

@@ -1,8 +1,8 @@
-"""Flips of edges that turn the triangles of a mesh towards the normals at their corners.
+"""Flips of edges that align the triangles of a mesh with the normals at their corners.
 
-In `triangles` (k, 3) are the vertices of triangles, in `sides` (k, 3) for each corner 1 or −1: the
-side of the surface on which the triangle lies there. Along a band of a one-sided surface they
-change. `neighbours` (k, 3) are the triangles across the edges opposite to the corners, −1 for none.
+`triangles` (k, 3) are the vertices of triangles. `sides` (k, 3) are 1 or −1: the side of the
+surface on which the triangle lies at each corner; it changes on one-sided surfaces. `neighbours`
+(k, 3) are the triangles across the edges opposite to the corners, −1 for none.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ def smallest_cosine(points, normals, a, b, c, side_a, side_b, side_c):
     """Return the smallest cosine between the normals of a triangle and at its corners a, b, c.
 
     It is −2 if the triangle has no normal. The corners are sorted first: then rounding does not
-    depend on which of them comes first, and triangles without area are not flipped for ever.
+    depend on which of them comes first, and triangles without area cause no endless flips.
     """
     side = 1.0
     if a > b:
@@ -60,7 +60,7 @@ def smallest_cosines(points, normals, triangles, sides, cosines):
 
 @loop
 def corner_of(triangles, t, vertex):
-    """Return which corner of a triangle is a vertex, −1 if none."""
+    """Return the corner of a triangle at a vertex, −1 if there is none."""
     for k in range(3):
         if triangles[t, k] == vertex:
             return k
@@ -69,9 +69,9 @@ def corner_of(triangles, t, vertex):
 
 @loop
 def are_joined(triangles, neighbours, first, c, d):
-    """Say whether an edge joins the vertices c, a corner of the triangle `first`, and d.
+    """Return whether an edge joins the vertices c, a corner of the triangle `first`, and d.
 
-    Goes around c from `first`, in both ways if it meets the border.
+    Visits the triangles around c from `first` on, in both directions if there is a border.
     """
     for way in range(1, 3):
         t = first
@@ -85,7 +85,7 @@ def are_joined(triangles, neighbours, first, c, d):
             if following == first:
                 return False
             if following >= 0:
-                # The edge from c to the third corner is crossed; it lies opposite to another one.
+                # Cross the edge from c to the third corner.
                 shared = triangles[t, came_over]
                 own = corner_of(triangles, following, c)
                 came_over = 3 - own - corner_of(triangles, following, shared)
@@ -155,11 +155,11 @@ def flip_edge(points, normals, triangles, sides, neighbours, t, k):
 
 @jit
 def flip_edges(points, normals, triangles, sides, neighbours, queue, is_queued):
-    """Flip edges as long as that raises the smallest cosine of two triangles; return how many.
+    """Flip edges while that raises the smallest cosine of two triangles; return their number.
 
     `triangles`, `sides` and `neighbours` (k, 3) are changed. queue (k,) holds all triangles, and
-    is_queued (k,) is True, at the beginning. No flip makes a second edge between two vertices. Each
-    raises the ascending list of the cosines of all triangles in lexicographic order: they end.
+    is_queued (k,) is True, at the beginning. No flip makes a second edge between two vertices. The
+    algorithm terminates: each flip raises the sorted cosines of all triangles lexicographically.
     """
     count = triangles.shape[0]
     head, waiting, flips = 0, count, 0

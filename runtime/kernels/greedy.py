@@ -1,7 +1,7 @@
-"""Greedy covering: candidates that are far from all samples become samples themselves.
+"""Greedy covering: candidates that are far from all samples become samples.
 
-A sample updates the distances of the candidates around it. That is cheaper than searching the
-nearest sample of each candidate again and again.
+Each new sample updates the distances of the candidates around it, which is cheaper than repeated
+searches for the nearest sample of each candidate.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from .vectors import dot, row_vector
 
 __all__ = ["choose_far", "update_distances"]
 
-# The number of samples that have none; typed, so that Numba compiles one function for all numbers.
+# The number of a sample without one; typed, so that Numba compiles one function for all numbers.
 NO_NUMBER = np.int64(-1)
 
 
 @inline
 def distance_to_cells(i, cell, x):
-    """Return the distance along an axis of the coordinate x from the cells of number i."""
+    """Return the distance along an axis between the coordinate x and the cells with number i."""
     return max(i * cell - x, x - (i + 1) * cell, 0.0)
 
 
@@ -95,8 +95,8 @@ def update_distances(grids, radius, samples):
 def choose_far(grids, radius, least, searched, chosen):
     """Choose candidates that are farther than radius/√w from all samples, chosen ones included.
 
-    Only those in `searched` are looked at, in this order. Those of them that are still farther than
-    least/√w are moved to its beginning. Returns how many these are, and how many are chosen.
+    Only candidates in `searched` are considered, in this order. Those still farther than least/√w
+    are moved to its beginning. Returns their number, and the number of chosen ones.
     """
     candidates = grids.candidates
     kept = 0

@@ -1,7 +1,7 @@
 """Candidates for samples in spatial hash grids, one grid for each power of two of 1/√density.
 
-Gaps are as wide as the sizing function 1/√w asks, so that a search in cells of one size would look
-at far too many candidates or at far too many cells. The buckets of all grids share one array.
+The width of gaps varies with the sizing function 1/√w, so that a search in cells of one size would
+visit far too many candidates or far too many cells. The buckets of all grids share one array.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ __all__ = [
     "sort_candidates",
 ]
 
-# The cells of a grid are so many times as wide as the widest gap that is searched in it.
+# The width of the cells of a grid, relative to the widest gap that is searched in it.
 CELL = 2.0
 # The powers of two that 1/√density can have.
 LEVELS = 1100
@@ -63,7 +63,7 @@ def level_of(density):
 def bucket_of(level, i, j, k, buckets):
     """Return the bucket of the cell (i, j, k) of a grid, which other cells may share.
 
-    The buckets of 4 × 4 × 4 cells follow one another: what is near in space is near in memory.
+    The buckets of 4 × 4 × 4 cells are consecutive: neighbours in space are close in memory.
     """
     block = (i >> 2) * 73856093 ^ (j >> 2) * 19349663 ^ (k >> 2) * 83492791 ^ level * 49979687
     return ((block << 6) + ((i & 3) << 4) + ((j & 3) << 2) + (k & 3)) & (buckets - 1)
@@ -94,7 +94,7 @@ def measure(rows, box, sizes):
 def sort_candidates(rows, finest, grids, buckets, order):
     """Sort rows (M, 8) by their buckets into the candidates of grids: a counting sort.
 
-    The starts have to be 0 before. Candidate k is row order[k]; `buckets` (M,) is workspace.
+    The starts must be 0 on entry. Candidate k is row order[k]; `buckets` (M,) is workspace.
     """
     starts = grids.starts
     for k in range(rows.shape[0]):

@@ -1,4 +1,4 @@
-"""The points of a refined icosahedron, the icosphere: their numbers and their unit normals.
+"""The points of the icosphere, a refined icosahedron: their numbers and their unit normals.
 
 The points of frequency ν on a face are (ν − s − t, s, t): s counts its rows, t its columns. The 12
 corners come first, then the points inside the 30 edges, then those inside the 20 faces, row by row.
@@ -28,18 +28,18 @@ __all__ = [
 ]
 
 
-# They have a type, as other numbers that are handed on: a literal number is compiled for itself.
+# Typed, since Numba compiles a function anew for each literal number in its arguments.
 ZERO, ONE = np.int64(0), np.int64(1)
 
 
 def new_line() -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Return memory for rows and columns of points, and for their normals."""
+    """Return work arrays for rows and columns of points, and for their normals."""
     return np.zeros(2 * STEP, np.int64), np.zeros(3 * STEP)
 
 
 @inline
 def row_start(face, s, frequency):
-    """Return the number of the point (s, 0) of a face, which is that of (s, 1) less one."""
+    """Return the number of the point (s, 0) of a face: that of (s, 1) minus one."""
     rows = s - 1
     inside = (frequency - 1) * (frequency - 2) >> 1
     before = rows * (frequency - 1) - (rows * (rows + 1) >> 1)
@@ -51,9 +51,8 @@ def write_normals(face, frequency, places, first, count, tile):
     """Write the unit normals of points of a face to the first three rows of a tile.
 
     From sample `first` on, and up to VECTOR − 1 more than `count`; `places` (2 STEP) holds rows and
-    columns of the points. What is before the square root is exact but for the rounding of b φ and
-    of one sum: points that mirror each other do so bit for bit, and a point of two faces is the
-    same on both.
+    columns of the points. Before the square root, only b φ and one sum are rounded: mirror images
+    agree bit for bit, and a point of two faces is the same on both.
     """
     a_x, b_x, a_y, b_y, a_z, b_z = line(face, 0)
     p_x, q_x, p_y, q_y, p_z, q_z = line(face, 1)
@@ -96,13 +95,13 @@ def write_line(face, frequency, s, t, s_step, t_step, count, places, tile):
 
 @inline
 def line_count(part, frequency):
-    """Return how many lines there are in the corners (0), an edge (1 … 30) or a face (31 … 50)."""
+    """Return the number of lines in the corners (0), an edge (1 … 30) or a face (31 … 50)."""
     return 12 if part == 0 else 1 if part <= 30 else frequency - 2
 
 
 @loop
 def line_of(part, k, frequency):
-    """Return a line of a part: its first number, its length, and what `write_line` takes."""
+    """Return a line of a part: its first number, its length, and the arguments of `write_line`."""
     inner = frequency - 1
     if part == 0:
         face, t, s = CORNER_PLACES[k, 0], CORNER_PLACES[k, 1], CORNER_PLACES[k, 2]
@@ -121,7 +120,7 @@ def line_of(part, k, frequency):
 
 @jit
 def write_points(frequency, first, last, normals, places, tile):
-    """Write the unit normals (S, 3) of the parts first, …, last − 1; the rest is `new_line`."""
+    """Write the unit normals (S, 3) of the parts first, …, last − 1; work arrays by `new_line`."""
     for part in range(first, last):
         for k in range(line_count(part, frequency)):
             number, count, face, s, t, s_step, t_step = line_of(part, k, frequency)
@@ -140,7 +139,7 @@ def write_points(frequency, first, last, normals, places, tile):
 
 @jit
 def is_icosphere(normals, frequency, first, last, places, tile):
-    """Say whether the parts first, …, last − 1 of normals (S, 3) are those points, bit for bit."""
+    """Return whether the parts first, …, last − 1 of normals (S, 3) equal these points exactly."""
     for part in range(first, last):
         for k in range(line_count(part, frequency)):
             number, count, face, s, t, s_step, t_step = line_of(part, k, frequency)

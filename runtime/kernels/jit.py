@@ -1,9 +1,9 @@
-"""How the functions of this package are compiled, and where their machine code is kept.
+"""The compilation of the functions of this package, and the cache of their machine code.
 
 Numba's own cache looks at the file of a kernel only, and not at the formulas and helpers that it
-calls (https://github.com/numba/numba/issues/1833). Machine code is kept in a folder named after a
-digest of all sources that it may be made of instead: a changed formula is compiled again, and one
-that is changed back is found again. What is damaged is compiled again, too.
+calls (https://github.com/numba/numba/issues/1833). Here machine code is cached in a
+folder named after a digest of all sources of kernels: after a change of a formula the kernels are
+compiled again, and after its reversal they are found again. Damaged files are compiled again, too.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from numba.core import config as numba_config
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 
 from ...generated.vectors import inline
-from .. import compiling  # noqa: F401 - it tells that kernels are compiled
+from .. import compiling  # noqa: F401 - installs the notice of compilation
 
 __all__ = ["inline", "jit", "loop"]
 
@@ -34,7 +34,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 config: Any = numba_config  # Numba makes its attributes at run time
 PACKAGE = Path(__file__).parents[2]
 SOURCES = ("generated/*.py", "runtime/kernels/*.py", "runtime/tolerances.py")
-# Folders of other sources are removed when they were not used for so many days.
+# Folders of other sources are removed after this many days without use.
 DAYS_KEPT = 30
 # Kernels are called from Python and from one another, and never from C.
 OPTIONS = {"nogil": True, "error_model": "numpy", "fastmath": False, "no_cfunc_wrapper": True}
@@ -43,8 +43,8 @@ OPTIONS = {"nogil": True, "error_model": "numpy", "fastmath": False, "no_cfunc_w
 def loop(function: Function) -> Function:
     """Compile a part of kernels once, as a function of its own.
 
-    It is for what is long or called in several places, and allocates no memory: arrays come from
-    its caller. Short functions are `inline`, that is, copied into their callers.
+    This is for functions that are long or called in several places. They allocate no memory: arrays
+    come from the caller. Short functions are `inline`, that is, copied into their callers.
     """
     return numba.njit(_nrt=False, no_cpython_wrapper=True, **OPTIONS)(function)  # pyright: ignore
 
@@ -52,7 +52,7 @@ def loop(function: Function) -> Function:
 def jit(function: Function) -> Function:
     """Compile a kernel on its first call from Python; keep its machine code on disk if possible.
 
-    Kernels allocate no memory either: Python hands them the arrays that they need.
+    Kernels allocate no memory either: all arrays are arguments.
     """
     kernel = numba.njit(_nrt=False, **OPTIONS)(function)  # pyright: ignore
     folder = cache_folder()
@@ -76,7 +76,7 @@ class KernelCache(FunctionCache):
 
 
 class CheckedFile(IndexDataCacheFile):
-    """Machine code on disk with a checksum: what cannot be read counts as missing."""
+    """Machine code on disk with a checksum: damaged files count as missing."""
 
     def _load_index(self) -> dict[Any, str]:
         try:
@@ -97,7 +97,7 @@ class CheckedFile(IndexDataCacheFile):
             file.write(hashlib.sha256(dumped).digest() + dumped)
 
     def save(self, key: object, data: object) -> None:
-        """Save machine code, if the disk takes it."""
+        """Save machine code; ignore errors of the disk."""
         with suppress(OSError):
             super().save(key, data)
 
@@ -106,8 +106,8 @@ class CheckedFile(IndexDataCacheFile):
 def cache_folder() -> Path | None:
     """Return the folder for machine code made of these sources; None if none can be written.
 
-    That is one in the user's NUMBA_CACHE_DIR if that is set, else beside the sources, or else in
-    the user's folder of caches.
+    It is in NUMBA_CACHE_DIR if that is set, else next to the sources, or else in the user's cache
+    folder.
     """
     asked = config.CACHE_DIR
     home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
@@ -131,7 +131,7 @@ def digest() -> str:
 
 
 def remove_unused(folder: Path) -> None:
-    """Note that a folder is used; remove the folders of other digests that long were not."""
+    """Mark a folder as used; remove the folders of other digests that are long unused."""
     oldest = time.time() - DAYS_KEPT * 24 * 3600
     with suppress(OSError):
         os.utime(folder)

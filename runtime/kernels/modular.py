@@ -37,7 +37,7 @@ HIGHEST: Any = np.int64(1 << 30)
 
 @loop
 def widened(lowest, highest, value):
-    """Return the lowest and the highest exponent after one more number; 0 has none."""
+    """Return the lowest and the highest exponent, including one more number; 0 has none."""
     if value != 0.0:
         exponent = math.frexp(value)[1]
         lowest, highest = min(lowest, exponent), max(highest, exponent)
@@ -84,7 +84,7 @@ def residues_of_vector(v, lowest, prime, powers):
 
 @loop
 def neighbour(mu, i, j, turn, k, centre, lowest, prime, powers):
-    """Return the difference of neighbour k of a coefficient from it, up to multiples of a prime."""
+    """Return neighbour k minus the coefficient, up to multiples of a prime."""
     value = vector_at(mu, i + NEIGHBOURS[turn, k, 0], j + NEIGHBOURS[turn, k, 1])
     v = residues_of_vector(value, lowest, prime, powers)
     return Vector(v.x - centre.x, v.y - centre.y, v.z - centre.z)
@@ -116,8 +116,8 @@ def residues_of_forms(patch, n, prime):
 def mixed_radix_value(residues, primes, inverses, digits):
     """Return the number (sign included) that has residues (m,) modulo the first m primes.
 
-    It has to be smaller than the product of the first m − 1. inverses[i, k] is that of prime i
-    modulo prime k. `digits` (m,) is room for the digits in mixed radix of the number or of its
+    It must be smaller than the product of the first m − 1. inverses[i, k] is the inverse of prime i
+    modulo prime k. `digits` (m,) is a work array for the mixed-radix digits of the number or of its
     opposite: the last one is zero for the one that is positive.
     """
     count = residues.size

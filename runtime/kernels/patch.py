@@ -1,4 +1,4 @@
-"""The patches of a spline: where they are on the grid, and their vectors.
+"""The patches of a spline: their positions on the grid, and their vectors.
 
 The patches are numbered cell by cell: cell = i n + j, and in each cell south, east, north, west,
 which are 0 to 3 quarter turns of the southern one.
@@ -31,7 +31,7 @@ SOUTHWEST, SOUTH, SOUTHEAST, WEST, EAST, NORTH = (np.int64(k) for k in (0, 1, 2,
 
 @inline
 def place_of(patch, columns):
-    """Return row and column of the cell of a patch, and its quarter turns."""
+    """Return the row and the column of the cell of a patch, and its quarter turns."""
     cell = patch // 4
     return cell // columns, cell % columns, patch % 4
 
@@ -44,7 +44,7 @@ def vector_at(mu, i, j):
 
 @loop
 def neighbour(mu, i, j, turn, k, centre, scale):
-    """Return the difference of neighbour k of a coefficient from it, times `scale`."""
+    """Return neighbour k minus the coefficient (i, j), times `scale`."""
     p = i + NEIGHBOURS[turn, k, 0]
     q = j + NEIGHBOURS[turn, k, 1]
     return Vector(
@@ -102,7 +102,7 @@ def curvatures_of_patch(patch, N, u, v):
 
 @jit
 def normals_at(mu, scale, patches, places, normals):
-    """Write the unnormalized oriented normals (k, 3) of patches (k) at places u, v (k, 2)."""
+    """Write the unnormalized oriented normals (k, 3) of patches (k,) at u, v (k, 2)."""
     for k in range(patches.size):
         patch = patch_of(mu, scale, patches[k])
         set_row(normals, k, normal_of_patch(patch, places[k, 0], places[k, 1]))

@@ -1,4 +1,4 @@
-"""Which points of an icosphere a cone of normals may meet: spans in the rows of its faces."""
+"""The points of an icosphere that a cone of normals may contain: spans in the rows of faces."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ from .windows import VECTOR, bounding_box, face_window, map_cone, set_empty, spa
 
 __all__ = ["FaceMemory", "border_points", "count_points", "points_inside"]
 
-# Boxes of no more points than this are not cut to the hull inside.
+# Bounding boxes of at most this many points are not restricted to the hull.
 SMALL_BOX = 192
-# The faces of an icosahedron, and that of a cube on which a face of it is mapped.
+# The faces of an icosahedron, and the face of a cube to which they are mapped.
 FACES, CUBE_FACE = 20, np.int64(4)
-# Rows of points have no height, as rows of bins have.
+# Rows of points have no height, in contrast to rows of bins.
 ROW_HEIGHT = np.int64(0)
 
 
 class FaceMemory(NamedTuple):
-    """Memory for the faces that a cone may meet: `met` (20), and for each face first and last row.
+    """Work arrays: the faces `met` (20) by a cone, and the first and last row on each.
 
-    spans (20, 2, ν + 1) are the first and the last column of each row; the rest is for one face.
+    spans (20, 2, ν + 1) are the first and the last column of each row; the others are for one face.
     """
 
     met: NDArray[np.int64]
@@ -46,7 +46,7 @@ class FaceMemory(NamedTuple):
 
     @classmethod
     def new(cls, frequency: int) -> FaceMemory:
-        """Return new memory."""
+        """Return new work arrays."""
         return cls(
             np.empty(FACES + 1, np.int64),
             np.empty(FACES, np.int64),
@@ -63,7 +63,7 @@ class FaceMemory(NamedTuple):
 def count_points(cone, sine, frequency, memory):
     """Write the rows of all faces that a cone may meet.
 
-    Returns how many faces, how many points, and whether some of these are on a border of a face.
+    Returns the numbers of faces and of points, and whether some are on the border of a face.
     """
     met, first, last, spans, _, _, _, _ = memory
     for face in range(FACES):
@@ -80,7 +80,7 @@ def count_points(cone, sine, frequency, memory):
 
 @loop
 def faces_met(axis, sine, met):
-    """Write which faces a cone of normals may meet, in ascending order; return how many.
+    """Write the faces that a cone of normals may meet, in ascending order; return their number.
 
     Most cones are narrow and lie within the face that is nearest to their axis.
     """
@@ -108,7 +108,7 @@ def faces_met(axis, sine, met):
 
 @inline
 def reaches(face, axis, slack):
-    """Say whether a unit vector lies in a face, or outside by less than the slack (a sine)."""
+    """Return whether a unit vector lies in a face, or outside by less than the slack (a sine)."""
     for k in range(3):
         towards = (
             BARYCENTRIC[face, k, 0] * axis[0]
@@ -122,7 +122,7 @@ def reaches(face, axis, slack):
 
 @loop
 def write_spans(face, cone, sine, frequency, memory):
-    """Write the rows of a face that a cone may meet, and their spans; return how many points."""
+    """Write the rows of a face that a cone may meet, and spans; return the number of points."""
     _, first, last, spans, window, hull, low, high = memory
     map_cone(cone, FRAMES[face], STRETCHES[face])
     set_empty(window)
@@ -158,7 +158,7 @@ def write_spans(face, cone, sine, frequency, memory):
 
 @inline
 def on_border(spans, first, last, frequency):
-    """Say whether rows of a face reach its border."""
+    """Return whether rows of a face reach its border."""
     if first <= 0:
         return True
     for row in range(first, last + 1):
@@ -171,7 +171,7 @@ def on_border(spans, first, last, frequency):
 def border_points(memory, frequency, numbers):
     """Write the numbers of corners, then of the points inside edges, that a cone may meet.
 
-    Each is looked up on one of its faces; those that are not met have no rows. Returns how many.
+    Each is looked up on one of its faces; faces not met have no rows. Returns the number of points.
     """
     _, first, last, spans, _, _, _, _ = memory
     count = 0
@@ -202,7 +202,7 @@ def border_points(memory, frequency, numbers):
 def points_inside(face, memory, frequency, s, t):
     """Write the rows and columns (s, t) of the points inside a face that a cone may meet.
 
-    Before, between and behind rows there is a NaN. Returns how many entries there are.
+    Rows are separated by NaN, with one before the first and after the last. Returns the length.
     """
     _, first, last, spans, _, _, _, _ = memory
     t[0] = math.nan
@@ -211,7 +211,7 @@ def points_inside(face, memory, frequency, s, t):
         left = max(spans[face, 0, row], 1)
         size = min(spans[face, 1, row], frequency - row - 1) - left + 1
         for k in range(size):
-            at = np.uint64(count + k)  # unsigned, so that no sign is checked
+            at = np.uint64(count + k)  # unsigned: no check for negative indices
             s[at] = row
             t[at] = left + k
         if size > 0:

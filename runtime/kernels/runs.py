@@ -1,7 +1,7 @@
 """Packed runs: hits of one patch whose normals are consecutive points of an icosphere.
 
-number of the first normal << 32 | how many << SIZE | face << ROW | row. The face is NO_FACE for a
-single normal on a border of a face.
+A packed run is number of the first normal << 32 | length << SIZE | face << ROW | row. The face is
+NO_FACE for a single normal on a border of a face.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ __all__ = [
 
 SIZE, ROW = 18, 13
 LONGEST, BEFORE_SIZE, BEFORE_ROW = (1 << 32 - SIZE) - 1, (1 << SIZE) - 1, (1 << ROW) - 1
-# The rows of a higher frequency do not fit in.
+# The highest frequency with rows that fit into the bits.
 MOST_FREQUENT = 1 << ROW
-# It has a type: a literal number is compiled for itself.
+# Typed, since Numba compiles a function anew for each literal number in its arguments.
 NO_FACE = np.int64(20)
-# A patch with so many samples begins a tile.
+# A patch with at least this many samples begins a tile.
 MANY = 32
 
 
@@ -46,8 +46,8 @@ def pack_run(face, s, t, count, frequency):
 def store_runs(face, frequency, s, t, count, codes, marks, words, ends, patch, certain, at):
     """Write patch and run of points with the code YES to rows from `at` on; return the end.
 
-    Runs begin and end, in turn, where codes change; most words of eight of them do not. `marks` (…)
-    and `words` (…) are the same memory.
+    Runs begin and end, in turn, where the codes change. `words` (…) is `marks` (…) as groups
+    of eight, most of which are zero.
     """
     for k in range(whole_vectors(count)):
         marks[k + 1] = (codes[k] == YES) != (codes[k + 1] == YES)
@@ -77,7 +77,7 @@ def store_undecided(face, frequency, s, t, count, codes, patch, undecided, at):
 
 @loop
 def store_border(codes, numbers, count, patch, certain, undecided, counts):
-    """Write patch and run of single normals: those with the code YES, and undecided ones."""
+    """Write patch and run of single normals with the code YES, and of undecided ones."""
     for k in range(count):
         run = numbers[k] << 32 | 1 << SIZE | NO_FACE << ROW
         if codes[k] == YES:
@@ -90,7 +90,7 @@ def store_border(codes, numbers, count, patch, certain, undecided, counts):
             counts[1] += 1
 
 
-# --- what their samples hold ----------------------------------------------------------------------
+# --- the fields of their samples ------------------------------------------------------------------
 
 
 @jit
@@ -98,12 +98,12 @@ def fill_runs(
     mu, scale, normals, frame, frequency, runs, start, tile, indices, places,
     points, directions, uv, support, gaussian, mean, normal_index, patch_index,
 ):  # fmt: skip
-    """Fill the samples of runs (k, 2), the first of which is number `start`; see `fill_samples`.
+    """Fill the samples of runs (k, 2), from number `start` on; see `fill_samples`.
 
-    `places` (2 STEP) is memory for the rows and columns of the normals.
+    `places` (2 STEP,) is a work array for the rows and columns of the normals.
     """
     at = known = first = ZERO
-    face = NO_FACE  # of the samples of the tile whose normals are not yet known
+    face = NO_FACE  # of the samples in the tile without normals yet
     while first < runs.shape[0]:
         patch = runs[first, 0]
         last, total = first, 0
@@ -163,7 +163,7 @@ def finish(
 
 @inline
 def write_run(patch, number, row, column, at, count, indices, places):
-    """Write the indices and the places of a run of samples from `at` on."""
+    """Write the indices of a run of samples, and the rows and columns, from `at` on."""
     for k in range(count):
         here, beyond = np.uint64(at + k), np.uint64(at + STEP + k)
         indices[here] = number + k

@@ -1,7 +1,7 @@
-"""Which patch of a spline has which points of an icosphere: face by face, row by row.
+"""The search for points of an icosphere that are normals of patches, by faces and rows.
 
 The points of a face lie on a lattice in its plane, where the linear forms of a patch are linear in
-row and column: normals that are clearly in or out need not be computed.
+row and column: only the normals of undecided points are computed.
 """
 
 from __future__ import annotations
@@ -39,12 +39,12 @@ from .windows import Cone, load_cone, whole_vectors
 
 __all__ = ["scan_in"]
 
-# The square of the length of the corners of the icosahedron.
+# The squared length of the corners of the icosahedron.
 SQUARE = 1.0 + PHI * PHI
 
 
 class LatticeMemory(NamedTuple):
-    """Memory for the linear forms on a face (3, 6), and for normals that are looked at again."""
+    """Work arrays: the linear forms on a face (3, 6), and a tile of undecided normals."""
 
     forms: NDArray[np.float64]
     tile: NDArray[np.float64]
@@ -53,7 +53,7 @@ class LatticeMemory(NamedTuple):
 
     @classmethod
     def new(cls) -> LatticeMemory:
-        """Return new memory."""
+        """Return new work arrays."""
         return cls(
             np.empty((3, 6)),
             np.zeros(3 * STEP),
@@ -63,7 +63,7 @@ class LatticeMemory(NamedTuple):
 
 
 class LatticeCandidates(NamedTuple):
-    """Memory for the points that a patch may have: numbers, rows and columns, codes and changes."""
+    """Work arrays for candidate points: numbers, rows, columns, codes, and changes of codes."""
 
     numbers: NDArray[np.int64]
     s: NDArray[np.float64]
@@ -74,7 +74,7 @@ class LatticeCandidates(NamedTuple):
 
     @classmethod
     def new(cls, count: int, frequency: int) -> LatticeCandidates:
-        """Return memory for so many points, in so many rows."""
+        """Return work arrays for `count` points in `frequency` rows."""
         size = count + frequency + 64
         marks = np.zeros((size + 7) // 8 * 8, np.int8)
         # Vectors of rows and columns are read beyond their ends: what is there by chance may be
@@ -89,14 +89,14 @@ class LatticeCandidates(NamedTuple):
         )
 
     def room(self, frequency: int) -> int:
-        """Return how many points there is room for."""
+        """Return the capacity in points."""
         return self.s.size - frequency - 64
 
 
 def scan_in(
     spline: Coefficients, normals: NDArray[np.float64], frequency: int
 ) -> Callable[[int, int, Found], tuple[int, int]]:
-    """Return a function that calls `scan_patches`, with the memory that this needs."""
+    """Return a function that calls `scan_patches` with work arrays of its own."""
     cone, faces, memory = Cone.new(), FaceMemory.new(frequency), LatticeMemory.new()
     candidates = LatticeCandidates.new(FEW, frequency)
 
@@ -119,7 +119,7 @@ def scan_patches(
 ):
     """Find the points of an icosphere that are normals of patches, in ascending order for each.
 
-    As `search_patches`, for the points (S, 3) of frequency ν; what is found are packed runs.
+    As `search_patches`, for the points (S, 3) of frequency ν; the results are packed runs.
     """
     mu, scale, noise, border = spline
     columns = mu.shape[1] - 2
@@ -182,9 +182,9 @@ def scan_patches(
 
 @loop
 def forms_on_face(patch, axis, sine, face, frequency, forms):
-    """Write the linear forms (3, 6): at the point (0, 0) of a face, and their steps by row, column.
+    """Write the linear forms (3, 6) at the point (0, 0) of a face, and their steps by row, column.
 
-    A, B, C, P, Q and the height along the axis, which is 1 without a cone.
+    They are A, B, C, P, Q and the height along the axis, which is 1 without a cone.
     """
     r = Vector(axis[0], axis[1], axis[2])
     corner = row_vector(POSITIONS, FACES[face, 0])
@@ -206,10 +206,10 @@ def forms_on_face(patch, axis, sine, face, frequency, forms):
 
 @loop
 def classify_points(forms, bound, frequency, s, t, count, codes):
-    """Write the codes of the points of a face, as `classify` does; return how many are undecided.
+    """Write the codes of the points of a face, as `classify`; return the number of undecided ones.
 
-    Their normals are not normalized and their forms have other errors: what is certain is so by
-    more than twice the bound. Where the column is NaN the code is NO.
+    The normals are not normalized, and the forms have additional errors: certain signs exceed twice
+    the bound. Where the column is NaN the code is NO.
     """
     largest = 0.0
     for k in range(5):
@@ -265,7 +265,7 @@ def classify_again(patch, axis, sine, bound, face, frequency, s, t, count, memor
 
 @loop
 def classify_border(patch, axis, sine, bound, normals, numbers, count, memory, codes):
-    """Write the codes of the normals of some numbers."""
+    """Write the codes of the normals with the given numbers."""
     for begin in range(0, count, TILE):
         size = min(TILE, count - begin)
         for k in range(size):

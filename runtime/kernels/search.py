@@ -1,7 +1,7 @@
-"""Which patch of a spline has which of the normals in bins.
+"""The search for normals in bins that are normals of patches.
 
 For each patch: the cone of its normals, the bins that the cone may meet, the normals in these bins,
-and the signs of the forms of the patch at each.
+and the signs of the forms of the patch at these normals.
 """
 
 from __future__ import annotations
@@ -31,22 +31,22 @@ from .windows import (
 
 __all__ = ["Bins", "Coefficients", "Found", "search_in"]
 
-# A unit vector on a face of the cube is 1/√3 high; one in a cone at most this times its sine less
-# high than its axis.
+# The least height of a unit vector on a face of the cube, 1/√3 rounded down; the height of a vector
+# in a cone is at least that of the axis minus SLOPE times the sine.
 FACE_HEIGHT, SLOPE = 0.577, 1.1
-# Windows with more rows and columns than this are cut to the hull inside.
+# Windows with more rows and columns than this are restricted to the hull.
 SMALL_WINDOW = 3
-# Rows of bins are one square high. It has a type: a literal number is compiled for itself.
+# Rows of bins are one square high. Typed: Numba compiles a function anew for a literal number.
 ROW_HEIGHT = np.int64(1)
-# Room for so many candidates at first.
+# The initial capacity for candidates.
 FEW = 1 << 10
 
 
 class Coefficients(NamedTuple):
-    """What a search reads of a spline.
+    """The coefficients of a spline and their properties.
 
-    Coefficients mu (m, n, 3) with their ring, the scale that brings them to about 1, the rounding
-    of the scaled coordinates, and which sides of the domain are open (4).
+    Coefficients mu (m, n, 3) with ghost coefficients, the power of two that scales them to about 1,
+    the rounding error of the scaled coordinates, and which sides of the domain are open (4,).
     """
 
     mu: NDArray[np.float64]
@@ -56,9 +56,9 @@ class Coefficients(NamedTuple):
 
 
 class Bins(NamedTuple):
-    """Normals in the order of bins: `starts` of these, `normals` (S, 4) with their numbers.
+    """Normals in the order of bins: the `starts` of bins, `normals` (S, 4) with their numbers.
 
-    The bins are those of `frame`, of norm `stretch`, with `grid` squares along an edge.
+    `frame` (3, 3), of norm `stretch`, maps normals to the cube; an edge has `grid` squares.
     """
 
     frame: NDArray[np.float64]
@@ -69,10 +69,10 @@ class Bins(NamedTuple):
 
 
 class Found(NamedTuple):
-    """What a search finds: rows (…, 2) of patch and packed hit, certain and undecided.
+    """The output of a search: rows (…, 2) of patch and packed hit, certain and undecided.
 
-    `bounds` (…) are the errors of the forms of undecided ones, `flat` (…) the patches that may be
-    developable. `counts` (3) are the numbers of the three.
+    `bounds` (…) are the errors of the forms of undecided hits, `flat` (…) the patches that may be
+    developable. `counts` (3,) are the numbers of certain hits, undecided hits and flat patches.
     """
 
     certain: NDArray[np.int64]
@@ -83,7 +83,7 @@ class Found(NamedTuple):
 
     @classmethod
     def new(cls, room: int, patches: int) -> Found:
-        """Return memory for so many hits of each kind, of so many patches."""
+        """Return arrays for `room` hits of each kind, and for a number of patches."""
         return cls(
             np.empty((room, 2), np.int64),
             np.empty((room, 2), np.int64),
@@ -94,7 +94,7 @@ class Found(NamedTuple):
 
 
 class BinMemory(NamedTuple):
-    """Memory for the bins that a cone may meet: windows of the faces, and rows of bins."""
+    """Work arrays for the bins that a cone may meet: windows of the faces, and rows of bins."""
 
     windows: NDArray[np.int64]
     hulls: NDArray[np.float64]
@@ -106,7 +106,7 @@ class BinMemory(NamedTuple):
 
     @classmethod
     def new(cls, grid: int) -> BinMemory:
-        """Return memory for bins with `grid` squares along an edge."""
+        """Return work arrays for bins with `grid` squares along an edge."""
         return cls(
             np.empty((6, 4), np.int64),
             np.empty((6, 12, 2)),
@@ -119,7 +119,7 @@ class BinMemory(NamedTuple):
 
 
 class Candidates(NamedTuple):
-    """Memory for the normals that a patch may have."""
+    """Work arrays for candidate normals of a patch."""
 
     places: NDArray[np.int64]
     numbers: NDArray[np.float64]
@@ -133,7 +133,7 @@ class Candidates(NamedTuple):
 
     @classmethod
     def new(cls, count: int) -> Candidates:
-        """Return memory for so many normals."""
+        """Return work arrays for `count` normals."""
         size = count + VECTOR
         return cls(
             np.empty(size, np.int64),
@@ -149,12 +149,12 @@ class Candidates(NamedTuple):
 
     @property
     def room(self) -> int:
-        """How many normals there is room for."""
+        """The capacity in normals."""
         return self.x.size - VECTOR
 
 
 def search_in(spline: Coefficients, bins: Bins) -> Callable[[int, int, Found], tuple[int, int]]:
-    """Return a function that calls `search_patches`, with the memory that this needs."""
+    """Return a function that calls `search_patches` with work arrays of its own."""
     cone, memory, candidates = Cone.new(), BinMemory.new(bins.grid), Candidates.new(FEW)
 
     def search(first: int, last: int, found: Found) -> tuple[int, int]:
@@ -174,8 +174,8 @@ def search_in(spline: Coefficients, bins: Bins) -> Callable[[int, int, Found], t
 def search_patches(spline, bins, first, last, found, cone, memory, candidates):
     """Find the normals of the patches first, …, last − 1, in ascending order for each patch.
 
-    Returns the patch before which it stopped for lack of room, and the number of normals for which
-    that needs room.
+    Returns the patch at which the capacity was exceeded, and the number of normals that this patch
+    needs; `last` and 0 at the end.
     """
     mu, scale, noise, border = spline
     columns = mu.shape[1] - 2
@@ -215,7 +215,7 @@ def search_patches(spline, bins, first, last, found, cone, memory, candidates):
 
 @loop
 def count_normals(bins, cone, sine, memory):
-    """Write the windows of the faces that a cone may meet; return how many normals are in them."""
+    """Write the windows of the faces that a cone may meet; return the number of their normals."""
     frame, stretch, grid, starts, _ = bins
     windows, hulls, errors, sizes, _, _, _ = memory
     axis = cone.axis
@@ -249,7 +249,7 @@ def count_window(window, face, grid, starts):
 
 @loop
 def rows_of_bins(grid, starts, memory):
-    """Write where rows of bins that a cone may meet begin and end; return how many there are."""
+    """Write the ranges of normals in rows of bins that a cone may meet; return their number."""
     windows, hulls, errors, sizes, rows, low, high = memory
     count = 0
     for face in range(6):
@@ -276,10 +276,10 @@ def rows_of_bins(grid, starts, memory):
 
 @loop
 def gather(rows, size, normals, places, numbers, x, y, z):
-    """Copy the normals of rows of bins, their places and numbers; return how many there are."""
+    """Copy the normals in rows of bins, their positions and numbers; return their number."""
     prefetched = 0.0
     for row in range(size):
-        # The memory of all rows is asked for at once, and not waited for one by one.
+        # Prefetch all rows at once, in place of one cache miss after the other.
         for k in range(rows[row, 0], rows[row, 1], 2):
             prefetched += normals[np.uint64(k), 0]
     count = 0
@@ -293,5 +293,5 @@ def gather(rows, size, normals, places, numbers, x, y, z):
             z[at] = normals[place, 2]
             numbers[at] = normals[place, 3]
         count += rows[row, 1] - begin
-    x[count] = prefetched  # else the compiler drops it; sums of integers it makes slower
+    x[count] = prefetched  # keeps the compiler from removing the reads; integer sums are slower
     return count

@@ -43,8 +43,8 @@ def at_most(value, limit):
 def density_of(K, H, radius, target):
     """Return the target density for the Gaussian and mean curvature.
 
-    Radii of curvature below the radius of the patch are taken as that: they are artefacts of the
-    spline.
+    Radii of curvature smaller than the radius of the patch are artefacts of the spline, and are
+    replaced by it.
     """
     density = 0.0
     limit = 1.0 / (radius * radius)
@@ -73,15 +73,15 @@ def density_and_normal(patch, u, v, radius, target):
 
 @loop
 def enclosing_radius(patch, u0, v0, u1, v1, u2, v2):
-    """Return a radius around the image of the centroid that holds that of a triangle in (u, v)."""
+    """Return a radius around the image of the centroid that covers the image of a triangle."""
     return math.sqrt(max(reach(patch, u0, v0, u1, v1, u2, v2)))
 
 
 @jit
 def integrate_density(mu, scale, target, first, last, radii, areas, densities):
-    """Write what integrals of the target density need, for the patches first, …, last − 1.
+    """Write weights and values of the target density for the patches first, …, last − 1.
 
-    radii (patches,): of balls around the centroids that hold the patches.
+    radii (patches,): of balls around the centroids that contain the patches.
     areas (patches, 3): the weights of the nodes of a quadrature.
     densities (patches, 4): the target density at these nodes and at the centroid.
     """

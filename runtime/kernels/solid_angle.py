@@ -13,7 +13,7 @@ __all__ = ["integrate_arcs"]
 def integrate_arcs(arcs, poles, nodes, weights, integrals):
     """Write the integrals of the solid-angle form along arcs (k, 3, 3), for the poles (k, 3).
 
-    nodes and weights are those of a quadrature on [0, 1]. Where a normal vanishes nothing is added.
+    nodes and weights are those of a quadrature on [0, 1]. Vanishing normals are skipped.
     """
     for k in range(arcs.shape[0]):
         N0 = Vector(arcs[k, 0, 0], arcs[k, 0, 1], arcs[k, 0, 2])

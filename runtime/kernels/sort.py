@@ -1,4 +1,4 @@
-"""Packed hits, number of a normal << 32 | its place in the order of bins: sorted and merged."""
+"""Packed hits, number of a normal << 32 | its position in the order of bins."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from .jit import inline, jit, loop
 
 __all__ = ["merge_hits", "pack_hits", "store_sorted"]
 
-# So many are sorted by insertion.
+# Up to this many are sorted by insertion.
 FEW = 32
 
 
 @loop
 def pack_hits(codes, code, numbers, places, hits, count):
-    """Write a packed hit for each candidate that has the code; return how many have."""
+    """Write a packed hit for each candidate with the code; return their number."""
     chosen = 0
     for k in range(count):
         hits[chosen] = int(numbers[k]) << 32 | places[k]
@@ -47,7 +47,7 @@ def insertion_sort(hits, count):
 
 @inline
 def radix_sort(hits, count, scratch, starts):
-    """Sort hits by the numbers of normals, in digits of as many values as there are hits."""
+    """Sort hits by the numbers of normals: a radix sort with about as many digits as hits."""
     low = high = hits[0] >> 32
     for k in range(count):
         low = min(low, hits[k] >> 32)
@@ -75,7 +75,7 @@ def radix_sort(hits, count, scratch, starts):
 
 @jit
 def merge_hits(certain, decided, merged, places):
-    """Merge rows (…, 2) of patch and packed hit; write where the decided ones are to places (…)."""
+    """Merge rows (…, 2) of patch and packed hit; write the rows of decided ones to places."""
     at = 0
     end = certain.shape[0]
     count = decided.shape[0]

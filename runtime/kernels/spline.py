@@ -46,13 +46,13 @@ def fit_centres_and_vertices(centres, vertices, coefficients):
 
 @inline
 def value_round_cell(values, i, j, k, x):
-    """Return component x of the value at vertex k round a cell."""
+    """Return component x of the value at vertex k of a cell."""
     return values[i + VERTICES[k, 0], j + VERTICES[k, 1], x]
 
 
 @jit
 def fit_vertices(values, coefficients):
-    """Write coefficients (m, n, 3) from values (m+3, n+3, 3) at the vertices and one ring more."""
+    """Write coefficients (m, n, 3) from values (m+3, n+3, 3) at the vertices and ghosts."""
     for i in range(coefficients.shape[0]):
         for j in range(coefficients.shape[1]):
             for x in range(3):
@@ -102,7 +102,7 @@ def control_nets(mu, nets):
 
 @inline
 def locate(s, t):
-    """Return the triangle of a cell and u, v in it; s, t are in cells from the centre."""
+    """Return the triangle of a cell and u, v in it; s, t are relative to its centre, in cells."""
     turn = 0
     if abs(s) > abs(t):
         turn = 1 if s > 0.0 else 3

@@ -1,7 +1,7 @@
 """Support functions: the branches of patches at given normals, offsets, and curvatures.
 
-A branch is what one patch has at one of its normals: the point, the Hessian of the support
-function, and the curvatures.
+A branch is one patch at one of its normals: the point, the Hessian of the support function, and the
+curvatures.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ __all__ = [
 OUTSIDE = 0
 INSIDE = 1
 DOUBTFUL = 2
-# A sum that is smaller than its terms by this factor has lost digits.
+# A sum that is smaller than its terms by this factor suffers from cancellation.
 CANCELLED = math.ldexp(1.0, -20)
 
 
@@ -52,10 +52,10 @@ branches_of_patch = jit(support_function.branch)
 
 @jit
 def classify(patch, bound, accurate, shortest, normals, kinds, uv):
-    """Write whether each of the normals (k, 3) is one of a patch, and u, v (k, 2) of those INSIDE.
+    """Write the kinds of the normals (k, 3) relative to a patch, and u, v (k, 2) if INSIDE.
 
-    `bound` is the rounding error of U, V, W. D has to exceed `accurate`, and N `shortest`. Normals
-    have a length of about 1. What rounding may have changed is DOUBTFUL.
+    `bound` is the rounding error of U, V, W. D must exceed `accurate`, and N `shortest`. Normals
+    have a length of about 1. Normals undecided because of rounding are DOUBTFUL.
     """
     for k in range(normals.shape[0]):
         n = row_vector(normals, k)
@@ -81,7 +81,7 @@ def classify(patch, bound, accurate, shortest, normals, kinds, uv):
 def hessians_of_patches(mu, scale, patches, normals, known, hessians):
     """Write the Hessians (k, 3, 3) of the support function at unit normals (k, 3) of patches (k,).
 
-    known (k, 2) holds u, v where they are known better than from the normal, which is then that of
+    known (k, 2) are u, v where they are more accurate than from the normal, which is then that of
     the patch at u, v; else NaN.
     """
     columns = mu.shape[1] - 2

@@ -1,4 +1,4 @@
-"""The positions of the surfaces of the catalogue, compiled when they are first asked for."""
+"""The positions of the surfaces of the catalogue, compiled at first use."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""A tile: samples computed side by side, in rows of an array that loops without branches run along.
+"""A tile: a batch of samples in rows of an array, for vectorized loops.
 
-The rows hold the normal, the vectors of the patch and its place, and what is computed from them.
+The rows contain the normal, the vectors of the patch and its position, and the results.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ from .windows import VECTOR, whole_vectors
 
 __all__ = ["NORMAL", "STEP", "TILE", "fill_known", "fill_tile", "load_patch", "new_tile", "put"]
 
-# Samples are computed so many at a time, then stored. Rows of a tile have room for some more.
+# The number of samples of a tile. Rows of a tile have room for some more.
 TILE = 64
 STEP = TILE + VECTOR
-# How many rows of STEP numbers there are, and where the parts of a tile begin. These numbers have a
-# type: a literal number is compiled for itself.
+# The number of rows, of STEP numbers, and the starts of the parts of a tile. The starts are typed,
+# since Numba compiles a function anew for each literal number in its arguments.
 ROWS = 38
 ONE_ROW, TWO_ROWS = np.uint64(STEP), np.uint64(2 * STEP)
 NORMAL, PATCH, PLACE, POINT, U, V, SUPPORT, GAUSSIAN, MEAN = (
@@ -41,7 +41,7 @@ NORMAL, PATCH, PLACE, POINT, U, V, SUPPORT, GAUSSIAN, MEAN = (
 
 
 class Place(NamedTuple):
-    """Where a patch is: centre and number of its cell, and its corners u = 1, v = 1 in the cell."""
+    """The position of a patch: centre and number of its cell, its corners u = 1, v = 1 there."""
 
     centre: Vector
     cell_u: float
@@ -53,14 +53,14 @@ class Place(NamedTuple):
 
 
 def new_tile() -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Return the rows of a tile, one after the other, and two rows for indices."""
+    """Return the rows of a tile as one array, and two rows for indices."""
     return np.zeros(ROWS * STEP), np.zeros(2 * STEP, np.int64)
 
 
 @loop
 def vector_in(tile, row, k):
     """Return vector k in three rows of a tile from `row` on."""
-    at = np.uint64(row + k)  # unsigned, so that no sign is checked
+    at = np.uint64(row + k)  # unsigned: no check for negative indices
     return Vector(tile[at], tile[at + ONE_ROW], tile[at + TWO_ROWS])
 
 
@@ -75,7 +75,7 @@ def put(tile, row, k, v):
 
 @loop
 def place_in(mu, i, j, turn):
-    """Return where a patch is."""
+    """Return the position of a patch."""
     return Place(
         vector_at(mu, i + 1, j + 1),
         i + 0.5,
@@ -94,7 +94,7 @@ def load_patch(mu, number, scale, tile, start, end):
     patch = patch_vectors(mu, i + 1, j + 1, turn, scale)
     place = place_in(mu, i, j, turn)
     tile = tile[start:]
-    for k in range(whole_vectors(end - start)):  # from 0, so that no sign is checked
+    for k in range(whole_vectors(end - start)):  # from 0: no check for negative indices
         put(tile, PATCH, k, patch.a)
         put(tile, PATCH + 3 * STEP, k, patch.b)
         put(tile, PATCH + 6 * STEP, k, patch.c)
@@ -124,10 +124,10 @@ def on_surface(place, frame, size, n, u, v, x, K, H):
 
 @loop
 def evaluate_tile(tile, count, frame, size, points, uv, support, gaussian, mean):
-    """Evaluate `count` samples of a tile; the loop has no branches, so that it runs on vectors.
+    """Evaluate `count` samples of a tile; the loop has no branches, so that it is vectorized.
 
-    Of the last five is asked only whether they are None, and so not wanted: no branch is left of
-    it.
+    The last five are only compared with None, for absent fields, which Numba resolves at compile
+    time.
     """
     frame = (frame[0], frame[1], frame[2], frame[3])
     for k in range(count):
@@ -166,7 +166,7 @@ def evaluate_tile(tile, count, frame, size, points, uv, support, gaussian, mean)
 
 @loop
 def store(k, point, n, s, t, h, K, H, points, directions, uv, support, gaussian, mean):
-    """Write what is wanted of sample k."""
+    """Write the fields of sample k that are not None."""
     if points is not None:
         set_row(points, k, point)
     if directions is not None:
@@ -188,11 +188,11 @@ def fill_tile(
     points, directions, uv, support, gaussian, mean, normal_index, patch_index,
 ):  # fmt: skip
     """Evaluate and store `count` samples of a tile, from number `start` on."""
-    # Vectors are filled with a few samples more: they are not stored.
+    # The last vector is filled up with samples that are not stored.
     full = whole_vectors(count)
     evaluate_tile(tile, full, frame, SCALE * scale, points, uv, support, gaussian, mean)
     for row in range(count):
-        k = np.uint64(start + row)  # unsigned, so that no sign is checked
+        k = np.uint64(start + row)  # unsigned: no check for negative indices
         store(
             k, vector_in(tile, POINT, row), vector_in(tile, NORMAL, row),
             tile[U + row], tile[V + row], tile[SUPPORT + row],
@@ -213,8 +213,8 @@ def fill_known(
     """Fill the samples which[0], which[1], … at known parameters; see `fill_samples`.
 
     pairs (k, 2) are their patches and the numbers of their normals. local (k, 5) holds u, v, the
-    sign of K, and the parameters at which the curvatures are taken: u, v themselves but at a
-    singular point.
+    sign of K, and the parameters at which curvatures are evaluated: u, v, or a nearby point if that
+    is singular.
     """
     columns = mu.shape[1] - 2
     frame = (frame[0], frame[1], frame[2], frame[3])

@@ -17,7 +17,7 @@ from .vectors import largest_component, length
 
 __all__ = ["bisect", "cut_patches", "evaluate_centroids", "normal_chords", "radii"]
 
-# Of the squared distance of unit vectors: 90 degrees, and opposite ones.
+# Squared distances of unit vectors: at 90 degrees, and of opposite ones.
 RIGHT_ANGLE, OPPOSITE = 2.0, 4.0
 
 
@@ -25,8 +25,8 @@ RIGHT_ANGLE, OPPOSITE = 2.0, 4.0
 def cut_patches(parts, ends, first, last, patches, corners):
     """Cut the patches first, …, last − 1 into parts² similar triangles each.
 
-    Those of a patch end before number ends[patch] of the arrays `patches` (M,) and `corners`
-    (M, 3, 2), which are written.
+    The parts of a patch end before row ends[patch] of the output `patches` (M,) and `corners`
+    (M, 3, 2).
     """
     for patch in range(first, last):
         step = 1.0 / parts[patch]
@@ -54,9 +54,9 @@ def end_of_patch(patches, first, last):
 def evaluate_centroids(mu, scale, patches, corners, first, last, target, patch_radii, rows):
     """Write point, unit normal, target density and K (M, 8) at the centroids of triangles.
 
-    Those are the triangles first, …, last − 1. All is that of the surface times its scale, relative
-    to the first coefficient; patch_radii (patches,) are those of whole patches. At a singular point
-    the normal and K are 0.
+    Those of the triangles first, …, last − 1 are written, for the scaled surface relative to its
+    first coefficient; patch_radii (patches,) are those of whole patches. At a singular point the
+    normal and K are 0.
     """
     size = SCALE * scale
     columns = mu.shape[1] - 2
@@ -97,7 +97,7 @@ def corner_parameters(corners, k):
 
 @jit
 def radii(mu, scale, patches, corners, first, last, found):
-    """Write the radii (M,) of balls around the centroids that hold the triangles."""
+    """Write the radii (M,) of balls around the centroids that contain the triangles."""
     end = first
     while end < last:
         begin, end = end, end_of_patch(patches, end, last)
@@ -136,10 +136,10 @@ def bisect(mu, scale, patches, corners, first, last, halves):
 
 @jit
 def normal_chords(mu, scale, patches, corners, first, last, rows, chords):
-    """Write how far the unit normals of triangles are from those at their centroids, at most.
+    """Write bounds of the distances of the unit normals of triangles from those at the centroids.
 
-    They lie in the cone of the control normals of the triangle. The chord is 2, that is unknown, if
-    that is not narrower than 90 degrees, or if there is a normal elsewhere but not at the centroid.
+    The normals lie in the cone of the control normals of the triangle. The bound is 2, that is
+    unknown, unless the cone is narrower than 90 degrees and the centroid has a normal.
     `rows` (M, 8) are those of `evaluate_centroids`.
     """
     end = first

@@ -1,4 +1,4 @@
-"""Vectors in arrays, and the little algebra that algorithms need besides the formulas."""
+"""Vectors in arrays, and basic vector algebra."""
 
 from __future__ import annotations
 

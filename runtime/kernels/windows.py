@@ -1,8 +1,8 @@
-"""Where on a plane grid a cone of normals is: a window of rows and columns, and a span in each row.
+"""Bounds of a cone of normals on a plane grid: a window of rows and columns, a span in each row.
 
-Central projection keeps convex hulls: the hull of the projected control normals of a patch bounds
-the projection of all its normals. The planes are the faces of a cube (see `bins`) or, mapped to its
-face +z, those of an icosahedron.
+Central projection preserves convex hulls: the hull of the projected control normals of a patch
+bounds the projection of all its normals. The planes are the faces of a cube (see `bins`) or, mapped
+to its face +z, those of an icosahedron.
 """
 
 from __future__ import annotations
@@ -30,20 +30,20 @@ __all__ = [
     "whole_vectors",
 ]
 
-# Numbers that a loop computes at once on any processor; arrays have room for so many more.
+# The largest number of lanes of a vectorized loop; arrays have room for as many more numbers.
 VECTOR = 16
-# The error of the hull of a cone that was cut, relative to the largest one of a control normal.
+# The error of the hull of a clipped cone, relative to the largest error of a control normal.
 CUT_ERROR = 1024.0
-# Points of a cone that is cut have at least this height above the centre of the sphere.
+# The least height of points of a clipped cone above the centre of the sphere.
 LEAST_HEIGHT = 0.01
 
 
 class Cone(NamedTuple):
-    """Memory for the cone of normals of a patch.
+    """Work arrays for the cone of normals of a patch.
 
-    `net` (6, 3) are its control normals, `unit` (6, 3) their directions, `errors` (6) those of
-    these as angles and `axis` (3) that of the cone; `shown` (6, 3) and `angles` (6) are directions
-    and errors as a frame maps them.
+    `net` (6, 3) are the control normals, `unit` (6, 3) their directions with errors `errors` (6,),
+    which are angles, and `axis` (3,) is the axis; `shown` (6, 3) and `angles` (6,) are directions
+    and errors mapped by a frame.
     """
 
     net: NDArray[np.float64]
@@ -55,19 +55,19 @@ class Cone(NamedTuple):
 
     @classmethod
     def new(cls) -> Cone:
-        """Return new memory."""
+        """Return new work arrays."""
         return cls(*map(np.empty, ((6, 3), (6, 3), 6, 3, (6, 3), 6)))
 
 
 @inline
 def whole_vectors(count):
-    """Return the next multiple of VECTOR: loops of so many leave nothing to do one by one."""
+    """Return the next multiple of VECTOR, for vectorized loops without a remainder."""
     return (count + (VECTOR - 1)) & -VECTOR
 
 
 @loop
 def load_cone(patch, cone):
-    """Write the control normals of a patch and their cone; return what `cone_of_normals` does."""
+    """Write the control normals of a patch and its cone; return the sine, see `cone_of_normals`."""
     net, unit, errors, axis, _, _ = cone
     write_control_normals(patch, net)
     bounds = tangent_bounds(patch)
@@ -76,7 +76,7 @@ def load_cone(patch, cone):
 
 @loop
 def map_cone(cone, frame, stretch):
-    """Write directions and errors as a frame (3, 3) of norm `stretch` maps them."""
+    """Write the directions and errors mapped by a frame (3, 3) of norm `stretch`."""
     _, unit, errors, _, shown, angles = cone
     for k in range(6):
         set_row(shown, k, mapped(frame, row_vector(unit, k)))
@@ -85,7 +85,7 @@ def map_cone(cone, frame, stretch):
 
 @inline
 def set_empty(window):
-    """Make a window that holds no bin."""
+    """Make a window empty."""
     window[0], window[1], window[2], window[3] = 0, -1, 0, -1
 
 
@@ -94,10 +94,10 @@ def face_window(shown, angles, narrow, face, grid, window, hull):
     """Write first and last column, first and last row of the squares that a cone may meet.
 
     The hull (12, 2) of the projected control normals is written too, in squares; its error and the
-    number of its points are returned. Where some control normals do not point to the face, the cone
-    is cut off before them, but outside the face; if it is not narrow, the window is the whole face
-    and the error infinite. The window, empty before, stays so if the cone lies beyond one of the
-    borders of the face.
+    number of its points are returned. If some control normals do not point to the face, the cone is
+    clipped by a plane outside the face. If the cone is not narrow, the window is the whole face and
+    the error infinite. The window must be empty on entry, and stays so if the cone lies beyond a
+    border of the face.
     """
     half = 0.5 * grid
     error = largest = 0.0
@@ -151,11 +151,11 @@ def bounding_box(points, size, error):
 
 @loop
 def cut_hull(shown, face, grid, away_s, away_t, hull):
-    """Write the hull of a cone cut by a plane between the face and what points away from it.
+    """Write the hull of a cone, clipped by a plane between the face and normals that point away.
 
-    The plane is 3 height = (s, t)·d with d the unit direction of what points away: on the face,
-    where |s|, |t| <= height, the left side is larger. Returns the number of points, 12 at most; 0
-    if the cone is so wide that there is no such plane.
+    The plane is 3 height = (s, t)·d, where d is the unit direction of the normals that point away:
+    on the face, where |s|, |t| <= height, the left side is larger. Returns the number of points, at
+    most 12; 0 if the cone is too wide for such a plane.
     """
     half = 0.5 * grid
     size = max(length(Vector(away_s, away_t, 0.0)), 0.01)
@@ -186,10 +186,10 @@ def cut_hull(shown, face, grid, away_s, away_t, hull):
 
 @loop
 def spans_of_hull(hull, size, error, height, first, last, low, high):
-    """Write where the hull of points is in the rows first, …, last: from low (…) to high (…).
+    """Write the spans of the hull of points in the rows first, …, last: from low (…) to high (…).
 
-    A row reaches over `height` from its number on. `error` is that of the points; rows that the
-    hull does not meet get an empty span. There has to be room for VECTOR − 1 more rows.
+    A row extends from its number by `height`. `error` is that of the points; rows that the hull
+    does not meet get an empty span. The arrays need room for VECTOR − 1 more rows.
     """
     for row in range(last - first + 1):
         low[row] = math.inf
@@ -203,7 +203,7 @@ def spans_of_hull(hull, size, error, height, first, last, low, high):
             start = max(first, math.ceil(t - error) - height)
             count = min(last, math.floor(t_end + error)) - start + 1
             for k in range(whole_vectors(count)):
-                at = np.uint64(start - first + k)  # unsigned, so that no sign is checked
+                at = np.uint64(start - first + k)  # unsigned: no check for negative indices
                 row = float(start + k)
                 p = s + (min(max(row - error, t), t_end) - t) * slope
                 q = s + (min(max(row + height + error, t), t_end) - t) * slope
