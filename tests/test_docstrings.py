@@ -29,7 +29,7 @@ RETURNED = {"Branches": Branches, "Convolution": Convolution, "SamplingReport": 
 
 def public() -> dict[str, Any]:
     """Return all public objects by their names; `symbolic` documents its formulas itself."""
-    spaces = {name: getattr(gm, name) for name in NAMESPACES}
+    spaces = {name: getattr(gm, name) for name in sorted(NAMESPACES)}
     top = [name for name in dir(gm) if not name.startswith("_")]
     modules = {name for name in top if isinstance(getattr(gm, name), ModuleType)}
     assert modules == NAMESPACES | {"symbolic"}
