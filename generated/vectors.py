@@ -1,9 +1,6 @@
 """The vectors that formulas take and return, and the decorator that inlines formulas.
 
-Written by `make generate` (python -m gaussmap.symbolic): do not edit, change symbolic/ instead.
-SymPy 1.14.0. Passes: common subexpressions of all outputs together, in canonical order;
-temporaries that are used once or are another name with a sign written back. float64, no
-fast-math.
+Written by `make generate`, SymPy 1.14.0, float64, no fast-math: do not edit, change symbolic/.
 """
 
 from typing import NamedTuple

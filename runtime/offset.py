@@ -14,6 +14,7 @@ from .errors import GaussmapWarning, InputError, MissingFieldError
 from .kernels import support as kernels
 from .report import count_infinite, have_large_squares
 from .samples import Samples
+from .tolerances import CURVATURE_ERROR
 
 __all__ = ["offset"]
 
@@ -25,8 +26,6 @@ NEEDED = {
     "gaussian_curvature": ("mean_curvature",),
     "mean_curvature": ("gaussian_curvature",),
 }
-# The rounding of K, H and 1 + 2 d H + d² K, relative to their terms, in units of the last place.
-ROUNDING = 4.0
 
 
 def offset(samples: Samples, distance: float) -> Samples:
@@ -58,7 +57,7 @@ def _curvatures(samples: Samples, d: float) -> dict[str, Array]:
     H = samples.mean_curvature.astype(np.float64)
     _check_squares(samples, H)
     folded = np.empty(len(samples), dtype=np.bool_)
-    rounding = ROUNDING * float(np.finfo(samples.dtype).eps)
+    rounding = CURVATURE_ERROR * float(np.finfo(samples.dtype).eps)
     kernels.offset_curvatures(d, rounding, K, H, folded)
     if folded.any():
         _warn(samples, d, folded)

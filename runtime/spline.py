@@ -14,7 +14,7 @@ from .domain import Boundary, Domain
 from .errors import InputError
 from .kernels import spline as kernels
 from .threads import over_ranges
-from .tolerances import DATA_ERROR
+from .tolerances import DATA_ERROR, SAME_PARAMETER
 
 __all__ = ["LARGEST_EXPONENT", "Spline", "scale_to_one", "scales_to_one", "short_label"]
 
@@ -22,8 +22,6 @@ LONGEST_LABEL = 40
 PATCHES_AT_A_TIME = 1 << 14
 # Beyond this binary exponent a number cannot be multiplied by a few small ones.
 LARGEST_EXPONENT = 1000
-# Parameters that differ by less than this part of their range are the same, up to rounding.
-ROUNDING = 1e-12
 
 
 def short_label(name: str) -> str:
@@ -205,7 +203,7 @@ class Spline:
         kernels.evaluate(self.coefficients, self.scale, cells, points, normals)
         for end, place in zip(self.boundary[1], (0, self.cells[1]), strict=True):
             if end == "pole":  # all but rounding
-                normals[np.abs(cells[:, 1] - place) <= ROUNDING * self.cells[1]] = 0.0
+                normals[np.abs(cells[:, 1] - place) <= SAME_PARAMETER * self.cells[1]] = 0.0
         return points.reshape(*u_array.shape, 3), normals.reshape(*u_array.shape, 3)
 
     def in_cells(self, places: NDArray[np.float64]) -> NDArray[np.float64]:

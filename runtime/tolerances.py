@@ -8,15 +8,26 @@ from __future__ import annotations
 __all__ = [
     "ACCURATE",
     "ANGLE_ERROR",
+    "CAP_RADIUS_ERROR",
+    "CIRCLE_HEIGHT_ERROR",
+    "COSINE_GAIN",
     "CUBIC_ERROR",
+    "CURVATURE_ERROR",
     "DATA_ERROR",
+    "DIFFERENCE_ERROR",
     "DOUBLE_ROOT",
+    "FLAT_SURFACE",
     "FORM_ERROR",
     "LATTICE_ERROR",
+    "LENGTH_ERROR",
     "NEAR_SINGULAR_POINT",
     "PARAMETER_ERROR",
+    "RADIUS_ERROR",
+    "ROTATION_ERROR",
+    "SAME_PARAMETER",
     "SHORT_CONTROL_NORMAL",
     "SINGULAR_POINT",
+    "TRIPLE_PRODUCT_ERROR",
     "VANISHING",
 ]
 
@@ -57,3 +68,26 @@ PARAMETER_ERROR = 1e-12
 # double, and an imaginary part below it is zero: rounding by ε parts a double root by √ε ≈ 1.5e-8,
 # times the condition of the cubic, for which a factor of 67 is left.
 DOUBLE_ROOT = 1e-6
+# Of the radius of a cap in degrees: one that grows by less has converged.
+CAP_RADIUS_ERROR = 1e-12
+# Of the height of a circle of latitude on the unit sphere: free points are farther from it.
+CIRCLE_HEIGHT_ERROR = 1e-12
+# By this much a flip of an edge must raise the smallest cosine, which is more than its rounding.
+COSINE_GAIN = 1e-14
+# Of K, H and 1 + 2 d H + d² K relative to their terms, in units of the last place.
+CURVATURE_ERROR = 4.0
+# Of a difference of two coefficients of a planar spline, in units of the last place of the largest
+# coordinate.
+DIFFERENCE_ERROR = 8.0
+# Of the integral of κ² over a surface: one that is smaller is rounding.
+FLAT_SURFACE = 1e-9
+# Of distances on a surface, relative to its size.
+LENGTH_ERROR = 1e-15
+# Of a principal radius relative to its terms: 64 ε. A smaller one is zero.
+RADIUS_ERROR = 2.0**-46
+# Of R Rᵀ − 1 of a rotation: the rounding of its entries and of a few products of rotations.
+ROTATION_ERROR = 1e-12
+# Parameters that differ by less than this part of their range are the same.
+SAME_PARAMETER = 1e-12
+# Of triple products of unit vectors: 4 ε. Regions of the sphere are closed up to it.
+TRIPLE_PRODUCT_ERROR = 2.0**-50

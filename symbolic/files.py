@@ -118,16 +118,9 @@ def vectors_source() -> str:
 
 def _docstring(title: str) -> str:
     """Return the docstring of a generated file: its title, who wrote it and how."""
-    return render("docstring.py", {"title": f'"""{title}', "options": _options()}).rstrip()
-
-
-def _options() -> str:
-    return textwrap.fill(
-        f"SymPy {sp.__version__}. Passes: common subexpressions of all outputs together, in "
-        "canonical order; temporaries that are used once or are another name with a sign written "
-        "back. float64, no fast-math.",
-        92,
-    )
+    how = f"make generate`, SymPy {sp.__version__}, float64, no fast-math"
+    origin = f"Written by `{how}: do not edit, change symbolic/."
+    return render("docstring.py", {"title": f'"""{title}', "origin": origin}).rstrip()
 
 
 def curve_source() -> str:

@@ -16,13 +16,11 @@ from ..errors import InputError
 from ..formula_calls import plane_vector, python_function
 from ..kernels import curve as kernels
 from ..spline import scale_to_one, short_label
+from ..tolerances import DIFFERENCE_ERROR
 
 __all__ = ["CurveSpline", "angles_of"]
 
 Array = NDArray[np.float64]
-
-# A difference of two coefficients carries fewer roundings of the largest coordinate than this.
-ROUNDINGS = 8.0
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -240,7 +238,7 @@ class CurveSpline:
     @cached_property
     def noise(self) -> float:
         """A bound of the rounding of the coordinates in a vector of `joint_normals`."""
-        return ROUNDINGS * float(np.spacing(np.abs(self.coefficients).max())) * self.scale
+        return DIFFERENCE_ERROR * float(np.spacing(np.abs(self.coefficients).max())) * self.scale
 
     @cached_property
     def straight(self) -> NDArray[np.bool_]:

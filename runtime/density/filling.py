@@ -19,6 +19,7 @@ from ..report import sampling_report
 from ..samples import Samples
 from ..spline import Spline
 from ..threads import counted
+from ..tolerances import FLAT_SURFACE, LENGTH_ERROR
 from .angles import cover_normals
 from .at_normals import SamplesAtNormals, no_samples, sample_at_lattice, sample_at_normals
 from .cover import Cover
@@ -39,10 +40,6 @@ WIDER = 2.0
 GREEDY = 1.85
 # Balanced: the floor of the target density, relative to the mean of κ².
 FLAT_SHARE = 0.25
-# An integral of κ² over the surface below this is rounding.
-FLAT = 1e-9
-# Distances below this part of the size of a surface are rounding.
-ROUNDING = 1e-15
 # |K|^α vanishes where K does; gaps there are wider than the mean by at most this factor.
 WIDEST_GAP = 1000.0
 # The number of added samples that a sample at a normal is taken to save. It saves up to 0.7; with
@@ -162,14 +159,14 @@ class Filling:
 
     def _distance(self, sizing: SizingFunction, coverage: float) -> float:
         """Return a coverage as a scaled length, between rounding and the size of the surface."""
-        return min(max(coverage * sizing.unit, ROUNDING * sizing.size), sizing.size)
+        return min(max(coverage * sizing.unit, LENGTH_ERROR * sizing.size), sizing.size)
 
     # --- balanced ---------------------------------------------------------------------------------
 
     def _balanced(self) -> tuple[Cover, SamplesAtNormals]:
         request, sizing = self.request, self._sizing(TargetDensity(curvature_weight=1.0))
         # Normals and angles are absolute: flat parts then count as parts of a sphere.
-        least = 4 * math.pi if request.normals is not None or request.angle else FLAT
+        least = 4 * math.pi if request.normals is not None or request.angle else FLAT_SURFACE
         floor = FLAT_SHARE * max(sizing.integral, least) / sizing.area
         if request.count is None:
             return self._by_radius(sizing, floor)

@@ -7,15 +7,13 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..tolerances import CAP_RADIUS_ERROR
 from .regions import angles_between
 from .unit import as_normals
 
 __all__ = ["covering_radius"]
 
 Array = NDArray[np.float64]
-
-# A cap whose radius in degrees grows by less has converged.
-ROUNDING = 1e-12
 
 
 def covering_radius(normals: ArrayLike) -> float:
@@ -77,11 +75,11 @@ def _smallest_cap(normals: Array) -> float:
     basis, radius = normals[:1], -1.0
     while True:
         centre, basis, grown = _cap_of_few(basis)
-        if grown <= radius + ROUNDING:
+        if grown <= radius + CAP_RADIUS_ERROR:
             return min(grown, 90.0)
         radius = grown
         farthest = normals[np.argmin(normals @ centre)]
-        if angles_between(farthest, centre) <= radius + ROUNDING:
+        if angles_between(farthest, centre) <= radius + CAP_RADIUS_ERROR:
             return min(radius, 90.0)
         basis = np.concatenate([basis, farthest[None]])
 

@@ -7,12 +7,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import finite_number
 from ..errors import InputError
+from ..tolerances import TRIPLE_PRODUCT_ERROR
 from .unit import as_normals, unit_vector
 
 __all__ = ["angles_between", "cap", "polygon"]
-
-# Bound of the rounding of triple products of unit vectors: regions are closed up to rounding.
-ROUNDING = 2.0**-50
 
 
 def cap(normals: ArrayLike, axis: ArrayLike, angle: float) -> NDArray[np.float64]:
@@ -102,16 +100,16 @@ def polygon(normals: ArrayLike, corners: ArrayLike) -> NDArray[np.float64]:
     following = np.roll(around, -1, axis=0)
     inwards = np.cross(around, following)
     lengths = np.linalg.norm(inwards, axis=1)
-    if (lengths <= ROUNDING).any():
-        k = int(np.argmax(lengths <= ROUNDING))
+    if (lengths <= TRIPLE_PRODUCT_ERROR).any():
+        k = int(np.argmax(lengths <= TRIPLE_PRODUCT_ERROR))
         raise InputError(
             f"corners {k} and {(k + 1) % len(around)} are equal or opposite: no arc joins them."
         )
-    if (around @ inwards.T < -ROUNDING).any():
+    if (around @ inwards.T < -TRIPLE_PRODUCT_ERROR).any():
         raise InputError(
             "the corners must go round a convex polygon anticlockwise, as seen from outside."
         )
-    return directions[(directions @ inwards.T >= -ROUNDING).all(axis=1)]
+    return directions[(directions @ inwards.T >= -TRIPLE_PRODUCT_ERROR).all(axis=1)]
 
 
 def angles_between(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:

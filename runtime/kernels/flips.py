@@ -8,13 +8,11 @@ surface on which the triangle lies at each corner; it changes on one-sided surfa
 from __future__ import annotations
 
 from ...generated.mesh import corner_products
+from ..tolerances import COSINE_GAIN
 from .jit import inline, jit, loop
 from .vectors import row_vector
 
 __all__ = ["flip_edges", "smallest_cosines"]
-
-# A flip must raise the smallest cosine by more than rounding.
-GAIN = 1e-14
 
 
 @loop
@@ -135,10 +133,10 @@ def flip_edge(points, normals, triangles, sides, neighbours, t, k):
         smallest_cosine(points, normals, d, b, a, side_d, side_b, side_a),
     )
     left = smallest_cosine(points, normals, c, a, d, side_c, side_a, side_d)
-    if left <= before + GAIN:
+    if left <= before + COSINE_GAIN:
         return -1
     right = smallest_cosine(points, normals, d, b, c, side_d, side_b, side_c)
-    if right <= before + GAIN or are_joined(triangles, neighbours, t, c, d):
+    if right <= before + COSINE_GAIN or are_joined(triangles, neighbours, t, c, d):
         return -1
     across_bc, across_ca = neighbours[t, ka], neighbours[t, kb]
     across_ad, across_db = neighbours[other, ob], neighbours[other, oa]

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from ..domain import Boundary
 from ..kernels import surfaces as kernels
+from ..tolerances import CIRCLE_HEIGHT_ERROR
 
 __all__ = ["Triangulation", "neighbours", "triangulations"]
 
@@ -34,8 +35,6 @@ LATITUDES = (math.pi / 18, math.pi / 3, math.pi / 2.25)
 # fails: four and more points of a lattice on one circle would be triangulated in different ways in
 # their copies. Without copies the first attempt is without displacement.
 DISPLACEMENTS = (1e-6, 1e-3)
-# The rounding of the height of a circle of latitude; free points are farther away.
-ROUNDING = 1e-12
 # Free points keep this distance from open sides.
 INSIDE = 5e-10
 # The sides of a rectangle are curved outwards by this part of it: their points become extreme.
@@ -162,7 +161,7 @@ def _on_sphere(positions: Array, boundary: Boundary, lengths: Array, axis: int) 
     triangles = _turned(hull.simplices, is_inwards == (axis == 0))
     for end, latitude in zip(boundary[1 - axis], latitudes, strict=True):
         if end == "open":
-            off_circle = np.abs(points[:, 2] - math.sin(latitude)) > ROUNDING
+            off_circle = np.abs(points[:, 2] - math.sin(latitude)) > CIRCLE_HEIGHT_ERROR
             triangles = triangles[off_circle[triangles].any(axis=1)]
     number = np.arange(len(points))
     count = len(positions)

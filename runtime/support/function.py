@@ -16,6 +16,7 @@ from ..fitting import spline_of
 from ..spline import Spline
 from ..surface import Surface
 from ..surfaces import named
+from ..tolerances import ROTATION_ERROR
 from .operations import Offset, Reversed, Rotated, Scaled, Sum, Translated
 from .sources import PatchSource, SplineSource
 from .values import SupportValues
@@ -24,9 +25,6 @@ if TYPE_CHECKING:
     import sympy
 
 __all__ = ["SupportFunction"]
-
-# A rotation may miss R Rᵀ = 1 by the rounding of its entries and of a few products of rotations.
-ROTATION_ERROR = 1e-12
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ..bridge import normal_components
 from ..directions.unit import as_normals
 from ..kernels import support as kernels
+from ..tolerances import RADIUS_ERROR
 from .branches import Sheets, curvatures
 from .sources import Source
 
@@ -22,10 +23,6 @@ if TYPE_CHECKING:
 __all__ = ["Offset", "Reversed", "Rotated", "Scaled", "Sum", "Translated", "pairs"]
 
 Vector = NDArray[np.float64]
-
-
-# A radius of curvature is 0 up to rounding if it is this small relative to its terms.
-RADIUS_ERROR = 2.0**-46
 
 
 @dataclass(frozen=True, eq=False)
