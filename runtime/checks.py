@@ -24,6 +24,7 @@ __all__ = [
     "finite_array",
     "finite_number",
     "known_name",
+    "pair_of_cells",
     "parameter_arrays",
     "positive_number",
     "real_array",
@@ -57,6 +58,17 @@ def whole_number(value: object, name: str, least: int = 1) -> int:
     if value > MOST:
         raise InputError(f"{name} must be a whole number of at most {MOST:,}, not larger.")
     return int(value)
+
+
+def pair_of_cells(cells: Sequence[int]) -> tuple[int, int]:
+    """Return numbers of cells (m, n); InputError unless they are two positive whole numbers."""
+    try:
+        m, n = cells
+    except (TypeError, ValueError):
+        raise InputError(
+            f"cells must be a pair of whole numbers (m, n), not {shown(cells)}."
+        ) from None
+    return whole_number(m, "cells[0]"), whole_number(n, "cells[1]")
 
 
 def checked_count(value: object) -> int:

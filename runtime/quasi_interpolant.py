@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from .checks import whole_number
+from .checks import pair_of_cells
 from .domain import Boundary, Domain
-from .errors import InputError, SurfaceError, shown
+from .errors import InputError, SurfaceError
 from .ghosts import Border, Sides, coefficients_with_ring, vertices_with_ring
 from .kernels import spline as kernels
 from .memory import check_memory
@@ -87,13 +87,7 @@ def not_too_large(points: NDArray[np.float64], name: str) -> NDArray[np.float64]
 
 def checked_cells(cells: Sequence[int], boundary: Boundary) -> tuple[int, int]:
     """Return numbers of cells (m, n); InputError unless they suit the boundary conditions."""
-    try:
-        m, n = cells
-    except (TypeError, ValueError):
-        raise InputError(
-            f"cells must be a pair of whole numbers (m, n), not {shown(cells)}."
-        ) from None
-    m, n = whole_number(m, "cells[0]"), whole_number(n, "cells[1]")
+    m, n = pair_of_cells(cells)
     if min(m, n) < 3:
         raise InputError(f"at least 3 x 3 cells are needed, not {m} x {n}.")
     if m * n > MOST_CELLS:

@@ -97,7 +97,7 @@ class Filling:
         return cover, no_samples()
 
     def relaxed(self, cover: Cover) -> Cover:
-        """Return the cover relaxed; as it is, if it would not keep the coverage any more."""
+        """Return the relaxed cover, or the given one if relaxing would exceed the coverage."""
         if self.request.relax == 0 or cover.count == cover.given:
             return cover
         relaxed, asked = copy(cover), self.request.coverage

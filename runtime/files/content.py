@@ -1,4 +1,4 @@
-"""What files say of samples beside their numbers: the report, and which fields there are."""
+"""The metadata of samples in files: the report, and which fields there are."""
 
 from __future__ import annotations
 

@@ -84,9 +84,9 @@ def check_fields(path: PathLike, fields: Sequence[str]) -> None:
 def read_samples(path: PathLike) -> Samples:
     """Read samples from a `.npz` or `.ply` file that `write_samples` wrote.
 
-    A `.ply` file that another program rewrote is read as long as it is binary and has all the
-    columns; if it has lost the comments that hold the report, the report's numbers are None. A file
-    of fewer fields says in a comment which these are. Nothing is ever unpickled.
+    A `.ply` file that another program rewrote is read if it is binary and has all the columns. If
+    it has lost the comments that hold the report, the report's numbers are None. A file of fewer
+    fields says in a comment which these are. Nothing is ever unpickled.
 
     Parameters
     ----------

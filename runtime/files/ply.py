@@ -97,7 +97,7 @@ def read_ply(file: BufferedReader) -> Samples:
     fields = known_fields(said[-1].removeprefix(_FIELDS).split() if said else ARRAY_NAMES)
     row = np.dtype(list(vertices.columns.items()))
     size, end = file.seek(0, os.SEEK_END), header.size + vertices.rows * row.itemsize
-    if size < end:  # before memory is taken for so many
+    if size < end:  # before memory is allocated for the rows
         raise UnusableError("ends early; write it again.")
     arrays: dict[str, Any] = _empty_arrays(fields, vertices)
     if size > end and not others:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import whole_number
+from ..checks import pair_of_cells
 from ..errors import GaussmapWarning, InputError, shown
 from ..fitting import fit, spline_of
 from ..spline import Spline, scale_to_one
@@ -314,13 +314,7 @@ def _tolerance(tolerance: float) -> float:
 def _panels(cells: Sequence[int] | None) -> tuple[int, int] | None:
     if cells is None:
         return None
-    try:
-        m, n = cells
-    except (TypeError, ValueError):
-        raise InputError(
-            f"cells must be a pair of whole numbers (m, n), not {shown(cells)}."
-        ) from None
-    m, n = whole_number(m, "cells[0]"), whole_number(n, "cells[1]")
+    m, n = pair_of_cells(cells)
     if max(m, n) > MOST_CELLS:
         raise InputError(f"at most {MOST_CELLS} x {MOST_CELLS} cells can be used, not {m} x {n}.")
     return m, n

@@ -19,9 +19,9 @@ Array = NDArray[np.float64]
 NARROW = 0.5
 # A sum of unit normals shorter than this has no direction.
 SMALL = 1e-9
-# Round a singular point inside, wide triangles remain for ever. Those that are left after so many
-# subdivisions are left out, a solid angle of about 2^-26 (deeper, rounding costs more); along a
-# curve of singular points there are soon so many that about 2^-12 has to be left out.
+# Around a singular point inside, wide triangles remain at any depth. Those that remain after DEPTH
+# subdivisions are omitted, a solid angle of about 2^-26 (deeper, rounding costs more). Along a
+# curve of singular points their number soon exceeds MOST_WIDE, and about 2^-12 is omitted.
 DEPTH = 26
 MOST_WIDE = 20_000
 LEFT_OUT = 2.0**-6
