@@ -11,6 +11,7 @@ import sympy as sp
 
 from .formula import Formula
 from .notation import flat, scalar, substitute
+from .offset import BASIS, LINEAR_FIELD, MOVED, SPHERICAL_FIELD, n0, n1, n2
 from .patch import (
     CLOSED_CURVATURE,
     FORMS,
@@ -27,6 +28,7 @@ from .reading import ReadingError, read
 __all__ = ["BezierTriangle"]
 
 PAPER_NORMAL = (scalar("n_1"), scalar("n_2"), scalar("n_3"))
+AXES = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 
 
 class BezierTriangle:
@@ -138,6 +140,43 @@ class BezierTriangle:
         u_cone, v_cone, w_cone = (sp.hessian(self.forms[name], self.normal) / 2 for name in "UVW")
         return u_cone, v_cone, w_cone
 
+    def linear_normals(
+        self, field: Iterable[Iterable[object]] = (AXES[2], AXES[0], AXES[1])
+    ) -> tuple[sp.Matrix, sp.Matrix]:
+        """Return the patch with a linear field of normals (Sect. 3): x(s,t) and n(s,t).
+
+        `field` are three vectors n_0, n_1, n_2 for n(s,t) = n_0 + s n_1 + t n_2, by default
+        (s, t, 1); s and t are real symbols of these names. The coordinates of x(s,t) are rational,
+        and its normal has the direction of n(s,t). Raises ValueError without a support function.
+        """
+        normal = _given_vectors(LINEAR_FIELD, (n0, n1, n2), field)[:3]
+        return self._point_with(normal), sp.Matrix(normal)
+
+    def rational_offset(
+        self, distance: object, basis: Iterable[Iterable[object]] = AXES
+    ) -> sp.Matrix:
+        """Return the exact offset at a distance, three rational expressions in s and t (Sect. 3).
+
+        `basis` are three orthonormal vectors e_1, e_2, e_3: the normal has the direction of
+        2s e_1 + 2t e_2 + (1 − s² − t²) e_3. The distance is a number, a SymPy expression or a text.
+        Raises ValueError without a support function.
+        """
+        *normal, length = _given_vectors(SPHERICAL_FIELD, BASIS, basis)
+        given = [*self._point_with(normal), *normal, length, _exact(distance, set())]
+        values = dict(zip(flat(MOVED.inputs), given, strict=True))
+        return sp.Matrix([substitute(y, values) for y in MOVED.expanded().values()])
+
+    def _point_with(self, normal: Sequence[sp.Expr]) -> sp.Matrix:
+        """Return the point with a normal in s and t: quotients of polynomials."""
+        values = dict(zip(self.normal, normal, strict=True))
+        quotients = (sp.fraction(component) for component in self.gradient)
+        return sp.Matrix(
+            [
+                sp.expand(substitute(above, values)) / sp.expand(substitute(below, values))
+                for above, below in quotients
+            ]
+        )
+
     def _require_support_function(self) -> None:
         if self.forms["D"] == 0:
             raise ValueError("the patch is developable (D = 0): it has no support function")
@@ -201,6 +240,15 @@ def _six_points(control_points: Iterable[Iterable[object]]) -> list[list[object]
     if [len(point) for point in points] != [3] * 6:
         raise ValueError("control_points must be six points of three coordinates each")
     return points
+
+
+def _given_vectors(
+    formula: Formula, names: Sequence[sp.Symbol], rows: Iterable[Iterable[object]]
+) -> list[sp.Expr]:
+    """Return the outputs of a formula for three vectors that are given by numbers."""
+    numbers = [_exact(entry, set()) for row in rows for entry in row]
+    values = dict(zip(flat(names), numbers, strict=True))
+    return [substitute(output, values) for output in formula.expanded().values()]
 
 
 def _exact(value: object, reserved: set[sp.Symbol]) -> sp.Expr:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import sympy as sp
 
-from . import curve, gaussian_image, latex, mesh, patch, spline, support, surfaces, tables
+from . import curve, gaussian_image, latex, mesh, offset, patch, spline, support, surfaces, tables
 from .emit import functions, named_tuples, render
 from .loops import array_function
 from .positions import position
@@ -32,6 +32,7 @@ def derive() -> dict[str, str]:
         "gaussian_image.py": gaussian_image_source(),
         "icosahedron.py": icosahedron_source(),
         "mesh.py": mesh_source(),
+        "offset.py": offset_source(),
         "patch.py": patch_source(),
         "spline.py": spline_source(),
         "support.py": support_source(),
@@ -145,6 +146,12 @@ def mesh_source() -> str:
     """Return generated/mesh.py: the formulas of triangles through samples."""
     title = "Triangles through samples: the formulas of symbolic/mesh.py."
     return mathematics(title, functions(mesh.FORMULAS))
+
+
+def offset_source() -> str:
+    """Return generated/offset.py: a patch with fields of normals, and its rational offset."""
+    title = "Fields of normals and rational offsets: the formulas of symbolic/offset.py."
+    return mathematics(title, functions(offset.FORMULAS))
 
 
 def patch_source() -> str:

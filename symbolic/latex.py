@@ -9,7 +9,7 @@ from functools import cache
 
 import sympy as sp
 
-from . import curve, gaussian_image, mesh, patch, spline, support, surfaces
+from . import curve, gaussian_image, mesh, offset, patch, spline, support, surfaces
 from .display import latex_name, latex_of
 from .emit import render
 from .formula import Formula
@@ -23,6 +23,7 @@ __all__ = ["document", "markdown", "parts_of", "sections"]
 GENERATOR = f"Written by `make generate` with SymPy {sp.__version__}: do not edit."
 FORMULAS = {
     "One quadratic patch": patch.FORMULAS,
+    "Fields of normals and rational offsets": offset.FORMULAS,
     "Gaussian images and parabolic points": gaussian_image.FORMULAS,
     "The quadratic spline": spline.FORMULAS,
     "Support functions": support.FORMULAS,

@@ -4,7 +4,17 @@ from dataclasses import FrozenInstanceError
 
 import pytest
 import sympy as sp
-from gaussmap.symbolic import Formula, curve, formulas, gaussian_image, mesh, patch, spline, support
+from gaussmap.symbolic import (
+    Formula,
+    curve,
+    formulas,
+    gaussian_image,
+    mesh,
+    offset,
+    patch,
+    spline,
+    support,
+)
 from gaussmap.symbolic.formula import BEYOND_THE_PAPER, compose
 from gaussmap.symbolic.notation import (
     Cross,
@@ -199,7 +209,7 @@ def test_a_sample_is_its_parts():
 
 
 def test_all_formulas_by_name_in_order():
-    modules = (patch, gaussian_image, spline, support, mesh, curve)
+    modules = (patch, offset, gaussian_image, spline, support, mesh, curve)
     assert list(formulas) == [x.name for module in modules for x in module.FORMULAS]
     assert all(formula.name == name for name, formula in formulas.items())
     assert not hasattr(formulas, "__setitem__")
