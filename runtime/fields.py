@@ -15,13 +15,16 @@ if TYPE_CHECKING:  # names of fields stand in the help of commands, which is qui
 
 __all__ = [
     "ARRAY_NAMES",
+    "ARRAY_NAMES_ON_SURFACE",
     "COLUMNS",
     "DERIVED",
+    "FLAG_NAMES",
     "FLOAT_NAMES",
     "INDEX_NAMES",
     "checked_dtype",
     "checked_fields",
     "columns_of",
+    "dtype_of",
     "new_field",
     "row_shape",
 ]
@@ -36,10 +39,14 @@ COLUMNS: dict[str, tuple[str, ...]] = {
     "mean_curvature": ("mean_curvature",),
     "normal_index": ("normal_index",),
     "patch_index": ("patch_index",),
+    "on_surface": ("on_surface",),
 }
-ARRAY_NAMES: tuple[str, ...] = tuple(COLUMNS)
 INDEX_NAMES = ("normal_index", "patch_index")
-FLOAT_NAMES: tuple[str, ...] = tuple(name for name in COLUMNS if name not in INDEX_NAMES)
+# Only samples of a surface have these, not those of its spline.
+FLAG_NAMES = ("on_surface",)
+ARRAY_NAMES_ON_SURFACE: tuple[str, ...] = tuple(COLUMNS)
+ARRAY_NAMES: tuple[str, ...] = tuple(name for name in COLUMNS if name not in FLAG_NAMES)
+FLOAT_NAMES: tuple[str, ...] = tuple(name for name in ARRAY_NAMES if name not in INDEX_NAMES)
 # What is computed from fields when it is read.
 DERIVED: dict[str, tuple[str, ...]] = {
     "elliptic": ("gaussian_curvature",),
@@ -53,6 +60,15 @@ def row_shape(name: str) -> tuple[int, ...]:
     """Return the shape of what a field holds of one sample."""
     width = len(COLUMNS[name])
     return (width,) if width > 1 else ()
+
+
+def dtype_of(name: str, floating: DTypeLike) -> np.dtype[Any]:
+    """Return the type of a field, if that of all numbers but the indices is `floating`."""
+    import numpy as np
+
+    if name in FLAG_NAMES:
+        return np.dtype(np.bool_)
+    return np.dtype(np.int64 if name in INDEX_NAMES else floating)
 
 
 def new_field(name: str, count: int, dtype: DTypeLike) -> NDArray[Any]:
@@ -71,16 +87,18 @@ def columns_of(arrays: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
     }
 
 
-def checked_fields(fields: Sequence[str] | None) -> tuple[str, ...]:
-    """Return the fields that are wanted, in the order of `ARRAY_NAMES`; None stands for all.
+def checked_fields(fields: Sequence[str] | None, surface: bool = False) -> tuple[str, ...]:
+    """Return the fields that are wanted, in the order of `COLUMNS`; None stands for all.
 
-    Raises UnknownNameError for an unknown name, InputError for what is no tuple of names, for no
-    names, for a name that comes twice, and for one that is computed from fields.
+    With `surface` they are for samples on the surface. Raises UnknownNameError for an unknown name,
+    InputError for what is no tuple of names, for no names, for a name that comes twice, and for one
+    that is computed from fields.
     """
     from .checks import known_name
 
+    known = ARRAY_NAMES_ON_SURFACE if surface else ARRAY_NAMES
     if fields is None:
-        return ARRAY_NAMES
+        return known
     if isinstance(fields, str):
         raise InputError(
             f"fields must be a tuple of names, such as ({shown(fields)},), not a string."
@@ -93,7 +111,7 @@ def checked_fields(fields: Sequence[str] | None) -> tuple[str, ...]:
         raise InputError("fields is empty; name at least one field, such as ('points',).")
     for k, name in enumerate(names):
         if not isinstance(name, str):
-            known_name(name, ARRAY_NAMES, "field")
+            known_name(name, known, "field")
         if name in names[:k]:
             raise InputError(f"fields names {shown(name)} twice; name it once.")
         if name in DERIVED:
@@ -101,8 +119,10 @@ def checked_fields(fields: Sequence[str] | None) -> tuple[str, ...]:
             raise InputError(
                 f"{name} is computed when it is read, from {needed}; name what it needs."
             )
-        known_name(name, ARRAY_NAMES, "field")
-    return tuple(name for name in ARRAY_NAMES if name in names)
+        if name in FLAG_NAMES and not surface:
+            raise InputError(f'{name} is a field of samples on the surface only; see on="surface".')
+        known_name(name, known, "field")
+    return tuple(name for name in known if name in names)
 
 
 def checked_dtype(dtype: DTypeLike) -> np.dtype[np.floating]:

@@ -92,7 +92,8 @@ def _polydata(pv: Any, data: Any, arrays: dict[str, NDArray[Any]]) -> Any:  # no
     """Give points their arrays, with the normals as such."""
     for name, array in arrays.items():
         # By way of VTK: pyvista refuses arrays without elements.
-        data.GetPointData().AddArray(pv.convert_array(array, name=name, deep=True))
+        numbers = array.view(np.uint8) if array.dtype == np.bool_ else array
+        data.GetPointData().AddArray(pv.convert_array(numbers, name=name, deep=True))
     if "normals" in arrays:
         data.GetPointData().SetActiveNormals("normals")
     return data

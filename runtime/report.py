@@ -13,14 +13,17 @@ from typing import Any, SupportsIndex
 import numpy as np
 from numpy.typing import NDArray
 
+from .checks import known_name
 from .developable import developable_share
 from .errors import GaussmapWarning, InputError, shown
 from .spline import Spline
 
 __all__ = [
+    "PLACES",
     "SamplingReport",
     "common_report",
     "count_infinite",
+    "count_unrefined",
     "have_large_squares",
     "sampling_report",
     "warn_of",
@@ -32,6 +35,9 @@ WORTH_A_WARNING = 0.01
 COUNT_TOLERANCE, FEW = 0.02, 5
 # A share is a quotient of sums, so rounding may carry it this far beyond 0 or 1.
 SHARE_ROUNDING = 1e-9
+# Where samples lie.
+PLACES = ("surface", "spline")
+COUNTS = ("normals", "patches", "developable_patches", "infinite_curvatures", "unrefined")
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +73,11 @@ class SamplingReport:
         which a coarse one may have, and where 1/L² exceeds the largest number of its type, on
         surfaces smaller than 1e-154 (1e-19 with float32). Known if `gaussian_curvature` was
         requested.
+    on : {"surface", "spline"} or None
+        Where the samples lie: on the surface, or on the spline that approximates it.
+    unrefined : int or None
+        With ``on="surface"``, the number of samples at prescribed normals that could not be moved
+        from the spline to the point of the surface that has the normal; see `Samples.on_surface`.
 
     Raises
     ------
@@ -96,11 +107,15 @@ class SamplingReport:
     coverage: float | None = None
     angle: float | None = None
     infinite_curvatures: int | None = None
+    on: str | None = None
+    unrefined: int | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.surface, str):
             raise InputError(f"surface must be a string, not {type(self.surface).__name__}.")
-        for name in ("normals", "patches", "developable_patches", "infinite_curvatures"):
+        if self.on is not None:
+            known_name(self.on, PLACES, "place of samples")
+        for name in COUNTS:
             value = getattr(self, name)
             object.__setattr__(self, name, None if value is None else _count(name, value))
         object.__setattr__(self, "samples", _count("samples", self.samples))
@@ -143,7 +158,7 @@ def warn_of(
     If they are `filled`, the parts that normals cannot sample have samples, too.
     """
     reasons = [] if filled else _unseen(report)
-    reasons += _missed(report, count, coverage)
+    reasons += _missed(report, count, coverage) + _unrefined(report)
     if reasons:
         message = f"surface {report.surface!r}: {'; '.join(reasons)}."
         warnings.warn(message, GaussmapWarning, stacklevel=stacklevel)
@@ -175,6 +190,18 @@ def _missed(report: SamplingReport, count: int | None, coverage: float | None) -
     return reasons
 
 
+def _unrefined(report: SamplingReport) -> list[str]:
+    """Return reasons: the samples that are not on the surface."""
+    unrefined = report.unrefined or 0
+    if unrefined <= WORTH_A_WARNING * report.samples:
+        return []
+    return [
+        f"{unrefined} of {report.samples} samples could not be moved to the surface, and lie on "
+        "its spline (see Samples.on_surface); more cells=... help unless the surface is singular "
+        "there"
+    ]
+
+
 def common_report(
     reports: Sequence[SamplingReport], arrays: Mapping[str, NDArray[Any]]
 ) -> SamplingReport:
@@ -188,6 +215,7 @@ def common_report(
     common["surface"] = common["surface"] or "several surfaces"
     common["samples"] = len(next(iter(arrays.values())))
     common["infinite_curvatures"] = count_infinite(arrays)
+    common["unrefined"] = count_unrefined(arrays)
     return SamplingReport(**common)
 
 
@@ -196,6 +224,13 @@ def count_infinite(arrays: Mapping[str, NDArray[Any]]) -> int | None:
     if "gaussian_curvature" not in arrays:
         return None
     return int(np.isinf(arrays["gaussian_curvature"]).sum())
+
+
+def count_unrefined(arrays: Mapping[str, NDArray[Any]]) -> int | None:
+    """Return how many samples are not on the surface; None if that is not among their fields."""
+    if "on_surface" not in arrays:
+        return None
+    return int(np.count_nonzero(~arrays["on_surface"]))
 
 
 def have_large_squares(H: NDArray[np.floating], dtype: np.dtype[Any]) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -12,9 +13,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from .checks import checked_array, checked_rows
 from .errors import InputError, MissingFieldError
-from .fields import ARRAY_NAMES, DERIVED, FLOAT_NAMES, row_shape
+from .fields import COLUMNS, DERIVED, FLAG_NAMES, FLOAT_NAMES, dtype_of, row_shape
 from .report import SamplingReport, common_report
 from .spline import Spline
+from .surface import Surface
 
 if TYPE_CHECKING:
     import open3d  # pyright: ignore[reportMissingImports]
@@ -40,32 +42,36 @@ class SampleArrays:
     mean_curvature: NDArray[np.float64] = _NOT_ASKED
     normal_index: NDArray[np.int64] = _NOT_ASKED
     patch_index: NDArray[np.int64] = _NOT_ASKED
+    on_surface: NDArray[np.bool_] | None = None
     report: SamplingReport = field(kw_only=True)
     spline: Spline | None = field(default=None, kw_only=True)
+    surface: Surface | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
-        arrays = {name: getattr(self, name) for name in ARRAY_NAMES}
+        arrays = {name: getattr(self, name) for name in COLUMNS}
         arrays = {name: array for name, array in arrays.items() if array is not None}
         if not arrays:
             raise InputError("samples need at least one array, such as points.")
         count = (np.shape(next(iter(arrays.values()))) or (0,))[0]
         floating = _common_dtype(arrays)
-        for name in ARRAY_NAMES:
+        for name in COLUMNS:
             if name in arrays:
-                dtype = floating if name in FLOAT_NAMES else np.dtype(np.int64)
-                array = checked_array(name, arrays[name], (count, *row_shape(name)), dtype)
-                object.__setattr__(self, name, array)
-            else:
+                shape, dtype = (count, *row_shape(name)), dtype_of(name, floating)
+                object.__setattr__(self, name, checked_array(name, arrays[name], shape, dtype))
+            elif name not in FLAG_NAMES:
                 object.__delattr__(self, name)  # an empty slot, for which __getattr__ speaks
         if not isinstance(self.report, SamplingReport):
             raise InputError(f"report must be a SamplingReport, not {type(self.report).__name__}.")
         if not isinstance(self.spline, Spline | None):
             raise InputError(f"spline must be a Spline or None, not {type(self.spline).__name__}.")
+        if not isinstance(self.surface, Surface | None):
+            name = type(self.surface).__name__
+            raise InputError(f"surface must be a Surface or None, not {name}.")
 
     def __getattr__(self, name: str) -> Any:  # noqa: ANN401
-        if name in ARRAY_NAMES or name in DERIVED:
+        if name in COLUMNS or name in DERIVED:
             needed = [x for x in DERIVED.get(name, (name,)) if x not in self.fields]
-            subject = "" if name in ARRAY_NAMES else f"{name} needs {' and '.join(needed)}, but "
+            subject = "" if name in COLUMNS else f"{name} needs {' and '.join(needed)}, but "
             raise MissingFieldError(
                 f"{subject}these samples hold {', '.join(self.fields)} only; "
                 f"add {' and '.join(repr(x) for x in needed)} to fields=... when sampling."
@@ -73,7 +79,8 @@ class SampleArrays:
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _rebuilt, (type(self), self.arrays(), self.report, self.spline)
+        state = self.arrays(), self.report, self.spline, _if_it_pickles(self.surface)
+        return _rebuilt, (type(self), *state)
 
     @classmethod
     def concatenate(cls, parts: Iterable[Self]) -> Self:
@@ -88,7 +95,8 @@ class SampleArrays:
         -------
         Samples
             The rows of all parts, in turn. The report counts all of them; entries that the reports
-            of the parts do not agree about are None. The spline is kept if all parts have the same.
+            of the parts do not agree about are None. The spline and the surface are kept if all
+            parts have the same.
 
         Raises
         ------
@@ -117,8 +125,12 @@ class SampleArrays:
             for name in pieces[0].fields
         }
         report = common_report([part.report for part in pieces], arrays)
-        common = all(part.spline is pieces[0].spline for part in pieces)
-        return cls(**arrays, report=report, spline=pieces[0].spline if common else None)
+        same = {
+            name: value if all(getattr(part, name) is value for part in pieces) else None
+            for name in ("spline", "surface")
+            for value in [getattr(pieces[0], name)]
+        }
+        return cls(**arrays, report=report, **same)
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Return the fields by their names.
@@ -137,10 +149,12 @@ class SampleArrays:
 
         """
         found: dict[str, NDArray[Any]] = {}
-        for name in ARRAY_NAMES:
+        for name in COLUMNS:
             with suppress(AttributeError):
                 # Past __getattr__, which asks here what there is.
-                found[name] = object.__getattribute__(self, name)
+                array = object.__getattribute__(self, name)
+                if array is not None:
+                    found[name] = array
         return found
 
     @property
@@ -300,7 +314,7 @@ class SampleArrays:
     def __getitem__(self, key: ArrayLike | slice) -> Self:
         rows = key if isinstance(key, slice) else checked_rows(key, len(self))
         arrays = {name: array[rows] for name, array in self.arrays().items()}
-        return type(self)(**arrays, report=self.report, spline=self.spline)
+        return type(self)(**arrays, report=self.report, spline=self.spline, surface=self.surface)
 
 
 def _rebuilt(
@@ -308,9 +322,19 @@ def _rebuilt(
     arrays: dict[str, NDArray[Any]],
     report: SamplingReport,
     spline: Spline | None,
+    surface: Surface | None = None,
 ) -> SampleArrays:
     """Return samples that were copied or pickled."""
-    return cls(**arrays, report=report, spline=spline)
+    return cls(**arrays, report=report, spline=spline, surface=surface)
+
+
+def _if_it_pickles(surface: Surface | None) -> Surface | None:
+    """Return a surface, or None if it cannot be pickled: its function may be a lambda."""
+    try:
+        pickle.dumps(surface)
+    except Exception:  # pickling raises anything
+        return None
+    return surface
 
 
 def _common_dtype(arrays: Mapping[str, object]) -> np.dtype[np.floating]:

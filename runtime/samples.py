@@ -32,6 +32,11 @@ class Samples(SampleArrays):
     requested (`fields` of `sample`) are missing: reading them raises MissingFieldError, an
     AttributeError. All arrays are C-contiguous; one that is not is copied.
 
+    With ``on="surface"`` (see `sample`), points, normals and curvatures are those of the surface at
+    `uv`. A sample with a `normal_index` has the prescribed normal; that of the surface differs from
+    it by rounding, 1e-12 where it is regular. With ``on="spline"``, and where `on_surface` is
+    False, all of them are those of the spline.
+
     Attributes
     ----------
     points : (N, 3) float64 array
@@ -51,11 +56,19 @@ class Samples(SampleArrays):
     normal_index : (N,) int64 array
         Rows of the prescribed normals; −1 for a sample that fills a gap.
     patch_index : (N,) int64 array
-        Patches of the spline that contain the points.
+        Patches of the spline in which the samples were found.
+    on_surface : (N,) bool array or None
+        Whether the sample is on the surface. False for one at a prescribed normal that could not be
+        moved there from the spline: next to parabolic and singular points, and next to open borders
+        where the surface has that normal outside of its domain only. None with ``on="spline"``, or
+        if it was not requested.
     report : SamplingReport
         A report on the sampling.
     spline : Spline or None
         The spline that was sampled; None if it is unknown, as for samples from a file.
+    surface : Surface or None
+        The surface on which the samples are; None with ``on="spline"``, for samples from a file,
+        and after pickling if the surface does not pickle.
 
     Raises
     ------

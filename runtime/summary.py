@@ -28,6 +28,8 @@ def summary_of(samples: Samples) -> str:
         share = f"{100.0 * report.developable_share:.2f}"
         if share != "0.00":
             line += f"; {share} % of the surface is developable (K = 0)"
+    if report.unrefined:
+        line += f"; {report.unrefined:,} samples could not be moved to the surface"
     return line + _infinite(samples)
 
 

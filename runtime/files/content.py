@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 
-from ..fields import ARRAY_NAMES
+from ..fields import COLUMNS
 from ..report import SamplingReport
 
 __all__ = ["UnusableError", "known_fields", "lacks", "report_from_json", "report_to_json"]
@@ -27,11 +27,11 @@ def report_from_json(text: str) -> SamplingReport:
 
 
 def known_fields(names: Iterable[str]) -> tuple[str, ...]:
-    """Return the fields that a file says to hold, in the order of `ARRAY_NAMES`."""
+    """Return the fields that a file says to hold, in the order of `COLUMNS`."""
     held = set(names)
-    if not held or not held <= set(ARRAY_NAMES):
+    if not held or not held <= set(COLUMNS):
         raise UnusableError("holds fields that gaussmap does not know; update gaussmap.")
-    return tuple(name for name in ARRAY_NAMES if name in held)
+    return tuple(name for name in COLUMNS if name in held)
 
 
 def lacks(what: str, missing: Sequence[str]) -> UnusableError:

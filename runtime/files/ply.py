@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..fields import ARRAY_NAMES, COLUMNS, FLOAT_NAMES, columns_of, new_field
+from ..fields import ARRAY_NAMES, COLUMNS, FLAG_NAMES, FLOAT_NAMES, columns_of, dtype_of, new_field
 from ..report import SamplingReport
 from ..samples import Samples
 from .content import UnusableError, known_fields, lacks, report_from_json, report_to_json
@@ -137,8 +137,8 @@ def _rows(columns: Mapping[str, NDArray[Any]]) -> Iterator[memoryview]:
 
 
 def _kept(column: NDArray[Any]) -> str:
-    """Return the type that a column has in a file: the standard knows no 64-bit integers."""
-    return "i4" if column.dtype == np.int64 else column.dtype.str[1:]
+    """Return the type that a column has in a file: there are no booleans, no 64-bit integers."""
+    return {"i8": "i4", "b1": "u1"}.get(column.dtype.str[1:], column.dtype.str[1:])
 
 
 def _check_narrow(name: str, column: NDArray[Any]) -> None:
@@ -201,11 +201,9 @@ def _empty_arrays(fields: Sequence[str], vertices: _Element) -> dict[str, NDArra
     single = bool(floats) and all(kind.str[1:] == "f4" for kind in floats)
     arrays = {}
     for name in fields:
-        dtype = np.dtype(
-            (np.float32 if single else np.float64) if name in FLOAT_NAMES else np.int64
-        )
+        dtype = dtype_of(name, np.float32 if single else np.float64)
         for kind in (kinds[column] for column in COLUMNS[name]):
-            if not np.can_cast(kind, dtype, "safe"):
+            if not np.can_cast(kind, np.int64 if name in FLAG_NAMES else dtype, "safe"):
                 raise UnusableError(f"has {kind.name} numbers as {name}; write it again.")
         arrays[name] = new_field(name, vertices.rows, dtype)
     return arrays

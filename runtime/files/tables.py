@@ -7,6 +7,7 @@ from itertools import chain
 from pathlib import Path
 from typing import Any, TextIO
 
+import numpy as np
 from numpy.typing import NDArray
 
 from ..fields import columns_of
@@ -15,7 +16,7 @@ from ..samples import Samples
 __all__ = ["write_csv", "write_rows", "write_xyz"]
 
 # As many digits as it takes to read the same numbers again.
-_DIGITS = {"i8": "%d", "f4": "%.9g", "f8": "%.17g"}
+_DIGITS = {"i8": "%d", "u1": "%d", "f4": "%.9g", "f8": "%.17g"}
 _ROWS = 4096
 
 
@@ -35,6 +36,7 @@ def write_xyz(samples: Samples, path: Path) -> None:
 
 def write_rows(file: TextIO, line: str, columns: Sequence[NDArray[Any]]) -> None:
     """Write columns as lines, in which their numbers take the places of the braces."""
+    columns = [column.view(np.uint8) if column.dtype == np.bool_ else column for column in columns]
     pattern = line.format(*(_DIGITS[column.dtype.str[1:]] for column in columns))
     for start in range(0, len(columns[0]), _ROWS):
         block = [column[start : start + _ROWS].tolist() for column in columns]

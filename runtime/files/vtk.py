@@ -30,6 +30,7 @@ Arrays = dict[str, NDArray[Any]]
 def write_vtp(samples: Samples, path: Path) -> None:
     """Write points with all other fields, and the report as field data."""
     data, text = samples.arrays(), report_to_json(samples.report)
+    data = {x: y.view(np.uint8) if y.dtype == np.bool_ else y for x, y in data.items()}
     alone = np.arange(len(samples))[:, None]
     _write_xml(path, "PolyData", data.pop("points"), {"Verts": _topology(alone)}, data, text)
 

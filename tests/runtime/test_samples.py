@@ -9,7 +9,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.errors import InputError
-from gaussmap.runtime.fields import ARRAY_NAMES
+from gaussmap.runtime.fields import ARRAY_NAMES, ARRAY_NAMES_ON_SURFACE
 from gaussmap.runtime.report import SamplingReport
 from gaussmap.runtime.samples import Samples
 from hypothesis import given
@@ -46,7 +46,8 @@ def curved(K: object, H: object) -> Samples:
 
 class TestConstruction:
     def test_the_array_names_are_the_fields(self):
-        assert (*ARRAY_NAMES, "report", "spline") == tuple(field.name for field in fields(Samples))
+        names = (*ARRAY_NAMES_ON_SURFACE, "report", "spline", "surface")
+        assert names == tuple(field.name for field in fields(Samples))
 
     def test_the_spline_is_kept_by_picking_copying_and_concatenating(self):
         spline = gm.fit(gm.surfaces.torus(), cells=(8, 8))
@@ -62,6 +63,35 @@ class TestConstruction:
     def test_what_is_no_spline_is_refused(self):
         with pytest.raises(InputError, match="spline must be a Spline or None, not Surface"):
             torus(spline=gm.surfaces.torus())
+
+    def test_the_surface_is_kept_and_pickled_if_it_pickles(self):
+        surface = gm.Surface.from_callable(np.cross, ((0, 1), (0, 1)))
+        samples = torus(surface=surface)
+        halves = [samples[:5], samples[5:]]
+        assert all(part.surface is surface for part in (*halves, Samples.concatenate(halves)))
+        assert Samples.concatenate([samples, torus()]).surface is None
+        assert pickle.loads(pickle.dumps(samples)).surface.domain == surface.domain
+        unpicklable = gm.Surface.from_callable(lambda u, v: u, ((0, 1), (0, 1)))
+        other = pickle.loads(pickle.dumps(torus(surface=unpicklable)))
+        assert other.surface is None
+        np.testing.assert_array_equal(other.points, samples.points)
+        with pytest.raises(InputError, match="surface must be a Surface or None, not str"):
+            torus(surface="torus")
+
+    def test_whether_samples_are_on_the_surface_is_optional(self):
+        there = np.arange(12) % 5 > 0
+        samples = torus(on_surface=there)
+        assert samples.fields == ARRAY_NAMES_ON_SURFACE
+        assert torus().fields == ARRAY_NAMES
+        assert torus().on_surface is None
+        assert replace(torus(), report=REPORT).on_surface is None
+        np.testing.assert_array_equal(samples[3:].on_surface, there[3:])
+        joined = Samples.concatenate([samples[:6], samples[6:]])
+        np.testing.assert_array_equal(joined.on_surface, there)
+        assert joined.report.unrefined == 3
+        assert Samples.concatenate([torus()]).report.unrefined is None
+        with pytest.raises(InputError, match="on_surface must be a bool array"):
+            torus(on_surface=np.ones(12))
 
     def test_length(self):
         assert len(torus(12)) == 12
@@ -134,10 +164,12 @@ class TestReport:
             "coverage": np.float32(2),
             "angle": np.int64(3),
             "infinite_curvatures": np.int8(4),
+            "on": "surface",
+            "unrefined": np.uint8(2),
         }
         report = SamplingReport("s", *numbers, **more)
         assert [type(getattr(report, f.name)) for f in fields(report)] == [
-            str, int, int, int, float, int, float, float, int,
+            str, int, int, int, float, int, float, float, int, str, int,
         ]  # fmt: skip
 
     @pytest.mark.parametrize("name", ["normals", "samples", "patches", "developable_patches"])
@@ -345,6 +377,14 @@ class TestText:
         )
         without = replace(samples, report=replace(samples.report, normals=0))
         assert without[:10].summary() == "10 of 10,012 samples (0 elliptic, 10 hyperbolic)"
+
+    def test_summary_of_samples_that_are_not_on_the_surface(self):
+        report = replace(self.samples().report, developable_share=0.0, unrefined=1234)
+        assert (
+            replace(self.samples(), report=report)
+            .summary()
+            .endswith("5,000 hyperbolic); 1,234 samples could not be moved to the surface")
+        )
 
     def test_summary_of_a_part(self):
         assert self.samples()[:10].summary() == (

@@ -161,6 +161,18 @@ class TestRoundTrip:
         assert_same(samples, read_samples(tmp_path / f"file{suffix}"))
 
     @every_readable
+    def test_whether_samples_are_on_the_surface(self, tmp_path, suffix):
+        there = np.arange(12) % 3 > 0
+        report = replace(make().report, on="surface", unrefined=4)
+        samples = replace(make(), on_surface=there, report=report)
+        samples.write(tmp_path / f"out{suffix}")
+        other = read_samples(tmp_path / f"out{suffix}")
+        assert_same(samples, other)
+        assert other.on_surface is not None
+        assert other.on_surface.dtype == np.bool_
+        np.testing.assert_array_equal(other.on_surface, there)
+
+    @every_readable
     def test_a_part_keeps_the_report(self, tmp_path, suffix):
         part = make()[3:5]
         write_samples(part, tmp_path / f"file{suffix}")
