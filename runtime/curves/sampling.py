@@ -30,7 +30,7 @@ from .fitting import fit
 from .samples import CurveReport, CurveSamples
 from .spline import CurveSpline, angles_of
 
-__all__ = ["sample"]
+__all__ = ["filled", "find", "sample"]
 
 Array = NDArray[np.float64]
 
@@ -114,7 +114,7 @@ def sample(
         directions, hits = _by_count(spline, asked)
     else:
         hits = find(spline, directions)
-    samples = _filled(spline, directions, hits)
+    samples = filled(spline, directions, hits)
     _warn(samples.report, asked)
     return samples
 
@@ -183,7 +183,8 @@ def _by_count(spline: CurveSpline, count: int) -> tuple[Array, Hits]:
     return best
 
 
-def _filled(spline: CurveSpline, normals: Array, hits: Hits) -> CurveSamples:
+def filled(spline: CurveSpline, normals: Array, hits: Hits) -> CurveSamples:
+    """Return the samples at hits of unit normals (S, 2)."""
     count = len(hits)
     points, directions = np.empty((count, 2)), np.empty((count, 2))
     parameters, support, curvature = (np.empty(count) for _ in range(3))
