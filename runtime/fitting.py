@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
@@ -10,6 +11,7 @@ from numpy.typing import DTypeLike, NDArray
 from .domain import Domain
 from .errors import InputError, SurfaceError, in_memory
 from .ghosts import Sides
+from .misfit import misfit_to_data, probe_of
 from .quasi_interpolant import apart, checked_cells, fit_grid, fit_values, not_too_large
 from .spline import Spline
 from .surface import Surface
@@ -58,7 +60,8 @@ def fit(surface: Surface | str, cells: Sequence[int] | None = None) -> Spline:
     Returns
     -------
     Spline
-        The spline, with four quadratic patches in each cell.
+        The spline, with four quadratic patches in each cell. Its `misfit` tells how far it is from
+        the surface.
 
     Raises
     ------
@@ -82,9 +85,25 @@ def fit(surface: Surface | str, cells: Sequence[int] | None = None) -> Spline:
             f"a Surface or its name is needed, not {type(surface).__name__}; make one by "
             "gm.Surface.from_callable, from_sympy or from_grid."
         )
-    if cells is None and surface.grid is not None:
-        return fit_grid(surface.grid, surface.domain, surface.boundary, surface.name)
-    m, n = checked_cells(DEFAULT_CELLS if cells is None else cells, surface.boundary)
+    if surface.grid is not None:
+        return _fit_data(surface, surface.grid, cells)
+    spline = _fitted(surface, DEFAULT_CELLS if cells is None else cells)
+    return replace(spline, misfit=probe_of(surface, spline.cells).misfit(spline))
+
+
+def _fit_data(surface: Surface, grid: NDArray[np.float64], cells: Sequence[int] | None) -> Spline:
+    """Return the spline of a grid of points, by default with one cell between any four of them."""
+    spline = (
+        fit_grid(grid, surface.domain, surface.boundary, surface.name)
+        if cells is None
+        else _fitted(surface, cells)
+    )
+    return replace(spline, misfit=misfit_to_data(spline, grid, surface.boundary))
+
+
+def _fitted(surface: Surface, cells: Sequence[int]) -> Spline:
+    """Return the quasi-interpolant of a surface that can be evaluated anywhere."""
+    m, n = checked_cells(cells, surface.boundary)
     lines = _lines(surface.domain, m, n)
     centres, vertices = _values(surface, *lines)
     middles = _middles(surface, *lines)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,6 +16,9 @@ from .errors import InputError
 from .kernels import spline as kernels
 from .threads import over_ranges
 from .tolerances import DATA_ERROR, SAME_PARAMETER
+
+if TYPE_CHECKING:
+    from .misfit import Misfit
 
 __all__ = ["LARGEST_EXPONENT", "Spline", "scale_to_one", "scales_to_one", "short_label"]
 
@@ -48,6 +52,10 @@ class Spline:
         For u and for v, the boundary conditions at the low and the high end, see `Surface`.
     name : str
         Label of the surface.
+    misfit : Misfit or None
+        How far the spline is from the surface, or from the data, that it approximates: the largest
+        and the root mean square of the distance, and the largest angle between the normals. None if
+        it was not made by `fit`.
 
     Examples
     --------
@@ -67,6 +75,8 @@ class Spline:
     (True, True)
     >>> spline.scale, spline.noise < 1e-13
     (1.0, True)
+    >>> spline.misfit.rms < spline.misfit.distance < 3e-3, spline.misfit.angle < 2.0  # degrees
+    (True, True)
 
     """
 
@@ -74,6 +84,7 @@ class Spline:
     domain: Domain
     boundary: Boundary
     name: str
+    misfit: Misfit | None = None
 
     def __repr__(self) -> str:
         return f"Spline({self.cells[0]} × {self.cells[1]} cells of {short_label(self.name)})"

@@ -11,6 +11,7 @@ from typing import Any
 
 import gaussmap as gm
 import pytest
+from gaussmap.runtime.misfit import Misfit
 from gaussmap.runtime.report import SamplingReport
 from gaussmap.runtime.support.branches import Branches
 from gaussmap.runtime.support.convolution import Convolution
@@ -24,7 +25,12 @@ SERIOUS = {"GL08", "PR01", "PR02", "PR04", "RT01", "YD01", "SS01", "EX01"}
 OF_CLASSES = SERIOUS - {"PR01", "PR02", "PR04"}
 NAMESPACES = {"curves", "directions", "errors", "gauss_map", "surfaces"}
 # Classes that the functions return, beside those that have public names.
-RETURNED = {"Branches": Branches, "Convolution": Convolution, "SamplingReport": SamplingReport}
+RETURNED = {
+    "Branches": Branches,
+    "Convolution": Convolution,
+    "Misfit": Misfit,
+    "SamplingReport": SamplingReport,
+}
 
 
 def public() -> dict[str, Any]:

@@ -1,0 +1,165 @@
+"""The misfit of a spline beside independent measurements, on smooth and hard surfaces."""
+
+import pickle
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+GENERATOR = np.random.default_rng(3)
+
+
+def torus(scale: float = 1.0, shift: float = 0.0, calls: list[int] | None = None) -> gm.Surface:
+    exact = gm.surfaces.torus()
+
+    def f(u: Array, v: Array) -> Array:
+        if calls is not None:
+            calls.append(u.size)
+        return scale * exact.function(u, v) + shift
+
+    return gm.Surface.from_callable(f, exact.domain, (True, True), name="torus")
+
+
+def torus_normals(u: Array, v: Array) -> Array:
+    return np.stack([np.cos(v) * np.cos(u), np.cos(v) * np.sin(u), np.sin(v)], axis=-1)
+
+
+def angles(first: Array, second: Array) -> Array:
+    """Return angles in degrees between unit vectors."""
+    return np.degrees(2.0 * np.arcsin(np.linalg.norm(first - second, axis=-1) / 2.0))
+
+
+def egg() -> gm.Surface:
+    def f(u: Array, v: Array) -> Array:
+        x, y, z = np.cos(v) * np.cos(u), np.cos(v) * np.sin(u), np.sin(v)
+        return np.stack([x * (1.2 + 0.3 * z), y * (0.8 + 0.1 * z), 1.4 * z + 0.3 * x**2], axis=-1)
+
+    domain = ((0.0, 2.0 * np.pi), (-np.pi / 2, np.pi / 2))
+    return gm.Surface.from_callable(f, domain, ("periodic", "pole"), name="egg")
+
+
+def fillet(along: int, width: float = 0.01, place: float = 0.437) -> gm.Surface:
+    """Return two planes at 60° with a circular fillet over `width` of the domain between them."""
+
+    def f(u: Array, v: Array) -> Array:
+        t = (u, v)[along] - place
+        # The slope goes from 0 to tan 60° over the width.
+        inside = np.clip(t + width / 2, 0.0, width)
+        z = np.tan(np.radians(60.0)) * (inside**2 / (2 * width) + np.maximum(t - width / 2, 0.0))
+        return np.stack([u, v, z], axis=-1)
+
+    return gm.Surface.from_callable(f, ((0.0, 1.0), (0.0, 1.0)), name="fillet")
+
+
+@pytest.mark.parametrize("cells", [(16, 16), (64, 64), (150, 37)])
+def test_misfit_is_what_many_random_places_show(cells) -> None:
+    spline = gm.fit("torus", cells)
+    u, v = GENERATOR.random((2, 50_000)) * 2.0 * np.pi
+    distances = np.linalg.norm(spline.evaluate(u, v) - gm.surfaces.torus().evaluate(u, v), axis=1)
+    largest = angles(spline.normals(u, v), torus_normals(u, v)).max()
+    misfit = spline.misfit
+    assert misfit.distance == pytest.approx(distances.max(), rel=0.05)
+    assert misfit.rms == pytest.approx(np.sqrt((distances**2).mean()), rel=0.05)
+    assert misfit.angle == pytest.approx(largest, rel=0.12)
+
+
+@pytest.mark.parametrize("along", [0, 1])
+@pytest.mark.parametrize("cells", [(8, 8), (64, 64), (50, 43)])
+def test_fillet_of_one_percent_is_seen(along: int, cells) -> None:
+    spline = gm.fit(fillet(along), cells)
+    places = np.linspace(0.0, 1.0, 20_001), np.full(20_001, 0.37)
+    u, v = places if along == 0 else places[::-1]
+    exact = fillet(along).evaluate(u, v)
+    distances = np.linalg.norm(spline.evaluate(u, v) - exact, axis=1)
+    assert spline.misfit.distance > 0.8 * distances.max() > 2e-4
+    assert spline.misfit.angle > 10.0
+
+
+def test_normals_next_to_poles_count_and_those_at_poles_do_not() -> None:
+    assert gm.fit("sphere", (64, 64)).misfit.angle < 0.04
+    spline = gm.fit(egg(), (32, 32))
+    u, v = np.meshgrid(np.linspace(0.0, 6.0, 100), np.pi / 2 - np.linspace(1e-3, 0.2, 50))
+    h = 1e-6
+    tangents = [
+        egg().evaluate(u + du, v + dv) - egg().evaluate(u - du, v - dv)
+        for du, dv in ((h, 0.0), (0.0, h))
+    ]
+    normals = np.cross(*tangents)
+    normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
+    largest = angles(spline.normals(u, v), normals).max()
+    assert spline.misfit.angle > 0.5 * largest > 0.3
+
+
+@pytest.mark.parametrize("scale", [1e-300, 1e-9, 1e9, 1e300])
+def test_misfit_scales(scale: float) -> None:
+    unit, scaled = gm.fit(torus(), (16, 16)).misfit, gm.fit(torus(scale), (16, 16)).misfit
+    assert scaled.distance / scale == pytest.approx(unit.distance, rel=1e-9)
+    assert scaled.rms / scale == pytest.approx(unit.rms, rel=1e-9)
+    assert scaled.angle == pytest.approx(unit.angle, abs=1e-6)
+
+
+@pytest.mark.parametrize("shift", [1e3, 1e6])
+def test_misfit_far_from_the_origin(shift: float) -> None:
+    unit, moved = gm.fit(torus(), (16, 16)).misfit, gm.fit(torus(1.0, shift), (16, 16)).misfit
+    assert moved.distance == pytest.approx(unit.distance, abs=8e-16 * shift)
+    assert moved.angle == pytest.approx(unit.angle, abs=0.01)  # the error of normals is 1e-4 rad
+
+
+def test_quadratics_have_no_misfit() -> None:
+    misfit = gm.fit("hyperbolic_paraboloid", (16, 16)).misfit
+    assert misfit.distance < 1e-15
+    assert misfit.angle < 1e-6
+
+
+def test_surface_without_normals_has_no_angle() -> None:
+    line = gm.Surface.from_callable(
+        lambda u, v: np.stack([u, u, u + 0 * v], axis=-1), ((0, 1), (0, 1)), name="line"
+    )
+    assert gm.fit(line, (8, 8)).misfit.angle is None
+
+
+def test_surface_is_evaluated_in_proportion_to_the_fit() -> None:
+    for cells, most in (((8, 8), 8_000), ((64, 64), 17_000), ((300, 300), 17_000)):
+        calls: list[int] = []
+        gm.fit(torus(calls=calls), cells)
+        of_fit = 2 * cells[0] * cells[1] + 3 * sum(cells) + 1
+        assert sum(calls) - of_fit < min(most, 2 * of_fit + 8_000)
+
+
+def test_misfit_is_pickled_with_the_spline() -> None:
+    spline = gm.fit("torus", (16, 16))
+    assert pickle.loads(pickle.dumps(spline)).misfit == spline.misfit
+
+
+# --- data -----------------------------------------------------------------------------------------
+
+
+def waves(m: int, n: int) -> Array:
+    x, y = np.meshgrid(np.linspace(0, 1, n), np.linspace(0, 1, m))
+    return 0.3 * np.sin(5 * x) * np.cos(4 * y) + 0.01 * np.sin(40 * x)
+
+
+@pytest.mark.parametrize("cells", [None, (10, 12)])
+def test_misfit_to_elevations_is_that_at_all_of_them(cells) -> None:
+    heights = waves(40, 30)
+    spline = gm.fit(gm.Surface.from_grid(heights, spacing=(0.1, 0.2)), cells)
+    x, y = np.meshgrid(0.1 * np.arange(30), 0.2 * np.arange(40))
+    data = np.stack([x, y, heights], axis=-1)
+    distances = np.linalg.norm(spline.evaluate(x, y) - data, axis=-1)
+    assert spline.misfit.distance == pytest.approx(distances.max(), rel=1e-9)
+    assert spline.misfit.rms == pytest.approx(np.sqrt((distances**2).mean()), rel=1e-9)
+    assert spline.misfit.angle is None
+
+
+@pytest.mark.parametrize("cells", [None, (12, 12)])
+def test_misfit_to_periodic_points(cells) -> None:
+    exact = gm.surfaces.torus()
+    u, v = np.meshgrid(*(2.0 * np.pi * np.arange(k) / k for k in (24, 20)), indexing="ij")
+    grid = gm.Surface.from_grid(exact.evaluate(u, v), periodic=(True, True))
+    spline = gm.fit(grid, cells)
+    i, j = np.meshgrid(np.arange(24), np.arange(20), indexing="ij")
+    distances = np.linalg.norm(spline.evaluate(i, j) - grid.grid, axis=-1)
+    assert spline.misfit.distance == pytest.approx(distances.max(), rel=1e-9)
+    assert spline.misfit.distance < 0.02
