@@ -11,7 +11,19 @@ from pathlib import Path
 
 import sympy as sp
 
-from . import curve, gaussian_image, latex, mesh, offset, patch, spline, support, surfaces, tables
+from . import (
+    curve,
+    gaussian_image,
+    jet,
+    latex,
+    mesh,
+    offset,
+    patch,
+    spline,
+    support,
+    surfaces,
+    tables,
+)
 from .emit import functions, named_tuples, render
 from .loops import array_function
 from .positions import position
@@ -31,6 +43,7 @@ def derive() -> dict[str, str]:
         "primes.py": primes_source(),
         "gaussian_image.py": gaussian_image_source(),
         "icosahedron.py": icosahedron_source(),
+        "jet.py": jet_source(),
         "mesh.py": mesh_source(),
         "offset.py": offset_source(),
         "patch.py": patch_source(),
@@ -140,6 +153,12 @@ def icosahedron_source() -> str:
     """Return generated/icosahedron.py: the tables of the icosahedron."""
     title = "The regular icosahedron: tables of its corners, edges and faces."
     return mathematics(title, tables.icosahedron_tables())
+
+
+def jet_source() -> str:
+    """Return generated/jet.py: the formulas of a surface at a point, from its derivatives there."""
+    title = "Surfaces at a point: the formulas of symbolic/jet.py as functions of vectors."
+    return mathematics(title, functions(jet.FORMULAS))
 
 
 def mesh_source() -> str:

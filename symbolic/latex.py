@@ -9,7 +9,7 @@ from functools import cache
 
 import sympy as sp
 
-from . import curve, gaussian_image, mesh, offset, patch, spline, support, surfaces
+from . import curve, gaussian_image, jet, mesh, offset, patch, spline, support, surfaces
 from .display import latex_name, latex_of
 from .emit import render
 from .formula import Formula
@@ -27,6 +27,7 @@ FORMULAS = {
     "Gaussian images and parabolic points": gaussian_image.FORMULAS,
     "The quadratic spline": spline.FORMULAS,
     "Support functions": support.FORMULAS,
+    "Surfaces at a point": jet.FORMULAS,
     "Meshes": mesh.FORMULAS,
     "Planar curves": curve.FORMULAS,
 }

@@ -8,7 +8,9 @@ from typing import Literal, get_args
 
 import sympy as sp
 
-from .notation import dot
+from .jet import AT_JET
+from .notation import substitute
+from .patch import VECTORS
 
 __all__ = ["CATALOGUE", "Boundary", "BoundaryCondition", "Parameter", "ParametricSurface", "u", "v"]
 
@@ -93,32 +95,27 @@ class ParametricSurface:
         x, y, z = self.derivative(self.u).cross(self.derivative(self.v))
         return x, y, z
 
-    @cached_property
+    @property
     def gaussian_curvature(self) -> sp.Expr:
         """The Gaussian curvature K = (L N − M²)/(E G − F²), not simplified."""
-        L, M, N, area = self._second_form
-        return (L * N - M**2) / area**4
+        return self._at_jet["K"]
 
-    @cached_property
+    @property
     def mean_curvature(self) -> sp.Expr:
-        """The mean curvature, positive on a sphere with outward normals, not simplified.
-
-        It is half the sum of the principal curvatures −II/I, so that a principal radius is positive
-        where the normal points away from the centre of curvature.
-        """
-        x_u, x_v = self.derivative(self.u), self.derivative(self.v)
-        E, F, G = dot(x_u, x_u), dot(x_u, x_v), dot(x_v, x_v)
-        L, M, N, area = self._second_form
-        return -(E * N - 2 * F * M + G * L) / (2 * area**3)
+        """The mean curvature, positive on a sphere with outward normals, not simplified."""
+        return self._at_jet["H"]
 
     @cached_property
-    def _second_form(self) -> tuple[sp.Expr, sp.Expr, sp.Expr, sp.Expr]:
-        """Return L, M, N with x_u × x_v in place of the unit normal, and |x_u × x_v|."""
-        normal = sp.Matrix(self.normal_field)
-        L = dot(normal, self.derivative(self.u, self.u))
-        M = dot(normal, self.derivative(self.u, self.v))
-        N = dot(normal, self.derivative(self.v, self.v))
-        return L, M, N, sp.sqrt(dot(normal, normal))
+    def _at_jet(self) -> dict[str, sp.Expr]:
+        """The outputs of the formula `at_jet` for the derivatives of the position."""
+        u, v = self.u, self.v
+        jet = [self.derivative(*by) for by in ((u, u), (u, v), (v, v), (u,), (v,))]
+        values = {
+            symbol: value
+            for vector, derivative in zip(VECTORS, jet, strict=True)
+            for symbol, value in zip(vector.components, derivative, strict=True)
+        }
+        return {name: substitute(x, values) for name, x in AT_JET.expanded().items()}
 
 
 # --- the catalogue --------------------------------------------------------------------------------

@@ -21,6 +21,7 @@ from gaussmap.symbolic import (
     files,
     formulas,
     gaussian_image,
+    jet,
     loops,
     mesh,
     patch,
@@ -99,6 +100,8 @@ def exact_inputs(formula, seed: int) -> dict[str, Fraction]:
         return inputs | axes | {"N0_x": Fraction(3), "N1_x": Fraction(5), "N2_x": Fraction(3)}
     if formula is patch.LARGEST_CURVATURE:
         return inputs | {"K": inputs["H"] ** 2 - 9}
+    if formula is jet.AT_JET:
+        return inputs | with_rational_normal(inputs)
     if formula is mesh.CORNER_PRODUCTS:  # a triangle in a plane with a rational normal
         return inputs | in_a_plane(inputs)
     if formula is mesh.BORDER_SPACING:  # ρ = 2 k/(π r²) = (7/r)²
@@ -115,6 +118,15 @@ def rational_length(inputs: dict[str, Fraction]) -> dict[str, Fraction]:
         result[f"d_{axis}"] = u * p_u - a * u - b * v
         result[f"e_{axis}"] = v * p_v - b * u - c * v
     return result
+
+
+def with_rational_normal(inputs: dict[str, Fraction]) -> dict[str, Fraction]:
+    """Return orthogonal tangents d and e of rational lengths."""
+    return {
+        f"{name}_{axis}": inputs[f"{name}_x"] * x
+        for name, direction in (("d", (1, 2, 2)), ("e", (2, 1, -2)))
+        for axis, x in zip("xyz", direction, strict=True)
+    }
 
 
 def in_a_plane(inputs: dict[str, Fraction]) -> dict[str, Fraction]:

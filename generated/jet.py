@@ -1,0 +1,207 @@
+"""Surfaces at a point: the formulas of symbolic/jet.py as functions of vectors.
+
+Written by `make generate`, SymPy 1.14.0, float64, no fast-math: do not edit, change symbolic/.
+"""
+
+import math
+
+from .vectors import Vector, inline
+
+
+@inline
+def at_jet(patch):
+    """The unit normal, the Gaussian and the mean curvature of a surface from its 2-jet: a =
+    x_uu, b = x_uv, c = x_vv, d = x_u, e = x_v. The mean curvature is half the sum of the
+    principal curvatures −II/I, positive on a sphere with outward normals.
+
+        N = d × e
+        E = |d|**2
+        F = d·e
+        G = |e|**2
+        A = N·a
+        B = N·b
+        C = N·c
+        g = |N|**2
+        L = sqrt(g)
+        n = N/L
+        K = (A*C - B**2)/g**2
+        H = (2*B*F - A*G - C*E)/(2*L*g)
+
+    Source: beyond the paper; 62 operations as written, 63 here.
+    """
+    a_x, a_y, a_z = patch.a
+    b_x, b_y, b_z = patch.b
+    c_x, c_y, c_z = patch.c
+    d_x, d_y, d_z = patch.d
+    e_x, e_y, e_z = patch.e
+    N_x = d_y * e_z - d_z * e_y
+    N_y = d_z * e_x - d_x * e_z
+    N_z = d_x * e_y - d_y * e_x
+    E = d_x * d_x + d_y * d_y + d_z * d_z
+    F = d_x * e_x + d_y * e_y + d_z * e_z
+    G = e_x * e_x + e_y * e_y + e_z * e_z
+    A = N_x * a_x + N_y * a_y + N_z * a_z
+    B = N_x * b_x + N_y * b_y + N_z * b_z
+    C = N_x * c_x + N_y * c_y + N_z * c_z
+    g = N_x * N_x + N_y * N_y + N_z * N_z
+    L = math.sqrt(g)
+    t0 = 1.0 / L
+    n_x = N_x * t0
+    n_y = N_y * t0
+    n_z = N_z * t0
+    K = (A * C - B * B) / (g * g)
+    H = 0.5 * t0 * (2 * B * F - A * G - C * E) / g
+    return Vector(n_x, n_y, n_z), K, H
+
+
+@inline
+def newton(patch, n):
+    """The step U/D, V/D of Newton's method for P = Q = 0, the preimage of the unit normal n on
+    the patch that osculates the surface. s is the squared sine of the angle between n and the
+    normal of the surface, since n × N = q, and m has the sign of its cosine.
+
+        A = n·a
+        B = n·b
+        C = n·c
+        P = n·d
+        Q = n·e
+        q = Q*d - P*e
+        N = d × e
+        D = A*C - B**2
+        U = B*Q - C*P
+        V = B*P - A*Q
+        s = |q|**2/|N|**2
+        m = n·N
+
+    Source: beyond the paper; 68 operations as written, 68 here.
+    """
+    a_x, a_y, a_z = patch.a
+    b_x, b_y, b_z = patch.b
+    c_x, c_y, c_z = patch.c
+    d_x, d_y, d_z = patch.d
+    e_x, e_y, e_z = patch.e
+    n_x, n_y, n_z = n
+    A = a_x * n_x + a_y * n_y + a_z * n_z
+    B = b_x * n_x + b_y * n_y + b_z * n_z
+    C = c_x * n_x + c_y * n_y + c_z * n_z
+    P = d_x * n_x + d_y * n_y + d_z * n_z
+    Q = e_x * n_x + e_y * n_y + e_z * n_z
+    q_x = Q * d_x - P * e_x
+    q_y = Q * d_y - P * e_y
+    q_z = Q * d_z - P * e_z
+    N_x = d_y * e_z - d_z * e_y
+    N_y = d_z * e_x - d_x * e_z
+    N_z = d_x * e_y - d_y * e_x
+    D = A * C - B * B
+    U = B * Q - C * P
+    V = B * P - A * Q
+    s = (q_x * q_x + q_y * q_y + q_z * q_z) / (N_x * N_x + N_y * N_y + N_z * N_z)
+    m = N_x * n_x + N_y * n_y + N_z * n_z
+    return D, U, V, s, m
+
+
+@inline
+def polar_chart(patch, r, x, y):
+    """The 2-jet in the regular chart s = r x, t = r y at a pole, from that by the polar angle
+    (a and d twice and once, b mixed) and the distance r > 0 from the pole; x and y are the
+    cosine and the sine of the angle.
+
+        o = d/r
+        m = b/r - o/r
+        h = a/r**2 + e/r
+        X_ss = c*x**2 + h*y**2 - 2*m*x*y
+        X_st = c*x*y - h*x*y + m*(x**2 - y**2)
+        X_tt = c*y**2 + h*x**2 + 2*m*x*y
+        X_s = e*x - o*y
+        X_t = e*y + o*x
+
+    Source: beyond the paper; 126 operations as written, 89 here.
+    """
+    a_x, a_y, a_z = patch.a
+    b_x, b_y, b_z = patch.b
+    c_x, c_y, c_z = patch.c
+    d_x, d_y, d_z = patch.d
+    e_x, e_y, e_z = patch.e
+    t0 = 1.0 / r
+    o_x = d_x * t0
+    o_y = d_y * t0
+    o_z = d_z * t0
+    m_x = b_x * t0 - o_x * t0
+    m_y = b_y * t0 - o_y * t0
+    m_z = b_z * t0 - o_z * t0
+    t1 = 1.0 / (r * r)
+    h_x = a_x * t1 + e_x * t0
+    h_y = a_y * t1 + e_y * t0
+    h_z = a_z * t1 + e_z * t0
+    t2 = x * x
+    t3 = y * y
+    t4 = x * y
+    t5 = 2 * t4
+    t6 = m_x * t5
+    X_ss_x = c_x * t2 + h_x * t3 - t6
+    t7 = m_y * t5
+    X_ss_y = c_y * t2 + h_y * t3 - t7
+    t8 = m_z * t5
+    X_ss_z = c_z * t2 + h_z * t3 - t8
+    t9 = t2 - t3
+    X_st_x = c_x * t4 - h_x * t4 + m_x * t9
+    X_st_y = c_y * t4 - h_y * t4 + m_y * t9
+    X_st_z = c_z * t4 - h_z * t4 + m_z * t9
+    X_tt_x = c_x * t3 + h_x * t2 + t6
+    X_tt_y = c_y * t3 + h_y * t2 + t7
+    X_tt_z = c_z * t3 + h_z * t2 + t8
+    X_s_x = e_x * x - o_x * y
+    X_s_y = e_y * x - o_y * y
+    X_s_z = e_z * x - o_z * y
+    X_t_x = e_x * y + o_x * x
+    X_t_y = e_y * y + o_y * x
+    X_t_z = e_z * y + o_z * x
+    return (
+        Vector(X_ss_x, X_ss_y, X_ss_z),
+        Vector(X_st_x, X_st_y, X_st_z),
+        Vector(X_tt_x, X_tt_y, X_tt_z),
+        Vector(X_s_x, X_s_y, X_s_z),
+        Vector(X_t_x, X_t_y, X_t_z),
+    )
+
+
+@inline
+def at_pole(e0, c0, c1, e2, c2):
+    """The 2-jet at a pole itself, in the chart, from the first and second derivatives e and c
+    by the distance from it, along the directions of 0, 45 and 90 degrees.
+
+        X_ss = c0
+        X_st = c1 - c0/2 - c2/2
+        X_tt = c2
+        X_s = e0
+        X_t = e2
+
+    Source: beyond the paper; 12 operations as written, 12 here.
+    """
+    e0_x, e0_y, e0_z = e0
+    c0_x, c0_y, c0_z = c0
+    c1_x, c1_y, c1_z = c1
+    e2_x, e2_y, e2_z = e2
+    c2_x, c2_y, c2_z = c2
+    X_ss_x = c0_x
+    X_ss_y = c0_y
+    X_ss_z = c0_z
+    X_st_x = c1_x - 0.5 * c0_x - 0.5 * c2_x
+    X_st_y = c1_y - 0.5 * c0_y - 0.5 * c2_y
+    X_st_z = c1_z - 0.5 * c0_z - 0.5 * c2_z
+    X_tt_x = c2_x
+    X_tt_y = c2_y
+    X_tt_z = c2_z
+    X_s_x = e0_x
+    X_s_y = e0_y
+    X_s_z = e0_z
+    X_t_x = e2_x
+    X_t_y = e2_y
+    X_t_z = e2_z
+    return (
+        Vector(X_ss_x, X_ss_y, X_ss_z),
+        Vector(X_st_x, X_st_y, X_st_z),
+        Vector(X_tt_x, X_tt_y, X_tt_z),
+        Vector(X_s_x, X_s_y, X_s_z),
+        Vector(X_t_x, X_t_y, X_t_z),
+    )

@@ -1,0 +1,159 @@
+"""The 2-jet of a surface at a point: normal, curvatures, Newton's step, and charts at poles.
+
+The 2-jet of x(u,v) is the quadratic patch that osculates the surface,
+
+    a = x_uu, b = x_uv, c = x_vv, d = x_u, e = x_v, p = x,
+
+so that the formulas of a patch hold for it: Newton's step to the point with the normal n is the
+preimage of n on that patch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import sympy as sp
+
+from .formula import Formula
+from .notation import Cross, Dot, scalar, substitute, vectors
+from .patch import FORM_TERMS, SOLUTION, VECTORS, A, B, C, P, Q, a, b, c, d, e, n
+
+__all__ = ["AT_JET", "FORMULAS"]
+
+N = vectors("N")[0]
+E, F, G, g, L = (scalar(x) for x in "EFGgL")
+
+AT_JET = Formula.build(
+    "at_jet",
+    "The unit normal, the Gaussian and the mean curvature of a surface from its 2-jet: $a = x_uu$, "
+    "$b = x_uv$, $c = x_vv$, $d = x_u$, $e = x_v$. The mean curvature is half the sum of the "
+    "principal curvatures −II/I, positive on a sphere with outward normals.",
+    inputs=VECTORS,
+    terms=[
+        ("N", Cross(d, e)),
+        ("E", Dot(d, d)),
+        ("F", Dot(d, e)),
+        ("G", Dot(e, e)),
+        ("A", Dot(N, a)),
+        ("B", Dot(N, b)),
+        ("C", Dot(N, c)),
+        ("g", Dot(N, N)),
+        ("L", sp.sqrt(g)),
+    ],
+    outputs=[
+        ("n", N / L),
+        ("K", SOLUTION.D / g**2),
+        ("H", -(E * C - 2 * F * B + G * A) / (2 * g * L)),
+    ],
+)
+
+(q,) = vectors("q")
+
+NEWTON = Formula.build(
+    "newton",
+    "The step $U/D$, $V/D$ of Newton's method for $P = Q = 0$, the preimage of the unit normal $n$ "
+    "on the patch that osculates the surface. $s$ is the squared sine of the angle between $n$ and "
+    "the normal of the surface, since $n × N = q$, and $m$ has the sign of its cosine.",
+    inputs=[*VECTORS, n],
+    terms=[*FORM_TERMS, ("q", Q * d - P * e), ("N", Cross(d, e))],
+    outputs=[
+        ("D", SOLUTION.D),
+        ("U", SOLUTION.U),
+        ("V", SOLUTION.V),
+        ("s", Dot(q, q) / Dot(N, N)),
+        ("m", Dot(n, N)),
+    ],
+)
+
+
+# --- poles ----------------------------------------------------------------------------------------
+#
+# At a pole the parameters are polar coordinates: an angle φ, in place of u, and the distance r from
+# the pole, in place of v. The surface is smooth in s = r cos φ, t = r sin φ.
+
+r, x, y = scalar("r"), scalar("x"), scalar("y")
+# The orders of the derivatives, by u or s and by v or t, that the vectors of a 2-jet are.
+ORDERS = ((2, 0), (1, 1), (0, 2), (1, 0), (0, 1))
+
+
+def _along_polar(jet: Sequence[sp.Expr]) -> list[sp.Expr]:
+    """Return the 2-jet by φ and r of a surface with a 2-jet by s and t, at cos φ = x, sin φ = y.
+
+    2-jets determine one another, so that the surface may be a quadratic patch.
+    """
+    phi, psi, radius = sp.symbols("phi psi radius", real=True)
+    s = radius * sp.cos(psi) - r * sp.cos(phi)
+    t = radius * sp.sin(psi) - r * sp.sin(phi)
+    terms = (
+        z * s**i * t**j / (sp.factorial(i) * sp.factorial(j))
+        for z, (i, j) in zip(jet, ORDERS, strict=True)
+    )
+    patch = sum(terms, start=sp.S.Zero)
+    here = {psi: phi, radius: r}
+    direction = {sp.cos(phi): x, sp.sin(phi): y}
+    return [
+        substitute(substitute(sp.diff(patch, (psi, i), (radius, j)), here), direction)
+        for i, j in ORDERS
+    ]
+
+
+def _polar_chart() -> Formula:
+    """Write the 2-jet by s and t, and check it: by the chain rule it has to give that by φ and r.
+
+    Raises ArithmeticError if it does not.
+    """
+    (along, mixed, across) = vectors(("o", "m", "h"))
+    terms = {along: d / r, mixed: b / r - along / r, across: a / r**2 + e / r}
+    outputs = {
+        "X_ss": x**2 * c - 2 * x * y * mixed + y**2 * across,
+        "X_st": x * y * c + (x**2 - y**2) * mixed - x * y * across,
+        "X_tt": y**2 * c + 2 * x * y * mixed + x**2 * across,
+        "X_s": x * e - y * along,
+        "X_t": y * e + x * along,
+    }
+    plain = [substitute(substitute(z, terms), terms) for z in outputs.values()]
+    for given, derived in zip(VECTORS, _along_polar(plain), strict=True):
+        if sp.rem(sp.expand(derived - given), x**2 + y**2 - 1, x) != 0:
+            raise ArithmeticError(f"the chart does not give {given}")
+    return Formula.build(
+        "polar_chart",
+        "The 2-jet in the regular chart $s = r x$, $t = r y$ at a pole, from that by the polar "
+        "angle ($a$ and $d$ twice and once, $b$ mixed) and the distance $r > 0$ from the pole; $x$ "
+        "and $y$ are the cosine and the sine of the angle.",
+        inputs=[*VECTORS, r, x, y],
+        terms=[(z.name, value) for z, value in terms.items()],
+        outputs=list(outputs.items()),
+    )
+
+
+POLAR_CHART = _polar_chart()
+
+
+def _at_pole() -> Formula:
+    """Solve for the 2-jet at a pole: along each direction it gives two derivatives by r."""
+    known = vectors(("e0", "c0", "c1", "e2", "c2"))
+    e0, c0, c1, e2, c2 = known
+    X = sp.symbols("X_ss X_st X_tt X_s X_t")
+    half = sp.sqrt(sp.S.Half)
+
+    def along(cosine: sp.Expr, sine: sp.Expr) -> list[sp.Expr]:
+        jet = [substitute(z, {r: sp.S.Zero, x: cosine, y: sine}) for z in _along_polar(X)]
+        return [jet[4], jet[2]]
+
+    (first0, second0), (_, second1), (first2, second2) = (
+        along(*z) for z in ((sp.S.One, sp.S.Zero), (half, half), (sp.S.Zero, sp.S.One))
+    )
+    equations = [first0 - e0, second0 - c0, second1 - c1, first2 - e2, second2 - c2]
+    (solution,) = sp.solve(equations, X, dict=True)
+    return Formula.build(
+        "at_pole",
+        "The 2-jet at a pole itself, in the chart, from the first and second derivatives $e$ and "
+        "$c$ by the distance from it, along the directions of 0, 45 and 90 degrees.",
+        inputs=known,
+        outputs=[(z.name, solution[z]) for z in X],
+    )
+
+
+AT_POLE = _at_pole()
+
+FORMULAS = (AT_JET, NEWTON, POLAR_CHART, AT_POLE)
