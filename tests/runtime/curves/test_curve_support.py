@@ -1,5 +1,7 @@
 """Support functions of planar curves: branches, convolution, offset and motions."""
 
+from typing import Any, cast
+
 import gaussmap as gm
 import numpy as np
 import pytest
@@ -100,8 +102,8 @@ def test_straight_parts_have_no_branch():
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda: of_spline("circle"), "Curve"),
-        (lambda: of_spline(EIGHT.spline, 12), "pieces"),
+        (lambda: of_spline("circle") ), "Curve"),
+        (lambda: of_spline(cast(Any, EIGHT).spline, 12), "pieces"),
         (lambda: EIGHT.branches([[0, 0]]), "zero"),
         (lambda: EIGHT.offset(np.nan), "distance"),
         (lambda: EIGHT.translated((1, 2, 3)), "shift"),
