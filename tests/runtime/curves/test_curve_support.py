@@ -102,7 +102,7 @@ def test_straight_parts_have_no_branch():
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda: of_spline("circle") ), "Curve"),
+        (lambda: of_spline(cast(Any, "circle")), "Curve"),
         (lambda: of_spline(cast(Any, EIGHT).spline, 12), "pieces"),
         (lambda: EIGHT.branches([[0, 0]]), "zero"),
         (lambda: EIGHT.offset(np.nan), "distance"),
