@@ -15,6 +15,7 @@ from .spline import Spline, short_label
 from .summary import kinds_of_points, summary_of
 
 if TYPE_CHECKING:
+    from .density.deviation import NormalDeviation
     from .meshes.mesh import Mesh
 
 __all__ = ["Samples"]
@@ -307,6 +308,50 @@ class Samples(SampleArrays):
         from .density.coverage import coverage_of
 
         return coverage_of(self.points, self._spline_or(spline), threads)
+
+    def normal_deviation(
+        self, spline: Spline | None = None, *, threads: int | None = None
+    ) -> NormalDeviation:
+        """Return the largest angles between normals of the surface and those of the samples.
+
+        Normals are compared at 16 places for each sample and at least 20,000, and at more of them
+        where larger angles may be.
+
+        Parameters
+        ----------
+        spline : Spline, optional
+            The spline of the samples, if `spline` of the samples is None.
+        threads : int, optional
+            The number of threads; by default all cores.
+
+        Returns
+        -------
+        NormalDeviation
+            The largest angle, in degrees, between the normal of a point of the surface and that of
+            the sample nearest in normal (`normal_space`), and of the sample nearest in space
+            (`space`). Both are 180 without samples.
+
+        Raises
+        ------
+        MissingFieldError
+            Unless the samples have the fields points and normals.
+        InputError
+            If there is no spline.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> samples = gm.sample("torus", angle=20.0, cells=(16, 16))
+        >>> samples.normal_deviation().normal_space <= 20.0
+        True
+
+        """
+        from .density.deviation import normal_deviation
+        from .density.sizing import SizingFunction, TargetDensity
+
+        sizing = SizingFunction(self._spline_or(spline), TargetDensity(floor=1.0), threads)
+        normals = self.normals.astype(np.float64)
+        return normal_deviation(sizing, sizing.scaled_points(self.points), normals)
 
     def weights(self, *, angle: float | None = None) -> NDArray[np.float64]:
         """Return the area of the surface that each sample stands for.
