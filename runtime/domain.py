@@ -52,10 +52,9 @@ def checked_boundary(periodic: Sequence[Periodicity]) -> Boundary:
             f"periodic must be a pair, one entry for u and one for v, not {shown(periodic)}."
         ) from None
     boundary = _pair(along_u, "u"), _pair(along_v, "v")
-    if "pole" in boundary[0]:
-        raise InputError('only v can end in a "pole": exchange the parameters u and v.')
-    if "pole" in boundary[1] and boundary[0] != ("periodic", "periodic"):
-        raise InputError('a "pole" of v needs u to be periodic ("periodic").')
+    for name, other, ends, around in (("u", "v", *boundary), ("v", "u", *boundary[::-1])):
+        if "pole" in ends and around != ("periodic", "periodic"):
+            raise InputError(f'a "pole" of {name} needs {other} to be periodic ("periodic").')
     return boundary
 
 

@@ -54,8 +54,8 @@ def fit(surface: Surface | str, cells: Sequence[int] | None = None) -> Spline:
     surface : Surface or str
         The surface, or its name in the catalogue (see `gaussmap.surfaces`).
     cells : (int, int), optional
-        The numbers of cells along u and v, at least 3; along u an even one if the surface has a
-        pole. By default 64 × 64, or one cell between any four neighbouring points of a grid.
+        The numbers of cells along u and v, at least 3. By default 64 × 64, or one cell between
+        any four neighbouring points of a grid.
 
     Returns
     -------
@@ -103,7 +103,7 @@ def _fit_data(surface: Surface, grid: NDArray[np.float64], cells: Sequence[int] 
 
 def _fitted(surface: Surface, cells: Sequence[int]) -> Spline:
     """Return the quasi-interpolant of a surface that can be evaluated anywhere."""
-    m, n = checked_cells(cells, surface.boundary)
+    m, n = checked_cells(cells)
     lines = _lines(surface.domain, m, n)
     centres, vertices = _values(surface, *lines)
     middles = _middles(surface, *lines)

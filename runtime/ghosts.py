@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ..generated import spline as formulas
 from .domain import Boundary, BoundaryPair
 from .formula_calls import python_function
+from .planar_ring import ring_around
 
 __all__ = ["Border", "Sides", "coefficients_with_ring", "vertices_with_ring"]
 
@@ -59,7 +60,7 @@ def coefficients_with_ring(inner: Array, border: Border, boundary: Boundary) -> 
 
     Open sides follow the border, periodic ones are copied. At a pole the outer coefficients are the
     first inner ones mirrored in one point, their mean, so that this end of the spline is exactly
-    one point; the inner ones are rounded to multiples of a small power of two for that.
+    one point; the inner ones are moved to one plane, so that it has one normal (planar_ring.py).
     """
     result = np.pad(inner, [(1, 1), (1, 1), (0, 0)])
     turned = np.swapaxes(result, 0, 1)
@@ -83,27 +84,26 @@ def _open_rows(rows: Array, boundary: BoundaryPair, sides: tuple[Array, Array]) 
 
 
 def _close(result: Array, turned: Array, boundary: Boundary) -> None:
-    """Write the rows outside periodic ends and poles.
+    """Write the rows outside poles and periodic ends.
 
-    What runs along v is closed first where u is open: then its copies hold the ring along u too.
+    Poles come first, and what runs along v comes before what runs along u, where u is open: then
+    copies hold the ring along the other parameter too.
     """
-    for rows, end in ((turned, boundary[1]), (result, boundary[0])):
-        if end[0] in ("periodic", "mirrored"):
-            step = 1 if end[0] == "periodic" else -1
-            rows[0], rows[-1] = rows[-2, ::step].copy(), rows[1, ::step].copy()
+    directions = ((turned, boundary[1]), (result, boundary[0]))
+    for rows, end in directions:
         for kind, outside, first in zip(end, (0, -1), (1, -2), strict=True):
             if kind == "pole":
                 _close_pole(rows, outside, first)
+    for rows, end in directions:
+        if end[0] in ("periodic", "mirrored"):
+            step = 1 if end[0] == "periodic" else -1
+            rows[0], rows[-1] = rows[-2, ::step].copy(), rows[1, ::step].copy()
 
 
 def _close_pole(rows: Array, outside: int, first: int) -> None:
-    inner = rows[first, 1:-1]
-    grain = 4.0 * float(np.spacing(np.abs(inner).max()))
-    inner = np.round(inner / grain) * grain
-    spread = (inner - inner[0]).mean(axis=0)  # exactly 0 where all are equal
-    pole = inner[0] + np.round(spread / grain) * grain
-    rows[first, 1:-1] = inner
-    rows[outside, 1:-1] = 2.0 * pole - inner
+    ring, pole = ring_around(rows[first, 1:-1])
+    rows[first, 1:-1] = ring
+    rows[outside, 1:-1] = python_function(formulas.beyond_edge)(pole, ring)
 
 
 # --- vertices -------------------------------------------------------------------------------------
@@ -113,8 +113,12 @@ def vertices_with_ring(values: Array, boundary: Boundary) -> Array:
     """Add the values (m, n, 3) at the vertices one step outside the domain.
 
     Values of a periodic direction come without the repeated last row and get two rows at the high
-    end; others get one row at each end.
+    end; others get one row at each end. The row beyond a pole is the one before it, half a period
+    away, or extrapolated if half a period is no whole number of points.
     """
+    if "pole" in boundary[0]:
+        swapped = vertices_with_ring(np.swapaxes(values, 0, 1), (boundary[1], boundary[0]))
+        return np.ascontiguousarray(np.swapaxes(swapped, 0, 1))
     turned = np.swapaxes(values, 0, 1)
     reverse = values[::-1]  # of vertices that close, the first stays the first
     reverse = np.roll(reverse, 1, axis=0) if boundary[0][0] in ("periodic", "mirrored") else reverse
@@ -138,7 +142,7 @@ def _beyond(
         return source[-1:], source[:2]
     parts = []
     for end, step, first in zip(boundary, (1, -1), (0, -1), strict=True):
-        if end == "pole":
+        if end == "pole" and rows.shape[1] % 2 == 0:
             parts.append(opposite[first + step][None])
         else:
             inside = (rows[first + k * step] for k in range(3))

@@ -105,4 +105,5 @@ def _check_closed(points: NDArray[np.float64], boundary: Boundary, name: str) ->
                 )
         for end, row in ((low, 0), (high, -1)):
             if end == "pole" and apart(rows[row], rows[row, :1], points):
-                raise InputError(f"{name} has no pole at points[:, {row}]: they are not one point.")
+                place = f"points[{row}]" if axis == 0 else f"points[:, {row}]"
+                raise InputError(f"{name} has no pole at {place}: they are not one point.")

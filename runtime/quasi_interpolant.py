@@ -46,7 +46,7 @@ def fit_grid(points: NDArray[np.float64], domain: Domain, boundary: Boundary, na
     """Return the spline with one cell between any four neighbouring points (m, n, 3) of a grid."""
     values = vertices_with_ring(not_too_large(points, name), boundary)
     inner = np.empty((values.shape[0] - 3, values.shape[1] - 3, 3))
-    checked_cells(inner.shape[:2], boundary)
+    checked_cells(inner.shape[:2])
     kernels.fit_vertices(values, inner)
     border = Border.of_vertices(values)
     return _spline(inner, border, domain, boundary, name)
@@ -85,14 +85,12 @@ def not_too_large(points: NDArray[np.float64], name: str) -> NDArray[np.float64]
     return points
 
 
-def checked_cells(cells: Sequence[int], boundary: Boundary) -> tuple[int, int]:
-    """Return numbers of cells (m, n); InputError unless they suit the boundary conditions."""
+def checked_cells(cells: Sequence[int]) -> tuple[int, int]:
+    """Return numbers of cells (m, n); InputError if there are too few or too many."""
     m, n = pair_of_cells(cells)
     if min(m, n) < 3:
         raise InputError(f"at least 3 x 3 cells are needed, not {m} x {n}.")
     if m * n > MOST_CELLS:
         raise InputError(f"at most {MOST_CELLS:,} cells are possible, not {m:,} x {n:,}.")
     check_memory(BYTES_A_CELL * m * n, f"{m:,} x {n:,} cells")
-    if "pole" in boundary[1] and m % 2:
-        raise InputError(f"a surface with a pole needs an even number of cells along u, not {m}.")
     return m, n

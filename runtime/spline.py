@@ -212,9 +212,10 @@ class Spline:
         cells = self.in_cells(places)
         points, normals = np.empty_like(places, shape=(len(places), 3)), np.empty((len(places), 3))
         kernels.evaluate(self.coefficients, self.scale, cells, points, normals)
-        for end, place in zip(self.boundary[1], (0, self.cells[1]), strict=True):
-            if end == "pole":  # all but rounding
-                normals[np.abs(cells[:, 1] - place) <= SAME_PARAMETER * self.cells[1]] = 0.0
+        for axis, (count, ends) in enumerate(zip(self.cells, self.boundary, strict=True)):
+            for end, place in zip(ends, (0, count), strict=True):
+                if end == "pole":  # all but rounding
+                    normals[np.abs(cells[:, axis] - place) <= SAME_PARAMETER * count] = 0.0
         return points.reshape(*u_array.shape, 3), normals.reshape(*u_array.shape, 3)
 
     def in_cells(self, places: NDArray[np.float64]) -> NDArray[np.float64]:

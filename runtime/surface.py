@@ -41,7 +41,7 @@ class Surface:
     boundary : pair of pairs of str
         For u and for v, the boundary conditions at the low and the high end: "open" (an edge),
         "periodic", "mirrored" (periodic with the other parameter reversed, as on the Möbius band)
-        or "pole" (for v: the end is one point and the opposite meridian continues the surface).
+        or "pole" (the end is one point and the opposite meridian continues the surface).
     grid : (m, n, 3) float64 array or None
         The points of a surface that was given by points.
 

@@ -395,7 +395,7 @@ def test_poles_that_are_none():
     points = grid_of(ball, (True, "pole"), (12, 7))
     refused(r"has no pole at points\[:, 0\]", points[:, 1:], periodic=(True, "pole"))
     refused(r"has no pole at points\[:, -1\]", points[:, :-1], periodic=(True, "pole"))
-    refused("even number of cells along u, not 11", points[1:], periodic=(True, "pole"))
+    refused(r"has no pole at points\[0\]", points.swapaxes(0, 1)[1:], periodic=("pole", True))
 
 
 def test_mirrored_both_ways():

@@ -566,12 +566,6 @@ def test_cells_that_are_none(cells, complaint):
             call(CUBE, cells)
 
 
-def test_an_odd_number_of_cells_at_a_pole():
-    with pytest.raises(gm.errors.InputError, match="even number of cells along u, not 5"):
-        gm.fit(gm.surfaces.sphere(), (5, 4))
-    assert gm.fit(gm.surfaces.sphere(), (4, 5)).cells == (4, 5)
-
-
 @pytest.mark.parametrize("surface", [None, ["torus"], 5, np.zeros((5, 5, 3)), TORUS.evaluate])
 def test_what_cannot_be_fitted(surface):
     for call in (gm.fit, lambda surface: gm.sample(surface, count=5)):

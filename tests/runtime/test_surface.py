@@ -25,6 +25,11 @@ def bowl(u, v):
     return np.stack([np.cos(u) * np.cos(angle), np.sin(u) * np.cos(angle), np.sin(angle)], axis=-1)
 
 
+def turned(f):
+    """Return a surface with exchanged parameters."""
+    return lambda u, v: f(v, u)
+
+
 def refused(kind, complaint, call, *arguments, **named):
     """Check that a call raises `kind` with one line that matches `complaint`."""
     with pytest.raises(kind, match=complaint) as caught:
@@ -85,6 +90,7 @@ def test_domains_that_are_none(domain, complaint):
         ((True, "pole"), (("periodic", "periodic"), ("pole", "pole"))),
         (("periodic", ["open", "pole"]), (("periodic", "periodic"), ("open", "pole"))),
         (("periodic", ("pole", "open")), (("periodic", "periodic"), ("pole", "open"))),
+        ((("open", "pole"), True), (("open", "pole"), ("periodic", "periodic"))),
     ],
 )
 def test_ends(periodic, ends):
@@ -105,7 +111,8 @@ def test_ends(periodic, ends):
         ((("periodic", "open"), False), "both ends of u"),
         ((True, ("periodic", "pole")), "both ends of v"),
         ((("periodic", "mirrored"), False), "both ends of u"),
-        (("pole", True), "only v can end"),
+        (("pole", "pole"), 'a "pole" of u needs v to be periodic'),
+        (("pole", False), 'a "pole" of u needs v to be periodic'),
         ((False, "pole"), "needs u to be periodic"),
         (("mirrored", ("pole", "open")), "needs u to be periodic"),
     ],
@@ -246,6 +253,7 @@ def test_parameters_that_are_none(u, v, complaint):
         (tube, TURN, (True, "pole"), "has no pole at v = 0.0"),
         (bowl, ((0, 2 * np.pi), (0, 1)), (True, "pole"), "has no pole at v = 0.0"),
         (bowl, ((0, 2 * np.pi), (0, 0.9)), (True, ("open", "pole")), "has no pole at v = 0.9"),
+        (turned(bowl), ((0, 0.9), (0, 2 * np.pi)), ("pole", True), "has no pole at u = 0.0"),
     ],
 )
 def test_ends_that_the_surface_does_not_have(f, domain, periodic, complaint):

@@ -1,0 +1,76 @@
+"""The coefficients around a pole: in one plane exactly, so that the pole has one normal.
+
+The patches next to a pole have an edge that is one point p. With the first ring of coefficients at
+p + d and the ghosts at p − d, the normal there is along the cross product of two sums of
+neighbouring d: the same for all patches if all d lie in one plane, and the Gaussian images close
+around it without a gap. On a smooth surface the distances from such a plane are of third order in
+the size of a cell. They must be zero in exact arithmetic: d is rounded to x a + y b with integers
+x, y and two vectors a, b of integers, all in units of the rounding of the coordinates.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["ring_around"]
+
+Array = NDArray[np.float64]
+
+# The plane is the closest of those of this number of pairs a, b.
+CANDIDATES = 4096
+# The length of a and b is the root of this times the distance of neighbours in the ring: longer
+# ones are closer to the plane of the ring, shorter ones to the coefficients in it.
+BALANCE = 1.0 / 32.0
+
+
+def ring_around(ring: Array) -> tuple[Array, Array]:
+    """Return a ring of coefficients (m, 3) in one plane, and the pole in the middle of them.
+
+    All coordinates are multiples of a small power of two, so that 2 p − ring is exact. A ring that
+    rounding makes no polygon around p is only rounded.
+    """
+    grain = 4.0 * float(np.spacing(np.abs(ring).max()))
+    ring = np.round(ring / grain)
+    pole = ring[0] + np.round((ring - ring[0]).mean(axis=0))  # exactly 0 where all are equal
+    planar = _planar(ring - pole)
+    return ((ring if planar is None else pole + planar) * grain, pole * grain)
+
+
+def _planar(offsets: Array) -> Array | None:
+    """Return vectors (m, 3) of integers in one plane; None if they do not turn around it once."""
+    size = float(np.abs(offsets).max())
+    axes, radius = _axes(offsets / (size or 1.0))
+    length = math.sqrt(BALANCE * 2.0 * math.pi * radius * size / len(offsets))
+    a, b = _lattice(axes, max(1.0, length))
+    coordinates = np.round(np.linalg.lstsq(np.stack([a, b], axis=1), offsets.T)[0].T)
+    sums = coordinates + np.roll(coordinates, 1, axis=0)
+    after = np.roll(sums, -1, axis=0)
+    if not (sums[:, 0] * after[:, 1] > sums[:, 1] * after[:, 0]).all():
+        return None
+    return coordinates[:, :1] * a + coordinates[:, 1:] * b
+
+
+def _axes(offsets: Array) -> tuple[Array, float]:
+    """Return an orthonormal basis (2, 3) of the plane of a ring, and the smaller radius in it.
+
+    Its normal is the vector area of the ring, so that the ring turns counterclockwise.
+    """
+    normal = np.cross(offsets, np.roll(offsets, -1, axis=0)).sum(axis=0)
+    _, _, rows = np.linalg.svd(normal[None] / (np.abs(normal).max() or 1.0))
+    axes = rows[1:]
+    if np.cross(*axes) @ normal < 0.0:
+        axes = axes[::-1]
+    return axes, float(np.linalg.svd(offsets @ axes.T)[1][-1]) / math.sqrt(len(offsets))
+
+
+def _lattice(axes: Array, length: float) -> Array:
+    """Return two vectors (2, 3) of integers in a plane near that of axes."""
+    lengths = length * np.linspace(1.0, 2.0, CANDIDATES)
+    pairs = np.round(lengths[:, None, None] * axes)
+    normals = np.cross(pairs[:, 0], pairs[:, 1])
+    sizes = np.linalg.norm(normals, axis=1)
+    tilts = np.linalg.norm(np.cross(normals, np.cross(*axes)), axis=1)  # accurate where small
+    return pairs[np.argmin(np.divide(tilts, sizes, out=np.ones_like(sizes), where=sizes > 0.0))]
