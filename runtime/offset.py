@@ -47,6 +47,9 @@ def offset(samples: Samples, distance: float) -> Samples:
         surface=f"{samples.report.surface} offset by {d:g}",
         developable_share=None,  # areas change, except those of planar regions
         infinite_curvatures=count_infinite(arrays),
+        fit_distance=None,  # of the spline, which has no offset
+        fit_rms=None,
+        fit_angle=None,
     )
     return Samples(**arrays, report=report)
 

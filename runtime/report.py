@@ -38,6 +38,7 @@ SHARE_ROUNDING = 1e-9
 # Where samples lie.
 PLACES = ("surface", "spline")
 COUNTS = ("normals", "patches", "developable_patches", "infinite_curvatures", "unrefined")
+DISTANCES = ("coverage", "angle", "fit_distance", "fit_rms", "fit_angle")
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +79,11 @@ class SamplingReport:
     unrefined : int or None
         With ``on="surface"``, the number of samples at prescribed normals that could not be moved
         from the spline to the point of the surface that has the normal; see `Samples.on_surface`.
+    fit_distance, fit_rms : float or None
+        The largest distance of the spline from the surface, or from the data, that it approximates,
+        and the root mean square of the distance; see `Spline.misfit`.
+    fit_angle : float or None
+        The largest angle, in degrees, between normals of spline and surface; unknown for data.
 
     Raises
     ------
@@ -95,6 +101,8 @@ class SamplingReport:
     (True, True, True)
     >>> report.developable_share
     0.0
+    >>> report.fit_rms < report.fit_distance < 1.1e-3, report.fit_angle < 0.6
+    (True, True)
 
     """
 
@@ -109,6 +117,9 @@ class SamplingReport:
     infinite_curvatures: int | None = None
     on: str | None = None
     unrefined: int | None = None
+    fit_distance: float | None = None
+    fit_rms: float | None = None
+    fit_angle: float | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.surface, str):
@@ -121,7 +132,7 @@ class SamplingReport:
         object.__setattr__(self, "samples", _count("samples", self.samples))
         if self.developable_share is not None:
             object.__setattr__(self, "developable_share", _share(self.developable_share))
-        for name in ("coverage", "angle"):
+        for name in DISTANCES:
             value = getattr(self, name)
             object.__setattr__(self, name, None if value is None else _distance(name, value))
 
@@ -135,6 +146,7 @@ def sampling_report(
     arrays: Mapping[str, NDArray[Any]] = MappingProxyType({}),
 ) -> SamplingReport:
     """Return the report of a sampling with `density` normals per steradian and its `arrays`."""
+    misfit = spline.misfit
     return SamplingReport(
         surface=spline.name,
         normals=normals,
@@ -143,6 +155,9 @@ def sampling_report(
         developable_share=developable_share(spline, density),
         developable_patches=developable,
         infinite_curvatures=count_infinite(arrays),
+        fit_distance=None if misfit is None else misfit.distance,
+        fit_rms=None if misfit is None else misfit.rms,
+        fit_angle=None if misfit is None else misfit.angle,
     )
 
 

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .report import count_infinite, have_large_squares
+from .report import SamplingReport, count_infinite, have_large_squares
 
 if TYPE_CHECKING:
     from .samples import Samples
 
-__all__ = ["kinds_of_points", "summary_of"]
+__all__ = ["kinds_of_points", "misfit_clause", "summary_of"]
 
 
 def summary_of(samples: Samples) -> str:
@@ -28,9 +28,26 @@ def summary_of(samples: Samples) -> str:
         share = f"{100.0 * report.developable_share:.2f}"
         if share != "0.00":
             line += f"; {share} % of the surface is developable (K = 0)"
+    if report.on == "spline":
+        line += misfit_clause(report)
     if report.unrefined:
         line += f"; {report.unrefined:,} samples could not be moved to the surface"
     return line + _infinite(samples)
+
+
+def misfit_clause(report: SamplingReport) -> str:
+    """Say how far the spline is from the surface, or from the data, if that is known."""
+    if report.fit_distance is None or report.fit_rms is None:
+        return ""
+    if report.fit_angle is None:
+        return (
+            f"; the spline is within {report.fit_distance:.3g} of the data (root mean square "
+            f"{report.fit_rms:.3g})"
+        )
+    return (
+        f"; the spline is within {report.fit_distance:.3g} of the surface, its normals within "
+        f"{report.fit_angle:.3g}°"
+    )
 
 
 def _filling(samples: Samples) -> int:

@@ -133,6 +133,17 @@ def test_misfit_is_pickled_with_the_spline() -> None:
     assert pickle.loads(pickle.dumps(spline)).misfit == spline.misfit
 
 
+def test_misfit_is_reported_and_kept_in_files(tmp_path) -> None:
+    spline = gm.fit("torus", (16, 16))
+    samples = gm.sample(spline, 50)
+    report = samples.report
+    reported = report.fit_distance, report.fit_rms, report.fit_angle
+    assert reported == (spline.misfit.distance, spline.misfit.rms, spline.misfit.angle)
+    samples.write(tmp_path / "torus.ply")
+    assert gm.read_samples(tmp_path / "torus.ply").report == report
+    assert samples.offset(0.1).report.fit_distance is None
+
+
 # --- data -----------------------------------------------------------------------------------------
 
 

@@ -166,10 +166,13 @@ class TestReport:
             "infinite_curvatures": np.int8(4),
             "on": "surface",
             "unrefined": np.uint8(2),
+            "fit_distance": np.float32(1),
+            "fit_rms": np.int8(1),
+            "fit_angle": np.float64(1),
         }
         report = SamplingReport("s", *numbers, **more)
         assert [type(getattr(report, f.name)) for f in fields(report)] == [
-            str, int, int, int, float, int, float, float, int, str, int,
+            str, int, int, int, float, int, float, float, int, str, int, float, float, float,
         ]  # fmt: skip
 
     @pytest.mark.parametrize("name", ["normals", "samples", "patches", "developable_patches"])
@@ -183,7 +186,7 @@ class TestReport:
         with pytest.raises(InputError, match=r"^developable_share must"):
             replace(REPORT, developable_share=bad)
 
-    @pytest.mark.parametrize("name", ["coverage", "angle"])
+    @pytest.mark.parametrize("name", ["coverage", "angle", "fit_distance", "fit_rms", "fit_angle"])
     @pytest.mark.parametrize("bad", [-0.1, np.nan, "much", [1.0]])
     def test_bad_distances(self, name, bad):
         with pytest.raises(InputError, match=f"^{name} must"):
@@ -385,6 +388,28 @@ class TestText:
             .summary()
             .endswith("5,000 hyperbolic); 1,234 samples could not be moved to the surface")
         )
+
+    @pytest.mark.parametrize(
+        ("on", "angle", "end"),
+        [
+            ("surface", 0.03161, ""),
+            (
+                "spline",
+                0.03161,
+                "; the spline is within 1.07e-05 of the surface, its normals within 0.0316°",
+            ),
+            (
+                "spline",
+                None,
+                "; the spline is within 1.07e-05 of the data (root mean square 6.03e-06)",
+            ),
+        ],
+    )
+    def test_summary_of_the_misfit(self, on, angle, end):
+        known = {"fit_distance": 1.0696e-5, "fit_rms": 6.0347e-6, "fit_angle": angle}
+        report = replace(self.samples().report, developable_share=0.0, on=on, **known)
+        summary = replace(self.samples(), report=report).summary()
+        assert summary.endswith("5,000 hyperbolic)" + end)
 
     def test_summary_of_a_part(self):
         assert self.samples()[:10].summary() == (

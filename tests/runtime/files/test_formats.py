@@ -164,6 +164,7 @@ class TestRoundTrip:
     def test_whether_samples_are_on_the_surface(self, tmp_path, suffix):
         there = np.arange(12) % 3 > 0
         report = replace(make().report, on="surface", unrefined=4)
+        report = replace(report, fit_distance=1e-5, fit_rms=6e-6, fit_angle=0.03)
         samples = replace(make(), on_surface=there, report=report)
         samples.write(tmp_path / f"out{suffix}")
         other = read_samples(tmp_path / f"out{suffix}")
