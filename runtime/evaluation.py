@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from .checks import real_array
 from .errors import GaussmapError, InputError, SurfaceError
 
-__all__ = ["evaluated"]
+__all__ = ["evaluated", "returned"]
 
 
 def evaluated(
@@ -24,30 +24,44 @@ def evaluated(
     Raises SurfaceError, which calls it the callable of `label`, if it raises, returns another shape
     or anything but real numbers, or gives NaN or infinity, and says where.
     """
-    arrays = [np.atleast_1d(x) for x in parameters.values()]
-    shape = np.shape(next(iter(parameters.values())))
+    arrays = {name: np.atleast_1d(x) for name, x in parameters.items()}
+    points = returned(function, tuple(arrays.values()), (dimension,), f"the callable of {label}")
+    if not np.isfinite(points).all():
+        bad = ~np.isfinite(points).all(axis=-1)
+        where = np.unravel_index(int(np.argmax(bad)), bad.shape)
+        place = ", ".join(f"{name} = {float(array[where])}" for name, array in arrays.items())
+        raise SurfaceError(f"{label} is not finite at {place}: {points[where]}.")
+    return points.reshape(*np.shape(next(iter(parameters.values()))), dimension)
+
+
+def returned(
+    function: Callable[..., ArrayLike],
+    arrays: Sequence[NDArray[np.float64]],
+    shape: tuple[int, ...],
+    label: str,
+) -> NDArray[np.float64]:
+    """Return what a callable returns for arrays of one shape: an array of that shape + `shape`.
+
+    Raises SurfaceError, which calls the callable `label`, if it raises, or returns another shape or
+    anything but real numbers.
+    """
     try:
         with np.errstate(all="ignore"):
-            returned = function(*(x.copy() for x in arrays))
+            values = function(*(x.copy() for x in arrays))
     except (GaussmapError, MemoryError):
         raise
     except Exception as error:
         raise SurfaceError(
-            f"the callable of {label} raised {type(error).__name__}: {' '.join(str(error).split())}"
+            f"{label} raised {type(error).__name__}: {' '.join(str(error).split())}"
         ) from error
     try:
-        points = real_array(returned, f"what the callable of {label} returns")
+        result = real_array(values, f"what {label} returns")
     except InputError as error:
         raise SurfaceError(str(error)) from None
-    if points.shape != (*arrays[0].shape, dimension):
+    expected = (*arrays[0].shape, *shape)
+    if result.shape != expected:
         raise SurfaceError(
-            f"the callable of {label} returned the shape {points.shape} for parameters of shape "
-            f"{arrays[0].shape}; it must return {(*arrays[0].shape, dimension)}."
+            f"{label} returned the shape {result.shape} for parameters of shape "
+            f"{arrays[0].shape}; it must return {expected}."
         )
-    if not np.isfinite(points).all():
-        bad = ~np.isfinite(points).all(axis=-1)
-        where = np.unravel_index(int(np.argmax(bad)), bad.shape)
-        places = zip(parameters, arrays, strict=True)
-        place = ", ".join(f"{name} = {float(array[where])}" for name, array in places)
-        raise SurfaceError(f"{label} is not finite at {place}: {points[where]}.")
-    return points.reshape(*shape, dimension)
+    return result

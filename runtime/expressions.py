@@ -5,15 +5,15 @@ What texts may hold stands in `symbolic.reading`. SymPy is imported on first use
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from numbers import Number
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from . import bridge
 from .errors import InputError, shown
+from .lambdified import Expressions
 
 if TYPE_CHECKING:
     import sympy
@@ -29,9 +29,7 @@ __all__ = [
 ]
 
 
-def compiled(
-    position: Sequence[Any], symbols: Sequence[sympy.Symbol]
-) -> Callable[..., NDArray[np.float64]]:
+def compiled(position: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> Expressions:
     """Return f(u, v) → (..., 3) for three expressions in two symbols, or f(t) → (..., 2).
 
     Raises InputError if they are unusable.
@@ -50,26 +48,9 @@ def compiled(
     if unknown:
         names = ", ".join(sorted(map(str, unknown)))
         raise InputError(f"position holds symbols that are neither parameter nor number: {names}.")
-    function = _lambdified(symbols, expressions)
-
-    def evaluate(*values: NDArray[np.float64]) -> NDArray[np.float64]:
-        shape = values[0].shape
-        return np.stack([np.broadcast_to(x, shape) for x in function(*values)], axis=-1)
-
-    return evaluate
-
-
-def _lambdified(symbols: Sequence[sympy.Symbol], expressions: Sequence[Any]) -> Callable[..., Any]:
-    """Return a NumPy function of expressions; InputError if NumPy lacks one of their functions."""
-    import sympy as sp
-
-    if lacking := set().union(*(e.atoms(sp.erf, sp.erfc) for e in expressions)):
-        name = min(x.func.__name__ for x in lacking)
-        raise InputError(f"position uses {name}, which NumPy does not have.")
-    try:
-        return sp.lambdify(symbols, expressions, modules="numpy", cse=True, dummify=True)
-    except (RecursionError, MemoryError, SyntaxError):  # SyntaxError: too many brackets
-        raise InputError("position is nested too deeply to be compiled.") from None
+    function = Expressions(tuple(expressions), tuple(symbols))
+    function.compile()
+    return function
 
 
 def numbers(domain: Sequence[Sequence[Any]]) -> list[list[float]]:

@@ -6,6 +6,7 @@ import inspect
 import math
 import textwrap
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
@@ -14,9 +15,10 @@ from numpy.typing import NDArray
 from ..generated.surfaces import CATALOGUE as _GENERATED
 from . import compiling  # noqa: F401 - announces compilation on terminals
 from .checks import known_name
+from .derivatives import Differentiable
 from .domain import Boundary, Domain
 from .errors import InputError, shown
-from .kernels.surfaces import positions
+from .kernels.surfaces import jets, positions
 from .surface import Surface
 
 if TYPE_CHECKING:
@@ -27,6 +29,26 @@ __all__ = ["describe", "names", "surface"]
 T = TypeVar("T")
 
 CATALOGUE = cast(dict[str, dict[str, Any]], _GENERATED)
+
+
+@dataclass(frozen=True)
+class CatalogueFunction(Differentiable):
+    """Position and derivatives of a surface of the catalogue; pickled as its name and values."""
+
+    name: str
+    values: tuple[float, ...]
+
+    def __call__(self, u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the points (..., 3)."""
+        points = np.empty((u.size, 3))
+        positions(self.name)(*self.values, u.ravel(), v.ravel(), points)
+        return points.reshape(*u.shape, 3)
+
+    def jets(self, u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return positions and derivatives (k, 6, 3)."""
+        result = np.empty((u.size, 6, 3))
+        jets(self.name)(*self.values, u, v, result)
+        return result
 
 
 def names() -> tuple[str, ...]:
@@ -122,15 +144,9 @@ def surface(name: str, /, **parameters: float) -> Surface:
         _checked(name, parameter, parameters.get(parameter, default), positive)
         for parameter, (default, positive, _) in known.items()
     ]
-    write = positions(name)
-
-    def evaluate(u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
-        points = np.empty((u.size, 3))
-        write(*values, u.ravel(), v.ravel(), points)
-        return points.reshape(*u.shape, 3)
-
+    function = CatalogueFunction(name, tuple(values))
     domain = tuple((float(low), float(high)) for low, high in entry["domain"])
-    return Surface(name, evaluate, cast(Domain, domain), cast(Boundary, entry["boundary"]))
+    return Surface(name, function, cast(Domain, domain), cast(Boundary, entry["boundary"]))
 
 
 def named(value: T | str) -> T | Surface:

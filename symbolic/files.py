@@ -25,8 +25,8 @@ from . import (
     tables,
 )
 from .emit import functions, named_tuples, render
-from .loops import array_function
-from .positions import position
+from .loops import array_function, jet_function
+from .positions import jet, position
 from .printer import source_of
 
 __all__ = ["GENERATED", "derive", "differences", "existing", "write"]
@@ -40,6 +40,7 @@ def derive() -> dict[str, str]:
     sources = {
         "__init__.py": '"""Kernels and formulas written by `make generate`: never edit these."""\n',
         "curve.py": curve_source(),
+        "differences.py": differences_source(),
         "primes.py": primes_source(),
         "gaussian_image.py": gaussian_image_source(),
         "icosahedron.py": icosahedron_source(),
@@ -50,6 +51,7 @@ def derive() -> dict[str, str]:
         "spline.py": spline_source(),
         "support.py": support_source(),
         "support_function.py": support_function_source(),
+        "surface_jets.py": surface_jets_source(),
         "surfaces.py": surfaces_source(),
         "surfaces_signatures.pyi": signatures_source(),
         "vectors.py": vectors_source(),
@@ -143,6 +145,12 @@ def curve_source() -> str:
     return mathematics(title, functions(curve.FORMULAS))
 
 
+def differences_source() -> str:
+    """Return generated/differences.py: the weights of numerical derivatives."""
+    title = "Weights of numerical derivatives: differences of nine points, also beside an edge."
+    return mathematics(title, tables.differences())
+
+
 def gaussian_image_source() -> str:
     """Return generated/gaussian_image.py: boundary cones and arcs, parabolic lines."""
     title = "Gaussian images of patches: boundaries, solid angles, parabolic lines."
@@ -220,6 +228,16 @@ def surfaces_source() -> str:
         "The catalogue of parametric surfaces: positions at many parameters, and data.",
         *positions,
         f"CATALOGUE = {{\n{entries}\n}}",
+    )
+
+
+def surface_jets_source() -> str:
+    """Return generated/surface_jets.py: positions and derivatives of each surface."""
+    catalogue = surfaces.CATALOGUE.values()
+    return loops(
+        "The catalogue of parametric surfaces: positions and derivatives at many parameters.",
+        *(jet_function(jet(x)) for x in catalogue),
+        f"JETS = {{{', '.join(f'{x.name!r}: {x.name}' for x in catalogue)}}}",
     )
 
 

@@ -8,15 +8,17 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Collection, Mapping, Sequence
+from typing import cast
 
 import sympy as sp
 
-from .emit import WIDTH, arguments, assignments, described, grouped, unpacked
+from .emit import WIDTH, arguments, assignments, counts, described, grouped, unpacked
 from .formula import Formula
 from .notation import VectorSymbol
+from .printer import source_of
 from .simplify import straight_line
 
-__all__ = ["array_function", "row_loop"]
+__all__ = ["array_function", "jet_function", "row_loop"]
 
 Symbols = Sequence[sp.Symbol]
 
@@ -43,6 +45,34 @@ def array_function(formula: Formula, over: Collection[sp.Symbol]) -> str:
     ]
     definition = f"def {formula.name}({', '.join([*given, *arrays])}):\n"
     return definition + textwrap.indent("\n".join(body), "    ")
+
+
+def jet_function(formula: Formula) -> str:
+    """Return the 2-jet of a surface, a formula of u, v and parameters, as a function of arrays.
+
+    Each number is stored where it is computed, which keeps 18 of them short to read.
+    """
+    u, v, *parameters = formula.inputs
+    places = {
+        y: sp.Symbol(f"jets[row, {i}, {j}]")
+        for i, x in enumerate(formula.outputs)
+        for j, y in enumerate(cast(VectorSymbol, x).components)
+    }
+    body = [
+        f'"""{formula.sentence}',
+        "",
+        f"Source: {formula.source}; {counts(formula)}.",
+        f"Arrays: {u}_values (k,), {v}_values (k,), jets (k, 6, 3).",
+        '"""',
+        f"for row in range({u}_values.shape[0]):",
+        *(f"    {x} = {x}_values[row]" for x in (u, v)),
+        *(
+            f"    {places.get(x, x)} = {source_of(value)}"
+            for x, value in straight_line(formula).assignments
+        ),
+    ]
+    arguments = ", ".join([*map(str, parameters), f"{u}_values", f"{v}_values", "jets"])
+    return f"def {formula.name}({arguments}):\n" + textwrap.indent("\n".join(body), "    ")
 
 
 def row_loop(

@@ -1,4 +1,4 @@
-"""The positions of parametric surfaces as formulas."""
+"""The positions of parametric surfaces, and their derivatives, as formulas."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from .formula import BEYOND_THE_PAPER, Formula
 from .notation import vectors
 from .surfaces import ParametricSurface
 
-__all__ = ["position"]
+__all__ = ["jet", "position"]
 
 
 def position(surface: ParametricSurface) -> Formula:
@@ -19,4 +19,24 @@ def position(surface: ParametricSurface) -> Formula:
         (surface.u, surface.v, *surface.defaults),
         tuple(zip(x.components, surface.position, strict=True)),
         (x,),
+    )
+
+
+def jet(surface: ParametricSurface) -> Formula:
+    """Return the 2-jet of a surface: x(u,v) and its derivatives up to the second."""
+    u, v = surface.u, surface.v
+    orders = {"x": (), "x_u": (u,), "x_v": (v,), "x_uu": (u, u), "x_uv": (u, v), "x_vv": (v, v)}
+    outputs = vectors(orders)
+    definitions = tuple(
+        pair
+        for x, by in zip(outputs, orders.values(), strict=True)
+        for pair in zip(x.components, surface.derivative(*by).flat(), strict=True)
+    )
+    return Formula(
+        surface.name,
+        "Position and derivatives x, x_u, x_v, x_uu, x_uv, x_vv of the surface of this name.",
+        BEYOND_THE_PAPER,
+        (u, v, *surface.defaults),
+        definitions,
+        outputs,
     )

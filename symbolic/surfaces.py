@@ -86,8 +86,8 @@ class ParametricSurface:
         return {parameter.symbol: parameter.default for parameter in self.parameters}
 
     def derivative(self, *by: sp.Symbol) -> sp.Matrix:
-        """Return the partial derivative of the position by each of `by` in turn."""
-        return sp.Matrix([sp.diff(component, *by) for component in self.position])
+        """Return the derivative of the position by each of `by` in turn, at first itself."""
+        return sp.Matrix([sp.diff(x, *by) if by else x for x in self.position])
 
     @cached_property
     def normal_field(self) -> Triple:

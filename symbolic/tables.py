@@ -5,15 +5,18 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Sequence
 from fractions import Fraction
+from typing import Any, cast
 
 import sympy as sp
 
 from . import icosahedron, spline
 
-__all__ = ["grid", "icosahedron_tables", "primes"]
+__all__ = ["differences", "grid", "icosahedron_tables", "primes"]
 
 # Enough for coefficients and normals of 340 bits together.
 PRIMES = 24
+# Points of a difference; central ones have this order less one.
+STENCIL = 9
 WIDTH = 106  # of the longest row of small numbers
 SHORT = 20
 
@@ -46,6 +49,27 @@ def grid() -> str:
             _array("CORNERS", corners),
             _array("TRIANGLE_NEIGHBOURS", read),
             _array("VERTICES", vertices),
+        ]
+    )
+
+
+def differences() -> str:
+    """Return the weights of first and second differences with a unit step, for each shift.
+
+    The points are at the shift and at up to four steps on either side of it.
+    """
+    half = STENCIL // 2
+    weights = [
+        sp.finite_diff_weights(2, [shift + x for x in range(-half, half + 1)], cast(Any, 0))
+        for shift in range(-half, half + 1)
+    ]
+    return "\n".join(
+        [
+            "# A row for each shift of the points, from -4 to 4, and its weights.",
+            *(
+                _array(name, [[float(x) for x in rows[order][-1]] for rows in weights])
+                for order, name in ((1, "FIRST"), (2, "SECOND"))
+            ),
         ]
     )
 

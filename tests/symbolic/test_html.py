@@ -153,7 +153,7 @@ def test_surface(surface):
     assert list(rows.values())[:-3] == sentences
     defaults = [str(x.default) for x in surface.parameters]
     assert [x.split("=")[1] for x in list(rows)[:-3]] == defaults
-    assert rows["Functions"] == f"surfaces.{surface.name}"
+    assert rows["Functions"] == f"surface_jets.{surface.name}, surfaces.{surface.name}"
 
 
 @pytest.mark.parametrize("path", GENERATED, ids=lambda path: path.name)
