@@ -92,7 +92,7 @@ def compare(derivatives: Guarded, numerical: Differences, label: str) -> None:
     with np.errstate(invalid="ignore"):
         error: Array = np.abs(given - found).max(axis=-1)
         allowed = TOLERANCE * sizes + DOUBT * np.abs(found - coarse).max(axis=-1)
-        wrong = np.asarray(known & ~(error <= allowed))
+        wrong: NDArray[np.bool_] = known & ~(error <= allowed)
     if wrong.any():
         order = int(np.argmax(wrong.any(axis=0)))  # the first that is wrong explains the others
         place = int(np.argmax(np.where(wrong, error, -1.0)[:, order]))

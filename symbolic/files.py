@@ -26,7 +26,7 @@ from . import (
 )
 from .emit import functions, named_tuples, render
 from .loops import array_function, jet_function
-from .positions import jet, position
+from .positions import position, surface_jet
 from .printer import source_of
 
 __all__ = ["GENERATED", "derive", "differences", "existing", "write"]
@@ -236,7 +236,7 @@ def surface_jets_source() -> str:
     catalogue = surfaces.CATALOGUE.values()
     return loops(
         "The catalogue of parametric surfaces: positions and derivatives at many parameters.",
-        *(jet_function(jet(x)) for x in catalogue),
+        *(jet_function(surface_jet(x)) for x in catalogue),
         f"JETS = {{{', '.join(f'{x.name!r}: {x.name}' for x in catalogue)}}}",
     )
 

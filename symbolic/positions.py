@@ -6,7 +6,7 @@ from .formula import BEYOND_THE_PAPER, Formula
 from .notation import vectors
 from .surfaces import ParametricSurface
 
-__all__ = ["jet", "position"]
+__all__ = ["position", "surface_jet"]
 
 
 def position(surface: ParametricSurface) -> Formula:
@@ -22,7 +22,7 @@ def position(surface: ParametricSurface) -> Formula:
     )
 
 
-def jet(surface: ParametricSurface) -> Formula:
+def surface_jet(surface: ParametricSurface) -> Formula:
     """Return the 2-jet of a surface: x(u,v) and its derivatives up to the second."""
     u, v = surface.u, surface.v
     orders = {"x": (), "x_u": (u,), "x_v": (v,), "x_uu": (u, u), "x_uv": (u, v), "x_vv": (v, v)}
