@@ -83,7 +83,7 @@ def fit(surface: Surface | str, cells: Sequence[int] | None = None) -> Spline:
     if not isinstance(surface, Surface):
         raise InputError(
             f"a Surface or its name is needed, not {type(surface).__name__}; make one by "
-            "gm.Surface.from_callable, from_sympy or from_grid."
+            "gm.Surface.from_callable, from_sympy, from_nurbs or from_grid."
         )
     if surface.grid is not None:
         return _fit_data(surface, surface.grid, cells)

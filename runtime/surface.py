@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -29,8 +29,8 @@ Evaluation = Callable[[NDArray[np.float64], NDArray[np.float64]], ArrayLike]
 class Surface:
     """A parametric surface x(u,v).
 
-    Make one with `from_callable`, `from_sympy` or `from_grid`, or take one of `gaussmap.surfaces`.
-    Normals point along x_u × x_v.
+    Make one with `from_callable`, `from_sympy`, `from_nurbs` or `from_grid`, or take one of
+    `gaussmap.surfaces`. Normals point along x_u × x_v.
 
     Attributes
     ----------
@@ -251,6 +251,106 @@ class Surface:
         spline = spline_of_points(array, boundary, name, domain)
         return cls(name, spline.evaluate, spline.domain, boundary, array)
 
+    @classmethod
+    def from_nurbs(
+        cls,
+        degrees: Sequence[int] | object,
+        knots: Sequence[ArrayLike] | None = None,
+        control_points: ArrayLike | None = None,
+        weights: ArrayLike | None = None,
+        *,
+        periodic: Sequence[Periodicity] | None = None,
+        name: str = "surface",
+    ) -> Surface:
+        """Make a surface of a NURBS: of its numbers, or of a surface of geomdl or Splipy.
+
+        The domain is [U[p], U[m]] × [V[q], V[n]] for knots U, V, as usual. Where the two ends of a
+        parameter are one line and the surface is smooth across it, to 0.1°, it is periodic. The
+        lines where its normal turns by more than 0.1° cut it into `pieces`.
+
+        Parameters
+        ----------
+        degrees : (int, int), or surface of geomdl or Splipy
+            The degrees (p, q) along u and v, from 1 to 25. Instead of all the numbers, a
+            ``geomdl.NURBS.Surface``, ``geomdl.BSpline.Surface`` or ``splipy.Surface``.
+        knots : pair of array_like
+            The knots U (m + p + 1,) and V (n + q + 1,), which never decrease. Those inside the
+            domain are at most p-fold (q-fold); those at its ends need not be multiple.
+        control_points : (m, n, 3) array_like
+            The control points, in L, not multiplied by their weights.
+        weights : (m, n) array_like, optional
+            The positive weights; by default all are 1, and the surface is a B-spline.
+        periodic : pair, optional
+            As in `from_callable`; by default it is found as described.
+        name : str, default "surface"
+            Label of the surface.
+
+        Returns
+        -------
+        Surface
+            The surface. It is evaluated by compiled code, derivatives included.
+
+        Raises
+        ------
+        InputError
+            For other numbers than these: numbers of knots that do not fit, knots that decrease or
+            tear the surface, weights that are not positive, NaN, another shape; for an object that
+            is none of these, or has trim curves; and for boundary conditions as `from_callable`.
+
+        References
+        ----------
+        L. Piegl and W. Tiller, The NURBS Book, 2nd ed., Springer 1997.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> import numpy as np
+        >>> x, z = np.meshgrid([0.0, 1.0, 2.0], [0.0, 1.0], indexing="ij")
+        >>> arch = np.stack([x, np.array([0.0, 1.0, 0.0])[:, None] + 0 * x, z], axis=-1)
+        >>> knots = [0, 0, 0, 1, 1, 1], [0, 0, 1, 1]
+        >>> gm.Surface.from_nurbs((2, 1), knots, arch).evaluate(0.5, 0.5)
+        array([1. , 0.5, 0.5])
+
+        """
+        from .creases import creases, smoothly_closed
+        from .nurbs_input import nurbs_of_arrays, nurbs_of_object
+
+        if knots is None and control_points is None and weights is None:
+            nurbs = nurbs_of_object(degrees)
+        else:
+            nurbs = nurbs_of_arrays(degrees, knots, control_points, weights)
+        if periodic is None:
+            periodic = smoothly_closed(nurbs, 0), smoothly_closed(nurbs, 1)
+        boundary = checked_boundary(periodic)
+        u, v = (ends == ("periodic", "periodic") for ends in boundary)
+        nurbs = replace(nurbs, periodic=(u, v), creases=creases(nurbs))
+        return cls(name, nurbs, nurbs.domain, boundary)
+
+    def pieces(self) -> tuple[Surface, ...]:
+        """Return the smooth pieces of the surface: rectangles of its parameters.
+
+        A NURBS is cut along the lines u = const and v = const where its normal turns by more than
+        0.1° somewhere. Each piece is evaluated from inside on these lines.
+
+        Returns
+        -------
+        tuple of Surface
+            The pieces, those of the lowest u first, and in turn along v; parameters are those of
+            the whole. A smooth surface is its only piece.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> knots = [0, 0, 1, 2, 2], [0, 0, 1, 1]
+        >>> roof = [[[0, 0, 0], [0, 5, 0]], [[2, 0, 1], [2, 5, 1]], [[4, 0, 0], [4, 5, 0]]]
+        >>> [piece.domain for piece in gm.Surface.from_nurbs((1, 1), knots, roof).pieces()]
+        [((0.0, 1.0), (0.0, 1.0)), ((1.0, 2.0), (0.0, 1.0))]
+
+        """
+        from .cutting import pieces_of
+
+        return pieces_of(self)
+
     def evaluate(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
         """Return the points x(u, v).
 
@@ -301,9 +401,9 @@ class Surface:
     def derivatives(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
         """Return the points and their first and second derivatives.
 
-        They are exact for the catalogue and for SymPy expressions, given by the user for a
-        callable with `derivatives`, and numerical otherwise: by differences of nine points with
-        steps of about 1/400 of the domain, which evaluate the callable inside the domain only.
+        They are exact for the catalogue, for SymPy expressions and for NURBS, given by the user
+        for a callable with `derivatives`, and numerical otherwise: by differences of nine points
+        with steps of about 1/400 of the domain, which evaluate the callable inside the domain only.
 
         Parameters
         ----------

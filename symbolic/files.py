@@ -19,6 +19,7 @@ from . import (
     mesh,
     offset,
     patch,
+    rational,
     spline,
     support,
     surfaces,
@@ -48,6 +49,7 @@ def derive() -> dict[str, str]:
         "mesh.py": mesh_source(),
         "offset.py": offset_source(),
         "patch.py": patch_source(),
+        "rational.py": rational_source(),
         "spline.py": spline_source(),
         "support.py": support_source(),
         "support_function.py": support_function_source(),
@@ -186,6 +188,12 @@ def patch_source() -> str:
     title = "One quadratic patch: the formulas of symbolic/patch.py as functions of vectors."
     node = f"NODE = {source_of(patch.QUADRATURE_NODE)}"
     return mathematics(title, node, functions(patch.FORMULAS))
+
+
+def rational_source() -> str:
+    """Return generated/rational.py: the derivatives of rational surfaces."""
+    title = "Rational surfaces: the formulas of symbolic/rational.py."
+    return mathematics(title, functions(rational.FORMULAS))
 
 
 def spline_source() -> str:

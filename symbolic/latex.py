@@ -9,7 +9,7 @@ from functools import cache
 
 import sympy as sp
 
-from . import curve, gaussian_image, jet, mesh, offset, patch, spline, support, surfaces
+from . import curve, gaussian_image, jet, mesh, offset, patch, rational, spline, support, surfaces
 from .display import latex_name, latex_of
 from .emit import render
 from .formula import Formula
@@ -28,6 +28,7 @@ FORMULAS = {
     "The quadratic spline": spline.FORMULAS,
     "Support functions": support.FORMULAS,
     "Surfaces at a point": jet.FORMULAS,
+    "Rational surfaces": rational.FORMULAS,
     "Meshes": mesh.FORMULAS,
     "Planar curves": curve.FORMULAS,
 }

@@ -13,6 +13,7 @@ from gaussmap.symbolic import (
     mesh,
     offset,
     patch,
+    rational,
     spline,
     support,
 )
@@ -210,7 +211,7 @@ def test_a_sample_is_its_parts():
 
 
 def test_all_formulas_by_name_in_order():
-    modules = (patch, offset, gaussian_image, spline, support, jet, mesh, curve)
+    modules = (patch, offset, gaussian_image, spline, support, jet, rational, mesh, curve)
     assert list(formulas) == [x.name for module in modules for x in module.FORMULAS]
     assert all(formula.name == name for name, formula in formulas.items())
     assert not hasattr(formulas, "__setitem__")

@@ -1,0 +1,54 @@
+"""Rational surfaces, such as NURBS: the derivatives of a quotient."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from .formula import Formula
+from .notation import scalar, substitute, vectors
+
+__all__ = ["FORMULAS"]
+
+SOURCE = "beyond the paper; Piegl & Tiller, The NURBS Book, eqs. (4.19) and (4.20)"
+# The derivatives of order 0, 1 and 2, by the parameters in turn, each after those it needs.
+ORDERS = ("", "u", "v", "uu", "uv", "vv")
+
+
+def _symbol(kind: str, order: str) -> sp.Symbol:
+    """Return the symbol of a derivative of the numerator A, the denominator w or the point x."""
+    name = f"{kind}_{order}" if order else kind
+    return scalar(name) if kind == "w" else vectors([name])[0]
+
+
+def _derivatives() -> list[tuple[str, sp.Expr]]:
+    """Return r = 1/w and the derivatives of x = A/w, solved from those of A = w x."""
+    u, v = sp.symbols("u v")
+    point, weight = (sp.Function(name)(u, v) for name in ("x", "w"))
+    r = scalar("r")
+    results: list[tuple[str, sp.Expr]] = []
+    for order in ORDERS:
+        product = sp.diff(weight * point, *order) if order else weight * point
+        known = {
+            (sp.diff(f, *x) if x else f): _symbol(kind, x)
+            for x in ORDERS
+            for kind, f in (("x", point), ("w", weight))
+        }
+        wanted = _symbol("x", order)
+        equation = substitute(product.doit(), known) - _symbol("A", order)
+        (solution,) = sp.solve(equation, wanted)
+        numerator = sp.expand(solution * scalar("w"))
+        results.append((wanted.name, r * numerator))
+    return [("r", 1 / scalar("w")), *results]
+
+
+RATIONAL_JET = Formula.build(
+    "rational_jet",
+    "The point $x = A/w$ of a rational surface and its first and second derivatives, from those of "
+    "the numerator $A$ and the denominator $w$.",
+    source=SOURCE,
+    inputs=[_symbol(kind, order) for kind in "Aw" for order in ORDERS],
+    terms=_derivatives()[:1],
+    outputs=_derivatives()[1:],
+)
+
+FORMULAS = (RATIONAL_JET,)
