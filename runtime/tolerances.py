@@ -21,6 +21,8 @@ __all__ = [
     "LATTICE_ERROR",
     "LENGTH_ERROR",
     "NEAR_SINGULAR_POINT",
+    "NORMAL_ERROR",
+    "NORMAL_NOISE",
     "PARAMETER_ERROR",
     "RADIUS_ERROR",
     "ROTATION_ERROR",
@@ -91,3 +93,8 @@ ROTATION_ERROR = 1e-12
 SAME_PARAMETER = 1e-12
 # Of triple products of unit vectors: 4 ε. Regions of the sphere are closed up to it.
 TRIPLE_PRODUCT_ERROR = 2.0**-50
+# Of the normal of a sample on a surface, as an angle (radians).
+NORMAL_ERROR = 1e-12
+# Of the same where Newton's method does not get farther, because of the rounding of derivatives or
+# of the error of differences.
+NORMAL_NOISE = 1e-8

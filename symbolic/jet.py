@@ -21,13 +21,14 @@ from .patch import FORM_TERMS, SOLUTION, VECTORS, A, B, C, P, Q, a, b, c, d, e, 
 __all__ = ["AT_JET", "FORMULAS"]
 
 N = vectors("N")[0]
-E, F, G, g, L = (scalar(x) for x in "EFGgL")
+E, F, G, L = (scalar(x) for x in "EFGL")
 
 AT_JET = Formula.build(
     "at_jet",
-    "The unit normal, the Gaussian and the mean curvature of a surface from its 2-jet: $a = x_uu$, "
-    "$b = x_uv$, $c = x_vv$, $d = x_u$, $e = x_v$. The mean curvature is half the sum of the "
-    "principal curvatures −II/I, positive on a sphere with outward normals.",
+    "The length $L$ of the normal $N$ of a surface, the unit normal, the Gaussian and the mean "
+    "curvature, from its 2-jet: $a = x_uu$, $b = x_uv$, $c = x_vv$, $d = x_u$, $e = x_v$. The mean "
+    "curvature is half the sum of the principal curvatures −II/I, positive on a sphere with outer "
+    "normals.",
     inputs=VECTORS,
     terms=[
         ("N", Cross(d, e)),
@@ -37,13 +38,12 @@ AT_JET = Formula.build(
         ("A", Dot(N, a)),
         ("B", Dot(N, b)),
         ("C", Dot(N, c)),
-        ("g", Dot(N, N)),
-        ("L", sp.sqrt(g)),
     ],
     outputs=[
+        ("L", sp.sqrt(Dot(N, N))),
         ("n", N / L),
-        ("K", SOLUTION.D / g**2),
-        ("H", -(E * C - 2 * F * B + G * A) / (2 * g * L)),
+        ("K", SOLUTION.D / L**4),
+        ("H", -(E * C - 2 * F * B + G * A) / (2 * L**3)),
     ],
 )
 

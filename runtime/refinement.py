@@ -1,0 +1,197 @@
+"""Samples of a spline moved to the surface that it approximates, by Newton's method.
+
+The samples of a spline at prescribed normals are close to those of the surface. Newton's method for
+n·x_u = n·x_v = 0 leads from one to the other, where the surface is neither parabolic nor singular.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .kernels.refine import CLAMPED, FREE, PERIODIC, Rows, Target, evaluate_jets, newton
+from .pole_charts import PoleChart, pole_charts
+from .spline import Spline
+from .surface import Surface
+from .threads import over_ranges
+from .tolerances import NORMAL_ERROR, NORMAL_NOISE
+
+__all__ = ["evaluate_on_surface", "refine"]
+
+Array = NDArray[np.float64]
+Numbers = NDArray[np.int64]
+Jets = Callable[[Array, Array], Array]
+
+ROWS_AT_A_TIME = 2048
+# When this part of some rows is left, which need more steps than the others, they are left for the
+# end, when there are more of their kind.
+FEW = 1 / 32
+MOST_STEPS = 32
+
+
+@dataclass(frozen=True, eq=False)
+class Parameters:
+    """Two parameters of a surface: its 2-jets, and what happens at the ends of the parameters.
+
+    `cell` (2,) is the size of a cell, `box` (4,) the ends of both parameters, and `kinds` (2,) what
+    a parameter does there. `size` times the surface has cells of about the size 1.
+    """
+
+    jets: Jets
+    cell: Array
+    box: Array
+    kinds: NDArray[np.int64]
+    size: float
+
+    @classmethod
+    def of_domain(cls, surface: Surface, spline: Spline) -> Parameters:
+        """Return the parameters u and v."""
+        kinds = [PERIODIC if ends[0] == "periodic" else CLAMPED for ends in surface.boundary]
+        box = np.array(surface.domain).ravel()
+        return cls(surface.jets, spline.frame[2:].copy(), box, np.array(kinds), spline.scale)
+
+    @classmethod
+    def of_chart(cls, chart: PoleChart, spline: Spline) -> Parameters:
+        """Return s and t of a chart at a pole, which have no ends but the rounding of u and v."""
+        largest = max(abs(chart.end), abs(chart.other))
+        box = np.array([-largest, largest, -largest, largest])
+        cell, kinds = np.full(2, chart.cell), np.full(2, FREE)
+        return cls(chart.jets, cell, box, kinds, spline.scale)
+
+    def solve(self, target: Target, numbers: Numbers, few: int) -> Numbers:
+        """Move rows from target.uv on; return the numbers of the last ones, at most `few`."""
+        count, shape = len(numbers), target.uv.shape
+        place = np.ascontiguousarray(target.uv[numbers].T)
+        for axis in range(2):
+            if self.kinds[axis] != FREE:
+                np.clip(place[axis], *self.box[2 * axis :][:2], out=place[axis])
+        least = np.full(len(target.uv), np.inf)
+        rows = Rows(numbers.copy(), place, np.zeros(shape), np.zeros(shape), least)
+        for _ in range(MOST_STEPS):
+            if count <= few:
+                return rows.numbers[:count]
+            jets = self.jets(place[0, :count], place[1, :count])
+            count = newton(
+                jets, count, rows, target, self.cell, self.box, self.kinds, self.size,
+                NORMAL_ERROR**2, NORMAL_NOISE**2,
+            )  # fmt: skip
+        return rows.numbers[:0]
+
+
+def refine(
+    surface: Surface, spline: Spline, samples: Target, threads: int | None = None
+) -> NDArray[np.bool_]:
+    """Move samples of a spline at unit normals to the surface; return which were moved (k,).
+
+    Overwrites the parameters, points and curvatures of `samples` where the normal of the surface
+    has become the prescribed one, up to NORMAL_ERROR, without a change of the sign of K. Elsewhere
+    they stay those of the spline: at parabolic and singular points, and where the place of the
+    normal is outside the domain or farther than three cells away.
+    """
+    domain, charts = Parameters.of_domain(surface, spline), pole_charts(surface, spline)
+    samples.found[:] = False
+
+    def work(first: int, last: int) -> tuple[Numbers, list[Numbers]]:
+        target = Target(*(x[first:last] for x in samples))
+        at_poles = [np.flatnonzero(x.near(target.uv)) for x in charts]
+        numbers = np.arange(last - first)
+        if charts:
+            numbers = np.delete(numbers, np.concatenate(at_poles))
+        left = domain.solve(target, numbers, int(len(numbers) * FEW))
+        return first + left, [first + x for x in at_poles]
+
+    results = list(over_ranges(work, len(samples.uv), ROWS_AT_A_TIME, threads))
+    if not results:
+        return samples.found
+    _finish(domain, samples, np.concatenate([x for x, _ in results]), threads)
+    for k, chart in enumerate(charts):
+        numbers = np.concatenate([x[k] for _, x in results])
+        _refine_at_pole(chart, Parameters.of_chart(chart, spline), samples, numbers, threads)
+    return samples.found
+
+
+def _finish(parameters: Parameters, samples: Target, numbers: Numbers, threads: int | None) -> None:
+    """Move the rows that are left over."""
+
+    def work(first: int, last: int) -> None:
+        rows = numbers[first:last]
+        target = Target(*(x[rows] for x in samples))
+        parameters.solve(target, np.arange(len(rows)), 0)
+        _put(samples, rows, target)
+
+    for _ in over_ranges(work, len(numbers), ROWS_AT_A_TIME, threads):
+        pass
+
+
+def _refine_at_pole(
+    chart: PoleChart, parameters: Parameters, samples: Target, numbers: Numbers, threads: int | None
+) -> None:
+    """Move rows next to a pole in its chart, where K may change its sign: the spline has folds."""
+
+    def work(first: int, last: int) -> None:
+        rows = numbers[first:last]
+        target = Target(*(x[rows] for x in samples))
+        target.normals[:] *= chart.orientation
+        target.signs[:] = 0.0
+        target.uv[:] = chart.places(target.uv)
+        parameters.solve(target, np.arange(len(rows)), 0)
+        target.uv[:] = chart.parameters(target.uv)
+        target.mean[:] *= chart.orientation
+        _put(samples, rows, target)
+
+    for _ in over_ranges(work, len(numbers), ROWS_AT_A_TIME, threads):
+        pass
+
+
+def _put(samples: Target, rows: Numbers, target: Target) -> None:
+    """Write what was found into the arrays of all samples."""
+    found = target.found
+    for array, part in zip(samples[2:], target[2:], strict=True):
+        array[rows[found]] = part[found]
+
+
+def evaluate_on_surface(
+    surface: Surface, spline: Spline, uv: Array, threads: int | None = None
+) -> tuple[Array, Array, Array, Array]:
+    """Return points (k, 3), unit normals (k, 3), K (k,) and H (k,) at parameters (k, 2).
+
+    Normals and curvatures are 0 at singular points that are no poles.
+    """
+    count = len(uv)
+    points, normals = np.empty((count, 3)), np.empty((count, 3))
+    gaussian, mean = np.empty(count), np.empty(count)
+    charts = pole_charts(surface, spline)
+
+    def work(first: int, last: int) -> None:
+        part = slice(first, last)
+        jets = surface.jets(uv[part, 0].copy(), uv[part, 1].copy())
+        points[part] = jets[:, 0]
+        scales = np.array([spline.scale, *spline.frame[2:]])
+        evaluate_jets(jets, scales, normals[part], gaussian[part], mean[part])
+        for chart in charts:
+            rows = first + np.flatnonzero(chart.next_to(uv[part]))
+            if len(rows):
+                _evaluate_at_pole(chart, spline.scale, uv, rows, normals, gaussian, mean)
+
+    for _ in over_ranges(work, count, ROWS_AT_A_TIME, threads):
+        pass
+    return points, normals, gaussian, mean
+
+
+def _evaluate_at_pole(
+    chart: PoleChart,
+    size: float,
+    uv: Array,
+    rows: Numbers,
+    normals: Array,
+    gaussian: Array,
+    mean: Array,
+) -> None:
+    """Write normals and curvatures of rows next to a pole."""
+    s, t = chart.places(uv[rows]).T.copy()
+    n, K, H = np.empty((len(rows), 3)), np.empty(len(rows)), np.empty(len(rows))
+    evaluate_jets(chart.jets(s, t), np.array([size, chart.cell, chart.cell]), n, K, H)
+    normals[rows], gaussian[rows], mean[rows] = n * chart.orientation, K, H * chart.orientation
