@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from .bins import NormalBins
 from .developable import curved_solid_angle
+from .inside import count_of, samples_inside
 from .lattice import Lattice
 from .limits import MOST
-from .search import Hits, find
+from .search import Hits, fill, find
 from .spline import Spline
 
 __all__ = ["Chosen", "choose"]
@@ -86,14 +87,23 @@ def _adapted(spline: Spline, count: int, threads: int | None, progress: bool) ->
         density = min(density, densest)
         bins = NormalBins(lattice.normals(density, threads=threads), threads)
         hits = find(spline, bins, threads, progress)
-        if best is None or abs(len(hits) - count) < abs(samples - count):
-            best, samples = Chosen(lattice, density, (bins, hits)), len(hits)
-        if abs(len(hits) - count) <= NEAR_ENOUGH * count or resolved == 0.0:
+        number = _number_inside(spline, bins, hits, threads)
+        if best is None or abs(number - count) < abs(samples - count):
+            best, samples = Chosen(lattice, density, (bins, hits)), number
+        if abs(number - count) <= NEAR_ENOUGH * count or resolved == 0.0:
             break
-        if attempt < IN_PROPORTION or len(hits) == 0:
-            density *= count / len(hits) if len(hits) else 2.0
+        if attempt < IN_PROPORTION or number == 0:
+            density *= count / number if number else 2.0
         else:
             step = attempt - IN_PROPORTION + 1
             density = count / resolved * (1.0 + (-1) ** step * (step // 2) * DITHER)
     assert best is not None
     return best, samples
+
+
+def _number_inside(spline: Spline, bins: NormalBins, hits: Hits, threads: int | None) -> int:
+    """Return the number of hits that are inside the trim of a spline."""
+    if spline.trim is None:
+        return len(hits)
+    uv = fill(spline, bins, hits, threads, ("uv",))
+    return count_of(samples_inside(spline, uv, ("uv",)))

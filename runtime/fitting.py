@@ -88,7 +88,8 @@ def fit(surface: Surface | str, cells: Sequence[int] | None = None) -> Spline:
     if surface.grid is not None:
         return _fit_data(surface, surface.grid, cells)
     spline = _fitted(surface, DEFAULT_CELLS if cells is None else cells)
-    return replace(spline, misfit=probe_of(surface, spline.cells).misfit(spline))
+    misfit = probe_of(surface, spline.cells).misfit(spline)
+    return replace(spline, misfit=misfit, trim=surface.trim)
 
 
 def _fit_data(surface: Surface, grid: NDArray[np.float64], cells: Sequence[int] | None) -> Spline:
@@ -98,7 +99,8 @@ def _fit_data(surface: Surface, grid: NDArray[np.float64], cells: Sequence[int] 
         if cells is None
         else _fitted(surface, cells)
     )
-    return replace(spline, misfit=misfit_to_data(spline, grid, surface.boundary))
+    misfit = misfit_to_data(spline, grid, surface.boundary)
+    return replace(spline, misfit=misfit, trim=surface.trim)
 
 
 def _fitted(surface: Surface, cells: Sequence[int]) -> Spline:

@@ -16,6 +16,7 @@ from .density.request import Request, checked_request
 from .errors import GaussmapError, GaussmapWarning, InputError, in_memory, shown
 from .fields import COLUMNS, checked_dtype, checked_fields
 from .fitting import spline_of
+from .inside import count_of, samples_inside, with_uv
 from .memory import check_memory
 from .report import sampling_report, warn_of
 from .samples import Samples
@@ -183,9 +184,10 @@ def _by_normals(
     bins, hits = chosen.found or (NormalBins(chosen.part(0, len(chosen), threads), threads), None)
     if hits is None:
         hits = find(spline, bins, threads, progress)
-    arrays = fill(spline, bins, hits, threads, fields, dtype)
+    arrays = fill(spline, bins, hits, threads, with_uv(spline, fields), dtype)
+    arrays = samples_inside(spline, arrays, fields)
     report = sampling_report(
-        spline, len(bins.normals), len(hits), chosen.density, hits.developable, arrays
+        spline, len(bins.normals), count_of(arrays), chosen.density, hits.developable, arrays
     )
     return Samples(**arrays, report=report, spline=spline), bins.normals
 

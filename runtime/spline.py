@@ -13,12 +13,14 @@ from numpy.typing import ArrayLike, NDArray
 from .checks import parameter_arrays
 from .domain import Boundary, Domain
 from .errors import InputError
+from .inside import Inside
 from .kernels import spline as kernels
 from .threads import over_ranges
 from .tolerances import DATA_ERROR, SAME_PARAMETER
 
 if TYPE_CHECKING:
     from .misfit import Misfit
+    from .trim import Trim
 
 __all__ = ["LARGEST_EXPONENT", "Spline", "scale_to_one", "scales_to_one", "short_label"]
 
@@ -56,6 +58,9 @@ class Spline:
         How far the spline is from the surface, or from the data, that it approximates: the largest
         and the root mean square of the distance, and the largest angle between the normals. None if
         it was not made by `fit`.
+    trim : Trim or None
+        The part of the domain that belongs to the surface, None for all of it; see
+        `Surface.trimmed`.
 
     Examples
     --------
@@ -73,8 +78,8 @@ class Spline:
     >>> areas, solid_angles = spline.measure
     >>> bool(areas.min() > 0), bool(abs(solid_angles.sum()) < 1e-2)  # 2π χ = 0 on a torus
     (True, True)
-    >>> spline.scale, spline.noise < 1e-13
-    (1.0, True)
+    >>> spline.scale, spline.noise < 1e-13, spline.trim
+    (1.0, True, None)
     >>> spline.misfit.rms < spline.misfit.distance < 3e-3, spline.misfit.angle < 2.0  # degrees
     (True, True)
 
@@ -85,6 +90,7 @@ class Spline:
     boundary: Boundary
     name: str
     misfit: Misfit | None = None
+    trim: Trim | None = None
 
     def __repr__(self) -> str:
         return f"Spline({self.cells[0]} × {self.cells[1]} cells of {short_label(self.name)})"
@@ -187,6 +193,7 @@ class Spline:
     def measure(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Areas and solid angles of the patches, by quadrature: two (patches,) float64 arrays.
 
+        Those of the parts inside the trim, if there is one, by their shares of the parameters.
         Areas are in units of the squared diagonal of the bounding box of the coefficients. Solid
         angles are signed, and those of the Gaussian images.
         """
@@ -202,7 +209,14 @@ class Spline:
             pass
         inner = self.coefficients[1:-1, 1:-1].reshape(-1, 3) * self.scale
         diagonal = float(np.linalg.norm(np.ptp(inner, axis=0)))
+        if self.inside is not None:
+            areas, solid_angles = areas * self.inside.shares, solid_angles * self.inside.shares
         return areas / diagonal**2 if diagonal > 0.0 else areas, solid_angles
+
+    @cached_property
+    def inside(self) -> Inside | None:
+        """The part of each patch inside the trim, None without one."""
+        return None if self.trim is None else Inside.of(self)
 
     def _evaluate(
         self, u: ArrayLike, v: ArrayLike

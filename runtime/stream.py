@@ -14,6 +14,7 @@ from .choice import choose
 from .density.request import Request, checked_request
 from .fields import checked_dtype, checked_fields
 from .fitting import spline_of
+from .inside import count_of, samples_inside, with_uv
 from .report import SamplingReport, count_infinite, sampling_report, warn_of
 from .samples import Samples
 from .search import Hits, Search, fill, merged
@@ -56,8 +57,8 @@ def sample_stream(
     Returns
     -------
     generator of Samples
-        The chunks; there is at least one, and all but the last of each block are full. The
-        report of a chunk counts its samples, and no degenerate patches.
+        The chunks; there is at least one, and all but the last of each block are full, unless the
+        surface is trimmed. The report of a chunk counts its samples, and no degenerate patches.
 
     Raises
     ------
@@ -118,20 +119,25 @@ class _Stream:
             found = find_in_turn(self.spline, bins, self.threads, self.progress and alone)
             developable, hits = 0, Hits.none(0)  # the same in every block
             for hits in grouped(found, self.size):
-                came += len(hits)
                 developable += hits.developable
-                if len(hits) or (came == 0 and first == starts[-1]):
-                    yield self._samples(bins, hits, first, report)
+                samples = self._samples(bins, hits, first, report)
+                came += len(samples)
+                is_last = first == starts[-1] and len(hits) < self.size
+                if len(samples) or (came == 0 and is_last):
+                    yield samples
             del bins, found, hits  # before the next ones are made
         report = replace(report, samples=came, developable_patches=developable)
         warn_of(report, self.request.count, stacklevel=3)
 
     def _samples(self, bins: NormalBins, hits: Hits, start: int, report: SamplingReport) -> Samples:
         """Return hits as samples; the normals are numbered from `start` on."""
-        arrays = fill(self.spline, bins, hits, self.threads, self.fields, self.dtype)
+        fields = with_uv(self.spline, self.fields)
+        arrays = fill(self.spline, bins, hits, self.threads, fields, self.dtype)
+        arrays = samples_inside(self.spline, arrays, self.fields)
         if start and "normal_index" in arrays:
             arrays["normal_index"] = arrays["normal_index"] + start
-        report = replace(report, samples=len(hits), infinite_curvatures=count_infinite(arrays))
+        count = count_of(arrays)
+        report = replace(report, samples=count, infinite_curvatures=count_infinite(arrays))
         return Samples(**arrays, report=report, spline=self.spline)
 
 

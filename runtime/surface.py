@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +16,7 @@ from .domain import Boundary, Domain, Periodicity, checked_boundary, checked_dom
 from .errors import InputError, SurfaceError
 from .evaluation import evaluated
 from .jet_functions import jet_function
+from .trim import Trim, trimmed_by
 
 if TYPE_CHECKING:
     import sympy
@@ -49,13 +50,15 @@ class Surface:
         The points of a surface that was given by points.
     derivative_function : callable or None
         What `from_callable` was given as derivatives.
+    trim : Trim or None
+        The part of the domain that belongs to the surface, None for all of it; see `trimmed`.
 
     Examples
     --------
     >>> import gaussmap as gm
     >>> torus = gm.surfaces.torus(major=1.0, minor=0.35)
-    >>> torus.name, torus.boundary, torus.grid, torus.derivative_function
-    ('torus', (('periodic', 'periodic'), ('periodic', 'periodic')), None, None)
+    >>> torus.name, torus.boundary, torus.grid, torus.derivative_function, torus.trim
+    ('torus', (('periodic', 'periodic'), ('periodic', 'periodic')), None, None, None)
     >>> double = gm.Surface.from_callable(
     ...     lambda u, v: 2 * torus.function(u, v), torus.domain, periodic=(True, True)
     ... )
@@ -70,6 +73,7 @@ class Surface:
     boundary: Boundary
     grid: NDArray[np.float64] | None = None
     derivative_function: Evaluation | None = None
+    trim: Trim | None = None
 
     @classmethod
     def from_callable(
@@ -493,6 +497,57 @@ class Surface:
         return jet_function(
             self.function, self.derivative_function, self.domain, self.boundary, self.name
         )
+
+    def trimmed(
+        self,
+        loops: Any | None = None,  # noqa: ANN401
+        *,
+        within: Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.bool_]]
+        | None = None,
+    ) -> Surface:
+        """Return the part of the surface inside closed polygons, or where a predicate holds.
+
+        Samples, their coverage, weights and meshes are those of the part. Gaussian images,
+        parabolic points and silhouettes are still those of the whole surface.
+
+        Parameters
+        ----------
+        loops : sequence of (k, 2) array_like, or Polygon, optional
+            Closed polygons of points u, v, whose first point may be repeated at the end: a point is
+            inside by the even-odd rule, so that a polygon in another one is a hole. Or a Polygon or
+            MultiPolygon of Shapely, or anything else with its ``__geo_interface__``. Loops may run
+            beyond the seam of a periodic direction: a point is inside if it, or its copy any number
+            of periods away, is.
+        within : callable, optional
+            ``within(u, v)`` gets two float64 arrays (k,) of parameters in the domain, and returns
+            booleans (k,). What is smaller than an eighth of a patch of the spline may go unseen.
+
+        Returns
+        -------
+        Surface
+            The part. If it is trimmed already, or if loops and a predicate are given, all of them
+            hold. The spline is fitted on the whole domain, on which the surface must be defined.
+
+        Raises
+        ------
+        InputError
+            For loops with fewer than 3 points, with NaN or infinity, of another shape, or more than
+            100 periods away; for a predicate that is not callable; and without both.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> import numpy as np
+        >>> square = np.array([(1, 1), (4, 1), (4, 4), (1, 4)])
+        >>> window = gm.surfaces.torus().trimmed([square, 1.5 + square / 4])  # with a hole
+        >>> samples = gm.sample(window, 200, cells=(16, 16))
+        >>> len(samples), bool(window.trim.contains(samples.uv).all())
+        (200, True)
+        >>> sheets = gm.surfaces.torus().trimmed(within=lambda u, v: np.abs(v - 3) < 1)
+
+        """
+        trim = trimmed_by(self.trim, loops, within, self.domain, self.boundary, self.name)
+        return replace(self, trim=trim)
 
     def __getstate__(self) -> dict[str, object]:
         """Return what is pickled: the fields, without what is made of them."""

@@ -37,7 +37,7 @@ def cover_normals(cover: Cover, angle: float) -> float:
     limit = 2.0 * math.sin(math.radians(angle) / 2.0)
     near, largest, triangles = (1.0 - MARGIN) * limit, 0.0, cut_patches(cover.sizing, math.inf)
     while len(triangles):
-        rows = triangles.at_centroids()
+        rows = triangles.at_places()
         within = triangles.normal_chords(rows)
         distances = _distances(cover, 0, rows)
         far = distances > near
@@ -78,7 +78,7 @@ def fill_widest_angles(cover: Cover, number: int, widest: float) -> None:
     Distances are searched from `widest` on. If the gaps get too narrow, fewer samples are added.
     """
     triangles = cover.triangles[np.arange(0, len(cover.triangles), EACH)]
-    rows = triangles.at_centroids()
+    rows = triangles.at_places()
     candidates = Candidates(_in_normal_space(rows[:, 3:6], rows[:, 7]), widest)
     samples = _in_normal_space(cover.points[:, 3:], cover.curvatures)[:, :6]
     candidates.update_distances(samples, widest)

@@ -12,6 +12,7 @@ from ..bins import NormalBins
 from ..choice import NORMALS_PER_SAMPLE
 from ..developable import curved_solid_angle
 from ..fields import ARRAY_NAMES
+from ..inside import count_of, samples_inside
 from ..lattice import Lattice
 from ..report import sampling_report
 from ..samples import Samples
@@ -58,8 +59,10 @@ def sample_at_normals(
     density = len(normals) / (4 * math.pi) if density is None else density
     bins = NormalBins(normals, threads)
     hits = find(spline, bins, threads, progress)
-    report = sampling_report(spline, len(normals), len(hits), density, hits.developable)
     arrays = fill(spline, bins, hits, threads, ARRAY_NAMES)
+    arrays = samples_inside(spline, arrays, ARRAY_NAMES)
+    count = count_of(arrays)
+    report = sampling_report(spline, len(normals), count, density, hits.developable)
     return SamplesAtNormals(bins.normals, density, Samples(**arrays, report=report, spline=spline))
 
 

@@ -36,10 +36,10 @@ class Cover:
     A point is covered if a sample is within radius/√w, with the target density w of a sizing
     function. All lengths are scaled as in `SizingFunction`. Rows of `points` (N, 6), point and unit
     normal, and `curvatures` (N,), K, are the samples; the first `given` ones are those that were
-    given (only the sign of their K counts, which is not scaled), the others lie at the centroids of
+    given (only the sign of their K counts, which is not scaled), the others lie at the places of
     the triangles `added`.
 
-    Samples are chosen among the centroids of `triangles`. `show_count` is called with the number of
+    Samples are chosen among the places of `triangles`. `show_count` is called with the number of
     samples when it has grown.
 
     `radius_asked`, if it is not 0, and `count_asked`, if it is not None, are what the cover was
@@ -118,13 +118,13 @@ class Cover:
     def take_candidates(self, radius: float, widest: float) -> None:
         """Take candidates for sweeps with radii that fall from `widest` to this radius.
 
-        They are the centroids of triangles whose radii are `fine` times the radius.
+        They are the places of triangles whose radii are `fine` times the radius.
         """
         self.radius, self.triangles = widest, cut_patches(self.sizing, self.fine * radius)
-        self._candidates = self._with_distances(self.triangles.at_centroids(), radius, widest)
+        self._candidates = self._with_distances(self.triangles.at_places(), radius, widest)
 
     def add(self, triangles: Triangles) -> None:
-        """Add the centroids of some triangles as samples."""
+        """Add the places of some triangles as samples."""
         first = self.count
         self._append(triangles)
         self._candidates.update_distances(self.points[first:], self.radius)
@@ -142,10 +142,9 @@ class Cover:
         chosen = self._candidates.centres(self.count)
         moved = first + np.flatnonzero(chosen[first:] >= 0)
         triangles = self.triangles[chosen[moved]]
-        rows = triangles.at_centroids()
+        rows = triangles.at_places()
         self.points[moved], self.curvatures[moved] = rows[:, :6], rows[:, 7]
-        self.added.patches[moved - self.given] = triangles.patches
-        self.added.corners[moved - self.given] = triangles.corners
+        self.added.write(moved - self.given, triangles)
 
     def remove_added(self) -> None:
         """Remove all samples that were added."""
@@ -163,14 +162,14 @@ class Cover:
     def _choose(
         self, triangles: Triangles, candidates: Candidates, radius: float, most: int | None
     ) -> None:
-        """Add those centroids of some triangles that are far from all samples."""
+        """Add those places of some triangles that are far from all samples."""
         room = len(triangles) if most is None else most - self.count
         if room > 0:
             self._append(triangles[candidates.choose(radius, room)])
             self.show_count(self.count)
 
     def _append(self, triangles: Triangles) -> None:
-        rows = triangles.at_centroids()
+        rows = triangles.at_places()
         self.added += triangles
         self.points = np.concatenate([self.points, rows[:, :6]])
         self.curvatures = np.concatenate([self.curvatures, rows[:, 7]])
@@ -191,15 +190,15 @@ class Cover:
             far &= ~smallest
             refuse_more(self.sizing, 4 * far.sum(), max(MANY, TIMES * len(self.triangles)))
             triangles = triangles[far].halves.halves
-            candidates = self._with_distances(triangles.at_centroids(), radius, radius)
+            candidates = self._with_distances(triangles.at_places(), radius, radius)
             self._choose(triangles, candidates, radius, most)
         self._cover_small_triangles(sum(small[1:], start=small[0]), radius, most)
         self._candidates.update_distances(self.points[first:], radius)
 
     def _cover_small_triangles(self, triangles: Triangles, radius: float, most: int | None) -> None:
-        """Add centroids of small triangles until these are covered as a whole."""
-        rows = triangles.at_centroids()
-        # A triangle is covered by a sample that is closer to its centroid by its radius.
+        """Add places of small triangles until these are covered as a whole."""
+        rows = triangles.at_places()
+        # A triangle is covered by a sample that is closer to its place by its radius.
         rows[:, 6] /= (1.0 - triangles.radii * np.sqrt(rows[:, 6]) / radius) ** 2
         self._choose(triangles, self._with_distances(rows, radius, radius), radius, most)
 

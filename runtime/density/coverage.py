@@ -59,7 +59,7 @@ def _distances(triangles: Triangles, samples: Array, radius: float) -> Array:
 
     That is fast where there is one within a radius.
     """
-    rows = triangles.at_centroids()
+    rows = triangles.at_places()
     rows[:, 3:7] = 1.0  # the same density for all; a sample without a normal counts for both sides
     candidates = Candidates(rows, radius)
     candidates.update_distances(samples, radius)

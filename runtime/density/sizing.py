@@ -65,13 +65,16 @@ class SizingFunction:
 
     @property
     def area(self) -> float:
-        """The area of the surface."""
-        return float(self.areas.sum())
+        """The area of the surface, of its part inside the trim if there is one."""
+        inside = self.spline.inside
+        return float((self.areas if inside is None else self.areas * inside.shares).sum())
 
     @property
     def integral(self) -> float:
-        """The integral of the target density over the surface."""
+        """The integral of the target density over the surface, or its part inside the trim."""
         _, areas, densities = self._patches
+        if self.spline.inside is not None:
+            areas = areas * self.spline.inside.shares[:, None]
         return float((areas * np.maximum(densities[:, :3], self.target.floor)).sum())
 
     @cached_property

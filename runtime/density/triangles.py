@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..kernels import triangles as kernels
 from ..threads import over_ranges
+from .inside import inside_trim
 from .sizing import SizingFunction
 
 __all__ = ["Array", "Indices", "Triangles", "cut_patches", "refuse_more", "subdivisions"]
@@ -33,39 +34,73 @@ MOST = 2e9
 
 @dataclass(frozen=True, eq=False)
 class Triangles:
-    """Triangles of the patches (M,), with corners (M, 3, 2) in the parameters u, v of the patch."""
+    """Triangles of the patches (M,), with corners (M, 3, 2) in the parameters u, v of the patch.
+
+    Each has a place (M, 2), by default its centroid; on a trimmed surface it is inside the trim.
+    """
 
     sizing: SizingFunction
     patches: Indices
     corners: Array
+    places: Array | None = None
 
     def __len__(self) -> int:
         return len(self.patches)
 
     def __getitem__(self, chosen: Indices | NDArray[np.bool_]) -> Triangles:
         """Return some of the triangles."""
-        return Triangles(self.sizing, self.patches[chosen], self.corners[chosen])
+        places = None if self.places is None else self.places[chosen]
+        return Triangles(self.sizing, self.patches[chosen], self.corners[chosen], places)
 
     def __add__(self, other: Triangles) -> Triangles:
         """Return these triangles, followed by others of the same spline."""
+        at_centroids = self.places is None and other.places is None
         return Triangles(
             self.sizing,
             np.concatenate([self.patches, other.patches]),
             np.concatenate([self.corners, other.corners]),
+            None if at_centroids else np.concatenate([self.uv, other.uv]),
         )
 
+    def at(self, places: Array) -> Triangles:
+        """Return the triangles with other places (M, 2)."""
+        return Triangles(self.sizing, self.patches, self.corners, places)
+
+    def write(self, rows: Indices, triangles: Triangles) -> None:
+        """Replace some of the triangles by as many others."""
+        self.patches[rows], self.corners[rows] = triangles.patches, triangles.corners
+        if self.places is not None:
+            self.places[rows] = triangles.uv
+
     @property
-    def uv(self) -> Array:
+    def centroids(self) -> Array:
         """The parameters (M, 2) of the centroids."""
         return self.corners.sum(axis=1) / 3.0
 
     @property
+    def uv(self) -> Array:
+        """The parameters (M, 2) of the places."""
+        return self.centroids if self.places is None else self.places
+
+    @property
     def radii(self) -> Array:
-        """Radii (M,) of balls around the images of the centroids that hold the triangles."""
-        return self._written_by(kernels.radii, np.empty(len(self)))
+        """Radii (M,) of balls around the images of the places that hold the triangles."""
+        radii = self._written_by(kernels.radii, self.corners, np.empty(len(self)))
+        if self.places is not None:
+            # That around the centroid, and the way there.
+            radii[(self.places != self.centroids).any(axis=1)] *= 2.0
+        return radii
 
     @property
     def quarters(self) -> Triangles:
+        """The triangles cut into four similar ones each, without those outside the trim.
+
+        The four of a triangle (4 M) follow one another if there is no trim.
+        """
+        return inside_trim(self.uncut_quarters)
+
+    @property
+    def uncut_quarters(self) -> Triangles:
         """The triangles cut into four similar ones each (4 M), which follow one another."""
         midpoints = (self.corners + np.roll(self.corners, 1, axis=1)) / 2.0
         points = np.concatenate([self.corners, midpoints], axis=1)
@@ -74,27 +109,33 @@ class Triangles:
 
     @property
     def halves(self) -> Triangles:
-        """The triangles bisected at the midpoints of their longest sides (2 M)."""
-        corners = self._written_by(kernels.bisect, np.empty((2 * len(self), 3, 2)))
-        return Triangles(self.sizing, np.repeat(self.patches, 2), corners)
+        """The triangles bisected at the midpoints of their longest sides (2 M).
 
-    def at_centroids(self) -> Array:
-        """Return scaled point, unit normal, target density and K (M, 8) at the centroids.
+        Without those outside the trim.
+        """
+        corners = self._written_by(kernels.bisect, self.corners, np.empty((2 * len(self), 3, 2)))
+        return inside_trim(Triangles(self.sizing, np.repeat(self.patches, 2), corners))
+
+    def at_places(self) -> Array:
+        """Return scaled point, unit normal, target density and K (M, 8) at the places.
 
         At a singular point, the normal and K are 0.
         """
-        sizing = self.sizing.target, self.sizing.radii
-        return self._written_by(kernels.evaluate_centroids, *sizing, np.empty((len(self), 8)))
+        corners = self.corners
+        if self.places is not None:
+            corners = np.repeat(self.places[:, None], 3, axis=1)  # whose centroids they are
+        sizing, rows = (self.sizing.target, self.sizing.radii), np.empty((len(self), 8))
+        return self._written_by(kernels.evaluate_centroids, corners, *sizing, rows)
 
     def normal_chords(self, rows: Array) -> Array:
-        """Return how far normals of each triangle (M,) are from that at its centroid, at most.
+        """Return how far normals of each triangle (M,) are from that at its place, at most.
 
         That is the length of the chord between the unit vectors, or 2 if no bound below √2 is
-        known. `rows` are those of `at_centroids`.
+        known. `rows` are those of `at_places`.
         """
-        return self._written_by(kernels.normal_chords, rows, np.empty(len(self)))
+        return self._written_by(kernels.normal_chords, self.corners, rows, np.empty(len(self)))
 
-    def _written_by(self, kernel: Callable[..., None], *arguments: object) -> Array:
+    def _written_by(self, kernel: Callable[..., None], corners: Array, *arguments: object) -> Array:
         """Return the last argument of a kernel, an array that it writes."""
         spline = self.sizing.spline
 
@@ -103,7 +144,7 @@ class Triangles:
                 spline.coefficients,
                 spline.scale,
                 self.patches,
-                self.corners,
+                corners,
                 first,
                 last,
                 *arguments,
@@ -118,7 +159,8 @@ def cut_patches(sizing: SizingFunction, radius: float) -> Triangles:
     """Cut all patches into triangles that lie within radius/√w of the images of their centroids.
 
     w is the largest target density of the patch. Triangles of long and narrow patches may reach
-    farther. Raises InputError if there were more than MOST triangles.
+    farther. Those outside the trim are left out. Raises InputError if there were more than MOST
+    triangles.
     """
     parts, narrow = subdivisions(sizing, radius)
     ends = np.cumsum(parts * parts)
@@ -129,7 +171,7 @@ def cut_patches(sizing: SizingFunction, radius: float) -> Triangles:
 
     for _ in over_ranges(work, len(parts), PATCHES_AT_A_TIME, sizing.threads):
         pass
-    triangles = Triangles(sizing, patches, corners)
+    triangles = inside_trim(Triangles(sizing, patches, corners))
     return _bisect_narrow(triangles, narrow, radius) if narrow.any() else triangles
 
 
@@ -156,6 +198,8 @@ def subdivisions(sizing: SizingFunction, radius: float) -> tuple[Indices, NDArra
         rates = np.sqrt(sizing.largest) / radius
         by_area = np.sqrt(sizing.areas / SMALLEST_AREA) * rates
         parts = np.maximum(np.ceil(np.minimum(sizing.radii * rates, by_area)), 1.0)
+        if sizing.spline.inside is not None:
+            parts[~sizing.spline.inside.reached] = 1.0
         total = float((parts * parts).sum())
     refuse_more(sizing, total, MOST)
     narrow = sizing.areas < NARROW * sizing.radii**2

@@ -47,7 +47,7 @@ def test_parts_are_their_shares_of_the_whole(name, radius):
 def test_no_point_of_a_triangle_is_outside_of_its_radius(name):
     triangles = cut_patches(sizing_of(name, (6, 4)), 0.3)
     for cut in (triangles, triangles.halves.halves):
-        centroids = cut.at_centroids()
+        centroids = cut.at_places()
         for share in (1.0, 0.5):
             at = points_towards_corners(cut, share)
             lengths = np.linalg.norm(at - centroids[:, None, :3], axis=2)
@@ -63,7 +63,7 @@ def points_towards_corners(triangles: Triangles, share: float) -> np.ndarray:
         Triangles(triangles.sizing, triangles.patches, np.repeat(there[:, k : k + 1], 3, axis=1))
         for k in range(3)
     ]
-    return np.stack([x.at_centroids()[:, :3] for x in points], axis=1)
+    return np.stack([x.at_places()[:, :3] for x in points], axis=1)
 
 
 @pytest.mark.compiled
@@ -84,7 +84,7 @@ def test_narrow_patches_are_bisected(width):
 
 def test_angles_of_normals_in_a_triangle():
     triangles = cut_patches(sizing_of("wavy_graph", (6, 4)), 0.3)
-    rows = triangles.at_centroids()
+    rows = triangles.at_places()
     bounds = triangles.normal_chords(rows)
     assert 0.0 < bounds.max() < 1.0
     for share in (1.0, 0.7, 0.4):
@@ -93,6 +93,6 @@ def test_angles_of_normals_in_a_triangle():
             there = Triangles(
                 triangles.sizing, triangles.patches, np.repeat(at[:, k : k + 1], 3, axis=1)
             )
-            chords = np.linalg.norm(there.at_centroids()[:, 3:6] - rows[:, 3:6], axis=1)
+            chords = np.linalg.norm(there.at_places()[:, 3:6] - rows[:, 3:6], axis=1)
             assert (chords <= bounds * (1 + 1e-9) + 1e-14).all()
             assert share < 1.0 or (chords >= 0.2 * bounds).mean() > 0.5
