@@ -78,8 +78,8 @@ class Spline:
     >>> areas, solid_angles = spline.measure
     >>> bool(areas.min() > 0), bool(abs(solid_angles.sum()) < 1e-2)  # 2π χ = 0 on a torus
     (True, True)
-    >>> spline.scale, spline.noise < 1e-13, spline.trim
-    (1.0, True, None)
+    >>> spline.scale, spline.noise < 1e-13, spline.trim, spline.inside
+    (1.0, True, None, None)
     >>> spline.misfit.rms < spline.misfit.distance < 3e-3, spline.misfit.angle < 2.0  # degrees
     (True, True)
 
