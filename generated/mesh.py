@@ -47,6 +47,44 @@ def corner_products(p0, p1, p2, n0, n1, n2):
 
 
 @inline
+def corner_cotangents(p0, p1, p2):
+    """The angles of a triangle with the corners p0, p1, p2: c0/L, c1/L and c2/L are their
+    cotangents. L is twice its area.
+
+        e = p1 - p0
+        f = p2 - p0
+        g = p2 - p1
+        N = e × f
+        c0 = e·f
+        c1 = - e·g
+        c2 = f·g
+        L = |N|
+
+    Source: beyond the paper; 40 operations as written, 40 here.
+    """
+    p0_x, p0_y, p0_z = p0
+    p1_x, p1_y, p1_z = p1
+    p2_x, p2_y, p2_z = p2
+    e_x = p1_x - p0_x
+    e_y = p1_y - p0_y
+    e_z = p1_z - p0_z
+    f_x = p2_x - p0_x
+    f_y = p2_y - p0_y
+    f_z = p2_z - p0_z
+    g_x = p2_x - p1_x
+    g_y = p2_y - p1_y
+    g_z = p2_z - p1_z
+    N_x = e_y * f_z - e_z * f_y
+    N_y = e_z * f_x - e_x * f_z
+    N_z = e_x * f_y - e_y * f_x
+    c0 = e_x * f_x + e_y * f_y + e_z * f_z
+    c1 = -e_x * g_x - e_y * g_y - e_z * g_z
+    c2 = f_x * g_x + f_y * g_y + f_z * g_z
+    L = math.sqrt(N_x * N_x + N_y * N_y + N_z * N_z)
+    return c0, c1, c2, L
+
+
+@inline
 def border_spacing(r, k):
     """How far apart points of a border are to be if the k-th nearest sample is r away: as far
     as samples are of which k fill half a disk of radius r.

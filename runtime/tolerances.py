@@ -10,7 +10,6 @@ __all__ = [
     "ANGLE_ERROR",
     "CAP_RADIUS_ERROR",
     "CIRCLE_HEIGHT_ERROR",
-    "COSINE_GAIN",
     "CUBIC_ERROR",
     "CURVATURE_ERROR",
     "DATA_ERROR",
@@ -23,7 +22,9 @@ __all__ = [
     "NEAR_SINGULAR_POINT",
     "NORMAL_ERROR",
     "NORMAL_NOISE",
+    "NO_AREA",
     "PARAMETER_ERROR",
+    "QUALITY_GAIN",
     "RADIUS_ERROR",
     "ROTATION_ERROR",
     "SAME_PARAMETER",
@@ -74,8 +75,12 @@ DOUBLE_ROOT = 1e-6
 CAP_RADIUS_ERROR = 1e-12
 # Of the height of a circle of latitude on the unit sphere: free points are farther from it.
 CIRCLE_HEIGHT_ERROR = 1e-12
-# By this much a flip of an edge must raise the smallest cosine, which is more than its rounding.
-COSINE_GAIN = 1e-14
+# By this much the flip or collapse of an edge must raise a cosine, or the tangent of an angle of a
+# triangle, which is more than their rounding.
+QUALITY_GAIN = 1e-14
+# A triangle whose smallest angle (radians) is below this counts as one without area: it has none in
+# files of single precision.
+NO_AREA = 1e-6
 # Of K, H and 1 + 2 d H + d² K relative to their terms, in units of the last place.
 CURVATURE_ERROR = 4.0
 # Of a difference of two coefficients of a planar spline, in units of the last place of the largest

@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 __all__ = ["tree_of"]
 
 
-def tree_of(points: NDArray[np.float64]) -> KDTree:
-    """Return the k-d tree of points (N, k)."""
+def tree_of(points: NDArray[np.float64], periods: NDArray[np.float64] | None = None) -> KDTree:
+    """Return the k-d tree of points (N, k), whose coordinates have periods (k,) or 0 for none."""
     from scipy.spatial import KDTree  # its import takes as long as many a sampling
 
-    return KDTree(points)
+    return KDTree(points, boxsize=periods)

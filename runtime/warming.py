@@ -145,6 +145,7 @@ def _meshes() -> None:
     sphere, terrain = surface("sphere"), _terrain()
     for samples in (_samples(), sample(terrain, count=FEW), sample(sphere, count=FEW)):
         samples.mesh().summary()
+        samples.mesh(prefer="normals")
         samples.weights()
 
 

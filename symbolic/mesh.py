@@ -9,7 +9,8 @@ from .notation import Cross, Dot, scalar, vectors
 
 __all__ = ["FORMULAS"]
 
-p0, p1, p2, n0, n1, n2, e, f, N = vectors(("p0", "p1", "p2", "n0", "n1", "n2", "e", "f", "N"))
+p0, p1, p2, n0, n1, n2 = vectors(("p0", "p1", "p2", "n0", "n1", "n2"))
+e, f, g, N = vectors(("e", "f", "g", "N"))
 r, k, beta = scalar("r"), scalar("k"), scalar("beta")
 
 CORNER_PRODUCTS = Formula.build(
@@ -20,6 +21,16 @@ CORNER_PRODUCTS = Formula.build(
     inputs=[p0, p1, p2, n0, n1, n2],
     terms=[("e", p1 - p0), ("f", p2 - p0), ("N", Cross(e, f))],
     outputs=[("s0", Dot(N, n0)), ("s1", Dot(N, n1)), ("s2", Dot(N, n2)), ("L", sp.sqrt(Dot(N, N)))],
+)
+
+
+CORNER_COTANGENTS = Formula.build(
+    "corner_cotangents",
+    "The angles of a triangle with the corners $p0$, $p1$, $p2$: $c0/L$, $c1/L$ and $c2/L$ are "
+    "their cotangents. $L$ is twice its area.",
+    inputs=[p0, p1, p2],
+    terms=[("e", p1 - p0), ("f", p2 - p0), ("g", p2 - p1), ("N", Cross(e, f))],
+    outputs=[("c0", Dot(e, f)), ("c1", -Dot(e, g)), ("c2", Dot(f, g)), ("L", sp.sqrt(Dot(N, N)))],
 )
 
 
@@ -54,4 +65,4 @@ EDGE_OVER_SURFACE = Formula.build(
     outputs=[("b", (p0 + p1) / 2 + beta * (n0 + n1))],
 )
 
-FORMULAS = (CORNER_PRODUCTS, BORDER_SPACING, EDGE_OVER_SURFACE)
+FORMULAS = (CORNER_PRODUCTS, CORNER_COTANGENTS, BORDER_SPACING, EDGE_OVER_SURFACE)

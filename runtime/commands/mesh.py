@@ -18,6 +18,6 @@ def run(options: SimpleNamespace) -> None:
     check_target(options.output, MESH_SUFFIXES)
     fields = ("points", "normals", "uv")
     samples = sample(**arguments(options, default_count=10_000), fields=fields)
-    mesh = samples.mesh(angle=options.deviation)
+    mesh = samples.mesh(angle=options.deviation, prefer=options.prefer)
     mesh.write(options.output)
     summarize(mesh, options)

@@ -132,6 +132,11 @@ def _mesh() -> Command:
         "Leave out triangles whose normal deviates by more from a normal at their corners; for "
         "samples of a part of the surface."
     )
+    prefer = (
+        "shape (default): triangles with large angles; samples very close to others are left out. "
+        "normals: triangles as close to the normals as the samples allow, thin where the surface "
+        "is curved in one direction only."
+    )
     return _command(
         "mesh",
         "Sample a surface and write a triangle mesh of it.",
@@ -140,6 +145,7 @@ def _mesh() -> Command:
         *_sampling(default_count=10_000),
         _output(".ply, .obj, .stl, .vtk, .vtu or .vtp"),
         Option("--deviation DEGREES", deviation, number),
+        Option("--prefer KIND", prefer, click.Choice(("shape", "normals")), default="shape"),
         epilog=MESH_EXAMPLES,
     )
 

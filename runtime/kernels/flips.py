@@ -1,4 +1,4 @@
-"""Flips of edges that align the triangles of a mesh with the normals at their corners.
+"""Flips of edges of a mesh: triangles come closer to the normals at their corners, or in shape.
 
 `triangles` (k, 3) are the vertices of triangles. `sides` (k, 3) are 1 or −1: the side of the
 surface on which the triangle lies at each corner; it changes on one-sided surfaces. `neighbours`
@@ -7,12 +7,12 @@ surface on which the triangle lies at each corner; it changes on one-sided surfa
 
 from __future__ import annotations
 
-from ...generated.mesh import corner_products
-from ..tolerances import COSINE_GAIN
+from ...generated.mesh import corner_cotangents, corner_products
+from ..tolerances import QUALITY_GAIN
 from .jit import inline, jit, loop
 from .vectors import row_vector
 
-__all__ = ["flip_edges", "smallest_cosines"]
+__all__ = ["flip_edges", "smallest_cosines", "smallest_tangents"]
 
 
 @loop
@@ -54,6 +54,31 @@ def smallest_cosines(points, normals, triangles, sides, cosines):
             sides[t, 1],
             sides[t, 2],
         )
+
+
+@loop
+def smallest_tangent(points, a, b, c):
+    """Return the tangent of the smallest angle of a triangle; 0 if it has no area.
+
+    The corners are sorted, as in `smallest_cosine`.
+    """
+    if a > b:
+        a, b = b, a
+    if b > c:
+        b, c = c, b
+    if a > b:
+        a, b = b, a
+    c0, c1, c2, L = corner_cotangents(
+        row_vector(points, a), row_vector(points, b), row_vector(points, c)
+    )
+    return L / max(c0, max(c1, c2)) if L > 0.0 else 0.0
+
+
+@jit
+def smallest_tangents(points, triangles, tangents):
+    """Write the tangent of the smallest angle of each triangle (k,)."""
+    for t in range(triangles.shape[0]):
+        tangents[t] = smallest_tangent(points, triangles[t, 0], triangles[t, 1], triangles[t, 2])
 
 
 @loop
@@ -109,11 +134,13 @@ def write_row(array, t, x, y, z):
 
 
 @loop
-def flip_edge(points, normals, triangles, sides, neighbours, t, k):
-    """Flip the edge of triangle t opposite to its corner k if that raises the smallest cosine.
+def flip_edge(points, normals, triangles, sides, neighbours, by_shape, least, t, k):
+    """Flip the edge of triangle t opposite to its corner k if that improves the two triangles.
 
-    The edge a b of the triangles c a b and d b a becomes the edge c d of c a d and d b c. Returns
-    the triangle across the edge, or −1 if there is no flip.
+    The edge a b of the triangles c a b and d b a becomes the edge c d of c a d and d b c. That
+    raises their smallest cosine or, `by_shape`, the tangent of their smallest angle; then the
+    smallest cosine may fall, down to `least`. Returns the triangle across the edge, or −1 if there
+    is no flip.
     """
     other = neighbours[t, k]
     if other < 0:
@@ -126,17 +153,23 @@ def flip_edge(points, normals, triangles, sides, neighbours, t, k):
     turned = sides[t, ka] * sides[other, oa]
     if d == c or turned != sides[t, kb] * sides[other, ob]:
         return -1
+    if by_shape:
+        now = min(smallest_tangent(points, c, a, b), smallest_tangent(points, d, b, a))
+        then = min(smallest_tangent(points, c, a, d), smallest_tangent(points, d, b, c))
+        if then <= now + QUALITY_GAIN:
+            return -1
     side_a, side_b, side_c = sides[t, ka], sides[t, kb], sides[t, k]
     side_d = turned * sides[other, od]
     before = min(
         smallest_cosine(points, normals, c, a, b, side_c, side_a, side_b),
         smallest_cosine(points, normals, d, b, a, side_d, side_b, side_a),
     )
+    limit = min(before, least) if by_shape else before + QUALITY_GAIN
     left = smallest_cosine(points, normals, c, a, d, side_c, side_a, side_d)
-    if left <= before + COSINE_GAIN:
+    if left <= limit:
         return -1
     right = smallest_cosine(points, normals, d, b, c, side_d, side_b, side_c)
-    if right <= before + COSINE_GAIN or are_joined(triangles, neighbours, t, c, d):
+    if right <= limit or are_joined(triangles, neighbours, t, c, d):
         return -1
     across_bc, across_ca = neighbours[t, ka], neighbours[t, kb]
     across_ad, across_db = neighbours[other, ob], neighbours[other, oa]
@@ -152,12 +185,13 @@ def flip_edge(points, normals, triangles, sides, neighbours, t, k):
 
 
 @jit
-def flip_edges(points, normals, triangles, sides, neighbours, queue, is_queued):
-    """Flip edges while that raises the smallest cosine of two triangles; return their number.
+def flip_edges(points, normals, triangles, sides, neighbours, by_shape, least, queue, is_queued):
+    """Flip edges while that improves two triangles, see `flip_edge`; return the number of flips.
 
     `triangles`, `sides` and `neighbours` (k, 3) are changed. queue (k,) holds all triangles, and
     is_queued (k,) is True, at the beginning. No flip makes a second edge between two vertices. The
-    algorithm terminates: each flip raises the sorted cosines of all triangles lexicographically.
+    algorithm terminates: each flip raises the sorted cosines, or the sorted tangents, of all
+    triangles lexicographically.
     """
     count = triangles.shape[0]
     head, waiting, flips = 0, count, 0
@@ -166,7 +200,7 @@ def flip_edges(points, normals, triangles, sides, neighbours, queue, is_queued):
         head, waiting = (head + 1) % count, waiting - 1
         is_queued[t] = False
         for k in range(3):
-            other = flip_edge(points, normals, triangles, sides, neighbours, t, k)
+            other = flip_edge(points, normals, triangles, sides, neighbours, by_shape, least, t, k)
             if other >= 0:
                 flips += 1
                 for again in (t, other):

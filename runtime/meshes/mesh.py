@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..checks import checked_array
 from ..errors import InputError
-from ..kernels.flips import smallest_cosines
+from ..kernels.flips import smallest_cosines, smallest_tangents
 from ..spline import scale_to_one, short_label
 
 if TYPE_CHECKING:
@@ -68,8 +68,8 @@ class Mesh:
     (True, True, 'torus')
     >>> len(mesh.edges), len(mesh.boundary_edges), mesh.euler_characteristic
     (600, 0, 0)
-    >>> bool(mesh.angles.mean() < 30)
-    True
+    >>> bool(mesh.angles.mean() < 30), bool(mesh.smallest_angles.min() > 5)
+    (True, True)
 
     """
 
@@ -143,8 +143,16 @@ class Mesh:
             smallest_cosines(points, self.normals, self.triangles, self.sides, cosines)
         return np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0)))
 
+    @cached_property
+    def smallest_angles(self) -> NDArray[np.float64]:
+        """(T,) float64 array: the smallest angle of each triangle, in degrees; at most 60."""
+        tangents = np.empty(len(self.triangles))
+        if len(tangents):
+            smallest_tangents(scaled(self.vertices), self.triangles, tangents)
+        return np.degrees(np.arctan(tangents))
+
     def summary(self) -> str:
-        """Return one line: vertices, triangles, whether it is closed, how well it fits the normals.
+        """Return one line: vertices, triangles, whether it is closed, the quality of triangles.
 
         Returns
         -------
@@ -155,7 +163,7 @@ class Mesh:
         --------
         >>> import gaussmap as gm
         >>> gm.sample("torus", 200, cells=(16, 16)).mesh().summary()
-        '200 vertices, 400 triangles, closed; they deviate from the normals by ...°...'
+        '200 vertices, 400 triangles, closed; 95 % have angles of at least 3...°; they deviate ...'
 
         """
         added = int(np.count_nonzero(self.sample_index < 0))
@@ -166,7 +174,12 @@ class Mesh:
             return line
         border = len(self.boundary_edges)
         line += f", {border:,} edges on the border" if border else ", closed"
-        mean, worst = self.angles.mean(), self.angles.max()
+        small, mean, worst = (
+            np.quantile(self.smallest_angles, 0.05),
+            self.angles.mean(),
+            self.angles.max(),
+        )
+        line += f"; 95 % have angles of at least {small:.1f}°"
         return f"{line}; they deviate from the normals by {mean:.2f}° (mean), {worst:.2f}° (worst)"
 
     def write(self, path: str | os.PathLike[str]) -> None:

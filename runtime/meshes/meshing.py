@@ -1,9 +1,9 @@
-"""From samples to a mesh: vertices, their triangulation, and flips that follow the normals."""
+"""From samples to a mesh: vertices, their triangulation, and its improvement."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from ..domain import Boundary
 from ..errors import InputError, shown
-from ..kernels.flips import flip_edges, smallest_cosines
+from ..kernels.flips import smallest_cosines
 from ..spline import Spline
+from .improvement import checked_prefer, flip_edges, improved
 from .mesh import Mesh, scaled
 from .triangulation import neighbours, triangulations
 from .vertices import Vertices, boundary_of
@@ -28,20 +29,18 @@ Indices = NDArray[np.int64]
 WHOLE = 180.0  # degrees: no triangle deviates by more
 
 
-def mesh_of(samples: Samples, spline: Spline, angle: float | None) -> Mesh:
+def mesh_of(samples: Samples, spline: Spline, angle: float | None, prefer: str) -> Mesh:
     """Return what `Samples.mesh` returns."""
+    preferred = checked_prefer(prefer)
     largest = WHOLE if angle is None else _checked_angle(angle)
     if not len(samples):
         raise InputError("there are no samples, and so there is nothing to make a mesh of.")
     triangulated = Triangulated.of(samples, spline, must_be_whole=angle is None)
-    triangulated.flip_edges()
-    mesh = triangulated.mesh(largest)
-    if not len(mesh.triangles):
-        raise InputError(
-            f"every triangle deviates by more than {largest:g} degrees from a normal at a corner; "
-            "allow a larger angle, or take more samples."
-        )
-    return mesh
+    if largest < WHOLE:
+        flip_edges(triangulated, "normals")
+        triangulated = triangulated.within(largest)
+    triangulated = improved(triangulated, preferred, largest)
+    return (triangulated.within(largest) if largest < WHOLE else triangulated).mesh()
 
 
 def _checked_angle(angle: object) -> float:
@@ -56,13 +55,14 @@ def _checked_angle(angle: object) -> float:
 class Triangulated:
     """Samples and added vertices in a Delaunay triangulation of the parameter domain.
 
-    `triangles`, `sides` and `neighbours` (k, 3) are those of `kernels.flips`; `flip_edges` changes
-    them in place.
+    `sample` and `is_free` are those of `Vertices`; `triangles`, `sides` and `neighbours` (k, 3)
+    those of `kernels.flips`, which changes them in place.
     """
 
     name: str
     uv: Array
     sample: Indices
+    is_free: NDArray[np.bool_]
     points: Array
     normals: Array
     triangles: Indices
@@ -78,35 +78,42 @@ class Triangulated:
         uv, points, normals = _on_surface(vertices, samples, spline)
         _fill_missing(normals, triangles, sides)
         return cls(
-            spline.name, uv, vertices.sample, points, normals, triangles, sides, adjacent
+            spline.name, uv, vertices.sample, vertices.is_free,
+            points, normals, triangles, sides, adjacent,
         )  # fmt: skip
 
-    def flip_edges(self) -> int:
-        """Flip edges until none turns triangles towards the normals; return the number of flips."""
-        return flip_edges(
-            scaled(self.points),
-            self.normals,
-            self.triangles,
-            self.sides,
-            self.neighbours,
-            np.arange(len(self.triangles)),
-            np.ones(len(self.triangles), dtype=np.bool_),
-        )
-
-    def mesh(self, angle: float = WHOLE) -> Mesh:
-        """Return the mesh without triangles that deviate by more than `angle` degrees from normals.
+    def within(self, angle: float) -> Triangulated:
+        """Leave out the triangles that deviate by more than `angle` degrees from normals.
 
         Raises InputError if an edge is then in more than two triangles.
         """
+        cosines = np.empty(len(self.triangles))
+        points = scaled(self.points)
+        smallest_cosines(points, self.normals, self.triangles, self.sides, cosines)
+        chosen = cosines >= math.cos(math.radians(angle))
+        if not chosen.any():
+            raise InputError(
+                f"every triangle deviates by more than {angle:g} degrees from a normal at a "
+                "corner; allow a larger angle, or take more samples."
+            )
+        triangles = self.triangles[chosen]
+        adjacent, is_surface = neighbours(triangles, np.ones(len(self.points), dtype=bool))
+        if not is_surface:
+            raise _too_few(len(self.points), self.name)
+        return replace(self, triangles=triangles, sides=self.sides[chosen], neighbours=adjacent)
+
+    def chosen(self, which: NDArray[np.bool_]) -> Triangulated:
+        """Choose triangles; the others are neighbours of none of them."""
+        number = np.cumsum(which) - 1
+        adjacent = self.neighbours[which]
+        adjacent = np.where(adjacent >= 0, number[adjacent], -1)
+        return replace(
+            self, triangles=self.triangles[which], sides=self.sides[which], neighbours=adjacent
+        )
+
+    def mesh(self) -> Mesh:
+        """Return the mesh."""
         triangles, sides = self.triangles, self.sides
-        if angle < WHOLE:
-            cosines = np.empty(len(triangles))
-            smallest_cosines(scaled(self.points), self.normals, triangles, sides, cosines)
-            chosen = cosines >= math.cos(math.radians(angle))
-            triangles, sides = triangles[chosen], sides[chosen]
-            anywhere = np.ones(len(self.points), dtype=bool)
-            if len(triangles) and not neighbours(triangles, anywhere)[1]:
-                raise _too_few(len(self.points), self.name)
         reverse = sides[:, :1] < 0
         triangles, sides = (
             np.where(reverse, x[:, [0, 2, 1]], x) for x in (triangles, sides * sides[:, :1])

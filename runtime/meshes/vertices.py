@@ -37,6 +37,9 @@ CLOSE = 0.25
 DEEPEST = 0.125
 # A sample closer to a side than this part of the domain lies on it.
 ON_BORDER = 1e-9
+# Of samples that are closer than this part of their mean distance in the domain, only the first one
+# is a vertex: triangulations displace points by a tenth of it.
+NEARLY_EQUAL = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,13 +56,13 @@ class Vertices:
 
     @classmethod
     def of(cls, samples: Samples, spline: Spline, boundary: Boundary) -> Vertices:
-        """Take the samples, the first one of those that coincide; add open sides and poles."""
+        """Take the samples, the first one of those at one place; add open sides and poles."""
         positions = np.clip(spline.in_cells(samples.uv.astype(np.float64)) / spline.cells, 0.0, 1.0)
         pairs = _unique(positions, boundary).view(np.complex128)[:, 0]
         sample = np.sort(np.unique(pairs, return_index=True)[1])
         inner = cls(positions[sample], sample, np.ones(len(sample), dtype=bool))
         if all(end in ("periodic", "mirrored") for end, _ in boundary):
-            return inner
+            return inner.apart(boundary)
         points = samples.points.astype(np.float64) * spline.scale
         tree = tree_of(points[sample])
         fixed = [
@@ -68,7 +71,7 @@ class Vertices:
         ]
         for part in fixed:
             inner = inner.without(part.sample)
-        return cls.joined([inner, *fixed])
+        return cls.joined([inner, *fixed]).apart(boundary)
 
     @classmethod
     def fixed(cls, positions: Array, sample: Indices) -> Vertices:
@@ -84,6 +87,19 @@ class Vertices:
     def without(self, sample: Indices) -> Vertices:
         """Return these vertices without some samples."""
         kept = ~np.isin(self.sample, sample)
+        return Vertices(self.positions[kept], self.sample[kept], self.is_free[kept])
+
+    def apart(self, boundary: Boundary) -> Vertices:
+        """Return these vertices without the free ones that nearly coincide with others."""
+        periods = np.array([float(kinds[0] == "periodic") for kinds in boundary])
+        places = _unique(self.positions, boundary)
+        places = np.where(periods, places % 1.0, places)
+        distance = NEARLY_EQUAL / math.sqrt(len(places))
+        pairs = tree_of(places, periods).query_pairs(distance, output_type="ndarray")
+        pairs = np.sort(pairs, axis=1)
+        later = np.where(self.is_free[pairs[:, 1]], pairs[:, 1], pairs[:, 0])
+        kept = np.ones(len(self.positions), dtype=bool)
+        kept[later[self.is_free[later]]] = False
         return Vertices(self.positions[kept], self.sample[kept], self.is_free[kept])
 
     def uv(self, spline: Spline) -> Array:

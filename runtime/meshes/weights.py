@@ -26,7 +26,7 @@ SMALLEST = 1e-6
 
 def area_weights(samples: Samples, angle: float | None) -> Array:
     """Return what `Samples.weights` returns."""
-    mesh = samples.mesh(angle=angle)
+    mesh = samples.mesh(angle=angle, prefer="normals")
     parts, triangles = _areas(mesh), mesh.triangles
     is_sample = mesh.sample_index[triangles] >= 0
     number = is_sample.sum(axis=1)

@@ -23,7 +23,7 @@ def _in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
 def test_a_mesh_is_written(suffix: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["mesh", "torus", *FEW, "-o", f"torus.{suffix}"]) == 0
     out, err = capsys.readouterr()
-    pattern = rf"torus\.{suffix}: (\d+) vertices, (\d+) triangles, closed; they deviate .*\n"
+    pattern = rf"torus\.{suffix}: (\d+) vertices, (\d+) triangles, closed; 95 % have .*\n"
     found = re.fullmatch(pattern, out)
     assert found is not None
     assert err == ""
@@ -42,6 +42,13 @@ def test_normals_of_a_part(capsys: pytest.CaptureFixture[str]) -> None:
     assert "edges on the border" in out
 
 
+@pytest.mark.parametrize("prefer", ["shape", "normals"])
+def test_what_triangles_are_preferred(prefer: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["mesh", "torus", *FEW, "--prefer", prefer, "-o", "torus.ply"]) == 0
+    small = float(re.findall(r"angles of at least ([\d.]+)°", capsys.readouterr().out)[0])
+    assert (small > 25.0) == (prefer == "shape")
+
+
 def test_quiet(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["mesh", "torus", *FEW, "--quiet", "-o", "torus.ply"]) == 0
     assert capsys.readouterr() == ("", "")
@@ -54,6 +61,7 @@ def test_quiet(capsys: pytest.CaptureFixture[str]) -> None:
         (["torus", "-o", "no/torus.ply"], "create the folder first"),
         (["torus", *FEW, "--deviation", "0", "-o", "a.ply"], "angle must lie between 0 and 180"),
         (["torus", "--deviation", "wide", "-o", "torus.ply"], "it must be a number, not 'wide'"),
+        (["torus", "--prefer", "size", "-o", "torus.ply"], "'size' is not one of"),
         (["torus", "--count", "3", "--cells", "8", "8", "-o", "a.ply"], "too few"),
         (["plane", *FEW, "--density", "gauss", "-o", "plane.ply"], "there are no samples"),
     ],

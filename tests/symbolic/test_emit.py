@@ -102,7 +102,8 @@ def exact_inputs(formula, seed: int) -> dict[str, Fraction]:
         return inputs | {"K": inputs["H"] ** 2 - 9}
     if formula is jet.AT_JET:
         return inputs | with_rational_normal(inputs)
-    if formula is mesh.CORNER_PRODUCTS:  # a triangle in a plane with a rational normal
+    # triangles in a plane with a rational normal
+    if formula in (mesh.CORNER_PRODUCTS, mesh.CORNER_COTANGENTS):
         return inputs | in_a_plane(inputs)
     if formula is mesh.BORDER_SPACING:  # ρ = 2 k/(π r²) = (7/r)²
         return inputs | {"k": Fraction(77)}

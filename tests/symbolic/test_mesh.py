@@ -54,3 +54,11 @@ def test_border_spacing_grows_with_the_distance():
     r = sp.Symbol("r", positive=True)
     found = values("border_spacing", {"r": r, "k": sp.Integer(4)})["d"]
     assert sp.simplify(found / r - sp.sqrt(sp.pi / 8)) == 0
+
+
+def test_corner_cotangents_are_those_of_the_angles():
+    """Of 45°, 90° and 45°; and of an angle of tangent 4/3 between equal ones of tangent 2."""
+    found = values("corner_cotangents", components(p0=(0, 0, 0), p1=(2, 0, 0), p2=(2, 0, 2)))
+    assert found == {"c0": 4, "c1": 0, "c2": 4, "L": 4}
+    found = values("corner_cotangents", components(p0=(0, 2, 1), p1=(1, 0, 1), p2=(-1, 0, 1)))
+    assert found == {"c0": 3, "c1": 2, "c2": 2, "L": 4}

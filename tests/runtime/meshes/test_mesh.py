@@ -59,17 +59,28 @@ class TestMesh:
     def test_a_triangle_without_area(self):
         flat = square(triangles=np.array([[0, 1, 1]]))
         assert flat.angles.tolist() == [180.0]
+        assert flat.smallest_angles.tolist() == [0.0]
+
+    def test_smallest_angles(self):
+        """Of 45, 60 and 75 degrees, and of 10, 20 and 150: sides are as the sines of angles."""
+        for angles in ([45.0, 60.0, 75.0], [20.0, 10.0, 150.0]):
+            a, b, c = np.sin(np.radians(angles))
+            x = (b * b + c * c - a * a) / (2.0 * c)
+            corners = np.array([[0.0, 0, 0], [c, 0, 0], [x, np.sqrt(b * b - x * x), 0], [9, 9, 9]])
+            triangles = np.array([[0, 1, 2], [1, 2, 0], [2, 1, 0]])
+            found = square(vertices=corners, triangles=triangles).smallest_angles
+            np.testing.assert_allclose(found, min(angles), rtol=1e-12)
 
     def test_summary(self):
         assert square().summary() == (
-            "4 vertices (1 of them added), 2 triangles, 4 edges on the border; they deviate from "
-            "the normals by 52.50° (mean), 60.00° (worst)"
+            "4 vertices (1 of them added), 2 triangles, 4 edges on the border; 95 % have angles of "
+            "at least 45.0°; they deviate from the normals by 52.50° (mean), 60.00° (worst)"
         )
         closed = square(
             triangles=np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]),
             sample_index=np.arange(4),
         )
-        assert closed.summary().startswith("4 vertices, 4 triangles, closed; they deviate")
+        assert closed.summary().startswith("4 vertices, 4 triangles, closed; 95 % have")
         assert repr(square(name="hill")) == "Mesh(4 vertices, 2 triangles on hill)"
 
     def test_an_empty_mesh(self):

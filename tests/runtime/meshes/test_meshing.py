@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Literal
 
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.benchmarks.peers.untuned import Boss
+from gaussmap.runtime.meshes.improvement import flip_edges
 from gaussmap.runtime.meshes.meshing import Triangulated
 from gaussmap.runtime.meshes.triangulation import neighbours
 from gaussmap.runtime.report import SamplingReport
+from gaussmap.runtime.tolerances import NO_AREA
 
 pytestmark = pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
 compiled = pytest.mark.compiled
@@ -69,8 +72,11 @@ EACH = pytest.mark.parametrize("name", surfaces)
 ORIENTABLE = [name for name in surfaces if not name.startswith(("klein", "moebius"))]
 
 
-def mesh_of(name: str, **options: Any) -> gm.Mesh:
-    return gm.sample(surfaces[name][0](), **(options or {"count": 600})).mesh()
+PREFER: tuple[Literal["shape", "normals"], ...] = ("shape", "normals")
+
+
+def mesh_of(name: str, prefer: Literal["shape", "normals"] = "shape", **options: Any) -> gm.Mesh:
+    return gm.sample(surfaces[name][0](), **(options or {"count": 600})).mesh(prefer=prefer)
 
 
 def components(edges: np.ndarray) -> int:
@@ -113,22 +119,25 @@ def samples_at(name: str, count: int) -> gm.Samples:
 
 
 @EACH
-def test_samples_anywhere(name):
+@pytest.mark.parametrize("prefer", PREFER)
+def test_samples_anywhere(name, prefer):
     _, characteristic, borders = surfaces[name]
-    mesh = samples_at(name, 100).mesh()
+    mesh = samples_at(name, 100).mesh(prefer=prefer)
     assert mesh.euler_characteristic == characteristic
     assert (components(mesh.boundary_edges) if borders else 0) == borders
     assert is_one_fan_at_each_vertex(mesh)
-    assert (mesh.sample_index >= 0).sum() == 100
+    assert mesh.smallest_angles.min() > np.degrees(NO_AREA)
+    assert prefer == "shape" or (mesh.sample_index >= 0).sum() == 100
 
 
 @compiled
 class TestTopology:
     @EACH
-    @pytest.mark.parametrize("options", [{"count": 60}, {"count": 600}])
-    def test_it_is_that_of_the_surface(self, name, options):
+    @pytest.mark.parametrize("prefer", PREFER)
+    @pytest.mark.parametrize("count", [60, 600])
+    def test_it_is_that_of_the_surface(self, name, prefer, count):
         _, characteristic, borders = surfaces[name]
-        mesh = mesh_of(name, **options)
+        mesh = mesh_of(name, prefer, count=count)
         edges = np.sort(mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
         times = np.unique(edges, axis=0, return_counts=True)[1]
         assert set(times.tolist()) == ({1, 2} if borders else {2})
@@ -166,7 +175,7 @@ class TestTopology:
 
     def test_every_sample_is_a_vertex(self):
         samples = gm.sample(gm.surfaces.wavy_graph(), count=500)
-        mesh = samples.mesh()
+        mesh = samples.mesh(prefer="normals")
         is_sample = mesh.sample_index >= 0
         assert sorted(mesh.sample_index[is_sample].tolist()) == list(range(len(samples)))
         own = mesh.sample_index[is_sample]
@@ -211,7 +220,7 @@ class TestBorders:
 
         The fourth nearest of random points is √(4/(ρ π/2)) away to within its scatter 1/√4.
         """
-        mesh = mesh_of("belt, v closes", normals=gm.fibonacci(4000))
+        mesh = mesh_of("belt, v closes", "normals", normals=gm.fibonacci(4000))
         for low in (True, False):
             added = (mesh.sample_index < 0) & ((mesh.uv[:, 0] < 0) == low)
             spacing = 2 * np.pi * np.cos(1.0) / added.sum()
@@ -256,8 +265,8 @@ class TestFlips:
         samples = gm.sample(surfaces[name][0](), count=300)
         assert samples.spline is not None
         state = Triangulated.of(samples, samples.spline)
-        assert state.flip_edges() > 0
-        assert state.flip_edges() == 0
+        assert flip_edges(state, "normals") > 0
+        assert flip_edges(state, "normals") == 0
         joined = {tuple(x) for x in np.sort(state.mesh().edges, axis=1).tolist()}
         for t, k in np.ndindex(len(state.triangles), 3):
             if state.neighbours[t, k] >= 0:
@@ -269,7 +278,7 @@ class TestFlips:
         samples = gm.sample(surfaces[name][0](), count=300)
         assert samples.spline is not None
         state = Triangulated.of(samples, samples.spline)
-        state.flip_edges()
+        flip_edges(state, "normals")
         anywhere = np.ones(len(state.points), dtype=bool)
         fresh, is_whole = neighbours(state.triangles, anywhere)
         assert is_whole
@@ -277,7 +286,7 @@ class TestFlips:
 
     def test_on_a_sphere_the_angle_is_that_of_the_circumcircle(self):
         """A plane at the distance d from the centre cuts the unit sphere in the angle acos d."""
-        mesh = mesh_of("sphere", normals=gm.fibonacci(500))
+        mesh = mesh_of("sphere", "normals", normals=gm.fibonacci(500))
         on_sphere = gm.Mesh(
             mesh.normals, mesh.normals, mesh.uv, mesh.triangles, mesh.sample_index
         )  # fmt: skip
@@ -294,10 +303,109 @@ class TestFlips:
         assert samples.spline is not None
         state = Triangulated.of(samples, samples.spline)
         before = state.mesh().angles
-        state.flip_edges()
+        flip_edges(state, "normals")
         after = state.mesh().angles
         assert after.max() < before.max()
         assert after.mean() < before.mean()
+
+
+@compiled
+class TestShape:
+    """Small angles: 5 % below 25° and one in a thousand below 5° at most; and no folds."""
+
+    @pytest.mark.parametrize("name", ["torus", "cylinder", "sphere", "boss", "terrain"])
+    def test_angles_of_triangles(self, name):
+        samples = samples_of(name)
+        shape, normals = (samples.mesh(prefer=x) for x in PREFER)
+        angles = shape.smallest_angles
+        border = np.isin(shape.triangles, np.unique(shape.boundary_edges)).any(axis=1)
+        assert np.quantile(angles[~border], 0.05) >= 25.0
+        assert (angles < 5.0).mean() <= 1e-3
+        assert normals.smallest_angles.min() > np.degrees(NO_AREA)
+        # Flips turn triangles away from normals by 30 degrees at most, and collapses of such
+        # triangles a little farther: cos 40° is cos 30° − 0.1.
+        assert shape.angles.max() < 40.0
+        assert normals.angles.mean() < shape.angles.mean() or name == "sphere"
+        assert shape.euler_characteristic == normals.euler_characteristic
+
+    def test_flips_make_triangles_delaunay(self):
+        """No point of a pair of triangles lies in the circle of the other: angles sum up to π."""
+        mesh = gm.sample(gm.surfaces.torus(), count=500).mesh()
+        corners = mesh.vertices[mesh.triangles]
+        sums: dict[tuple[int, int], float] = {}
+        for k in range(3):
+            e, f = (corners[:, (k + x) % 3] - corners[:, k] for x in (1, 2))
+            angles = np.arccos((e * f).sum(axis=1) / lengths(e) / lengths(f))
+            for edge, angle in zip(np.roll(mesh.triangles, -k - 1, axis=1), angles, strict=True):
+                key = tuple(sorted(edge[:2].tolist()))
+                sums[key] = sums.get(key, 0.0) + float(angle)
+        # The triangles of a pair are in two planes: the sum is that of the plane up to the angle
+        # between them, squared.
+        assert max(sums.values()) < np.pi + 0.1
+
+    @pytest.mark.parametrize("prefer", PREFER)
+    @pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-9, 1e-12])
+    def test_samples_that_nearly_coincide(self, prefer, gap):
+        first = samples_at("torus", 200)
+        spline = first.spline
+        assert spline is not None
+        u, v = np.concatenate([first.uv, first.uv[:50] + gap * np.array([0.6, 0.8])]).T
+        samples = gm.Samples(
+            points=spline.evaluate(u, v), normals=spline.normals(u, v), uv=np.stack([u, v], axis=1),
+            report=first.report, spline=spline,
+        )  # fmt: skip
+        mesh = samples.mesh(prefer=prefer)
+        assert mesh.euler_characteristic == 0
+        assert mesh.smallest_angles.min() > (5.0 if prefer == "shape" else np.degrees(NO_AREA))
+        assert mesh.angles.max() < 1.1 * first.mesh(prefer=prefer).angles.max()
+        assert prefer == "shape" or len(mesh.vertices) == (250 if gap >= 1e-3 else 200)
+
+    @pytest.mark.parametrize("prefer", PREFER)
+    def test_samples_in_line(self, prefer):
+        """On the rulings of a cylinder; on its borders and close to them, too."""
+        spline = gm.fit(gm.surfaces.cylinder(), cells=(8, 8))
+        (u0, u1), (v0, v1) = spline.domain
+        u, v = np.meshgrid(np.linspace(u0, u1, 9)[:-1], [0.0, 1e-9, 1e-5, 0.3, 0.5, 0.7, 1.0])
+        u, v = u.ravel(), v0 + (v1 - v0) * v.ravel()
+        samples = gm.Samples(
+            points=spline.evaluate(u, v), normals=spline.normals(u, v), uv=np.stack([u, v], axis=1),
+            report=samples_at("torus", 1).report, spline=spline,
+        )  # fmt: skip
+        mesh = samples.mesh(prefer=prefer)
+        assert (mesh.euler_characteristic, components(mesh.boundary_edges)) == (0, 2)
+        assert mesh.smallest_angles.min() > np.degrees(NO_AREA)
+
+    def test_triangles_across_gaps_cost_no_samples(self):
+        samples = gm.sample(gm.surfaces.torus(), count=2000)
+        part = samples[samples.points[:, 0] > 0.3]
+        mesh = part.mesh(angle=25.0)
+        assert len(mesh.vertices) > 0.98 * len(part)
+        assert mesh.angles.max() <= 25.0
+        assert np.quantile(mesh.smallest_angles, 0.05) > 25.0
+
+    @pytest.mark.parametrize("prefer", ["angles", None, 1, ["shape"]])
+    def test_what_is_no_preference(self, prefer):
+        with pytest.raises(gm.errors.InputError, match="prefer must be 'shape' or 'normals', not"):
+            gm.sample(gm.surfaces.torus(), count=100).mesh(prefer=prefer)
+
+
+def samples_of(name: str) -> gm.Samples:
+    """Return 3,000 samples of a surface on which thin triangles are likely."""
+    if name == "boss":
+        return gm.sample(Boss().surface, count=3000)
+    if name != "terrain":
+        return gm.sample(name, count=3000)
+    x, y = np.meshgrid(np.linspace(-3, 3, 60), np.linspace(-3, 3, 50))
+    phases = np.random.default_rng(5).uniform(0, 2 * np.pi, 12)
+    heights = sum(
+        np.sin(k * (x * np.cos(p) + y * np.sin(p)) + 7 * p) / k**1.5
+        for k, p in enumerate(phases, start=1)
+    )
+    return gm.sample(gm.Surface.from_grid(heights, spacing=(0.1, 0.12)), count=3000)
+
+
+def lengths(vectors: np.ndarray) -> np.ndarray:
+    return np.linalg.norm(vectors, axis=-1)
 
 
 def flipped(state: Triangulated, t: int, k: int, other: int) -> tuple[float, float, set[int]]:
@@ -341,7 +449,7 @@ class TestInput:
             gm.Samples(**{**arrays, "uv": x}, report=samples.report, spline=samples.spline)
             for x in (uv, other)
         ]
-        mesh = gm.Samples.concatenate(parts).mesh()
+        mesh = gm.Samples.concatenate(parts).mesh(prefer="normals")
         assert len(mesh.vertices) == len(samples)
         assert mesh.euler_characteristic == 0
 
@@ -382,7 +490,7 @@ class TestInput:
     def test_part_of_the_surface(self):
         """Normals in a cap give an upper ring of the torus; triangles across the rest go."""
         samples = gm.sample(gm.surfaces.torus(), normals=CAP)
-        whole, part = samples.mesh(), samples.mesh(angle=20)
+        whole, part = samples.mesh(prefer="normals"), samples.mesh(angle=20)
         assert (len(whole.boundary_edges), whole.euler_characteristic) == (0, 0)
         assert part.angles.max() <= 20.0
         assert len(part.triangles) < len(whole.triangles)
@@ -414,7 +522,7 @@ class TestInput:
     @pytest.mark.parametrize("name", ["graph", "belt", "moebius"])
     @pytest.mark.parametrize("count", [1, 2, 3])
     def test_a_border_needs_few_samples(self, name, count):
-        mesh = gm.sample(surfaces[name][0](), count=100)[:count].mesh()
+        mesh = gm.sample(surfaces[name][0](), count=100)[:count].mesh(prefer="normals")
         assert mesh.euler_characteristic == surfaces[name][1]
         assert (mesh.sample_index >= 0).sum() == count
 
