@@ -11,12 +11,14 @@ from .checks import as_float
 from .errors import InputError, shown
 
 __all__ = [
+    "Assumed",
     "Boundary",
     "BoundaryCondition",
     "BoundaryPair",
     "Domain",
     "Interval",
     "Periodicity",
+    "assumed_ends",
     "checked_boundary",
     "checked_domain",
 ]
@@ -26,6 +28,7 @@ __all__ = [
 BoundaryCondition = Literal["open", "periodic", "mirrored", "pole"]
 BoundaryPair = tuple[BoundaryCondition, BoundaryCondition]  # at the low and at the high end
 Boundary = tuple[BoundaryPair, BoundaryPair]  # for u and for v
+Assumed = tuple[bool, bool]  # for u and for v, whether open ends were assumed, not declared
 Interval = tuple[float, float]
 Domain = tuple[Interval, Interval]
 Periodicity = bool | BoundaryCondition | BoundaryPair
@@ -56,6 +59,12 @@ def checked_boundary(periodic: Sequence[Periodicity]) -> Boundary:
         if "pole" in ends and around != ("periodic", "periodic"):
             raise InputError(f'a "pole" of {name} needs {other} to be periodic ("periodic").')
     return boundary
+
+
+def assumed_ends(periodic: Sequence[Periodicity]) -> Assumed:
+    """Return for u and v whether `periodic`, which was checked, has False and not "open"."""
+    along_u, along_v = (isinstance(x, bool | np.bool_) and not x for x in periodic)
+    return along_u, along_v
 
 
 def _pair(entry: Periodicity, name: str) -> BoundaryPair:

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from .collapsed import found_sides
 from .domain import Domain
 from .errors import InputError, SurfaceError, in_memory
 from .ghosts import Sides
@@ -85,11 +86,13 @@ def fit(surface: Surface | str, cells: Sequence[int] | None = None) -> Spline:
             f"a Surface or its name is needed, not {type(surface).__name__}; make one by "
             "gm.Surface.from_callable, from_sympy, from_nurbs or from_grid."
         )
+    sides = found_sides(surface)
+    surface = replace(surface, boundary=sides.boundary)
     if surface.grid is not None:
-        return _fit_data(surface, surface.grid, cells)
+        return replace(_fit_data(surface, surface.grid, cells), apexes=sides.apexes)
     spline = _fitted(surface, DEFAULT_CELLS if cells is None else cells)
     misfit = probe_of(surface, spline.cells).misfit(spline)
-    return replace(spline, misfit=misfit, trim=surface.trim)
+    return replace(spline, misfit=misfit, trim=surface.trim, apexes=sides.apexes)
 
 
 def _fit_data(surface: Surface, grid: NDArray[np.float64], cells: Sequence[int] | None) -> Spline:

@@ -37,7 +37,7 @@ COUNT_TOLERANCE, FEW = 0.02, 5
 SHARE_ROUNDING = 1e-9
 # Where samples lie.
 PLACES = ("surface", "spline")
-COUNTS = ("normals", "patches", "developable_patches", "infinite_curvatures", "unrefined")
+COUNTS = ("normals", "patches", "developable_patches", "infinite_curvatures", "unrefined", "apexes")
 DISTANCES = ("coverage", "angle", "fit_distance", "fit_rms", "fit_angle")
 
 
@@ -84,6 +84,9 @@ class SamplingReport:
         and the root mean square of the distance; see `Spline.misfit`.
     fit_angle : float or None
         The largest angle, in degrees, between normals of spline and surface; unknown for data.
+    apexes : int or None
+        The number of sides of the domain that are one point, through which the surface does not go
+        on smoothly; see `Spline.apexes`.
 
     Raises
     ------
@@ -99,8 +102,8 @@ class SamplingReport:
     ('torus', 1024, 0, 0)
     >>> report.normals <= report.samples, report.angle <= 20.0, report.coverage is None
     (True, True, True)
-    >>> report.developable_share
-    0.0
+    >>> report.developable_share, report.apexes
+    (0.0, 0)
     >>> report.fit_rms < report.fit_distance < 1.1e-3, report.fit_angle < 0.6
     (True, True)
 
@@ -120,6 +123,7 @@ class SamplingReport:
     fit_distance: float | None = None
     fit_rms: float | None = None
     fit_angle: float | None = None
+    apexes: int | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.surface, str):
@@ -158,6 +162,7 @@ def sampling_report(
         fit_distance=None if misfit is None else misfit.distance,
         fit_rms=None if misfit is None else misfit.rms,
         fit_angle=None if misfit is None else misfit.angle,
+        apexes=spline.apexes,
     )
 
 

@@ -61,6 +61,9 @@ class Spline:
     trim : Trim or None
         The part of the domain that belongs to the surface, None for all of it; see
         `Surface.trimmed`.
+    apexes : int
+        The number of open sides that are one point where the surface does not go on smoothly: the
+        tip of a cone, the corner of a triangle. They are looked for where ``periodic=False``.
 
     Examples
     --------
@@ -82,6 +85,8 @@ class Spline:
     (1.0, True, None, None)
     >>> spline.misfit.rms < spline.misfit.distance < 3e-3, spline.misfit.angle < 2.0  # degrees
     (True, True)
+    >>> spline.apexes
+    0
 
     """
 
@@ -91,6 +96,7 @@ class Spline:
     name: str
     misfit: Misfit | None = None
     trim: Trim | None = None
+    apexes: int = 0
 
     def __repr__(self) -> str:
         return f"Spline({self.cells[0]} × {self.cells[1]} cells of {short_label(self.name)})"

@@ -32,6 +32,9 @@ def summary_of(samples: Samples) -> str:
         line += misfit_clause(report)
     if report.unrefined:
         line += f"; {report.unrefined:,} samples could not be moved to the surface"
+    if report.apexes:
+        sides = "a side" if report.apexes == 1 else f"{report.apexes} sides"
+        line += f"; {sides} of the domain: one point, where the surface is not smooth (an apex)"
     return line + _infinite(samples)
 
 

@@ -12,7 +12,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from .checks import parameter_arrays, real_array
 from .derivatives import NAMES, Function
-from .domain import Boundary, Domain, Periodicity, checked_boundary, checked_domain
+from .domain import (
+    Assumed,
+    Boundary,
+    Domain,
+    Periodicity,
+    assumed_ends,
+    checked_boundary,
+    checked_domain,
+)
 from .errors import InputError, SurfaceError
 from .evaluation import evaluated
 from .jet_functions import jet_function
@@ -45,13 +53,19 @@ class Surface:
     boundary : pair of pairs of str
         For u and for v, the boundary conditions at the low and the high end: "open" (an edge),
         "periodic", "mirrored" (periodic with the other parameter reversed, as on the Möbius band)
-        or "pole" (the end is one point and the opposite meridian continues the surface).
+        or "pole" (the end is one point and the opposite meridian continues the surface). Those of
+        the spline may have poles in place of open ends, see `assumed_open`.
     grid : (m, n, 3) float64 array or None
         The points of a surface that was given by points.
     derivative_function : callable or None
         What `from_callable` was given as derivatives.
     trim : Trim or None
         The part of the domain that belongs to the surface, None for all of it; see `trimmed`.
+    assumed_open : (bool, bool)
+        For u and for v, whether open ends were assumed: ``periodic=False``, and not "open". Then
+        `fit` looks whether one of them is a single point through which the surface goes on
+        smoothly, and takes that for a pole, and the other parameter for periodic. If points were
+        given, `boundary` has these poles, and points that repeat the first ones are left out.
 
     Examples
     --------
@@ -64,6 +78,11 @@ class Surface:
     ... )
     >>> double.evaluate(0.0, 0.0)
     array([2.7, 0. , 0. ])
+    >>> disk = gm.Surface.from_sympy(
+    ...     ("r*cos(phi)", "r*sin(phi)", "r**2 / 4"), ("r", "phi"), ((0, 1), (0, "2*pi"))
+    ... )
+    >>> disk.assumed_open, disk.boundary[0], gm.fit(disk, (8, 24)).boundary[0]
+    ((True, True), ('open', 'open'), ('pole', 'open'))
 
     """
 
@@ -74,6 +93,7 @@ class Surface:
     grid: NDArray[np.float64] | None = None
     derivative_function: Evaluation | None = None
     trim: Trim | None = None
+    assumed_open: Assumed = (False, False)
 
     @classmethod
     def from_callable(
@@ -95,8 +115,9 @@ class Surface:
         domain : ((u0, u1), (v0, v1)) of float
             The rectangle of the parameters.
         periodic : pair, default (False, False)
-            The boundary conditions for u and for v: True (periodic), False (open), one of "open",
-            "periodic", "mirrored", "pole" for both ends, or a pair of these (low end, high end).
+            The boundary conditions for u and for v: True (periodic), False (open, and poles are
+            found, see `assumed_open`), one of "open", "periodic", "mirrored", "pole" for both ends,
+            or a pair of these (low end, high end).
         derivatives : callable, optional
             ``derivatives(u, v)`` returns (..., 6, 3): x, x_u, x_v, x_uu, x_uv, x_vv. They are
             compared with numerical ones when they are first used. By default derivatives are
@@ -132,8 +153,8 @@ class Surface:
                 "derivatives must be callable as derivatives(u, v), and "
                 f"{type(derivatives).__name__} is not."
             )
-        ends = checked_domain(domain), checked_boundary(periodic)
-        return cls(name, f, *ends, derivative_function=derivatives)
+        ends, assumed = (checked_domain(domain), checked_boundary(periodic)), assumed_ends(periodic)
+        return cls(name, f, *ends, derivative_function=derivatives, assumed_open=assumed)
 
     @classmethod
     def from_sympy(
@@ -190,7 +211,8 @@ class Surface:
         from .expressions import compiled, numbers, two_symbols
 
         f = compiled(position, two_symbols(parameters))
-        return cls(name, f, checked_domain(numbers(domain)), checked_boundary(periodic))
+        rectangle, boundary = checked_domain(numbers(domain)), checked_boundary(periodic)
+        return cls(name, f, rectangle, boundary, assumed_open=assumed_ends(periodic))
 
     @classmethod
     def from_grid(
@@ -243,17 +265,21 @@ class Surface:
         ((6, 4, 3), ((0.0, 150.0), (0.0, 90.0)))
 
         """
+        from .collapsed import closed_grid
         from .grid import points_of_elevations, spline_of_points
 
         array, boundary, domain = _grid(points), checked_boundary(periodic), None
+        assumed = assumed_ends(periodic)
         if array.ndim == 2:
             array, domain = points_of_elevations(array, spacing, boundary, name)
+            assumed = False, False
         elif spacing is not None:
             raise InputError(
                 "spacing is for elevations of shape (m, n); points (m, n, 3) need none."
             )
+        array, boundary = closed_grid(array, boundary, assumed)
         spline = spline_of_points(array, boundary, name, domain)
-        return cls(name, spline.evaluate, spline.domain, boundary, array)
+        return cls(name, spline.evaluate, spline.domain, boundary, array, assumed_open=assumed)
 
     @classmethod
     def from_nurbs(
@@ -328,7 +354,7 @@ class Surface:
         boundary = checked_boundary(periodic)
         u, v = (ends == ("periodic", "periodic") for ends in boundary)
         nurbs = replace(nurbs, periodic=(u, v), creases=creases(nurbs))
-        return cls(name, nurbs, nurbs.domain, boundary)
+        return cls(name, nurbs, nurbs.domain, boundary, assumed_open=assumed_ends(periodic))
 
     def pieces(self) -> tuple[Surface, ...]:
         """Return the smooth pieces of the surface: rectangles of its parameters.

@@ -169,10 +169,12 @@ class TestReport:
             "fit_distance": np.float32(1),
             "fit_rms": np.int8(1),
             "fit_angle": np.float64(1),
+            "apexes": np.int16(1),
         }
         report = SamplingReport("s", *numbers, **more)
         assert [type(getattr(report, f.name)) for f in fields(report)] == [
             str, int, int, int, float, int, float, float, int, str, int, float, float, float,
+            int,
         ]  # fmt: skip
 
     @pytest.mark.parametrize("name", ["normals", "samples", "patches", "developable_patches"])
