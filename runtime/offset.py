@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from .checks import finite_number
 from .errors import GaussmapWarning, InputError, MissingFieldError
 from .kernels import support as kernels
+from .offset_of import OffsetOf
 from .report import count_infinite, have_large_squares
 from .samples import Samples
 from .tolerances import CURVATURE_ERROR
@@ -51,7 +52,8 @@ def offset(samples: Samples, distance: float) -> Samples:
         fit_rms=None,
         fit_angle=None,
     )
-    return Samples(**arrays, report=report)
+    base = samples.offset_of or OffsetOf(0.0, samples.spline, samples.surface)
+    return Samples(**arrays, report=report, offset_of=replace(base, distance=base.distance + d))
 
 
 def _curvatures(samples: Samples, d: float) -> dict[str, Array]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pickle
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from .checks import checked_array, checked_rows
 from .errors import InputError, MissingFieldError
 from .fields import COLUMNS, DERIVED, FLAG_NAMES, FLOAT_NAMES, dtype_of, row_shape
+from .offset_of import OffsetOf
 from .report import SamplingReport, common_report
 from .spline import Spline
 from .surface import Surface
@@ -46,6 +47,7 @@ class SampleArrays:
     report: SamplingReport = field(kw_only=True)
     spline: Spline | None = field(default=None, kw_only=True)
     surface: Surface | None = field(default=None, kw_only=True)
+    offset_of: OffsetOf | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         arrays = {name: getattr(self, name) for name in COLUMNS}
@@ -67,6 +69,9 @@ class SampleArrays:
         if not isinstance(self.surface, Surface | None):
             name = type(self.surface).__name__
             raise InputError(f"surface must be a Surface or None, not {name}.")
+        if not isinstance(self.offset_of, OffsetOf | None):
+            name = type(self.offset_of).__name__
+            raise InputError(f"offset_of must be an OffsetOf or None, not {name}.")
 
     def __getattr__(self, name: str) -> Any:  # noqa: ANN401
         if name in COLUMNS or name in DERIVED:
@@ -79,7 +84,10 @@ class SampleArrays:
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
     def __reduce__(self) -> tuple[Any, ...]:
-        state = self.arrays(), self.report, self.spline, _if_it_pickles(self.surface)
+        base = self.offset_of
+        if base is not None:
+            base = replace(base, surface=_if_it_pickles(base.surface))
+        state = self.arrays(), self.report, self.spline, _if_it_pickles(self.surface), base
         return _rebuilt, (type(self), *state)
 
     @classmethod
@@ -95,8 +103,8 @@ class SampleArrays:
         -------
         Samples
             The rows of all parts, in turn. The report counts all of them; entries that the reports
-            of the parts do not agree about are None. The spline and the surface are kept if all
-            parts have the same.
+            of the parts do not agree about are None. The spline, the surface and `offset_of` are
+            kept if all parts have the same.
 
         Raises
         ------
@@ -126,8 +134,8 @@ class SampleArrays:
         }
         report = common_report([part.report for part in pieces], arrays)
         same = {
-            name: value if all(getattr(part, name) is value for part in pieces) else None
-            for name in ("spline", "surface")
+            name: value if all(getattr(part, name) == value for part in pieces) else None
+            for name in ("spline", "surface", "offset_of")
             for value in [getattr(pieces[0], name)]
         }
         return cls(**arrays, report=report, **same)
@@ -314,7 +322,10 @@ class SampleArrays:
     def __getitem__(self, key: ArrayLike | slice) -> Self:
         rows = key if isinstance(key, slice) else checked_rows(key, len(self))
         arrays = {name: array[rows] for name, array in self.arrays().items()}
-        return type(self)(**arrays, report=self.report, spline=self.spline, surface=self.surface)
+        return type(self)(
+            **arrays, report=self.report,
+            spline=self.spline, surface=self.surface, offset_of=self.offset_of,
+        )  # fmt: skip
 
 
 def _rebuilt(
@@ -323,9 +334,10 @@ def _rebuilt(
     report: SamplingReport,
     spline: Spline | None,
     surface: Surface | None = None,
+    offset_of: OffsetOf | None = None,
 ) -> SampleArrays:
     """Return samples that were copied or pickled."""
-    return cls(**arrays, report=report, spline=spline, surface=surface)
+    return cls(**arrays, report=report, spline=spline, surface=surface, offset_of=offset_of)
 
 
 def _if_it_pickles(surface: Surface | None) -> Surface | None:

@@ -70,6 +70,9 @@ class Samples(SampleArrays):
     surface : Surface or None
         The surface on which the samples are; None with ``on="spline"``, for samples from a file,
         and after pickling if the surface does not pickle.
+    offset_of : OffsetOf or None
+        For samples of an `offset`: its distance, and the spline and the surface of the samples that
+        were moved.
 
     Raises
     ------
@@ -100,6 +103,8 @@ class Samples(SampleArrays):
     True
     >>> samples.dtype, samples.spline, samples.report.samples
     (dtype('float64'), Spline(16 × 16 cells of torus), 200)
+    >>> samples.offset_of, samples.offset(0.1).offset_of.distance
+    (None, 0.1)
 
     """
 
@@ -154,7 +159,8 @@ class Samples(SampleArrays):
         """Return the samples moved along their normals: the offset surface x + d n.
 
         Points, support and curvatures are those of the offset, if the samples have them; normals,
-        parameters and indices stay, and `spline` is None.
+        parameters and indices stay. `spline` and `surface` are None; `offset_of` has those of these
+        samples, from which `mesh` and `weights` of the offset take the neighbours.
 
         Parameters
         ----------
@@ -250,7 +256,7 @@ class Samples(SampleArrays):
         Parameters
         ----------
         spline : Spline, optional
-            The spline of the samples, if `spline` of the samples is None.
+            The spline of the samples, if they do not know it; for an offset that of `offset_of`.
         angle : float, optional
             In degrees. Triangles that deviate from a normal at a corner by more are left out, for
             samples of a part of the surface only.
@@ -297,6 +303,8 @@ class Samples(SampleArrays):
         """
         from .meshes.meshing import mesh_of
 
+        if spline is None and self.offset_of is not None:
+            spline = self.offset_of.spline
         return mesh_of(self, self._spline_or(spline), angle, prefer)
 
     def coverage(self, spline: Spline | None = None, *, threads: int | None = None) -> float:
@@ -426,8 +434,8 @@ class Samples(SampleArrays):
         spline = self.spline if spline is None else spline
         if spline is None:
             raise InputError(
-                "these samples do not know the spline that was sampled (those from a file do not); "
-                "give it, as in samples.mesh(gm.fit(surface))."
+                "these samples do not know the spline that was sampled (those from a file and of "
+                "an offset do not); give it, as in samples.mesh(gm.fit(surface))."
             )
         if not isinstance(spline, Spline):
             raise InputError(f"spline must be a Spline, not {type(spline).__name__}.")

@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 from ..domain import Boundary
 from ..errors import InputError, shown
 from ..kernels.flips import smallest_cosines
+from ..refinement import evaluate_on_surface
 from ..spline import Spline
 from .improvement import checked_prefer, flip_edges, improved
 from .mesh import Mesh, scaled
 from .triangulation import neighbours, triangulations
-from .vertices import Vertices, boundary_of
+from .vertices import Vertices, before_offset, boundary_of
 
 if TYPE_CHECKING:
     from ..samples import Samples
@@ -77,6 +78,8 @@ class Triangulated:
         triangles, sides, adjacent = _triangles(vertices, spline, boundary, must_be_whole)
         uv, points, normals = _on_surface(vertices, samples, spline)
         _fill_missing(normals, triangles, sides)
+        if samples.offset_of is not None:
+            points = _moved(vertices, points, normals, samples)
         return cls(
             spline.name, uv, vertices.sample, vertices.is_free,
             points, normals, triangles, sides, adjacent,
@@ -183,16 +186,36 @@ def _lengths(spline: Spline) -> Array:
 
 
 def _on_surface(vertices: Vertices, samples: Samples, spline: Spline) -> tuple[Array, Array, Array]:
-    """Return parameters, points and unit normals of vertices; NaN for missing normals."""
-    is_sample = vertices.sample >= 0
-    own = vertices.sample[is_sample]
+    """Return parameters, points and unit normals of vertices; NaN for missing normals.
+
+    Points of an offset are those of the surface.
+    """
     uv = vertices.uv(spline)
     points, normals = np.empty((2, len(uv), 3))
+    is_sample = vertices.sample >= 0
+    own = vertices.sample[is_sample]
     uv[is_sample] = samples.uv[own]
-    points[is_sample], normals[is_sample] = samples.points[own], samples.normals[own]
-    u, v = uv[~is_sample].T
-    points[~is_sample], normals[~is_sample] = spline.evaluate(u, v), spline.normals(u, v)
+    points[is_sample], normals[is_sample] = before_offset(samples)[own], samples.normals[own]
+    base = samples.offset_of or samples
+    added = uv[~is_sample]
+    if base.surface is None or not len(added):
+        points[~is_sample], normals[~is_sample] = (
+            spline.evaluate(*added.T),
+            spline.normals(*added.T),
+        )
+    else:
+        points[~is_sample], found = evaluate_on_surface(base.surface, spline, added)[:2]
+        normals[~is_sample] = np.where(found.any(axis=1, keepdims=True), found, np.nan)
     return uv, points, normals
+
+
+def _moved(vertices: Vertices, points: Array, normals: Array, samples: Samples) -> Array:
+    """Return the points of an offset: the samples, and added vertices moved as they were."""
+    assert samples.offset_of is not None
+    is_sample = vertices.sample >= 0
+    moved = points + samples.offset_of.distance * normals
+    moved[is_sample] = samples.points[vertices.sample[is_sample]]
+    return moved
 
 
 def _fill_missing(normals: Array, triangles: Indices, sides: Indices) -> None:

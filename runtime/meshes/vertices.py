@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from ..samples import Samples
 
-__all__ = ["Vertices", "boundary_of"]
+__all__ = ["Vertices", "before_offset", "boundary_of"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -63,7 +63,7 @@ class Vertices:
         inner = cls(positions[sample], sample, np.ones(len(sample), dtype=bool))
         if all(end in ("periodic", "mirrored") for end, _ in boundary):
             return inner.apart(boundary)
-        points = samples.points.astype(np.float64) * spline.scale
+        points = before_offset(samples) * spline.scale
         tree = tree_of(points[sample])
         fixed = [
             *_poles(inner, tree, spline, boundary),
@@ -106,6 +106,14 @@ class Vertices:
         """Return the parameters (k, 2) of the vertices."""
         low, high = np.array(spline.domain).T
         return np.where(self.positions == 1.0, high, low + self.positions * (high - low))
+
+
+def before_offset(samples: Samples) -> Array:
+    """Return the points (N, 3) of samples in float64; for those of an offset, of the surface."""
+    points = samples.points.astype(np.float64)
+    if samples.offset_of is None:
+        return points
+    return points - samples.offset_of.distance * samples.normals.astype(np.float64)
 
 
 def boundary_of(spline: Spline) -> Boundary:

@@ -46,7 +46,7 @@ def curved(K: object, H: object) -> Samples:
 
 class TestConstruction:
     def test_the_array_names_are_the_fields(self):
-        names = (*ARRAY_NAMES_ON_SURFACE, "report", "spline", "surface")
+        names = (*ARRAY_NAMES_ON_SURFACE, "report", "spline", "surface", "offset_of")
         assert names == tuple(field.name for field in fields(Samples))
 
     def test_the_spline_is_kept_by_picking_copying_and_concatenating(self):

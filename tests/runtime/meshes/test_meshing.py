@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Callable
 from typing import Any, Literal
 
@@ -580,3 +581,62 @@ class TestInput:
         fields = [name for name in ("points", "normals", "uv") if name != lacking]
         with pytest.raises(gm.errors.MissingFieldError, match=lacking):
             gm.sample(gm.surfaces.torus(), count=100, fields=fields).mesh()
+
+
+def samples_on(surface: gm.Surface, **options: Any) -> gm.Samples:
+    """Return samples that know their surface."""
+    samples = gm.sample(surface, **options)
+    arrays: dict[str, Any] = samples.arrays()
+    return gm.Samples(**arrays, report=samples.report, spline=samples.spline, surface=surface)
+
+
+@compiled
+class TestOffsets:
+    @pytest.mark.parametrize("prefer", PREFER)
+    @pytest.mark.parametrize("name", ["torus", "sphere", "graph", "moebius", "dome"])
+    def test_an_offset_has_the_topology_of_the_surface(self, name, prefer):
+        _, characteristic, borders = surfaces[name]
+        samples = samples_on(surfaces[name][0](), count=400, fields=("points", "normals", "uv"))
+        mesh = samples.offset(0.05).offset(0.05).mesh(prefer=prefer)
+        assert mesh.euler_characteristic == characteristic
+        assert (components(mesh.boundary_edges) if borders else 0) == borders
+        # Every vertex is 0.1 away from the surface, those on borders and at poles, too.
+        own = mesh.sample_index >= 0
+        np.testing.assert_allclose(
+            mesh.vertices[own], (samples.points + 0.1 * samples.normals)[mesh.sample_index[own]]
+        )
+        if not own.all():
+            exact = surfaces[name][0]().evaluate(*mesh.uv[~own].T)
+            np.testing.assert_allclose(lengths(mesh.vertices[~own] - exact), 0.1, rtol=1e-12)
+
+    def test_the_offset_of_a_sphere_is_a_sphere(self):
+        """Of the area 4π 1.5², to the rounding of triangles that normals bend: h⁴."""
+        samples = gm.sample(gm.surfaces.sphere(), count=2000).offset(0.5)
+        np.testing.assert_allclose(lengths(samples.mesh().vertices), 1.5, rtol=1e-4)
+        assert samples.weights().sum() == pytest.approx(4 * np.pi * 2.25, rel=1e-4)
+
+    def test_rows_copies_and_parts(self):
+        samples = gm.sample(gm.surfaces.torus(), count=300).offset(0.1)
+        triangles = samples.mesh().triangles
+        halves = gm.Samples.concatenate([samples[:100], samples[100:]])
+        for again in (samples[:], pickle.loads(pickle.dumps(samples)), halves):
+            np.testing.assert_array_equal(again.mesh().triangles, triangles)
+
+    def test_an_unknown_offset_has_no_mesh(self, tmp_path):
+        gm.sample(gm.surfaces.torus(), count=100).offset(0.1).write(tmp_path / "a.npz")
+        with pytest.raises(gm.errors.InputError, match="do not know the spline"):
+            gm.read_samples(tmp_path / "a.npz").mesh()
+        with pytest.raises(gm.errors.InputError, match="offset_of must be an OffsetOf or None"):
+            gm.Samples(
+                points=np.zeros((1, 3)), report=samples_at("torus", 1).report,
+                offset_of=0.1,  # pyright: ignore[reportArgumentType]
+            )  # fmt: skip
+
+    def test_vertices_on_borders_are_on_the_surface(self):
+        """And not on the spline, if that is where samples are."""
+        belt = gm.surfaces.ellipsoid_patch()
+        mesh = samples_on(belt, count=300, cells=(12, 12)).mesh()
+        added = mesh.sample_index < 0
+        assert added.sum() > 10
+        exact = belt.evaluate(*mesh.uv[added].T)
+        np.testing.assert_allclose(mesh.vertices[added], exact, atol=1e-14)
