@@ -48,7 +48,8 @@ def fit(surface: Surface | str, cells: Sequence[int] | None = None) -> Spline:
     """Approximate a surface by a C¹ quadratic spline.
 
     The quasi-interpolant (paper, Sect. 3.1) is exact on quadratics. The error of positions falls
-    with the third power of the cell size, that of normals with the second (13).
+    with the third power of the cell size, that of normals with the second (13). A spline rounds
+    lines where the normal of a NURBS turns: fit its pieces one by one (see `Surface.pieces`).
 
     Parameters
     ----------

@@ -12,17 +12,20 @@ from .bins import NormalBins
 from .checks import yes_or_no
 from .choice import choose
 from .density.filling import filled_samples
+from .density.law import Law
 from .density.request import Request, checked_request
 from .errors import GaussmapError, GaussmapWarning, InputError, in_memory, shown
 from .fields import COLUMNS, checked_dtype, checked_fields
 from .fitting import spline_of
 from .inside import count_of, samples_inside, with_uv
 from .memory import check_memory
+from .pieces import cells_of_piece, pieces_to_sample, sample_pieces
 from .report import sampling_report, warn_of
 from .samples import Samples
 from .search import fill, find
 from .spline import Spline
 from .surface import Surface
+from .surfaces import named
 
 __all__ = [
     "sample",
@@ -55,7 +58,8 @@ def sample(
     ----------
     surface : Surface, Spline or str
         The surface, or its name in the catalogue (see `gaussmap.surfaces`). A spline is taken as it
-        is.
+        is. Of a NURBS with lines where its normal turns the pieces are sampled, with one target
+        density for all (see `Surface.pieces`); then `spline` of the samples is None.
     count : int, optional
         The number of samples. It is met exactly, but for ``density="gauss"``: within 2 % (or 5
         samples) where the Gaussian image is resolved.
@@ -81,7 +85,8 @@ def sample(
         enough; they take 20 to 40 times as long as the sampling and 30 kB of memory for each sample
         instead of 2 kB.
     cells : (int, int), optional
-        The numbers of cells of the spline along u and v, see `fit`.
+        The numbers of cells of the spline along u and v, see `fit`. Pieces of a surface share them,
+        in proportion to their parameters.
     fields : sequence of str, optional
         The arrays of `Samples` that are computed and stored, such as ``("points", "normals")``; all
         by default.
@@ -164,9 +169,19 @@ def sample_and_normals(
     if request.count is not None:
         row = sum(len(COLUMNS[name]) for name in wanted) * number.itemsize
         check_memory(request.count * row, f"{request.count:,} samples")
-    spline = spline_of(surface, cells, number)
-    sampled = filled_samples if filled else _by_normals
-    samples, normals = sampled(spline, request, wanted, number, threads, progress)
+
+    def sampled(
+        spline: Spline, request: Request, floor: float | None = None
+    ) -> tuple[Samples, NDArray[np.float64]]:
+        arguments = spline, request, wanted, number, threads, progress and floor is None
+        return filled_samples(*arguments, floor) if filled else _by_normals(*arguments)
+
+    surface = named(surface)
+    if isinstance(surface, Surface) and (pieces := pieces_to_sample(surface)):
+        splines = [spline_of(x, cells_of_piece(surface, x, cells), number) for x in pieces]
+        samples, normals = sample_pieces(surface, Law(splines, request, threads), sampled, progress)
+    else:
+        samples, normals = sampled(spline_of(surface, cells, number), request)
     warn_of(samples.report, request.count, 5, coverage=request.coverage, filled=filled)
     return samples, normals
 

@@ -12,14 +12,17 @@ from .bins import NormalBins
 from .checks import whole_number
 from .choice import choose
 from .density.request import Request, checked_request
+from .errors import InputError
 from .fields import checked_dtype, checked_fields
 from .fitting import spline_of
 from .inside import count_of, samples_inside, with_uv
+from .pieces import pieces_to_sample
 from .report import SamplingReport, count_infinite, sampling_report, warn_of
 from .samples import Samples
 from .search import Hits, Search, fill, merged
 from .spline import Spline
 from .surface import Surface
+from .surfaces import named
 from .threads import over_ranges, shown
 
 __all__ = ["sample_stream"]
@@ -89,6 +92,12 @@ def sample_stream(
     size = whole_number(chunk, "chunk")
     wanted, number = checked_fields(fields), checked_dtype(dtype)
     request = checked_request(normals, count, None, None, "gauss", 0, threads)
+    surface = named(surface)
+    if pieces := pieces_to_sample(surface):
+        raise InputError(
+            f"surface {surface.name!r} has {len(pieces)} pieces between lines where its normal "
+            "turns; stream each of surface.pieces(), or gm.fit(surface), which rounds these lines."
+        )
     stream = _Stream(
         spline_of(surface, cells, number), request, size, wanted, number, threads, progress
     )

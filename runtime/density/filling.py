@@ -57,11 +57,15 @@ def filled_samples(
     dtype: DTypeLike,
     threads: int | None,
     progress: bool,
+    floor: float | None = None,
 ) -> tuple[Samples, NDArray[np.float64]]:
-    """Return samples for any density but "gauss", and the normals that were searched."""
+    """Return samples for any density but "gauss", and the normals that were searched.
+
+    `floor` is that of the target density, in L, if a whole determines it of which this is a part.
+    """
     angle = None
     with counted(request.count, progress) as show_count:
-        filling = Filling(spline, request, threads, progress, show_count)
+        filling = Filling(spline, request, threads, progress, show_count, floor)
         cover, at_normals = filling.cover()
         cover = filling.relaxed(cover)
         if request.angle is not None:
@@ -81,6 +85,7 @@ class Filling:
     threads: int | None
     progress: bool
     show_count: Callable[[int], object]
+    floor: float | None = None
 
     def cover(self) -> tuple[Cover, SamplesAtNormals]:
         """Return the cover that is asked for, and the samples at normals in it.
@@ -115,7 +120,12 @@ class Filling:
         if isinstance(power, str) or curved_solid_angle(self.spline, count / (4 * math.pi)) == 0.0:
             return self._sizing(TargetDensity(floor=1.0))
         sizing = self._sizing(TargetDensity(gauss_weight=1.0, exponent=float(power)))
-        return sizing.with_floor(sizing.integral / sizing.area / WIDEST_GAP**2)
+        floor = sizing.integral / sizing.area / WIDEST_GAP**2
+        return sizing.with_floor(self._floor_or(floor, sizing, 2.0 * float(power)))
+
+    def _floor_or(self, own: float, sizing: SizingFunction, order: float) -> float:
+        """Return the given floor, for a target density in 1/L^order, or that of this surface."""
+        return own if self.floor is None else self.floor / sizing.unit**order
 
     def _sizing(self, target: TargetDensity) -> SizingFunction:
         """Return a sizing function; SurfaceError if the area of the spline is rounding."""
@@ -168,6 +178,7 @@ class Filling:
         # Normals and angles are absolute: flat parts then count as parts of a sphere.
         least = 4 * math.pi if request.normals is not None or request.angle else FLAT_SURFACE
         floor = FLAT_SHARE * max(sizing.integral, least) / sizing.area
+        floor = self._floor_or(floor, sizing, 2.0)
         if request.count is None:
             return self._by_radius(sizing, floor)
         cover, at_normals = self._by_count(sizing.with_floor(floor), request.count)
