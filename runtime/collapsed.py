@@ -173,5 +173,6 @@ class _Sides:
 
 def _extent(points: Array) -> tuple[float, float]:
     """Return the size of points (m, n, 3), and the unit in the last place of their coordinates."""
-    size = float(np.ptp(points, axis=(0, 1)).max())
-    return size, float(np.spacing(np.abs(points).max()))
+    low, high = (f.reduce(points, axis=(0, 1)) for f in (np.fmin, np.fmax))  # without NaN
+    largest = np.maximum(np.abs(low), np.abs(high)).max()
+    return float((high - low).max()), float(np.spacing(largest))

@@ -13,6 +13,7 @@ from .domain import Domain
 from .errors import InputError, SurfaceError, in_memory
 from .ghosts import Sides
 from .misfit import misfit_to_data, probe_of
+from .missing import known_of_values
 from .quasi_interpolant import apart, checked_cells, fit_grid, fit_values, not_too_large
 from .spline import Spline
 from .surface import Surface
@@ -88,7 +89,8 @@ def fit(surface: Surface | str, cells: Sequence[int] | None = None) -> Spline:
             "gm.Surface.from_callable, from_sympy, from_nurbs or from_grid."
         )
     sides = found_sides(surface)
-    surface = replace(surface, boundary=sides.boundary)
+    trim = surface.trim and surface.trim.with_boundary(sides.boundary)
+    surface = replace(surface, boundary=sides.boundary, trim=trim)
     if surface.grid is not None:
         return replace(_fit_data(surface, surface.grid, cells), apexes=sides.apexes)
     spline = _fitted(surface, DEFAULT_CELLS if cells is None else cells)
@@ -104,7 +106,13 @@ def _fit_data(surface: Surface, grid: NDArray[np.float64], cells: Sequence[int] 
         else _fitted(surface, cells)
     )
     misfit = misfit_to_data(spline, grid, surface.boundary)
-    return replace(spline, misfit=misfit, trim=surface.trim)
+    trim = surface.trim
+    if trim is not None and cells is not None and np.isnan(grid).any():
+        known = known_of_values(
+            trim.parts[0].contains, spline.domain, spline.boundary, spline.cells
+        )
+        trim = trim.and_(known)
+    return replace(spline, misfit=misfit, trim=trim)
 
 
 def _fitted(surface: Surface, cells: Sequence[int]) -> Spline:

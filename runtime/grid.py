@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from .checks import as_float
 from .domain import Boundary, Domain
 from .errors import InputError, shown
+from .missing import filled
 from .quasi_interpolant import apart, fit_grid
 from .spline import Spline
 
@@ -79,13 +80,20 @@ def _check(points: NDArray[np.float64], boundary: Boundary, name: str) -> None:
                 f"{name} has {points.shape[0]} x {points.shape[1]} points; it needs at least "
                 f"{least} along axis {axis}, for 3 x 3 cells."
             )
-    bad = ~np.isfinite(points).all(axis=2)
+    bad = np.isinf(points).any(axis=2)
     if bad.any():
         i, j = np.unravel_index(int(np.argmax(bad)), bad.shape)
         raise InputError(
-            f"{name} holds {int(bad.sum())} points with NaN or infinity, the first at [{i}, {j}]; "
-            "fill or crop them."
+            f"{name} holds {int(bad.sum())} points with infinity, the first at [{i}, {j}]; make "
+            "them NaN if they are missing."
         )
+    if np.isnan(points).any(axis=2).all():
+        raise InputError(f"all points of {name} are missing: each holds NaN, or nodata.")
+
+
+def _farthest(first: NDArray[np.float64], second: NDArray[np.float64]) -> float:
+    """Return the largest difference, NaN if all of them are missing."""
+    return float(np.fmax.reduce(np.abs(first - second), axis=None))
 
 
 def _check_closed(points: NDArray[np.float64], boundary: Boundary, name: str) -> None:
@@ -98,12 +106,13 @@ def _check_closed(points: NDArray[np.float64], boundary: Boundary, name: str) ->
         rows = np.swapaxes(points, 0, axis)
         if low in ("periodic", "mirrored"):
             first = rows[0] if low == "periodic" else rows[0, ::-1]
-            if np.abs(rows[-1] - first).max() < REPEATED * np.abs(rows[1] - rows[0]).max():
+            if _farthest(rows[-1], first) < REPEATED * _farthest(rows[1], rows[0]):
                 raise InputError(
                     f"{name} repeats its first points at the end of axis {axis}, which is "
                     "periodic; leave them out."
                 )
         for end, row in ((low, 0), (high, -1)):
-            if end == "pole" and apart(rows[row], rows[row, :1], points):
+            at_pole = rows[row][~np.isnan(rows[row]).any(axis=1)]
+            if end == "pole" and len(at_pole) and apart(at_pole, at_pole[:1], filled(points)):
                 place = f"points[{row}]" if axis == 0 else f"points[:, {row}]"
                 raise InputError(f"{name} has no pole at {place}: they are not one point.")

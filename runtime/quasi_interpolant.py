@@ -13,6 +13,7 @@ from .errors import InputError, SurfaceError
 from .ghosts import Border, Sides, coefficients_with_ring, vertices_with_ring
 from .kernels import spline as kernels
 from .memory import check_memory
+from .missing import filled
 from .spline import LARGEST_EXPONENT, Spline
 
 __all__ = ["apart", "checked_cells", "fit_grid", "fit_values", "not_too_large"]
@@ -43,8 +44,11 @@ def fit_values(
 
 
 def fit_grid(points: NDArray[np.float64], domain: Domain, boundary: Boundary, name: str) -> Spline:
-    """Return the spline with one cell between any four neighbouring points (m, n, 3) of a grid."""
-    values = vertices_with_ring(not_too_large(points, name), boundary)
+    """Return the spline with one cell between any four neighbouring points (m, n, 3) of a grid.
+
+    Missing points are filled.
+    """
+    values = vertices_with_ring(not_too_large(filled(points), name), boundary)
     inner = np.empty((values.shape[0] - 3, values.shape[1] - 3, 3))
     checked_cells(inner.shape[:2])
     kernels.fit_vertices(values, inner)

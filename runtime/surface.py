@@ -56,7 +56,7 @@ class Surface:
         or "pole" (the end is one point and the opposite meridian continues the surface). Those of
         the spline may have poles in place of open ends, see `assumed_open`.
     grid : (m, n, 3) float64 array or None
-        The points of a surface that was given by points.
+        The points of a surface that was given by points; NaN where they are missing.
     derivative_function : callable or None
         What `from_callable` was given as derivatives.
     trim : Trim or None
@@ -221,6 +221,7 @@ class Surface:
         spacing: Sequence[float] | None = None,
         periodic: Sequence[Periodicity] = (False, False),
         *,
+        nodata: float | None = None,
         name: str = "grid",
     ) -> Surface:
         """Make a surface of points, or of elevations.
@@ -240,6 +241,10 @@ class Surface:
             south.
         periodic : pair, default (False, False)
             As in `from_callable`; for points only.
+        nodata : float, optional
+            The number that stands for missing data, such as −9999; NaN and masked entries do so
+            anyway. What the spline makes of missing points is left out (see `trim`): up to three
+            cells around each.
         name : str, default "grid"
             Label of the surface.
 
@@ -251,9 +256,14 @@ class Surface:
         Raises
         ------
         InputError
-            For another shape, NaN or infinity (and says where), fewer than 4 points in a direction
-            that is not periodic (3 if it is), spacing that is zero, missing for elevations or given
-            for points, or boundary conditions as in `from_callable`.
+            For another shape, infinity (and says where), fewer than 4 points in a direction that
+            is not periodic (3 if it is), spacing that is zero, missing for elevations or given for
+            points, boundary conditions as in `from_callable`, and if missing points leave nothing.
+
+        Warns
+        -----
+        GaussmapWarning
+            If there are numbers that often stand for missing data, such as −9999, and no `nodata`.
 
         Examples
         --------
@@ -267,8 +277,10 @@ class Surface:
         """
         from .collapsed import closed_grid
         from .grid import points_of_elevations, spline_of_points
+        from .missing import known_of_grid, without_nodata
 
-        array, boundary, domain = _grid(points), checked_boundary(periodic), None
+        array = without_nodata(_grid(points), nodata, name)
+        boundary, domain = checked_boundary(periodic), None
         assumed = assumed_ends(periodic)
         if array.ndim == 2:
             array, domain = points_of_elevations(array, spacing, boundary, name)
@@ -279,7 +291,11 @@ class Surface:
             )
         array, boundary = closed_grid(array, boundary, assumed)
         spline = spline_of_points(array, boundary, name, domain)
-        return cls(name, spline.evaluate, spline.domain, boundary, array, assumed_open=assumed)
+        known = known_of_grid(array, spline.domain, boundary, name)
+        trim = None if known is None else Trim(spline.domain, boundary, (known,))
+        return cls(
+            name, spline.evaluate, spline.domain, boundary, array, trim=trim, assumed_open=assumed
+        )
 
     @classmethod
     def from_nurbs(
@@ -581,7 +597,11 @@ class Surface:
 
 
 def _grid(points: ArrayLike) -> NDArray[np.float64]:
-    array = real_array(points, "a grid")
+    """Return points or elevations with NaN in place of masked entries."""
+    masked = np.ma.getmaskarray(points) if np.ma.is_masked(points) else None
+    array = real_array(np.ma.getdata(points) if masked is not None else points, "a grid")
+    if masked is not None:
+        array[masked] = np.nan
     if array.ndim not in (2, 3) or (array.ndim == 3 and array.shape[2] != 3):
         raise InputError(
             f"a grid must have the shape (m, n, 3), or (m, n) for elevations, not {array.shape}."

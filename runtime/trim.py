@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from .domain import Boundary, Domain
 from .errors import GaussmapError, InputError, SurfaceError, shown
-from .loops import checked_loops
+from .loops import Loops, checked_loops
 
 __all__ = ["Part", "Predicate", "Trim", "trimmed_by"]
 
@@ -132,6 +132,13 @@ class Trim:
             else:
                 passed |= found
         return passed, all_known
+
+    def with_boundary(self, boundary: Boundary) -> Trim:
+        """Return the trim of a surface whose boundary conditions have been found."""
+        if boundary == self.boundary:
+            return self
+        parts = [replace(x, boundary=boundary) if isinstance(x, Loops) else x for x in self.parts]
+        return Trim(self.domain, boundary, tuple(parts))
 
     def and_(self, *parts: Part) -> Trim:
         """Return the trim with further conditions."""

@@ -54,6 +54,8 @@ def _surface(options: SimpleNamespace) -> Surface:
         raise InputError(f"--spacing is for elevations in a file, and {name} is a surface by name.")
     if options.periodic is not None:
         raise InputError(f"--periodic is for grids in a file; {name} knows where it closes.")
+    if options.nodata is not None:
+        raise InputError(f"--nodata is for grids in a file; {name} has no missing points.")
     parameters = dict(options.set)
     if len(parameters) < len(options.set):
         raise InputError("--set gives the same parameter twice; give each once.")
@@ -79,6 +81,7 @@ def _grid(options: SimpleNamespace) -> Surface:
         points,
         spacing=options.spacing,
         periodic=PERIODIC[options.periodic or "none"],
+        nodata=options.nodata,
         name=array_file(options.surface).name,
     )
 

@@ -286,11 +286,13 @@ def _surface_options() -> list[Option]:
         "In which directions a grid of points is periodic: none (default), u, v or uv. Do not "
         "repeat the first row at the end."
     )
+    nodata = "The number that stands for missing data in a grid, such as -9999; NaN does anyway."
     cells = "The cells of the spline along u and v (default: 64 64, or those of the grid)."
     axes = click.Choice(("none", "u", "v", "uv"))
     return [
         Option("--set NAME=VALUE", parameter, setting, group=group, multiple=True),
         Option("--spacing DX DY", spacing, number, group=group),
         Option("--periodic AXES", periodic, axes, group=group),
+        Option("--nodata NUMBER", nodata, number, group=group),
         Option("--cells M N", cells, whole(MOST), group=group),
     ]

@@ -13,14 +13,16 @@ one wherever it is asked for, so that rounding matters next to a segment alone.
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .jit import inline, jit, loop
+from .spline import locate
 
-__all__ = ["Cells", "find_inside", "find_parities", "list_segments"]
+__all__ = ["Cells", "find_inside", "find_parities", "find_patches", "list_segments"]
 
 
 class Cells(NamedTuple):
@@ -191,3 +193,13 @@ def list_segments(cells, margins, stores):
                     cells.starts[cell] += 1
                 else:
                     cells.starts[cell + 1] += 1
+
+
+@jit
+def find_patches(cells, rows, columns, patches):
+    """Write the numbers (k,) of the patches at places (k, 2) in cells of a grid."""
+    for k in range(cells.shape[0]):
+        i = min(max(int(math.floor(cells[k, 0])), 0), rows - 1)
+        j = min(max(int(math.floor(cells[k, 1])), 0), columns - 1)
+        turn, _, _ = locate(cells[k, 0] - i - 0.5, cells[k, 1] - j - 0.5)
+        patches[k] = 4 * (i * columns + j) + turn

@@ -55,7 +55,7 @@ def files() -> None:
     np.save("complex.npy", heights + 1j)
     np.save("objects.npy", np.array([[{}, {}]]), allow_pickle=True)
     np.save("empty.npy", np.zeros((0, 0)))
-    np.save("nan.npy", np.where(heights == 5.0, np.nan, heights))
+    np.save("nan.npy", np.full_like(heights, np.nan))
     np.save("small.npy", heights[:2, :2])
     np.save("zero.npy", np.zeros((4, 3)))
     whole = Path("heights.npy").read_bytes()
@@ -102,6 +102,20 @@ def test_sample_elevations() -> None:
     assert samples.points[:, 1].min() >= -39 * 30
     assert samples.points[:, 1].max() <= 0.0
     assert (samples.normals[:, 2] > 0).all()
+
+
+@compiled
+def test_missing_elevations_are_left_out() -> None:
+    x, y = np.meshgrid(np.linspace(-1, 1, 30), np.linspace(-1, 1, 30))
+    heights = np.exp(-3 * (x * x + y * y))
+    heights[:, 20:] = -9999.0
+    np.save("heights.npy", heights)
+    arguments = ["--spacing", "1", "1", "--nodata", "-9999", "--count", "300", "-o", "part.npz"]
+    assert main(["sample", "heights.npy", *arguments]) == 0
+    samples = gm.read_samples("part.npz")
+    assert len(samples) == 300
+    assert 15.0 < samples.points[:, 0].max() < 20.0
+    assert samples.points[:, 2].min() > 0.0
 
 
 def test_parameters_and_cells_arrive() -> None:
@@ -403,7 +417,9 @@ HEIGHTS = ["--spacing", "1", "1", *TO]
         (["sample", "volume.npy", *TO], r"shape \(m, n, 3\), or .* not \(3, 4, 5\)"),
         (["sample", "empty.npy", *HEIGHTS], "empty.npy has"),
         (["sample", "small.npy", *HEIGHTS], "small.npy has 2 x 2 points"),
-        (["sample", "nan.npy", *HEIGHTS], "nan.npy holds .* NaN or infinity"),
+        (["sample", "nan.npy", *HEIGHTS], "all points of nan.npy are missing"),
+        (["sample", "heights.npy", *HEIGHTS, "--nodata", "x"], "--nodata: it must be a number"),
+        (["sample", "torus", "--nodata", "1", *TO], "--nodata is for grids in a file"),
         (["sample", "heights.npy", *TO], "elevations .* add --spacing DX DY"),
         (["sample", "heights.npy", "--spacing", "nan", "1", *TO], "spacing must be finite"),
         (["sample", "heights.npy", "--spacing", "1", "0", *TO], "spacing must be finite"),

@@ -303,15 +303,15 @@ def test_the_surface_keeps_its_points():
 # --- what is refused ------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
-def test_not_finite_and_where(value):
+@pytest.mark.parametrize("value", [np.inf, -np.inf])
+def test_infinity_and_where(value):
     points = POINTS.copy()
     points[3, 4, 1] = points[4, 0, 2] = value
-    refused(r"grid holds 2 points with NaN or infinity, the first at \[3, 4\]", points)
+    refused(r"grid holds 2 points with infinity, the first at \[3, 4\]", points)
     heights = HEIGHTS.copy()
     heights[1, 4] = value
     for spacing in ((1.0, 2.0), (1.0, -2.0)):
-        refused(r"holds 1 points with NaN or infinity, the first at \[1, 4\]", heights, spacing)
+        refused(r"holds 1 points with infinity, the first at \[1, 4\]", heights, spacing)
 
 
 @pytest.mark.parametrize(
@@ -352,9 +352,13 @@ def test_other_things_than_numbers(points):
     refused("a grid must be an array of real numbers", points, spacing=(1.0, 1.0))
 
 
-def test_masked_points():
-    refused("a grid has masked entries", np.ma.masked_greater(POINTS, 0.9))
-    refused("a grid has masked entries", np.ma.masked_greater(HEIGHTS, 0.9), spacing=(1.0, 1.0))
+def test_nothing_but_missing_points():
+    nothing = np.full((9, 9), np.nan)
+    refused("all points of grid are missing", nothing, spacing=(1.0, 1.0))
+    refused("all points of grid are missing", np.full((9, 9, 3), -1.0), nodata=-1)
+    nothing[4, 4] = 1.0
+    refused("80 of the 81 points of grid are missing", nothing, spacing=(1.0, 1.0))
+    refused("nodata must be a number, not 'none'", POINTS, nodata="none")
 
 
 @pytest.mark.parametrize("spacing", [None, 5, (), (1,), (1, 2, 3), ("a", 1), (1j, 1), (10**400, 1)])
