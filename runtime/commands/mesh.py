@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
-from ..files.formats import MESH_SUFFIXES
-from ..files.paths import check_target
+from ..files.formats import check_mesh_target
 from ..sampling import sample
 from .console import summarize
 from .inputs import arguments
@@ -15,7 +14,7 @@ __all__ = ["run"]
 
 def run(options: SimpleNamespace) -> None:
     """Sample a surface and write a mesh of the samples to a file."""
-    check_target(options.output, MESH_SUFFIXES)
+    check_mesh_target(options.output)
     fields = ("points", "normals", "uv")
     samples = sample(**arguments(options, default_count=10_000), fields=fields)
     mesh = samples.mesh(angle=options.deviation, prefer=options.prefer)

@@ -143,7 +143,7 @@ def _mesh() -> Command:
         "Sample a surface and write a triangle mesh of it. The vertices are the samples, and "
         "points on open borders and at poles.",
         *_sampling(default_count=10_000),
-        _output(".ply, .obj, .stl, .vtk, .vtu or .vtp"),
+        _output(".ply, .obj, .stl, .vtk, .vtu, .vtp or .glb"),
         Option("--deviation DEGREES", deviation, number),
         Option("--prefer KIND", prefer, click.Choice(("shape", "normals")), default="shape"),
         epilog=MESH_EXAMPLES,

@@ -8,10 +8,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import FileError, InputError
+from ..extras import check_extra
 from ..samples import Samples
 from .content import UnusableError
+from .gltf import PURPOSE, write_glb
 from .npz import read_npz, write_npz
-from .paths import PathLike, atomic_path, checked_path, known_suffix, reason_of
+from .paths import (
+    PathLike,
+    atomic_path,
+    check_target,
+    checked_path,
+    known_suffix,
+    reason_of,
+)
 from .ply import read_ply, write_mesh_ply, write_ply
 from .tables import write_csv, write_xyz
 from .triangles import write_obj, write_stl
@@ -25,6 +34,7 @@ __all__ = [
     "READABLE_SUFFIXES",
     "SUFFIXES",
     "check_fields",
+    "check_mesh_target",
     "read_samples",
     "write_mesh",
     "write_samples",
@@ -45,6 +55,7 @@ _MESH_WRITERS: dict[str, Callable[[Mesh, Path], None]] = {
     ".vtk": write_vtk,
     ".vtu": write_vtu,
     ".vtp": write_mesh_vtp,
+    ".glb": write_glb,
 }
 SUFFIXES, READABLE_SUFFIXES = tuple(_WRITERS), tuple(_READERS)
 MESH_SUFFIXES = tuple(_MESH_WRITERS)
@@ -68,6 +79,13 @@ def write_mesh(mesh: Mesh, path: PathLike) -> None:
         raise InputError("this mesh has no triangles, and so there is nothing to write.")
     with atomic_path(path) as temporary:
         _MESH_WRITERS[suffix](mesh, temporary)
+
+
+def check_mesh_target(path: PathLike) -> None:
+    """Raise now what writing a mesh to `path` would raise later, see `check_target`."""
+    check_target(path, MESH_SUFFIXES)
+    if known_suffix(path, MESH_SUFFIXES) == ".glb":
+        check_extra("trimesh", "trimesh", PURPOSE)
 
 
 def check_fields(path: PathLike, fields: Sequence[str]) -> None:

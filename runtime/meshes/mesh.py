@@ -198,6 +198,8 @@ class Mesh:
             - `.stl`: binary, float32; triangles alone.
             - `.vtk`, `.vtu`: VTK's unstructured grid with normals, u, v and `sample_index`.
             - `.vtp`: VTK's PolyData with normals, uv and `sample_index`.
+            - `.glb`: binary glTF with normals, float32; needs the extra `trimesh`. Coordinates stay
+              as they are, while viewers show y upwards.
 
         Raises
         ------
@@ -205,8 +207,11 @@ class Mesh:
             If the suffix is none of these.
         FileError
             If the file cannot be written.
+        MissingExtraError
+            For a `.glb` file without the extra `trimesh`.
         InputError
-            If the mesh has no triangles, or more vertices than a `.ply` file can number.
+            If the mesh has no triangles, more vertices than a `.ply` file can number, or larger
+            coordinates than a `.glb` file can hold.
 
         Examples
         --------

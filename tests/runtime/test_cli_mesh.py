@@ -31,6 +31,14 @@ def test_a_mesh_is_written(suffix: str, capsys: pytest.CaptureFixture[str]) -> N
     assert mesh.n_cells == int(found[2]) == 2 * int(found[1])
 
 
+def test_a_missing_library_is_told_at_once(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    assert main(["mesh", "torus", "-o", "torus.glb"]) == cli.FAILED
+    assert 'run: pip install "gaussmap[trimesh]"' in capsys.readouterr().err
+
+
 def test_normals_of_a_part(capsys: pytest.CaptureFixture[str]) -> None:
     normals = gm.icosphere(16)
     np.save("cap.npy", normals[normals[:, 2] > 0.9])
@@ -57,7 +65,7 @@ def test_quiet(capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["torus", "-o", "torus.npz"], "use one of .ply, .obj, .stl, .vtk, .vtu, .vtp"),
+        (["torus", "-o", "torus.npz"], "use one of .ply, .obj, .stl, .vtk, .vtu, .vtp, .glb"),
         (["torus", "-o", "no/torus.ply"], "create the folder first"),
         (["torus", *FEW, "--deviation", "0", "-o", "a.ply"], "angle must lie between 0 and 180"),
         (["torus", "--deviation", "wide", "-o", "torus.ply"], "it must be a number, not 'wide'"),

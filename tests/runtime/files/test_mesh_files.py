@@ -93,7 +93,7 @@ def test_vtk_reads_every_bit(tmp_path, suffix):
         assert again.point_data.active_normals_name == "normals"
 
 
-@pytest.mark.parametrize("suffix", MESH_SUFFIXES)
+@pytest.mark.parametrize("suffix", [x for x in MESH_SUFFIXES if x != ".glb"])
 def test_large_numbers_warn_of_nothing(tmp_path, suffix):
     mesh = noise(100)
     huge = gm.Mesh(mesh.vertices * 1e270, mesh.normals, mesh.uv, mesh.triangles, mesh.sample_index)

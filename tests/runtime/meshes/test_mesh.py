@@ -14,6 +14,7 @@ import pytest
 from gaussmap.runtime.files.formats import MESH_SUFFIXES
 
 EACH = pytest.mark.parametrize("suffix", MESH_SUFFIXES)
+OWN = [x for x in MESH_SUFFIXES if x != ".glb"]  # without further libraries
 CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
 
 
@@ -114,7 +115,7 @@ class TestMesh:
 
 
 class TestFiles:
-    @EACH
+    @pytest.mark.parametrize("suffix", OWN)
     def test_pyvista_reads_triangles(self, tmp_path, suffix):
         pv = pytest.importorskip("pyvista")
         mesh, path = square(), tmp_path / f"square{suffix}"
@@ -196,8 +197,27 @@ class TestFiles:
             empty.write(tmp_path / "square.ply")
         assert not list(Path(tmp_path).iterdir())
 
-    @EACH
-    def test_no_format_needs_another_library(self, tmp_path, suffix, monkeypatch):
+    def test_trimesh_reads_gltf_with_normals(self, tmp_path):
+        trimesh = pytest.importorskip("trimesh")
+        mesh = gm.sample("torus", 200, cells=(16, 16)).mesh()
+        mesh.write(tmp_path / "torus.glb")
+        (again,) = trimesh.load_scene(tmp_path / "torus.glb", process=False).geometry.values()
+        np.testing.assert_array_equal(again.faces, mesh.triangles)
+        np.testing.assert_array_equal(again.vertices, mesh.vertices.astype(np.float32))
+        np.testing.assert_allclose(again.vertex_normals, mesh.normals, atol=2e-7)
+        assert again.is_watertight
+
+    def test_gltf_needs_trimesh_and_single_precision(self, tmp_path, monkeypatch):
+        huge = square(vertices=CORNERS * 1e39)
+        with pytest.raises(gm.errors.InputError, match="single precision, for which"):
+            huge.write(tmp_path / "a.glb")
+        monkeypatch.setitem(sys.modules, "trimesh", None)
+        with pytest.raises(gm.errors.MissingExtraError, match=r"gaussmap\[trimesh\]"):
+            square().write(tmp_path / "a.glb")
+        assert not list(Path(tmp_path).iterdir())
+
+    @pytest.mark.parametrize("suffix", OWN)
+    def test_no_other_format_needs_another_library(self, tmp_path, suffix, monkeypatch):
         for library in ("pyvista", "vtkmodules", "trimesh", "meshio"):
             monkeypatch.setitem(sys.modules, library, None)
         square().write(tmp_path / f"square{suffix}")
