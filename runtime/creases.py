@@ -1,6 +1,8 @@
-"""Lines of a NURBS surface where its normal turns, and whether its ends meet smoothly.
+"""Lines of a NURBS surface where it is not smooth, and whether its ends meet smoothly.
 
 Both are measured: a knot may be multiple where the surface is smooth, as in a circle of four arcs.
+A line is smooth if normals do not turn there, and the tangent across it does not change its length
+so much that a spline would fold.
 """
 
 from __future__ import annotations
@@ -17,6 +19,8 @@ Array = NDArray[np.float64]
 
 # Degrees: a line where normals turn by less is no crease. Data for CAD are this smooth at best.
 CREASE_ANGLE = 0.1
+# The spline of a surface whose x_u jumps from 1 to this length has no folds, but it has from 5 on.
+LARGEST_JUMP = 3.0
 # A normal is that of a place beside the line, as far as this part of a knot span, where |x_u × x_v|
 # on the line is below this part of the largest |x_u| |x_v|: there x_u or x_v vanishes.
 BESIDE, SINGULAR = 1e-4, 1e-9
@@ -25,10 +29,14 @@ SAME_POINT = 1e-12
 
 
 def creases(nurbs: Nurbs) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Return the values of u, and those of v, inside the domain where the normal turns."""
+    """Return the values of u, and those of v, inside the domain where it is not smooth."""
+
+    def is_crease(axis: int, t: float) -> bool:
+        turning, jump = _turning(nurbs, axis, t, t), _jump(nurbs, axis, t, t)
+        return turning > CREASE_ANGLE or jump > LARGEST_JUMP
+
     lines_u, lines_v = (
-        tuple(t for t in _candidates(nurbs, axis) if _turning(nurbs, axis, t, t) > CREASE_ANGLE)
-        for axis in (0, 1)
+        tuple(t for t in _candidates(nurbs, axis) if is_crease(axis, t)) for axis in (0, 1)
     )
     return lines_u, lines_v
 
@@ -41,7 +49,8 @@ def smoothly_closed(nurbs: Nurbs, axis: int) -> bool:
         return False
     if (np.einsum("ij,ij->i", first[:, 1 + axis], last[:, 1 + axis]) < 0.0).any():
         return False  # a fold, with one normal from both sides
-    return _turning(nurbs, axis, high, low) <= CREASE_ANGLE
+    turning, jump = _turning(nurbs, axis, high, low), _jump(nurbs, axis, high, low)
+    return turning <= CREASE_ANGLE and jump <= LARGEST_JUMP
 
 
 def _candidates(nurbs: Nurbs, axis: int) -> list[float]:
@@ -75,10 +84,29 @@ def _turning(nurbs: Nurbs, axis: int, below: float, above: float) -> float:
     return float(np.degrees(2.0 * np.arcsin(min(known.max() / 2.0, 1.0))))
 
 
+def _jump(nurbs: Nurbs, axis: int, below: float, above: float) -> float:
+    """Return the largest ratio of the lengths of x_u, or x_v, below a line and above it.
+
+    Where both vanish, relative to other places, it counts as 1.
+    """
+    low, high = nurbs.domain[axis]
+    first, second = (
+        np.linalg.norm(_jets_along(_part(nurbs, axis, part), axis, t)[:, 1 + axis], axis=1)
+        for part, t in (((low, below), below), ((above, high), above))
+    )
+    least = SINGULAR * float(max(first.max(), second.max()))
+    first, second = np.maximum(first, least), np.maximum(second, least)
+    return float(np.maximum(first / second, second / first).max()) if least > 0.0 else 1.0
+
+
+def _part(nurbs: Nurbs, axis: int, part: tuple[float, float]) -> Nurbs:
+    """Return the surface over a part of the domain of u (axis 0) or v (axis 1)."""
+    return nurbs.restricted((part, nurbs.domain[1]) if axis == 0 else (nurbs.domain[0], part))
+
+
 def _normals_along(nurbs: Nurbs, axis: int, part: tuple[float, float], end: int) -> Array:
     """Return unit normals (k, 3) at one end of a part of the domain, from inside that part."""
-    domain = (part, nurbs.domain[1]) if axis == 0 else (nurbs.domain[0], part)
-    inside = nurbs.restricted(domain)
+    inside = _part(nurbs, axis, part)
     jets = _jets_along(inside, axis, part[end])
     normals = np.cross(jets[:, 1], jets[:, 2])
     lengths = np.linalg.norm(normals, axis=1)

@@ -27,7 +27,7 @@ class Nurbs(Differentiable):
     `points` are (m, n, 3), or (m, n, 4) if they are w x, w y, w z, w; they are relative to `centre`
     (3,), so that a surface far from the origin keeps its digits. At the ends of the domain, which
     may be lines where the surface is not smooth, it is evaluated from inside. `creases` are the
-    values of u, and those of v, inside the domain where its normal turns.
+    values of u, and those of v, inside the domain where it is not smooth.
     """
 
     degrees: tuple[int, int]

@@ -311,8 +311,8 @@ class Surface:
         """Make a surface of a NURBS: of its numbers, or of a surface of geomdl or Splipy.
 
         The domain is [U[p], U[m]] × [V[q], V[n]] for knots U, V, as usual. Where the two ends of a
-        parameter are one line and the surface is smooth across it, to 0.1°, it is periodic. The
-        lines where its normal turns by more than 0.1° cut it into `pieces`.
+        parameter are one line and the surface is smooth across it, it is periodic. Lines where it
+        is not smooth cut it into `pieces`.
 
         Parameters
         ----------
@@ -376,7 +376,8 @@ class Surface:
         """Return the smooth pieces of the surface: rectangles of its parameters.
 
         A NURBS is cut along the lines u = const and v = const where its normal turns by more than
-        0.1° somewhere. Each piece is evaluated from inside on these lines.
+        0.1° somewhere, or the tangent across the line changes its length more than threefold, so
+        that a spline would fold. Each piece is evaluated from inside on these lines.
 
         Returns
         -------

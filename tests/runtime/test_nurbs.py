@@ -271,6 +271,14 @@ def test_control_points_that_coincide_make_an_edge_on_a_simple_knot():
     assert extruded(straight, 3, knots).function.creases == ((), ())
 
 
+@pytest.mark.parametrize(("speed", "pieces"), [(2.9, 1), (3.1, 2)])
+def test_a_tangent_that_changes_its_length(speed, pieces):
+    """The surface is a plane, and a spline of it would fold from a factor of 5 on."""
+    assert len(extruded([(0, 0), (1, 0), (1 + speed, 0)]).pieces()) == pieces
+    closed = [(0, 0), (2, 0), (2, 1), (-1, 1), (-1, 0), (-1 + 1 / speed, 0), (0, 0)]
+    assert (extruded(closed).boundary[0] == ("open", "open")) == (2.0 > 3.0 * (1 - 1 / speed))
+
+
 def test_a_crease_on_a_part_of_a_line_is_found():
     """A bilinear net, flat but for one corner."""
     x, y = np.meshgrid([0.0, 1.0, 2.0], np.arange(5.0), indexing="ij")
