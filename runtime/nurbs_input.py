@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +11,7 @@ from .checks import real_array, whole_number
 from .errors import InputError, shown
 from .nurbs import Nurbs
 
-__all__ = ["MOST_DEGREE", "nurbs_of_arrays", "nurbs_of_object"]
+__all__ = ["MOST_DEGREE", "nurbs_of"]
 
 Array = NDArray[np.float64]
 
@@ -29,14 +28,24 @@ class Definition(NamedTuple):
     weights: Any
 
 
+def nurbs_of(degrees: Any, knots: Any, control_points: Any, weights: Any) -> Nurbs:  # noqa: ANN401
+    """Return the NURBS surface of numbers, or of an object in the place of the degrees.
+
+    Raises InputError if they do not define one.
+    """
+    if knots is None and control_points is None and weights is None:
+        return nurbs_of_arrays(*_definition_of(degrees))
+    return nurbs_of_arrays(degrees, knots, control_points, weights)
+
+
 # --- arrays ---------------------------------------------------------------------------------------
 
 
 def nurbs_of_arrays(
-    degrees: Sequence[int],
-    knots: Sequence[ArrayLike],
-    control_points: ArrayLike,
-    weights: ArrayLike | None,
+    degrees: Any,  # noqa: ANN401 - what a user gives
+    knots: Any,  # noqa: ANN401
+    control_points: Any,  # noqa: ANN401
+    weights: Any,  # noqa: ANN401
 ) -> Nurbs:
     """Return the NURBS surface of these numbers; InputError if they do not define one."""
     p, q = (_degree(x, name) for x, name in zip(_pair(degrees, "degrees"), "uv", strict=True))
@@ -148,21 +157,19 @@ def _weights(values: ArrayLike, shape: tuple[int, ...]) -> Array:
 # --- objects --------------------------------------------------------------------------------------
 
 
-def nurbs_of_object(value: object) -> Nurbs:
-    """Return the NURBS surface of a surface of geomdl or Splipy, which are told by their names.
+def _definition_of(value: object) -> Definition:
+    """Return what defines a surface of geomdl or Splipy, known by the names of its attributes.
 
     Raises InputError for other objects, and for what cannot be taken over.
     """
     if _has(value, "degree_u", "degree_v", "knotvector_u", "knotvector_v", "ctrlpts"):
-        definition = _of_geomdl(value)
-    elif _has(value, "bases", "controlpoints", "rational"):
-        definition = _of_splipy(value)
-    else:
-        raise InputError(
-            f"from_nurbs takes degrees, knots and control_points, or one surface of geomdl or "
-            f"Splipy, not {shown(value)}."
-        )
-    return nurbs_of_arrays(*definition)
+        return _of_geomdl(value)
+    if _has(value, "bases", "controlpoints", "rational"):
+        return _of_splipy(value)
+    raise InputError(
+        f"from_nurbs takes degrees, knots and control_points, or one surface of geomdl or "
+        f"Splipy, not {shown(value)}."
+    )
 
 
 def _has(value: object, *names: str) -> bool:

@@ -87,19 +87,19 @@ def sample_pieces(
     reports = [samples.report for samples, _ in parts]
     report = _report(surface.name, reports, law.areas[places], len(searched), arrays)
     known = surface if report.on == "surface" else None
-    return Samples(**arrays, report=report, surface=known), searched
+    return Samples(**arrays, report=report, spline=None, surface=known, offset_of=None), searched
 
 
 def _amounts(law: Law, sampler: Sampler) -> dict[int, Request]:
     """Return the requests of the pieces that are to have samples, by their numbers."""
     request, real = law.request, law.areas > 0.0
     if request.count is None:
-        return {int(k): request for k in np.flatnonzero(real)}
+        return dict.fromkeys(np.flatnonzero(real).tolist(), request)
     least = None
     if request.coverage is not None:
         alone = replace(request, count=None, density="uniform", relax=0)
         least = np.zeros(len(real), dtype=np.int64)
-        for k in np.flatnonzero(real):
+        for k in np.flatnonzero(real).tolist():
             least[k] = len(sampler(law.splines[k], alone, 0.0)[0])
     counts = law.counts(request.count, least)
     return {k: replace(request, count=count) for k, count in enumerate(counts.tolist()) if count}
@@ -133,10 +133,10 @@ def _report(
     def values(field: str) -> list[Any]:
         return [getattr(x, field) for x in reports]
 
-    def mean(numbers: Sequence[float | None], power: float) -> float | None:
-        if None in numbers:
+    def mean(field: str, power: float) -> float | None:
+        if not known[field]:
             return None
-        powers = np.array(numbers, dtype=np.float64) ** power
+        powers = np.array(values(field), dtype=np.float64) ** power
         return float((areas * powers).sum() / areas.sum()) ** (1.0 / power)
 
     known = {x.name: None not in values(x.name) for x in fields(SamplingReport)}
@@ -145,8 +145,8 @@ def _report(
         surface=name,
         normals=normals,
         samples=len(next(iter(arrays.values()))),
-        developable_share=mean(values("developable_share"), 1.0),
-        fit_rms=mean(values("fit_rms"), 2.0),
+        developable_share=mean("developable_share", 1.0),
+        fit_rms=mean("fit_rms", 2.0),
         infinite_curvatures=count_infinite(arrays),
         unrefined=count_unrefined(arrays),
         **{x: sum(values(x)) if known[x] else None for x in SUMS},

@@ -359,12 +359,9 @@ class Surface:
 
         """
         from .creases import creases, smoothly_closed
-        from .nurbs_input import nurbs_of_arrays, nurbs_of_object
+        from .nurbs_input import nurbs_of
 
-        if knots is None and control_points is None and weights is None:
-            nurbs = nurbs_of_object(degrees)
-        else:
-            nurbs = nurbs_of_arrays(degrees, knots, control_points, weights)
+        nurbs = nurbs_of(degrees, knots, control_points, weights)
         if periodic is None:
             periodic = smoothly_closed(nurbs, 0), smoothly_closed(nurbs, 1)
         boundary = checked_boundary(periodic)

@@ -77,7 +77,7 @@ class Law:
         if self.request.density not in ("gauss", "balanced"):
             return self._integrals(self.floor)
         seen = np.zeros(len(self.splines))
-        for k in np.flatnonzero(self.areas):
+        for k in np.flatnonzero(self.areas).tolist():
             seen[k] = self._seen(self.splines[k], count)
         if self.request.density == "gauss":
             return seen
@@ -87,7 +87,7 @@ class Law:
     def _integrals(self, floor: float) -> Array:
         """Return the integrals of the target density over the pieces, with a floor."""
         order, values = self._order, floor * self.areas
-        for k in np.flatnonzero(self.areas):
+        for k in np.flatnonzero(self.areas).tolist():
             sizing = self._sizings[k]
             if self._by_power and self._seen(sizing.spline, 0) == 0.0:
                 continue  # its curvature is rounding
