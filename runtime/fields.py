@@ -51,6 +51,7 @@ FLOAT_NAMES: tuple[str, ...] = tuple(name for name in ARRAY_NAMES if name not in
 DERIVED: dict[str, tuple[str, ...]] = {
     "elliptic": ("gaussian_curvature",),
     "hyperbolic": ("gaussian_curvature",),
+    "parabolic": ("gaussian_curvature",),
     "kind": ("normal_index",),
     "principal_curvatures": ("gaussian_curvature", "mean_curvature"),
 }

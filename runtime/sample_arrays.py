@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from .checks import checked_array, checked_rows
 from .errors import InputError, MissingFieldError
 from .fields import COLUMNS, DERIVED, FLAG_NAMES, FLOAT_NAMES, dtype_of, row_shape
+from .kinds import is_parabolic
 from .offset_of import OffsetOf
 from .report import SamplingReport, common_report
 from .spline import Spline
@@ -177,8 +178,27 @@ class SampleArrays:
 
     @property
     def elliptic(self) -> NDArray[np.bool_]:
-        """(N,) bool array: where the Gaussian curvature is positive (its sign bit is clear)."""
+        """(N,) bool array: where the Gaussian curvature is positive (its sign bit is clear).
+
+        Elliptic and hyperbolic samples are all samples. So Σ sign K = χ/2 holds for them, and the
+        parabolic ones are among them.
+        """
         return ~self.hyperbolic
+
+    @property
+    def parabolic(self) -> NDArray[np.bool_]:
+        """(N,) bool array: where the Gaussian curvature is zero, up to rounding.
+
+        Its sign says nothing there: on planes, cylinders, and where it changes.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.sample("cylinder", 100, cells=(16, 16)).parabolic.all()
+        np.True_
+
+        """
+        return is_parabolic(self)
 
     @property
     def hyperbolic(self) -> NDArray[np.bool_]:

@@ -49,9 +49,9 @@ class Samples(SampleArrays):
     support : (N,) float64 array
         Support function h = n·x (4), in L.
     gaussian_curvature : (N,) float64 array
-        Gaussian curvature K, in 1/L². Points are hyperbolic where its sign bit is set, so −0.0
-        counts as hyperbolic. On surfaces smaller than 1e-154 it may be infinite, on those larger
-        than 1e154 zero: float64 does not hold it.
+        Gaussian curvature K, in 1/L². Points are hyperbolic where its sign bit is set, −0.0
+        included; those where it is zero up to rounding are `parabolic`, too. On surfaces smaller
+        than 1e-154 it may be infinite, on those larger than 1e154 zero: float64 does not hold it.
     mean_curvature : (N,) float64 array
         Mean curvature H, in 1/L, positive for a sphere with outward normals.
     normal_index : (N,) int64 array

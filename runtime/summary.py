@@ -33,8 +33,8 @@ def summary_of(samples: Samples) -> str:
     if report.unrefined:
         line += f"; {report.unrefined:,} samples could not be moved to the surface"
     if report.apexes:
-        sides = "a side" if report.apexes == 1 else f"{report.apexes} sides"
-        line += f"; {sides} of the domain: one point, where the surface is not smooth (an apex)"
+        sides, verb = ("a side", "is") if report.apexes == 1 else (f"{report.apexes} sides", "are")
+        line += f"; {sides} of the domain {verb} one point, and no pole"
     return line + _infinite(samples)
 
 
@@ -85,8 +85,14 @@ def _infinite(samples: Samples) -> str:
 
 
 def kinds_of_points(samples: Samples) -> str:
-    """Return the numbers of elliptic and hyperbolic points, or which fields there are."""
+    """Return the numbers of points of each kind, or which fields there are.
+
+    Parabolic points are counted as such, and not by the sign bit of K.
+    """
     if "gaussian_curvature" not in samples.fields:
         return f" ({', '.join(samples.fields)} only)"
-    hyperbolic = int(np.count_nonzero(samples.hyperbolic))
-    return f": {len(samples) - hyperbolic:,} elliptic, {hyperbolic:,} hyperbolic"
+    parabolic, negative = samples.parabolic, samples.hyperbolic
+    zero, hyperbolic = (int(np.count_nonzero(x)) for x in (parabolic, negative & ~parabolic))
+    elliptic = len(samples) - hyperbolic - zero
+    text = f": {elliptic:,} elliptic, {hyperbolic:,} hyperbolic"
+    return f"{text}, {zero:,} parabolic" if zero else text

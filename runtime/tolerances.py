@@ -13,6 +13,7 @@ __all__ = [
     "CUBIC_ERROR",
     "CURVATURE_ERROR",
     "DATA_ERROR",
+    "DERIVATIVE_ERROR",
     "DIFFERENCE_ERROR",
     "DOUBLE_ROOT",
     "FLAT_SURFACE",
@@ -24,6 +25,7 @@ __all__ = [
     "NORMAL_NOISE",
     "NO_AREA",
     "PARAMETER_ERROR",
+    "PATCH_ERROR",
     "QUALITY_GAIN",
     "RADIUS_ERROR",
     "ROTATION_ERROR",
@@ -83,6 +85,11 @@ QUALITY_GAIN = 1e-14
 NO_AREA = 1e-6
 # Of K, H and 1 + 2 d H + d² K relative to their terms, in units of the last place.
 CURVATURE_ERROR = 4.0
+# Of a principal curvature times the diagonal of the bounding box, relative to the rounding of
+# coordinates in units of the diagonal: on a surface that is given by values only (second
+# differences of them), and on a spline, where this is multiplied by the square of its number of
+# cells. Measured on planes, cylinders and cones are 1.3e7 and 40.
+DERIVATIVE_ERROR, PATCH_ERROR = 2.0**26, 2.0**8
 # Of a difference of two coefficients of a planar spline, in units of the last place of the largest
 # coordinate.
 DIFFERENCE_ERROR = 8.0

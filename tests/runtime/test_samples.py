@@ -333,7 +333,7 @@ class TestIndexing:
 class TestText:
     def samples(self) -> Samples:
         K = np.ones(10012)
-        K[:5000] = -0.0
+        K[:5000] = -1.0
         report = SamplingReport("torus", 1234567, 10012, 4, 0.03125, 0)
         return torus(10012, gaussian_curvature=K, report=report)
 
@@ -341,6 +341,13 @@ class TestText:
         assert repr(self.samples()) == (
             "Samples(10,012 points on torus: 5,012 elliptic, 5,000 hyperbolic)"
         )
+
+    def test_repr_of_parabolic_samples(self):
+        """The sign bit makes them elliptic or hyperbolic, and no text says so."""
+        samples = curved([0.0, -0.0, 1e-12, -1e-12, 1e-3, -1e-3], np.ones(6))
+        assert samples.hyperbolic.tolist() == [False, True, False, True, False, True]
+        assert samples.parabolic.tolist() == [True, True, True, True, False, False]
+        assert repr(samples).endswith(": 1 elliptic, 1 hyperbolic, 4 parabolic)")
 
     def test_repr_stays_one_short_line(self):
         samples = torus(report=replace(REPORT, surface="x**2 +\n y**2 " * 20))
