@@ -12,7 +12,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .kernels.refine import CLAMPED, FREE, PERIODIC, Rows, Target, evaluate_jets, newton
+from .kernels.refine import (
+    CLAMPED,
+    FREE,
+    PERIODIC,
+    Box,
+    Rows,
+    Target,
+    begin,
+    evaluate_jets,
+    newton,
+)
 from .pole_charts import PoleChart, pole_charts
 from .spline import Spline
 from .surface import Surface
@@ -25,7 +35,7 @@ Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 Jets = Callable[[Array, Array], Array]
 
-ROWS_AT_A_TIME = 2048
+ROWS_AT_A_TIME = 4096
 # When this part of some rows is left, which need more steps than the others, they are left for the
 # end, when there are more of their kind.
 FEW = 1 / 32
@@ -34,51 +44,45 @@ MOST_STEPS = 32
 
 @dataclass(frozen=True, eq=False)
 class Parameters:
-    """Two parameters of a surface: its 2-jets, and what happens at the ends of the parameters.
+    """Two parameters of a surface: the 2-jets, and what happens at the ends of the parameters.
 
-    `cell` (2,) is the size of a cell, `box` (4,) the ends of both parameters, and `kinds` (2,) what
-    a parameter does there. `size` times the surface has cells of about the size 1.
+    `size` times the surface has cells of about the size 1.
     """
 
     jets: Jets
-    cell: Array
-    box: Array
-    kinds: NDArray[np.int64]
+    box: Box
     size: float
 
     @classmethod
     def of_domain(cls, surface: Surface, spline: Spline) -> Parameters:
         """Return the parameters u and v."""
-        kinds = [PERIODIC if ends[0] == "periodic" else CLAMPED for ends in surface.boundary]
-        box = np.array(surface.domain).ravel()
-        return cls(surface.jets, spline.frame[2:].copy(), box, np.array(kinds), spline.scale)
+        (u0, u1), (v0, v1) = surface.domain
+        along_u, along_v = (
+            PERIODIC if ends[0] == "periodic" else CLAMPED for ends in surface.boundary
+        )
+        _, _, du, dv = spline.frame.tolist()
+        box = Box((u0, u1, v0, v1), (along_u, along_v), (du, dv))
+        return cls(surface.jets, box, spline.scale)
 
     @classmethod
     def of_chart(cls, chart: PoleChart, spline: Spline) -> Parameters:
-        """Return s and t of a chart at a pole, which have no ends but the rounding of u and v."""
+        """Return s and t of a chart at a pole; they have no ends, but the rounding of u and v."""
         largest = max(abs(chart.end), abs(chart.other))
-        box = np.array([-largest, largest, -largest, largest])
-        cell, kinds = np.full(2, chart.cell), np.full(2, FREE)
-        return cls(chart.jets, cell, box, kinds, spline.scale)
+        ends = (-largest, largest, -largest, largest)
+        return cls(chart.jets, Box(ends, (FREE, FREE), (chart.cell, chart.cell)), spline.scale)
 
     def solve(self, target: Target, numbers: Numbers, few: int) -> Numbers:
         """Move rows from target.uv on; return the numbers of the last ones, at most `few`."""
-        count, shape = len(numbers), target.uv.shape
-        place = np.ascontiguousarray(target.uv[numbers].T)
-        for axis in range(2):
-            if self.kinds[axis] != FREE:
-                np.clip(place[axis], *self.box[2 * axis :][:2], out=place[axis])
-        least = np.full(len(target.uv), np.inf)
-        rows = Rows(numbers.copy(), place, np.zeros(shape), np.zeros(shape), least)
+        count, rows = len(numbers), Rows.new(numbers)
+        begin(target.uv, count, rows, self.box)
         for _ in range(MOST_STEPS):
             if count <= few:
-                return rows.numbers[:count]
-            jets = self.jets(place[0, :count], place[1, :count])
+                return numbers[:count]
+            jets = self.jets(rows.place[0, :count], rows.place[1, :count])
             count = newton(
-                jets, count, rows, target, self.cell, self.box, self.kinds, self.size,
-                NORMAL_ERROR**2, NORMAL_NOISE**2,
-            )  # fmt: skip
-        return rows.numbers[:0]
+                jets, count, rows, target, self.box, self.size, NORMAL_ERROR**2, NORMAL_NOISE**2
+            )
+        return numbers[:0]
 
 
 def refine(

@@ -16,12 +16,14 @@ import sympy as sp
 
 from .formula import Formula
 from .notation import Cross, Dot, scalar, substitute, vectors
-from .patch import FORM_TERMS, SOLUTION, VECTORS, A, B, C, P, Q, a, b, c, d, e, n
+from .patch import FORM_TERMS, SOLUTION, VECTORS, A, B, C, D, P, Q, a, b, c, d, e, n, r
 
 __all__ = ["AT_JET", "FORMULAS"]
 
 N = vectors("N")[0]
-E, F, G, L = (scalar(x) for x in "EFGL")
+E, F, G, L, g = (scalar(x) for x in "EFGLg")
+
+FIRST_FORM = [("E", Dot(d, d)), ("F", Dot(d, e)), ("G", Dot(e, e))]
 
 AT_JET = Formula.build(
     "at_jet",
@@ -32,9 +34,7 @@ AT_JET = Formula.build(
     inputs=VECTORS,
     terms=[
         ("N", Cross(d, e)),
-        ("E", Dot(d, d)),
-        ("F", Dot(d, e)),
-        ("G", Dot(e, e)),
+        *FIRST_FORM,
         ("A", Dot(N, a)),
         ("B", Dot(N, b)),
         ("C", Dot(N, c)),
@@ -51,17 +51,27 @@ AT_JET = Formula.build(
 
 NEWTON = Formula.build(
     "newton",
-    "The step $U/D$, $V/D$ of Newton's method for $P = Q = 0$, the preimage of the unit normal $n$ "
-    "on the patch that osculates the surface. $s$ is the squared sine of the angle between $n$ and "
-    "the normal of the surface, since $n × N = q$, and $m$ has the sign of its cosine.",
+    "The step $u$, $v$ of Newton's method for $P = Q = 0$, the preimage of the unit normal $n$ on "
+    "the patch that osculates the surface; the squared sine $s$ of the angle between $n$ and the "
+    "normal $N$ of the surface, with $n × N = q$, and $m$ with the sign of its cosine; and the "
+    "curvatures of the surface if this angle is 0.",
     inputs=[*VECTORS, n],
-    terms=[*FORM_TERMS, ("q", Q * d - P * e), ("N", Cross(d, e))],
-    outputs=[
+    terms=[
+        *FORM_TERMS,
         ("D", SOLUTION.D),
-        ("U", SOLUTION.U),
-        ("V", SOLUTION.V),
-        ("s", Dot(q, q) / Dot(N, N)),
+        ("r", 1 / D),
+        ("q", Q * d - P * e),
+        ("N", Cross(d, e)),
+        ("g", 1 / Dot(N, N)),
+        *FIRST_FORM,
+    ],
+    outputs=[
+        ("u", SOLUTION.U * r),
+        ("v", SOLUTION.V * r),
+        ("s", Dot(q, q) * g),
         ("m", Dot(n, N)),
+        ("K", D * g),
+        ("H", -(E * C - 2 * F * B + G * A) * g / 2),
     ],
 )
 
@@ -71,7 +81,7 @@ NEWTON = Formula.build(
 # At a pole the parameters are polar coordinates: an angle φ, in place of u, and the distance r from
 # the pole, in place of v. The surface is smooth in s = r cos φ, t = r sin φ.
 
-r, x, y = scalar("r"), scalar("x"), scalar("y")
+x, y = scalar("x"), scalar("y")
 # The orders of the derivatives, by u or s and by v or t, that the vectors of a 2-jet are.
 ORDERS = ((2, 0), (1, 1), (0, 2), (1, 0), (0, 1))
 

@@ -14,18 +14,20 @@ from numpy.typing import NDArray
 
 from ...generated.jet import at_jet, at_pole, polar_chart
 from ...generated.jet import newton as newton_of_jet
-from ...generated.patch import tangents
+from ...generated.patch import envelope, tangents
 from ...generated.vectors import Patch, Vector
 from ..tolerances import VANISHING
-from .jit import inline, jit, loop
+from .jit import inline, jit
 from .vectors import dot, row_vector, set_row
 
 __all__ = [
     "CLAMPED",
     "FREE",
     "PERIODIC",
+    "Box",
     "Rows",
     "Target",
+    "begin",
     "chart_jets",
     "evaluate_jets",
     "jet_of_pole",
@@ -38,6 +40,10 @@ FREE, CLAMPED, PERIODIC = 0, 1, 2
 # In cells of the spline: the length of a step, and of all steps together. What is farther away
 # belongs to another sample.
 LONGEST_STEP, FARTHEST = 1.0, 3.0
+# A step of at most this length (in cells) after which the angle will be small enough, because
+# convergence is quadratic, is the last one: the error of a point is the third power of it. The
+# angle is at most 1e-8 then, which is the error of curvatures, relative to their change per radian.
+LAST_STEP, CLOSE, SAFETY = 1e-5, 1e-16, 1e-2
 # The part of a step that is taken back if the angle does not get smaller by it.
 TAKEN_BACK = 0.5
 # A squared sine that does not get smaller than this part of the last one does not converge.
@@ -48,15 +54,20 @@ OPPOSITE = 4.0  # in place of the squared sine of angles above 90 degrees
 class Rows(NamedTuple):
     """The rows that are not finished: their `numbers` (n,), and the parameters (2, n) of each.
 
-    By the numbers of rows, in cells of the spline: the last `step` (n, 2), and all steps `gone`
-    (n, 2) together; and the squared sine (n,) of the smallest angle so far.
+    In cells of the spline, `steps` (4, n) are the last step and all steps together; `least` (n,) is
+    the squared sine of the smallest angle so far.
     """
 
     numbers: NDArray[np.int64]
     place: NDArray[np.float64]
-    step: NDArray[np.float64]
-    gone: NDArray[np.float64]
+    steps: NDArray[np.float64]
     least: NDArray[np.float64]
+
+    @classmethod
+    def new(cls, numbers: NDArray[np.int64]) -> Rows:
+        """Return room for the state of rows with some numbers."""
+        count = len(numbers)
+        return cls(numbers, np.empty((2, count)), np.empty((4, count)), np.empty(count))
 
 
 class Target(NamedTuple):
@@ -69,6 +80,14 @@ class Target(NamedTuple):
     gaussian: NDArray[np.float64]
     mean: NDArray[np.float64]
     found: NDArray[np.bool_]
+
+
+class Box(NamedTuple):
+    """The ends of the two parameters, what they do there, and the size of a cell of the spline."""
+
+    ends: tuple[float, float, float, float]
+    kinds: tuple[int, int]
+    cell: tuple[float, float]
 
 
 @inline
@@ -88,14 +107,13 @@ def patch_of_jet(jets, k, size, du, dv):
         jet_vector(jets, k, 5, along_v * dv),
         jet_vector(jets, k, 1, along_u),
         jet_vector(jets, k, 2, along_v),
-        jet_vector(jets, k, 0, 1.0),
+        jet_vector(jets, k, 0, size),
     )
 
 
 @inline
-def after_step(value, step, low, high, kind):
-    """Return a parameter after a step, inside its interval."""
-    value += step
+def inside(value, low, high, kind):
+    """Return a parameter of the interval: the same, that of the same points, or the nearest."""
     if kind == PERIODIC:
         if value < low:
             value += high - low
@@ -104,69 +122,119 @@ def after_step(value, step, low, high, kind):
     return value if kind == FREE else min(max(value, low), high)
 
 
-@loop
-def store(target, row, patch, u, v, size):
-    """Write the sample at (u, v), unless it has no curvature, or one of the wrong sign."""
-    _, _, K, H = at_jet(patch)
-    if not target.signs[row] * K >= 0.0 or not abs(K) < math.inf:
-        return
-    target.uv[row, 0] = u
-    target.uv[row, 1] = v
-    set_row(target.points, row, patch.p)
-    target.gaussian[row] = K * size * size
-    target.mean[row] = H * size
-    target.found[row] = True
+@inline
+def within(value, low, high, kind):
+    """Say whether a parameter does not cross an end."""
+    return kind != CLAMPED or low <= value <= high
+
+
+@inline
+def is_last(s, t, sine, least, tolerance):
+    """Say whether a step is the last one, because convergence is quadratic.
+
+    After it the squared sine will be about sine³/least², as it was sine after least.
+    """
+    converges = sine * sine * sine <= SAFETY * tolerance * least * least
+    return sine <= CLOSE and converges and s * s + t * t <= LAST_STEP * LAST_STEP
 
 
 @jit
-def newton(jets, count, rows, target, frame, box, kinds, size, tolerance, noise):
+def begin(uv, count, rows, box):
+    """Write the parameters and the state of the first `count` rows before their first step."""
+    u0, u1, v0, v1 = box.ends
+    for at in range(count):
+        k = np.uint64(at)
+        row = np.uint64(rows.numbers[k])
+        rows.place[0, k] = inside(uv[row, 0], u0, u1, box.kinds[0])
+        rows.place[1, k] = inside(uv[row, 1], v0, v1, box.kinds[1])
+        for i in range(4):
+            rows.steps[np.uint64(i), k] = 0.0
+        rows.least[k] = math.inf
+
+
+@inline
+def store(target, row, patch, s, t, u, v, K, H, size):
+    """Write the sample at (u, v), s and t away, unless K is not finite or has the wrong sign."""
+    if target.signs[row] * K >= 0.0 and abs(K) < math.inf:
+        x = envelope(patch, s, t)
+        unit = 1.0 / size
+        target.uv[row, 0] = u
+        target.uv[row, 1] = v
+        set_row(target.points, row, Vector(x.x * unit, x.y * unit, x.z * unit))
+        target.gaussian[row] = K * size * size
+        target.mean[row] = H * size
+        target.found[row] = True
+
+
+@inline
+def keep(rows, left, row, u, v, s, t, gone_u, gone_v, least):
+    """Write the state of a row that is not finished; it becomes number `left`."""
+    at = np.uint64(left)
+    rows.numbers[at] = row
+    rows.place[0, at] = u
+    rows.place[1, at] = v
+    rows.steps[0, at] = s
+    rows.steps[1, at] = t
+    rows.steps[2, at] = gone_u
+    rows.steps[3, at] = gone_v
+    rows.least[at] = least
+
+
+@jit
+def newton(jets, count, rows, target, box, size, tolerance, noise):
     """Finish the first `count` rows or move them by a step; return how many are left.
 
     A row is finished where the squared sine of the angle between its normal and that of the surface
-    is at most `tolerance`, or where it is below `noise` and does not get smaller. `frame` = (du,
-    dv) is the size of a cell, `box` = (u0, u1, v0, v1) the domain. `size` times the surface has
-    cells of about the size 1.
+    is at most `tolerance`, or where it is below `noise` and does not get smaller. `size`, a power
+    of two, times the surface has cells of about the size 1.
     """
-    du, dv = frame
+    u0, u1, v0, v1 = box.ends
+    du, dv = box.cell
     # Of the parameters, in cells: shorter steps change nothing.
-    rounding_u = 2.0**-51 * max(abs(box[0]), abs(box[1])) / du
-    rounding_v = 2.0**-51 * max(abs(box[2]), abs(box[3])) / dv
+    rounding_u = 2.0**-51 * max(abs(u0), abs(u1)) / du
+    rounding_v = 2.0**-51 * max(abs(v0), abs(v1)) / dv
     left = 0
-    for k in range(count):
-        row = rows.numbers[k]
-        u, v = rows.place[0, k], rows.place[1, k]
+    for at in range(count):
+        k = np.uint64(at)
+        row = np.uint64(rows.numbers[k])
+        u, v, least = rows.place[0, k], rows.place[1, k], rows.least[k]
         patch = patch_of_jet(jets, k, size, du, dv)
-        D, U, V, sine, cosine = newton_of_jet(patch, row_vector(target.normals, row))
-        least = rows.least[row]
+        s, t, sine, cosine, K, H = newton_of_jet(patch, row_vector(target.normals, row))
         if not cosine > 0.0:
             sine = OPPOSITE
-        if sine <= tolerance or (sine <= noise and sine > SLOW * least):
-            store(target, row, patch, u, v, size)
+        new_u, new_v = u + s * du, v + t * dv
+        finished = (
+            is_last(s, t, sine, least, tolerance)
+            and within(new_u, u0, u1, box.kinds[0])
+            and within(new_v, v0, v1, box.kinds[1])
+        )
+        if not finished and (
+            sine <= tolerance
+            or (sine <= noise and sine > SLOW * least)
+            or (abs(s) <= rounding_u and abs(t) <= rounding_v and cosine > 0.0)
+        ):
+            finished, s, t = True, 0.0, 0.0
+            new_u, new_v = u, v
+        if finished:
+            new_u = inside(new_u, u0, u1, box.kinds[0])
+            new_v = inside(new_v, v0, v1, box.kinds[1])
+            store(target, row, patch, s, t, new_u, new_v, K, H, size)
             continue
         if sine < least:
-            rows.least[row] = sine
-            s, t = U / D, V / D
-            if abs(s) <= rounding_u and abs(t) <= rounding_v and cosine > 0.0:
-                store(target, row, patch, u, v, size)
-                continue
+            least = sine
             length = math.sqrt(s * s + t * t)
             if length > LONGEST_STEP:
                 s *= LONGEST_STEP / length
                 t *= LONGEST_STEP / length
         else:
-            s, t = -TAKEN_BACK * rows.step[row, 0], -TAKEN_BACK * rows.step[row, 1]
-        new_u = after_step(u, s * du, box[0], box[1], kinds[0])
-        new_v = after_step(v, t * dv, box[2], box[3], kinds[1])
-        rows.step[row, 0] = s
-        rows.step[row, 1] = t
-        rows.gone[row, 0] += s
-        rows.gone[row, 1] += t
-        far = rows.gone[row, 0] ** 2 + rows.gone[row, 1] ** 2
-        # Where there is no number, as U/D for D = 0, no comparison is true.
-        if far <= FARTHEST * FARTHEST and (new_u != u or new_v != v):
-            rows.numbers[left] = row
-            rows.place[0, left] = new_u
-            rows.place[1, left] = new_v
+            s, t = -TAKEN_BACK * rows.steps[0, k], -TAKEN_BACK * rows.steps[1, k]
+        new_u = inside(u + s * du, u0, u1, box.kinds[0])
+        new_v = inside(v + t * dv, v0, v1, box.kinds[1])
+        gone_u, gone_v = rows.steps[2, k] + s, rows.steps[3, k] + t
+        # Where there is no number, as 1/D for D = 0, no comparison is true.
+        near = gone_u * gone_u + gone_v * gone_v <= FARTHEST * FARTHEST
+        if near and (new_u != u or new_v != v):
+            keep(rows, left, row, new_u, new_v, s, t, gone_u, gone_v, least)
             left += 1
     return left
 
