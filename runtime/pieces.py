@@ -30,7 +30,7 @@ Sampler = Callable[[Spline, Request, float], Sampled]
 # Each piece is fitted and searched by itself, which takes 20 ms.
 MOST_PIECES = 2000
 FEWEST_CELLS = 4
-SUMS = ("patches", "developable_patches")
+SUMS = ("patches", "developable_patches", "apexes")
 LARGEST = ("coverage", "angle", "fit_distance", "fit_angle")
 
 

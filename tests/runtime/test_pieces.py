@@ -196,3 +196,22 @@ def test_parts_of_a_count(count, needs, least, parts):
     found = allotted(count, np.array(needs), np.array(least))
     assert found.sum() == count
     assert np.abs(found - parts).max() <= (count == 10 and least == [15, 5])
+
+
+def test_poles_and_apexes_of_pieces():
+    """A cone on a hemisphere: the pole is found, and the apex told."""
+    half = math.radians(45.0)
+    arc = [(0, -1), (math.tan(half), -1), (1, 0)]
+    profile = np.array([*arc, (0.5, 0.5), (0, 1)])
+    points = np.empty((9, 5, 3))
+    points[:, :, :2] = AROUND[:, None] * profile[:, 0, None]
+    points[:, :, 2] = profile[:, 1]
+    weights = CIRCLE_WEIGHTS[:, None] * [1, math.cos(half), 1, 1, 1]
+    knots = CIRCLE_KNOTS, [0, 0, 0, 1, 1, 2, 2, 2]
+    buoy = gm.Surface.from_nurbs((2, 2), knots, points, weights)
+    samples = gm.sample(buoy, 200, cells=CELLS)
+    assert len(samples) == 200
+    assert report_of(samples).apexes == 1
+    areas = 2 * math.pi, math.pi * math.sqrt(2.0)
+    cone = gm.sample(buoy, 400, density="uniform", cells=CELLS).uv[:, 1] > 1.0
+    assert cone.mean() == pytest.approx(areas[1] / sum(areas), rel=0.02)
