@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from .domain import Boundary, BoundaryPair, Domain, Interval
+from .moved import Moved
 from .nurbs import Nurbs
 
 if TYPE_CHECKING:
@@ -18,6 +19,9 @@ __all__ = ["pieces_of"]
 def pieces_of(surface: Surface) -> tuple[Surface, ...]:
     """Return the smooth pieces of a surface; a smooth surface itself."""
     nurbs = surface.function
+    if isinstance(nurbs, Moved):
+        pieces = pieces_of(nurbs.surface)
+        return tuple(_moved(surface, nurbs, x) for x in pieces) if pieces[1:] else (surface,)
     if not isinstance(nurbs, Nurbs) or not any(nurbs.creases):
         return (surface,)
     along_u, along_v = (
@@ -26,6 +30,22 @@ def pieces_of(surface: Surface) -> tuple[Surface, ...]:
     )
     domains = [(u, v) for u in along_u for v in along_v]
     return tuple(_piece(surface, nurbs, k, domain) for k, domain in enumerate(domains))
+
+
+def _moved(surface: Surface, moved: Moved, piece: Surface) -> Surface:
+    """Return the part of a moved surface that is a piece of the surface before."""
+    (low, high), along_v = piece.domain
+    (at_low, at_high), ends_v = piece.boundary
+    if moved.turned:
+        low, high = sum(moved.ends) - high, sum(moved.ends) - low
+        at_low, at_high = at_high, at_low
+    return replace(
+        surface,
+        name=piece.name,
+        function=replace(moved, surface=piece),
+        domain=((low, high), along_v),
+        boundary=((at_low, at_high), ends_v),
+    )
 
 
 def _piece(surface: Surface, nurbs: Nurbs, number: int, domain: Domain) -> Surface:

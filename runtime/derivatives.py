@@ -103,22 +103,23 @@ def moved_inside(u: Array, v: Array, domain: Domain, boundary: Boundary) -> tupl
 
     Beyond open ends, parameters stay what they are.
     """
-    (u0, u1), (v0, v1) = domain
-    (kind_u, _), (low, high) = boundary
-    u, v = u.copy(), v.copy()
-    for end, kind, out in ((v0, low, v < v0), (v1, high, v > v1)):
-        if kind == "pole":  # the opposite meridian
-            u[out] += np.where(u[out] < (u0 + u1) / 2, 0.5, -0.5) * (u1 - u0)
-            v[out] = 2.0 * end - v[out]
-    if kind_u in ("periodic", "mirrored"):
-        odd = _brought_back(u, u0, u1)
-        if kind_u == "mirrored":
-            v[odd] = v0 + v1 - v[odd]
-    if low in ("periodic", "mirrored"):
-        odd = _brought_back(v, v0, v1)
-        if low == "mirrored":
-            u[odd] = u0 + u1 - u[odd]
-    return u, v
+    places = u.copy(), v.copy()
+    for axis in (0, 1):
+        values, others = places[axis], places[1 - axis]
+        low, high = domain[1 - axis]
+        for end, kind, sign in zip(domain[axis], boundary[axis], (-1.0, 1.0), strict=True):
+            out = sign * (values - end) > 0.0
+            if kind == "pole":  # the opposite meridian
+                half = np.where(others[out] < (low + high) / 2, 0.5, -0.5)
+                others[out] += half * (high - low)
+                values[out] = 2.0 * end - values[out]
+    for axis in (0, 1):
+        kind = boundary[axis][0]
+        if kind in ("periodic", "mirrored"):
+            odd = _brought_back(places[axis], *domain[axis])
+            if kind == "mirrored":
+                places[1 - axis][odd] = sum(domain[1 - axis]) - places[1 - axis][odd]
+    return places
 
 
 def _brought_back(values: Array, low: float, high: float) -> NDArray[np.bool_]:

@@ -24,6 +24,9 @@ from .domain import (
 from .errors import InputError, SurfaceError
 from .evaluation import evaluated
 from .jet_functions import jet_function
+from .labels import label
+from .moved import IDENTITY, AffineMap, Moved, affine_map, moved_grid, turned_trim
+from .quasi_interpolant import fit_grid
 from .trim import Trim, trimmed_by
 
 if TYPE_CHECKING:
@@ -103,7 +106,7 @@ class Surface:
         periodic: Sequence[Periodicity] = (False, False),
         *,
         derivatives: Evaluation | None = None,
-        name: str = "surface",
+        name: str | None = None,
     ) -> Surface:
         """Make a surface of a vectorized callable f(u, v) → (..., 3).
 
@@ -122,8 +125,9 @@ class Surface:
             ``derivatives(u, v)`` returns (..., 6, 3): x, x_u, x_v, x_uu, x_uv, x_vv. They are
             compared with numerical ones when they are first used. By default derivatives are
             numerical, see `derivatives`.
-        name : str, default "surface"
-            Label of the surface.
+        name : str, optional
+            Label of the surface. By default the name of f, or "surface" if it has none, with a
+            number from the second surface of that name on: "waves", "waves 2".
 
         Returns
         -------
@@ -154,6 +158,7 @@ class Surface:
                 f"{type(derivatives).__name__} is not."
             )
         ends, assumed = (checked_domain(domain), checked_boundary(periodic)), assumed_ends(periodic)
+        name = label(name, "surface", f)
         return cls(name, f, *ends, derivative_function=derivatives, assumed_open=assumed)
 
     @classmethod
@@ -164,7 +169,7 @@ class Surface:
         domain: Sequence[Sequence[float | str | sympy.Expr]],
         periodic: Sequence[Periodicity] = (False, False),
         *,
-        name: str = "surface",
+        name: str | None = None,
     ) -> Surface:
         """Make a surface of three SymPy expressions, or texts, in two parameters.
 
@@ -182,8 +187,8 @@ class Surface:
             The rectangle of the parameters: numbers, SymPy numbers, or texts such as "2*pi".
         periodic : pair, default (False, False)
             As in `from_callable`.
-        name : str, default "surface"
-            Label of the surface.
+        name : str, optional
+            Label of the surface. By default "surface", then "surface 2", and so on.
 
         Returns
         -------
@@ -212,6 +217,7 @@ class Surface:
 
         f = compiled(position, two_symbols(parameters))
         rectangle, boundary = checked_domain(numbers(domain)), checked_boundary(periodic)
+        name = label(name, "surface")
         return cls(name, f, rectangle, boundary, assumed_open=assumed_ends(periodic))
 
     @classmethod
@@ -222,7 +228,7 @@ class Surface:
         periodic: Sequence[Periodicity] = (False, False),
         *,
         nodata: float | None = None,
-        name: str = "grid",
+        name: str | None = None,
     ) -> Surface:
         """Make a surface of points, or of elevations.
 
@@ -245,8 +251,8 @@ class Surface:
             The number that stands for missing data, such as −9999; NaN and masked entries do so
             anyway. What the spline makes of missing points is left out (see `trim`): up to three
             cells around each.
-        name : str, default "grid"
-            Label of the surface.
+        name : str, optional
+            Label of the surface. By default "grid", then "grid 2", and so on.
 
         Returns
         -------
@@ -279,9 +285,9 @@ class Surface:
         from .grid import points_of_elevations, spline_of_points
         from .missing import known_of_grid, without_nodata
 
+        name, assumed = label(name, "grid"), assumed_ends(periodic)
         array = without_nodata(_grid(points), nodata, name)
         boundary, domain = checked_boundary(periodic), None
-        assumed = assumed_ends(periodic)
         if array.ndim == 2:
             array, domain = points_of_elevations(array, spacing, boundary, name)
             assumed = False, False
@@ -306,7 +312,7 @@ class Surface:
         weights: ArrayLike | None = None,
         *,
         periodic: Sequence[Periodicity] | None = None,
-        name: str = "surface",
+        name: str | None = None,
     ) -> Surface:
         """Make a surface of a NURBS: of its numbers, or of a surface of geomdl or Splipy.
 
@@ -328,8 +334,8 @@ class Surface:
             The positive weights; by default all are 1, and the surface is a B-spline.
         periodic : pair, optional
             As in `from_callable`; by default it is found as described.
-        name : str, default "surface"
-            Label of the surface.
+        name : str, optional
+            Label of the surface. By default "surface", then "surface 2", and so on.
 
         Returns
         -------
@@ -367,7 +373,8 @@ class Surface:
         boundary = checked_boundary(periodic)
         u, v = (ends == ("periodic", "periodic") for ends in boundary)
         nurbs = replace(nurbs, periodic=(u, v), creases=creases(nurbs))
-        return cls(name, nurbs, nurbs.domain, boundary, assumed_open=assumed_ends(periodic))
+        ends, assumed = (nurbs.domain, boundary), assumed_ends(periodic)
+        return cls(label(name, "surface"), nurbs, *ends, assumed_open=assumed)
 
     def pieces(self) -> tuple[Surface, ...]:
         """Return the smooth pieces of the surface: rectangles of its parameters.
@@ -530,6 +537,75 @@ class Surface:
 
         """
         return self._jets(u, v)
+
+    def transformed(self, matrix: ArrayLike) -> Surface:
+        """Return the surface after an affine map: rotated, translated, scaled, mirrored.
+
+        Derivatives are those of this surface after the map, exactly. A reflection also reverses
+        u, u → u0 + u1 - u, so that normals stay on the same side: outward ones stay outward.
+
+        Parameters
+        ----------
+        matrix : (3, 3) or (4, 4) array_like
+            Points x become matrix x. The last row of a 4 × 4 matrix is 0, 0, 0, 1 and its last
+            column a translation.
+
+        Returns
+        -------
+        Surface
+            The surface, with the same name, domain and boundary conditions.
+
+        Raises
+        ------
+        InputError
+            For another shape or last row, NaN or infinity, and a singular matrix.
+        SurfaceError
+            If a surface that was given by points becomes too large or too small for float64.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> import numpy as np
+        >>> mirrored = gm.surfaces.sphere().transformed(np.diag([2.0, 2.0, -2.0]))
+        >>> mirrored.evaluate(0.0, np.pi / 2)
+        array([ 0.,  0., -2.])
+
+        """
+        map_ = affine_map(matrix)
+        return self._moved(map_, map_.reflects)
+
+    def flipped(self) -> Surface:
+        """Return the same points with opposite normals: u is reversed, u → u0 + u1 - u.
+
+        Returns
+        -------
+        Surface
+            The surface, with the same name, domain and boundary conditions.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> import numpy as np
+        >>> sphere = gm.surfaces.sphere()
+        >>> for surface in (sphere, sphere.flipped()):
+        ...     x, x_u, x_v, *_ = surface.derivatives(3.0, 0.25)
+        ...     print(bool(x @ np.cross(x_u, x_v) > 0.0))
+        True
+        False
+
+        """
+        return self._moved(IDENTITY, turned=True)
+
+    def _moved(self, map_: AffineMap, turned: bool) -> Surface:
+        (low, high), along_v = self.boundary
+        boundary = (high, low) if turned else (low, high), along_v
+        trim = turned_trim(self.trim, boundary) if turned and self.trim else self.trim
+        moved = replace(self, boundary=boundary, trim=trim, derivative_function=None)
+        if self.grid is None:
+            return replace(moved, function=Moved.of(self).then(map_, turned))
+        grid = moved_grid(self.grid, boundary, map_, turned)
+        spline = fit_grid(grid, self.domain, boundary, self.name)
+        return replace(moved, function=spline.evaluate, grid=grid)
 
     @cached_property
     def _jets(self) -> Function:

@@ -455,3 +455,24 @@ def test_runtime_does_not_load_sympy():
     code += "; print([name for name in ('sympy', 'matplotlib', 'pandas') if name in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert re.fullmatch(r"\[\]\s*", done.stdout)
+
+
+# --- names ----------------------------------------------------------------------------------------
+
+
+def test_surfaces_without_a_name_have_distinct_ones():
+    def hills(u, v):
+        return saddle(u, v)
+
+    made = [gm.Surface.from_callable(hills, SQUARE) for _ in range(3)]
+    assert [x.name for x in made] == ["hills", "hills 2", "hills 3"]
+    others = [
+        *(gm.Surface.from_callable(lambda u, v: saddle(u, v), SQUARE) for _ in range(2)),
+        gm.Surface.from_sympy(("u", "v", "u*v"), "uv", SQUARE),
+        *(gm.Surface.from_grid(saddle(*np.indices((5, 6)) * 1.0)) for _ in range(2)),
+    ]
+    names = [x.name for x in others]
+    assert len(set(names)) == len(names)
+    assert all(x.startswith("surface") for x in names[:3])
+    assert all(x.startswith("grid") for x in names[3:])
+    assert gm.Surface.from_callable(hills, SQUARE, name="hills").name == "hills"

@@ -1,0 +1,189 @@
+"""Surfaces that are moved, mirrored and flipped: points, derivatives, normals, ends."""
+
+import gaussmap as gm
+import numpy as np
+import pytest
+
+SQUARE = ((0.0, 1.0), (0.0, 1.0))
+
+
+def saddle(u, v):
+    return np.stack([u, v, u * v + u * u], axis=-1)
+
+
+ROTATION = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]
+ROTATION *= np.sign(np.linalg.det(ROTATION))
+MAPS = {
+    "rotated": ROTATION,
+    "mirrored": np.diag([1.0, -1.0, 1.0]),
+    "turned and mirrored": -ROTATION,
+    "scaled": 1e-9 * ROTATION,
+    "sheared": np.array([[1.0, 0.5, 0.0], [0.0, 2.0, 0.25], [0.0, 0.0, 3.0]]),
+    "translated": np.array([[1, 0, 0, 1e6], [0, 1, 0, -2e6], [0, 0, 1, 5.0], [0, 0, 0, 1]]),
+}
+
+
+def inside(surface):
+    """Return places in the domain, among them the corners."""
+    (u0, u1), (v0, v1) = surface.domain
+    s, t = np.random.default_rng(2).random((2, 30))
+    s[:4], t[:4] = (0, 0, 1, 1), (0, 1, 0, 1)
+    return u0 + (u1 - u0) * s, v0 + (v1 - v0) * t
+
+
+def moved_jets(jets, matrix, shift):
+    return jets @ matrix.T + np.eye(6)[:, :1] * shift
+
+
+TURNED = np.array([1.0, -1.0, 1.0, 1.0, -1.0, 1.0])[:, None]  # signs of derivatives
+
+
+@pytest.mark.parametrize("matrix", MAPS.values(), ids=MAPS)
+@pytest.mark.parametrize(
+    "surface",
+    [
+        gm.surfaces.torus(),
+        gm.Surface.from_sympy(("u*cos(v)", "u*sin(v)", "v**2"), "uv", SQUARE),
+        gm.Surface.from_callable(saddle, SQUARE),
+    ],
+    ids=["catalogue", "sympy", "callable"],
+)
+def test_transformed(surface, matrix):
+    linear, shift = matrix[:3, :3], matrix[:3, 3] if len(matrix) == 4 else np.zeros(3)
+    moved = surface.transformed(matrix)
+    turned = np.linalg.det(linear) < 0.0
+    u, v = inside(surface)
+    own = surface.domain[0][0] + surface.domain[0][1] - u if turned else u
+    expected = moved_jets(surface.derivatives(own, v), linear, shift)
+    expected *= TURNED if turned else 1.0
+    size = np.abs(expected).max()
+    rounding = 1e-8 if surface.function is saddle else 1e-15  # own is u after rounding
+    np.testing.assert_allclose(moved.derivatives(u, v), expected, rtol=0, atol=4 * rounding * size)
+    np.testing.assert_allclose(moved.evaluate(u, v), expected[:, 0], rtol=0, atol=4e-15 * size)
+    assert (moved.name, moved.domain, moved.boundary) == (
+        surface.name,
+        surface.domain,
+        surface.boundary,
+    )
+
+
+@pytest.mark.parametrize("name", gm.surfaces.names())
+def test_mirrored_surfaces_of_the_catalogue(name):
+    """The ends, mirrored ones and poles too, are as before; normals are on the same side."""
+    surface = gm.surfaces.surface(name)
+    mirrored = surface.transformed(np.diag([-1.0, 1.0, 1.0]))
+    u, v = inside(surface)
+    own = sum(surface.domain[0]) - u
+    assert np.allclose(mirrored.evaluate(u, v), surface.evaluate(own, v) * (-1, 1, 1), atol=1e-14)
+    assert gm.fit(mirrored, (8, 8)).boundary == surface.boundary  # which checks the ends
+    again = mirrored.transformed(np.diag([-1.0, 1.0, 1.0]))
+    assert (again.evaluate(u, v) == surface.evaluate(u, v)).all()
+
+
+def normals(surface, u, v):
+    normal = np.cross(*np.moveaxis(surface.derivatives(u, v)[..., 1:3, :], -2, 0))
+    return normal / np.linalg.norm(normal, axis=-1, keepdims=True)
+
+
+def test_normals_stay_on_the_same_side():
+    sphere = gm.surfaces.sphere()
+    u, v = np.random.default_rng(0).uniform(-1, 1, (2, 20))
+    for matrix in MAPS.values():
+        moved = sphere.transformed(matrix)
+        centre = matrix[:3, 3] if len(matrix) == 4 else 0.0
+        spokes = moved.evaluate(u, v) - centre
+        assert (np.sum(spokes * normals(moved, u, v), axis=-1) > 0.0).all()
+        assert (np.sum(spokes * normals(moved.flipped(), -u, v), axis=-1) < 0.0).all()
+
+
+def test_flipped():
+    torus = gm.surfaces.torus()
+    u, v = inside(torus)
+    flipped = torus.flipped()
+    own = sum(torus.domain[0]) - u
+    np.testing.assert_allclose(flipped.evaluate(u, v), torus.evaluate(own, v), atol=1e-15)
+    np.testing.assert_allclose(normals(flipped, u, v), -normals(torus, own, v), atol=1e-14)
+    assert (flipped.flipped().evaluate(u, v) == torus.evaluate(u, v)).all()
+    assert (gm.sample(flipped, normals=[[0, 0, 1]], cells=(8, 8)).points[:, 2] < 0.0).all()
+
+
+def test_transforms_compose():
+    torus, far = gm.surfaces.torus(), np.eye(4)
+    far[:3, 3] = 1e9, -1e9, 3.0
+    u, v = inside(torus)
+    back = torus.transformed(far).flipped().transformed(np.linalg.inv(far)).flipped()
+    assert (back.evaluate(u, v) == torus.evaluate(u, v)).all()
+    twice = torus.transformed(MAPS["sheared"]).transformed(MAPS["mirrored"])
+    once = torus.transformed(MAPS["mirrored"] @ MAPS["sheared"])
+    np.testing.assert_allclose(twice.jets(u, v), once.jets(u, v), rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize("periodic", [(False, False), (True, True), (True, False), (False, True)])
+def test_points_are_transformed(periodic):
+    points = np.random.default_rng(3).normal(size=(5, 6, 3)) + 3.0 * np.indices((5, 6, 1))[0]
+    surface = gm.Surface.from_grid(points, periodic=periodic)
+    u, v = inside(surface)
+    for name, matrix in MAPS.items():
+        if name == "translated":
+            continue
+        moved = surface.transformed(matrix)
+        turned = np.linalg.det(matrix) < 0.0
+        own = sum(surface.domain[0]) - u if turned else u
+        expected = surface.evaluate(own, v) @ matrix.T
+        np.testing.assert_allclose(
+            moved.evaluate(u, v), expected, rtol=0, atol=1e-14 * np.abs(expected).max()
+        )
+        assert np.array_equal(gm.fit(moved).evaluate(u, v), moved.evaluate(u, v))
+    assert np.array_equal(surface.flipped().flipped().grid, surface.grid)
+
+
+@pytest.mark.parametrize("periodic", [("mirrored", False), (False, "mirrored"), ("mirrored", True)])
+def test_points_with_mirrored_ends_are_transformed(periodic):
+    points = np.random.default_rng(3).normal(size=(5, 6, 3))
+    surface = gm.Surface.from_grid(points, periodic=periodic)
+    u, v = inside(surface)
+    np.testing.assert_allclose(
+        surface.flipped().evaluate(u, v),
+        surface.evaluate(sum(surface.domain[0]) - u, v),
+        rtol=0,
+        atol=1e-14,
+    )
+
+
+def test_elevations_are_transformed():
+    hill = gm.Surface.from_grid(np.random.default_rng(4).random((5, 6)), spacing=(10.0, -20.0))
+    moved = hill.transformed(np.diag([1.0, 1.0, -2.0]))
+    assert moved.domain == hill.domain
+    np.testing.assert_allclose(
+        moved.evaluate(15.0, -30.0), hill.evaluate(35.0, -30.0) * (1, 1, -2), rtol=1e-14
+    )
+
+
+@pytest.mark.parametrize(
+    ("matrix", "complaint"),
+    [
+        (np.eye(2), r"matrix must have the shape \(3, 3\) or \(4, 4\), not \(2, 2\)"),
+        (np.eye(4)[:3], r"not \(3, 4\)"),
+        (3.0, r"not \(\)"),
+        ("abc", "matrix must be an array of real numbers"),
+        (np.diag([1.0, np.nan, 1.0]), "matrix holds NaN or infinity"),
+        (np.diag([1.0, 1.0, 0.0]), "matrix is singular"),
+        (np.zeros((3, 3)), "matrix is singular"),
+        (np.arange(9.0).reshape(3, 3), "matrix is singular"),
+        (np.diag([1.0, 1.0, 1.0, 2.0]), "last row of matrix"),
+    ],
+)
+def test_matrices_that_are_no_affine_maps(matrix, complaint):
+    with pytest.raises(gm.errors.InputError, match=complaint):
+        gm.surfaces.torus().transformed(matrix)
+
+
+def test_errors_of_a_moved_callable():
+    surface = gm.Surface.from_callable(lambda u, v: u, SQUARE, name="mine").transformed(np.eye(3))
+    with pytest.raises(gm.errors.SurfaceError, match="surface 'mine' returned the shape"):
+        surface.evaluate(0.5, 0.5)
+    half = gm.Surface.from_callable(
+        lambda u, v: saddle(np.where(u < 0.5, u, np.nan), v), SQUARE, name="half"
+    )
+    with pytest.raises(gm.errors.SurfaceError, match=r"'half' is not finite at u = 0[.]25"):
+        half.flipped().evaluate(0.25, 0.0)

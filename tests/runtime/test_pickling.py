@@ -1,0 +1,67 @@
+"""Every surface pickles, and works in other processes."""
+
+import multiprocessing
+import pickle
+
+import gaussmap as gm
+import numpy as np
+import pytest
+import sympy as sp
+
+TURN = ((0.0, 2 * np.pi), (0.0, 2 * np.pi))
+
+
+def tube(u, v):
+    return np.stack([(2 + np.cos(v)) * np.cos(u), (2 + np.cos(v)) * np.sin(u), np.sin(v)], axis=-1)
+
+
+def all_kinds():
+    periodic = (True, True)
+    made = {
+        "catalogue": gm.surfaces.torus(minor=0.2),
+        "sympy": gm.Surface.from_sympy(
+            ("(2 + cos(v))*cos(u)", "(2 + cos(v))*sin(u)", "Piecewise((v, v < 1), (Abs(v), True))"),
+            sp.symbols("u v", positive=True),
+            TURN,
+        ),
+        "callable": gm.Surface.from_callable(tube, TURN, periodic),
+        "grid": gm.Surface.from_grid(tube(*np.indices((5, 6)) / 2)),
+    }
+    return made | {f"flipped {name}": surface.flipped() for name, surface in made.items()}
+
+
+@pytest.mark.parametrize("name", all_kinds())
+@pytest.mark.parametrize("used", [False, True])
+def test_pickling(name, used):
+    surface = all_kinds()[name]
+    u, v = np.random.default_rng(0).uniform(0.5, 3.0, (2, 20))
+    if used and surface.evaluable:  # what is compiled is left out
+        surface.derivatives(u, v)
+    copy = pickle.loads(pickle.dumps(surface))
+    assert (copy.name, copy.domain, copy.boundary) == (
+        surface.name,
+        surface.domain,
+        surface.boundary,
+    )
+    assert np.array_equal(copy.evaluate(u, v), surface.evaluate(u, v))
+    if surface.evaluable:
+        assert np.array_equal(copy.derivatives(u, v), surface.derivatives(u, v))
+
+
+def test_curves_pickle():
+    curve = gm.curves.Curve.from_sympy(("cos(t)", "sin(t)"), "t", (0, "2*pi"), periodic=True)
+    assert np.array_equal(pickle.loads(pickle.dumps(curve)).evaluate(1.0), curve.evaluate(1.0))
+
+
+def mean_height(surface):
+    return surface.name, float(surface.evaluate([0.5, 0.75], 0.5)[:, 2].mean())
+
+
+@pytest.mark.slow
+def test_surfaces_in_other_processes():
+    joblib = pytest.importorskip("joblib")
+    kinds = list(all_kinds().values())
+    expected = [mean_height(x) for x in kinds]
+    with multiprocessing.get_context("spawn").Pool(2) as pool:
+        assert pool.map(mean_height, kinds) == expected
+    assert joblib.Parallel(n_jobs=2)(joblib.delayed(mean_height)(x) for x in kinds) == expected
