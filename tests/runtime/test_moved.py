@@ -104,7 +104,7 @@ def test_flipped():
     np.testing.assert_allclose(flipped.evaluate(u, v), torus.evaluate(own, v), atol=1e-15)
     np.testing.assert_allclose(normals(flipped, u, v), -normals(torus, own, v), atol=1e-14)
     assert (flipped.flipped().evaluate(u, v) == torus.evaluate(u, v)).all()
-    assert (gm.sample(flipped, normals=[[0, 0, 1]], cells=(8, 8)).points[:, 2] < 0.0).all()
+    assert gm.fit(flipped, (8, 8)).normals(0.0, np.pi / 2)[2] < -0.99
 
 
 def test_transforms_compose():
@@ -148,6 +148,65 @@ def test_points_with_mirrored_ends_are_transformed(periodic):
         rtol=0,
         atol=1e-14,
     )
+
+
+def polar(r, phi):
+    return np.stack([r * np.cos(phi), r * np.sin(phi), r**2 / 4 + 0 * phi], axis=-1)
+
+
+def test_poles_at_an_end_of_u():
+    domain = ((0.0, 1.0), (0.0, 2 * np.pi))
+    exact = gm.Surface.from_sympy(("u*cos(v)", "u*sin(v)", "u**2 / 4"), "uv", domain)
+    bowl = gm.Surface.from_callable(polar, domain, (("pole", "open"), True))
+    u, v = inside(bowl)
+    u[5:9] = 0.0, 1e-3, 0.01, 0.99  # differences go through the pole
+    np.testing.assert_allclose(bowl.jets(u, v), exact.jets(u, v), rtol=0, atol=1e-9)
+    flipped = bowl.flipped()
+    assert flipped.boundary == (("open", "pole"), ("periodic", "periodic"))
+    expected = bowl.jets(1.0 - u, v) * TURNED
+    np.testing.assert_allclose(flipped.jets(u, v), expected, rtol=0, atol=1e-9)
+    assert gm.fit(flipped, (8, 8)).boundary == flipped.boundary
+    points = polar(np.linspace(0, 1, 6)[:, None], np.arange(8) * np.pi / 4)
+    grid = gm.Surface.from_grid(points, periodic=(("pole", "open"), True))
+    u, v = inside(grid)
+    expected = grid.evaluate(5.0 - u, v)
+    np.testing.assert_allclose(grid.flipped().evaluate(u, v), expected, rtol=0, atol=1e-14)
+
+
+def test_trims_are_reversed():
+    loop = np.array([(1.0, 1.0), (2.0, 1.0), (1.0, 3.0)])
+    window = gm.surfaces.torus().trimmed([loop], within=lambda u, v: u > 1.25)
+    uv = np.random.default_rng(0).uniform(0.0, 4.0, (200, 2))
+    turned = (2 * np.pi - uv[:, 0])[:, None] * (1, 0) + uv * (0, 1)
+    mirrored = window.transformed(np.diag([1.0, 1.0, -1.0]))
+    assert mirrored.trim
+    assert window.trim
+    assert 0 < window.trim.contains(uv).sum() < 200
+    assert np.array_equal(mirrored.trim.contains(turned), window.trim.contains(uv))
+    assert mirrored.flipped().trim.parts == window.trim.parts
+    assert window.transformed(ROTATION).trim is window.trim
+    loops = gm.surfaces.torus().trimmed([loop])
+    (mine, _), (its, _) = (
+        x.trim.cells_of_border(loops.domain, (16, 8)) for x in (loops, loops.flipped())
+    )
+    assert np.array_equal(mine, its[::-1])
+
+
+def test_pieces_of_a_moved_surface():
+    roof = [[[0, 0, 0], [0, 5, 0]], [[2, 0, 1], [2, 5, 1]], [[5, 0, 0], [5, 5, 0]]]
+    whole = gm.Surface.from_nurbs((1, 1), ([0, 0, 1, 3, 3], [0, 0, 1, 1]), roof)
+    flipped = whole.flipped()
+    assert [x.domain[0] for x in whole.pieces()] == [(0.0, 1.0), (1.0, 3.0)]
+    assert [x.domain[0] for x in flipped.pieces()] == [(2.0, 3.0), (0.0, 2.0)]
+    for surface in (flipped, whole.transformed(MAPS["sheared"])):
+        for piece in surface.pieces():
+            u, v = inside(piece)
+            np.testing.assert_allclose(
+                piece.evaluate(u, v), surface.evaluate(u, v), rtol=0, atol=1e-14
+            )
+    assert flipped.flipped().transformed(ROTATION).pieces()[1].name == whole.pieces()[1].name
+    smooth = gm.surfaces.torus().flipped()
+    assert smooth.pieces() == (smooth,)
 
 
 def test_elevations_are_transformed():

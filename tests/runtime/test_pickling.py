@@ -15,6 +15,17 @@ def tube(u, v):
     return np.stack([(2 + np.cos(v)) * np.cos(u), (2 + np.cos(v)) * np.sin(u), np.sin(v)], axis=-1)
 
 
+def plane(u, v):
+    return np.stack([u, v, 0 * u], axis=-1)
+
+
+def plane_derivatives(u, v):
+    jets = np.zeros((*u.shape, 6, 3))
+    jets[..., 0, :] = plane(u, v)
+    jets[..., 1, 0] = jets[..., 2, 1] = 1.0
+    return jets
+
+
 def all_kinds():
     periodic = (True, True)
     made = {
@@ -25,6 +36,11 @@ def all_kinds():
             TURN,
         ),
         "callable": gm.Surface.from_callable(tube, TURN, periodic),
+        "given": gm.Surface.from_callable(plane, TURN, derivatives=plane_derivatives),
+        "nurbs": gm.Surface.from_nurbs(
+            (1, 1), ([0, 0, 4, 7, 7], [0, 0, 7, 7]), plane(*np.indices((3, 2)) * 1.0)
+        ),
+        "trimmed": gm.surfaces.torus().trimmed([[(1, 1), (3, 1), (1, 3)]]),
         "grid": gm.Surface.from_grid(tube(*np.indices((5, 6)) / 2)),
     }
     return made | {f"flipped {name}": surface.flipped() for name, surface in made.items()}
