@@ -20,8 +20,7 @@ def pieces_of(surface: Surface) -> tuple[Surface, ...]:
     """Return the smooth pieces of a surface; a smooth surface itself."""
     nurbs = surface.function
     if isinstance(nurbs, Moved):
-        pieces = pieces_of(nurbs.surface)
-        return tuple(_moved(surface, nurbs, x) for x in pieces) if pieces[1:] else (surface,)
+        return _moved_pieces(surface, nurbs)
     if not isinstance(nurbs, Nurbs) or not any(nurbs.creases):
         return (surface,)
     along_u, along_v = (
@@ -30,6 +29,15 @@ def pieces_of(surface: Surface) -> tuple[Surface, ...]:
     )
     domains = [(u, v) for u in along_u for v in along_v]
     return tuple(_piece(surface, nurbs, k, domain) for k, domain in enumerate(domains))
+
+
+def _moved_pieces(surface: Surface, moved: Moved) -> tuple[Surface, ...]:
+    """Return the pieces of a moved surface: those of the surface before, moved."""
+    pieces = pieces_of(moved.surface)
+    if len(pieces) == 1:
+        return (surface,)
+    after = sorted((_moved(surface, moved, x) for x in pieces), key=lambda x: x.domain)
+    return tuple(replace(x, name=f"{x.name} (piece {k + 1})") for k, x in enumerate(after))
 
 
 def _moved(surface: Surface, moved: Moved, piece: Surface) -> Surface:
@@ -41,7 +49,6 @@ def _moved(surface: Surface, moved: Moved, piece: Surface) -> Surface:
         at_low, at_high = at_high, at_low
     return replace(
         surface,
-        name=piece.name,
         function=replace(moved, surface=piece),
         domain=((low, high), along_v),
         boundary=((at_low, at_high), ends_v),

@@ -87,7 +87,7 @@ def compare(derivatives: Guarded, numerical: Differences, label: str) -> None:
         for x, (low, high) in zip((0.5, 1 / 3), numerical.domain, strict=True)
     )
     given, found, coarse = derivatives(u, v), numerical.jets(u, v), numerical.coarser().jets(u, v)
-    known = np.isfinite(found).all(axis=-1) & np.isfinite(coarse).all(axis=-1)
+    known = np.logical_and.reduce(np.isfinite(found) & np.isfinite(coarse), axis=-1)
     sizes = np.abs(np.where(known[..., None], found, 0.0)).max(axis=(0, 2))
     with np.errstate(invalid="ignore"):
         error: Array = np.abs(given - found).max(axis=-1)

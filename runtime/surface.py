@@ -598,7 +598,7 @@ class Surface:
 
     def _moved(self, map_: AffineMap, turned: bool) -> Surface:
         (low, high), along_v = self.boundary
-        boundary = (high, low) if turned else (low, high), along_v
+        boundary: Boundary = (high, low) if turned else (low, high), along_v
         trim = turned_trim(self.trim, boundary) if turned and self.trim else self.trim
         moved = replace(self, boundary=boundary, trim=trim, derivative_function=None)
         if self.grid is None:
