@@ -230,13 +230,23 @@ class Spline:
         u_array, v_array = parameter_arrays(u, v)
         places = np.stack([u_array.ravel(), v_array.ravel()], axis=1)
         cells = self.in_cells(places)
-        points, normals = np.empty_like(places, shape=(len(places), 3)), np.empty((len(places), 3))
+        points, normals = self._evaluated(cells)
+        return points.reshape(*u_array.shape, 3), normals.reshape(*u_array.shape, 3)
+
+    def normals_in_cells(self, cells: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return p_u × p_v (k, 3) at places (k, 2) in cells, up to a common factor."""
+        return self._evaluated(cells)[1]
+
+    def _evaluated(
+        self, cells: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        points, normals = np.empty((len(cells), 3)), np.empty((len(cells), 3))
         kernels.evaluate(self.coefficients, self.scale, cells, points, normals)
         for axis, (count, ends) in enumerate(zip(self.cells, self.boundary, strict=True)):
             for end, place in zip(ends, (0, count), strict=True):
                 if end == "pole":  # all but rounding
                     normals[np.abs(cells[:, axis] - place) <= SAME_PARAMETER * count] = 0.0
-        return points.reshape(*u_array.shape, 3), normals.reshape(*u_array.shape, 3)
+        return points, normals
 
     def in_cells(self, places: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return parameters as numbers of cells from the corner of the domain.

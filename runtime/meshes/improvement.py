@@ -86,7 +86,7 @@ def _has_good_shape(mesh: Triangulated) -> bool:
     """Say whether few enough triangles, but for those on borders, have small angles."""
     inner = tangents_of(mesh)[(mesh.neighbours >= 0).all(axis=1)]
     few = math.tan(math.radians(ENOUGH))
-    return np.count_nonzero(inner < few) <= PART * len(inner)
+    return bool(np.count_nonzero(inner < few) <= PART * len(inner))
 
 
 def _without_small_angles(

@@ -1,5 +1,6 @@
 """Silhouettes: perpendicular, complete, exact on sphere and torus, aligned directions included."""
 
+import pickle
 from typing import Any
 
 import gaussmap as gm
@@ -142,6 +143,112 @@ def test_far_and_of_any_size(factor: float, shift: float) -> None:
     assert np.abs(radius - expected).max() < 1e-3
 
 
+# --- polylines ------------------------------------------------------------------------------------
+
+
+def open_lines(samples: Any) -> list[NDArray[np.int64]]:
+    """Return the polylines, without the last row of closed ones; each sample is in one of them."""
+    lines = [x[:-1] if len(x) > 1 and x[0] == x[-1] else x for x in samples.polylines]
+    assert sorted(np.concatenate(lines).tolist()) == list(range(len(samples)))
+    return lines
+
+
+def is_closed(line: NDArray[np.int64]) -> bool:
+    return len(line) > 1 and line[0] == line[-1]
+
+
+@compiled
+@pytest.mark.parametrize("direction", DIRECTIONS)
+def test_the_polyline_of_a_sphere_goes_round_once(direction: Any) -> None:
+    """Over the poles, too: its points have the angles of their normals."""
+    samples = gm.silhouette("sphere", direction, count=100)
+    (line,) = samples.polylines
+    assert is_closed(line)
+    (order,) = open_lines(samples)
+    steps = np.diff(np.append(order, order[0])) % 100  # normals are in order
+    assert (steps == 1).all() or (steps == 99).all()
+
+
+@compiled
+@pytest.mark.parametrize("direction", [[1, 2, 3], [0.3, -1, 0.5], [0, 0, 1], [0, 1, 4]])
+@pytest.mark.parametrize("cells", [(16, 16), (40, 27)])
+def test_polylines_of_a_torus(direction: Any, cells: Any) -> None:
+    """Its contour generator tan v = −(d_x cos u + d_y sin u) / d_z is two closed curves."""
+    samples = gm.silhouette(TORUS, direction, count=600, cells=cells)
+    open_lines(samples)
+    assert len(samples.polylines) == 2
+    d = unit(direction)
+    for line in samples.polylines:
+        assert is_closed(line)
+        u, v = samples.uv[line].T
+        turns = np.diff(u)
+        turns -= 2 * np.pi * np.round(turns / (2 * np.pi))
+        assert abs(turns.sum()) == pytest.approx(2 * np.pi)
+        assert (np.sign(turns) == np.sign(turns.sum())).all()
+        # One of two branches, half a turn of v apart.
+        side = np.cos(v) * d[2] - np.sin(v) * (d[0] * np.cos(u) + d[1] * np.sin(u))
+        assert (side > 0).all() or (side < 0).all()
+
+
+@compiled
+def test_polylines_end_at_borders_and_pass_parabolic_points() -> None:
+    """Those of a graph seen from the side: steps are as the curve in (u, v) is."""
+    samples = gm.silhouette(gm.surfaces.wavy_graph(), [1.0, 0.3, 0.15], count=2000, cells=(24, 24))
+    lines = open_lines(samples)
+    assert len(lines) == 4
+    for line in lines:
+        uv = samples.uv[line]
+        steps = np.linalg.norm(np.diff(uv, axis=0), axis=1)
+        # Where a curve is nearly straight points are far apart, but in order: no way back.
+        assert (np.einsum("kx,kx->k", np.diff(uv, axis=0)[1:], np.diff(uv, axis=0)[:-1]) > 0).all()
+        assert steps.max() < 0.2
+        assert (np.abs(uv[[0, -1]]).max(axis=1) > 0.9).all()
+    mixed = [len(set(samples.elliptic[x].tolist())) == 2 for x in lines]
+    assert any(mixed)
+
+
+@compiled
+@pytest.mark.parametrize(
+    ("name", "closed"), [("ellipsoid", [True]), ("catenoid", [True]), ("moebius_band", [False] * 2)]
+)
+def test_polylines_of_other_surfaces(name: str, closed: list[bool]) -> None:
+    samples = gm.silhouette(gm.surfaces.surface(name), [1, 2, 3], count=400)
+    lines = open_lines(samples)
+    assert [is_closed(x) for x in samples.polylines] == closed
+    for line in lines:
+        steps = np.linalg.norm(np.diff(samples.points[line], axis=0), axis=1)
+        assert steps.max() < 0.05 * np.ptp(samples.points, axis=0).max()
+
+
+@compiled
+def test_polylines_are_cut_at_a_trim() -> None:
+    low, high = 0.1, 2.5
+    square = [[low, 0.2], [high, 0.2], [high, 6.0], [low, 6.0]]
+    samples = gm.silhouette(TORUS.trimmed([square]), [1, 2, 3], count=400)
+    whole = gm.silhouette(TORUS, [1, 2, 3], count=2 * (samples.report.normals or 0))
+    u, v = whole.uv.T
+    inside = (u > low) & (u < high) & (v > 0.2) & (v < 6.0)
+    np.testing.assert_array_equal(samples.points, whole.points[inside])
+    assert len(samples) == pytest.approx(400, rel=0.05)
+    for line in open_lines(samples):
+        steps = np.diff(samples.uv[line, 0])
+        assert (steps > 0).all() or (steps < 0).all()
+    assert not any(map(is_closed, samples.polylines))
+
+
+@compiled
+def test_what_is_made_of_a_silhouette() -> None:
+    outline = gm.silhouette(TORUS, [1, 2, 3], count=100)
+    again = pickle.loads(pickle.dumps(outline))
+    for ours, theirs in zip(again.polylines, outline.polylines, strict=True):
+        np.testing.assert_array_equal(ours, theirs)
+    for part in (outline[:10], gm.Samples.concatenate([outline, outline]), outline.offset(0.1)):
+        assert type(part) is gm.Samples
+    lean = gm.silhouette(TORUS, [1, 2, 3], count=100, fields=("points",))
+    np.testing.assert_array_equal(lean.polylines[0], outline.polylines[0])
+    assert lean.fields == ("points",)
+
+
 # --- count, fields, warnings ----------------------------------------------------------------------
 
 
@@ -181,6 +288,7 @@ def test_no_silhouette() -> None:
     ):
         samples = gm.silhouette(bowl, [0, 0, 1], count=20)
     assert len(samples) == 0
+    assert samples.polylines == ()
 
 
 @pytest.mark.parametrize(
