@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from .bins import NormalBins
 from .developable import curved_solid_angle
+from .geometry import OnSpline
 from .inside import count_of, samples_inside
 from .lattice import Lattice
 from .limits import MOST
 from .search import Hits, fill, find
-from .spline import Spline
 
 __all__ = ["Chosen", "choose"]
 
@@ -54,9 +54,7 @@ class Chosen:
         return self.source[first:last]
 
 
-def choose(
-    spline: Spline, request: NDArray[np.float64] | int, threads: int | None, progress: bool
-) -> Chosen:
+def choose(geometry: OnSpline, request: NDArray[np.float64] | int, progress: bool) -> Chosen:
     """Return prescribed normals (S, 3) as they are, or a lattice with about `request` samples.
 
     For more samples than `PILOT`, the density is extrapolated from that of `PILOT` samples.
@@ -64,19 +62,20 @@ def choose(
     if not isinstance(request, int):
         return Chosen(request, len(request) / (4 * math.pi))
     pilot = min(request, PILOT)
-    chosen, samples = _adapted(spline, pilot, threads, progress)
+    chosen, samples = _adapted(geometry, pilot, progress)
     if pilot == request or not isinstance(chosen.source, Lattice):
         return chosen
     most = chosen.source.density_of(min(NORMALS_PER_SAMPLE * request, MOST))
     return Chosen(chosen.source, min(chosen.density * request / (samples or pilot), most))
 
 
-def _adapted(spline: Spline, count: int, threads: int | None, progress: bool) -> tuple[Chosen, int]:
+def _adapted(geometry: OnSpline, count: int, progress: bool) -> tuple[Chosen, int]:
     """Adapt the density of a lattice to `count` samples; return it and the number of samples."""
+    spline, threads = geometry.spline, geometry.threads
     lattice = Lattice.around(spline)
     densest = lattice.density_of(NORMALS_PER_SAMPLE * max(count, 1000))
-    total = float(np.abs(spline.measure[1]).sum())
-    resolved = curved_solid_angle(spline, min(count / max(total, 1e-300), densest))
+    total = float(np.abs(geometry.measure[1]).sum())
+    resolved = curved_solid_angle(geometry, min(count / max(total, 1e-300), densest))
     if resolved == 0.0:
         lattice, density = Lattice.everywhere(), count / (4 * math.pi)
     else:
@@ -87,7 +86,7 @@ def _adapted(spline: Spline, count: int, threads: int | None, progress: bool) ->
         density = min(density, densest)
         bins = NormalBins(lattice.normals(density, threads=threads), threads)
         hits = find(spline, bins, threads, progress)
-        number = _number_inside(spline, bins, hits, threads)
+        number = _number_inside(geometry, bins, hits)
         if best is None or abs(number - count) < abs(samples - count):
             best, samples = Chosen(lattice, density, (bins, hits)), number
         if abs(number - count) <= NEAR_ENOUGH * count or resolved == 0.0:
@@ -101,9 +100,10 @@ def _adapted(spline: Spline, count: int, threads: int | None, progress: bool) ->
     return best, samples
 
 
-def _number_inside(spline: Spline, bins: NormalBins, hits: Hits, threads: int | None) -> int:
+def _number_inside(geometry: OnSpline, bins: NormalBins, hits: Hits) -> int:
     """Return the number of hits that are inside the trim of a spline."""
+    spline = geometry.spline
     if spline.trim is None:
         return len(hits)
-    uv = fill(spline, bins, hits, threads, ("uv",))
+    uv = fill(spline, bins, hits, geometry.threads, ("uv",))
     return count_of(samples_inside(spline, uv, ("uv",)))

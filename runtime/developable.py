@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .spline import Spline
+if TYPE_CHECKING:
+    from .geometry import OnSpline
+    from .spline import Spline
 
 __all__ = ["curved_solid_angle", "developable_share"]
 
@@ -16,20 +19,20 @@ __all__ = ["curved_solid_angle", "developable_share"]
 LEAST_DENSITY = 10_000 / (4 * math.pi)
 
 
-def developable_share(spline: Spline, density: float) -> float:
+def developable_share(sampled: Spline | OnSpline, density: float) -> float:
     """Return the share of the area that `density` normals per steradian do not sample."""
-    areas = spline.measure[0].reshape(-1, 4).sum(axis=1)
+    areas = sampled.measure[0].reshape(-1, 4).sum(axis=1)
     total = float(areas.sum())
-    return float(areas[~_curved(spline, density)].sum()) / total if total > 0.0 else 1.0
+    return float(areas[~_curved(sampled, density)].sum()) / total if total > 0.0 else 1.0
 
 
-def curved_solid_angle(spline: Spline, density: float) -> float:
+def curved_solid_angle(sampled: Spline | OnSpline, density: float) -> float:
     """Return the solid angle of the Gaussian image of curved cells, with multiplicity."""
-    solid_angles = np.abs(spline.measure[1]).reshape(-1, 4).sum(axis=1)
-    return float(solid_angles[_curved(spline, density)].sum())
+    solid_angles = np.abs(sampled.measure[1]).reshape(-1, 4).sum(axis=1)
+    return float(solid_angles[_curved(sampled, density)].sum())
 
 
-def _curved(spline: Spline, density: float) -> NDArray[np.bool_]:
+def _curved(sampled: Spline | OnSpline, density: float) -> NDArray[np.bool_]:
     """Return which cells are curved enough to be sampled, as booleans (cells,).
 
     A cell counts if |K| times the density is at least 1, in units of the diagonal of the bounding
@@ -38,7 +41,7 @@ def _curved(spline: Spline, density: float) -> NDArray[np.bool_]:
     spline cancel in it. It also vanishes where K changes its sign, hence the maximum over the cell
     and its neighbours.
     """
-    areas, solid_angles = (x.reshape(*spline.cells, 4).sum(axis=2) for x in spline.measure)
+    areas, solid_angles = (x.reshape(*sampled.cells, 4).sum(axis=2) for x in sampled.measure)
     with np.errstate(divide="ignore", invalid="ignore"):
         curvature = np.where(areas > 0.0, np.abs(solid_angles) / areas, 0.0)
     for axis in (0, 1):

@@ -14,9 +14,9 @@ from .checks import pair_of_cells
 from .density.law import Law
 from .density.request import Request
 from .errors import InputError
+from .geometry import OnSpline
 from .report import SamplingReport, count_infinite, count_unrefined
 from .samples import Samples
-from .spline import Spline
 from .surface import Surface
 from .threads import shown
 
@@ -24,8 +24,8 @@ __all__ = ["cells_of_piece", "pieces_to_sample", "sample_pieces"]
 
 Array = NDArray[np.float64]
 Sampled = tuple[Samples, Array]
-# Samples a piece: a spline, its own request, and the floor of the target density of all.
-Sampler = Callable[[Spline, Request, float], Sampled]
+# Samples a piece: what it is, its own request, and the floor of the target density of all.
+Sampler = Callable[[OnSpline, Request, float], Sampled]
 
 # Each piece is fitted and searched by itself, which takes 20 ms.
 MOST_PIECES = 2000
@@ -72,10 +72,10 @@ def sample_pieces(
     Patches are numbered through all pieces. Pieces without an area get no samples.
     """
     amounts = _amounts(law, sampler)
-    results = (sampler(law.splines[k], x, law.floor) for k, x in amounts.items())
+    results = (sampler(law.parts[k], x, law.floor) for k, x in amounts.items())
     parts = list(shown(results, len(amounts), progress))
     places = list(amounts)
-    patches = np.cumsum([0, *(x.patches for x in law.splines)])[places]
+    patches = np.cumsum([0, *(x.patches for x in law.parts)])[places]
     same_normals = law.request.normals is not None or law.request.angle is not None
     normals = [x for _, x in parts]
     firsts = np.cumsum([0, *map(len, normals)])[:-1] * (not same_normals)
@@ -100,7 +100,7 @@ def _amounts(law: Law, sampler: Sampler) -> dict[int, Request]:
         alone = replace(request, count=None, density="uniform", relax=0)
         least = np.zeros(len(real), dtype=np.int64)
         for k in np.flatnonzero(real).tolist():
-            least[k] = len(sampler(law.splines[k], alone, 0.0)[0])
+            least[k] = len(sampler(law.parts[k], alone, 0.0)[0])
     counts = law.counts(request.count, least)
     return {k: replace(request, count=count) for k, count in enumerate(counts.tolist()) if count}
 

@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from types import MappingProxyType
-from typing import Any, SupportsIndex
+from typing import TYPE_CHECKING, Any, SupportsIndex
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,9 @@ from .checks import known_name
 from .developable import developable_share
 from .errors import GaussmapWarning, InputError, shown
 from .spline import Spline
+
+if TYPE_CHECKING:
+    from .geometry import OnSpline
 
 __all__ = [
     "PLACES",
@@ -142,7 +145,7 @@ class SamplingReport:
 
 
 def sampling_report(
-    spline: Spline,
+    sampled: Spline | OnSpline,
     normals: int,
     samples: int,
     density: float,
@@ -150,19 +153,19 @@ def sampling_report(
     arrays: Mapping[str, NDArray[Any]] = MappingProxyType({}),
 ) -> SamplingReport:
     """Return the report of a sampling with `density` normals per steradian and its `arrays`."""
-    misfit = spline.misfit
+    misfit = sampled.misfit
     return SamplingReport(
-        surface=spline.name,
+        surface=sampled.name,
         normals=normals,
         samples=samples,
-        patches=spline.patches,
-        developable_share=developable_share(spline, density),
+        patches=sampled.patches,
+        developable_share=developable_share(sampled, density),
         developable_patches=developable,
         infinite_curvatures=count_infinite(arrays),
         fit_distance=None if misfit is None else misfit.distance,
         fit_rms=None if misfit is None else misfit.rms,
         fit_angle=None if misfit is None else misfit.angle,
-        apexes=spline.apexes,
+        apexes=sampled.apexes,
     )
 
 

@@ -134,7 +134,7 @@ class SampleArrays:
             for name in pieces[0].fields
         }
         report = common_report([part.report for part in pieces], arrays)
-        same = {
+        same: dict[str, Any] = {
             name: value if all(getattr(part, name) == value for part in pieces) else None
             for name in ("spline", "surface", "offset_of")
             for value in [getattr(pieces[0], name)]

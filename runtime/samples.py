@@ -340,7 +340,7 @@ class Samples(SampleArrays):
         """
         from .density.coverage import coverage_of
 
-        return coverage_of(self.points, self._spline_or(spline), threads)
+        return coverage_of(self.points, self._spline_or(spline), self.surface, threads)
 
     def normal_deviation(
         self, spline: Spline | None = None, *, threads: int | None = None
@@ -380,9 +380,9 @@ class Samples(SampleArrays):
 
         """
         from .density.deviation import normal_deviation
-        from .density.sizing import SizingFunction, TargetDensity
+        from .density.sizing import uniform
 
-        sizing = SizingFunction(self._spline_or(spline), TargetDensity(floor=1.0), threads)
+        sizing = uniform(self._spline_or(spline), self.surface, threads)
         normals = self.normals.astype(np.float64)
         return normal_deviation(sizing, sizing.scaled_points(self.points), normals)
 

@@ -15,14 +15,14 @@ from .density.filling import filled_samples
 from .density.law import Law
 from .density.request import Request, checked_request
 from .errors import GaussmapError, GaussmapWarning, InputError, in_memory, shown
-from .fields import COLUMNS, checked_dtype, checked_fields
-from .fitting import spline_of
-from .inside import count_of, samples_inside, with_uv
+from .fields import COLUMNS, checked_dtype, checked_fields, dtype_of
+from .geometry import OnSpline
 from .memory import check_memory
+from .on_surface import geometry_of, place_of_samples
 from .pieces import cells_of_piece, pieces_to_sample, sample_pieces
 from .report import sampling_report, warn_of
 from .samples import Samples
-from .search import fill, find
+from .search import find
 from .spline import Spline
 from .surface import Surface
 from .surfaces import named
@@ -44,6 +44,7 @@ def sample(
     density: str | float | None = None,
     relax: int = 0,
     cells: Sequence[int] | None = None,
+    on: str | None = None,
     fields: Sequence[str] | None = None,
     dtype: DTypeLike = np.float64,
     threads: int | None = None,
@@ -87,6 +88,12 @@ def sample(
     cells : (int, int), optional
         The numbers of cells of the spline along u and v, see `fit`. Pieces of a surface share them,
         in proportion to their parameters.
+    on : {"surface", "spline"}, optional
+        Where samples are to lie. "surface": on the surface itself. A sample at a prescribed normal
+        is moved from the spline by Newton's method to the point whose normal is the prescribed one;
+        where there is none near by, it stays on the spline and is marked, see `Samples.on_surface`.
+        Others are evaluated at their parameters. "spline": on the spline. By default on the
+        surface, unless it is given by points or as a spline.
     fields : sequence of str, optional
         The arrays of `Samples` that are computed and stored, such as ``("points", "normals")``; all
         by default.
@@ -145,6 +152,7 @@ def sample(
         surface,
         checked_request(normals, count, angle, coverage, density, relax, threads),
         cells=cells,
+        on=on,
         fields=fields,
         dtype=dtype,
         threads=threads,
@@ -162,49 +170,51 @@ def sample_and_normals(
     progress: bool,
     fields: Sequence[str] | None = None,
     dtype: DTypeLike = np.float64,
+    on: str | None = None,
 ) -> tuple[Samples, NDArray[np.float64]]:
     """Return what `sample` returns, and the unit normals that were asked."""
-    wanted, number = checked_fields(fields), checked_dtype(dtype)
+    surface, number = named(surface), checked_dtype(dtype)
+    wanted = checked_fields(fields, place_of_samples(surface, on) == "surface")
     filled = request.density != "gauss"
     if request.count is not None:
-        row = sum(len(COLUMNS[name]) for name in wanted) * number.itemsize
+        row = sum(len(COLUMNS[name]) * dtype_of(name, number).itemsize for name in wanted)
         check_memory(request.count * row, f"{request.count:,} samples")
 
     def sampled(
-        spline: Spline, request: Request, floor: float | None = None
+        geometry: OnSpline, request: Request, floor: float | None = None
     ) -> tuple[Samples, NDArray[np.float64]]:
-        arguments = spline, request, wanted, number, threads, progress and floor is None
+        arguments = geometry, request, wanted, number, progress and floor is None
         return filled_samples(*arguments, floor) if filled else _by_normals(*arguments)
 
-    surface = named(surface)
+    def geometry(part: Surface | Spline | str, cells: Sequence[int] | None) -> OnSpline:
+        return geometry_of(part, cells, number, on, threads)
+
     if isinstance(surface, Surface) and (pieces := pieces_to_sample(surface)):
-        splines = [spline_of(x, cells_of_piece(surface, x, cells), number) for x in pieces]
-        samples, normals = sample_pieces(surface, Law(splines, request, threads), sampled, progress)
+        parts = [geometry(x, cells_of_piece(surface, x, cells)) for x in pieces]
+        samples, normals = sample_pieces(surface, Law(parts, request), sampled, progress)
     else:
-        samples, normals = sampled(spline_of(surface, cells, number), request)
+        samples, normals = sampled(geometry(surface, cells), request)
     warn_of(samples.report, request.count, 5, coverage=request.coverage, filled=filled)
     return samples, normals
 
 
 def _by_normals(
-    spline: Spline,
+    geometry: OnSpline,
     request: Request,
     fields: tuple[str, ...],
     dtype: np.dtype[np.floating],
-    threads: int | None,
     progress: bool,
 ) -> tuple[Samples, NDArray[np.float64]]:
     """Return the points that have the normals that are asked, and these."""
-    chosen = choose(spline, request.normals_or_count, threads, progress)
+    chosen, threads = choose(geometry, request.normals_or_count, progress), geometry.threads
     bins, hits = chosen.found or (NormalBins(chosen.part(0, len(chosen), threads), threads), None)
     if hits is None:
-        hits = find(spline, bins, threads, progress)
-    arrays = fill(spline, bins, hits, threads, with_uv(spline, fields), dtype)
-    arrays = samples_inside(spline, arrays, fields)
+        hits = find(geometry.spline, bins, threads, progress)
+    found = geometry.at_hits(bins, hits, fields, dtype)
     report = sampling_report(
-        spline, len(bins.normals), count_of(arrays), chosen.density, hits.developable, arrays
+        geometry, len(bins.normals), found.number, chosen.density, hits.developable, found.fields
     )
-    return Samples(**arrays, report=report, spline=spline), bins.normals
+    return geometry.samples(found.fields, report, found.unrefined), bins.normals
 
 
 def sample_many(
@@ -218,6 +228,7 @@ def sample_many(
     density: str | float | None = None,
     relax: int = 0,
     cells: Sequence[int] | None = None,
+    on: str | None = None,
     fields: Sequence[str] | None = None,
     dtype: DTypeLike = np.float64,
     threads: int | None = None,
@@ -228,7 +239,7 @@ def sample_many(
     ----------
     surfaces : iterable of Surface, Spline or str
         The surfaces; they may be made one by one.
-    count, normals, angle, coverage, density, relax, cells, fields, dtype, threads : optional
+    count, normals, angle, coverage, density, relax, cells, on, fields, dtype, threads : optional
         As in `sample`.
     progress : bool, default True
         Show a bar on standard error, if that is a terminal.
@@ -260,7 +271,8 @@ def sample_many(
     from tqdm import tqdm
 
     request = checked_request(normals, count, angle, coverage, density, relax, threads)
-    wanted, number = checked_fields(fields), checked_dtype(dtype)
+    checked_fields(fields, on != "spline")
+    number = checked_dtype(dtype)
     shows = yes_or_no(progress, "progress")
     flat = isinstance(surfaces, np.ndarray) and surfaces.ndim == 0
     if isinstance(surfaces, str) or flat or not isinstance(surfaces, Iterable):
@@ -272,7 +284,8 @@ def sample_many(
                 surface,
                 request,
                 cells=cells,
-                fields=wanted,
+                on=on,
+                fields=fields,
                 dtype=number,
                 threads=threads,
                 progress=False,

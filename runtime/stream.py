@@ -14,12 +14,12 @@ from .choice import choose
 from .density.request import Request, checked_request
 from .errors import InputError
 from .fields import checked_dtype, checked_fields
-from .fitting import spline_of
-from .inside import count_of, samples_inside, with_uv
+from .geometry import FieldsOfSamples, OnSpline
+from .on_surface import geometry_of, place_of_samples
 from .pieces import pieces_to_sample
 from .report import SamplingReport, count_infinite, sampling_report, warn_of
 from .samples import Samples
-from .search import Hits, Search, fill, merged
+from .search import Hits, Search, merged
 from .spline import Spline
 from .surface import Surface
 from .surfaces import named
@@ -38,6 +38,7 @@ def sample_stream(
     normals: ArrayLike | None = None,
     chunk: int = 1_000_000,
     cells: Sequence[int] | None = None,
+    on: str | None = None,
     fields: Sequence[str] | None = None,
     dtype: DTypeLike = np.float64,
     threads: int | None = None,
@@ -52,7 +53,7 @@ def sample_stream(
     ----------
     surface : Surface, Spline or str
         The surface, or its name in the catalogue.
-    count, normals, cells, fields, dtype, threads, progress : optional
+    count, normals, cells, on, fields, dtype, threads, progress : optional
         As in `sample`: either `count` or `normals`.
     chunk : int, default 1,000,000
         The largest number of samples in a chunk.
@@ -90,64 +91,75 @@ def sample_stream(
 
     """
     size = whole_number(chunk, "chunk")
-    wanted, number = checked_fields(fields), checked_dtype(dtype)
+    surface, number = named(surface), checked_dtype(dtype)
+    wanted = checked_fields(fields, place_of_samples(surface, on) == "surface")
     request = checked_request(normals, count, None, None, "gauss", 0, threads)
-    surface = named(surface)
     if pieces := pieces_to_sample(surface):
         raise InputError(
             f"surface {surface.name!r} has {len(pieces)} pieces between lines where its normal "
             "turns; stream each of surface.pieces(), or gm.fit(surface), which rounds these lines."
         )
-    stream = _Stream(
-        spline_of(surface, cells, number), request, size, wanted, number, threads, progress
-    )
-    return stream.chunks()
+    geometry = geometry_of(surface, cells, number, on, threads)
+    return _Stream(geometry, request, size, wanted, number, progress).chunks()
 
 
 @dataclass(frozen=True, eq=False)
 class _Stream:
-    spline: Spline
+    geometry: OnSpline
     request: Request
     size: int
     fields: tuple[str, ...]
     dtype: np.dtype[np.floating]
-    threads: int | None
     progress: bool
 
     def chunks(self) -> Generator[Samples, None, None]:
         """Yield the chunks of all blocks of normals, at least one, and warn at the end."""
-        chosen = choose(self.spline, self.request.normals_or_count, self.threads, self.progress)
+        geometry, threads = self.geometry, self.geometry.threads
+        chosen = choose(geometry, self.request.normals_or_count, self.progress)
         chosen, total = replace(chosen, found=None), len(chosen)  # frees the hits
-        report = sampling_report(self.spline, total, 0, chosen.density, None)
+        report = sampling_report(geometry, total, 0, chosen.density, None)
         starts = range(0, total, NORMALS_AT_A_TIME)
         alone = len(starts) == 1
-        came = developable = 0
+        came, unrefined, flat, nothing = 0, 0, Flat(), None
         for first in shown(iter(starts), len(starts), self.progress and not alone):
             last = min(first + NORMALS_AT_A_TIME, total)
-            bins = NormalBins(chosen.part(first, last, self.threads), self.threads)
-            found = find_in_turn(self.spline, bins, self.threads, self.progress and alone)
-            developable, hits = 0, Hits.none(0)  # the same in every block
-            for hits in grouped(found, self.size):
-                developable += hits.developable
-                samples = self._samples(bins, hits, first, report)
-                came += len(samples)
-                is_last = first == starts[-1] and len(hits) < self.size
-                if len(samples) or (came == 0 and is_last):
+            bins = NormalBins(chosen.part(first, last, threads), threads)
+            found = find_in_turn(geometry.spline, bins, threads, self.progress and alone)
+            flat.patches = 0  # the same in every block
+            groups = flat.counted(grouped(found, self.size))
+            for part in geometry.at_hits_in_turn(bins, groups, self.fields, self.dtype, self.size):
+                samples = self._samples(part, first, report)
+                came, unrefined = came + part.number, unrefined + (part.unrefined or 0)
+                if part.number:
                     yield samples
-            del bins, found, hits  # before the next ones are made
-        report = replace(report, samples=came, developable_patches=developable)
-        warn_of(report, self.request.count, stacklevel=3)
+                else:
+                    nothing = samples
+            del bins, found, groups  # before the next ones are made
+        if came == 0 and nothing is not None:
+            yield nothing
+        report = replace(report, samples=came, developable_patches=flat.patches)
+        warn_of(replace(report, unrefined=unrefined), self.request.count, stacklevel=3)
 
-    def _samples(self, bins: NormalBins, hits: Hits, start: int, report: SamplingReport) -> Samples:
-        """Return hits as samples; the normals are numbered from `start` on."""
-        fields = with_uv(self.spline, self.fields)
-        arrays = fill(self.spline, bins, hits, self.threads, fields, self.dtype)
-        arrays = samples_inside(self.spline, arrays, self.fields)
+    def _samples(self, found: FieldsOfSamples, start: int, report: SamplingReport) -> Samples:
+        """Return a chunk; its normals are numbered from `start` on."""
+        arrays = found.fields
         if start and "normal_index" in arrays:
             arrays["normal_index"] = arrays["normal_index"] + start
-        count = count_of(arrays)
-        report = replace(report, samples=count, infinite_curvatures=count_infinite(arrays))
-        return Samples(**arrays, report=report, spline=self.spline)
+        report = replace(report, samples=found.number, infinite_curvatures=count_infinite(arrays))
+        return self.geometry.samples(arrays, report, found.unrefined)
+
+
+@dataclass
+class Flat:
+    """Counts developable patches."""
+
+    patches: int = 0
+
+    def counted(self, parts: Iterator[Hits]) -> Iterator[Hits]:
+        """Yield the same hits, and count the developable patches of each."""
+        for hits in parts:
+            self.patches += hits.developable
+            yield hits
 
 
 def grouped(parts: Iterator[Hits], size: int) -> Iterator[Hits]:

@@ -39,6 +39,7 @@ def arguments(options: SimpleNamespace, default_count: int) -> dict[str, Any]:
         "density": options.density,
         "relax": options.relax,
         "cells": options.cells,
+        "on": options.on,
         "threads": options.threads,
         "progress": not options.quiet,
     }

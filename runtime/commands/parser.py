@@ -11,7 +11,7 @@ from typing import Any
 import click
 
 from ... import __version__
-from ..fields import ARRAY_NAMES
+from ..fields import ARRAY_NAMES_ON_SURFACE
 from ..limits import MOST, MOST_FREQUENCY, MOST_STEPS
 from .options import (
     Command,
@@ -109,7 +109,7 @@ def _command(
 
 def _sample() -> Command:
     group = "contents of the file"
-    names = f"Write these arrays only (default: all). They are {', '.join(ARRAY_NAMES)}."
+    names = f"Write these arrays only (default: all). They are {', '.join(ARRAY_NAMES_ON_SURFACE)}."
     prefixes = "Order the samples such that every prefix of them is well distributed."
     single = "Write single precision: 7 digits instead of 16."
     return _command(
@@ -288,6 +288,10 @@ def _surface_options() -> list[Option]:
     )
     nodata = "The number that stands for missing data in a grid, such as -9999; NaN does anyway."
     cells = "The cells of the spline along u and v (default: 64 64, or those of the grid)."
+    on = (
+        "Where samples lie: on the surface itself (default) or on the spline that approximates it. "
+        "Of grids in files there is the spline only."
+    )
     axes = click.Choice(("none", "u", "v", "uv"))
     return [
         Option("--set NAME=VALUE", parameter, setting, group=group, multiple=True),
@@ -295,4 +299,5 @@ def _surface_options() -> list[Option]:
         Option("--periodic AXES", periodic, axes, group=group),
         Option("--nodata NUMBER", nodata, number, group=group),
         Option("--cells M N", cells, whole(MOST), group=group),
+        Option("--on WHERE", on, click.Choice(("surface", "spline")), group=group),
     ]

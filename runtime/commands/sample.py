@@ -20,9 +20,10 @@ __all__ = ["run"]
 def run(options: SimpleNamespace) -> None:
     """Sample a surface and write the samples to a file."""
     check_target(options.output, SUFFIXES)
-    fields = checked_fields(options.fields.split(",") if options.fields is not None else None)
-    check_fields(options.output, fields)
-    if options.progressive and not {"points", "normals"} <= {*fields}:
+    fields = None if options.fields is None else options.fields.split(",")
+    written = checked_fields(fields, options.on != "spline")
+    check_fields(options.output, written)
+    if options.progressive and not {"points", "normals"} <= {*written}:
         raise InputError("--progressive needs points and normals among the --fields.")
     dtype = np.float32 if options.float32 else np.float64
     samples = sample(**arguments(options, default_count=10_000), fields=fields, dtype=dtype)

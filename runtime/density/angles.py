@@ -37,8 +37,8 @@ def cover_normals(cover: Cover, angle: float) -> float:
     limit = 2.0 * math.sin(math.radians(angle) / 2.0)
     near, largest, triangles = (1.0 - MARGIN) * limit, 0.0, cut_patches(cover.sizing, math.inf)
     while len(triangles):
-        rows = triangles.at_places()
-        within = triangles.normal_chords(rows)
+        rows = triangles.as_samples()
+        within = cover.sizing.geometry.normal_chords(triangles, rows)
         distances = _distances(cover, 0, rows)
         far = distances > near
         if far.any():

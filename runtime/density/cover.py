@@ -142,7 +142,7 @@ class Cover:
         chosen = self._candidates.centres(self.count)
         moved = first + np.flatnonzero(chosen[first:] >= 0)
         triangles = self.triangles[chosen[moved]]
-        rows = triangles.at_places()
+        rows = triangles.as_samples()
         self.points[moved], self.curvatures[moved] = rows[:, :6], rows[:, 7]
         self.added.write(moved - self.given, triangles)
 
@@ -169,7 +169,7 @@ class Cover:
             self.show_count(self.count)
 
     def _append(self, triangles: Triangles) -> None:
-        rows = triangles.at_places()
+        rows = triangles.as_samples()
         self.added += triangles
         self.points = np.concatenate([self.points, rows[:, :6]])
         self.curvatures = np.concatenate([self.curvatures, rows[:, 7]])

@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..spline import Spline
+from ..surface import Surface
 from ..trees import tree_of
 from .candidates import Candidates
-from .sizing import SizingFunction, TargetDensity
+from .sizing import SizingFunction, uniform
 from .triangles import Array, Triangles, cut_patches
 
 __all__ = ["coverage", "coverage_of"]
@@ -22,9 +23,11 @@ SPACINGS = 2.0
 MOST_CUTS = 40
 
 
-def coverage_of(points: NDArray[np.floating], spline: Spline, threads: int | None) -> float:
+def coverage_of(
+    points: NDArray[np.floating], spline: Spline, surface: Surface | None, threads: int | None
+) -> float:
     """Return what `Samples.coverage` returns."""
-    sizing = SizingFunction(spline, TargetDensity(floor=1.0), threads)
+    sizing = uniform(spline, surface, threads)
     return coverage(sizing, sizing.scaled_points(points)) / sizing.unit
 
 
@@ -33,8 +36,11 @@ def coverage(sizing: SizingFunction, points: Array, asked: float = math.inf) -> 
 
     Points and the distance are scaled as in `SizingFunction`. This is branch and bound: triangles
     are cut that may hold a point farther away than TIGHT times the farthest centroid, or than
-    `asked` if no centroid is. Infinite if there are no points.
+    `asked` if no centroid is. Triangles are those of the spline: twice its distance from the
+    surface is added, if that is what is sampled. Infinite if there are no points.
     """
+    apart = 2.0 * sizing.geometry.distance * sizing.unit
+    asked -= apart
     if len(points) == 0:
         return math.inf
     samples = np.column_stack([points, np.zeros_like(points)])
@@ -51,7 +57,7 @@ def coverage(sizing: SizingFunction, points: Array, asked: float = math.inf) -> 
         radius, triangles = float(bounds.max()), triangles[far].halves.halves
     else:
         largest = max(largest, radius)
-    return largest
+    return largest + apart
 
 
 def _distances(triangles: Triangles, samples: Array, radius: float) -> Array:

@@ -75,11 +75,12 @@ def _largest(triangles: Triangles, chord_of: Callable[[Array], Array]) -> float:
     """Return the largest angle in degrees of chords at places on triangles."""
     found = 0.0
     for _ in range(CUTS):
-        rows = triangles.at_centroids()
+        rows = triangles.as_samples()
         chords = np.where(rows[:, 3:6].any(axis=1), chord_of(rows), 0.0)
         found = max(found, float(chords.max(initial=0.0)))
         # Within a triangle the normal turns by no more than this.
-        triangles = triangles[chords + triangles.normal_chords(rows) > found].quarters
+        turns = triangles.sizing.geometry.normal_chords(triangles, rows)
+        triangles = triangles[chords + turns > found].quarters
         if len(triangles) == 0:
             break
     return math.degrees(2.0 * math.asin(min(found, 2.0) / 2.0))

@@ -6,18 +6,15 @@ import math
 from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from ..developable import curved_solid_angle
 from ..errors import SurfaceError
-from ..fields import FLOAT_NAMES, new_field
-from ..kernels.tile import fill_known
+from ..geometry import OnSpline
 from ..report import sampling_report
 from ..samples import Samples
-from ..spline import Spline
 from ..threads import counted
 from ..tolerances import FLAT_SURFACE, LENGTH_ERROR
 from .angles import cover_normals
@@ -51,11 +48,10 @@ BISECTIONS, NEAR_ENOUGH, FEWEST_NORMALS = 10, 0.97, 10.0
 
 
 def filled_samples(
-    spline: Spline,
+    geometry: OnSpline,
     request: Request,
     fields: Sequence[str],
     dtype: DTypeLike,
-    threads: int | None,
     progress: bool,
     floor: float | None = None,
 ) -> tuple[Samples, NDArray[np.float64]]:
@@ -65,7 +61,7 @@ def filled_samples(
     """
     angle = None
     with counted(request.count, progress) as show_count:
-        filling = Filling(spline, request, threads, progress, show_count, floor)
+        filling = Filling(geometry, request, progress, show_count, floor)
         cover, at_normals = filling.cover()
         cover = filling.relaxed(cover)
         if request.angle is not None:
@@ -80,9 +76,8 @@ class Filling:
     `show_count` is called with the number of samples when it has grown.
     """
 
-    spline: Spline
+    geometry: OnSpline
     request: Request
-    threads: int | None
     progress: bool
     show_count: Callable[[int], object]
     floor: float | None = None
@@ -117,7 +112,8 @@ class Filling:
         A power is uniform, too, if all curvature is an error of the spline.
         """
         power, count = self.request.density, self.request.count or 0
-        if isinstance(power, str) or curved_solid_angle(self.spline, count / (4 * math.pi)) == 0.0:
+        density = count / (4 * math.pi)
+        if isinstance(power, str) or curved_solid_angle(self.geometry, density) == 0.0:
             return self._sizing(TargetDensity(floor=1.0))
         sizing = self._sizing(TargetDensity(gauss_weight=1.0, exponent=float(power)))
         floor = sizing.integral / sizing.area / WIDEST_GAP**2
@@ -129,11 +125,11 @@ class Filling:
 
     def _sizing(self, target: TargetDensity) -> SizingFunction:
         """Return a sizing function; SurfaceError if the area of the spline is rounding."""
-        sizing = SizingFunction(self.spline, target, self.threads)
+        sizing = SizingFunction(self.geometry, target)
         if not sizing.area > sizing.size * sizing.noise:
             raise SurfaceError(
-                f"surface {self.spline.name!r} has no area beyond rounding: all its points lie on "
-                'one curve or are one point; only density="gauss" takes it.'
+                f"surface {sizing.spline.name!r} has no area beyond rounding: all its points lie "
+                'on one curve or are one point; only density="gauss" takes it.'
             )
         return sizing
 
@@ -146,21 +142,25 @@ class Filling:
         angle: float | None,
     ) -> Samples:
         """Return the samples at normals, followed by the added ones."""
-        arrays, given = added_fields(cover, fields, dtype), at_normals.samples
+        added, given = cover.points[cover.given :, 3:].copy(), at_normals.samples
+        arrays, unrefined = self.geometry.at_places(
+            cover.added, added, cover.curvatures[cover.given :], fields, dtype
+        )
         if given is not None:
             arrays = {
                 name: np.concatenate([getattr(given, name).astype(x.dtype, copy=False), x])
                 for name, x in arrays.items()
             }
+            unrefined = None if unrefined is None else unrefined + (given.report.unrefined or 0)
         developable = None if given is None else given.report.developable_patches
         report = sampling_report(
-            self.spline, len(at_normals.normals), cover.count, at_normals.density, developable,
+            self.geometry, len(at_normals.normals), cover.count, at_normals.density, developable,
             arrays,
         )  # fmt: skip
         asked = self.request.coverage
         reached = None if asked is None else self._coverage(cover, asked)
         report = replace(report, coverage=reached, angle=angle)
-        return Samples(**arrays, report=report, spline=self.spline)
+        return self.geometry.samples(arrays, report, unrefined)
 
     def _coverage(self, cover: Cover, asked: float) -> float:
         """Return a bound of the distance of a point of the surface from the nearest sample."""
@@ -168,7 +168,13 @@ class Filling:
         return coverage(cover.sizing, cover.points[:, :3], asked * unit) / unit
 
     def _distance(self, sizing: SizingFunction, coverage: float) -> float:
-        """Return a coverage as a scaled length, between rounding and the size of the surface."""
+        """Return a coverage as a scaled length, between rounding and the size of the surface.
+
+        Triangles are those of the spline: from places on the surface, its points are farther away
+        by twice its distance from the spline, at most. That is subtracted, and half of the coverage
+        is left at least.
+        """
+        coverage = max(coverage - 2.0 * self.geometry.distance, coverage / 2.0)
         return min(max(coverage * sizing.unit, LENGTH_ERROR * sizing.size), sizing.size)
 
     # --- balanced ---------------------------------------------------------------------------------
@@ -209,7 +215,7 @@ class Filling:
 
     def _by_count(self, sizing: SizingFunction, count: int) -> tuple[Cover, SamplesAtNormals]:
         """Divide a count between samples at normals and samples that fill the gaps."""
-        seen = curved_solid_angle(self.spline, count / (4 * math.pi))
+        seen = curved_solid_angle(self.geometry, count / (4 * math.pi))
         density = 1.0
         # The number of samples at one normal per steradian; it is proportional to their density.
         filling = sizing.integral / (GREEDY * (WIDER * spacing(density)) ** 2)
@@ -223,7 +229,7 @@ class Filling:
         self, sizing: SizingFunction, count: int, coverage: float
     ) -> tuple[Cover, SamplesAtNormals]:
         """Find the most normals that leave enough samples for a coverage, by bisection."""
-        seen = curved_solid_angle(self.spline, count / (4 * math.pi))
+        seen = curved_solid_angle(self.geometry, count / (4 * math.pi))
         distance = self._distance(sizing, coverage)
         high = math.log(count / seen) if seen > 0.0 else 0.0
         low, best = high - FEWEST_NORMALS, None
@@ -251,23 +257,8 @@ class Filling:
     ) -> SamplesAtNormals:
         """Return the samples at normals, or at a lattice with a density per steradian."""
         if isinstance(asked, np.ndarray):
-            return sample_at_normals(self.spline, asked, self.threads, self.progress)
-        return sample_at_lattice(self.spline, asked, self.threads, self.progress, most)
-
-
-def added_fields(cover: Cover, fields: Sequence[str], dtype: DTypeLike) -> dict[str, NDArray[Any]]:
-    """Return fields of the added samples of a cover; see `Samples`."""
-    patch_index, uv = cover.added.patches, cover.added.uv
-    count, spline, K = len(patch_index), cover.sizing.spline, cover.curvatures[cover.given :]
-    filled = {x: new_field(x, count, dtype) for x in FLOAT_NAMES if x in fields}
-    here = np.arange(count)
-    fill_known(
-        spline.coefficients, spline.scale, cover.points[cover.given :, 3:].copy(), spline.frame,
-        here, np.column_stack([patch_index, here]), np.column_stack([uv, K, uv]),
-        *(filled.get(x) for x in FLOAT_NAMES),
-    )  # fmt: skip
-    indices = {"normal_index": np.full(count, -1), "patch_index": patch_index}
-    return filled | {name: x for name, x in indices.items() if name in fields}
+            return sample_at_normals(self.geometry, asked, self.progress)
+        return sample_at_lattice(self.geometry, asked, self.progress, most)
 
 
 def spacing(density: float) -> float:

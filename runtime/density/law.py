@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..developable import curved_solid_angle
 from ..errors import SurfaceError
-from ..spline import Spline
+from ..geometry import OnSpline
 from ..tolerances import FLAT_SURFACE
 from .filling import FLAT_SHARE, GREEDY, SAVED, WIDER, WIDEST_GAP, spacing
 from .request import Request
@@ -31,12 +31,11 @@ BISECTIONS = 60
 class Law:
     """The target density of all pieces, and how many samples each of them is to have.
 
-    Numbers are in the unit L of the surface, in which the splines of the pieces are.
+    Numbers are in the unit L of the surface, in which the pieces are.
     """
 
-    splines: Sequence[Spline]
+    parts: Sequence[OnSpline]
     request: Request
-    threads: int | None = None
 
     @cached_property
     def areas(self) -> Array:
@@ -48,7 +47,7 @@ class Law:
         areas[areas <= NO_AREA * areas.sum()] = 0.0
         if not areas.any():
             raise SurfaceError(
-                f"surface {self.splines[0].name!r} and the other pieces have no area beyond "
+                f"surface {self.parts[0].name!r} and the other pieces have no area beyond "
                 "rounding, or their trim leaves nothing of them."
             )
         return areas
@@ -76,9 +75,9 @@ class Law:
         """Return numbers that are proportional to the samples of the pieces."""
         if self.request.density not in ("gauss", "balanced"):
             return self._integrals(self.floor)
-        seen = np.zeros(len(self.splines))
+        seen = np.zeros(len(self.parts))
         for k in np.flatnonzero(self.areas).tolist():
-            seen[k] = self._seen(self.splines[k], count)
+            seen[k] = self._seen(self.parts[k], count)
         if self.request.density == "gauss":
             return seen
         filling = self._integrals(self.floor) / (GREEDY * (WIDER * spacing(1.0)) ** 2)
@@ -89,15 +88,15 @@ class Law:
         order, values = self._order, floor * self.areas
         for k in np.flatnonzero(self.areas).tolist():
             sizing = self._sizings[k]
-            if self._by_power and self._seen(sizing.spline, 0) == 0.0:
+            if self._by_power and self._seen(sizing.geometry, 0) == 0.0:
                 continue  # its curvature is rounding
             with_floor = sizing.with_floor(max(floor / sizing.unit**order, sizing.target.floor))
             values[k] = with_floor.integral * sizing.unit ** (order - 2.0)
         return values
 
     @staticmethod
-    def _seen(spline: Spline, count: int) -> float:
-        return curved_solid_angle(spline, count / (4 * math.pi))
+    def _seen(part: OnSpline, count: int) -> float:
+        return curved_solid_angle(part, count / (4 * math.pi))
 
     @property
     def _by_power(self) -> bool:
@@ -118,7 +117,7 @@ class Law:
             target = TargetDensity(gauss_weight=1.0, exponent=float(self.request.density))
         elif self.request.density == "balanced":
             target = TargetDensity(curvature_weight=1.0)
-        return tuple(SizingFunction(x, target, self.threads) for x in self.splines)
+        return tuple(SizingFunction(x, target) for x in self.parts)
 
 
 def area_of(sizing: SizingFunction) -> float:

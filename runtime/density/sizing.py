@@ -9,11 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated.spline import SCALE
+from ..geometry import OnSpline
 from ..kernels.sizing import TargetDensity, integrate_density
+from ..on_surface import OnSurface
 from ..spline import Spline
+from ..surface import Surface
 from ..threads import over_ranges
 
-__all__ = ["SizingFunction", "TargetDensity"]
+__all__ = ["SizingFunction", "TargetDensity", "uniform"]
 
 Array = NDArray[np.float64]
 
@@ -22,16 +25,25 @@ PATCHES_AT_A_TIME = 1 << 12
 
 @dataclass(frozen=True, eq=False)
 class SizingFunction:
-    """A target density w on a spline, and its integrals over the patches.
+    """A target density w on what is sampled, and its integrals over the patches.
 
     The sizing function is 1/√w: every point is to have a sample within r/√w, for a radius r that is
     the same everywhere. Lengths and curvatures are scaled: those of the spline times `unit`, which
     brings them to about 1.
     """
 
-    spline: Spline
+    geometry: OnSpline
     target: TargetDensity
-    threads: int | None = None
+
+    @property
+    def spline(self) -> Spline:
+        """The spline."""
+        return self.geometry.spline
+
+    @property
+    def threads(self) -> int | None:
+        """The number of threads."""
+        return self.geometry.threads
 
     @property
     def unit(self) -> float:
@@ -101,4 +113,13 @@ class SizingFunction:
 
         for _ in over_ranges(work, count, PATCHES_AT_A_TIME, self.threads):
             pass
-        return arrays
+        radii, areas, densities = arrays
+        return radii, areas, self.geometry.densities(target, radii, densities)
+
+
+def uniform(spline: Spline, surface: Surface | None, threads: int | None) -> SizingFunction:
+    """Return the sizing function 1 of samples on a surface, or on a spline."""
+    geometry = OnSpline(spline, threads)
+    if surface is not None:
+        geometry = OnSurface(spline, threads, surface)
+    return SizingFunction(geometry, TargetDensity(floor=1.0))

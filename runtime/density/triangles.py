@@ -119,13 +119,21 @@ class Triangles:
     def at_places(self) -> Array:
         """Return scaled point, unit normal, target density and K (M, 8) at the places.
 
-        At a singular point, the normal and K are 0.
+        Of K only the sign counts. At a singular point, the normal and K are 0.
         """
+        return self.sizing.geometry.as_candidates(self, self.on_spline())
+
+    def on_spline(self) -> Array:
+        """Return what `at_places` returns, all of it from the spline."""
         corners = self.corners
         if self.places is not None:
             corners = np.repeat(self.places[:, None], 3, axis=1)  # whose centroids they are
         sizing, rows = (self.sizing.target, self.sizing.radii), np.empty((len(self), 8))
         return self._written_by(kernels.evaluate_centroids, corners, *sizing, rows)
+
+    def as_samples(self) -> Array:
+        """Return what `at_places` returns, with points, normals and K of what is sampled."""
+        return self.sizing.geometry.as_samples(self, self.at_places())
 
     def normal_chords(self, rows: Array) -> Array:
         """Return how far normals of each triangle (M,) are from that at its place, at most.

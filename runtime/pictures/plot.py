@@ -18,7 +18,6 @@ from ..directions.unit import as_normals
 from ..errors import InputError
 from ..extras import check_extra
 from ..files import paths
-from ..fitting import spline_of
 from ..samples import Samples
 from ..sampling import sample_and_normals
 from ..spline import Spline
@@ -56,6 +55,7 @@ def plot(
     density: str | float | None = None,
     relax: int = 0,
     cells: Sequence[int] | None = None,
+    on: str | None = None,
     threads: int | None = None,
     progress: bool = False,
 ) -> Samples:
@@ -65,12 +65,12 @@ def plot(
     path is checked before any work is done.
     """
     check_target(path)
-    spline = spline_of(surface, cells)
     request = checked_request(normals, count, angle, coverage, density, relax, threads)
     samples, directions = sample_and_normals(
-        spline, request, cells=None, threads=threads, progress=progress
+        surface, request, cells=cells, on=on, threads=threads, progress=progress
     )
-    plot_samples(samples, spline, directions, path)
+    assert samples.spline is not None
+    plot_samples(samples, samples.spline, directions, path)
     return samples
 
 

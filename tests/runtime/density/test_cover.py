@@ -5,13 +5,16 @@ import numpy as np
 import pytest
 from gaussmap.runtime.density.cover import Cover
 from gaussmap.runtime.density.sizing import SizingFunction, TargetDensity
+from gaussmap.runtime.geometry import OnSpline
 
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "plane"])
 def test_what_is_filled_up_is_far_from_all_samples(name):
     """Also from those that came for places between the candidates."""
-    sizing = SizingFunction(gm.fit(gm.surfaces.surface(name), (16, 16)), TargetDensity(floor=1.0))
+    sizing = SizingFunction(
+        OnSpline(gm.fit(gm.surfaces.surface(name), (16, 16))), TargetDensity(floor=1.0)
+    )
     cover = Cover(sizing, None)
     cover.to_radius(0.1 * np.sqrt(sizing.area))
     before = cover.count

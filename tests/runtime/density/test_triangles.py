@@ -5,11 +5,12 @@ import numpy as np
 import pytest
 from gaussmap.runtime.density.sizing import SizingFunction, TargetDensity
 from gaussmap.runtime.density.triangles import Triangles, cut_patches
+from gaussmap.runtime.geometry import OnSpline
 
 
 def sizing_of(name: str, cells: tuple[int, int]) -> SizingFunction:
     target = TargetDensity(floor=1.0, curvature_weight=1.0)
-    return SizingFunction(gm.fit(gm.surfaces.surface(name), cells), target)
+    return SizingFunction(OnSpline(gm.fit(gm.surfaces.surface(name), cells)), target)
 
 
 def sizes(triangles: Triangles) -> np.ndarray:
@@ -73,7 +74,7 @@ def test_narrow_patches_are_bisected(width):
     plane = gm.Surface.from_callable(
         lambda u, v: np.stack([u, width * v, 0.0 * u], axis=-1), ((0.0, 1.0), (0.0, 1.0))
     )
-    sizing = SizingFunction(gm.fit(plane, (4, 4)), TargetDensity(floor=1.0))
+    sizing = SizingFunction(OnSpline(gm.fit(plane, (4, 4))), TargetDensity(floor=1.0))
     for radius in (0.05 * sizing.unit, 0.5 * width * sizing.unit):
         triangles = cut_patches(sizing, radius)
         areas = sizing.areas[triangles.patches] * sizes(triangles)
