@@ -17,6 +17,7 @@ from ..spline import Spline
 from .improvement import checked_prefer, flip_edges, improved
 from .mesh import Mesh, scaled
 from .triangulation import neighbours, triangulations
+from .trimming import trimmed_triangles
 from .vertices import Vertices, before_offset, boundary_of
 
 if TYPE_CHECKING:
@@ -75,7 +76,15 @@ class Triangulated:
         """Triangulate; InputError if the whole surface is required and that fails."""
         boundary = boundary_of(spline)
         vertices = Vertices.of(samples, spline, boundary)
-        triangles, sides, adjacent = _triangles(vertices, spline, boundary, must_be_whole)
+        if spline.trim is None:
+            triangles, sides, adjacent = _triangles(vertices, spline, boundary, must_be_whole)
+        else:
+            vertices, triangles, sides, adjacent, is_whole = trimmed_triangles(
+                vertices, samples, spline, boundary, _lengths(spline),
+                lambda x: _triangles(x, spline, boundary, False),
+            )  # fmt: skip
+            if not len(triangles) or (must_be_whole and not is_whole):
+                raise _too_few(len(vertices.sample), spline.name)
         uv, points, normals = _on_surface(vertices, samples, spline)
         _fill_missing(normals, triangles, sides)
         if samples.offset_of is not None:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from ..samples import Samples
 
-__all__ = ["Vertices", "before_offset", "boundary_of"]
+__all__ = ["CLOSE", "Vertices", "before_offset", "boundary_of", "points_at", "spacings_at"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -125,7 +125,7 @@ def boundary_of(spline: Spline) -> Boundary:
         for place, end in enumerate(ends):
             if end == "open" and spline.boundary[1 - axis][0] == "periodic":
                 t = np.linspace(0.0, 1.0, spline.cells[1 - axis] + 1)
-                side = _points(spline, _on_side(axis, place, t))
+                side = points_at(spline, _on_side(axis, place, t))
                 kinds[place] = "pole" if np.ptp(side, axis=0).max() <= ON_BORDER * size else end
         found.append((kinds[0], kinds[1]))
     return found[0], found[1]
@@ -152,7 +152,7 @@ def _on_side(axis: int, place: int, t: Array) -> Array:
     return np.stack([fixed, t] if axis == 0 else [t, fixed], axis=1)
 
 
-def _points(spline: Spline, positions: Array) -> Array:
+def points_at(spline: Spline, positions: Array) -> Array:
     """Return the points (k, 3) of a spline at positions, times its scale."""
     vertices = Vertices.fixed(positions, np.empty(0, dtype=np.int64))
     return spline.evaluate(*vertices.uv(spline).T) * spline.scale
@@ -165,14 +165,14 @@ def _poles(inner: Vertices, tree: KDTree, spline: Spline, boundary: Boundary) ->
             if end == "pole":
                 there = np.abs(inner.positions[:, axis] - place) <= ON_BORDER
                 at = _on_side(axis, place, np.zeros(1))
-                point = _points(spline, at)
+                point = points_at(spline, at)
                 if there.any():
                     yield Vertices.fixed(at, inner.sample[there])
-                elif tree.query(point)[0][0] >= CLOSE * _spacings(tree, point)[0]:
+                elif tree.query(point)[0][0] >= CLOSE * spacings_at(tree, point)[0]:
                     yield Vertices.fixed(at, np.array([-1]))
 
 
-def _spacings(tree: KDTree, points: Array) -> Array:
+def spacings_at(tree: KDTree, points: Array) -> Array:
     """Return spacings (k,) of vertices at points (k, 3), from the distances of samples there."""
     nearest = min(NEAREST, tree.n)
     spacings = np.empty(len(points))
@@ -207,8 +207,8 @@ class _Side:
         steps = STEPS_A_CELL * spline.cells[1 - axis]
         steps = max(steps, STEPS_A_SAMPLE * math.isqrt(tree.n))
         self.t = np.linspace(0.0, 1.0, steps + 1)
-        line = _points(spline, _on_side(axis, place, self.t))
-        self.spacings = _spacings(tree, line)
+        line = points_at(spline, _on_side(axis, place, self.t))
+        self.spacings = spacings_at(tree, line)
         lengths = np.linalg.norm(np.diff(line, axis=0), axis=1)
         shortest = float(lengths.sum()) / steps or 1.0
         middle = np.maximum((self.spacings[1:] + self.spacings[:-1]) / 2.0, shortest)
@@ -251,7 +251,7 @@ class _Side:
         depth = np.abs(inner.positions[:, self.axis] - self.place)
         near = np.flatnonzero(depth < DEEPEST)
         along = inner.positions[near, 1 - self.axis]
-        feet = _points(self.spline, _on_side(self.axis, self.place, along))
+        feet = points_at(self.spline, _on_side(self.axis, self.place, along))
         gaps = np.linalg.norm(points[inner.sample[near]] - feet, axis=1)
         is_on = depth[near] <= ON_BORDER
         chosen = is_on | (gaps < CLOSE * np.interp(along, self.t, self.spacings))
