@@ -100,8 +100,9 @@ def filled(points: Array) -> Array:
     from scipy.ndimage import distance_transform_edt
 
     touched = bad.any(axis=2)
-    nearest = distance_transform_edt(touched, return_distances=False, return_indices=True)
-    return np.where(bad, points[tuple(nearest)], points)
+    nearest: NDArray[np.int32] = np.empty((2, *touched.shape), dtype=np.int32)
+    distance_transform_edt(touched, return_distances=False, return_indices=True, indices=nearest)
+    return np.where(bad, points[nearest[0], nearest[1]], points)
 
 
 def known_of_grid(points: Array, domain: Domain, boundary: Boundary, name: str) -> Known | None:
@@ -167,7 +168,7 @@ def _known(inner: Array, border: Border, domain: Domain, boundary: Boundary) -> 
     m, n = inner.shape[:2]
     nets = np.empty((4 * m * n, 6, 3))
     kernels.control_nets(coefficients, nets)
-    return Known(domain, (m, n), ~np.isnan(nets).any(axis=(1, 2)))
+    return Known(domain, (m, n), np.asarray(~np.isnan(nets).any(axis=(1, 2))))
 
 
 def _without_poles(boundary: Boundary) -> Boundary:

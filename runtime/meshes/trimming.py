@@ -67,11 +67,13 @@ def trimmed_triangles(
     for line in lines:
         line.to_samples(tree)
     trimmed = _Trimmed(spline, boundary, lengths, vertices, lines)
+    whole, numbers = trimmed.vertices()
+    triangles, sides, _ = triangulate(whole)
     for _ in range(ROUNDS):
-        whole, pairs = trimmed.vertices()
-        triangles, sides, _ = triangulate(whole)
-        if not trimmed.refine(whole, triangles, pairs):
+        if not trimmed.refine(whole, triangles, numbers):
             break
+        whole, numbers = trimmed.vertices()
+        triangles, sides, _ = triangulate(whole)
     kept = trimmed.is_inside(whole, triangles)
     triangles, sides = triangles[kept], sides[kept]
     on_border = whole.sample == ON_BORDER
@@ -117,11 +119,7 @@ class _Line:
         near = np.flatnonzero(distance < CLOSE * self.spacings[nearest])
         near = near[np.argsort(-distance[near], kind="stable")]  # the closest one comes last
         at = self.measure[nearest[near]]
-        slots = (
-            np.abs(self.t[:, None] - at).argmin(axis=0)
-            if len(near) < 1000
-            else np.clip(np.searchsorted((self.t[1:] + self.t[:-1]) / 2.0, at), 0, len(self.t) - 1)
-        )
+        slots = np.searchsorted((self.t[1:] + self.t[:-1]) / 2.0, at)
         free = ~self.fixed[slots]
         self.t[slots[free]] = at[free]
         order = np.argsort(self.t, kind="stable")
@@ -285,7 +283,7 @@ class _Trimmed:
         number = min(max(len(self.given.positions), FEWEST), MOST)
         size = math.sqrt(float(self.lengths.prod()) / number)
         counts = np.maximum(np.ceil(self.lengths / size), 3).astype(np.int64)
-        i, j = (x.ravel() for x in np.indices(counts))
+        i, j = (x.ravel() for x in np.indices(tuple(counts.tolist())))
         places = np.stack(
             [(i + 0.5 + 0.25 * (j % 2 * 2 - 1)) / counts[0], (j + 0.5) / counts[1]], 1
         )
