@@ -18,6 +18,7 @@ from itertools import product
 import gaussmap as gm
 import numpy as np
 import sympy as sp
+from gaussmap.docs import poles
 from gaussmap.symbolic.notation import dot
 from gaussmap.symbolic.spline import triangles
 from gaussmap.symbolic.surfaces import CATALOGUE, ParametricSurface
@@ -370,9 +371,26 @@ that decreases towards the finest grid, means that terms of higher order contrib
 {exact} have quadratic polynomials for coordinates. The spline reproduces them
 exactly; the remaining rounding error is given as a power of ten above it.
 
-Not included are {singular}. At their poles x_u × x_v = 0 (checked
+Not in these tables are {singular}. At their poles x_u × x_v = 0 (checked
 exactly): these are singular points of the parameterization, without a normal by (1), and an error
-of the derivatives, divided by |x_u × x_v|, does not bound that of the normals there.
+of the derivatives, divided by |x_u × x_v|, does not bound that of the normals there. They are in
+the last section.
+"""
+
+POLES = """\
+## Poles
+
+At a pole, an end of v where the surface is one point, the coefficients of the spline around it lie
+in one plane, exactly: so the spline has one normal there, and a closed surface has Σ sign K = χ/2
+for every normal. The tables give errors in rows of cells, counted from a pole, over {places} places
+of each cell, and in the middle half of the domain. Surfaces are rotated, so that no axis of
+symmetry is one of the coordinates, and `egg` is {egg}
+
+Positions keep their order. Normals lose one next to poles, unless symmetry hides it: v² u, a term
+of third order, is not reproduced, and the error of p_u is divided by the radius of a row, which is
+of the order of k. At the poles themselves the normals of spline and surface differ by less than
+{tip} degrees here. With `on="surface"`, samples do not have these errors: they are moved to the
+surface.
 """
 
 METHOD = """\
@@ -431,7 +449,23 @@ def page(measurements: Sequence[Measurement]) -> str:
             parts.append(_faster(measurements))
     parts.append("Samples compared and left out, on the coarsest and on the finest grid:\n")
     parts.append(counts(measurements))
+    parts.append(at_poles(measurements[0].grids))
     return "\n".join(x for x in parts if x)
+
+
+def at_poles(grids: Sequence[int]) -> str:
+    """Return the section on surfaces with poles."""
+    found = [poles.measured(x.name, cells) for x in poles.surfaces() for cells in grids]
+    text = POLES.format(
+        places=poles.ALONG.size * poles.ACROSS.size,
+        egg=poles.EGG.sentence[0].lower() + poles.EGG.sentence[1:],
+        tip=above(max(x.at_pole for x in found)).removeprefix("< "),
+    )
+    parts = [wrapped(text)]
+    for title, quantity in (("Positions", "positions"), ("Normals, in degrees", "normals")):
+        header, *rows = poles.table(grids, quantity)
+        parts += [f"{title}:\n", markdown(header, rows)]
+    return "\n".join(parts)
 
 
 def table(quantity: Quantity, measurements: Sequence[Measurement]) -> str:

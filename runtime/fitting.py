@@ -72,6 +72,10 @@ def fit(
     and along v, and is the `misfit` of the spline. A spline rounds lines where the normal of a
     NURBS turns: fit its pieces one by one (see `Surface.pieces`).
 
+    Sides of the domain that are one point become poles where the surface goes on smoothly, unless
+    it was said how they end (see `Surface.assumed_open`). There the spline has one normal. Next to
+    it, in a few cells, errors of normals fall with the first power of the cell size only.
+
     Parameters
     ----------
     surface : Surface or str

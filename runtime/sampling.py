@@ -137,6 +137,9 @@ def sample(
     For ``density="balanced"``, κ is the larger principal curvature: neighbouring normals differ by
     about r, twice the angle. λ is a quarter of the mean of κ², or follows from `coverage`.
 
+    The samples of a spline at a normal have Σ sign K = χ/2, for every normal of every closed
+    surface, those at poles included; χ is the Euler characteristic.
+
     Examples
     --------
     >>> import gaussmap as gm

@@ -3,7 +3,7 @@
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.docs import orders
+from gaussmap.docs import orders, poles
 from gaussmap.docs.orders import ANGLES, DERIVATIVES, POSITIONS, QUANTITIES, SUPPORT
 
 pytestmark = pytest.mark.compiled
@@ -119,6 +119,26 @@ def test_tables(measured):
         assert len({line.count("|") for line in lines}) == 1
     assert "exact" in orders.table(POSITIONS, chosen).splitlines()[3]
     assert orders.table(SUPPORT, chosen).count("–") == 2 * (len(GRIDS) + 4)
+
+
+def test_errors_next_to_poles():
+    """Positions have order 3 everywhere, normals order 1 in the first row of a generic surface."""
+    errors = {x.name: [poles.measure(x, n) for n in GRIDS] for x in poles.surfaces()}
+    assert list(errors) == ["ellipsoid", "sphere", "egg"]
+    for name, found in errors.items():
+        positions = np.log2(found[0].positions / found[1].positions)
+        normals = np.log2(found[0].normals / found[1].normals)
+        assert (positions > 2.9).all()
+        assert normals[-1] > 1.9
+        assert normals[0] == pytest.approx(1.0 if name == "egg" else 2.0, abs=0.1)
+        assert max(x.at_pole for x in found) < 1e-5
+    assert [x.normals[0] for x in errors["egg"]] == pytest.approx([4.49, 2.18], abs=0.01)
+
+
+def test_tables_of_poles():
+    text = orders.at_poles(GRIDS)
+    assert text.startswith("## Poles")
+    assert text.count("| `egg` |") == 2 * len(poles.REGIONS)
 
 
 def test_numbers():
