@@ -20,7 +20,7 @@ __all__ = ["Nurbs"]
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Nurbs(Differentiable):
     """A NURBS surface over a rectangle of its parameters: `nurbs(u, v)` and `nurbs.jets(u, v)`.
 
@@ -37,6 +37,10 @@ class Nurbs(Differentiable):
     domain: Domain
     periodic: tuple[bool, bool] = (False, False)
     creases: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
+
+    def __repr__(self) -> str:
+        m, n, _ = self.points.shape
+        return f"Nurbs({m} × {n} control points of degrees {self.degrees})"
 
     def __call__(self, u: Array, v: Array) -> Array:
         """Return points (..., 3); InputError outside the domain where it is not periodic."""

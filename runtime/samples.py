@@ -434,8 +434,9 @@ class Samples(SampleArrays):
         spline = self.spline if spline is None else spline
         if spline is None:
             raise InputError(
-                "these samples do not know the spline that was sampled (those from a file and of "
-                "an offset do not); give it, as in samples.mesh(gm.fit(surface))."
+                "these samples do not know the spline that was sampled (those from a file, of an "
+                "offset and of several pieces do not); give it, as in "
+                "samples.mesh(gm.fit(surface)), or sample each of surface.pieces()."
             )
         if not isinstance(spline, Spline):
             raise InputError(f"spline must be a Spline, not {type(spline).__name__}.")
