@@ -285,22 +285,29 @@ class Surface:
         from .grid import points_of_elevations, spline_of_points
         from .missing import known_of_grid, without_nodata
 
-        name, assumed = label(name, "grid"), assumed_ends(periodic)
-        array = without_nodata(_grid(points), nodata, name)
+        checked, assumed = "grid" if name is None else name, assumed_ends(periodic)
+        array = without_nodata(_grid(points), nodata, checked)
         boundary, domain = checked_boundary(periodic), None
         if array.ndim == 2:
-            array, domain = points_of_elevations(array, spacing, boundary, name)
+            array, domain = points_of_elevations(array, spacing, boundary, checked)
             assumed = False, False
         elif spacing is not None:
             raise InputError(
                 "spacing is for elevations of shape (m, n); points (m, n, 3) need none."
             )
         array, boundary = closed_grid(array, boundary, assumed)
-        spline = spline_of_points(array, boundary, name, domain)
-        known = known_of_grid(array, spline.domain, boundary, name)
+        spline = spline_of_points(array, boundary, checked, domain)
+        known = known_of_grid(array, spline.domain, boundary, checked)
+        spline = replace(spline, name=label(name, "grid"))
         trim = None if known is None else Trim(spline.domain, boundary, (known,))
         return cls(
-            name, spline.evaluate, spline.domain, boundary, array, trim=trim, assumed_open=assumed
+            spline.name,
+            spline.evaluate,
+            spline.domain,
+            boundary,
+            array,
+            trim=trim,
+            assumed_open=assumed,
         )
 
     @classmethod
@@ -566,9 +573,10 @@ class Surface:
         --------
         >>> import gaussmap as gm
         >>> import numpy as np
-        >>> mirrored = gm.surfaces.sphere().transformed(np.diag([2.0, 2.0, -2.0]))
-        >>> mirrored.evaluate(0.0, np.pi / 2)
-        array([ 0.,  0., -2.])
+        >>> raised = np.diag([2.0, 2.0, 2.0, 1.0])
+        >>> raised[2, 3] = 5.0
+        >>> gm.surfaces.sphere().transformed(raised).evaluate(0.0, 0.0)
+        array([2., 0., 5.])
 
         """
         map_ = affine_map(matrix)

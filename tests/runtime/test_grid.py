@@ -408,7 +408,7 @@ def test_mirrored_both_ways():
 
 
 def test_parameters_outside_the_grid():
-    surface = gm.Surface.from_grid(POINTS)
+    surface = gm.Surface.from_grid(POINTS, name="grid")
     for u, v in ((4.1, 0.0), (0.0, -0.1), (np.nan, 0.0), (0.0, np.inf)):
         with pytest.raises(
             gm.errors.InputError, match=r"lies outside the domain \(0.0, \d.0\) of 'grid'"

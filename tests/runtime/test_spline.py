@@ -25,7 +25,7 @@ def cube(u, v):
     return np.stack([u + 0.2 * v**3, v - 0.3 * u * u * v, u**3 - u * v * v + 0.1 * v], axis=-1)
 
 
-CUBE = gm.Surface.from_callable(cube, SQUARE)
+CUBE = gm.Surface.from_callable(cube, SQUARE, name="cube")
 NAMES = ["torus", "sphere", "moebius_band", "catenoid", "wavy_graph", "cube", "klein", "grid"]
 
 
@@ -397,7 +397,7 @@ def test_outside_an_open_domain():
         (np.nan, 0.5, "u"),
         (0.5, np.inf, "v"),
     ):
-        complaint = rf"^{name} = .* lies outside the domain \(0.0, 1.0\) of 'surface'\.$"
+        complaint = rf"^{name} = .* lies outside the domain \(0.0, 1.0\) of 'cube'\.$"
         for read_ in (spline.evaluate, spline.normals):
             with pytest.raises(gm.errors.InputError, match=complaint):
                 read_([0.5, u], [0.5, v])
