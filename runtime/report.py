@@ -40,7 +40,10 @@ COUNT_TOLERANCE, FEW = 0.02, 5
 SHARE_ROUNDING = 1e-9
 # Where samples lie.
 PLACES = ("surface", "spline")
-COUNTS = ("normals", "patches", "developable_patches", "infinite_curvatures", "unrefined", "apexes")
+COUNTS = (
+    "normals", "patches", "developable_patches", "infinite_curvatures", "unrefined", "apexes",
+    "index",
+)  # fmt: skip
 DISTANCES = ("coverage", "angle", "fit_distance", "fit_rms", "fit_angle")
 
 
@@ -90,6 +93,8 @@ class SamplingReport:
     apexes : int or None
         The number of sides of the domain that are one point, through which the surface does not go
         on smoothly; see `Spline.apexes`.
+    index : int or None
+        The number of the surface among those of `sample_many`.
 
     Raises
     ------
@@ -105,8 +110,8 @@ class SamplingReport:
     ('torus', 1024, 0, 0)
     >>> report.normals <= report.samples, report.angle <= 20.0, report.coverage is None
     (True, True, True)
-    >>> report.developable_share, report.apexes
-    (0.0, 0)
+    >>> report.developable_share, report.apexes, report.index
+    (0.0, 0, None)
     >>> report.fit_rms < report.fit_distance < 1.1e-3, report.fit_angle < 0.6
     (True, True)
 
@@ -127,6 +132,7 @@ class SamplingReport:
     fit_rms: float | None = None
     fit_angle: float | None = None
     apexes: int | None = None
+    index: int | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.surface, str):

@@ -1,20 +1,18 @@
-"""`sample` and `sample_many`: from a surface to its samples, in one call."""
+"""`sample`: from a surface to its samples, in one call."""
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from .bins import NormalBins
-from .checks import yes_or_no
 from .choice import choose
 from .density.filling import filled_samples
 from .density.law import Law
 from .density.request import Request, checked_request
-from .errors import GaussmapError, GaussmapWarning, InputError, in_memory, shown
+from .errors import in_memory
 from .fields import COLUMNS, checked_dtype, checked_fields, dtype_of
 from .geometry import OnSpline
 from .memory import check_memory
@@ -27,11 +25,7 @@ from .spline import Spline
 from .surface import Surface
 from .surfaces import named
 
-__all__ = [
-    "sample",
-    "sample_and_normals",
-    "sample_many",
-]
+__all__ = ["sample", "sample_and_normals"]
 
 
 def sample(
@@ -218,86 +212,3 @@ def _by_normals(
         geometry, len(bins.normals), found.number, chosen.density, hits.developable, found.fields
     )
     return geometry.samples(found.fields, report, found.unrefined), bins.normals
-
-
-def sample_many(
-    surfaces: Iterable[Surface | Spline | str],
-    count: int | None = None,
-    *,
-    normals: ArrayLike | None = None,
-    progress: bool = True,
-    angle: float | None = None,
-    coverage: float | None = None,
-    density: str | float | None = None,
-    relax: int = 0,
-    cells: Sequence[int] | None = None,
-    on: str | None = None,
-    fields: Sequence[str] | None = None,
-    dtype: DTypeLike = np.float64,
-    threads: int | None = None,
-) -> Iterator[Samples]:
-    """Yield the samples of each of several surfaces, in order.
-
-    Parameters
-    ----------
-    surfaces : iterable of Surface, Spline or str
-        The surfaces; they may be made one by one.
-    count, normals, angle, coverage, density, relax, cells, on, fields, dtype, threads : optional
-        As in `sample`.
-    progress : bool, default True
-        Show a bar on standard error, if that is a terminal.
-
-    Yields
-    ------
-    Samples
-        The samples of the next surface; ``samples.report.surface`` is its name.
-
-    Raises
-    ------
-    InputError
-        For arguments with which no surface can be sampled.
-
-    Warns
-    -----
-    GaussmapWarning
-        If a surface cannot be sampled: it is left out, and the others go on.
-
-    Examples
-    --------
-    >>> import gaussmap as gm
-    >>> for samples in gm.sample_many(["torus", "sphere"], 500):
-    ...     print(samples.report.surface, len(samples))
-    torus 500
-    sphere 500
-
-    """
-    from tqdm import tqdm
-
-    request = checked_request(normals, count, angle, coverage, density, relax, threads)
-    checked_fields(fields, on != "spline")
-    number = checked_dtype(dtype)
-    shows = yes_or_no(progress, "progress")
-    flat = isinstance(surfaces, np.ndarray) and surfaces.ndim == 0
-    if isinstance(surfaces, str) or flat or not isinstance(surfaces, Iterable):
-        raise InputError(f"sample_many takes surfaces to go through, not {shown(surfaces)}.")
-    bar = tqdm(surfaces, desc="sampling", unit="surface", disable=None if shows else True)
-    for place, surface in enumerate(bar):
-        try:
-            samples, _ = sample_and_normals(
-                surface,
-                request,
-                cells=cells,
-                on=on,
-                fields=fields,
-                dtype=number,
-                threads=threads,
-                progress=False,
-            )
-        except GaussmapError as error:
-            name = getattr(surface, "name", surface if isinstance(surface, str) else None)
-            name = name or type(surface).__name__
-            warnings.warn(
-                f"surface {place} ({name}) is left out: {error}", GaussmapWarning, stacklevel=2
-            )
-        else:
-            yield samples

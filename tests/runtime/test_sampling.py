@@ -1,7 +1,6 @@
 """From a surface to its samples: how many, where, in which order, and what is said about it."""
 
 import math
-from typing import Any
 
 import gaussmap as gm
 import numpy as np
@@ -394,72 +393,6 @@ def test_total_curvature_counts_samples():
     for name, solid_angle in (("catenoid", 4 * math.pi * math.tanh(1)), ("torus", 8 * math.pi)):
         samples = gm.sample(gm.surfaces.surface(name), normals=normals)
         assert len(samples) == pytest.approx(50_000 * solid_angle / (4 * math.pi), rel=2e-3)
-
-
-# --- several surfaces -----------------------------------------------------------------------------
-
-
-def many(*arguments, **named):
-    return list(gm.sample_many(*arguments, progress=False, **named))
-
-
-@pytest.mark.compiled
-@pytest.mark.parametrize("asked", [{"count": 300}, {"normals": gm.icosphere(6)}])
-def test_many_is_one_after_the_other(asked: dict[str, Any]):
-    surfaces = [TORUS, gm.surfaces.sphere(), gm.fit(gm.surfaces.catenoid(), (16, 16))]
-    found = many((x for x in surfaces), **asked)
-    for samples, surface in zip(found, surfaces, strict=True):
-        alone = gm.sample(surface, **asked)
-        assert samples.report == alone.report
-        np.testing.assert_array_equal(samples.points, alone.points)
-
-
-@pytest.mark.compiled
-def test_a_bad_surface_does_not_stop_the_others():
-    surfaces = [gm.surfaces.sphere(), BROKEN, gm.surfaces.torus(), 3.0, gm.surfaces.catenoid()]
-    with pytest.warns(gm.GaussmapWarning) as caught:
-        found = many(surfaces, count=100, cells=(16, 16))
-    assert [samples.report.surface for samples in found] == ["sphere", "torus", "catenoid"]
-    messages = [str(warning.message) for warning in caught]
-    assert len(messages) == 2
-    assert messages[0].startswith("surface 1 (broken) is left out: the callable of surface")
-    assert "RuntimeError: no such surface" in messages[0]
-    assert messages[1].startswith(
-        "surface 3 (float) is left out: a Surface or its name is needed, not float; "
-    )
-
-
-def test_a_surface_that_does_not_suit_the_cells_is_left_out():
-    surfaces = [gm.surfaces.sphere(), TORUS]
-    with pytest.warns(gm.GaussmapWarning, match=r"surface 0 \(sphere\) is left out: .* even"):
-        found = many(surfaces, normals=[[0, 0, 1], [1, 1, 1]], cells=(5, 5))
-    assert [samples.report.surface for samples in found] == ["torus"]
-
-
-def test_other_errors_go_through():
-    def surfaces():
-        yield TORUS
-        raise RuntimeError("the end of the file")
-
-    stream = gm.sample_many(surfaces(), normals=[[1, 1, 1]], cells=(5, 5), progress=False)
-    assert len(next(stream)) > 0
-    with pytest.raises(RuntimeError, match="the end of the file"):
-        next(stream)
-
-
-@pytest.mark.parametrize("surfaces", [TORUS, None, "torus", 5])
-def test_what_is_not_several_surfaces(surfaces):
-    with pytest.raises(
-        gm.errors.InputError, match="sample_many takes surfaces to go through, not "
-    ):
-        many(surfaces, count=10)
-
-
-def test_many_of_nothing():
-    assert many([], count=10) == []
-    for asked in ({"count": 0}, {"normals": []}, {"count": 5, "threads": 0}):
-        with pytest.raises(gm.errors.InputError):
-            many([], **asked)
 
 
 @pytest.mark.compiled

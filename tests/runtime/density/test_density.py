@@ -206,8 +206,9 @@ def test_several_surfaces():
     surfaces = [gm.fit(TORUS, (8, 8)), gm.fit(gm.surfaces.plane(), (4, 4))]
     found = list(gm.sample_many(surfaces, count=60, progress=False))
     assert [len(x) for x in found] == [60, 60]
-    for samples, surface in zip(found, surfaces, strict=True):
-        same(samples, gm.sample(surface, count=60))
+    for k, (samples, surface) in enumerate(zip(found, surfaces, strict=True)):
+        alone = gm.sample(surface, count=60)
+        same(samples, gm.Samples(**alone.arrays(), report=replace(alone.report, index=k)))
 
 
 # --- how dense ------------------------------------------------------------------------------------
