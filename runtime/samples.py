@@ -66,7 +66,8 @@ class Samples(SampleArrays):
     report : SamplingReport
         A report on the sampling.
     spline : Spline or None
-        The spline that was sampled; None if it is unknown, as for samples from a file.
+        The spline that was sampled; None if it is unknown, as for samples from a file, and for
+        samples of several pieces (see `Surface.pieces`), each of which has one.
     surface : Surface or None
         The surface on which the samples are; None with ``on="spline"``, for samples from a file,
         and after pickling if the surface does not pickle.
@@ -338,9 +339,9 @@ class Samples(SampleArrays):
         True
 
         """
-        from .density.coverage import coverage_of
+        from .density.of_samples import coverage_of
 
-        return coverage_of(self.points, self._spline_or(spline), self.surface, threads)
+        return coverage_of(self.points, self._spline_if_one(spline), self.surface, threads)
 
     def normal_deviation(
         self, spline: Spline | None = None, *, threads: int | None = None
@@ -379,12 +380,10 @@ class Samples(SampleArrays):
         True
 
         """
-        from .density.deviation import normal_deviation
-        from .density.sizing import uniform
+        from .density.of_samples import deviation_of
 
-        sizing = uniform(self._spline_or(spline), self.surface, threads)
-        normals = self.normals.astype(np.float64)
-        return normal_deviation(sizing, sizing.scaled_points(self.points), normals)
+        one = self._spline_if_one(spline)
+        return deviation_of(self.points, self.normals, one, self.surface, threads)
 
     def weights(self, *, angle: float | None = None) -> NDArray[np.float64]:
         """Return the area of the surface that each sample stands for.
@@ -428,6 +427,11 @@ class Samples(SampleArrays):
     def __repr__(self) -> str:
         label = short_label(self.report.surface)
         return f"Samples({len(self):,} points on {label}{kinds_of_points(self)})"
+
+    def _spline_if_one(self, spline: Spline | None) -> Spline | None:
+        """Return what `_spline_or` returns, but None for samples on several pieces."""
+        on_pieces = spline is None and self.spline is None and self.surface is not None
+        return None if on_pieces else self._spline_or(spline)
 
     def _spline_or(self, spline: Spline | None) -> Spline:
         """Return the spline that is given, else that of the samples; InputError without one."""

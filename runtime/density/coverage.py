@@ -5,30 +5,19 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..spline import Spline
-from ..surface import Surface
 from ..trees import tree_of
 from .candidates import Candidates
-from .sizing import SizingFunction, uniform
+from .sizing import SizingFunction
 from .triangles import Array, Triangles, cut_patches
 
-__all__ = ["coverage", "coverage_of"]
+__all__ = ["coverage"]
 
 # The search ends when the bound is within this factor of the largest distance found.
 TIGHT = 1.1
 # Samples are searched within this multiple of their mean spacing first.
 SPACINGS = 2.0
 MOST_CUTS = 40
-
-
-def coverage_of(
-    points: NDArray[np.floating], spline: Spline, surface: Surface | None, threads: int | None
-) -> float:
-    """Return what `Samples.coverage` returns."""
-    sizing = uniform(spline, surface, threads)
-    return coverage(sizing, sizing.scaled_points(points)) / sizing.unit
 
 
 def coverage(sizing: SizingFunction, points: Array, asked: float = math.inf) -> float:

@@ -18,6 +18,7 @@ from ..directions.unit import as_normals
 from ..errors import InputError
 from ..extras import check_extra
 from ..files import paths
+from ..fitting import spline_of
 from ..samples import Samples
 from ..sampling import sample_and_normals
 from ..spline import Spline
@@ -69,8 +70,9 @@ def plot(
     samples, directions = sample_and_normals(
         surface, request, cells=cells, on=on, threads=threads, progress=progress
     )
-    assert samples.spline is not None
-    plot_samples(samples, samples.spline, directions, path)
+    # Of several pieces the lines are drawn on one spline, which rounds the edges between them.
+    spline = spline_of(surface, cells) if samples.spline is None else samples.spline
+    plot_samples(samples, spline, directions, path)
     return samples
 
 

@@ -9,6 +9,7 @@ import pytest
 from gaussmap.runtime.density.law import allotted
 from gaussmap.runtime.density.request import checked_request
 from gaussmap.runtime.errors import GaussmapWarning, InputError, SurfaceError
+from gaussmap.runtime.pictures.plot import plot
 from gaussmap.runtime.pieces import cells_of_piece
 from gaussmap.runtime.sampling import sample_and_normals
 
@@ -56,19 +57,20 @@ def piece_of(samples, line):
     return (samples.uv[:, 1] > line).astype(int)
 
 
-def test_every_point_with_a_normal_once():
+@pytest.mark.parametrize(("on", "tolerance"), [("spline", 2e-2), ("surface", 1e-11)])
+def test_every_point_with_a_normal_once(on, tolerance):
     """The normals of the edge belong to no piece."""
     directions = gm.directions.fibonacci(300)
     latitude = np.arcsin(directions[:, 2])
     inside = (np.abs(latitude) > LOW) & (np.abs(latitude) < HIGH)
     clear = np.abs(np.abs(latitude) - LOW) > 0.01
     clear &= np.abs(np.abs(latitude) - HIGH) > 0.01
-    samples = gm.sample(barrel(), normals=directions[clear], density="gauss", cells=CELLS)
+    samples = gm.sample(barrel(), normals=directions[clear], density="gauss", cells=CELLS, on=on)
     assert np.array_equal(np.sort(samples.normal_index), np.flatnonzero(inside[clear]))
     assert np.array_equal(piece_of(samples, 1.0) == 1, samples.normals[:, 2] > 0)
     sides = np.sign(samples.normals[:, 2:])
     centres = np.array([0, 0, -math.sin(LOW)]) * sides
-    assert np.allclose(samples.points - centres, samples.normals, atol=2e-2)
+    assert np.allclose(samples.points - centres, samples.normals, atol=tolerance)
 
 
 def test_patches_are_numbered_through_all_pieces():
@@ -118,6 +120,32 @@ def test_coverage_holds_on_all_pieces():
     ):
         distances = np.linalg.norm(points[:, None] - samples.points, axis=2).min(axis=1)
         assert distances.max() <= report_of(samples).coverage <= 0.5
+
+
+def test_coverage_and_normal_deviation_are_of_all_pieces():
+    samples = gm.sample(barrel(), coverage=0.2, cells=CELLS, on="surface")
+    assert report_of(samples).coverage <= 0.2
+    assert samples.coverage() <= 1.1 * 0.2
+    deviation = samples.normal_deviation()
+    assert 1.0 < deviation.normal_space <= deviation.space
+    lower = samples[piece_of(samples, 1.0) == 0]
+    assert lower.coverage() > 0.4
+    assert lower.normal_deviation().normal_space > 60.0
+
+
+def test_samples_of_pieces_have_no_mesh():
+    samples = gm.sample(barrel(), 50, cells=CELLS)
+    with pytest.raises(InputError, match=r"of several pieces .* each of surface.pieces\(\)"):
+        samples.mesh()
+    meshes = [gm.sample(x, 50, cells=CELLS).mesh() for x in barrel().pieces()]
+    assert all(len(x.triangles) > 50 for x in meshes)
+
+
+def test_a_picture_of_pieces(tmp_path):
+    path = tmp_path / "barrel.png"
+    samples = plot(barrel(), path, count=100, cells=CELLS)
+    assert len(samples) == 100
+    assert path.stat().st_size > 10_000
 
 
 def test_a_count_that_covers_all_pieces():
