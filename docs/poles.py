@@ -5,19 +5,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
+from typing import cast
 
 import gaussmap as gm
 import numpy as np
 import sympy as sp
 from gaussmap.symbolic.surfaces import CATALOGUE, ParametricSurface, u, v
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["EGG", "REGIONS", "PoleErrors", "measure", "measured", "surfaces", "table"]
 
 Array = NDArray[np.float64]
 
 SPHERE = CATALOGUE["sphere"]
-_X, _Y, _Z = (x.subs(SPHERE.defaults) for x in SPHERE.position)
+_X, _Y, _Z = (cast(sp.Expr, x.xreplace(SPHERE.defaults)) for x in SPHERE.position)
 EGG = ParametricSurface(
     name="egg",
     sentence="The unit sphere (x, y, z), deformed to (x (6/5 + 3z/10), y (4/5 + z/10), "
@@ -59,10 +60,12 @@ def surfaces() -> list[ParametricSurface]:
     return [x for x in CATALOGUE.values() if "pole" in x.boundary[1]] + [EGG]
 
 
-def exact(entry: ParametricSurface, s: Array, t: Array) -> tuple[Array, Array]:
+def exact(entry: ParametricSurface, s: ArrayLike, t: ArrayLike) -> tuple[Array, Array]:
     """Return points and unit normals of the rotated surface at its parameters."""
     rows = [*entry.position, *entry.normal_field]
-    functions = sp.lambdify((entry.u, entry.v), [x.subs(entry.defaults) for x in rows], cse=True)
+    functions = sp.lambdify(
+        (entry.u, entry.v), [x.xreplace(entry.defaults) for x in rows], cse=True
+    )
     s, t = np.broadcast_arrays(s, t)
     values = np.stack([np.broadcast_to(x, s.shape) for x in functions(s, t)], axis=-1)
     normals = values[..., 3:] @ ROTATION.T * np.linalg.det(ROTATION)

@@ -1,6 +1,7 @@
 """Parabolic samples: K is zero up to rounding, whatever its sign bit says."""
 
 import warnings
+from typing import Any
 
 import gaussmap as gm
 import numpy as np
@@ -51,5 +52,5 @@ def test_samples_with_few_fields():
     assert alone.parabolic.all()
     with pytest.raises(gm.errors.MissingFieldError, match="parabolic needs gaussian_curvature"):
         gm.sample(cylinder, 50, fields=("points",)).parabolic  # noqa: B018
-    rows = {x: y[:0] for x, y in gm.sample(cylinder, 50).arrays().items()}
+    rows: dict[str, Any] = {x: y[:0] for x, y in gm.sample(cylinder, 50).arrays().items()}
     assert gm.Samples(**rows, report=alone.report).parabolic.shape == (0,)

@@ -5,7 +5,7 @@ from fractions import Fraction
 import gaussmap as gm
 import numpy as np
 import pytest
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 SPHERE = (0.0, 2 * np.pi), (-np.pi / 2, np.pi / 2)
@@ -14,21 +14,21 @@ ROTATION = np.linalg.qr(np.array([[0.7, 0.3, -0.5], [0.2, 0.8, 0.6], [-0.4, 0.5,
 ROTATION *= np.linalg.det(ROTATION)
 
 
-def on_sphere(u: Array, v: Array) -> tuple[Array, Array, Array]:
+def on_sphere(u: ArrayLike, v: ArrayLike) -> tuple[Array, Array, Array]:
     u, v = np.broadcast_arrays(u, v)
     return np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)
 
 
-def egg(u: Array, v: Array) -> Array:
+def egg(u: ArrayLike, v: ArrayLike) -> Array:
     x, y, z = on_sphere(u, v)
     return np.stack([x * (1.2 + 0.3 * z), y * (0.8 + 0.1 * z), 1.4 * z + 0.3 * x**2], axis=-1)
 
 
-def ellipsoid(u: Array, v: Array) -> Array:
+def ellipsoid(u: ArrayLike, v: ArrayLike) -> Array:
     return np.stack(on_sphere(u, v), axis=-1) * [1.0, 0.6, 0.3]
 
 
-def blob(u: Array, v: Array) -> Array:
+def blob(u: ArrayLike, v: ArrayLike) -> Array:
     x, y, z = on_sphere(u, v)
     radius = 1 + 0.12 * x**3 - 0.1 * x * y * z + 0.08 * z * x + 0.05 * y**3
     return radius[..., None] * np.stack([x, y, z], axis=-1)
