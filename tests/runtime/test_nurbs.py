@@ -177,6 +177,7 @@ def test_ends_are_those_of_the_domain_and_period():
     assert np.isnan(surface.jets(np.array([np.nan]), np.zeros(1))).any()
 
 
+@pytest.mark.compiled
 def test_calls_of_several_threads_do_not_disturb_one_another():
     surface = torus()
     places = [random_parameters(surface, 2000) for _ in range(8)]
