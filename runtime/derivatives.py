@@ -1,9 +1,8 @@
 """Derivatives of surfaces: what can give its own, and differences of high order for the others.
 
-The differences are of nine points along u, along v and along one diagonal of the parameters. With
-steps between 1/512 and 1/256 of the domain, their error relative to the surface's own size is 1e-12
-in first and 1e-10 in second derivatives on the torus, the sphere and their like (1e-9 next to open
-ends); it grows with the eighth power of the number of waves across the domain.
+The differences are of nine points along u, along v and along one diagonal of the parameters. Steps
+are between 1/512 and 1/256 of the domain, and smaller where differences of seven points show that
+the surface varies faster.
 """
 
 from __future__ import annotations
@@ -17,10 +16,18 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..generated.differences import FIRST, SECOND
+from ..generated.differences import FIRST, FIRST_CHANGE, SECOND, SECOND_CHANGE
 from .domain import Boundary, BoundaryPair, Domain, Interval
 
-__all__ = ["NAMES", "Bounds", "Differences", "Differentiable", "Function", "numerical_jets"]
+__all__ = [
+    "NAMES",
+    "Bounds",
+    "Differences",
+    "Differentiable",
+    "Function",
+    "differences",
+    "numerical_jets",
+]
 
 Array = NDArray[np.float64]
 Function = Callable[[Array, Array], Array]
@@ -35,6 +42,11 @@ HALF = POINTS // 2
 # and steps are added without rounding, but for the last bit.)
 STEP = 1 / 256
 CHUNK = 4096  # rows for which all points are evaluated at once
+# Where differences of seven points are not the same to SAME, relative to the differences of values,
+# steps are divided by FINER, at most LEVELS times, and as long as that helps or doubt is LARGE.
+SAME, LARGE = 1e-10, 1e-3
+FINER, LEVELS = 4.0, 5
+ROUNDING = 2.0**-46  # of values, in which a difference is lost
 
 
 class Differentiable(ABC):
@@ -80,7 +92,21 @@ class Differences:
         jets = np.empty((u.size, len(NAMES), 3))
         for start in range(0, u.size, CHUNK):
             rows = slice(start, start + CHUNK)
-            jets[rows] = numerical_jets(self._inside, u[rows], v[rows], steps, bounds)
+            jets[rows] = self._refined(u[rows], v[rows], steps, bounds)
+        return jets
+
+    def _refined(self, u: Array, v: Array, steps: tuple[float, float], bounds: Bounds) -> Array:
+        """Return 2-jets (k, 6, 3) with smaller steps where these make a difference."""
+        jets, doubts = differences(self._inside, u, v, steps, bounds)
+        rows = np.flatnonzero(doubts > SAME)
+        for _ in range(LEVELS):
+            if not rows.size:
+                break
+            steps = steps[0] / FINER, steps[1] / FINER
+            finer, new = differences(self._inside, u[rows], v[rows], steps, bounds)
+            better = new < doubts[rows]
+            jets[rows[better]], doubts[rows[better]] = finer[better], new[better]
+            rows = rows[(better & (new > SAME)) | (new > LARGE)]
         return jets
 
     def _inside(self, u: Array, v: Array) -> Array:
@@ -122,14 +148,12 @@ def moved_inside(u: Array, v: Array, domain: Domain, boundary: Boundary) -> tupl
     return places
 
 
-def _brought_back(values: Array, low: float, high: float) -> NDArray[np.bool_]:
-    """Subtract whole periods in place; return where their number is odd."""
-    out = (values < low) | (values > high)
-    periods = np.zeros_like(values)
-    periods[out] = np.floor((values[out] - low) / (high - low))
-    values[out] -= periods[out] * (high - low)
-    np.clip(values, low, high, out=values, where=out)
-    return periods % 2.0 == 1.0
+def _brought_back(values: Array, low: float, high: float) -> NDArray[np.intp]:
+    """Subtract whole periods in place; return the rows where their number is odd."""
+    out = np.flatnonzero((values < low) | (values > high))
+    periods = np.floor((values[out] - low) / (high - low))
+    values[out] = np.clip(values[out] - periods * (high - low), low, high)
+    return out[periods % 2.0 == 1.0]
 
 
 def numerical_jets(
@@ -139,7 +163,18 @@ def numerical_jets(
     steps: tuple[float, float],
     bounds: Bounds = EVERYWHERE,
 ) -> Array:
-    """Return x, x_u, x_v, x_uu, x_uv, x_vv (k, 6, 3) of a function by differences of nine points.
+    """Return the first of what `differences` returns."""
+    return differences(function, u, v, steps, bounds)[0]
+
+
+def differences(
+    function: Function,
+    u: Array,
+    v: Array,
+    steps: tuple[float, float],
+    bounds: Bounds = EVERYWHERE,
+) -> tuple[Array, Array]:
+    """Return x, x_u, x_v, x_uu, x_uv, x_vv of a function by differences of nine points.
 
     Parameters
     ----------
@@ -159,6 +194,9 @@ def numerical_jets(
         The error of a first derivative is about h⁸/630 of the ninth derivative plus 2 ε/h of the
         value, that of a second derivative h⁸/3150 of the tenth plus 8 ε/h²: ten to a thousand times
         as much next to a bound.
+    (k,) float64 array
+        How far they are from differences of seven points, relative to the differences of values:
+        infinity where a value is not finite, but for those of which x itself is not.
 
     """
     (shift_u, inward_u), (shift_v, inward_v) = (
@@ -186,7 +224,19 @@ def numerical_jets(
     jets[:, 3] = uu / steps[0] ** 2
     jets[:, 4] = sign[:, None] * (both - uu - vv) / (2.0 * steps[0] * steps[1])
     jets[:, 5] = vv / steps[1] ** 2
-    return jets
+    size = ROUNDING * np.abs(points).max(axis=1)
+    doubts = np.maximum(_doubts(values[0], shift_u, size), _doubts(values[1], shift_v, size))
+    lost = ~np.isfinite(jets).all(axis=(1, 2))
+    doubts[lost] = np.where(np.isfinite(points[lost]).all(axis=1), np.inf, 0.0)
+    return jets, doubts
+
+
+def _doubts(values: Array, shifts: NDArray[np.int64], least: Array) -> Array:
+    """Return what two points less change, relative to the differences (9, k, 3) of values."""
+    changes = np.array([_weighted(x, shifts, values) for x in (FIRST_CHANGE, SECOND_CHANGE)])
+    size, change = (np.abs(x).max(axis=0).max(axis=1) for x in (values, changes))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.nan_to_num(change / (size + least))
 
 
 def _shifts(

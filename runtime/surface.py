@@ -484,8 +484,10 @@ class Surface:
         Notes
         -----
         The error of numerical derivatives, relative to the surface's own size and domain, is 1e-12
-        (first) and 1e-10 (second; 1e-9 next to an open end) where a wave takes a third of the
-        domain or more; it grows with the eighth power of the number of waves: 1e-8 at 10 waves.
+        (first) and 1e-9 (second) where a wave takes a third of the domain or more, and 1e-10 and
+        1e-7 up to 100 waves: where differences of seven points disagree with those of nine, steps
+        are divided by 4, up to five times. A callable in single precision leaves four digits of
+        first derivatives, and none of second ones.
 
         Examples
         --------

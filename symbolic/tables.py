@@ -59,19 +59,27 @@ def differences() -> str:
     The points are at the shift and at up to four steps on either side of it.
     """
     half = STENCIL // 2
-    weights = [
-        sp.finite_diff_weights(2, [shift + x for x in range(-half, half + 1)], cast(Any, 0))
-        for shift in range(-half, half + 1)
-    ]
-    return "\n".join(
-        [
-            "# A row for each shift of the points, from -4 to 4, and its weights.",
-            *(
-                _array(name, [[float(x) for x in rows[order][-1]] for rows in weights])
-                for order, name in ((1, "FIRST"), (2, "SECOND"))
-            ),
-        ]
-    )
+    rows = [[shift + x for x in range(-half, half + 1)] for shift in range(-half, half + 1)]
+    lines = ["# A row for each shift of the points, from -4 to 4, and its weights."]
+    for order, name in ((1, "FIRST"), (2, "SECOND")):
+        lines.append(_array(name, [[float(x) for x in _weights(order, y)] for y in rows]))
+    lines.append("# What two points less, those farthest away, change in these weights.")
+    for order, name in ((1, "FIRST_CHANGE"), (2, "SECOND_CHANGE")):
+        lines.append(_array(name, [[float(x) for x in _changes(order, y)] for y in rows]))
+    return "\n".join(lines)
+
+
+def _weights(order: int, places: Sequence[int]) -> list[sp.Expr]:
+    """Return the weights of the values at some places in a derivative at zero."""
+    return sp.finite_diff_weights(order, list(places), cast(Any, 0))[order][-1]
+
+
+def _changes(order: int, places: Sequence[int]) -> list[sp.Expr]:
+    """Return the weights without those of the differences of the places nearest to zero."""
+    near = sorted(sorted(places, key=abs)[:-2])
+    fewer = dict(zip(near, _weights(order, near), strict=True))
+    pairs = zip(places, _weights(order, places), strict=True)
+    return [weight - fewer.get(place, sp.S.Zero) for place, weight in pairs]
 
 
 def icosahedron_tables() -> str:

@@ -102,6 +102,38 @@ def test_numerical_derivatives_of_polynomials_are_exact_but_for_rounding():
         np.testing.assert_allclose(found, exact, rtol=0, atol=1e-10)
 
 
+@pytest.mark.parametrize("waves", [3, 10, 100])
+def test_steps_become_smaller_where_the_surface_varies_fast(waves):
+    k = 2 * np.pi * waves
+    surface = gm.Surface.from_callable(
+        lambda u, v: np.stack([u, v, np.sin(k * u) * np.cos(k * v)], axis=-1), SQUARE
+    )
+    u, v = places(SQUARE, 100)
+    z = f"sin(2*pi*{waves}*u) * cos(2*pi*{waves}*v)"
+    exact = gm.Surface.from_sympy(("u", "v", z), "uv", SQUARE)
+    found, expected = surface.jets(u, v)[..., 2], exact.jets(u, v)[..., 2]
+    errors = np.abs(found - expected).max(axis=0) / np.abs(expected).max(axis=0)
+    assert errors[1:3].max() < 1e-9
+    assert errors[3:].max() < 1e-6
+
+
+def test_derivatives_beside_a_fillet_and_beside_a_hole():
+    def filleted(u, v):
+        """Return a roof whose ridge is rounded over 1 % of the domain; no roof in a corner."""
+        t = np.clip(100 * (u - 0.5), 0.0, 1.0)
+        z = 0.01 * (t * t / 2 + np.maximum(100 * (u - 0.51), 0.0))
+        return np.stack([u, v, np.where((u > 0.9) & (v > 0.9), np.nan, z)], axis=-1)
+
+    surface = gm.Surface.from_callable(filleted, SQUARE)
+    u, v = np.linspace(0.0, 1.0, 1001), np.full(1001, 0.3)
+    z_u = surface.jets(u, v)[:, 1, 2]
+    inside = np.abs(u - 0.5) * np.abs(u - 0.51) > 1e-8  # and not where the curvature jumps
+    np.testing.assert_allclose(z_u[inside], np.clip(100 * (u - 0.5), 0, 1)[inside], atol=1e-9)
+    u, v = np.full(100, 0.8999), np.linspace(0.9, 1.0, 100)
+    assert np.isfinite(surface.jets(u, v)).all()
+    assert np.isnan(surface.jets(u + 0.0002, 0.1 + 0.9 * v)).any()
+
+
 def test_the_function_is_called_once_for_many_places():
     calls = []
 
