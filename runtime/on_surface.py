@@ -57,7 +57,7 @@ def place_of_samples(surface: object, on: str | None) -> str:
     """
     known = isinstance(surface, Surface) and surface.evaluable
     if on is None:
-        return "spline"  # until all of it is there
+        return "surface" if known else "spline"
     if known_name(on, PLACES, "place of samples") == "surface" and not known:
         if isinstance(surface, Surface):
             raise InputError(

@@ -226,8 +226,8 @@ def _unrefined(report: SamplingReport) -> list[str]:
         return []
     return [
         f"{unrefined} of {report.samples} samples could not be moved to the surface, and lie on "
-        "its spline (see Samples.on_surface); more cells=... help unless the surface is singular "
-        "there"
+        "its spline (see Samples.on_surface); more cells=... help unless the surface is parabolic "
+        "or singular there"
     ]
 
 

@@ -99,20 +99,24 @@ def warm(progress: bool = False) -> Warmed:
 def _surfaces() -> None:
     for name in names():
         fit(surface(name), cells=CELLS).evaluate(0.5, 0.5)
+        surface(name).derivatives(0.5, 0.5)
 
 
 def _normals() -> None:
     for normals in (icosphere(6), fibonacci(300), np.eye(3)):
-        sample(_torus(), normals=normals, cells=CELLS)
+        for name in ("torus", "sphere"):  # a sphere has poles
+            sample(surface(name), normals=normals, cells=CELLS)
     sample(_torus(), count=FEW, density="gauss", cells=CELLS)
     sample(_terrain(), normals=icosphere(6))
 
 
 def _fields() -> None:
+    spline = fit(_torus(), cells=CELLS)
     for fields in CHOICES:
         for dtype in (np.float64, np.float32):
             for normals in (icosphere(6), fibonacci(300)):
-                sample(_torus(), normals=normals, cells=CELLS, fields=fields, dtype=dtype)
+                sample(spline, normals=normals, fields=fields, dtype=dtype)
+            sample(spline, count=FEW, fields=fields, dtype=dtype)
             sample(_torus(), count=FEW, cells=CELLS, fields=fields, dtype=dtype)
 
 

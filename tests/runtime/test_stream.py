@@ -43,14 +43,12 @@ def same(one, other):
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band", "sphere"])
 def test_chunks_make_the_whole(name, threads, monkeypatch):
     monkeypatch.setattr(search, "MOST_PATCHES", 64)
-    surface = gm.surfaces.surface(name)
+    spline = gm.fit(name, (20, 16))
     questions: list[dict[str, Any]] = [{"normals": gm.icosphere(12)}, {"count": 900}]
     for asked in questions:
-        whole = gm.sample(surface, density="gauss", cells=(20, 16), threads=1, **asked)
+        whole = gm.sample(spline, density="gauss", threads=1, **asked)
         for size in (7, 100, len(whole), 10**9):
-            chunks = list(
-                gm.sample_stream(surface, chunk=size, cells=(20, 16), threads=threads, **asked)
-            )
+            chunks = list(gm.sample_stream(spline, chunk=size, threads=threads, **asked))
             assert [len(x) for x in chunks[:-1]] == [size] * (len(chunks) - 1)
             assert 0 < len(chunks[-1]) <= size
             joined = Samples.concatenate(chunks)

@@ -189,8 +189,8 @@ class TestTopology:
         mesh = samples.mesh()
         poles = mesh.sample_index == -1
         assert poles.sum() == 2
-        assert samples.spline is not None
-        ends = samples.spline.evaluate(0.0, [-np.pi / 2, np.pi / 2])
+        assert samples.surface is not None
+        ends = samples.surface.evaluate(0.0, [-np.pi / 2, np.pi / 2])
         order = np.argsort(mesh.vertices[poles, 2])
         np.testing.assert_array_equal(mesh.vertices[poles][order], ends)
         # the mean normal of vertices that are up to 20 degrees away
@@ -464,7 +464,8 @@ class TestInput:
         )
         normals = gm.fibonacci(300)
         ours, theirs = (
-            gm.sample(x, normals=normals, cells=(32, 32)).mesh() for x in (large, small)
+            gm.sample(x, normals=normals, cells=(32, 32), on="spline").mesh()
+            for x in (large, small)
         )
         np.testing.assert_array_equal(ours.triangles, theirs.triangles)
 
