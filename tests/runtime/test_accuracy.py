@@ -105,7 +105,7 @@ def test_quadratic_graphs_are_exact() -> None:
 def test_samples_of_quadratic_graphs_are_exact() -> None:
     """Each at the point that has its normal, with its curvatures."""
     for name in ("elliptic_paraboloid", "hyperbolic_paraboloid"):
-        samples = gm.sample(gm.surfaces.surface(name), count=1000, cells=(7, 9))
+        samples = gm.sample(gm.surfaces.surface(name), count=1000, cells=(7, 9), on="spline")
         exact = Exact(name)
         np.testing.assert_allclose(samples.points, exact.points(samples.uv), rtol=0, atol=1e-14)
         np.testing.assert_allclose(samples.normals, exact.normals(samples.uv), rtol=0, atol=1e-13)
@@ -120,7 +120,7 @@ def test_samples_of_quadratic_graphs_are_exact() -> None:
 def support_of_samples(name: str, uv: Array, m: int) -> tuple[Array, Array]:
     """Return h at the exact normals of uv, on the sheet of uv, and how far the parameters moved."""
     surface = gm.surfaces.surface(name)
-    samples = gm.sample(surface, normals=Exact(name).normals(uv), cells=(m, m))
+    samples = gm.sample(surface, normals=Exact(name).normals(uv), cells=(m, m), on="spline")
     low, high = np.array(surface.domain).T
     gaps = np.abs(samples.uv - uv[samples.normal_index]) / (high - low)
     closed = np.array(["open" not in ends for ends in surface.boundary])
@@ -153,7 +153,9 @@ def test_support_function_of_an_ellipsoid_in_closed_form() -> None:
     axes = np.array([1.0, 0.6, 0.3])
     normals, cells, errors = gm.fibonacci(2000), [64, 112, 192, 320], []
     for m in cells:
-        samples = gm.sample(gm.surfaces.ellipsoid_patch(), normals=normals, cells=(m, m))
+        samples = gm.sample(
+            gm.surfaces.ellipsoid_patch(), normals=normals, cells=(m, m), on="spline"
+        )
         expected = np.linalg.norm(axes * samples.normals, axis=1)
         errors.append(float(np.abs(samples.support - expected).max()))
     assert order(cells, errors) == pytest.approx(3.0, abs=0.3)
@@ -162,7 +164,9 @@ def test_support_function_of_an_ellipsoid_in_closed_form() -> None:
 def test_support_function_of_a_torus_in_closed_form() -> None:
     normals, cells, errors = gm.fibonacci(2000)[5:-5], [64, 112, 192, 320], []
     for m in cells:
-        samples = gm.sample(gm.surfaces.torus(major=1.0, minor=0.35), normals=normals, cells=(m, m))
+        samples = gm.sample(
+            gm.surfaces.torus(major=1.0, minor=0.35), normals=normals, cells=(m, m), on="spline"
+        )
         along = np.hypot(samples.normals[:, 0], samples.normals[:, 1])
         expected = np.where(samples.elliptic, along, -along) + 0.35
         steep = along > 0.1  # off the parabolic circles, whose normals are ±z
@@ -180,7 +184,7 @@ def test_curvatures_have_order_one(name: str) -> None:
     exact, normals = Exact(name), gm.fibonacci(20_000)
     cells, gaussian, mean = [24, 48, 96, 192], [], []
     for m in cells:
-        samples = gm.sample(gm.surfaces.surface(name), normals=normals, cells=(m, m))
+        samples = gm.sample(gm.surfaces.surface(name), normals=normals, cells=(m, m), on="spline")
         if "pole" in gm.surfaces.surface(name).boundary[1]:
             samples = samples[np.abs(samples.uv[:, 1]) < np.pi / 2 - FAR_FROM_THE_POLES]
         K, H = exact.curvatures(samples.uv).T
@@ -198,7 +202,9 @@ def test_samples_have_their_normal_on_the_surface_too(name: str) -> None:
     """Points are order three from the surface; the surface's normal there is order two off."""
     exact, cells, distances, angles = Exact(name), [32, 64, 128, 256], [], []
     for m in cells:
-        samples = gm.sample(gm.surfaces.surface(name), normals=gm.fibonacci(20_000), cells=(m, m))
+        samples = gm.sample(
+            gm.surfaces.surface(name), normals=gm.fibonacci(20_000), cells=(m, m), on="spline"
+        )
         gap = np.linalg.norm(samples.points - exact.points(samples.uv), axis=1)
         turn = np.linalg.norm(samples.normals - exact.normals(samples.uv), axis=1)
         distances.append(float(gap.max()))
@@ -212,7 +218,9 @@ def test_samples_near_poles_are_on_the_surface(name: str) -> None:
     """Within a cell of a pole curvatures mean nothing, but points and normals keep their orders."""
     exact, cells, distances = Exact(name), [16, 32, 64, 128], []
     for m in cells:
-        samples = gm.sample(gm.surfaces.surface(name), normals=gm.fibonacci(20_000), cells=(m, m))
+        samples = gm.sample(
+            gm.surfaces.surface(name), normals=gm.fibonacci(20_000), cells=(m, m), on="spline"
+        )
         gap = np.linalg.norm(samples.points - exact.points(samples.uv), axis=1)
         distances.append(float(gap.max()))
     assert order(cells, distances) > 1.9
@@ -221,26 +229,28 @@ def test_samples_near_poles_are_on_the_surface(name: str) -> None:
 
 def test_signs() -> None:
     """Outward normals: positive mean curvature on a sphere and round the outside of a torus."""
-    ball = gm.sample(gm.surfaces.sphere(radius=2.0), normals=gm.fibonacci(2000))
+    ball = gm.sample(gm.surfaces.sphere(radius=2.0), normals=gm.fibonacci(2000), on="spline")
     ball = ball[np.abs(ball.uv[:, 1]) < 1.4]
     assert (ball.points * ball.normals).sum(axis=1).min() > 1.99
     np.testing.assert_allclose(ball.mean_curvature, 0.5, rtol=0.1)
     np.testing.assert_allclose(ball.gaussian_curvature, 0.25, rtol=0.2)
     np.testing.assert_allclose(ball.support, 2.0, rtol=1e-4)
-    ring = gm.sample(gm.surfaces.torus(major=1.0, minor=0.35), normals=gm.fibonacci(2000))
+    ring = gm.sample(
+        gm.surfaces.torus(major=1.0, minor=0.35), normals=gm.fibonacci(2000), on="spline"
+    )
     outside = np.hypot(ring.points[:, 0], ring.points[:, 1]) > 1.1
     inside = np.hypot(ring.points[:, 0], ring.points[:, 1]) < 0.9
     assert (ring.mean_curvature[outside] > 1.0).all()
     assert (ring.gaussian_curvature[outside] > 0).all()
     assert (ring.gaussian_curvature[inside] < 0).all()
-    bowl = gm.sample(gm.surfaces.elliptic_paraboloid(), count=100, cells=(8, 8))
+    bowl = gm.sample(gm.surfaces.elliptic_paraboloid(), count=100, cells=(8, 8), on="spline")
     assert (bowl.mean_curvature < 0).all()  # upward normals point to the inside
     assert (bowl.normals[:, 2] > 0).all()
 
 
 def test_minimal_surfaces_have_no_mean_curvature() -> None:
     for name in ("catenoid", "enneper", "helicoid"):
-        samples = gm.sample(gm.surfaces.surface(name), count=2000, cells=(128, 128))
+        samples = gm.sample(gm.surfaces.surface(name), count=2000, cells=(128, 128), on="spline")
         size = np.sqrt(np.abs(samples.gaussian_curvature).max())
         assert np.abs(samples.mean_curvature).max() < 0.05 * size
         assert (samples.gaussian_curvature < 0).all()

@@ -67,7 +67,7 @@ quaternions = st.tuples(*[st.floats(-1.0, 1.0)] * 4).filter(lambda q: np.linalg.
 @pytest.mark.parametrize("frequency", [10, 32, 100])
 def test_torus_icosphere(cells: int, frequency: int) -> None:
     normals = gm.icosphere(frequency)
-    samples = gm.sample(TORUS, normals=normals, cells=(cells, cells))
+    samples = gm.sample(TORUS, normals=normals, cells=(cells, cells), on="spline")
     check_torus(samples, normals, np.array([0.0, 0.0, 1.0]))
 
 
@@ -77,7 +77,7 @@ def test_torus_icosphere(cells: int, frequency: int) -> None:
 )
 def test_patches_that_bend_far(cells: tuple[int, int], normals: Array) -> None:
     elliptic, hyperbolic = count_preimages(
-        gm.sample(TORUS, normals=normals, cells=cells), len(normals)
+        gm.sample(TORUS, normals=normals, cells=cells, on="spline"), len(normals)
     )
     assert (elliptic == hyperbolic).all()
     assert elliptic.sum() >= len(normals)
@@ -86,7 +86,7 @@ def test_patches_that_bend_far(cells: tuple[int, int], normals: Array) -> None:
 @pytest.mark.parametrize("cells", [16, 32, 64, 96])
 def test_torus_fibonacci(cells: int) -> None:
     normals = gm.fibonacci(10**6)
-    samples = gm.sample(TORUS, normals=normals, cells=(cells, cells))
+    samples = gm.sample(TORUS, normals=normals, cells=(cells, cells), on="spline")
     check_torus(samples, normals, np.array([0.0, 0.0, 1.0]))
 
 
@@ -98,7 +98,7 @@ def test_torus_healpix(cells: int) -> None:
         gm.directions.healpix(64),
         gm.directions.random(50_000),
     ):
-        samples = gm.sample(TORUS, normals=normals, cells=(cells, cells))
+        samples = gm.sample(TORUS, normals=normals, cells=(cells, cells), on="spline")
         check_torus(samples, normals, np.array([0.0, 0.0, 1.0]))
 
 
@@ -110,7 +110,9 @@ def test_torus_moved_and_scaled(shift: float, factor: float, turned: bool) -> No
     normals = gm.icosphere(10) @ rotation.T
     for cells in ((16, 16), (40, 24), (96, 96)):
         surface = moved(TORUS, rotation, shift * factor, factor)
-        check_torus(gm.sample(surface, normals=normals, cells=cells), normals, rotation[:, 2])
+        check_torus(
+            gm.sample(surface, normals=normals, cells=cells, on="spline"), normals, rotation[:, 2]
+        )
 
 
 @given(of_surface=quaternions, of_normals=quaternions, exponent=st.integers(-9, 9))
@@ -122,14 +124,16 @@ def test_torus_turned_at_random(
     turn = rotation_of(of_surface)
     normals = gm.icosphere(8) @ rotation_of(of_normals).T
     surface = moved(TORUS, turn, 0.0, 10.0**exponent)
-    check_torus(gm.sample(surface, normals=normals, cells=(32, 20)), normals, turn[:, 2])
+    check_torus(
+        gm.sample(surface, normals=normals, cells=(32, 20), on="spline"), normals, turn[:, 2]
+    )
 
 
 @pytest.mark.parametrize("name", ["sphere", "ellipsoid"])
 @pytest.mark.parametrize("cells", [(16, 16), (32, 20), (64, 64), (96, 96)])
 def test_sphere_like_surfaces_have_every_normal_once(name: str, cells: tuple[int, int]) -> None:
     for normals in (gm.icosphere(10), gm.icosphere(32), gm.fibonacci(10**5)):
-        samples = gm.sample(gm.surfaces.surface(name), normals=normals, cells=cells)
+        samples = gm.sample(gm.surfaces.surface(name), normals=normals, cells=cells, on="spline")
         elliptic, hyperbolic = count_preimages(samples, len(normals))
         assert (elliptic - hyperbolic == 1).all()
 
@@ -140,7 +144,7 @@ def test_sphere_like_surfaces_have_every_normal_once(name: str, cells: tuple[int
 def test_sphere_so_far_away_that_patches_are_mostly_rounding(cells: int, shift: float) -> None:
     normals = gm.fibonacci(20_000)
     surface = moved(gm.surfaces.sphere(), np.eye(3), shift, 1.0)
-    samples = gm.sample(surface, normals=normals, cells=(cells, cells))
+    samples = gm.sample(surface, normals=normals, cells=(cells, cells), on="spline")
     assert samples.report.developable_patches
     elliptic, hyperbolic = count_preimages(samples, len(normals))
     assert (elliptic - hyperbolic == 1).all()
@@ -152,7 +156,7 @@ def test_sphere_so_far_away_that_patches_are_mostly_rounding(cells: int, shift: 
 def test_torus_that_is_mostly_rounding(minor: float, shift: float, cells: int) -> None:
     surface = moved(gm.surfaces.torus(minor=minor), np.eye(3), shift, 1.0)
     normals = gm.fibonacci(20_000)
-    samples = gm.sample(surface, normals=normals, cells=(cells, cells))
+    samples = gm.sample(surface, normals=normals, cells=(cells, cells), on="spline")
     assert samples.report.developable_patches
     elliptic, hyperbolic = count_preimages(samples, len(normals))
     assert (elliptic == hyperbolic).all()
@@ -178,7 +182,9 @@ def test_seam_of_a_moebius_band() -> None:
     """A normal on the seam belongs to one side, which the other side sees as its opposite."""
     band = gm.surfaces.moebius_band()
     for cells in ((16, 5), (64, 64), (33, 12)):
-        samples = gm.sample(band, normals=[[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]], cells=cells)
+        samples = gm.sample(
+            band, normals=[[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]], cells=cells, on="spline"
+        )
         assert len(samples) == 1
 
 
@@ -199,7 +205,7 @@ def test_klein_bottle(cells: tuple[int, int], frequency: int) -> None:
     )
     normals = gm.icosphere(frequency)
     elliptic, hyperbolic = count_preimages(
-        gm.sample(bottle, normals=normals, cells=cells), len(normals)
+        gm.sample(bottle, normals=normals, cells=cells, on="spline"), len(normals)
     )
     order = np.lexsort(normals.T)
     signed = elliptic - hyperbolic
@@ -210,7 +216,9 @@ def test_klein_bottle(cells: tuple[int, int], frequency: int) -> None:
 @pytest.mark.parametrize("cells", [16, 32, 64])
 def test_cyclide(cells: int) -> None:
     for normals in (gm.icosphere(32), gm.fibonacci(10**5)):
-        samples = gm.sample(gm.surfaces.dupin_cyclide(), normals=normals, cells=(cells, cells))
+        samples = gm.sample(
+            gm.surfaces.dupin_cyclide(), normals=normals, cells=(cells, cells), on="spline"
+        )
         elliptic, hyperbolic = count_preimages(samples, len(normals))
         assert (elliptic == hyperbolic).all()
 
@@ -222,7 +230,7 @@ def test_symmetric_ellipsoid_patch(cells: tuple[int, int], frequency: int) -> No
     normals = gm.icosphere(frequency)
     planes = (np.abs(normals) == 0.0).any(axis=1)
     assert planes.any()
-    samples = gm.sample(gm.surfaces.ellipsoid_patch(), normals=normals, cells=cells)
+    samples = gm.sample(gm.surfaces.ellipsoid_patch(), normals=normals, cells=cells, on="spline")
     axes = np.array([1.0, 0.6, 0.3])
     height = np.abs(axes[2] * normals[:, 2]) / np.linalg.norm(axes * normals, axis=1)
     latitude = np.degrees(np.arcsin(height))
@@ -241,7 +249,7 @@ def test_developable_surfaces(
 ) -> None:
     surface = moved(gm.surfaces.surface(name), rotation_of(quaternion), shift * factor, factor)
     with pytest.warns(gm.GaussmapWarning, match="flat or developable"):
-        samples = gm.sample(surface, normals=gm.icosphere(32), cells=(32, 32))
+        samples = gm.sample(surface, normals=gm.icosphere(32), cells=(32, 32), on="spline")
     assert np.isfinite(samples.points).all()
     assert np.isfinite(samples.gaussian_curvature).all()
     assert samples.report.developable_share == pytest.approx(1.0)
@@ -307,7 +315,7 @@ def test_open_border_belongs_to_the_surface() -> None:
     v = np.linspace(-0.99, 0.99, 777)
     normals = np.column_stack([0.0 * v, -1.5 * v, np.ones_like(v)])
     for cells in ((3, 3), (7, 5), (16, 16), (37, 41)):
-        samples = gm.sample(half, normals=normals, cells=cells)
+        samples = gm.sample(half, normals=normals, cells=cells, on="spline")
         assert (np.bincount(samples.normal_index, minlength=len(v)) == 1).all()
         assert np.abs(samples.uv[:, 0]).max() < 1e-12
         np.testing.assert_allclose(np.sort(samples.uv[:, 1]), v, rtol=0, atol=1e-12)
@@ -319,5 +327,5 @@ def test_corners_of_the_border_come_once() -> None:
     )
     corners = np.array([[-x, -y, 1.0] for x in (0.0, 1.0) for y in (0.0, 1.0)])
     for cells in ((3, 3), (8, 8), (5, 9)):
-        samples = gm.sample(bowl, normals=corners, cells=cells)
+        samples = gm.sample(bowl, normals=corners, cells=cells, on="spline")
         assert sorted(samples.normal_index.tolist()) == [0, 1, 2, 3]
