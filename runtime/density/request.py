@@ -99,7 +99,8 @@ def _density(density: str | float | None, default: str) -> str | float:
 def _check_that_they_fit(density: str | float, given: list[str]) -> None:
     """Raise InputError for amounts that a density does not support."""
     fitting = {
-        "gauss": [["normals"], ["count"], ["angle"]],
+        # No angle: next to open borders normals alone leave more than they are apart.
+        "gauss": [["normals"], ["count"]],
         "balanced": [[x] for x in ("normals", "count", "angle", "coverage")]
         + [[x, "coverage"] for x in ("normals", "count", "angle")],
         "uniform": [["count"], ["coverage"]],
