@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import textwrap
 import warnings
 from collections.abc import Sequence
 from itertools import product
@@ -40,6 +41,8 @@ WIDTH, HEIGHT, MIDDLE, TITLES, LEGENDS = 9.0, 4.9, 2.45, 4.17, 0.56
 LEFT, ROOM_WIDTH, ROOM_HEIGHT = 2.4, 4.1, 3.1
 RIGHT, RADIUS = 6.8, 1.35
 DOTS_PER_INCH = {".png": 200, ".pdf": 300, ".svg": 300}
+
+LONGEST_LINE = 140  # letters of the summary
 
 ISOLINES = 16  # parameter lines along u and v
 ROBUST = 95.0  # the percentile of |K| at the ends of the colour scale
@@ -112,7 +115,10 @@ def plot_samples(
         FigureCanvasAgg(figure)
         name = " ".join(samples.report.surface.split())
         _write(figure, WIDTH / 2, 4.64, name if len(name) <= 80 else name[:79] + "…", fontsize=11)
-        _write(figure, WIDTH / 2, 4.43, samples.summary(), fontsize=7.5, color=PALE)
+        lines = textwrap.wrap(samples.summary(), LONGEST_LINE)
+        for k, line in enumerate(lines):
+            place = 4.43 + 0.03 * (len(lines) - 1) - 0.12 * k
+            _write(figure, WIDTH / 2, place, line, fontsize=7.5, color=PALE)
         _draw_surface(figure, samples, spline)
         _draw_sphere(figure, samples, directions)
         with paths.atomic_path(path) as temporary:
