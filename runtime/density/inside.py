@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..inside import FINEST, parameters_of, subcentroids
+from ..inside import FINEST, Inside, parameters_of, subcentroids
 
 if TYPE_CHECKING:
     from .triangles import Triangles
@@ -35,6 +35,7 @@ def inside_trim(triangles: Triangles) -> Triangles:
     at_centroid = _contains(triangles, triangles.centroids)
     found = triangles[at_centroid]
     left = triangles[~at_centroid]
+    left = left[_may_reach(left, inside)]
     while len(left):
         left, some = _with_places(left)
         found += left[some]
@@ -46,6 +47,13 @@ def inside_trim(triangles: Triangles) -> Triangles:
         left = left[~at_centroid]
     found = found[np.argsort(found.patches, kind="stable")]
     return found.at(found.uv)
+
+
+def _may_reach(triangles: Triangles, inside: Inside) -> NDArray[np.bool_]:
+    """Say which triangles with centroids outside may have a part inside."""
+    spline, width = triangles.sizing.spline, len(inside.near) // triangles.sizing.spline.cells[0]
+    small = np.abs(np.diff(triangles.corners, axis=1)).max(axis=(1, 2)) <= 1.0 / width
+    return ~small | inside.is_near(spline, triangles.patches, triangles.centroids)
 
 
 def _with_places(triangles: Triangles) -> tuple[Triangles, NDArray[np.bool_]]:

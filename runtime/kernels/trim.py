@@ -19,10 +19,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...generated.spline import CORNERS
 from .jit import inline, jit, loop
+from .patch import place_of
 from .spline import locate
 
-__all__ = ["Cells", "find_inside", "find_parities", "find_patches", "list_segments"]
+__all__ = ["Cells", "find_inside", "find_parities", "find_patches", "list_segments", "to_cells"]
 
 
 class Cells(NamedTuple):
@@ -203,3 +205,15 @@ def find_patches(cells, rows, columns, patches):
         j = min(max(int(math.floor(cells[k, 1])), 0), columns - 1)
         turn, _, _ = locate(cells[k, 0] - i - 0.5, cells[k, 1] - j - 0.5)
         patches[k] = 4 * (i * columns + j) + turn
+
+
+@jit
+def to_cells(patches, places, columns, first, last, cells):
+    """Write the places (k, 2) in cells of a grid of the parameters (k, 2) of patches (k,)."""
+    for k in range(first, last):
+        i, j, turn = place_of(patches[k], columns)
+        u = places[k, 0]
+        v = places[k, 1]
+        for x in range(2):
+            corner = i if x == 0 else j
+            cells[k, x] = corner + 0.5 + u * CORNERS[turn, 0, x] + v * CORNERS[turn, 1, x]

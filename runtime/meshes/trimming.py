@@ -115,7 +115,8 @@ class _Line:
 
     def to_samples(self, tree: KDTree) -> None:
         """Move vertices next to the samples that are close to the line."""
-        distance, nearest = tree_of(self.points).query(tree.data, workers=-1)
+        distance, found = tree_of(self.points).query(tree.data, workers=-1)
+        nearest = np.asarray(found)
         near = np.flatnonzero(distance < CLOSE * self.spacings[nearest])
         near = near[np.argsort(-distance[near], kind="stable")]  # the closest one comes last
         at = self.measure[nearest[near]]
