@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +21,9 @@ from .domain import Assumed, Boundary
 from .errors import SurfaceError
 from .formula_calls import python_function
 from .quasi_interpolant import SAME_POINT
-from .surface import Surface
+
+if TYPE_CHECKING:
+    from .surface import Surface
 
 __all__ = ["FoundSides", "closed_grid", "found_sides"]
 

@@ -71,7 +71,8 @@ def differences() -> str:
 
 def _weights(order: int, places: Sequence[int]) -> list[sp.Expr]:
     """Return the weights of the values at some places in a derivative at zero."""
-    return sp.finite_diff_weights(order, list(places), cast(Any, 0))[order][-1]
+    weights: Any = sp.finite_diff_weights(order, list(places), cast(Any, 0))
+    return weights[order][-1]
 
 
 def _changes(order: int, places: Sequence[int]) -> list[sp.Expr]:
