@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import cast
@@ -62,15 +62,18 @@ def surfaces() -> list[ParametricSurface]:
 
 def exact(entry: ParametricSurface, s: ArrayLike, t: ArrayLike) -> tuple[Array, Array]:
     """Return points and unit normals of the rotated surface at its parameters."""
-    rows = [*entry.position, *entry.normal_field]
-    functions = sp.lambdify(
-        (entry.u, entry.v), [x.xreplace(entry.defaults) for x in rows], cse=True
-    )
     s, t = np.broadcast_arrays(s, t)
-    values = np.stack([np.broadcast_to(x, s.shape) for x in functions(s, t)], axis=-1)
+    values = np.stack([np.broadcast_to(x, s.shape) for x in _compiled(entry)(s, t)], axis=-1)
     normals = values[..., 3:] @ ROTATION.T * np.linalg.det(ROTATION)
     lengths = np.linalg.norm(normals, axis=-1, keepdims=True)
     return values[..., :3] @ ROTATION.T, normals / np.where(lengths > 0.0, lengths, 1.0)
+
+
+@cache
+def _compiled(entry: ParametricSurface) -> Callable[[Array, Array], list[Array]]:
+    """Return the function of the components of position and normal field, not rotated."""
+    rows = [x.xreplace(entry.defaults) for x in (*entry.position, *entry.normal_field)]
+    return sp.lambdify((entry.u, entry.v), rows, cse=True)
 
 
 def measure(entry: ParametricSurface, cells: int) -> PoleErrors:
