@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from statistics import median
 from typing import Any
 
@@ -21,6 +21,7 @@ from gaussmap.benchmarks.peers.triangles import (
     gmsh_triangles,
     opencascade_triangles,
 )
+from gaussmap.benchmarks.peers.untuned import Boss
 from gaussmap.docs.orders import (
     TrueSurface,
     angles,
@@ -31,16 +32,22 @@ from gaussmap.docs.orders import (
     number,
     wrapped,
 )
+from gaussmap.runtime.meshes.improvement import Prefer
 from gaussmap.runtime.meshes.meshing import Triangulated
+from matplotlib.cbook import get_sample_data
 
 COUNTS = (2_000, 10_000)
 PLACES = 200_000
 PARTS = 6  # every triangle is compared at the barycentric lattice of step 1/PARTS
+FEW = 0.05  # of the smallest angles are below the one that is told
 STEPS = 8  # of Newton's method
+KINDS: tuple[Prefer, Prefer] = ("shape", "normals")
+SHAPED, TERRAIN = 10_000, (50, 43)
 TIMED = (10_000, 100_000, 1_000_000)
 ROUNDS = 3
 
 OWN = "**`samples.mesh()`**"
+NORMALS = '**`samples.mesh(prefer="normals")`**'
 GMSH = "Gmsh, curvature size"
 DELAUNAY = "the same samples, Delaunay over (u, v)"
 
@@ -48,31 +55,38 @@ DELAUNAY = "the same samples, Delaunay over (u, v)"
 # --- meshes ---------------------------------------------------------------------------------------
 
 
-def samples_for(form: ClosedForm, count: int) -> gm.Samples:
+def samples_for(form: ClosedForm, count: int, prefer: Prefer) -> gm.Samples:
     """Return samples whose mesh has about `count` vertices, those of the border among them."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", gm.GaussmapWarning)
         first = gm.sample(form.surface, count=count)
-        added = len(first.mesh().vertices) - len(first)
+        added = len(first.mesh(prefer=prefer).vertices) - len(first)
         return gm.sample(form.surface, count=count - added)
 
 
-def own(form: ClosedForm, count: int) -> Triangles:
-    """Return the mesh of gaussmap."""
-    mesh = samples_for(form, count).mesh()
+def by_shape(form: ClosedForm, count: int) -> Triangles:
+    """Return the mesh of gaussmap with well-shaped triangles."""
+    mesh = samples_for(form, count, "shape").mesh()
+    return mesh.vertices, mesh.triangles
+
+
+def by_normals(form: ClosedForm, count: int) -> Triangles:
+    """Return the mesh of gaussmap whose triangles are close to the normals."""
+    mesh = samples_for(form, count, "normals").mesh(prefer="normals")
     return mesh.vertices, mesh.triangles
 
 
 def without_flips(form: ClosedForm, count: int) -> Triangles:
     """Return the triangulation from which the flips of gaussmap start."""
-    samples = samples_for(form, count)
+    samples = samples_for(form, count, "normals")
     assert samples.spline is not None
     mesh = Triangulated.of(samples, samples.spline).mesh()
     return mesh.vertices, mesh.triangles
 
 
 MESHERS: dict[str, Callable[[ClosedForm, int], Triangles]] = {
-    OWN: own,
+    OWN: by_shape,
+    NORMALS: by_normals,
     DELAUNAY: without_flips,
     "grid of parameters": by_grid,
     GMSH: gmsh_triangles,
@@ -88,7 +102,8 @@ class Quality:
     """How well a mesh of `vertices` and `triangles` represents a surface.
 
     Distances are the largest from the surface to the mesh and back, in the unit of the surface;
-    `worst` and `mean` are angles between the normals of both, in degrees.
+    `worst` and `mean` are angles between the normals of both, in degrees. Of `small` degrees at
+    least are the angles of 95 % of the triangles.
     """
 
     vertices: int
@@ -97,6 +112,7 @@ class Quality:
     to_surface: float
     worst: float
     mean: float
+    small: float
 
 
 def quality(form: ClosedForm, places: Places, mesh: Triangles) -> Quality:
@@ -113,7 +129,17 @@ def quality(form: ClosedForm, places: Places, mesh: Triangles) -> Quality:
         max(float(to_surface(form, part).max()) for part in on_mesh(corners)),
         float(turned.max()),
         float(turned.mean()),
+        float(np.quantile(smallest_angles(corners), FEW)),
     )
+
+
+def smallest_angles(corners: Array) -> Array:
+    """Return the smallest angle of each triangle (T, 3, 3), in degrees."""
+    found = []
+    for k in range(3):
+        e, f = (corners[:, (k + x) % 3] - corners[:, k] for x in (1, 2))
+        found.append(np.degrees(np.arctan2(lengths(np.cross(e, f)), dots(e, f))))
+    return np.min(found, axis=0)
 
 
 def closest(mesh: Triangles, places: Array) -> tuple[np.ndarray, Array]:
@@ -180,9 +206,11 @@ Written by `make meshes`: do not edit.
 
 Triangle meshes of three surfaces with M vertices, about {counts}. The vertices of `samples.mesh()`
 are the samples of `gm.sample(count=…)` ("balanced", see the [glossary](glossary.md)) and points on
-open borders, M in all; edges are flipped until no flip reduces the angles between two triangles and
-the normals at their corners. The row below it is the triangulation from which the flips start. In a
-grid of parameters, each cell is cut along one diagonal. Gmsh meshes by curvature, Open CASCADE by
+open borders, M in all. By default edges are flipped until triangles are Delaunay on the surface,
+and samples too close to others are left out; with `prefer="normals"` until no flip reduces the
+angles between two triangles and the normals at their corners. The row below both is the
+triangulation from which the flips start. In a grid of parameters, each cell is cut along one
+diagonal. Gmsh meshes by curvature, Open CASCADE by
 angular deflection: the torus is one of their primitives, the other two surfaces are given to them
 as cubic B-splines through 61 × 61 points. Vertices that coincide count once. Columns:
 
@@ -191,21 +219,35 @@ as cubic B-splines through 61 × 61 points. Vertices that coincide count once. C
 - **mesh → surface**: the largest distance of {lattice} points on each triangle from the surface;
   the larger one of both is the Hausdorff distance;
 - **worst** and **mean angle**: between the normal of a point of the surface and that of the nearest
-  triangle, in degrees.
+  triangle, in degrees;
+- **shape**: 95 % of the triangles have angles of at least that many degrees.
 """
 
 MEANING = """\
 ## Results
 
-With M ≈ {last:,} the mean angle is smaller than that of Gmsh on {mean}, the worst angle on {worst},
-the distance on {distance}. The flips reduce the mean angle by {saved}.
+With M ≈ {last:,} and `prefer="normals"` the mean angle is smaller than that of Gmsh on {mean}, the
+worst angle on {worst}, the distance on {distance}; the flips reduce the mean angle by {saved}. The
+default has better-shaped triangles than that, and mean angles larger by {cost}.
+"""
+
+SHAPES = """\
+## Shapes of triangles
+
+Meshes of {count:,} samples ("balanced") of surfaces that make thin triangles likely: where they are
+developable, where regions of different density meet, and where folds of a terrain bring samples of
+several patches together. The terrain is that of `make demo`, the boss a solid of CAD with a plate,
+fillets and a cylinder. **smallest** angles: the smallest one, that which 5 % of the triangles fall
+below, and how many of a thousand are below 5°; **inner** without the triangles at open borders.
+**Angles** between triangles and the normals at their corners: mean and worst. **Left out**: samples
+that are no vertices.
 """
 
 TIME = """\
 ## Time
 
-Seconds for `samples.mesh()` of N samples, the median of {rounds} runs, most of them in Qhull's
-triangulation:
+Seconds for a mesh of N samples, the median of {rounds} runs, most of them in Qhull's triangulation;
+with `prefer="normals"` in brackets:
 """
 
 
@@ -223,6 +265,7 @@ def row(title: str, found: Quality) -> list[str]:
         number(found.to_surface),
         f"{found.worst:.1f}",
         f"{found.mean:.2f}",
+        f"{found.small:.1f}",
     ]
 
 
@@ -248,6 +291,7 @@ class Measurement:
     def table(self) -> str:
         """Return the section of the page."""
         header = ["", "M", "surface → mesh", "mesh → surface", "worst angle", "mean angle"]
+        header.append("shape")
         rows = [row(title, x) for found in self.found.values() for title, x in found.items()]
         return f"## {self.form.label}\n\n{markdown(header, rows)}"
 
@@ -256,12 +300,12 @@ def meaning(measured: Sequence[Measurement]) -> str:
     """Say where gaussmap is better than Gmsh, and where the flips help, with the largest M."""
     last = COUNTS[-1]
     pairs = {
-        x.form.name: tuple(x.found[last][title] for title in (OWN, GMSH, DELAUNAY))
+        x.form.name: tuple(x.found[last][title] for title in (NORMALS, GMSH, DELAUNAY, OWN))
         for x in measured
     }
 
     def smaller(value: Callable[[Quality], float]) -> str:
-        names = [name for name, (own, gmsh, _) in pairs.items() if value(own) < value(gmsh)]
+        names = [name for name, x in pairs.items() if value(x[0]) < value(x[1])]
         return listed(map(code, names)) if names else "no surface"
 
     return MEANING.format(
@@ -271,22 +315,63 @@ def meaning(measured: Sequence[Measurement]) -> str:
         distance=smaller(lambda x: max(x.to_mesh, x.to_surface)),
         saved=listed(
             f"{100 * (1 - own.mean / before.mean):.0f} % on {code(name)}"
-            for name, (own, _, before) in pairs.items()
+            for name, (own, _, before, _) in pairs.items()
+        ),
+        cost=listed(
+            f"{100 * (shape.mean / own.mean - 1):.0f} % on {code(name)}"
+            for name, (own, _, _, shape) in pairs.items()
         ),
     )
+
+
+def shapes() -> str:
+    """Compare the triangles of both kinds of meshes."""
+    header = ["", "prefer", "M", "smallest", "5 %", "< 5°", "inner 5 %", "inner < 5°"]
+    header += ["mean angle", "worst", "left out"]
+    rows = []
+    for name, surface, cells in difficult():
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", gm.GaussmapWarning)
+            samples = gm.sample(surface, count=SHAPED, cells=cells)
+        for prefer in KINDS:
+            rows.append([name, prefer, *shape_of(samples, samples.mesh(prefer=prefer))])
+    return markdown(header, rows)
+
+
+def difficult() -> Iterator[tuple[str, gm.Surface, tuple[int, int] | None]]:
+    """Yield names, surfaces and cells."""
+    for name in ("torus", "cylinder", "sphere"):
+        yield name, gm.surfaces.surface(name), None
+    yield "boss", Boss().surface, None
+    with np.load(get_sample_data("jacksboro_fault_dem.npz", asfileobj=False)) as data:
+        yield "terrain", gm.Surface.from_grid(data["elevation"], spacing=(74.5, -92.5)), TERRAIN
+
+
+def shape_of(samples: gm.Samples, mesh: gm.Mesh) -> list[str]:
+    """Return the figures of one mesh."""
+    angles = mesh.smallest_angles
+    inner = angles[~np.isin(mesh.triangles, np.unique(mesh.boundary_edges)).any(axis=1)]
+    left_out = len(samples) - np.count_nonzero(mesh.sample_index >= 0)
+    figures = [f"{len(mesh.vertices):,}", f"{angles.min():.1f}"]
+    for x in (angles, inner):
+        figures += [f"{np.quantile(x, FEW):.1f}", f"{1000 * (x < 5.0).mean():.1f}"]
+    return [*figures, f"{mesh.angles.mean():.2f}", f"{mesh.angles.max():.1f}", f"{left_out:,}"]
 
 
 def times() -> str:
     """Time the meshes of gaussmap."""
     header = ["", *(f"N = {x:,}" for x in TIMED)]
-    rows = [[form.name, *(number(seconds(form, count)) for count in TIMED)] for form in FORMS]
+    rows = [[form.name, *(seconds(form, count) for count in TIMED)] for form in FORMS]
     return markdown(header, rows)
 
 
-def seconds(form: ClosedForm, count: int) -> float:
-    """Return how long a mesh of about `count` samples takes."""
+def seconds(form: ClosedForm, count: int) -> str:
+    """Return how long meshes of about `count` samples take."""
     samples = gm.sample(form.surface, count=count)
-    return median(timed(samples.mesh)[0] for _ in range(ROUNDS))
+    shape, normals = (
+        median(timed(partial(samples.mesh, prefer=x))[0] for _ in range(ROUNDS)) for x in KINDS
+    )
+    return f"{number(shape)} ({number(normals)})"
 
 
 def main() -> None:
@@ -297,6 +382,8 @@ def main() -> None:
         wrapped(HEAD.format(counts=counts, places=PLACES, lattice=lattice())),
         *(x.table() for x in measured),
         wrapped(meaning(measured)),
+        wrapped(SHAPES.format(count=SHAPED)),
+        shapes(),
         wrapped(TIME.format(rounds=ROUNDS)),
         times(),
         "\n".join(machine()) + "\n",

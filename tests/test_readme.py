@@ -12,7 +12,7 @@ import pytest
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 SAME_MESH = {
-    "**balanced**": "**`samples.mesh()`**",
+    "**balanced**": '**`samples.mesh(prefer="normals")`**',
     "NumPy, (u,v) grid, closed form": "grid of parameters",
 }
 

@@ -25,7 +25,9 @@ def rows(form, title):
 
 
 @EACH
-@pytest.mark.parametrize("title", [meshes.OWN, meshes.DELAUNAY, "grid of parameters"])
+@pytest.mark.parametrize(
+    "title", [meshes.OWN, meshes.NORMALS, meshes.DELAUNAY, "grid of parameters"]
+)
 def test_committed_numbers_are_those_of_a_fresh_run(form, title):
     pytest.importorskip("pyvista")
     places = Places.of(form, meshes.PLACES)
@@ -76,11 +78,25 @@ def test_beyond_a_border_the_border_is_nearest():
 
 def test_flips_never_make_the_worst_angle_larger():
     for form in FORMS:
-        for own, before in zip(rows(form, meshes.OWN), rows(form, meshes.DELAUNAY), strict=True):
+        for own, before in zip(
+            rows(form, meshes.NORMALS), rows(form, meshes.DELAUNAY), strict=True
+        ):
             assert own[3] <= before[3]
+
+
+def test_shapes_are_as_promised():
+    """95 % of the smallest angles are 25° at least, one in a thousand is below 5° at most."""
+    section = PAGE.split("## Shapes of triangles\n")[1].split("\n## ")[0]
+    found = [x.strip("| ").split(" | ") for x in section.splitlines() if " | shape | " in x]
+    assert [x[0] for x in found] == ["torus", "cylinder", "sphere", "boss", "terrain"]
+    for line in found:
+        assert float(line[6]) >= 25.0
+        assert max(float(line[5]), float(line[7])) <= 1.0
 
 
 def test_times_are_there():
     section = PAGE.split("## Time\n")[1]
     for form in FORMS:
-        assert re.search(rf"^\| {form.name} \|( [\d.e-]+ \|){{3}}$", section, re.MULTILINE)
+        assert re.search(
+            rf"^\| {form.name} \|( [\d.e-]+ \([\d.e-]+\) \|){{3}}$", section, re.MULTILINE
+        )
