@@ -246,8 +246,8 @@ that are no vertices.
 TIME = """\
 ## Time
 
-Seconds for a mesh of N samples, the median of {rounds} runs, most of them in Qhull's triangulation;
-with `prefer="normals"` in brackets:
+Seconds for `samples.mesh(prefer="normals")` of N samples, the median of {rounds} runs, most of them
+in Qhull's triangulation:
 """
 
 
@@ -361,17 +361,15 @@ def shape_of(samples: gm.Samples, mesh: gm.Mesh) -> list[str]:
 def times() -> str:
     """Time the meshes of gaussmap."""
     header = ["", *(f"N = {x:,}" for x in TIMED)]
-    rows = [[form.name, *(seconds(form, count) for count in TIMED)] for form in FORMS]
+    rows = [[form.name, *(number(seconds(form, count)) for count in TIMED)] for form in FORMS]
     return markdown(header, rows)
 
 
-def seconds(form: ClosedForm, count: int) -> str:
-    """Return how long meshes of about `count` samples take."""
+def seconds(form: ClosedForm, count: int) -> float:
+    """Return how long a mesh of about `count` samples takes."""
     samples = gm.sample(form.surface, count=count)
-    shape, normals = (
-        median(timed(partial(samples.mesh, prefer=x))[0] for _ in range(ROUNDS)) for x in KINDS
-    )
-    return f"{number(shape)} ({number(normals)})"
+    mesh = partial(samples.mesh, prefer="normals")
+    return median(timed(mesh)[0] for _ in range(ROUNDS))
 
 
 def main() -> None:
