@@ -15,6 +15,8 @@ from .. import directions
 from ..checks import known_name
 from ..compiling import NOTICE
 from ..errors import InputError
+from ..fitting import fit
+from ..spline import Spline
 from ..surface import Surface
 from ..surfaces import CATALOGUE, names, surface
 from .arrays import array_file, is_array_file, read_array
@@ -29,6 +31,7 @@ def arguments(options: SimpleNamespace, default_count: int) -> dict[str, Any]:
     NOTICE.quiet = options.quiet
     _spare_inputs(options)
     surface_, normals = _surface(options), _normals(options)
+    surface_, cells = _with_tolerance(surface_, options)
     asked = normals, options.count, options.angle, options.coverage
     return {
         "surface": surface_,
@@ -38,7 +41,7 @@ def arguments(options: SimpleNamespace, default_count: int) -> dict[str, Any]:
         "coverage": options.coverage,
         "density": options.density,
         "relax": options.relax,
-        "cells": options.cells,
+        "cells": cells,
         "on": options.on,
         "threads": options.threads,
         "progress": not options.quiet,
@@ -85,6 +88,18 @@ def _grid(options: SimpleNamespace) -> Surface:
         nodata=options.nodata,
         name=array_file(options.surface).name,
     )
+
+
+def _with_tolerance(
+    surface_: Surface, options: SimpleNamespace
+) -> tuple[Surface | Spline, tuple[int, int] | None]:
+    """Return the surface, and the cells that --cells or --tolerance choose; of data the spline."""
+    if options.tolerance is None:
+        return surface_, options.cells
+    if options.cells is not None:
+        raise InputError("--tolerance and --cells do not go together; give one of them.")
+    spline = fit(surface_, tolerance=options.tolerance)
+    return (spline, None) if surface_.grid is not None else (surface_, spline.cells)
 
 
 def _normals(options: SimpleNamespace) -> NDArray[np.float64] | None:

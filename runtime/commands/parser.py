@@ -287,11 +287,12 @@ def _surface_options() -> list[Option]:
         "repeat the first row at the end."
     )
     nodata = "The number that stands for missing data in a grid, such as -9999; NaN does anyway."
-    cells = "The cells of the spline along u and v (default: 64 64, or those of the grid)."
+    cells = "The cells of the spline along u and v (default: 64 64 or more, or those of the grid)."
     on = (
         "Where samples lie: on the surface itself (default) or on the spline that approximates it. "
         "Of grids in files there is the spline only."
     )
+    tolerance = "Instead of --cells: the largest distance of the spline from the surface or data."
     axes = click.Choice(("none", "u", "v", "uv"))
     return [
         Option("--set NAME=VALUE", parameter, setting, group=group, multiple=True),
@@ -299,5 +300,6 @@ def _surface_options() -> list[Option]:
         Option("--periodic AXES", periodic, axes, group=group),
         Option("--nodata NUMBER", nodata, number, group=group),
         Option("--cells M N", cells, whole(MOST), group=group),
+        Option("--tolerance LENGTH", tolerance, number, group=group),
         Option("--on WHERE", on, click.Choice(("surface", "spline")), group=group),
     ]

@@ -105,6 +105,22 @@ def test_sample_elevations() -> None:
 
 
 @compiled
+def test_tolerance_of_data_and_what_the_summary_says_of_them() -> None:
+    x, y = np.meshgrid(np.linspace(-1, 1, 50), np.linspace(-1, 1, 40))
+    np.save("heights.npy", 100 * np.exp(-3 * (x * x + y * y)))
+    arguments = ["--spacing", "30", "30", "--tolerance", "1", "--count", "300", "-o", "a.npz"]
+    done = gaussmap("sample", "heights.npy", *arguments)
+    assert done.returncode == 0
+    assert "; the spline is within 0." in done.stdout
+    assert "of the data (root mean square 0." in done.stdout
+    report = gm.read_samples("a.npz").report
+    assert report.fit_distance is not None
+    assert report.fit_distance <= 1.0
+    assert report.patches is not None
+    assert report.patches < 4 * 49 * 39
+
+
+@compiled
 def test_missing_elevations_are_left_out() -> None:
     x, y = np.meshgrid(np.linspace(-1, 1, 30), np.linspace(-1, 1, 30))
     heights = np.exp(-3 * (x * x + y * y))
@@ -394,6 +410,8 @@ HEIGHTS = ["--spacing", "1", "1", *TO]
         (["sample", "torus", "--set", "minor=1", "--set", "minor=2", *TO], "same parameter twice"),
         (["sample", "torus", "--spacing", "1", "1", *TO], "--spacing is for elevations"),
         (["sample", "torus", "--periodic", "u", *TO], "--periodic is for grids"),
+        (["sample", "torus", "--tolerance", "1e-30", *TO], "is below the rounding of coordinates"),
+        (["sample", "torus", "--tolerance", "1", "--cells", "8", "8", *TO], "do not go together"),
         # surfaces in files
         (["sample", "missing.npy", *HEIGHTS], "'missing.npy' cannot be read: No such file"),
         (["sample", "folder.npy", *HEIGHTS], "'folder.npy' cannot be read: Is a directory"),
