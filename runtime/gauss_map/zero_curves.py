@@ -12,7 +12,7 @@ from collections.abc import Hashable
 import numpy as np
 from numpy.typing import NDArray
 
-from .chains import Segment, joined
+from ..chains import Segment, joined
 from .saddles import SAME, crossings
 from .sign_grid import SignGrid
 

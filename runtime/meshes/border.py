@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from ..chains import Segment, joined
 from ..domain import Boundary
-from ..gauss_map.chains import Segment, joined
 from ..loops import Loops
 from ..missing import Known
 from ..spline import Spline

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import sympy as sp
 from gaussmap.generated import patch as formulas
+from gaussmap.runtime.chains import joined
 from gaussmap.runtime.formula_calls import patch, python_function
-from gaussmap.runtime.gauss_map.chains import joined
 from gaussmap.runtime.gauss_map.curvature_field import CurvatureField
 from gaussmap.runtime.gauss_map.patches import Patches
 from numpy.typing import NDArray
