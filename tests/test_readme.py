@@ -71,7 +71,9 @@ def figures(title: str, surface: int) -> tuple[str, str, str, str]:
         tables((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8"))
         for name in ("quality", "performance", "meshes")
     )
-    mesh = meshes[surface].get(SAME_MESH.get(title, title), [["–"]])[-1][-1]  # of 10,000 vertices
+    mesh = meshes[surface].get(SAME_MESH.get(title, title), [["–"] * 2])[-1][
+        -2
+    ]  # of 10,000 vertices
     if title in quality[1 + surface]:
         E, G, rate = quality[1 + surface][title][0][6:9]
     else:
