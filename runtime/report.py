@@ -110,6 +110,8 @@ class SamplingReport:
     ('torus', 1024, 0, 0)
     >>> report.normals <= report.samples, report.angle <= 20.0, report.coverage is None
     (True, True, True)
+    >>> report.on, report.unrefined
+    ('surface', 0)
     >>> report.developable_share, report.apexes, report.index
     (0.0, 0, None)
     >>> report.fit_rms < report.fit_distance < 1.1e-3, report.fit_angle < 0.6

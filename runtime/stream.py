@@ -62,7 +62,8 @@ def sample_stream(
     -------
     generator of Samples
         The chunks; there is at least one, and all but the last of each block are full, unless the
-        surface is trimmed. The report of a chunk counts its samples, and no degenerate patches.
+        surface is trimmed or has poles. The report of a chunk counts its samples, and no degenerate
+        patches.
 
     Raises
     ------
@@ -79,8 +80,10 @@ def sample_stream(
     -----
     ``Samples.concatenate(sample_stream(…))`` is ``sample(…, density="gauss")``, bit for bit and in
     the same order, for up to 1,048,576 normals. More of them are searched in blocks of this size:
-    the samples are the same, but ordered by block, then by patch, then by normal. Closing the
-    generator ends the work.
+    the samples are the same, but ordered by block, then by patch, then by normal. On a surface with
+    poles, ``on="surface"`` holds back the samples within six cells of a pole, since several of the
+    spline may be one of the surface: they come last in each block, and other chunks are not full.
+    Closing the generator ends the work.
 
     Examples
     --------
