@@ -70,7 +70,7 @@ def test_samples_are_on_the_surface(request_):
     normals = samples.normals[there]
     assert sines(normals, normals_at(torus, samples.uv[there])).max() < NORMAL_ERROR + 1e-15
     np.testing.assert_allclose(
-        samples.gaussian_curvature[there], curvature_of_torus(v), rtol=1e-9, atol=1e-9
+        samples.gaussian_curvature[there], curvature_of_torus(v), rtol=1e-7, atol=1e-7
     )
     np.testing.assert_allclose(
         samples.support[there], np.sum(samples.points[there] * normals, axis=1), atol=1e-15
@@ -235,7 +235,7 @@ class TestArguments:
     def test_many(self):
         surfaces = ["torus", gm.fit("torus", CELLS)]
         with pytest.warns(GaussmapWarning, match="needs the surface, not its spline"):
-            (samples,) = gm.sample_many(surfaces, 50, on="surface", progress=False)
+            (samples,) = gm.sample_many(surfaces, 50, on="surface", on_error="skip", progress=False)
         assert samples.report.on == "surface"
 
 

@@ -56,7 +56,7 @@ class TestConstruction:
         assert all(part.spline is spline for part in (*halves, Samples.concatenate(halves)))
         copied = pickle.loads(pickle.dumps(samples)).spline
         np.testing.assert_array_equal(copied.coefficients, spline.coefficients)
-        other = gm.sample(gm.surfaces.torus(), count=100, cells=(8, 8))
+        other = gm.sample(gm.surfaces.torus(), count=100, cells=(8, 8), on="spline")
         assert Samples.concatenate([samples, other]).spline is None
         assert torus().spline is None
 
@@ -170,11 +170,12 @@ class TestReport:
             "fit_rms": np.int8(1),
             "fit_angle": np.float64(1),
             "apexes": np.int16(1),
+            "index": np.int64(7),
         }
         report = SamplingReport("s", *numbers, **more)
         assert [type(getattr(report, f.name)) for f in fields(report)] == [
             str, int, int, int, float, int, float, float, int, str, int, float, float, float,
-            int,
+            int, int,
         ]  # fmt: skip
 
     @pytest.mark.parametrize("name", ["normals", "samples", "patches", "developable_patches"])
