@@ -1,7 +1,5 @@
 """Sides that are one point, and that nobody declared: poles and apexes are found."""
 
-import warnings
-
 import gaussmap as gm
 import numpy as np
 import pytest
@@ -141,9 +139,7 @@ def test_a_grid_with_its_poles_is_closed():
 
 
 def test_samples_of_a_disk_do_not_crowd_at_its_middle():
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", gm.GaussmapWarning)  # at the border, on the spline
-        samples = gm.sample(gm.Surface.from_callable(lens, DISK), 300, cells=(24, 24))
+    samples = gm.sample(gm.fit(gm.Surface.from_callable(lens, DISK), (24, 24)), 300)
     assert len(np.unique(samples.points.round(6), axis=0)) == len(samples)
     assert samples.report.apexes == 0
     assert "apex" not in samples.summary()
