@@ -67,6 +67,10 @@ class Differentiable(ABC):
     def jets(self, u: Array, v: Array) -> Array:
         """Return x, x_u, x_v, x_uu, x_uv, x_vv (k, 6, 3) for u (k,) and v (k,)."""
 
+    def differences(self, boundary: Boundary) -> Differences | None:
+        """Return the differences that the derivatives are, if they are; for boundary conditions."""
+        return None
+
 
 @dataclass(frozen=True)
 class Differences:

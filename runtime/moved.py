@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .checks import real_array
-from .derivatives import Differentiable
+from .derivatives import Differences, Differentiable
 from .domain import Boundary, Domain, Interval
 from .errors import InputError
 from .evaluation import returned
@@ -103,6 +103,17 @@ class Moved(Differentiable):
         if self.turned:
             jets[:, [1, 4]] *= -1.0  # x_u and x_uv
         return jets
+
+    def differences(self, boundary: Boundary) -> Differences | None:
+        """Return the differences of the moved function, if the surface has differences."""
+        own = self.surface.differences
+        if own is None:
+            return None
+
+        def evaluate(u: Array, v: Array) -> Array:
+            return self.map.points(own.function(self._own(u), v))
+
+        return replace(own, function=evaluate, boundary=boundary)
 
     def _own(self, u: Array) -> Array:
         """Return the surface's own parameters u."""

@@ -21,10 +21,10 @@ from .geometry import Array, Fields, FieldsOfSamples, OnSpline
 from .inside import count_of, parameters_of, samples_inside
 from .kernels import nodes as kernels
 from .kernels.sizing import TargetDensity
-from .merging import first_at_poles
 from .pole_charts import PoleChart, pole_charts
-from .refined import as_fields, moved_samples, part_of
+from .refined import CONTRARY, as_fields, moved_samples, part_of
 from .refinement import evaluate_on_surface
+from .repeats import kept_once
 from .report import PLACES
 from .search import Hits
 from .spline import Spline
@@ -142,10 +142,10 @@ class OnSurface(OnSpline):
     ) -> FieldsOfSamples:
         """Return the samples at hits, with the fields that are requested.
 
-        Those that meet next to a pole are one.
+        Those that meet are one.
         """
         arrays = self._moved(bins, hits)
-        return as_fields(part_of(arrays, self._first_at_poles(arrays)), fields, dtype)
+        return as_fields(part_of(arrays, self._kept_once(arrays)), fields, dtype)
 
     def at_hits_in_turn(
         self,
@@ -157,7 +157,8 @@ class OnSurface(OnSpline):
     ) -> Iterator[FieldsOfSamples]:
         """Yield the samples at groups of at most `size` hits, which are all of these normals.
 
-        Those next to poles come last: several of them, in different groups, may be one.
+        Those next to poles come last: several of them, in different groups, may be one. Those that
+        meet elsewhere, which happens on coarse splines only, are not looked for.
         """
         held: list[Fields] = []
         for hits in groups:
@@ -169,7 +170,7 @@ class OnSurface(OnSpline):
             yield as_fields(arrays, fields, dtype)
         if held:
             arrays = {x: np.concatenate([part[x] for part in held]) for x in held[0]}
-            arrays = part_of(arrays, self._first_at_poles(arrays))
+            arrays = part_of(arrays, self._kept_once(arrays))
             for first in range(0, count_of(arrays), size):
                 part = {name: x[first : first + size] for name, x in arrays.items()}
                 yield as_fields(part, fields, dtype)
@@ -185,11 +186,13 @@ class OnSurface(OnSpline):
         at_poles = [chart.near(arrays["uv"]) for chart in self._charts]
         return np.logical_or.reduce([np.zeros(len(arrays["uv"]), dtype=bool), *at_poles])
 
-    def _first_at_poles(self, arrays: Fields) -> NDArray[np.bool_]:
-        """Return which samples are not the same as one before, next to a pole."""
-        return first_at_poles(
-            self._charts, arrays["normal_index"], arrays["uv"], arrays["on_surface"]
-        )
+    def _kept_once(self, arrays: Fields) -> NDArray[np.bool_]:
+        """Return which samples do not repeat another one."""
+        return kept_once(
+            arrays["points"], arrays["gaussian_curvature"], arrays["normal_index"],
+            arrays[FLAG_NAMES[0]], arrays[CONTRARY], self._at_poles(arrays),
+            1.0 / self.spline.scale,
+        )  # fmt: skip
 
     @cached_property
     def _charts(self) -> list[PoleChart]:

@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from .derivatives import numerical_jets, power_of_two
 from .kernels.refine import chart_jets, jet_of_pole
 from .spline import Spline
 from .surface import Surface
@@ -70,7 +71,12 @@ class PoleChart:
         return self._distances(uv) < cells * self.cell
 
     def next_to(self, uv: Array) -> NDArray[np.bool_]:
-        """Return which parameters (k, 2) are so near to the pole that the chart is needed."""
+        """Return which parameters (k, 2) are so near to the pole that the chart is needed.
+
+        Differences along a small circle around a pole are inaccurate, relative to its radius.
+        """
+        if self.surface.differences is not None:
+            return self.near(uv)
         return self._distances(uv) <= NEAR * abs(self.other - self.end)
 
     def places(self, uv: Array) -> Array:
@@ -92,6 +98,9 @@ class PoleChart:
 
     def jets(self, s: Array, t: Array) -> Array:
         """Return 2-jets (k, 6, 3) by s and t."""
+        if self.surface.differences is not None:
+            step = power_of_two(self.surface.differences.step * abs(self.other - self.end))
+            return numerical_jets(self._evaluate, s, t, (step, step))
         uv = self.parameters(np.stack([s, t], axis=1))
         chart = np.empty((len(uv), 6, 3))
         phi = (uv[:, self.angle] - self.surface.domain[self.angle][0]) * self.turn
@@ -101,6 +110,12 @@ class PoleChart:
             chart,
         )  # fmt: skip
         return chart
+
+    def _evaluate(self, s: Array, t: Array) -> Array:
+        """Return points (k, 3) at s and t."""
+        assert self.surface.differences is not None
+        u, v = self.parameters(np.stack([s, t], axis=1)).T.copy()
+        return self.surface.differences.function(u, v)
 
     @cached_property
     def _at_pole(self) -> Array:
@@ -122,6 +137,6 @@ def pole_charts(surface: Surface, spline: Spline) -> list[PoleChart]:
     for axis in (0, 1):
         ends, cells = spline.domain[axis], spline.cells[axis]
         for k in (0, 1):
-            if surface.boundary[axis][k] == "pole":
+            if spline.boundary[axis][k] == "pole":
                 charts.append(PoleChart(surface, 1 - axis, ends[k], ends[1 - k], cells))
     return charts

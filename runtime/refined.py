@@ -10,14 +10,16 @@ from numpy.typing import DTypeLike, NDArray
 from .bins import NormalBins
 from .fields import FLAG_NAMES, dtype_of
 from .geometry import Fields, FieldsOfSamples
-from .kernels.refine import Target
+from .kernels.refine import CONTRARY as OTHER_SIGN
+from .kernels.refine import FOUND, Target
 from .refinement import refine
 from .search import Hits, fill
 from .spline import Spline
 from .surface import Surface
 
-__all__ = ["as_fields", "moved_samples", "part_of"]
+__all__ = ["CONTRARY", "as_fields", "moved_samples", "part_of"]
 
+CONTRARY = "contrary"
 # The fields of samples that are moved; others follow from them.
 NEEDED = (
     *("points", "normals", "uv", "gaussian_curvature", "mean_curvature"),
@@ -30,17 +32,18 @@ def moved_samples(
 ) -> Fields:
     """Return the samples at hits, on the surface where they could be moved to it.
 
-    They have all fields but the support, in float64.
+    They have all fields but the support, in float64, and CONTRARY says where Newton's method led to
+    a place with the other sign of K.
     """
     arrays = fill(spline, bins, hits, threads, NEEDED, np.float64)
     signs = np.copysign(1.0, arrays["gaussian_curvature"])
-    found = np.empty(len(signs), dtype=np.bool_)
+    states = np.empty(len(signs), dtype=np.int8)
     target = Target(
         arrays["normals"], signs, arrays["uv"], arrays["points"],
-        arrays["gaussian_curvature"], arrays["mean_curvature"], found,
+        arrays["gaussian_curvature"], arrays["mean_curvature"], states,
     )  # fmt: skip
     refine(surface, spline, target, threads)
-    return arrays | {FLAG_NAMES[0]: found}
+    return arrays | {FLAG_NAMES[0]: states == FOUND, CONTRARY: states == OTHER_SIGN}
 
 
 def part_of(arrays: Fields, kept: NDArray[np.bool_]) -> Fields:

@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 
 from .kernels.refine import (
     CLAMPED,
+    FOUND,
     FREE,
+    NOT_FOUND,
     PERIODIC,
     Box,
     Rows,
@@ -46,30 +48,33 @@ MOST_STEPS = 32
 class Parameters:
     """Two parameters of a surface: the 2-jets, and what happens at the ends of the parameters.
 
-    `size` times the surface has cells of about the size 1.
+    `size` times the surface has cells of about the size 1. The angle of normals may not get smaller
+    than `noise`, because of rounding.
     """
 
     jets: Jets
     box: Box
     size: float
+    noise: float
 
     @classmethod
     def of_domain(cls, surface: Surface, spline: Spline) -> Parameters:
         """Return the parameters u and v."""
         (u0, u1), (v0, v1) = surface.domain
         along_u, along_v = (
-            PERIODIC if ends[0] == "periodic" else CLAMPED for ends in surface.boundary
+            PERIODIC if ends[0] == "periodic" else CLAMPED for ends in spline.boundary
         )
         _, _, du, dv = spline.frame.tolist()
         box = Box((u0, u1, v0, v1), (along_u, along_v), (du, dv))
-        return cls(surface.jets, box, spline.scale)
+        return cls(surface.jets, box, spline.scale, max(NORMAL_NOISE, spline.noise))
 
     @classmethod
     def of_chart(cls, chart: PoleChart, spline: Spline) -> Parameters:
         """Return s and t of a chart at a pole; they have no ends, but the rounding of u and v."""
         largest = max(abs(chart.end), abs(chart.other))
         ends = (-largest, largest, -largest, largest)
-        return cls(chart.jets, Box(ends, (FREE, FREE), (chart.cell, chart.cell)), spline.scale)
+        box = Box(ends, (FREE, FREE), (chart.cell, chart.cell))
+        return cls(chart.jets, box, spline.scale, max(NORMAL_NOISE, spline.noise))
 
     def solve(self, target: Target, numbers: Numbers, few: int) -> Numbers:
         """Move rows from target.uv on; return the numbers of the last ones, at most `few`."""
@@ -80,81 +85,92 @@ class Parameters:
                 return numbers[:count]
             jets = self.jets(rows.place[0, :count], rows.place[1, :count])
             count = newton(
-                jets, count, rows, target, self.box, self.size, NORMAL_ERROR**2, NORMAL_NOISE**2
+                jets, count, rows, target, self.box, self.size, NORMAL_ERROR**2, self.noise**2
             )
         return numbers[:0]
 
 
-def refine(
-    surface: Surface, spline: Spline, samples: Target, threads: int | None = None
-) -> NDArray[np.bool_]:
-    """Move samples of a spline at unit normals to the surface; return which were moved (k,).
+def refine(surface: Surface, spline: Spline, target: Target, threads: int | None = None) -> None:
+    """Move samples of a spline at unit normals to the surface.
 
-    Overwrites the parameters, points and curvatures of `samples` where the normal of the surface
-    has become the prescribed one, up to NORMAL_ERROR, without a change of the sign of K. Elsewhere
-    they stay those of the spline: at parabolic and singular points, and where the place of the
-    normal is outside the domain or farther than three cells away.
+    Overwrites the parameters, points and curvatures where the normal of the surface has become the
+    prescribed one, up to NORMAL_ERROR, and K has its sign of target.signs. Elsewhere they stay
+    those of the spline: at parabolic and singular points, and where the place of the normal is
+    outside the domain or farther than three cells away. Next to a pole K may change its sign, since
+    the spline has folds there. target.state is overwritten everywhere.
     """
-    domain, charts = Parameters.of_domain(surface, spline), pole_charts(surface, spline)
-    samples.found[:] = False
+    target.state[:] = NOT_FOUND
+    charts = pole_charts(surface, spline)
+    next_to_poles = _refine_away(surface, spline, charts, target, threads)
+    for chart, rows in zip(charts, next_to_poles, strict=True):
+        _refine_at_pole(chart, Parameters.of_chart(chart, spline), target, rows, threads)
+
+
+def _refine_away(
+    surface: Surface,
+    spline: Spline,
+    charts: list[PoleChart],
+    target: Target,
+    threads: int | None,
+) -> list[Numbers]:
+    """Move the samples that are not next to a pole; return the others, for each chart."""
+    domain = Parameters.of_domain(surface, spline)
 
     def work(first: int, last: int) -> tuple[Numbers, list[Numbers]]:
-        target = Target(*(x[first:last] for x in samples))
-        at_poles = [np.flatnonzero(x.near(target.uv)) for x in charts]
+        part = Target(*(x[first:last] for x in target))
+        at_poles = [np.flatnonzero(x.near(part.uv)) for x in charts]
         numbers = np.arange(last - first)
         if charts:
             numbers = np.delete(numbers, np.concatenate(at_poles))
-        left = domain.solve(target, numbers, int(len(numbers) * FEW))
+        left = domain.solve(part, numbers, int(len(numbers) * FEW))
         return first + left, [first + x for x in at_poles]
 
-    results = list(over_ranges(work, len(samples.uv), ROWS_AT_A_TIME, threads))
-    if not results:
-        return samples.found
-    _finish(domain, samples, np.concatenate([x for x, _ in results]), threads)
-    for k, chart in enumerate(charts):
-        numbers = np.concatenate([x[k] for _, x in results])
-        _refine_at_pole(chart, Parameters.of_chart(chart, spline), samples, numbers, threads)
-    return samples.found
+    none = np.empty(0, np.int64)
+    results = [(none, [none for _ in charts])]
+    results += over_ranges(work, len(target.uv), ROWS_AT_A_TIME, threads)
+    _finish(domain, target, np.concatenate([x for x, _ in results]), threads)
+    return [np.concatenate([x[k] for _, x in results]) for k in range(len(charts))]
 
 
-def _finish(parameters: Parameters, samples: Target, numbers: Numbers, threads: int | None) -> None:
+def _finish(parameters: Parameters, target: Target, numbers: Numbers, threads: int | None) -> None:
     """Move the rows that are left over."""
 
     def work(first: int, last: int) -> None:
         rows = numbers[first:last]
-        target = Target(*(x[rows] for x in samples))
-        parameters.solve(target, np.arange(len(rows)), 0)
-        _put(samples, rows, target)
+        part = Target(*(x[rows] for x in target))
+        parameters.solve(part, np.arange(len(rows)), 0)
+        _put(target, rows, part)
 
     for _ in over_ranges(work, len(numbers), ROWS_AT_A_TIME, threads):
         pass
 
 
 def _refine_at_pole(
-    chart: PoleChart, parameters: Parameters, samples: Target, numbers: Numbers, threads: int | None
+    chart: PoleChart, parameters: Parameters, target: Target, numbers: Numbers, threads: int | None
 ) -> None:
-    """Move rows next to a pole in its chart, where K may change its sign: the spline has folds."""
+    """Move rows next to a pole in its chart, whatever the sign of K."""
 
     def work(first: int, last: int) -> None:
         rows = numbers[first:last]
-        target = Target(*(x[rows] for x in samples))
-        target.normals[:] *= chart.orientation
-        target.signs[:] = 0.0
-        target.uv[:] = chart.places(target.uv)
-        parameters.solve(target, np.arange(len(rows)), 0)
-        target.uv[:] = chart.parameters(target.uv)
-        target.mean[:] *= chart.orientation
-        _put(samples, rows, target)
+        part = Target(*(x[rows] for x in target))
+        part.normals[:] *= chart.orientation
+        part.signs[:] = 0.0
+        part.uv[:] = chart.places(part.uv)
+        parameters.solve(part, np.arange(len(rows)), 0)
+        part.uv[:] = chart.parameters(part.uv)
+        part.mean[:] *= chart.orientation
+        _put(target, rows, part)
 
     for _ in over_ranges(work, len(numbers), ROWS_AT_A_TIME, threads):
         pass
 
 
-def _put(samples: Target, rows: Numbers, target: Target) -> None:
+def _put(target: Target, rows: Numbers, part: Target) -> None:
     """Write what was found into the arrays of all samples."""
-    found = target.found
-    for array, part in zip(samples[2:], target[2:], strict=True):
-        array[rows[found]] = part[found]
+    target.state[rows] = part.state
+    found = part.state == FOUND
+    for array, values in zip(target[2:-1], part[2:-1], strict=True):
+        array[rows[found]] = values[found]
 
 
 def evaluate_on_surface(

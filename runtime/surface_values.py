@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .checks import parameter_arrays
-from .derivatives import NAMES, Function
+from .derivatives import NAMES, Differences, Differentiable, Function
 from .domain import Assumed, Boundary, Domain
 from .errors import InputError, SurfaceError
 from .evaluation import evaluated
@@ -172,6 +172,22 @@ class SurfaceValues:
 
         """
         return self._jets(u, v)
+
+    @property
+    def differences(self) -> Differences | None:
+        """The differences by which `derivatives` are computed; None if they are formulas.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.surfaces.torus().differences is None
+        True
+
+        """
+        owner = getattr(self._jets, "__self__", None)
+        if isinstance(owner, Differentiable):
+            return owner.differences(self.boundary)
+        return owner if isinstance(owner, Differences) else None
 
     @cached_property
     def _jets(self) -> Function:

@@ -20,6 +20,7 @@ __all__ = [
     "FORM_ERROR",
     "LATTICE_ERROR",
     "LENGTH_ERROR",
+    "MEETING",
     "NEAR_SINGULAR_POINT",
     "NORMAL_ERROR",
     "NORMAL_NOISE",
@@ -110,3 +111,6 @@ NORMAL_ERROR = 1e-12
 # Of the same where Newton's method does not get farther, because of the rounding of derivatives or
 # of the error of differences.
 NORMAL_NOISE = 1e-8
+# Of points of a surface at which samples of one normal meet, relative to a cell of the spline: the
+# error of those to which numerical derivatives lead, far from the origin.
+MEETING = 2.0**-13

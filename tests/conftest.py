@@ -22,6 +22,7 @@ OF_KERNELS = (
     "runtime/meshes",
     "runtime/support",
     "runtime/test_exact.py",
+    "runtime/test_refinement.py",
     "runtime/test_nurbs.py",
     "runtime/test_spline.py",
 )

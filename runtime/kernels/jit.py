@@ -13,6 +13,7 @@ import os
 import pickle
 import shutil
 import tempfile
+import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
@@ -36,6 +37,8 @@ PACKAGE = Path(__file__).parents[2]
 SOURCES = ("generated/*.py", "runtime/kernels/*.py", "runtime/tolerances.py")
 # Folders of other sources are removed after this many days without use.
 DAYS_KEPT = 30
+# Kernels of the catalogue are made when they are first used, perhaps by several threads.
+LOCK = threading.Lock()
 # Kernels are called from Python and from one another, and never from C.
 OPTIONS = {"nogil": True, "error_model": "numpy", "fastmath": False, "no_cfunc_wrapper": True}
 
@@ -66,12 +69,13 @@ class KernelCache(FunctionCache):
 
     def __init__(self, function: Callable[..., Any], folder: Path) -> None:
         """Let Numba choose names inside the folder; files of the same digest are never stale."""
-        before = config.CACHE_DIR
-        config.CACHE_DIR = str(folder)
-        try:
-            super().__init__(function)
-        finally:
-            config.CACHE_DIR = before
+        with LOCK:
+            before = config.CACHE_DIR
+            config.CACHE_DIR = str(folder)
+            try:
+                super().__init__(function)
+            finally:
+                config.CACHE_DIR = before
         self._cache_file = CheckedFile(self.cache_path, self._impl.filename_base, "")
 
 

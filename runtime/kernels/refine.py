@@ -22,7 +22,10 @@ from .vectors import dot, row_vector, set_row
 
 __all__ = [
     "CLAMPED",
+    "CONTRARY",
+    "FOUND",
     "FREE",
+    "NOT_FOUND",
     "PERIODIC",
     "Box",
     "Rows",
@@ -37,6 +40,7 @@ __all__ = [
 # What a parameter does at the ends of its interval: there are none, it stops there, or it goes on
 # at the other end.
 FREE, CLAMPED, PERIODIC = 0, 1, 2
+NOT_FOUND, FOUND, CONTRARY = 0, 1, 2
 # In cells of the spline: the length of a step, and of all steps together. What is farther away
 # belongs to another sample.
 LONGEST_STEP, FARTHEST = 1.0, 3.0
@@ -71,7 +75,11 @@ class Rows(NamedTuple):
 
 
 class Target(NamedTuple):
-    """By the numbers of rows: the normals, signs that K must not contradict, and what is found."""
+    """By the numbers of rows: the normals, the signs that K is to have, or 0, and what is found.
+
+    `state` (n,) is NOT_FOUND, FOUND or CONTRARY: what was found has the other sign of K, and only
+    samples that are FOUND are overwritten.
+    """
 
     normals: NDArray[np.float64]
     signs: NDArray[np.float64]
@@ -79,7 +87,7 @@ class Target(NamedTuple):
     points: NDArray[np.float64]
     gaussian: NDArray[np.float64]
     mean: NDArray[np.float64]
-    found: NDArray[np.bool_]
+    state: NDArray[np.int8]
 
 
 class Box(NamedTuple):
@@ -155,7 +163,9 @@ def begin(uv, count, rows, box):
 @inline
 def store(target, row, patch, s, t, u, v, K, H, size):
     """Write the sample at (u, v), s and t away, unless K is not finite or has the wrong sign."""
-    if target.signs[row] * K >= 0.0 and abs(K) < math.inf:
+    if target.signs[row] * K < 0.0:
+        target.state[row] = CONTRARY
+    elif abs(K) < math.inf:
         x = envelope(patch, s, t)
         unit = 1.0 / size
         target.uv[row, 0] = u
@@ -163,7 +173,7 @@ def store(target, row, patch, s, t, u, v, K, H, size):
         set_row(target.points, row, Vector(x.x * unit, x.y * unit, x.z * unit))
         target.gaussian[row] = K * size * size
         target.mean[row] = H * size
-        target.found[row] = True
+        target.state[row] = FOUND
 
 
 @inline
