@@ -117,7 +117,7 @@ def _refine_away(
     domain = Parameters.of_domain(surface, spline)
 
     def work(first: int, last: int) -> tuple[Numbers, list[Numbers]]:
-        part = Target(*(x[first:last] for x in target))
+        part = Target._make(x[first:last] for x in target)
         at_poles = [np.flatnonzero(x.near(part.uv)) for x in charts]
         numbers = np.arange(last - first)
         if charts:
@@ -137,7 +137,7 @@ def _finish(parameters: Parameters, target: Target, numbers: Numbers, threads: i
 
     def work(first: int, last: int) -> None:
         rows = numbers[first:last]
-        part = Target(*(x[rows] for x in target))
+        part = Target._make(x[rows] for x in target)
         parameters.solve(part, np.arange(len(rows)), 0)
         _put(target, rows, part)
 
@@ -152,7 +152,7 @@ def _refine_at_pole(
 
     def work(first: int, last: int) -> None:
         rows = numbers[first:last]
-        part = Target(*(x[rows] for x in target))
+        part = Target._make(x[rows] for x in target)
         part.normals[:] *= chart.orientation
         part.signs[:] = 0.0
         part.uv[:] = chart.places(part.uv)

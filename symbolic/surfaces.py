@@ -113,7 +113,7 @@ class ParametricSurface:
         values = {
             symbol: value
             for vector, derivative in zip(VECTORS, jet, strict=True)
-            for symbol, value in zip(vector.components, derivative, strict=True)
+            for symbol, value in zip(vector.components, derivative.flat(), strict=True)
         }
         return {name: substitute(x, values) for name, x in AT_JET.expanded().items()}
 

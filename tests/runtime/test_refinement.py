@@ -19,7 +19,9 @@ LATITUDES = (-np.pi / 2, np.pi / 2)
 MOTIONS = [(0.0, 1.0), (1e6, 1.0), (0.0, 1e9), (0.0, 1e-9)]
 
 
-def refined(surface: gm.Surface, cells: tuple[int, int], normals: Array) -> tuple[Target, Array]:
+def refined(
+    surface: gm.Surface, cells: tuple[int, int], normals: Array
+) -> tuple[Target, NDArray[np.int64]]:
     """Return the samples after refinement, and the numbers of their normals."""
     spline = gm.fit(surface, cells)
     samples = gm.sample(spline, normals=normals)
@@ -177,10 +179,10 @@ def test_folds_of_a_coarse_spline_are_no_folds_of_the_surface(cells: int) -> Non
     assert (folded.gaussian_curvature > 0.0).any()
     there = samples.on_surface
     assert np.bincount(samples.normal_index[there]).max() <= 2
-    signs = [
+    before, after = (
         np.bincount(x.normal_index, np.sign(x.gaussian_curvature), 3000) for x in (folded, samples)
-    ]
-    np.testing.assert_array_equal(*signs)
+    )
+    np.testing.assert_array_equal(before, after)
 
 
 # --- poles ----------------------------------------------------------------------------------------

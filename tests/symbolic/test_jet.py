@@ -1,16 +1,19 @@
 """The formulas of 2-jets, exactly: of a sphere, and of polar coordinates."""
 
+from typing import Any
+
 import pytest
 import sympy as sp
-from gaussmap.symbolic import formulas
+from gaussmap.symbolic import Formula, formulas
 from gaussmap.symbolic.jet import AT_JET, AT_POLE, NEWTON, POLAR_CHART
 from gaussmap.symbolic.notation import scalar, substitute
 
+diff: Any = sp.diff
 s, t, phi, r = sp.symbols("s t phi r", real=True)
-GRAPH = sp.Matrix([s + t**2, t - s * t, 1 + 2 * s**2 + 3 * s * t - t**2 + s**3])
+GRAPH: Any = sp.Matrix([s + t**2, t - s * t, 1 + 2 * s**2 + 3 * s * t - t**2 + s**3])
 
 
-def vectors(**values: sp.Matrix) -> dict[sp.Expr, sp.Expr]:
+def vectors(**values: Any) -> dict[sp.Expr, sp.Expr]:
     """Return the components of vectors by their symbols."""
     return {
         scalar(f"{name}_{axis}"): x
@@ -19,13 +22,13 @@ def vectors(**values: sp.Matrix) -> dict[sp.Expr, sp.Expr]:
     }
 
 
-def evaluated(formula, values: dict[sp.Expr, sp.Expr]) -> dict[str, sp.Expr]:
+def evaluated(formula: Formula, values: dict[sp.Expr, sp.Expr]) -> dict[str, sp.Expr]:
     return {name: substitute(x, values) for name, x in formula.expanded().items()}
 
 
-def jet(x: sp.Matrix, u: sp.Symbol, v: sp.Symbol) -> dict[sp.Expr, sp.Expr]:
+def jet(x: Any, u: sp.Symbol, v: sp.Symbol) -> dict[sp.Expr, sp.Expr]:
     derivatives = {"a": (u, u), "b": (u, v), "c": (v, v), "d": (u,), "e": (v,)}
-    return vectors(**{name: sp.diff(x, *by) for name, by in derivatives.items()})
+    return vectors(**{name: diff(x, *by) for name, by in derivatives.items()})
 
 
 def test_they_are_formulas():
@@ -47,12 +50,12 @@ def test_newtons_step_is_exact_on_a_quadratic_patch():
     """From (0, 0) it leads to the point with the normal at once; s and m are those of the angle."""
     x = GRAPH - sp.Matrix([0, 0, s**3])
     at = {s: sp.Rational(1, 7), t: sp.Rational(-2, 9)}
-    normal = sp.diff(x, s).cross(sp.diff(x, t)).subs(at)
+    normal = diff(x, s).cross(diff(x, t)).subs(at)
     origin = {s: 0, t: 0}
     values = {key: value.subs(origin) for key, value in jet(x, s, t).items()}
     found = evaluated(NEWTON, values | vectors(n=normal))
     assert (found["u"], found["v"]) == (at[s], at[t])
-    here = sp.diff(x, s).cross(sp.diff(x, t)).subs(origin)
+    here = diff(x, s).cross(diff(x, t)).subs(origin)
     assert found["s"] == normal.cross(here).dot(normal.cross(here)) / here.dot(here)
     assert found["m"] == normal.dot(here)
 
@@ -66,7 +69,7 @@ def test_polar_chart(direction):
     place = {scalar("x"): cosine, scalar("y"): sine, scalar("r"): distance}
     found = evaluated(POLAR_CHART, {key: x.subs(here) for key, x in polar.items()} | place)
     for name, by in {"ss": (s, s), "st": (s, t), "tt": (t, t), "s": (s,), "t": (t,)}.items():
-        expected = sp.diff(GRAPH, *by).subs({s: distance * cosine, t: distance * sine})
+        expected = diff(GRAPH, *by).subs({s: distance * cosine, t: distance * sine})
         assert [found[f"X_{name}_{axis}"] for axis in "xyz"] == list(expected)
 
 
@@ -75,9 +78,9 @@ def test_at_pole():
         k: GRAPH.subs({s: r * sp.cos(k * sp.pi / 4), t: r * sp.sin(k * sp.pi / 4)})
         for k in (0, 1, 2)
     }
-    first = {f"e{k}": sp.diff(along[k], r).subs(r, 0) for k in (0, 2)}
-    second = {f"c{k}": sp.diff(along[k], r, 2).subs(r, 0) for k in (0, 1, 2)}
+    first = {f"e{k}": diff(along[k], r).subs(r, 0) for k in (0, 2)}
+    second = {f"c{k}": diff(along[k], r, 2).subs(r, 0) for k in (0, 1, 2)}
     found = evaluated(AT_POLE, vectors(**first, **second))
     for name, by in {"ss": (s, s), "st": (s, t), "tt": (t, t), "s": (s,), "t": (t,)}.items():
-        expected = sp.diff(GRAPH, *by).subs({s: 0, t: 0})
+        expected = diff(GRAPH, *by).subs({s: 0, t: 0})
         assert [sp.nsimplify(found[f"X_{name}_{axis}"]) for axis in "xyz"] == list(expected)
