@@ -88,7 +88,10 @@ class SampleArrays:
         base = self.offset_of
         if base is not None:
             base = replace(base, surface=_if_it_pickles(base.surface))
-        state = self.arrays(), self.report, self.spline, _if_it_pickles(self.surface), base
+        spline = self.spline
+        if spline is not None and spline.trim is not None and not _pickles(spline.trim):
+            spline = None
+        state = self.arrays(), self.report, spline, _if_it_pickles(self.surface), base
         return _rebuilt, (type(self), *state)
 
     @classmethod
@@ -362,11 +365,15 @@ def _rebuilt(
 
 def _if_it_pickles(surface: Surface | None) -> Surface | None:
     """Return a surface, or None if it cannot be pickled: its function may be a lambda."""
+    return surface if _pickles(surface) else None
+
+
+def _pickles(value: object) -> bool:
     try:
-        pickle.dumps(surface)
+        pickle.dumps(value)
     except Exception:  # pickling raises anything
-        return None
-    return surface
+        return False
+    return True
 
 
 def _common_dtype(arrays: Mapping[str, object]) -> np.dtype[np.floating]:

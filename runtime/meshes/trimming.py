@@ -39,6 +39,8 @@ Triangulate = Callable[[Vertices], tuple[Indices, Indices, Indices]]
 ON_BORDER, OUTSIDE = -2, -3
 # A polyline is measured in steps of at most this part of the spacing, and in at most this number.
 FINE, MOST_STEPS = 0.125, 200_000
+# A sample that is closer than this part of the spacing lies on it: chords are as close to curves.
+ON_LINE = 5e-3
 # It has a corner where it turns by more than this within a spacing.
 CORNER = math.radians(30.0)
 # Outside there is about one point for each sample, between these numbers; they keep this distance
@@ -77,7 +79,8 @@ def trimmed_triangles(
     kept = trimmed.is_inside(whole, triangles)
     triangles, sides = triangles[kept], sides[kept]
     on_border = whole.sample == ON_BORDER
-    found = Vertices(whole.positions, np.maximum(whole.sample, -1), whole.is_free & ~on_border)
+    sample = np.where(on_border, trimmed.samples_on_border(len(on_border)), whole.sample)
+    found = Vertices(whole.positions, np.maximum(sample, -1), whole.is_free & ~on_border)
     adjacent, is_closed = neighbours(triangles, ~found.is_free)
     return found, triangles, sides, adjacent, is_closed
 
@@ -86,7 +89,8 @@ def trimmed_triangles(
 class _Line:
     """A polyline of the border, measured by its length relative to the spacing of its points.
 
-    `t` (k,) are the measures at its vertices; `fixed` (k,) says which are ends and corners.
+    `t` (k,) are the measures at its vertices; `fixed` (k,) says which are ends and corners;
+    `sample` (k,) are the numbers of the samples that lie there, or −1.
     """
 
     positions: Array
@@ -96,6 +100,7 @@ class _Line:
     closed: bool
     t: Array
     fixed: Flags
+    sample: Indices
 
     @classmethod
     def of(cls, positions: Array, spline: Spline, tree: KDTree) -> _Line:
@@ -111,7 +116,8 @@ class _Line:
         measure = np.concatenate([[0.0], np.cumsum(steps)])
         closed = bool(np.abs(points[0] - points[-1]).max() <= 1e-9 * np.ptp(points, axis=0).max())
         t, fixed = _divided(points, measure, closed)
-        return cls(positions, points, spacings, measure, closed, t, fixed)
+        none = np.full(len(t), -1)
+        return cls(positions, points, spacings, measure, closed, t, fixed, none)
 
     def to_samples(self, tree: KDTree) -> None:
         """Move vertices next to the samples that are close to the line."""
@@ -119,18 +125,45 @@ class _Line:
         nearest = np.asarray(found)
         near = np.flatnonzero(distance < CLOSE * self.spacings[nearest])
         near = near[np.argsort(-distance[near], kind="stable")]  # the closest one comes last
-        at = self.measure[nearest[near]]
+        at, distance = self._feet(np.asarray(tree.data)[near], nearest[near])
         slots = np.searchsorted((self.t[1:] + self.t[:-1]) / 2.0, at)
         free = ~self.fixed[slots]
         self.t[slots[free]] = at[free]
+        is_on = distance <= ON_LINE * self.spacings[nearest[near]]
+        if is_on.any():
+            steps = np.abs(self.t[:, None] - at[is_on]).min(axis=1)
+            kept = self.fixed | (steps > CLOSE)
+            count = int(is_on.sum())
+            self.t = np.append(self.t[kept], at[is_on])
+            self.fixed = np.append(self.fixed[kept], np.ones(count, dtype=bool))
+            self.sample = np.append(self.sample[kept], near[is_on])
         order = np.argsort(self.t, kind="stable")
         self.t, self.fixed = self.t[order], self.fixed[order]
+        self.sample = self.sample[order]
+
+    def _feet(self, points: Array, nearest: Indices) -> tuple[Array, Array]:
+        """Return the measures of the feet of points (k, 3), and the distances from there.
+
+        `nearest` (k,) are the vertices of the polyline that are nearest to the points.
+        """
+        at, distance = self.measure[nearest], np.full(len(points), np.inf)
+        for begin in (nearest - 1, nearest):
+            first = np.clip(begin, 0, len(self.points) - 2)
+            start, along = self.points[first], self.points[first + 1] - self.points[first]
+            square = np.einsum("kx,kx->k", along, along)
+            share = np.einsum("kx,kx->k", points - start, along)
+            share = np.clip(share / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
+            apart = np.linalg.norm(start + share[:, None] * along - points, axis=1)
+            foot = self.measure[first] + share * (self.measure[first + 1] - self.measure[first])
+            at, distance = np.where(apart < distance, foot, at), np.minimum(apart, distance)
+        return at, distance
 
     def insert(self, segments: Flags) -> None:
         """Bisect segments between vertices."""
         middles = (self.t[1:] + self.t[:-1])[segments] / 2.0
         at = np.flatnonzero(segments) + 1
         self.t, self.fixed = np.insert(self.t, at, middles), np.insert(self.fixed, at, False)
+        self.sample = np.insert(self.sample, at, -1)
 
     def at_vertices(self) -> Array:
         """Return the positions of the vertices; a closed line repeats the first one at its end."""
@@ -206,12 +239,15 @@ class _Trimmed:
             added = np.flatnonzero(self.given.sample < 0)
             distance, nearest = near.query(self.given.positions[added] * self.lengths)
             kept[added] = distance > 0.3 * self._gaps(border)[nearest]
+        for line in self.lines:
+            kept &= ~np.isin(sample, line.sample[line.sample >= 0])
         self.given = Vertices(self.given.positions[kept], sample[kept], self.given.is_free[kept])
         self.outside = self._filling(border)
 
     def vertices(self) -> tuple[Vertices, list[Indices]]:
         """Return all vertices, and for each line the numbers of those on it, in turn."""
         parts, numbers, first = [self.given], [], len(self.given.positions)
+        self.on_border = [np.full(first, -1)]
         for line in self.lines:
             positions = line.at_vertices()
             count = len(positions) - line.closed
@@ -219,9 +255,15 @@ class _Trimmed:
             number[count:] = first
             numbers.append(number)
             parts.append(self._border(positions[:count]))
+            self.on_border.append(line.sample[:count])
             first += count
         parts += [self._border(self.extra), self.outside]
         return Vertices.joined(parts), numbers
+
+    def samples_on_border(self, count: int) -> Indices:
+        """Return the numbers (count,) of the samples at vertices of lines, −1 at others."""
+        known = np.concatenate(self.on_border)
+        return np.append(known, np.full(count - len(known), -1))
 
     def refine(self, whole: Vertices, triangles: Indices, numbers: list[Indices]) -> bool:
         """Add points of the border where it is not made of edges; say whether there are any."""

@@ -162,6 +162,17 @@ class TestInput:
         other = pickle.loads(pickle.dumps(trim))
         np.testing.assert_array_equal(trim.contains(places), other.contains(places))
 
+    def test_samples_pickle_without_a_spline_whose_predicate_does_not(self):
+        surface = torus().trimmed(within=lambda u, v: u < 1)
+        samples = gm.sample(surface, 50, cells=(8, 8))
+        other = pickle.loads(pickle.dumps(samples))
+        assert other.spline is None
+        assert other.surface is None
+        np.testing.assert_array_equal(other.points, samples.points)
+        samples = gm.sample(torus().trimmed([SQUARE - 1.0], within=half), 20, cells=(8, 8))
+        other = pickle.loads(pickle.dumps(samples))
+        assert other.spline.trim.contains(samples.uv).all()
+
     @pytest.mark.parametrize(
         ("arguments", "words"),
         [
@@ -249,6 +260,15 @@ class TestSampling:
             assert abs(len(samples) - 300) <= 11
         else:
             assert len(samples) == 300
+
+    def test_samples_on_the_surface_cover_the_part(self):
+        surface = PARTS["annulus"]
+        samples = gm.sample(surface, coverage=0.2, cells=(12, 12), on="surface")
+        assert surface.trim.contains(samples.uv).all()
+        assert np.abs(surface.evaluate(*samples.uv.T) - samples.points).max() < 1e-14
+        uv = np.random.default_rng(3).uniform(1.0, 5.0, (20_000, 2))
+        points = surface.evaluate(*uv[surface.trim.contains(uv)].T)
+        assert tree_of(samples.points).query(points)[0].max() <= 0.2
 
     def test_relaxed_samples_stay_inside(self):
         spline = gm.fit(PARTS["annulus"], (12, 12))
