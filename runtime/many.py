@@ -14,6 +14,7 @@ from .checks import known_name, yes_or_no
 from .density.request import checked_request
 from .errors import GaussmapError, GaussmapWarning, InputError, shown
 from .fields import checked_dtype, checked_fields
+from .on_surface import checked_place
 from .samples import Samples
 from .sampling import sample_and_normals
 from .spline import Spline
@@ -121,7 +122,7 @@ def sample_many(
     from tqdm import tqdm
 
     request = checked_request(normals, count, angle, coverage, density, relax, threads)
-    checked_fields(fields, on != "spline")
+    checked_fields(fields, checked_place(on) != "spline")
     number = checked_dtype(dtype)
     shows = yes_or_no(progress, "progress")
     known_name(on_error, ON_ERROR, "value of on_error")

@@ -35,7 +35,7 @@ from .threads import over_ranges
 if TYPE_CHECKING:
     from .density.triangles import Triangles
 
-__all__ = ["OnSurface", "geometry_of", "place_of_samples"]
+__all__ = ["OnSurface", "checked_place", "geometry_of", "place_of_samples"]
 
 AT_A_TIME, POINTS_AT_A_TIME = 1 << 12, 1 << 16
 # The places of the nodes of a patch at which target densities are integrated, see `sizing`.
@@ -56,9 +56,9 @@ def place_of_samples(surface: object, on: str | None) -> str:
     Raises UnknownNameError for another place, InputError if it is the surface and cannot be.
     """
     known = isinstance(surface, Surface) and surface.evaluable
-    if on is None:
+    if checked_place(on) is None:
         return "surface" if known else "spline"
-    if known_name(on, PLACES, "place of samples") == "surface" and not known:
+    if on == "surface" and not known:
         if isinstance(surface, Surface):
             raise InputError(
                 f'on="surface" needs a surface that can be evaluated everywhere, and '
@@ -69,7 +69,12 @@ def place_of_samples(surface: object, on: str | None) -> str:
                 f'on="surface" needs the surface, not its spline: sample the Surface of which '
                 f"{surface.name!r} is a spline, with cells={surface.cells}."
             )
-    return on
+    return str(on)
+
+
+def checked_place(on: str | None) -> str | None:
+    """Return "surface", "spline" or None; UnknownNameError otherwise."""
+    return None if on is None else known_name(on, PLACES, "place of samples")
 
 
 def geometry_of(

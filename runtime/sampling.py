@@ -181,7 +181,7 @@ def sample_and_normals(
     def sampled(
         geometry: OnSpline, request: Request, floor: float | None = None
     ) -> tuple[Samples, NDArray[np.float64]]:
-        arguments = geometry, request, wanted, number, progress and floor is None
+        arguments = geometry, request, wanted, number, progress if floor is None else False
         return filled_samples(*arguments, floor) if filled else _by_normals(*arguments)
 
     def geometry(part: Surface | Spline | str, cells: Sequence[int] | None) -> OnSpline:
