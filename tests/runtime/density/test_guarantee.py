@@ -88,7 +88,7 @@ def test_any_unit_of_length(name, factor):
     assert widest_angle(gm.sample(spline, angle=10.0), normals) <= 10.0
     assert len(gm.sample(spline, count=300)) == 300
     if math.frexp(factor)[0] == 0.5:  # a power of two changes no bit
-        plain = gm.sample(scaled(name, 1.0), coverage=0.3, cells=(12, 12))
+        plain = gm.sample(scaled(name, 1.0), coverage=0.3, cells=(12, 12), on="spline")
         assert (plain.points * factor == by_coverage.points).all()
         assert plain.report.coverage == (by_coverage.report.coverage or 0.0) / factor
 
@@ -326,8 +326,9 @@ def test_angles_where_half_a_surface_is_a_line():
         lambda u, v: np.stack([u, np.maximum(v, 0.0), 0.1 * np.maximum(v, 0.0) ** 2], axis=-1),
         ((-1.0, 1.0), (-1.0, 1.0)),
     )
-    samples = gm.sample(surface, angle=3.0, cells=(8, 8))
-    assert widest_angle(samples, places(gm.fit(surface, (8, 8)))[1]) <= 3.0
+    spline = gm.fit(surface, (8, 8))
+    samples = gm.sample(spline, angle=3.0)
+    assert widest_angle(samples, places(spline)[1]) <= 3.0
     assert len(samples) < 1000
 
 
