@@ -164,7 +164,7 @@ def test_types_that_are_none(dtype):
 def test_text():
     samples = narrow(("points", "uv"))
     assert repr(samples) == f"Samples({len(FULL):,} points on torus (points, uv only))"
-    assert samples.summary() == (
+    assert samples.summary().split(";")[0] == (
         f"{len(FULL):,} samples, {len(NORMALS):,} prescribed normals (points, uv only)"
     )
 
