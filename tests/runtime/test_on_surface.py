@@ -215,10 +215,11 @@ class TestStream:
 class TestArguments:
     def test_splines_and_data_have_no_other_surface(self):
         spline = gm.fit("torus", CELLS)
-        grid = gm.Surface.from_grid(np.hypot(*np.mgrid[-1:1:8j, -1:1:9j]) ** 3, spacing=(1, 1))
+        heights = np.hypot(*np.mgrid[-1:1:8j, -1:1:9j]) ** 3
+        grid = gm.Surface.from_grid(heights, spacing=(1, 1), name="hill")
         with pytest.raises(InputError, match="needs the surface, not its spline"):
             gm.sample(spline, 10, on="surface")
-        with pytest.raises(InputError, match="'grid' was given by points"):
+        with pytest.raises(InputError, match="'hill' was given by points"):
             gm.sample(grid, 10, on="surface")
         assert gm.sample(grid, 50).report.on == gm.sample(spline, 50).report.on == "spline"
 
