@@ -255,7 +255,7 @@ def support_errors(true: TrueSurface, cells: int, normals: Array) -> SupportErro
     """Compare the support values of samples of the spline with exact ones at equal normals."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", gm.GaussmapWarning)
-        samples = gm.sample(true.surface, normals=normals, cells=(cells, cells))
+        samples = gm.sample(true.surface, normals=normals, cells=(cells, cells), on="spline")
     start = true.unit(samples.uv)
     end = preimages(true, start, samples.normals)
     with np.errstate(all="ignore"):

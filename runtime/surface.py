@@ -472,8 +472,8 @@ class Surface(SurfaceValues):
     ) -> Surface:
         """Return the part of the surface inside closed polygons, or where a predicate holds.
 
-        Samples, their coverage, weights and meshes are those of the part. Gaussian images,
-        parabolic points and silhouettes are still those of the whole surface.
+        Samples, their coverage, weights, meshes and silhouettes are those of the part. Gaussian
+        images and parabolic points are still those of the whole surface.
 
         Parameters
         ----------

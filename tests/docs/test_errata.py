@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 import sympy as sp
-from gaussmap.docs import errata, orders
+from gaussmap.docs import errata, orders, poles
 
 DOCS = Path(__file__).parents[2] / "docs"
 
@@ -61,7 +61,7 @@ def tables(page: str) -> list[list[list[str]]]:
 def test_orders_have_a_row_for_each_surface():
     page = (DOCS / "orders.md").read_text(encoding="utf-8")
     assert page.startswith(orders.HEAD.split("\n\n")[0] + "\n")
-    found = tables(page)
+    *found, positions, normals = tables(page)  # the last two are those of poles
     assert len(found) == len(orders.QUANTITIES) + 1
     for quantity, (header, *rows) in zip(orders.QUANTITIES, found, strict=False):
         assert f"\n## {quantity.title}\n" in page
@@ -69,6 +69,10 @@ def test_orders_have_a_row_for_each_surface():
         assert [row[0] for row in rows] == orders.regular_surfaces()
         assert {len(row) for row in rows} == {len(header)}
     assert len(found[-1][1:]) == 2 * sum("–" not in row for row in found[-2][1:])
+    for header, *rows in (positions, normals):
+        assert header[2:-1] == [f"N = {x}" for x in orders.GRIDS]
+        places = [(x.name, region) for x in poles.surfaces() for region in poles.REGIONS]
+        assert [(row[0], row[1]) for row in rows] == places
 
 
 def test_orders_are_those_of_the_paper():
