@@ -234,7 +234,26 @@ class Spline:
         return points.reshape(*u_array.shape, 3), normals.reshape(*u_array.shape, 3)
 
     def normals_in_cells(self, cells: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return p_u × p_v (k, 3) at places (k, 2) in cells, up to a common factor."""
+        """Return normals of the spline at places that are given in cells.
+
+        Parameters
+        ----------
+        cells : (k, 2) float64 array
+            Places inside the domain, in cells from its corner; see `in_cells`.
+
+        Returns
+        -------
+        (k, 3) float64 array
+            The normals p_u × p_v, up to a common positive factor; 0 at poles.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> import numpy as np
+        >>> gm.fit("plane", (4, 4)).normals_in_cells(np.array([[0.5, 2.0]]))[0, 2] > 0
+        np.True_
+
+        """
         return self._evaluated(cells)[1]
 
     def _evaluated(

@@ -14,7 +14,8 @@ NAMES = (
     "curves directions errors gauss_map surfaces formulas symbolic"
 )
 NAMESPACES = {
-    "curves": "Curve CurveReport CurveSamples CurveSpline fit polygon_distance sample",
+    "curves": "Curve CurveBranches CurveReport CurveSamples CurveSpline SupportFunction fit "
+    "polygon_distance sample",
     "directions": "cap circle covering_radius fibonacci healpix icosphere polygon random",
     "errors": "FileError GaussmapError GaussmapWarning InputError MissingExtraError "
     "MissingFieldError SurfaceError UnknownNameError",
