@@ -117,7 +117,9 @@ class OnSpline:
     def samples(self, fields: Fields, report: SamplingReport, unrefined: int | None) -> Samples:
         """Return samples of fields, with what is known of all of them."""
         report = replace(report, on=self.on, unrefined=unrefined)
-        return Samples(**fields, report=report, spline=self.spline, surface=self.surface)
+        return Samples(
+            **fields, report=report, spline=self.spline, surface=self.surface, offset_of=None
+        )
 
     # --- samples that fill gaps -------------------------------------------------------------------
 

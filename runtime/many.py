@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from typing import Any, Literal, overload
+from typing import Literal, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
@@ -31,8 +31,18 @@ def sample_many(
     surfaces: Surfaces,
     count: int | None = None,
     *,
+    normals: ArrayLike | None = None,
+    progress: bool = True,
     on_error: Literal["none"],
-    **options: Any,  # noqa: ANN401 - those below
+    angle: float | None = None,
+    coverage: float | None = None,
+    density: str | float | None = None,
+    relax: int = 0,
+    cells: Sequence[int] | None = None,
+    on: str | None = None,
+    fields: Sequence[str] | None = None,
+    dtype: DTypeLike = np.float64,
+    threads: int | None = None,
 ) -> Iterator[Samples | None]: ...
 
 

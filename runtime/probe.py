@@ -209,8 +209,9 @@ def _places(counts: Counts) -> Array:
     The first two lines along u, and along v, are the nearest to the ends. The number of steps is
     one more than a multiple of EACH_ON_LINES, so that normals are at other places on each line.
     """
-    along = (np.arange(counts.steps) + GOLDEN) / counts.steps
-    ends, inside = np.array(NEAR_ENDS), np.arange(1, counts.lines + 1) * GOLDEN % 1.0
+    along = (np.arange(counts.steps, dtype=np.float64) + GOLDEN) / counts.steps
+    numbers = np.arange(1, counts.lines + 1, dtype=np.float64)
+    ends, inside = np.array(NEAR_ENDS), numbers * GOLDEN % 1.0
     across = np.concatenate([np.stack([ends, 1.0 - ends], axis=1).ravel(), inside])
     y, x = (array.ravel() for array in np.meshgrid(across, along, indexing="ij"))
     even = _even(counts.spread)
@@ -219,7 +220,7 @@ def _places(counts: Counts) -> Array:
 
 def _even(count: int) -> Array:
     """Return places (2, k) that are spread evenly over the unit square."""
-    k = np.arange(1, count + 1)
+    k = np.arange(1, count + 1, dtype=np.float64)
     return np.stack([k * PLASTIC % 1.0, k * PLASTIC**2 % 1.0])
 
 

@@ -32,7 +32,7 @@ AT_A_TIME = 10_000  # Splipy makes a full matrix of all places and all coefficie
 @cache
 def net(form: ClosedForm) -> Any:
     """Return Splipy's cubic spline that interpolates the surface at 61 × 61 points."""
-    from splipy import BSplineBasis
+    from splipy.basis import BSplineBasis
     from splipy.surface_factory import interpolate
 
     bases = [

@@ -17,7 +17,7 @@ def broken(u, v):
 BROKEN = gm.Surface.from_callable(broken, ((0.0, 1.0), (0.0, 1.0)), name="broken")
 
 
-def many(*arguments, **named):
+def many(*arguments: Any, **named: Any) -> list[Any]:
     return list(gm.sample_many(*arguments, progress=False, **named))
 
 

@@ -49,7 +49,9 @@ def check_against(surface: gm.Surface, whole: gm.Surface) -> None:
 
 def test_the_rest_is_that_of_whole_data():
     check_against(terrain(island()), terrain(HEIGHTS))
-    assert np.isnan(terrain(island()).grid).any()
+    grid = terrain(island()).grid
+    assert grid is not None
+    assert np.isnan(grid).any()
     # A point alone: what is left out is what another value would change.
     alone, other = HEIGHTS.copy(), HEIGHTS.copy()
     alone[12, 12], other[12, 12] = np.nan, 1.0
@@ -79,7 +81,9 @@ def test_three_ways_to_say_it():
         np.testing.assert_array_equal(known(surface).patches, expected)
     large = np.where(np.isnan(island()), 3.4028235e38, island()).astype(np.float32)
     np.testing.assert_array_equal(known(terrain(large, nodata=3.4028235e38)).patches, expected)
-    points = terrain(HEIGHTS).grid.copy()
+    grid = terrain(HEIGHTS).grid
+    assert grid is not None
+    points = grid.copy()
     points[3, 4, 1] = -1234.0
     assert not known(gm.Surface.from_grid(points, nodata=-1234)).patches.all()
 
@@ -104,7 +108,9 @@ def test_a_part_of_what_is_left():
     surface = terrain(island()).trimmed(within=lambda u, v: u > 1.0)
     samples = gm.sample(surface, 100)
     assert (samples.uv[:, 0] > 1.0).all()
-    assert terrain(island()).trim.contains(samples.uv).all()
+    trim = terrain(island()).trim
+    assert trim is not None
+    assert trim.contains(samples.uv).all()
 
 
 def test_whole_grids_have_no_trim():

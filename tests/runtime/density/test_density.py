@@ -208,7 +208,8 @@ def test_several_surfaces():
     assert [len(x) for x in found] == [60, 60]
     for k, (samples, surface) in enumerate(zip(found, surfaces, strict=True)):
         alone = gm.sample(surface, count=60)
-        same(samples, gm.Samples(**alone.arrays(), report=replace(alone.report, index=k)))
+        same(samples, alone)
+        assert samples.report == replace(alone.report, index=k)
 
 
 # --- how dense ------------------------------------------------------------------------------------
