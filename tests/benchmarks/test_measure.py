@@ -51,6 +51,8 @@ def test_a_missing_peer_is_not_prepared():
     assert found.missing
 
 
+# Next to lines with K = 0 a few normals of the spline of the wavy graph are none of its own.
+@pytest.mark.filterwarnings("ignore:.*could not be moved to the surface:gaussmap.GaussmapWarning")
 @FORM
 def test_gaussmap_itself(form, monkeypatch):
     monkeypatch.setattr(measure, "OWN_ROUNDS", 1)

@@ -70,6 +70,7 @@ def few(monkeypatch):
     monkeypatch.setattr(measure, "nearest_by_tree", nearest)
     monkeypatch.setattr(measure, "COUNTS", (200, 400))
     monkeypatch.setattr(measure, "LARGE", 800)
+    monkeypatch.setattr(measure, "FEASIBLE", np.inf)  # however slow the machine is
     monkeypatch.setattr(measure.Places, "of", lambda form, of=Places.of: of(form, 300))
 
 
