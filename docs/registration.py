@@ -98,9 +98,8 @@ def samples(part: Part, density: str, count: int) -> Array:
     """Return points that gaussmap chooses on a part."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", gm.GaussmapWarning)  # planar parts are intended
-        return gm.sample(
-            part.surface, count=count, density=density, cells=part.cells, fields=("points",)
-        ).points
+        spline = gm.fit(part.surface, part.cells)
+        return gm.sample(spline, count=count, density=density, fields=("points",)).points
 
 
 # --- registration ---------------------------------------------------------------------------------

@@ -9,7 +9,7 @@ import pytest
 from gaussmap.benchmarks.peers.forms import FORMS, Torus
 from gaussmap.benchmarks.peers.metrics import Places
 from gaussmap.benchmarks.peers.peer import Peer, Turns
-from gaussmap.benchmarks.peers.untuned import UNTUNED, Boss
+from gaussmap.benchmarks.peers.untuned import UNTUNED
 from gaussmap.benchmarks.quality import criteria, measure, page, ways
 from gaussmap.benchmarks.quality.measure import Found, OnSurface
 
@@ -75,11 +75,10 @@ def few(monkeypatch):
 
 
 @pytest.mark.compiled
-@pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")  # of its flat parts
 def test_a_surface_is_measured(few):
     gone = Peer("gone", "", "no_such_package_here", ways.perfect, 0)
     told = []
-    on = measure.measured(Boss(), (ways.PERFECT, ways.BALANCED, gone), told.append)
+    on = measure.measured(Torus(), (ways.PERFECT, ways.BALANCED, gone), told.append)
     assert set(on.found) == {(x, n) for x in (ways.PERFECT, ways.BALANCED) for n in (200, 400)}
     assert set(on.large) == {ways.PERFECT, ways.BALANCED}
     assert "no_such_package_here" in on.missing[gone]
