@@ -11,6 +11,8 @@ from gaussmap.runtime.density import candidates, triangles
 from gaussmap.symbolic.surfaces import CATALOGUE
 from numpy.typing import NDArray
 
+pytestmark = pytest.mark.compiled
+
 DENSITIES = ["balanced", "uniform", 0.5, 1.0, 3.0]
 TORUS = gm.surfaces.torus(major=1.0, minor=0.35)
 # Dents of a plane, so that all kinds of points are there, and flat parts between them.

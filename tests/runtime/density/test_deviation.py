@@ -4,6 +4,8 @@ import gaussmap as gm
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.compiled
+
 CELLS = (24, 24)
 RIGHT = gm.surfaces.cylinder(1.0, 1.0)
 

@@ -8,6 +8,8 @@ import pytest
 import shapely
 from gaussmap.runtime.meshes.border import border_lines
 
+pytestmark = pytest.mark.compiled
+
 TURN = 2.0 * np.pi
 
 
