@@ -11,8 +11,6 @@ from gaussmap.runtime.density import candidates, triangles
 from gaussmap.symbolic.surfaces import CATALOGUE
 from numpy.typing import NDArray
 
-pytestmark = pytest.mark.compiled
-
 DENSITIES = ["balanced", "uniform", 0.5, 1.0, 3.0]
 TORUS = gm.surfaces.torus(major=1.0, minor=0.35)
 # Dents of a plane, so that all kinds of points are there, and flat parts between them.
@@ -85,6 +83,7 @@ def test_added_samples_have_the_curvatures_of_their_place():
         np.testing.assert_allclose(np.abs(samples.mean_curvature[away]), H, rtol=0, atol=0.05)
 
 
+@pytest.mark.compiled
 def test_what_has_no_area_is_refused():
     line = gm.Surface.from_callable(lambda u, v: np.stack([u, 0 * u, 0 * u], axis=-1), SQUARE)
     amounts = [{"count": 10}, {"coverage": 0.1}, {"angle": 20.0}, {"normals": [[0, 0, 1]]}]
