@@ -60,7 +60,7 @@ test: $(READY) ## run the tests, but for those that are slow and seldom fail
 coverage: $(READY) ## run kernels and formulas without compilation; fail if few of their lines ran
 	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q -m "kernels and not compiled and not slow" \
 		--numprocesses auto -W ignore::RuntimeWarning \
-		--cov --cov-report=term:skip-covered --cov-fail-under=80
+		--cov --cov-report=term:skip-covered --cov-fail-under=90
 
 verify: $(READY) ## run what is slow: all tests with many random examples, browsers, products
 	$(BIN)/python -m pytest -q -m slow --hypothesis-profile=large --numprocesses auto
