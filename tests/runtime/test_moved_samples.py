@@ -42,7 +42,8 @@ def compare(name: str, move: str) -> None:
         (plain, moved, expected, moved.points),
         (moved, plain, moved.points, expected),
     ):
-        assert one.on_surface is not None and other.on_surface is not None
+        assert one.on_surface is not None
+        assert other.on_surface is not None
         for k in np.flatnonzero(one.on_surface):
             same = np.flatnonzero((other.normal_index == one.normal_index[k]) & other.on_surface)
             near = np.linalg.norm(b[same] - a[k], axis=1).min(initial=np.inf)
