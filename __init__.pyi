@@ -11,17 +11,17 @@ from .runtime.directions import icosphere as icosphere
 from .runtime.errors import GaussmapError as GaussmapError
 from .runtime.errors import GaussmapWarning as GaussmapWarning
 from .runtime.files.formats import read_samples as read_samples
-from .runtime.fitting import fit as fit
+from .runtime.fitting.fit import fit as fit
 from .runtime.formulas import formulas as formulas
 from .runtime.many import sample_many as sample_many
 from .runtime.meshes.mesh import Mesh as Mesh
 from .runtime.samples import Samples as Samples
 from .runtime.sampling import sample as sample
 from .runtime.silhouette import silhouette as silhouette
-from .runtime.spline import Spline as Spline
+from .runtime.splines.spline import Spline as Spline
 from .runtime.stream import sample_stream as sample_stream
 from .runtime.support.convolution import convolve as convolve
 from .runtime.support.function import SupportFunction as SupportFunction
-from .runtime.surface import Surface as Surface
+from .runtime.surface.surface import Surface as Surface
 
 __version__: str

@@ -3,7 +3,7 @@
 Written by `make generate`, SymPy 1.14.0, float64, no fast-math: do not edit, change symbolic/.
 """
 
-from ..runtime.surface import Surface
+from ..runtime.surface.surface import Surface
 
 def torus(major: float = 1.0, minor: float = 0.35) -> Surface:
     """The torus round the z axis, u being the angle round the axis and v the angle round the

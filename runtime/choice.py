@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from .bins import NormalBins
 from .developable import curved_solid_angle
-from .geometry import OnSpline
-from .inside import count_of, samples_inside
+from .geometry.on_spline import OnSpline
 from .lattice import Lattice
 from .limits import MOST
 from .search import Hits, fill, find
+from .splines.inside import count_of, samples_inside
 
 __all__ = ["Chosen", "choose"]
 

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .spline import Spline
+from .splines.spline import Spline
 from .trees import tree_of
 
 __all__ = ["polylines_of"]

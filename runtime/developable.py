@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from .geometry import OnSpline
-    from .spline import Spline
+    from .geometry.on_spline import OnSpline
+    from .splines.spline import Spline
 
 __all__ = ["curved_solid_angle", "developable_share"]
 

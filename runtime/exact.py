@@ -22,7 +22,7 @@ from ..generated.spline import CORNERS
 from .kernels import decide as kernels
 from .kernels.patch import normals_at
 from .long_integers import forms_of_pairs
-from .spline import Spline
+from .splines.spline import Spline
 from .threads import over_ranges
 from .tolerances import SINGULAR_POINT
 

@@ -1,4 +1,4 @@
-"""Texts and SymPy expressions of a user, and fast callables of them: the way from runtime to SymPy.
+"""Texts and SymPy expressions of a user: the way from the runtime to SymPy.
 
 What texts may hold stands in `symbolic.reading`. SymPy is imported on first use.
 """
@@ -13,7 +13,6 @@ import numpy as np
 
 from . import bridge
 from .errors import InputError, shown
-from .lambdified import Expressions
 
 if TYPE_CHECKING:
     import sympy
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = [
     "as_condition",
     "as_expression",
-    "compiled",
+    "as_position",
     "interval",
     "numbers",
     "one_symbol",
@@ -29,11 +28,8 @@ __all__ = [
 ]
 
 
-def compiled(position: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> Expressions:
-    """Return f(u, v) → (..., 3) for three expressions in two symbols, or f(t) → (..., 2).
-
-    Raises InputError if they are unusable.
-    """
+def as_position(position: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> tuple[Any, ...]:
+    """Return three expressions in two symbols, or two in one; InputError if they are not."""
     import sympy as sp
 
     by_name = {symbol.name: symbol for symbol in symbols}
@@ -48,9 +44,7 @@ def compiled(position: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> Expres
     if unknown:
         names = ", ".join(sorted(map(str, unknown)))
         raise InputError(f"position holds symbols that are neither parameter nor number: {names}.")
-    function = Expressions(tuple(expressions), tuple(symbols))
-    function.compile()
-    return function
+    return tuple(expressions)
 
 
 def numbers(domain: Sequence[Sequence[Any]]) -> list[list[float]]:

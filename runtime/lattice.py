@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from .directions.sets import part_of_fibonacci, spiral_angle
 from .directions.unit import in_pieces, perpendicular
 from .kernels.cone import least_cosine
-from .spline import Spline
+from .splines.spline import Spline
 
 __all__ = ["Lattice"]
 

@@ -13,7 +13,7 @@ from ..generated.patch import forms
 from ..generated.spline import NEIGHBOURS, TRIANGLE_NEIGHBOURS, triangle
 from .formula_calls import patch, python_function, vector
 from .integers import Integers, integers, integers_by_row, ratio, sign
-from .spline import Spline
+from .splines.spline import Spline
 
 __all__ = ["forms_of_pairs"]
 

@@ -14,11 +14,11 @@ from .checks import known_name, yes_or_no
 from .density.request import checked_request
 from .errors import GaussmapError, GaussmapWarning, InputError, shown
 from .fields import checked_dtype, checked_fields
-from .on_surface import checked_place
+from .geometry.on_surface import checked_place
 from .samples import Samples
 from .sampling import sample_and_normals
-from .spline import Spline
-from .surface import Surface
+from .splines.spline import Spline
+from .surface.surface import Surface
 
 __all__ = ["sample_many"]
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .spline import Spline
-from .surface import Surface
+from .splines.spline import Spline
+from .surface.surface import Surface
 
 __all__ = ["OffsetOf"]
 

@@ -14,10 +14,10 @@ from .checks import pair_of_cells
 from .density.law import Law
 from .density.request import Request
 from .errors import InputError
-from .geometry import OnSpline
+from .geometry.on_spline import OnSpline
 from .report import SamplingReport, count_infinite, count_unrefined
 from .samples import Samples
-from .surface import Surface
+from .surface.surface import Surface
 from .threads import shown
 
 __all__ = ["cells_of_piece", "pieces_to_sample", "sample_pieces"]

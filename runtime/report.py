@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 from .checks import known_name
 from .developable import developable_share
 from .errors import GaussmapWarning, InputError, shown
-from .spline import Spline
+from .splines.spline import Spline
 
 if TYPE_CHECKING:
-    from .geometry import OnSpline
+    from .geometry.on_spline import OnSpline
 
 __all__ = [
     "PLACES",

@@ -17,8 +17,8 @@ from .fields import COLUMNS, DERIVED, FLAG_NAMES, FLOAT_NAMES, dtype_of, row_sha
 from .kinds import is_parabolic
 from .offset_of import OffsetOf
 from .report import SamplingReport, common_report
-from .spline import Spline
-from .surface import Surface
+from .splines.spline import Spline
+from .surface.surface import Surface
 
 if TYPE_CHECKING:
     import open3d  # pyright: ignore[reportMissingImports]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from .errors import InputError
 from .sample_arrays import SampleArrays
-from .spline import Spline, short_label
+from .splines.spline import Spline, short_label
 from .summary import kinds_of_points, summary_of
 
 if TYPE_CHECKING:

@@ -14,15 +14,15 @@ from .density.law import Law
 from .density.request import Request, checked_request
 from .errors import in_memory
 from .fields import COLUMNS, checked_dtype, checked_fields, dtype_of
-from .geometry import OnSpline
+from .geometry.on_spline import OnSpline
+from .geometry.on_surface import geometry_of, place_of_samples
 from .memory import check_memory
-from .on_surface import geometry_of, place_of_samples
 from .pieces import cells_of_piece, pieces_to_sample, sample_pieces
 from .report import sampling_report, warn_of
 from .samples import Samples
 from .search import find
-from .spline import Spline
-from .surface import Surface
+from .splines.spline import Spline
+from .surface.surface import Surface
 from .surfaces import named
 
 __all__ = ["sample", "sample_and_normals"]

@@ -20,7 +20,7 @@ from .kernels.scan import scan_in
 from .kernels.search import Bins, Coefficients, Found, search_in
 from .kernels.sort import merge_hits
 from .kernels.tile import STEP, fill_known, new_tile
-from .spline import Spline
+from .splines.spline import Spline
 from .threads import over_ranges, thread_count
 
 __all__ = ["Hits", "PackedHits", "Search", "SearchResult", "fill", "fill_packed", "find", "merged"]

@@ -17,13 +17,13 @@ from .contours import polylines_of
 from .directions.circle import circle
 from .directions.unit import as_normals, perpendicular, unit_vector
 from .fields import ARRAY_NAMES, checked_dtype, checked_fields
-from .fitting import spline_of
-from .inside import count_of, samples_inside
+from .fitting.fit import spline_of
 from .report import sampling_report, warn_of
 from .samples import Samples
 from .search import Hits, fill, find
-from .spline import Spline
-from .surface import Surface
+from .splines.inside import count_of, samples_inside
+from .splines.spline import Spline
+from .surface.surface import Surface
 from .threads import thread_count
 
 __all__ = ["Silhouette", "great_circle", "silhouette"]

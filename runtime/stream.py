@@ -14,14 +14,14 @@ from .choice import choose
 from .density.request import Request, checked_request
 from .errors import InputError
 from .fields import checked_dtype, checked_fields
-from .geometry import FieldsOfSamples, OnSpline
-from .on_surface import geometry_of, place_of_samples
+from .geometry.on_spline import FieldsOfSamples, OnSpline
+from .geometry.on_surface import geometry_of, place_of_samples
 from .pieces import pieces_to_sample
 from .report import SamplingReport, count_infinite, sampling_report, warn_of
 from .samples import Samples
 from .search import Hits, Search, merged
-from .spline import Spline
-from .surface import Surface
+from .splines.spline import Spline
+from .surface.surface import Surface
 from .surfaces import named
 from .threads import over_ranges, shown
 

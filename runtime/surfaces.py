@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 from ..generated.surfaces import CATALOGUE as _GENERATED
 from . import compiling  # noqa: F401 - announces compilation on terminals
 from .checks import known_name
-from .derivatives import Differentiable
-from .domain import Boundary, Domain
 from .errors import InputError, shown
 from .kernels.surfaces import jets, positions
-from .surface import Surface
+from .splines.domain import Boundary, Domain
+from .surface.derivatives import Differentiable
+from .surface.surface import Surface
 
 if TYPE_CHECKING:
     from ..generated.surfaces_signatures import *  # noqa: F403  # pyright: ignore[reportMissingModuleSource]

@@ -19,7 +19,7 @@ from .compiling import NOTICE
 from .directions import fibonacci, icosphere
 from .errors import FileError, GaussmapWarning, InputError
 from .fields import ARRAY_NAMES
-from .fitting import fit
+from .fitting.fit import fit
 from .gauss_map import GaussianImages, parabolic_lines, parabolic_points, split_patch
 from .kernels.jit import cache_folder
 from .samples import Samples
@@ -28,7 +28,7 @@ from .silhouette import silhouette
 from .stream import sample_stream
 from .support.convolution import convolve
 from .support.function import SupportFunction
-from .surface import Surface
+from .surface.surface import Surface
 from .surfaces import names, surface
 
 __all__ = ["Warmed", "warm"]

@@ -256,7 +256,7 @@ def signatures_source() -> str:
     """
     title = "Signatures of gaussmap.surfaces for type checkers and completion; nothing runs this."
     functions = "\n\n".join(_signature(x) for x in surfaces.CATALOGUE.values())
-    return f"{_docstring(title)}\n\nfrom ..runtime.surface import Surface\n\n{functions}\n"
+    return f"{_docstring(title)}\n\nfrom ..runtime.surface.surface import Surface\n\n{functions}\n"
 
 
 # --- the catalogue of surfaces --------------------------------------------------------------------

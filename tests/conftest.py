@@ -22,9 +22,9 @@ OF_KERNELS = (
     "runtime/meshes",
     "runtime/support",
     "runtime/test_exact.py",
-    "runtime/test_refinement.py",
-    "runtime/test_nurbs.py",
-    "runtime/test_spline.py",
+    "runtime/refinement",
+    "runtime/surface/test_nurbs.py",
+    "runtime/splines/test_spline.py",
 )
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import gaussmap as gm
 import pytest
-from gaussmap.runtime.misfit import Misfit
+from gaussmap.runtime.fitting.misfit import Misfit
 from gaussmap.runtime.report import SamplingReport
 from gaussmap.runtime.support.branches import Branches
 from gaussmap.runtime.support.convolution import Convolution

@@ -15,9 +15,9 @@ from .. import directions
 from ..checks import known_name
 from ..compiling import NOTICE
 from ..errors import InputError
-from ..fitting import fit
-from ..spline import Spline
-from ..surface import Surface
+from ..fitting.fit import fit
+from ..splines.spline import Spline
+from ..surface.surface import Surface
 from ..surfaces import CATALOGUE, names, surface
 from .arrays import array_file, is_array_file, read_array
 

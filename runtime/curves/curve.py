@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..checks import as_float, real_array
-from ..domain import Interval
 from ..errors import InputError, shown
 from ..evaluation import evaluated
+from ..splines.domain import Interval
 
 if TYPE_CHECKING:
     import sympy
@@ -150,7 +150,8 @@ class Curve:
         array([1., 0.])
 
         """
-        from ..expressions import compiled, interval, one_symbol
+        from ..expressions import interval, one_symbol
+        from ..surface.lambdified import compiled
 
         f = compiled(position, one_symbol(parameter))
         return cls.from_callable(f, interval(domain), periodic, name=name)

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..checks import whole_number
 from ..errors import InputError, SurfaceError, in_memory
-from ..quasi_interpolant import apart, not_too_large
+from ..splines.quasi_interpolant import apart, not_too_large
 from .curve import Curve
 from .quasi_interpolant import spline_of_points, spline_of_values
 from .spline import CurveSpline

@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 
 from ...generated import curve as formulas
 from ...generated import spline as edge_formulas
-from ..domain import Interval
 from ..errors import InputError
 from ..formula_calls import python_function
-from ..quasi_interpolant import not_too_large
+from ..splines.domain import Interval
+from ..splines.quasi_interpolant import not_too_large
 from .spline import CurveSpline
 
 __all__ = ["checked_points", "spline_of_points", "spline_of_values"]

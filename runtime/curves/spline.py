@@ -11,11 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 from ...generated import curve as formulas
 from ...generated.vectors import Arc, PlaneVector
 from ..checks import real_array
-from ..domain import Interval
 from ..errors import InputError
 from ..formula_calls import plane_vector, python_function
 from ..kernels import curve as kernels
-from ..spline import scale_to_one, short_label
+from ..splines.domain import Interval
+from ..splines.spline import scale_to_one, short_label
 from ..tolerances import DIFFERENCE_ERROR
 
 __all__ = ["CurveSpline", "angles_of"]

@@ -12,7 +12,7 @@ from ..bins import NormalBins
 from ..choice import NORMALS_PER_SAMPLE
 from ..developable import curved_solid_angle
 from ..fields import ARRAY_NAMES_ON_SURFACE
-from ..geometry import OnSpline
+from ..geometry.on_spline import OnSpline
 from ..lattice import Lattice
 from ..report import sampling_report
 from ..samples import Samples

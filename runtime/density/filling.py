@@ -12,7 +12,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from ..developable import curved_solid_angle
 from ..errors import SurfaceError
-from ..geometry import OnSpline
+from ..geometry.on_spline import OnSpline
 from ..report import sampling_report
 from ..samples import Samples
 from ..threads import counted

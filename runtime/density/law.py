@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..developable import curved_solid_angle
 from ..errors import SurfaceError
-from ..geometry import OnSpline
+from ..geometry.on_spline import OnSpline
 from ..tolerances import FLAT_SURFACE
 from .filling import FLAT_SHARE, GREEDY, SAVED, WIDER, WIDEST_GAP, spacing
 from .request import Request

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..fitting import fit
-from ..spline import Spline
-from ..surface import Surface
+from ..fitting.fit import fit
+from ..splines.spline import Spline
+from ..surface.surface import Surface
 from .coverage import coverage
 from .deviation import NormalDeviation, normal_deviation
 from .law import area_of

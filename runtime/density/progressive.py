@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ..spline import scale_to_one
+from ..splines.spline import scale_to_one
 from ..trees import tree_of
 from .candidates import Candidates
 

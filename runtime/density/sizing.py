@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated.spline import SCALE
-from ..geometry import OnSpline
+from ..geometry.on_spline import OnSpline
+from ..geometry.on_surface import OnSurface
 from ..kernels.sizing import TargetDensity, integrate_density
-from ..on_surface import OnSurface
-from ..spline import Spline
-from ..surface import Surface
+from ..splines.spline import Spline
+from ..surface.surface import Surface
 from ..threads import over_ranges
 
 __all__ = ["SizingFunction", "TargetDensity", "uniform"]

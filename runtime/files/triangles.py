@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..spline import scales_to_one
+from ..splines.spline import scales_to_one
 from .tables import write_rows
 
 if TYPE_CHECKING:

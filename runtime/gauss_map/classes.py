@@ -7,7 +7,7 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..spline import Spline
+from ..splines.spline import Spline
 from .parabolic_lines import cubic_bernstein, pieces_of
 from .patches import Patches, checked_nets
 

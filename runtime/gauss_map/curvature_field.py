@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from ...generated import gaussian_image as formulas
 from ..formula_calls import python_function, vector
-from ..quasi_interpolant import not_too_large
-from ..spline import scale_to_one
-from ..surface import Surface
+from ..splines.quasi_interpolant import not_too_large
+from ..splines.spline import scale_to_one
+from ..surface.surface import Surface
 
 __all__ = ["NODES", "ORDER", "SURE", "CurvatureField"]
 

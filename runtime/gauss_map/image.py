@@ -15,10 +15,10 @@ from ..bins import NormalBins
 from ..checks import real_array
 from ..directions.unit import as_normals
 from ..errors import InputError, shown
-from ..fitting import spline_of
+from ..fitting.fit import spline_of
 from ..search import fill, find
-from ..spline import Spline
-from ..surface import Surface
+from ..splines.spline import Spline
+from ..surface.surface import Surface
 from .area import measures_of
 from .boundary import BoundaryArc, boundary_arcs, edge_arcs
 from .classes import PatchClass, classes_of

@@ -15,7 +15,7 @@ from ...generated.vectors import Patch, Vector
 from ..formula_calls import python_function, vector
 from ..integers import integers, integers_by_row, ratio, sign
 from ..kernels import support as kernels
-from ..spline import scale_to_one
+from ..splines.spline import scale_to_one
 from ..tolerances import ACCURATE, FORM_ERROR, NEAR_SINGULAR_POINT
 
 __all__ = ["Members", "PatchNormals"]

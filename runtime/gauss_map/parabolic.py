@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from ..checks import pair_of_cells
 from ..errors import GaussmapWarning, InputError, shown
-from ..fitting import fit, spline_of
-from ..spline import Spline, scale_to_one
-from ..surface import Surface
+from ..fitting.fit import fit, spline_of
+from ..splines.spline import Spline, scale_to_one
+from ..surface.surface import Surface
 from ..surfaces import named
 from .classes import PatchClass, classify_patches
 from .curvature_field import CurvatureField

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ...generated import spline as grid
 from ..chains import Segment, joined
-from ..spline import Spline
+from ..splines.spline import Spline
 from .classes import PatchClass, classes_of
 from .parabolic_lines import lines_of, pieces_of
 from .patches import Patches

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..surface import Surface
+from ..surface.surface import Surface
 from .curvature_field import CurvatureField
 from .rectangles import clusters, merged, touching
 from .sign_grid import SignGrid

@@ -16,7 +16,7 @@ from ...generated.vectors import Vector
 from ..checks import real_array
 from ..errors import InputError
 from ..formula_calls import patch, python_function, vector
-from ..spline import LARGEST_EXPONENT, Spline, scales_to_one
+from ..splines.spline import LARGEST_EXPONENT, Spline, scales_to_one
 from ..tolerances import CUBIC_ERROR, DATA_ERROR
 
 __all__ = ["Patches", "checked_control_points", "checked_nets"]

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..chains import Segment, joined
-from ..domain import Boundary
-from ..loops import Loops
-from ..missing import Known
-from ..spline import Spline
-from ..trim import Part
+from ..splines.domain import Boundary
+from ..splines.missing import Known
+from ..splines.spline import Spline
+from ..surface.loops import Loops
+from ..surface.trim import Part
 
 __all__ = ["border_lines", "wrapped"]
 

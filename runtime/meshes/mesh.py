@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..checks import checked_array
 from ..errors import InputError
 from ..kernels.flips import smallest_cosines, smallest_tangents
-from ..spline import scale_to_one, short_label
+from ..splines.spline import scale_to_one, short_label
 
 if TYPE_CHECKING:
     import open3d  # pyright: ignore[reportMissingImports]

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..domain import Boundary
 from ..errors import InputError, shown
 from ..kernels.flips import smallest_cosines
-from ..refinement import evaluate_on_surface
-from ..spline import Spline
+from ..refinement.newton import evaluate_on_surface
+from ..splines.domain import Boundary
+from ..splines.spline import Spline
 from .improvement import checked_prefer, flip_edges, improved
 from .mesh import Mesh, scaled
 from .triangulation import neighbours, triangulations

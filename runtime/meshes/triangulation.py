@@ -18,8 +18,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..domain import Boundary
 from ..kernels import surfaces as kernels
+from ..splines.domain import Boundary
 from ..tolerances import CIRCLE_HEIGHT_ERROR
 
 __all__ = ["Triangulation", "neighbours", "triangulations"]

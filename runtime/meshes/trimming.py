@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..domain import Boundary
-from ..spline import Spline
+from ..splines.domain import Boundary
+from ..splines.spline import Spline
 from ..trees import tree_of
 from .border import border_lines, wrapped
 from .triangulation import neighbours

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..domain import Boundary, BoundaryPair
 from ..kernels.spacing import border_spacings
-from ..spline import Spline
+from ..splines.domain import Boundary, BoundaryPair
+from ..splines.spline import Spline
 from ..trees import tree_of
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..errors import SurfaceError
 from ..kernels.areas import corner_areas
-from ..spline import scale_to_one
+from ..splines.spline import scale_to_one
 from ..trees import tree_of
 from .mesh import Mesh, centred
 

@@ -19,11 +19,11 @@ from ..directions.unit import as_normals
 from ..errors import InputError
 from ..extras import check_extra
 from ..files import paths
-from ..fitting import spline_of
+from ..fitting.fit import spline_of
 from ..samples import Samples
 from ..sampling import sample_and_normals
-from ..spline import Spline
-from ..surface import Surface
+from ..splines.spline import Spline
+from ..surface.surface import Surface
 from .globe import draw_globe, view_of
 from .palette import ELLIPTIC, HYPERBOLIC, INK, NO_SAMPLE, PALE, SCALE, STYLE
 from .scene import AZIMUTH, ELEVATION, Scene

@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..spline import Spline
+from ..splines.spline import Spline
 
 __all__ = ["AZIMUTH", "ELEVATION", "Scene", "front", "height_factor", "quadrangles", "view"]
 

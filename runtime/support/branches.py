@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from .. import compiling  # noqa: F401 - announces compilation on terminals
 from ..kernels import support as kernels
-from ..spline import scales_to_one
+from ..splines.spline import scales_to_one
 
 __all__ = ["Branches", "Sheets", "curvatures"]
 

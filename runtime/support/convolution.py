@@ -15,11 +15,11 @@ from ..checks import checked_rows
 from ..directions.unit import as_normals
 from ..errors import GaussmapWarning, InputError
 from ..fields import new_field
-from ..fitting import spline_of
+from ..fitting.fit import spline_of
 from ..report import SamplingReport, count_infinite, sampling_report, warn_of
 from ..samples import Samples
-from ..spline import Spline, short_label
-from ..surface import Surface
+from ..splines.spline import Spline, short_label
+from ..surface.surface import Surface
 from ..surfaces import named
 from ..threads import over_ranges
 from .branches import Branches, curvatures

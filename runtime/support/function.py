@@ -12,9 +12,9 @@ from numpy.typing import ArrayLike
 from .. import bridge
 from ..checks import finite_array, finite_number
 from ..errors import InputError
-from ..fitting import spline_of
-from ..spline import Spline
-from ..surface import Surface
+from ..fitting.fit import spline_of
+from ..splines.spline import Spline
+from ..surface.surface import Surface
 from ..surfaces import named
 from ..tolerances import ROTATION_ERROR
 from .operations import Offset, Reversed, Rotated, Scaled, Sum, Translated

@@ -18,7 +18,7 @@ from ..gauss_map.membership import PatchNormals
 from ..gauss_map.patches import checked_control_points
 from ..kernels import support as kernels
 from ..search import fill, find
-from ..spline import Spline
+from ..splines.spline import Spline
 from .branches import Sheets
 
 if TYPE_CHECKING:

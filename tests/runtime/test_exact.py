@@ -10,11 +10,11 @@ from gaussmap.generated.primes import PRIMES
 from gaussmap.generated.spline import NEIGHBOURS, TRIANGLE_NEIGHBOURS, triangle
 from gaussmap.generated.vectors import Vector
 from gaussmap.runtime import exact, long_integers
-from gaussmap.runtime.domain import Boundary
 from gaussmap.runtime.formula_calls import python_function, vector
 from gaussmap.runtime.integers import integers, sign
 from gaussmap.runtime.kernels import decide, modular
 from gaussmap.runtime.kernels.jit import jit
+from gaussmap.runtime.splines.domain import Boundary
 from hypothesis import given
 from hypothesis import strategies as st
 

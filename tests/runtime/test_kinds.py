@@ -7,7 +7,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 
-from .test_poles import ROTATION
+from .splines.test_poles import ROTATION
 
 
 @pytest.mark.parametrize("name", ["plane", "cylinder"])

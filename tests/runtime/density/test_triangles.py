@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from gaussmap.runtime.density.sizing import SizingFunction, TargetDensity
 from gaussmap.runtime.density.triangles import Triangles, cut_patches
-from gaussmap.runtime.geometry import OnSpline
+from gaussmap.runtime.geometry.on_spline import OnSpline
 
 
 def sizing_of(name: str, cells: tuple[int, int]) -> SizingFunction:

@@ -1,0 +1,172 @@
+"""The numbers of cells of a spline, along u and along v, for a tolerance."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from ..checks import positive_number
+from ..errors import InputError
+from ..splines.spline import Spline
+from ..tolerances import DATA_ERROR
+from .misfit import Comparison, Misfit
+
+__all__ = ["FAR_OFF", "Bounds", "Goal", "Tolerance", "checked_tolerance", "refined"]
+
+# Of a step that halves the cells, the part of the misfit that may remain: of order 3 an eighth
+# remains, of order 1, as at folds, a half.
+IMPROVED = 0.75
+# Cells are halved along both u and v unless one of the two has this many times the error.
+DOMINANT = 4.0
+# The smallest angle, in degrees, that is measured.
+LEAST_ANGLE = 1e-4
+# The relative tolerance of positions where that of normals is given only.
+BESIDE_NORMALS = 1e-4
+# A spline whose distance exceeds the goal by this factor may not have seen a part of the surface:
+# the search goes on then.
+FAR_OFF = 10.0
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """The largest numbers of cells along u and v, and in all.
+
+    `patience` is the number of steps without improvement after which the search ends, if the
+    distance is not far from the goal.
+    """
+
+    most: tuple[int, int]
+    total: int
+    patience: int
+
+
+@dataclass(frozen=True)
+class Goal:
+    """The largest distance (in L) and angle (in degrees, if any) that a spline may have.
+
+    With `poles`, the angle next to poles and other collapsed sides counts, too.
+    """
+
+    distance: float | None
+    angle: float | None
+    poles: bool
+
+    def excess(self, comparison: Comparison) -> tuple[float, float]:
+        """Return distance and angle relative to the goal: at most 1 where it is reached."""
+        misfit = comparison.misfit
+        angle = misfit.angle if self.poles else comparison.angle_away
+        return (
+            0.0 if self.distance is None else misfit.distance / self.distance,
+            0.0 if self.angle is None or angle is None else angle / self.angle,
+        )
+
+    def reached(self, comparison: Comparison) -> bool:
+        """Say whether a spline has this goal."""
+        return max(self.excess(comparison)) <= 1.0
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """The distance of a spline, in L or relative to the diagonal, and its angle in degrees.
+
+    They are those of `fit`; at least one is not None.
+    """
+
+    distance: float | None
+    relative: float | None
+    angle: float | None
+
+    def goal(self, diagonal: float, largest: float, poles: bool) -> Goal:
+        """Return the goal for a surface with a diagonal and a largest coordinate.
+
+        Raises InputError if it is below the rounding of the coordinates.
+        """
+        asked = self.distance if self.relative is None else self.relative * diagonal
+        least = DATA_ERROR * largest
+        if asked is not None and asked < least:
+            raise InputError(
+                f"a tolerance of {asked:.3g} is below the rounding of coordinates as large as "
+                f"{largest:.3g}; choose at least {least:.1g}."
+            )
+        return Goal(asked, self.angle, poles)
+
+
+def checked_tolerance(
+    cells: object, distance: object, relative: object, angle: object
+) -> Tolerance | None:
+    """Return the tolerances of `fit`, None without any; InputError if they are invalid."""
+    given = {
+        name: positive_number(value, name, unit, most)
+        for name, value, unit, most in (
+            ("tolerance", distance, "", math.inf),
+            ("relative_tolerance", relative, "", 1.0),
+            ("normal_tolerance", angle, " degrees", 90.0),
+        )
+        if value is not None
+    }
+    if not given:
+        return None
+    if cells is not None:
+        raise InputError(f"cells=... and {next(iter(given))}=... do not go together: choose one.")
+    if "tolerance" in given and "relative_tolerance" in given:
+        raise InputError("tolerance=... and relative_tolerance=... do not go together: choose one.")
+    if given.get("normal_tolerance", math.inf) < LEAST_ANGLE:
+        raise InputError(
+            f"normal_tolerance must be at least {LEAST_ANGLE:g} degrees: normals are compared with "
+            "that accuracy."
+        )
+    if [*given] == ["normal_tolerance"]:
+        given["relative_tolerance"] = BESIDE_NORMALS
+    return Tolerance(*map(given.get, ("tolerance", "relative_tolerance", "normal_tolerance")))
+
+
+def refined(
+    fitted: Callable[[tuple[int, int]], Spline],
+    compare: Callable[[Spline], Comparison],
+    variation: Callable[[Spline, Comparison, bool], tuple[float, float]],
+    spline: Spline,
+    goal: Goal,
+    bounds: Bounds,
+) -> tuple[Spline, Misfit, bool]:
+    """Return a spline of as many cells as a goal takes, its misfit, and success.
+
+    Those of `spline` are halved along u, along v or both: where the error varies most, which
+    `variation` returns, for True relative to the derivatives. Without success it is the last spline
+    that was better than those before.
+    """
+    stalled, comparison = 0, compare(spline)
+    best, its_comparison = spline, comparison
+    while not goal.reached(comparison):
+        distance, angle = goal.excess(comparison)
+        if stalled >= bounds.patience and distance <= FAR_OFF:
+            break
+        # Derivatives may mislead: the error changes along u, too, if cells are too long along v.
+        u, v = variation(spline, comparison, angle > distance and stalled == 0)
+        finer = _finer(spline.cells, u, v, bounds)
+        if finer == spline.cells:
+            break
+        spline = fitted(finer)
+        comparison = compare(spline)
+        if goal.reached(comparison) or _improved(goal, its_comparison, comparison):
+            best, its_comparison, stalled = spline, comparison, 0
+        else:
+            stalled += 1
+    return best, its_comparison.misfit, goal.reached(its_comparison)
+
+
+def _improved(goal: Goal, before: Comparison, after: Comparison) -> bool:
+    """Return whether one of the errors that exceed the goal fell."""
+    pairs = zip(goal.excess(before), goal.excess(after), strict=True)
+    return any(old > 1.0 and new <= IMPROVED * old for old, new in pairs)
+
+
+def _finer(cells: tuple[int, int], u: float, v: float, bounds: Bounds) -> tuple[int, int]:
+    """Return twice the cells along u, v or both, by their errors, as far as the bounds allow it."""
+    twice = [min(2 * count, most) for count, most in zip(cells, bounds.most, strict=True)]
+    along_u, along_v = (twice[0], cells[1]), (cells[0], twice[1])
+    larger, smaller = (along_u, along_v) if u >= v else (along_v, along_u)
+    both = (twice[0], twice[1])
+    choices = [larger, smaller] if max(u, v) > DOMINANT * min(u, v) else [both, larger, smaller]
+    fitting = (x for x in choices if x != cells and x[0] * x[1] <= bounds.total)
+    return next(fitting, cells)

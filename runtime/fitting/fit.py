@@ -1,0 +1,324 @@
+"""From a surface to the spline that approximates it."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from ..errors import GaussmapWarning, InputError, SurfaceError, in_memory
+from ..splines.collapsed import found_sides
+from ..splines.domain import Boundary, Domain
+from ..splines.ghosts import Sides
+from ..splines.missing import known_of_values
+from ..splines.quasi_interpolant import apart, checked_cells, fit_grid, fit_values, not_too_large
+from ..splines.spline import Spline
+from ..surface.surface import Surface
+from ..surfaces import named
+from .cells import FAR_OFF, Bounds, Tolerance, checked_tolerance, refined
+from .misfit import Comparison, Misfit, compare_with_data
+from .probe import probe_of, variation
+
+__all__ = ["DEFAULT_CELLS", "fit", "spline_of"]
+
+# Without cells or tolerance: the least numbers of cells, and what they are increased for. At
+# creases no number of cells makes normals accurate: the search ends when it does not improve them.
+DEFAULT_CELLS = (64, 64)
+DEFAULT_TOLERANCE = Tolerance(distance=None, relative=1e-4, angle=0.1)
+DEFAULT_BOUNDS = Bounds(most=(1024, 1024), total=2**16, patience=2)
+# For a tolerance: the first cells that are tried, and the most. The search ends at these.
+FEWEST_CELLS = (8, 8)
+BOUNDS = Bounds(most=(4096, 4096), total=2**20, patience=9)
+
+
+def spline_of(
+    surface: Surface | Spline | str, cells: Sequence[int] | None, dtype: DTypeLike = np.float64
+) -> Spline:
+    """Return a spline unchanged, or the spline of a surface or of a surface's name.
+
+    Raises InputError for `cells` with a spline; SurfaceError if its points are beyond the range of
+    `dtype`.
+    """
+    if isinstance(surface, Spline) and cells is not None:
+        raise InputError("cells=... is for surfaces; this spline already has its cells.")
+    spline = surface if isinstance(surface, Spline) else fit(surface, cells)
+    largest, limits = float(np.abs(spline.coefficients).max()), np.finfo(np.zeros(0, dtype).dtype)
+    if not float(limits.tiny) <= largest <= float(limits.max) and largest > 0.0:
+        raise SurfaceError(
+            f"the coordinates of {spline.name!r} are too {'large' if largest > 1.0 else 'small'} "
+            f"for {limits.dtype}; choose another unit of length or dtype=numpy.float64."
+        )
+    return spline
+
+
+@in_memory
+def fit(
+    surface: Surface | str,
+    cells: Sequence[int] | None = None,
+    *,
+    tolerance: float | None = None,
+    relative_tolerance: float | None = None,
+    normal_tolerance: float | None = None,
+) -> Spline:
+    """Approximate a surface by a C¹ quadratic spline.
+
+    The quasi-interpolant (paper, Sect. 3.1) is exact on quadratics. The error of positions falls
+    with the third power of the cell size, that of normals with the second (13). It is measured at
+    thousands of places that the fit does not use, among them lines of hundreds of places along u
+    and along v, and is the `misfit` of the spline. A spline rounds lines where the normal of a
+    NURBS turns: fit its pieces one by one (see `Surface.pieces`).
+
+    Sides of the domain that are one point become poles where the surface goes on smoothly, unless
+    it was said how they end (see `Surface.assumed_open`). There the spline has one normal. Next to
+    it, in a few cells, errors of normals fall with the first power of the cell size only.
+
+    Parameters
+    ----------
+    surface : Surface or str
+        The surface, or its name in the catalogue (see `gaussmap.surfaces`).
+    cells : (int, int), optional
+        The numbers of cells along u and v, at least 3. By default, one cell between any four
+        neighbouring points of a grid; else 64 × 64 or more, see Notes.
+    tolerance : float, optional
+        Instead of `cells`: the largest distance between surface and spline, in L. As many cells
+        along u, and along v, as it takes are found, by doubling.
+    relative_tolerance : float, optional
+        The same, relative to the diagonal of the bounding box of the surface.
+    normal_tolerance : float, optional
+        The largest angle between the normals of surface and spline, in degrees, from 0.0001 to 90.
+        Alone, it goes with a relative tolerance of 1e-4.
+
+    Returns
+    -------
+    Spline
+        The spline, with four quadratic patches in each cell. Its `misfit` tells how far it is from
+        the surface.
+
+    Raises
+    ------
+    InputError
+        For unusable `cells`, and more of them than a narrow domain can hold; for a tolerance that
+        is not positive or below the rounding of the coordinates, or beside `cells`.
+    UnknownNameError
+        If there is no surface of that name.
+    SurfaceError
+        If the surface cannot be evaluated, or does not close where its ends say so.
+
+    Warns
+    -----
+    GaussmapWarning
+        If a tolerance is not reached with 4096 cells along u or v, 2²⁰ cells in all, or those of a
+        grid. If the default misses its goal by a factor of ten.
+
+    Notes
+    -----
+    By default, cells are increased from 64 × 64 until the distance is 1e-4 of the diagonal, and the
+    angle 0.1°, next to poles excepted: up to 1024 along u or v, and 2¹⁶ in all. If twice the cells
+    do not help, as at creases, fewer remain.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> gm.fit("torus", (16, 16))
+    Spline(16 × 16 cells of torus)
+    >>> spline = gm.fit("cylinder", tolerance=1e-4)
+    >>> spline
+    Spline(32 × 8 cells of cylinder)
+    >>> spline.misfit.distance < 1e-4
+    True
+
+    """
+    asked = checked_tolerance(cells, tolerance, relative_tolerance, normal_tolerance)
+    surface = named(surface)
+    if not isinstance(surface, Surface):
+        raise InputError(
+            f"a Surface or its name is needed, not {type(surface).__name__}; make one by "
+            "gm.Surface.from_callable, from_sympy, from_nurbs or from_grid."
+        )
+    sides = found_sides(surface)
+    trim = surface.trim and surface.trim.with_boundary(sides.boundary)
+    surface = replace(surface, boundary=sides.boundary, trim=trim)
+    if surface.grid is not None:
+        spline = _fit_data(surface, surface.grid, cells, asked)
+    elif cells is None:
+        spline = _fit_to(surface, asked)
+    else:
+        spline = _fitted(surface, cells)
+        misfit = probe_of(surface, spline.cells).compare(spline).misfit
+        spline = replace(spline, misfit=misfit, trim=surface.trim)
+    return replace(spline, apexes=sides.apexes)
+
+
+def _fit_to(surface: Surface, asked: Tolerance | None) -> Spline:
+    """Return a spline with a tolerance, or with that of the default."""
+    spline = _fitted(surface, DEFAULT_CELLS if asked is None else FEWEST_CELLS)
+    probe = probe_of(surface, DEFAULT_CELLS)
+    goal = (asked or DEFAULT_TOLERANCE).goal(probe.diagonal, probe.largest, poles=asked is not None)
+    bounds = _within(surface.domain, DEFAULT_BOUNDS if asked is None else BOUNDS)
+    spline, misfit, reached = refined(
+        lambda cells: _fitted(surface, cells),
+        probe.compare,
+        partial(_variation, surface),
+        spline,
+        goal,
+        bounds,
+    )
+    if not reached and (asked is not None or misfit.distance > FAR_OFF * (goal.distance or 0.0)):
+        _warn(spline, misfit, "the tolerance" if asked else "the accuracy of the default")
+    return replace(spline, misfit=misfit, trim=surface.trim)
+
+
+def _fit_data(
+    surface: Surface,
+    grid: NDArray[np.float64],
+    cells: Sequence[int] | None,
+    asked: Tolerance | None,
+) -> Spline:
+    """Return the spline of a grid of points, by default with one cell between any four of them."""
+    if asked is None:
+        spline = _fitted(surface, cells) if cells is not None else _finest(surface, grid)
+        misfit = compare_with_data(spline, grid, surface.boundary).misfit
+    else:
+        spline, misfit = _fit_data_to(surface, grid, asked)
+    trim = surface.trim
+    finest = cells is None and spline.cells == _finest_cells(grid, surface.boundary)
+    if trim is not None and not finest and np.isnan(grid).any():
+        known = known_of_values(
+            trim.parts[0].contains, spline.domain, spline.boundary, spline.cells
+        )
+        trim = trim.and_(known)
+    return replace(spline, misfit=misfit, trim=trim)
+
+
+def _fit_data_to(
+    surface: Surface, grid: NDArray[np.float64], asked: Tolerance
+) -> tuple[Spline, Misfit]:
+    """Return a spline with a tolerance, and its misfit to the data."""
+    if asked.angle is not None:
+        raise InputError("normal_tolerance=... is for surfaces; data have no normals.")
+    extent = np.nanmax(grid, axis=(0, 1)) - np.nanmin(grid, axis=(0, 1))
+    goal = asked.goal(float(np.hypot.reduce(extent)), float(np.nanmax(np.abs(grid))), poles=True)
+    most = _finest_cells(grid, surface.boundary)
+
+    def fitted(cells: tuple[int, int]) -> Spline:
+        return _finest(surface, grid) if cells == most else _fitted(surface, cells)
+
+    def compare(spline: Spline) -> Comparison:
+        return compare_with_data(spline, grid, surface.boundary)
+
+    spline, misfit, reached = refined(
+        fitted,
+        compare,
+        partial(_variation, surface),
+        fitted((min(FEWEST_CELLS[0], most[0]), min(FEWEST_CELLS[1], most[1]))),
+        goal,
+        replace(BOUNDS, most=most, total=most[0] * most[1]),
+    )
+    if not reached:
+        spline = fitted(most)
+        misfit = compare(spline).misfit
+        _warn(spline, misfit, "the tolerance")
+    return spline, misfit
+
+
+def _finest(surface: Surface, grid: NDArray[np.float64]) -> Spline:
+    """Return the spline with one cell between any four neighbouring points."""
+    return fit_grid(grid, surface.domain, surface.boundary, surface.name)
+
+
+def _finest_cells(grid: NDArray[np.float64], boundary: Boundary) -> tuple[int, int]:
+    """Return the numbers of cells between the points of a grid."""
+    m, n = (
+        count if ends[0] in ("periodic", "mirrored") else count - 1
+        for count, ends in zip(grid.shape, boundary, strict=False)
+    )
+    return m, n
+
+
+def _variation(
+    surface: Surface, spline: Spline, comparison: Comparison, slopes: bool
+) -> tuple[float, float]:
+    """Return how much the error varies along u and along v where the spline is worst."""
+    place = comparison.steepest if slopes else comparison.farthest
+    return variation(surface, spline, place, slopes)
+
+
+def _within(domain: Domain, bounds: Bounds) -> Bounds:
+    """Return bounds for the cells of a domain, which may be narrow relative to its numbers."""
+    most = [
+        min(most, max(int((high - low) / np.spacing(max(-low, high)) / 8.0), 64))
+        for (low, high), most in zip(domain, bounds.most, strict=True)
+    ]
+    return replace(bounds, most=(most[0], most[1]))
+
+
+def _warn(spline: Spline, misfit: Misfit, what: str) -> None:
+    m, n = spline.cells
+    normals = "" if misfit.angle is None else f", and its normals within {misfit.angle:.3g}°"
+    warnings.warn(
+        f"surface {spline.name!r}: {what} is not reached; the best spline found, of {m} x {n} "
+        f"cells, is within {misfit.distance:.3g}{normals}.",
+        GaussmapWarning,
+        stacklevel=5,
+    )
+
+
+def _fitted(surface: Surface, cells: Sequence[int]) -> Spline:
+    """Return the quasi-interpolant of a surface that can be evaluated anywhere."""
+    m, n = checked_cells(cells)
+    lines = _lines(surface.domain, m, n)
+    centres, vertices = _values(surface, *lines)
+    middles = _middles(surface, *lines)
+    return fit_values(centres, vertices, middles, surface.domain, surface.boundary, surface.name)
+
+
+def _values(
+    surface: Surface, lines_u: NDArray[np.float64], lines_v: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Evaluate a surface at the centres (m, n, 3) and vertices (m + 1, n + 1, 3) of its cells.
+
+    Vertices on a seam are made bitwise equal, so that the spline closes exactly.
+    """
+    centres = not_too_large(surface.evaluate(lines_u[1::2, None], lines_v[1::2]), surface.name)
+    vertices = not_too_large(surface.evaluate(lines_u[::2, None], lines_v[::2]), surface.name)
+    for axis, (along, ends) in enumerate(zip("uv", surface.boundary, strict=True)):
+        rows = np.swapaxes(vertices, 0, axis)
+        if ends[0] in ("periodic", "mirrored"):
+            first = rows[0] if ends[0] == "periodic" else rows[0, ::-1].copy()
+            if apart(rows[-1], first, vertices):
+                raise SurfaceError(
+                    f"surface {surface.name!r} does not close along {along}: its two ends must be "
+                    f"the same{'' if ends[0] == 'periodic' else ', mirrored'}."
+                )
+            rows[-1] = first
+        for end, place, row in zip(ends, surface.domain[axis], (0, -1), strict=True):
+            if end == "pole" and apart(rows[row], rows[row, :1], vertices):
+                raise SurfaceError(
+                    f"surface {surface.name!r} has no pole at {along} = {place}: it is not "
+                    "one point there."
+                )
+    return centres, vertices
+
+
+def _middles(surface: Surface, lines_u: NDArray[np.float64], lines_v: NDArray[np.float64]) -> Sides:
+    """Evaluate a surface in the middle of the edges at the ends of v, and at the ends of u."""
+    at_v = not_too_large(surface.evaluate(lines_u[1::2], lines_v[[0, -1], None]), surface.name)
+    at_u = not_too_large(surface.evaluate(lines_u[[0, -1], None], lines_v[1::2]), surface.name)
+    return (at_v[0], at_v[1]), (at_u[0], at_u[1])
+
+
+def _lines(domain: Domain, m: int, n: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the parameters of the edges and middles of the cells, in turn, along u and v."""
+    lines = []
+    for along, (low, high), count in zip("uv", domain, (m, n), strict=True):
+        line = low + (high - low) * (np.arange(2 * count + 1) / (2 * count))
+        if not (np.diff(line) > 0.0).all():
+            raise InputError(
+                f"the domain of {along} is too narrow for {count} cells: ({low}, {high})."
+            )
+        lines.append(line)
+    return lines[0], lines[1]

@@ -1,0 +1,1 @@
+"""What samples lie on: a spline, or the surface that it approximates."""

@@ -1,0 +1,1 @@
+"""Surfaces that people bring: formulas, functions, grids, NURBS; derivatives, trims, motions."""

@@ -1,0 +1,133 @@
+"""Lines of a NURBS surface where it is not smooth, and whether its ends meet smoothly.
+
+Both are measured: a knot may be multiple where the surface is smooth, as in a circle of four arcs.
+A line is smooth if normals do not turn there, and the tangent across it does not change its length
+so much that a spline would fold.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..splines.quasi_interpolant import apart
+from .nurbs import Nurbs
+
+__all__ = ["CREASE_ANGLE", "creases", "smoothly_closed"]
+
+Array = NDArray[np.float64]
+
+# Degrees: a line where normals turn by less is no crease. Data for CAD are this smooth at best.
+CREASE_ANGLE = 0.1
+# The spline of a surface whose x_u jumps from 1 to this length has no folds, but it has from 5 on.
+LARGEST_JUMP = 3.0
+# A normal is that of a place beside the line, as far as this part of a knot span, where |x_u × x_v|
+# on the line is below this part of the largest |x_u| |x_v|: there x_u or x_v vanishes.
+BESIDE, SINGULAR = 1e-4, 1e-9
+# Control points coincide that are closer than this, relative to the size of the surface.
+SAME_POINT = 1e-12
+
+
+def creases(nurbs: Nurbs) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Return the values of u, and those of v, inside the domain where it is not smooth."""
+
+    def is_crease(axis: int, t: float) -> bool:
+        turning, jump = _turning(nurbs, axis, t, t), _jump(nurbs, axis, t, t)
+        return turning > CREASE_ANGLE or jump > LARGEST_JUMP
+
+    lines_u, lines_v = (
+        tuple(t for t in _candidates(nurbs, axis) if is_crease(axis, t)) for axis in (0, 1)
+    )
+    return lines_u, lines_v
+
+
+def smoothly_closed(nurbs: Nurbs, axis: int) -> bool:
+    """Say whether the two ends of u (axis 0) or v (axis 1) are one line, and smooth across it."""
+    low, high = nurbs.domain[axis]
+    first, last = (_jets_along(nurbs, axis, end) for end in (low, high))
+    if apart(first[:, 0], last[:, 0], nurbs.control_points):
+        return False
+    if (np.einsum("ij,ij->i", first[:, 1 + axis], last[:, 1 + axis]) < 0.0).any():
+        return False  # a fold, with one normal from both sides
+    turning, jump = _turning(nurbs, axis, high, low), _jump(nurbs, axis, high, low)
+    return turning <= CREASE_ANGLE and jump <= LARGEST_JUMP
+
+
+def _candidates(nurbs: Nurbs, axis: int) -> list[float]:
+    """Return the knots inside the domain where derivatives may jump or x_u or x_v may vanish."""
+    knots, p, (low, high) = nurbs.knots[axis], nurbs.degrees[axis], nurbs.domain[axis]
+    points = np.moveaxis(nurbs.control_points, axis, 0)
+    steps = np.abs(np.diff(points, axis=0)).max(axis=2)
+    same = steps <= SAME_POINT * float(np.ptp(points, axis=(0, 1)).max())
+    found = []
+    values, counts = np.unique(knots, return_counts=True)
+    for t, count in zip(values.tolist(), counts.tolist(), strict=True):
+        last = int(np.searchsorted(knots, t, "right")) - 1 - count  # that does not vanish at t
+        coincide = same[last + count - p : last]
+        if low < t < high and (count >= p or coincide.all(axis=0).any()):
+            found.append(t)
+    return found
+
+
+def _turning(nurbs: Nurbs, axis: int, below: float, above: float) -> float:
+    """Return the largest angle in degrees between the normals below a line and above it.
+
+    The line has two values for the ends of a domain. NaN if no place has normals.
+    """
+    low, high = nurbs.domain[axis]
+    first = _normals_along(nurbs, axis, (low, below), 1)
+    second = _normals_along(nurbs, axis, (above, high), 0)
+    chords = np.linalg.norm(first - second, axis=1)
+    known = chords[np.isfinite(chords)]
+    if len(known) == 0:
+        return np.nan
+    return float(np.degrees(2.0 * np.arcsin(min(known.max() / 2.0, 1.0))))
+
+
+def _jump(nurbs: Nurbs, axis: int, below: float, above: float) -> float:
+    """Return the largest ratio of the lengths of x_u, or x_v, below a line and above it.
+
+    Where both vanish, relative to other places, it counts as 1.
+    """
+    low, high = nurbs.domain[axis]
+    first, second = (
+        np.linalg.norm(_jets_along(_part(nurbs, axis, part), axis, t)[:, 1 + axis], axis=1)
+        for part, t in (((low, below), below), ((above, high), above))
+    )
+    least = SINGULAR * float(max(first.max(), second.max()))
+    first, second = np.maximum(first, least), np.maximum(second, least)
+    return float(np.maximum(first / second, second / first).max()) if least > 0.0 else 1.0
+
+
+def _part(nurbs: Nurbs, axis: int, part: tuple[float, float]) -> Nurbs:
+    """Return the surface over a part of the domain of u (axis 0) or v (axis 1)."""
+    return nurbs.restricted((part, nurbs.domain[1]) if axis == 0 else (nurbs.domain[0], part))
+
+
+def _normals_along(nurbs: Nurbs, axis: int, part: tuple[float, float], end: int) -> Array:
+    """Return unit normals (k, 3) at one end of a part of the domain, from inside that part."""
+    inside = _part(nurbs, axis, part)
+    jets = _jets_along(inside, axis, part[end])
+    normals = np.cross(jets[:, 1], jets[:, 2])
+    lengths = np.linalg.norm(normals, axis=1)
+    sizes = [float(np.linalg.norm(jets[:, d], axis=1).max()) for d in (1, 2)]
+    inner = nurbs.knots[axis][(nurbs.knots[axis] > part[0]) & (nurbs.knots[axis] < part[1])]
+    next_knot = [*part, *inner]
+    span = min(abs(x - part[end]) for x in next_knot if x != part[end])
+    beside = _jets_along(inside, axis, part[end] + (BESIDE * span) * (1 - 2 * end))
+    singular = lengths <= SINGULAR * sizes[0] * sizes[1]
+    normals[singular] = np.cross(beside[:, 1], beside[:, 2])[singular]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return normals / np.linalg.norm(normals, axis=1, keepdims=True)
+
+
+def _jets_along(nurbs: Nurbs, axis: int, t: float) -> Array:
+    """Return jets (k, 6, 3) at places on the line u = t or v = t: some in each knot span of it."""
+    other = 1 - axis
+    knots, (low, high) = nurbs.knots[other], nurbs.domain[other]
+    ends = np.unique(np.concatenate([[low, high], knots[(knots > low) & (knots < high)]]))
+    each = nurbs.degrees[other] + 2
+    shares = (np.arange(each) + 0.5) / each
+    places = (ends[:-1, None] + np.diff(ends)[:, None] * shares).ravel()
+    line = np.full(len(places), t)
+    return nurbs.jets(*((line, places) if axis == 0 else (places, line)))

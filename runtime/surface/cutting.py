@@ -1,0 +1,83 @@
+"""The smooth pieces of a surface that has lines where its normal turns."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from ..splines.domain import Boundary, BoundaryPair, Domain, Interval
+from .moved import Moved
+from .nurbs import Nurbs
+
+if TYPE_CHECKING:
+    from .surface import Surface
+
+__all__ = ["pieces_of"]
+
+
+def pieces_of(surface: Surface) -> tuple[Surface, ...]:
+    """Return the smooth pieces of a surface; a smooth surface itself."""
+    nurbs = surface.function
+    if isinstance(nurbs, Moved):
+        return _moved_pieces(surface, nurbs)
+    if not isinstance(nurbs, Nurbs) or not any(nurbs.creases):
+        return (surface,)
+    along_u, along_v = (
+        list(pairwise((low, *lines, high)))
+        for (low, high), lines in zip(surface.domain, nurbs.creases, strict=True)
+    )
+    domains = [(u, v) for u in along_u for v in along_v]
+    return tuple(_piece(surface, nurbs, k, domain) for k, domain in enumerate(domains))
+
+
+def _moved_pieces(surface: Surface, moved: Moved) -> tuple[Surface, ...]:
+    """Return the pieces of a moved surface: those of the surface before, moved."""
+    pieces = pieces_of(moved.surface)
+    if len(pieces) == 1:
+        return (surface,)
+    after = sorted((_moved(surface, moved, x) for x in pieces), key=lambda x: x.domain)
+    return tuple(replace(x, name=f"{x.name} (piece {k + 1})") for k, x in enumerate(after))
+
+
+def _moved(surface: Surface, moved: Moved, piece: Surface) -> Surface:
+    """Return the part of a moved surface that is a piece of the surface before."""
+    (low, high), along_v = piece.domain
+    (at_low, at_high), ends_v = piece.boundary
+    if moved.turned:
+        low, high = sum(moved.ends) - high, sum(moved.ends) - low
+        at_low, at_high = at_high, at_low
+    return replace(
+        surface,
+        function=replace(moved, surface=piece),
+        domain=((low, high), along_v),
+        boundary=((at_low, at_high), ends_v),
+    )
+
+
+def _piece(surface: Surface, nurbs: Nurbs, number: int, domain: Domain) -> Surface:
+    """Return the part of a surface over a part of its domain."""
+    return replace(
+        surface,
+        name=f"{surface.name} (piece {number + 1})",
+        function=nurbs.restricted(domain),
+        domain=domain,
+        boundary=_boundary(surface, domain),
+    )
+
+
+def _boundary(surface: Surface, domain: Domain) -> Boundary:
+    """Return the boundary conditions of a part: new ends are open."""
+    along_u, along_v = (
+        _ends(*x) for x in zip(surface.boundary, surface.domain, domain, strict=True)
+    )
+    if along_u != ("periodic", "periodic") and "pole" in along_v:
+        along_v = ("open", "open")  # a sector of the surface around the pole
+    return along_u, along_v
+
+
+def _ends(ends: BoundaryPair, whole: Interval, part: Interval) -> BoundaryPair:
+    if part == whole:
+        return ends
+    low, high = (x == y and end == "pole" for x, y, end in zip(whole, part, ends, strict=True))
+    return "pole" if low else "open", "pole" if high else "open"

@@ -1,0 +1,265 @@
+"""Derivatives of surfaces: what can give its own, and differences of high order for the others.
+
+The differences are of nine points along u, along v and along one diagonal of the parameters. Steps
+are between 1/512 and 1/256 of the domain, and smaller where differences of seven points show that
+the surface varies faster.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...generated.differences import FIRST, FIRST_CHANGE, SECOND, SECOND_CHANGE
+from ..splines.domain import Boundary, BoundaryPair, Domain, Interval
+
+__all__ = [
+    "NAMES",
+    "Bounds",
+    "Differences",
+    "Differentiable",
+    "Function",
+    "differences",
+    "numerical_jets",
+]
+
+Array = NDArray[np.float64]
+Function = Callable[[Array, Array], Array]
+Bounds = tuple[tuple[float, float], tuple[float, float]]
+
+# The rows of a 2-jet.
+NAMES = ("x", "x_u", "x_v", "x_uu", "x_uv", "x_vv")
+EVERYWHERE: Bounds = ((-math.inf, math.inf), (-math.inf, math.inf))
+POINTS = FIRST.shape[1]
+HALF = POINTS // 2
+# A step is the largest power of two up to this part of the domain. (With powers of two parameters
+# and steps are added without rounding, but for the last bit.)
+STEP = 1 / 256
+CHUNK = 4096  # rows for which all points are evaluated at once
+# Where differences of seven points are not the same to SAME, relative to the differences of values,
+# steps are divided by FINER, at most LEVELS times, and as long as that helps or doubt is LARGE.
+SAME, LARGE = 1e-10, 1e-3
+FINER, LEVELS = 4.0, 5
+ROUNDING = 2.0**-46  # of values, in which a difference is lost
+
+
+class Differentiable(ABC):
+    """A function x(u,v) that knows its derivatives, and may be called by several threads."""
+
+    has_gaps: ClassVar[bool] = False  # whether derivatives may be NaN at single places
+
+    @property
+    def differentiable(self) -> bool:
+        """Whether `jets` can be called."""
+        return True
+
+    @abstractmethod
+    def __call__(self, u: Array, v: Array) -> Array:
+        """Return the points (..., 3) for parameters of one shape."""
+
+    @abstractmethod
+    def jets(self, u: Array, v: Array) -> Array:
+        """Return x, x_u, x_v, x_uu, x_uv, x_vv (k, 6, 3) for u (k,) and v (k,)."""
+
+    def differences(self, boundary: Boundary) -> Differences | None:
+        """Return the differences that the derivatives are, if they are; for boundary conditions."""
+        return None
+
+
+@dataclass(frozen=True)
+class Differences:
+    """The derivatives of a function over a domain, by differences; it is called inside only."""
+
+    function: Function
+    domain: Domain
+    boundary: Boundary
+    step: float = STEP  # relative to the domain
+
+    def coarser(self) -> Differences:
+        """Return differences with steps of twice the size."""
+        return replace(self, step=2.0 * self.step)
+
+    def jets(self, u: Array, v: Array) -> Array:
+        """Return x, x_u, x_v, x_uu, x_uv, x_vv (k, 6, 3) for u (k,) and v (k,)."""
+        (u0, u1), (v0, v1) = self.domain
+        steps = power_of_two(self.step * (u1 - u0)), power_of_two(self.step * (v1 - v0))
+        bounds = (
+            _bounds(self.domain[0], self.boundary[0]),
+            _bounds(self.domain[1], self.boundary[1]),
+        )
+        jets = np.empty((u.size, len(NAMES), 3))
+        for start in range(0, u.size, CHUNK):
+            rows = slice(start, start + CHUNK)
+            jets[rows] = self._refined(u[rows], v[rows], steps, bounds)
+        return jets
+
+    def _refined(self, u: Array, v: Array, steps: tuple[float, float], bounds: Bounds) -> Array:
+        """Return 2-jets (k, 6, 3) with smaller steps where these make a difference."""
+        jets, doubts = differences(self._inside, u, v, steps, bounds)
+        rows = np.flatnonzero(doubts > SAME)
+        for _ in range(LEVELS):
+            if not rows.size:
+                break
+            steps = steps[0] / FINER, steps[1] / FINER
+            finer, new = differences(self._inside, u[rows], v[rows], steps, bounds)
+            better = new < doubts[rows]
+            jets[rows[better]], doubts[rows[better]] = finer[better], new[better]
+            rows = rows[(better & (new > SAME)) | (new > LARGE)]
+        return jets
+
+    def _inside(self, u: Array, v: Array) -> Array:
+        return self.function(*moved_inside(u, v, self.domain, self.boundary))
+
+
+def _bounds(interval: Interval, ends: BoundaryPair) -> Interval:
+    """Return where open ends are; beyond others the surface goes on."""
+    (low, high), (at_low, at_high) = interval, ends
+    return low if at_low == "open" else -math.inf, high if at_high == "open" else math.inf
+
+
+def power_of_two(value: float) -> float:
+    """Return the largest power of two that is not above a positive number."""
+    return math.ldexp(1.0, math.frexp(value)[1] - 1)
+
+
+def moved_inside(u: Array, v: Array, domain: Domain, boundary: Boundary) -> tuple[Array, Array]:
+    """Return parameters of the same points inside the domain, where its ends say how it goes on.
+
+    Beyond open ends, parameters stay what they are.
+    """
+    places = u.copy(), v.copy()
+    for axis in (0, 1):
+        values, others = places[axis], places[1 - axis]
+        low, high = domain[1 - axis]
+        for end, kind, sign in zip(domain[axis], boundary[axis], (-1.0, 1.0), strict=True):
+            out = sign * (values - end) > 0.0
+            if kind == "pole":  # the opposite meridian
+                half = np.where(others[out] < (low + high) / 2, 0.5, -0.5)
+                others[out] += half * (high - low)
+                values[out] = 2.0 * end - values[out]
+    for axis in (0, 1):
+        kind = boundary[axis][0]
+        if kind in ("periodic", "mirrored"):
+            odd = _brought_back(places[axis], *domain[axis])
+            if kind == "mirrored":
+                places[1 - axis][odd] = sum(domain[1 - axis]) - places[1 - axis][odd]
+    return places
+
+
+def _brought_back(values: Array, low: float, high: float) -> NDArray[np.intp]:
+    """Subtract whole periods in place; return the rows where their number is odd."""
+    out = np.flatnonzero((values < low) | (values > high))
+    periods = np.floor((values[out] - low) / (high - low))
+    values[out] = np.clip(values[out] - periods * (high - low), low, high)
+    return out[periods % 2.0 == 1.0]
+
+
+def numerical_jets(
+    function: Function,
+    u: Array,
+    v: Array,
+    steps: tuple[float, float],
+    bounds: Bounds = EVERYWHERE,
+) -> Array:
+    """Return the first of what `differences` returns."""
+    return differences(function, u, v, steps, bounds)[0]
+
+
+def differences(
+    function: Function,
+    u: Array,
+    v: Array,
+    steps: tuple[float, float],
+    bounds: Bounds = EVERYWHERE,
+) -> tuple[Array, Array]:
+    """Return x, x_u, x_v, x_uu, x_uv, x_vv of a function by differences of nine points.
+
+    Parameters
+    ----------
+    function : callable
+        ``function(u, v)`` gets arrays (27 k,) and returns points (27 k, 3). It is called once.
+    u, v : (k,) float64 array
+        The parameters.
+    steps : (float, float)
+        The distances of the points along u and v, preferably powers of two.
+    bounds : pair of (float, float)
+        The function is only called between these ends, at least 16 steps apart; points next to them
+        are differentiated by points on one side.
+
+    Returns
+    -------
+    (k, 6, 3) float64 array
+        The error of a first derivative is about h⁸/630 of the ninth derivative plus 2 ε/h of the
+        value, that of a second derivative h⁸/3150 of the tenth plus 8 ε/h²: ten to a thousand times
+        as much next to a bound.
+    (k,) float64 array
+        How far they are from differences of seven points, relative to the differences of values:
+        infinity where a value is not finite, but for those of which x itself is not.
+
+    """
+    (shift_u, inward_u), (shift_v, inward_v) = (
+        _shifts(x, step, *ends) for x, step, ends in zip((u, v), steps, bounds, strict=True)
+    )
+    # Along the diagonal that leads away from the nearer bounds there is room for both shifts.
+    shift = np.maximum(np.abs(shift_u), np.abs(shift_v)) * inward_u
+    sign = inward_u * inward_v
+    central = np.arange(-HALF, HALF + 1)[:, None]
+    along_u, along_v, diagonal = (central + x for x in (shift_u, shift_v, shift))
+    still = np.zeros_like(diagonal)
+    nodes = (
+        _nodes(u, np.concatenate([along_u, still, diagonal]), steps[0], *bounds[0]),
+        _nodes(v, np.concatenate([still, along_v, diagonal * sign]), steps[1], *bounds[1]),
+    )
+    values = function(nodes[0].ravel(), nodes[1].ravel()).reshape(3, POINTS, u.size, 3)
+    points = values[1, HALF - shift_v, np.arange(u.size)]
+    values = values - points
+    jets = np.empty((u.size, len(NAMES), 3))
+    jets[:, 0] = points
+    jets[:, 1] = _weighted(FIRST, shift_u, values[0]) / steps[0]
+    jets[:, 2] = _weighted(FIRST, shift_v, values[1]) / steps[1]
+    uu, vv = _weighted(SECOND, shift_u, values[0]), _weighted(SECOND, shift_v, values[1])
+    both = _weighted(SECOND, shift, values[2])  # h² x_uu ± 2 h k x_uv + k² x_vv
+    jets[:, 3] = uu / steps[0] ** 2
+    jets[:, 4] = sign[:, None] * (both - uu - vv) / (2.0 * steps[0] * steps[1])
+    jets[:, 5] = vv / steps[1] ** 2
+    size = ROUNDING * np.abs(points).max(axis=1)
+    doubts = np.maximum(_doubts(values[0], shift_u, size), _doubts(values[1], shift_v, size))
+    lost = ~np.isfinite(jets).all(axis=(1, 2))
+    doubts[lost] = np.where(np.isfinite(points[lost]).all(axis=1), np.inf, 0.0)
+    return jets, doubts
+
+
+def _doubts(values: Array, shifts: NDArray[np.int64], least: Array) -> Array:
+    """Return what two points less change, relative to the differences (9, k, 3) of values."""
+    changes = np.array([_weighted(x, shifts, values) for x in (FIRST_CHANGE, SECOND_CHANGE)])
+    size, change = (np.abs(x).max(axis=0).max(axis=1) for x in (values, changes))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.nan_to_num(change / (size + least))
+
+
+def _shifts(
+    values: Array, step: float, low: float, high: float
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the steps by which points are shifted to stay inside, and the sign of the way in."""
+    before = np.clip(np.floor((values - low) / step), 0, HALF)
+    after = np.clip(np.floor((high - values) / step), 0, HALF)
+    inward = np.where(values - low < high - values, 1, -1)
+    return (after - before).astype(np.int64), inward
+
+
+def _nodes(
+    values: Array, offsets: NDArray[np.int64], step: float, low: float, high: float
+) -> Array:
+    """Return the places of a difference; rounding takes none of them out of the bounds."""
+    return np.clip(values + offsets * step, np.minimum(low, values), np.maximum(high, values))
+
+
+def _weighted(weights: Array, shifts: NDArray[np.int64], values: Array) -> Array:
+    """Return the sums (k, 3) of values (9, k, 3) with the weights of their shifts."""
+    return np.einsum("kj,jkc->kc", weights[shifts + HALF], values)

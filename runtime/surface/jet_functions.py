@@ -1,0 +1,103 @@
+"""Where the derivatives of a surface come from: its formulas, its user, or differences."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import SurfaceError
+from ..evaluation import returned
+from ..splines.domain import Boundary, Domain
+from .derivatives import NAMES, Differences, Differentiable, Function
+
+__all__ = ["jet_function"]
+
+Array = NDArray[np.float64]
+Evaluation = Callable[[Array, Array], ArrayLike]
+
+# Given derivatives are compared with numerical ones at points (i/√2, i/√3) modulo 1 of the domain.
+PLACES = 48
+# They may differ by TOLERANCE, relative to the largest of their kind, and by DOUBT times the change
+# of the numerical ones when their steps are doubled.
+TOLERANCE = 1e-5
+DOUBT = 10.0
+
+
+def jet_function(
+    function: Evaluation,
+    derivatives: Evaluation | None,
+    domain: Domain,
+    boundary: Boundary,
+    name: str,
+) -> Function:
+    """Return the function of u (k,) and v (k,) that gives the 2-jets (k, 6, 3) of a surface."""
+    label = f"surface {name!r}"
+    numerical = Differences(Guarded(function, (3,), f"the callable of {label}"), domain, boundary)
+    if derivatives is not None:
+        guarded = Guarded(derivatives, (len(NAMES), 3), f"derivatives of {label}")
+        compare(guarded, numerical, label)
+        return guarded
+    if not isinstance(function, Differentiable) or not function.differentiable:
+        return numerical.jets
+    return Filled(function, numerical) if function.has_gaps else function.jets
+
+
+class Guarded:
+    """A user's callable, whose results have one shape, and which one thread calls at a time."""
+
+    def __init__(self, function: Evaluation, shape: tuple[int, ...], label: str) -> None:
+        """Keep the callable, the shape of what it returns for one place, and its name."""
+        self.function, self.shape, self.label = function, shape, label
+        self.lock = threading.RLock()
+
+    def __call__(self, u: Array, v: Array) -> Array:
+        """Return what the callable returns; SurfaceError unless it is an array of that shape."""
+        with self.lock:
+            return returned(self.function, (u, v), self.shape, self.label)
+
+
+@dataclass(frozen=True)
+class Filled:
+    """Derivatives of a formula, and numerical ones where these are not finite."""
+
+    function: Differentiable
+    numerical: Differences
+
+    def __call__(self, u: Array, v: Array) -> Array:
+        """Return the 2-jets (k, 6, 3)."""
+        jets = self.function.jets(u, v)
+        bad = ~np.isfinite(jets).all(axis=(1, 2))
+        if bad.any():
+            jets[bad] = self.numerical.jets(u[bad], v[bad])
+        return jets
+
+
+def compare(derivatives: Guarded, numerical: Differences, label: str) -> None:
+    """Raise SurfaceError if derivatives are not finite, or not those of the function.
+
+    The message says which one, where, and by how much.
+    """
+    steps = np.arange(1, PLACES + 1)
+    u, v = (
+        low + (high - low) * (np.sqrt(x) * steps % 1.0)
+        for x, (low, high) in zip((0.5, 1 / 3), numerical.domain, strict=True)
+    )
+    given, found, coarse = derivatives(u, v), numerical.jets(u, v), numerical.coarser().jets(u, v)
+    known = np.logical_and.reduce(np.isfinite(found) & np.isfinite(coarse), axis=-1)
+    sizes = np.abs(np.where(known[..., None], found, 0.0)).max(axis=(0, 2))
+    with np.errstate(invalid="ignore"):
+        error: Array = np.abs(given - found).max(axis=-1)
+        allowed = TOLERANCE * sizes + DOUBT * np.abs(found - coarse).max(axis=-1)
+        wrong: NDArray[np.bool_] = known & ~(error <= allowed)
+    if wrong.any():
+        order = int(np.argmax(wrong.any(axis=0)))  # the first that is wrong explains the others
+        place = int(np.argmax(np.where(wrong, error, -1.0)[:, order]))
+        raise SurfaceError(
+            f"derivatives of {label} contradict it: {NAMES[order]} at u = {float(u[place])}, v = "
+            f"{float(v[place])} is given as {given[place, order]}, and differences of points give "
+            f"{found[place, order]}, {error[place, order]:.2g} away."
+        )

@@ -1,0 +1,150 @@
+"""Callables of SymPy expressions: points, and symbolic derivatives; pickled as the expressions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..expressions import as_position
+from .derivatives import NAMES, Differentiable
+
+if TYPE_CHECKING:
+    import sympy
+
+__all__ = ["Expressions", "compiled"]
+
+# Expressions with more operations are not differentiated: derivatives would take minutes.
+MOST_OPERATIONS = 2000
+PROBES = np.array([0.25, 0.75])  # for which derivatives are tried, whatever they are there
+
+
+@dataclass(frozen=True, eq=False)
+class Expressions(Differentiable):
+    """A NumPy function of three expressions in two symbols, or of two in one."""
+
+    has_gaps = True  # sin(u)/u
+
+    expressions: tuple[Any, ...]
+    symbols: tuple[sympy.Symbol, ...]
+
+    def compile(self) -> None:
+        """Prepare the first call; InputError if the expressions are unusable."""
+        _ = self._position
+
+    @property
+    def differentiable(self) -> bool:
+        """Whether SymPy has the derivatives, and NumPy their functions."""
+        return self._derivatives is not None
+
+    def __call__(self, *values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the points (..., 3) or (..., 2) for parameters of one shape."""
+        shape = values[0].shape
+        return np.stack([np.broadcast_to(x, shape) for x in self._position(*values)], axis=-1)
+
+    def jets(self, u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return positions and derivatives (k, 6, 3)."""
+        assert self._derivatives is not None
+        result = np.empty((u.size, 3 * len(NAMES)))
+        with np.errstate(all="ignore"):
+            for column, values in enumerate(self._derivatives(u, v)):
+                result[:, column] = values
+        return result.reshape(-1, len(NAMES), 3)
+
+    def __getstate__(self) -> dict[str, object]:
+        """Return what is pickled: the expressions without the functions made of them."""
+        return {"expressions": self.expressions, "symbols": self.symbols}
+
+    @cached_property
+    def _position(self) -> Callable[..., Any]:
+        return _lambdified(self.symbols, self.expressions)
+
+    @cached_property
+    def _derivatives(self) -> Callable[..., Any] | None:
+        """The function of 18 expressions, or None if there is none."""
+        expressions = _jet(self.expressions, self.symbols)
+        if expressions is None:
+            return None
+        try:
+            function = _lambdified(self.symbols, expressions)
+            with np.errstate(all="ignore"):
+                values = [np.asarray(x) for x in function(PROBES, PROBES)]
+        except Exception:  # what NumPy lacks, and what SymPy's printer writes for it
+            return None
+        return function if all(x.dtype.kind in "fi" for x in values) else None
+
+
+def compiled(position: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> Expressions:
+    """Return f(u, v) → (..., 3) for three expressions in two symbols, or f(t) → (..., 2).
+
+    Raises InputError if they are unusable.
+    """
+    function = Expressions(as_position(position, symbols), tuple(symbols))
+    function.compile()
+    return function
+
+
+def _jet(expressions: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> list[Any] | None:
+    """Return positions and derivatives, one after the other; None where SymPy has none."""
+    import sympy as sp
+
+    if sum(x.count_ops() for x in expressions) > MOST_OPERATIONS:
+        return None
+    real = {x: sp.Dummy(x.name, real=True) for x in symbols}  # |u| has no derivative if u is not
+    u, v = real.values()
+    try:
+        x = [_with_floor(e.xreplace(real)) for e in expressions]
+        x_u, x_v = ([_derivative(e, by) for e in x] for by in (u, v))
+        x_uu, x_uv = ([_derivative(e, by) for e in x_u] for by in (u, v))
+        x_vv = [_derivative(e, v) for e in x_v]
+    except Exception:  # SymPy raises anything
+        return None
+    jet = [*x, *x_u, *x_v, *x_uu, *x_uv, *x_vv]
+    if any(e.has(sp.Derivative, sp.Subs, sp.zoo, sp.nan) for e in jet):
+        return None
+    return [e.xreplace({y: x for x, y in real.items()}) for e in jet]
+
+
+def _with_floor(expression: Any) -> Any:  # noqa: ANN401 - SymPy has no types
+    """Write remainders by floor, whose derivative is known."""
+    import sympy as sp
+
+    written = expression.replace(sp.Mod, lambda x, y: x - y * sp.floor(x / y))
+    return written.replace(sp.frac, lambda x: x - sp.floor(x))
+
+
+def _derivative(expression: Any, by: sympy.Symbol) -> Any:  # noqa: ANN401 - SymPy has no types
+    """Differentiate away from kinks and jumps, such as those of |u| and of floor(u)."""
+    import sympy as sp
+
+    flat = sp.sign, sp.floor, sp.ceiling, sp.Heaviside
+    derivative = sp.diff(expression, by)
+    jumps = {
+        x: sp.S.Zero
+        for x in derivative.atoms(sp.DiracDelta, sp.Derivative, sp.Subs)
+        if isinstance(x, sp.DiracDelta) or isinstance(_differentiated(x), flat)
+    }
+    return derivative.xreplace(jumps)
+
+
+def _differentiated(expression: Any) -> Any:  # noqa: ANN401
+    """Return the function in a derivative, f for f'(g)."""
+    return expression.args[0].args[0] if expression.args[0].args else None
+
+
+def _lambdified(symbols: Sequence[sympy.Symbol], expressions: Sequence[Any]) -> Callable[..., Any]:
+    """Return a NumPy function of expressions; InputError if NumPy lacks one of their functions."""
+    import sympy as sp
+
+    if lacking := set().union(*(e.atoms(sp.erf, sp.erfc) for e in expressions)):
+        name = min(x.func.__name__ for x in lacking)
+        raise InputError(f"position uses {name}, which NumPy does not have.")
+    try:
+        return sp.lambdify(symbols, list(expressions), modules="numpy", cse=True, dummify=True)
+    except (RecursionError, MemoryError, SyntaxError):  # SyntaxError: too many brackets
+        raise InputError("position is nested too deeply to be compiled.") from None

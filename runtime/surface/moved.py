@@ -1,0 +1,168 @@
+"""Surfaces that are moved by affine maps, and turned inside out: points, derivatives, grids."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..checks import real_array
+from ..errors import InputError
+from ..evaluation import returned
+from ..splines.domain import Boundary, Domain, Interval
+from .derivatives import Differences, Differentiable
+from .trim import Part, Trim
+
+if TYPE_CHECKING:
+    from .surface import Surface
+
+__all__ = ["IDENTITY", "AffineMap", "Moved", "affine_map", "moved_grid", "turned_trim"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class AffineMap:
+    """The map x → matrix x + shift."""
+
+    matrix: Array
+    shift: Array
+
+    def after(self, first: AffineMap) -> AffineMap:
+        """Return the map that does `first`, then this one."""
+        return AffineMap(self.matrix @ first.matrix, self.directions(first.shift) + self.shift)
+
+    @property
+    def reflects(self) -> bool:
+        """Whether the determinant is negative."""
+        return bool(np.linalg.slogdet(self.matrix)[0] < 0.0)
+
+    def points(self, points: Array) -> Array:
+        """Return points (..., 3) after the map."""
+        return self.directions(points) + self.shift
+
+    def directions(self, vectors: Array) -> Array:
+        """Return vectors (..., 3), such as derivatives, after the map."""
+        return vectors @ self.matrix.T
+
+
+IDENTITY = AffineMap(np.eye(3), np.zeros(3))
+
+
+def affine_map(matrix: ArrayLike) -> AffineMap:
+    """Return the map of a matrix (3, 3) or (4, 4); InputError if it is none, or singular."""
+    array = real_array(matrix, "matrix")
+    if array.shape not in ((3, 3), (4, 4)):
+        raise InputError(f"matrix must have the shape (3, 3) or (4, 4), not {array.shape}.")
+    if not np.isfinite(array).all():
+        raise InputError("matrix holds NaN or infinity.")
+    if array.shape == (4, 4) and (array[3] != (0.0, 0.0, 0.0, 1.0)).any():
+        raise InputError(
+            f"the last row of matrix must be (0, 0, 0, 1), not {array[3]}: "
+            "projective maps are not affine."
+        )
+    linear = array[:3, :3]
+    largest = np.abs(linear).max()
+    if largest == 0.0 or np.linalg.matrix_rank(linear / largest) < 3:
+        raise InputError("matrix is singular: it maps space onto a plane, a line or a point.")
+    return AffineMap(linear.copy(), array[:3, 3].copy() if len(array) == 4 else np.zeros(3))
+
+
+@dataclass(frozen=True, eq=False)
+class Moved(Differentiable):
+    """The function of a surface that is moved; if it is `turned`, u is reversed between `ends`."""
+
+    surface: Surface
+    map: AffineMap
+    turned: bool
+    ends: Interval
+
+    @classmethod
+    def of(cls, surface: Surface) -> Moved:
+        """Return the function of a surface as a moved one: its own, if it is one."""
+        if isinstance(surface.function, Moved):
+            return surface.function
+        return cls(surface, IDENTITY, False, surface.domain[0])
+
+    def then(self, map_: AffineMap, turned: bool) -> Moved:
+        """Return this function after a further motion."""
+        return replace(self, map=map_.after(self.map), turned=self.turned != turned)
+
+    def __call__(self, u: Array, v: Array) -> Array:
+        """Return the points (..., 3)."""
+        label = f"the callable of surface {self.surface.name!r}"
+        points = returned(self.surface.function, (self._own(u), v), (3,), label)
+        return self.map.points(points)
+
+    def jets(self, u: Array, v: Array) -> Array:
+        """Return positions and derivatives (k, 6, 3)."""
+        jets = self.map.directions(self.surface.jets(self._own(u), v))
+        jets[:, 0] += self.map.shift
+        if self.turned:
+            jets[:, [1, 4]] *= -1.0  # x_u and x_uv
+        return jets
+
+    def differences(self, boundary: Boundary) -> Differences | None:
+        """Return the differences of the moved function, if the surface has differences."""
+        own = self.surface.differences
+        if own is None:
+            return None
+
+        def evaluate(u: Array, v: Array) -> Array:
+            return self.map.points(own.function(self._own(u), v))
+
+        return replace(own, function=evaluate, boundary=boundary)
+
+    def _own(self, u: Array) -> Array:
+        """Return the surface's own parameters u."""
+        low, high = self.ends
+        if not self.turned:
+            return u
+        return np.select([u == low, u == high], [high, low], low + high - u)  # ends are exact
+
+
+def moved_grid(grid: Array, boundary: Boundary, map_: AffineMap, turned: bool) -> Array:
+    """Return the points of a grid (m, n, 3) after a map, and with u reversed if it is turned."""
+    points = map_.points(grid)
+    (along_u, _), (along_v, _) = boundary
+    if not turned:
+        return points
+    if along_u in ("open", "pole"):
+        return points[::-1].copy()
+    points = np.roll(points[::-1], 1, axis=0)
+    if along_u == "mirrored":  # u = 0 is now where u ended, at the mirror image of the first row
+        points[0] = points[0, ::-1] if along_v != "periodic" else np.roll(points[0, ::-1], 1, 0)
+    return points
+
+
+def turned_trim(trim: Trim, boundary: Boundary) -> Trim:
+    """Return a trim of the surface with reversed u, whose boundary conditions are given."""
+    low, high = trim.domain[0]
+    parts = (Turned.of(part, low + high) for part in trim.parts)
+    return replace(trim, boundary=boundary, parts=tuple(parts))
+
+
+@dataclass(frozen=True, eq=False)
+class Turned:
+    """One condition of a trim after u → total - u."""
+
+    part: Part
+    total: float
+
+    @staticmethod
+    def of(part: Part, total: float) -> Part:
+        """Return a condition after reversal, the original one after two."""
+        return part.part if isinstance(part, Turned) else Turned(part, total)
+
+    def contains(self, uv: Array, threads: int | None = None) -> NDArray[np.bool_]:
+        """Return whether points (k, 2) fulfil it."""
+        own = np.stack([self.total - uv[:, 0], uv[:, 1]], axis=1)
+        return self.part.contains(own, threads)
+
+    def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> NDArray[np.bool_] | None:
+        """Return the cells (m, n) of a grid that its border may pass."""
+        (low, high), along_v = domain
+        found = self.part.cells_of_border(((self.total - high, self.total - low), along_v), cells)
+        return None if found is None else found[::-1]

@@ -1,0 +1,107 @@
+"""A NURBS surface as an object that evaluates points and derivatives."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import compiling  # noqa: F401 - announces compilation on terminals
+from ..errors import InputError
+from ..kernels import nurbs as kernels
+from ..splines.domain import Domain
+from ..tolerances import SAME_PARAMETER
+from .derivatives import Differentiable
+
+__all__ = ["Nurbs"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Nurbs(Differentiable):
+    """A NURBS surface over a rectangle of its parameters: `nurbs(u, v)` and `nurbs.jets(u, v)`.
+
+    `points` are (m, n, 3), or (m, n, 4) if they are w x, w y, w z, w; they are relative to `centre`
+    (3,), so that a surface far from the origin keeps its digits. At the ends of the domain, which
+    may be lines where the surface is not smooth, it is evaluated from inside. `creases` are the
+    values of u, and those of v, inside the domain where it is not smooth.
+    """
+
+    degrees: tuple[int, int]
+    knots: tuple[Array, Array]
+    points: Array
+    centre: Array
+    domain: Domain
+    periodic: tuple[bool, bool] = (False, False)
+    creases: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
+
+    def __repr__(self) -> str:
+        m, n, _ = self.points.shape
+        return f"Nurbs({m} × {n} control points of degrees {self.degrees})"
+
+    def __call__(self, u: Array, v: Array) -> Array:
+        """Return points (..., 3); InputError outside the domain where it is not periodic."""
+        for name, values, ends, periodic in zip(
+            "uv", (u, v), self.domain, self.periodic, strict=True
+        ):
+            slack = SAME_PARAMETER * (ends[1] - ends[0])
+            outside = (values < ends[0] - slack) | (values > ends[1] + slack)
+            if not periodic and outside.any():
+                raise InputError(f"{name} = {values[outside][0]} lies outside the domain {ends}.")
+        points = np.empty((u.size, 3))
+        places = np.array(u.ravel()), np.array(v.ravel())
+        kernels.positions(self._net, *places, self._scratch(), points)
+        return points.reshape(*u.shape, 3)
+
+    def jets(self, u: Array, v: Array) -> Array:
+        """Return x, x_u, x_v, x_uu, x_uv, x_vv (k, 6, 3) at u (k,) and v (k,).
+
+        Nothing is checked. Beyond an end of the domain the last polynomials go on.
+        """
+        jets = np.empty((len(u), 6, 3))
+        u, v = np.array(u), np.array(v)  # other memory layouts would be compiled for
+        kernels.jets(self._net, u, v, self._scratch(), jets)
+        return jets
+
+    def restricted(self, domain: Domain) -> Nurbs:
+        """Return the same surface over a part of its domain; it is periodic where that is whole."""
+        whole = zip(self.periodic, domain, self.domain, strict=True)
+        u, v = (periodic and part == ends for periodic, part, ends in whole)
+        lines_u, lines_v = (
+            tuple(x for x in lines if low < x < high)
+            for lines, (low, high) in zip(self.creases, domain, strict=True)
+        )
+        return replace(self, domain=domain, periodic=(u, v), creases=(lines_u, lines_v))
+
+    @property
+    def control_points(self) -> Array:
+        """The control points (m, n, 3)."""
+        points, weights = self.points[:, :, :3], self.points[:, :, 3:]
+        return self.centre + (points / weights if weights.size else points)
+
+    @cached_property
+    def _net(self) -> kernels.Net:
+        spans = [
+            (np.searchsorted(knots, low, "right") - 1, np.searchsorted(knots, high, "left") - 1)
+            for knots, (low, high) in zip(self.knots, self.domain, strict=True)
+        ]
+        periods = [
+            (low, high - low if periodic else 0.0)
+            for periodic, (low, high) in zip(self.periodic, self.domain, strict=True)
+        ]
+        return kernels.Net(
+            np.array(self.degrees, dtype=np.int64),
+            *self.knots,
+            np.array(spans, dtype=np.int64),
+            np.array(periods),
+            self.points,
+            self.centre,
+        )
+
+    def _scratch(self) -> kernels.Scratch:
+        """Return memory for one call: calls of several threads share none."""
+        p, q = self.degrees
+        return kernels.Scratch(np.empty((3, p + 1)), np.empty((3, q + 1)), np.zeros((6, 4)))

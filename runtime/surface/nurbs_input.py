@@ -1,0 +1,222 @@
+"""What a user says of a NURBS surface, checked: numbers, or an object of geomdl or Splipy."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..checks import real_array, whole_number
+from ..errors import InputError, shown
+from .nurbs import Nurbs
+
+__all__ = ["MOST_DEGREE", "nurbs_of"]
+
+Array = NDArray[np.float64]
+
+# No format for CAD data holds larger degrees.
+MOST_DEGREE = 25
+
+
+class Definition(NamedTuple):
+    """What defines a NURBS surface, as `Surface.from_nurbs` takes it."""
+
+    degrees: Any
+    knots: Any
+    control_points: Any
+    weights: Any
+
+
+def nurbs_of(degrees: Any, knots: Any, control_points: Any, weights: Any) -> Nurbs:  # noqa: ANN401
+    """Return the NURBS surface of numbers, or of an object in the place of the degrees.
+
+    Raises InputError if they do not define one.
+    """
+    if knots is None and control_points is None and weights is None:
+        return nurbs_of_arrays(*_definition_of(degrees))
+    return nurbs_of_arrays(degrees, knots, control_points, weights)
+
+
+# --- arrays ---------------------------------------------------------------------------------------
+
+
+def nurbs_of_arrays(
+    degrees: Any,  # noqa: ANN401 - what a user gives
+    knots: Any,  # noqa: ANN401
+    control_points: Any,  # noqa: ANN401
+    weights: Any,  # noqa: ANN401
+) -> Nurbs:
+    """Return the NURBS surface of these numbers; InputError if they do not define one."""
+    p, q = (_degree(x, name) for x, name in zip(_pair(degrees, "degrees"), "uv", strict=True))
+    points = _finite(control_points, "control_points")
+    if points.ndim != 3 or points.shape[2] != 3 or 0 in points.shape:
+        raise InputError(f"control_points must have the shape (m, n, 3), not {points.shape}.")
+    knots_u, knots_v = (
+        _knots(x, degree, count, name)
+        for x, degree, count, name in zip(
+            _pair(knots, "knots"), (p, q), points.shape, "uv", strict=False
+        )
+    )
+    low, high = (f(axis=(0, 1)) for f in (points.min, points.max))
+    centre = low / 2 + high / 2
+    points = points - centre
+    if weights is not None:
+        factors = _weights(weights, points.shape[:2])[:, :, None]
+        points = np.concatenate([points * factors, factors], axis=2)
+    domain = (
+        (float(knots_u[p]), float(knots_u[-p - 1])), (float(knots_v[q]), float(knots_v[-q - 1])),
+    )  # fmt: skip
+    return Nurbs((p, q), (knots_u, knots_v), np.ascontiguousarray(points), centre, domain)
+
+
+def _pair(values: Any, name: str) -> tuple[Any, Any]:  # noqa: ANN401 - what a user gives
+    try:
+        u, v = values
+    except (TypeError, ValueError):
+        raise InputError(f"{name} must be a pair, one for u and one for v.") from None
+    return u, v
+
+
+def _degree(value: object, name: str) -> int:
+    degree = whole_number(value, f"the degree of {name}")
+    if degree > MOST_DEGREE:
+        raise InputError(f"the degree of {name} must be at most {MOST_DEGREE}, not {degree}.")
+    return degree
+
+
+def _finite(values: ArrayLike, name: str) -> Array:
+    """Return a float64 array; InputError if it holds anything but finite numbers, and where."""
+    array = real_array(values, name)
+    if not np.isfinite(array).all():
+        where = np.argwhere(~np.isfinite(array))[0].tolist()
+        raise InputError(f"{name} has {array[tuple(where)]} at index {where}.")
+    return array
+
+
+def _knots(values: ArrayLike, degree: int, count: int, name: str) -> Array:
+    """Return the knots for `count` control points; InputError if they do not fit."""
+    knots = _finite(values, f"the knots of {name}")
+    if count <= degree:
+        raise InputError(
+            f"degree {degree} in {name} needs at least {degree + 1} control points along {name}, "
+            f"and there are {count}."
+        )
+    if knots.shape != (count + degree + 1,):
+        raise InputError(
+            f"{count} control points of degree {degree} along {name} need {count + degree + 1} "
+            f"knots, not {knots.size if knots.ndim == 1 else shown(knots.shape)}."
+        )
+    falls = np.flatnonzero(np.diff(knots) < 0.0)
+    if len(falls):
+        k = int(falls[0])
+        raise InputError(
+            f"the knots of {name} decrease: {float(knots[k])!r} is followed by "
+            f"{float(knots[k + 1])!r}."
+        )
+    low, high = float(knots[degree]), float(knots[count])
+    if not 0.0 < high - low < np.inf:
+        raise InputError(f"the knots of {name} leave no domain: it is from {low!r} to {high!r}.")
+    _check_multiplicities(knots, degree, name)
+    return knots
+
+
+def _check_multiplicities(knots: Array, degree: int, name: str) -> None:
+    """Raise InputError for knots inside the domain that tear the surface, and needless ones."""
+    values, counts = np.unique(knots, return_counts=True)
+    inside = (values > knots[degree]) & (values < knots[-degree - 1])
+    for many, reason in (
+        (inside & (counts > degree), "there, the surface would be torn"),
+        (counts > degree + 1, "some control points would do nothing"),
+    ):
+        if many.any():
+            k = int(np.argmax(many))
+            raise InputError(
+                f"the knot {float(values[k])!r} of {name} occurs {counts[k]} times, which is too "
+                f"often for degree {degree}: {reason}."
+            )
+
+
+def _weights(values: ArrayLike, shape: tuple[int, ...]) -> Array:
+    """Return weights of which the largest is about 1; InputError unless all are positive."""
+    weights = _finite(values, "weights")
+    if weights.shape != shape:
+        raise InputError(
+            f"weights must have the shape {shape}, one for each control point, not {weights.shape}."
+        )
+    if not (weights > 0.0).all():
+        i, j = np.argwhere(~(weights > 0.0))[0].tolist()
+        kind = "zero" if weights[i, j] == 0.0 else "negative"
+        raise InputError(
+            f"a NURBS with a {kind} weight has no finite surface everywhere: weights[{i}, {j}] is "
+            f"{float(weights[i, j])!r}, and all must be positive."
+        )
+    return np.ldexp(weights, -int(np.frexp(weights.max())[1]))
+
+
+# --- objects --------------------------------------------------------------------------------------
+
+
+def _definition_of(value: object) -> Definition:
+    """Return what defines a surface of geomdl or Splipy, known by the names of its attributes.
+
+    Raises InputError for other objects, and for what cannot be taken over.
+    """
+    if _has(value, "degree_u", "degree_v", "knotvector_u", "knotvector_v", "ctrlpts"):
+        return _of_geomdl(value)
+    if _has(value, "bases", "controlpoints", "rational"):
+        return _of_splipy(value)
+    raise InputError(
+        f"from_nurbs takes degrees, knots and control_points, or one surface of geomdl or "
+        f"Splipy, not {shown(value)}."
+    )
+
+
+def _has(value: object, *names: str) -> bool:
+    return all(hasattr(value, name) for name in names)
+
+
+def _of_geomdl(value: Any) -> Definition:  # noqa: ANN401 - it is not imported
+    """Return what defines a `geomdl.BSpline.Surface` or `geomdl.NURBS.Surface`.
+
+    Its control points are in one list, along v first, without their weights.
+    """
+    if len(getattr(value, "trims", ())):
+        raise InputError(
+            "this surface of geomdl has trim curves, which are not taken over: remove them "
+            "(surface.trims = []) and trim what from_nurbs returns."
+        )
+    shape = value.ctrlpts_size_u, value.ctrlpts_size_v
+    try:
+        points = real_array(value.ctrlpts, "control points").reshape(*shape, -1)
+        weights = real_array(value.weights, "weights").reshape(shape) if value.rational else None
+    except ValueError:
+        raise InputError(
+            f"this surface of geomdl does not have {shape[0]} × {shape[1]} control points yet."
+        ) from None
+    return Definition(
+        (value.degree_u, value.degree_v), (value.knotvector_u, value.knotvector_v), points, weights
+    )
+
+
+def _of_splipy(value: Any) -> Definition:  # noqa: ANN401 - it is not imported
+    """Return what defines a `splipy.Surface`.
+
+    Its control points are w x, w y, w z, w if it is rational. Those at the end of a periodic
+    direction are not repeated.
+    """
+    bases = tuple(value.bases)
+    points = real_array(value.controlpoints, "control points")
+    if len(bases) != 2 or points.ndim != 3:
+        raise InputError(
+            f"from_nurbs takes surfaces, and this object of Splipy has {len(bases)} parameters."
+        )
+    for axis, basis in enumerate(bases):
+        repeated = range(int(basis.periodic) + 1)
+        points = np.concatenate([points, points.take(repeated, axis=axis)], axis=axis)
+    weights = points[:, :, -1] if value.rational else None
+    if weights is not None:
+        _weights(weights, weights.shape)  # before they divide
+        points = points[:, :, :-1] / weights[:, :, None]
+    degrees = tuple(int(basis.order) - 1 for basis in bases)
+    return Definition(degrees, tuple(basis.knots for basis in bases), points, weights)

@@ -1,0 +1,529 @@
+"""A surface: how to evaluate x(u,v), over which rectangle, with which boundary conditions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..checks import real_array
+from ..errors import InputError
+from ..splines.domain import (
+    Boundary,
+    Periodicity,
+    assumed_ends,
+    checked_boundary,
+    checked_domain,
+)
+from ..splines.quasi_interpolant import fit_grid
+from .labels import label
+from .moved import IDENTITY, AffineMap, Moved, affine_map, moved_grid, turned_trim
+from .trim import Trim, trimmed_by
+from .values import Evaluation, SurfaceValues
+
+if TYPE_CHECKING:
+    import sympy
+
+__all__ = ["Surface"]
+
+
+@dataclass(frozen=True, eq=False)
+class Surface(SurfaceValues):
+    """A parametric surface x(u,v).
+
+    Make one with `from_callable`, `from_sympy`, `from_nurbs` or `from_grid`, or take one of
+    `gaussmap.surfaces`. Normals point along x_u × x_v.
+
+    Attributes
+    ----------
+    name : str
+        Label of the surface.
+    function : callable
+        ``function(u, v)`` gets two float64 arrays of one shape and returns points of that shape +
+        (3,).
+    domain : ((u0, u1), (v0, v1)) of float
+        The rectangle of the parameters.
+    boundary : pair of pairs of str
+        For u and for v, the boundary conditions at the low and the high end: "open" (an edge),
+        "periodic", "mirrored" (periodic with the other parameter reversed, as on the Möbius band)
+        or "pole" (the end is one point and the opposite meridian continues the surface). Those of
+        the spline may have poles in place of open ends, see `assumed_open`.
+    grid : (m, n, 3) float64 array or None
+        The points of a surface that was given by points; NaN where they are missing.
+    derivative_function : callable or None
+        What `from_callable` was given as derivatives.
+    trim : Trim or None
+        The part of the domain that belongs to the surface, None for all of it; see `trimmed`.
+    assumed_open : (bool, bool)
+        For u and for v, whether open ends were assumed: ``periodic=False``, and not "open". Then
+        `fit` looks whether one of them is a single point through which the surface goes on
+        smoothly, and takes that for a pole, and the other parameter for periodic. If points were
+        given, `boundary` has these poles, and points that repeat the first ones are left out.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> torus = gm.surfaces.torus(major=1.0, minor=0.35)
+    >>> torus.name, torus.boundary, torus.grid, torus.derivative_function, torus.trim
+    ('torus', (('periodic', 'periodic'), ('periodic', 'periodic')), None, None, None)
+    >>> double = gm.Surface.from_callable(
+    ...     lambda u, v: 2 * torus.function(u, v), torus.domain, periodic=(True, True)
+    ... )
+    >>> double.evaluate(0.0, 0.0)
+    array([2.7, 0. , 0. ])
+    >>> disk = gm.Surface.from_sympy(
+    ...     ("r*cos(phi)", "r*sin(phi)", "r**2 / 4"), ("r", "phi"), ((0, 1), (0, "2*pi"))
+    ... )
+    >>> disk.assumed_open, disk.boundary[0], gm.fit(disk, (8, 24)).boundary[0]
+    ((True, True), ('open', 'open'), ('pole', 'open'))
+
+    """
+
+    @classmethod
+    def from_callable(
+        cls,
+        f: Evaluation,
+        domain: Sequence[Sequence[float]],
+        periodic: Sequence[Periodicity] = (False, False),
+        *,
+        derivatives: Evaluation | None = None,
+        name: str | None = None,
+    ) -> Surface:
+        """Make a surface of a vectorized callable f(u, v) → (..., 3).
+
+        Parameters
+        ----------
+        f : callable
+            Gets two float64 arrays of one shape and returns points of that shape + (3,). It is
+            first called when the surface is fitted or evaluated (see `evaluate`).
+        domain : ((u0, u1), (v0, v1)) of float
+            The rectangle of the parameters.
+        periodic : pair, default (False, False)
+            The boundary conditions for u and for v: True (periodic), False (open, and poles are
+            found, see `assumed_open`), one of "open", "periodic", "mirrored", "pole" for both ends,
+            or a pair of these (low end, high end).
+        derivatives : callable, optional
+            ``derivatives(u, v)`` returns (..., 6, 3): x, x_u, x_v, x_uu, x_uv, x_vv. They are
+            compared with numerical ones when they are first used. By default derivatives are
+            numerical, see `derivatives`.
+        name : str, optional
+            Label of the surface. By default the name of f, or "surface" if it has none, with a
+            number from the second surface of that name on: "waves", "waves 2".
+
+        Returns
+        -------
+        Surface
+            The surface.
+
+        Raises
+        ------
+        InputError
+            For an empty or infinite domain, or unknown or contradictory boundary conditions.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> import numpy as np
+        >>> def f(u, v):
+        ...     return np.stack([u, v, 0.2 * np.sin(3 * u) * np.cos(3 * v)], axis=-1)
+        >>> waves = gm.Surface.from_callable(f, ((-1, 1), (-1, 1)), name="waves")
+        >>> gm.fit(waves, (16, 16))
+        Spline(16 × 16 cells of waves)
+
+        """
+        if not callable(f):
+            raise InputError(f"f must be callable as f(u, v), and {type(f).__name__} is not.")
+        if derivatives is not None and not callable(derivatives):
+            raise InputError(
+                "derivatives must be callable as derivatives(u, v), and "
+                f"{type(derivatives).__name__} is not."
+            )
+        ends, assumed = (checked_domain(domain), checked_boundary(periodic)), assumed_ends(periodic)
+        name = label(name, "surface", f)
+        return cls(name, f, *ends, derivative_function=derivatives, assumed_open=assumed)
+
+    @classmethod
+    def from_sympy(
+        cls,
+        position: Sequence[sympy.Expr | str | float],
+        parameters: Sequence[sympy.Symbol | str],
+        domain: Sequence[Sequence[float | str | sympy.Expr]],
+        periodic: Sequence[Periodicity] = (False, False),
+        *,
+        name: str | None = None,
+    ) -> Surface:
+        """Make a surface of three SymPy expressions, or texts, in two parameters.
+
+        Texts are arithmetic with `+ - * / ** ^ // %`, SymPy's elementary functions, `Piecewise`,
+        `Max`, `Sum(f, (k, 0, 9))`, and what SymPy computes exactly, such as `legendre(4, u)` or
+        `factorial(5)`. They are never run as Python.
+
+        Parameters
+        ----------
+        position : three of sympy.Expr, str or float
+            The components of x(u,v).
+        parameters : pair of sympy.Symbol or str
+            The parameters u and v.
+        domain : ((u0, u1), (v0, v1))
+            The rectangle of the parameters: numbers, SymPy numbers, or texts such as "2*pi".
+        periodic : pair, default (False, False)
+            As in `from_callable`.
+        name : str, optional
+            Label of the surface. By default "surface", then "surface 2", and so on.
+
+        Returns
+        -------
+        Surface
+            The surface.
+
+        Raises
+        ------
+        InputError
+            Unless there are three expressions without further symbols, and if one uses another
+            function, is longer than 20,000 characters, nested too deeply, or holds numbers such as
+            9**9**9; for domain and boundary conditions as `from_callable`.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> tube = gm.Surface.from_sympy(
+        ...     ("(2 + cos(v))*cos(u)", "(2 + cos(v))*sin(u)", "sin(v)"), ("u", "v"),
+        ...     domain=((0, "2*pi"), (0, "2*pi")), periodic=(True, True),
+        ... )
+        >>> tube.evaluate(0.0, 0.0)
+        array([3., 0., 0.])
+
+        """
+        from ..expressions import numbers, two_symbols
+        from .lambdified import compiled
+
+        f = compiled(position, two_symbols(parameters))
+        rectangle, boundary = checked_domain(numbers(domain)), checked_boundary(periodic)
+        name = label(name, "surface")
+        return cls(name, f, rectangle, boundary, assumed_open=assumed_ends(periodic))
+
+    @classmethod
+    def from_grid(
+        cls,
+        points: ArrayLike,
+        spacing: Sequence[float] | None = None,
+        periodic: Sequence[Periodicity] = (False, False),
+        *,
+        nodata: float | None = None,
+        name: str | None = None,
+    ) -> Surface:
+        """Make a surface of points, or of elevations.
+
+        One spline cell stands between any four neighbouring points, so that no detail is lost;
+        `fit(cells=...)` chooses otherwise.
+
+        Parameters
+        ----------
+        points : (m, n, 3) or (m, n) array_like
+            Points: u and v are the fractional row and column, u = i and v = j at ``points[i, j]``.
+            A periodic direction must not repeat its first row at its end. Elevations are a map with
+            rows along y and columns along x: ``elevations[i, j]`` is at x = u = j dx, y = v = i dy,
+            in the unit of the elevations, and normals point upward.
+        spacing : (float, float), optional
+            The distances dx, dy of elevations. A negative dy means that rows run from north to
+            south.
+        periodic : pair, default (False, False)
+            As in `from_callable`; for points only.
+        nodata : float, optional
+            The number that stands for missing data, such as −9999; NaN and masked entries do so
+            anyway. What the spline makes of missing points is left out (see `trim`): up to three
+            cells around each.
+        name : str, optional
+            Label of the surface. By default "grid", then "grid 2", and so on.
+
+        Returns
+        -------
+        Surface
+            The surface: a spline, which approximates the points.
+
+        Raises
+        ------
+        InputError
+            For another shape, infinity (and says where), fewer than 4 points in a direction that
+            is not periodic (3 if it is), spacing that is zero, missing for elevations or given for
+            points, boundary conditions as in `from_callable`, and if missing points leave nothing.
+
+        Warns
+        -----
+        GaussmapWarning
+            If there are numbers that often stand for missing data, such as −9999, and no `nodata`.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> import numpy as np
+        >>> heights = np.hypot(*np.meshgrid(np.linspace(-1, 1, 6), np.linspace(-1, 1, 4))) ** 3
+        >>> hill = gm.Surface.from_grid(heights, spacing=(30.0, 30.0))
+        >>> hill.grid.shape, hill.domain
+        ((6, 4, 3), ((0.0, 150.0), (0.0, 90.0)))
+
+        """
+        from ..splines.collapsed import closed_grid
+        from ..splines.grid import points_of_elevations, spline_of_points
+        from ..splines.missing import known_of_grid, without_nodata
+
+        checked, assumed = "grid" if name is None else name, assumed_ends(periodic)
+        array = without_nodata(_grid(points), nodata, checked)
+        boundary, domain = checked_boundary(periodic), None
+        if array.ndim == 2:
+            array, domain = points_of_elevations(array, spacing, boundary, checked)
+            assumed = False, False
+        elif spacing is not None:
+            raise InputError(
+                "spacing is for elevations of shape (m, n); points (m, n, 3) need none."
+            )
+        array, boundary = closed_grid(array, boundary, assumed)
+        spline = spline_of_points(array, boundary, checked, domain)
+        known = known_of_grid(array, spline.domain, boundary, checked)
+        spline = replace(spline, name=label(name, "grid"))
+        trim = None if known is None else Trim(spline.domain, boundary, (known,))
+        return cls(
+            spline.name,
+            spline.evaluate,
+            spline.domain,
+            boundary,
+            array,
+            trim=trim,
+            assumed_open=assumed,
+        )
+
+    @classmethod
+    def from_nurbs(
+        cls,
+        degrees: Sequence[int] | object,
+        knots: Sequence[ArrayLike] | None = None,
+        control_points: ArrayLike | None = None,
+        weights: ArrayLike | None = None,
+        *,
+        periodic: Sequence[Periodicity] | None = None,
+        name: str | None = None,
+    ) -> Surface:
+        """Make a surface of a NURBS: of its numbers, or of a surface of geomdl or Splipy.
+
+        The domain is [U[p], U[m]] × [V[q], V[n]] for knots U, V, as usual. Where the two ends of a
+        parameter are one line and the surface is smooth across it, it is periodic. Lines where it
+        is not smooth cut it into `pieces`.
+
+        Parameters
+        ----------
+        degrees : (int, int), or surface of geomdl or Splipy
+            The degrees (p, q) along u and v, from 1 to 25. Instead of all the numbers, a
+            ``geomdl.NURBS.Surface``, ``geomdl.BSpline.Surface`` or ``splipy.Surface``.
+        knots : pair of array_like
+            The knots U (m + p + 1,) and V (n + q + 1,), which never decrease. Those inside the
+            domain are at most p-fold (q-fold); those at its ends need not be multiple.
+        control_points : (m, n, 3) array_like
+            The control points, in L, not multiplied by their weights.
+        weights : (m, n) array_like, optional
+            The positive weights; by default all are 1, and the surface is a B-spline.
+        periodic : pair, optional
+            As in `from_callable`; by default it is found as described.
+        name : str, optional
+            Label of the surface. By default "surface", then "surface 2", and so on.
+
+        Returns
+        -------
+        Surface
+            The surface. It is evaluated by compiled code, derivatives included.
+
+        Raises
+        ------
+        InputError
+            For other numbers than these: numbers of knots that do not fit, knots that decrease or
+            tear the surface, weights that are not positive, NaN, another shape; for an object that
+            is none of these, or has trim curves; and for boundary conditions as `from_callable`.
+
+        References
+        ----------
+        L. Piegl and W. Tiller, The NURBS Book, 2nd ed., Springer 1997.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> import numpy as np
+        >>> x, z = np.meshgrid([0.0, 1.0, 2.0], [0.0, 1.0], indexing="ij")
+        >>> arch = np.stack([x, np.array([0.0, 1.0, 0.0])[:, None] + 0 * x, z], axis=-1)
+        >>> knots = [0, 0, 0, 1, 1, 1], [0, 0, 1, 1]
+        >>> gm.Surface.from_nurbs((2, 1), knots, arch).evaluate(0.5, 0.5)
+        array([1. , 0.5, 0.5])
+
+        """
+        from .creases import creases, smoothly_closed
+        from .nurbs_input import nurbs_of
+
+        nurbs = nurbs_of(degrees, knots, control_points, weights)
+        if periodic is None:
+            periodic = smoothly_closed(nurbs, 0), smoothly_closed(nurbs, 1)
+        boundary = checked_boundary(periodic)
+        u, v = (ends == ("periodic", "periodic") for ends in boundary)
+        nurbs = replace(nurbs, periodic=(u, v), creases=creases(nurbs))
+        ends, assumed = (nurbs.domain, boundary), assumed_ends(periodic)
+        return cls(label(name, "surface"), nurbs, *ends, assumed_open=assumed)
+
+    def pieces(self) -> tuple[Surface, ...]:
+        """Return the smooth pieces of the surface: rectangles of its parameters.
+
+        A NURBS is cut along the lines u = const and v = const where its normal turns by more than
+        0.1° somewhere, or the tangent across the line changes its length more than threefold, so
+        that a spline would fold. Each piece is evaluated from inside on these lines.
+
+        Returns
+        -------
+        tuple of Surface
+            The pieces, those of the lowest u first, and in turn along v; parameters are those of
+            the whole. A smooth surface is its only piece.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> knots = [0, 0, 1, 2, 2], [0, 0, 1, 1]
+        >>> roof = [[[0, 0, 0], [0, 5, 0]], [[2, 0, 1], [2, 5, 1]], [[4, 0, 0], [4, 5, 0]]]
+        >>> [piece.domain for piece in gm.Surface.from_nurbs((1, 1), knots, roof).pieces()]
+        [((0.0, 1.0), (0.0, 1.0)), ((1.0, 2.0), (0.0, 1.0))]
+
+        """
+        from .cutting import pieces_of
+
+        return pieces_of(self)
+
+    def transformed(self, matrix: ArrayLike) -> Surface:
+        """Return the surface after an affine map: rotated, translated, scaled, mirrored.
+
+        Derivatives are those of this surface after the map, exactly. A reflection also reverses
+        u, u → u0 + u1 - u, so that normals stay on the same side: outward ones stay outward.
+
+        Parameters
+        ----------
+        matrix : (3, 3) or (4, 4) array_like
+            Points x become matrix x. The last row of a 4 × 4 matrix is 0, 0, 0, 1 and its last
+            column a translation.
+
+        Returns
+        -------
+        Surface
+            The surface, with the same name, domain and boundary conditions.
+
+        Raises
+        ------
+        InputError
+            For another shape or last row, NaN or infinity, and a singular matrix.
+        SurfaceError
+            If a surface that was given by points becomes too large or too small for float64.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> import numpy as np
+        >>> raised = np.diag([2.0, 2.0, 2.0, 1.0])
+        >>> raised[2, 3] = 5.0
+        >>> gm.surfaces.sphere().transformed(raised).evaluate(0.0, 0.0)
+        array([2., 0., 5.])
+
+        """
+        map_ = affine_map(matrix)
+        return self._moved(map_, map_.reflects)
+
+    def flipped(self) -> Surface:
+        """Return the same points with opposite normals: u is reversed, u → u0 + u1 - u.
+
+        Returns
+        -------
+        Surface
+            The surface, with the same name, domain and boundary conditions.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> import numpy as np
+        >>> sphere = gm.surfaces.sphere()
+        >>> for surface in (sphere, sphere.flipped()):
+        ...     x, x_u, x_v, *_ = surface.derivatives(3.0, 0.25)
+        ...     print(bool(x @ np.cross(x_u, x_v) > 0.0))
+        True
+        False
+
+        """
+        return self._moved(IDENTITY, turned=True)
+
+    def _moved(self, map_: AffineMap, turned: bool) -> Surface:
+        (low, high), along_v = self.boundary
+        boundary: Boundary = (high, low) if turned else (low, high), along_v
+        trim = turned_trim(self.trim, boundary) if turned and self.trim else self.trim
+        moved = replace(self, boundary=boundary, trim=trim, derivative_function=None)
+        if self.grid is None:
+            return replace(moved, function=Moved.of(self).then(map_, turned))
+        grid = moved_grid(self.grid, boundary, map_, turned)
+        spline = fit_grid(grid, self.domain, boundary, self.name)
+        return replace(moved, function=spline.evaluate, grid=grid)
+
+    def trimmed(
+        self,
+        loops: Any | None = None,  # noqa: ANN401
+        *,
+        within: Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.bool_]]
+        | None = None,
+    ) -> Surface:
+        """Return the part of the surface inside closed polygons, or where a predicate holds.
+
+        Samples, their coverage, weights, meshes and silhouettes are those of the part. Gaussian
+        images and parabolic points are still those of the whole surface.
+
+        Parameters
+        ----------
+        loops : sequence of (k, 2) array_like, or Polygon, optional
+            Closed polygons of points u, v, whose first point may be repeated at the end: a point is
+            inside by the even-odd rule, so that a polygon in another one is a hole. Or a Polygon or
+            MultiPolygon of Shapely, or anything else with its ``__geo_interface__``. Loops may run
+            beyond the seam of a periodic direction: a point is inside if it, or its copy any number
+            of periods away, is.
+        within : callable, optional
+            ``within(u, v)`` gets two float64 arrays (k,) of parameters in the domain, and returns
+            booleans (k,). What is smaller than an eighth of a patch of the spline may go unseen.
+
+        Returns
+        -------
+        Surface
+            The part. If it is trimmed already, or if loops and a predicate are given, all of them
+            hold. The spline is fitted on the whole domain, on which the surface must be defined.
+
+        Raises
+        ------
+        InputError
+            For loops with fewer than 3 points, with NaN or infinity, of another shape, or more than
+            100 periods away; for a predicate that is not callable; and without both.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> import numpy as np
+        >>> square = np.array([(1, 1), (4, 1), (4, 4), (1, 4)])
+        >>> window = gm.surfaces.torus().trimmed([square, 1.5 + square / 4])  # with a hole
+        >>> samples = gm.sample(window, 200, cells=(16, 16))
+        >>> len(samples), bool(window.trim.contains(samples.uv).all())
+        (200, True)
+        >>> sheets = gm.surfaces.torus().trimmed(within=lambda u, v: np.abs(v - 3) < 1)
+
+        """
+        trim = trimmed_by(self.trim, loops, within, self.domain, self.boundary, self.name)
+        return replace(self, trim=trim)
+
+
+def _grid(points: ArrayLike) -> NDArray[np.float64]:
+    """Return points or elevations with NaN in place of masked entries."""
+    masked = np.ma.getmaskarray(np.ma.asarray(points)) if np.ma.is_masked(points) else None
+    array = real_array(np.ma.getdata(points) if masked is not None else points, "a grid")
+    if masked is not None:
+        array[masked] = np.nan
+    if array.ndim not in (2, 3) or (array.ndim == 3 and array.shape[2] != 3):
+        raise InputError(
+            f"a grid must have the shape (m, n, 3), or (m, n) for elevations, not {array.shape}."
+        )
+    return array

@@ -1,0 +1,256 @@
+"""Derivatives of surfaces: generated, symbolic, given and numerical ones are the same."""
+
+import gaussmap as gm
+import numpy as np
+import pytest
+import sympy as sp
+from gaussmap.generated.surface_jets import JETS
+from gaussmap.runtime.surface.derivatives import NAMES, Differences, numerical_jets
+from gaussmap.symbolic.surfaces import CATALOGUE
+
+TURN = (0.0, 2 * np.pi)
+SQUARE = ((0.0, 1.0), (0.0, 1.0))
+
+
+def exact_jets(surface):
+    """Return SymPy's derivatives of a surface of the catalogue as a function."""
+    values = {p.symbol: sp.Rational(p.default) for p in surface.parameters}
+    x = sp.Matrix(surface.position).subs(values)
+    x_u, x_v = x.diff(surface.u), x.diff(surface.v)
+    rows = (x, x_u, x_v, x_u.diff(surface.u), x_u.diff(surface.v), x_v.diff(surface.v))
+    f = sp.lambdify((surface.u, surface.v), [row.flat() for row in rows])
+    return lambda u, v: np.array([f(*place) for place in zip(u, v, strict=True)], float)
+
+
+def places(domain, count=40, seed=0):
+    """Return random places, among them places next to each end and on it."""
+    result = []
+    for (low, high), turn in zip(domain, (0, 3), strict=True):
+        t = np.random.default_rng(seed + turn).random(count)
+        t[turn : turn + 6] = [0.0, 1.0, 1e-9, 1.0 - 1e-3, 0.006, 0.994]
+        result.append(low + (high - low) * t)
+    return result
+
+
+def differences(found, expected):
+    """Return the largest difference of each derivative, relative to the largest of all."""
+    return np.abs(found - expected).max(axis=(0, 2)) / np.abs(expected).max()
+
+
+@pytest.mark.parametrize("surface", CATALOGUE.values(), ids=CATALOGUE)
+def test_generated_derivatives_are_those_of_sympy(surface):
+    """As plain Python, without compilation."""
+    u, v = places([[float(x) for x in ends] for ends in surface.domain], 12)
+    found = np.full((len(u), 6, 3), np.nan)
+    JETS[surface.name](*(float(p.default) for p in surface.parameters), u, v, found)
+    np.testing.assert_allclose(found, exact_jets(surface)(u, v), rtol=1e-12, atol=1e-13)
+
+
+@pytest.mark.parametrize("name", ["torus", "wavy_graph"])
+def test_derivatives_of_the_catalogue(name):
+    surface = gm.surfaces.surface(name)
+    u, v = places(surface.domain)
+    found = surface.derivatives(u, v)
+    assert found.shape == (len(u), 6, 3)
+    assert np.array_equal(found, surface.jets(u, v))
+    np.testing.assert_allclose(found, exact_jets(CATALOGUE[name])(u, v), rtol=0, atol=1e-14)
+    assert np.allclose(found[:, 0], surface.evaluate(u, v), rtol=0, atol=1e-15)
+    assert surface.derivatives(u[:, None], v[:7]).shape == (len(u), 7, 6, 3)
+    assert surface.derivatives(0.5, 0.25).shape == (6, 3)
+
+
+@pytest.mark.parametrize(
+    "name", ["torus", "sphere", "wavy_graph", "enneper", "moebius_band", "dupin_cyclide"]
+)
+def test_numerical_derivatives(name):
+    """Open, periodic and mirrored ends, and poles; the function is never called outside."""
+    surface = CATALOGUE[name]
+    values = {p.symbol: sp.Rational(p.default) for p in surface.parameters}
+    f = sp.lambdify((surface.u, surface.v), [x.xreplace(values) for x in surface.position])
+    domain = gm.surfaces.surface(name).domain
+    (u0, u1), (v0, v1) = domain
+
+    def inside(u, v):
+        assert u.min() >= u0
+        assert u.max() <= u1
+        assert v.min() >= v0
+        assert v.max() <= v1
+        return np.stack(f(u, v), axis=-1)
+
+    u, v = places(domain)
+    found = gm.Surface(name, inside, domain, surface.boundary).derivatives(u, v)
+    errors = differences(found, exact_jets(surface)(u, v))
+    assert errors[0] < 1e-15
+    assert errors[1:3].max() < 2e-12
+    assert errors[3:].max() < 1e-9
+
+
+def test_numerical_derivatives_of_polynomials_are_exact_but_for_rounding():
+    """Nine points are exact up to degree 8, those on one side as well."""
+
+    def f(u, v):
+        return np.stack([u**5 * v**3, u**8 - v**8, (u - v) ** 7], axis=-1)
+
+    u, v = np.array([0.0, 1.0, 0.5, 0.01, 1.0]), np.array([1.0, 0.25, 0.5, 0.02, 0.0])
+    a, b = sp.symbols("a b")
+    x = [a**5 * b**3, a**8 - b**8, (a - b) ** 7]
+    orders = ((), (a,), (b,), (a, a), (a, b), (b, b))
+    g = sp.lambdify((a, b), [[sp.diff(y, *by) if by else y for y in x] for by in orders])
+    exact = np.array([g(*place) for place in zip(u, v, strict=True)], float)
+    for bounds in (SQUARE, ((-np.inf, np.inf), (-np.inf, np.inf))):
+        found = numerical_jets(f, u, v, (2.0**-5, 2.0**-5), bounds)
+        np.testing.assert_allclose(found, exact, rtol=0, atol=1e-10)
+
+
+@pytest.mark.parametrize("waves", [3, 10, 100])
+def test_steps_become_smaller_where_the_surface_varies_fast(waves):
+    k = 2 * np.pi * waves
+    surface = gm.Surface.from_callable(
+        lambda u, v: np.stack([u, v, np.sin(k * u) * np.cos(k * v)], axis=-1), SQUARE
+    )
+    u, v = places(SQUARE, 100)
+    z = f"sin(2*pi*{waves}*u) * cos(2*pi*{waves}*v)"
+    exact = gm.Surface.from_sympy(("u", "v", z), "uv", SQUARE)
+    found, expected = surface.jets(u, v)[..., 2], exact.jets(u, v)[..., 2]
+    errors = np.abs(found - expected).max(axis=0) / np.abs(expected).max(axis=0)
+    assert errors[1:3].max() < 1e-9
+    assert errors[3:].max() < 1e-6
+
+
+def test_derivatives_beside_a_fillet_and_beside_a_hole():
+    def filleted(u, v):
+        """Return a roof whose ridge is rounded over 1 % of the domain; no roof in a corner."""
+        t = np.clip(100 * (u - 0.5), 0.0, 1.0)
+        z = 0.01 * (t * t / 2 + np.maximum(100 * (u - 0.51), 0.0))
+        return np.stack([u, v, np.where((u > 0.9) & (v > 0.9), np.nan, z)], axis=-1)
+
+    surface = gm.Surface.from_callable(filleted, SQUARE)
+    u, v = np.linspace(0.0, 1.0, 1001), np.full(1001, 0.3)
+    z_u = surface.jets(u, v)[:, 1, 2]
+    inside = np.abs(u - 0.5) * np.abs(u - 0.51) > 1e-8  # and not where the curvature jumps
+    np.testing.assert_allclose(z_u[inside], np.clip(100 * (u - 0.5), 0, 1)[inside], atol=1e-9)
+    u, v = np.full(100, 0.8999), np.linspace(0.9, 1.0, 100)
+    assert np.isfinite(surface.jets(u, v)).all()
+    assert np.isnan(surface.jets(u + 0.0002, 0.1 + 0.9 * v)).any()
+
+
+def test_the_function_is_called_once_for_many_places():
+    calls = []
+
+    def f(u, v):
+        calls.append(len(u))
+        return np.stack([u, v, u * v], axis=-1)
+
+    Differences(f, SQUARE, (("open", "open"), ("open", "open"))).jets(*places(SQUARE, 100))
+    assert calls == [2700]
+
+
+@pytest.mark.parametrize(
+    ("z", "z_u", "z_uu"),
+    [
+        ("Abs(u - 1/3)*v", lambda u, v: np.sign(u - 1 / 3) * v, 0.0),
+        ("sign(u - 1/3)*u", lambda u, v: np.sign(u - 1 / 3), 0.0),
+        ("Max(u, v, 1/3)", lambda u, v: u > np.maximum(v, 1 / 3), 0.0),
+        ("Piecewise((u**2, u > v), (v, True))", lambda u, v: 2 * u * (u > v), None),
+        ("floor(3*u)*u", lambda u, v: np.floor(3 * u), 0.0),
+        ("(3*u) % 1", lambda u, v: 3.0, 0.0),
+        ("Heaviside(u - 1/3)*u", lambda u, v: u > 1 / 3, 0.0),
+        ("2", lambda u, v: 0.0, 0.0),
+        ("Sum(u**k, (k, 0, 2))", lambda u, v: 1 + 2 * u, 2.0),
+        ("sinc(u)", lambda u, v: np.cos(u) / u - np.sin(u) / u**2, None),
+    ],
+)
+def test_symbolic_derivatives_with_kinks_and_jumps(z, z_u, z_uu):
+    u, v = np.random.default_rng(0).random((2, 50))
+    surface = gm.Surface.from_sympy(("u", "1", z), "uv", SQUARE)
+    jets = surface.derivatives(u, v)
+    np.testing.assert_allclose(jets[:, 1, 2], z_u(u, v) + 0 * u, rtol=1e-12, atol=1e-12)
+    assert (jets[:, :2, 1] == [1.0, 0.0]).all()
+    if z_uu is not None:
+        np.testing.assert_allclose(jets[:, 3, 2], z_uu, rtol=0, atol=1e-14)
+
+
+def test_symbolic_derivatives_are_filled_by_numerical_ones():
+    surface = gm.Surface.from_sympy(("u", "v", "sinc(u)"), "uv", ((-1, 1), (-1, 1)))
+    np.testing.assert_allclose(
+        surface.derivatives(0.0, 0.5)[:, 2], [1, 0, 0, -1 / 3, 0, 0], rtol=0, atol=1e-10
+    )
+
+
+def saddle(u, v):
+    return np.stack([u, v, u * v + u * u], axis=-1)
+
+
+def saddle_derivatives(u, v):
+    zero, one = np.zeros_like(u), np.ones_like(u)
+    rows = [
+        (u, v, u * v + u * u),
+        (one, zero, v + 2 * u),
+        (zero, one, u),
+        (zero, zero, 2 * one),
+        (zero, zero, one),
+        (zero, zero, zero),
+    ]
+    return np.stack([np.stack(x, axis=-1) for x in rows], axis=-2)
+
+
+def test_given_derivatives():
+    given = gm.Surface.from_callable(saddle, SQUARE, derivatives=saddle_derivatives)
+    u, v = places(SQUARE)
+    assert np.array_equal(given.derivatives(u, v), saddle_derivatives(u, v))
+    errors = differences(
+        gm.Surface.from_callable(saddle, SQUARE).derivatives(u, v), saddle_derivatives(u, v)
+    )
+    assert errors.max() < 2e-9
+
+
+def wrong(row, factor=1.0, more=0.0):
+    """Return derivatives of which one is wrong."""
+
+    def derivatives(u, v):
+        jets = saddle_derivatives(u, v)
+        jets[..., row, :] = factor * jets[..., row, :] + more
+        return jets
+
+    return derivatives
+
+
+@pytest.mark.parametrize(
+    ("derivatives", "complaint"),
+    [
+        *((wrong(i, 1.001), f"contradict it: {NAMES[i]} at u = ") for i in range(5)),
+        *((wrong(i, more=0.01), f"contradict it: {NAMES[i]} at u = ") for i in range(6)),
+        (wrong(4, np.nan), "contradict it: x_uv at u = .* given as .nan nan nan., and differences"),
+        (wrong(5, more=np.inf), "contradict it: x_vv"),
+        (saddle, r"returned the shape \(48, 3\) .* must return \(48, 6, 3\)"),
+        (lambda u, v: None, "array of real numbers"),
+        (lambda u, v: 1 / 0, "derivatives of surface 'mine' raised ZeroDivisionError"),
+    ],
+)
+def test_given_derivatives_that_are_wrong(derivatives, complaint):
+    surface = gm.Surface.from_callable(saddle, SQUARE, derivatives=derivatives, name="mine")
+    assert surface.evaluate(0.5, 0.5).shape == (3,)
+    for call in (lambda: surface.derivatives(0.5, 0.5), lambda: surface.jets(*places(SQUARE))):
+        with pytest.raises(gm.errors.SurfaceError, match=complaint) as caught:
+            call()
+        assert "\n" not in str(caught.value)
+
+
+def test_derivatives_that_do_not_exist():
+    surface = gm.Surface.from_callable(
+        lambda u, v: saddle(np.where(u < 0.5, u, np.nan), v), SQUARE, name="half"
+    )
+    assert np.isfinite(surface.derivatives(0.4, 0.5)).all()
+    with pytest.raises(
+        gm.errors.SurfaceError, match=r"x of surface 'half' is not finite at u = 0[.]6"
+    ):
+        surface.derivatives([0.4, 0.6], 0.5)
+    assert np.isnan(surface.jets(np.array([0.6]), np.array([0.5]))).any()
+    with pytest.raises(gm.errors.InputError, match="derivatives must be callable"):
+        gm.Surface.from_callable(saddle, SQUARE, derivatives=saddle(0.0, 0.0))  # pyright: ignore
+    grid = gm.Surface.from_grid(saddle(*np.indices((5, 6)) * 1.0))
+    assert not grid.evaluable
+    with pytest.raises(gm.errors.InputError, match="was given by points and has no derivatives"):
+        grid.derivatives(0.0, 0.0)
+    with pytest.raises(gm.errors.InputError, match="u must be an array of real numbers"):
+        gm.surfaces.torus().derivatives("a", 0.0)

@@ -1,0 +1,441 @@
+"""NURBS surfaces: their values and derivatives, what defines them, and where their normals turn."""
+
+import math
+import pickle
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import gaussmap as gm
+import geomdl.BSpline
+import geomdl.NURBS
+import numpy as np
+import pytest
+from gaussmap.runtime.errors import InputError
+from gaussmap.runtime.surface.nurbs import Nurbs
+from scipy.interpolate import NdBSpline
+from splipy import surface_factory
+from splipy.basis import BSplineBasis
+from splipy.surface import Surface
+from splipy.volume import Volume
+
+RNG = np.random.default_rng(8)
+EPS = np.finfo(float).eps
+
+# A circle of four quarters, of degree 2: directions of its control points, and their weights.
+AROUND = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)])
+ROOT = math.sqrt(0.5)
+CIRCLE_WEIGHTS = np.array([1, ROOT] * 4 + [1])
+CIRCLE_KNOTS = [0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4]
+HALF_KNOTS = [0, 0, 0, 1, 1, 2, 2, 2]
+
+
+def revolved(profile, weights):
+    """Return control points and weights of a profile (r, z) that goes round the z axis as u."""
+    profile = np.asarray(profile, dtype=float)
+    points = np.empty((len(AROUND), len(profile), 3))
+    points[:, :, :2] = AROUND[:, None] * profile[:, 0, None]
+    points[:, :, 2] = profile[:, 1]
+    return points, CIRCLE_WEIGHTS[:, None] * weights
+
+
+def torus(major=2.0, minor=0.5):
+    profile = minor * AROUND + [major, 0.0]
+    points, weights = revolved(profile, CIRCLE_WEIGHTS)
+    return gm.Surface.from_nurbs((2, 2), (CIRCLE_KNOTS, CIRCLE_KNOTS), points, weights)
+
+
+def sphere():
+    profile = AROUND[[6, 7, 0, 1, 2]]
+    points, weights = revolved(profile, CIRCLE_WEIGHTS[:5])
+    return gm.Surface.from_nurbs((2, 2), (CIRCLE_KNOTS, HALF_KNOTS), points, weights)
+
+
+def nurbs_of(surface) -> Any:
+    return surface.function
+
+
+def random_parameters(surface, count):
+    low, high = np.transpose(surface.domain)
+    return np.ascontiguousarray(RNG.uniform(low, high, (count, 2)).T)
+
+
+def curvature(jets):
+    """Return the Gaussian curvature of 2-jets."""
+    _, x_u, x_v, x_uu, x_uv, x_vv = np.moveaxis(jets, 1, 0)
+    N = np.cross(x_u, x_v)
+    L, M, second = ((N * x).sum(axis=1) for x in (x_uu, x_uv, x_vv))
+    return (L * second - M * M) / (N * N).sum(axis=1) ** 2
+
+
+# --- values and derivatives -----------------------------------------------------------------------
+
+
+def test_circles_are_exact():
+    surface = torus()
+    x, y, z = surface.evaluate(*random_parameters(surface, 500)).T
+    assert np.abs(np.hypot(np.hypot(x, y) - 2.0, z) - 0.5).max() < 8 * EPS
+    points = sphere().evaluate(*random_parameters(sphere(), 500))
+    assert np.abs(np.linalg.norm(points, axis=1) - 1.0).max() < 4 * EPS
+
+
+def test_second_derivatives_give_the_curvature_of_a_torus_and_a_sphere():
+    """K does not depend on the parameters, which are no angles here."""
+    surface = torus()
+    jets = surface.jets(*random_parameters(surface, 300))
+    cosine = (np.hypot(*jets[:, 0, :2].T) - 2.0) / 0.5
+    assert curvature(jets) == pytest.approx(cosine / (0.5 * (2.0 + 0.5 * cosine)), abs=1e-12)
+    u, v = random_parameters(sphere(), 300)
+    jets = sphere().jets(u, 0.01 + 0.99 * v)
+    assert curvature(jets) == pytest.approx(1.0, abs=1e-11)
+
+
+def random_knots(degree, clamped):
+    inner = np.sort(RNG.random(RNG.integers(0, 6)))
+    inner = np.repeat(inner, RNG.integers(1, degree + 1, len(inner)))
+    if clamped:
+        return np.concatenate([np.zeros(degree + 1), inner, np.ones(degree + 1)])
+    ends = RNG.random(degree) * (1, -1)[degree % 2]
+    return np.sort(np.concatenate([-np.abs(ends), [0.0], inner, [1.0], 1.0 + np.abs(ends)]))
+
+
+def jets_of_scipy(degrees, knots, points, weights, uv):
+    """Return 2-jets by the quotient rule from SciPy's derivatives of x w and w."""
+    spline = NdBSpline(knots, np.concatenate([points * weights, weights], axis=2), degrees)
+    orders = ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
+    sums = [spline(uv, nu=nu) for nu in orders]
+    A, A_u, A_v, A_uu, A_uv, A_vv = (x[:, :3] for x in sums)
+    w, w_u, w_v, w_uu, w_uv, w_vv = (x[:, 3:] for x in sums)
+    x = A / w
+    x_u, x_v = (A_u - w_u * x) / w, (A_v - w_v * x) / w
+    x_uu = (A_uu - 2 * w_u * x_u - w_uu * x) / w
+    x_uv = (A_uv - w_u * x_v - w_v * x_u - w_uv * x) / w
+    x_vv = (A_vv - 2 * w_v * x_v - w_vv * x) / w
+    return np.stack([x, x_u, x_v, x_uu, x_uv, x_vv], axis=1)
+
+
+@pytest.mark.parametrize("p", range(1, 6))
+@pytest.mark.parametrize("q", range(1, 6))
+def test_random_surfaces_agree_with_scipy(p, q):
+    clamped, rational = bool((p + q) % 2), bool(p % 2 or q % 3)
+    knots = random_knots(p, clamped), random_knots(q, clamped)
+    shape = len(knots[0]) - p - 1, len(knots[1]) - q - 1
+    points, weights = RNG.normal(size=(*shape, 3)), RNG.uniform(0.3, 3.0, shape)
+    surface = gm.Surface.from_nurbs((p, q), knots, points, weights if rational else None)
+    u, v = random_parameters(surface, 50)
+    factors = weights[:, :, None] if rational else np.ones((*shape, 1))
+    expected = jets_of_scipy((p, q), knots, points, factors, np.stack([u, v], axis=1))
+    found = surface.jets(u, v)
+    for rows, tolerance in ((slice(0, 1), 1e-13), (slice(1, 3), 1e-11), (slice(3, 6), 1e-10)):
+        error = np.abs(found - expected)[:, rows].max()
+        assert error <= tolerance * max(1.0, np.abs(expected[:, rows]).max())
+    assert np.array_equal(surface.evaluate(u, v), found[:, 0])
+
+
+def test_the_largest_degree():
+    """x = u³, y = v, in the Bernstein basis of degree 25."""
+    k = np.arange(26)
+    cubes = k * (k - 1) * (k - 2) / (25 * 24 * 23)
+    x, y = np.meshgrid(cubes, [0.0, 1.0], indexing="ij")
+    points = np.stack([x, y, 0 * x], axis=-1)
+    surface = gm.Surface.from_nurbs((25, 1), ([0] * 26 + [1] * 26, [0, 0, 1, 1]), points)
+    u = np.linspace(0.0, 1.0, 11)
+    jets = surface.jets(u, 0 * u)
+    assert np.allclose(jets[:, [0, 1, 3], 0], np.stack([u**3, 3 * u**2, 6 * u], axis=1), atol=1e-12)
+
+
+def test_far_from_the_origin_derivatives_keep_their_digits():
+    surface = torus()
+    data = nurbs_of(surface).control_points, np.outer(CIRCLE_WEIGHTS, CIRCLE_WEIGHTS)
+    moved = gm.Surface.from_nurbs(
+        (2, 2), (CIRCLE_KNOTS, CIRCLE_KNOTS), data[0] + [1e6, -1e7, 3e6], data[1]
+    )
+    u, v = random_parameters(surface, 100)
+    difference = np.abs(surface.jets(u, v) - moved.jets(u, v))[:, 1:]
+    assert difference.max() < 1e3 * np.spacing(1e7)  # the rounding of the moved control points
+    assert moved.boundary == surface.boundary
+
+
+@pytest.mark.parametrize("factor", [1e-290, 1e290])
+def test_only_the_ratios_of_weights_count(factor):
+    surface = torus()
+    weights = np.outer(CIRCLE_WEIGHTS, CIRCLE_WEIGHTS) * factor
+    other = gm.Surface.from_nurbs(
+        (2, 2), (CIRCLE_KNOTS, CIRCLE_KNOTS), nurbs_of(surface).control_points, weights
+    )
+    u, v = random_parameters(surface, 20)
+    assert np.allclose(surface.jets(u, v), other.jets(u, v), rtol=1e-12, atol=1e-12)
+
+
+def test_ends_are_those_of_the_domain_and_period():
+    surface = torus()
+    (low, high), _ = surface.domain
+    assert (low, high) == (0.0, 4.0)
+    corner = surface.evaluate(low, 0.0)
+    assert np.allclose(surface.evaluate([high, high + 4.0, low - 8.0], 0.0), corner, atol=1e-15)
+    with pytest.raises(InputError, match=r"v = 2.5 lies outside the domain \(0.0, 2.0\)"):
+        sphere().evaluate(0.0, 2.5)
+    assert np.isnan(surface.jets(np.array([np.nan]), np.zeros(1))).any()
+
+
+@pytest.mark.compiled
+def test_calls_of_several_threads_do_not_disturb_one_another():
+    surface = torus()
+    places = [random_parameters(surface, 2000) for _ in range(8)]
+    alone = [surface.jets(u, v) for u, v in places]
+    with ThreadPoolExecutor(8) as pool:
+        together = list(pool.map(lambda x: surface.jets(*x), places))
+    assert all(np.array_equal(x, y) for x, y in zip(alone, together, strict=True))
+
+
+def test_pickling():
+    surface = torus()
+    assert nurbs_of(surface).creases == ((), ())
+    copy = pickle.loads(pickle.dumps(surface))
+    u, v = random_parameters(surface, 10)
+    assert np.array_equal(copy.jets(u, v), surface.jets(u, v))
+    assert (copy.domain, copy.boundary, copy.name) == (
+        surface.domain, surface.boundary, surface.name,
+    )  # fmt: skip
+
+
+# --- closing --------------------------------------------------------------------------------------
+
+
+def test_boundary_conditions_are_found():
+    periodic, both = ("periodic", "periodic"), ("open", "open")
+    assert torus().boundary == (periodic, periodic)
+    assert sphere().boundary == (periodic, both)
+
+
+def extruded(profile, degree=1, knots=None):
+    """Return a profile (x, y) of uniform knots, extruded along z."""
+    profile = np.asarray(profile, dtype=float)
+    points = np.empty((len(profile), 2, 3))
+    points[:, :, :2], points[:, :, 2] = profile[:, None], [0.0, 3.0]
+    inner = np.arange(len(profile) - degree + 1)
+    ends = [0] * degree, [len(profile) - degree] * degree
+    knots = np.concatenate([ends[0], inner, ends[1]]) if knots is None else knots
+    return gm.Surface.from_nurbs((degree, 1), (knots, [0, 0, 1, 1]), points, name="sweep")
+
+
+CORNERS = [(1, 1), (-1, 1), (-1, -1), (1, -1)]
+
+
+def test_a_seam_on_an_edge_is_open_and_a_seam_on_a_face_is_not():
+    assert extruded([*CORNERS, CORNERS[0]]).boundary[0] == ("open", "open")
+    assert extruded([(1, 0), *CORNERS, (1, 0)]).boundary[0] == ("periodic", "periodic")
+    assert extruded(CORNERS).boundary[0] == ("open", "open")
+
+
+def test_a_sheet_folded_back_on_its_seam_is_not_periodic():
+    assert extruded([(0, 0), (1, 1), (0, 0)]).boundary[0] == ("open", "open")
+
+
+def test_given_boundary_conditions_come_first():
+    points, weights = revolved(0.5 * AROUND + [2.0, 0.0], CIRCLE_WEIGHTS)
+    surface = gm.Surface.from_nurbs(
+        (2, 2), (CIRCLE_KNOTS, CIRCLE_KNOTS), points, weights, periodic=(True, False)
+    )
+    assert surface.boundary == (("periodic", "periodic"), ("open", "open"))
+
+
+# --- lines where the normal turns -----------------------------------------------------------------
+
+
+def test_edges_of_a_sweep():
+    surface = extruded([(1, 0), *CORNERS, (1, 0)])
+    pieces = surface.pieces()
+    assert nurbs_of(surface).creases == ((1.0, 2.0, 3.0, 4.0), ())
+    assert [x.domain[0] for x in pieces] == [(k, k + 1) for k in range(5)]
+    assert all(x.boundary == (("open", "open"), ("open", "open")) for x in pieces)
+    assert [x.name for x in pieces][:2] == ["sweep (piece 1)", "sweep (piece 2)"]
+    u = np.array([1.0])
+    before, after = (x.jets(u, 0.5 * u)[0] for x in pieces[:2])
+    assert np.array_equal(before[0], after[0])
+    assert np.allclose(before[1], [0, 1, 0])
+    assert np.allclose(after[1], [-2, 0, 0])
+
+
+def test_multiple_knots_on_a_smooth_surface_are_no_crease():
+    surface = torus()
+    assert surface.pieces() == (surface,)
+    straight = extruded([(0, 0), (1, 0), (3, 0), (4, 0)])
+    assert straight.pieces() == (straight,)
+
+
+@pytest.mark.parametrize(("angle", "pieces"), [(0.09, 1), (0.11, 2)])
+def test_the_angle_of_a_crease(angle, pieces):
+    slope = math.tan(math.radians(angle))
+    assert len(extruded([(0, 0), (1, 0), (2, slope)]).pieces()) == pieces
+
+
+def test_control_points_that_coincide_make_an_edge_on_a_simple_knot():
+    corner = [(0, 0), (1, 0), (2, 0), (2, 0), (2, 0), (2, 1), (2, 2)]
+    knots = [0, 0, 0, 0, 1, 2, 3, 4, 4, 4, 4]
+    surface = extruded(corner, 3, knots)
+    assert nurbs_of(surface).creases == ((2.0,), ())
+    rounded = [(0, 0), (1, 0), (2, 0), (2, 0), (2.01, 0), (2, 1), (2, 2)]
+    assert nurbs_of(extruded(rounded, 3, knots)).creases == ((), ())
+    straight = [(0, 0), (1, 0), (2, 0), (2, 0), (2, 0), (3, 0), (4, 0)]
+    assert nurbs_of(extruded(straight, 3, knots)).creases == ((), ())
+
+
+@pytest.mark.parametrize(("speed", "pieces"), [(2.9, 1), (3.1, 2)])
+def test_a_tangent_that_changes_its_length(speed, pieces):
+    """The surface is a plane, and a spline of it would fold from a factor of 5 on."""
+    assert len(extruded([(0, 0), (1, 0), (1 + speed, 0)]).pieces()) == pieces
+    closed = [(0, 0), (speed, 0), (speed, 1), (-1, 1), (-1, 0), (0, 0)]
+    assert (extruded(closed).boundary[0] == ("periodic", "periodic")) == (pieces == 1)
+
+
+def test_a_crease_on_a_part_of_a_line_is_found():
+    """A bilinear net, flat but for one corner."""
+    x, y = np.meshgrid([0.0, 1.0, 2.0], np.arange(5.0), indexing="ij")
+    points = np.stack([x, y, 0 * x], axis=-1)
+    points[2, 4, 2] = 0.5
+    knots = [0, 0, 1, 2, 2], [0, 0, 1, 2, 3, 4, 4]
+    surface = gm.Surface.from_nurbs((1, 1), knots, points)
+    assert nurbs_of(surface).creases == ((1.0,), (3.0,))
+    assert len(surface.pieces()) == 4
+
+
+def test_pieces_cover_the_surface_and_are_smooth():
+    surface = extruded([(1, 0), *CORNERS, (1, 0)])
+    for piece in surface.pieces():
+        assert piece.pieces() == (piece,)
+        low, high = piece.domain[0]
+        u = np.linspace(low, high, 7)
+        assert np.array_equal(piece.evaluate(u, 0.3)[1:-1], surface.evaluate(u, 0.3)[1:-1])
+
+
+# --- objects --------------------------------------------------------------------------------------
+
+
+def net(rows, columns):
+    x, y = np.meshgrid(np.arange(rows), np.arange(columns), indexing="ij")
+    return np.stack([x, y, RNG.random((rows, columns))], axis=-1)
+
+
+def test_surfaces_of_geomdl():
+    surface = geomdl.NURBS.Surface()
+    surface.degree_u, surface.degree_v = 2, 3
+    points, weights = net(4, 5), RNG.uniform(0.5, 2.0, (4, 5))
+    surface.set_ctrlpts(
+        np.concatenate([points * weights[..., None], weights[..., None]], axis=2)
+        .reshape(-1, 4).tolist(),
+        4, 5,
+    )  # fmt: skip
+    surface.knotvector_u, surface.knotvector_v = [0, 0, 0, 0.3, 1, 1, 1], [0] * 4 + [0.6] + [1] * 4
+    ours = gm.Surface.from_nurbs(surface, name="theirs")
+    places = [(0.0, 0.0), (0.2, 0.7), (1.0, 0.5), (0.3, 0.6)]
+    expected = [surface.evaluate_single(x) for x in places]
+    assert np.allclose(ours.evaluate(*np.transpose(places)), expected, atol=1e-14)
+    assert ours.name == "theirs"
+
+
+def test_surfaces_of_geomdl_without_weights():
+    surface = geomdl.BSpline.Surface()
+    surface.degree_u = surface.degree_v = 2
+    points = net(3, 4)
+    surface.set_ctrlpts(points.reshape(-1, 3).tolist(), 3, 4)
+    surface.knotvector_u, surface.knotvector_v = [0] * 3 + [1] * 3, [0] * 3 + [0.5] + [1] * 3
+    ours = gm.Surface.from_nurbs(surface)
+    assert np.allclose(ours.evaluate(0.3, 0.8), surface.evaluate_single((0.3, 0.8)), atol=1e-14)
+
+
+@pytest.mark.parametrize("make", [surface_factory.torus, surface_factory.sphere])
+def test_surfaces_of_splipy(make):
+    """They are rational, and periodic ones do not repeat control points."""
+    surface = make()
+    ours = gm.Surface.from_nurbs(surface)
+    u, v = (np.linspace(surface.start(k), surface.end(k), 9) for k in (0, 1))
+    assert np.allclose(ours.evaluate(u[:, None], v), surface(u, v), atol=1e-14)
+    assert [x[0] == "periodic" for x in ours.boundary] == [surface.periodic(k) for k in (0, 1)]
+
+
+def test_surfaces_of_splipy_without_weights():
+    knots = [0, 0, 0, 1, 2, 2, 2]
+    bases = BSplineBasis(3, knots), BSplineBasis(3, knots, periodic=-1)
+    points = net(4, 4)
+    surface = Surface(*bases, points.transpose(1, 0, 2).reshape(-1, 3))
+    ours = gm.Surface.from_nurbs(surface)
+    assert np.allclose(ours.evaluate(1.2, 0.4), surface(1.2, 0.4), atol=1e-14)
+
+
+def test_smooth_periodic_surfaces_of_splipy():
+    """Cubics with two continuous derivatives at the seam: three control points are repeated."""
+    basis = BSplineBasis(4, np.arange(-3.0, 12.0), periodic=2)
+    count = basis.num_functions()
+    angles = 2 * np.pi * np.arange(count) / count
+    around = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=-1)
+    points = np.concatenate([around, around + np.array([0, 0, 1])])
+    surface = Surface(basis, BSplineBasis(2), points)
+    ours = gm.Surface.from_nurbs(surface)
+    u = np.linspace(surface.start(0), surface.end(0), 9)
+    assert np.allclose(ours.evaluate(u, 0.4), surface(u, [0.4])[:, 0], atol=1e-14)
+    assert ours.boundary[0] == ("periodic", "periodic")
+
+
+# --- errors ---------------------------------------------------------------------------------------
+
+LINE = [0, 0, 1, 1]
+SQUARE = [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (((1, 1), (LINE, [0, 0, 1]), SQUARE), "along v need 4 knots, not 3"),
+        (((1, 1), (LINE, [0, 1, 0.5, 1]), SQUARE), "knots of v decrease: 1.0 is followed by 0.5"),
+        (((1, 1), (LINE, [0, 0, 0, 1]), SQUARE), "leave no domain: it is from 0.0 to 0.0"),
+        (((1, 1), (LINE, [0, 0, np.nan, 1]), SQUARE), r"knots of v has nan at index \[2\]"),
+        (((1, 1), (LINE, LINE), SQUARE, [[1, 0], [1, 1]]), "a NURBS with a zero weight"),
+        (((1, 1), (LINE, LINE), SQUARE, [[1, 1], [-2, 1]]), r"weights\[1, 0\] is -2.0"),
+        (((1, 1), (LINE, LINE), SQUARE, [[1, np.nan], [1, 1]]), r"weights has nan at index \[0, 1"),
+        (((1, 1), (LINE, LINE), SQUARE, [1, 1]), r"weights must have the shape \(2, 2\)"),
+        (((0, 1), (LINE, LINE), SQUARE), "the degree of u must be a whole number of at least 1"),
+        (((26, 1), (LINE, LINE), SQUARE), "the degree of u must be at most 25"),
+        (((2, 1), ([0] * 3 + [1] * 2, LINE), SQUARE), "needs at least 3 control points along u"),
+        ((1, (LINE, LINE), SQUARE), "degrees must be a pair"),
+        (((1, 1), LINE, SQUARE), "knots must be a pair"),
+        (((1, 1), (LINE, LINE), [[0, 0, 0], [1, 0, 0]]), r"must have the shape \(m, n, 3\)"),
+        (((1, 1), (LINE, LINE), [[[0, 0, np.inf]] * 2] * 2), r"has inf at index \[0, 0, 2\]"),
+        (((1, 1), (LINE, LINE), None), "control_points must be an array of real numbers"),
+        (("torus",), "one surface of geomdl or Splipy, not 'torus'"),
+        ((Volume(),), "this object of Splipy has 3 parameters"),
+        ((Surface(),), r"must have the shape \(m, n, 3\), not \(2, 2, 2\)"),
+        ((geomdl.NURBS.Surface(),), "does not have 0 × 0 control points yet"),
+    ],
+)  # fmt: skip
+def test_errors(arguments, message):
+    with pytest.raises(InputError, match=message):
+        gm.Surface.from_nurbs(*arguments)
+
+
+@pytest.mark.parametrize(
+    ("knots", "message"),
+    [
+        ([0, 0, 0.5, 0.5, 1, 1], r"the knot 0.5 of u occurs 2 times.*would be torn"),
+        ([0, 0, 0, 0.5, 1, 1], "the knot 0.0 of u occurs 3 times.*would do nothing"),
+    ],
+)
+def test_knots_that_occur_too_often(knots, message):
+    points = net(4, 2)
+    with pytest.raises(InputError, match=message):
+        gm.Surface.from_nurbs((1, 1), (knots, LINE), points)
+
+
+def test_trimmed_surfaces_of_geomdl_are_refused():
+    surface = geomdl.BSpline.Surface()
+    surface.degree_u = surface.degree_v = 1
+    surface.set_ctrlpts([[0, 0, 0], [0, 1, 0], [1, 0, 0], [1, 1, 0]], 2, 2)
+    surface.knotvector_u = surface.knotvector_v = LINE
+    trim = geomdl.BSpline.Curve()
+    trim.degree, trim.ctrlpts, trim.knotvector = 1, [[0.1, 0.1], [0.9, 0.9]], LINE
+    surface.trims = [trim]
+    with pytest.raises(InputError, match="has trim curves"):
+        gm.Surface.from_nurbs(surface)
+
+
+def test_the_object_is_what_evaluates():
+    assert isinstance(torus().function, Nurbs)
