@@ -40,8 +40,8 @@ NEAR_ENDS = (0.002, 0.015)
 # A side of the domain is one point if the line nearest to it is shorter than this part of the
 # diagonal; so near to it, as a part of the domain, normals converge more slowly than elsewhere.
 COLLAPSED, NEXT_TO_POLE = 0.01, 1.0 / 16.0
-# Normals are compared at one of so many places on lines, and of those that are spread: they take
-# four evaluations instead of one.
+# Normals take four evaluations, points one: they are compared at every third place on lines, and
+# at every fourth of those that are spread.
 EACH_ON_LINES, EACH_SPREAD = 3, 4
 # The multiples of irrational numbers are spread evenly, modulo 1: those of 1/g in one dimension, g
 # the golden ratio, those of 1/ρ and 1/ρ² in two, ρ³ = ρ + 1 (Roberts' R2 sequence). Parameters of
@@ -153,7 +153,7 @@ class Probe:
 
 
 def probe_of(surface: Surface, cells: tuple[int, int]) -> Probe:
-    """Return the places for splines of a surface with so many cells, or more of them.
+    """Return the places for splines of a surface with at least the given numbers of cells.
 
     Raises SurfaceError if the surface cannot be evaluated there.
     """

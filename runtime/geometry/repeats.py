@@ -73,7 +73,7 @@ def _starts(values: Numbers) -> Numbers:
 
 
 def _paired(rows: Numbers, others: Numbers, normal_index: Numbers) -> Numbers:
-    """Return as many rows of each normal as there are others of it, if so many are there."""
+    """Return rows of each normal: as many as it has among `others`, or all if it has fewer."""
     rows = rows[np.argsort(normal_index[rows], kind="stable")]
     normals = normal_index[rows]
     counts = np.bincount(normal_index[others], minlength=int(normals.max(initial=0)) + 1)

@@ -21,8 +21,8 @@ Array = NDArray[np.float64]
 CREASE_ANGLE = 0.1
 # The spline of a surface whose x_u jumps from 1 to this length has no folds, but it has from 5 on.
 LARGEST_JUMP = 3.0
-# A normal is that of a place beside the line, as far as this part of a knot span, where |x_u × x_v|
-# on the line is below this part of the largest |x_u| |x_v|: there x_u or x_v vanishes.
+# Where |x_u × x_v| on a line is below SINGULAR times the largest |x_u| |x_v|, x_u or x_v vanishes;
+# the normal is then taken beside the line, at BESIDE times the knot span.
 BESIDE, SINGULAR = 1e-4, 1e-9
 # Control points coincide that are closer than this, relative to the size of the surface.
 SAME_POINT = 1e-12

@@ -30,7 +30,7 @@ MOST_ENTRIES = 1 << 24
 # largest coordinate.
 MARGIN, MARGIN_IN_ROUNDINGS = 1e-9, 16.0
 POINTS_AT_A_TIME = 1 << 14
-# A loop may run so many times around a periodic direction.
+# The largest number of times that a loop may run around a periodic direction.
 MOST_PERIODS = 100
 # Points on an open side of the domain stand for points inside, at this part of the domain.
 INSIDE = 1e-13

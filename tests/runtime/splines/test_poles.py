@@ -82,7 +82,7 @@ def beside(normal: Array, turns: int) -> Array:
 
 
 def hard_normals(spline: gm.Spline, generic: int, frequency: int, turns: int) -> Array:
-    """Return normals: generic ones, symmetric ones, along the axes, and at and beside the poles."""
+    """Return random normals, symmetric ones, those of the axes, and some at and near the poles."""
     poles = [beside(pole_normal(spline, end), turns) for end in (0, 1)]
     return np.concatenate(
         [gm.fibonacci(generic), gm.icosphere(frequency), np.eye(3), -np.eye(3), *poles]
