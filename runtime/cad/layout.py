@@ -1,0 +1,143 @@
+"""A part as few long arrays: packed from records, and a surface of one face unpacked again.
+
+Numbers of all faces are one after another in one array, with the places where each begins, so that
+a part of 100,000 faces is some 20 arrays. `saving` describes them.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .records import KINDS, FaceRecord, Geometry, Net, PartRecord
+
+__all__ = ["FORMAT", "VERSION", "geometry_of", "packed"]
+
+FORMAT = "gaussmap part"
+# Raised when the arrays change such that older versions of gaussmap would misread them.
+VERSION = 1
+
+Arrays = dict[str, NDArray[Any]]
+NAMES = tuple(KINDS)
+
+
+def packed(part: PartRecord) -> Arrays:
+    """Return the arrays of a part, by the names in `saving`."""
+    faces = part.faces
+    geometries = [x.geometry for x in faces]
+    basis = _basis(geometries)
+    nets = [x.net for x in geometries if x.net is not None]
+    held = np.array([x.net is not None for x in geometries], dtype=np.bool_)
+    return {
+        "about": np.frombuffer(json.dumps(_about(part)).encode(), dtype=np.uint8),
+        **_table(faces),
+        "kind": np.array([NAMES.index(x.kind) for x in geometries], dtype=np.int8),
+        "basis": np.array(basis, dtype=np.int64),
+        "net": np.where(held, np.cumsum(held) - 1, -1),
+        **_rows("number", [np.asarray(x.numbers) for x in geometries], ()),
+        **_nets(nets),
+        **_loops(faces),
+        "edge_faces": np.array([x.faces for x in part.edges], dtype=np.int64).reshape(-1, 2),
+        **_rows("edge_point", [x.parameters for x in part.edges], (4,)),
+    }
+
+
+def geometry_of(arrays: Mapping[str, NDArray[Any]], k: int) -> Geometry:
+    """Return surface k of packed arrays: that of face k, or one that an offset is made from."""
+    starts, basis, net = arrays["number_starts"], int(arrays["basis"][k]), int(arrays["net"][k])
+    return Geometry(
+        NAMES[arrays["kind"][k]],
+        arrays["numbers"][starts[k] : starts[k + 1]],
+        None if net < 0 else _net_of(arrays, net),
+        None if basis < 0 else geometry_of(arrays, basis),
+    )
+
+
+def _net_of(arrays: Mapping[str, NDArray[Any]], k: int) -> Net:
+    rows = slice(*arrays["net_point_starts"][k : k + 2].tolist())
+    knots = arrays["knots"][slice(*arrays["knot_starts"][k : k + 2].tolist())]
+    (p, q), (m, n) = arrays["net_degrees"][k].tolist(), arrays["net_shapes"][k].tolist()
+    points, weights = arrays["net_points"][rows, :3], arrays["net_points"][rows, 3]
+    rational = None if (weights == 1.0).all() else weights
+    if q == 0:
+        return Net((p,), (knots,), points, rational)
+    along_u, along_v = np.split(knots, [m + p + 1])
+    weights = None if rational is None else rational.reshape(m, n)
+    return Net((p, q), (along_u, along_v), points.reshape(m, n, 3), weights)
+
+
+def _about(part: PartRecord) -> dict[str, Any]:
+    """Return what is no array."""
+    names = {k: x.name for k, x in enumerate(part.faces) if x.name}
+    reasons = {k: x.reason for k, x in enumerate(part.faces) if x.reason}
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "name": part.name,
+        "unit": part.unit,
+        "metres": part.metres,
+        "oriented": part.oriented,
+        "solid_names": list(part.solid_names),
+        "face_names": names,
+        "reasons": reasons,
+        "warnings": list(part.warnings),
+    }
+
+
+def _table(faces: Sequence[FaceRecord]) -> Arrays:
+    """Return what is one row for each face."""
+    unknown = (np.nan, np.nan, np.nan)
+    colors = [unknown if x.color is None else tuple(x.color) for x in faces]
+    return {
+        "reversed": np.array([x.reversed for x in faces], dtype=np.bool_),
+        "area": np.array([x.area for x in faces], dtype=np.float64),
+        "solid_index": np.array([x.solid_index for x in faces], dtype=np.int64),
+        "color": np.array(colors, dtype=np.float64).reshape(-1, 3),
+        "domain": np.array([x.domain for x in faces], dtype=np.float64).reshape(-1, 2, 2),
+        "periods": np.array([x.periods for x in faces], dtype=np.float64).reshape(-1, 2),
+    }
+
+
+def _basis(geometries: list[Geometry]) -> list[int]:
+    """Append the surfaces that others are offsets of, and return the place of each one's."""
+    places: list[int] = []
+    for geometry in geometries:  # it grows, and these are looked at, too
+        if geometry.basis is None:
+            places.append(-1)
+        else:
+            places.append(len(geometries))
+            geometries.append(geometry.basis)
+    return places
+
+
+def _nets(nets: Sequence[Net]) -> Arrays:
+    """Return all NURBS; a curve has the degree 0 and one row of control points along v."""
+    points = []
+    for net in nets:
+        weights = np.ones(net.points.shape[:-1]) if net.weights is None else net.weights
+        points.append(np.concatenate([net.points, weights[..., None]], axis=-1).reshape(-1, 4))
+    shapes = [(*x.points.shape[:-1], 1)[:2] for x in nets]
+    return {
+        "net_degrees": np.array([(*x.degrees, 0)[:2] for x in nets], np.int64).reshape(-1, 2),
+        "net_shapes": np.array(shapes, dtype=np.int64).reshape(-1, 2),
+        **_rows("net_point", points, (4,)),
+        **_rows("knot", [np.concatenate(x.knots) for x in nets], ()),
+    }
+
+
+def _loops(faces: Sequence[FaceRecord]) -> Arrays:
+    """Return the loops of all faces, and which of them belong to each."""
+    counts = np.cumsum([0, *(len(x.loops) for x in faces)])
+    loops = [loop for x in faces for loop in x.loops]
+    return {"face_loops": counts.astype(np.int64), **_rows("loop_point", loops, (2,))}
+
+
+def _rows(name: str, parts: Iterable[NDArray[Any]], shape: tuple[int, ...]) -> Arrays:
+    """Return arrays one after another, and where each begins and the last ends."""
+    rows = [np.empty((0, *shape)), *(np.asarray(x, np.float64).reshape(-1, *shape) for x in parts)]
+    starts = np.cumsum([len(x) for x in rows], dtype=np.int64)
+    return {f"{name}s": np.concatenate(rows), f"{name}_starts": starts}
