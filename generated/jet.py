@@ -54,6 +54,54 @@ def at_jet(patch):
 
 
 @inline
+def forms_at_jet(patch):
+    """The first fundamental form E, F, G of a surface, its third one e_1, f_1, g_1, of the
+    derivatives of the unit normal, and D, which has the sign of the Gaussian curvature, from
+    its 2-jet.
+
+        N = d × e
+        A = N·a
+        B = N·b
+        C = N·c
+        r = 1/|N|**4
+        E = |d|**2
+        F = d·e
+        G = |e|**2
+        e1 = r*(A**2*G - 2*A*B*F + B**2*E)
+        f1 = r*(A*B*G + B*C*E - F*(A*C + B**2))
+        g1 = r*(B**2*G - 2*B*C*F + C**2*E)
+        D = A*C - B**2
+
+    Source: beyond the paper; 85 operations as written, 78 here.
+    """
+    a_x, a_y, a_z = patch.a
+    b_x, b_y, b_z = patch.b
+    c_x, c_y, c_z = patch.c
+    d_x, d_y, d_z = patch.d
+    e_x, e_y, e_z = patch.e
+    N_x = d_y * e_z - d_z * e_y
+    N_y = d_z * e_x - d_x * e_z
+    N_z = d_x * e_y - d_y * e_x
+    A = N_x * a_x + N_y * a_y + N_z * a_z
+    B = N_x * b_x + N_y * b_y + N_z * b_z
+    C = N_x * c_x + N_y * c_y + N_z * c_z
+    r = 1.0 / ((N_x * N_x + N_y * N_y + N_z * N_z) * (N_x * N_x + N_y * N_y + N_z * N_z))
+    E = d_x * d_x + d_y * d_y + d_z * d_z
+    F = d_x * e_x + d_y * e_y + d_z * e_z
+    G = e_x * e_x + e_y * e_y + e_z * e_z
+    t0 = B * B
+    t1 = A * B
+    t2 = 2 * F
+    e1 = r * (A * A * G + E * t0 - t1 * t2)
+    t3 = B * C
+    t4 = A * C
+    f1 = r * (E * t3 - F * (t0 + t4) + G * t1)
+    g1 = r * (C * C * E + G * t0 - t2 * t3)
+    D = t4 - t0
+    return E, F, G, e1, f1, g1, D
+
+
+@inline
 def newton(patch, n):
     """The step u, v of Newton's method for P = Q = 0, the preimage of the unit normal n on the
     patch that osculates the surface; the squared sine s of the angle between n and the normal N

@@ -20,7 +20,9 @@ __all__ = [
     "DERIVED",
     "FLAG_NAMES",
     "FLOAT_NAMES",
+    "GRID_NAMES",
     "INDEX_NAMES",
+    "OPTIONAL_NAMES",
     "checked_dtype",
     "checked_fields",
     "columns_of",
@@ -40,12 +42,17 @@ COLUMNS: dict[str, tuple[str, ...]] = {
     "normal_index": ("normal_index",),
     "patch_index": ("patch_index",),
     "on_surface": ("on_surface",),
+    "row": ("row",),
+    "column": ("column",),
 }
 INDEX_NAMES = ("normal_index", "patch_index")
 # Only samples of a surface have these, not those of its spline.
 FLAG_NAMES = ("on_surface",)
-ARRAY_NAMES_ON_SURFACE: tuple[str, ...] = tuple(COLUMNS)
-ARRAY_NAMES: tuple[str, ...] = tuple(name for name in COLUMNS if name not in FLAG_NAMES)
+# Only samples of which some are on a grid have these.
+GRID_NAMES = ("row", "column")
+OPTIONAL_NAMES = FLAG_NAMES + GRID_NAMES
+ARRAY_NAMES: tuple[str, ...] = tuple(name for name in COLUMNS if name not in OPTIONAL_NAMES)
+ARRAY_NAMES_ON_SURFACE: tuple[str, ...] = ARRAY_NAMES + FLAG_NAMES
 FLOAT_NAMES: tuple[str, ...] = tuple(name for name in ARRAY_NAMES if name not in INDEX_NAMES)
 # What is computed from fields when it is read.
 DERIVED: dict[str, tuple[str, ...]] = {
@@ -69,7 +76,7 @@ def dtype_of(name: str, floating: DTypeLike) -> np.dtype[Any]:
 
     if name in FLAG_NAMES:
         return np.dtype(np.bool_)
-    return np.dtype(np.int64 if name in INDEX_NAMES else floating)
+    return np.dtype(np.int64 if name in INDEX_NAMES + GRID_NAMES else floating)
 
 
 def new_field(name: str, count: int, dtype: DTypeLike) -> NDArray[Any]:
@@ -88,16 +95,20 @@ def columns_of(arrays: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
     }
 
 
-def checked_fields(fields: Sequence[str] | None, surface: bool = False) -> tuple[str, ...]:
+def checked_fields(
+    fields: Sequence[str] | None, surface: bool = False, grid: bool = False
+) -> tuple[str, ...]:
     """Return the fields that are wanted, in the order of `COLUMNS`; None stands for all.
 
-    With `surface` they are for samples on the surface. Raises UnknownNameError for an unknown name,
+    With `surface` they are for samples on the surface, with `grid` for those that may be on a grid.
+    Raises UnknownNameError for an unknown name,
     InputError for what is no tuple of names, for no names, for a name that comes twice, and for one
     that is computed from fields.
     """
     from .checks import known_name
 
     known = ARRAY_NAMES_ON_SURFACE if surface else ARRAY_NAMES
+    known += GRID_NAMES if grid else ()
     if fields is None:
         return known
     if isinstance(fields, str):
@@ -122,6 +133,8 @@ def checked_fields(fields: Sequence[str] | None, surface: bool = False) -> tuple
             )
         if name in FLAG_NAMES and not surface:
             raise InputError(f'{name} is a field of samples on the surface only; see on="surface".')
+        if name in GRID_NAMES and not grid:
+            raise InputError(f'{name} is a field of samples on a grid only; see density="aligned".')
         known_name(name, known, "field")
     return tuple(name for name in known if name in names)
 

@@ -40,6 +40,8 @@ COUNT_TOLERANCE, FEW = 0.02, 5
 SHARE_ROUNDING = 1e-9
 # Where samples lie.
 PLACES = ("surface", "spline")
+# What density="balanced" chooses between; for several pieces it may be both.
+CHOICES = ("aligned", "isotropic", "mixed")
 COUNTS = (
     "normals", "patches", "developable_patches", "infinite_curvatures", "unrefined", "apexes",
     "index",
@@ -95,6 +97,9 @@ class SamplingReport:
         on smoothly; see `Spline.apexes`.
     index : int or None
         The number of the surface among those of `sample_many`.
+    density : {"aligned", "isotropic", "mixed"} or None
+        Which of the two ``density="balanced"`` has chosen; "mixed" if pieces of the surface have
+        different ones. None for other densities.
 
     Raises
     ------
@@ -135,12 +140,15 @@ class SamplingReport:
     fit_angle: float | None = None
     apexes: int | None = None
     index: int | None = None
+    density: str | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.surface, str):
             raise InputError(f"surface must be a string, not {type(self.surface).__name__}.")
         if self.on is not None:
             known_name(self.on, PLACES, "place of samples")
+        if self.density is not None:
+            known_name(self.density, CHOICES, "choice of a density")
         for name in COUNTS:
             value = getattr(self, name)
             object.__setattr__(self, name, None if value is None else _count(name, value))

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .checks import checked_array, checked_rows
 from .errors import InputError, MissingFieldError
-from .fields import COLUMNS, DERIVED, FLAG_NAMES, FLOAT_NAMES, dtype_of, row_shape
+from .fields import COLUMNS, DERIVED, FLOAT_NAMES, OPTIONAL_NAMES, dtype_of, row_shape
 from .kinds import is_parabolic
 from .offset_of import OffsetOf
 from .report import SamplingReport, common_report
@@ -45,6 +45,8 @@ class SampleArrays:
     normal_index: NDArray[np.int64] = _NOT_ASKED
     patch_index: NDArray[np.int64] = _NOT_ASKED
     on_surface: NDArray[np.bool_] | None = None
+    row: NDArray[np.int64] | None = None
+    column: NDArray[np.int64] | None = None
     report: SamplingReport = field(kw_only=True)
     spline: Spline | None = field(default=None, kw_only=True)
     surface: Surface | None = field(default=None, kw_only=True)
@@ -61,7 +63,7 @@ class SampleArrays:
             if name in arrays:
                 shape, dtype = (count, *row_shape(name)), dtype_of(name, floating)
                 object.__setattr__(self, name, checked_array(name, arrays[name], shape, dtype))
-            elif name not in FLAG_NAMES:
+            elif name not in OPTIONAL_NAMES:
                 object.__delattr__(self, name)  # an empty slot, for which __getattr__ speaks
         if not isinstance(self.report, SamplingReport):
             raise InputError(f"report must be a SamplingReport, not {type(self.report).__name__}.")
@@ -210,8 +212,11 @@ class SampleArrays:
 
     @property
     def kind(self) -> NDArray[np.str_]:
-        """(N,) str array: "normal" at prescribed normals, "filling" for samples that fill gaps."""
-        return np.where(self.normal_index < 0, "filling", "normal")
+        """(N,) str array: "normal" at prescribed normals, "grid" on a grid, else "filling"."""
+        kinds = np.where(self.normal_index < 0, "filling", "normal")
+        if self.row is not None:
+            kinds[self.row >= 0] = "grid"
+        return kinds
 
     @property
     def principal_curvatures(self) -> NDArray[np.floating]:

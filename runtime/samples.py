@@ -63,6 +63,10 @@ class Samples(SampleArrays):
         moved there from the spline: next to parabolic and singular points, and next to open borders
         where the surface has that normal outside of its domain only. None with ``on="spline"``, or
         if it was not requested.
+    row, column : (N,) int64 array or None
+        For samples on a grid (see ``density="aligned"`` of `sample`): the numbers of the lines
+        v = const and u = const on which a sample is, from 0 upwards; −1 for one that is on no grid.
+        None if no sample is, or if they were not requested.
     report : SamplingReport
         A report on the sampling.
     spline : Spline or None

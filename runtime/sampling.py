@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from .bins import NormalBins
 from .choice import choose
 from .density.filling import filled_samples
+from .density.grid import without_lines
 from .density.law import Law
-from .density.request import Request, checked_request
+from .density.request import ON_GRIDS, Request, checked_request
 from .errors import in_memory
 from .fields import COLUMNS, checked_dtype, checked_fields, dtype_of
 from .geometry.on_spline import OnSpline
@@ -69,13 +70,16 @@ def sample(
     coverage : float, optional
         The largest distance, in the unit L of the surface, from any point of it to the nearest
         sample. Alone, or beside one of the others.
-    density : {"gauss", "balanced", "uniform"} or float, optional
+    density : {"gauss", "balanced", "isotropic", "aligned", "uniform"} or float, optional
         The target density. "gauss", the default with `normals` alone: |K|, from normals alone
         (paper, Sect. 4.2); developable regions get no samples. "balanced", the default otherwise:
         the same from fewer normals, and samples that fill the gaps, so that no point is farther
-        from a sample than r/κ, nor than r/√λ (see Notes). "uniform": the same everywhere, for
-        `count` or `coverage`. A number α, 0 < α ≤ 8: |K|^α, for `count`; uniform where the
-        curvature is below the error of the spline.
+        from a sample than r/κ, nor than r/√λ (see Notes); "isotropic" is the same. "aligned": on a
+        grid of lines u = const and v = const, spaced by how fast the normal turns along them, for
+        `count`, `angle` and `coverage`: fewer samples for the same angles where parameters run
+        along lines of curvature. "uniform": the same everywhere, for `count` or `coverage`. A
+        number α, 0 < α ≤ 8: |K|^α, for `count`; uniform where the curvature is below the error of
+        the spline.
     relax : int, default 0
         Steps, at most 10, that move the samples that fill gaps to better places. Two or three are
         enough; they take 20 to 40 times as long as the sampling and 30 kB of memory for each sample
@@ -130,7 +134,7 @@ def sample(
     Notes
     -----
     For ``density="balanced"``, κ is the larger principal curvature: neighbouring normals differ by
-    about r, twice the angle. λ is a quarter of the mean of κ², or follows from `coverage`.
+    about r, twice the angle. λ is half the mean of κ², or follows from `coverage`.
 
     The samples of a spline at a normal have Σ sign K = χ/2, for every normal of every closed
     surface, those at poles included; χ is the Euler characteristic.
@@ -172,7 +176,9 @@ def sample_and_normals(
 ) -> tuple[Samples, NDArray[np.float64]]:
     """Return what `sample` returns, and the unit normals that were asked."""
     surface, number = named(surface), checked_dtype(dtype)
-    wanted = checked_fields(fields, place_of_samples(surface, on) == "surface")
+    wanted = checked_fields(
+        fields, place_of_samples(surface, on) == "surface", grid=request.density in ON_GRIDS
+    )
     filled = request.density != "gauss"
     if request.count is not None:
         row = sum(len(COLUMNS[name]) * dtype_of(name, number).itemsize for name in wanted)
@@ -192,6 +198,8 @@ def sample_and_normals(
         samples, normals = sample_pieces(surface, Law(parts, request), sampled, progress)
     else:
         samples, normals = sampled(geometry(surface, cells), request)
+    if fields is None:
+        samples = without_lines(samples)
     warn_of(samples.report, request.count, 5, coverage=request.coverage, filled=filled)
     return samples, normals
 

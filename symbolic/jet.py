@@ -47,6 +47,28 @@ AT_JET = Formula.build(
     ],
 )
 
+FORMS_AT_JET = Formula.build(
+    "forms_at_jet",
+    "The first fundamental form $E$, $F$, $G$ of a surface, its third one $e_1$, $f_1$, $g_1$, of "
+    "the derivatives of the unit normal, and $D$, which has the sign of the Gaussian curvature, "
+    "from its 2-jet.",
+    inputs=VECTORS,
+    terms=[
+        ("N", Cross(d, e)),
+        ("A", Dot(N, a)),
+        ("B", Dot(N, b)),
+        ("C", Dot(N, c)),
+        ("r", 1 / Dot(N, N) ** 2),
+    ],
+    outputs=[
+        *FIRST_FORM,
+        ("e1", (G * A**2 - 2 * F * A * B + E * B**2) * r),
+        ("f1", (G * A * B - F * (A * C + B**2) + E * B * C) * r),
+        ("g1", (G * B**2 - 2 * F * B * C + E * C**2) * r),
+        ("D", SOLUTION.D),
+    ],
+)
+
 (q,) = vectors("q")
 
 NEWTON = Formula.build(
@@ -166,4 +188,4 @@ def _at_pole() -> Formula:
 
 AT_POLE = _at_pole()
 
-FORMULAS = (AT_JET, NEWTON, POLAR_CHART, AT_POLE)
+FORMULAS = (AT_JET, FORMS_AT_JET, NEWTON, POLAR_CHART, AT_POLE)

@@ -142,7 +142,11 @@ def density(text: str) -> str | float:
 
 def densities(_: click.Context, __: click.Parameter, begun: str) -> list[str]:
     """Complete the name of a density."""
-    return [name for name in ("balanced", "gauss", "uniform") if name.startswith(begun)]
+    return [
+        name
+        for name in ("aligned", "balanced", "gauss", "isotropic", "uniform")
+        if name.startswith(begun)
+    ]
 
 
 def surface_names(_: click.Context, __: click.Parameter, begun: str) -> list[CompletionItem]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..samples import Samples
 from .candidates import Candidates
+from .grid import Grid
 from .sizing import SizingFunction
 from .triangles import Array, Triangles, cut_patches, refuse_more
 
@@ -37,10 +38,12 @@ class Cover:
     function. All lengths are scaled as in `SizingFunction`. Rows of `points` (N, 6), point and unit
     normal, and `curvatures` (N,), K, are the samples; the first `given` ones are those that were
     given (only the sign of their K counts, which is not scaled), the others lie at the places of
-    the triangles `added`.
+    the triangles `added`, of which the first ones are those of the `grid`, if there is one.
 
     Samples are chosen among the places of `triangles`. `show_count` is called with the number of
     samples when it has grown.
+
+    The first `fixed` samples, those given and those of the grid, are never removed.
 
     `radius_asked`, if it is not 0, and `count_asked`, if it is not None, are what the cover was
     last asked for.
@@ -54,16 +57,20 @@ class Cover:
         sizing: SizingFunction,
         given: Samples | None,
         show_count: Callable[[int], object] = lambda count: None,
+        grid: Grid | None = None,
     ) -> None:
-        """Begin with given samples of the same spline."""
-        self.sizing, self.show_count = sizing, show_count
+        """Begin with given samples of the same spline, and those of a grid."""
+        self.sizing, self.show_count, self.grid = sizing, show_count, grid
         self.points, self.curvatures = np.empty((0, 6)), np.empty(0)
         if given is not None:
             self.points = np.column_stack([sizing.scaled_points(given.points), given.normals])
             self.curvatures = given.gaussian_curvature
         self.given, self.fine = len(self.points), FINE
         self.radius_asked, self.count_asked = 0.0, None
-        self.remove_added()
+        self.added = Triangles(sizing, np.empty(0, dtype=np.int64), np.empty((0, 3, 2)))
+        if grid is not None:
+            self._append(grid.triangles)
+        self.fixed = len(self.points)
 
     @property
     def count(self) -> int:
@@ -81,7 +88,7 @@ class Cover:
         """Add samples until there are `count`."""
         radius = WIDEST * self._radius_for(count)
         self._begin(radius, count)
-        while self.count == count > self.given + 1 and radius * radius < self.sizing.integral:
+        while self.count == count > self.fixed + 1 and radius * radius < self.sizing.integral:
             # The first candidates have used up the count, wherever the widest gaps are.
             self.remove_added()
             radius *= 2.0
@@ -147,9 +154,9 @@ class Cover:
         self.added.write(moved - self.given, triangles)
 
     def remove_added(self) -> None:
-        """Remove all samples that were added."""
-        self.points, self.curvatures = self.points[: self.given], self.curvatures[: self.given]
-        self.added = Triangles(self.sizing, np.empty(0, dtype=np.int64), np.empty((0, 3, 2)))
+        """Remove all samples that were added, except those of the grid."""
+        self.points, self.curvatures = self.points[: self.fixed], self.curvatures[: self.fixed]
+        self.added = self.added[np.arange(self.fixed - self.given)]
 
     def _radius_for(self, count: int) -> float:
         """Return the radius at which about `count` samples cover the surface."""

@@ -21,8 +21,10 @@ from .angles import cover_normals
 from .at_normals import SamplesAtNormals, no_samples, sample_at_lattice, sample_at_normals
 from .cover import Cover
 from .coverage import coverage
+from .grid import lines_of
+from .on_grid import cover_on_grid
 from .relaxation import relax
-from .request import Request
+from .request import BY_CURVATURE, Request
 from .sizing import SizingFunction, TargetDensity
 from .triangles import subdivisions
 
@@ -36,7 +38,7 @@ WIDER = 2.0
 # integral of the target density is n r² times this.
 GREEDY = 1.85
 # Balanced: the floor of the target density, relative to the mean of κ².
-FLAT_SHARE = 0.25
+FLAT_SHARE = 0.5
 # |K|^α vanishes where K does; gaps there are wider than the mean by at most this factor.
 WIDEST_GAP = 1000.0
 # The number of added samples that a sample at a normal is taken to save. It saves up to 0.7; with
@@ -87,7 +89,7 @@ class Filling:
 
         Raises SurfaceError if the surface has no area.
         """
-        if self.request.density == "balanced":
+        if self.request.density in BY_CURVATURE:
             return self._balanced()
         cover = Cover(self._sizing_of_power(), None, self.show_count)
         if self.request.count is not None:
@@ -98,7 +100,7 @@ class Filling:
 
     def relaxed(self, cover: Cover) -> Cover:
         """Return the relaxed cover, or the given one if relaxing would exceed the coverage."""
-        if self.request.relax == 0 or cover.count == cover.given:
+        if self.request.relax == 0 or cover.count == cover.fixed:
             return cover
         relaxed, asked = copy(cover), self.request.coverage
         relax(relaxed, self.request.relax)
@@ -152,6 +154,7 @@ class Filling:
                 for name, x in arrays.items()
             }
             unrefined = None if unrefined is None else unrefined + (given.report.unrefined or 0)
+        arrays |= lines_of(cover.grid, cover.count, fields)
         developable = None if given is None else given.report.developable_patches
         report = sampling_report(
             self.geometry, len(at_normals.normals), cover.count, at_normals.density, developable,
@@ -159,7 +162,10 @@ class Filling:
         )  # fmt: skip
         asked = self.request.coverage
         reached = None if asked is None else self._coverage(cover, asked)
-        report = replace(report, coverage=reached, angle=angle)
+        density = None
+        if self.request.density in BY_CURVATURE:
+            density = "isotropic" if cover.grid is None else "aligned"
+        report = replace(report, coverage=reached, angle=angle, density=density)
         return self.geometry.samples(arrays, report, unrefined)
 
     def _coverage(self, cover: Cover, asked: float) -> float:
@@ -185,12 +191,22 @@ class Filling:
         least = 4 * math.pi if request.normals is not None or request.angle else FLAT_SURFACE
         floor = FLAT_SHARE * max(sizing.integral, least) / sizing.area
         floor = self._floor_or(floor, sizing, 2.0)
+        if request.density == "aligned":
+            return self._aligned(sizing.with_floor(floor)), no_samples()
         if request.count is None:
             return self._by_radius(sizing, floor)
         cover, at_normals = self._by_count(sizing.with_floor(floor), request.count)
         if request.coverage is None or self._coverage(cover, request.coverage) <= request.coverage:
             return cover, at_normals
         return self._by_count_and_coverage(sizing, request.count, request.coverage)
+
+    def _aligned(self, sizing: SizingFunction) -> Cover:
+        """Sample on a graded grid, and fill the gaps that it leaves."""
+        request = self.request
+        distance = None
+        if request.coverage is not None:
+            distance = self._distance(sizing, request.coverage)
+        return cover_on_grid(sizing, request, distance, self.show_count)
 
     def _by_radius(self, sizing: SizingFunction, floor: float) -> tuple[Cover, SamplesAtNormals]:
         """Sample at the normals asked for, or at as many as fit a coverage, and fill the gaps."""

@@ -15,7 +15,7 @@ from ..errors import SurfaceError
 from ..geometry.on_spline import OnSpline
 from ..tolerances import FLAT_SURFACE
 from .filling import FLAT_SHARE, GREEDY, SAVED, WIDER, WIDEST_GAP, spacing
-from .request import Request
+from .request import BY_CURVATURE, Request
 from .sizing import SizingFunction, TargetDensity
 
 __all__ = ["Law", "allotted"]
@@ -56,7 +56,7 @@ class Law:
     def floor(self) -> float:
         """The floor of the target density: that of a surface made of all pieces."""
         total, area = float(self._integrals(0.0).sum()), float(self.areas.sum())
-        if self.request.density == "balanced":
+        if self.request.density in BY_CURVATURE:
             absolute = self.request.normals is not None or self.request.angle is not None
             return FLAT_SHARE * max(total, 4 * math.pi if absolute else FLAT_SURFACE) / area
         return total / area / WIDEST_GAP**2
@@ -73,7 +73,7 @@ class Law:
 
     def _needs(self, count: int) -> Array:
         """Return numbers that are proportional to the samples of the pieces."""
-        if self.request.density not in ("gauss", "balanced"):
+        if self.request.density not in ("gauss", *BY_CURVATURE):
             return self._integrals(self.floor)
         seen = np.zeros(len(self.parts))
         for k in np.flatnonzero(self.areas).tolist():
@@ -107,7 +107,7 @@ class Law:
         """The dimension of the target density, as a power of 1/L."""
         if self._by_power:
             return 2.0 * float(self.request.density)
-        return 2.0 if self.request.density == "balanced" else 0.0
+        return 2.0 if self.request.density in BY_CURVATURE else 0.0
 
     @cached_property
     def _sizings(self) -> tuple[SizingFunction, ...]:
@@ -115,7 +115,7 @@ class Law:
         target = TargetDensity(floor=1.0)
         if self._by_power:
             target = TargetDensity(gauss_weight=1.0, exponent=float(self.request.density))
-        elif self.request.density == "balanced":
+        elif self.request.density in BY_CURVATURE:
             target = TargetDensity(curvature_weight=1.0)
         return tuple(SizingFunction(x, target) for x in self.parts)
 

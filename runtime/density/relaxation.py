@@ -30,7 +30,7 @@ def relax(cover: Cover, steps: int) -> None:
     cover.fine = FINE
     cover.take_candidates(cover.radius, widest)
     if cover.given and cover.count_asked is not None:
-        fill_widest_angles(cover, round(FOR_NORMALS * (count - cover.given)), widest)
+        fill_widest_angles(cover, round(FOR_NORMALS * (count - cover.fixed)), widest)
     settled = cover.count
     cover.narrow(widest, cover.radius_asked, settled + round(MOVED * (count - settled)))
     for _ in range(steps):

@@ -14,9 +14,16 @@ from ..errors import InputError
 from ..limits import MOST_STEPS
 from ..threads import thread_count
 
-__all__ = ["DENSITIES", "Request", "checked_request"]
+__all__ = ["BY_CURVATURE", "DENSITIES", "ON_GRIDS", "Request", "checked_request"]
 
-DENSITIES = ("gauss", "balanced", "uniform")
+# Those that follow the larger principal curvature.
+BY_CURVATURE = ("balanced", "isotropic", "aligned")
+# Of these, those that may take a grid.
+ON_GRIDS = ("balanced", "aligned")
+DENSITIES = ("gauss", "balanced", "isotropic", "aligned", "uniform")
+BALANCED = [[x] for x in ("normals", "count", "angle", "coverage")] + [
+    [x, "coverage"] for x in ("normals", "count", "angle")
+]
 # Beyond this |K|^α is so uneven that all samples crowd around the point of the largest |K|.
 LARGEST_POWER = 8.0
 
@@ -101,8 +108,9 @@ def _check_that_they_fit(density: str | float, given: list[str]) -> None:
     fitting = {
         # No angle: next to open borders normals alone leave more than they are apart.
         "gauss": [["normals"], ["count"]],
-        "balanced": [[x] for x in ("normals", "count", "angle", "coverage")]
-        + [[x, "coverage"] for x in ("normals", "count", "angle")],
+        "balanced": BALANCED,
+        "isotropic": BALANCED,
+        "aligned": [x for x in BALANCED if "normals" not in x],
         "uniform": [["count"], ["coverage"]],
     }.get(str(density), [["count"]])
     if given not in fitting:

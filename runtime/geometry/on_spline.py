@@ -17,6 +17,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from ..bins import NormalBins
 from ..fields import FLOAT_NAMES, new_field
+from ..kernels.forms import forms_on_spline
 from ..kernels.sizing import TargetDensity
 from ..kernels.tile import fill_known
 from ..report import SamplingReport
@@ -120,6 +121,12 @@ class OnSpline:
         return Samples(
             **fields, report=report, spline=self.spline, surface=self.surface, offset_of=None
         )
+
+    def forms(self, cells: Array) -> Array:
+        """Return the fundamental forms (k, 7) at places (k, 2) in cells; see `forms_of_jets`."""
+        found = np.empty((len(cells), 7))
+        forms_on_spline(self.spline.coefficients, self.spline.scale, cells, found)
+        return found
 
     # --- samples that fill gaps -------------------------------------------------------------------
 

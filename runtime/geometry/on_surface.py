@@ -18,6 +18,7 @@ from ..errors import InputError
 from ..fields import FLAG_NAMES
 from ..fitting.fit import spline_of
 from ..kernels import nodes as kernels
+from ..kernels.forms import forms_of_jets
 from ..kernels.sizing import TargetDensity
 from ..refinement.newton import evaluate_on_surface
 from ..refinement.pole_charts import PoleChart, pole_charts
@@ -292,6 +293,18 @@ class OnSurface(OnSpline):
             arrays[name][there] = exact[name][there]
         flags: Fields = {name: there for name in FLAG_NAMES if name in fields}
         return FieldsOfSamples(arrays | flags, int(np.count_nonzero(~there)))
+
+    def forms(self, cells: Array) -> Array:
+        """Return the fundamental forms (k, 7) at places (k, 2) in cells; see `forms_of_jets`."""
+        found, frame = np.empty((len(cells), 7)), self.spline.frame
+        scales = np.array([self._size, *frame[2:]])
+        u, v = (frame[:2] + frame[2:] * cells).T.copy()
+
+        def work(first: int, last: int) -> None:
+            forms_of_jets(self._jets(u[first:last], v[first:last]), scales, found[first:last])
+
+        self._in_parts(work, len(cells))
+        return found
 
     # --- evaluation -------------------------------------------------------------------------------
 

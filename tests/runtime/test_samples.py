@@ -9,7 +9,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.errors import InputError
-from gaussmap.runtime.fields import ARRAY_NAMES, ARRAY_NAMES_ON_SURFACE
+from gaussmap.runtime.fields import ARRAY_NAMES, ARRAY_NAMES_ON_SURFACE, GRID_NAMES
 from gaussmap.runtime.report import SamplingReport
 from gaussmap.runtime.samples import Samples
 from hypothesis import given
@@ -46,7 +46,7 @@ def curved(K: object, H: object) -> Samples:
 
 class TestConstruction:
     def test_the_array_names_are_the_fields(self):
-        names = (*ARRAY_NAMES_ON_SURFACE, "report", "spline", "surface", "offset_of")
+        names = (*ARRAY_NAMES_ON_SURFACE, *GRID_NAMES, "report", "spline", "surface", "offset_of")
         assert names == tuple(field.name for field in fields(Samples))
 
     def test_the_spline_is_kept_by_picking_copying_and_concatenating(self):
@@ -171,11 +171,12 @@ class TestReport:
             "fit_angle": np.float64(1),
             "apexes": np.int16(1),
             "index": np.int64(7),
+            "density": "aligned",
         }
         report = SamplingReport("s", *numbers, **more)
         assert [type(getattr(report, f.name)) for f in fields(report)] == [
             str, int, int, int, float, int, float, float, int, str, int, float, float, float,
-            int, int,
+            int, int, str,
         ]  # fmt: skip
 
     @pytest.mark.parametrize("name", ["normals", "samples", "patches", "developable_patches"])

@@ -266,7 +266,7 @@ def test_uniform_goes_by_area(count):
 
 @pytest.mark.compiled
 def test_balanced_is_dense_where_it_bends_and_not_blind_where_it_is_flat():
-    """A cylinder beside a plane: κ² against λ, which is a quarter of the mean of κ²."""
+    """A cylinder beside a plane: κ² against λ, which is half the mean of κ²."""
     radius, flat = 0.5, 4.0
 
     def profile(u, v):
@@ -276,9 +276,9 @@ def test_balanced_is_dense_where_it_bends_and_not_blind_where_it_is_flat():
         return np.stack([x, v, z], axis=-1)
 
     surface = gm.Surface.from_callable(profile, ((-flat, math.pi * radius), (0.0, 3.0)))
-    samples = gm.sample(surface, count=4000, cells=(256, 16))
+    samples = gm.sample(surface, count=4000, cells=(256, 16), density="isotropic")
     length, k = math.pi * radius, 1.0 / radius**2
-    floor = 0.25 * k * length / (length + flat)
+    floor = 0.5 * k * length / (length + flat)
     bent = samples.uv[:, 0] > 0.0
     expected = k * length / (k * length + floor * flat)
     rows = 2 * 3.0 * math.sqrt(4000 * k / (3.0 * (k * length + floor * flat)))

@@ -1,0 +1,185 @@
+"""Graded grids: samples where lines of both parameters cross, spaced by how fast the normal turns.
+
+Where parameters run along lines of curvature, the cells of such a grid are long where the surface
+is curved in one direction only: the same angles need far fewer samples than round cells do.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kernels.forms import patches_at
+from .grid import Grid
+from .lines import Axis
+from .sizing import SizingFunction
+from .steps import Forms, Steps, equal_steps, steps_for_count
+from .triangles import Triangles
+
+__all__ = ["AlignedGrid"]
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+# The forms are known at about this number of places along u and v.
+PLACES = 64
+# On trimmed surfaces: the samples that are left for each sample of the grid next to the border, and
+# the part of a count that a grid reaches then, after at most TRIALS.
+BORDER, CLOSE, TRIALS = 0.5, 0.95, 4
+# Candidates for the number of lines along u, around the best one if it were no integer.
+AROUND, AS_GOOD = 0.12, 1.01
+# Decimal places of chords that count as equal.
+DIGITS = 9
+
+
+@dataclass(frozen=True, eq=False)
+class AlignedGrid:
+    """The forms of a surface on its parameters, from which grids follow."""
+
+    sizing: SizingFunction
+    axes: tuple[Axis, Axis]
+    forms: Forms
+
+    @classmethod
+    def of(cls, sizing: SizingFunction) -> AlignedGrid:
+        """Evaluate the forms."""
+        cells = sizing.spline.cells
+        axes = tuple(Axis.of(float(n), PLACES, np.empty(0)) for n in cells)
+        return cls(sizing, (axes[0], axes[1]), forms_on(sizing, (axes[0], axes[1])))
+
+    def steps(self, angle: float, distance: float) -> Steps:
+        """Return the steps for an angle (as a length on the sphere) and a scaled distance."""
+        return equal_steps(self.forms, angle, distance)
+
+    def steps_for(self, count: float, distance: float) -> Steps:
+        """Return the steps for a count of samples (of the whole domain) and a scaled distance."""
+        return steps_for_count(self.forms, count, distance)
+
+    def grid_for(self, most: int, distance: float) -> Grid:
+        """Return the finest grid of at most `most` samples, for a scaled distance."""
+        whole, grid = float(most), self.grid(self.steps_for(most, distance), most)
+        if self.sizing.spline.trim is None:
+            return grid
+        for _ in range(TRIALS):
+            # Samples outside the trim do not count; at its border gaps are left for others.
+            spare = len(grid) + BORDER * grid.border
+            whole *= most / max(spare, 1.0)
+            grid = self.grid(self.steps_for(whole, distance), int(whole))
+            if CLOSE * most <= len(grid) + BORDER * grid.border <= most:
+                break
+        return grid if len(grid) <= most else self.grid(self.steps_for(most, distance), most)
+
+    def grid(self, steps: Steps, most: int | None) -> Grid:
+        """Return the grid of steps, on the whole domain with at most `most` samples if given."""
+        lengths = [x.lengths(y) for x, y in zip(self.axes, steps.along, strict=True)]
+        if most is None:
+            numbers = [np.ceil(x).astype(np.int64) for x in lengths]
+        else:
+            numbers = _numbers(lengths, most)
+        lines = [
+            axis.lines(along, number)
+            for axis, along, number in zip(self.axes, steps.along, numbers, strict=True)
+        ]
+        columns, rows = (x.ravel() for x in np.indices([len(x) for x in lines]))
+        cells = np.column_stack([lines[0][columns], lines[1][rows]])
+        if most is not None and len(cells) < most and self.sizing.spline.trim is None:
+            between = self._between(lines, most - len(cells))
+            cells = np.concatenate([cells, between])
+            columns, rows = (np.append(x, np.full(len(between), -1)) for x in (columns, rows))
+        return self._at(cells, rows, columns, (len(lines[0]), len(lines[1])))
+
+    def _between(self, lines: list[Array], number: int) -> Array:
+        """Return places between neighbours on the grid, where these are farthest apart in normal.
+
+        The neighbours are those that are closer in space: a sample between others would be the
+        nearest one, in space, of points that belong to other rows.
+        """
+        places, chords = [], []
+        for axis in (0, 1):
+            found = self._middles(lines, axis)
+            closer = found[1][0] <= found[1][1]
+            places.append(found[0][closer])
+            chords.append(found[2][closer])
+        order = np.argsort(-np.concatenate(chords).round(DIGITS), kind="stable")
+        return np.concatenate(places)[order[:number]]
+
+    def _middles(self, lines: list[Array], axis: int) -> tuple[Array, Array, Array]:
+        """Return the middles (k, 2) between neighbours along a parameter, in cells.
+
+        And the distances in space of these neighbours, and of those across (2, k), and the chord of
+        the first ones in normal space (k,).
+        """
+        steps = [np.gradient(x) if len(x) > 1 else np.full(1, np.inf) for x in lines]
+        steps[axis] = np.diff(lines[axis])
+        middles = list(lines)
+        middles[axis] = (lines[axis][1:] + lines[axis][:-1]) / 2.0
+        near = [
+            np.clip(np.searchsorted(x.edges, y) - 1, 0, len(x.edges) - 2)
+            for x, y in zip(self.axes, middles, strict=True)
+        ]
+        forms = self.forms.third, self.forms.first
+        third, first = (x[:, near[0][:, None], near[1]] for x in forms)
+        along, across = (np.broadcast_to(x, first[0].shape) for x in (
+            steps[0][:, None], steps[1]
+        ))  # fmt: skip
+        lengths = [np.sqrt(first[0]) * along, np.sqrt(first[2]) * across]
+        chord = np.sqrt(third[2 * axis]) * (along, across)[axis]
+        cells = np.stack(np.meshgrid(*middles, indexing="ij"), axis=-1).reshape(-1, 2)
+        distances = np.stack([lengths[axis].ravel(), lengths[1 - axis].ravel()])
+        return cells, distances, chord.ravel()
+
+    def _at(self, cells: Array, rows: Indices, columns: Indices, lines: tuple[int, int]) -> Grid:
+        """Return samples at places (N, 2) in cells, those inside the trim."""
+        spline = self.sizing.spline
+        if spline.trim is not None:
+            uv = spline.frame[:2] + spline.frame[2:] * cells
+            inside = spline.trim.contains(uv, self.sizing.threads)
+            cells, rows, columns = cells[inside], rows[inside], columns[inside]
+        patches, places = np.empty(len(cells), dtype=np.int64), np.empty((len(cells), 2))
+        patches_at(*spline.cells, cells, patches, places)
+        triangles = Triangles(self.sizing, patches, np.repeat(places[:, None], 3, axis=1), places)
+        return Grid(triangles, rows, columns, lines)
+
+
+def forms_on(sizing: SizingFunction, axes: tuple[Axis, Axis]) -> Forms:
+    """Return the forms of what is sampled at the middles of axes, in cells."""
+    u, v = (x.middles for x in axes)
+    cells = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
+    forms = sizing.geometry.forms(cells).T.reshape(7, len(u), len(v))
+    return Forms(forms[3:6], forms[:3], (axes[0].widths, axes[1].widths))
+
+
+def _numbers(lengths: list[Array], most: int) -> list[Indices]:
+    """Return the numbers of lines of each part, along u and v, for their numbers of steps.
+
+    There are at most `most` crossings; the longest step, relative to the given ones, is about as
+    short as possible.
+    """
+    found = []
+    total = float(lengths[0].sum())
+    scale = math.sqrt(most / (total * float(lengths[1].sum())))
+    low, high = (math.floor(scale * total * (1.0 + x)) for x in (-AROUND, AROUND))
+    fewest = len(lengths[0])
+    for number in range(max(low, fewest), max(high, fewest) + 1):
+        along_u = shared(lengths[0], number)
+        along_v = shared(lengths[1], max(most // number, 1))
+        longest = max(
+            float((x / y).max()) for x, y in zip(lengths, (along_u, along_v), strict=True)
+        )
+        found.append((longest, most - along_u.sum() * along_v.sum(), [along_u, along_v]))
+    shortest = min(longest for longest, _, _ in found)
+    # Of those that are nearly as good, the one that leaves the fewest samples.
+    return min((x for x in found if x[0] <= AS_GOOD * shortest), key=lambda x: x[1])[2]
+
+
+def shared(lengths: Array, number: int) -> Indices:
+    """Divide a number of lines among parts: the longest step gets the next line."""
+    numbers = np.ones(len(lengths), dtype=np.int64)
+    if number > len(lengths):
+        numbers += np.floor(lengths * ((number - len(lengths)) / lengths.sum())).astype(np.int64)
+    while numbers.sum() < number:
+        numbers[np.argmax(lengths / numbers)] += 1
+    return numbers

@@ -1,0 +1,65 @@
+"""Samples on a grid of lines of both parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..fields import GRID_NAMES
+from ..samples import Samples
+from .triangles import Triangles
+
+__all__ = ["Grid", "lines_of", "without_lines"]
+
+Indices = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """Samples on a grid: the triangles that have them as their places, and their lines.
+
+    `rows` and `columns` (N,) number lines v = const and u = const; −1 for samples between lines.
+    """
+
+    triangles: Triangles
+    rows: Indices
+    columns: Indices
+    lines: tuple[int, int]
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    @property
+    def border(self) -> int:
+        """The number of samples that have no neighbour in some direction, within the domain."""
+        inside = np.zeros(self.lines, dtype=np.bool_)
+        on = self.rows >= 0
+        inside[self.columns[on], self.rows[on]] = True
+        near = np.zeros_like(inside)
+        for axis in (0, 1):
+            changes = np.diff(inside, axis=axis)
+            low, high = ((slice(None, -1), slice(1, None)) for _ in range(2))
+            ends = (slice(None),) * axis
+            near[(*ends, low[0])] |= changes
+            near[(*ends, high[1])] |= changes
+        return int((near & inside).sum())
+
+
+def lines_of(grid: Grid | None, count: int, fields: Sequence[str]) -> dict[str, Indices]:
+    """Return the requested ones of the fields row and column of samples, the grid's being first."""
+    found = {name: np.full(count, -1, dtype=np.int64) for name in GRID_NAMES if name in fields}
+    if grid is not None:
+        for name, numbers in zip(GRID_NAMES, (grid.rows, grid.columns), strict=True):
+            if name in found:
+                found[name][: len(grid)] = numbers
+    return found
+
+
+def without_lines(samples: Samples) -> Samples:
+    """Return samples without the fields row and column if none of them is on a grid."""
+    if samples.row is None or samples.column is None or (samples.row >= 0).any():
+        return samples
+    return replace(samples, row=None, column=None)

@@ -1,0 +1,61 @@
+"""Lines of a grid along one parameter: where they are for given steps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Axis"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Axis:
+    """An interval of a parameter, in cells, cut at `edges` (k + 1,), which rise.
+
+    At the edges numbered `breaks`, the first and the last among them, parts begin and end: the
+    lines of each part are half a step away from its ends.
+    """
+
+    edges: Array
+    breaks: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, length: float, number: int, breaks: Array) -> Axis:
+        """Cut the interval from 0 to `length` into about `number` pieces, and at breaks."""
+        ends = np.concatenate([[0.0], breaks, [length]])
+        counts = np.maximum(np.ceil(np.diff(ends) * (number / length)), 2.0).astype(np.int64)
+        parts = [
+            low + (high - low) * np.arange(count) / count
+            for low, high, count in zip(ends[:-1], ends[1:], counts.tolist(), strict=True)
+        ]
+        return cls(np.concatenate([*parts, [length]]), np.concatenate([[0], np.cumsum(counts)]))
+
+    @property
+    def middles(self) -> Array:
+        """The middles (k,) of the pieces."""
+        return (self.edges[1:] + self.edges[:-1]) / 2.0
+
+    @property
+    def widths(self) -> Array:
+        """The widths (k,) of the pieces."""
+        return np.diff(self.edges)
+
+    def lengths(self, steps: Array) -> Array:
+        """Return the numbers of steps (parts,), whose lengths (k,) are given on the pieces."""
+        return np.add.reduceat(self.widths / steps, self.breaks[:-1])
+
+    def lines(self, steps: Array, numbers: NDArray[np.int64]) -> Array:
+        """Return the places of lines, `numbers` (parts,) in each part, spaced by steps (k,)."""
+        found = []
+        for first, last, number in zip(
+            self.breaks[:-1], self.breaks[1:], numbers.tolist(), strict=True
+        ):
+            steps_so_far = np.cumsum(self.widths[first:last] / steps[first:last])
+            steps_so_far = np.concatenate([[0.0], steps_so_far])
+            places = (np.arange(number) + 0.5) * (steps_so_far[-1] / number)
+            found.append(np.interp(places, steps_so_far, self.edges[first : last + 1]))
+        return np.concatenate(found)
