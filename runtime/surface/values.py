@@ -129,7 +129,7 @@ class SurfaceValues:
                 f"{self.name!r} was given by points and has no derivatives; gm.fit makes a spline "
                 "of it, which has normals and curvatures."
             )
-        jets = self.jets(*(x.ravel() for x in arrays)).reshape(*arrays[0].shape, len(NAMES), 3)
+        jets = self.jets(*(x.flatten() for x in arrays)).reshape(*arrays[0].shape, len(NAMES), 3)
         if not np.isfinite(jets).all():
             bad = ~np.isfinite(jets).all(axis=-1)
             *where, row = np.unravel_index(int(np.argmax(bad)), bad.shape)
