@@ -12,7 +12,8 @@ settings.register_profile("large", max_examples=200, deadline=None)
 settings.load_profile("quick")
 
 HERE = Path(__file__).parent
-# The tests that run formulas and kernels: `make coverage` runs them without compilation.
+# The tests that run formulas and kernels: `make coverage` runs them without compilation, and reads
+# no other file. In those of SOME only the tests that are marked do.
 OF_KERNELS = (
     "generated",
     "runtime/curves",
@@ -26,6 +27,11 @@ OF_KERNELS = (
     "runtime/surface/test_nurbs.py",
     "runtime/splines/test_spline.py",
 )
+SOME = (
+    "runtime/surface/test_derivatives.py",
+    "runtime/surface/test_trim.py",
+    "symbolic/test_emit.py",
+)
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -35,6 +41,13 @@ def pytest_configure(config: pytest.Config) -> None:
         "slow: takes long and seldom fails; run by `make verify`, and not by `make test`",
     ):
         config.addinivalue_line("markers", marker)
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    if not config.option.markexpr.startswith("kernels") or collection_path.is_dir():
+        return None
+    place = collection_path.relative_to(HERE).as_posix()
+    return not place.startswith((*OF_KERNELS, *SOME)) or None
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -231,6 +231,7 @@ def test_integer_patches(name, data):
     check_where_bounded(name, data.draw(numbers(name, integers)))
 
 
+@pytest.mark.compiled
 @EACH
 @given(data=st.data())
 def test_patches_of_any_floats(name, data):

@@ -163,6 +163,7 @@ def test_numbers_come_back_from_their_residues(values: list[int]) -> None:
         assert abs(Fraction(found) - value) <= 18 * Fraction(2) ** -53 * abs(value)
 
 
+@pytest.mark.compiled
 def test_parabolic_normal_of_a_torus_has_a_sensible_place() -> None:
     """n = ±z touches the torus along whole circles: one point of each sign remains."""
     samples = gm.sample(
@@ -174,6 +175,7 @@ def test_parabolic_normal_of_a_torus_has_a_sensible_place() -> None:
     np.testing.assert_allclose(np.hypot(*samples.points[:, :2].T), 1.0, atol=2e-2)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("name", ["catenoid", "hyperboloid"])
 def test_border_vertices_of_a_closed_ring_count_once(name: str) -> None:
     """The first and the last vertex on the border are one place: its normal is asked twice."""
@@ -184,6 +186,7 @@ def test_border_vertices_of_a_closed_ring_count_once(name: str) -> None:
         np.testing.assert_array_equal(np.bincount(samples.normal_index, minlength=13), 1)
 
 
+@pytest.mark.compiled
 def test_equal_normals_are_answered_alike() -> None:
     """Those of the vertices on the border, where rounding lets several patches answer."""
     spline = gm.fit(gm.surfaces.elliptic_paraboloid(), (12, 8))

@@ -100,6 +100,7 @@ def test_sum_of_signs_is_the_turning_number(name: str, normals: Array, pieces: i
         assert samples.report.inflections == 0
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("name", ["ellipse", "eight", "star"])
 @pytest.mark.parametrize("factor", [1.0, 1e12, 1e-12, 1e150, 1e-150])
 @pytest.mark.parametrize("shift", [0.0, 1e6])

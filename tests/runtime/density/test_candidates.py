@@ -42,6 +42,7 @@ def test_places_know_the_nearest_sample_within_a_radius(spread, radius, made):
     assert np.isinf(candidates.distances).all()
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("spread", [0.0, 6.0])
 def test_chosen_are_far_from_all_others_and_near_to_what_is_left(spread):
     rows, samples = rows_of(2000, 3, spread), rows_of(20, 4, 0.0)[:, :6]

@@ -59,6 +59,7 @@ def test_counts_are_exact(name, density):
                 assert np.isfinite(getattr(samples, field)).all()
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("density", DENSITIES)
 def test_samples_lie_on_the_spline(density):
     spline = gm.fit(DENTS, (9, 8))
@@ -123,6 +124,7 @@ def test_samples_of_normals_come_first(asked):
     assert (np.diff(pairs) > 0).all()
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("density", ["uniform", 1.0])
 def test_covers_alone_answer_no_normals(density):
     samples = gm.sample(gm.fit(TORUS, (8, 8)), count=100, density=density)
@@ -176,6 +178,7 @@ def test_arrays_and_splines_are_left_alone():
 # --- what they hold -------------------------------------------------------------------------------
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("fields", [("points",), ("normal_index", "uv"), ("normals", "support")])
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 def test_fields_and_types(fields, dtype):
@@ -191,6 +194,7 @@ def test_fields_and_types(fields, dtype):
     assert part.report == replace(whole.report, infinite_curvatures=None)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("suffix", [".npz", ".ply"])
 @pytest.mark.parametrize("asked", [{"count": 150}, {"angle": 20.0}])
 def test_files_hold_kinds_and_the_report(tmp_path, suffix, asked):
@@ -203,6 +207,7 @@ def test_files_hold_kinds_and_the_report(tmp_path, suffix, asked):
     assert again.report == samples.report
 
 
+@pytest.mark.compiled
 def test_several_surfaces():
     surfaces = [gm.fit(TORUS, (8, 8)), gm.fit(gm.surfaces.plane(), (4, 4))]
     found = list(gm.sample_many(surfaces, count=60, progress=False))
@@ -292,6 +297,7 @@ def test_a_surface_without_curvature_is_covered_evenly_by_any_power():
     same(gm.sample(spline, count=100, density=2.0), uniform)
 
 
+@pytest.mark.compiled
 def test_nothing_warns_of_what_is_covered():
     for name in ("plane", "cylinder", "cone"):
         samples = gm.sample(gm.surfaces.surface(name), count=60, cells=(12, 12))

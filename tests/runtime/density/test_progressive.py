@@ -6,7 +6,10 @@ import pytest
 from gaussmap.runtime.density.progressive import STEP, progressive_order
 from scipy.spatial import KDTree
 
-WAVES = gm.fit(gm.surfaces.wavy_graph(), (24, 24))
+
+@pytest.fixture(scope="module")
+def waves() -> gm.Spline:
+    return gm.fit(gm.surfaces.wavy_graph(), (24, 24))
 
 
 def spacings(points: np.ndarray) -> np.ndarray:
@@ -20,11 +23,11 @@ def gaps(points: np.ndarray, beside: np.ndarray, first: np.ndarray) -> np.ndarra
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("density", ["gauss", "balanced", "uniform"])
-def test_every_beginning_is_spread_as_the_whole(density: str) -> None:
+def test_every_beginning_is_spread_as_the_whole(waves: gm.Spline, density: str) -> None:
     # All normals of a graph are on one side, so that only distances count. Those chosen within a
     # radius r are farther apart than r, all others nearer; the next radius is STEP r. (The first
     # few are so far apart that their spacings differ by more than the grids bridge.)
-    samples = gm.sample(WAVES, count=2_000, density=density)
+    samples = gm.sample(waves, count=2_000, density=density)
     ordered = samples.progressive()
     points, beside = ordered.points, spacings(ordered.points)
     nearest = [
@@ -49,19 +52,21 @@ def test_the_samples_are_the_same_in_another_order() -> None:
     assert ordered.spline is samples.spline
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("scale", [1e-12, 1.0, 1e12])
 @pytest.mark.parametrize("move", [0.0, 1e6])
-def test_size_and_place_do_not_matter(scale: float, move: float) -> None:
-    samples = gm.sample(WAVES, count=300)
+def test_size_and_place_do_not_matter(waves: gm.Spline, scale: float, move: float) -> None:
+    samples = gm.sample(waves, count=300)
     order = progressive_order(scale * (samples.points + move), samples.normals)
     assert sorted(order) == list(range(300))
     first = samples.points[order[:30]]
     assert gaps(samples.points, np.ones(300), first).max() < 0.6
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("count", [0, 1, 2, 7, 8])
-def test_few_samples(count: int) -> None:
-    samples = gm.sample(WAVES, count=50)[:count]
+def test_few_samples(waves: gm.Spline, count: int) -> None:
+    samples = gm.sample(waves, count=50)[:count]
     assert len(samples.progressive()) == count
 
 
@@ -74,7 +79,8 @@ def test_samples_at_one_place() -> None:
     assert sorted(progressive_order(np.zeros((50, 3)), normals[:50])) == list(range(50))
 
 
-def test_normals_are_needed() -> None:
-    samples = gm.sample(WAVES, count=50, fields=("points",))
+@pytest.mark.compiled
+def test_normals_are_needed(waves: gm.Spline) -> None:
+    samples = gm.sample(waves, count=50, fields=("points",))
     with pytest.raises(gm.errors.MissingFieldError, match="'normals'"):
         samples.progressive()

@@ -69,6 +69,7 @@ def test_relaxing_needs_samples_that_may_move():
     refused("relax must be at most", count=10, relax=1000)
 
 
+@pytest.mark.compiled
 def test_defaults():
     """Normals alone give the paper's density, all else is balanced."""
     torus = gm.fit(gm.surfaces.torus(), (8, 8))

@@ -7,6 +7,8 @@ from gaussmap.runtime.density.sizing import SizingFunction, TargetDensity
 from gaussmap.runtime.density.triangles import Triangles, cut_patches
 from gaussmap.runtime.geometry.on_spline import OnSpline
 
+RADII = pytest.mark.parametrize("radius", [0.5, pytest.param(0.06, marks=pytest.mark.compiled)])
+
 
 def sizing_of(name: str, cells: tuple[int, int]) -> SizingFunction:
     target = TargetDensity(floor=1.0, curvature_weight=1.0)
@@ -18,7 +20,7 @@ def sizes(triangles: Triangles) -> np.ndarray:
     return np.abs(np.linalg.det(triangles.corners[:, 1:] - triangles.corners[:, :1]))
 
 
-@pytest.mark.parametrize("radius", [0.5, 0.06])
+@RADII
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "ellipsoid"])
 def test_triangles_make_up_the_patches(name, radius):
     triangles = cut_patches(sizing_of(name, (4, 4)), radius)
@@ -33,7 +35,7 @@ def test_triangles_make_up_the_patches(name, radius):
         assert len(np.unique(np.column_stack([cut.patches, places]), axis=0)) == len(cut)
 
 
-@pytest.mark.parametrize("radius", [0.5, 0.06])
+@RADII
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "ellipsoid"])
 def test_parts_are_their_shares_of_the_whole(name, radius):
     triangles = cut_patches(sizing_of(name, (4, 4)), radius)
@@ -83,6 +85,7 @@ def test_narrow_patches_are_bisected(width):
         assert len(triangles) <= 64 + 4 * max(sizing.area / (0.5 * radius**2), 64 * 2 / radius)
 
 
+@pytest.mark.compiled
 def test_angles_of_normals_in_a_triangle():
     triangles = cut_patches(sizing_of("wavy_graph", (6, 4)), 0.3)
     rows = triangles.at_places()

@@ -133,6 +133,7 @@ def test_area_is_the_share_of_the_sphere_that_it_contains(seed: int) -> None:
     assert image.area == pytest.approx(4 * np.pi * share, abs=0.01)
 
 
+@pytest.mark.compiled
 def test_solid_angle_is_additive_where_singular_points_are_inside() -> None:
     """Four quarters of a wild patch are patches, and their images make up that of the whole."""
     mixed = 0
@@ -297,6 +298,7 @@ def test_developable_patch_with_a_curve_of_singular_points_is_an_arc() -> None:
     assert not image.contains(gm.fibonacci(5000)).any()
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("factor", [1e-150, 1e-12, 1e12, 1e100])
 def test_scale_does_not_matter(factor: float) -> None:
     for seed in range(5):
@@ -447,6 +449,7 @@ def test_a_double_parabolic_line_inside_pinches_the_image() -> None:
     assert image.kind == "bow tie"
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("sign", [np.array([1, 1]), "1", 1.0, True, None, 2])
 def test_a_sign_is_one_whole_number(sign: Any) -> None:
     images = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.torus(), (8, 8))

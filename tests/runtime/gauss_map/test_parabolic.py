@@ -167,6 +167,7 @@ def test_an_isolated_parabolic_point_has_no_say() -> None:
     assert gm.gauss_map.classify_patches([net]).tolist() == [PatchClass.MIXED]
 
 
+@pytest.mark.compiled
 def test_classes_of_many_patches_are_those_of_each() -> None:
     """Random and degenerate nets of all sizes; K of both signs inside, counted without lines."""
     rng = np.random.default_rng(0)
@@ -393,6 +394,7 @@ def test_monkey_saddle_has_one_point(scale: float) -> None:
     assert np.linalg.norm(point.point[:2] - point.uv) < 1e-12
 
 
+@pytest.mark.compiled
 def test_isolated_point_anywhere_is_isolated_to_the_tolerance() -> None:
     for tolerance in (1e-2, 1e-4):
         saddle = graph(lambda u, v: (u - 0.3) ** 3 - 3 * (u - 0.3) * (v + 0.2) ** 2)
@@ -536,6 +538,7 @@ def test_steep_waves_are_resolved() -> None:
     assert found.isolated == ()
 
 
+@pytest.mark.compiled
 def test_small_closed_curve() -> None:
     """A dent of 1/20 of the domain in a paraboloid: its rings are found, and are closed."""
     found = gm.gauss_map.parabolic_points(
@@ -619,6 +622,7 @@ def test_fine_waves_have_no_false_points() -> None:
         assert np.abs(sums - np.round(sums)).min(axis=0).max() < 1e-4
 
 
+@pytest.mark.compiled
 def test_touching_curve_is_isolated_in_one_rectangle() -> None:
     """z = u⁴ + v²: K ≥ 0 vanishes along the line u = 0 without a change of sign."""
     found = gm.gauss_map.parabolic_points(graph(lambda u, v: u**4 + v * v), tolerance=1e-2)
@@ -629,6 +633,7 @@ def test_touching_curve_is_isolated_in_one_rectangle() -> None:
     assert abs(line.uv[0]) < 1e-6
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(
     ("f", "box"),
     [
@@ -646,6 +651,7 @@ def test_zeros_in_too_many_rectangles_are_not_lost(f, box) -> None:
     assert (zero.box[1] >= [0.0, max(0.0, high[1] - 0.02)]).all()
 
 
+@pytest.mark.compiled
 def test_panels_with_a_large_error_are_not_flat() -> None:
     """Half twisted and bent, steep at the lower border: K, which has both signs there, is known."""
     band = gm.Surface.from_sympy(

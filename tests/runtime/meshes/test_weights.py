@@ -89,6 +89,7 @@ def test_a_part_of_a_surface_needs_an_angle() -> None:
     assert half.weights(angle=30.0).sum() == pytest.approx(samples.weights().sum() / 2.0, rel=0.1)
 
 
+@pytest.mark.compiled
 def test_what_is_needed() -> None:
     with pytest.raises(gm.errors.MissingFieldError, match="'uv'"):
         gm.sample(TORUS, count=100, fields=("points", "normals")).weights()

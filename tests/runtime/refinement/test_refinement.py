@@ -73,6 +73,7 @@ def next_to(normal: Array) -> Array:
 # --- regular points -------------------------------------------------------------------------------
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(("shift", "factor"), MOTIONS)
 def test_normals_become_the_prescribed_ones(shift: float, factor: float) -> None:
     torus = gm.surfaces.torus()

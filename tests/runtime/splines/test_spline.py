@@ -273,6 +273,7 @@ def test_seams_of_coefficients_are_bitwise_equal():
 # --- poles ----------------------------------------------------------------------------------------
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("name", ["sphere", "ellipsoid"])
 @pytest.mark.parametrize("cells", [(4, 3), (6, 5), (64, 64)])
 @pytest.mark.parametrize("shift", [0.0, 1e6])
@@ -311,6 +312,7 @@ def test_half_a_sphere_has_one_pole():
     np.testing.assert_allclose(spline.evaluate(u, 0.0), ball.evaluate(u, 0.0), rtol=0, atol=1e-3)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("cells", [None, (8, 6), (10, 7), (400, 300)])
 @pytest.mark.parametrize("name", ["sphere", "ellipsoid"])
 def test_poles_have_no_normal(name, cells):
@@ -421,6 +423,7 @@ def moved(surface, matrix, shift):
     )
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("exponent", [-1000, -40, -1, 1, 40, 990])
 @pytest.mark.parametrize("name", ["torus", "moebius_band", "sphere", "catenoid"])
 def test_powers_of_two_change_no_bit(name, exponent):
@@ -435,6 +438,7 @@ def test_powers_of_two_change_no_bit(name, exponent):
     assert (scaled.measure[0] == plain.measure[0]).all()
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("ends", [(False, False), (True, False), (True, True), ("mirrored", False)])
 def test_affine_maps_commute_with_fitting(ends):
     """On binary fractions nothing is rounded, so that the coefficients map exactly."""
@@ -452,6 +456,7 @@ def test_affine_maps_commute_with_fitting(ends):
     assert (mapped == plain @ matrix.T + shift).all()
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("factor", [1e-12, 1e12, 1e-300, 1e300])
 def test_any_unit_of_length(factor, rng):
     u, v = 2 * np.pi * rng.random((2, 200))
@@ -498,12 +503,14 @@ def test_normals_of_a_surface_that_is_nearly_a_curve():
 # --- area and solid angle -------------------------------------------------------------------------
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(("name", "euler"), [("torus", 0), ("dupin_cyclide", 0), ("sphere", 2)])
 def test_gauss_bonnet(name, euler):
     solid_angles = gm.fit(gm.surfaces.surface(name), (64, 64)).measure[1]
     assert solid_angles.sum() == pytest.approx(2 * math.pi * euler, abs=0.02)
 
 
+@pytest.mark.compiled
 def test_solid_angle_of_a_torus():
     """4π outside where it is elliptic, and −4π inside."""
     solid_angles = gm.fit(TORUS, (64, 64)).measure[1]
@@ -511,6 +518,7 @@ def test_solid_angle_of_a_torus():
     assert solid_angles[solid_angles < 0].sum() == pytest.approx(-4 * math.pi, rel=0.01)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(
     ("name", "area"),
     [

@@ -82,6 +82,7 @@ def pairwise(first: Array, second: Array) -> Array:
     return (first[:, None] + second).reshape(-1, 3)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(
     "pair",
     [(ELLIPSOID, TURNED), (BOX, BEAM), (BOX, ELLIPSOID)],

@@ -103,6 +103,7 @@ def test_length_of_normals_does_not_matter() -> None:
     close(support.envelope(long), support.envelope(NORMALS), 16.0)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("exponent", [-150, -12, 12, 150])
 def test_scales(exponent: int) -> None:
     s = 10.0**exponent

@@ -68,6 +68,7 @@ def exact_place(net: list[list[Any]], normal: Array) -> tuple[Fraction, Fraction
     )
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("net", [OF_12, MIXED], ids=["formula 12", "mixed"])
 @pytest.mark.parametrize("factor", [1.0, 0.1])
 def test_membership_and_parameters_are_exact(net: list[list[Any]], factor: float) -> None:
@@ -136,6 +137,7 @@ def test_domain_is_a_condition() -> None:
     assert (support.contains(normals) == condition(*normals.T)).all()  # in general position
 
 
+@pytest.mark.compiled
 def test_next_to_a_parabolic_line() -> None:
     """All of a parabolic line has one normal: near it, only exact arithmetic knows D, U, V, W."""
     turn = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))[0]
@@ -166,6 +168,7 @@ def test_next_to_a_parabolic_line() -> None:
     assert 0 < np.count_nonzero(branches.elliptic) < len(branches)
 
 
+@pytest.mark.compiled
 def test_next_to_a_singular_point() -> None:
     """At (¼, ¼) N vanishes: near it the parameters of a normal do not tell the direction of N."""
     net = np.array(SINGULAR, dtype=float)
@@ -215,6 +218,7 @@ def test_boundary_normals_belong_to_the_closed_patch() -> None:
     assert diagonal.contains(on_edge)[:-1].all()
 
 
+@pytest.mark.compiled
 def test_two_patches_with_a_common_edge_leave_no_gap() -> None:
     square = [graph([[1, 0], [1, 1], [0, 0]]), graph([[1, 1], [0, 1], [0, 0]])]
     one, two = (gm.SupportFunction.of_patch(net) for net in square)

@@ -37,6 +37,7 @@ def differences(found, expected):
     return np.abs(found - expected).max(axis=(0, 2)) / np.abs(expected).max()
 
 
+@pytest.mark.kernels
 @pytest.mark.parametrize("surface", CATALOGUE.values(), ids=CATALOGUE)
 def test_generated_derivatives_are_those_of_sympy(surface):
     """As plain Python, without compilation."""

@@ -55,6 +55,7 @@ def torus():
     return gm.surfaces.torus()
 
 
+@pytest.mark.kernels
 class TestEvenOdd:
     @pytest.mark.parametrize("count", [3, 8, 60])
     def test_random_loops(self, count):
@@ -98,6 +99,7 @@ class TestEvenOdd:
         far = checked_loops([polygon + 1e6], ((1e6, 1e6 + 1.0), (1e6, 1e6 + 1.0)), OPEN)
         assert (far.contains(places + 1e6) != crossings([polygon], places)).sum() <= 1
 
+    @pytest.mark.compiled
     def test_loops_of_many_points_against_shapely(self):
         angles = np.linspace(0.0, TURN, 4000, endpoint=False)
         star = 0.5 + (0.25 + 0.24 * np.cos(200 * angles))[:, None] * circle(4000, 0.0, 1.0)
