@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from . import curve, gaussian_image, jet, mesh, offset, patch, rational, spline, support
+from . import curve, faces, gaussian_image, jet, mesh, offset, patch, rational, spline, support
 from .formula import Formula
 
 __all__ = ["formulas"]
@@ -11,7 +11,18 @@ __all__ = ["formulas"]
 formulas: Mapping[str, Formula] = MappingProxyType(
     {
         formula.name: formula
-        for module in (patch, offset, gaussian_image, spline, support, jet, rational, mesh, curve)
+        for module in (
+            patch,
+            offset,
+            gaussian_image,
+            spline,
+            support,
+            jet,
+            rational,
+            faces,
+            mesh,
+            curve,
+        )
         for formula in module.FORMULAS
     }
 )

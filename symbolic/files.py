@@ -13,6 +13,7 @@ import sympy as sp
 
 from . import (
     curve,
+    faces,
     gaussian_image,
     jet,
     latex,
@@ -42,6 +43,7 @@ def derive() -> dict[str, str]:
         "__init__.py": '"""Kernels and formulas written by `make generate`: never edit these."""\n',
         "curve.py": curve_source(),
         "differences.py": differences_source(),
+        "faces.py": faces_source(),
         "primes.py": primes_source(),
         "gaussian_image.py": gaussian_image_source(),
         "icosahedron.py": icosahedron_source(),
@@ -151,6 +153,12 @@ def differences_source() -> str:
     """Return generated/differences.py: the weights of numerical derivatives."""
     title = "Weights of numerical derivatives: differences of nine points, also beside an edge."
     return mathematics(title, tables.differences())
+
+
+def faces_source() -> str:
+    """Return generated/faces.py: surfaces of revolution and offsets, from derivatives."""
+    title = "Faces of CAD parts: the formulas of symbolic/faces.py as functions of vectors."
+    return mathematics(title, functions(faces.FORMULAS))
 
 
 def gaussian_image_source() -> str:

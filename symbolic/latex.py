@@ -9,7 +9,19 @@ from functools import cache
 
 import sympy as sp
 
-from . import curve, gaussian_image, jet, mesh, offset, patch, rational, spline, support, surfaces
+from . import (
+    curve,
+    faces,
+    gaussian_image,
+    jet,
+    mesh,
+    offset,
+    patch,
+    rational,
+    spline,
+    support,
+    surfaces,
+)
 from .display import latex_name, latex_of
 from .emit import render
 from .formula import Formula
@@ -29,6 +41,7 @@ FORMULAS = {
     "Support functions": support.FORMULAS,
     "Surfaces at a point": jet.FORMULAS,
     "Rational surfaces": rational.FORMULAS,
+    "Faces of CAD parts": faces.FORMULAS,
     "Meshes": mesh.FORMULAS,
     "Planar curves": curve.FORMULAS,
 }

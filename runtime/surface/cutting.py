@@ -4,31 +4,45 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 from ..splines.domain import Boundary, BoundaryPair, Domain, Interval
+from .derivatives import Differentiable
 from .moved import Moved
-from .nurbs import Nurbs
 
 if TYPE_CHECKING:
     from .surface import Surface
 
-__all__ = ["pieces_of"]
+__all__ = ["Creased", "pieces_of"]
+
+
+@runtime_checkable
+class Creased(Protocol):
+    """A function x(u,v) that may have lines where it is not smooth, such as a NURBS."""
+
+    @property
+    def creases(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """The values of u, and those of v, inside the domain where it is not smooth."""
+        ...
+
+    def restricted(self, domain: Domain) -> Differentiable:
+        """Return it over a part of its domain, evaluated from inside at the ends."""
+        ...
 
 
 def pieces_of(surface: Surface) -> tuple[Surface, ...]:
     """Return the smooth pieces of a surface; a smooth surface itself."""
-    nurbs = surface.function
-    if isinstance(nurbs, Moved):
-        return _moved_pieces(surface, nurbs)
-    if not isinstance(nurbs, Nurbs) or not any(nurbs.creases):
+    function = surface.function
+    if isinstance(function, Moved):
+        return _moved_pieces(surface, function)
+    if not isinstance(function, Creased) or not any(function.creases):
         return (surface,)
     along_u, along_v = (
         list(pairwise((low, *lines, high)))
-        for (low, high), lines in zip(surface.domain, nurbs.creases, strict=True)
+        for (low, high), lines in zip(surface.domain, function.creases, strict=True)
     )
     domains = [(u, v) for u in along_u for v in along_v]
-    return tuple(_piece(surface, nurbs, k, domain) for k, domain in enumerate(domains))
+    return tuple(_piece(surface, function, k, domain) for k, domain in enumerate(domains))
 
 
 def _moved_pieces(surface: Surface, moved: Moved) -> tuple[Surface, ...]:
@@ -55,12 +69,12 @@ def _moved(surface: Surface, moved: Moved, piece: Surface) -> Surface:
     )
 
 
-def _piece(surface: Surface, nurbs: Nurbs, number: int, domain: Domain) -> Surface:
+def _piece(surface: Surface, function: Creased, number: int, domain: Domain) -> Surface:
     """Return the part of a surface over a part of its domain."""
     return replace(
         surface,
         name=f"{surface.name} (piece {number + 1})",
-        function=nurbs.restricted(domain),
+        function=function.restricted(domain),
         domain=domain,
         boundary=_boundary(surface, domain),
     )

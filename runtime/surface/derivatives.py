@@ -26,7 +26,10 @@ __all__ = [
     "Differentiable",
     "Function",
     "differences",
+    "nodes_between",
     "numerical_jets",
+    "shifts_inside",
+    "weighted",
 ]
 
 Array = NDArray[np.float64]
@@ -204,7 +207,7 @@ def differences(
 
     """
     (shift_u, inward_u), (shift_v, inward_v) = (
-        _shifts(x, step, *ends) for x, step, ends in zip((u, v), steps, bounds, strict=True)
+        shifts_inside(x, step, *ends) for x, step, ends in zip((u, v), steps, bounds, strict=True)
     )
     # Along the diagonal that leads away from the nearer bounds there is room for both shifts.
     shift = np.maximum(np.abs(shift_u), np.abs(shift_v)) * inward_u
@@ -213,18 +216,18 @@ def differences(
     along_u, along_v, diagonal = (central + x for x in (shift_u, shift_v, shift))
     still = np.zeros_like(diagonal)
     nodes = (
-        _nodes(u, np.concatenate([along_u, still, diagonal]), steps[0], *bounds[0]),
-        _nodes(v, np.concatenate([still, along_v, diagonal * sign]), steps[1], *bounds[1]),
+        nodes_between(u, np.concatenate([along_u, still, diagonal]), steps[0], *bounds[0]),
+        nodes_between(v, np.concatenate([still, along_v, diagonal * sign]), steps[1], *bounds[1]),
     )
     values = function(nodes[0].ravel(), nodes[1].ravel()).reshape(3, POINTS, u.size, 3)
     points = values[1, HALF - shift_v, np.arange(u.size)]
     values = values - points
     jets = np.empty((u.size, len(NAMES), 3))
     jets[:, 0] = points
-    jets[:, 1] = _weighted(FIRST, shift_u, values[0]) / steps[0]
-    jets[:, 2] = _weighted(FIRST, shift_v, values[1]) / steps[1]
-    uu, vv = _weighted(SECOND, shift_u, values[0]), _weighted(SECOND, shift_v, values[1])
-    both = _weighted(SECOND, shift, values[2])  # h² x_uu ± 2 h k x_uv + k² x_vv
+    jets[:, 1] = weighted(FIRST, shift_u, values[0]) / steps[0]
+    jets[:, 2] = weighted(FIRST, shift_v, values[1]) / steps[1]
+    uu, vv = weighted(SECOND, shift_u, values[0]), weighted(SECOND, shift_v, values[1])
+    both = weighted(SECOND, shift, values[2])  # h² x_uu ± 2 h k x_uv + k² x_vv
     jets[:, 3] = uu / steps[0] ** 2
     jets[:, 4] = sign[:, None] * (both - uu - vv) / (2.0 * steps[0] * steps[1])
     jets[:, 5] = vv / steps[1] ** 2
@@ -237,29 +240,36 @@ def differences(
 
 def _doubts(values: Array, shifts: NDArray[np.int64], least: Array) -> Array:
     """Return what two points less change, relative to the differences (9, k, 3) of values."""
-    changes = np.array([_weighted(x, shifts, values) for x in (FIRST_CHANGE, SECOND_CHANGE)])
+    changes = np.array([weighted(x, shifts, values) for x in (FIRST_CHANGE, SECOND_CHANGE)])
     size, change = (np.abs(x).max(axis=0).max(axis=1) for x in (values, changes))
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.nan_to_num(change / (size + least))
 
 
-def _shifts(
-    values: Array, step: float, low: float, high: float
+def shifts_inside(
+    values: Array, step: float | Array, low: float | Array, high: float | Array
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return the steps by which points are shifted to stay inside, and the sign of the way in."""
+    """Return the steps by which points are shifted to stay inside, and the sign of the way in.
+
+    Step and ends are those of all values (k,), or arrays (k,).
+    """
     before = np.clip(np.floor((values - low) / step), 0, HALF)
     after = np.clip(np.floor((high - values) / step), 0, HALF)
     inward = np.where(values - low < high - values, 1, -1)
     return (after - before).astype(np.int64), inward
 
 
-def _nodes(
-    values: Array, offsets: NDArray[np.int64], step: float, low: float, high: float
+def nodes_between(
+    values: Array,
+    offsets: NDArray[np.int64],
+    step: float | Array,
+    low: float | Array,
+    high: float | Array,
 ) -> Array:
     """Return the places of a difference; rounding takes none of them out of the bounds."""
     return np.clip(values + offsets * step, np.minimum(low, values), np.maximum(high, values))
 
 
-def _weighted(weights: Array, shifts: NDArray[np.int64], values: Array) -> Array:
+def weighted(weights: Array, shifts: NDArray[np.int64], values: Array) -> Array:
     """Return the sums (k, 3) of values (9, k, 3) with the weights of their shifts."""
     return np.einsum("kj,jkc->kc", weights[shifts + HALF], values)

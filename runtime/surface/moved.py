@@ -45,7 +45,9 @@ class AffineMap:
 
     def directions(self, vectors: Array) -> Array:
         """Return vectors (..., 3), such as derivatives, after the map."""
-        return vectors @ self.matrix.T
+        # One product of long matrices: NumPy is ten times slower with stacks of short ones.
+        product = vectors.reshape(-1, 3) @ np.ascontiguousarray(self.matrix.T)
+        return product.reshape(vectors.shape)
 
 
 IDENTITY = AffineMap(np.eye(3), np.zeros(3))

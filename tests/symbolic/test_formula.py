@@ -7,6 +7,7 @@ import sympy as sp
 from gaussmap.symbolic import (
     Formula,
     curve,
+    faces,
     formulas,
     gaussian_image,
     jet,
@@ -211,7 +212,7 @@ def test_a_sample_is_its_parts():
 
 
 def test_all_formulas_by_name_in_order():
-    modules = (patch, offset, gaussian_image, spline, support, jet, rational, mesh, curve)
+    modules = (patch, offset, gaussian_image, spline, support, jet, rational, faces, mesh, curve)
     assert list(formulas) == [x.name for module in modules for x in module.FORMULAS]
     assert all(formula.name == name for name, formula in formulas.items())
     assert not hasattr(formulas, "__setitem__")

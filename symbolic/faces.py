@@ -1,0 +1,103 @@
+"""Faces of CAD parts: surfaces of revolution, and offset surfaces.
+
+The other kinds are surfaces of the catalogue that are placed in space, or rational.
+"""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from .formula import BEYOND_THE_PAPER, Formula
+from .notation import Cross, Dot, VectorSymbol, scalar, substitute, vectors
+from .patch import VECTORS, a, b, c, d, e, p
+
+__all__ = ["FORMULAS", "OFFSET_JET", "REVOLUTION_JET"]
+
+# The derivatives of a surface by u and v, in the order of its 2-jet.
+ORDERS = ("", "u", "v", "uu", "uv", "vv")
+
+x, y = scalar("x"), scalar("y")
+CURVE: tuple[VectorSymbol, ...] = vectors(("c", "c_v", "c_vv"))
+
+
+def _revolution() -> Formula:
+    """Turn a curve c(v) about the z axis, and differentiate."""
+    u, v = sp.symbols("u v", real=True)
+    along = [sp.Function(f"c_{axis}")(v) for axis in "xyz"]
+    turned = [
+        along[0] * sp.cos(u) - along[1] * sp.sin(u),
+        along[0] * sp.sin(u) + along[1] * sp.cos(u),
+        along[2],
+    ]
+    known = {
+        (sp.diff(function, v, order) if order else function): component
+        for order, vector in enumerate(CURVE)
+        for function, component in zip(along, vector.components, strict=True)
+    } | {sp.cos(u): x, sp.sin(u): y}
+    outputs = vectors([f"x_{order}" if order else "p" for order in ORDERS])
+    by = {"u": u, "v": v}
+    definitions = tuple(
+        (symbol, substitute(sp.diff(value, *map(by.get, order)) if order else value, known))
+        for vector, order in zip(outputs, ORDERS, strict=True)
+        for symbol, value in zip(vector.components, turned, strict=True)
+    )
+    return Formula(
+        "revolution_jet",
+        "The point $p$ and the derivatives of a surface of revolution round the z axis, from those "
+        "of the curve $c(v)$ that is turned; $x$ and $y$ are the cosine and the sine of the angle "
+        "$u$.",
+        BEYOND_THE_PAPER,
+        (*CURVE, x, y),
+        definitions,
+        outputs,
+    )
+
+
+REVOLUTION_JET = _revolution()
+
+THIRD: tuple[VectorSymbol, ...] = vectors(("x_uuu", "x_uuv", "x_uvv", "x_vvv"))
+n, n_u, n_v = vectors(("n", "n_u", "n_v"))
+N_u, N_v, N_uu, N_uv, N_vv = vectors(("N_u", "N_v", "N_uu", "N_uv", "N_vv"))
+L, L_u, L_v, L_uu, L_uv, L_vv, R, g = map(
+    scalar, ("L", "L_u", "L_v", "L_uu", "L_uv", "L_vv", "R", "g")
+)
+
+
+def _offset() -> Formula:
+    """Differentiate N = x_u × x_v and N = L n, with |n| = 1, for the derivatives of n."""
+    uuu, uuv, uvv, vvv = THIRD
+    return Formula.build(
+        "offset_jet",
+        "The point $y = p + R n$ and the derivatives of the offset of a surface, from the point "
+        "$p$, the 2-jet and the third derivatives of the surface, its unit normal $n$, and the "
+        "length $L$ of $N = d × e$.",
+        inputs=[*VECTORS, p, *THIRD, n, L, R],
+        terms=[
+            ("g", 1 / L),
+            ("N_u", Cross(a, e) + Cross(d, b)),
+            ("N_v", Cross(b, e) + Cross(d, c)),
+            ("N_uu", Cross(uuu, e) + 2 * Cross(a, b) + Cross(d, uuv)),
+            ("N_uv", Cross(uuv, e) + Cross(a, c) + Cross(d, uvv)),
+            ("N_vv", Cross(uvv, e) + 2 * Cross(b, c) + Cross(d, vvv)),
+            ("L_u", Dot(N_u, n)),
+            ("L_v", Dot(N_v, n)),
+            ("n_u", g * (N_u - L_u * n)),
+            ("n_v", g * (N_v - L_v * n)),
+            ("L_uu", Dot(N_uu, n) + L * Dot(n_u, n_u)),
+            ("L_uv", Dot(N_uv, n) + L * Dot(n_u, n_v)),
+            ("L_vv", Dot(N_vv, n) + L * Dot(n_v, n_v)),
+        ],
+        outputs=[
+            ("y", p + R * n),
+            ("y_u", d + R * n_u),
+            ("y_v", e + R * n_v),
+            ("y_uu", a + R * g * (N_uu - L_uu * n - 2 * L_u * n_u)),
+            ("y_uv", b + R * g * (N_uv - L_uv * n - L_u * n_v - L_v * n_u)),
+            ("y_vv", c + R * g * (N_vv - L_vv * n - 2 * L_v * n_v)),
+        ],
+    )
+
+
+OFFSET_JET = _offset()
+
+FORMULAS = (REVOLUTION_JET, OFFSET_JET)
