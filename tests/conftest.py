@@ -30,6 +30,8 @@ OF_KERNELS = (
 SOME = (
     "runtime/surface/test_derivatives.py",
     "runtime/surface/test_trim.py",
+    "runtime/test_developable.py",
+    "runtime/test_offset.py",
     "symbolic/test_emit.py",
 )
 

@@ -50,6 +50,13 @@ def test_developable_surfaces_are_so_entirely(name, factor, shift):
     assert curved_solid_angle(spline, DENSE) == 0.0
 
 
+@pytest.mark.kernels
+@pytest.mark.parametrize(("name", "share"), [("cylinder", 1.0), ("plane", 1.0), ("torus", 0.0)])
+def test_few_patches(name, share):
+    spline = gm.fit(gm.surfaces.surface(name), (4, 4))
+    assert developable_share(spline, DENSE) == pytest.approx(share)
+
+
 def test_a_slanted_plane_and_a_slanted_graph_over_it():
     plane = gm.fit(gm.surfaces.plane(slope_u=0.3, slope_v=-2.0))
     assert developable_share(plane, DENSE) == pytest.approx(1.0)

@@ -48,6 +48,7 @@ def curved(K: object, H: object, **changes: Any) -> Samples:
 # --- exact cases ----------------------------------------------------------------------------------
 
 
+@pytest.mark.kernels
 @pytest.mark.parametrize("scale", [1.0, 1e-12, 1e12])
 @pytest.mark.parametrize("ratio", [0.25, -0.125, -0.4375, 1.0, 0.0])
 def test_the_offset_of_a_torus_is_a_torus(scale: float, ratio: float) -> None:

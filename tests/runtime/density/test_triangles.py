@@ -85,9 +85,12 @@ def test_narrow_patches_are_bisected(width):
         assert len(triangles) <= 64 + 4 * max(sizing.area / (0.5 * radius**2), 64 * 2 / radius)
 
 
-@pytest.mark.compiled
-def test_angles_of_normals_in_a_triangle():
-    triangles = cut_patches(sizing_of("wavy_graph", (6, 4)), 0.3)
+@pytest.mark.parametrize(
+    ("name", "cells", "radius"),
+    [pytest.param("wavy_graph", (6, 4), 0.3, marks=pytest.mark.compiled), ("torus", (6, 6), 2.0)],
+)
+def test_angles_of_normals_in_a_triangle(name, cells, radius):
+    triangles = cut_patches(sizing_of(name, cells), radius)
     rows = triangles.at_places()
     bounds = triangles.normal_chords(rows)
     assert 0.0 < bounds.max() < 1.0
