@@ -76,7 +76,7 @@ def _over(nurbs: Nurbs, axis: int, interval: Interval) -> Nurbs:
         )
     whole = abs(high - low - period) <= slack
     parts = list(nurbs.domain)
-    parts[axis] = (low, low + period if whole else high)
+    parts[axis] = (low, min(low + period, last) if whole else high)
     nurbs = nurbs.restricted((parts[0], parts[1]))
     periodic = list(nurbs.periodic)
     periodic[axis] = whole and smoothly_closed(nurbs, axis)

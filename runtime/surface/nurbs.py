@@ -85,8 +85,16 @@ class Nurbs(Differentiable):
     @cached_property
     def _net(self) -> kernels.Net:
         spans = [
-            (np.searchsorted(knots, low, "right") - 1, np.searchsorted(knots, high, "left") - 1)
-            for knots, (low, high) in zip(self.knots, self.domain, strict=True)
+            # Kernels read the knots around a span without looking whether they are there.
+            np.clip(
+                (np.searchsorted(knots, low, "right"), np.searchsorted(knots, high, "left")),
+                degree + 1,
+                len(knots) - degree - 1,
+            )
+            - 1
+            for knots, degree, (low, high) in zip(
+                self.knots, self.degrees, self.domain, strict=True
+            )
         ]
         periods = [
             (low, high - low if periodic else 0.0)

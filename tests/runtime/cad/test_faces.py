@@ -280,3 +280,11 @@ def test_what_is_no_surface_is_refused():
         face_surface(waves(), ((0, 1), (7, 8)))
     with pytest.raises(gm.errors.InputError, match="empty or infinite"):
         face_surface(*GEOMETRIES["plane"][:1], ((0, 0), (0, 1)))
+
+
+def test_a_whole_domain_ends_at_the_last_knot():
+    # low + (high - low) is beyond it, in the last digits of low
+    ends = np.array([-6.589091811, 1.421085e-14])
+    net = Net((1, 2), (np.repeat(ends, 2), np.repeat([0.0, 1], 3)), np.eye(3)[np.mgrid[:2, :3][1]])
+    surface = face_surface(Geometry("nurbs", net=net), (ends, (0, 1)))
+    assert surface.domain == (tuple(ends), (0.0, 1.0))
