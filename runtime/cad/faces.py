@@ -210,10 +210,11 @@ def _revolution(geometry: Geometry, domain: Domain) -> Shape:
 
 def _frame(axis: Array) -> Array:
     """Return a rotation (3, 3) whose last column is an axis."""
-    z = axis / np.linalg.norm(axis)
-    x = np.cross(z, np.eye(3)[np.abs(z).argmin()])
+    z: Array = axis / np.linalg.norm(axis)
+    x: Array = np.cross(z, np.eye(3)[np.abs(z).argmin()])
     x /= np.linalg.norm(x)
-    return np.stack([x, np.cross(z, x), z], axis=1)
+    y: Array = np.cross(z, x)
+    return np.stack([x, y, z], axis=1)
 
 
 def _around(interval: Interval) -> tuple[Interval, BoundaryPair]:

@@ -8,6 +8,7 @@ one knot span. The second derivatives are good to about 1e-12, relative to the l
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,10 +18,11 @@ from ..kernels import faces as kernels
 from ..splines.domain import Domain
 from ..surface.cutting import Creased
 from ..surface.derivatives import Differentiable, nodes_between, shifts_inside, weighted
+from ..surface.moved import Moved
 from ..surface.nurbs import Nurbs
 from .turned import Curve, Turned
 
-__all__ = ["Offset"]
+__all__ = ["Offset", "knots_of"]
 
 Array = NDArray[np.float64]
 
@@ -92,7 +94,7 @@ class Offset(Differentiable):
 
     def _span(self, axis: int, values: Array) -> tuple[Array, Array]:
         """Return the ends of the knot spans that hold values (k,), inside the domain."""
-        (first, last), knots = self.domain[axis], _knots(self.basis, axis)
+        (first, last), knots = self.domain[axis], knots_of(self.basis, axis)
         inner = np.unique(knots[(knots > first) & (knots < last)])
         lines = np.concatenate([[first], inner, [last]])
         place = np.clip(np.searchsorted(lines, values, "right") - 1, 0, len(lines) - 2)
@@ -106,10 +108,12 @@ class Offset(Differentiable):
         return self.basis.jets(u, v)[:, 0] + moved
 
 
-def _knots(function: Differentiable, axis: int) -> Array:
-    """Return the knots of a function in u (axis 0) or v (axis 1)."""
+def knots_of(function: Differentiable, axis: int) -> Array:
+    """Return the knots of the function of a face in u (axis 0) or v (axis 1), not reversed."""
+    if isinstance(function, Moved):
+        function = cast(Differentiable, function.surface.function)
     if isinstance(function, Nurbs):
         return function.knots[axis]
     if isinstance(function, Turned) and isinstance(function.profile, Curve) and axis == 1:
         return function.profile.surface.knots[0]
-    return _knots(function.basis, axis) if isinstance(function, Offset) else np.empty(0)
+    return knots_of(function.basis, axis) if isinstance(function, Offset) else np.empty(0)

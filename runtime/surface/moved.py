@@ -122,7 +122,7 @@ class Moved(Differentiable):
         low, high = self.ends
         if not self.turned:
             return u
-        return np.select([u == low, u == high], [high, low], low + high - u)  # ends are exact
+        return np.where(u == low, high, np.where(u == high, low, low + high - u))  # ends are exact
 
 
 def moved_grid(grid: Array, boundary: Boundary, map_: AffineMap, turned: bool) -> Array:

@@ -46,7 +46,7 @@ def test_the_revolution_of_a_twisted_curve():
 
 def test_the_offset_of_a_surface_without_symmetries():
     position = sp.Matrix([u + v**2 / 3, v - u * v / 2, u**3 / 4 + u**2 * v - v**3 / 5 + u * v])
-    field = position.diff(u).cross(position.diff(v))
+    field = sp.Matrix(position.diff(u)).cross(sp.Matrix(position.diff(v)))
     length, distance = sp.sqrt(field.dot(field)), sp.Rational(3, 10)
     inputs = derivatives(functions_of(position), LETTERS | THIRDS)
     inputs |= derivatives(functions_of(field / length), {"n": (0, 0)})
