@@ -1,0 +1,104 @@
+"""What kind of CAD file a file is, and whether it is whole: looked at before it is read.
+
+Open CASCADE reads the beginning of a file that was cut off as if nothing were missing, and hangs on
+coordinates that are not finite.
+"""
+
+from __future__ import annotations
+
+import re
+
+__all__ = ["NOT_FINITE", "TEXTS", "BadFileError", "checked_format"]
+
+HEAD = 4096
+START_OF_STEP = re.compile(rb"(?<!END-)ISO-10303-21\s*;")
+END_OF_STEP = b"END-ISO-10303-21"
+BREP = (b"DBRep_DrawableShape", b"CASCADE Topology V")
+# Exponents that are too large: larger ones than 307, in decimal digits.
+TOO_LARGE = rb"e\+?0*(?:30[89]|3[1-9]\d|[4-9]\d\d|\d{4,})"
+SUSPICIOUS = re.compile(rb"nan|inf|" + TOO_LARGE)
+NUMBER = rb"[-+]?(?:nan|inf(?:inity)?|\d*\.?\d*" + TOO_LARGE + rb")"
+# A number that is not finite, in the aggregates of STEP, the lists of IGES and the lines of BREP.
+NOT_FINITE = {
+    "STEP": re.compile(rb"[(,]\s*" + NUMBER + rb"\s*(?=[,)])", re.IGNORECASE),
+    "IGES": re.compile(rb"[,;]\s*" + NUMBER + rb"\s*(?=[,;])", re.IGNORECASE),
+    "BREP": re.compile(rb"(?<=\s)" + NUMBER + rb"(?=\s)", re.IGNORECASE),
+}
+SHAPES = re.compile(rb"^TShapes (\d+)\s*$", re.MULTILINE)
+WHOLE = re.compile(rb"\s[-+]\d+ \d+\s*\Z")
+TEXTS = re.compile(rb"'[^']*'")
+
+
+class BadFileError(Exception):
+    """A file cannot be read; the text continues "'path' …" and ends in a full stop."""
+
+
+def checked_format(content: bytes) -> tuple[str, bool]:
+    """Return the format of a file, STEP, IGES or BREP, and whether all its numbers are finite.
+
+    BadFileError says what is wrong with a file; only STEP files with other numbers can be read.
+    """
+    if not content.strip():
+        raise BadFileError("is empty.")
+    form = _format(content)
+    if form is None:
+        raise BadFileError("is not a STEP, IGES or BREP file.")
+    if form == "STEP" and END_OF_STEP not in content[-HEAD:]:
+        raise BadFileError("is truncated: a STEP file ends with END-ISO-10303-21; get it again.")
+    if form == "IGES":
+        _check_iges(content)
+    if form == "BREP":
+        _check_brep(content)
+    finite = _is_finite(content, form)
+    if not finite and form != "STEP":
+        raise BadFileError("holds numbers that are not finite; export it again.")
+    return form, finite
+
+
+def _is_finite(content: bytes, form: str) -> bool:
+    if not SUSPICIOUS.search(content.lower()):
+        return True
+    if not NOT_FINITE[form].search(content):
+        return True
+    return form == "STEP" and not NOT_FINITE[form].search(TEXTS.sub(b"''", content))
+
+
+def _format(content: bytes) -> str | None:
+    head = content[:HEAD]
+    if START_OF_STEP.search(head):
+        return "STEP"
+    if any(x in head for x in BREP):
+        return "BREP"
+    return "IGES" if _letters(head.splitlines()[:1]) == "S" else None
+
+
+def _letters(lines: list[bytes]) -> str:
+    """Return the letters of the sections of lines of IGES, "?" where there is none."""
+    found = (x[72:73] for x in lines)
+    letters = (x.decode() if x in (b"S", b"G", b"D", b"P", b"T") else "?" for x in found)
+    return "".join(letters)
+
+
+def _check_iges(content: bytes) -> None:
+    """Compare the lines of all sections with their numbers in the last line: BadFileError."""
+    lines = [x for x in content.splitlines() if x.strip()]
+    letters = _letters(lines)
+    end = letters.find("T")
+    if end < 0:
+        raise BadFileError("is truncated: it lacks the last line of an IGES file; get it again.")
+    said = dict(re.findall(r"([SGDP])\s*(\d+)", lines[end][:32].decode("ascii", "replace")))
+    for letter in "SGDP":
+        count = letters[:end].count(letter)
+        if int(said.get(letter, count)) != count:
+            raise BadFileError(
+                f"is damaged: its last line says {said[letter]} lines of section {letter}, and it "
+                f"has {count}; get it again."
+            )
+
+
+def _check_brep(content: bytes) -> None:
+    """Count the shapes, each ends with a star, and find the last line: BadFileError."""
+    start = SHAPES.search(content)
+    whole = start is not None and WHOLE.search(content[-HEAD:])
+    if start is None or not whole or content.count(b"*", start.end()) != int(start[1]):
+        raise BadFileError("is truncated or damaged: it lacks shapes; save it again.")

@@ -1,0 +1,122 @@
+"""Curves of Open CASCADE as NURBS of the same parameter."""
+
+# pyright: reportMissingImports=false
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import comb
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.GeomConvert import GeomConvert
+
+from ..records import Net
+from .shapes import direct_class
+
+__all__ = ["UnusableError", "curve_net", "knots_of"]
+
+Array = NDArray[np.float64]
+
+# Other curves than NURBS, such as circles, are polynomials of this degree between the knots of a
+# spline: interpolated, with at first so many spans, and twice as many until the error, relative to
+# the size of the curve, is that of rounding.
+DEGREE, FIRST_SPANS, MOST_SPANS = 9, 16, 1024
+ROUNDING = 4e-15
+# A line goes on beyond its domain by this part of it.
+BEYOND = 0.1
+
+
+class UnusableError(Exception):
+    """A face cannot be written as numbers; the text says why, without a full stop."""
+
+
+def curve_net(curve: Any, domain: Sequence[float]) -> Net:  # noqa: ANN401
+    """Return a curve as NURBS: the whole of a periodic one, and others at least over a domain."""
+    period = float(curve.Period()) if curve.IsPeriodic() else 0.0
+    trimmed = curve
+    while direct_class(curve) == "Geom_TrimmedCurve":
+        curve = curve.BasisCurve()
+    kind = direct_class(curve)
+    if kind == "Geom_BSplineCurve":
+        crosses_seam = curve.IsPeriodic() and not period
+        return _of_spline(GeomConvert.CurveToBSplineCurve_s(trimmed) if crosses_seam else curve)
+    if kind == "Geom_BezierCurve":
+        degree = curve.Degree()
+        knots = np.repeat([0.0, 1.0], degree + 1)
+        return Net((degree,), (knots,), *_poles(curve))
+    first, last = (0.0, period) if period else (float(domain[0]), float(domain[1]))
+    if kind == "Geom_Line":
+        margin = BEYOND * (last - first)
+        ends = np.array([first - margin, last + margin])
+        return Net((1,), (np.repeat(ends, 2),), _values(curve, ends))
+    return _interpolated(curve, first, last)
+
+
+def knots_of(knots: Sequence[float], multiplicities: Sequence[int]) -> Array:
+    """Return knots repeated as often as they are multiple."""
+    return np.repeat(np.array(knots, dtype=np.float64), np.array(multiplicities, dtype=np.int64))
+
+
+def _of_spline(curve: Any) -> Net:  # noqa: ANN401
+    if curve.IsPeriodic():
+        curve = curve.Copy()
+        curve.SetNotPeriodic()
+    places = range(1, curve.NbKnots() + 1)
+    knots = knots_of([curve.Knot(k) for k in places], [curve.Multiplicity(k) for k in places])
+    return Net((curve.Degree(),), (knots,), *_poles(curve))
+
+
+def _poles(curve: Any) -> tuple[Array, Array | None]:  # noqa: ANN401
+    """Return the control points (m, 3) and the weights (m,), or None for weights of 1."""
+    places = range(1, curve.NbPoles() + 1)
+    poles = (curve.Pole(k) for k in places)
+    points = np.array([(p.X(), p.Y(), p.Z()) for p in poles], dtype=np.float64)
+    if not curve.IsRational():
+        return points, None
+    return points, np.array([curve.Weight(k) for k in places], dtype=np.float64)
+
+
+def _values(curve: Any, parameters: Array) -> Array:  # noqa: ANN401
+    points = (curve.Value(t) for t in parameters.tolist())
+    return np.array([(p.X(), p.Y(), p.Z()) for p in points], dtype=np.float64)
+
+
+def _interpolated(curve: Any, first: float, last: float) -> Net:  # noqa: ANN401
+    """Return a curve as polynomials between knots, at which they meet."""
+    spans = FIRST_SPANS
+    while spans <= MOST_SPANS:
+        ends = np.linspace(first, last, spans + 1)
+        points = _control_points(curve, ends)
+        if _misfit(curve, ends, points) <= ROUNDING:
+            knots = np.repeat(ends, [DEGREE + 1, *([DEGREE] * (spans - 1)), DEGREE + 1])
+            joined = np.concatenate([points[0, :1], points[:, 1:].reshape(-1, 3)])
+            return Net((DEGREE,), (knots,), joined)
+        spans *= 2
+    kind = direct_class(curve).removeprefix("Geom_")
+    raise UnusableError(f"its curve of type {kind} cannot be written as NURBS")
+
+
+def _control_points(curve: Any, ends: Array) -> Array:  # noqa: ANN401
+    """Return the Bézier points (spans, degree + 1, 3) of the interpolating polynomials."""
+    places = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, DEGREE + 1))) / 2.0
+    parameters = ends[:-1, None] + np.diff(ends)[:, None] * places
+    values = _values(curve, parameters.ravel()).reshape(-1, DEGREE + 1, 3)
+    return np.asarray(np.linalg.solve(_bernstein(places)[None], values), dtype=np.float64)
+
+
+def _misfit(curve: Any, ends: Array, points: Array) -> float:  # noqa: ANN401
+    """Return the error between the points of interpolation, relative to the size of the curve."""
+    places = np.linspace(0.1, 0.7, 3)
+    parameters = ends[:-1, None] + np.diff(ends)[:, None] * places
+    values = _values(curve, parameters.ravel()).reshape(-1, len(places), 3)
+    error = np.abs(_bernstein(places) @ points - values).max()
+    return float(error / max(np.abs(values).max(), np.finfo(np.float64).tiny))
+
+
+def _bernstein(places: Array) -> Array:
+    """Return the Bernstein polynomials of `DEGREE` at places from 0 to 1, a row for each place."""
+    k = np.arange(DEGREE + 1)
+    binomials = np.array([comb(DEGREE, int(x)) for x in k], dtype=np.float64)
+    return binomials * places[:, None] ** k * (1.0 - places[:, None]) ** (DEGREE - k)

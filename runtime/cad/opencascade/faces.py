@@ -1,0 +1,83 @@
+"""A face of Open CASCADE as a record: geometry, trim and area."""
+
+# pyright: reportMissingImports=false
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.BRep import BRep_Tool
+from OCP.BRepGProp import BRepGProp
+from OCP.GProp import GProp_GProps
+from OCP.TopAbs import TopAbs_Orientation
+
+from ..records import FaceRecord, Geometry
+from .curves import UnusableError
+from .loops import loops_of
+from .shapes import Table
+from .surfaces import basis_of, geometry_of, periods_of
+
+__all__ = ["FaceReader", "area_of"]
+
+Array = NDArray[np.float64]
+
+# The smallest area, in mm², that is not zero: Open CASCADE's points are the same within 1e-7 mm.
+LEAST_AREA = 1e-12
+
+
+class FaceReader:
+    """Faces to records; of a face that occurs in several places, trim and area are found once."""
+
+    def __init__(self) -> None:
+        self._known: Table[tuple[list[Array], float]] = Table(placed=False)
+
+    def record(self, face: Any) -> FaceRecord:  # noqa: ANN401
+        """Return the record of a face, with a reason if it has failed."""
+        try:
+            return self._record(face)
+        except UnusableError as error:
+            reason = str(error)
+        except MemoryError:
+            raise
+        except Exception as error:  # Open CASCADE has hundreds of kinds
+            text = " ".join(str(error).split())[:80].rstrip(".")
+            reason = f"Open CASCADE fails on it ({text or type(error).__name__})"
+        return FaceRecord(Geometry("unknown"), reason=reason)
+
+    def _record(self, face: Any) -> FaceRecord:  # noqa: ANN401
+        surface = BRep_Tool.Surface_s(face)
+        if surface is None:
+            raise UnusableError("it has no surface")
+        surface = basis_of(surface)
+        loops, area = self._trim(face)
+        points = np.concatenate(loops)
+        (u0, v0), (u1, v1) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+        domain = (u0, u1), (v0, v1)
+        return FaceRecord(
+            geometry_of(surface, domain),
+            domain,
+            periods_of(surface),
+            loops,
+            face.Orientation() == TopAbs_Orientation.TopAbs_REVERSED,
+            area,
+        )
+
+    def _trim(self, face: Any) -> tuple[list[Array], float]:  # noqa: ANN401
+        known = self._known.get(face)
+        if known is None:
+            known = loops_of(face), area_of(face)
+            if not np.isfinite(known[1]):
+                raise UnusableError("its area is not finite")
+            if known[1] < LEAST_AREA:
+                raise UnusableError("its area is zero")
+            self._known.set(face, known)
+        return known
+
+
+def area_of(face: Any) -> float:  # noqa: ANN401
+    """Return the area of a face."""
+    properties = GProp_GProps()
+    BRepGProp.SurfaceProperties_s(face, properties)
+    return float(properties.Mass())

@@ -1,0 +1,109 @@
+"""The trim of a face: the polygons in u and v that its p-curves make."""
+
+# pyright: reportMissingImports=false
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.BRepTools import BRepTools, BRepTools_WireExplorer
+from OCP.TopAbs import TopAbs_Orientation, TopAbs_ShapeEnum
+from OCP.TopoDS import TopoDS
+
+from .curves import UnusableError
+from .p_curves import Curve, curve_of
+from .shapes import parts_of
+
+__all__ = ["loops_of"]
+
+Array = NDArray[np.float64]
+
+# Polygons leave the curves by no more than this part of the (u, v) box of the face, and this part
+# of its mean width in it, but not less than the last.
+OF_BOX, OF_WIDTH, LEAST = 1e-4, 1e-3, 1e-7
+# Curves begin where the one before ends, up to this part of the box.
+GAP = 1e-2
+# Points are the same up to this part of the box.
+SAME = 1e-12
+# Open CASCADE has such numbers for infinity.
+INFINITE = 1e50
+FORWARD, REVERSED = TopAbs_Orientation.TopAbs_FORWARD, TopAbs_Orientation.TopAbs_REVERSED
+EDGE, WIRE = TopAbs_ShapeEnum.TopAbs_EDGE, TopAbs_ShapeEnum.TopAbs_WIRE
+
+
+def loops_of(face: Any) -> list[Array]:  # noqa: ANN401
+    """Return the closed polygons of a face; UnusableError says why there are none.
+
+    The face is taken as forward, so that it lies left of its curves.
+    """
+    face = TopoDS.Face(face.Oriented(FORWARD))
+    u0, u1, v0, v1 = BRepTools.UVBounds_s(face)
+    bounds = np.array([(u0, v0), (u1, v1)])
+    if not (np.isfinite(bounds).all() and np.abs(bounds).max() < INFINITE):
+        raise UnusableError("it has no boundary, and its surface has no end")
+    size = bounds[1] - bounds[0]
+    if not (size > 0.0).all():
+        raise UnusableError("its area is zero")
+    wires = [_curves_of(TopoDS.Wire(x), face) for x in parts_of(face, WIRE)]
+    if not wires:
+        return [np.array([(u0, v0), (u1, v0), (u1, v1), (u0, v1)])]
+    loops = _polygons(wires, size, OF_BOX)
+    width = _mean_width(loops, size)
+    if width * OF_WIDTH < OF_BOX:
+        loops = _polygons(wires, size, max(width * OF_WIDTH, LEAST))
+    if not loops:
+        raise UnusableError("its area is zero")
+    return loops
+
+
+def _polygons(wires: list[list[Curve]], size: Array, tolerance: float) -> list[Array]:
+    polygons = []
+    for curves in wires:
+        lines = [x.polyline(tolerance * size) for x in curves]
+        for line, following in zip(lines, [*lines[1:], *lines[:1]], strict=True):
+            if (np.abs(line[-1] - following[0]) > GAP * size).any():
+                raise UnusableError("its boundary is not closed")
+        polygon = np.concatenate(lines)
+        step = np.abs(polygon - np.roll(polygon, 1, axis=0))
+        polygon = polygon[(step > SAME * size).any(axis=1)]
+        if len(polygon) >= 3:
+            polygons.append(polygon)
+    return polygons
+
+
+def _mean_width(loops: list[Array], size: Array) -> float:
+    """Return twice the area by the length of polygons, in units of the box."""
+    area = length = 0.0
+    for loop in loops:
+        scaled = (loop - loop[0]) / size
+        steps = np.roll(scaled, -1, axis=0) - scaled
+        area += float(scaled[:, 0] @ steps[:, 1] - scaled[:, 1] @ steps[:, 0])
+        length += float(np.hypot(*steps.T).sum())
+    return abs(area) / length if length else 0.0
+
+
+def _curves_of(wire: Any, face: Any) -> list[Curve]:  # noqa: ANN401
+    """Return the p-curves of a wire, one after another."""
+    explorer, edges = BRepTools_WireExplorer(wire, face), []
+    while explorer.More():
+        edges.append(explorer.Current())
+        explorer.Next()
+    every = [x for x in parts_of(wire, EDGE) if x.Orientation() in (FORWARD, REVERSED)]
+    if len(edges) == len(every):
+        return [curve_of(x, face) for x in edges]
+    # Where edges do not share their vertices, the explorer stops.
+    return _chained([curve_of(TopoDS.Edge(x), face) for x in every])
+
+
+def _chained(curves: list[Curve]) -> list[Curve]:
+    """Return curves in an order in which each begins close to where the one before ends."""
+    ends = [x.evaluate(np.array(x.ends))[:, :2] for x in curves]
+    ends = [x[::-1] if curve.reversed else x for x, curve in zip(ends, curves, strict=True)]
+    order, left = [0], set(range(1, len(curves)))
+    while left:
+        here = ends[order[-1]][1]
+        order.append(min(sorted(left), key=lambda k: float(np.abs(ends[k][0] - here).max())))
+        left.remove(order[-1])
+    return [curves[k] for k in order]

@@ -1,0 +1,114 @@
+"""The curve of an edge in the parameters of a face."""
+
+# pyright: reportMissingImports=false
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.BRep import BRep_Tool
+from OCP.BRepAdaptor import BRepAdaptor_Curve2d
+from OCP.GeomAbs import GeomAbs_CurveType as Kinds
+from OCP.gp import gp_Pnt2d, gp_Vec2d
+from OCP.ShapeFix import ShapeFix_Edge
+from OCP.TopAbs import TopAbs_Orientation
+
+from .polylines import one_sided
+
+__all__ = ["Curve", "curve_of"]
+
+Array = NDArray[np.float64]
+
+# The precision of Open CASCADE.
+CONFUSION = 1e-7
+FIRST_PIECES, PIECES_A_SPAN = 4, 2
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A p-curve: points and derivatives (k, 4) at parameters, and its direction in the wire.
+
+    `ends` are its ends and the parameters between them where it may have corners; `pieces` is the
+    number of pieces of each part that a polyline begins with, 0 for a straight line.
+    """
+
+    evaluate: Callable[[Array], Array]
+    ends: tuple[float, ...]
+    pieces: int
+    reversed: bool
+
+    def polyline(self, tolerance: Array) -> Array:
+        """Return points (k, 2) in the direction of the wire, the kept side at its left."""
+        if self.pieces == 0:
+            points = self.evaluate(np.array(self.ends))[:, :2]
+        else:
+            parts = [
+                one_sided(self.evaluate, a, b, self.pieces, tolerance, not self.reversed)
+                for a, b in zip(self.ends[:-1], self.ends[1:], strict=True)
+            ]
+            points = np.concatenate(parts)
+        return points[::-1] if self.reversed else points
+
+
+def curve_of(edge: Any, face: Any) -> Curve:  # noqa: ANN401
+    """Return the curve of an oriented edge on a face that is forward."""
+    curve = _adaptor(edge, face)
+    backwards = edge.Orientation() == TopAbs_Orientation.TopAbs_REVERSED
+    ends = float(curve.FirstParameter()), float(curve.LastParameter())
+    kind = curve.GetType()
+    if kind == Kinds.GeomAbs_Line:
+        return Curve(_any(curve), ends, 0, backwards)
+    if kind == Kinds.GeomAbs_Circle:
+        return Curve(_circle(curve.Circle()), ends, FIRST_PIECES, backwards)
+    if kind == Kinds.GeomAbs_BSplineCurve:
+        corners, spans = _corners(curve.BSpline(), ends)
+        pieces = max(FIRST_PIECES, PIECES_A_SPAN * spans // (len(corners) - 1))
+        return Curve(_any(curve), corners, pieces, backwards)
+    return Curve(_any(curve), ends, FIRST_PIECES, backwards)
+
+
+def _adaptor(edge: Any, face: Any) -> Any:  # noqa: ANN401
+    try:
+        return BRepAdaptor_Curve2d(edge, face)
+    except Exception:  # it has none on this face
+        ShapeFix_Edge().FixAddPCurve(edge, face, BRep_Tool.IsClosed_s(edge, face), CONFUSION)
+        return BRepAdaptor_Curve2d(edge, face)
+
+
+def _corners(spline: Any, ends: tuple[float, float]) -> tuple[tuple[float, ...], int]:  # noqa: ANN401
+    """Return the ends and the knots between them with corners, and the number of all spans."""
+    inside = [k for k in range(1, spline.NbKnots() + 1) if ends[0] < spline.Knot(k) < ends[1]]
+    multiple = [k for k in inside if spline.Multiplicity(k) >= spline.Degree()]
+    return (ends[0], *(spline.Knot(k) for k in multiple), ends[1]), len(inside) + 1
+
+
+def _circle(circle: Any) -> Callable[[Array], Array]:  # noqa: ANN401
+    centre, radius = circle.Location(), circle.Radius()
+    x, y = circle.XAxis().Direction(), circle.YAxis().Direction()
+    frame = radius * np.array([(x.X(), x.Y()), (y.X(), y.Y())])
+    origin = np.array([centre.X(), centre.Y(), 0.0, 0.0])
+
+    def evaluate(t: Array) -> Array:
+        c, s = np.cos(t), np.sin(t)
+        return origin + np.concatenate(
+            [np.stack([c, s], axis=1) @ frame, np.stack([-s, c], axis=1) @ frame], axis=1
+        )
+
+    return evaluate
+
+
+def _any(curve: Any) -> Callable[[Array], Array]:  # noqa: ANN401
+    point, tangent = gp_Pnt2d(), gp_Vec2d()
+
+    def evaluate(t: Array) -> Array:
+        rows = np.empty((len(t), 4))
+        for k, x in enumerate(t.tolist()):
+            curve.D1(x, point, tangent)
+            rows[k] = point.X(), point.Y(), tangent.X(), tangent.Y()
+        return rows
+
+    return evaluate

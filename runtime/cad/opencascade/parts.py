@@ -1,0 +1,56 @@
+"""A CAD file as the record of a part."""
+
+# pyright: reportMissingImports=false
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from OCP.TopoDS import TopoDS
+
+from ..damaged_step import LostFace
+from ..inspection import BadFileError
+from ..preparation import Source
+from ..records import FaceRecord, Geometry, PartRecord
+from ..units import METRES, with_unit
+from .edges import sharp_edges
+from .faces import FaceReader
+from .files import read_file
+from .solids import PlacedFace, gathered
+
+__all__ = ["part_record"]
+
+
+def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
+    """Return the part in a file, in a unit or its own; BadFileError says why it cannot be read."""
+    document, lost = read_file(source)
+    found = gathered(document)
+    if not found.faces and not lost:
+        raise BadFileError("has no faces; a part needs solids, shells or faces.")
+    reader = FaceReader()
+    faces = [_face(x, reader) for x in found.faces]
+    if all(x.reason for x in faces):
+        why = faces[0].reason if faces else lost[0].reason
+        raise BadFileError(f"has no face that can be used: of the first one, {why}.")
+    in_unit = unit or document.unit
+    factor = METRES["mm"] / METRES[in_unit]
+    edges = sharp_edges(found.faces, faces, factor)
+    return PartRecord(
+        name,
+        in_unit,
+        METRES[in_unit],
+        found.closed,
+        [*(with_unit(x, factor) for x in faces), *map(_lost_face, lost)],
+        found.solid_names,
+        edges,
+        document.warnings,
+    )
+
+
+def _face(face: PlacedFace, reader: FaceReader) -> FaceRecord:
+    record = reader.record(TopoDS.Face(face.shape))
+    return replace(record, name=face.name, color=face.color, solid_index=face.solid)
+
+
+def _lost_face(face: LostFace) -> FaceRecord:
+    return FaceRecord(Geometry("unknown"), name=face.name, reason=face.reason)

@@ -1,0 +1,125 @@
+"""Surfaces of Open CASCADE as numbers: all kinds that STEP, IGES and BREP files have."""
+
+# pyright: reportMissingImports=false
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..records import Geometry, Net
+from .curves import UnusableError, curve_net, knots_of
+from .shapes import direct_class
+
+__all__ = ["basis_of", "geometry_of", "periods_of"]
+
+Array = NDArray[np.float64]
+
+# The radii and angles of the elementary kinds.
+ELEMENTARY: dict[str, tuple[str, tuple[str, ...]]] = {
+    "Geom_Plane": ("plane", ()),
+    "Geom_CylindricalSurface": ("cylinder", ("Radius",)),
+    "Geom_ConicalSurface": ("cone", ("RefRadius", "SemiAngle")),
+    "Geom_SphericalSurface": ("sphere", ("Radius",)),
+    "Geom_ToroidalSurface": ("torus", ("MajorRadius", "MinorRadius")),
+}
+
+
+def basis_of(surface: Any) -> Any:  # noqa: ANN401
+    """Return what a surface is trimmed from: its own trim is that of the face."""
+    while direct_class(surface) == "Geom_RectangularTrimmedSurface":
+        surface = surface.BasisSurface()
+    return surface
+
+
+def periods_of(surface: Any) -> tuple[float, float]:  # noqa: ANN401
+    """Return the periods in u and v, 0 where there is none."""
+    along_u = float(surface.UPeriod()) if surface.IsUPeriodic() else 0.0
+    return along_u, float(surface.VPeriod()) if surface.IsVPeriodic() else 0.0
+
+
+def geometry_of(surface: Any, domain: Sequence[Sequence[float]]) -> Geometry:  # noqa: ANN401
+    """Return a surface as numbers, with the same parameters; UnusableError says why not.
+
+    Lines and other curves that have no end are kept over the domain.
+    """
+    surface = basis_of(surface)
+    name = direct_class(surface)
+    if name in ELEMENTARY:
+        kind, more = ELEMENTARY[name]
+        numbers = [*_placement(surface.Position()), *(getattr(surface, x)() for x in more)]
+        return Geometry(kind, np.array(numbers, dtype=np.float64))
+    if name in MADE_OF:
+        return MADE_OF[name](surface, domain)
+    raise UnusableError(f"its surface of type {name.removeprefix('Geom_')} is not known")
+
+
+def _placement(axes: Any) -> list[float]:  # noqa: ANN401
+    origin, x, y, z = axes.Location(), axes.XDirection(), axes.YDirection(), axes.Direction()
+    return [number for p in (origin, x, y, z) for number in (p.X(), p.Y(), p.Z())]
+
+
+def _nurbs(surface: Any, domain: Sequence[Sequence[float]]) -> Geometry:  # noqa: ANN401
+    if surface.IsUPeriodic() or surface.IsVPeriodic():
+        surface = surface.Copy()
+        if surface.IsUPeriodic():
+            surface.SetUNotPeriodic()
+        if surface.IsVPeriodic():
+            surface.SetVNotPeriodic()
+    along_u, along_v = range(1, surface.NbUKnots() + 1), range(1, surface.NbVKnots() + 1)
+    knots = (
+        knots_of([surface.UKnot(k) for k in along_u], [surface.UMultiplicity(k) for k in along_u]),
+        knots_of([surface.VKnot(k) for k in along_v], [surface.VMultiplicity(k) for k in along_v]),
+    )
+    return Geometry("nurbs", net=Net(_degrees(surface), knots, *_net(surface)))
+
+
+def _bezier(surface: Any, domain: Sequence[Sequence[float]]) -> Geometry:  # noqa: ANN401
+    degrees = _degrees(surface)
+    knots = tuple(np.repeat([0.0, 1.0], p + 1) for p in degrees)
+    return Geometry("nurbs", net=Net(degrees, knots, *_net(surface)))
+
+
+def _degrees(surface: Any) -> tuple[int, int]:  # noqa: ANN401
+    return surface.UDegree(), surface.VDegree()
+
+
+def _net(surface: Any) -> tuple[Array, Array | None]:  # noqa: ANN401
+    """Return the control points (m, n, 3) and the weights (m, n), or None for weights of 1."""
+    shape = surface.NbUPoles(), surface.NbVPoles()
+    places = [(i + 1, j + 1) for i, j in np.ndindex(*shape)]
+    poles = (surface.Pole(i, j) for i, j in places)
+    points = np.array([(p.X(), p.Y(), p.Z()) for p in poles]).reshape(*shape, 3)
+    if not (surface.IsURational() or surface.IsVRational()):
+        return points, None
+    return points, np.array([surface.Weight(i, j) for i, j in places]).reshape(shape)
+
+
+def _revolution(surface: Any, domain: Sequence[Sequence[float]]) -> Geometry:  # noqa: ANN401
+    axis = surface.Axis()
+    net = curve_net(surface.BasisCurve(), domain[1])
+    o, z = axis.Location(), axis.Direction()
+    return Geometry("revolution", np.array([o.X(), o.Y(), o.Z(), z.X(), z.Y(), z.Z()]), net)
+
+
+def _extrusion(surface: Any, domain: Sequence[Sequence[float]]) -> Geometry:  # noqa: ANN401
+    net = curve_net(surface.BasisCurve(), domain[0])
+    z = surface.Direction()
+    return Geometry("extrusion", np.array([z.X(), z.Y(), z.Z()]), net)
+
+
+def _offset(surface: Any, domain: Sequence[Sequence[float]]) -> Geometry:  # noqa: ANN401
+    basis = geometry_of(surface.BasisSurface(), domain)
+    return Geometry("offset", np.array([surface.Offset()], dtype=np.float64), basis=basis)
+
+
+MADE_OF = {
+    "Geom_BSplineSurface": _nurbs,
+    "Geom_BezierSurface": _bezier,
+    "Geom_SurfaceOfRevolution": _revolution,
+    "Geom_SurfaceOfLinearExtrusion": _extrusion,
+    "Geom_OffsetSurface": _offset,
+}
