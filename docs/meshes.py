@@ -5,14 +5,14 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import partial
 from statistics import median
-from typing import Any
 
 import gaussmap as gm
 import numpy as np
-from gaussmap.benchmarks.peers.forms import FORMS, Array, ClosedForm
+from gaussmap.benchmarks.peers.forms import FORMS, ClosedForm
 from gaussmap.benchmarks.peers.machine import machine
+from gaussmap.benchmarks.peers.mesh_metrics import FEW, PARTS, Quality, quality
 from gaussmap.benchmarks.peers.metrics import Places
 from gaussmap.benchmarks.peers.peer import timed
 from gaussmap.benchmarks.peers.triangles import (
@@ -22,25 +22,13 @@ from gaussmap.benchmarks.peers.triangles import (
     opencascade_triangles,
 )
 from gaussmap.benchmarks.peers.untuned import Boss
-from gaussmap.docs.orders import (
-    TrueSurface,
-    angles,
-    code,
-    lengths,
-    listed,
-    markdown,
-    number,
-    wrapped,
-)
+from gaussmap.docs.orders import code, listed, markdown, number, wrapped
 from gaussmap.runtime.meshes.improvement import Prefer
 from gaussmap.runtime.meshes.meshing import Triangulated
 from matplotlib.cbook import get_sample_data
 
 COUNTS = (2_000, 10_000)
 PLACES = 200_000
-PARTS = 6  # every triangle is compared at the barycentric lattice of step 1/PARTS
-FEW = 0.05  # of the smallest angles are below the one that is told
-STEPS = 8  # of Newton's method
 KINDS: tuple[Prefer, Prefer] = ("shape", "normals")
 SHAPED, TERRAIN = 10_000, (50, 43)
 TIMED = (10_000, 100_000, 1_000_000)
@@ -92,109 +80,6 @@ MESHERS: dict[str, Callable[[ClosedForm, int], Triangles]] = {
     GMSH: gmsh_triangles,
     "Open CASCADE, angular deflection": opencascade_triangles,
 }
-
-
-# --- how far a mesh is from its surface -----------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Quality:
-    """How well a mesh of `vertices` and `triangles` represents a surface.
-
-    Distances are the largest from the surface to the mesh and back, in the unit of the surface;
-    `worst` and `mean` are angles between the normals of both, in degrees. Of `small` degrees at
-    least are the angles of 95 % of the triangles.
-    """
-
-    vertices: int
-    triangles: int
-    to_mesh: float
-    to_surface: float
-    worst: float
-    mean: float
-    small: float
-
-
-def quality(form: ClosedForm, places: Places, mesh: Triangles) -> Quality:
-    """Compare a mesh with the exact surface."""
-    points, triangles = mesh
-    cells, nearest = closest(mesh, places.points)
-    corners = points[triangles]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    turned = angles(normals[cells], places.normals.astype(np.float64))
-    return Quality(
-        len(points),
-        len(triangles),
-        float(lengths(nearest - places.points).max()),
-        max(float(to_surface(form, part).max()) for part in on_mesh(corners)),
-        float(turned.max()),
-        float(turned.mean()),
-        float(np.quantile(smallest_angles(corners), FEW)),
-    )
-
-
-def smallest_angles(corners: Array) -> Array:
-    """Return the smallest angle of each triangle (T, 3, 3), in degrees."""
-    found = []
-    for k in range(3):
-        e, f = (corners[:, (k + x) % 3] - corners[:, k] for x in (1, 2))
-        found.append(np.degrees(np.arctan2(lengths(np.cross(e, f)), dots(e, f))))
-    return np.min(found, axis=0)
-
-
-def closest(mesh: Triangles, places: Array) -> tuple[np.ndarray, Array]:
-    """Return the nearest triangle of each place, and the nearest point of it (VTK, exact)."""
-    import pyvista as pv
-
-    found: Any = pv.PolyData.from_regular_faces(*mesh).find_closest_cell(
-        places, return_closest_point=True
-    )
-    return found
-
-
-def on_mesh(corners: Array) -> Iterator[Array]:
-    """Yield places on all triangles (T, 3, 3): one after the other of their barycentric lattice."""
-    for i in range(PARTS + 1):
-        for j in range(PARTS + 1 - i):
-            yield np.tensordot(corners, [i / PARTS, j / PARTS, 1 - (i + j) / PARTS], ([1], [0]))
-
-
-@cache
-def exact(form: ClosedForm) -> TrueSurface:
-    """Return the surface with its exact derivatives."""
-    return TrueSurface(form.name, **vars(form))
-
-
-def to_surface(form: ClosedForm, points: Array) -> Array:
-    """Return the distances of points near the surface, by Newton's method for the nearest point.
-
-    A parameter that would leave the domain is held. ArithmeticError if no point is found.
-    """
-    true = exact(form)
-    place = true.unit(np.stack(form.parameters(points), axis=-1).astype(np.float64))
-    is_open = np.array([ends[0] == "open" for ends in form.surface.boundary])
-    step, away = np.zeros_like(place), points
-    for _ in range(STEPS):
-        place = np.where(is_open, np.clip(place, 0.0, 1.0), place)
-        x, x_s, x_t, x_ss, x_st, x_tt = np.moveaxis(true.derivatives(*place.T, 2), -2, 0)
-        away = x - points
-        slope = np.stack([dots(away, x_s), dots(away, x_t)], axis=-1)
-        held = is_open & np.where(slope > 0.0, place == 0.0, place == 1.0)
-        bend = np.empty((len(place), 2, 2))
-        bend[:, 0, 0] = np.where(held[:, 0], 1.0, dots(away, x_ss) + dots(x_s, x_s))
-        bend[:, 1, 1] = np.where(held[:, 1], 1.0, dots(away, x_tt) + dots(x_t, x_t))
-        bend[:, 0, 1] = np.where(held.any(axis=1), 0.0, dots(away, x_st) + dots(x_s, x_t))
-        bend[:, 1, 0] = bend[:, 0, 1]
-        step = -np.linalg.solve(bend, np.where(held, 0.0, slope)[..., None])[..., 0]
-        place = place + step
-    if np.abs(step).max() > 1e-6:
-        raise ArithmeticError(f"Newton's method fails on {form.name}")
-    return lengths(away.astype(np.float64))
-
-
-def dots(left: Array, right: Array) -> Array:
-    """Return the scalar products of vectors (k, 3)."""
-    return np.einsum("kx,kx->k", left, right)
 
 
 # --- the page -------------------------------------------------------------------------------------
@@ -312,7 +197,7 @@ def meaning(measured: Sequence[Measurement]) -> str:
         last=last,
         mean=smaller(lambda x: x.mean),
         worst=smaller(lambda x: x.worst),
-        distance=smaller(lambda x: max(x.to_mesh, x.to_surface)),
+        distance=smaller(lambda x: x.hausdorff),
         saved=listed(
             f"{100 * (1 - own.mean / before.mean):.0f} % on {code(name)}"
             for name, (own, _, before, _) in pairs.items()

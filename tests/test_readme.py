@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from gaussmap.benchmarks.peers.forms import FORMS
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -65,17 +66,32 @@ def tables(page: str) -> list[dict[str, list[list[str]]]]:
     return found
 
 
+def of_quality(surface: int) -> dict[str, dict[str, str]]:
+    """Return the first table of a surface in docs/quality.md: cells by title and column.
+
+    Of columns of one name the last counts, that of the larger count.
+    """
+    page = (ROOT / "docs" / "quality.md").read_text(encoding="utf-8")
+    section = page.split(f"## {FORMS[surface].label}\n")[1]
+    header, *rows = (
+        [x.strip() for x in line.strip("|").split(" | ")]
+        for line in re.search(r"(?:^\|.*\n)+", section, re.MULTILINE)[0].splitlines()
+    )
+    return {title: dict(zip(header[1:], cells, strict=True)) for title, *cells in rows}
+
+
 def figures(title: str, surface: int) -> tuple[str, str, str, str]:
     """Return E, G, mean angle of the mesh and points/s of a row, from the pages in docs/."""
-    quality, performance, meshes = (
+    performance, meshes = (
         tables((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8"))
-        for name in ("quality", "performance", "meshes")
+        for name in ("performance", "meshes")
     )
     mesh = meshes[surface].get(SAME_MESH.get(title, title), [["–"] * 2])[-1][
         -2
     ]  # of 10,000 vertices
-    if title in quality[1 + surface]:
-        E, G, rate = quality[1 + surface][title][0][6:9]
+    quality = of_quality(surface)
+    if title in quality:
+        E, G, rate = (quality[title][x] for x in ("E", "G", "points/s"))
     else:
         (rate, E, G) = (performance[surface][title][0][k] for k in (2, -2, -1))
     return E, G, mesh, rate

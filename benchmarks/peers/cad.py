@@ -9,7 +9,7 @@ given to them as B-splines of a 61 × 61 net.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -23,6 +23,7 @@ __all__ = [
     "gmsh_by_curvature",
     "gmsh_mesher",
     "opencascade_by_angle",
+    "opencascade_faces",
     "opencascade_mesher",
     "opencascade_shape",
 ]
@@ -119,30 +120,37 @@ def opencascade_mesher(form: ClosedForm, shape: Any) -> Mesher:
     from OCP.BRepLib import BRepLib_ToolTriangulatedShape
     from OCP.BRepMesh import BRepMesh_IncrementalMesh
     from OCP.BRepTools import BRepTools
-    from OCP.TopAbs import TopAbs_ShapeEnum
-    from OCP.TopExp import TopExp_Explorer
     from OCP.TopLoc import TopLoc_Location
-    from OCP.TopoDS import TopoDS
 
     def meshed(angle: float) -> Points:
         BRepTools.Clean_s(shape)
         BRepMesh_IncrementalMesh(shape, LINEAR_DEFLECTION, False, angle, True)
-        faces, parts = TopExp_Explorer(shape, TopAbs_ShapeEnum.TopAbs_FACE), []
-        while faces.More():
-            face = TopoDS.Face(faces.Current())
+        parts = []
+        for face in opencascade_faces(shape):
             mesh = BRep_Tool.Triangulation_s(face, TopLoc_Location())
             BRepLib_ToolTriangulatedShape.ComputeNormals_s(face, mesh)
             numbers = range(1, mesh.NbNodes() + 1)
             points = np.array([(p.X(), p.Y(), p.Z()) for p in map(mesh.Node, numbers)])
             normals = np.array([(n.X(), n.Y(), n.Z()) for n in map(mesh.Normal, numbers)])
             parts.append(outwards(form, points, normals))
-            faces.Next()
         points, normals = (np.concatenate(x) for x in zip(*parts, strict=True))
         # Nodes on seams and edges occur twice.
         once = np.unique(points.round(9), axis=0, return_index=True)[1]
         return points[once], normals[once]
 
     return meshed
+
+
+def opencascade_faces(shape: Any) -> Iterator[Any]:
+    """Yield the faces of a shape."""
+    from OCP.TopAbs import TopAbs_ShapeEnum
+    from OCP.TopExp import TopExp_Explorer
+    from OCP.TopoDS import TopoDS
+
+    faces = TopExp_Explorer(shape, TopAbs_ShapeEnum.TopAbs_FACE)
+    while faces.More():
+        yield TopoDS.Face(faces.Current())
+        faces.Next()
 
 
 def opencascade_shape(form: ClosedForm) -> Any:

@@ -9,15 +9,19 @@ interpolated: that is nearer than the normals of the triangles.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 
 from .forms import Array, ClosedForm
 from .peer import Points, Work, tuned
 
-__all__ = ["open3d_by_area", "open3d_poisson", "pymeshlab_poisson", "trimesh_by_area",
-           "trimesh_by_curvature"]  # fmt: skip
+__all__ = ["open3d_by_area", "open3d_farthest", "open3d_poisson", "pymeshlab_poisson",
+           "trimesh_by_area", "trimesh_by_curvature"]  # fmt: skip
 
 CELLS = 320**2
+CHOICE = 10  # random points for each of which farthest points are taken
 
 
 def triangles(form: ClosedForm, cells: int = CELLS) -> tuple[Array, Array, np.ndarray]:
@@ -91,15 +95,23 @@ def _on_border(form: ClosedForm) -> np.ndarray:
 
 def open3d_by_area(form: ClosedForm, count: int) -> Work:
     """Prepare random points, uniform by area."""
-    return _open3d(form, "sample_points_uniformly", count)
+    return _open3d(form, lambda mesh: mesh.sample_points_uniformly(count))
 
 
 def open3d_poisson(form: ClosedForm, count: int) -> Work:
     """Prepare points with even distances: five times as many, of which the nearest are removed."""
-    return _open3d(form, "sample_points_poisson_disk", count)
+    return _open3d(form, lambda mesh: mesh.sample_points_poisson_disk(count))
 
 
-def _open3d(form: ClosedForm, method: str, count: int) -> Work:
+def open3d_farthest(form: ClosedForm, count: int) -> Work:
+    """Prepare farthest points of a random cloud: each is the one farthest from those before it."""
+    return _open3d(
+        form,
+        lambda mesh: mesh.sample_points_uniformly(CHOICE * count).farthest_point_down_sample(count),
+    )
+
+
+def _open3d(form: ClosedForm, sampled: Callable[[Any], Any]) -> Work:
     import open3d
 
     points, normals, faces = triangles(form)
@@ -110,7 +122,7 @@ def _open3d(form: ClosedForm, method: str, count: int) -> Work:
     open3d.utility.random.seed(1)
 
     def work() -> Points:
-        cloud = getattr(mesh, method)(count)
+        cloud = sampled(mesh)
         return np.asarray(cloud.points), np.asarray(cloud.normals)
 
     return work

@@ -1,4 +1,4 @@
-"""Quality of points with normals on a surface: the largest angles over many places, in degrees."""
+"""How well points with normals represent a surface: angles and distances over many places."""
 
 # Only `make bench-peers` installs these packages.
 # pyright: reportMissingImports=false
@@ -13,7 +13,7 @@ import numpy as np
 from .forms import Array, ClosedForm
 from .recipe import draw
 
-__all__ = ["Places", "nearest_by_tree", "worst_in_normal", "worst_in_space"]
+__all__ = ["Errors", "Places", "both", "errors", "nearest_by_tree", "worst_in_normal"]
 
 PLACES = 200_000
 # samples (N, 3), places (M, 3) → which sample is nearest to each place, (M,)
@@ -48,11 +48,6 @@ def angles(left: Array, right: Array) -> Array:
     return np.degrees(2.0 * np.arcsin(np.minimum(chord / 2.0, 1.0)))
 
 
-def worst_in_space(places: Places, points: Array, normals: Array, nearest: Nearest) -> float:
-    """E: the largest angle between a place's normal and that of the sample nearest in space."""
-    return float(angles(places.normals, normals[nearest(points, places.points)]).max())
-
-
 def worst_in_normal(
     places: Places, normals: Array, hyperbolic: np.ndarray, nearest: Nearest
 ) -> float:
@@ -71,15 +66,45 @@ def worst_in_normal(
     return worst
 
 
-def both(
+@dataclass(frozen=True)
+class Errors:
+    """How far places of a surface are from samples: angles in degrees, distances in its unit.
+
+    `E` is the largest, `mean` the mean angle between the normals of a place and of the sample
+    nearest in space; `gap` is the largest distance to that sample, `plane` to its tangent plane.
+    `G` is the largest angle to the sample nearest in normal with the same sign of K.
+    """
+
+    E: float
+    mean: float
+    G: float
+    gap: float
+    plane: float
+
+
+def errors(
     form: ClosedForm, places: Places, points: Array, normals: Array, nearest: Nearest
-) -> tuple[float, float]:
-    """Return E and G of samples; normals that point to the other side are all turned first."""
+) -> Errors:
+    """Judge samples; normals that point to the other side are all turned first."""
     u, v = form.parameters(points)
     if np.einsum("nx,nx->n", form.evaluate(u, v)[1], normals).mean() < 0.0:
         normals = -normals
     hyperbolic = form.curvature(u, v) < 0.0
-    return (
-        worst_in_space(places, points, normals, nearest),
-        worst_in_normal(places, normals, hyperbolic, nearest),
+    found = nearest(points, places.points)
+    turned = angles(places.normals, normals[found])
+    away = places.points - points[found]
+    return Errors(
+        E=float(turned.max()),
+        mean=float(turned.mean()),
+        G=worst_in_normal(places, normals, hyperbolic, nearest),
+        gap=float(np.linalg.norm(away, axis=1).max()),
+        plane=float(np.abs(np.einsum("nx,nx->n", away, normals[found])).max()),
     )
+
+
+def both(
+    form: ClosedForm, places: Places, points: Array, normals: Array, nearest: Nearest
+) -> tuple[float, float]:
+    """Return E and G of samples."""
+    found = errors(form, places, points, normals, nearest)
+    return found.E, found.G

@@ -1,37 +1,38 @@
-"""Judging and timing every way on one surface."""
+"""Judging and timing every way, and every mesh, on one surface."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import astuple, dataclass, field
 from statistics import median
+
+import gaussmap as gm
 
 from ..peers.forms import ClosedForm
 from ..peers.measure import nearest_by_tree
-from ..peers.metrics import Places, both
-from ..peers.peer import Peer, Work, in_turns
+from ..peers.mesh_metrics import Quality, quality
+from ..peers.metrics import Errors, Places, errors
+from ..peers.peer import Peer, Points, in_turns
+from .meshers import Mesher
 from .ways import BALANCED, POISSON
 
-__all__ = ["CLOUDS", "COUNTS", "LARGE", "Found", "OnSurface", "measured"]
+__all__ = ["COUNTS", "LAST", "Found", "OnSurface", "measured"]
 
 COUNTS = (2_000, 10_000)
-LARGE = 100_000
-# The number of random samplings of which E and G are the medians.
-CLOUDS = 3
-# Methods that would take longer than this many seconds for LARGE points are left out.
-FEASIBLE = 8.0  # seconds
+LAST = COUNTS[-1]
 
 
 @dataclass(frozen=True)
 class Found:
-    """What a way did for a count: how many points came, E and G, points a second.
+    """What a way did for a count: how many points came, their errors, points a second.
 
-    `times` is how many times as fast gaussmap is with density="balanced", timed in turns.
+    `times` is how many times as fast gaussmap is with density="balanced", timed in turns; not a
+    number but for the last count.
     """
 
     points: int
-    E: float
-    G: float
+    errors: Errors
     rate: float
     times: float
 
@@ -40,48 +41,61 @@ class Found:
 class OnSurface:
     """All that was found on a surface.
 
-    `found` by way and count, `large` as (points/s, times) by way, `missing` says why a way could
-    not be tried.
+    `found` by way and count, `meshes` by mesher, `chosen` is the density that "balanced" took for
+    a count, `missing` says why a way or a mesher could not be tried.
     """
 
     form: ClosedForm
-    found: dict[tuple[Peer, int], Found]
-    large: dict[Peer, tuple[float, float]]
-    missing: dict[Peer, str]
+    found: dict[tuple[Peer, int], Found] = field(default_factory=dict)
+    meshes: dict[Mesher, Quality] = field(default_factory=dict)
+    chosen: dict[int, str] = field(default_factory=dict)
+    missing: dict[Peer | Mesher, str] = field(default_factory=dict)
 
 
-def measured(form: ClosedForm, ways: tuple[Peer, ...], done: Callable[[str], object]) -> OnSurface:
-    """Judge and time all ways; `done` is told each of them."""
-    result, places = OnSurface(form, {}, {}, {}), Places.of(form)
+def measured(
+    form: ClosedForm,
+    ways: Sequence[Peer],
+    meshers: Sequence[Mesher],
+    done: Callable[[str], object],
+) -> OnSurface:
+    """Judge and time all ways, and judge all meshes; `done` is told each of them."""
+    result, places = OnSurface(form), Places.of(form)
+    for count in COUNTS:
+        result.chosen[count] = str(gm.sample(form.surface, count=count).report.density)
     for way in ways:
         done(f"{form.name}: {way.title}")
-        if way.missing:
-            result.missing[way] = way.missing
-            continue
-        for count in COUNTS:
-            result.found[way, count] = found(form, places, way, count)
-        largest = result.found[way, COUNTS[-1]]
-        if LARGE / largest.rate <= FEASIBLE:
-            _, rate, times = timed_beside_balanced(form, way, way.prepare(form, LARGE), LARGE, 1)
-            result.large[way] = rate, times
+        if not (missing := way.missing):
+            try:
+                for count in COUNTS:
+                    result.found[way, count] = found(form, places, way, count)
+            except NotImplementedError as error:
+                missing = str(error)
+        if missing:
+            result.missing[way] = missing
+    for mesher in meshers:
+        done(f"{form.name}: mesh, {mesher.title}")
+        if missing := mesher.missing:
+            result.missing[mesher] = missing
+        else:
+            result.meshes[mesher] = quality(form, places, mesher.mesh(form, LAST))
     return result
 
 
 def found(form: ClosedForm, places: Places, way: Peer, count: int) -> Found:
-    """Judge and time a way."""
+    """Judge a way, and time it at the last count."""
+    clouds: list[Points] = []
     work = way.prepare(form, count)
-    clouds = [work() for _ in range(CLOUDS if way in POISSON else 1)]
-    errors = [both(form, places, *cloud, nearest_by_tree) for cloud in clouds]
-    points, rate, times = timed_beside_balanced(form, way, work, count, way.rounds)
-    E, G = (median(x) for x in zip(*errors, strict=True))
-    return Found(points, E, G, rate, times)
 
+    def kept() -> Points:
+        clouds.append(work())
+        return clouds[-1]
 
-def timed_beside_balanced(
-    form: ClosedForm, way: Peer, work: Work, count: int, rounds: int
-) -> tuple[int, float, float]:
-    """Return how many points come, points a second, and balanced's rate over that."""
-    others = {} if way is BALANCED else {"balanced": BALANCED.prepare(form, count)}
-    turns = in_turns(work, others, rounds)
-    times = turns.times["balanced"] * count / turns.points if others else 1.0
-    return turns.points, turns.points / turns.seconds, times
+    timed = count == LAST and way is not BALANCED
+    others = {"balanced": BALANCED.prepare(form, count)} if timed else {}
+    rounds = way.rounds if way in POISSON or count == LAST else 1
+    turns = in_turns(kept, others, rounds)
+    judged = clouds if way in POISSON else clouds[:1]
+    every = [astuple(errors(form, places, *cloud, nearest_by_tree)) for cloud in judged]
+    middle = Errors(*(median(x) for x in zip(*every, strict=True)))
+    times = turns.times["balanced"] * count / turns.points if timed else math.nan
+    return Found(turns.points, middle, turns.points / turns.seconds, times)

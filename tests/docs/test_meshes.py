@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from gaussmap.benchmarks.peers.forms import FORMS, Torus
+from gaussmap.benchmarks.peers.mesh_metrics import quality, to_surface
 from gaussmap.benchmarks.peers.metrics import Places
 from gaussmap.docs import meshes
 
@@ -32,7 +33,7 @@ def test_committed_numbers_are_those_of_a_fresh_run(form, title):
     pytest.importorskip("pyvista")
     places = Places.of(form, meshes.PLACES)
     mesh = meshes.MESHERS[title](form, meshes.COUNTS[0])
-    found = meshes.row(title, meshes.quality(form, places, mesh))
+    found = meshes.row(title, quality(form, places, mesh))
     fresh = [float(cell.replace(",", "")) for cell in found[1:]]
     np.testing.assert_allclose(fresh, rows(form, title)[0], rtol=2 * DIGITS, atol=0.051)
     assert fresh[1:3] == pytest.approx(rows(form, title)[0][1:3], rel=2 * DIGITS)
@@ -49,7 +50,7 @@ def test_a_grid_on_the_torus_is_off_by_what_theory_says():
     """Chords of the tube, of m sides, and of the outer circle, of n: R (1 − cos π/n) and so on."""
     pytest.importorskip("pyvista")
     form = Torus()
-    found = meshes.quality(form, Places.of(form, 20_000), meshes.by_grid(form, 2_000))
+    found = quality(form, Places.of(form, 20_000), meshes.by_grid(form, 2_000))
     n = math.isqrt(found.vertices)
     tube = form.minor * (1 - math.cos(math.pi / n))
     ring = (form.major + form.minor) * (1 - math.cos(math.pi / n))
@@ -64,7 +65,7 @@ def test_distances_from_the_torus_are_exact():
     u, v = rng.uniform(-np.pi, np.pi, (2, 500))
     points, normals = form.evaluate(u, v)
     away = rng.uniform(-0.1, 0.1, 500)
-    found = meshes.to_surface(form, points + away[:, None] * normals)
+    found = to_surface(form, points + away[:, None] * normals)
     np.testing.assert_allclose(found, np.abs(away), rtol=0, atol=1e-14)
 
 
@@ -73,7 +74,7 @@ def test_beyond_a_border_the_border_is_nearest():
     points = np.array([[1.1, 0.2, 0.2 * np.sin(3) * np.cos(0.6)]])
     ends = form.evaluate(np.array([1.0]), np.linspace(-1, 1, 200_001))[0]
     nearest = np.linalg.norm(ends - points, axis=1).min()
-    assert meshes.to_surface(form, points)[0] == pytest.approx(nearest, rel=1e-9)
+    assert to_surface(form, points)[0] == pytest.approx(nearest, rel=1e-9)
 
 
 def test_flips_never_make_the_worst_angle_larger():

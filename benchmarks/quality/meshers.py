@@ -1,0 +1,64 @@
+"""Meshes that are judged: those of gaussmap through samples of each density, and of others."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+import gaussmap as gm
+
+from ..peers.forms import ClosedForm
+from ..peers.peer import Peer
+from ..peers.triangles import Triangles, by_grid, gmsh_triangles, opencascade_triangles
+from .ways import GMSH, OPENCASCADE, PERFECT
+
+__all__ = ["GMSH_MESH", "MESHERS", "OTHER_MESHERS", "OWN_MESHERS", "THROUGH_BALANCED", "Mesher"]
+
+Prefer = Literal["shape", "normals"]
+
+
+@dataclass(frozen=True)
+class Mesher:
+    """A way to meshes of about a number of vertices; `needs` is who has its package."""
+
+    title: str
+    needs: Peer
+    mesh: Callable[[ClosedForm, int], Triangles]
+
+    @property
+    def missing(self) -> str:
+        """Why it cannot be used here; empty if it can."""
+        return self.needs.missing
+
+
+def through(density: str, prefer: Prefer) -> Callable[[ClosedForm, int], Triangles]:
+    """Return meshes through samples, so many that with points on borders there are `count`."""
+
+    def mesh(form: ClosedForm, count: int) -> Triangles:
+        first = gm.sample(form.surface, count=count, density=density)
+        added = len(first.mesh(prefer=prefer).vertices) - len(first)
+        found = gm.sample(form.surface, count=count - added, density=density).mesh(prefer=prefer)
+        return found.vertices, found.triangles
+
+    return mesh
+
+
+def own(density: str, prefer: Prefer) -> Mesher:
+    """Return a mesher of gaussmap."""
+    call = f"**{density}**" + (', prefer="normals"' if prefer == "normals" else "")
+    return Mesher(call, PERFECT, through(density, prefer))
+
+
+THROUGH_BALANCED = own("balanced", "normals")
+OWN_MESHERS = (
+    own("balanced", "shape"), THROUGH_BALANCED, own("aligned", "normals"),
+    own("isotropic", "normals"),
+)  # fmt: skip
+GMSH_MESH = Mesher(GMSH.title, GMSH, gmsh_triangles)
+OTHER_MESHERS = (
+    Mesher("grid of parameters", PERFECT, by_grid),
+    GMSH_MESH,
+    Mesher(OPENCASCADE.title, OPENCASCADE, opencascade_triangles),
+)
+MESHERS = (*OWN_MESHERS, *OTHER_MESHERS)
