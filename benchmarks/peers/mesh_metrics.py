@@ -20,6 +20,7 @@ __all__ = ["FEW", "PARTS", "Quality", "quality", "to_surface"]
 PARTS = 6  # every triangle is compared at the barycentric lattice of step 1/PARTS
 FEW = 0.05  # of the smallest angles are below the one that is told
 STEPS = 12
+DIFFERENCE = 1e-5  # of parameters
 SETTLED = 1e-6  # how far, in the unit of the surface, the last step may still go
 
 
@@ -70,7 +71,7 @@ def smallest_angles(corners: Array) -> Array:
     found = []
     for k in range(3):
         e, f = (corners[:, (k + x) % 3] - corners[:, k] for x in (1, 2))
-        sine, cosine = np.linalg.norm(np.cross(e, f), axis=1), np.einsum("kx,kx->k", e, f)
+        sine, cosine = np.linalg.norm(np.cross(e, f), axis=1), dots(e, f)
         found.append(np.degrees(np.arctan2(sine, cosine)))
     return np.min(found, axis=0)
 
@@ -96,25 +97,50 @@ def to_surface(form: ClosedForm, points: Array) -> Array:
     """Return the distances of points near the surface from it.
 
     The foot of the perpendicular moves by what separates the point from the normal there. A
-    parameter that would leave an open domain is held. ArithmeticError if the foot does not settle.
+    parameter that would leave an open domain is held, and the foot moves along the border.
+    ArithmeticError if it does not settle.
     """
-    ends = np.array(form.surface.domain)
-    is_open = [ends[0] == "open" for ends in form.surface.boundary]
-
-    def held(near: Array) -> tuple[Array, Array]:
-        u, v = (
-            np.clip(x, *end) if fixed else x
-            for x, end, fixed in zip(form.parameters(near), ends, is_open, strict=True)
-        )
-        return form.evaluate(u, v)
-
-    foot, normals = held(points)
+    place = inside(form, np.stack(form.parameters(points)))
     moved = np.zeros(len(points))
     for _ in range(STEPS):
+        foot, normals = form.evaluate(*place)
         away = points - foot
-        aside = away - np.einsum("kx,kx->k", away, normals)[:, None] * normals
-        last, (foot, normals) = foot, held(foot + aside)
-        moved = np.linalg.norm(foot - last, axis=1)
+        aside = away - dots(away, normals)[:, None] * normals
+        found = np.stack(form.parameters(foot + aside))
+        last, place = place, inside(form, found)
+        for held, other in ((0, 1), (1, 0)):
+            left = np.flatnonzero(place[held] != found[held])
+            if len(left):
+                border = place[:, left]
+                border[other] = last[other, left]
+                along = along_border(form, border, other)
+                near = foot[left] + dots(aside[left], along)[:, None] * along
+                place[other, left] = inside(form, np.stack(form.parameters(near)))[other]
+        moved = np.linalg.norm(form.evaluate(*place)[0] - foot, axis=1)
     if moved.max() > SETTLED:
         raise ArithmeticError(f"the nearest point of {form.name} is not found")
-    return np.linalg.norm(points - foot, axis=1)
+    return np.linalg.norm(points - form.evaluate(*place)[0], axis=1)
+
+
+def inside(form: ClosedForm, place: Array) -> Array:
+    """Return parameters (2, k) in the domain; a parameter beyond an open end is at that end."""
+    result = place.copy()
+    for k, (ends, domain) in enumerate(
+        zip(form.surface.boundary, form.surface.domain, strict=True)
+    ):
+        if ends[0] == "open":
+            result[k] = np.clip(place[k], *domain)
+    return result
+
+
+def along_border(form: ClosedForm, place: Array, axis: int) -> Array:
+    """Return unit tangents of the lines on which only parameter `axis` changes."""
+    step = np.zeros((2, 1))
+    step[axis] = DIFFERENCE
+    found = form.evaluate(*(place + step))[0] - form.evaluate(*(place - step))[0]
+    return found / np.linalg.norm(found, axis=1)[:, None]
+
+
+def dots(left: Array, right: Array) -> Array:
+    """Return the scalar products of vectors (k, 3)."""
+    return np.einsum("kx,kx->k", left, right)
