@@ -260,6 +260,11 @@ class Samples(SampleArrays):
         added there, as far apart as the samples near them. Then edges are flipped. Samples that
         coincide become one vertex.
 
+        Samples on a complete graded grid (`row` and `column`) need no Delaunay triangulation: each
+        cell of the grid is cut along a diagonal, and samples between its lines are inserted. Points
+        are added where its lines meet open borders. Samples of trimmed and of one-sided surfaces,
+        parts of grids, and grids with more than 30 % of other samples are meshed as any others.
+
         Parameters
         ----------
         spline : Spline, optional
@@ -270,7 +275,9 @@ class Samples(SampleArrays):
         prefer : {"shape", "normals"}, default "shape"
             - "shape": triangles are Delaunay on the surface, and have angles as large as the
               samples allow. A sample so close to others that a smallest angle stays below 5° is
-              left out, and further ones until 95 % of the smallest angles are 25° at least.
+              left out, and further ones until 95 % of the smallest angles are 25° at least. A grid
+              keeps its samples, in long cells, too; for well-shaped triangles sample with
+              ``density="isotropic"``.
             - "normals": triangles deviate from the normals at their corners as little as the
               samples allow. They are long and thin where the surface is curved in one direction
               only, and one sample is left out where a triangle would have no area.

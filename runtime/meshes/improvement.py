@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -43,13 +44,20 @@ def checked_prefer(prefer: object) -> Prefer:
 def improved(mesh: Triangulated, prefer: Prefer, angle: float) -> Triangulated:
     """Return a mesh with better triangles, by flips and, where these do not suffice, collapses.
 
-    For "normals" edges are collapsed at triangles without area only. No flip makes a triangle
-    deviate from normals by more than `angle` degrees.
+    For "normals" edges are collapsed at triangles without area only. So are those between samples
+    on a graded grid, whose cells may be long: of the others, those in angles below the smallest
+    bound are left out. No flip makes a triangle deviate from normals by more than `angle` degrees.
     """
     least = math.cos(math.radians(min(angle, LARGEST_DEVIATION)))
     flip_edges(mesh, prefer, least)
+    has_grid = bool(mesh.is_node.any())
+    if prefer == "normals" or has_grid:
+        mesh = _without_small_angles(mesh, prefer, NO_AREA, least)
     if prefer == "normals":
-        return _without_small_angles(mesh, prefer, NO_AREA, least)
+        return mesh
+    if has_grid:
+        mesh = replace(mesh, is_free=mesh.is_free & ~mesh.is_node)
+        return _without_small_angles(mesh, prefer, math.tan(math.radians(SMALLEST[0])), least)
     for smallest in SMALLEST:
         if smallest > SMALLEST[0] and _has_good_shape(mesh):
             break

@@ -14,6 +14,7 @@ from ..kernels.flips import smallest_cosines
 from ..refinement.newton import evaluate_on_surface
 from ..splines.domain import Boundary
 from ..splines.spline import Spline
+from .filled_lattice import lattice_triangles
 from .improvement import checked_prefer, flip_edges, improved
 from .mesh import Mesh, scaled
 from .triangulation import neighbours, triangulations
@@ -37,7 +38,9 @@ def mesh_of(samples: Samples, spline: Spline, angle: float | None, prefer: str) 
     largest = WHOLE if angle is None else _checked_angle(angle)
     if not len(samples):
         raise InputError("there are no samples, and so there is nothing to make a mesh of.")
-    triangulated = Triangulated.of(samples, spline, must_be_whole=angle is None)
+    triangulated = Triangulated.on_lattice(samples, spline)
+    if triangulated is None:
+        triangulated = Triangulated.of(samples, spline, must_be_whole=angle is None)
     if largest < WHOLE:
         flip_edges(triangulated, "normals")
         triangulated = triangulated.within(largest)
@@ -55,10 +58,11 @@ def _checked_angle(angle: object) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Triangulated:
-    """Samples and added vertices in a Delaunay triangulation of the parameter domain.
+    """Samples and added vertices in a triangulation of the parameter domain.
 
     `sample` and `is_free` are those of `Vertices`; `triangles`, `sides` and `neighbours` (k, 3)
-    those of `kernels.flips`, which changes them in place.
+    those of `kernels.flips`, which changes them in place; `is_node` says which vertices are on a
+    graded grid.
     """
 
     name: str
@@ -70,10 +74,11 @@ class Triangulated:
     triangles: Indices
     sides: Indices
     neighbours: Indices
+    is_node: NDArray[np.bool_]
 
     @classmethod
     def of(cls, samples: Samples, spline: Spline, must_be_whole: bool = True) -> Triangulated:
-        """Triangulate; InputError if the whole surface is required and that fails."""
+        """Triangulate samples anywhere; InputError if the whole is required and that fails."""
         boundary = boundary_of(spline)
         vertices = Vertices.of(samples, spline, boundary)
         if spline.trim is None:
@@ -85,24 +90,52 @@ class Triangulated:
             )  # fmt: skip
             if not len(triangles) or (must_be_whole and not is_whole):
                 raise _too_few(len(vertices.sample), spline.name)
+        return cls._through(samples, spline, vertices, triangles, sides, adjacent)
+
+    @classmethod
+    def on_lattice(cls, samples: Samples, spline: Spline) -> Triangulated | None:
+        """Triangulate samples on a graded grid, and flip edges towards the normals.
+
+        None if they are on no complete grid, or if some triangles remain folded: too many samples
+        are between its lines, or all are too far apart.
+        """
+        found = lattice_triangles(samples, spline)
+        if found is None:
+            return None
+        vertices, triangles, adjacent, is_node = found
+        sides = np.ones_like(triangles)
+        mesh = cls._through(samples, spline, vertices, triangles, sides, adjacent)
+        flip_edges(mesh, "normals")
+        is_folded = mesh.cosines().min() < 0.0
+        return None if is_folded else replace(mesh, is_node=is_node)
+
+    @classmethod
+    def _through(
+        cls, samples: Samples, spline: Spline, vertices: Vertices,
+        triangles: Indices, sides: Indices, adjacent: Indices,
+    ) -> Triangulated:  # fmt: skip
+        """Add the points and normals of vertices."""
         uv, points, normals = _on_surface(vertices, samples, spline)
         _fill_missing(normals, triangles, sides)
         if samples.offset_of is not None:
             points = _moved(vertices, points, normals, samples)
         return cls(
             spline.name, uv, vertices.sample, vertices.is_free,
-            points, normals, triangles, sides, adjacent,
+            points, normals, triangles, sides, adjacent, np.zeros_like(vertices.is_free),
         )  # fmt: skip
+
+    def cosines(self) -> Array:
+        """Return the smallest cosine of each triangle and the normals at its corners."""
+        cosines = np.empty(len(self.triangles))
+        smallest_cosines(scaled(self.points), self.normals, self.triangles, self.sides, cosines)
+        return cosines
 
     def within(self, angle: float) -> Triangulated:
         """Leave out the triangles that deviate by more than `angle` degrees from normals.
 
         Raises InputError if an edge is then in more than two triangles.
         """
-        cosines = np.empty(len(self.triangles))
-        points = scaled(self.points)
-        smallest_cosines(points, self.normals, self.triangles, self.sides, cosines)
-        chosen = cosines >= math.cos(math.radians(angle))
+        chosen = self.cosines() >= math.cos(math.radians(angle))
         if not chosen.any():
             raise InputError(
                 f"every triangle deviates by more than {angle:g} degrees from a normal at a "
@@ -215,7 +248,18 @@ def _on_surface(vertices: Vertices, samples: Samples, spline: Spline) -> tuple[A
     else:
         points[~is_sample], found = evaluate_on_surface(base.surface, spline, added)[:2]
         normals[~is_sample] = np.where(found.any(axis=1, keepdims=True), found, np.nan)
+    normals[_is_added_at_apex(vertices, spline)] = np.nan
     return uv, points, normals
+
+
+def _is_added_at_apex(vertices: Vertices, spline: Spline) -> NDArray[np.bool_]:
+    """Say which vertices are added where a side is one point, and no pole: it has no normal."""
+    found = np.zeros(len(vertices.sample), dtype=bool)
+    boundary = boundary_of(spline, apexes=True)
+    for axis, place in ((0, 0), (0, 1), (1, 0), (1, 1)):
+        if boundary[axis][place] == "pole" != spline.boundary[axis][place]:
+            found |= (vertices.positions[:, axis] == place) & (vertices.sample < 0)
+    return found
 
 
 def _moved(vertices: Vertices, points: Array, normals: Array, samples: Samples) -> Array:

@@ -116,14 +116,17 @@ def before_offset(samples: Samples) -> Array:
     return points - samples.offset_of.distance * samples.normals.astype(np.float64)
 
 
-def boundary_of(spline: Spline) -> Boundary:
-    """Return the boundary conditions of a spline; an end that is a single point is a pole."""
+def boundary_of(spline: Spline, apexes: bool = False) -> Boundary:
+    """Return the boundary conditions of a spline; an end that is a single point is a pole.
+
+    That is the end of a surface that closes around it, and with `apexes` any other one.
+    """
     size = float(np.ptp(spline.coefficients, axis=(0, 1)).max()) * spline.scale
     found: list[BoundaryPair] = []
     for axis, ends in enumerate(spline.boundary):
         kinds = list(ends)
         for place, end in enumerate(ends):
-            if end == "open" and spline.boundary[1 - axis][0] == "periodic":
+            if end == "open" and (apexes or spline.boundary[1 - axis][0] == "periodic"):
                 t = np.linspace(0.0, 1.0, spline.cells[1 - axis] + 1)
                 side = points_at(spline, _on_side(axis, place, t))
                 kinds[place] = "pole" if np.ptp(side, axis=0).max() <= ON_BORDER * size else end
