@@ -2,13 +2,12 @@
 
 import re
 import shlex
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 from gaussmap.benchmarks.peers.forms import FORMS
+from gaussmap.runtime.cli import main
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -30,22 +29,23 @@ def test_python(source: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
 
 
 @pytest.mark.compiled
-def test_command_line(tmp_path: Path) -> None:
+def test_command_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
     x, y = np.meshgrid(np.linspace(-1, 1, 50), np.linspace(-1, 1, 40))
-    np.save(tmp_path / "heights.npy", 100 * np.exp(-3 * (x * x + y * y)))
+    np.save("heights.npy", 100 * np.exp(-3 * (x * x + y * y)))
     commands = [line for block in blocks("sh") for line in block.splitlines()]
     assert len(commands) >= 5
     for command in commands:
         program, *arguments = shlex.split(command)
         assert program == "gaussmap"
-        done = subprocess.run(
-            [sys.executable, "-m", "gaussmap", *arguments],
-            cwd=tmp_path, capture_output=True, text=True, check=False,
-        )  # fmt: skip
-        assert done.returncode == 0, f"{command}: {done.stderr}"
-        assert done.stdout.strip()
+        code = main(arguments)
+        printed = capsys.readouterr()
+        assert code == 0, f"{command}: {printed.err}"
+        assert printed.out.strip()
         if "-o" in arguments:
-            assert (tmp_path / arguments[arguments.index("-o") + 1]).stat().st_size > 1000
+            assert Path(arguments[arguments.index("-o") + 1]).stat().st_size > 1000
 
 
 def test_the_two_commands_are_targets() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import sys
+from functools import cache
 from pathlib import Path
 
 import gaussmap as gm
@@ -30,7 +31,10 @@ def _short(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(html, "page", lambda: "μ\n")
 
 
-def test_the_page_is_written(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_page_is_written(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(html, "page", cache(html.page))  # it takes seconds
     assert main(["formulas", "--html", "formulas.html"]) == 0
     out, err = capsys.readouterr()
     count = len(gm.surfaces.names())

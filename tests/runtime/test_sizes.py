@@ -172,13 +172,24 @@ CASES: dict[str, Case] = {
         support_functions, curves,
     )
 }  # fmt: skip
+LONG = ["parabolic_points"]
 
 
-@pytest.mark.parametrize("case", CASES.values(), ids=CASES)
-def test_results_are_those_of_size_one_scaled(case: Case) -> None:
+def check_case(case: Case, exponents: list[int]) -> None:
     expected = case(0)
-    for exponent in EXPONENTS:
+    for exponent in exponents:
         np.testing.assert_equal(case(exponent), expected)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_results_are_those_of_size_one_scaled(name: str) -> None:
+    check_case(CASES[name], [-997, 997] if name in LONG else EXPONENTS)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", LONG)
+def test_results_are_those_of_size_one_scaled_by_all_factors(name: str) -> None:
+    check_case(CASES[name], EXPONENTS)
 
 
 @pytest.mark.parametrize("exponent", MODERATE)

@@ -135,10 +135,17 @@ def test_covers_alone_answer_no_normals(density):
 @pytest.mark.compiled
 @pytest.mark.parametrize(
     "asked",
-    [{"count": 700}, {"count": 700, "density": "uniform"}, {"count": 500, "density": 0.7},
-     {"angle": 9.0}, {"coverage": 0.1}, {"count": 400, "relax": 2},
-     {"count": 900, "coverage": 0.12}, {"normals": gm.icosphere(5), "density": "balanced"}],
-)  # fmt: skip
+    [{"count": 700}, {"angle": 9.0}, {"count": 400, "relax": 2}, {"count": 900, "coverage": 0.12}]
+    + [
+        pytest.param(asked, marks=pytest.mark.slow)
+        for asked in (
+            {"count": 700, "density": "uniform"},
+            {"count": 500, "density": 0.7},
+            {"coverage": 0.1},
+            {"normals": gm.icosphere(5), "density": "balanced"},
+        )
+    ],
+)
 def test_the_same_for_any_number_of_threads(asked: dict[str, Any], monkeypatch):
     monkeypatch.setattr(triangles, "TRIANGLES_AT_A_TIME", 1 << 9)
     monkeypatch.setattr(triangles, "PATCHES_AT_A_TIME", 100)

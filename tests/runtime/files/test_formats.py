@@ -480,12 +480,14 @@ class TestDamagedFiles:
             assert "\n" not in str(caught.value)
         assert capsys.readouterr() == ("", "")
 
-    def test_any_damaged_byte_of_npz_is_noticed(self, tmp_path):
+    @pytest.mark.parametrize("step", [7, pytest.param(1, marks=pytest.mark.slow)])
+    def test_any_damaged_byte_of_npz_is_noticed(self, tmp_path, step):
         samples = make(5)
         write_samples(samples, tmp_path / "file.npz")
         content = (tmp_path / "file.npz").read_bytes()
         path, harmless = tmp_path / "bad.npz", 0
-        for place in range(len(content)):
+        places = range(0, len(content), step)
+        for place in places:
             bad = bytearray(content)
             bad[place] ^= 1 << place % 8
             path.write_bytes(bad)
@@ -496,7 +498,7 @@ class TestDamagedFiles:
             # Dates and the like; what is read is read right.
             assert_same(samples, result)
             harmless += 1
-        assert harmless < len(content) / 4
+        assert harmless < len(places) / 4
 
     def test_any_damaged_byte_of_a_ply_header(self, tmp_path, capsys):
         write_samples(make(5), tmp_path / "file.ply")
