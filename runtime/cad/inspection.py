@@ -25,7 +25,7 @@ NOT_FINITE = {
     "BREP": re.compile(rb"(?<=\s)" + NUMBER + rb"(?=\s)", re.IGNORECASE),
 }
 SHAPES = re.compile(rb"^TShapes (\d+)\s*$", re.MULTILINE)
-WHOLE = re.compile(rb"\s[-+]\d+ \d+\s*\Z")
+WHOLE = re.compile(rb"\s[-+]\d+ \d+[\s\d]*\Z")
 TEXTS = re.compile(rb"'[^']*'")
 
 

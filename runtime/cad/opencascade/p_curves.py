@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -25,7 +26,7 @@ Array = NDArray[np.float64]
 
 # The precision of Open CASCADE.
 CONFUSION = 1e-7
-FIRST_PIECES, PIECES_A_SPAN = 4, 2
+FIRST_PIECES, PIECES_A_SPAN, MOST_PIECES = 4, 2, 256
 
 
 @dataclass(frozen=True)
@@ -33,25 +34,35 @@ class Curve:
     """A p-curve: points and derivatives (k, 4) at parameters, and its direction in the wire.
 
     `ends` are its ends and the parameters between them where it may have corners; `pieces` is the
-    number of pieces of each part that a polyline begins with, 0 for a straight line.
+    number of pieces of each part that a polyline begins with, 0 for a straight line. `radius` is
+    that of a circle, or 0.
     """
 
     evaluate: Callable[[Array], Array]
     ends: tuple[float, ...]
     pieces: int
     reversed: bool
+    radius: float = 0.0
 
     def polyline(self, tolerance: Array) -> Array:
         """Return points (k, 2) in the direction of the wire, the kept side at its left."""
         if self.pieces == 0:
             points = self.evaluate(np.array(self.ends))[:, :2]
         else:
+            pieces = self._pieces(tolerance)
             parts = [
-                one_sided(self.evaluate, a, b, self.pieces, tolerance, not self.reversed)
+                one_sided(self.evaluate, a, b, pieces, tolerance, not self.reversed)
                 for a, b in zip(self.ends[:-1], self.ends[1:], strict=True)
             ]
             points = np.concatenate(parts)
         return points[::-1] if self.reversed else points
+
+    def _pieces(self, tolerance: Array) -> int:
+        if not self.radius:
+            return self.pieces
+        # The tip of the tangents of an arc of angle a is r a² / 4 away from its chord, or so.
+        angle = 2.0 * math.sqrt(float(tolerance.min()) / self.radius)
+        return int(min(max((self.ends[-1] - self.ends[0]) / angle + 1.0, self.pieces), MOST_PIECES))
 
 
 def curve_of(edge: Any, face: Any) -> Curve:  # noqa: ANN401
@@ -63,7 +74,8 @@ def curve_of(edge: Any, face: Any) -> Curve:  # noqa: ANN401
     if kind == Kinds.GeomAbs_Line:
         return Curve(_any(curve), ends, 0, backwards)
     if kind == Kinds.GeomAbs_Circle:
-        return Curve(_circle(curve.Circle()), ends, FIRST_PIECES, backwards)
+        circle = curve.Circle()
+        return Curve(_circle(circle), ends, FIRST_PIECES, backwards, float(circle.Radius()))
     if kind == Kinds.GeomAbs_BSplineCurve:
         corners, spans = _corners(curve.BSpline(), ends)
         pieces = max(FIRST_PIECES, PIECES_A_SPAN * spans // (len(corners) - 1))

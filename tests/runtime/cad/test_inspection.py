@@ -43,7 +43,9 @@ def iges(lines=(("S", 1), ("G", 1), ("D", 2), ("P", 1)), end=True) -> bytes:
     return "\n".join([*rows, *([f"{counts:72}T{1:7}"] if end else [])]).encode()
 
 
-@pytest.mark.parametrize(("content", "form"), [(STEP, "STEP"), (BREP, "BREP"), (iges(), "IGES")])
+@pytest.mark.parametrize(
+    ("content", "form"), [(STEP, "STEP"), (BREP, "BREP"), (BREP + b"0\n", "BREP"), (iges(), "IGES")]
+)
 def test_formats_are_known_by_their_content(content, form):
     assert checked_format(content) == (form, True)
 
