@@ -15,6 +15,7 @@ if TYPE_CHECKING:  # names of fields stand in the help of commands, which is qui
 
 __all__ = [
     "ARRAY_NAMES",
+    "ARRAY_NAMES_OF_PART",
     "ARRAY_NAMES_ON_SURFACE",
     "COLUMNS",
     "DERIVED",
@@ -23,6 +24,7 @@ __all__ = [
     "GRID_NAMES",
     "INDEX_NAMES",
     "OPTIONAL_NAMES",
+    "PART_NAMES",
     "checked_dtype",
     "checked_fields",
     "columns_of",
@@ -44,15 +46,23 @@ COLUMNS: dict[str, tuple[str, ...]] = {
     "on_surface": ("on_surface",),
     "row": ("row",),
     "column": ("column",),
+    "face_index": ("face_index",),
+    "solid_index": ("solid_index",),
 }
 INDEX_NAMES = ("normal_index", "patch_index")
 # Only samples of a surface have these, not those of its spline.
 FLAG_NAMES = ("on_surface",)
 # Only samples of which some are on a grid have these.
 GRID_NAMES = ("row", "column")
-OPTIONAL_NAMES = FLAG_NAMES + GRID_NAMES
+# Only samples of CAD parts have these.
+PART_NAMES = ("face_index", "solid_index")
+OPTIONAL_NAMES = FLAG_NAMES + GRID_NAMES + PART_NAMES
 ARRAY_NAMES: tuple[str, ...] = tuple(name for name in COLUMNS if name not in OPTIONAL_NAMES)
 ARRAY_NAMES_ON_SURFACE: tuple[str, ...] = ARRAY_NAMES + FLAG_NAMES
+ARRAY_NAMES_OF_PART: tuple[str, ...] = (
+    *(name for name in ARRAY_NAMES_ON_SURFACE if name != "patch_index"),
+    *PART_NAMES,
+)
 FLOAT_NAMES: tuple[str, ...] = tuple(name for name in ARRAY_NAMES if name not in INDEX_NAMES)
 # What is computed from fields when it is read.
 DERIVED: dict[str, tuple[str, ...]] = {
@@ -76,7 +86,7 @@ def dtype_of(name: str, floating: DTypeLike) -> np.dtype[Any]:
 
     if name in FLAG_NAMES:
         return np.dtype(np.bool_)
-    return np.dtype(np.int64 if name in INDEX_NAMES + GRID_NAMES else floating)
+    return np.dtype(np.int64 if name in INDEX_NAMES + GRID_NAMES + PART_NAMES else floating)
 
 
 def new_field(name: str, count: int, dtype: DTypeLike) -> NDArray[Any]:
@@ -96,19 +106,21 @@ def columns_of(arrays: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
 
 
 def checked_fields(
-    fields: Sequence[str] | None, surface: bool = False, grid: bool = False
+    fields: Sequence[str] | None, surface: bool = False, grid: bool = False, part: bool = False
 ) -> tuple[str, ...]:
     """Return the fields that are wanted, in the order of `COLUMNS`; None stands for all.
 
-    With `surface` they are for samples on the surface, with `grid` for those that may be on a grid.
-    Raises UnknownNameError for an unknown name,
-    InputError for what is no tuple of names, for no names, for a name that comes twice, and for one
-    that is computed from fields.
+    With `surface` they are for samples on the surface, with `grid` for those that may be on a grid,
+    with `part` for those of a CAD part. Raises UnknownNameError for an unknown name, InputError for
+    what is no tuple of names, for no names, for a name that comes twice, and for one that is
+    computed from fields.
     """
     from .checks import known_name
 
     known = ARRAY_NAMES_ON_SURFACE if surface else ARRAY_NAMES
     known += GRID_NAMES if grid else ()
+    if part:
+        known = ARRAY_NAMES_OF_PART
     if fields is None:
         return known
     if isinstance(fields, str):
@@ -133,6 +145,8 @@ def checked_fields(
             )
         if name in FLAG_NAMES and not surface:
             raise InputError(f'{name} is a field of samples on the surface only; see on="surface".')
+        if name in PART_NAMES and not part:
+            raise InputError(f"{name} is a field of samples of CAD parts only; see gm.read_part.")
         if name in GRID_NAMES and not grid:
             raise InputError(f'{name} is a field of samples on a grid only; see density="aligned".')
         known_name(name, known, "field")

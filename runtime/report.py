@@ -44,7 +44,7 @@ PLACES = ("surface", "spline")
 CHOICES = ("aligned", "isotropic", "mixed")
 COUNTS = (
     "normals", "patches", "developable_patches", "infinite_curvatures", "unrefined", "apexes",
-    "index",
+    "index", "faces", "empty_faces",
 )  # fmt: skip
 DISTANCES = ("coverage", "angle", "fit_distance", "fit_rms", "fit_angle")
 
@@ -100,6 +100,10 @@ class SamplingReport:
     density : {"aligned", "isotropic", "mixed"} or None
         Which of the two ``density="balanced"`` has chosen; "mixed" if pieces of the surface have
         different ones. None for other densities.
+    faces, empty_faces : int or None
+        Of a CAD part: the number of its faces, and how many of them have no sample.
+    oriented : bool or None
+        Of a CAD part: whether its normals are known to point out of solids.
 
     Raises
     ------
@@ -117,6 +121,8 @@ class SamplingReport:
     (True, True, True)
     >>> report.on, report.unrefined
     ('surface', 0)
+    >>> report.faces, report.empty_faces, report.oriented  # not of a CAD part
+    (None, None, None)
     >>> report.developable_share, report.apexes, report.index
     (0.0, 0, None)
     >>> report.fit_rms < report.fit_distance < 1.1e-3, report.fit_angle < 0.6
@@ -141,6 +147,9 @@ class SamplingReport:
     apexes: int | None = None
     index: int | None = None
     density: str | None = None
+    faces: int | None = None
+    empty_faces: int | None = None
+    oriented: bool | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.surface, str):

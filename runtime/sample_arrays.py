@@ -19,6 +19,7 @@ from .offset_of import OffsetOf
 from .report import SamplingReport, common_report
 from .splines.spline import Spline
 from .surface.surface import Surface
+from .whole import Whole
 
 if TYPE_CHECKING:
     import open3d  # pyright: ignore[reportMissingImports]
@@ -47,9 +48,11 @@ class SampleArrays:
     on_surface: NDArray[np.bool_] | None = None
     row: NDArray[np.int64] | None = None
     column: NDArray[np.int64] | None = None
+    face_index: NDArray[np.int64] | None = None
+    solid_index: NDArray[np.int64] | None = None
     report: SamplingReport = field(kw_only=True)
     spline: Spline | None = field(default=None, kw_only=True)
-    surface: Surface | None = field(default=None, kw_only=True)
+    surface: Surface | Whole | None = field(default=None, kw_only=True)
     offset_of: OffsetOf | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
@@ -69,7 +72,7 @@ class SampleArrays:
             raise InputError(f"report must be a SamplingReport, not {type(self.report).__name__}.")
         if not isinstance(self.spline, Spline | None):
             raise InputError(f"spline must be a Spline or None, not {type(self.spline).__name__}.")
-        if not isinstance(self.surface, Surface | None):
+        if not isinstance(self.surface, Surface | Whole | None):
             name = type(self.surface).__name__
             raise InputError(f"surface must be a Surface or None, not {name}.")
         if not isinstance(self.offset_of, OffsetOf | None):
@@ -361,14 +364,14 @@ def _rebuilt(
     arrays: dict[str, NDArray[Any]],
     report: SamplingReport,
     spline: Spline | None,
-    surface: Surface | None = None,
+    surface: Surface | Whole | None = None,
     offset_of: OffsetOf | None = None,
 ) -> SampleArrays:
     """Return samples that were copied or pickled."""
     return cls(**arrays, report=report, spline=spline, surface=surface, offset_of=offset_of)
 
 
-def _if_it_pickles(surface: Surface | None) -> Surface | None:
+def _if_it_pickles(surface: Whole | Surface | None) -> Any:  # noqa: ANN401 - of the same type
     """Return a surface, or None if it cannot be pickled: its function may be a lambda."""
     return surface if _pickles(surface) else None
 

@@ -13,6 +13,7 @@ from .errors import InputError
 from .sample_arrays import SampleArrays
 from .splines.spline import Spline, short_label
 from .summary import kinds_of_points, summary_of
+from .whole import Whole
 
 if TYPE_CHECKING:
     from .density.deviation import NormalDeviation
@@ -72,9 +73,13 @@ class Samples(SampleArrays):
     spline : Spline or None
         The spline that was sampled; None if it is unknown, as for samples from a file, and for
         samples of several pieces (see `Surface.pieces`), each of which has one.
-    surface : Surface or None
-        The surface on which the samples are; None with ``on="spline"``, for samples from a file,
-        and after pickling if the surface does not pickle.
+    face_index, solid_index : (N,) int64 array or None
+        Of a CAD part: the places of the sample's face and solid in `Part.faces` and `Part.solids`;
+        −1 for a face that belongs to no solid. `uv` are those of the surface of the face. None for
+        other samples.
+    surface : Surface, Part or None
+        The surface, or the CAD part, on which the samples are; None with ``on="spline"``, for
+        samples from a file, and after pickling if the surface does not pickle.
     offset_of : OffsetOf or None
         For samples of an `offset`: its distance, and the spline and the surface of the samples that
         were moved.
@@ -110,6 +115,8 @@ class Samples(SampleArrays):
     (dtype('float64'), Spline(16 × 16 cells of torus), 200)
     >>> samples.on_surface.all(), samples.surface.name
     (np.True_, 'torus')
+    >>> samples.face_index is samples.solid_index is None  # not of a CAD part
+    True
     >>> samples.offset_of, samples.offset(0.1).offset_of.distance
     (None, 0.1)
 
@@ -355,6 +362,8 @@ class Samples(SampleArrays):
         """
         from .density.of_samples import coverage_of
 
+        if isinstance(self.surface, Whole):
+            return self.surface.coverage_of(self.points, threads)
         return coverage_of(self.points, self._spline_if_one(spline), self.surface, threads)
 
     def normal_deviation(
@@ -396,6 +405,8 @@ class Samples(SampleArrays):
         """
         from .density.of_samples import deviation_of
 
+        if isinstance(self.surface, Whole):
+            return self.surface.deviation_of(self.points, self.normals, threads)
         one = self._spline_if_one(spline)
         return deviation_of(self.points, self.normals, one, self.surface, threads)
 
@@ -436,6 +447,8 @@ class Samples(SampleArrays):
         """
         from .meshes.weights import area_weights
 
+        if isinstance(self.surface, Whole):
+            return self.surface.weights_of(self)
         return area_weights(self, angle)
 
     def __repr__(self) -> str:
@@ -450,6 +463,11 @@ class Samples(SampleArrays):
     def _spline_or(self, spline: Spline | None) -> Spline:
         """Return the spline that is given, else that of the samples; InputError without one."""
         spline = self.spline if spline is None else spline
+        if spline is None and isinstance(self.surface, Whole):
+            raise InputError(
+                "this is for samples of one surface, and these are of a CAD part; sample "
+                "part.faces[0].surface, for example."
+            )
         if spline is None:
             raise InputError(
                 "these samples do not know the spline that was sampled (those from a file, of an "

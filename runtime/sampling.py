@@ -8,15 +8,16 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from .bins import NormalBins
+from .cad.part import Part
 from .choice import choose
 from .density.filling import filled_samples
 from .density.grid import without_lines
 from .density.law import Law
 from .density.request import ON_GRIDS, Request, checked_request
-from .errors import in_memory
+from .errors import InputError, in_memory
 from .fields import COLUMNS, checked_dtype, checked_fields, dtype_of
 from .geometry.on_spline import OnSpline
-from .geometry.on_surface import geometry_of, place_of_samples
+from .geometry.on_surface import checked_place, geometry_of, place_of_samples
 from .memory import check_memory
 from .pieces import cells_of_piece, pieces_to_sample, sample_pieces
 from .report import sampling_report, warn_of
@@ -30,7 +31,7 @@ __all__ = ["sample", "sample_and_normals"]
 
 
 def sample(
-    surface: Surface | Spline | str,
+    surface: Surface | Spline | Part | str,
     count: int | None = None,
     *,
     normals: ArrayLike | None = None,
@@ -52,10 +53,11 @@ def sample(
 
     Parameters
     ----------
-    surface : Surface, Spline or str
+    surface : Surface, Spline, Part or str
         The surface, or its name in the catalogue (see `gaussmap.surfaces`). A spline is taken as it
         is. Of a NURBS with lines where its normal turns the pieces are sampled, with one target
-        density for all (see `Surface.pieces`); then `spline` of the samples is None.
+        density for all (see `Surface.pieces`); then `spline` of the samples is None. Of a CAD part
+        (see `read_part`) all faces are sampled as one surface, see Notes.
     count : int, optional
         The number of samples. It is met exactly, but for ``density="gauss"``: within 2 % (or 5
         samples) where the Gaussian image is resolved.
@@ -136,6 +138,12 @@ def sample(
     For ``density="balanced"``, κ is the larger principal curvature: neighbouring normals differ by
     about r, twice the angle. λ is half the mean of κ², or follows from `coverage`.
 
+    All faces of a part have one target density, and one count; angle and coverage hold for the part
+    as a whole. λ is twice the mean of κ² there, 5 % of a count go where normals are farthest from
+    those of all samples, and every face has a sample if there are twice as many samples as faces.
+    `density` is "balanced", "uniform", a number, or "gauss" with `normals`; `cells` and `on` are
+    not for parts.
+
     The samples of a spline at a normal have Σ sign K = χ/2, for every normal of every closed
     surface, those at poles included; χ is the Euler characteristic.
 
@@ -164,7 +172,7 @@ def sample(
 
 @in_memory
 def sample_and_normals(
-    surface: Surface | Spline | str,
+    surface: Surface | Spline | Part | str,
     request: Request,
     *,
     cells: Sequence[int] | None,
@@ -175,6 +183,8 @@ def sample_and_normals(
     on: str | None = None,
 ) -> tuple[Samples, NDArray[np.float64]]:
     """Return what `sample` returns, and the unit normals that were asked."""
+    if isinstance(surface, Part):
+        return _of_part(surface, request, cells, on, fields, dtype, threads, progress)
     surface, number = named(surface), checked_dtype(dtype)
     wanted = checked_fields(
         fields, place_of_samples(surface, on) == "surface", grid=request.density in ON_GRIDS
@@ -202,6 +212,30 @@ def sample_and_normals(
         samples = without_lines(samples)
     warn_of(samples.report, request.count, 5, coverage=request.coverage, filled=filled)
     return samples, normals
+
+
+def _of_part(
+    part: Part,
+    request: Request,
+    cells: Sequence[int] | None,
+    on: str | None,
+    fields: Sequence[str] | None,
+    dtype: DTypeLike,
+    threads: int | None,
+    progress: bool,
+) -> tuple[Samples, NDArray[np.float64]]:
+    """Return the samples of a CAD part; InputError for what it does not have."""
+    from .cad.sampling import sample_part
+
+    number, wanted = checked_dtype(dtype), checked_fields(fields, surface=True, part=True)
+    if cells is not None:
+        raise InputError("cells=... are for splines; the faces of a part need none.")
+    if checked_place(on) == "spline":
+        raise InputError('on="spline" is for surfaces; samples of a part lie on its faces.')
+    samples, searched = sample_part(part, request, wanted, number, threads, progress)
+    filled = request.density != "gauss"
+    warn_of(samples.report, request.count, 6, coverage=request.coverage, filled=filled)
+    return samples, searched
 
 
 def _by_normals(

@@ -30,6 +30,10 @@ def summary_of(samples: Samples) -> str:
             line += f"; {share} % of the surface is developable (K = 0)"
     if report.on == "spline":
         line += misfit_clause(report)
+    if report.faces is not None:
+        line += f"; {report.faces:,} faces"
+        if report.empty_faces:
+            line += f", {report.empty_faces:,} of them without samples"
     if report.unrefined:
         line += f"; {report.unrefined:,} samples could not be moved to the surface"
     if report.apexes:
@@ -63,7 +67,7 @@ def _origin(samples: Samples) -> str:
     normals, filling = samples.report.normals, _filling(samples)
     if filling == len(samples) > 0:
         return " filling gaps" if normals else ""
-    if normals is None:
+    if not normals:
         return ""
     given = f"{normals:,} prescribed normals"
     if not filling:

@@ -11,11 +11,14 @@ from numpy.typing import NDArray
 
 from ..errors import SurfaceError
 from ..files.paths import PathLike
+from ..whole import Whole
 from .layout import geometry_of, packed
 from .records import Geometry, PartRecord
 from .saving import read_arrays, write_arrays
 
 if TYPE_CHECKING:
+    from ..density.deviation import NormalDeviation
+    from ..samples import Samples
     from ..surface.surface import Surface
 
 __all__ = ["Face", "Part", "Solid", "part_of", "read_part"]
@@ -24,11 +27,11 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Part:
+class Part(Whole):
     """A CAD part, as `read_cad` and `read_part` return it.
 
     It holds arrays only: it can be pickled and saved, and needs no CAD library. Lengths are in the
-    unit L of its file.
+    unit L of its file. `sample` takes it as a surface.
 
     Attributes
     ----------
@@ -43,7 +46,11 @@ class Part:
     about: dict[str, Any]
 
     def __repr__(self) -> str:
-        return f"Part({self.name}: {len(self)} faces, {len(self.solids)} solids, {self.unit})"
+        faces, solids = len(self), len(self.solids)
+        return (
+            f"Part({self.name}: {faces} face{'s' * (faces != 1)}, "
+            f"{solids} solid{'s' * (solids != 1)}, {self.unit})"
+        )
 
     def __len__(self) -> int:
         return len(self.arrays["area"])
@@ -122,6 +129,28 @@ class Part:
 
         """
         write_arrays(self.arrays, path)
+
+    def coverage_of(self, points: NDArray[np.floating], threads: int | None) -> float:
+        """Return what `Samples.coverage` returns, for points (N, 3)."""
+        from .results import reached_coverage, space_of
+
+        space = space_of(self, threads)
+        return reached_coverage(space, space.scaled_points(points)) / space.unit
+
+    def deviation_of(
+        self, points: NDArray[np.floating], normals: NDArray[np.floating], threads: int | None
+    ) -> NormalDeviation:
+        """Return what `Samples.normal_deviation` returns, for points and normals (N, 3)."""
+        from .results import deviation, space_of
+
+        space = space_of(self, threads)
+        return deviation(space, space.scaled_points(points), normals.astype(np.float64))
+
+    def weights_of(self, samples: Samples) -> Array:
+        """Return what `Samples.weights` returns: areas that add up to those of the faces."""
+        from .results import space_of, weights
+
+        return weights(space_of(self, None), samples)
 
     def __getstate__(self) -> dict[str, object]:
         """Return what is pickled: the fields, without what is made of them."""
@@ -216,7 +245,8 @@ class Face:
     def surface(self) -> Surface:
         """The surface with its trim. Its parameters are those of the file.
 
-        SurfaceError for a face that failed.
+        Its normals point outward: if the face is reversed, u is, too. SurfaceError for a face that
+        failed.
         """
         if self.reason:
             raise SurfaceError(f"{self.label} cannot be used: {self.reason}.")
@@ -298,6 +328,22 @@ def read_part(path: PathLike) -> Part:
         If the suffix is not `.npz`.
     FileError
         If the file is missing, unreadable, damaged, or not from gaussmap.
+
+    See Also
+    --------
+    sample : samples of a part.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> from gaussmap.runtime.cad.examples import box
+    >>> box(1.0, 2.0, 3.0).save("box.npz")
+    >>> part = gm.read_part("box.npz")
+    >>> part, part.faces[0]
+    (Part(box: 6 faces, 1 solid, mm), Face(0 'side': plane, area 6))
+    >>> samples = gm.sample(part, 100)
+    >>> len(samples), sorted(set(samples.face_index.tolist()))
+    (100, [0, 1, 2, 3, 4, 5])
 
     """
     return Part(*read_arrays(path))

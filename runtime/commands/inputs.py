@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import directions
+from ..cad.part import Part
 from ..checks import known_name
 from ..compiling import NOTICE
 from ..errors import InputError
@@ -20,9 +21,11 @@ from ..splines.spline import Spline
 from ..surface.surface import Surface
 from ..surfaces import CATALOGUE, names, surface
 from .arrays import array_file, is_array_file, read_array
+from .parts import is_part_file, read_part_file
 
 __all__ = ["arguments"]
 
+NOT_OF_PARTS = ("set", "spacing", "periodic", "nodata", "cells", "tolerance")
 PERIODIC = {"none": (False, False), "u": (True, False), "v": (False, True), "uv": (True, True)}
 
 
@@ -30,8 +33,10 @@ def arguments(options: SimpleNamespace, default_count: int) -> dict[str, Any]:
     """Return the arguments of `sampling.sample` that were given."""
     NOTICE.quiet = options.quiet
     _spare_inputs(options)
-    surface_, normals = _surface(options), _normals(options)
-    surface_, cells = _with_tolerance(surface_, options)
+    normals = _normals(options)
+    surface_, cells = _part(options), None
+    if surface_ is None:
+        surface_, cells = _with_tolerance(_surface(options), options)
     asked = normals, options.count, options.angle, options.coverage
     return {
         "surface": surface_,
@@ -46,6 +51,16 @@ def arguments(options: SimpleNamespace, default_count: int) -> dict[str, Any]:
         "threads": options.threads,
         "progress": not options.quiet,
     }
+
+
+def _part(options: SimpleNamespace) -> Part | None:
+    """Return the part in a file; InputError for options that it does not have."""
+    if not is_part_file(options.surface):
+        return None
+    for name in NOT_OF_PARTS:
+        if getattr(options, name) not in (None, ()):
+            raise InputError(f"--{name} is for surfaces, and '{options.surface}' is a CAD part.")
+    return read_part_file(options.surface)
 
 
 def _surface(options: SimpleNamespace) -> Surface:

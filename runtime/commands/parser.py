@@ -11,7 +11,7 @@ from typing import Any
 import click
 
 from ... import __version__
-from ..fields import ARRAY_NAMES_ON_SURFACE
+from ..fields import ARRAY_NAMES_ON_SURFACE, PART_NAMES
 from ..limits import MOST, MOST_FREQUENCY, MOST_STEPS
 from .options import (
     Command,
@@ -51,6 +51,9 @@ SURFACE is the name of a surface of the catalogue (see `gaussmap surfaces`), a .
 .npz file, as FILE.npz:NAME if it holds several arrays. The array is a grid of points (m, n, 3), or
 of elevations (m, n) with rows along y and columns along x, which need --spacing.
 
+A STEP, IGES or BREP file is a CAD part, of which all faces are sampled: .step, .stp, .iges, .igs,
+.brep or .brp, read with pip install 'gaussmap[cad]'; or an .npz file of part.save.
+
 \b
 examples:
   gaussmap sample torus --count 10000 -o torus.ply
@@ -59,6 +62,7 @@ examples:
   gaussmap sample torus --fields points,normals --float32 -o torus.ply
   gaussmap sample heights.npy --spacing 30 30 --count 50000 -o terrain.ply
   gaussmap sample scan.npz:points --periodic u --normals directions.npy -o scan.csv
+  gaussmap sample part.step --count 50000 -o part.ply
 """
 
 MESH_EXAMPLES = """\
@@ -89,7 +93,7 @@ def parser() -> click.Group:
     text = "Sample surfaces by the normals of their points, so that density follows curvature."
     program = Program(PROGRAM, help=text, epilog=EXAMPLES, context_settings=SETTINGS)
     click.version_option(__version__, message=f"{PROGRAM} %(version)s")(program)
-    for command in (_sample(), _mesh(), _plot(), _surfaces(), _formulas(), _warm()):
+    for command in (_sample(), _mesh(), _plot(), _surfaces(), _faces(), _formulas(), _warm()):
         program.add_command(command)
     return program
 
@@ -109,7 +113,11 @@ def _command(
 
 def _sample() -> Command:
     group = "contents of the file"
-    names = f"Write these arrays only (default: all). They are {', '.join(ARRAY_NAMES_ON_SURFACE)}."
+    known = ", ".join(ARRAY_NAMES_ON_SURFACE)
+    of_parts = " and ".join(PART_NAMES)
+    names = (
+        f"Write these arrays only (default: all). They are {known}; of CAD parts {of_parts}, too."
+    )
     prefixes = "Order the samples such that every prefix of them is well distributed."
     single = "Write single precision: 7 digits instead of 16."
     return _command(
@@ -168,6 +176,17 @@ def _surfaces() -> Command:
         "List the surfaces of the catalogue, or explain one.",
         "List the surfaces of the catalogue; with NAME, its parameters.",
         click.Argument(["name"], required=False, shell_complete=surface_names),
+    )
+
+
+def _faces() -> Command:
+    return _command(
+        "faces",
+        "List the faces of a CAD part.",
+        "List the faces of a CAD part, a line for each: its index, kind, area, number of loops, "
+        "name, and why it failed if it cannot be used. PART is a STEP, IGES or BREP file, or an "
+        ".npz file of part.save.",
+        click.Argument(["part"], type=FILE),
     )
 
 

@@ -13,6 +13,7 @@ from ..files.paths import check_target
 from ..sampling import sample
 from .console import summarize
 from .inputs import arguments
+from .parts import is_part_file
 
 __all__ = ["run"]
 
@@ -21,7 +22,8 @@ def run(options: SimpleNamespace) -> None:
     """Sample a surface and write the samples to a file."""
     check_target(options.output, SUFFIXES)
     fields = None if options.fields is None else options.fields.split(",")
-    written = checked_fields(fields, options.on != "spline")
+    is_part = is_part_file(options.surface)
+    written = checked_fields(fields, options.on != "spline", part=is_part)
     check_fields(options.output, written)
     if options.progressive and not {"points", "normals"} <= {*written}:
         raise InputError("--progressive needs points and normals among the --fields.")

@@ -10,20 +10,21 @@ from ..threads import thread_count
 from ..trees import tree_of
 from .candidates import Candidates
 from .cover import STEP, Cover
-from .triangles import Array, Indices, cut_patches
+from .triangles import Array, Indices
 
 # Normals at centroids are covered within an angle that is smaller by this part, which is left for
-# the normals around them. Triangles are not cut to sides shorter than DEEPEST of those of a patch:
-# next to singular points normals turn at once.
-MARGIN, DEEPEST = 0.02, 2.0**-10
+# the normals around them.
+MARGIN = 0.02
 # Where normals are far from all others, the radii of the choice fall from this multiple on.
 FIRST = 2.0
 # The widest gaps between normals are searched down to this part of the widest radius.
 LEAST = 0.1
+# Decimal places to which known normals differ.
+DIGITS = 6
 # The widest angles are searched at one of this number of triangles.
 EACH = 3
 
-__all__ = ["cover_normals", "fill_widest_angles"]
+__all__ = ["choose_apart", "cover_normals", "fill_widest_angles"]
 
 
 def cover_normals(cover: Cover, angle: float) -> float:
@@ -35,19 +36,18 @@ def cover_normals(cover: Cover, angle: float) -> float:
     the centroids of triangles only.
     """
     limit = 2.0 * math.sin(math.radians(angle) / 2.0)
-    near, largest, triangles = (1.0 - MARGIN) * limit, 0.0, cut_patches(cover.sizing, math.inf)
+    near, largest, triangles = (1.0 - MARGIN) * limit, 0.0, cover.whole()
     while len(triangles):
         rows = triangles.as_samples()
-        within = cover.sizing.geometry.normal_chords(triangles, rows)
+        within = triangles.chords(rows)
         distances = _distances(cover, 0, rows)
         far = distances > near
         if far.any():
             first = cover.count
-            cover.add(triangles[far][_choose_apart(rows[far, 3:6], near, cover.sizing.threads)])
+            cover.add(triangles[far][choose_apart(rows[far, 3:6], near, cover.sizing.threads)])
             distances[far] = _distances(cover, first, rows[far])
-        deepest = np.ptp(triangles.corners[:, :, 0], axis=1) <= DEEPEST
         chords = distances + within
-        far = (chords > limit) & ~deepest
+        far = (chords > limit) & ~triangles.deepest
         largest = max(largest, float(chords[~far].max(initial=0.0)))
         triangles = triangles[far].quarters
     return math.degrees(2.0 * math.asin(min(largest, limit) / 2.0))
@@ -62,13 +62,27 @@ def _distances(cover: Cover, first: int, rows: Array) -> Array:
     return np.where(rows[:, 3:6].any(axis=1), tree.query(rows[:, 3:6], workers=threads)[0], 0.0)
 
 
-def _choose_apart(normals: Array, near: float, threads: int | None) -> Indices:
-    """Choose some of normals (M, 3), so that each is within the chord `near` of a chosen one."""
-    candidates = Candidates(_in_normal_space(normals, np.zeros(len(normals))), near, threads)
-    chosen, radius = np.empty(0, dtype=np.int64), FIRST * near
-    while radius > near:
+def choose_apart(
+    normals: Array,
+    near: float,
+    threads: int | None,
+    widest: float | None = None,
+    most: int | None = None,
+    known: Array | None = None,
+) -> Indices:
+    """Choose some of normals (M, 3), so that each is within the chord `near` of a chosen one.
+
+    Or `most` of them, the widest gaps first; `known` normals (N, 3) count as chosen.
+    """
+    radius, room = widest or FIRST * near, len(normals) if most is None else most
+    candidates = Candidates(_in_normal_space(normals, np.zeros(len(normals))), radius, threads)
+    if known is not None:
+        rows = _in_normal_space(known, np.zeros(len(known)))[:, :6]
+        candidates.update_distances(np.unique(rows.round(DIGITS), axis=0), radius)
+    chosen = np.empty(0, dtype=np.int64)
+    while radius > near and len(chosen) < room:
         radius = max(STEP * radius, near)
-        chosen = np.append(chosen, candidates.choose(radius, len(normals)))
+        chosen = np.append(chosen, candidates.choose(radius, room - len(chosen)))
     return chosen
 
 

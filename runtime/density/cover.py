@@ -130,6 +130,10 @@ class Cover:
         self.radius, self.triangles = widest, cut_patches(self.sizing, self.fine * radius)
         self._candidates = self._with_distances(self.triangles.at_places(), radius, widest)
 
+    def whole(self) -> Triangles:
+        """Return few triangles, which make up the surface."""
+        return cut_patches(self.sizing, math.inf)
+
     def add(self, triangles: Triangles) -> None:
         """Add the places of some triangles as samples."""
         first = self.count

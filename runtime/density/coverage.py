@@ -11,7 +11,7 @@ from .candidates import Candidates
 from .sizing import SizingFunction
 from .triangles import Array, Triangles, cut_patches
 
-__all__ = ["coverage"]
+__all__ = ["coverage", "coverage_by"]
 
 # The search ends when the bound is within this factor of the largest distance found.
 TIGHT = 1.1
@@ -29,24 +29,29 @@ def coverage(sizing: SizingFunction, points: Array, asked: float = math.inf) -> 
     surface is added, if that is what is sampled. Infinite if there are no points.
     """
     apart = 2.0 * sizing.geometry.distance * sizing.unit
-    asked -= apart
+    return apart + coverage_by(cut_patches(sizing, math.inf), sizing.area, points, asked - apart)
+
+
+def coverage_by(
+    triangles: Triangles, area: float, points: Array, asked: float, tight: float = TIGHT
+) -> float:
+    """Return the same of triangles that make up a surface, with an area."""
     if len(points) == 0:
         return math.inf
     samples = np.column_stack([points, np.zeros_like(points)])
-    triangles = cut_patches(sizing, math.inf)
-    radius = SPACINGS * math.sqrt(sizing.area / len(points)) or 1.0
+    radius = SPACINGS * math.sqrt(area / len(points)) or 1.0
     largest = found = 0.0
     for _ in range(MOST_CUTS):
         distances = _distances(triangles, samples, radius)
         bounds, found = distances + triangles.radii, max(found, float(distances.max()))
-        far = bounds > (asked if found <= asked < TIGHT * found else TIGHT * found)
+        far = bounds > (asked if found <= asked < tight * found else tight * found)
         largest = max(largest, float(bounds[~far].max(initial=0.0)))
         if not far.any():
             break
         radius, triangles = float(bounds.max()), triangles[far].halves.halves
     else:
         largest = max(largest, radius)
-    return largest + apart
+    return largest
 
 
 def _distances(triangles: Triangles, samples: Array, radius: float) -> Array:

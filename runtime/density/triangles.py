@@ -28,6 +28,9 @@ SMALLEST_AREA = 0.5
 # A patch is narrow if its area is less than this part of the square of its own radius. Its
 # triangles are bisected, instead of cut into similar ones.
 NARROW = 0.1
+# Triangles are not cut to sides shorter than this part of those of a patch for their normals: next
+# to singular points these turn at once.
+DEEPEST = 2.0**-10
 # Triangles are numbered by 32 bits.
 MOST = 2e9
 
@@ -134,6 +137,15 @@ class Triangles:
     def as_samples(self) -> Array:
         """Return what `at_places` returns, with points, normals and K of what is sampled."""
         return self.sizing.geometry.as_samples(self, self.at_places())
+
+    @property
+    def deepest(self) -> NDArray[np.bool_]:
+        """Which triangles (M,) are too small to be cut any more for their normals."""
+        return np.ptp(self.corners[:, :, 0], axis=1) <= DEEPEST
+
+    def chords(self, rows: Array) -> Array:
+        """Return how far normals of what is sampled are from those of rows, see `normal_chords`."""
+        return self.sizing.geometry.normal_chords(self, rows)
 
     def normal_chords(self, rows: Array) -> Array:
         """Return how far normals of each triangle (M,) are from that at its place, at most.

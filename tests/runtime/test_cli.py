@@ -669,7 +669,7 @@ def completed(words: str) -> list[str]:
 @pytest.mark.parametrize(
     ("words", "offered"),
     [
-        ("gaussmap ", ["sample", "mesh", "plot", "surfaces", "formulas", "warm"]),
+        ("gaussmap ", ["sample", "mesh", "plot", "surfaces", "faces", "formulas", "warm"]),
         ("gaussmap sample --co", ["--count", "--coverage"]),
         ("gaussmap plot tor", ["torus", "file:tor"]),
         ("gaussmap surfaces tor", ["torus"]),

@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from gaussmap.runtime.cad.examples import box_faces
 from gaussmap.runtime.cad.part import Part, part_of
 from gaussmap.runtime.cad.records import FaceRecord, Geometry, PartRecord
 
@@ -22,23 +23,6 @@ def face(kind: str, numbers, u, v, area: float, periods=(0.0, 0.0), **more) -> F
     geometry = Geometry(kind, np.asarray(numbers, np.float64))
     given = {"domain": (u, v), "periods": periods, "loops": [rectangle(*u, *v)], **more}
     return FaceRecord(geometry, area=area, **given)
-
-
-def box_faces(a: float = 1.0, b: float = 2.0, c: float = 3.0) -> list[FaceRecord]:
-    """Return the faces of a box with a corner at the origin, normals outward."""
-    size, found = np.array([a, b, c]), []
-    for axis in range(3):
-        x, y = np.eye(3)[(axis + 1) % 3], np.eye(3)[(axis + 2) % 3]
-        across = size[(axis + 1) % 3], size[(axis + 2) % 3]
-        for far in (False, True):
-            origin = size * np.eye(3)[axis] * far
-            numbers = np.concatenate([origin, x, y, np.eye(3)[axis]])
-            domain = (0.0, across[0]), (0.0, across[1])
-            area = float(np.prod(across))
-            found.append(
-                face("plane", numbers, *domain, area, reversed=not far, solid_index=0, name="side")
-            )
-    return found
 
 
 def cylinder_faces(radius: float = 1.0, height: float = 2.0) -> list[FaceRecord]:
@@ -79,4 +63,4 @@ def part(faces, name: str = "part", oriented: bool = True, **more) -> Part:
 def made() -> SimpleNamespace:
     """What makes parts; tests import nothing from each other."""
     functions = placement, rectangle, face, box_faces, cylinder_faces, part
-    return SimpleNamespace(**{x.__name__: x for x in functions})
+    return SimpleNamespace(TURN=TURN, **{x.__name__: x for x in functions})

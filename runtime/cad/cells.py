@@ -1,0 +1,172 @@
+"""Cells: rectangles of the parameters of faces, among whose places samples are chosen.
+
+Each has a place inside the trim. Cells that are cut by the trim have one where a part of them is
+inside: in the middle, or at one of its subplaces. Where the inside is too narrow for that, places
+next to the border take their turn, as cells without an extent.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from .space import Space
+
+__all__ = ["Cells", "by_piece", "halved", "into_parts", "new_cells"]
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+# The columns of `numbers`, see kernels/cells.py.
+RADIUS, CHORD, ALONG_U, ALONG_V, BEND_U, BEND_V, AREA, LIMIT = range(8)
+# Cells are not cut below this part of the domain of their face.
+DEEPEST = 2.0**-20
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """M cells of the pieces (M,) of a space: boxes (M, 4), u0, v0, u1, v1, and places (M, 2).
+
+    `whole` (M,) says that no border passes them. `rows` and `numbers` (M, 8) are those of
+    kernels/cells.py, lengths and curvatures scaled as in `Space`.
+    """
+
+    space: Space
+    pieces: Indices
+    boxes: Array
+    places: Array
+    whole: Flags
+    rows: Array
+    numbers: Array
+
+    def __len__(self) -> int:
+        return len(self.pieces)
+
+    def __getitem__(self, chosen: Indices | Flags) -> Cells:
+        """Return some of the cells."""
+        return Cells(self.space, *(x[chosen] for x in self._arrays))
+
+    def __add__(self, other: Cells) -> Cells:
+        """Return these cells, followed by others."""
+        both = zip(self._arrays, other._arrays, strict=True)
+        return Cells(self.space, *(np.concatenate(x) for x in both))
+
+    @property
+    def _arrays(self) -> tuple[NDArray, ...]:
+        return (self.pieces, self.boxes, self.places, self.whole, self.rows, self.numbers)
+
+    def write(self, rows: Indices, cells: Cells) -> None:
+        """Replace some of the cells by as many others."""
+        for mine, others in zip(self._arrays, cells._arrays, strict=True):
+            mine[rows] = others
+
+    # --- what a cover asks of its triangles -------------------------------------------------------
+
+    @property
+    def radii(self) -> Array:
+        """Radii (M,) of balls around the places that hold the cells."""
+        return self.numbers[:, RADIUS]
+
+    @property
+    def uv(self) -> Array:
+        """The parameters (M, 2) of the places."""
+        return self.places
+
+    @property
+    def halves(self) -> Cells:
+        """The cells bisected across their longer sides, without those outside the trim."""
+        return self.space.evaluated(self._halved())
+
+    @property
+    def quarters(self) -> Cells:
+        """The cells bisected twice."""
+        return self.space.evaluated(self._halved()._halved())
+
+    @property
+    def deepest(self) -> Flags:
+        """Which cells are so small that they are not cut any more."""
+        sizes = self.boxes[:, 2:] - self.boxes[:, :2]
+        return (sizes <= DEEPEST * self.space.sizes[self.pieces]).all(axis=1)
+
+    def at_places(self) -> Array:
+        """Return scaled point, unit normal, target density and K (M, 8) at the places."""
+        return self.rows.copy()
+
+    def as_samples(self) -> Array:
+        """Return what `at_places` returns."""
+        return self.rows.copy()
+
+    def chords(self, rows: Array) -> Array:
+        """Return how far normals of each cell (M,) are from that at its place, 2 if unknown."""
+        return self.numbers[:, CHORD]
+
+    def _halved(self) -> Cells:
+        along_u = self.numbers[:, ALONG_U] >= self.numbers[:, ALONG_V]
+        return halved(self, along_u)
+
+
+def halved(cells: Cells, along_u: Flags) -> Cells:
+    """Return the halves (2 M) of cells, along u or along v; they are not evaluated."""
+    middle = (cells.boxes[:, :2] + cells.boxes[:, 2:]) / 2.0
+    lower, upper = cells.boxes.copy(), cells.boxes.copy()
+    lower[:, 2] = np.where(along_u, middle[:, 0], lower[:, 2])
+    lower[:, 3] = np.where(along_u, lower[:, 3], middle[:, 1])
+    upper[:, 0] = np.where(along_u, middle[:, 0], upper[:, 0])
+    upper[:, 1] = np.where(along_u, upper[:, 1], middle[:, 1])
+    boxes = np.stack([lower, upper], axis=1).reshape(-1, 4)
+    both = replace_boxes(cells, np.repeat(np.arange(len(cells)), 2), boxes)
+    factors = np.where(np.repeat(along_u, 2), 0.5, 1.0)
+    both.numbers[:, ALONG_U] *= factors
+    both.numbers[:, ALONG_V] *= 0.5 / factors
+    return both
+
+
+def into_parts(cells: Cells, parts: Indices) -> Cells:
+    """Return cells cut into parts (M, 2) along u and v; they are not evaluated."""
+    total = parts.prod(axis=1)
+    owner = np.repeat(np.arange(len(cells)), total)
+    number = np.arange(len(owner)) - np.repeat(np.cumsum(total) - total, total)
+    place = np.stack(np.divmod(number, parts[owner, 1]), axis=1)
+    low, sizes = cells.boxes[owner, :2], (cells.boxes[:, 2:] - cells.boxes[:, :2])[owner]
+    steps = sizes / parts[owner]
+    boxes = np.concatenate([low + place * steps, low + (place + 1) * steps], axis=1)
+    last = place + 1 == parts[owner]
+    boxes[:, 2:] = np.where(last, cells.boxes[owner, 2:], boxes[:, 2:])
+    return replace_boxes(cells, owner, boxes)
+
+
+def replace_boxes(cells: Cells, owner: Indices, boxes: Array) -> Cells:
+    """Return cells with other boxes, each a part of the cell that is its owner."""
+    rows = np.zeros((len(owner), 8))
+    return replace(
+        cells,
+        pieces=cells.pieces[owner],
+        boxes=boxes,
+        places=(boxes[:, :2] + boxes[:, 2:]) / 2.0,
+        whole=cells.whole[owner],
+        rows=rows,
+        numbers=cells.numbers[owner],
+    )
+
+
+def by_piece(cells: Cells) -> Iterator[tuple[int, slice]]:
+    """Yield the pieces of cells, which are sorted by them, and the rows of each."""
+    ends = np.flatnonzero(np.diff(cells.pieces, append=-1)) + 1
+    first = 0
+    for last in ends.tolist():
+        yield int(cells.pieces[first]), slice(first, last)
+        first = last
+
+
+def new_cells(space: Space, pieces: Indices, boxes: Array, whole: bool = False) -> Cells:
+    """Return cells of pieces (M,) that are not evaluated."""
+    count = len(pieces)
+    places = (boxes[:, :2] + boxes[:, 2:]) / 2.0
+    flags = np.full(count, whole)
+    return Cells(space, pieces, boxes, places, flags, np.zeros((count, 8)), np.zeros((count, 8)))

@@ -1,0 +1,47 @@
+"""A part that needs no CAD file, for examples and tests."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .part import Part, part_of
+from .records import FaceRecord, Geometry, PartRecord
+
+__all__ = ["box", "box_faces"]
+
+
+def box(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> Part:
+    """Return a box in mm with a corner at the origin, and normals that point outward.
+
+    Examples
+    --------
+    >>> from gaussmap.runtime.cad.examples import box
+    >>> box(), box().area
+    (Part(box: 6 faces, 1 solid, mm), 22.0)
+
+    """
+    faces = box_faces(width, depth, height)
+    return part_of(PartRecord("box", "mm", 1e-3, True, faces, ["box"]))
+
+
+def box_faces(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> list[FaceRecord]:
+    """Return the faces of a box."""
+    size, axes, found = np.array([width, depth, height]), np.eye(3), []
+    for k in range(3):
+        across, along = (k + 1) % 3, (k + 2) % 3
+        a, b = float(size[across]), float(size[along])
+        loop = np.array([(0.0, 0.0), (a, 0.0), (a, b), (0.0, b)])
+        for far in (False, True):
+            origin = size * axes[k] * far
+            numbers = np.concatenate([origin, axes[across], axes[along], axes[k]])
+            face = FaceRecord(
+                Geometry("plane", numbers),
+                ((0.0, a), (0.0, b)),
+                loops=[loop],
+                reversed=not far,
+                area=a * b,
+                name="side",
+                solid_index=0,
+            )
+            found.append(face)
+    return found

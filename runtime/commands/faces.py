@@ -1,0 +1,29 @@
+"""`gaussmap faces`."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+from ..cad.part import Face
+from .console import say
+from .parts import read_part_file
+
+__all__ = ["run"]
+
+
+def run(options: SimpleNamespace) -> None:
+    """Print a line for each face of a part."""
+    part = read_part_file(options.part)
+    kinds = max([len(x.kind) for x in part.faces], default=0)
+    digits = len(str(len(part)))
+    for face in part.faces:
+        say(_line(face, digits, kinds))
+
+
+def _line(face: Face, digits: int, kinds: int) -> str:
+    number = len(face.loops)
+    loops = f"{number} loop{'' if number == 1 else 's'}"
+    name = f"  {face.name}" if face.name else ""
+    failed = f"  failed: {face.reason}" if face.reason else ""
+    known = f"{face.index:{digits}}  {face.kind:{kinds}}  {face.area:12.6g}  {loops:8}"
+    return f"{known}{name}{failed}".rstrip()
