@@ -210,11 +210,10 @@ def _revolution(geometry: Geometry, domain: Domain) -> Shape:
 
 def _frame(axis: Array) -> Array:
     """Return a rotation (3, 3) whose last column is an axis."""
-    z: Array = axis / np.linalg.norm(axis)
-    x: Array = np.cross(z, np.eye(3)[np.abs(z).argmin()])
+    z = axis / np.linalg.norm(axis)
+    x = np.cross(z, np.eye(3)[np.abs(z).argmin()])
     x /= np.linalg.norm(x)
-    y: Array = np.cross(z, x)
-    return np.stack([x, y, z], axis=1)
+    return np.stack([x, np.cross(z, x), z], axis=1).astype(np.float64)
 
 
 def _around(interval: Interval) -> tuple[Interval, BoundaryPair]:
