@@ -38,18 +38,23 @@ OWN = "**`samples.mesh()`**"
 NORMALS = '**`samples.mesh(prefer="normals")`**'
 GMSH = "Gmsh, curvature size"
 DELAUNAY = "the same samples, Delaunay over (u, v)"
+# Samples of these densities; the second ones are on graded grids.
+ISOTROPIC, ALIGNED = "isotropic", "aligned"
+GRID = '**the same with `density="aligned"`**'
 
 
 # --- meshes ---------------------------------------------------------------------------------------
 
 
-def samples_for(form: ClosedForm, count: int, prefer: Prefer) -> gm.Samples:
+def samples_for(
+    form: ClosedForm, count: int, prefer: Prefer, density: str = ISOTROPIC
+) -> gm.Samples:
     """Return samples whose mesh has about `count` vertices, those of the border among them."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", gm.GaussmapWarning)
-        first = gm.sample(form.surface, count=count)
+        first = gm.sample(form.surface, count=count, density=density)
         added = len(first.mesh(prefer=prefer).vertices) - len(first)
-        return gm.sample(form.surface, count=count - added)
+        return gm.sample(form.surface, count=count - added, density=density)
 
 
 def by_shape(form: ClosedForm, count: int) -> Triangles:
@@ -61,6 +66,12 @@ def by_shape(form: ClosedForm, count: int) -> Triangles:
 def by_normals(form: ClosedForm, count: int) -> Triangles:
     """Return the mesh of gaussmap whose triangles are close to the normals."""
     mesh = samples_for(form, count, "normals").mesh(prefer="normals")
+    return mesh.vertices, mesh.triangles
+
+
+def by_grid_of_samples(form: ClosedForm, count: int) -> Triangles:
+    """Return the mesh of gaussmap of samples on a graded grid."""
+    mesh = samples_for(form, count, "normals", ALIGNED).mesh(prefer="normals")
     return mesh.vertices, mesh.triangles
 
 
@@ -80,6 +91,7 @@ MESHERS: dict[str, Callable[[ClosedForm, int], Triangles]] = {
     GMSH: gmsh_triangles,
     "Open CASCADE, angular deflection": opencascade_triangles,
 }
+OF_GRIDS = {GRID: by_grid_of_samples}
 
 
 # --- the page -------------------------------------------------------------------------------------
@@ -90,8 +102,10 @@ HEAD = """\
 Written by `make meshes`: do not edit.
 
 Triangle meshes of three surfaces with M vertices, about {counts}. The vertices of `samples.mesh()`
-are the samples of `gm.sample(count=…)` ("balanced", see the [glossary](glossary.md)) and points on
-open borders, M in all. By default edges are flipped until triangles are Delaunay on the surface,
+are the samples of `gm.sample(count=…, density="isotropic")` (see the [glossary](glossary.md)) and
+points on open borders, M in all. Those of `density="aligned"` are on a graded grid, whose cells are
+cut along a diagonal; edges are flipped as for `prefer="normals"`.
+By default edges are flipped until triangles are Delaunay on the surface,
 and samples too close to others are left out; with `prefer="normals"` until no flip reduces the
 angles between two triangles and the normals at their corners. The row below both is the
 triangulation from which the flips start. In a grid of parameters, each cell is cut along one
@@ -119,7 +133,8 @@ default has better-shaped triangles than that, and mean angles larger by {cost}.
 SHAPES = """\
 ## Shapes of triangles
 
-Meshes of {count:,} samples ("balanced") of surfaces that make thin triangles likely: where they are
+Meshes of {count:,} samples ("isotropic")
+of surfaces that make thin triangles likely: where they are
 developable, where regions of different density meet, and where folds of a terrain bring samples of
 several patches together. The terrain is that of `make demo`, the boss a solid of CAD with a plate,
 fillets and a cylinder. **smallest** angles: the smallest one, that which 5 % of the triangles fall
@@ -131,8 +146,8 @@ that are no vertices.
 TIME = """\
 ## Time
 
-Seconds for `samples.mesh(prefer="normals")` of N samples, the median of {rounds} runs, most of them
-in Qhull's triangulation:
+Seconds for `samples.mesh(prefer="normals")` of N samples, the median of {rounds} runs. For those of
+`density="isotropic"` most of the time is Qhull's triangulation, which grids do not need:
 """
 
 
@@ -168,7 +183,10 @@ class Measurement:
         return cls(
             form,
             {
-                count: {x: quality(form, places, y(form, count)) for x, y in MESHERS.items()}
+                count: {
+                    x: quality(form, places, y(form, count))
+                    for x, y in (MESHERS | OF_GRIDS).items()
+                }
                 for count in COUNTS
             },
         )
@@ -217,7 +235,7 @@ def shapes() -> str:
     for name, surface, cells in difficult():
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", gm.GaussmapWarning)
-            samples = gm.sample(surface, count=SHAPED, cells=cells)
+            samples = gm.sample(surface, count=SHAPED, cells=cells, density=ISOTROPIC)
         for prefer in KINDS:
             rows.append([name, prefer, *shape_of(samples, samples.mesh(prefer=prefer))])
     return markdown(header, rows)
@@ -246,13 +264,17 @@ def shape_of(samples: gm.Samples, mesh: gm.Mesh) -> list[str]:
 def times() -> str:
     """Time the meshes of gaussmap."""
     header = ["", *(f"N = {x:,}" for x in TIMED)]
-    rows = [[form.name, *(number(seconds(form, count)) for count in TIMED)] for form in FORMS]
+    rows = [
+        [title, *(number(seconds(form, count, density)) for count in TIMED)]
+        for form in FORMS
+        for density, title in ((ISOTROPIC, form.name), (ALIGNED, f"{form.name}, aligned"))
+    ]
     return markdown(header, rows)
 
 
-def seconds(form: ClosedForm, count: int) -> float:
+def seconds(form: ClosedForm, count: int, density: str) -> float:
     """Return how long a mesh of about `count` samples takes."""
-    samples = gm.sample(form.surface, count=count)
+    samples = gm.sample(form.surface, count=count, density=density)
     mesh = partial(samples.mesh, prefer="normals")
     return median(timed(mesh)[0] for _ in range(ROUNDS))
 
