@@ -168,7 +168,8 @@ def test_an_isolated_parabolic_point_has_no_say() -> None:
 
 
 @pytest.mark.compiled
-def test_classes_of_many_patches_are_those_of_each() -> None:
+@pytest.mark.parametrize("part", [8, pytest.param(1, marks=pytest.mark.slow)])
+def test_classes_of_many_patches_are_those_of_each(part: int) -> None:
     """Random and degenerate nets of all sizes; K of both signs inside, counted without lines."""
     rng = np.random.default_rng(0)
     kinds = [rng.integers(-k, k + 1, (400, 6, 3)).astype(float) for k in (1, 2, 9)]
@@ -180,6 +181,7 @@ def test_classes_of_many_patches_are_those_of_each() -> None:
     nets = np.concatenate([*kinds, bent, planes, lines, cones, np.ones((1, 6, 3))])
     nets = nets * 10.0 ** rng.integers(-12, 13, (len(nets), 1, 1)) + 0.0
     nets[::7] += np.abs(nets[::7]).max(axis=(1, 2), keepdims=True) * 100.0
+    nets = nets[::part]
     classes = gm.gauss_map.classify_patches(nets)
     assert set(classes.tolist()) == set(PatchClass)
     assert classes.tolist() == [gm.gauss_map.classify_patches(net[None])[0] for net in nets]
