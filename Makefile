@@ -15,7 +15,7 @@ DEM = from matplotlib.cbook import get_sample_data as f; \
 TERRAIN = "$$($(BIN)/python -c '$(DEM)'):elevation" --spacing 74.5 -92.5
 
 .DEFAULT_GOAL := help
-.PHONY: help install demo generate check-generated warm test coverage verify bench bench-guard bench-record bench-peers \
+.PHONY: help install demo generate check-generated warm test coverage cad-tests verify bench bench-guard bench-record bench-peers \
 	quality cold-start operations lint typecheck formulas orders errata curves figures gallery meshes registration \
 	clean
 
@@ -62,10 +62,24 @@ coverage: $(READY) ## run kernels and formulas without compilation; fail if few 
 		--numprocesses auto -W ignore::RuntimeWarning \
 		--cov --cov-report=term:skip-covered --cov-fail-under=90
 
+# Both versions of Open CASCADE that the extra cad allows; each sees the packages of .venv.
+$(VENV)/cad/%/.ready: $(READY)
+	$(PYTHON) -m venv $(VENV)/cad/$*
+	$(BIN)/python -c 'import sysconfig as s; print("import site; site.addsitedir(%r)" % s.get_path("purelib"))' \
+		> "$$($(VENV)/cad/$*/bin/python -c 'import sysconfig as s; print(s.get_path("purelib"))')/main.pth"
+	$(VENV)/cad/$*/bin/python -m pip install --quiet --disable-pip-version-check --no-deps \
+		'cadquery-ocp-novtk~=$*'
+	touch $@
+
+cad-tests: $(VENV)/cad/7.9.3/.ready $(VENV)/cad/8.0.0/.ready ## read CAD files with two versions of Open CASCADE
+	$(VENV)/cad/7.9.3/bin/python -m pytest -q -m "not slow" tests/runtime/cad
+	$(VENV)/cad/8.0.0/bin/python -m pytest -q -m "not slow" tests/runtime/cad
+
 verify: $(READY) ## run what is slow: all tests with many random examples, browsers, products
 	$(BIN)/python -m pytest -q -m slow --hypothesis-profile=large --numprocesses auto
 	$(BIN)/python -m pytest -q -m "not slow" --hypothesis-profile=large --numprocesses auto
 	.ci/check-html
+	$(MAKE) cad-tests
 
 bench: $(READY) ## run the benchmarks (ratios against the machine's own limit)
 	$(BIN)/python -m pytest benchmarks -o python_files='bench_*.py' --benchmark-only --benchmark-quiet
