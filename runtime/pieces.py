@@ -14,6 +14,7 @@ from .checks import pair_of_cells
 from .density.law import Law
 from .density.request import Request
 from .errors import InputError
+from .fields import GRID_NAMES
 from .geometry.on_spline import OnSpline
 from .report import SamplingReport, count_infinite, count_unrefined
 from .samples import Samples
@@ -79,11 +80,13 @@ def sample_pieces(
     same_normals = law.request.normals is not None or law.request.angle is not None
     normals = [x for _, x in parts]
     firsts = np.cumsum([0, *map(len, normals)])[:-1] * (not same_normals)
+    lines = _first_lines([samples for samples, _ in parts])
     arrays = _joined(
-        _renumbered(samples, int(patch), int(normal))
-        for (samples, _), patch, normal in zip(parts, patches, firsts, strict=True)
+        _renumbered(samples, int(patch), int(normal), line)
+        for (samples, _), patch, normal, line in zip(parts, patches, firsts, lines, strict=True)
     )
-    searched = normals[0] if same_normals else np.concatenate(normals)
+    # Pieces that are on a grid have none.
+    searched = max(normals, key=len) if same_normals else np.concatenate(normals)
     reports = [samples.report for samples, _ in parts]
     report = _report(surface.name, reports, law.areas[places], len(searched), arrays)
     known = surface if report.on == "surface" else None
@@ -105,15 +108,38 @@ def _amounts(law: Law, sampler: Sampler) -> dict[int, Request]:
     return {k: replace(request, count=count) for k, count in enumerate(counts.tolist()) if count}
 
 
-def _renumbered(samples: Samples, first_patch: int, first_normal: int) -> dict[str, NDArray[Any]]:
-    """Return the fields of a piece, with indices of patches and normals of the whole."""
+def _first_lines(parts: Sequence[Samples]) -> list[dict[str, int]]:
+    """Return how many lines of grids there are in all pieces before each one."""
+    so_far, found = dict.fromkeys(GRID_NAMES, 0), []
+    for samples in parts:
+        found.append(so_far)
+        last = {name: getattr(samples, name) for name in GRID_NAMES if name in samples.fields}
+        so_far = so_far | {
+            name: so_far[name] + int(x.max(initial=-1)) + 1 for name, x in last.items()
+        }
+    return found
+
+
+def _renumbered(
+    samples: Samples, first_patch: int, first_normal: int, first_line: dict[str, int]
+) -> dict[str, NDArray[Any]]:
+    """Return the fields of a piece, with indices of patches, normals and lines of the whole."""
     found = samples.arrays()
+    for name in GRID_NAMES:
+        if name in found:
+            found[name] = np.where(found[name] < 0, -1, found[name] + first_line[name])
     if "patch_index" in found:
         found["patch_index"] = found["patch_index"] + first_patch
     if "normal_index" in found:
         index = found["normal_index"]
         found["normal_index"] = np.where(index < 0, index, index + first_normal)
     return found
+
+
+def _density(reports: Sequence[SamplingReport]) -> str | None:
+    """Return which density the pieces have, if they have chosen one."""
+    found = {x.density for x in reports}
+    return next(iter(found)) if len(found) == 1 else "mixed"
 
 
 def _joined(parts: Iterable[dict[str, NDArray[Any]]]) -> dict[str, NDArray[Any]]:
@@ -143,6 +169,7 @@ def _report(
     return replace(
         reports[0],
         surface=name,
+        density=_density(reports),
         normals=normals,
         samples=len(next(iter(arrays.values()))),
         developable_share=mean("developable_share", 1.0),

@@ -58,13 +58,24 @@ def misfit_clause(report: SamplingReport) -> str:
 
 
 def _filling(samples: Samples) -> int:
-    """Return how many samples fill gaps, as far as that is known."""
+    """Return how many samples are at no prescribed normal, as far as that is known."""
     return int((samples.normal_index < 0).sum()) if "normal_index" in samples.fields else 0
+
+
+def _on_grid(samples: Samples) -> str:
+    """Say how many samples are on a grid, or that it is the better choice for all."""
+    count = 0 if samples.row is None else int((samples.row >= 0).sum())
+    if count == 0:
+        return " of a graded grid" if samples.report.density == "aligned" else ""
+    rest = len(samples) - count
+    return f": {count:,} on a graded grid" + (f", {rest:,} filling gaps" if rest else "")
 
 
 def _origin(samples: Samples) -> str:
     """Say how many samples have prescribed normals, and how many fill gaps."""
     normals, filling = samples.report.normals, _filling(samples)
+    if grid := _on_grid(samples):
+        return grid
     if filling == len(samples) > 0:
         return " filling gaps" if normals else ""
     if not normals:

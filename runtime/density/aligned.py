@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..kernels.forms import patches_at
+from .breaks import breaks_along
 from .grid import Grid
 from .lines import Axis
 from .sizing import SizingFunction
@@ -30,7 +31,9 @@ PLACES = 64
 # the part of a count that a grid reaches then, after at most TRIALS.
 BORDER, CLOSE, TRIALS = 0.5, 0.95, 4
 # Candidates for the number of lines along u, around the best one if it were no integer.
-AROUND, AS_GOOD = 0.12, 1.01
+AROUND, AS_GOOD = 0.12, 1.005
+# Gaps may be wider than asked by this factor, where the lines are no whole numbers of steps.
+SLACK = 1.02
 # Decimal places of chords that count as equal.
 DIGITS = 9
 
@@ -46,9 +49,17 @@ class AlignedGrid:
     @classmethod
     def of(cls, sizing: SizingFunction) -> AlignedGrid:
         """Evaluate the forms."""
-        cells = sizing.spline.cells
-        axes = tuple(Axis.of(float(n), PLACES, np.empty(0)) for n in cells)
-        return cls(sizing, (axes[0], axes[1]), forms_on(sizing, (axes[0], axes[1])))
+        axes = axes_with(sizing, (np.empty(0), np.empty(0)))
+        forms = forms_on(sizing, axes)
+        breaks = tuple(breaks_along(sizing.geometry, axes, forms, k) for k in (0, 1))
+        if len(breaks[0]) or len(breaks[1]):
+            axes = axes_with(sizing, breaks)
+            forms = forms_on(sizing, axes)
+        return cls(
+            sizing,
+            axes,
+            Forms(forms[3:6].copy(), forms[:3].copy(), (axes[0].widths, axes[1].widths)),
+        )
 
     def steps(self, angle: float, distance: float) -> Steps:
         """Return the steps for an angle (as a length on the sphere) and a scaled distance."""
@@ -78,7 +89,7 @@ class AlignedGrid:
         if most is None:
             numbers = [np.ceil(x).astype(np.int64) for x in lengths]
         else:
-            numbers = _numbers(lengths, most)
+            numbers = self._numbers(steps, lengths, most)
         lines = [
             axis.lines(along, number)
             for axis, along, number in zip(self.axes, steps.along, numbers, strict=True)
@@ -90,6 +101,45 @@ class AlignedGrid:
             cells = np.concatenate([cells, between])
             columns, rows = (np.append(x, np.full(len(between), -1)) for x in (columns, rows))
         return self._at(cells, rows, columns, (len(lines[0]), len(lines[1])))
+
+    def _numbers(self, steps: Steps, lengths: list[Array], most: int) -> list[Indices]:
+        """Return the numbers of lines of each part, along u and v, for their numbers of steps.
+
+        There are at most `most` crossings (if parts are not more), and the errors are about as
+        small as they can be.
+        """
+        total, found = float(lengths[0].sum()), []
+        scale = math.sqrt(most / (total * float(lengths[1].sum())))
+        low, high = (math.floor(scale * total * (1.0 + x)) for x in (-AROUND, AROUND))
+        fewest = len(lengths[0])
+        for number in range(max(low, fewest), max(high, fewest) + 1):
+            numbers = [
+                shared(x, n) for x, n in zip(lengths, (number, max(most // number, 1)), strict=True)
+            ]
+            scales = [x / n for x, n in zip(lengths, numbers, strict=True)]
+            left = most - int(numbers[0].sum()) * int(numbers[1].sum())
+            found.append((self._excess(steps, scales), left, numbers))
+        least = min(excess for excess, _, _ in found)
+        # Of those that are nearly as good, the one that leaves the fewest samples.
+        return min((x for x in found if x[0] <= AS_GOOD * least), key=lambda x: x[1])[2]
+
+    def _excess(self, steps: Steps, scales: list[Array]) -> float:
+        """Return the larger one of the errors, relative to what was asked, if steps are scaled.
+
+        `scales` are those on the parts of each parameter.
+        """
+        along = [
+            x * np.repeat(scale, np.diff(axis.breaks))
+            for x, scale, axis in zip(steps.along, scales, self.axes, strict=True)
+        ]
+        a, b = along[0][:, None], along[1]
+        aa, ab, bb = a * a, 2.0 * a * b, b * b
+        squares = [
+            float((e * aa + np.abs(f) * ab + g * bb).max())
+            for e, f, g in (self.forms.third, self.forms.first)
+        ]
+        angle, distance = (math.sqrt(x) / 2.0 for x in squares)
+        return max(angle / steps.angle, distance / (SLACK * steps.distance))
 
     def _between(self, lines: list[Array], number: int) -> Array:
         """Return places between neighbours on the grid, where these are farthest apart in normal.
@@ -144,35 +194,17 @@ class AlignedGrid:
         return Grid(triangles, rows, columns, lines)
 
 
-def forms_on(sizing: SizingFunction, axes: tuple[Axis, Axis]) -> Forms:
-    """Return the forms of what is sampled at the middles of axes, in cells."""
+def axes_with(sizing: SizingFunction, breaks: tuple[Array, Array]) -> tuple[Axis, Axis]:
+    """Return the two parameters, cut at breaks."""
+    u, v = (Axis.of(float(n), PLACES, x) for n, x in zip(sizing.spline.cells, breaks, strict=True))
+    return u, v
+
+
+def forms_on(sizing: SizingFunction, axes: tuple[Axis, Axis]) -> Array:
+    """Return the forms (7, k, l) of what is sampled at the middles of axes, in cells."""
     u, v = (x.middles for x in axes)
     cells = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
-    forms = sizing.geometry.forms(cells).T.reshape(7, len(u), len(v))
-    return Forms(forms[3:6], forms[:3], (axes[0].widths, axes[1].widths))
-
-
-def _numbers(lengths: list[Array], most: int) -> list[Indices]:
-    """Return the numbers of lines of each part, along u and v, for their numbers of steps.
-
-    There are at most `most` crossings; the longest step, relative to the given ones, is about as
-    short as possible.
-    """
-    found = []
-    total = float(lengths[0].sum())
-    scale = math.sqrt(most / (total * float(lengths[1].sum())))
-    low, high = (math.floor(scale * total * (1.0 + x)) for x in (-AROUND, AROUND))
-    fewest = len(lengths[0])
-    for number in range(max(low, fewest), max(high, fewest) + 1):
-        along_u = shared(lengths[0], number)
-        along_v = shared(lengths[1], max(most // number, 1))
-        longest = max(
-            float((x / y).max()) for x, y in zip(lengths, (along_u, along_v), strict=True)
-        )
-        found.append((longest, most - along_u.sum() * along_v.sum(), [along_u, along_v]))
-    shortest = min(longest for longest, _, _ in found)
-    # Of those that are nearly as good, the one that leaves the fewest samples.
-    return min((x for x in found if x[0] <= AS_GOOD * shortest), key=lambda x: x[1])[2]
+    return sizing.geometry.forms(cells).T.reshape(7, len(u), len(v))
 
 
 def shared(lengths: Array, number: int) -> Indices:

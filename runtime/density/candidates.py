@@ -73,6 +73,13 @@ class Candidates:
         return known
 
     @property
+    def nearest(self) -> Indices:
+        """The numbers (M,) of the nearest samples; −1 where no sample has updated the distance."""
+        known = np.empty(len(self._order), dtype=np.int64)
+        known[self._order] = self._nearest
+        return known
+
+    @property
     def densities(self) -> Array:
         """The densities (M,) of the candidates."""
         densities = np.empty(len(self._order))

@@ -18,7 +18,14 @@ from ..samples import Samples
 from ..threads import counted
 from ..tolerances import FLAT_SURFACE, LENGTH_ERROR
 from .angles import cover_normals
-from .at_normals import SamplesAtNormals, no_samples, sample_at_lattice, sample_at_normals
+from .at_normals import (
+    SamplesAtNormals,
+    no_samples,
+    sample_at_lattice,
+    sample_at_normals,
+    without_samples,
+)
+from .choosing import GREEDY, better_on_grid, fewer_on_grid
 from .cover import Cover
 from .coverage import coverage
 from .grid import lines_of
@@ -34,9 +41,6 @@ __all__ = ["filled_samples"]
 HEXAGON = 3.0 * math.sqrt(3.0)
 # Balanced: the covering radius of the added samples, relative to that of the normals.
 WIDER = 2.0
-# For n samples that cover the surface within a radius r, relative to the sizing function, the
-# integral of the target density is n r² times this.
-GREEDY = 1.85
 # Balanced: the floor of the target density, relative to the mean of κ².
 FLAT_SHARE = 0.5
 # |K|^α vanishes where K does; gaps there are wider than the mean by at most this factor.
@@ -68,6 +72,8 @@ def filled_samples(
         cover = filling.relaxed(cover)
         if request.angle is not None:
             angle = cover_normals(cover, request.angle)
+        if request.density == "balanced" and request.normals is None:
+            cover, at_normals, angle = filling.better(cover, at_normals, angle)
         return filling.samples(cover, at_normals, fields, dtype, angle), at_normals.normals
 
 
@@ -202,11 +208,34 @@ class Filling:
 
     def _aligned(self, sizing: SizingFunction) -> Cover:
         """Sample on a graded grid, and fill the gaps that it leaves."""
-        request = self.request
-        distance = None
-        if request.coverage is not None:
-            distance = self._distance(sizing, request.coverage)
-        return cover_on_grid(sizing, request, distance, self.show_count)
+        distance = self._distance_asked(sizing)
+        return cover_on_grid(sizing, self.request, distance, self.show_count)
+
+    def better(
+        self, usual: Cover, at_normals: SamplesAtNormals, angle: float | None
+    ) -> tuple[Cover, SamplesAtNormals, float | None]:
+        """Return what `filled_samples` has, or the same on a grid if that is better.
+
+        Without a count that is the one with fewer samples.
+        """
+        count, asked, result = self.request.count, self.request.coverage, (usual, at_normals, angle)
+        distance = self._distance_asked(usual.sizing)
+        if count is None:
+            grid = fewer_on_grid(usual, self.request.angle, distance)
+        else:
+            grid = better_on_grid(usual, count, distance)
+        if grid is None or (count and asked and self._coverage(grid, asked) > asked):
+            return result
+        if self.request.angle is not None:
+            angle = cover_normals(grid, self.request.angle)
+        if count is None and grid.count >= usual.count:
+            return result
+        return grid, without_samples(at_normals), angle
+
+    def _distance_asked(self, sizing: SizingFunction) -> float | None:
+        """Return the coverage that is asked for as a scaled length."""
+        asked = self.request.coverage
+        return None if asked is None else self._distance(sizing, asked)
 
     def _by_radius(self, sizing: SizingFunction, floor: float) -> tuple[Cover, SamplesAtNormals]:
         """Sample at the normals asked for, or at as many as fit a coverage, and fill the gaps."""

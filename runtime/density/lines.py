@@ -11,6 +11,9 @@ __all__ = ["Axis"]
 
 Array = NDArray[np.float64]
 
+# A part of an interval is cut into at least this number of pieces.
+FEWEST = 4.0
+
 
 @dataclass(frozen=True, eq=False)
 class Axis:
@@ -27,7 +30,7 @@ class Axis:
     def of(cls, length: float, number: int, breaks: Array) -> Axis:
         """Cut the interval from 0 to `length` into about `number` pieces, and at breaks."""
         ends = np.concatenate([[0.0], breaks, [length]])
-        counts = np.maximum(np.ceil(np.diff(ends) * (number / length)), 2.0).astype(np.int64)
+        counts = np.maximum(np.ceil(np.diff(ends) * (number / length)), FEWEST).astype(np.int64)
         parts = [
             low + (high - low) * np.arange(count) / count
             for low, high, count in zip(ends[:-1], ends[1:], counts.tolist(), strict=True)

@@ -4,25 +4,32 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 
 from .aligned import AlignedGrid
 from .cover import Cover
 from .request import Request
 from .sizing import SizingFunction, TargetDensity
+from .steps import Steps
 from .triangles import subdivisions
 
-__all__ = ["cover_on_grid"]
+__all__ = [
+    "cover_by_count",
+    "cover_by_count_and_distance",
+    "cover_by_errors",
+    "cover_on_grid",
+    "steps_by_errors",
+    "usual_distance",
+]
 
 # The largest distance of a point from the nearest sample if round cells follow the curvature: that
 # of a sizing function, times this.
 WIDEST = 1.0
+# Without a coverage, gaps are wider by this factor, where the surface is flat.
+WIDER = 2.0
 # An angle is asked of the grid that is smaller by this part, and a distance, too.
 MARGIN = 0.02
 # The parts of a count that a grid is given in turn, until what is left is enough for a coverage.
 PARTS = (1.0, 0.95, 0.9, 0.8, 0.65, 0.5, 0.3)
-# What a grid leaves of a count is filled among few candidates.
-COARSE = 1.5
 
 
 def cover_on_grid(
@@ -35,11 +42,14 @@ def cover_on_grid(
 
     `distance` is the scaled coverage that is asked for.
     """
+    aligned = AlignedGrid.of(sizing)
     if request.count is None:
-        return _by_errors(sizing, request, distance, show_count)
+        return cover_by_errors(aligned, request.angle, distance, show_count)
     if distance is None:
-        return _by_count(sizing, request.count, show_count)
-    return _by_count_and_distance(sizing, request.count, distance, show_count)
+        return cover_by_count(
+            aligned, request.count, usual_distance(sizing, request.count), show_count
+        )
+    return cover_by_count_and_distance(aligned, request.count, distance, show_count)
 
 
 def usual_distance(sizing: SizingFunction, count: int) -> float:
@@ -48,55 +58,67 @@ def usual_distance(sizing: SizingFunction, count: int) -> float:
     return WIDEST * math.sqrt(sizing.integral / count / density)
 
 
-def _by_count(sizing: SizingFunction, count: int, show_count: Callable[[int], object]) -> Cover:
-    aligned = AlignedGrid.of(sizing)
-    grid = aligned.grid_for(count, usual_distance(sizing, count))
-    cover = Cover(sizing, None, show_count, grid)
-    cover.fine = COARSE
-    cover.to_count(count)
+def cover_by_count(
+    aligned: AlignedGrid, count: int, distance: float, show_count: Callable[[int], object]
+) -> Cover:
+    """Return a cover with a count, whose gaps are about a distance."""
+    grid = aligned.grid_for(count, distance)
+    # A few samples are too few for all parts of the parameters.
+    cover = Cover(aligned.sizing, None, show_count, grid if len(grid) <= count else None)
+    if cover.count < count:  # at the border of a trim
+        cover.to_count(count)
     return cover
 
 
-def _by_errors(
-    sizing: SizingFunction,
-    request: Request,
+def steps_by_errors(
+    aligned: AlignedGrid, angle: float | None, distance: float | None
+) -> tuple[Steps, float]:
+    """Return the steps for an angle in degrees, or a scaled distance, or both; and the distance.
+
+    Raises InputError if that were too many.
+    """
+    sizing = aligned.sizing
+    rate = math.sqrt(max(sizing.target.floor, float(sizing.largest.min())))
+    if angle is None:
+        assert distance is not None
+        chord = distance * rate
+    else:
+        chord = (1.0 - MARGIN) * math.radians(angle)
+    apart = WIDER * chord / rate if distance is None else distance
+    subdivisions(even(sizing), apart)  # or InputError
+    return aligned.steps(chord, (1.0 - MARGIN) * apart), apart
+
+
+def cover_by_errors(
+    aligned: AlignedGrid,
+    angle: float | None,
     distance: float | None,
     show_count: Callable[[int], object],
 ) -> Cover:
     """Return a cover for an angle, or a coverage, or both."""
-    floor = max(sizing.target.floor, float(sizing.largest.min()))
-    if request.angle is None:
-        assert distance is not None
-        angle = distance * math.sqrt(floor)
-    else:
-        angle = (1.0 - MARGIN) * math.radians(request.angle)
-    apart = distance if distance is not None else angle / math.sqrt(floor)
-    subdivisions(sizing.with_floor(floor), apart * math.sqrt(floor))  # or InputError
-    aligned = AlignedGrid.of(sizing)
-    grid = aligned.grid(aligned.steps(angle, (1.0 - MARGIN) * apart), None)
-    cover = Cover(_even(sizing), None, show_count, grid)
+    steps, apart = steps_by_errors(aligned, angle, distance)
+    cover = Cover(even(aligned.sizing), None, show_count, aligned.grid(steps, None))
     cover.to_radius(apart)
     return cover
 
 
-def _by_count_and_distance(
-    sizing: SizingFunction, count: int, distance: float, show_count: Callable[[int], object]
+def cover_by_count_and_distance(
+    aligned: AlignedGrid, count: int, distance: float, show_count: Callable[[int], object]
 ) -> Cover:
     """Return a cover with a count; the distance is kept if the count is enough for that."""
-    aligned, even = AlignedGrid.of(sizing), _even(sizing)
-    apart = min((1.0 - MARGIN) * distance, usual_distance(sizing, count))
+    apart = min((1.0 - MARGIN) * distance, usual_distance(aligned.sizing, count))
     for part in PARTS:
         grid = aligned.grid_for(round(part * count), apart)
-        cover = Cover(even, None, show_count, grid)
+        cover = Cover(even(aligned.sizing), None, show_count, grid)
         cover.to_radius(distance, count + 1)
         if cover.count <= count:
             cover.fill_up(count)
             return cover
-    cover = Cover(even, None, show_count)
+    cover = Cover(even(aligned.sizing), None, show_count)
     cover.to_count(count)
     return cover
 
 
-def _even(sizing: SizingFunction) -> SizingFunction:
-    """Return the sizing function 1."""
-    return replace(sizing, target=TargetDensity(floor=1.0))
+def even(sizing: SizingFunction) -> SizingFunction:
+    """Return the sizing function 1 on what a sizing function is on."""
+    return SizingFunction(sizing.geometry, TargetDensity(floor=1.0))

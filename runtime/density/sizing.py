@@ -89,6 +89,12 @@ class SizingFunction:
             areas = areas * self.spline.inside.shares[:, None]
         return float((areas * np.maximum(densities[:, :3], self.target.floor)).sum())
 
+    @property
+    def patch_integrals(self) -> Array:
+        """The integrals (patches,) of the target density, without the floor, over the patches."""
+        _, areas, densities = self._patches
+        return np.add.reduce(list((areas * densities[:, :3]).T))
+
     @cached_property
     def largest(self) -> Array:
         """The largest target density found on each patch (patches,)."""

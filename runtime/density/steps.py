@@ -13,9 +13,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+
+from ..kernels.steps import longest_steps
 
 __all__ = ["Forms", "Steps", "equal_steps", "steps_for_count"]
 
@@ -25,8 +28,8 @@ Array = NDArray[np.float64]
 # those in between, among forms on a coarser grid.
 SHARES, SEARCHES, COARSE = np.linspace(0.15, 0.95, 7), 4, 24
 GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
-# A step spans at most this part of the domain.
-LONGEST = 0.5
+# The parts of the domain that a step spans at most and at least.
+LONGEST, SHORTEST = 0.5, 1e-9
 # The angle that gives a count is searched up to WIDEST, until the count is met within CLOSE.
 WIDEST, CLOSE, TRIALS = math.pi, 0.002, 12
 # A distance that needs too many samples is made so much larger than needed.
@@ -54,21 +57,32 @@ class Forms:
                 widths[axis] = np.add.reduceat(widths[axis], starts)
         return Forms(third, first, (widths[0], widths[1]))
 
+    @cached_property
     def swapped(self) -> Forms:
-        """Return the same with u and v exchanged."""
-        third, first = (x[::-1].transpose(0, 2, 1) for x in (self.third, self.first))
+        """The same with u and v exchanged."""
+        third, first = (
+            np.ascontiguousarray(x[::-1].transpose(0, 2, 1)) for x in (self.third, self.first)
+        )
         return Forms(third, first, self.widths[::-1])
+
+    @cached_property
+    def largest(self) -> tuple[Array, Array]:
+        """The largest entries of the two forms along u, over v."""
+        return self.third[0].max(axis=1), self.first[0].max(axis=1)
 
 
 @dataclass(frozen=True, eq=False)
 class Steps:
     """Steps along u (k,) and along v (l,) for an error, and the number of samples of such a grid.
 
-    `lengths` are the numbers of steps along u and v.
+    `lengths` are the numbers of steps along u and v, `angle` and `distance` halves of the
+    longest diagonals of cells in normal space and in space.
     """
 
     along: tuple[Array, Array]
     lengths: tuple[float, float]
+    angle: float
+    distance: float
 
     @property
     def count(self) -> float:
@@ -151,28 +165,21 @@ def _typical(forms: Forms) -> float:
 
 def _steps(forms: Forms, limits: tuple[float, float], share: float) -> Steps:
     """Return steps that give u a share of the limits, where they reach these."""
-    largest = [form[0].max(axis=1) for form in (forms.third, forms.first)]
     with np.errstate(divide="ignore"):
         along_u = np.minimum(*(
-            share * np.sqrt(limit / x) for limit, x in zip(limits, largest, strict=True)
+            share * np.sqrt(limit / x) for limit, x in zip(limits, forms.largest, strict=True)
         ))  # fmt: skip
     along_u = np.minimum(along_u, LONGEST * forms.widths[0].sum())
     along_v = _longest(forms, limits, along_u)
-    along_u = _longest(forms.swapped(), limits, along_v)
+    along_u = _longest(forms.swapped, limits, along_v)
     along = along_u, along_v
     lengths = tuple(float((w / x).sum()) for w, x in zip(forms.widths, along, strict=True))
-    return Steps(along, (lengths[0], lengths[1]))
+    return Steps(along, (lengths[0], lengths[1]), *(math.sqrt(x) / 2.0 for x in limits))
 
 
 def _longest(forms: Forms, limits: tuple[float, float], along: Array) -> Array:
     """Return the longest steps along v for the steps along u."""
-    longest = np.full(len(forms.widths[1]), LONGEST * forms.widths[1].sum())
-    a = along[:, None]
-    for (e, f, g), limit in zip((forms.third, forms.first), limits, strict=True):
-        with np.errstate(divide="ignore", invalid="ignore"):
-            mixed, left = np.abs(f) * a, np.maximum(limit - e * a * a, 0.0)
-            # The root of g b² + 2 mixed b = left.
-            b = left / (mixed + np.sqrt(mixed * mixed + g * left))
-        longest = np.minimum(longest, np.where(left > 0.0, b, 0.0).min(axis=0))
-    least = 1e-9 * forms.widths[1].sum()
-    return np.maximum(longest, least)
+    domain = float(forms.widths[1].sum())
+    steps = np.empty(len(forms.widths[1]))
+    longest_steps(forms.third, forms.first, limits, along, LONGEST * domain, steps)
+    return np.maximum(steps, SHORTEST * domain)

@@ -28,9 +28,9 @@ def set_forms(forms, k, E, F, G, e, f, g, D):
     forms[k, 1] = F
     forms[k, 2] = G
     regular = math.isfinite(e) and math.isfinite(f) and math.isfinite(g)
-    forms[k, 3] = e if regular else 0.0
+    forms[k, 3] = max(e, 0.0) if regular else 0.0
     forms[k, 4] = f if regular else 0.0
-    forms[k, 5] = g if regular else 0.0
+    forms[k, 5] = max(g, 0.0) if regular else 0.0
     forms[k, 6] = D if regular else 0.0
 
 

@@ -1,0 +1,80 @@
+"""Lines u = const or v = const at which the curvature of a surface jumps, or K changes its sign.
+
+Such lines are joints of a plane and a fillet, knots, and parabolic lines that are lines of the
+parameters. The lines of a grid keep half a step away from them.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry.on_spline import OnSpline
+from .lines import Axis
+
+__all__ = ["breaks_along"]
+
+Array = NDArray[np.float64]
+
+# Forms are compared along this number of lines.
+ACROSS = 8
+# What changes by more than JUMP between neighbouring places, relative to the largest value, may
+# jump; it does if it still changes by the part REMAINS of that after BISECTIONS.
+JUMP, REMAINS, BISECTIONS = 0.1, 0.4, 8
+# Not just a half: symmetry would make the line of K = 0 itself a place.
+HALF = 0.47
+# K has to change its sign along this part of a line.
+ALONG = 0.75
+# K is 0 below this part of the largest one.
+FLAT = 1e-6
+# More of them are no joints.
+MOST = 64
+
+
+def breaks_along(geometry: OnSpline, axes: tuple[Axis, Axis], forms: Array, along: int) -> Array:
+    """Return the breaks of the parameter number `along`, in cells.
+
+    `forms` (7, k, l) are those at the middles of axes.
+    """
+    scales = np.array([forms[3].max(), forms[5].max(), np.abs(forms[6]).max()])
+    if not scales.all():
+        scales[scales == 0.0] = 1.0
+    middles, others = axes[along].middles, axes[1 - along].middles
+    chosen = np.arange(ACROSS) * len(others) // ACROSS
+    values = _values(np.take(np.swapaxes(forms, 1, 2) if along == 0 else forms, chosen, 1), scales)
+    changes = _changes(values[:, :, :-1], values[:, :, 1:])
+    places = np.flatnonzero(changes > JUMP)
+    low, high, change = middles[places], middles[places + 1], changes[places]
+    ends = values[:, :, places], values[:, :, places + 1]
+    for _ in range(BISECTIONS):
+        if len(low) == 0:
+            return low
+        half = low + HALF * (high - low)
+        found = _values(_forms_at(geometry, half, others[chosen], along), scales)
+        first, second = _changes(ends[0], found), _changes(found, ends[1])
+        later = second > first
+        low, high = np.where(later, half, low), np.where(later, high, half)
+        ends = np.where(later, found, ends[0]), np.where(later, ends[1], found)
+        real = np.maximum(first, second) > REMAINS * change
+        low, high, change = low[real], high[real], change[real]
+        ends = ends[0][:, :, real], ends[1][:, :, real]
+    return (low + high) / 2.0 if len(low) <= MOST else low[:0]
+
+
+def _forms_at(geometry: OnSpline, places: Array, others: Array, along: int) -> Array:
+    """Return forms (7, l, k) at places (k,) of a parameter and places (l,) of the other one."""
+    lines = np.meshgrid(others, places, indexing="ij")
+    cells = np.stack(lines[::-1] if along == 0 else lines, axis=-1).reshape(-1, 2)
+    return geometry.forms(cells).T.reshape(7, len(others), len(places))
+
+
+def _values(forms: Array, scales: Array) -> Array:
+    """Return what may jump (3, l, k): how fast the normal turns, by u and v, and the sign of K."""
+    signs = forms[6] / (np.abs(forms[6]) + FLAT * scales[2])
+    return np.stack([np.sqrt(forms[3] / scales[0]), np.sqrt(forms[5] / scales[1]), signs])
+
+
+def _changes(low: Array, high: Array) -> Array:
+    """Return the changes (k,) of values (3, l, k): the means along the other parameter."""
+    along_u, along_v, signs = np.abs(high - low).mean(axis=1)
+    return np.maximum(np.maximum(along_u, along_v), np.where(signs < 2.0 * ALONG, 0.0, signs))

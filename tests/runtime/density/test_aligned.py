@@ -1,0 +1,175 @@
+"""Samples on graded grids, and the choice between them and round cells."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.runtime.density.lines import Axis
+from gaussmap.runtime.density.steps import Forms, equal_steps, steps_for_count
+from gaussmap.runtime.errors import InputError
+
+CELLS = (16, 16)
+
+
+def torus_forms(number: int = 32) -> Forms:
+    """The forms of the torus (1, 0.35), at the middles of a grid, by closed formulas."""
+    width = np.full(number, 2.0 * np.pi / number)
+    v = np.broadcast_to((np.arange(number) + 0.5) * width[0], (number, number))
+    zero = np.zeros_like(v)
+    first = np.stack([(1.0 + 0.35 * np.cos(v)) ** 2, zero, zero + 0.35**2])
+    return Forms(np.stack([np.cos(v) ** 2, zero, zero + 1.0]), first, (width, width))
+
+
+def test_steps_keep_both_limits_and_use_one_everywhere():
+    forms = torus_forms()
+    steps = equal_steps(forms, 0.1, 0.08)
+    a, b = steps.along[0][:, None], steps.along[1]
+    used = [
+        np.sqrt(e * a * a + g * b * b) / (2.0 * limit)
+        for (e, _, g), limit in ((forms.third, 0.1), (forms.first, 0.08))
+    ]
+    assert max(x.max() for x in used) <= 1.0 + 1e-12
+    assert np.maximum(*used).min() >= 1.0 - 1e-12
+
+
+def test_steps_for_a_count_have_it_and_the_smallest_angle():
+    """Without a distance the integral of equal steps: ∫∫ du dv / a b, by numbers."""
+    forms = torus_forms()
+    steps = steps_for_count(forms, 5000.0, 10.0)
+    assert abs(steps.count / 5000.0 - 1.0) < 0.01
+    others = [steps_for_count(forms, 5000.0, distance) for distance in (0.06, 0.05)]
+    assert steps.angle < others[0].angle < others[1].angle
+
+
+def test_too_small_a_distance_is_made_larger():
+    assert steps_for_count(torus_forms(), 100.0, 1e-3).count <= 110.0
+
+
+def test_lines_are_half_a_step_from_breaks():
+    axis = Axis.of(10.0, 20, np.array([4.0]))
+    lines = axis.lines(np.ones(len(axis.widths)), np.array([4, 3]))
+    np.testing.assert_allclose(lines, [0.5, 1.5, 2.5, 3.5, 5.0, 7.0, 9.0])
+    np.testing.assert_allclose(axis.lengths(np.full(len(axis.widths), 2.0)), [2.0, 3.0])
+
+
+@pytest.mark.parametrize("count", [1, 2, 7, 500])
+@pytest.mark.parametrize("on", ["surface", "spline"])
+def test_a_count_is_met_and_lines_are_lines(count: int, on: str):
+    samples = gm.sample("torus", count, density="aligned", cells=CELLS, on=on)
+    assert len(samples) == count
+    if samples.row is None or samples.column is None:
+        assert count < 10
+        return
+    on_grid = samples.row >= 0
+    np.testing.assert_array_equal(on_grid, samples.column >= 0)
+    places = samples.uv[on_grid]
+    for numbers, along in ((samples.row[on_grid], 1), (samples.column[on_grid], 0)):
+        lines = [places[numbers == k, along] for k in range(numbers.max() + 1)]
+        assert max(np.ptp(x) for x in lines) < 1e-9
+        assert (np.diff([x[0] for x in lines]) > 0.0).all()
+    assert len(np.unique(samples.points.round(9), axis=0)) == count
+    assert (samples.kind[on_grid] == "grid").all()
+
+
+def test_fields_are_there_if_asked_or_used():
+    asked: dict[str, Any] = {"cells": CELLS, "density": "aligned"}
+    few = gm.sample("torus", 300, fields=("points", "row"), **asked)
+    assert few.fields == ("points", "row")
+    assert few.points.dtype == np.float64
+    single = gm.sample("torus", 300, dtype=np.float32, **asked)
+    assert single.row is not None
+    assert single.row.dtype == np.int64
+    assert "row" not in gm.sample("sphere", 300, cells=CELLS).fields
+    none = gm.sample("sphere", 300, fields=("points", "column"), cells=CELLS)
+    assert none.column is not None
+    assert (none.column == -1).all()
+    with pytest.raises(InputError, match="row is a field of samples on a grid only"):
+        gm.sample("torus", 300, fields=("points", "row"), density="uniform", cells=CELLS)
+
+
+def test_files_keep_rows_and_columns(tmp_path):
+    samples = gm.sample("torus", 300, density="aligned", cells=CELLS)
+    for name in ("a.npz", "a.ply"):
+        samples.write(tmp_path / name)
+        again = gm.read_samples(tmp_path / name)
+        np.testing.assert_array_equal(again.row, samples.row)
+        np.testing.assert_array_equal(again.column, samples.column)
+        assert again.report.density == "aligned"
+
+
+def test_threads_do_not_matter():
+    one, two = (gm.sample("torus", 700, cells=CELLS, density="aligned", threads=k) for k in (1, 3))
+    np.testing.assert_array_equal(one.points, two.points)
+
+
+@pytest.mark.parametrize(
+    "asked", [{"angle": 12.0}, {"coverage": 0.2}, {"angle": 15, "coverage": 0.3}]
+)
+def test_angles_and_coverages_are_kept(asked: dict[str, Any]):
+    samples = gm.sample("torus", density="aligned", cells=CELLS, **asked)
+    if "angle" in asked:
+        assert samples.normal_deviation().normal_space <= asked["angle"]
+    if "coverage" in asked:
+        assert samples.coverage() <= 1.1 * asked["coverage"]
+
+
+def test_a_count_beside_a_coverage():
+    samples = gm.sample("torus", 900, coverage=0.15, density="aligned", cells=CELLS)
+    assert len(samples) == 900
+    assert samples.report.coverage is not None
+    assert samples.report.coverage <= 0.15
+
+
+def test_a_trimmed_grid_keeps_the_count_and_the_trim():
+    part = gm.surfaces.torus().trimmed([[(1, 1), (4, 1), (1, 4)]])
+    samples = gm.sample(part, 800, density="aligned", cells=CELLS)
+    assert len(samples) == 800
+    assert part.trim is not None
+    assert part.trim.contains(samples.uv).all()
+    assert samples.row is not None
+    assert (samples.row >= 0).sum() > 500
+
+
+def test_balanced_takes_the_better_one():
+    """Parameters of a torus are lines of curvature; a sphere has no directions to follow."""
+    torus, same = (gm.sample("torus", 1000, density=x) for x in ("balanced", "isotropic"))
+    assert torus.report.density == "aligned"
+    assert same.report.density == "isotropic"
+    assert "on a graded grid" in torus.summary()
+    found, usual = torus.normal_deviation(), same.normal_deviation()
+    assert found.space < 0.8 * usual.space
+    assert torus.coverage() < 1.06 * same.coverage()
+    sphere, alike = (gm.sample("sphere", 500, density=x) for x in ("balanced", "isotropic"))
+    assert sphere.report.density == "isotropic"
+    np.testing.assert_array_equal(sphere.points, alike.points)
+
+
+def test_prescribed_normals_are_never_on_a_grid():
+    samples = gm.sample("torus", normals=gm.icosphere(4), density="balanced", cells=CELLS)
+    assert samples.report.density == "isotropic"
+    with pytest.raises(InputError, match=r"density=.aligned. cannot be asked for by normals"):
+        gm.sample("torus", normals=gm.icosphere(4), density="aligned")
+
+
+def test_lines_keep_away_from_jumps_of_curvature():
+    """A plane, a quarter of a cylinder and a plane: both joints are breaks."""
+
+    def profile(u: Any, v: Any) -> Any:
+        angle = np.clip(u - 1.0, 0.0, 1.5)
+        x = np.minimum(u, 1.0) + np.sin(angle) + np.maximum(u - 2.5, 0.0) * np.cos(1.5)
+        z = 1.0 - np.cos(angle) + np.maximum(u - 2.5, 0.0) * np.sin(1.5)
+        return np.stack([x, v, z], axis=-1)
+
+    surface = gm.Surface.from_callable(profile, ((0.0, 3.5), (0.0, 1.0)))
+    samples = gm.sample(surface, 400, density="aligned", cells=(32, 8))
+    assert samples.column is not None
+    columns = np.unique(samples.uv[samples.column >= 0, 0].round(9))
+    for joint in (1.0, 2.5):
+        low, high = columns[columns < joint], columns[columns > joint]
+        steps = np.diff(columns)
+        assert joint - low[-1] == pytest.approx((low[-1] - low[-2]) / 2.0, rel=0.05)
+        assert high[0] - joint == pytest.approx((high[1] - high[0]) / 2.0, rel=0.05)
+        assert steps.max() > 1.5 * steps.min()
