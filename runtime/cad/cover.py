@@ -16,7 +16,7 @@ from .space import Space
 __all__ = ["PartCover"]
 
 # The radii of the cells of candidates, relative to the covering radius.
-FINE = 0.5
+FINE = 0.4
 
 
 class PartCover(Cover):
