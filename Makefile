@@ -17,7 +17,7 @@ TERRAIN = "$$($(BIN)/python -c '$(DEM)'):elevation" --spacing 74.5 -92.5
 .DEFAULT_GOAL := help
 .PHONY: help install demo generate check-generated warm test coverage cad-tests verify bench bench-guard bench-record bench-peers \
 	quality cold-start operations lint typecheck formulas orders errata curves figures gallery meshes registration \
-	clean
+	alignment clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -140,6 +140,10 @@ figures: $(READY) ## draw Figs. 2-7 of the paper again (docs/figures.md)
 meshes: $(VENV)/peers/.ready ## measure meshes beside Gmsh and Open CASCADE again (docs/meshes.md)
 	$(VENV)/peers/bin/python docs/meshes.py > docs/meshes.tmp
 	mv docs/meshes.tmp docs/meshes.md
+
+alignment: $(VENV)/peers/.ready ## measure what rows along lines of curvature save again (docs/alignment.md)
+	$(VENV)/peers/bin/python docs/alignment.py > docs/alignment.tmp
+	mv docs/alignment.tmp docs/alignment.md
 
 gallery: $(READY) ## run the notebooks of docs/gallery/ again
 	$(BIN)/python docs/notebooks.py

@@ -1,0 +1,94 @@
+"""The best cells of samples and meshes on a quadratic patch, and what they cost.
+
+Over its tangent plane a surface is z = (κ₁ x² + κ₂ y²)/2, up to terms of third order, and its
+normal turns by its gradient (κ₁ x, κ₂ y). Everything here is exact for that patch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import sympy as sp
+
+__all__ = [
+    "ALIGNED",
+    "CHORD",
+    "HEXAGON",
+    "area",
+    "gradient",
+    "kappa1",
+    "kappa2",
+    "legs",
+    "radius",
+    "theta",
+    "turned_triangle",
+    "turning",
+]
+
+kappa1, kappa2, area, radius = sp.symbols("kappa1 kappa2 A R", positive=True)
+theta = sp.Symbol("theta", real=True)
+Corner = Sequence[sp.Expr]
+
+
+def height(x: sp.Expr, y: sp.Expr) -> sp.Expr:
+    """Return z over a point of the tangent plane."""
+    return (kappa1 * x**2 + kappa2 * y**2) / 2
+
+
+def gradient(corners: Sequence[Corner]) -> sp.Matrix:
+    """Return the gradient of the plane through three points of the patch."""
+    p, *others = corners
+    edges = sp.Matrix([[q[0] - p[0], q[1] - p[1]] for q in others])
+    rises = sp.Matrix([height(*q) - height(*p) for q in others])
+    return edges.adjugate() * rises / edges.det()
+
+
+def turning(corners: Sequence[Corner], place: Corner) -> sp.Expr:
+    """Return the angle between the plane through three points and the normal at a place.
+
+    It is that of small angles: the difference of the gradients.
+    """
+    off = gradient(corners) - sp.Matrix([kappa1 * place[0], kappa2 * place[1]])
+    return sp.sqrt(sp.simplify(off.dot(off)))
+
+
+def legs() -> tuple[sp.Expr, sp.Expr]:
+    """Return the sides of the rectangle of an area, along x and y, in which normals turn least.
+
+    They turn most between the middle and a corner.
+    """
+    p = sp.Symbol("p", positive=True)
+    squared = (kappa1 * p / 2) ** 2 + (kappa2 * area / p / 2) ** 2
+    (best,) = sp.solve(sp.diff(squared, p), p)
+    return best, sp.simplify(area / best)
+
+
+def _aligned() -> sp.Expr:
+    p, q = legs()
+    corner = sp.sqrt((kappa1 * p / 2) ** 2 + (kappa2 * q / 2) ** 2)
+    return sp.simplify(corner / sp.sqrt(kappa1 * kappa2 * area))
+
+
+def _hexagon() -> sp.Expr:
+    """Return the circumradius of the regular hexagon of area 1."""
+    (found,) = sp.solve(6 * radius**2 * sp.sqrt(3) / 4 - 1, radius)
+    return found
+
+
+# The angle in the best rectangle over sqrt(κ₁ κ₂ A): also that between the two triangles into which
+# a diagonal cuts it, and the normals at their corners.
+ALIGNED = _aligned()
+# The angle in a regular hexagon over κ₁ sqrt(A), where κ₁ = κ₂. Equilateral triangles, of which two
+# have the area A, have the same circumradius.
+HEXAGON = _hexagon()
+# The distance between patch and equilateral triangle over κ₁ A, where κ₁ = κ₂: R²/2 in its middle.
+CHORD = HEXAGON**2 / 2
+
+
+def turned_triangle(first: sp.Expr, second: sp.Expr) -> list[tuple[sp.Expr, sp.Expr]]:
+    """Return a triangle that is equilateral in the metric first² dx² + second² dy².
+
+    Its circumradius in this metric is R, and it is turned by θ.
+    """
+    turns = [theta + 2 * sp.pi * k / 3 for k in range(3)]
+    return [(radius * sp.cos(x) / first, radius * sp.sin(x) / second) for x in turns]
