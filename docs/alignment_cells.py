@@ -40,7 +40,7 @@ class Spot:
     @cached_property
     def jet(self) -> Array:
         """The position and its derivatives there."""
-        return self.true.derivatives(*self.at, 2)
+        return self.true.derivatives(self.at[0], self.at[1], 2)
 
     @cached_property
     def principal(self) -> tuple[Array, Array]:
@@ -59,7 +59,7 @@ class Spot:
         """Return points and unit normals at offsets (k, 2) along the principal directions."""
         _, directions = self.principal
         places = self.at + offsets @ directions.T
-        x, x_s, x_t = np.moveaxis(self.true.derivatives(*places.T, 1), -2, 0)
+        x, x_s, x_t = np.moveaxis(self.true.derivatives(places[:, 0], places[:, 1], 1), -2, 0)
         normals = np.cross(x_s, x_t)
         return x, normals / np.linalg.norm(normals, axis=1)[:, None]
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from .splines.spline import Spline
 from .surface.surface import Surface
+from .whole import Whole
 
 __all__ = ["OffsetOf"]
 
@@ -20,8 +21,8 @@ class OffsetOf:
         The distance by which they were moved along the normals, in L.
     spline : Spline or None
         The spline that was sampled, None if it is unknown.
-    surface : Surface or None
-        The surface on which the samples were.
+    surface : Surface, Part or None
+        The surface, or the CAD part, on which the samples were.
 
     Examples
     --------
@@ -34,4 +35,4 @@ class OffsetOf:
 
     distance: float
     spline: Spline | None = None
-    surface: Surface | None = None
+    surface: Surface | Whole | None = None

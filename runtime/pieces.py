@@ -110,7 +110,8 @@ def _amounts(law: Law, sampler: Sampler) -> dict[int, Request]:
 
 def _first_lines(parts: Sequence[Samples]) -> list[dict[str, int]]:
     """Return how many lines of grids there are in all pieces before each one."""
-    so_far, found = dict.fromkeys(GRID_NAMES, 0), []
+    so_far: dict[str, int] = dict.fromkeys(GRID_NAMES, 0)
+    found = []
     for samples in parts:
         found.append(so_far)
         last = {name: getattr(samples, name) for name in GRID_NAMES if name in samples.fields}

@@ -48,7 +48,8 @@ FACES = [
 
 def golden_parts(corner: sp.Matrix) -> list[tuple[int, int]]:
     """Return the coordinates a + b φ of a corner as pairs (a, b)."""
-    return [(int(x.coeff(PHI, 0)), int(x.coeff(PHI, 1))) for x in corner]
+    coordinates: list[Any] = corner.flat()
+    return [(int(x.coeff(PHI, 0)), int(x.coeff(PHI, 1))) for x in coordinates]
 
 
 @cache
@@ -131,7 +132,7 @@ def tables() -> dict[str, tuple[str, Any]]:
     }
 
 
-def _float(x: sp.Expr) -> float:
+def _float(x: Any) -> float:  # noqa: ANN401 - entries of matrices have no types
     return float(x.evalf(40))
 
 

@@ -73,9 +73,10 @@ def of_quality(surface: int) -> dict[str, dict[str, str]]:
     """
     page = (ROOT / "docs" / "quality.md").read_text(encoding="utf-8")
     section = page.split(f"## {FORMS[surface].label}\n")[1]
+    table = re.search(r"(?:^\|.*\n)+", section, re.MULTILINE)
+    assert table is not None
     header, *rows = (
-        [x.strip() for x in line.strip("|").split(" | ")]
-        for line in re.search(r"(?:^\|.*\n)+", section, re.MULTILINE)[0].splitlines()
+        [x.strip() for x in line.strip("|").split(" | ")] for line in table[0].splitlines()
     )
     return {title: dict(zip(header[1:], cells, strict=True)) for title, *cells in rows}
 

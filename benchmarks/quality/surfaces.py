@@ -174,7 +174,9 @@ class Hills(ClosedForm):
             name=self.name,
         )
 
-    def parts(self, u: Array, v: Array) -> Iterator[tuple[Array, ...]]:
+    def parts(
+        self, u: Array, v: Array
+    ) -> Iterator[tuple[Array, Array, Array, float, float, float]]:
         """Yield z of each ridge, the gradient g of its exponent, and the derivatives of g."""
         for height, x, y, direction, along, across in self.ridges:
             c, s = math.cos(direction), math.sin(direction)

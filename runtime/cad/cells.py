@@ -92,7 +92,7 @@ class Cells:
     def deepest(self) -> Flags:
         """Which cells are so small that they are not cut any more."""
         sizes = self.boxes[:, 2:] - self.boxes[:, :2]
-        return (sizes <= DEEPEST * self.space.sizes[self.pieces]).all(axis=1)
+        return np.all(sizes <= DEEPEST * self.space.sizes[self.pieces], axis=1)
 
     def at_places(self) -> Array:
         """Return scaled point, unit normal, target density and K (M, 8) at the places."""

@@ -51,9 +51,9 @@ class AlignedGrid:
         """Evaluate the forms."""
         axes = axes_with(sizing, (np.empty(0), np.empty(0)))
         forms = forms_on(sizing, axes)
-        breaks = tuple(breaks_along(sizing.geometry, axes, forms, k) for k in (0, 1))
-        if len(breaks[0]) or len(breaks[1]):
-            axes = axes_with(sizing, breaks)
+        along_u, along_v = (breaks_along(sizing.geometry, axes, forms, k) for k in (0, 1))
+        if len(along_u) or len(along_v):
+            axes = axes_with(sizing, (along_u, along_v))
             forms = forms_on(sizing, axes)
         return cls(
             sizing,

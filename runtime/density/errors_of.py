@@ -82,7 +82,7 @@ def _spread(weights: Array, count: int) -> Indices:
 def errors_of(cover: Cover, places: Triangles, distance: float, angle: float) -> Errors:
     """Return the errors at places, if about this distance and this angle are expected."""
     rows = places.as_samples()
-    regular = rows[:, 3:6].any(axis=1)
+    regular = np.any(rows[:, 3:6], axis=1)
     rows, places = rows[regular], places[regular]
     distances, nearest = _nearest_in_space(rows, cover, distance)
     samples = cover.points[nearest]

@@ -63,7 +63,7 @@ class Forms:
         third, first = (
             np.ascontiguousarray(x[::-1].transpose(0, 2, 1)) for x in (self.third, self.first)
         )
-        return Forms(third, first, self.widths[::-1])
+        return Forms(third, first, (self.widths[1], self.widths[0]))
 
     @cached_property
     def largest(self) -> tuple[Array, Array]:
@@ -142,9 +142,13 @@ def _steps_at_share(
     forms: Forms, share: float, count: float, distance: float, angle: float
 ) -> tuple[Steps, float]:
     """Return the steps for a share that give a count, and their angle, from a guess of it on."""
+
+    def steps_at(angle: float) -> Steps:
+        return _steps(forms, ((2.0 * angle) ** 2, (2.0 * distance) ** 2), share)
+
     low, high = 0.0, WIDEST
+    steps = steps_at(angle)
     for _ in range(TRIALS):
-        steps = _steps(forms, ((2.0 * angle) ** 2, (2.0 * distance) ** 2), share)
         ratio = steps.count / count
         if abs(ratio - 1.0) < CLOSE or high - low < CLOSE * high:
             break
@@ -153,6 +157,7 @@ def _steps_at_share(
         angle *= ratio if ratio > 1.0 else math.sqrt(ratio)
         if not low < angle < high:
             angle = math.sqrt(low * high) if low > 0.0 else high / 2.0
+        steps = steps_at(angle)
     return steps, angle
 
 

@@ -14,6 +14,7 @@ from ..kernels.flips import smallest_cosines
 from ..refinement.newton import evaluate_on_surface
 from ..splines.domain import Boundary
 from ..splines.spline import Spline
+from ..surface.surface import Surface
 from .filled_lattice import lattice_triangles
 from .improvement import checked_prefer, flip_edges, improved
 from .mesh import Mesh, scaled
@@ -240,7 +241,7 @@ def _on_surface(vertices: Vertices, samples: Samples, spline: Spline) -> tuple[A
     points[is_sample], normals[is_sample] = before_offset(samples)[own], samples.normals[own]
     base = samples.offset_of or samples
     added = uv[~is_sample]
-    if base.surface is None or not len(added):
+    if not isinstance(base.surface, Surface) or not len(added):
         points[~is_sample], normals[~is_sample] = (
             spline.evaluate(*added.T),
             spline.normals(*added.T),

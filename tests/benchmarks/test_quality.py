@@ -1,5 +1,7 @@
 """What `make quality` judges by: surfaces, ways, tasks, criteria and page, without the peers."""
 
+# pyright: reportAttributeAccessIssue=false, reportArgumentType=false
+
 import math
 import re
 from itertools import pairwise

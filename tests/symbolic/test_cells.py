@@ -46,7 +46,7 @@ def test_triangles_of_a_rectangle_deviate_as_much_as_its_corners():
 def lean(first, second, turn):
     """The gradient of the plane of a turned triangle, for κ₁ = 5, κ₂ = 1/3 and R = 2."""
     with mp.workdps(30):
-        found = sp.lambdify(SYMBOLS, list(gradient(turned_triangle(first, second))), "mpmath")
+        found = sp.lambdify(SYMBOLS, gradient(turned_triangle(first, second)).flat(), "mpmath")
         return found(mp.mpf(5), mp.mpf(1) / 3, mp.mpf(2), mp.mpf(turn))
 
 

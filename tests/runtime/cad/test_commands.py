@@ -1,5 +1,7 @@
 """CAD parts on the command line."""
 
+# pyright: reportOptionalMemberAccess=false
+
 import gaussmap as gm
 import numpy as np
 import pytest

@@ -1,5 +1,8 @@
 """Samples of parts: one count, coverage and angle for all faces, and what samples know."""
 
+# pyright: reportOptionalMemberAccess=false, reportOptionalOperand=false, reportOperatorIssue=false
+# pyright: reportArgumentType=false, reportAttributeAccessIssue=false
+
 import pickle
 
 import gaussmap as gm

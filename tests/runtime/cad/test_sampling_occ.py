@@ -1,5 +1,7 @@
 """Samples of a part that Open CASCADE made, compared with what it says of them."""
 
+# pyright: reportMissingImports=false
+
 import gaussmap as gm
 import numpy as np
 import pytest

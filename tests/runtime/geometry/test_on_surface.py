@@ -243,8 +243,8 @@ class TestArguments:
 def test_samples_pickle_with_and_without_their_surface():
     samples = gm.sample("torus", 50, cells=CELLS, on="surface")
     other = pickle.loads(pickle.dumps(samples))
-    assert other.surface is not None
-    assert samples.surface is not None
+    assert isinstance(other.surface, gm.Surface)
+    assert isinstance(samples.surface, gm.Surface)
     expected = samples.surface.evaluate(0.1, 0.2)
     np.testing.assert_array_equal(other.surface.evaluate(0.1, 0.2), expected)
     waves = gm.Surface.from_callable(

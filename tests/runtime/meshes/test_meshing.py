@@ -194,7 +194,7 @@ class TestTopology:
         mesh = samples.mesh()
         poles = mesh.sample_index == -1
         assert poles.sum() == 2
-        assert samples.surface is not None
+        assert isinstance(samples.surface, gm.Surface)
         ends = samples.surface.evaluate(0.0, [-np.pi / 2, np.pi / 2])
         order = np.argsort(mesh.vertices[poles, 2])
         np.testing.assert_array_equal(mesh.vertices[poles][order], ends)
