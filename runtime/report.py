@@ -121,6 +121,8 @@ class SamplingReport:
     (True, True, True)
     >>> report.on, report.unrefined
     ('surface', 0)
+    >>> report.density
+    'aligned'
     >>> report.faces, report.empty_faces, report.oriented  # not of a CAD part
     (None, None, None)
     >>> report.developable_share, report.apexes, report.index

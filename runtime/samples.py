@@ -115,6 +115,9 @@ class Samples(SampleArrays):
     (dtype('float64'), Spline(16 × 16 cells of torus), 200)
     >>> samples.on_surface.all(), samples.surface.name
     (np.True_, 'torus')
+    >>> on_grid = gm.sample("torus", 200, density="aligned", cells=(16, 16))
+    >>> bool((on_grid.row >= -1).all()), bool((on_grid.column >= -1).all())
+    (True, True)
     >>> samples.face_index is samples.solid_index is None  # not of a CAD part
     True
     >>> samples.offset_of, samples.offset(0.1).offset_of.distance

@@ -223,7 +223,9 @@ class Filling:
         if count is None:
             grid = fewer_on_grid(usual, self.request.angle, distance)
         else:
-            grid = better_on_grid(usual, count, distance)
+            grid = better_on_grid(usual, count, None)
+            if asked is not None and (grid is None or self._coverage(grid, asked) > asked):
+                grid = better_on_grid(usual, count, distance)
         if grid is None or (count and asked and self._coverage(grid, asked) > asked):
             return result
         if self.request.angle is not None:

@@ -109,6 +109,8 @@ def cover_by_count_and_distance(
     apart = min((1.0 - MARGIN) * distance, usual_distance(aligned.sizing, count))
     for part in PARTS:
         grid = aligned.grid_for(round(part * count), apart)
+        if len(grid) > count:
+            continue  # a few samples are too few for all parts of the parameters
         cover = Cover(even(aligned.sizing), None, show_count, grid)
         cover.to_radius(distance, count + 1)
         if cover.count <= count:

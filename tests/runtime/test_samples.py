@@ -9,7 +9,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.errors import InputError
-from gaussmap.runtime.fields import ARRAY_NAMES, ARRAY_NAMES_ON_SURFACE, GRID_NAMES
+from gaussmap.runtime.fields import ARRAY_NAMES, ARRAY_NAMES_ON_SURFACE, GRID_NAMES, PART_NAMES
 from gaussmap.runtime.report import SamplingReport
 from gaussmap.runtime.samples import Samples
 from hypothesis import given
@@ -46,8 +46,10 @@ def curved(K: object, H: object) -> Samples:
 
 class TestConstruction:
     def test_the_array_names_are_the_fields(self):
-        names = (*ARRAY_NAMES_ON_SURFACE, *GRID_NAMES, "report", "spline", "surface", "offset_of")
-        assert names == tuple(field.name for field in fields(Samples))
+        arrays = (*ARRAY_NAMES_ON_SURFACE, *GRID_NAMES, *PART_NAMES)
+        assert (*arrays, "report", "spline", "surface", "offset_of") == tuple(
+            field.name for field in fields(Samples)
+        )
 
     def test_the_spline_is_kept_by_picking_copying_and_concatenating(self):
         spline = gm.fit(gm.surfaces.torus(), cells=(8, 8))
@@ -172,11 +174,14 @@ class TestReport:
             "apexes": np.int16(1),
             "index": np.int64(7),
             "density": "aligned",
+            "faces": np.int32(3),
+            "empty_faces": np.uint8(1),
+            "oriented": True,
         }
         report = SamplingReport("s", *numbers, **more)
         assert [type(getattr(report, f.name)) for f in fields(report)] == [
             str, int, int, int, float, int, float, float, int, str, int, float, float, float,
-            int, int, str,
+            int, int, str, int, int, bool,
         ]  # fmt: skip
 
     @pytest.mark.parametrize("name", ["normals", "samples", "patches", "developable_patches"])

@@ -138,7 +138,7 @@ def test_angle_and_coverage_hold_for_the_surface():
 def test_a_coverage_below_the_misfit_is_reached_as_far_as_possible():
     torus = gm.surfaces.torus()
     with pytest.warns(GaussmapWarning, match=r"coverage is 0\.\d+ instead of the requested 0\.05"):
-        samples = gm.sample(torus, coverage=0.05, cells=(6, 6), on="surface")
+        samples = gm.sample(torus, coverage=0.05, density="isotropic", cells=(6, 6))
     report = samples.report
     assert report.coverage is not None
     assert report.fit_distance is not None

@@ -382,7 +382,7 @@ class TestShape:
         assert mesh.smallest_angles.min() > np.degrees(NO_AREA)
 
     def test_triangles_across_gaps_cost_no_samples(self):
-        samples = gm.sample(gm.surfaces.torus(), count=2000)
+        samples = gm.sample(gm.surfaces.torus(), count=2000, density="isotropic")
         part = samples[samples.points[:, 0] > 0.3]
         mesh = part.mesh(angle=25.0)
         assert len(mesh.vertices) > 0.98 * len(part)
