@@ -111,7 +111,8 @@ def sample(
     -------
     Samples
         The samples at normals, by patch and then by normal, and after them those that fill gaps:
-        their `kind` is "filling" and their `normal_index` −1. The report gives the angle and the
+        their `kind` is "filling" and their `normal_index` −1. Those on a grid, of `kind` "grid",
+        come first. The report gives the angle and the
         coverage that were reached, if they were asked for.
 
     Raises
