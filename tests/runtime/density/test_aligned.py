@@ -100,11 +100,13 @@ def test_files_keep_rows_and_columns(tmp_path):
         assert again.report.density == "aligned"
 
 
+@pytest.mark.compiled
 def test_threads_do_not_matter():
     one, two = (gm.sample("torus", 700, cells=CELLS, density="aligned", threads=k) for k in (1, 3))
     np.testing.assert_array_equal(one.points, two.points)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(
     "asked", [{"angle": 12.0}, {"coverage": 0.2}, {"angle": 15, "coverage": 0.3}]
 )
@@ -116,6 +118,7 @@ def test_angles_and_coverages_are_kept(asked: dict[str, Any]):
         assert samples.coverage() <= 1.1 * asked["coverage"]
 
 
+@pytest.mark.compiled
 def test_a_count_beside_a_coverage():
     samples = gm.sample("torus", 900, coverage=0.15, density="aligned", cells=CELLS)
     assert len(samples) == 900
@@ -133,6 +136,7 @@ def test_a_trimmed_grid_keeps_the_count_and_the_trim():
     assert (samples.row >= 0).sum() > 500
 
 
+@pytest.mark.compiled
 def test_balanced_takes_the_better_one():
     """Parameters of a torus are lines of curvature; a sphere has no directions to follow."""
     torus, same = (gm.sample("torus", 1000, density=x) for x in ("balanced", "isotropic"))
@@ -147,6 +151,7 @@ def test_balanced_takes_the_better_one():
     np.testing.assert_array_equal(sphere.points, alike.points)
 
 
+@pytest.mark.compiled
 def test_prescribed_normals_are_never_on_a_grid():
     samples = gm.sample("torus", normals=gm.icosphere(4), density="balanced", cells=CELLS)
     assert samples.report.density == "isotropic"
@@ -154,6 +159,7 @@ def test_prescribed_normals_are_never_on_a_grid():
         gm.sample("torus", normals=gm.icosphere(4), density="aligned")
 
 
+@pytest.mark.compiled
 def test_lines_keep_away_from_jumps_of_curvature():
     """A plane, a quarter of a cylinder and a plane: both joints are breaks."""
 
