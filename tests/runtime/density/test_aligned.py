@@ -55,6 +55,7 @@ def test_lines_are_half_a_step_from_breaks():
     np.testing.assert_allclose(axis.lengths(np.full(len(axis.widths), 2.0)), [2.0, 3.0])
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("count", [1, 2, 7, 500])
 @pytest.mark.parametrize("on", ["surface", "spline"])
 def test_a_count_is_met_and_lines_are_lines(count: int, on: str):
@@ -74,6 +75,7 @@ def test_a_count_is_met_and_lines_are_lines(count: int, on: str):
     assert (samples.kind[on_grid] == "grid").all()
 
 
+@pytest.mark.compiled
 def test_fields_are_there_if_asked_or_used():
     asked: dict[str, Any] = {"cells": CELLS, "density": "aligned"}
     few = gm.sample("torus", 300, fields=("points", "row"), **asked)
@@ -90,6 +92,7 @@ def test_fields_are_there_if_asked_or_used():
         gm.sample("torus", 300, fields=("points", "row"), density="uniform", cells=CELLS)
 
 
+@pytest.mark.compiled
 def test_files_keep_rows_and_columns(tmp_path):
     samples = gm.sample("torus", 300, density="aligned", cells=CELLS)
     for name in ("a.npz", "a.ply"):
@@ -126,6 +129,7 @@ def test_a_count_beside_a_coverage():
     assert samples.report.coverage <= 0.15
 
 
+@pytest.mark.compiled
 def test_a_trimmed_grid_keeps_the_count_and_the_trim():
     part = gm.surfaces.torus().trimmed([[(1, 1), (4, 1), (1, 4)]])
     samples = gm.sample(part, 800, density="aligned", cells=CELLS)

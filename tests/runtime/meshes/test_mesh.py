@@ -197,6 +197,7 @@ class TestFiles:
             empty.write(tmp_path / "square.ply")
         assert not list(Path(tmp_path).iterdir())
 
+    @pytest.mark.compiled
     def test_trimesh_reads_gltf_with_normals(self, tmp_path):
         trimesh = pytest.importorskip("trimesh")
         mesh = gm.sample("torus", 200, cells=(16, 16)).mesh()
