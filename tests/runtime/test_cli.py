@@ -78,7 +78,7 @@ def test_sample_a_surface_by_name() -> None:
     done = gaussmap("sample", "torus", "--count", "10000", "-o", "torus.ply")
     assert (done.returncode, done.stderr) == (0, "")
     assert re.fullmatch(
-        r"torus\.ply: 10,000 samples: [\d,]+ at [\d,]+ prescribed normals, [\d,]+ filling gaps "
+        r"torus\.ply: 10,000 samples: [\d,]+ on a graded grid, [\d,]+ filling gaps "
         r"\([\d,]+ elliptic, [\d,]+ hyperbolic\)\n",
         done.stdout,
     )

@@ -12,6 +12,7 @@ from gaussmap.runtime import cli
 from gaussmap.runtime.cli import main
 
 FEW = ["--count", "100", "--cells", "8", "8"]
+ISOTROPIC = ["--density", "isotropic"]
 
 
 @pytest.fixture(autouse=True)
@@ -52,7 +53,7 @@ def test_normals_of_a_part(capsys: pytest.CaptureFixture[str]) -> None:
 
 @pytest.mark.parametrize("prefer", ["shape", "normals"])
 def test_what_triangles_are_preferred(prefer: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["mesh", "torus", *FEW, "--prefer", prefer, "-o", "torus.ply"]) == 0
+    assert main(["mesh", "torus", *FEW, *ISOTROPIC, "--prefer", prefer, "-o", "torus.ply"]) == 0
     small = float(re.findall(r"angles of at least ([\d.]+)°", capsys.readouterr().out)[0])
     assert (small > 25.0) == (prefer == "shape")
 

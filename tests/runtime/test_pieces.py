@@ -127,7 +127,7 @@ def test_coverage_and_normal_deviation_are_of_all_pieces():
     assert report_of(samples).coverage <= 0.2
     assert samples.coverage() <= 1.1 * 0.2
     deviation = samples.normal_deviation()
-    assert 1.0 < deviation.normal_space <= deviation.space
+    assert 1.0 < deviation.normal_space <= deviation.space * (1.0 + 1e-6)  # as far as searched
     lower = samples[piece_of(samples, 1.0) == 0]
     assert lower.coverage() > 0.4
     assert lower.normal_deviation().normal_space > 60.0
