@@ -33,7 +33,7 @@ class Mesher:
 
 
 def through(density: str, prefer: Prefer) -> Callable[[ClosedForm, int], Triangles]:
-    """Return meshes through samples, so many that with points on borders there are `count`."""
+    """Return meshes of `count` vertices: samples, and the points added on borders."""
 
     def mesh(form: ClosedForm, count: int) -> Triangles:
         first = gm.sample(form.surface, count=count, density=density)

@@ -33,7 +33,7 @@ __all__ = [
 ]
 
 STEPS = 2  # of relaxation, the same for all surfaces
-ROUNDS = 3  # what takes long is timed once; of Poisson disks so many samplings are judged
+ROUNDS = 3  # of timing, and of judging Poisson disks; what takes long is timed once
 
 
 @cache

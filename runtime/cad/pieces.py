@@ -26,7 +26,7 @@ ANGLE = 0.25
 PARTS_OF_SPAN = 2
 # Lines that are closer to one another than this part of the domain are one.
 SAME_LINE = 1e-9
-# Beside the border, places are as far away from it as this, relative to the domain.
+# The distance from the border of places beside it, relative to the domain.
 BESIDE = 1e-6
 # Which parameters of a kind of face are angles.
 ANGLES = {

@@ -29,7 +29,7 @@ GIB = 2.0**30
 # Open CASCADE itself takes about a quarter of this, in GiB.
 LEAST_MEMORY = 1.0
 MOST_SECONDS = 1e6
-# So many failed faces are named in a warning.
+# The largest number of failed faces that a warning names.
 MOST_NAMED = 3
 MODULE = "gaussmap.runtime.cad.worker"
 
@@ -56,7 +56,7 @@ def read_cad(
         The unit L of all lengths of the part: "mm", "cm", "m", "in", "ft", … By default that of
         the file. BREP files have none, and are in mm.
     time_limit : float
-        The reading ends after so many seconds.
+        The longest time for reading, in seconds.
     memory_limit : float
         The most memory for reading, in GiB.
 

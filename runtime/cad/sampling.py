@@ -40,7 +40,7 @@ FOR_NORMALS = 0.05
 # The chord between the normals of candidates for these samples, relative to that which their number
 # leaves on a sphere; they are searched from the widest angle on.
 NORMALS_APART, WIDEST_ANGLE = 0.2, 60.0
-# Each face gets a sample if there are so many times more samples than faces.
+# Each face gets a sample if there are at least this many samples for each face.
 SAMPLES_A_FACE = 2
 DENSITIES = ("gauss", "balanced", "isotropic", "uniform")
 BISECTIONS, NEAR_ENOUGH, WIDEST_RADIUS = 8, 0.97, 10.0

@@ -20,8 +20,8 @@ __all__ = ["UnusableError", "curve_net", "knots_of"]
 Array = NDArray[np.float64]
 
 # Other curves than NURBS, such as circles, are polynomials of this degree between the knots of a
-# spline: interpolated, with at first so many spans, and twice as many until the error, relative to
-# the size of the curve, is that of rounding.
+# spline that interpolates it. The number of spans is FIRST_SPANS, and is doubled until the error,
+# relative to the size of the curve, is that of rounding.
 DEGREE, FIRST_SPANS, MOST_SPANS = 9, 16, 1024
 ROUNDING = 4e-15
 # A line goes on beyond its domain by this part of it.

@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 
 # The normals of the faces of a sharp edge differ by more than this somewhere, in degrees.
 SHARP = 1.0
-# So many points of a curved edge: of each span of a spline, and of other curves.
+# The number of points of a curved edge: for each span of a spline, and for other curves.
 POINTS_A_SPAN, POINTS = 8, 65
 FORWARD = TopAbs_Orientation.TopAbs_FORWARD
 
