@@ -16,12 +16,12 @@ def at_jet(patch):
     normals.
 
         N = d × e
-        E = |d|**2
-        F = d·e
-        G = |e|**2
         A = N·a
         B = N·b
         C = N·c
+        E = |d|**2
+        F = d·e
+        G = |e|**2
         L = |N|
         n = N/L
         K = (A*C - B**2)/L**4
@@ -37,12 +37,12 @@ def at_jet(patch):
     N_x = d_y * e_z - d_z * e_y
     N_y = d_z * e_x - d_x * e_z
     N_z = d_x * e_y - d_y * e_x
-    E = d_x * d_x + d_y * d_y + d_z * d_z
-    F = d_x * e_x + d_y * e_y + d_z * e_z
-    G = e_x * e_x + e_y * e_y + e_z * e_z
     A = N_x * a_x + N_y * a_y + N_z * a_z
     B = N_x * b_x + N_y * b_y + N_z * b_z
     C = N_x * c_x + N_y * c_y + N_z * c_z
+    E = d_x * d_x + d_y * d_y + d_z * d_z
+    F = d_x * e_x + d_y * e_y + d_z * e_z
+    G = e_x * e_x + e_y * e_y + e_z * e_z
     L = math.sqrt(N_x * N_x + N_y * N_y + N_z * N_z)
     t0 = 1.0 / L
     n_x = N_x * t0

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from .checks import real_array
 from .errors import GaussmapError, InputError, SurfaceError
 
-__all__ = ["evaluated", "returned"]
+__all__ = ["called", "evaluated", "returned"]
 
 
 def evaluated(
@@ -45,15 +45,7 @@ def returned(
     Raises SurfaceError, which calls the callable `label`, if it raises, or returns another shape or
     anything but real numbers.
     """
-    try:
-        with np.errstate(all="ignore"):
-            values = function(*(x.copy() for x in arrays))
-    except (GaussmapError, MemoryError):
-        raise
-    except Exception as error:
-        raise SurfaceError(
-            f"{label} raised {type(error).__name__}: {' '.join(str(error).split())}"
-        ) from error
+    values = called(function, arrays, label)
     try:
         result = real_array(values, f"what {label} returns")
     except InputError as error:
@@ -65,3 +57,18 @@ def returned(
             f"{arrays[0].shape}; it must return {expected}."
         )
     return result
+
+
+def called(
+    function: Callable[..., ArrayLike], arrays: Sequence[NDArray[np.float64]], label: str
+) -> ArrayLike:
+    """Return what a callable returns for copies of arrays; SurfaceError if it raises."""
+    try:
+        with np.errstate(all="ignore"):
+            return function(*(x.copy() for x in arrays))
+    except (GaussmapError, MemoryError):
+        raise
+    except Exception as error:
+        raise SurfaceError(
+            f"{label} raised {type(error).__name__}: {' '.join(str(error).split())}"
+        ) from error

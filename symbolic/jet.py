@@ -24,6 +24,13 @@ N = vectors("N")[0]
 E, F, G, L, g = (scalar(x) for x in "EFGLg")
 
 FIRST_FORM = [("E", Dot(d, d)), ("F", Dot(d, e)), ("G", Dot(e, e))]
+# The normal N, and the second fundamental form times its length.
+NORMAL_AND_SECOND_FORM = [
+    ("N", Cross(d, e)),
+    ("A", Dot(N, a)),
+    ("B", Dot(N, b)),
+    ("C", Dot(N, c)),
+]
 
 AT_JET = Formula.build(
     "at_jet",
@@ -32,13 +39,7 @@ AT_JET = Formula.build(
     "curvature is half the sum of the principal curvatures −II/I, positive on a sphere with outer "
     "normals.",
     inputs=VECTORS,
-    terms=[
-        ("N", Cross(d, e)),
-        *FIRST_FORM,
-        ("A", Dot(N, a)),
-        ("B", Dot(N, b)),
-        ("C", Dot(N, c)),
-    ],
+    terms=[*NORMAL_AND_SECOND_FORM, *FIRST_FORM],
     outputs=[
         ("L", sp.sqrt(Dot(N, N))),
         ("n", N / L),
@@ -53,13 +54,7 @@ FORMS_AT_JET = Formula.build(
     "the derivatives of the unit normal, and $D$, which has the sign of the Gaussian curvature, "
     "from its 2-jet.",
     inputs=VECTORS,
-    terms=[
-        ("N", Cross(d, e)),
-        ("A", Dot(N, a)),
-        ("B", Dot(N, b)),
-        ("C", Dot(N, c)),
-        ("r", 1 / Dot(N, N) ** 2),
-    ],
+    terms=[*NORMAL_AND_SECOND_FORM, ("r", 1 / Dot(N, N) ** 2)],
     outputs=[
         *FIRST_FORM,
         ("e1", (G * A**2 - 2 * F * A * B + E * B**2) * r),

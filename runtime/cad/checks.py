@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..files.reading import UnusableError
 from .layout import FORMAT, VERSION
 from .records import KINDS
 
-__all__ = ["UnusableError", "about_of", "checked_arrays", "dtypes"]
+__all__ = ["about_of", "checked_arrays", "dtypes"]
 
 Arrays = dict[str, NDArray[Any]]
 
@@ -46,10 +47,6 @@ SHAPES: dict[str, tuple[str, tuple[str | int, ...]]] = {
 MOST_DEGREE = 25
 # Of faces that are not usable, with the others of the part left as they are.
 NOT_FINITE = "its numbers are not finite"
-
-
-class UnusableError(Exception):
-    """A file's content is not what it should be; the text continues "'path' …"."""
 
 
 def dtypes() -> tuple[str, ...]:

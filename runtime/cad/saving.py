@@ -56,9 +56,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import FileError
-from ..files.paths import PathLike, atomic_path, checked_path, known_suffix, reason_of
-from .checks import UnusableError, checked_arrays, dtypes
+from ..files.paths import PathLike, atomic_path, checked_path, known_suffix
+from ..files.reading import UnusableError, opened
+from .checks import checked_arrays, dtypes
 from .layout import packed
 from .records import PartRecord
 
@@ -89,20 +89,8 @@ def read_arrays(path: PathLike) -> tuple[dict[str, NDArray[Any]], dict[str, Any]
     """
     path = checked_path(path)
     known_suffix(path, SUFFIXES)
-    try:
-        file = open(path, "rb")  # noqa: SIM115 - an error here differs from one in the content
-    except OSError as error:
-        raise FileError(f"'{path}' cannot be read: {reason_of(error)}.") from error
-    with file:
-        try:
-            return _read(file)
-        except UnusableError as error:
-            raise FileError(f"'{path}' {error}") from error
-        except Exception as error:  # NumPy, zipfile and json raise a dozen kinds on bad bytes
-            raise FileError(
-                f"'{path}' is damaged or is no part that gaussmap saved "
-                f"({type(error).__name__}); save it again."
-            ) from error
+    with opened(path, ".npz file of a part", "numbers") as file:
+        return _read(file)
 
 
 def _read(file: BufferedReader) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]:

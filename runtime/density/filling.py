@@ -223,16 +223,23 @@ class Filling:
         if count is None:
             grid = fewer_on_grid(usual, self.request.angle, distance)
         else:
-            grid = better_on_grid(usual, count, None)
-            if asked is not None and (grid is None or self._coverage(grid, asked) > asked):
-                grid = better_on_grid(usual, count, distance)
-        if grid is None or (count and asked and self._coverage(grid, asked) > asked):
+            grid = self._if_covering(better_on_grid(usual, count, None))
+            if grid is None and asked is not None:
+                grid = self._if_covering(better_on_grid(usual, count, distance))
+        if grid is None:
             return result
         if self.request.angle is not None:
             angle = cover_normals(grid, self.request.angle)
         if count is None and grid.count >= usual.count:
             return result
         return grid, without_samples(at_normals), angle
+
+    def _if_covering(self, cover: Cover | None) -> Cover | None:
+        """Return a cover if it keeps the coverage that is asked for."""
+        asked = self.request.coverage
+        if cover is None or asked is None or self._coverage(cover, asked) <= asked:
+            return cover
+        return None
 
     def _distance_asked(self, sizing: SizingFunction) -> float | None:
         """Return the coverage that is asked for as a scaled length."""

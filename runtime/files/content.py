@@ -8,12 +8,9 @@ from dataclasses import asdict
 
 from ..fields import COLUMNS
 from ..report import SamplingReport
+from .reading import UnusableError
 
-__all__ = ["UnusableError", "known_fields", "lacks", "report_from_json", "report_to_json"]
-
-
-class UnusableError(Exception):
-    """A file's content is not what it should be; the text continues "'path' …"."""
+__all__ = ["known_fields", "lacks", "report_from_json", "report_to_json"]
 
 
 def report_to_json(report: SamplingReport) -> str:

@@ -7,10 +7,9 @@ from io import BufferedReader
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..errors import FileError, InputError
+from ..errors import InputError
 from ..extras import check_extra
 from ..samples import Samples
-from .content import UnusableError
 from .gltf import PURPOSE, write_glb
 from .npz import read_npz, write_npz
 from .paths import (
@@ -19,9 +18,9 @@ from .paths import (
     check_target,
     checked_path,
     known_suffix,
-    reason_of,
 )
 from .ply import read_ply, write_mesh_ply, write_ply
+from .reading import opened
 from .tables import write_csv, write_xyz
 from .triangles import write_obj, write_stl
 from .vtk import write_mesh_vtp, write_vtk, write_vtp, write_vtu
@@ -133,20 +132,5 @@ def read_samples(path: PathLike) -> Samples:
     """
     path = checked_path(path)
     suffix = known_suffix(path, READABLE_SUFFIXES)
-    try:
-        file = open(path, "rb")  # noqa: SIM115 - an error here differs from one in the content
-    except OSError as error:
-        raise FileError(f"'{path}' cannot be read: {reason_of(error)}.") from error
-    with file:
-        try:
-            return _READERS[suffix](file)
-        except UnusableError as error:
-            raise FileError(f"'{path}' {error}") from error
-        except InputError as error:
-            raise FileError(f"'{path}' holds unusable samples: {error}") from error
-        except Exception as error:  # NumPy, zipfile and json raise a dozen kinds on bad bytes
-            reason = " ".join(f"{type(error).__name__}: {error}".split())
-            raise FileError(
-                f"'{path}' is damaged or is no {suffix} file of gaussmap ({reason}); "
-                "write it again."
-            ) from error
+    with opened(path, f"{suffix} file of gaussmap", "samples") as file:
+        return _READERS[suffix](file)

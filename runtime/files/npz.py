@@ -11,7 +11,8 @@ import numpy as np
 
 from ..fields import ARRAY_NAMES
 from ..samples import Samples
-from .content import UnusableError, known_fields, lacks, report_from_json, report_to_json
+from .content import known_fields, lacks, report_from_json, report_to_json
+from .reading import UnusableError
 
 __all__ = ["read_npz", "write_npz"]
 

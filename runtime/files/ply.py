@@ -21,7 +21,8 @@ from ..errors import InputError
 from ..fields import ARRAY_NAMES, COLUMNS, FLAG_NAMES, FLOAT_NAMES, columns_of, dtype_of, new_field
 from ..report import SamplingReport
 from ..samples import Samples
-from .content import UnusableError, known_fields, lacks, report_from_json, report_to_json
+from .content import known_fields, lacks, report_from_json, report_to_json
+from .reading import UnusableError
 
 if TYPE_CHECKING:
     from ..meshes.mesh import Mesh

@@ -8,7 +8,7 @@ from ...generated.faces import offset_jet, revolution_jet
 from ...generated.jet import at_jet
 from ...generated.vectors import Patch
 from .jit import jit
-from .vectors import row_vector, set_row
+from .vectors import row_vector, set_jet
 
 __all__ = ["offset", "revolve"]
 
@@ -24,12 +24,7 @@ def revolve(u, curve, out):
             row_vector(curve[k], 0), row_vector(curve[k], 1), row_vector(curve[k], 2),
             math.cos(u[k]), math.sin(u[k]),
         )  # fmt: skip
-        set_row(out[k], 0, p)
-        set_row(out[k], 1, x_u)
-        set_row(out[k], 2, x_v)
-        set_row(out[k], 3, x_uu)
-        set_row(out[k], 4, x_uv)
-        set_row(out[k], 5, x_vv)
+        set_jet(out[k], p, x_u, x_v, x_uu, x_uv, x_vv)
 
 
 @jit
@@ -45,9 +40,8 @@ def offset(distance, jets, thirds, out):
             row_vector(jets[k], 1), row_vector(jets[k], 2), row_vector(jets[k], 0),
         )  # fmt: skip
         L, n, _, _ = at_jet(patch)
-        jet = offset_jet(
+        p, x_u, x_v, x_uu, x_uv, x_vv = offset_jet(
             patch, row_vector(thirds[k], 0), row_vector(thirds[k], 1), row_vector(thirds[k], 2),
             row_vector(thirds[k], 3), n, L, distance,
         )  # fmt: skip
-        for d in range(6):
-            set_row(out[k], d, jet[d])
+        set_jet(out[k], p, x_u, x_v, x_uu, x_uv, x_vv)

@@ -18,7 +18,7 @@ from ...generated.patch import envelope, tangents
 from ...generated.vectors import Patch, Vector
 from ..tolerances import VANISHING
 from .jit import inline, jit
-from .vectors import dot, row_vector, set_row
+from .vectors import dot, row_vector, set_jet, set_row
 
 __all__ = [
     "CLAMPED",
@@ -284,17 +284,6 @@ def polar_jet(jets, k, angle, turn, sign):
     )
 
 
-@inline
-def set_jet(chart, k, x, X_s, X_t, X_ss, X_st, X_tt):
-    """Write a 2-jet."""
-    set_row(chart[k], 0, x)
-    set_row(chart[k], 1, X_s)
-    set_row(chart[k], 2, X_t)
-    set_row(chart[k], 3, X_ss)
-    set_row(chart[k], 4, X_st)
-    set_row(chart[k], 5, X_tt)
-
-
 @jit
 def jet_of_pole(jets, angle, sign, chart):
     """Write the 2-jet (1, 6, 3) of a pole, from those (3, 6, 3) at 0, 45 and 90 degrees."""
@@ -302,7 +291,7 @@ def jet_of_pole(jets, angle, sign, chart):
     middle = polar_jet(jets, 1, angle, 1.0, sign)
     last = polar_jet(jets, 2, angle, 1.0, sign)
     X_ss, X_st, X_tt, X_s, X_t = at_pole(first.e, first.c, middle.c, last.e, last.c)
-    set_jet(chart, 0, first.p, X_s, X_t, X_ss, X_st, X_tt)
+    set_jet(chart[0], first.p, X_s, X_t, X_ss, X_st, X_tt)
 
 
 @jit
@@ -320,4 +309,4 @@ def chart_jets(jets, phi, r, angle, turn, sign, near, pole, chart):
             there = patch_of_jet(pole, 0, 1.0, 1.0, 1.0)
             X_ss, X_st, X_tt = there.a, there.b, there.c
             X_s, X_t, _ = tangents(there, r[k] * x, r[k] * y)
-        set_jet(chart, k, jet_vector(jets, k, 0, 1.0), X_s, X_t, X_ss, X_st, X_tt)
+        set_jet(chart[k], jet_vector(jets, k, 0, 1.0), X_s, X_t, X_ss, X_st, X_tt)

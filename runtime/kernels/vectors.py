@@ -7,7 +7,7 @@ import math
 from ...generated.vectors import Vector
 from .jit import inline, loop
 
-__all__ = ["dot", "largest_component", "length", "row_vector", "set_row"]
+__all__ = ["dot", "largest_component", "length", "row_vector", "set_jet", "set_row"]
 
 
 @inline
@@ -22,6 +22,17 @@ def set_row(array, k, v):
     array[k, 0] = v.x
     array[k, 1] = v.y
     array[k, 2] = v.z
+
+
+@inline
+def set_jet(array, x, x_u, x_v, x_uu, x_uv, x_vv):
+    """Write a 2-jet to an array (6, 3)."""
+    set_row(array, 0, x)
+    set_row(array, 1, x_u)
+    set_row(array, 2, x_v)
+    set_row(array, 3, x_uu)
+    set_row(array, 4, x_uv)
+    set_row(array, 5, x_vv)
 
 
 @inline

@@ -9,7 +9,8 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import GaussmapError, InputError, SurfaceError, shown
+from ..errors import InputError, SurfaceError, shown
+from ..evaluation import called
 from ..splines.domain import Boundary, Domain
 from .loops import Loops, checked_loops
 
@@ -179,15 +180,7 @@ class Predicate:
 
     def _part(self, uv: Array) -> NDArray[np.bool_]:
         label = f"the predicate within=... of surface {self.name!r}"
-        try:
-            with np.errstate(all="ignore"):
-                found = self.function(uv[:, 0].copy(), uv[:, 1].copy())
-        except (GaussmapError, MemoryError):
-            raise
-        except Exception as error:
-            raise SurfaceError(
-                f"{label} raised {type(error).__name__}: {' '.join(str(error).split())}"
-            ) from error
+        found = called(self.function, (uv[:, 0], uv[:, 1]), label)
         if not isinstance(found, np.ndarray) or found.dtype != np.bool_:
             kind = found.dtype if isinstance(found, np.ndarray) else type(found).__name__
             raise SurfaceError(f"{label} must return an array of booleans, not {kind}.")

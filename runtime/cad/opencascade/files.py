@@ -53,7 +53,11 @@ def _step(source: Source) -> tuple[Document, tuple[LostFace, ...]]:
 
 
 def _read_step(path: Path) -> Any:  # noqa: ANN401
-    reader = STEPCAFControl_Reader()
+    return _read_by(STEPCAFControl_Reader(), path)
+
+
+def _read_by(reader: Any, path: Path) -> Any:  # noqa: ANN401
+    """Return the reader, with names and colours of the file; BadFileError if it cannot read it."""
     reader.SetNameMode(True)
     reader.SetColorMode(True)
     reader.SetLayerMode(False)
@@ -109,12 +113,7 @@ def _set_unit(document: Document, reader: Any) -> None:  # noqa: ANN401
 
 
 def _iges(path: Path) -> Document:
-    reader = IGESCAFControl_Reader()
-    reader.SetNameMode(True)
-    reader.SetColorMode(True)
-    reader.SetLayerMode(False)
-    if reader.ReadFile(str(path)) != IFSelect_ReturnStatus.IFSelect_RetDone:
-        raise BadFileError("is damaged: Open CASCADE cannot read it; export it again.")
+    reader = _read_by(IGESCAFControl_Reader(), path)
     metres = reader.IGESModel().GlobalSection().UnitValue() / 1e3
     document = new_document()
     reader.Transfer(document)
