@@ -19,8 +19,6 @@ MARGIN = 0.02
 FIRST = 2.0
 # The widest gaps between normals are searched down to this part of the widest radius.
 LEAST = 0.1
-# Decimal places to which known normals differ.
-DIGITS = 6
 # The widest angles are searched at one of this number of triangles.
 EACH = 3
 
@@ -72,18 +70,34 @@ def choose_apart(
 ) -> Indices:
     """Choose some of normals (M, 3), so that each is within the chord `near` of a chosen one.
 
-    Or `most` of them, the widest gaps first; `known` normals (N, 3) count as chosen.
+    Or `most` of them, the widest gaps first; `known` normals (N, 3), no two of them nearly equal,
+    count as chosen.
     """
-    radius, room = widest or FIRST * near, len(normals) if most is None else most
-    candidates = Candidates(_in_normal_space(normals, np.zeros(len(normals))), radius, threads)
+    rows, radius = np.arange(len(normals)), widest or FIRST * near
     if known is not None:
-        rows = _in_normal_space(known, np.zeros(len(known)))[:, :6]
-        candidates.update_distances(np.unique(rows.round(DIGITS), axis=0), radius)
+        rows, radius = _apart(normals, known, near, radius, threads)
+    room = len(rows) if most is None else most
+    candidates = Candidates(_in_normal_space(normals[rows], np.zeros(len(rows))), radius, threads)
+    if known is not None:
+        samples = _in_normal_space(known, np.zeros(len(known)))[:, :6]
+        candidates.update_distances(samples, radius)
     chosen = np.empty(0, dtype=np.int64)
     while radius > near and len(chosen) < room:
         radius = max(STEP * radius, near)
         chosen = np.append(chosen, candidates.choose(radius, room - len(chosen)))
-    return chosen
+    return rows[chosen]
+
+
+def _apart(
+    normals: Array, known: Array, near: float, widest: float, threads: int | None
+) -> tuple[Indices, float]:
+    """Return which normals are farther than `near` from known ones, and the largest distance.
+
+    That is `widest` at most. Radii that begin with it spare most updates of distances.
+    """
+    distances = tree_of(known).query(normals, workers=thread_count(threads))[0]
+    far = (distances > near) & normals.any(axis=1)
+    return np.flatnonzero(far), min(widest, float(distances[far].max(initial=near)) / STEP)
 
 
 def fill_widest_angles(cover: Cover, number: int, widest: float) -> None:
