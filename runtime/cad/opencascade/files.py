@@ -24,8 +24,9 @@ from .shapes import sequence
 
 __all__ = ["read_file"]
 
-# Of what Open CASCADE says of the entities of a file, what makes a face unusable.
-DAMAGE = ("not a Real", "unresolved")
+# Of what Open CASCADE says of the entities of a file, in small letters, what makes a face unusable.
+UNRESOLVED = "unresolved"
+DAMAGE = ("not a real", UNRESOLVED)
 
 
 def read_file(source: Source) -> tuple[Document, tuple[LostFace, ...]]:
@@ -76,7 +77,7 @@ def _damaged(reader: Any, content: bytes) -> Mapping[int, str] | None:  # noqa: 
     while checks.More():
         check = checks.Value()
         texts = [check.CFail(k) for k in range(1, check.NbFails() + 1)]
-        bad = [x for x in texts if any(word in x for word in DAMAGE)]
+        bad = [x for x in texts if any(word in x.lower() for word in DAMAGE)]
         if bad:
             found[checks.Number()] = bad[0]
         checks.Next()
@@ -88,7 +89,7 @@ def _damaged(reader: Any, content: bytes) -> Mapping[int, str] | None:  # noqa: 
     return {
         numbers[k - 1]: f"its #{numbers[k - 1]} is damaged ({text})"
         for k, text in found.items()
-        if k > 0 and "unresolved" not in text
+        if k > 0 and UNRESOLVED not in text.lower()
     }
 
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from OCP.TopoDS import TopoDS
 
+from ..counts import faces_said
 from ..damaged_step import LostFace
 from ..inspection import BadFileError
 from ..preparation import Source
@@ -16,6 +17,7 @@ from ..units import METRES, with_unit
 from .edges import sharp_edges
 from .faces import FaceReader
 from .files import read_file
+from .shapes import Table
 from .solids import PlacedFace, gathered
 
 __all__ = ["part_record"]
@@ -25,13 +27,25 @@ def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
     """Return the part in a file, in a unit or its own; BadFileError says why it cannot be read."""
     document, lost = read_file(source)
     found = gathered(document)
+    said = faces_said(source.content, source.format)
     if not found.faces and not lost:
-        raise BadFileError("has no faces; a part needs solids, shells or faces.")
+        raise BadFileError(
+            f"is damaged: Open CASCADE can make none of its {said} faces; export it again."
+            if said
+            else "has no faces; a part needs solids, shells or faces."
+        )
     reader = FaceReader()
     faces = [_face(x, reader) for x in found.faces]
     if all(x.reason for x in faces):
         why = faces[0].reason if faces else lost[0].reason
         raise BadFileError(f"has no face that can be used: of the first one, {why}.")
+    said += len(source.lost)
+    missing = said - _different(found.faces) - len(lost)
+    if missing > 0:
+        document.warnings.append(
+            f"{missing} of {said} faces are missing: Open CASCADE cannot make them; export the "
+            "file again."
+        )
     in_unit = unit or document.unit
     factor = METRES["mm"] / METRES[in_unit]
     edges = sharp_edges(found.faces, faces, factor)
@@ -50,6 +64,14 @@ def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
 def _face(face: PlacedFace, reader: FaceReader) -> FaceRecord:
     record = reader.record(TopoDS.Face(face.shape))
     return replace(record, name=face.name, color=face.color, solid_index=face.solid)
+
+
+def _different(faces: list[PlacedFace]) -> int:
+    """Return the number of faces, without copies in other places."""
+    known: Table[bool] = Table(placed=False)
+    for face in faces:
+        known.set(face.shape, True)
+    return len(known)
 
 
 def _lost_face(face: LostFace) -> FaceRecord:

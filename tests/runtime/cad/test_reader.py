@@ -1,20 +1,16 @@
 """`read_cad`: the process that reads, its limits, and what it says."""
 
-# pyright: reportMissingImports=false
-
+import _thread
 import os
 import sys
+import tempfile
+import threading
 import time
 
-import numpy as np
 import pytest
 from gaussmap.runtime.cad import reader
 from gaussmap.runtime.cad.reader import read_cad
-from gaussmap.runtime.errors import FileError, GaussmapWarning, InputError, MissingExtraError
-
-with_ocp = pytest.mark.skipif(
-    "not __import__('importlib.util').util.find_spec('OCP')", reason="needs Open CASCADE"
-)
+from gaussmap.runtime.errors import FileError, InputError, MissingExtraError
 
 
 @pytest.fixture
@@ -98,57 +94,16 @@ def test_a_process_that_crashes_is_an_error(tmp_path, installed, monkeypatch):
         read_cad(path)
 
 
-# --- with Open CASCADE ----------------------------------------------------------------------------
-
-
-def write_box(path, unit="INCH"):
-    from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
-    from OCP.Interface import Interface_Static
-    from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
-
-    writer = STEPControl_Writer()
-    Interface_Static.SetCVal_s("write.step.unit", unit)
-    shape = BRepPrimAPI_MakeBox(50.8, 25.4, 76.2).Shape()
-    writer.Transfer(shape, STEPControl_StepModelType.STEPControl_AsIs)
-    writer.Write(str(path))
-    Interface_Static.SetCVal_s("write.step.unit", "MM")
-
-
-@with_ocp
-def test_a_part_is_read(tmp_path, capfd):
-    path = tmp_path / "box.step"
-    write_box(path)
-    capfd.readouterr()
-    part = read_cad(path)
-    assert capfd.readouterr() == ("", "")
-    assert (part.name, part.unit, part.oriented, len(part.solids)) == ("box.step", "in", True, 1)
-    assert [x.kind for x in part.faces] == 6 * ["plane"]
-    assert part.area == pytest.approx(22.0)
-    part.save(tmp_path / "box.npz")
-    again = reader.read_part(tmp_path / "box.npz")
-    for name, array in part.arrays.items():
-        np.testing.assert_array_equal(array, again.arrays[name])
-
-
-@with_ocp
-def test_failed_faces_are_a_warning(tmp_path, capfd):
-    path = tmp_path / "bö\udcffx.step"  # a name that is not UTF-8
-    plain = tmp_path / "box.step"
-    write_box(plain)
-    plain.rename(path)
-    text = path.read_text()
-    path.write_text(text.replace("ADVANCED_FACE('',(#", "ADVANCED_FACE('lid',(#99999", 1))
-    with pytest.warns(GaussmapWarning, match=r"1 of 6 faces of .* cannot be used: face 5 \(lid\)"):
-        part = read_cad(path, unit="mm")
-    assert [x.name for x in part.failed] == ["lid"]
-    assert part.unit == "mm"
-
-
-@with_ocp
-def test_a_file_that_takes_too_long_is_an_error(tmp_path):
-    path = tmp_path / "box.step"
-    write_box(path)
-    start = time.perf_counter()
-    with pytest.raises(FileError, match=r"was not read within 0\.1 s"):
-        read_cad(path, time_limit=0.1)
-    assert time.perf_counter() - start < 2.1
+def test_an_interruption_leaves_nothing_behind(tmp_path, installed, monkeypatch):
+    path, folder, alive = tmp_path / "part.step", tmp_path / "temporary", tmp_path / "alive"
+    path.write_bytes(b"ISO-10303-21;")
+    folder.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(folder))
+    code = f"import time; time.sleep(1.0); open({str(alive)!r}, 'w')"
+    monkeypatch.setattr(reader, "_command", lambda request: sleeping(code))
+    threading.Timer(0.3, _thread.interrupt_main).start()
+    with pytest.raises(KeyboardInterrupt):
+        read_cad(path)
+    assert list(folder.iterdir()) == []
+    time.sleep(1.0)
+    assert not alive.exists()

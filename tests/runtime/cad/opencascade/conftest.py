@@ -13,13 +13,20 @@ from gaussmap.runtime.cad.opencascade.parts import part_record
 from gaussmap.runtime.cad.preparation import prepared
 from OCP.BRep import BRep_Builder
 from OCP.BRepTools import BRepTools
+from OCP.IGESControl import IGESControl_Writer
 from OCP.Interface import Interface_Static
 from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
 from OCP.TopoDS import TopoDS_Compound
 
 
 def written(shape, path: Path, unit: str = "MM") -> Path:
-    """Write a shape to a STEP or BREP file."""
+    """Write a shape to a STEP, IGES or BREP file."""
+    if path.suffix == ".iges":
+        writer = IGESControl_Writer(unit, 1)
+        writer.AddShape(shape)
+        writer.ComputeModel()
+        writer.Write(str(path))
+        return path
     if path.suffix == ".brep":
         BRepTools.Write_s(shape, str(path))
         return path

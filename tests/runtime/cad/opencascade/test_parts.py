@@ -240,11 +240,37 @@ def test_files_without_faces_are_refused(write, read):
         read(write(edge, "edge.brep"))
 
 
-def test_truncated_brep_files_are_refused(write, read):
-    path = write(drilled_box(), "part.brep")
-    content = path.read_bytes()
-    path.write_bytes(content[: len(content) // 2])
-    with pytest.raises(BadFileError, match="truncated"):
+@pytest.mark.parametrize("suffix", ["step", "iges", "brep"])
+def test_files_that_end_too_early_are_refused(suffix, write, read):
+    path = write(drilled_box(), f"part.{suffix}")
+    assert len(read(path).faces) == 7
+    content = path.read_bytes().rstrip()
+    for length in (*(len(content) * k // 10 for k in range(1, 10)), len(content) - 20):
+        path.write_bytes(content[:length])
+        with pytest.raises(BadFileError, match=r"is (truncated|damaged|empty)"):
+            read(path)
+
+
+@pytest.mark.parametrize("kind", ["PLANE", "VERTEX_POINT", "EDGE_LOOP", "LINE"])
+def test_faces_of_entities_that_are_missing_are_named(kind, write, read):
+    path = write(drilled_box())
+    path.write_text(re.sub(rf"\n#\d+ = {kind}\([^;]*;", "", path.read_text(), count=1))
+    part = read(path)
+    assert len(part.faces) == 7
+    reasons = [x.reason for x in part.faces if x.reason]
+    assert 1 <= len(reasons) <= 5
+    assert all("which the file lacks" in x for x in reasons)
+
+
+def test_faces_that_open_cascade_leaves_out_are_told(write, read):
+    path = write(drilled_box())
+    text = path.read_text()
+    path.write_text(text.replace("CYLINDRICAL_SURFACE(", "MYSTERIOUS_SURFACE(", 1))
+    assert read(path).warnings == [
+        "1 of 7 faces are missing: Open CASCADE cannot make them; export the file again."
+    ]
+    path.write_text(re.sub(r"(SOLID_BREP\('',)#\d+", r"\g<1>#99999", text))
+    with pytest.raises(BadFileError, match="can make none of its 7 faces"):
         read(path)
 
 
