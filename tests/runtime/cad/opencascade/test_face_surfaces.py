@@ -28,13 +28,13 @@ from OCP.BRepPrimAPI import (
     BRepPrimAPI_MakeSphere,
     BRepPrimAPI_MakeTorus,
 )
-from OCP.GCE2d import GCE2d_MakeSegment
 from OCP.Geom import (
     Geom_CylindricalSurface,
     Geom_OffsetSurface,
     Geom_RectangularTrimmedSurface,
 )
-from OCP.gp import gp_Ax1, gp_Ax2, gp_Ax3, gp_Dir, gp_Pnt, gp_Pnt2d, gp_Vec
+from OCP.Geom2d import Geom2d_Line
+from OCP.gp import gp_Ax1, gp_Ax2, gp_Ax3, gp_Dir, gp_Dir2d, gp_Pnt, gp_Pnt2d, gp_Vec
 from OCP.IntTools import IntTools_FClass2d
 from OCP.TopAbs import TopAbs_Orientation, TopAbs_ShapeEnum, TopAbs_State
 from OCP.TopoDS import TopoDS
@@ -89,10 +89,11 @@ def offset(name, distance):
     return Geom_OffsetSurface(trimmed, distance), inside
 
 
+# No left-handed plane: 7.9 moves it along x_u × x_v, as the manual says, and 8.0 to the other side.
 OFFSETS = {
     f"offset, {name}": offset(name, distance)
     for name, distance in (
-        ("plane, left-handed", 0.5), ("cylinder, left-handed", 0.5), ("cone", -0.3),
+        ("plane", 0.5), ("cylinder, left-handed", 0.5), ("cone", -0.3),
         ("sphere", -0.3), ("torus", 0.4), ("nurbs, Bézier", 0.1), ("nurbs", 0.2),
         ("revolution, arc", -0.2), ("extrusion, ellipse", 0.2),
     )
@@ -118,8 +119,9 @@ def thread():
     corners = [(0.1, 0.0), (12.4, 2.5), (12.4, 2.9), (0.1, 0.4)]
     wire = BRepBuilderAPI_MakeWire()
     for first, last in zip(corners, corners[1:] + corners[:1], strict=True):
-        line = GCE2d_MakeSegment(gp_Pnt2d(*first), gp_Pnt2d(*last)).Value()
-        edge = BRepBuilderAPI_MakeEdge(line, surface).Edge()
+        step = np.subtract(last, first).tolist()
+        line = Geom2d_Line(gp_Pnt2d(*first), gp_Dir2d(*step))
+        edge = BRepBuilderAPI_MakeEdge(line, surface, 0.0, math.hypot(*step)).Edge()
         BRepLib.BuildCurves3d_s(edge)
         wire.Add(edge)
     return BRepBuilderAPI_MakeFace(surface, wire.Wire()).Shape()
