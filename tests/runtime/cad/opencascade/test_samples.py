@@ -9,7 +9,10 @@ import pytest
 pytest.importorskip("OCP")
 
 from gaussmap.runtime.cad.faces import own_parameters
+from gaussmap.runtime.cad.opencascade.parts import part_record
 from gaussmap.runtime.cad.opencascade.shapes import parts_of
+from gaussmap.runtime.cad.part import part_of
+from gaussmap.runtime.cad.preparation import prepared
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
@@ -53,10 +56,12 @@ def sphere():
 def made(request, tmp_path_factory):
     """Return a shape, its faces without their orientation, and the part that is read."""
     shape = request.param()
-    path = written(shape, tmp_path_factory.mktemp("cad") / "part.brep")
+    folder = tmp_path_factory.mktemp("cad")
+    path = written(shape, folder / "part.brep")
+    part = part_of(part_record(prepared(path, folder), "part", None))
     faces = parts_of(shape, TopAbs_ShapeEnum.TopAbs_FACE)
     forward = TopAbs_Orientation.TopAbs_FORWARD
-    return shape, [TopoDS.Face(x.Oriented(forward)) for x in faces], gm.read_cad(path)
+    return shape, [TopoDS.Face(x.Oriented(forward)) for x in faces], part
 
 
 def xyz(p):
