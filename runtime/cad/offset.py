@@ -2,7 +2,8 @@
 
 Points and first derivatives follow from the 2-jet of the other surface. Second derivatives need
 its third ones, too. These are numerical: differences of its second derivatives at nine places of
-one knot span. The second derivatives are good to about 1e-12, relative to the largest.
+one knot span. The second derivatives are good to about 1e-12, relative to the largest; 1e-10 where
+the reader has interpolated a circle or another curve that is no NURBS.
 """
 
 from __future__ import annotations

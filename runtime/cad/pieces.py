@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 # Angles are divided into parts of at most this, in radians.
 ANGLE = 0.25
-# The parts between two knots: polynomials of higher degrees turn in between.
+# The parts between two knots, at least: polynomials of higher degrees turn in between.
 PARTS_OF_SPAN = 2
 # Lines that are closer to one another than this part of the domain are one.
 SAME_LINE = 1e-9
@@ -112,7 +112,7 @@ def pieces_of(faces: tuple[Face, ...]) -> tuple[list[Piece], dict[int, str]]:
 
 def _lines(face: Face, axis: int, ends: tuple[float, float]) -> Array:
     """Return where the domain is cut along an axis: at knots, and into parts of them."""
-    knots, geometry = _knots(face.geometry, axis), face.geometry
+    (knots, degree), geometry = _knots(face.geometry, axis), face.geometry
     while geometry.basis is not None:
         geometry = geometry.basis
     if axis == 0 and face.reversed:  # as u of its surface is
@@ -125,23 +125,22 @@ def _lines(face: Face, axis: int, ends: tuple[float, float]) -> Array:
     inside = np.sort(knots[(knots > ends[0] + slack) & (knots < ends[1] - slack)])
     inside = inside[np.diff(inside, prepend=-np.inf) > slack]
     lines = np.concatenate([[ends[0]], inside, [ends[1]]])
-    parts = PARTS_OF_SPAN if len(knots) else 1
+    parts = max(PARTS_OF_SPAN, math.ceil(degree / 2)) if len(knots) else 1
     if ANGLES.get(geometry.kind, (False, False))[axis]:
         parts = math.ceil((ends[1] - ends[0]) / ANGLE)
     between = [np.linspace(a, b, parts + 1)[:-1] for a, b in itertools.pairwise(lines)]
     return np.concatenate([*between, lines[-1:]])
 
 
-def _knots(geometry: Geometry, axis: int) -> Array:
-    """Return the knots of a surface along an axis, without those of degree 1 in a straight line."""
+def _knots(geometry: Geometry, axis: int) -> tuple[Array, int]:
+    """Return the knots of a surface along an axis, and the degree between them; 0 if none."""
     if geometry.basis is not None:
         return _knots(geometry.basis, axis)
-    if geometry.net is None:
-        return np.empty(0)
-    of_curve = {"revolution": 1, "extrusion": 0}.get(geometry.kind)
-    if of_curve is None:
-        return np.unique(geometry.net.knots[axis])
-    return np.unique(geometry.net.knots[0]) if of_curve == axis else np.empty(0)
+    net, of_curve = geometry.net, {"revolution": 1, "extrusion": 0}.get(geometry.kind)
+    if net is None or of_curve not in (None, axis):
+        return np.empty(0), 0
+    place = axis if of_curve is None else 0
+    return np.unique(net.knots[place]), net.degrees[place]
 
 
 def _beside(polygon: Array, sizes: Array, n: int) -> Array:

@@ -20,9 +20,10 @@ __all__ = ["UnusableError", "curve_net", "knots_of"]
 Array = NDArray[np.float64]
 
 # Other curves than NURBS, such as circles, are polynomials of this degree between the knots of a
-# spline that interpolates it. The number of spans is FIRST_SPANS, and is doubled until the error,
-# relative to the size of the curve, is that of rounding.
-DEGREE, FIRST_SPANS, MOST_SPANS = 9, 16, 1024
+# spline that interpolates it. The number of spans is doubled until the error, relative to the size
+# of the curve, is that of rounding. Third derivatives of shorter spans would have larger errors,
+# and offsets need them: the circle has four spans.
+DEGREE, MOST_SPANS = 13, 1024
 ROUNDING = 4e-15
 # A line goes on beyond its domain by this part of it.
 BEYOND = 0.1
@@ -85,7 +86,7 @@ def _values(curve: Any, parameters: Array) -> Array:  # noqa: ANN401
 
 def _interpolated(curve: Any, first: float, last: float) -> Net:  # noqa: ANN401
     """Return a curve as polynomials between knots, at which they meet."""
-    spans = FIRST_SPANS
+    spans = 1
     while spans <= MOST_SPANS:
         ends = np.linspace(first, last, spans + 1)
         points = _control_points(curve, ends)

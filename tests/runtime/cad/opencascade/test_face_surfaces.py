@@ -43,10 +43,9 @@ from .test_surfaces import ELLIPSE, SURFACES
 
 # Points, first and second derivatives, relative to the largest of each.
 TOLERANCES = (1e-13, 1e-11, 1e-10)
-# Curves that are no NURBS are interpolated to rounding, which second derivatives amplify: so do the
-# third ones, in offsets of surfaces of such curves.
-AMPLIFIED = (1e-13, 1e-11, 2e-9)
-INTERPOLATED = ("extrusion, offset curve", "offset, revolution, arc", "offset, extrusion, ellipse")
+# Interpolated offset curves that nearly have a cusp have less accurate second derivatives.
+AMPLIFIED = (1e-13, 1e-11, 5e-10)
+NEAR_CUSPS = ("extrusion, offset curve",)
 PLACES = 500
 # The largest error of what is inside, and of areas.
 OF_BOX, OF_AREA = 1e-3, 1e-3
@@ -106,7 +105,7 @@ def test_derivatives_are_those_of_open_cascade(name):
     surface, domain = CASES[name]
     uv = places(domain, 200)
     jets = face_surface(geometry_of(surface, domain), domain).jets(*np.ascontiguousarray(uv.T))
-    tolerances = AMPLIFIED if name in INTERPOLATED else TOLERANCES
+    tolerances = AMPLIFIED if name in NEAR_CUSPS else TOLERANCES
     assert (errors(jets, jets_of(surface, uv)) <= tolerances).all()
 
 
