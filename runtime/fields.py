@@ -19,12 +19,15 @@ __all__ = [
     "ARRAY_NAMES_ON_SURFACE",
     "COLUMNS",
     "DERIVED",
+    "EDGE_NAMES",
     "FLAG_NAMES",
     "FLOAT_NAMES",
     "GRID_NAMES",
     "INDEX_NAMES",
+    "INTEGER_NAMES",
     "OPTIONAL_NAMES",
     "PART_NAMES",
+    "REAL_NAMES",
     "checked_dtype",
     "checked_fields",
     "columns_of",
@@ -48,6 +51,9 @@ COLUMNS: dict[str, tuple[str, ...]] = {
     "column": ("column",),
     "face_index": ("face_index",),
     "solid_index": ("solid_index",),
+    "other_normals": ("other_nx", "other_ny", "other_nz"),
+    "other_uv": ("other_u", "other_v"),
+    "other_face_index": ("other_face_index",),
 }
 INDEX_NAMES = ("normal_index", "patch_index")
 # Only samples of a surface have these, not those of its spline.
@@ -56,7 +62,10 @@ FLAG_NAMES = ("on_surface",)
 GRID_NAMES = ("row", "column")
 # Only samples of CAD parts have these.
 PART_NAMES = ("face_index", "solid_index")
-OPTIONAL_NAMES = FLAG_NAMES + GRID_NAMES + PART_NAMES
+# Of these, only those of which some are on sharp edges have these.
+EDGE_NAMES = ("other_normals", "other_uv", "other_face_index")
+OPTIONAL_NAMES = FLAG_NAMES + GRID_NAMES + PART_NAMES + EDGE_NAMES
+INTEGER_NAMES = INDEX_NAMES + GRID_NAMES + PART_NAMES + ("other_face_index",)
 ARRAY_NAMES: tuple[str, ...] = tuple(name for name in COLUMNS if name not in OPTIONAL_NAMES)
 ARRAY_NAMES_ON_SURFACE: tuple[str, ...] = ARRAY_NAMES + FLAG_NAMES
 ARRAY_NAMES_OF_PART: tuple[str, ...] = (
@@ -64,6 +73,10 @@ ARRAY_NAMES_OF_PART: tuple[str, ...] = (
     *PART_NAMES,
 )
 FLOAT_NAMES: tuple[str, ...] = tuple(name for name in ARRAY_NAMES if name not in INDEX_NAMES)
+# All whose numbers may be float32.
+REAL_NAMES: tuple[str, ...] = tuple(
+    name for name in COLUMNS if name not in INTEGER_NAMES + FLAG_NAMES
+)
 # What is computed from fields when it is read.
 DERIVED: dict[str, tuple[str, ...]] = {
     "elliptic": ("gaussian_curvature",),
@@ -86,7 +99,7 @@ def dtype_of(name: str, floating: DTypeLike) -> np.dtype[Any]:
 
     if name in FLAG_NAMES:
         return np.dtype(np.bool_)
-    return np.dtype(np.int64 if name in INDEX_NAMES + GRID_NAMES + PART_NAMES else floating)
+    return np.dtype(np.int64 if name in INTEGER_NAMES else floating)
 
 
 def new_field(name: str, count: int, dtype: DTypeLike) -> NDArray[Any]:
@@ -106,21 +119,25 @@ def columns_of(arrays: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
 
 
 def checked_fields(
-    fields: Sequence[str] | None, surface: bool = False, grid: bool = False, part: bool = False
+    fields: Sequence[str] | None,
+    surface: bool = False,
+    grid: bool = False,
+    part: bool = False,
+    edges: bool = False,
 ) -> tuple[str, ...]:
     """Return the fields that are wanted, in the order of `COLUMNS`; None stands for all.
 
     With `surface` they are for samples on the surface, with `grid` for those that may be on a grid,
-    with `part` for those of a CAD part. Raises UnknownNameError for an unknown name, InputError for
-    what is no tuple of names, for no names, for a name that comes twice, and for one that is
-    computed from fields.
+    with `part` for those of a CAD part, and with `edges` on its sharp edges, too. Raises
+    UnknownNameError for an unknown name, InputError for what is no tuple of names, for no names,
+    for a name that comes twice, and for one that is computed from fields.
     """
     from .checks import known_name
 
     known = ARRAY_NAMES_ON_SURFACE if surface else ARRAY_NAMES
     known += GRID_NAMES if grid else ()
     if part:
-        known = ARRAY_NAMES_OF_PART
+        known = ARRAY_NAMES_OF_PART + (EDGE_NAMES if edges else ())
     if fields is None:
         return known
     if isinstance(fields, str):
@@ -147,6 +164,8 @@ def checked_fields(
             raise InputError(f'{name} is a field of samples on the surface only; see on="surface".')
         if name in PART_NAMES and not part:
             raise InputError(f"{name} is a field of samples of CAD parts only; see gm.read_part.")
+        if name in EDGE_NAMES and not edges:
+            raise InputError(f"{name} is a field of samples of CAD parts with edges=True only.")
         if name in GRID_NAMES and not grid:
             raise InputError(f'{name} is a field of samples on a grid only; see density="aligned".')
         known_name(name, known, "field")

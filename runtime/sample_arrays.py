@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .checks import checked_array, checked_rows
 from .errors import InputError, MissingFieldError
-from .fields import COLUMNS, DERIVED, FLOAT_NAMES, OPTIONAL_NAMES, dtype_of, row_shape
+from .fields import COLUMNS, DERIVED, OPTIONAL_NAMES, REAL_NAMES, dtype_of, row_shape
 from .kinds import is_parabolic
 from .offset_of import OffsetOf
 from .report import SamplingReport, common_report
@@ -50,6 +50,9 @@ class SampleArrays:
     column: NDArray[np.int64] | None = None
     face_index: NDArray[np.int64] | None = None
     solid_index: NDArray[np.int64] | None = None
+    other_normals: NDArray[np.float64] | None = None
+    other_uv: NDArray[np.float64] | None = None
+    other_face_index: NDArray[np.int64] | None = None
     report: SamplingReport = field(kw_only=True)
     spline: Spline | None = field(default=None, kw_only=True)
     surface: Surface | Whole | None = field(default=None, kw_only=True)
@@ -215,10 +218,15 @@ class SampleArrays:
 
     @property
     def kind(self) -> NDArray[np.str_]:
-        """(N,) str array: "normal" at prescribed normals, "grid" on a grid, else "filling"."""
+        """(N,) str array: "normal" at prescribed normals, "grid", "edge", else "filling".
+
+        "grid" is for those on a grid, and "edge" for those on sharp edges.
+        """
         kinds = np.where(self.normal_index < 0, "filling", "normal")
         if self.row is not None:
             kinds[self.row >= 0] = "grid"
+        if self.other_face_index is not None:
+            kinds[self.other_face_index >= 0] = "edge"
         return kinds
 
     @property
@@ -386,5 +394,5 @@ def _pickles(value: object) -> bool:
 
 def _common_dtype(arrays: Mapping[str, object]) -> np.dtype[np.floating]:
     """Return float32 if all that may be float32 is, otherwise float64."""
-    types = {getattr(arrays[name], "dtype", None) for name in FLOAT_NAMES if name in arrays}
+    types = {getattr(arrays[name], "dtype", None) for name in REAL_NAMES if name in arrays}
     return np.dtype(np.float32 if types == {np.dtype(np.float32)} else np.float64)

@@ -77,6 +77,13 @@ class Samples(SampleArrays):
         Of a CAD part: the places of the sample's face and solid in `Part.faces` and `Part.solids`;
         −1 for a face that belongs to no solid. `uv` are those of the surface of the face. None for
         other samples.
+    other_normals : (N, 3) float64 array or None
+        Of samples with ``edges=True``: unit normals of the other face of a sample on a sharp edge,
+        whose `normals`, `uv`, curvatures and `face_index` are those of the first; else NaN.
+    other_uv : (N, 2) float64 array or None
+        Of samples with ``edges=True``: parameters on the other face of a sharp edge; else NaN.
+    other_face_index : (N,) int64 array or None
+        Of samples with ``edges=True``: the other face of a sample on a sharp edge; −1 for others.
     surface : Surface, Part or None
         The surface, or the CAD part, on which the samples are; None with ``on="spline"``, for
         samples from a file, and after pickling if the surface does not pickle.
@@ -119,6 +126,8 @@ class Samples(SampleArrays):
     >>> bool((on_grid.row >= -1).all()), bool((on_grid.column >= -1).all())
     (True, True)
     >>> samples.face_index is samples.solid_index is None  # not of a CAD part
+    True
+    >>> samples.other_normals is samples.other_uv is samples.other_face_index is None
     True
     >>> samples.offset_of, samples.offset(0.1).offset_of.distance
     (None, 0.1)

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from .bins import NormalBins
 from .cad.part import Part
+from .checks import yes_or_no
 from .choice import choose
 from .density.filling import filled_samples
 from .density.grid import without_lines
@@ -45,6 +46,7 @@ def sample(
     dtype: DTypeLike = np.float64,
     threads: int | None = None,
     progress: bool = False,
+    edges: bool = False,
 ) -> Samples:
     """Return points of a surface with their normals, dense where it is curved.
 
@@ -106,6 +108,10 @@ def sample(
         The number of threads, by default one for each core. The samples do not depend on it.
     progress : bool, default False
         Show a bar on standard error for work that takes longer than a second.
+    edges : bool, default False
+        Of a CAD part: add samples on its sharp edges, where the normals of two faces differ by more
+        than 1°. They come last and in addition: the others, and the count, angle and coverage that
+        these meet, stay the same. See Notes.
 
     Returns
     -------
@@ -146,6 +152,14 @@ def sample(
     `density` is "balanced", "uniform", a number, or "gauss" with `normals`; `cells` and `on` are
     not for parts.
 
+    Samples on edges have the `kind` "edge" and the normals of both faces, `normals` and
+    `other_normals`. They are on both faces exactly, or, where the faces of the file do not meet, on
+    the first one and as near to the other as in the file. However few samples there are, each edge
+    has some at both ends and one or more in between, such that the normals of neither face turn by
+    more than between neighbours elsewhere, about, and gaps are no wider than in flat regions. A
+    corner has one sample, with the normals of the edge that is sharpest there. Borders of open
+    shells have one face only, and are no edges. `Samples.weights` are 0 on edges.
+
     The samples of a spline at a normal have Σ sign K = χ/2, for every normal of every closed
     surface, those at poles included; χ is the Euler characteristic.
 
@@ -158,6 +172,10 @@ def sample(
     >>> torus = gm.surfaces.torus(major=1.0, minor=0.35)
     >>> gm.sample(torus, normals=[[1, 0, 0], [0, 1, 1]]).normal_index.tolist().count(1)
     2
+    >>> from gaussmap.runtime.cad.examples import box
+    >>> samples = gm.sample(box(), 60, edges=True)
+    >>> len(samples), samples.report.edge_samples, int((samples.kind == "edge").sum())
+    (100, 40, 40)
 
     """
     return sample_and_normals(
@@ -169,6 +187,7 @@ def sample(
         dtype=dtype,
         threads=threads,
         progress=progress,
+        edges=edges,
     )[0]
 
 
@@ -183,10 +202,14 @@ def sample_and_normals(
     fields: Sequence[str] | None = None,
     dtype: DTypeLike = np.float64,
     on: str | None = None,
+    edges: bool = False,
 ) -> tuple[Samples, NDArray[np.float64]]:
     """Return what `sample` returns, and the unit normals that were asked."""
+    edges = yes_or_no(edges, "edges")
     if isinstance(surface, Part):
-        return _of_part(surface, request, cells, on, fields, dtype, threads, progress)
+        return _of_part(surface, request, cells, on, fields, dtype, threads, progress, edges)
+    if edges:
+        raise InputError("edges=True is for CAD parts; other surfaces have no sharp edges.")
     surface, number = named(surface), checked_dtype(dtype)
     wanted = checked_fields(
         fields, place_of_samples(surface, on) == "surface", grid=request.density in ON_GRIDS
@@ -225,16 +248,17 @@ def _of_part(
     dtype: DTypeLike,
     threads: int | None,
     progress: bool,
+    edges: bool,
 ) -> tuple[Samples, NDArray[np.float64]]:
     """Return the samples of a CAD part; InputError for what it does not have."""
     from .cad.sampling import sample_part
 
-    number, wanted = checked_dtype(dtype), checked_fields(fields, surface=True, part=True)
+    number, wanted = checked_dtype(dtype), checked_fields(fields, True, part=True, edges=edges)
     if cells is not None:
         raise InputError("cells=... are for splines; the faces of a part need none.")
     if checked_place(on) == "spline":
         raise InputError('on="spline" is for surfaces; samples of a part lie on its faces.')
-    samples, searched = sample_part(part, request, wanted, number, threads, progress)
+    samples, searched = sample_part(part, request, wanted, number, threads, progress, edges)
     filled = request.density != "gauss"
     warn_of(samples.report, request.count, 6, coverage=request.coverage, filled=filled)
     return samples, searched

@@ -34,6 +34,8 @@ def summary_of(samples: Samples) -> str:
         line += f"; {report.faces:,} faces"
         if report.empty_faces:
             line += f", {report.empty_faces:,} of them without samples"
+    if report.edge_samples is not None:
+        line += f"; {report.edge_samples:,} of the samples are on sharp edges"
     if report.unrefined:
         line += f"; {report.unrefined:,} samples could not be moved to the surface"
     if report.apexes:
@@ -58,8 +60,13 @@ def misfit_clause(report: SamplingReport) -> str:
 
 
 def _filling(samples: Samples) -> int:
-    """Return how many samples are at no prescribed normal, as far as that is known."""
-    return int((samples.normal_index < 0).sum()) if "normal_index" in samples.fields else 0
+    """Return how many samples are at no prescribed normal nor edge, as far as that is known."""
+    if "normal_index" not in samples.fields:
+        return 0
+    filling = samples.normal_index < 0
+    if samples.other_face_index is not None:
+        filling &= samples.other_face_index < 0
+    return int(filling.sum())
 
 
 def _on_grid(samples: Samples) -> str:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 
 from .part import Part, part_of
-from .records import FaceRecord, Geometry, PartRecord
+from .records import EdgeRecord, FaceRecord, Geometry, PartRecord
 
-__all__ = ["box", "box_faces"]
+__all__ = ["box", "box_edges", "box_faces"]
 
 
 def box(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> Part:
@@ -21,7 +23,8 @@ def box(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> Part:
 
     """
     faces = box_faces(width, depth, height)
-    return part_of(PartRecord("box", "mm", 1e-3, True, faces, ["box"]))
+    edges = box_edges(width, depth, height)
+    return part_of(PartRecord("box", "mm", 1e-3, True, faces, ["box"], edges))
 
 
 def box_faces(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> list[FaceRecord]:
@@ -44,4 +47,18 @@ def box_faces(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> li
                 solid_index=0,
             )
             found.append(face)
+    return found
+
+
+def box_edges(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> list[EdgeRecord]:
+    """Return the twelve sharp edges between the faces of `box_faces`."""
+    size, found = np.array([width, depth, height]), []
+    for first, second in itertools.combinations(range(3), 2):
+        for far in itertools.product((False, True), repeat=2):
+            ends = np.zeros((2, 3))
+            ends[1, 3 - first - second] = size[3 - first - second]
+            ends[:, [first, second]] = size[[first, second]] * far
+            columns = [(k + step) % 3 for k in (first, second) for step in (1, 2)]
+            faces = 2 * first + far[0], 2 * second + far[1]
+            found.append(EdgeRecord(faces, ends[:, columns]))
     return found

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["KINDS", "EdgeRecord", "FaceRecord", "Geometry", "Net", "PartRecord"]
+__all__ = ["KINDS", "SHARP", "EdgeRecord", "FaceRecord", "Geometry", "Net", "PartRecord"]
 
 Array = NDArray[np.float64]
 
@@ -29,6 +29,8 @@ KINDS: dict[str, int] = {
     "offset": 1,
     "unknown": 0,
 }
+# Edges are sharp where the normals of their two faces differ by more than this, in degrees.
+SHARP = 1.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -110,15 +110,18 @@ def deviation(space: Space, points: Array, normals: Array) -> NormalDeviation:
 def weights(space: Space, samples: Samples) -> Array:
     """Return the areas (N,) that are nearest to each sample on its own face.
 
-    They add up to the area of the face. Of faces without samples, the area is left out.
+    They add up to the area of the face. Of faces without samples, the area is left out; samples on
+    edges have none.
     """
     found, faces = np.zeros(len(samples)), samples.face_index
     assert faces is not None
+    on_edge = samples.other_face_index
+    inner = np.ones(len(samples), np.bool_) if on_edge is None else on_edge < 0
     points = space.scaled_points(samples.points)
     cells = space.uniform.cut(math.sqrt(space.area / (CELLS_A_SAMPLE * max(len(samples), 1))))
     for k, rows in by_piece(cells):
         face = space.pieces[k].face
-        here = np.flatnonzero(faces == face.index)
+        here = np.flatnonzero((faces == face.index) & inner)
         if len(here):
             nearest = tree_of(points[here]).query(cells.rows[rows, :3])[1]
             shares = np.bincount(nearest, cells.numbers[rows, AREA], len(here))

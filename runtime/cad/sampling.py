@@ -6,7 +6,7 @@ import math
 import warnings
 from collections.abc import Callable, Sequence
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,7 @@ from ..density.filling import WIDER, WIDEST_GAP, spacing
 from ..density.relaxation import relax
 from ..density.request import Request
 from ..errors import GaussmapWarning, InputError
+from ..fields import EDGE_NAMES
 from ..kernels.sizing import TargetDensity
 from ..report import SamplingReport
 from ..samples import Samples
@@ -24,6 +25,7 @@ from ..threads import counted
 from ..tolerances import FLAT_SURFACE, LENGTH_ERROR
 from .at_normals import Given, given_at_normals
 from .cover import PartCover
+from .edge_sampling import with_edges
 from .part import Part
 from .results import arrays_of, reached_coverage, space_of
 from .space import Space
@@ -55,6 +57,7 @@ def sample_part(
     dtype: DTypeLike,
     threads: int | None,
     progress: bool,
+    edges: bool = False,
 ) -> tuple[Samples, Array]:
     """Return samples of a part, and the normals that were asked. Raises what `sample` raises."""
     _check(request)
@@ -66,12 +69,18 @@ def sample_part(
         cover = filling.cover()
         if request.angle is not None:
             angle = cover_normals(cover, request.angle)
-    arrays: dict[str, Any] = arrays_of(space, cover.added, given, fields, dtype)
+    on_faces = [x for x in fields if x not in EDGE_NAMES]
+    arrays: dict[str, Any] = arrays_of(space, cover.added, given, on_faces, dtype)
+    if edges:
+        arrays = with_edges(cover.sizing, cover.count, arrays, fields, dtype)
     reached = None
     if request.coverage is not None:
         points, asked = cover.points[:, :3], request.coverage * space.unit
         reached = reached_coverage(space, points, asked) / space.unit
     report = _report(part, space, cover, given, reached, angle)
+    if edges:
+        total = len(next(iter(arrays.values())))
+        report = replace(report, samples=total, edge_samples=total - cover.count)
     normals = np.empty((0, 3)) if request.normals is None else request.normals
     _warn(part, report, len(space.failed))
     return Samples(**arrays, report=report, surface=part), normals

@@ -11,7 +11,7 @@ from typing import Any
 import click
 
 from ... import __version__
-from ..fields import ARRAY_NAMES_ON_SURFACE, PART_NAMES
+from ..fields import ARRAY_NAMES_ON_SURFACE, EDGE_NAMES, PART_NAMES
 from ..limits import MOST, MOST_FREQUENCY, MOST_STEPS
 from .options import (
     Command,
@@ -62,7 +62,7 @@ examples:
   gaussmap sample torus --fields points,normals --float32 -o torus.ply
   gaussmap sample heights.npy --spacing 30 30 --count 50000 -o terrain.ply
   gaussmap sample scan.npz:points --periodic u --normals directions.npy -o scan.csv
-  gaussmap sample part.step --count 50000 -o part.ply
+  gaussmap sample part.step --count 50000 --edges -o part.ply
 """
 
 MESH_EXAMPLES = """\
@@ -114,12 +114,14 @@ def _command(
 def _sample() -> Command:
     group = "contents of the file"
     known = ", ".join(ARRAY_NAMES_ON_SURFACE)
-    of_parts = " and ".join(PART_NAMES)
+    of_parts, on_edges = " and ".join(PART_NAMES), ", ".join(EDGE_NAMES)
     names = (
-        f"Write these arrays only (default: all). They are {known}; of CAD parts {of_parts}, too."
+        f"Write these arrays only (default: all). They are {known}; of CAD parts {of_parts}, too; "
+        f"with --edges {on_edges}, too."
     )
     prefixes = "Order the samples such that every prefix of them is well distributed."
     single = "Write single precision: 7 digits instead of 16."
+    edges = "Of a CAD part: add samples on its sharp edges, with the normals of both faces."
     return _command(
         "sample",
         "Sample a surface and write the samples to a file.",
@@ -128,6 +130,7 @@ def _sample() -> Command:
         "the gaps between these, where the surface is flat or developable.",
         *_sampling(default_count=10_000),
         _output(".npz, .ply, .csv, .vtp or .xyz"),
+        Option("--edges", edges, group="the surface"),
         Option("--fields NAME,NAME", names, group=group),
         Option("--progressive", prefixes, group=group),
         Option("--float32", single, group=group),

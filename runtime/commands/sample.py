@@ -23,12 +23,19 @@ def run(options: SimpleNamespace) -> None:
     check_target(options.output, SUFFIXES)
     fields = None if options.fields is None else options.fields.split(",")
     is_part = is_part_file(options.surface)
-    written = checked_fields(fields, options.on != "spline", part=is_part)
+    written = checked_fields(
+        fields, options.on != "spline", part=is_part, edges=options.edges and is_part
+    )
     check_fields(options.output, written)
     if options.progressive and not {"points", "normals"} <= {*written}:
         raise InputError("--progressive needs points and normals among the --fields.")
     dtype = np.float32 if options.float32 else np.float64
-    samples = sample(**arguments(options, default_count=10_000), fields=fields, dtype=dtype)
+    samples = sample(
+        **arguments(options, default_count=10_000),
+        fields=fields,
+        dtype=dtype,
+        edges=options.edges,
+    )
     if options.progressive:
         samples = samples.progressive()
     samples.write(options.output)

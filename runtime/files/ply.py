@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..fields import ARRAY_NAMES, COLUMNS, FLAG_NAMES, FLOAT_NAMES, columns_of, dtype_of, new_field
+from ..fields import ARRAY_NAMES, COLUMNS, FLAG_NAMES, REAL_NAMES, columns_of, dtype_of, new_field
 from ..report import SamplingReport
 from ..samples import Samples
 from .content import known_fields, lacks, report_from_json, report_to_json
@@ -198,7 +198,7 @@ def _empty_arrays(fields: Sequence[str], vertices: _Element) -> dict[str, NDArra
     missing = [column for name in fields for column in COLUMNS[name] if column not in kinds]
     if missing:
         raise lacks("columns", missing)
-    floats = {kinds[column] for name in fields if name in FLOAT_NAMES for column in COLUMNS[name]}
+    floats = {kinds[column] for name in fields if name in REAL_NAMES for column in COLUMNS[name]}
     single = bool(floats) and all(kind.str[1:] == "f4" for kind in floats)
     arrays = {}
     for name in fields:

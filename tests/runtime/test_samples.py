@@ -9,7 +9,13 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.errors import InputError
-from gaussmap.runtime.fields import ARRAY_NAMES, ARRAY_NAMES_ON_SURFACE, GRID_NAMES, PART_NAMES
+from gaussmap.runtime.fields import (
+    ARRAY_NAMES,
+    ARRAY_NAMES_ON_SURFACE,
+    EDGE_NAMES,
+    GRID_NAMES,
+    PART_NAMES,
+)
 from gaussmap.runtime.report import SamplingReport
 from gaussmap.runtime.samples import Samples
 from hypothesis import given
@@ -46,7 +52,7 @@ def curved(K: object, H: object) -> Samples:
 
 class TestConstruction:
     def test_the_array_names_are_the_fields(self):
-        arrays = (*ARRAY_NAMES_ON_SURFACE, *GRID_NAMES, *PART_NAMES)
+        arrays = (*ARRAY_NAMES_ON_SURFACE, *GRID_NAMES, *PART_NAMES, *EDGE_NAMES)
         assert (*arrays, "report", "spline", "surface", "offset_of") == tuple(
             field.name for field in fields(Samples)
         )
@@ -177,11 +183,12 @@ class TestReport:
             "faces": np.int32(3),
             "empty_faces": np.uint8(1),
             "oriented": True,
+            "edge_samples": np.int64(2),
         }
         report = SamplingReport("s", *numbers, **more)
         assert [type(getattr(report, f.name)) for f in fields(report)] == [
             str, int, int, int, float, int, float, float, int, str, int, float, float, float,
-            int, int, str, int, int, bool,
+            int, int, str, int, int, bool, int,
         ]  # fmt: skip
 
     @pytest.mark.parametrize("name", ["normals", "samples", "patches", "developable_patches"])

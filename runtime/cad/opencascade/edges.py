@@ -11,15 +11,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
-from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Surface
-from OCP.GeomAbs import GeomAbs_CurveType as Curves
+from OCP.BRepAdaptor import BRepAdaptor_Surface
+from OCP.GeomAbs import GeomAbs_SurfaceType
 from OCP.gp import gp_Pnt, gp_Vec
 from OCP.TopAbs import TopAbs_Orientation, TopAbs_ShapeEnum
 from OCP.TopoDS import TopoDS
 
-from ..records import EdgeRecord, FaceRecord
+from ..records import SHARP, EdgeRecord, FaceRecord
 from ..units import scaled_parameters
-from .p_curves import curve_of
+from .p_curves import Curve, curve_of
 from .shapes import Table, parts_of
 from .solids import PlacedFace
 
@@ -27,25 +27,36 @@ __all__ = ["sharp_edges"]
 
 Array = NDArray[np.float64]
 
-# The normals of the faces of a sharp edge differ by more than this somewhere, in degrees.
-SHARP = 1.0
-# The number of points of a curved edge: for each span of a spline, and for other curves.
-POINTS_A_SPAN, POINTS = 8, 65
-FORWARD = TopAbs_Orientation.TopAbs_FORWARD
+# The points of a p-curve that is not straight: an angle between those of circles, a number for each
+# piece of others, and the least and the largest number.
+ANGLE, POINTS_A_PIECE, LEAST, MOST = 0.15, 4, 9, 1025
+# Where normals are compared: at first, and along edges that are not sharp there.
+FIRST = np.array([0.25, 0.5, 0.75])
+ALL = np.linspace(0.0, 1.0, 17)
+# There is no normal where the area of x_u and x_v is less than this part of the square of the
+# longer one: at poles it is rounding.
+NO_AREA = 1e-12
+CHORD = 2.0 * math.sin(math.radians(SHARP) / 2.0)
+FORWARD, REVERSED = TopAbs_Orientation.TopAbs_FORWARD, TopAbs_Orientation.TopAbs_REVERSED
+PLANE = GeomAbs_SurfaceType.GeomAbs_Plane
 
 
 def sharp_edges(
     placed: Sequence[PlacedFace], faces: Sequence[FaceRecord], factor: float
 ) -> list[EdgeRecord]:
-    """Return the edges at which the normals of two faces differ.
+    """Return the edges at which the normals of two faces differ somewhere.
 
-    Parameters that are lengths are multiplied by `factor`, as those of the faces will be.
+    What the file says of their smoothness is often wrong, and is not asked. Borders, edges of three
+    faces or more, and those that a face has on both sides, such as seams, are left out. Parameters
+    that are lengths are multiplied by `factor`, as those of the faces will be.
     """
     found = []
     for (i, first), (k, second) in _shared(placed, faces):
-        edge = _Edge(first, second, placed[i].sewn, placed[k].sewn)
+        if BRep_Tool.Degenerated_s(first):
+            continue
         try:
-            parameters = edge.parameters() if edge.is_sharp() else None
+            sides = _Side(first, placed[i].sewn), _Side(second, placed[k].sewn)
+            parameters = _parameters(*sides) if _is_sharp(*sides) else None
         except Exception:  # of Open CASCADE: without a p-curve, there is nothing to say
             continue
         if parameters is not None and np.isfinite(parameters).all():
@@ -61,64 +72,81 @@ def _shared(
     users: Table[list[tuple[int, Any]]] = Table()
     every = []
     for k, (face, record) in enumerate(zip(placed, faces, strict=True)):
-        if record.reason:
-            continue
         for edge in parts_of(face.sewn.Oriented(FORWARD), TopAbs_ShapeEnum.TopAbs_EDGE):
             known = users.get(edge)
             if known is None:
                 known = []
                 users.set(edge, known)
                 every.append(known)
-            known.append((k, TopoDS.Edge(edge)))
+            known.append((-1 if record.reason else k, TopoDS.Edge(edge)))
     for known in every:
-        if len(known) == 2 and known[0][0] != known[1][0]:
+        if len(known) != 2 or known[0][0] == known[1][0] or min(known[0][0], known[1][0]) < 0:
+            continue
+        # Edges inside of a face, which bound nothing, have other orientations.
+        if all(x.Orientation() in (FORWARD, REVERSED) for _, x in known):
             yield known
 
 
-class _Edge:
-    """An edge with the two faces that it lies between."""
+class _Side:
+    """A face at one of its edges."""
 
-    def __init__(self, first: Any, second: Any, one: Any, other: Any) -> None:  # noqa: ANN401
-        self._edge = first
-        faces = [TopoDS.Face(x.Oriented(FORWARD)) for x in (one, other)]
-        self._curves = [
-            curve_of(edge, face) for edge, face in zip((first, second), faces, strict=True)
-        ]
-        self._surfaces = [BRepAdaptor_Surface(x, False) for x in faces]
-        self._signs = [1.0 if x.Orientation() == FORWARD else -1.0 for x in (one, other)]
+    def __init__(self, edge: Any, face: Any) -> None:  # noqa: ANN401
+        whole = TopoDS.Face(face.Oriented(FORWARD))
+        self.curve: Curve = curve_of(edge, whole)
+        self.surface = BRepAdaptor_Surface(whole, False)
+        # The normal of a plane is the same everywhere.
+        self.is_plane = self.surface.GetType() == PLANE
+        self._sign = 1.0 if face.Orientation() == FORWARD else -1.0
 
-    def is_sharp(self) -> bool:
-        """Return whether the normals of the faces differ somewhere along it."""
-        if BRep_Tool.Degenerated_s(self._edge):
-            return False
-        first, last = self._curves[0].ends[0], self._curves[0].ends[-1]
-        t = first + (last - first) * np.array([0.25, 0.5, 0.75])
-        normals = [
-            sign * _normals(surface, curve.evaluate(t)[:, :2])
-            for sign, surface, curve in zip(self._signs, self._surfaces, self._curves, strict=True)
-        ]
-        cosines = (normals[0] * normals[1]).sum(axis=1)
-        return bool((cosines < math.cos(math.radians(SHARP))).any())
+    @property
+    def points(self) -> int:
+        """How many points stand for its curve."""
+        curve = self.curve
+        if not curve.pieces:
+            return 2
+        if curve.radius:
+            number = math.ceil((curve.ends[-1] - curve.ends[0]) / ANGLE)
+        else:
+            number = POINTS_A_PIECE * curve.pieces * (len(curve.ends) - 1)
+        return min(max(number + 1, LEAST), MOST)
 
-    def parameters(self) -> Array:
-        """Return u and v on the first and on the second face at points (k, 4) along it."""
-        first, last = self._curves[0].ends[0], self._curves[0].ends[-1]
-        curve = BRepAdaptor_Curve(self._edge)
-        kind, count = curve.GetType(), POINTS
-        if kind == Curves.GeomAbs_Line:
-            count = 2
-        elif kind == Curves.GeomAbs_BSplineCurve:
-            count = max(count, POINTS_A_SPAN * (curve.BSpline().NbKnots() - 1) + 1)
-        t = np.linspace(first, last, count)
-        return np.concatenate([x.evaluate(t)[:, :2] for x in self._curves], axis=1)
+    def uv(self, shares: Array) -> Array:
+        """Return u and v (k, 2) at shares (k,) of the curve, from 0 to 1 in its own range."""
+        first, last = self.curve.ends[0], self.curve.ends[-1]
+        if self.curve.pieces:
+            return self.curve.evaluate(first + (last - first) * shares)[:, :2]
+        ends = self.curve.evaluate(np.array([first, last]))[:, :2]
+        return ends[0] + shares[:, None] * (ends[1] - ends[0])
+
+    def normals(self, shares: Array) -> Array:
+        """Return the unit normals (k, 3) of the oriented face; NaN where there are none."""
+        point, along_u, along_v = gp_Pnt(), gp_Vec(), gp_Vec()
+        rows = np.empty((len(shares), 3))
+        for k, (u, v) in enumerate(self.uv(shares[:1] if self.is_plane else shares).tolist()):
+            self.surface.D1(u, v, point, along_u, along_v)
+            normal = along_u.Crossed(along_v)
+            longer = max(along_u.SquareMagnitude(), along_v.SquareMagnitude())
+            area = normal.Magnitude()
+            scale = self._sign / area if area > NO_AREA * longer else math.nan
+            rows[k] = normal.X() * scale, normal.Y() * scale, normal.Z() * scale
+        if self.is_plane:
+            rows[1:] = rows[0]
+        return rows
 
 
-def _normals(surface: Any, uv: Array) -> Array:  # noqa: ANN401
-    point, along_u, along_v = gp_Pnt(), gp_Vec(), gp_Vec()
-    rows = []
-    for u, v in uv.tolist():
-        surface.D1(u, v, point, along_u, along_v)
-        normal = along_u.Crossed(along_v)
-        rows.append((normal.X(), normal.Y(), normal.Z()))
-    normals = np.array(rows)
-    return normals / np.linalg.norm(normals, axis=1, keepdims=True)
+def _is_sharp(one: _Side, other: _Side) -> bool:
+    """Return whether the normals of the faces differ somewhere along their edge."""
+    if one.is_plane and other.is_plane:
+        return _differ(one, other, FIRST[1:2])
+    return _differ(one, other, FIRST) or _differ(one, other, ALL)
+
+
+def _differ(one: _Side, other: _Side, shares: Array) -> bool:
+    chords = np.linalg.norm(one.normals(shares) - other.normals(shares), axis=1)
+    return bool((chords > CHORD).any())
+
+
+def _parameters(one: _Side, other: _Side) -> Array:
+    """Return u and v on both faces at points (k, 4) along their edge."""
+    shares = np.linspace(0.0, 1.0, max(one.points, other.points))
+    return np.concatenate([one.uv(shares), other.uv(shares)], axis=1)
