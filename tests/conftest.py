@@ -40,6 +40,7 @@ def pytest_configure(config: pytest.Config) -> None:
     for marker in (
         "compiled: needs compiled kernels (too slow under NUMBA_DISABLE_JIT=1)",
         "kernels: runs formulas and kernels; `make coverage` runs it without compilation",
+        "quick_for(*ids): slow, but for the parameters with one of these ids",
         "slow: takes long and seldom fails; run by `make verify`, and not by `make test`",
     ):
         config.addinivalue_line("markers", marker)
@@ -56,6 +57,9 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if item.path.relative_to(HERE).as_posix().startswith(OF_KERNELS):
             item.add_marker("kernels")
+        quick = item.get_closest_marker("quick_for")
+        if quick and not set(quick.args).intersection(item.name[:-1].split("[", 1)[1].split("-")):
+            item.add_marker("slow")
     if os.environ.get("NUMBA_DISABLE_JIT", "0") != "0":
         skip = pytest.mark.skip(reason="too slow without compilation")
         for item in items:

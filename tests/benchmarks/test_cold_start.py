@@ -7,6 +7,7 @@ CALL = "gm.fit(torus, cells=(3, 4)).evaluate(0.5, 0.5)"
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
 def test_only_an_empty_cache_compiles(tmp_path):
     first, second = (cold_start.cold(CALL, tmp_path) for _ in range(2))
     names = [name for name, _, _ in first["functions"]]

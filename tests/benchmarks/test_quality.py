@@ -106,6 +106,7 @@ def few(monkeypatch):
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
 def test_a_surface_is_measured(few):
     gone = Peer("gone", "", "no_such_package_here", ways.perfect, 0)
     mesher = meshers.Mesher("mesh", ways.PERFECT, lambda form, count: count)

@@ -122,6 +122,7 @@ def test_coverage_holds_on_all_pieces():
         assert distances.max() <= report_of(samples).coverage <= 0.5
 
 
+@pytest.mark.slow
 def test_coverage_and_normal_deviation_are_of_all_pieces():
     samples = gm.sample(barrel(), coverage=0.2, cells=CELLS, on="surface")
     assert report_of(samples).coverage <= 0.2

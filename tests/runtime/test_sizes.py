@@ -182,6 +182,7 @@ def check_case(case: Case, exponents: list[int]) -> None:
 
 
 @pytest.mark.parametrize("name", CASES)
+@pytest.mark.quick_for("normals", "count", "uniform", "angle", "coverage", "grids", "curves")
 def test_results_are_those_of_size_one_scaled(name: str) -> None:
     check_case(CASES[name], [-997, 997] if name in LONG else EXPONENTS)
 

@@ -48,6 +48,7 @@ def test_interrupted_while_importing(module: str) -> None:
     assert run(code) == (130, "", "gaussmap: interrupted\n")
 
 
+@pytest.mark.slow
 def test_texts_of_surfaces_take_no_derivation() -> None:
     code = """
 import sys
@@ -146,6 +147,7 @@ PUBLIC = {
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
 def test_who_compiles_tells(tmp_path: Path) -> None:
     """Whichever name is used first, the notice is there if kernels are."""
     code = (

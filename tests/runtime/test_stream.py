@@ -41,6 +41,7 @@ def same(one, other):
 @pytest.mark.compiled
 @pytest.mark.parametrize("threads", [1, 2, 3, 7])
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band", "sphere"])
+@pytest.mark.quick_for("torus", "sphere")
 def test_chunks_make_the_whole(name, threads, monkeypatch):
     monkeypatch.setattr(search, "MOST_PATCHES", 64)
     spline = gm.fit(name, (20, 16))
@@ -289,6 +290,7 @@ print(came, peak() - before)
 
 @pytest.mark.compiled
 @pytest.mark.skipif(sys.platform != "linux", reason="the peak is in other units")
+@pytest.mark.slow
 def test_memory_is_bounded():
     """The samples would take 2.1 GB, and 240 MB of normals more; neither is ever there."""
     done = subprocess.run(

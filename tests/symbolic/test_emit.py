@@ -410,6 +410,7 @@ def copy(tmp_path, derived, monkeypatch):
     return shutil.copytree(files.GENERATED, tmp_path / "generated")
 
 
+@pytest.mark.slow
 def test_generated_is_up_to_date(derived):
     assert derived == files.existing(files.GENERATED)
 

@@ -73,6 +73,7 @@ class Balance(HTMLParser):
         assert self.open.pop() == tag
 
 
+@pytest.mark.slow
 def test_html_is_balanced():
     assert page().startswith(DOCTYPE + '<html lang="en">')
     parser = Balance()

@@ -66,6 +66,7 @@ def test_coverage_is_kept_and_reported(name, cells):
 
 @pytest.mark.parametrize("density", ["balanced", "uniform", 0.5, 2.0])
 @pytest.mark.parametrize("name", CATALOGUE)
+@pytest.mark.quick_for("torus", "ellipsoid", "cylinder")
 def test_the_coverage_of_samples_is_10_percent_off_at_most(name, density):
     """The places are a grid: a point may be half its diagonal farther than they are."""
     spline = gm.fit(gm.surfaces.surface(name), even(name, (12, 10)))
@@ -156,6 +157,7 @@ def diagonal(spline: gm.Spline) -> float:
 
 @pytest.mark.parametrize("angle", [2.5, 10.0])
 @pytest.mark.parametrize("name", CATALOGUE)
+@pytest.mark.quick_for("torus", "ellipsoid", "plane", "monkey_saddle")
 def test_angle_is_kept_everywhere(name, angle):
     """Border and poles included: there, no normals of the sphere need to lie inside the image."""
     spline = gm.fit(gm.surfaces.surface(name), (32, 32))
@@ -298,6 +300,7 @@ SINGULAR = {
 
 @pytest.mark.parametrize("cells", [(20, 20), (20, 21)])
 @pytest.mark.parametrize("name", SINGULAR)
+@pytest.mark.quick_for("swallowtail")
 def test_angles_are_kept_at_singular_points(name, cells):
     """Places nearer to a singular point than triangles are cut would need another bound."""
     surface = gm.Surface.from_callable(

@@ -134,6 +134,7 @@ def test_area_is_the_share_of_the_sphere_that_it_contains(seed: int) -> None:
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
 def test_solid_angle_is_additive_where_singular_points_are_inside() -> None:
     """Four quarters of a wild patch are patches, and their images make up that of the whole."""
     mixed = 0
@@ -374,6 +375,7 @@ def test_sheets_are_the_images_that_contain_a_normal(name: str) -> None:
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
 def test_solid_angles_of_a_spline_are_those_of_its_patches() -> None:
     images = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.dupin_cyclide(), (8, 6))
     single = np.array([(x.solid_angle, x.area) for x in images])

@@ -272,6 +272,7 @@ def signs_at(spline: gm.Spline, patches: Patches, places: Array) -> Array:
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
 def test_spline_of_a_wavy_graph_comes_nearer_with_finer_cells() -> None:
     """K of the spline is of order 1: its parabolic net is within two cells of the exact one."""
     for cells in (16, 48):
@@ -285,6 +286,7 @@ def test_spline_of_a_wavy_graph_comes_nearer_with_finer_cells() -> None:
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
 def test_polylines_of_a_spline_follow_it_in_space() -> None:
     spline = gm.fit(gm.surfaces.dupin_cyclide(), (12, 12))
     coarse, fine = (gm.gauss_map.parabolic_points(spline, tolerance=x) for x in (0.1, 1e-5))
@@ -315,6 +317,7 @@ def test_developable_splines_have_no_curves(name: str) -> None:
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
 def test_grids_are_splines() -> None:
     u, v = np.meshgrid(np.linspace(-1, 1, 40), np.linspace(-1, 1, 40), indexing="ij")
     points = np.stack([u, v, 0.2 * np.sin(3 * u) * np.cos(3 * v)], axis=-1)
@@ -359,6 +362,7 @@ def test_torus(factor: float) -> None:
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
 def test_torus_far_from_the_origin_has_the_accuracy_of_its_coordinates() -> None:
     torus = gm.surfaces.torus()
     moved = gm.Surface(
@@ -397,6 +401,7 @@ def test_monkey_saddle_has_one_point(scale: float) -> None:
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
 def test_isolated_point_anywhere_is_isolated_to_the_tolerance() -> None:
     for tolerance in (1e-2, 1e-4):
         saddle = graph(lambda u, v: (u - 0.3) ** 3 - 3 * (u - 0.3) * (v + 0.2) ** 2)
@@ -456,6 +461,7 @@ def test_curves_end_where_they_cross() -> None:
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("slope", [1.0, 0.3, 0.05])
+@pytest.mark.slow
 def test_curves_cross_at_any_angle(slope: float) -> None:
     """z = u⁴/12 − s² u² v²/2 + 5 v²: K ∝ u² − s² v² up to terms of the order four in u, v."""
     u, v = sp.symbols("u v")
@@ -472,6 +478,7 @@ def test_curves_cross_at_any_angle(slope: float) -> None:
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
 def test_curves_cross_across_the_ends_of_a_periodic_surface() -> None:
     """Waves on a cylinder: what crosses somewhere does so wherever the domain begins."""
 
@@ -529,6 +536,7 @@ def test_two_curves_in_one_cell_are_joined_the_right_way(ratio: int) -> None:
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
 def test_steep_waves_are_resolved() -> None:
     """z = sin 50u sin 40v: K vanishes where cos(50u + 40v) cos(50u − 40v) = 0, however steep."""
     found = gm.gauss_map.parabolic_points(
@@ -558,6 +566,7 @@ def test_small_closed_curve() -> None:
     ("size", "factor", "sharp"),
     [(5.0, 1.0, 1.0), (3.0, 1.0, 2.0), (2.0, 1.0, 10.0), (1.0, 0.1, 50.0)],
 )  # fmt: skip
+@pytest.mark.quick_for("5.0")
 def test_bump_has_one_circle_and_is_flat_far_from_it(
     size: float, factor: float, sharp: float
 ) -> None:
@@ -600,6 +609,7 @@ def test_curves_on_the_border_are_curves(domain, ends: bool) -> None:
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
 def test_closed_curve_smaller_than_all_cells_is_isolated() -> None:
     """z = x³ − 3 x y² + e r²: K vanishes on the circle r = e/3, which one rectangle has to meet."""
     e = 1e-3
@@ -614,6 +624,7 @@ def test_closed_curve_smaller_than_all_cells_is_isolated() -> None:
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
 def test_fine_waves_have_no_false_points() -> None:
     """Two families of lines 10x ± 10y = kπ are all there is, and K is known well there."""
     found = gm.gauss_map.parabolic_points(gm.surfaces.wavy_graph(frequency=10.0), tolerance=1e-3)
@@ -625,6 +636,7 @@ def test_fine_waves_have_no_false_points() -> None:
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
 def test_touching_curve_is_isolated_in_one_rectangle() -> None:
     """z = u⁴ + v²: K ≥ 0 vanishes along the line u = 0 without a change of sign."""
     found = gm.gauss_map.parabolic_points(graph(lambda u, v: u**4 + v * v), tolerance=1e-2)
@@ -643,6 +655,7 @@ def test_touching_curve_is_isolated_in_one_rectangle() -> None:
         (lambda u, v: (u * u + v * v) ** 2, [[-0.02, -0.02], [0.02, 0.02]]),
     ],
 )
+@pytest.mark.slow
 def test_zeros_in_too_many_rectangles_are_not_lost(f, box) -> None:
     """K > 0 but on a line, or at a point where it is of order 4: K ≈ 48 r⁴ is lost in rounding."""
     (zero,) = gm.gauss_map.parabolic_points(graph(f)).isolated
@@ -654,6 +667,7 @@ def test_zeros_in_too_many_rectangles_are_not_lost(f, box) -> None:
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
 def test_panels_with_a_large_error_are_not_flat() -> None:
     """Half twisted and bent, steep at the lower border: K, which has both signs there, is known."""
     band = gm.Surface.from_sympy(
@@ -672,6 +686,7 @@ def test_panels_with_a_large_error_are_not_flat() -> None:
     "name", ["ellipsoid", "ellipsoid_patch", "sphere", "catenoid", "helicoid", "moebius_band",
              "enneper", "hyperboloid", "elliptic_paraboloid", "hyperbolic_paraboloid"]
 )  # fmt: skip
+@pytest.mark.quick_for("ellipsoid_patch", "hyperboloid")
 def test_surfaces_of_one_sign_have_none(name: str) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -713,6 +728,7 @@ def test_a_crease_is_left_out_with_a_warning() -> None:
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
 def test_a_crease_between_panels_gives_nothing_false() -> None:
     """z = |x − 0.1| + r² has K = 4 / (1 + z_x² + z_y²)² > 0 on both sides of the crease."""
     surface = graph(lambda u, v: np.abs(u - 0.1) + u * u + v * v)

@@ -46,6 +46,7 @@ def normal_of_copy(folder: Path) -> tuple[list[float], int]:
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
 def test_a_changed_formula_is_compiled_again(tmp_path: Path) -> None:
     package = tmp_path / "gaussmap"
     for name in ("generated", "runtime"):

@@ -141,6 +141,7 @@ class TestTopology:
     @EACH
     @pytest.mark.parametrize("prefer", PREFER)
     @pytest.mark.parametrize("count", [60, 600])
+    @pytest.mark.quick_for("60")
     def test_it_is_that_of_the_surface(self, name, prefer, count):
         _, characteristic, borders = surfaces[name]
         mesh = mesh_of(name, prefer, count=count)
@@ -320,6 +321,7 @@ class TestShape:
     """Small angles: 5 % below 25° and one in a thousand below 5° at most; and no folds."""
 
     @pytest.mark.parametrize("name", ["torus", "cylinder", "sphere", "boss", "terrain"])
+    @pytest.mark.quick_for("torus", "cylinder", "sphere")
     def test_angles_of_triangles(self, name):
         samples = samples_of(name)
         shape, normals = (samples.mesh(prefer=x) for x in PREFER)
@@ -519,6 +521,7 @@ class TestInput:
 
     @pytest.mark.parametrize("name", ["torus", "sphere", "klein"])
     @pytest.mark.parametrize("count", [1, 2, 3, 5])
+    @pytest.mark.quick_for("torus", "sphere")
     def test_too_few_samples_for_a_closed_surface(self, name, count):
         samples = gm.sample(surfaces[name][0](), count=100, density="gauss")[:count]
         if name == "sphere" and count > 1:

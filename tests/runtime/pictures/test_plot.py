@@ -119,6 +119,7 @@ def texts_of(surface: gm.Surface, path: Path, monkeypatch: pytest.MonkeyPatch) -
 
 
 @pytest.mark.parametrize("suffix", [".pdf", ".svg", ".PNG"])
+@pytest.mark.quick_for(".svg")
 def test_other_suffixes_and_equal_bytes(suffix: str, torus: gm.Spline, tmp_path: Path) -> None:
     for name in ("a", "b"):
         plot.plot(torus, tmp_path / f"{name}{suffix}", count=100)

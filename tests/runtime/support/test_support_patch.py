@@ -104,6 +104,7 @@ def test_formula_12_of_the_paper() -> None:
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("net", [OF_12, MIXED], ids=["formula 12", "mixed"])
+@pytest.mark.quick_for("formula 12")
 def test_branches_are_what_the_formulas_say(net: list[list[Any]]) -> None:
     """Point, Hessian and curvature against the exact expressions, at the exact floats."""
     patch: Any = BezierTriangle(net, NORMAL)
@@ -169,6 +170,7 @@ def test_next_to_a_parabolic_line() -> None:
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
 def test_next_to_a_singular_point() -> None:
     """At (¼, ¼) N vanishes: near it the parameters of a normal do not tell the direction of N."""
     net = np.array(SINGULAR, dtype=float)
