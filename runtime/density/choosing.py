@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 
+from ..threads import over_ranges
 from .aligned import AlignedGrid
 from .cover import Cover
-from .errors_of import Errors, errors_of, places_on
+from .errors_of import Errors, places_on
 from .on_grid import (
     cover_by_count,
     cover_by_count_and_distance,
@@ -62,22 +63,26 @@ def better_on_grid(usual: Cover, count: int, distance: float | None) -> Cover | 
     aligned = AlignedGrid.of(sizing)
     if aligned.steps_for(count, usual_distance(sizing, count)).angle > PROMISING * angle / WITHIN:
         return None
-    places = places_on(sizing)
+    places, rows = places_on(sizing)
     if len(places) == 0:
         return None
-    old = errors_of(usual, places, apart, angle)
+    old = Errors(usual, places, rows, apart, angle)
     if distance is None:
         cover = cover_by_count(aligned, count, old.gap, usual.show_count)
     else:
         cover = cover_by_count_and_distance(aligned, count, distance, usual.show_count)
-    new = errors_of(cover, places, apart, angle)
+    new = Errors(cover, places, rows, apart, angle)
     return cover if _is_better(new, old) else None
 
 
 def _is_better(new: Errors, old: Errors) -> bool:
     """Say whether angles in space are clearly smaller, and no other error is larger."""
-    return (
+    if not (
         new.in_space <= LEAST * old.in_space
-        and new.in_normal <= MOST * old.in_normal
+        and new.tangent <= old.tangent
         and new.gap <= MOST_GAP * old.gap
-    )
+    ):
+        return False
+    both, threads = (new, old), new.cover.sizing.threads
+    in_normal = list(over_ranges(lambda k, _: both[k].in_normal, len(both), 1, threads))
+    return in_normal[0] <= MOST * in_normal[1]

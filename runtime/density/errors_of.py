@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,7 @@ from .cover import Cover
 from .sizing import SizingFunction
 from .triangles import Array, Indices, Triangles
 
-__all__ = ["Errors", "errors_of", "places_on"]
+__all__ = ["Errors", "places_on"]
 
 # About this number of places.
 PLACES = 20_000
@@ -23,6 +24,8 @@ PLACES = 20_000
 SEARCHES = ((300, 16, 1.0), (60, 16, 0.3), (30, 16, 0.1))
 # An even sequence in the square (Martin Roberts, 2018): the root of x³ = x + 1.
 SEQUENCE = 1.324717957244746 ** -np.array([1.0, 2.0])
+# Places are compared in normal space in parts of this number.
+AT_A_TIME = 3_000
 # Normals closer than this count as one.
 SAME_NORMAL = 2.0**-17
 # K is 0 below this part of the largest one.
@@ -31,30 +34,68 @@ FLAT = 1e-9
 LARGER, TIMES = 2.0, 3
 
 
-class Errors(NamedTuple):
-    """The largest errors at places; lengths are scaled, angles are chords.
+@dataclass(frozen=True, eq=False)
+class Errors:
+    """The largest errors of a cover at places; lengths are scaled, angles are chords.
 
-    `tangent`: the distance from the tangent plane at the sample nearest in space; `in_space`:
-    between the normals of the place and of that sample; `in_normal`: between the normal of a place
-    and the nearest one of a sample with the same sign of K; `gap`: the distance from the nearest
-    sample.
+    Computed when they are asked for; fast if about this `distance` and this `angle` are expected.
+    `rows` are `places.as_samples()`.
     """
 
-    tangent: float
-    in_space: float
-    in_normal: float
-    gap: float
+    cover: Cover
+    places: Triangles
+    rows: Array
+    distance: float
+    angle: float
+
+    @cached_property
+    def _nearest(self) -> tuple[Array, Indices]:
+        """The distances and the numbers of the samples nearest in space."""
+        return _nearest_in_space(self.rows, self.cover, self.distance)
+
+    @cached_property
+    def _chords(self) -> Array:
+        """The chords between the normals of places and those of the samples nearest in space."""
+        return np.linalg.norm(self.rows[:, 3:6] - self.cover.points[self._nearest[1], 3:], axis=1)
+
+    @cached_property
+    def tangent(self) -> float:
+        """The largest distance from the tangent plane at the sample nearest in space."""
+        samples = self.cover.points[self._nearest[1]]
+        away = np.einsum("ij,ij->i", self.rows[:, :3] - samples[:, :3], samples[:, 3:])
+        return float(np.abs(away).max(initial=0.0))
+
+    @cached_property
+    def in_space(self) -> float:
+        """The largest chord between the normals of a place and of the sample nearest in space."""
+        return float(self._chords.max(initial=0.0))
+
+    @cached_property
+    def in_normal(self) -> float:
+        """The largest chord between the normal of a place and the nearest one of a sample.
+
+        That is among samples with the same sign of K.
+        """
+        return _in_normal(self.rows, self.cover, self.angle, self._nearest[1], self._chords)
+
+    @cached_property
+    def gap(self) -> float:
+        """The largest distance from the nearest sample."""
+        return _widest_gap(self.cover, self.places, self._nearest[0], self.distance)
 
 
-def places_on(sizing: SizingFunction) -> Triangles:
-    """Return about PLACES places of a surface.
+def places_on(sizing: SizingFunction) -> tuple[Triangles, Array]:
+    """Return about PLACES places of a surface that have normals, and what is sampled there.
 
     One half is even, where gaps may be wide; the other half is dense where the target density is
     large, and so may angles be.
     """
     densities = np.maximum(sizing.patch_integrals, sizing.target.floor * sizing.areas)
     patches = np.concatenate([_spread(x, PLACES // 2) for x in (sizing.areas, densities)])
-    return _inside(sizing, patches, _in_triangle(len(patches)))
+    places = _inside(sizing, patches, _in_triangle(len(patches)))
+    rows = places.as_samples()
+    regular = np.any(rows[:, 3:6], axis=1)
+    return places[regular], rows[regular]
 
 
 def _in_triangle(count: int) -> Array:
@@ -77,23 +118,6 @@ def _spread(weights: Array, count: int) -> Indices:
     sums = np.cumsum(weights)
     found = np.searchsorted(sums, (np.arange(count) + 0.5) * (sums[-1] / count))
     return np.minimum(found, len(weights) - 1)
-
-
-def errors_of(cover: Cover, places: Triangles, distance: float, angle: float) -> Errors:
-    """Return the errors at places, if about this distance and this angle are expected."""
-    rows = places.as_samples()
-    regular = np.any(rows[:, 3:6], axis=1)
-    rows, places = rows[regular], places[regular]
-    distances, nearest = _nearest_in_space(rows, cover, distance)
-    samples = cover.points[nearest]
-    tangent = np.abs(np.einsum("ij,ij->i", rows[:, :3] - samples[:, :3], samples[:, 3:]))
-    chords = np.linalg.norm(rows[:, 3:6] - samples[:, 3:], axis=1)
-    return Errors(
-        float(tangent.max(initial=0.0)),
-        float(chords.max(initial=0.0)),
-        _in_normal(rows, cover, angle),
-        _widest_gap(cover, places, distances, distance),
-    )
 
 
 def _nearest_in_space(rows: Array, cover: Cover, distance: float) -> tuple[Array, Indices]:
@@ -119,12 +143,24 @@ def _widest_gap(cover: Cover, places: Triangles, distances: Array, distance: flo
     return float(widest)
 
 
-def _in_normal(rows: Array, cover: Cover, angle: float) -> float:
-    """Return the largest chord between normals of rows and those of samples of the same sign."""
+def _in_normal(rows: Array, cover: Cover, angle: float, nearest: Indices, chords: Array) -> float:
+    """Return the largest chord between normals of rows and those of samples of the same sign.
+
+    `nearest` are the samples nearest in space. Where their sign is the same, chords to their
+    normals are bounds, and the rows with the largest bounds decide.
+    """
     flat = FLAT * np.abs(rows[:, 7]).max(initial=0.0)
-    at_places = _in_normal_space(rows[:, 3:6], rows[:, 7] < -flat)
-    of_samples = _in_normal_space(cover.points[:, 3:], cover.curvatures < -flat)
-    return float(_nearest(at_places, of_samples[:, :6], angle)[0].max(initial=0.0))
+    negative, of_samples = rows[:, 7] < -flat, cover.curvatures < -flat
+    bounds = np.where(negative == of_samples[nearest], chords, np.inf)
+    samples = _in_normal_space(cover.points[:, 3:], of_samples)[:, :6]
+    order, largest = np.argsort(-bounds, kind="stable"), 0.0
+    for first in range(0, len(order), AT_A_TIME):
+        part = order[first : first + AT_A_TIME]
+        if bounds[part[0]] <= largest:
+            break
+        at_places = _in_normal_space(rows[part, 3:6], negative[part])
+        largest = max(largest, float(_nearest(at_places, samples, angle)[0].max()))
+    return largest
 
 
 def _in_normal_space(normals: Array, negative: NDArray[np.bool_]) -> Array:
