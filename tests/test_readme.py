@@ -11,8 +11,9 @@ from gaussmap.runtime.cli import main
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-SAME_MESH = {
-    "**balanced**": '**`samples.mesh(prefer="normals")`**',
+MESH_OF = {
+    "**balanced**": '**balanced**, prefer="normals"',
+    "**isotropic**": '**isotropic**, prefer="normals"',
     "NumPy, (u,v) grid, closed form": "grid of parameters",
 }
 
@@ -66,42 +67,35 @@ def tables(page: str) -> list[dict[str, list[list[str]]]]:
     return found
 
 
-def of_quality(surface: int) -> dict[str, dict[str, str]]:
-    """Return the first table of a surface in docs/quality.md: cells by title and column.
-
-    Of columns of one name the last counts, that of the larger count.
-    """
+def of_quality(surface: int) -> list[dict[str, dict[str, str]]]:
+    """Return the tables of a surface in docs/quality.md: cells by title and column."""
     page = (ROOT / "docs" / "quality.md").read_text(encoding="utf-8")
-    section = page.split(f"## {FORMS[surface].label}\n")[1]
-    table = re.search(r"(?:^\|.*\n)+", section, re.MULTILINE)
-    assert table is not None
-    header, *rows = (
-        [x.strip() for x in line.strip("|").split(" | ")] for line in table[0].splitlines()
-    )
-    return {title: dict(zip(header[1:], cells, strict=True)) for title, *cells in rows}
+    section = page.split(f"## {FORMS[surface].label}\n")[1].split("\n## ")[0]
+    found = []
+    for table in re.findall(r"(?:^\|.*\n)+", section, re.MULTILINE):
+        header, *rows = (
+            [x.strip() for x in line.strip("|").split(" | ")] for line in table.splitlines()
+        )
+        found.append({title: dict(zip(header[1:], cells, strict=True)) for title, *cells in rows})
+    return found
 
 
 def figures(title: str, surface: int) -> tuple[str, str, str, str]:
     """Return E, G, mean angle of the mesh and points/s of a row, from the pages in docs/."""
-    performance, meshes = (
-        tables((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8"))
-        for name in ("performance", "meshes")
-    )
-    mesh = meshes[surface].get(SAME_MESH.get(title, title), [["–"] * 2])[-1][
-        -2
-    ]  # of 10,000 vertices
-    quality = of_quality(surface)
-    if title in quality:
-        E, G, rate = (quality[title][x] for x in ("E", "G", "points/s"))
+    points, meshes = of_quality(surface)
+    mesh = meshes.get(MESH_OF.get(title, title), {"mean angle": "–"})["mean angle"]
+    if title in points:
+        E, G, rate = (points[title][x] for x in ("E", "G", "points/s"))
     else:
-        (rate, E, G) = (performance[surface][title][0][k] for k in (2, -2, -1))
+        page = (ROOT / "docs" / "performance.md").read_text(encoding="utf-8")
+        (rate, E, G) = (tables(page)[surface][title][0][k] for k in (2, -2, -1))
     return E, G, mesh, rate
 
 
 def test_figures_are_those_of_the_pages() -> None:
     (table,) = (x for x in tables(README) if "E / G / M" in x)
     rows = {title: cells for title, (cells,) in table.items() if not title.startswith((":", "E /"))}
-    assert len(rows) == 8
+    assert len(rows) == 9
     for title, (*surfaces, speed) in rows.items():
         for k, cell in enumerate(surfaces):
             assert tuple(cell.replace("*", "").split(" / ")) == figures(title, k)[:3], (title, k)
