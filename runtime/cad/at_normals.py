@@ -15,6 +15,7 @@ from ..geometry.on_surface import geometry_of
 from ..samples import Samples
 from .pieces import Piece
 from .space import Space
+from .spline_cells import search_cells
 
 __all__ = ["Given", "given_at_normals"]
 
@@ -68,7 +69,9 @@ def _of_piece(piece: Piece, normals: Array, space: Space, progress: bool) -> lis
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", GaussmapWarning)  # of the fit, which is only a start
             for part in piece.surface.pieces():
-                geometry = geometry_of(part, None, np.float64, "surface", space.threads)
+                geometry = geometry_of(
+                    part, search_cells(part), np.float64, "surface", space.threads
+                )
                 samples = sample_at_normals(geometry, normals, progress).samples
                 found += [samples] if samples is not None and len(samples) else []
     except GaussmapError as error:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from gaussmap.runtime.cad.faces import face_surface
 from gaussmap.runtime.cad.records import Geometry, Net
-from gaussmap.runtime.cad.spline_cells import spline_cells
+from gaussmap.runtime.cad.spline_cells import search_cells, spline_cells
 
 TURN, HALF = 2.0 * math.pi, math.pi / 2
 PLACEMENT = np.array([1.0, 2, 3, 0, 1, 0, 0, 0, 1, 1, 0, 0])
@@ -44,6 +44,7 @@ def test_each_span_of_a_net_is_looked_at():
     m, n = spline_cells(waves)
     assert m > 100
     assert n == 3
+    assert search_cells(waves) == (min(2 * m, 256), 64)
 
 
 def test_an_apex_has_no_direction():
