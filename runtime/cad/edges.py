@@ -11,7 +11,6 @@ import numpy as np
 from ..kernels.refine import evaluate_jets
 from .cells import Array, Flags, Indices
 from .faces import own_parameters
-from .pieces import Piece
 from .records import SHARP
 from .space import Space
 
@@ -138,36 +137,40 @@ class Sides:
 
 def sides_at(space: Space, pieces: Indices, uv: Array) -> Sides:
     """Return what is known of both faces at places (M,)."""
-    count = len(uv)
-    points, tangents = np.empty((2 * count, 3)), np.empty((2 * count, 2, 3))
-    normals, curvatures = np.empty((2 * count, 3)), np.empty((2 * count, 2))
-    places, collapsed = uv.reshape(-1, 2).copy(), np.zeros(2 * count, dtype=np.bool_)
-    for k, rows in _grouped(pieces.ravel()):
-        piece = space.pieces[k]
-        places[rows] = _inside(piece, places[rows])
-        jets, scales = piece.surface.jets(*places[rows].T.copy()), [space.unit, *piece.sizes]
-        lengths = np.linalg.norm(jets[:, 1:3], axis=2) * piece.sizes
-        collapsed[rows] = lengths.min(axis=1) * COLLAPSED <= lengths.max(axis=1)
-        n, K, H = np.empty((len(rows), 3)), np.empty(len(rows)), np.empty(len(rows))
-        evaluate_jets(jets, np.array(scales), n, K, H)
-        if piece.face.kind != "sphere":
-            n[collapsed[rows]] = 0.0
-        points[rows], tangents[rows], normals[rows] = jets[:, 0], jets[:, 1:3], n
-        curvatures[rows] = np.stack([K, H], axis=1)
+    order = np.argsort(pieces.ravel(), kind="stable")
+    owner, count = pieces.ravel()[order], len(order)
+    places, scales = _inside(space, owner, uv.reshape(-1, 2)[order]), np.array([space.unit, 1.0, 1])
+    vectors, normals = np.empty((count, 3, 3)), np.empty((count, 3))
+    K, H = np.empty(count), np.empty(count)
+    ends = np.flatnonzero(np.diff(owner, append=-1)) + 1
+    first = 0
+    for last in ends.tolist():
+        k, rows = int(owner[first]), slice(first, last)
+        jets = space.pieces[k].surface.jets(*places[rows].T.copy())
+        scales[1:] = space.sizes[k]
+        evaluate_jets(jets, scales, normals[rows], K[rows], H[rows])
+        vectors[rows] = jets[:, :3]
+        first = last
+    lengths = np.linalg.norm(vectors[:, 1:], axis=2) * space.sizes[owner]
+    collapsed = lengths.min(axis=1) * COLLAPSED <= lengths.max(axis=1)
+    balls = np.array([x.face.kind == "sphere" for x in space.pieces])
+    normals[collapsed & ~balls[owner]] = 0.0
+    back = np.empty(count, dtype=np.int64)
+    back[order] = np.arange(count)
     return Sides(
         pieces,
-        places.reshape(-1, 4),
-        points.reshape(-1, 2, 3),
-        tangents.reshape(-1, 2, 2, 3),
-        normals.reshape(-1, 2, 3),
-        curvatures.reshape(-1, 2, 2),
-        collapsed.reshape(-1, 2),
+        places[back].reshape(-1, 4),
+        vectors[back, 0].reshape(-1, 2, 3),
+        vectors[back, 1:].reshape(-1, 2, 2, 3),
+        normals[back].reshape(-1, 2, 3),
+        np.stack([K, H], axis=1)[back].reshape(-1, 2, 2),
+        collapsed[back].reshape(-1, 2),
     )
 
 
-def _inside(piece: Piece, places: Array) -> Array:
+def _inside(space: Space, owner: Indices, places: Array) -> Array:
     """Return places (k, 2), those that are beyond the domain by rounding at its end."""
-    low, high = np.array(piece.surface.domain).T
+    low, high = np.array([x.surface.domain for x in space.pieces])[owner].transpose(2, 0, 1)
     slack = BEYOND * (high - low)
     places = np.where((places < low) & (places >= low - slack), low, places)
     return np.where((places > high) & (places <= high + slack), high, places)
