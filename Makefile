@@ -16,7 +16,7 @@ TERRAIN = "$$($(BIN)/python -c '$(DEM)'):elevation" --spacing 74.5 -92.5
 
 .DEFAULT_GOAL := help
 .PHONY: help install demo generate check-generated warm test coverage cad-tests verify bench bench-guard bench-record bench-peers \
-	quality cold-start operations lint typecheck formulas orders errata curves figures gallery meshes registration \
+	quality parts-quality cold-start operations lint typecheck formulas orders errata curves figures gallery meshes registration \
 	alignment clean
 
 help: ## list the targets
@@ -105,7 +105,12 @@ bench-peers: $(VENV)/peers/.ready ## measure gaussmap beside others, and its sca
 	$(VENV)/peers/bin/python -m gaussmap.benchmarks.peers --largest $(LARGEST) > docs/performance.tmp
 	mv docs/performance.tmp docs/performance.md
 
-quality: $(VENV)/peers/.ready meshes ## judge samples, and meshes, beside those of others again (docs/quality.md)
+# GAUSSMAP_PARTS is a folder with the files that docs/parts_quality.md names; they are not in here.
+parts-quality: $(VENV)/peers/.ready ## judge samples of CAD parts beside those of others again (docs/parts_quality.md)
+	$(VENV)/peers/bin/python -m gaussmap.benchmarks.parts > docs/parts_quality.tmp
+	mv docs/parts_quality.tmp docs/parts_quality.md
+
+quality: $(VENV)/peers/.ready meshes $(if $(GAUSSMAP_PARTS),parts-quality) ## judge samples, and meshes, beside those of others again (docs/quality.md)
 	$(VENV)/peers/bin/python -m gaussmap.benchmarks.quality > docs/quality.tmp
 	mv docs/quality.tmp docs/quality.md
 

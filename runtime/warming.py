@@ -15,6 +15,7 @@ import numpy as np
 from numba.core import config, event
 
 from . import curves
+from .cad.examples import all_kinds
 from .compiling import NOTICE
 from .directions import fibonacci, icosphere
 from .errors import FileError, GaussmapWarning, InputError
@@ -200,9 +201,22 @@ def _curves() -> None:
     curves.sample(closed, normals=np.eye(2))
 
 
+def _parts() -> None:
+    part = all_kinds()
+    samples = sample(part, count=FEW, relax=1)
+    samples.coverage()
+    samples.weights()
+    samples.normal_deviation()
+    for density in ("uniform", 0.5):
+        sample(part, count=FEW, density=density)
+    sample(part, angle=20.0)
+    sample(part, coverage=0.3)
+    sample(part, normals=icosphere(3))
+
+
 WORK: tuple[Callable[[], None], ...] = (
     _surfaces, _normals, _fields, _densities, _streams, _after_sampling, _meshes, _silhouettes,
-    _support_functions, _gaussian_images, _parabolic_points, _curves,
+    _support_functions, _gaussian_images, _parabolic_points, _curves, _parts,
 )  # fmt: skip
 
 

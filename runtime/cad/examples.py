@@ -7,9 +7,9 @@ import itertools
 import numpy as np
 
 from .part import Part, part_of
-from .records import EdgeRecord, FaceRecord, Geometry, PartRecord
+from .records import EdgeRecord, FaceRecord, Geometry, Net, PartRecord
 
-__all__ = ["box", "box_edges", "box_faces"]
+__all__ = ["all_kinds", "box", "box_edges", "box_faces"]
 
 
 def box(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> Part:
@@ -62,3 +62,35 @@ def box_edges(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> li
             faces = 2 * first + far[0], 2 * second + far[1]
             found.append(EdgeRecord(faces, ends[:, columns]))
     return found
+
+
+def all_kinds() -> Part:
+    """Return a part with a face of each kind, cut by a circle of parameters.
+
+    Examples
+    --------
+    >>> from gaussmap.runtime.cad.examples import all_kinds
+    >>> [face.kind for face in all_kinds().faces][-3:]
+    ['revolution', 'extrusion', 'offset']
+
+    """
+    place, z = np.concatenate([np.zeros(3), np.eye(3).ravel()]), np.array([0.0, 0.0, 1.0])
+    knots, u = np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0]), np.arange(3) / 2.0
+    x, y = np.meshgrid(u, u, indexing="ij")
+    points, weights = np.stack([x, y, x * x + x * y], axis=2), 1.0 + x * y
+    curve = Net((2,), (knots,), points[1] + [1.0, 0.0, 0.0], weights[1])
+    nets = [Net((2, 2), (knots, knots), points, w) for w in (None, weights)]
+    geometries = [
+        Geometry("plane", place),
+        *(Geometry(kind, np.append(place, 1.0)) for kind in ("cylinder", "sphere")),
+        *(Geometry(kind, np.append(place, [2.0, 0.5])) for kind in ("cone", "torus")),
+        *(Geometry("nurbs", net=net) for net in nets),
+        Geometry("revolution", np.concatenate([np.zeros(3), z]), curve),
+        Geometry("extrusion", z, curve),
+        Geometry("offset", np.array([0.1]), basis=Geometry("nurbs", net=nets[1])),
+    ]
+    angles = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
+    circle = 0.5 + 0.4 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    ends = (0.1, 0.9)
+    faces = [FaceRecord(x, (ends, ends), loops=[circle], area=0.5) for x in geometries]
+    return part_of(PartRecord("kinds", "mm", 1e-3, False, faces))

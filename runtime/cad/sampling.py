@@ -42,6 +42,8 @@ FOR_NORMALS = 0.05
 # The chord between the normals of candidates for these samples, relative to that which their number
 # leaves on a sphere; they are searched from the widest angle on.
 NORMALS_APART, WIDEST_ANGLE = 0.2, 60.0
+# About the number of candidates for them, at most, beside as many as there are samples.
+CANDIDATES = 200_000
 # Decimal places to which normals of samples differ.
 DIGITS = 6
 # Each face gets a sample if there are at least this many samples for each face.
@@ -224,7 +226,8 @@ class PartFilling:
 def _fill_normals(cover: PartCover, number: int) -> None:
     """Add samples where normals are farthest from those of all samples."""
     chord = NORMALS_APART * spacing(max(cover.count + number, 1) / (4 * math.pi))
-    cells = cover.sizing.cut_by_normals(max(chord, math.radians(0.5)))
+    most = CANDIDATES + cover.count
+    cells = cover.sizing.cut_by_normals(max(chord, math.radians(0.5)), most)
     widest = 2.0 * math.sin(math.radians(WIDEST_ANGLE) / 2.0)
     known = np.unique(cover.points[:, 3:].round(DIGITS), axis=0)
     chosen = choose_apart(cells.rows[:, 3:6], chord, cover.sizing.threads, widest, number, known)

@@ -46,6 +46,8 @@ FEWEST_PIXELS, MOST_PIXELS = 64, 512
 # Cells with more parts than this, which the border passes, are cut in two steps.
 AT_ONCE = 64
 MOST_CELLS = 4e7
+# The factor by which cells are made coarser if there were too many.
+COARSER = 1.2
 # Cells of small faces are evaluated together by one thread.
 CELLS_AT_A_TIME = 1 << 12
 # Where |K| is below this part of 1/area, a part counts as developable.
@@ -208,12 +210,18 @@ class Space:
         cells = into_parts(cells, -(-parts[owner] // steps[owner]))
         return self.evaluated(cells, pixels, with_border=True)
 
-    def cut_by_normals(self, chord: float) -> Cells:
-        """Return cells whose normals are about within a chord from that at their places."""
+    def cut_by_normals(self, chord: float, most: float) -> Cells:
+        """Return cells whose normals are about within a chord from that at their places.
+
+        The chord is made larger until there are about `most` cells at most.
+        """
         first = self.first
         bends = np.where(first.numbers[:, [CHORD]] > chord, first.numbers[:, [BEND_U, BEND_V]], 0.0)
-        parts = np.maximum(np.ceil(bends / (2.0 * chord)), 1.0).astype(np.int64)
-        return self.evaluated(into_parts(replace(first, space=self), parts))
+        parts = np.maximum(np.ceil(bends / (2.0 * chord)), 1.0)
+        while parts.prod(axis=1).sum() > most + len(first):
+            chord *= COARSER
+            parts = np.maximum(np.ceil(bends / (2.0 * chord)), 1.0)
+        return self.evaluated(into_parts(replace(first, space=self), parts.astype(np.int64)))
 
     def evaluated(
         self, cells: Cells, pixels: Indices | None = None, with_border: bool = False

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from gaussmap.runtime import warming
+from gaussmap.runtime.cad.examples import all_kinds
 from gaussmap.runtime.cli import main
 from gaussmap.runtime.kernels import jit
 
@@ -37,6 +38,7 @@ EVERY_DAY = [
     ["sample", "cylinder", "--coverage", "0.2", "--density", "uniform", "-o", "a.npz"],
     ["sample", "monkey_saddle", "--count", "500", "--relax", "1", "--progressive", "-o", "a.npz"],
     ["mesh", "sphere", "--count", "1000", "-o", "a.stl"],
+    ["sample", "part.npz", "--count", "500", "-o", "a.ply"],
 ]
 
 
@@ -54,6 +56,7 @@ def watched(*arguments: str, folder: Path) -> list[str]:
 @pytest.mark.compiled
 def test_nothing_is_left_to_compile(tmp_path: Path) -> None:
     np.save(tmp_path / "heights.npy", np.hypot(*np.mgrid[-1:1:20j, -1:1:30j]) ** 3)
+    all_kinds().save(tmp_path / "part.npz")
     *compiled, line = watched("warm", folder=tmp_path)
     assert len(compiled) > 30
     assert line.startswith(f"kernels in {tmp_path / 'cache' / 'kernels-'}")

@@ -8,8 +8,11 @@ import pickle
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.runtime.cad.cells import BEND_U
 from gaussmap.runtime.cad.part import Part
 from gaussmap.runtime.cad.records import FaceRecord, Geometry
+from gaussmap.runtime.cad.results import space_of
+from gaussmap.runtime.density.angles import choose_apart
 from scipy.spatial import cKDTree
 
 
@@ -240,3 +243,22 @@ def test_samples_in_files_and_other_methods(cylinder, tmp_path):
     chosen = gm.sample(cylinder, 10, fields=("points", "solid_index"))
     assert chosen.fields == ("points", "solid_index")
     assert gm.sample(cylinder, 10, dtype=np.float32).points.dtype == np.float32
+
+
+def test_candidates_for_normals_are_no_more_than_asked(plates):
+    space = space_of(plates, 1)
+    for most in (0, 500):
+        cells = space.cut_by_normals(1e-3, most)
+        assert len(cells) <= most + len(space.first)
+    whole = space.cut_by_normals(0.2, np.inf)  # few are enough: the chord is the one asked for
+    assert whole.numbers[:, BEND_U].max() <= 0.5
+
+
+def test_normals_are_chosen_far_from_known_ones():
+    known, normals = gm.icosphere(3), gm.fibonacci(2000)
+    near, widest = 0.1, 1.0
+    chosen = choose_apart(np.concatenate([normals, np.zeros((1, 3))]), near, 1, widest, None, known)
+    every = np.concatenate([known, normals[chosen]])
+    distances, _ = cKDTree(every).query(normals, k=2)
+    assert distances[:, 0].max() <= near
+    assert distances[chosen, 1].min() > near * 0.98

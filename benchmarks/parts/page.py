@@ -1,0 +1,142 @@
+"""docs/parts_quality.md: how well samples represent CAD parts, compared with others."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from gaussmap.docs.orders import code, listed, markdown, wrapped
+
+from ..peers.machine import machine
+from .measure import Errors, OnPart
+from .reference import PLACES
+from .ways import BALANCED, CLOSE, CLOUD, FARTHEST, GMSH, WAYS, Way
+
+__all__ = ["page"]
+
+# Farthest points may have gaps so much smaller, if their angles are so much larger.
+WIDER, NARROWER = 1.25, 0.6
+
+HEAD = """\
+# How well samples represent CAD parts, measured
+
+Written by `make parts-quality`: do not edit. Points **with normals** of five public CAD files, at
+equal counts (within {close:.0f} %). The bold rows are `gm.sample(part, count, density=…)`.
+
+## Where others win
+"""
+
+METHOD = """\
+## What is measured
+
+Places on each part, {places:,} uniform by area, at least 200 on a face, and corners of triangles
+on all borders: drawn, and evaluated with their normals, by Open CASCADE. None of this is code of
+gaussmap.
+
+- **gap**: the largest distance of a place from the nearest sample, in % of the diagonal of the
+  places;
+- **angle**: the largest angle from the normal of a place to the nearest normal of any sample, in
+  degrees, wherever that sample is: whether every direction of the part occurs;
+- **mean E**: the mean angle to the normal of the sample that is nearest in space. Next to sharp
+  edges that sample often is on another face.
+
+Normals that are opposite count as equal, as those of Gmsh are not oriented. *Gmsh* means the
+vertices of its meshes with sizes by curvature; a vertex on an edge counts once, and has the normals
+of all faces there, which makes its mean E small. Of meshes with three largest sizes, the one with
+the smallest product of gap and angle is shown. *Farthest points* are chosen by Open3D in a cloud of
+{cloud:,} places.
+
+The files are not part of gaussmap; `GAUSSMAP_PARTS` names their folder. They come from Debian:
+CrankArm.brep and hammer.iges from `occt-misc`, screw.step and frame.step from `netgen-doc`,
+as1-tu-203.stp from `gmsh-doc`.
+"""
+
+TARGETS = """\
+## Targets
+
+**balanced** is to have no larger gap and no larger angle than Gmsh, and a gap at most {wider} times
+and an angle at most {narrower} times that of farthest points.
+"""
+
+
+def page(parts: Sequence[OnPart]) -> str:
+    """Return the page."""
+    texts = [
+        wrapped(HEAD.format(close=100 * CLOSE)),
+        wrapped(losses(parts)),
+        wrapped(METHOD.format(places=PLACES, cloud=CLOUD)),
+        "## Results\n",
+        table(parts),
+        wrapped(TARGETS.format(wider=WIDER, narrower=NARROWER)),
+        targets(parts),
+        "## The machine\n",
+        wrapped("\n".join(machine())),
+    ]
+    return "\n".join(texts)
+
+
+def losses(parts: Sequence[OnPart]) -> str:
+    """Say by which measures others are better than balanced, and by how much."""
+    lines = []
+    for way, name in ((FARTHEST, "Farthest points have"), (GMSH, "Gmsh has")):
+        for words, value in MEASURES:
+            found = [(on, ratio) for on in parts if (ratio := over(on, way, value)) is not None]
+            less = [f"{code(on.name)} ({ratio:.2f} ×)" for on, ratio in found if ratio > 1.0]
+            if less:
+                lines.append(f"- {name} {words} on {listed(less)}.")
+    if not lines:
+        return "Nowhere, by these measures."
+    text = "In brackets: the error of **balanced** relative to theirs."
+    return "\n".join([text, "", *lines])
+
+
+MEASURES: tuple[tuple[str, Callable[[Errors], float]], ...] = (
+    ("smaller gaps", lambda x: x.gap),
+    ("smaller angles", lambda x: x.normal),
+    ("a smaller mean E", lambda x: x.mean),
+)
+
+
+def over(on: OnPart, way: Way, value: Callable[[Errors], float]) -> float | None:
+    """Return an error of balanced over that of another way, or None if one of them failed."""
+    own, other = on.found[BALANCED], on.found[way]
+    if isinstance(own, str) or isinstance(other, str):
+        return None
+    return value(own) / value(other)
+
+
+def table(parts: Sequence[OnPart]) -> str:
+    """Return all results."""
+    rows = []
+    for on in parts:
+        for way in WAYS:
+            x, name = on.found[way], f"{code(on.name)}, {on.faces} faces"
+            cells = [x, *["–"] * 3] if isinstance(x, str) else row(x)
+            rows.append([name if way is WAYS[0] else "", way.title, *cells])
+    return markdown(["part", "", "points", "gap, %", "angle", "mean E"], rows)
+
+
+def row(x: Errors) -> list[str]:
+    """Return the cells of one way."""
+    return [f"{x.count:,}", f"{x.gap:.2f}", f"{x.normal:.1f}", f"{x.mean:.2f}"]
+
+
+def targets(parts: Sequence[OnPart]) -> str:
+    """Return the table of targets."""
+    gap, angle = MEASURES[0][1], MEASURES[1][1]
+    rows = []
+    for title, way, value, limit in (
+        ("gap : Gmsh", GMSH, gap, 1.0),
+        ("angle : Gmsh", GMSH, angle, 1.0),
+        ("gap : farthest points", FARTHEST, gap, WIDER),
+        ("angle : farthest points", FARTHEST, angle, NARROWER),
+    ):
+        ratios = [over(on, way, value) for on in parts]
+        rows.append([title, f"≤ {limit:g}", *(verdict(x, limit) for x in ratios)])
+    return markdown(["", "target", *(code(on.name) for on in parts)], rows)
+
+
+def verdict(ratio: float | None, limit: float) -> str:
+    """Say whether a target is met."""
+    if ratio is None:
+        return "not known"
+    return f"{ratio:.2f} {'met' if ratio <= limit else '**not met**'}"

@@ -1,0 +1,161 @@
+"""Who samples parts: gaussmap by density, Gmsh, and farthest points of a dense uniform cloud."""
+
+# Only `make parts-quality` installs these packages.
+# pyright: reportMissingImports=false
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+from gaussmap.runtime.cad.part import Part
+
+from ..peers.forms import Array
+from .reference import reference
+
+__all__ = ["BALANCED", "FARTHEST", "GMSH", "WAYS", "Cloud", "File", "Way"]
+
+MILLIMETRES = 1e3
+# Farthest points are chosen in a cloud of this many places.
+CLOUD = 200_000
+# Gmsh: before all sizes are scaled a full turn of the normal has ELEMENTS, and the largest size is
+# one of LARGEST, relative to the diagonal. The count is met within NEAR, if TRIES are enough for
+# that, and CLOSE at any rate.
+ELEMENTS, LARGEST = 12.0, (1.0, 0.06, 0.04)
+NEAR, CLOSE, TRIES = 0.02, 0.05, 7
+
+
+@dataclass(frozen=True)
+class Cloud:
+    """Points (N, 3) in millimetres; of each, unit normals (N, k, 3), NaN where it has fewer."""
+
+    points: Array
+    normals: Array
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+
+@dataclass(frozen=True)
+class File:
+    """A file, what Open CASCADE and gaussmap read in it, and how many samples are asked for."""
+
+    path: Path
+    shape: Any
+    part: Part
+    count: int
+
+
+@dataclass(frozen=True)
+class Way:
+    """A way to points with normals on a part, about as many as are asked for.
+
+    Of several clouds the one with the smallest product of gap and angle is judged.
+    """
+
+    title: str
+    clouds: Callable[[File], list[Cloud]]
+
+
+def sampled(density: str) -> Callable[[File], list[Cloud]]:
+    """Return samples of gaussmap."""
+
+    def clouds(file: File) -> list[Cloud]:
+        samples = gm.sample(file.part, count=file.count, density=density)
+        points = samples.points * (file.part.metres * MILLIMETRES)
+        return [Cloud(points, samples.normals[:, None])]
+
+    return clouds
+
+
+def farthest(file: File) -> list[Cloud]:
+    """Choose points, each the one farthest from those before it, in a dense uniform cloud."""
+    import open3d
+
+    dense = reference(file.shape, CLOUD, seed=1)
+    drawn = np.flatnonzero(dense.areas > 0.0)
+    cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(dense.points[drawn]))
+    cloud.normals = open3d.utility.Vector3dVector(dense.normals[drawn])
+    chosen = cloud.farthest_point_down_sample(file.count)
+    return [Cloud(np.asarray(chosen.points), np.asarray(chosen.normals)[:, None])]
+
+
+def meshed(file: File) -> list[Cloud]:
+    """Return the vertices of meshes by Gmsh, of sizes by curvature with several largest sizes.
+
+    A vertex on an edge has the normals of all faces there.
+    """
+    import gmsh
+
+    if gmsh.isInitialized():
+        gmsh.finalize()
+    gmsh.initialize(interruptible=False)
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", ELEMENTS)
+    gmsh.model.occ.importShapes(str(file.path))
+    gmsh.model.occ.synchronize()
+    box = np.reshape(gmsh.model.getBoundingBox(-1, -1), (2, 3))
+    found = []
+    for largest in LARGEST:
+        gmsh.option.setNumber("Mesh.MeshSizeMax", largest * float(np.linalg.norm(box[1] - box[0])))
+        cloud = tuned(file.count)
+        if abs(len(cloud) / file.count - 1.0) <= CLOSE:
+            found.append(cloud)
+    return found
+
+
+def tuned(count: int) -> Cloud:
+    """Scale all sizes in Gmsh until a mesh has about a count of vertices."""
+    import gmsh
+
+    factor, low, high, cloud = 1.0, 0.0, np.inf, Cloud(np.empty((0, 3)), np.empty((0, 1, 3)))
+    for _ in range(TRIES):
+        gmsh.model.mesh.clear()
+        gmsh.option.setNumber("Mesh.MeshSizeFactor", factor)
+        gmsh.model.mesh.generate(2)
+        cloud = vertices()
+        ratio = len(cloud) / count
+        if abs(ratio - 1.0) < NEAR:
+            break
+        low, high = (factor, high) if ratio > 1.0 else (low, factor)
+        factor *= np.sqrt(ratio)
+        if not low < factor < high:
+            factor = (low + high) / 2.0
+    return cloud
+
+
+def vertices() -> Cloud:
+    """Return the vertices of the mesh that Gmsh has made."""
+    import gmsh
+
+    nodes, points, normals = [], [], []
+    for _, tag in gmsh.model.getEntities(2):
+        tags, places, parameters = gmsh.model.mesh.getNodes(2, tag, includeBoundary=True)
+        nodes.append(tags)
+        points.append(np.reshape(places, (-1, 3)))
+        normals.append(np.reshape(gmsh.model.getNormal(tag, parameters), (-1, 3)))
+    rows, joined = np.concatenate(nodes), np.concatenate(normals)
+    once, first, owner = np.unique(rows, return_index=True, return_inverse=True)
+    order = np.argsort(owner, kind="stable")
+    number = np.empty(len(rows), dtype=np.int64)
+    starts = np.searchsorted(owner[order], np.arange(len(once)))
+    number[order] = np.arange(len(rows)) - starts[owner[order]]
+    found = np.full((len(once), number.max() + 1, 3), np.nan)
+    found[owner, number] = joined
+    return Cloud(np.concatenate(points)[first], found)
+
+
+BALANCED = Way("**balanced**", sampled("balanced"))
+GMSH = Way("Gmsh, curvature size", meshed)
+FARTHEST = Way("Open3D, farthest point", farthest)
+WAYS = (
+    BALANCED,
+    Way("**isotropic**", sampled("isotropic")),
+    Way("**uniform**", sampled("uniform")),
+    GMSH,
+    FARTHEST,
+)
