@@ -36,7 +36,7 @@ Array = NDArray[np.float64]
 
 # Balanced: the floor of the target density, relative to the mean of κ² on the part. Small fillets
 # have most of the curvature of a part.
-FLOOR = 2.0
+FLOOR = 3.0
 # The part of a count that goes where normals are farthest from those of all samples.
 FOR_NORMALS = 0.05
 # The chord between the normals of candidates for these samples, relative to that which their number
