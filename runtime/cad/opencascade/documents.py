@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from OCP.Quantity import Quantity_Color
+from OCP.Quantity import Quantity_Color, Quantity_TypeOfColor
 from OCP.TCollection import TCollection_ExtendedString
 from OCP.TDataStd import TDataStd_Name
 from OCP.TDF import TDF_Label
@@ -28,6 +28,7 @@ __all__ = ["Document", "Piece", "Style", "new_document", "pieces_of"]
 Color = tuple[float, float, float]
 
 MOST_LEVELS = 100
+DIGITS = 6  # of colours
 
 
 @dataclass(frozen=True)
@@ -128,5 +129,7 @@ def _color(label: Any) -> Color | None:  # noqa: ANN401
     color = Quantity_Color()
     for kind in (XCAFDoc_ColorType.XCAFDoc_ColorSurf, XCAFDoc_ColorType.XCAFDoc_ColorGen):
         if XCAFDoc_ColorTool.GetColor_s(label, kind, color):
-            return color.Red(), color.Green(), color.Blue()
+            # As files have it: Open CASCADE itself holds linear values, in single precision.
+            red, green, blue = color.Values(Quantity_TypeOfColor.Quantity_TOC_sRGB)
+            return round(red, DIGITS), round(green, DIGITS), round(blue, DIGITS)
     return None

@@ -174,8 +174,8 @@ def test_assemblies_have_names_colours_and_placements(tmp_path, read, capfd):
     frame, pin_shape = tool.NewShape(), box(2.0, 2.0, 8.0)
     TDataStd_Name.Set_s(frame, TCollection_ExtendedString("frame"))
     pin = labelled(tool, pin_shape, "pin")
-    red, blue = ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0))
-    rgb = Quantity_TypeOfColor.Quantity_TOC_RGB
+    red, blue = ((0.8, 0.5, 0.25), (0.0, 0.0, 1.0))  # as the file has them
+    rgb = Quantity_TypeOfColor.Quantity_TOC_sRGB
     colors.SetColor(pin, Quantity_Color(*red, rgb), XCAFDoc_ColorType.XCAFDoc_ColorSurf)
     top = tool.AddSubShape(pin, list(parts_of(pin_shape, FACE))[5])
     colors.SetColor(top, Quantity_Color(*blue, rgb), XCAFDoc_ColorType.XCAFDoc_ColorSurf)
