@@ -17,6 +17,7 @@ from .runtime.fitting.fit import fit as fit
 from .runtime.formulas import formulas as formulas
 from .runtime.many import sample_many as sample_many
 from .runtime.meshes.mesh import Mesh as Mesh
+from .runtime.pictures.plot import plot as plot
 from .runtime.samples import Samples as Samples
 from .runtime.sampling import sample as sample
 from .runtime.silhouette import silhouette as silhouette

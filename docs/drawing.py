@@ -42,7 +42,7 @@ class Picture:
         """Make the panel `shape` times as high as wide, which must be enough."""
         self.axes, self.scene, self.shape = axes, scene, shape
         axes.set_title(title, pad=4)
-        self.fit(scene.mesh.reshape(-1, 3), 0.03)
+        self.fit(scene.quadrangles.reshape(-1, 3), 0.03)
 
     def fit(self, points: Floats, margin: float) -> None:
         """Make room for points (N, 3), with a margin in parts of its size."""

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from .errors import InputError
 from .sample_arrays import SampleArrays
@@ -16,8 +17,12 @@ from .summary import kinds_of_points, summary_of
 from .whole import Whole
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
     from .density.deviation import NormalDeviation
     from .meshes.mesh import Mesh
+    from .surface.surface import Surface
 
 __all__ = ["Samples"]
 
@@ -264,6 +269,46 @@ class Samples(SampleArrays):
         from .files.formats import write_samples
 
         write_samples(self, path)
+
+    def plot(
+        self,
+        surface: Surface | Spline | None = None,
+        *,
+        color: str | ArrayLike = "gaussian_curvature",
+        view: Sequence[float] = (28.0, -55.0),
+        axes: Axes | Sequence[Axes] | None = None,
+        normals: ArrayLike | None = None,
+    ) -> Figure:
+        """Draw the samples on their surface, and the unit sphere with their normals.
+
+        Parameters
+        ----------
+        surface : Surface, Spline or Part, optional
+            What the samples are on, if they do not know it.
+        color, view, axes, normals : optional
+            As in `plot`: what the colours show, elevation and azimuth in degrees, axes of your own,
+            the prescribed normals.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure, see `plot`.
+
+        Raises
+        ------
+        MissingExtraError, MissingFieldError, UnknownNameError, InputError, SurfaceError
+            As `plot`; InputError if the surface is not known.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> samples = gm.sample("torus", 200, cells=(16, 16))
+        >>> samples.plot(color="support", view=(60, 0)).savefig("torus.png")
+
+        """
+        from .pictures.plot import plot_samples
+
+        return plot_samples(self, surface, color=color, view=view, axes=axes, normals=normals)
 
     def mesh(
         self,

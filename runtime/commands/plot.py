@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
-from ..pictures import plot
+from ..pictures.to_file import check_target, plot_to_file
 from .console import summarize
 from .inputs import arguments
 
@@ -13,6 +13,6 @@ __all__ = ["run"]
 
 def run(options: SimpleNamespace) -> None:
     """Draw a surface and its samples."""
-    plot.check_target(options.output)
-    samples = plot.plot(path=options.output, **arguments(options, default_count=2_000))
+    check_target(options.output)
+    samples = plot_to_file(path=options.output, **arguments(options, default_count=2_000))
     summarize(samples, options)

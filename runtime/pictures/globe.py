@@ -49,13 +49,15 @@ def draw_globe(axes: Axes, view: NDArray[np.float64]) -> None:
         axes.text(x, y, name, ha="center", va="center", path_effects=halo, zorder=7)
 
 
-def view_of(normals: NDArray[np.float64]) -> NDArray[np.float64]:
+def view_of(
+    normals: NDArray[np.float64], old: NDArray[np.float64] | None = None
+) -> NDArray[np.float64]:
     """Return the rows (3, 3) right, up, and towards a viewer who sees most of the normals.
 
-    That is the viewer of `view()`, turned towards the mean normal, the further the more the
-    normals are concentrated.
+    That is the viewer `old`, by default of `view()`, turned towards the mean normal, the further
+    the more the normals are concentrated.
     """
-    old = view()
+    old = view() if old is None else old
     mean = normals.mean(axis=0)
     new = (1.0 - np.linalg.norm(mean)) * old[2] + mean
     length = float(np.linalg.norm(new))

@@ -19,6 +19,7 @@ __all__ = ["AZIMUTH", "ELEVATION", "Scene", "front", "height_factor", "quadrangl
 
 ELEVATION, AZIMUTH = 28.0, -55.0  # of the viewer, in degrees
 MESH, MOST_MESH = 112, 224  # quadrangles along u and v: the number of cells, within these limits
+ISOLINES = 16  # parameter lines along u and v
 # A surface hides a sample if it is nearer to the viewer by this fraction of its diameter.
 HIDING = 0.01
 # A ratio of height to width below LOW or above HIGH is changed to about the second number.
@@ -35,33 +36,49 @@ def view(elevation: float = ELEVATION, azimuth: float = AZIMUTH) -> NDArray[np.f
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """A mesh (m + 1, n + 1, 3) of a surface, drawn with its heights times `factor`.
+    """A surface as quadrangles (Q, 4, 3) and lines on it, heights are drawn times `factor`.
 
-    `view` holds the rows right, up, and towards the viewer.
+    The corners of a quadrangle are in cyclic order; that of a triangle repeats the last one. Each
+    line is an array (k, 3). `view` holds the rows right, up, and towards the viewer.
     """
 
-    mesh: NDArray[np.float64]
+    quadrangles: NDArray[np.float64]
+    lines: tuple[NDArray[np.float64], ...] = ()
     factor: float = 1.0
     view: NDArray[np.float64] = field(default_factory=view)
 
     @classmethod
-    def of(cls, spline: Spline) -> Scene:
-        """Return the scene of a spline, with heights rescaled if necessary."""
+    def of(
+        cls,
+        spline: Spline,
+        seen_from: NDArray[np.float64] | None = None,
+        distance: float = 0.0,
+    ) -> Scene:
+        """Return the scene of a spline, or of its offset, with heights rescaled if necessary."""
         u, v = (
             np.linspace(low, high, min(max(MESH, count), MOST_MESH) + 1)
             for (low, high), count in zip(spline.domain, spline.cells, strict=True)
         )
         mesh = spline.evaluate(u[:, None], v)
-        return cls(mesh, height_factor(np.ptp(mesh.reshape(-1, 3), axis=0)))
+        if distance:
+            mesh = mesh + distance * np.nan_to_num(spline.normals(u[:, None], v))
+        pieces = [x[_some(len(x))] for x in (mesh, np.swapaxes(mesh, 0, 1))]
+        return cls.made(quadrangles(mesh), (*pieces[0], *pieces[1]), seen_from)
+
+    @classmethod
+    def made(
+        cls,
+        quadrangles: NDArray[np.float64],
+        lines: tuple[NDArray[np.float64], ...],
+        seen_from: NDArray[np.float64] | None = None,
+    ) -> Scene:
+        """Return the scene of quadrangles and lines, with heights rescaled if necessary."""
+        factor = height_factor(np.ptp(quadrangles.reshape(-1, 3), axis=0))
+        return cls(quadrangles, lines, factor, view() if seen_from is None else seen_from)
 
     def seen(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return points (..., 3) as right, up, and nearness to the viewer."""
         return (points * [1.0, 1.0, self.factor]) @ self.view.T
-
-    @cached_property
-    def quadrangles(self) -> NDArray[np.float64]:
-        """The quadrangles (Q, 4, 3) of the mesh, their corners in cyclic order."""
-        return quadrangles(self.mesh)
 
     @cached_property
     def triangles(self) -> NDArray[np.float64]:
@@ -81,11 +98,28 @@ class Scene:
         lamp = np.array([-0.45, 0.6, 0.7])
         return np.clip(normals @ (lamp / np.linalg.norm(lamp)), 0.0, 1.0)
 
+    @cached_property
+    def visible_lines(self) -> NDArray[np.float64]:
+        """The visible segments (k, 2, 3) of the lines."""
+        if not self.lines:
+            return np.empty((0, 2, 3))
+        seen = self.visible(np.concatenate(self.lines))
+        ends = np.cumsum([len(line) for line in self.lines])
+        segments = np.concatenate([np.stack([x[:-1], x[1:]], axis=1) for x in self.lines])
+        # A segment begins at each point but the last one of each line.
+        first = np.delete(np.arange(len(seen)), ends - 1)
+        return segments[seen[first] & seen[first + 1]]
+
     def visible(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Return which points (P, 3) of the surface are visible, as booleans (P,)."""
         seen = self.seen(points)
         diameter = float(np.linalg.norm(np.ptp(self.triangles.reshape(-1, 3), axis=0)))
         return seen[:, 2] >= front(self.triangles, seen[:, :2]) - HIDING * diameter
+
+
+def _some(count: int) -> NDArray[np.int64]:
+    """Return the numbers of the parameter lines that are drawn, of `count`."""
+    return np.linspace(0, count - 1, ISOLINES + 1).round().astype(np.int64)
 
 
 def quadrangles(mesh: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -620,7 +620,7 @@ def test_an_old_terminal() -> None:
 @compiled
 def test_heavy_imports_are_lazy() -> None:
     code = (
-        "import sys, gaussmap.runtime.cli, gaussmap.runtime.pictures.plot\n"
+        "import sys, gaussmap.runtime.cli, gaussmap.runtime.pictures.to_file\n"
         "print({'matplotlib', 'sympy', 'pyvista', 'tqdm'} & set(sys.modules))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -12,7 +12,7 @@ from gaussmap.runtime import fields as names
 from gaussmap.runtime.bins import NormalBins
 from gaussmap.runtime.cli import main
 from gaussmap.runtime.fields import ARRAY_NAMES, FLOAT_NAMES
-from gaussmap.runtime.pictures.plot import plot_samples
+from gaussmap.runtime.pictures.to_file import write_plot
 from gaussmap.runtime.samples import Samples
 from gaussmap.runtime.search import fill, find
 
@@ -113,7 +113,7 @@ def test_a_missing_field_is_said_to_be():
 
 def test_pictures_say_what_they_need(tmp_path):
     with pytest.raises(gm.errors.MissingFieldError, match="add 'normal_index' to fields"):
-        plot_samples(narrow(), SPLINE, NORMALS, tmp_path / "a.png")
+        write_plot(narrow(), SPLINE, NORMALS, tmp_path / "a.png")
     assert not any(tmp_path.iterdir())
 
 

@@ -9,7 +9,7 @@ import pytest
 from gaussmap.runtime.density.law import allotted
 from gaussmap.runtime.density.request import checked_request
 from gaussmap.runtime.errors import GaussmapWarning, InputError, SurfaceError
-from gaussmap.runtime.pictures.plot import plot
+from gaussmap.runtime.pictures.to_file import plot_to_file
 from gaussmap.runtime.pieces import cells_of_piece
 from gaussmap.runtime.sampling import sample_and_normals
 
@@ -144,7 +144,7 @@ def test_samples_of_pieces_have_no_mesh():
 
 def test_a_picture_of_pieces(tmp_path):
     path = tmp_path / "barrel.png"
-    samples = plot(barrel(), path, count=100, cells=CELLS)
+    samples = plot_to_file(barrel(), path, count=100, cells=CELLS)
     assert len(samples) == 100
     assert path.stat().st_size > 10_000
 

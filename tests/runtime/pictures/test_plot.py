@@ -10,7 +10,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.cli import main
-from gaussmap.runtime.pictures import palette, plot
+from gaussmap.runtime.pictures import palette, to_file
 
 pytest.importorskip("matplotlib")
 from matplotlib import colors, image
@@ -40,7 +40,7 @@ def share(pixels: np.ndarray, colour: str) -> float:
 
 def test_png(torus: gm.Spline, tmp_path: Path) -> None:
     path = tmp_path / "torus.png"
-    samples = plot.plot(torus, path, count=600, density="isotropic")
+    samples = to_file.plot_to_file(torus, path, count=600, density="isotropic")
     assert abs(len(samples) - 600) < 30
     pixels = picture(path)
     assert pixels.shape == SIZE
@@ -55,13 +55,13 @@ def test_png(torus: gm.Spline, tmp_path: Path) -> None:
 
 def test_the_samples_are_those_of_sample(tmp_path: Path) -> None:
     surface = gm.surfaces.monkey_saddle()
-    drawn = plot.plot(surface, tmp_path / "a.png", count=50)
+    drawn = to_file.plot_to_file(surface, tmp_path / "a.png", count=50)
     assert (drawn.points == gm.sample(surface, count=50).points).all()
 
 
 def test_normals_without_samples_are_grey(tmp_path: Path) -> None:
     surface = gm.surfaces.elliptic_paraboloid()
-    samples = plot.plot(surface, tmp_path / "a.png", gm.fibonacci(300), cells=(16, 16))
+    samples = to_file.plot_to_file(surface, tmp_path / "a.png", gm.fibonacci(300), cells=(16, 16))
     assert 0 < len(samples) < 150
     right = np.split(picture(tmp_path / "a.png"), 2, axis=1)[1]
     assert share(right, palette.NO_SAMPLE) > 0.005
@@ -71,7 +71,7 @@ def test_normals_without_samples_are_grey(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["sphere", "moebius_band", "helicoid", "cylinder", "plane"])
 @pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
 def test_surfaces_of_all_kinds(name: str, tmp_path: Path) -> None:
-    plot.plot(gm.surfaces.surface(name), tmp_path / "a.png", count=100, cells=(16, 16))
+    to_file.plot_to_file(gm.surfaces.surface(name), tmp_path / "a.png", count=100, cells=(16, 16))
     assert picture(tmp_path / "a.png").shape == SIZE
 
 
@@ -110,7 +110,7 @@ def texts_of(surface: gm.Surface, path: Path, monkeypatch: pytest.MonkeyPatch) -
         save(figure, *arguments, **options)  # pyright: ignore[reportArgumentType]
 
     monkeypatch.setattr(Figure, "savefig", spy)
-    plot.plot(surface, path, count=100, density="isotropic")
+    to_file.plot_to_file(surface, path, count=100, density="isotropic")
     return {
         text.get_text()
         for text in figures[0].findobj(Text)
@@ -122,7 +122,7 @@ def texts_of(surface: gm.Surface, path: Path, monkeypatch: pytest.MonkeyPatch) -
 @pytest.mark.quick_for(".svg")
 def test_other_suffixes_and_equal_bytes(suffix: str, torus: gm.Spline, tmp_path: Path) -> None:
     for name in ("a", "b"):
-        plot.plot(torus, tmp_path / f"{name}{suffix}", count=100)
+        to_file.plot_to_file(torus, tmp_path / f"{name}{suffix}", count=100)
     content = (tmp_path / f"a{suffix}").read_bytes()
     assert content == (tmp_path / f"b{suffix}").read_bytes()
     assert content.startswith({".pdf": b"%PDF", ".svg": b"<?xml", ".PNG": b"\x89PNG"}[suffix])
@@ -133,10 +133,10 @@ def test_other_suffixes_and_equal_bytes(suffix: str, torus: gm.Spline, tmp_path:
 def test_no_global_state(torus: gm.Spline, tmp_path: Path) -> None:
     import matplotlib
 
-    plot.plot(torus, tmp_path / "a.png", count=50)
+    to_file.plot_to_file(torus, tmp_path / "a.png", count=50)
     with matplotlib.rc_context({"figure.facecolor": "red", "font.size": 30, "text.color": "red"}):
         before = dict(matplotlib.rcParams)
-        plot.plot(torus, tmp_path / "b.png", count=50)
+        to_file.plot_to_file(torus, tmp_path / "b.png", count=50)
         assert dict(matplotlib.rcParams) == before
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
 
@@ -144,8 +144,8 @@ def test_no_global_state(torus: gm.Spline, tmp_path: Path) -> None:
 def test_no_pyplot(tmp_path: Path) -> None:
     code = (
         "import sys, gaussmap as gm\n"
-        "from gaussmap.runtime.pictures.plot import plot\n"
-        "plot(gm.surfaces.torus(), sys.argv[1], count=50)\n"
+        "from gaussmap.runtime.pictures.to_file import plot_to_file\n"
+        "plot_to_file(gm.surfaces.torus(), sys.argv[1], count=50)\n"
         "print('matplotlib' in sys.modules, 'matplotlib.pyplot' in sys.modules)"
     )
     done = subprocess.run(
@@ -158,7 +158,7 @@ def test_no_pyplot(tmp_path: Path) -> None:
 def test_extreme_sizes(tmp_path: Path) -> None:
     for radius in (1e-100, 1e100):
         sphere = gm.surfaces.sphere(radius=radius)
-        plot.plot(sphere, tmp_path / "a.png", count=50, cells=(16, 16))
+        to_file.plot_to_file(sphere, tmp_path / "a.png", count=50, cells=(16, 16))
         assert picture(tmp_path / "a.png").shape == SIZE
 
 
@@ -177,34 +177,36 @@ def test_nothing_half_written(
 
     monkeypatch.setattr(Figure, "savefig", half)
     with pytest.raises(KeyboardInterrupt):
-        plot.plot(torus, path, count=50)
+        to_file.plot_to_file(torus, path, count=50)
     assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("a.png", "old")]
 
 
 @pytest.mark.parametrize("name", ["plane", "cylinder"])
 def test_samples_that_no_normal_gave(name: str, tmp_path: Path) -> None:
-    drawn = plot.plot(gm.surfaces.surface(name), tmp_path / "a.png", count=50, cells=(8, 8))
+    drawn = to_file.plot_to_file(
+        gm.surfaces.surface(name), tmp_path / "a.png", count=50, cells=(8, 8)
+    )
     assert set(drawn.kind) <= {"filling", "grid"}
     assert picture(tmp_path / "a.png").shape == SIZE
 
 
 def test_bad_targets(torus: gm.Spline, tmp_path: Path) -> None:
     with pytest.raises(gm.errors.UnknownNameError, match=r"use one of \.png, \.pdf, \.svg"):
-        plot.plot(torus, tmp_path / "a.jpg", count=50)
+        to_file.plot_to_file(torus, tmp_path / "a.jpg", count=50)
     with pytest.raises(gm.errors.FileError, match="does not exist"):
-        plot.plot(torus, tmp_path / "missing" / "a.png", count=50)
+        to_file.plot_to_file(torus, tmp_path / "missing" / "a.png", count=50)
 
 
 def test_bad_arguments(torus: gm.Spline, tmp_path: Path) -> None:
     path = tmp_path / "a.png"
     with pytest.raises(gm.errors.InputError, match="already has its cells"):
-        plot.plot(torus, path, count=50, cells=(8, 8))
+        to_file.plot_to_file(torus, path, count=50, cells=(8, 8))
     with pytest.raises(gm.errors.InputError, match="say how many samples"):
-        plot.plot(torus, path)
-    with pytest.raises(gm.errors.InputError, match=r"\(S, 3\) with S >= 1"):
-        plot.plot_samples(gm.sample(torus, normals=[[0, 0, 1]])[:0], torus, [], path)
+        to_file.plot_to_file(torus, path)
+    with pytest.raises(gm.errors.InputError, match="no samples to draw"):
+        to_file.write_plot(gm.sample(torus, normals=[[0, 0, 1]])[:0], torus, [], path)
     with pytest.raises(gm.errors.InputError, match="too few normals"):
-        plot.plot_samples(gm.sample(torus, count=50), torus, [(0, 0, 1)], path)
+        to_file.write_plot(gm.sample(torus, count=50), torus, [(0, 0, 1)], path)
     assert not path.exists()
 
 
@@ -213,7 +215,7 @@ def test_without_matplotlib(
 ) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     with pytest.raises(gm.errors.MissingExtraError, match=r'pip install "gaussmap\[plot\]"'):
-        plot.check_target(tmp_path / "a.png")
+        to_file.check_target(tmp_path / "a.png")
     assert main(["plot", "torus", "-o", str(tmp_path / "a.png")]) == 2
     assert 'pip install "gaussmap[plot]"' in capsys.readouterr().err
 

@@ -1,0 +1,24 @@
+"""Figures that notebooks show."""
+
+from __future__ import annotations
+
+from io import BytesIO
+
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+__all__ = ["Picture"]
+
+
+class Picture(Figure):
+    """A figure that notebooks show, and that pyplot does not keep in memory."""
+
+    def __init__(self, *arguments: object, **options: object) -> None:
+        """Make a figure with the canvas of Agg."""
+        super().__init__(*arguments, **options)  # pyright: ignore[reportArgumentType]
+        FigureCanvasAgg(self)
+
+    def _repr_png_(self) -> bytes:
+        content = BytesIO()
+        self.savefig(content, format="png")
+        return content.getvalue()
