@@ -78,10 +78,12 @@ SHAPES = {
     "cone and cylinder": (cone_and_cylinder, 6),
     "eighth": (eighth, 6),
 }
+# Curves of intersection that Open CASCADE computed are borders within its default tolerance.
+COMPUTED = {"cut ball": 1e-7, "as NURBS": 1e-7, "cone and cylinder": 1e-7}
 
 
-def checked(samples, part, shape, tolerance=1e-9):
-    """Compare samples on edges with both of their faces."""
+def checked(samples, part, shape, tolerance):
+    """Compare samples on edges with both of their faces, whose borders have this tolerance."""
     faces = [TopoDS.Face(x) for x in parts_of(shape, FACE)]
     size = np.linalg.norm(np.ptp(samples.points, axis=0))
     edge = samples[samples.kind == "edge"]
@@ -104,7 +106,7 @@ def checked(samples, part, shape, tolerance=1e-9):
             truth = np.array([cross.X(), cross.Y(), cross.Z()]) / cross.Magnitude()
             assert np.linalg.norm(truth - normal) <= 1e-9
             vertex = BRepBuilderAPI_MakeVertex(gp_Pnt(*edge.points[k].tolist())).Vertex()
-            assert BRepExtrema_DistShapeShape(vertex, face).Value() <= tolerance * size
+            assert BRepExtrema_DistShapeShape(vertex, face).Value() <= 1e-9 * size + tolerance
 
 
 @pytest.mark.parametrize("name", SHAPES)
@@ -118,7 +120,7 @@ def test_samples_lie_on_both_faces(name, write, read):
     assert len(part.arrays["edge_faces"]) == count
     assert pairs == set(map(tuple, part.arrays["edge_faces"]))
     assert (samples.report.edge_samples > 0) == (count > 0)
-    checked(samples, part, shape)
+    checked(samples, part, shape, COMPUTED.get(name, 0.0))
 
 
 def test_loose_faces_are_sewn_and_borders_are_no_edges(write, read):
