@@ -227,6 +227,7 @@ EACH = pytest.mark.parametrize("name", ROUNDINGS)
 
 @EACH
 @given(data=st.data())
+@pytest.mark.quick_for("forms", "support_function", "envelope", "curvature")
 def test_integer_patches(name, data):
     check_where_bounded(name, data.draw(numbers(name, integers)))
 

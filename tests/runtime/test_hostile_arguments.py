@@ -218,6 +218,7 @@ def consumed(call: Any, *arguments: Any, **named: Any) -> None:
 
 
 @pytest.mark.parametrize("value", HOSTILE, ids=NAMES)
+@pytest.mark.quick_for("bool", "float", "str", "object")
 def test_progress(value: Any, samples: gm.Samples) -> None:
     spline = samples.spline
     assert spline is not None

@@ -184,6 +184,7 @@ def test_points_are_needed(convert):
         getattr(samples(fields=("uv",)), convert)()
 
 
+@pytest.mark.slow
 def test_meshes_load_what_triangulates_and_nothing_heavier():
     code = (
         "import sys, gaussmap as gm;"

@@ -51,6 +51,7 @@ def test_count(name):
 @pytest.mark.compiled
 @pytest.mark.parametrize("name", CURVED)
 @pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
+@pytest.mark.quick_for("torus", "sphere", "moebius_band", "wavy_graph")
 def test_small_counts(name):
     """A symmetric surface has not every number, but nothing far from it."""
     spline = gm.fit(gm.surfaces.surface(name))

@@ -37,6 +37,7 @@ def test_the_points_lie_on_the_patch(triangle):
 
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize("distance", ["1/3", -2, sp.Symbol("R", positive=True)])
+@pytest.mark.quick_for("place0")
 def test_the_offset_is_rational_and_at_the_distance(triangle, distance, place):
     offset, patch = triangle.rational_offset(distance), triangle.rational_offset(0)
     assert all(component.is_rational_function(s, t) for component in offset)

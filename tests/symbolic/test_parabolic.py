@@ -161,6 +161,7 @@ def dependent(generator: random.Random, weights) -> tuple[list[Any], Any]:
 
 
 @pytest.mark.parametrize("weights", [(1, -1, -6), (2, 1, 1), (1, 2, 1), (0, 1, 3), (0, 0, 1)])
+@pytest.mark.quick_for("weights0")
 def test_rank_two_has_two_lines_in_fixed_directions(generator, weights):
     """The binary cubic is λ(s,t) (t n0·d − s n0·e), up to a factor; the last is at infinity."""
     vectors, n0 = dependent(generator, weights)

@@ -252,6 +252,7 @@ def test_relaxing_narrows_the_gaps(name):
 
 
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "cylinder"])
+@pytest.mark.slow
 def test_relaxing_keeps_what_was_asked(name):
     spline = gm.fit(gm.surfaces.surface(name), (24, 24))
     points, normals = places(spline)

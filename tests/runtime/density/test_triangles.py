@@ -22,6 +22,7 @@ def sizes(triangles: Triangles) -> np.ndarray:
 
 @RADII
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "ellipsoid"])
+@pytest.mark.quick_for("0.5")
 def test_triangles_make_up_the_patches(name, radius):
     triangles = cut_patches(sizing_of(name, (4, 4)), radius)
     odd = np.arange(len(triangles)) % 2 == 1

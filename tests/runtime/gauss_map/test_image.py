@@ -329,6 +329,7 @@ def test_translation_costs_only_its_rounding() -> None:
 @pytest.mark.parametrize(
     "cells", [(16, 16), *(pytest.param(x, marks=pytest.mark.slow) for x in ((33, 17), (64, 64)))]
 )
+@pytest.mark.slow
 def test_closed_surfaces_have_the_solid_angle_of_their_topology(cells: tuple[int, int]) -> None:
     torus = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.torus(), cells)
     assert torus.solid_angles.sum() == pytest.approx(0.0, abs=1e-11)

@@ -390,6 +390,7 @@ def test_polylines_are_within_the_tolerance_of_the_curve(tolerance: float) -> No
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("scale", [0.5, 1e-6, 10.0])
+@pytest.mark.quick_for("1.0")
 def test_monkey_saddle_has_one_point(scale: float) -> None:
     found = gm.gauss_map.parabolic_points(gm.surfaces.monkey_saddle(scale=scale))
     assert found.curves == ()
@@ -495,6 +496,7 @@ def test_curves_cross_across_the_ends_of_a_periodic_surface() -> None:
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
 def test_curves_behind_a_crossing_near_the_border_are_whole() -> None:
     """K of z = sin u sin v vanishes where u ± v is an odd multiple of π/2: at a crossing that is
     1.2 cells from a border four arcs end, and two of them are that short.

@@ -141,6 +141,7 @@ def test_no_global_state(torus: gm.Spline, tmp_path: Path) -> None:
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
 
 
+@pytest.mark.slow
 def test_no_pyplot(tmp_path: Path) -> None:
     code = (
         "import sys, gaussmap as gm\n"
