@@ -390,7 +390,7 @@ def test_polylines_are_within_the_tolerance_of_the_curve(tolerance: float) -> No
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("scale", [0.5, 1e-6, 10.0])
-@pytest.mark.quick_for("1.0")
+@pytest.mark.quick_for("0.5")
 def test_monkey_saddle_has_one_point(scale: float) -> None:
     found = gm.gauss_map.parabolic_points(gm.surfaces.monkey_saddle(scale=scale))
     assert found.curves == ()
