@@ -147,8 +147,8 @@ def sample(
     about r, twice the angle. λ is half the mean of κ², or follows from `coverage`.
 
     All faces of a part have one target density, and one count; angle and coverage hold for the part
-    as a whole. λ is twice the mean of κ² there, 5 % of a count go where normals are farthest from
-    those of all samples, and every face has a sample if there are twice as many samples as faces.
+    as a whole. λ is three times the mean of κ² there, 5 % of a count go where normals are farthest
+    from those of all samples, and every face has a sample if there are twice as many samples as faces.
     `density` is "balanced", "uniform", a number, or "gauss" with `normals`; `cells` and `on` are
     not for parts.
 

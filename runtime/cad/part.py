@@ -57,7 +57,7 @@ class Part(Whole):
 
     @property
     def name(self) -> str:
-        """The name of the part: in its file, or that of the file."""
+        """The name of the file that the part was read from."""
         return str(self.about.get("name", "part"))
 
     @property
