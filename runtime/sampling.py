@@ -148,9 +148,9 @@ def sample(
 
     All faces of a part have one target density, and one count; angle and coverage hold for the part
     as a whole. λ is three times the mean of κ² there, 5 % of a count go where normals are farthest
-    from those of all samples, and every face has a sample if there are twice as many samples as faces.
-    `density` is "balanced", "uniform", a number, or "gauss" with `normals`; `cells` and `on` are
-    not for parts.
+    from those of all samples, and every face has a sample if there are twice as many samples as
+    faces. `density` is "balanced", "uniform", a number, or "gauss" with `normals`; `cells` and `on`
+    are not for parts.
 
     Samples on edges have the `kind` "edge" and the normals of both faces, `normals` and
     `other_normals`. They are on both faces exactly, or, where the faces of the file do not meet, on
