@@ -38,9 +38,9 @@ def sources(cells):
     return [(cell.cell_type, cell.id, cell.source) for cell in cells.cells]
 
 
-def test_there_are_five_tasks():
+def test_there_are_six_tasks():
     names = {x.stem for x in SCRIPTS}
-    assert names == {"inspection", "learning", "meshing", "registration", "teaching"}
+    assert names == {"cad", "inspection", "learning", "meshing", "registration", "teaching"}
     assert {x.stem for x in notebooks.GALLERY.glob("*.ipynb")} == names
 
 
