@@ -60,7 +60,7 @@ def picture(axis, colours, title):
     """Draw the part, with a colour (red, green, blue) for each of the dense samples."""
     shade = 0.5 + 0.5 * np.clip(dense.normals @ AXES.T @ LIGHT, 0, 1)
     image = np.append(colours * shade[:, None], [[1, 1, 1]], axis=0)[shown]
-    face = np.append(dense.face_index, -1)[shown]
+    face = np.append(np.asarray(dense.face_index), -1)[shown]
     for side in (0, 1):
         image[face != np.roll(face, 1, side)] = 0.2
     axis.imshow(image, origin="lower", extent=(x0, x1, y0, y1))
@@ -113,7 +113,7 @@ plt.show()
 
 # %%
 machined = [face.index for face in part.faces if face.color != part.faces[0].color]
-chosen = np.isin(by_coverage.face_index, machined)
+chosen = np.isin(np.asarray(by_coverage.face_index), machined)
 points, normals = by_coverage.points[chosen], by_coverage.normals[chosen]
 start, stop = points + 5.0 * normals, points + 1.0 * normals
 area = by_coverage.weights()
@@ -133,8 +133,8 @@ for index in machined:
 # %%
 with_edges = gm.sample(part, coverage=5.0, edges=True)
 edge = with_edges.kind == "edge"
-cosine = np.sum(with_edges.normals[edge] * with_edges.other_normals[edge], axis=1)
-angles = np.degrees(np.arccos(np.clip(cosine, -1, 1)))
+normal, other = with_edges.normals[edge], np.asarray(with_edges.other_normals)[edge]
+angles = np.degrees(np.arccos(np.clip(np.sum(normal * other, axis=1), -1, 1)))
 print(
     f"{edge.sum()} points on edges; the normals differ by {angles.min():.0f} to {angles.max():.0f}°"
 )
@@ -146,8 +146,6 @@ paths = np.stack([start[in_sight], points[in_sight]]) @ AXES[:2].T
 axes[0].plot(paths[..., 0], paths[..., 1], color="tab:blue", linewidth=0.8)
 axes[0].scatter(*paths[1].T, s=6, color="tab:red", zorder=3)
 places = with_edges.points[edge]
-normal = with_edges.normals[edge]
-other = with_edges.other_normals[edge]
 in_sight = visible(places + 0.3 * (normal + other), normal) | visible(places, other)
 picture(axes[1], np.full((len(dense), 3), 0.93), "points on edges, with both normals")
 for side, colour in ((normal, "tab:blue"), (other, "tab:orange")):
