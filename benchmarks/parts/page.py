@@ -63,10 +63,11 @@ LEFT_OUT = """\
 On surfaces, rows along lines of curvature need far fewer samples (docs/quality.md). On parts they
 were tried by hand, and left out: a face got a graded grid with the count that the law of the part
 gives it, if the largest angle to the normal of the nearest sample on the face fell to 0.9 or less,
-and gaps on the face rose by at most 5 % (first attempt) or not at all (second one). On the large
-cylinders of CrankArm.brep that angle fell to a quarter. But most faces have few samples, steps of
-the grid do not meet at borders, and its cells are long. So on whole parts, relative to
-**balanced**, with the same counts:
+and gaps on the face rose by at most 5 % (first attempt) or not at all (second one), and the largest
+angle in normal space by at most 3 %. On the large cylinders of CrankArm.brep that angle fell to a
+quarter. But most faces have few samples, steps of the grid do not meet at borders, and its cells
+are long: the probable reasons why this does not add up. On whole parts, relative to **balanced**,
+with the same counts:
 
 - every gap left on its face filled on the face alone: CrankArm.brep: gap 1.15, angle 1.10, mean E
   0.93; hammer.iges: 1.37, 1.28, 0.93; frame.step: 1.01, 2.07, 0.98; screw.step: 1.00, 1.00, 0.99;
