@@ -10,7 +10,7 @@ from gaussmap.benchmarks.parts.ways import BALANCED, FARTHEST, GMSH, WAYS, Cloud
 def test_page_names_losses_first_and_judges_targets():
     own, other = Errors(100, 2.0, 5.0, 9.0), Errors(102, 1.9, 10.0, 8.0)
     found = dict.fromkeys(WAYS, other) | {BALANCED: own, GMSH: "fails: no mesh"}
-    text = page([OnPart("a.step", 7, 100, found)])
+    text = page([OnPart("a.step", 7, 100, held_out=False, found=found)])
     losses = text[: text.index("## What is measured")]
     assert "- Farthest points have smaller gaps on `a.step` (1.05 ×)." in losses
     assert "- Farthest points have a smaller mean E on `a.step` (1.12 ×)." in losses
