@@ -10,7 +10,9 @@ from gaussmap.benchmarks.parts.ways import BALANCED, FARTHEST, GMSH, WAYS, Cloud
 def test_page_names_losses_first_and_judges_targets():
     own, other = Errors(100, 2.0, 5.0, 9.0), Errors(102, 1.9, 10.0, 8.0)
     found = dict.fromkeys(WAYS, other) | {BALANCED: own, GMSH: "fails: no mesh"}
-    text = page([OnPart("a.step", 7, 100, held_out=False, found=found)])
+    tuned = OnPart("a.step", 7, 100, held_out=False, found=found)
+    held = OnPart("b.step", 9, 100, held_out=True, found=dict.fromkeys(WAYS, own))
+    text = page([tuned, held])
     losses = text[: text.index("## What is measured")]
     assert "- Farthest points have smaller gaps on `a.step` (1.05 ×)." in losses
     assert "- Farthest points have a smaller mean E on `a.step` (1.12 ×)." in losses
@@ -20,6 +22,7 @@ def test_page_names_losses_first_and_judges_targets():
     assert "not known" in text
     assert "1.05 met" in text
     assert "0.50 met" in text
+    assert "`b.step`, 9 faces, **held out**" in text
 
 
 def test_errors_are_those_of_places():
