@@ -15,7 +15,7 @@ from gaussmap.docs.drawing import Picture, panels
 from gaussmap.docs.figures import FOLDER, filled
 from gaussmap.runtime.files.paths import atomic_path
 from gaussmap.runtime.pictures.palette import ELLIPTIC, HYPERBOLIC, STYLE
-from gaussmap.runtime.pictures.scene import Scene, view
+from gaussmap.runtime.pictures.scene import Scene, quadrangles, view
 
 __all__ = ["NAME", "draw", "pair"]
 
@@ -56,7 +56,9 @@ def draw() -> str:
         figure, axes = panels(
             7.4, 3.1, 1, 2, left=0.005, right=0.995, bottom=0.0, top=0.92, wspace=0.01
         )
-        scene = Scene(gm.fit(form.surface).evaluate(*lattice(form)), view=view(38.0, -55.0))
+        scene = Scene(
+            quadrangles(gm.fit(form.surface).evaluate(*lattice(form))), view=view(38.0, -55.0)
+        )
         titles = ("isotropic", "aligned")
         for k, (mesh, quality) in enumerate(found):
             title = f"{titles[k]}: {quality.vertices:,} vertices, worst angle {quality.worst:.1f}°"

@@ -179,7 +179,7 @@ def caption_3(
 
 def draw_patch(axes: Axes, patch: Patch, view: Floats, title: str = "") -> Picture:
     """Draw a patch with parameter lines and edges."""
-    picture = Picture(axes, Scene(bezier(patch.net, patch.mesh), view=view), title)
+    picture = Picture(axes, Scene(quadrangles(bezier(patch.net, patch.mesh)), view=view), title)
     picture.surface(patch.tints)
     lines = [bezier(patch.net, x) for x in isolines(8)]
     picture.lines(lines, hide=False, colors="white", linewidths=0.6, zorder=2)

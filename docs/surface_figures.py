@@ -117,7 +117,7 @@ def surface_picture(
     """Draw a spline with some parameter lines."""
     (u0, u1), (v0, v1) = spline.domain
     mesh = spline.evaluate(np.linspace(u0, u1, MESH + 1)[:, None], np.linspace(v0, v1, MESH + 1))
-    picture = Picture(axes, Scene(mesh, view=seen_from), title, shape)
+    picture = Picture(axes, Scene(quadrangles(mesh), view=seen_from), title, shape)
     picture.surface("#dbe9f3")
     if lines:
         at = range(0, MESH + 1, MESH // lines)
