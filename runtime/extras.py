@@ -8,7 +8,7 @@ from typing import Any
 
 from .errors import MissingExtraError
 
-__all__ = ["check_extra", "from_extra"]
+__all__ = ["check_extra", "from_extra", "if_installed"]
 
 
 def check_extra(module: str, extra: str, purpose: str) -> None:
@@ -25,6 +25,14 @@ def from_extra(module: str, extra: str, purpose: str) -> Any:  # noqa: ANN401
         raise _missing(module, extra, purpose, "is not installed") from error
     except (ImportError, OSError) as error:  # OSError: a library of the system lacks
         raise _missing(module, extra, purpose, f"fails: {error}") from error
+
+
+def if_installed(module: str) -> Any | None:  # noqa: ANN401
+    """Import a module that only makes something faster; None if it is missing or fails."""
+    try:
+        return importlib.import_module(module)
+    except (ImportError, OSError):
+        return None
 
 
 def _missing(module: str, extra: str, purpose: str, reason: str) -> MissingExtraError:

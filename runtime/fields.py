@@ -28,6 +28,7 @@ __all__ = [
     "OPTIONAL_NAMES",
     "PART_NAMES",
     "REAL_NAMES",
+    "UNITS",
     "checked_dtype",
     "checked_fields",
     "columns_of",
@@ -54,6 +55,17 @@ COLUMNS: dict[str, tuple[str, ...]] = {
     "other_normals": ("other_nx", "other_ny", "other_nz"),
     "other_uv": ("other_u", "other_v"),
     "other_face_index": ("other_face_index",),
+}
+# The units of those that are no integers: L is that of the surface, u and v have their own.
+UNITS: dict[str, str] = {
+    "points": "L",
+    "normals": "1",
+    "uv": "parameter",
+    "support": "L",
+    "gaussian_curvature": "1/L^2",
+    "mean_curvature": "1/L",
+    "other_normals": "1",
+    "other_uv": "parameter",
 }
 INDEX_NAMES = ("normal_index", "patch_index")
 # Only samples of a surface have these, not those of its spline.

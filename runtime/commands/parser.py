@@ -129,7 +129,7 @@ def _sample() -> Command:
         "curvatures. Samples are the points that have prescribed normals, and samples that fill "
         "the gaps between these, where the surface is flat or developable.",
         *_sampling(default_count=10_000),
-        _output(".npz, .ply, .csv, .vtp or .xyz"),
+        _output(".npz, .ply, .csv, .vtp, .xyz, .parquet, .arrow or .feather"),
         Option("--edges", edges, group="the surface"),
         Option("--fields NAME,NAME", names, group=group),
         Option("--progressive", prefixes, group=group),

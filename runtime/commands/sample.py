@@ -8,8 +8,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..fields import checked_fields
-from ..files.formats import SUFFIXES, check_fields
-from ..files.paths import check_target
+from ..files.formats import check_fields, check_samples_target
 from ..sampling import sample
 from .console import summarize
 from .inputs import arguments
@@ -20,7 +19,7 @@ __all__ = ["run"]
 
 def run(options: SimpleNamespace) -> None:
     """Sample a surface and write the samples to a file."""
-    check_target(options.output, SUFFIXES)
+    check_samples_target(options.output)
     fields = None if options.fields is None else options.fields.split(",")
     is_part = is_part_file(options.surface)
     written = checked_fields(

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 from ..errors import InputError
 from ..extras import check_extra
 from ..samples import Samples
-from .gltf import PURPOSE, write_glb
+from .arrow import write_arrow, write_parquet
+from .gltf import write_glb
 from .npz import read_npz, write_npz
 from .paths import (
     PathLike,
@@ -34,6 +35,7 @@ __all__ = [
     "SUFFIXES",
     "check_fields",
     "check_mesh_target",
+    "check_samples_target",
     "read_samples",
     "write_mesh",
     "write_samples",
@@ -45,6 +47,9 @@ _WRITERS: dict[str, Callable[[Samples, Path], None]] = {
     ".csv": write_csv,
     ".vtp": write_vtp,
     ".xyz": write_xyz,
+    ".parquet": write_parquet,
+    ".arrow": write_arrow,
+    ".feather": write_arrow,
 }
 _READERS: dict[str, Callable[[BufferedReader], Samples]] = {".npz": read_npz, ".ply": read_ply}
 _MESH_WRITERS: dict[str, Callable[[Mesh, Path], None]] = {
@@ -59,6 +64,13 @@ _MESH_WRITERS: dict[str, Callable[[Mesh, Path], None]] = {
 SUFFIXES, READABLE_SUFFIXES = tuple(_WRITERS), tuple(_READERS)
 MESH_SUFFIXES = tuple(_MESH_WRITERS)
 
+# The library that writes a format, and the extra that brings it.
+_EXTRAS = {
+    ".glb": ("trimesh", "trimesh"),
+    ".parquet": ("pyarrow", "tables"),
+    ".arrow": ("pyarrow", "tables"),
+    ".feather": ("pyarrow", "tables"),
+}
 # The fields that a format cannot do without.
 _NEEDED = {".ply": ("points",), ".vtp": ("points",), ".xyz": ("points", "normals")}
 
@@ -80,11 +92,22 @@ def write_mesh(mesh: Mesh, path: PathLike) -> None:
         _MESH_WRITERS[suffix](mesh, temporary)
 
 
+def check_samples_target(path: PathLike) -> None:
+    """Raise now what writing samples to `path` would raise later, see `check_target`."""
+    check_target(path, SUFFIXES)
+    _check_library(path)
+
+
 def check_mesh_target(path: PathLike) -> None:
     """Raise now what writing a mesh to `path` would raise later, see `check_target`."""
     check_target(path, MESH_SUFFIXES)
-    if known_suffix(path, MESH_SUFFIXES) == ".glb":
-        check_extra("trimesh", "trimesh", PURPOSE)
+    _check_library(path)
+
+
+def _check_library(path: PathLike) -> None:
+    suffix = checked_path(path).suffix.lower()
+    if suffix in _EXTRAS:
+        check_extra(*_EXTRAS[suffix], purpose=f"a {suffix} file")
 
 
 def check_fields(path: PathLike, fields: Sequence[str]) -> None:

@@ -13,14 +13,12 @@ from ..extras import from_extra
 if TYPE_CHECKING:
     from ..meshes.mesh import Mesh
 
-__all__ = ["PURPOSE", "write_glb"]
-
-PURPOSE = "a .glb file"  # what trimesh is needed for
+__all__ = ["write_glb"]
 
 
 def write_glb(mesh: Mesh, path: Path) -> None:
     """Write triangles, vertices and their normals, in single precision."""
-    trimesh = from_extra("trimesh", "trimesh", PURPOSE)
+    trimesh = from_extra("trimesh", "trimesh", "a .glb file")
     if np.abs(mesh.vertices).max() > np.finfo(np.float32).max:
         raise InputError(
             "a .glb file holds single precision, for which these vertices are too large; choose "

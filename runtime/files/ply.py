@@ -22,6 +22,7 @@ from ..fields import ARRAY_NAMES, COLUMNS, FLAG_NAMES, REAL_NAMES, columns_of, d
 from ..report import SamplingReport
 from ..samples import Samples
 from .content import known_fields, lacks, report_from_json, report_to_json
+from .packed import append_rows, kept
 from .reading import UnusableError
 
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ _FIELDS = "gaussmap fields "
 _CHUNK = 200
 _LARGEST_HEADER = 1 << 20
 _LARGEST_INTEGER = 2**31 - 1
-# Rows that are packed or unpacked at once: they fit into a cache.
+# Rows that are unpacked at once: they fit into a cache.
 _ROWS = 4096
 
 
@@ -74,20 +75,19 @@ def write_ply(samples: Samples, path: Path) -> None:
         _check_narrow(name, column)
     with open(path, "wb") as file:
         file.writelines(_header(comments, columns))
-        file.writelines(_rows(columns))
+    append_rows(path, samples.arrays())
 
 
 def write_mesh_ply(mesh: Mesh, path: Path) -> None:
     """Write vertices with normals, u and v, and triangles."""
     if len(mesh.vertices) > _LARGEST_INTEGER:
         raise InputError("a .ply file numbers vertices by 32 bits; write a .vtu file instead.")
-    columns = columns_of({"points": mesh.vertices, "normals": mesh.normals, "uv": mesh.uv})
-    corners = {"count": np.full(len(mesh.triangles), 3, np.uint8)}
-    corners |= dict(zip("abc", mesh.triangles.T, strict=True))
+    arrays = {"points": mesh.vertices, "normals": mesh.normals, "uv": mesh.uv}
+    counts = np.full(len(mesh.triangles), 3, np.uint8)
     with open(path, "wb") as file:
-        file.writelines(_header([], columns, len(mesh.triangles)))
-        file.writelines(_rows(columns))
-        file.writelines(_rows(corners))
+        file.writelines(_header([], columns_of(arrays), len(mesh.triangles)))
+    append_rows(path, arrays)
+    append_rows(path, {"count": counts, "corners": mesh.triangles})
 
 
 def read_ply(file: BufferedReader) -> Samples:
@@ -120,26 +120,10 @@ def _header(
         yield f"comment {comment}\n".encode()
     yield f"element vertex {len(columns['x'])}\n".encode()
     for name, column in columns.items():
-        yield f"property {_NAMES[_kept(column)]} {name}\n".encode()
+        yield f"property {_NAMES[kept(column)]} {name}\n".encode()
     if triangles is not None:
         yield f"element face {triangles}\nproperty list uchar int vertex_indices\n".encode()
     yield b"end_header\n"
-
-
-def _rows(columns: Mapping[str, NDArray[Any]]) -> Iterator[memoryview]:
-    """Yield columns as rows, some thousands at a time."""
-    row = np.dtype([(name, _kept(column)) for name, column in columns.items()])
-    count = len(next(iter(columns.values())))
-    for start in range(0, count, _ROWS):
-        block = np.empty(min(_ROWS, count - start), row)
-        for name, column in columns.items():
-            block[name] = column[start : start + _ROWS]
-        yield block.data
-
-
-def _kept(column: NDArray[Any]) -> str:
-    """Return the type that a column has in a file: there are no booleans, no 64-bit integers."""
-    return {"i8": "i4", "b1": "u1"}.get(column.dtype.str[1:], column.dtype.str[1:])
 
 
 def _check_narrow(name: str, column: NDArray[Any]) -> None:

@@ -21,8 +21,8 @@ _STL_ROW = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribu
 def write_obj(mesh: Mesh, path: Path) -> None:
     """Write text: vertices, their normals, and triangles that name both."""
     # Not trimesh: it writes a fixed number of digits behind the point, none of small numbers.
-    with open(path, "w", encoding="ascii", newline="\n") as file:
-        file.write("# written by gaussmap\n")
+    with open(path, "wb") as file:
+        file.write(b"# written by gaussmap\n")
         write_rows(file, "v {} {} {}\n", [*mesh.vertices.T])
         write_rows(file, "vn {} {} {}\n", [*mesh.normals.T])
         corners = np.repeat(mesh.triangles.T + 1, 2, axis=0)

@@ -669,7 +669,9 @@ class TestNpzContent:
 
 class TestNames:
     def test_the_suffixes(self):
-        assert SUFFIXES == (".npz", ".ply", ".csv", ".vtp", ".xyz")
+        assert SUFFIXES == (
+            ".npz", ".ply", ".csv", ".vtp", ".xyz", ".parquet", ".arrow", ".feather",
+        )  # fmt: skip
         assert READABLE_SUFFIXES == (".npz", ".ply")
 
     def test_no_name(self):
