@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import os
 import sys
+import threading
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
+from functools import cache
 from itertools import islice
 from typing import TypeVar
 
@@ -46,7 +48,8 @@ def over_ranges(
     """
     starts = range(0, total, size)
     workers = min(thread_count(threads), len(starts))
-    if workers <= 1:
+    # Work inside of work takes the thread that it has: all others may be waiting for it.
+    if workers <= 1 or getattr(_HERE, "is_worker", False):
         results = (work(first, min(first + size, total)) for first in starts)
     else:
         results = _in_threads(lambda first: work(first, min(first + size, total)), starts, workers)
@@ -57,18 +60,33 @@ def _in_threads(
     work: Callable[[int], Result], starts: Iterable[int], workers: int
 ) -> Iterator[Result]:
     """Yield work(start) in order, computed by threads that are at most AHEAD ranges ahead."""
-    waiting = iter(starts)
-    with ThreadPoolExecutor(workers) as pool:
-        try:
-            ahead = deque(pool.submit(work, start) for start in islice(waiting, AHEAD * workers))
-            while ahead:
-                result = ahead.popleft().result()
-                ahead.extend(pool.submit(work, start) for start in islice(waiting, 1))
-                yield result
-                del result  # so that it is not kept alive while the next one is computed
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)  # Ctrl-C must not wait for all ranges
-            raise
+    waiting, pool = iter(starts), _pool(workers)
+    ahead = deque(pool.submit(work, start) for start in islice(waiting, AHEAD * workers))
+    try:
+        while ahead:
+            result = ahead.popleft().result()
+            ahead.extend(pool.submit(work, start) for start in islice(waiting, 1))
+            yield result
+            del result  # so that it is not kept alive while the next one is computed
+    finally:
+        for future in ahead:  # after an error or Ctrl-C, which do not wait for all ranges
+            future.cancel()
+
+
+@cache
+def _pool(workers: int) -> ThreadPoolExecutor:
+    """Return threads that are kept: to start them takes as long as to search a small surface."""
+
+    def begin() -> None:
+        _HERE.is_worker = True
+
+    return ThreadPoolExecutor(workers, "gaussmap", begin)
+
+
+_HERE = threading.local()
+# A child process has none of the threads.
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_pool.cache_clear)
 
 
 def shown(results: Iterator[Result], count: int, progress: bool) -> Iterator[Result]:

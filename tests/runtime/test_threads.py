@@ -51,6 +51,39 @@ def test_an_error_ends_the_work(threads, error):
     assert len(done) < 500
 
 
+def test_work_inside_of_work():
+    def outer(first, last):
+        return list(over_ranges(lambda a, b: (first, a), 4, 1, 2))
+
+    found = list(over_ranges(outer, 6, 1, 2))
+    assert found == [[(k, x) for x in range(4)] for k in range(6)]
+
+
+def test_threads_are_kept():
+    names = {x.name for x in over_ranges(lambda *_: threading.current_thread(), 50, 1, 2)}
+    again = {x.name for x in over_ranges(lambda *_: threading.current_thread(), 50, 1, 2)}
+    assert len(names | again) <= 2
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+@pytest.mark.filterwarnings("ignore:.*use of fork.*:DeprecationWarning")
+def test_a_forked_process_starts_its_own_threads():
+    list(over_ranges(lambda first, last: first, 8, 1, 2))
+    child = os.fork()
+    if child == 0:
+        found = list(over_ranges(lambda first, last: first, 8, 1, 2))
+        os._exit(0 if found == list(range(8)) else 1)
+    deadline = time.monotonic() + 30
+    while time.monotonic() < deadline:
+        ended, status = os.waitpid(child, os.WNOHANG)
+        if ended:
+            assert os.waitstatus_to_exitcode(status) == 0
+            return
+        time.sleep(0.01)
+    os.kill(child, 9)
+    pytest.fail("the child hangs")
+
+
 def test_how_many_threads(monkeypatch):
     monkeypatch.delenv("NUMBA_NUM_THREADS", raising=False)
     cores = thread_count(None)
