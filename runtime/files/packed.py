@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..threads import thread_count
+from ..threads import over_ranges, thread_count
 
 __all__ = ["append_rows", "kept"]
 
@@ -34,13 +33,9 @@ def append_rows(path: Path, arrays: Mapping[str, NDArray[Any]]) -> None:
     count, offset = len(next(iter(arrays.values()))), path.stat().st_size
     blocks = {name: _as_blocks(array) for name, array in arrays.items()}
     workers = min(thread_count(None), _THREADS, 1 + count // _FOR_A_THREAD)
-    bounds = [count * k // workers for k in range(workers + 1)]
     work = partial(_write_part, path, offset, blocks)
-    if workers == 1:
-        work(0, count)
-        return
-    with ThreadPoolExecutor(workers) as pool:
-        list(pool.map(work, bounds[:-1], bounds[1:]))
+    for _ in over_ranges(work, count, max(1, -(-count // workers)), workers):
+        pass
 
 
 def _as_blocks(array: NDArray[Any]) -> NDArray[Any]:
