@@ -99,7 +99,7 @@ def read_cad(
     if gib < LEAST_MEMORY:
         raise InputError(f"memory_limit must be at least {LEAST_MEMORY:g} GiB, not {gib:g}.")
     _check_file(path)
-    check_extra("OCP", "cad", "read_cad")
+    check_extra("OCP", "cad", "reading CAD files")
     with tempfile.TemporaryDirectory(prefix="gaussmap-", ignore_cleanup_errors=True) as name:
         folder = Path(name)
         request = {

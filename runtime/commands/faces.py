@@ -13,7 +13,7 @@ __all__ = ["run"]
 
 def run(options: SimpleNamespace) -> None:
     """Print a line for each face of a part."""
-    part = read_part_file(options.part)
+    part = read_part_file(options.part, options)
     kinds = max([len(x.kind) for x in part.faces], default=0)
     digits = len(str(len(part)))
     for face in part.faces:

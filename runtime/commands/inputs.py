@@ -21,11 +21,12 @@ from ..splines.spline import Spline
 from ..surface.surface import Surface
 from ..surfaces import CATALOGUE, names, surface
 from .arrays import array_file, is_array_file, read_array
-from .parts import is_part_file, read_part_file
+from .parts import LIMITS, is_part_file, read_part_file, refuse
 
 __all__ = ["arguments"]
 
-NOT_OF_PARTS = ("set", "spacing", "periodic", "nodata", "cells", "tolerance")
+NOT_OF_FORMULAS = ("set", "spacing", "nodata")
+NOT_OF_PARTS = ("set", "domain", "spacing", "periodic", "nodata", "cells", "tolerance")
 PERIODIC = {"none": (False, False), "u": (True, False), "v": (False, True), "uv": (True, True)}
 
 
@@ -60,10 +61,16 @@ def _part(options: SimpleNamespace) -> Part | None:
     for name in NOT_OF_PARTS:
         if getattr(options, name) not in (None, ()):
             raise InputError(f"--{name} is for surfaces, and '{options.surface}' is a CAD part.")
-    return read_part_file(options.surface)
+    return read_part_file(options.surface, options)
 
 
 def _surface(options: SimpleNamespace) -> Surface:
+    source = options.surface or "a formula"
+    refuse([x for x in LIMITS if getattr(options, x) is not None], "is for CAD files", source)
+    if options.formula is not None:
+        return _of_formula(options)
+    if options.domain is not None:
+        raise InputError("--domain is for --formula, which is not there.")
     if is_array_file(options.surface):
         return _grid(options)
     if Path(options.surface).is_file():
@@ -81,6 +88,22 @@ def _surface(options: SimpleNamespace) -> Surface:
     for parameter in parameters:
         known_name(parameter, tuple(CATALOGUE[name]["parameters"]), f"{name} parameter")
     return surface(name, **parameters)
+
+
+def _of_formula(options: SimpleNamespace) -> Surface:
+    for name in NOT_OF_FORMULAS:
+        if getattr(options, name) not in (None, ()):
+            raise InputError(f"--{name} does not go together with --formula; leave it out.")
+    if options.domain is None:
+        raise InputError("--formula needs the ranges of u and v: add --domain U0 U1 V0 V1.")
+    u0, u1, v0, v1 = options.domain
+    return Surface.from_sympy(
+        options.formula,
+        ("u", "v"),
+        ((u0, u1), (v0, v1)),
+        PERIODIC[options.periodic or "none"],
+        name=f"({', '.join(options.formula)})",
+    )
 
 
 def _grid(options: SimpleNamespace) -> Surface:

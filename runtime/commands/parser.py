@@ -20,11 +20,10 @@ from .options import (
     densities,
     density,
     number,
-    setting,
     surface_names,
-    surfaces_and_files,
     whole,
 )  # fmt: skip
+from .surface_options import cad_options, surface_argument, surface_options
 
 __all__ = ["PROGRAM", "parser"]
 
@@ -51,6 +50,8 @@ SURFACE is the name of a surface of the catalogue (see `gaussmap surfaces`), a .
 .npz file, as FILE.npz:NAME if it holds several arrays. The array is a grid of points (m, n, 3), or
 of elevations (m, n) with rows along y and columns along x, which need --spacing.
 
+In place of SURFACE, --formula gives x, y and z in terms of u and v.
+
 A STEP, IGES or BREP file is a CAD part, of which all faces are sampled: .step, .stp, .iges, .igs,
 .brep or .brp, read with pip install 'gaussmap[cad]'; or an .npz file of part.save.
 
@@ -63,6 +64,7 @@ examples:
   gaussmap sample heights.npy --spacing 30 30 --count 50000 -o terrain.ply
   gaussmap sample scan.npz:points --periodic u --normals directions.npy -o scan.csv
   gaussmap sample part.step --count 50000 --edges -o part.ply
+  gaussmap sample --formula "u" "v" "u**2-v**2" --domain -1 1 -1 1 -o saddle.ply
 """
 
 MESH_EXAMPLES = """\
@@ -190,6 +192,7 @@ def _faces() -> Command:
         "name, and why it failed if it cannot be used. PART is a STEP, IGES or BREP file, or an "
         ".npz file of part.save.",
         click.Argument(["part"], type=FILE),
+        *cad_options(),
     )
 
 
@@ -230,10 +233,9 @@ def _quiet() -> Option:
 
 def _sampling(default_count: int) -> list[click.Parameter]:
     """Return the arguments that `sample`, `mesh` and `plot` share."""
-    surface = click.Argument(["surface"], shell_complete=surfaces_and_files)
     threads = "How many threads to use (default: one for each core)."
     run = [Option("--threads T", threads, whole(MOST), group="the run"), _quiet()]
-    return [surface, *_amount(default_count), *_distribution(), *_surface_options(), *run]
+    return [surface_argument(), *_amount(default_count), *_distribution(), *surface_options(), *run]
 
 
 def _amount(default_count: int) -> list[Option]:
@@ -298,31 +300,4 @@ def _distribution() -> list[Option]:
             group="how dense",
             default="0",
         ),
-    ]
-
-
-def _surface_options() -> list[Option]:
-    group = "the surface"
-    parameter = "A parameter of a surface of the catalogue; may be repeated."
-    spacing = "The grid spacing of elevations; DY < 0 if rows run from north to south."
-    periodic = (
-        "In which directions a grid of points is periodic: none (default), u, v or uv. Do not "
-        "repeat the first row at the end."
-    )
-    nodata = "The number that stands for missing data in a grid, such as -9999; NaN does anyway."
-    cells = "The cells of the spline along u and v (default: 64 64 or more, or those of the grid)."
-    on = (
-        "Where samples lie: on the surface itself (default) or on the spline that approximates it. "
-        "Of grids in files there is the spline only."
-    )
-    tolerance = "Instead of --cells: the largest distance of the spline from the surface or data."
-    axes = click.Choice(("none", "u", "v", "uv"))
-    return [
-        Option("--set NAME=VALUE", parameter, setting, group=group, multiple=True),
-        Option("--spacing DX DY", spacing, number, group=group),
-        Option("--periodic AXES", periodic, axes, group=group),
-        Option("--nodata NUMBER", nodata, number, group=group),
-        Option("--cells M N", cells, whole(MOST), group=group),
-        Option("--tolerance LENGTH", tolerance, number, group=group),
-        Option("--on WHERE", on, click.Choice(("surface", "spline")), group=group),
     ]

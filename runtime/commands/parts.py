@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 import zipfile
+from collections.abc import Iterable
 from pathlib import Path
+from types import SimpleNamespace
 
 from ..cad.part import Part, read_part
 from ..errors import InputError
-from ..extras import check_extra
 from .arrays import array_file
 
-__all__ = ["CAD_SUFFIXES", "is_part_file", "read_part_file"]
+__all__ = ["CAD_SUFFIXES", "LIMITS", "is_part_file", "read_part_file", "refuse"]
 
 CAD_SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
+# The options of `read_cad`.
+LIMITS = ("unit", "time_limit", "memory_limit")
 # Among the names of the arrays of a part.
 NAMES = {"about.npy", "face_loops.npy"}
 
 
-def is_part_file(source: str) -> bool:
+def is_part_file(source: str | None) -> bool:
     """Say whether a text names a file that holds a part, by its suffix or its arrays."""
+    if source is None:
+        return False
     suffix = Path(source).suffix.lower()
     if suffix != ".npz":
         return suffix in CAD_SUFFIXES
@@ -29,16 +34,24 @@ def is_part_file(source: str) -> bool:
         return False
 
 
-def read_part_file(source: str) -> Part:
+def read_part_file(source: str, options: SimpleNamespace) -> Part:
     """Read a part. Raises what `read_cad` and `read_part` raise, InputError for other files."""
+    limits = {name: getattr(options, name) for name in LIMITS}
+    given = {name: value for name, value in limits.items() if value is not None}
     if Path(source).suffix.lower() == ".npz":
+        refuse(given, "is for STEP, IGES and BREP files", source)
         return read_part(source)
     if not is_part_file(source):
         raise InputError(
             f"'{source}' is no CAD part by its suffix; use one of {', '.join(CAD_SUFFIXES)}, or an "
             ".npz file of part.save."
         )
-    check_extra("OCP", "cad", "reading CAD files")
     from ..cad.reader import read_cad
 
-    return read_cad(source)
+    return read_cad(source, **given)
+
+
+def refuse(given: Iterable[str], purpose: str, source: str) -> None:
+    """Raise InputError for the first of the options that were given, and are not for a source."""
+    for name in given:
+        raise InputError(f"--{name.replace('_', '-')} {purpose}, and '{source}' is none.")

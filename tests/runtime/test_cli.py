@@ -210,6 +210,26 @@ def test_progressive() -> None:
     np.testing.assert_array_equal(gm.read_samples("b.ply").points, ordered.points)
 
 
+def test_a_formula() -> None:
+    """Numbers may be texts, and values may begin with a dash."""
+    texts = ["-u", "v", "u**2-v**2"]
+    domain = ["--domain", "-1", "1", "-1/2", "0.5"]
+    assert main(["sample", "--formula", *texts, *domain, *FEW, "-o", "a.npz"]) == 0
+    surface = gm.Surface.from_sympy(("-u", "v", "u**2 - v**2"), "uv", ((-1, 1), (-0.5, 0.5)))
+    samples = gm.read_samples("a.npz")
+    assert samples.report.surface == "(-u, v, u**2-v**2)"
+    np.testing.assert_array_equal(samples.points, gm.sample(surface, 60, cells=(8, 8)).points)
+
+
+@compiled
+def test_a_periodic_formula() -> None:
+    texts = ["cos(u)*(3+cos(v))", "sin(u)*(3+cos(v))", "sin(v)"]
+    domain = ["--domain", "0", "2*pi", "0", "2*pi", "--periodic", "uv"]
+    assert main(["mesh", "--formula", *texts, *domain, *FEW, "-o", "a.stl"]) == 0
+    triangles = int.from_bytes(Path("a.stl").read_bytes()[80:84], "little")
+    assert triangles == 2 * 60  # closed, of genus 1
+
+
 @pytest.mark.usefixtures("files")
 @pytest.mark.parametrize("source", ["points.npy", "two.npz:points", "./two.npz:points"])
 def test_a_grid_of_points(source: str) -> None:
@@ -353,6 +373,8 @@ def test_a_terminal_gets_wrapped_lines(
 
 TO = ["-o", "a.npz"]
 HEIGHTS = ["--spacing", "1", "1", *TO]
+SADDLE = ["--formula", "u", "v", "u**2-v**2"]
+SQUARE = ["--domain", "-1", "1", "-1", "1"]
 
 
 @pytest.mark.usefixtures("files")
@@ -361,7 +383,7 @@ HEIGHTS = ["--spacing", "1", "1", *TO]
     [
         # the command itself
         (["sampel"], r"no such command 'sampel'.*'sample'.* \(see `gaussmap --help`\)"),
-        (["sample"], r"missing argument 'SURFACE' \(see `gaussmap sample --help`\)"),
+        (["sample"], r"missing argument 'SURFACE', or --formula X Y Z \(see `gaussmap sample"),
         (["sample", "torus"], r"missing option '-o' / '--output' \(see `gaussmap sample --help`\)"),
         (["sample", "torus", "-o"], "option '-o' requires an argument .*gaussmap sample --help"),
         (["sample", "torus", "--cout", "5", *TO], "no such option '--cout'.*'--count'"),
@@ -410,6 +432,20 @@ HEIGHTS = ["--spacing", "1", "1", *TO]
         (["sample", "torus", "--set", "minor=1", "--set", "minor=2", *TO], "same parameter twice"),
         (["sample", "torus", "--spacing", "1", "1", *TO], "--spacing is for elevations"),
         (["sample", "torus", "--periodic", "u", *TO], "--periodic is for grids"),
+        # surfaces by formula
+        (["sample", "torus", *SADDLE, *TO], "give SURFACE or --formula, not both"),
+        (["mesh", *SADDLE, "-o", "a.ply"], "ranges of u and v: add --domain U0 U1 V0 V1"),
+        (["plot", "torus", *SQUARE, "-o", "a.png"], "--domain is for --formula, which is not"),
+        (["sample", *SADDLE, *SQUARE, "--set", "a=1", *TO], "--set does not go together"),
+        (["sample", *SADDLE, *SQUARE, "--unit", "mm", *TO], "--unit is for CAD files, and 'a for"),
+        (["sample", *SADDLE, "--domain", "0", "x", "0", "1", *TO], "domain must be"),
+        (["sample", "--formula", "u", "v", "w", *SQUARE, *TO], "neither parameter nor number: w"),
+        (["sample", "--formula", "u", "v", "open('a')", *SQUARE, *TO], "not a SymPy expression"),
+        # parts
+        (["sample", "torus", "--time-limit", "3", *TO], "--time-limit is for CAD files, and 'tor"),
+        (["sample", "a.step", "--memory-limit", "0", *TO], "memory_limit must be a positive"),
+        (["faces", "a.step", "--unit", "parsec"], "unit must be one of nm"),
+        (["faces", "a.step", "--time-limit", "9"], "'a.step' does not exist"),
         (["sample", "torus", "--tolerance", "1e-30", *TO], "is below the rounding of coordinates"),
         (["sample", "torus", "--tolerance", "1", "--cells", "8", "8", *TO], "do not go together"),
         # surfaces in files
