@@ -155,7 +155,7 @@ def test_the_same_for_any_number_of_threads(asked: dict[str, Any], monkeypatch):
     monkeypatch.setattr(candidates, "PART", 1 << 9)
     for surface in (TORUS, DENTS):
         expected = gm.sample(surface, threads=1, **asked)
-        for threads in (1, 2, 3):
+        for threads in (2, 3):
             found = gm.sample(surface, threads=threads, **asked)
             same(found, expected)
             assert found.report == expected.report

@@ -49,6 +49,7 @@ def test_it_is_the_picture_of_the_command_line(samples: gm.Samples, tmp_path: Pa
         assert np.mean(np.abs(first - other).max(axis=2) > 0.1) < 0.002
 
 
+@pytest.mark.slow
 def test_notebooks_show_it(samples: gm.Samples) -> None:
     content = samples.plot()._repr_png_()  # pyright: ignore[reportAttributeAccessIssue]
     assert image.imread(BytesIO(content)).shape == (980, 1800, 4)
@@ -62,6 +63,7 @@ def test_notebooks_show_it(samples: gm.Samples) -> None:
         ("nz", "nz"),
     ],
 )
+@pytest.mark.quick_for("nz")
 def test_colours_by_a_column(color: str, label: str, samples: gm.Samples) -> None:
     figure = samples.plot(color=color)
     assert label.replace("1/length²", "1/length") in texts(figure)
@@ -98,6 +100,7 @@ def test_axes_of_ones_own(samples: gm.Samples) -> None:
             samples.plot(axes=bad)  # pyright: ignore[reportArgumentType]
 
 
+@pytest.mark.slow
 def test_normals_without_samples(samples: gm.Samples) -> None:
     found = gm.sample("elliptic_paraboloid", normals=gm.icosphere(4), cells=(16, 16))
     assert not any("no sample" in x for x in texts(found.plot()))
@@ -127,6 +130,7 @@ def test_samples_of_parts() -> None:
     assert len(drawn(gm.plot(part, found))) == len(drawn(figure))
 
 
+@pytest.mark.slow
 def test_faces_of_all_kinds_and_their_trims() -> None:
     scene = part_scene(all_kinds())
     assert np.isfinite(scene.quadrangles).all()
@@ -154,6 +158,7 @@ def test_errors(samples: gm.Samples, tmp_path: Path, monkeypatch: pytest.MonkeyP
         samples.plot()
 
 
+@pytest.mark.slow
 def test_the_command_draws_parts(tmp_path: Path) -> None:
     box().save(tmp_path / "box.npz")
     path = tmp_path / "box.png"
