@@ -6,24 +6,20 @@ one line and the exit code 2; Ctrl-C gives 130, and a reader that went away 141.
 
 from __future__ import annotations
 
-import os
 import sys
 import warnings
 from collections.abc import Callable, Sequence
 
 import click
-from click.shell_completion import shell_complete
 
 from .commands import console
-from .commands.parser import PROGRAM, parser
+from .commands.completion import PROGRAM, completed
+from .commands.parser import TO_TRY, parser
 from .errors import GaussmapError, GaussmapWarning
 
 __all__ = ["main"]
 
 FAILED, INTERRUPTED, READER_GONE = 2, 130, 141
-
-# A shell that wants completions sets this variable to what it wants.
-COMPLETION = "_GAUSSMAP_COMPLETE"
 
 
 def main(arguments: Sequence[str] | None = None, ready: Callable[[], object] = bool) -> int:
@@ -40,8 +36,6 @@ def main(arguments: Sequence[str] | None = None, ready: Callable[[], object] = b
                 return _run(sys.argv[1:] if arguments is None else [*arguments], ready)
             finally:
                 console.flush()
-    except click.exceptions.NoArgsIsHelpError as error:
-        console.write(error.message, sys.stderr)
     except click.UsageError as error:
         console.fail(_usage(error))
     except BrokenPipeError:
@@ -62,8 +56,10 @@ def main(arguments: Sequence[str] | None = None, ready: Callable[[], object] = b
 
 def _run(arguments: list[str], ready: Callable[[], object]) -> int:
     program = parser()
-    if COMPLETION in os.environ:
-        return shell_complete(program, {}, PROGRAM, COMPLETION, os.environ[COMPLETION])
+    if (code := completed(program)) is not None:
+        return code
+    if not arguments:
+        program.epilog, arguments = TO_TRY, ["--help"]
     try:
         with program.make_context(PROGRAM, arguments, obj=ready) as context:
             program.invoke(context)

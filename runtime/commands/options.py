@@ -9,18 +9,14 @@ from typing import Any
 
 import click
 from click.core import ParameterSource
-from click.shell_completion import CompletionItem
 
 __all__ = [
     "Command",
     "Option",
     "Program",
-    "densities",
     "density",
     "number",
     "setting",
-    "surface_names",
-    "surfaces_and_files",
     "whole",
 ]  # fmt: skip
 
@@ -138,28 +134,3 @@ def density(text: str) -> str | float:
         return float(text)
     except ValueError:
         return text
-
-
-def densities(_: click.Context, __: click.Parameter, begun: str) -> list[str]:
-    """Complete the name of a density."""
-    return [
-        name
-        for name in ("aligned", "balanced", "gauss", "isotropic", "uniform")
-        if name.startswith(begun)
-    ]
-
-
-def surface_names(_: click.Context, __: click.Parameter, begun: str) -> list[CompletionItem]:
-    """Complete the name of a surface."""
-    from ..surfaces import names
-
-    return [CompletionItem(name) for name in names() if name.startswith(begun)]
-
-
-def surfaces_and_files(
-    context: click.Context, parameter: click.Parameter, begun: str
-) -> list[CompletionItem]:
-    """Complete the name of a surface, or let the shell complete that of a file."""
-    return [
-        *surface_names(context, parameter, begun), CompletionItem(begun, type="file")
-    ]  # fmt: skip

@@ -13,21 +13,19 @@ import click
 from ... import __version__
 from ..fields import ARRAY_NAMES_ON_SURFACE, EDGE_NAMES, PART_NAMES
 from ..limits import MOST, MOST_FREQUENCY, MOST_STEPS
+from .completion import PROGRAM, SHELLS, densities, formula_names, surface_names
 from .options import (
     Command,
     Option,
     Program,
-    densities,
     density,
     number,
-    surface_names,
     whole,
 )  # fmt: skip
 from .surface_options import cad_options, surface_argument, surface_options
 
-__all__ = ["PROGRAM", "parser"]
+__all__ = ["TO_TRY", "parser"]
 
-PROGRAM = "gaussmap"
 SETTINGS = {"help_option_names": ["-h", "--help"]}
 
 EXAMPLES = """\
@@ -43,6 +41,17 @@ examples:
   gaussmap formulas --html formulas.html
 
 `gaussmap COMMAND --help` explains a command.
+"""
+
+# What `gaussmap` alone shows in place of the examples.
+TO_TRY = """\
+\b
+three commands to try:
+  gaussmap surfaces                                 the surfaces that have names
+  gaussmap sample torus --count 1000 -o torus.csv   1,000 points with normals and curvatures
+  gaussmap plot torus -o torus.png                  a picture; pip install 'gaussmap[plot]' first
+
+`gaussmap --help` has more examples, and `gaussmap COMMAND --help` explains a command.
 """
 
 SAMPLE_EXAMPLES = """\
@@ -87,6 +96,14 @@ examples:
   gaussmap plot heights.npy --spacing 30 30 --cells 80 80 -o terrain.png
 """
 
+COMPLETION_EXAMPLES = """\
+\b
+to have it in every shell:
+  echo 'eval "$(gaussmap completion bash)"' >> ~/.bashrc
+  echo 'eval "$(gaussmap completion zsh)"' >> ~/.zshrc
+  gaussmap completion fish > ~/.config/fish/completions/gaussmap.fish
+"""
+
 FILE = click.Path(readable=False)  # for completion; files are checked where they are used
 
 
@@ -95,8 +112,8 @@ def parser() -> click.Group:
     text = "Sample surfaces by the normals of their points, so that density follows curvature."
     program = Program(PROGRAM, help=text, epilog=EXAMPLES, context_settings=SETTINGS)
     click.version_option(__version__, message=f"{PROGRAM} %(version)s")(program)
-    for command in (_sample(), _mesh(), _plot(), _surfaces(), _faces(), _formulas(), _warm()):
-        program.add_command(command)
+    for make in (_sample, _mesh, _plot, _surfaces, _faces, _formulas, _warm, _completion):
+        program.add_command(make())
     return program
 
 
@@ -205,7 +222,7 @@ def _formulas() -> Command:
         "formulas",
         "List the formulas that the program computes with, or show one.",
         "List the formulas that the program computes with; with NAME, show it.",
-        click.Argument(["name"], required=False),
+        click.Argument(["name"], required=False, shell_complete=formula_names),
         Option("--latex", "Show LaTeX (of all without a NAME).", exclusive=True),
         Option("--html FILE.html", page, FILE, exclusive=True),
     )
@@ -219,6 +236,20 @@ def _warm() -> Command:
         "nor Python programs wait for the compiler on this computer. For Dockerfiles and CI. Takes "
         "some minutes at first, and seconds when everything is compiled.",
         _quiet(),
+    )
+
+
+def _completion() -> Command:
+    text = (
+        "Print what bash, zsh or fish has to run in order to complete commands, options, surfaces, "
+        "formulas and files."
+    )
+    return _command(
+        "completion",
+        "Let a shell complete commands, surfaces and files.",
+        text,
+        click.Argument(["shell"], type=click.Choice(SHELLS)),
+        epilog=COMPLETION_EXAMPLES,
     )
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import click
 
 from ..limits import MOST
-from .options import Option, number, setting, surfaces_and_files, whole
+from .completion import settings, surfaces_and_files
+from .options import Option, number, setting, whole
 
 __all__ = ["cad_options", "surface_argument", "surface_options"]
 
@@ -42,7 +43,14 @@ def _formula_options() -> list[Option]:
     )
     domain = 'The ranges of u and v for --formula; numbers, or texts such as "2*pi".'
     return [
-        Option("--set NAME=VALUE", parameter, setting, group=GROUP, multiple=True),
+        Option(
+            "--set NAME=VALUE",
+            parameter,
+            setting,
+            group=GROUP,
+            multiple=True,
+            shell_complete=settings,
+        ),
         Option("--formula X Y Z", formula, group=GROUP),
         Option("--domain U0 U1 V0 V1", domain, group=GROUP),
     ]

@@ -313,8 +313,11 @@ def test_surfaces(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_formulas(capsys: pytest.CaptureFixture[str]) -> None:
+    from gaussmap.runtime.commands.completion import formula_names
     from gaussmap.symbolic import formulas
 
+    anything: Any = None
+    assert formula_names(anything, anything, "") == [*formulas]
     assert main(["formulas"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in lines] == list(formulas)
@@ -679,8 +682,24 @@ def test_help_and_usage_need_no_arrays(arguments: list[str]) -> None:
 def test_a_bare_call_shows_help(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--help"]) == 0
     text = capsys.readouterr().out
-    assert main([]) == 2
-    assert capsys.readouterr() == ("", text)
+    commands = text[: text.index("  examples:")]
+    assert main([]) == 0
+    out, err = capsys.readouterr()
+    assert out.startswith(commands)
+    assert err == ""
+    tried = [line for line in out[len(commands) :].splitlines() if line.startswith("    gaussmap")]
+    assert len(tried) == 3
+    for line in tried[:2]:  # the third one needs Matplotlib
+        command = line.split("  ")[2].split()
+        assert main(command[1:]) == 0
+    assert len(Path("torus.csv").read_text().splitlines()) == 1001
+
+
+def test_exit_codes() -> None:
+    """A command without its arguments is an error, help is none."""
+    assert [main(x) for x in ([], ["--version"], ["mesh", "-h"], ["mesh"], ["mehs"])] == [
+        0, 0, 0, 2, 2,
+    ]  # fmt: skip
 
 
 # ── Completion by shells ─────────────────────────────────────────────────────────────────────────
@@ -701,14 +720,20 @@ def completed(words: str) -> list[str]:
     return done.stdout.splitlines()
 
 
+COMMANDS = ["sample", "mesh", "plot", "surfaces", "faces", "formulas", "warm", "completion"]
+
+
 @compiled
 @pytest.mark.parametrize(
     ("words", "offered"),
     [
-        ("gaussmap ", ["sample", "mesh", "plot", "surfaces", "faces", "formulas", "warm"]),
+        ("gaussmap ", COMMANDS),
         ("gaussmap sample --co", ["--count", "--coverage"]),
         ("gaussmap plot tor", ["torus", "file:tor"]),
         ("gaussmap surfaces tor", ["torus"]),
+        ("gaussmap sample torus --set mi", ["minor="]),
+        ("gaussmap formulas support_f", ["support_function"]),
+        ("gaussmap completion z", ["zsh"]),
         ("gaussmap mesh torus --density un", ["uniform"]),
         ("gaussmap mesh torus -o a", ["file:a"]),
     ],
@@ -719,12 +744,28 @@ def test_completion(words: str, offered: list[str]) -> None:
 
 
 @compiled
+def test_completion_is_quick() -> None:
+    code = (
+        "import sys, os; from gaussmap.runtime.cli import main\n"
+        "for words in ('sample to', 'formulas s', 'sample torus --set m'):\n"
+        "    line = f'gaussmap {words}'\n"
+        "    os.environ.update(COMP_WORDS=line, COMP_CWORD=str(line.count(' ')),"
+        " _GAUSSMAP_COMPLETE='bash_complete')\n"
+        "    assert main([]) == 0\n"
+        "print({'numpy', 'numba', 'scipy', 'sympy'} & set(sys.modules))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    lines = done.stdout.splitlines()
+    assert lines[-1] == "set()"
+    assert {"plain,torus", "plain,support_function", "plain,minor="} <= {*lines}
+
+
+@compiled
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 def test_completion_is_installed(shell: str) -> None:
     if shutil.which(shell) is None:
         pytest.skip(f"{shell} is not installed")
-    source = f"{sys.executable} -m gaussmap"
-    install = f"_GAUSSMAP_COMPLETE={shell}_source {source}"
+    install = f"{sys.executable} -m gaussmap completion {shell}"
     evaluate = f"{install} | source" if shell == "fish" else f'eval "$({install})"'
     asked = {"bash": "complete -p gaussmap", "fish": "complete -c gaussmap"}
     before = "autoload -Uz compinit; compinit -u; " if shell == "zsh" else ""

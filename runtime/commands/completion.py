@@ -1,0 +1,91 @@
+"""`gaussmap completion`, and what shells complete; neither needs NumPy or Numba."""
+
+from __future__ import annotations
+
+import os
+import re
+from importlib.resources import files
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any, cast
+
+import click
+from click.shell_completion import CompletionItem, get_completion_class, shell_complete
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+__all__ = [
+    "PROGRAM",
+    "SHELLS",
+    "completed",
+    "densities",
+    "formula_names",
+    "run",
+    "settings",
+    "surface_names",
+    "surfaces_and_files",
+]
+
+PROGRAM = "gaussmap"
+SHELLS = ("bash", "zsh", "fish")
+# A shell that wants completions sets this variable to what it wants.
+VARIABLE = "_GAUSSMAP_COMPLETE"
+
+
+def run(options: SimpleNamespace) -> None:
+    """Print what a shell has to run in order to complete commands."""
+    from .console import say
+
+    shell = get_completion_class(options.shell)
+    assert shell is not None
+    say(shell(click.Command(PROGRAM), {}, PROGRAM, VARIABLE).source())
+
+
+def completed(program: click.Command) -> int | None:
+    """Answer a shell that wants completions, and return the exit code; None if none does."""
+    if VARIABLE not in os.environ:
+        return None
+    return shell_complete(program, {}, PROGRAM, VARIABLE, os.environ[VARIABLE])
+
+
+def densities(_: click.Context, __: click.Parameter, begun: str) -> list[str]:
+    """Complete the name of a density."""
+    return _begun(("aligned", "balanced", "gauss", "isotropic", "uniform"), begun)
+
+
+def surface_names(_: click.Context, __: click.Parameter, begun: str) -> list[CompletionItem]:
+    """Complete the name of a surface."""
+    return [CompletionItem(name) for name in _begun(_catalogue(), begun)]
+
+
+def surfaces_and_files(
+    context: click.Context, parameter: click.Parameter, begun: str
+) -> list[CompletionItem]:
+    """Complete the name of a surface, or let the shell complete that of a file."""
+    names = surface_names(context, parameter, begun)
+    return [*names, CompletionItem(begun, type="file")]
+
+
+def settings(context: click.Context, _: click.Parameter, begun: str) -> list[str]:
+    """Complete the name of a parameter of the surface that stands before."""
+    # Click leaves words in `args` if an option, this one, has no value yet.
+    words = [context.params.get("surface"), *context.args]
+    surfaces = [x for word in words if (x := _catalogue().get(word or "")) is not None]
+    return _begun([f"{name}=" for x in surfaces[:1] for name in x["parameters"]], begun)
+
+
+def formula_names(_: click.Context, __: click.Parameter, begun: str) -> list[str]:
+    """Complete the name of a formula: from the page of all, as SymPy takes its time."""
+    page = (files("gaussmap.generated") / "formulas.md").read_text(encoding="utf-8")
+    names = re.findall(r"^### `(\w+)`$", page, re.MULTILINE)
+    return _begun([name for name in names if name not in _catalogue()], begun)
+
+
+def _catalogue() -> dict[str, dict[str, Any]]:
+    from ...generated.surfaces import CATALOGUE
+
+    return cast("dict[str, dict[str, Any]]", CATALOGUE)
+
+
+def _begun(names: Iterable[str], begun: str) -> list[str]:
+    return [name for name in names if name.startswith(begun)]
