@@ -1,0 +1,37 @@
+"""What pages of the site call in their first cell: small pictures, and the right `gaussmap`."""
+
+from __future__ import annotations
+
+import os
+import sys
+from io import BytesIO
+from typing import Any
+
+import matplotlib.pyplot as plt
+from IPython.core.getipython import get_ipython
+from matplotlib.figure import Figure
+from PIL import Image
+
+__all__ = ["prepare"]
+
+INCH = 75  # pixels of the page; pictures have twice as many, for sharp screens
+COLOURS = 96
+
+
+def prepare() -> None:
+    """Make figures small, and let %%bash find the `gaussmap` of this Python."""
+    bin_folder = os.path.dirname(sys.executable)
+    os.environ["PATH"] = bin_folder + os.pathsep + os.environ.get("PATH", "")
+    shell: Any = get_ipython()
+    plt.close(plt.figure())  # the backend of notebooks registers its own pictures first
+    shell.display_formatter.formatters["image/png"].for_type(Figure, small_png)
+
+
+def small_png(figure: Figure) -> tuple[bytes, dict[str, int]]:
+    """Return a figure as PNG with few colours, a fifth of the bytes, and the width to show."""
+    written = BytesIO()
+    figure.savefig(written, format="png", dpi=2 * INCH)
+    image = Image.open(written).convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
+    smaller = BytesIO()
+    image.save(smaller, "PNG", optimize=True)
+    return smaller.getvalue(), {"width": image.width // 2}
