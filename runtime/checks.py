@@ -54,7 +54,12 @@ def known_name(name: str, known: Sequence[str], kind: str, command: str = "") ->
 def whole_number(value: object, name: str, least: int = 1) -> int:
     """Return a whole number from `least` to 10⁹; InputError with its name otherwise."""
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
-        raise InputError(f"{name} must be a whole number of at least {least}, not {shown(value)}.")
+        example = ""
+        if isinstance(value, float | np.floating) and least <= value <= MOST:
+            example = f", {round(value)} for example"
+        raise InputError(
+            f"{name} must be a whole number of at least {least}{example}, not {shown(value)}."
+        )
     if value > MOST:
         raise InputError(f"{name} must be a whole number of at most {MOST:,}, not larger.")
     return int(value)

@@ -54,9 +54,19 @@ def returned(
     if result.shape != expected:
         raise SurfaceError(
             f"{label} returned the shape {result.shape} for parameters of shape "
-            f"{arrays[0].shape}; it must return {expected}."
+            f"{arrays[0].shape}; it must return {expected}{_hint(values, result.shape, expected)}."
         )
     return result
+
+
+def _hint(values: ArrayLike, found: tuple[int, ...], expected: tuple[int, ...]) -> str:
+    """Return how to join coordinates that were returned one by one."""
+    number = expected[-1] if len(expected) else 0
+    if found[1:] != expected[:-1] or not found:
+        return ""
+    if isinstance(values, tuple | list) and found[0] != number:
+        return f": {number} coordinates, not {found[0]}, joined by numpy.stack((...), axis=-1)"
+    return ": join the coordinates by numpy.stack((...), axis=-1)" if found[0] == number else ""
 
 
 def called(
@@ -70,5 +80,12 @@ def called(
         raise
     except Exception as error:
         raise SurfaceError(
-            f"{label} raised {type(error).__name__}: {' '.join(str(error).split())}"
+            f"{label} raised {type(error).__name__}: {' '.join(str(error).split())}{_numpy(error)}"
         ) from error
+
+
+def _numpy(error: Exception) -> str:
+    """Return a hint for callables that take single numbers only."""
+    if isinstance(error, TypeError) and "Python scalars" in str(error):
+        return "; it gets arrays, for which there are numpy.sin and so on, not math.sin"
+    return ""

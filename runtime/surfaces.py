@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from ..generated.surfaces import CATALOGUE as _GENERATED
 from . import compiling  # noqa: F401 - announces compilation on terminals
+from .advice import file_advice
 from .checks import known_name
-from .errors import InputError, shown
+from .errors import InputError, UnknownNameError, shown
 from .kernels.surfaces import jets, positions
 from .splines.domain import Boundary, Domain
 from .surface.derivatives import Differentiable
@@ -152,8 +153,11 @@ def surface(name: str, /, **parameters: float) -> Surface:
 def named(value: T | str) -> T | Surface:
     """Return the surface of the catalogue for a name, and any other value unchanged.
 
-    Every function that takes a surface calls this first. Raises UnknownNameError for other names.
+    Every function that takes a surface calls this first. Raises UnknownNameError for other names,
+    with what to do if they are those of files.
     """
+    if isinstance(value, str) and value not in CATALOGUE and (advice := file_advice(value)):
+        raise UnknownNameError(f"there is no surface {shown(value)}; {advice}.")
     return surface(value) if isinstance(value, str) else value
 
 

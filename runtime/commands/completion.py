@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 from importlib.resources import files
+from pathlib import PurePath
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, cast
 
@@ -20,6 +21,7 @@ __all__ = [
     "completed",
     "densities",
     "formula_names",
+    "is_source",
     "run",
     "settings",
     "surface_names",
@@ -79,6 +81,11 @@ def formula_names(_: click.Context, __: click.Parameter, begun: str) -> list[str
     page = (files("gaussmap.generated") / "formulas.md").read_text(encoding="utf-8")
     names = re.findall(r"^### `(\w+)`$", page, re.MULTILINE)
     return _begun([name for name in names if name not in _catalogue()], begun)
+
+
+def is_source(word: str) -> bool:
+    """Say whether a word names a surface of the catalogue, or, by its suffix, a file."""
+    return word in _catalogue() or bool(PurePath(word).suffix)
 
 
 def _catalogue() -> dict[str, dict[str, Any]]:

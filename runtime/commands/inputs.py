@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import directions
+from ..advice import NO_CLOUDS, NO_MESHES, is_mesh_file
 from ..cad.part import Part
 from ..checks import known_name
 from ..compiling import NOTICE
-from ..errors import InputError
+from ..errors import FileError, InputError
 from ..fitting.fit import fit
 from ..splines.spline import Spline
 from ..surface.surface import Surface
@@ -73,8 +74,7 @@ def _surface(options: SimpleNamespace) -> Surface:
         raise InputError("--domain is for --formula, which is not there.")
     if is_array_file(options.surface):
         return _grid(options)
-    if Path(options.surface).is_file():
-        raise InputError(f"'{options.surface}' is neither a .npy nor a .npz file; save it as one.")
+    _refuse_file(options.surface)
     name = known_name(options.surface, names(), "surface", "gaussmap surfaces")
     if options.spacing is not None:
         raise InputError(f"--spacing is for elevations in a file, and {name} is a surface by name.")
@@ -88,6 +88,19 @@ def _surface(options: SimpleNamespace) -> Surface:
     for parameter in parameters:
         known_name(parameter, tuple(CATALOGUE[name]["parameters"]), f"{name} parameter")
     return surface(name, **parameters)
+
+
+def _refuse_file(source: str) -> None:
+    """Raise an error if SURFACE is a file of another kind, or the name of one that is missing."""
+    if is_mesh_file(source):
+        raise InputError(f"'{source}' is a mesh; {NO_MESHES}.")
+    if Path(source).is_file():
+        raise InputError(
+            f"'{source}' is neither a .npy nor a .npz file, nor a CAD part; write points (m, n, 3) "
+            "or elevations (m, n) by numpy.save."
+        )
+    if Path(source).suffix:
+        raise FileError(f"'{source}' does not exist; look at its name and folder.")
 
 
 def _of_formula(options: SimpleNamespace) -> Surface:
@@ -110,6 +123,8 @@ def _grid(options: SimpleNamespace) -> Surface:
     if options.set:
         raise InputError("--set is for surfaces by name; a grid in a file has no parameters.")
     points = read_array(options.surface)
+    if points.ndim == 2 and points.shape[1] == 3:
+        raise InputError(f"'{options.surface}' has the shape {points.shape}: {NO_CLOUDS}.")
     if points.ndim == 2 and options.spacing is None:
         raise InputError(
             f"'{options.surface}' holds elevations {points.shape}, which need their distances: "

@@ -10,6 +10,8 @@ from typing import Any
 import click
 from click.core import ParameterSource
 
+from .completion import is_source
+
 __all__ = [
     "Command",
     "Option",
@@ -94,6 +96,16 @@ class Program(click.Group):
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names of the commands."""
         return [*self.commands]
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Return the command; UsageError with a hint for a surface in its place."""
+        if args[0] not in self.commands and not ctx.resilient_parsing and is_source(args[0]):
+            raise click.UsageError(
+                f"no such command '{args[0]}'; did you mean `gaussmap sample {args[0]}`?", ctx
+            )
+        return super().resolve_command(ctx, args)
 
 
 def number(text: str) -> float:

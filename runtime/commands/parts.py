@@ -7,13 +7,13 @@ from collections.abc import Iterable
 from pathlib import Path
 from types import SimpleNamespace
 
+from ..advice import CAD_SUFFIXES
 from ..cad.part import Part, read_part
 from ..errors import InputError
 from .arrays import array_file
 
-__all__ = ["CAD_SUFFIXES", "LIMITS", "is_part_file", "read_part_file", "refuse"]
+__all__ = ["LIMITS", "is_part_file", "read_part_file", "refuse"]
 
-CAD_SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
 # The options of `read_cad`.
 LIMITS = ("unit", "time_limit", "memory_limit")
 # Among the names of the arrays of a part.

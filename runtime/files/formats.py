@@ -7,7 +7,7 @@ from io import BufferedReader
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..errors import InputError
+from ..errors import InputError, UnknownNameError
 from ..extras import check_extra
 from ..samples import Samples
 from .arrow import write_arrow, write_parquet
@@ -77,7 +77,7 @@ _NEEDED = {".ply": ("points",), ".vtp": ("points",), ".xyz": ("points", "normals
 
 def write_samples(samples: Samples, path: PathLike) -> None:
     """Write samples to a file; see `Samples.write`."""
-    suffix = known_suffix(path, SUFFIXES)
+    suffix = _suffix_of_samples(path)
     check_fields(path, samples.fields)
     with atomic_path(path) as temporary:
         _WRITERS[suffix](samples, temporary)
@@ -94,8 +94,20 @@ def write_mesh(mesh: Mesh, path: PathLike) -> None:
 
 def check_samples_target(path: PathLike) -> None:
     """Raise now what writing samples to `path` would raise later, see `check_target`."""
+    _suffix_of_samples(path)
     check_target(path, SUFFIXES)
     _check_library(path)
+
+
+def _suffix_of_samples(path: PathLike) -> str:
+    """Return the suffix; UnknownNameError if it is none, with a hint if it is one of meshes."""
+    suffix = checked_path(path).suffix.lower()
+    if suffix in MESH_SUFFIXES and suffix not in SUFFIXES:
+        raise UnknownNameError(
+            f"'{path}' has the suffix '{suffix}' of meshes; use one of {', '.join(SUFFIXES)} for "
+            "samples, or write samples.mesh() (`gaussmap mesh`)."
+        )
+    return known_suffix(path, SUFFIXES)
 
 
 def check_mesh_target(path: PathLike) -> None:

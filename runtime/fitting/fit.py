@@ -10,6 +10,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from ..advice import about_value
 from ..errors import GaussmapWarning, InputError, SurfaceError, in_memory
 from ..splines.collapsed import found_sides
 from ..splines.domain import Boundary, Domain
@@ -136,8 +137,8 @@ def fit(
     surface = named(surface)
     if not isinstance(surface, Surface):
         raise InputError(
-            f"a Surface or its name is needed, not {type(surface).__name__}; make one by "
-            "gm.Surface.from_callable, from_sympy, from_nurbs or from_grid."
+            f"a Surface or its name is needed, not {type(surface).__name__}; "
+            f"{about_value(surface)}."
         )
     sides = found_sides(surface)
     trim = surface.trim and surface.trim.with_boundary(sides.boundary)

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..advice import NO_CLOUDS
 from ..checks import as_float
 from ..errors import InputError, shown
 from .domain import Boundary, Domain
@@ -46,6 +47,8 @@ def points_of_elevations(
     if boundary != (("open", "open"), ("open", "open")):
         raise InputError("elevations are a graph and cannot be periodic.")
     rows, columns = elevations.shape
+    if columns == 3:
+        raise InputError(f"{name} has the shape {elevations.shape}: {NO_CLOUDS}.")
     dx, dy = _spacing(spacing, max(rows, columns))
     _check(elevations[..., None], boundary, name)
     x, y = dx * np.arange(columns), dy * np.arange(rows) + 0.0

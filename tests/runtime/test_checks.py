@@ -45,7 +45,10 @@ def test_whole_numbers_beyond_all_memory(value):
     ids=repr,
 )
 def test_what_is_not_a_whole_number(value):
-    with pytest.raises(InputError, match=r"^count must be a whole number of at least 1, not .*\.$"):
+    with pytest.raises(
+        InputError,
+        match=r"^count must be a whole number of at least 1, (\d for example, )?not .*\.$",
+    ):
         whole_number(value, "count")
 
 

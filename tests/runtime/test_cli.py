@@ -398,6 +398,8 @@ SQUARE = ["--domain", "-1", "1", "-1", "1"]
         (["sample", "torus", "--random", "5", "--seed", "-1", *TO], "--seed: .* from 0 to"),
         (["sample", "torus", "--random", "5", "--seed", *TO], "--seed: it must be .*, not '-o'"),
         (["sample", "torus", "--healpix", "3", *TO], "nside must be a power of 2, not 3"),
+        (["torus"], "no such command 'torus'; did you mean `gaussmap sample torus`"),
+        (["part.step", *TO], "did you mean `gaussmap sample part.step`"),
         (["--nonsense", "surfaces"], "no such option '--nonsense'"),
         # numbers
         *[
@@ -455,6 +457,9 @@ SQUARE = ["--domain", "-1", "1", "-1", "1"]
         (["sample", "missing.npy", *HEIGHTS], "'missing.npy' cannot be read: No such file"),
         (["sample", "folder.npy", *HEIGHTS], "'folder.npy' cannot be read: Is a directory"),
         (["sample", "heights.txt", *HEIGHTS], "neither a .npy nor a .npz"),
+        (["sample", "missing.tif", *HEIGHTS], "'missing.tif' does not exist; look at its name"),
+        (["sample", "part.stl", *TO], "'part.stl' is a mesh; meshes are not taken.*CAD file"),
+        (["sample", "zero.npy", *HEIGHTS], r"shape \(4, 3\): points \(N, 3\) in no order are not"),
         (["sample", "nothing.npy", *HEIGHTS], "'nothing.npy' is damaged"),
         (["sample", "text.npy", *HEIGHTS], "'text.npy' is damaged"),
         (["sample", "cut.npy", *HEIGHTS], "'cut.npy' is damaged"),
@@ -492,7 +497,8 @@ SQUARE = ["--domain", "-1", "1", "-1", "1"]
         (["sample", "torus", "--normals", "zero.npy", *TO], "zero vector"),
         (["sample", "torus", "--normals", "cut.npy", *TO], "'cut.npy' is damaged"),
         # the output
-        (["sample", "torus", "-o", "a.stl"], "'a.stl' has the suffix '.stl'; use one of .npz,"),
+        (["sample", "torus", "-o", "a.stl"], "the suffix '.stl' of meshes; use one of .*mesh`"),
+        (["sample", "torus", "-o", "a.xlsx"], "'a.xlsx' has the suffix '.xlsx'; use one of .npz,"),
         (["sample", "torus", "-o", "a"], "'a' has no suffix"),
         (["sample", "torus", "-o", ""], "the name of the file is empty"),
         (["sample", "torus", "-o", "missing/a.npz"], "'.*missing' does not exist"),

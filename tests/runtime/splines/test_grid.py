@@ -329,7 +329,7 @@ def test_too_few_points(shape, periodic, complaint):
     refused(complaint, np.zeros((*shape, 3)), periodic=periodic)
 
 
-@pytest.mark.parametrize("shape", [(3, 6), (6, 3), (1, 6), (6, 1), (0, 6), (6, 0)])
+@pytest.mark.parametrize("shape", [(3, 6), (6, 2), (1, 6), (6, 1), (0, 6), (6, 0)])
 def test_too_few_elevations(shape):
     axis = int(shape[0] > 3)
     complaint = f"grid has {shape[0]} x {shape[1]} points; it needs at least 4 along axis {axis}"

@@ -1,0 +1,48 @@
+"""What to do with input that is no surface: meshes, clouds of points, names of files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+__all__ = ["CAD_SUFFIXES", "NO_CLOUDS", "NO_MESHES", "about_value", "file_advice", "is_mesh_file"]
+
+CAD_SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
+_MESH_SUFFIXES = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf", ".3mf", ".vtk", ".vtu", ".vtp")
+NO_MESHES = (
+    "meshes are not taken, because triangles have no curvature; give the CAD file that it was made "
+    "of (.step, .iges), points in a grid (m, n, 3), or a formula"
+)
+NO_CLOUDS = (
+    "points (N, 3) in no order are not taken, because they do not say which are neighbours; give "
+    "points in a grid (m, n, 3), elevations (m, n) with their spacing, or a CAD file"
+)
+
+
+def is_mesh_file(name: str) -> bool:
+    """Say whether a file holds a mesh, by its suffix."""
+    return Path(name).suffix.lower() in _MESH_SUFFIXES
+
+
+def file_advice(name: str) -> str | None:
+    """Return what to call for a file whose name was given in place of a surface; None if none."""
+    suffix = Path(name).suffix.lower()
+    if suffix in CAD_SUFFIXES:
+        return f"read the CAD file first: gm.sample(gm.read_cad({name!r}), ...)"
+    if suffix in (".npy", ".npz"):
+        return f"read the points first: gm.sample(gm.Surface.from_grid(numpy.load({name!r})), ...)"
+    return NO_MESHES if suffix in _MESH_SUFFIXES else None
+
+
+def about_value(value: object) -> str:
+    """Return what to call for a value that was given in place of a surface."""
+    shape = getattr(value, "shape", None)
+    if isinstance(shape, tuple):
+        if len(shape) == 2 and shape[1] == 3:
+            return NO_CLOUDS
+        grid = "points" if len(shape) == 3 else "elevations, spacing=(dx, dy)"
+        return f"make one by gm.Surface.from_grid({grid})"
+    if hasattr(value, "vertices") and (hasattr(value, "faces") or hasattr(value, "triangles")):
+        return NO_MESHES
+    if callable(value):
+        return "make one by gm.Surface.from_callable(f, ((u0, u1), (v0, v1)))"
+    return "make one by gm.Surface.from_callable, from_sympy, from_nurbs or from_grid"
