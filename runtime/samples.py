@@ -106,9 +106,9 @@ class Samples(SampleArrays):
     >>> import gaussmap as gm
     >>> samples = gm.sample("torus", 200, cells=(16, 16))
     >>> samples
-    Samples(200 points on torus: 125 elliptic, 75 hyperbolic)
+    Samples(200 points on torus: 125 dome-shaped, 75 saddle-shaped)
     >>> samples[samples.elliptic][:10]
-    Samples(10 points on torus: 10 elliptic, 0 hyperbolic)
+    Samples(10 points on torus: 10 dome-shaped)
     >>> samples.points.shape, samples.normals.shape, samples.uv.shape
     ((200, 3), (200, 3), (200, 2))
     >>> K, H = samples.gaussian_curvature, samples.mean_curvature
@@ -180,8 +180,8 @@ class Samples(SampleArrays):
         Examples
         --------
         >>> import gaussmap as gm
-        >>> gm.sample("torus", 200, cells=(16, 16)).summary()
-        '200 samples: 86 at 43 prescribed normals, 114 filling gaps (125 elliptic, 75 hyperbolic)'
+        >>> gm.sample("torus", normals=[[1, 0, 0], [0, 1, 1]], cells=(16, 16)).summary()
+        '4 samples found by 2 normals (2 dome-shaped, 2 saddle-shaped)'
 
         """
         return summary_of(self)

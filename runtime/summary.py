@@ -13,6 +13,10 @@ if TYPE_CHECKING:
 
 __all__ = ["kinds_of_points", "misfit_clause", "summary_of"]
 
+# Terms of the glossary in plain words: K = 0 (developable, parabolic), and a graded grid.
+FLAT = "flat or curved one way only"
+GRID = "a grid that follows the curvature"
+
 
 def summary_of(samples: Samples) -> str:
     """Return one line: the number of samples, where they come from, what they cover."""
@@ -27,7 +31,7 @@ def summary_of(samples: Samples) -> str:
     if report.developable_share is not None and not _filling(samples):
         share = f"{100.0 * report.developable_share:.2f}"
         if share != "0.00":
-            line += f"; {share} % of the surface is developable (K = 0)"
+            line += f"; {share} % of the surface is {FLAT}, where normals find no samples"
     if report.on == "spline":
         line += misfit_clause(report)
     if report.faces is not None:
@@ -37,10 +41,10 @@ def summary_of(samples: Samples) -> str:
     if report.edge_samples is not None:
         line += f"; {report.edge_samples:,} of the samples are on sharp edges"
     if report.unrefined:
-        line += f"; {report.unrefined:,} samples could not be moved to the surface"
+        line += f"; {report.unrefined:,} samples could not be moved to the surface from its spline"
     if report.apexes:
-        sides, verb = ("a side", "is") if report.apexes == 1 else (f"{report.apexes} sides", "are")
-        line += f"; {sides} of the domain {verb} one point, and no pole"
+        tips = "a sharp tip" if report.apexes == 1 else f"{report.apexes} sharp tips"
+        line += f"; the surface ends in {tips}"
     return line + _infinite(samples)
 
 
@@ -50,12 +54,12 @@ def misfit_clause(report: SamplingReport) -> str:
         return ""
     if report.fit_angle is None:
         return (
-            f"; the spline is within {report.fit_distance:.3g} of the data (root mean square "
-            f"{report.fit_rms:.3g})"
+            f"; they lie on a spline within {report.fit_distance:.3g} of the data (root mean "
+            f"square {report.fit_rms:.3g})"
         )
     return (
-        f"; the spline is within {report.fit_distance:.3g} of the surface, its normals within "
-        f"{report.fit_angle:.3g}°"
+        f"; they lie on a spline within {report.fit_distance:.3g} of the surface, its normals "
+        f"within {report.fit_angle:.3g}°"
     )
 
 
@@ -73,9 +77,9 @@ def _on_grid(samples: Samples) -> str:
     """Say how many samples are on a grid, or that it is the better choice for all."""
     count = 0 if samples.row is None else int((samples.row >= 0).sum())
     if count == 0:
-        return " of a graded grid" if samples.report.density == "aligned" else ""
+        return f" of {GRID}" if samples.report.density == "aligned" else ""
     rest = len(samples) - count
-    return f": {count:,} on a graded grid" + (f", {rest:,} filling gaps" if rest else "")
+    return f": {count:,} on {GRID}" + (f", {rest:,} in its gaps" if rest else "")
 
 
 def _origin(samples: Samples) -> str:
@@ -84,13 +88,13 @@ def _origin(samples: Samples) -> str:
     if grid := _on_grid(samples):
         return grid
     if filling == len(samples) > 0:
-        return " filling gaps" if normals else ""
+        return " in the gaps between normals" if normals else ""
     if not normals:
         return ""
-    given = f"{normals:,} prescribed normals"
+    given = f"found by {normals:,} normals"
     if not filling:
-        return f" at {given}" if "normal_index" in samples.fields else f", {given}"
-    return f": {len(samples) - filling:,} at {given}, {filling:,} filling gaps"
+        return f" {given}"
+    return f": {len(samples) - filling:,} {given}, {filling:,} in the gaps between these"
 
 
 def _infinite(samples: Samples) -> str:
@@ -109,6 +113,7 @@ def _infinite(samples: Samples) -> str:
 def kinds_of_points(samples: Samples) -> str:
     """Return the numbers of points of each kind, or which fields there are.
 
+    Those that are elliptic (K > 0) are called dome-shaped, bowls included, as sides are arbitrary.
     Parabolic points are counted as such, and not by the sign bit of K.
     """
     if "gaussian_curvature" not in samples.fields:
@@ -116,5 +121,6 @@ def kinds_of_points(samples: Samples) -> str:
     parabolic, negative = samples.parabolic, samples.hyperbolic
     zero, hyperbolic = (int(np.count_nonzero(x)) for x in (parabolic, negative & ~parabolic))
     elliptic = len(samples) - hyperbolic - zero
-    text = f": {elliptic:,} elliptic, {hyperbolic:,} hyperbolic"
-    return f"{text}, {zero:,} parabolic" if zero else text
+    numbers = {"dome-shaped": elliptic, "saddle-shaped": hyperbolic, FLAT: zero}
+    said = [f"{number:,} {kind}" for kind, number in numbers.items() if number]
+    return f": {', '.join(said or ['none'])}"

@@ -78,8 +78,8 @@ def test_sample_a_surface_by_name() -> None:
     done = gaussmap("sample", "torus", "--count", "10000", "-o", "torus.ply")
     assert (done.returncode, done.stderr) == (0, "")
     assert re.fullmatch(
-        r"torus\.ply: 10,000 samples: [\d,]+ on a graded grid, [\d,]+ filling gaps "
-        r"\([\d,]+ elliptic, [\d,]+ hyperbolic\)\n",
+        r"torus\.ply: 10,000 samples: [\d,]+ on a grid that follows the curvature, [\d,]+ in its "
+        r"gaps \([\d,]+ dome-shaped, [\d,]+ saddle-shaped\)\n",
         done.stdout,
     )
     samples = gm.read_samples("torus.ply")
@@ -111,7 +111,7 @@ def test_tolerance_of_data_and_what_the_summary_says_of_them() -> None:
     arguments = ["--spacing", "30", "30", "--tolerance", "1", "--count", "300", "-o", "a.npz"]
     done = gaussmap("sample", "heights.npy", *arguments)
     assert done.returncode == 0
-    assert "; the spline is within 0." in done.stdout
+    assert "; they lie on a spline within 0." in done.stdout
     assert "of the data (root mean square 0." in done.stdout
     report = gm.read_samples("a.npz").report
     assert report.fit_distance is not None
@@ -256,7 +256,7 @@ def test_every_file_type(suffix: str, capsys: pytest.CaptureFixture[str]) -> Non
     assert main(["sample", "torus", *FEW, "-o", f"a{suffix}"]) == 0
     out, err = capsys.readouterr()
     assert re.fullmatch(
-        rf"a{suffix}: 60 samples: \d+ at \d+ prescribed normals, \d+ filling gaps .*\n", out
+        rf"a{suffix}: 60 samples: \d+ found by \d+ normals, \d+ in the gaps between these .*\n", out
     )
     assert err == ""
     assert Path(f"a{suffix}").stat().st_size > 1000

@@ -22,6 +22,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 REPORT = SamplingReport("torus", 8, 12, 4, 0.125, 1)
+FLAT = "of the surface is flat or curved one way only, where normals find no samples"
 
 
 def torus(count: Any = 12, **changes: Any) -> Samples:
@@ -353,7 +354,7 @@ class TestText:
 
     def test_repr(self):
         assert repr(self.samples()) == (
-            "Samples(10,012 points on torus: 5,012 elliptic, 5,000 hyperbolic)"
+            "Samples(10,012 points on torus: 5,012 dome-shaped, 5,000 saddle-shaped)"
         )
 
     def test_repr_of_parabolic_samples(self):
@@ -361,7 +362,9 @@ class TestText:
         samples = curved([0.0, -0.0, 1e-12, -1e-12, 1e-3, -1e-3], np.ones(6))
         assert samples.hyperbolic.tolist() == [False, True, False, True, False, True]
         assert samples.parabolic.tolist() == [True, True, True, True, False, False]
-        assert repr(samples).endswith(": 1 elliptic, 1 hyperbolic, 4 parabolic)")
+        assert repr(samples).endswith(
+            ": 1 dome-shaped, 1 saddle-shaped, 4 flat or curved one way only)"
+        )
 
     def test_repr_stays_one_short_line(self):
         samples = torus(report=replace(REPORT, surface="x**2 +\n y**2 " * 20))
@@ -372,8 +375,8 @@ class TestText:
 
     def test_summary(self):
         assert self.samples().summary() == (
-            "10,012 samples at 1,234,567 prescribed normals (5,012 elliptic, 5,000 hyperbolic); "
-            "3.12 % of the surface is developable (K = 0)"
+            "10,012 samples found by 1,234,567 normals (5,012 dome-shaped, 5,000 saddle-shaped); "
+            "3.12 % of the surface is flat or curved one way only, where normals find no samples"
         )
 
     @pytest.mark.parametrize(
@@ -381,35 +384,44 @@ class TestText:
         [
             (0.0, ""),
             (4.9e-5, ""),
-            (5.1e-5, "; 0.01 % of the surface is developable (K = 0)"),
-            (1.0, "; 100.00 % of the surface is developable (K = 0)"),
+            (
+                5.1e-5,
+                f"; 0.01 % {FLAT}",
+            ),
+            (
+                1.0,
+                f"; 100.00 % {FLAT}",
+            ),
         ],
     )
     def test_summary_of_the_developable_share(self, share, end):
         samples = self.samples()
         samples = replace(samples, report=replace(samples.report, developable_share=share))
-        start = "10,012 samples at 1,234,567 prescribed normals (5,012 elliptic, 5,000 hyperbolic)"
+        start = "10,012 samples found by 1,234,567 normals (5,012 dome-shaped, 5,000 saddle-shaped)"
         assert samples.summary() == start + end
 
     def test_summary_of_samples_that_fill_gaps(self):
         indices = np.arange(10012) - 5012
         samples = replace(self.samples(), normal_index=np.maximum(indices, -1))
         assert samples.summary() == (
-            "10,012 samples: 5,000 at 1,234,567 prescribed normals, 5,012 filling gaps "
-            "(5,012 elliptic, 5,000 hyperbolic)"
+            "10,012 samples: 5,000 found by 1,234,567 normals, 5,012 in the gaps between these "
+            "(5,012 dome-shaped, 5,000 saddle-shaped)"
         )
         assert samples[:5012].summary() == (
-            "5,012 of 10,012 samples filling gaps (12 elliptic, 5,000 hyperbolic)"
+            "5,012 of 10,012 samples in the gaps between normals "
+            "(12 dome-shaped, 5,000 saddle-shaped)"
         )
         without = replace(samples, report=replace(samples.report, normals=0))
-        assert without[:10].summary() == "10 of 10,012 samples (0 elliptic, 10 hyperbolic)"
+        assert without[:10].summary() == "10 of 10,012 samples (10 saddle-shaped)"
 
     def test_summary_of_samples_that_are_not_on_the_surface(self):
         report = replace(self.samples().report, developable_share=0.0, unrefined=1234)
         assert (
             replace(self.samples(), report=report)
             .summary()
-            .endswith("5,000 hyperbolic); 1,234 samples could not be moved to the surface")
+            .endswith(
+                "saddle-shaped); 1,234 samples could not be moved to the surface from its spline"
+            )
         )
 
     @pytest.mark.parametrize(
@@ -419,12 +431,12 @@ class TestText:
             (
                 "spline",
                 0.03161,
-                "; the spline is within 1.07e-05 of the surface, its normals within 0.0316°",
+                "; they lie on a spline within 1.07e-05 of the surface, its normals within 0.0316°",
             ),
             (
                 "spline",
                 None,
-                "; the spline is within 1.07e-05 of the data (root mean square 6.03e-06)",
+                "; they lie on a spline within 1.07e-05 of the data (root mean square 6.03e-06)",
             ),
         ],
     )
@@ -432,18 +444,18 @@ class TestText:
         known = {"fit_distance": 1.0696e-5, "fit_rms": 6.0347e-6, "fit_angle": angle}
         report = replace(self.samples().report, developable_share=0.0, on=on, **known)
         summary = replace(self.samples(), report=report).summary()
-        assert summary.endswith("5,000 hyperbolic)" + end)
+        assert summary.endswith("5,000 saddle-shaped)" + end)
 
     def test_summary_of_a_part(self):
         assert self.samples()[:10].summary() == (
-            "10 of 10,012 samples at 1,234,567 prescribed normals (0 elliptic, 10 hyperbolic); "
-            "3.12 % of the surface is developable (K = 0)"
+            "10 of 10,012 samples found by 1,234,567 normals (10 saddle-shaped); "
+            "3.12 % of the surface is flat or curved one way only, where normals find no samples"
         )
 
     def test_summary_of_what_is_unknown(self):
         report = SamplingReport("an unknown surface", None, 10012, None, None, None)
         samples = replace(self.samples(), report=report)
-        assert samples.summary() == "10,012 samples (5,012 elliptic, 5,000 hyperbolic)"
+        assert samples.summary() == "10,012 samples (5,012 dome-shaped, 5,000 saddle-shaped)"
 
 
 def test_write(tmp_path):

@@ -146,7 +146,7 @@ def test_balanced_takes_the_better_one():
     torus, same = (gm.sample("torus", 1000, density=x) for x in ("balanced", "isotropic"))
     assert torus.report.density == "aligned"
     assert same.report.density == "isotropic"
-    assert "on a graded grid" in torus.summary()
+    assert "on a grid that follows the curvature" in torus.summary()
     found, usual = torus.normal_deviation(), same.normal_deviation()
     assert found.space < 0.8 * usual.space
     assert torus.coverage() < 1.06 * same.coverage()
