@@ -17,7 +17,7 @@ TERRAIN = "$$($(BIN)/python -c '$(DEM)'):elevation" --spacing 74.5 -92.5
 .DEFAULT_GOAL := help
 .PHONY: help install demo generate check-generated warm test coverage cad-tests verify bench bench-guard bench-record bench-peers \
 	quality parts-quality cold-start operations lint typecheck formulas orders errata curves figures gallery meshes registration \
-	alignment clean
+	alignment docs clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -155,6 +155,22 @@ gallery: $(READY) ## run the notebooks of docs/gallery/ again
 registration: $(VENV)/peers/.ready ## measure registration by Open3D's ICP again (docs/registration.md)
 	$(VENV)/peers/bin/python docs/registration.py > docs/registration.tmp
 	mv docs/registration.tmp docs/registration.md
+
+# The site is built in an environment of its own, which sees the packages of .venv.
+$(VENV)/docs/.ready: $(READY)
+	$(PYTHON) -m venv --without-pip $(VENV)/docs
+	$(BIN)/python -c 'import sysconfig as s; print("import site; site.addsitedir(%r)" % s.get_path("purelib"))' \
+		> "$$($(VENV)/docs/bin/python -c 'import sysconfig as s; print(s.get_path("purelib"))')/main.pth"
+	$(BIN)/python -c 'import tomllib; \
+		extras = tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]; \
+		print(*(x for x in extras["docs"] if not x.startswith("gaussmap")), sep="\n")' > $(VENV)/docs/packages
+	$(BIN)/python -m pip --python $(VENV)/docs/bin/python install --quiet --disable-pip-version-check \
+		--requirement $(VENV)/docs/packages
+	touch $@
+
+docs: $(VENV)/docs/.ready ## build the site of the documentation, out/site/index.html
+	$(VENV)/docs/bin/python -m sphinx --quiet --nitpicky --fail-on-warning --keep-going \
+		--doctree-dir out/doctrees docs out/site
 
 clean: ## remove what make made
 	rm -rf $(VENV) out build *.egg-info .pytest_cache .ruff_cache .hypothesis .benchmarks .coverage

@@ -21,7 +21,7 @@ from .uses import callers, functions
 if TYPE_CHECKING:
     from math_core import LatexToMathML
 
-__all__ = ["page"]
+__all__ = ["mathml", "page"]
 
 # The text of the kernels is read to say which of them call a formula.
 KERNELS = GENERATED.parent / "runtime" / "kernels"
@@ -78,7 +78,7 @@ def _article(entry: latex.Entry) -> str:
         f"<header>\n<h3>{_link(entry.name)}</h3>"
         f"{'' if entry.name in surfaces.CATALOGUE else source}\n</header>\n"
         f"<p>{_text(entry.sentence)}</p>\n"
-        f'<div class="formula">{_mathml(entry.aligned, display=True)}</div>\n'
+        f'<div class="formula">{mathml(entry.aligned, display=True)}</div>\n'
         f"<dl>\n{rows}\n</dl>\n"
         "</article>"
     )
@@ -136,12 +136,12 @@ def _text(sentence: str) -> str:
     """Return a sentence, with LaTeX between dollar signs and names of formulas in backquotes."""
     parts = sentence.split("$")
     parts[::2] = (re.sub(r"`(\w+)`", lambda x: _link(x[1]), escape(x)) for x in parts[::2])
-    parts[1::2] = map(_mathml, parts[1::2])
+    parts[1::2] = map(mathml, parts[1::2])
     return "".join(parts).replace("(<math", f"({WORD_JOINER}<math")
 
 
 @cache
-def _mathml(source: str, *, display: bool = False) -> str:
+def mathml(source: str, *, display: bool = False) -> str:
     """Return LaTeX as MathML that is well-formed XML."""
     # math-core knows no distances between rows: the stylesheet sets them.
     rows = re.sub(r"\\\\\[\w+\]", r"\\\\", source)

@@ -30,7 +30,7 @@ from .positions import position
 from .simplify import straight_line
 from .uses import functions, wholes
 
-__all__ = ["document", "markdown", "parts_of", "sections"]
+__all__ = ["document", "markdown", "parts_of", "passages", "sections"]
 
 GENERATOR = f"Written by `make generate` with SymPy {sp.__version__}: do not edit."
 FORMULAS = {
@@ -79,23 +79,29 @@ def markdown(sources: Mapping[str, str]) -> str:
     `sources` are the texts of the generated files by their names.
     """
     found = functions(sources)
-
-    def converted(sentence: str) -> str:
-        return _converted(sentence, mathematics=lambda x: f"$`{x}`$")
-
     parts = []
     for title, entries in sections().items():
         parts.append(f"## {title}")
         for entry in entries:
-            parts += [
-                f"### `{entry.name}`",
-                converted(entry.sentence),
-                f"```math\n{entry.aligned}\n```",
-                "\n".join(
-                    f"- {converted(fact)}" for fact in (*entry.facts, _functions(entry, found))
-                ),
-            ]
+            parts += [f"### `{entry.name}`", *passages(entry, found)]
     return render("formulas.md", {"generator": GENERATOR, "sections": "\n\n".join(parts)})
+
+
+def passages(entry: Entry, found: Mapping[str, list[str]]) -> tuple[str, str, str]:
+    """Return a sentence, the formula and the list of facts in the Markdown of code hosts.
+
+    `found` are the generated functions by their names.
+    """
+
+    def converted(sentence: str) -> str:
+        return _converted(sentence, mathematics=lambda x: f"$`{x}`$")
+
+    facts = (*entry.facts, _functions(entry, found))
+    return (
+        converted(entry.sentence),
+        f"```math\n{entry.aligned}\n```",
+        "\n".join(f"- {converted(fact)}" for fact in facts),
+    )
 
 
 def document(sources: Mapping[str, str]) -> str:

@@ -257,7 +257,7 @@ def test_mathml_has_no_foreign_characters():
 
 def test_unknown_latex_is_an_error():
     with pytest.raises(math_core.LatexError):
-        html._mathml(r"\unheardof{x}")
+        html.mathml(r"\unheardof{x}")
 
 
 def test_text_is_escaped():

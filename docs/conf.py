@@ -1,0 +1,88 @@
+"""How Sphinx builds the site: `make docs`. Words are in the pages, code is in _sphinx/."""
+
+import re
+import sys
+from pathlib import Path
+
+import gaussmap
+from sphinx.application import Sphinx
+
+HERE = Path(__file__).parent
+sys.path.append(str(HERE / "_sphinx"))
+
+project = "gaussmap"
+author = "The gaussmap developers"
+version = release = gaussmap.__version__
+
+extensions = [
+    "myst_nb",
+    "numpydoc",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx_copybutton",
+    "sphinx_design",
+    "formula_pages",
+    "mathml",
+]
+# Scripts beside the pages write them; the notebooks of the gallery are made of the scripts there.
+source_suffix = {".rst": "restructuredtext", ".md": "myst-nb", ".ipynb": "myst-nb"}
+templates_path = ["_templates"]
+exclude_patterns = ["_*", "**.py", "**.tmp"]
+
+# Every reference has a target. Docstrings have code between single backquotes: what is public is a
+# link there, the rest is code.
+nitpicky = True
+# Types of Python and NumPy are no links: the site is for reading without a network.
+nitpick_ignore_regex = [
+    ("py:obj", ".*"),
+    ("(py:(class|data|func)|std:(ref|term)|ref|term)", "(python|numpy):.*"),
+]
+default_role = "py:obj"
+
+# --- pages in Markdown, and notebooks ---
+myst_enable_extensions = ["amsmath", "attrs_block", "colon_fence", "deflist", "dollarmath"]
+myst_heading_anchors = 4
+myst_fence_as_directive = ["math"]  # as on GitHub
+# Cells of pages run while the site is built, and must not fail; the gallery has its outputs already
+# (`make gallery`).
+nb_execution_mode = "force"
+nb_execution_excludepatterns = ["gallery/*"]
+nb_execution_raise_on_error = True
+nb_execution_timeout = 300
+nb_execution_in_temp = True
+nb_merge_streams = True
+
+# --- the reference ---
+autosummary_ignore_module_all = False  # the public names are those of __all__ …
+autosummary_imported_members = True  # … and are imported from where they are defined
+autodoc_typehints = "none"  # docstrings have the types
+numpydoc_show_class_members = False  # the template of classes lists them
+numpydoc_xref_param_type = True
+numpydoc_xref_ignore = "all"  # a type that is not a public name is no link
+
+# --- what browsers get: nothing is loaded from elsewhere ---
+html_theme = "pydata_sphinx_theme"
+html_title = f"gaussmap {release}"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_math_renderer = "mathml"
+html_copy_source = False
+html_show_sourcelink = False
+html_theme_options = {
+    "navigation_with_keys": False,
+    "show_prev_next": True,
+    "header_links_before_dropdown": 6,
+    "footer_start": ["copyright"],
+    "footer_end": [],
+}
+html_context = {"default_mode": "auto"}
+
+
+def setup(app: Sphinx) -> None:
+    """Have |K| in docstrings mean the absolute value of K, not a substitution."""
+    app.connect("autodoc-process-docstring", _escape_bars, priority=100)
+
+
+def _escape_bars(*arguments: object) -> None:
+    lines = arguments[-1]
+    lines[:] = [re.sub(r"\|(\w+)\|", r"\|\1\|", line) for line in lines]
