@@ -23,7 +23,7 @@ from .surface.surface import Surface
 __all__ = ["sample_many"]
 
 Surfaces = Iterable[Surface | Spline | str]
-ON_ERROR = ("raise", "skip", "none")
+ON_ERROR = ("raise", "skip", "none", "return")
 
 
 @overload
@@ -44,6 +44,26 @@ def sample_many(
     dtype: DTypeLike = np.float64,
     threads: int | None = None,
 ) -> Iterator[Samples | None]: ...
+
+
+@overload
+def sample_many(
+    surfaces: Surfaces,
+    count: int | None = None,
+    *,
+    normals: ArrayLike | None = None,
+    progress: bool = True,
+    on_error: Literal["return"],
+    angle: float | None = None,
+    coverage: float | None = None,
+    density: str | float | None = None,
+    relax: int = 0,
+    cells: Sequence[int] | None = None,
+    on: str | None = None,
+    fields: Sequence[str] | None = None,
+    dtype: DTypeLike = np.float64,
+    threads: int | None = None,
+) -> Iterator[Samples | GaussmapError]: ...
 
 
 @overload
@@ -82,7 +102,7 @@ def sample_many(
     fields: Sequence[str] | None = None,
     dtype: DTypeLike = np.float64,
     threads: int | None = None,
-) -> Iterator[Samples | None]:
+) -> Iterator[Samples | GaussmapError | None]:
     """Yield the samples of each of several surfaces, in order.
 
     Parameters
@@ -93,13 +113,13 @@ def sample_many(
         As in `sample`.
     progress : bool, default True
         Show a bar on standard error, if that is a terminal.
-    on_error : {"raise", "skip", "none"}, default "raise"
+    on_error : {"raise", "skip", "none", "return"}, default "raise"
         What happens if a surface cannot be sampled: its error is raised; or it is left out with a
-        warning; or None is yielded in its place, with a warning.
+        warning; or None is yielded in its place, with a warning; or its error is yielded there.
 
     Yields
     ------
-    Samples or None
+    Samples, GaussmapError or None
         The samples of the next surface: ``samples.report.index`` is its number among `surfaces`,
         from 0 on, and ``samples.report.surface`` its name.
 
@@ -113,7 +133,13 @@ def sample_many(
     Warns
     -----
     GaussmapWarning
-        If a surface cannot be sampled, unless its error is raised.
+        If a surface is left out, or None stands for it.
+
+    Notes
+    -----
+    Surfaces are sampled one after the other, each on all cores. Python functions run on one core:
+    for many surfaces of these, sample each of them in one of several processes, with ``threads=1``;
+    examples/data_set.py shows how.
 
     Examples
     --------
@@ -123,10 +149,8 @@ def sample_many(
     torus 500
     sphere 500
     >>> broken = gm.Surface.from_callable(lambda u, v: u, ((0, 1), (0, 1)))
-    >>> import warnings
-    >>> with warnings.catch_warnings(action="ignore"):
-    ...     list(gm.sample_many(["torus", broken], 500, on_error="none"))
-    [Samples(500 points on torus: ...), None]
+    >>> list(gm.sample_many(["torus", broken], 500, on_error="return"))
+    [Samples(500 points on torus: ...), SurfaceError(...)]
 
     """
     from tqdm import tqdm
@@ -154,9 +178,13 @@ def sample_many(
             )
         except GaussmapError as error:
             where = f"surface {place} ({_name(surface)})"
-            if on_error == "raise":
+            if on_error in ("raise", "return"):
                 error.add_note(f"This is {where} of sample_many.")
+            if on_error == "raise":
                 raise
+            if on_error == "return":
+                yield error
+                continue
             left = "left out" if on_error == "skip" else "None"
             warnings.warn(f"{where} is {left}: {error}", GaussmapWarning, stacklevel=2)
             if on_error == "none":

@@ -85,7 +85,9 @@ def silhouette(
     """Return points of a surface whose normals are perpendicular to a direction.
 
     They lie on the contour generator, which a parallel projection along `direction` shows as the
-    outline: all of it, also where the surface hides it. Where K < 0 the outline is concave.
+    outline: all of it, also where the surface hides it. Where K < 0 the outline is concave. Unlike
+    samples, they stay on the spline that approximates the surface: ``gm.fit(surface).misfit`` is
+    how far away it is, and more `cells` bring it nearer.
 
     Parameters
     ----------

@@ -6,7 +6,13 @@ import argparse
 import sys
 from pathlib import Path
 
-from .files import GENERATED, derive, differences, write
+from .files import GENERATED, PROJECT, derive, differences, write
+
+NEEDS_A_CHECKOUT = (
+    "this gaussmap is an installed package, and its kernels stay those of its version. To change "
+    "formulas, clone the repository, and run `make generate` there (see CONTRIBUTING.md); for the "
+    "kernel of a formula of your own, see `gaussmap.symbolic.emit.function`."
+)
 
 
 def main(arguments: list[str] | None = None, folder: Path = GENERATED) -> int:
@@ -16,6 +22,8 @@ def main(arguments: list[str] | None = None, folder: Path = GENERATED) -> int:
         "--check", action="store_true", help="write nothing; show a diff and fail if stale"
     )
     check = parser.parse_args(arguments).check
+    if folder == GENERATED and not PROJECT.exists():
+        parser.error(NEEDS_A_CHECKOUT)
     texts = derive()
     if not check:
         write(texts, folder)

@@ -57,6 +57,15 @@ def test_none_stands_for_a_bad_surface():
     assert len(caught) == 2
 
 
+def test_an_error_takes_the_place_of_a_bad_surface():
+    found = many([BROKEN, TORUS], normals=[[1, 1, 1]], cells=(6, 6), on_error="return")
+    error, samples = found
+    assert isinstance(error, gm.errors.SurfaceError)
+    assert "no such surface" in str(error)
+    assert error.__notes__ == ["This is surface 0 (broken) of sample_many."]
+    assert samples.report.index == 1
+
+
 def test_an_error_is_raised_with_the_number_of_the_surface():
     stream = gm.sample_many([TORUS, BROKEN], normals=[[1, 1, 1]], cells=(6, 6), progress=False)
     assert next(stream).report.index == 0

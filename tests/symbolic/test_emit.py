@@ -420,6 +420,15 @@ def test_writing_into_a_new_folder(copy):
     assert files.existing(copy.parent / "new" / "folder") == files.existing(copy)
 
 
+def test_an_installed_package_keeps_its_kernels(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("gaussmap.symbolic.__main__.PROJECT", tmp_path / "pyproject.toml")
+    for arguments in ([], ["--check"]):
+        with pytest.raises(SystemExit) as caught:
+            main(arguments)
+        assert caught.value.code == 2
+        assert "clone the repository, and run `make generate`" in capsys.readouterr().err
+
+
 def test_check_passes(copy, capsys):
     assert main(["--check"], copy) == 0
     assert capsys.readouterr() == ("", "")
