@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import InputError
+from .progress import busy
 from .sample_arrays import SampleArrays
 from .splines.spline import Spline, short_label
 from .summary import kinds_of_points, summary_of
@@ -139,11 +140,16 @@ class Samples(SampleArrays):
 
     """
 
-    def progressive(self) -> Samples:
+    def progressive(self, *, progress: bool = False) -> Samples:
         """Return the same samples in an order in which every prefix is well distributed.
 
         The first ones are far apart relative to the local spacing of the samples; the next ones
         halve the gaps, and so on. Spacings below a thousandth of the median count as that.
+
+        Parameters
+        ----------
+        progress : bool, default False
+            Show on a terminal what is done, from a second on.
 
         Returns
         -------
@@ -167,7 +173,8 @@ class Samples(SampleArrays):
         from .density.progressive import progressive_order
 
         points, normals = (x.astype(np.float64) for x in (self.points, self.normals))
-        return self[progressive_order(points, normals)]
+        with busy("ordering samples", progress):
+            return self[progressive_order(points, normals)]
 
     def summary(self) -> str:
         """Return one line: the number of samples, where they come from, what they cover.
@@ -229,7 +236,7 @@ class Samples(SampleArrays):
 
         return offset(self, distance)
 
-    def write(self, path: str | os.PathLike[str]) -> None:
+    def write(self, path: str | os.PathLike[str], *, progress: bool = False) -> None:
         """Write the samples to a file; its suffix, in any case, chooses the format.
 
         An existing file is replaced once the new one is complete; if anything fails, it stays as it
@@ -251,6 +258,8 @@ class Samples(SampleArrays):
             - `.parquet`, `.arrow`, `.feather`: the columns of `.csv` in binary, and the report and
               the units in the metadata of the schema; need the extra "tables" (PyArrow). Feather is
               the format of `.arrow`.
+        progress : bool, default False
+            Show on a terminal what is done, from a second on.
 
         Raises
         ------
@@ -273,7 +282,8 @@ class Samples(SampleArrays):
         """
         from .files.formats import write_samples
 
-        write_samples(self, path)
+        with busy("writing", progress):
+            write_samples(self, path)
 
     def plot(
         self,
@@ -321,6 +331,7 @@ class Samples(SampleArrays):
         *,
         angle: float | None = None,
         prefer: Literal["shape", "normals"] = "shape",
+        progress: bool = False,
     ) -> Mesh:
         """Return a triangle mesh of the whole surface through the samples.
 
@@ -350,6 +361,8 @@ class Samples(SampleArrays):
             - "normals": triangles deviate from the normals at their corners as little as the
               samples allow. They are long and thin where the surface is curved in one direction
               only, and one sample is left out where a triangle would have no area.
+        progress : bool, default False
+            Show on a terminal what is done, from a second on.
 
         Returns
         -------
@@ -388,9 +401,16 @@ class Samples(SampleArrays):
 
         if spline is None and self.offset_of is not None:
             spline = self.offset_of.spline
-        return mesh_of(self, self._spline_or(spline), angle, prefer)
+        with busy("meshing", progress):
+            return mesh_of(self, self._spline_or(spline), angle, prefer)
 
-    def coverage(self, spline: Spline | None = None, *, threads: int | None = None) -> float:
+    def coverage(
+        self,
+        spline: Spline | None = None,
+        *,
+        threads: int | None = None,
+        progress: bool = False,
+    ) -> float:
         """Return a bound of the distance from any point of the surface to the nearest sample, in L.
 
         Parameters
@@ -399,6 +419,8 @@ class Samples(SampleArrays):
             The spline of the samples, if `spline` of the samples is None.
         threads : int, optional
             The number of threads; by default all cores.
+        progress : bool, default False
+            Show on a terminal what is done, from a second on.
 
         Returns
         -------
@@ -424,12 +446,17 @@ class Samples(SampleArrays):
         """
         from .density.of_samples import coverage_of
 
-        if isinstance(self.surface, Whole):
-            return self.surface.coverage_of(self.points, threads)
-        return coverage_of(self.points, self._spline_if_one(spline), self.surface, threads)
+        with busy("measuring the coverage", progress):
+            if isinstance(self.surface, Whole):
+                return self.surface.coverage_of(self.points, threads)
+            return coverage_of(self.points, self._spline_if_one(spline), self.surface, threads)
 
     def normal_deviation(
-        self, spline: Spline | None = None, *, threads: int | None = None
+        self,
+        spline: Spline | None = None,
+        *,
+        threads: int | None = None,
+        progress: bool = False,
     ) -> NormalDeviation:
         """Return the largest angles between normals of the surface and those of the samples.
 
@@ -442,6 +469,8 @@ class Samples(SampleArrays):
             The spline of the samples, if `spline` of the samples is None.
         threads : int, optional
             The number of threads; by default all cores.
+        progress : bool, default False
+            Show on a terminal what is done, from a second on.
 
         Returns
         -------
@@ -467,12 +496,13 @@ class Samples(SampleArrays):
         """
         from .density.of_samples import deviation_of
 
-        if isinstance(self.surface, Whole):
-            return self.surface.deviation_of(self.points, self.normals, threads)
-        one = self._spline_if_one(spline)
-        return deviation_of(self.points, self.normals, one, self.surface, threads)
+        with busy("comparing normals", progress):
+            if isinstance(self.surface, Whole):
+                return self.surface.deviation_of(self.points, self.normals, threads)
+            one = self._spline_if_one(spline)
+            return deviation_of(self.points, self.normals, one, self.surface, threads)
 
-    def weights(self, *, angle: float | None = None) -> NDArray[np.float64]:
+    def weights(self, *, angle: float | None = None, progress: bool = False) -> NDArray[np.float64]:
         """Return the area of the surface that each sample stands for.
 
         Σ w f(points) approximates the integral of f over the surface: its area for f = 1, the
@@ -485,6 +515,8 @@ class Samples(SampleArrays):
         ----------
         angle : float, optional
             In degrees, as in `mesh`.
+        progress : bool, default False
+            Show on a terminal what is done, from a second on.
 
         Returns
         -------
@@ -509,9 +541,10 @@ class Samples(SampleArrays):
         """
         from .meshes.weights import area_weights
 
-        if isinstance(self.surface, Whole):
-            return self.surface.weights_of(self)
-        return area_weights(self, angle)
+        with busy("computing weights", progress):
+            if isinstance(self.surface, Whole):
+                return self.surface.weights_of(self)
+            return area_weights(self, angle)
 
     def __repr__(self) -> str:
         label = short_label(self.report.surface)

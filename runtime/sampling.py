@@ -21,6 +21,7 @@ from .geometry.on_spline import OnSpline
 from .geometry.on_surface import checked_place, geometry_of, place_of_samples
 from .memory import check_memory
 from .pieces import cells_of_piece, pieces_to_sample, sample_pieces
+from .progress import busy
 from .report import sampling_report, warn_of
 from .samples import Samples
 from .search import find
@@ -107,7 +108,7 @@ def sample(
     threads : int, optional
         The number of threads, by default one for each core. The samples do not depend on it.
     progress : bool, default False
-        Show a bar on standard error for work that takes longer than a second.
+        Show on a terminal what is done, from a second on.
     edges : bool, default False
         Of a CAD part: add samples on its sharp edges, where the normals of two faces differ by more
         than 1°. They come last and in addition: the others, and the count, angle and coverage that
@@ -178,17 +179,19 @@ def sample(
     (100, 40, 40)
 
     """
-    return sample_and_normals(
-        surface,
-        checked_request(normals, count, angle, coverage, density, relax, threads),
-        cells=cells,
-        on=on,
-        fields=fields,
-        dtype=dtype,
-        threads=threads,
-        progress=progress,
-        edges=edges,
-    )[0]
+    request = checked_request(normals, count, angle, coverage, density, relax, threads)
+    with busy("sampling", progress):
+        return sample_and_normals(
+            surface,
+            request,
+            cells=cells,
+            on=on,
+            fields=fields,
+            dtype=dtype,
+            threads=threads,
+            progress=progress,
+            edges=edges,
+        )[0]
 
 
 @in_memory

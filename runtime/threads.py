@@ -15,7 +15,7 @@ from typing import TypeVar
 
 from .checks import whole_number, yes_or_no
 
-__all__ = ["counted", "over_ranges", "shown", "thread_count"]
+__all__ = ["counted", "over_ranges", "seen", "shown", "thread_count"]
 
 Result = TypeVar("Result")
 
@@ -92,7 +92,7 @@ if hasattr(os, "register_at_fork"):
 def shown(results: Iterator[Result], count: int, progress: bool) -> Iterator[Result]:
     """Yield results; with `progress`, a terminal shows a bar of `count` steps."""
     # tqdm shows nothing without a terminal, and its import takes longer than a small sampling.
-    if not _seen(progress):
+    if not seen(progress):
         return results
     from tqdm import tqdm
 
@@ -102,7 +102,7 @@ def shown(results: Iterator[Result], count: int, progress: bool) -> Iterator[Res
 @contextmanager
 def counted(count: int | None, progress: bool) -> Iterator[Callable[[int], object]]:
     """Yield a function that shows the number of finished steps, of `count` if known."""
-    if not _seen(progress):
+    if not seen(progress):
         yield lambda done: None
         return
     from tqdm import tqdm
@@ -111,5 +111,6 @@ def counted(count: int | None, progress: bool) -> Iterator[Callable[[int], objec
         yield lambda done: bar.update(done - bar.n)
 
 
-def _seen(progress: bool) -> bool:
+def seen(progress: bool) -> bool:
+    """Say whether progress is wanted, and somebody sees it: on a terminal."""
     return yes_or_no(progress, "progress") and sys.stderr is not None and sys.stderr.isatty()

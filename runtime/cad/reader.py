@@ -19,6 +19,7 @@ from ..checks import positive_number
 from ..errors import FileError, GaussmapWarning, InputError, shown
 from ..extras import check_extra
 from ..files.paths import PathLike, checked_path, reason_of
+from ..progress import busy
 from .part import Part, read_part
 from .units import METRES, unit_named
 from .worker import ERROR, PART
@@ -39,6 +40,8 @@ def read_cad(
     unit: str | None = None,
     time_limit: float = 120.0,
     memory_limit: float = 4.0,
+    *,
+    progress: bool = False,
 ) -> Part:
     """Read a part from a STEP, IGES or BREP file.
 
@@ -59,6 +62,8 @@ def read_cad(
         The longest time for reading, in seconds.
     memory_limit : float
         The most memory for reading, in GiB.
+    progress : bool, default False
+        Show on a terminal what is done, from a second on.
 
     Returns
     -------
@@ -110,7 +115,8 @@ def read_cad(
             "memory": gib * GIB,
             "seconds": seconds,
         }
-        end = _run(request, seconds)
+        with busy(f"reading {path.name}", progress):
+            end = _run(request, seconds)
         with suppress(FileNotFoundError):
             raise FileError(f"'{path}' {(folder / ERROR).read_text(encoding='utf-8')}")
         if not (folder / PART).exists():

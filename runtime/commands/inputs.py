@@ -151,7 +151,7 @@ def _with_tolerance(
         return surface_, options.cells
     if options.cells is not None:
         raise InputError("--tolerance and --cells do not go together; give one of them.")
-    spline = fit(surface_, tolerance=options.tolerance)
+    spline = fit(surface_, tolerance=options.tolerance, progress=not options.quiet)
     return (spline, None) if surface_.grid is not None else (surface_, spline.cells)
 
 

@@ -17,6 +17,6 @@ def run(options: SimpleNamespace) -> None:
     check_mesh_target(options.output)
     fields = ("points", "normals", "uv")
     samples = sample(**arguments(options, default_count=10_000), fields=fields)
-    mesh = samples.mesh(angle=options.deviation, prefer=options.prefer)
+    mesh = samples.mesh(angle=options.deviation, prefer=options.prefer, progress=not options.quiet)
     mesh.write(options.output)
     summarize(mesh, options)

@@ -48,7 +48,7 @@ def read_part_file(source: str, options: SimpleNamespace) -> Part:
         )
     from ..cad.reader import read_cad
 
-    return read_cad(source, **given)
+    return read_cad(source, **given, progress=not getattr(options, "quiet", False))
 
 
 def refuse(given: Iterable[str], purpose: str, source: str) -> None:

@@ -36,6 +36,6 @@ def run(options: SimpleNamespace) -> None:
         edges=options.edges,
     )
     if options.progressive:
-        samples = samples.progressive()
-    samples.write(options.output)
+        samples = samples.progressive(progress=not options.quiet)
+    samples.write(options.output, progress=not options.quiet)
     summarize(samples, options)

@@ -12,12 +12,13 @@ from numpy.typing import DTypeLike, NDArray
 
 from ..advice import about_value
 from ..errors import GaussmapWarning, InputError, SurfaceError, in_memory
+from ..progress import busy
 from ..splines.collapsed import found_sides
 from ..splines.domain import Boundary, Domain
 from ..splines.ghosts import Sides
 from ..splines.missing import known_of_values
 from ..splines.quasi_interpolant import apart, checked_cells, fit_grid, fit_values, not_too_large
-from ..splines.spline import Spline
+from ..splines.spline import Spline, short_label
 from ..surface.surface import Surface
 from ..surfaces import named
 from .cells import FAR_OFF, Bounds, Tolerance, checked_tolerance, refined
@@ -64,6 +65,7 @@ def fit(
     tolerance: float | None = None,
     relative_tolerance: float | None = None,
     normal_tolerance: float | None = None,
+    progress: bool = False,
 ) -> Spline:
     """Approximate a surface by a C¹ quadratic spline.
 
@@ -92,6 +94,8 @@ def fit(
     normal_tolerance : float, optional
         The largest angle between the normals of surface and spline, in degrees, from 0.0001 to 90.
         Alone, it goes with a relative tolerance of 1e-4.
+    progress : bool, default False
+        Show on a terminal what is done, from a second on.
 
     Returns
     -------
@@ -143,14 +147,15 @@ def fit(
     sides = found_sides(surface)
     trim = surface.trim and surface.trim.with_boundary(sides.boundary)
     surface = replace(surface, boundary=sides.boundary, trim=trim)
-    if surface.grid is not None:
-        spline = _fit_data(surface, surface.grid, cells, asked)
-    elif cells is None:
-        spline = _fit_to(surface, asked)
-    else:
-        spline = _fitted(surface, cells)
-        misfit = probe_of(surface, spline.cells).compare(spline).misfit
-        spline = replace(spline, misfit=misfit, trim=surface.trim)
+    with busy(f"fitting {short_label(surface.name)}", progress):
+        if surface.grid is not None:
+            spline = _fit_data(surface, surface.grid, cells, asked)
+        elif cells is None:
+            spline = _fit_to(surface, asked)
+        else:
+            spline = _fitted(surface, cells)
+            misfit = probe_of(surface, spline.cells).compare(spline).misfit
+            spline = replace(spline, misfit=misfit, trim=surface.trim)
     return replace(spline, apexes=sides.apexes)
 
 

@@ -15,6 +15,7 @@ from ..density.request import checked_request
 from ..extras import check_extra
 from ..files import paths
 from ..fitting.fit import spline_of
+from ..progress import busy
 from ..samples import Samples
 from ..sampling import sample_and_normals
 from ..splines.spline import Spline
@@ -50,12 +51,14 @@ def plot_to_file(
     """
     check_target(path)
     request = checked_request(normals, count, angle, coverage, density, relax, threads)
-    samples, directions = sample_and_normals(
-        surface, request, cells=cells, on=on, threads=threads, progress=progress
-    )
+    with busy("sampling", progress):
+        samples, directions = sample_and_normals(
+            surface, request, cells=cells, on=on, threads=threads, progress=progress
+        )
     if samples.spline is None and not isinstance(surface, Part):
         surface = spline_of(surface, cells)
-    write_plot(samples, samples.spline or surface, directions, path)
+    with busy("drawing", progress):
+        write_plot(samples, samples.spline or surface, directions, path)
     return samples
 
 
