@@ -25,7 +25,7 @@ def noise(count: int, dtype: Any = np.float64) -> gm.Samples:
     rng = np.random.default_rng(count)
     sizes = 10.0 ** rng.integers(-300 if dtype == np.float64 else -40, 30, (count, 3))
     points = (rng.normal(size=(count, 3)) * sizes).astype(dtype)
-    points[:4].flat = [-0.0, 5e-324, 0.1, 1e22, 1e-5, 123456789012345680.0]
+    points[0], points[1] = (-0.0, 5e-324, 0.1), (1e22, 1e-5, 123456789012345680.0)
     curvature = rng.normal(size=count).astype(dtype)
     curvature[:3] = np.inf, -np.inf, np.nan
     return gm.Samples(
@@ -112,8 +112,9 @@ def test_polars_writes_the_same_numbers(monkeypatch, dtype):
 
 def test_polars_writes_meshes(tmp_path, monkeypatch):
     pytest.importorskip("polars")
-    mesh = gm.Mesh(*np.random.default_rng(1).random((2, 5, 3)), np.zeros((5, 2)),
-                   np.array([[0, 1, 2], [4, 3, 2]]), np.arange(5))  # fmt: skip
+    vertices, normals = np.random.default_rng(1).random((2, 5, 3))
+    triangles = np.array([[0, 1, 2], [4, 3, 2]])
+    mesh = gm.Mesh(vertices, normals, np.zeros((5, 2)), triangles, np.arange(5))
     texts = []
     for least in 0, 100:
         monkeypatch.setattr(tables, "_WORTH_AN_IMPORT", least)
