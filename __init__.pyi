@@ -26,5 +26,6 @@ from .runtime.stream import sample_stream as sample_stream
 from .runtime.support.convolution import convolve as convolve
 from .runtime.support.function import SupportFunction as SupportFunction
 from .runtime.surface.surface import Surface as Surface
+from .runtime.terrain.terrain import terrain as terrain
 
 __version__: str

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from .checks import known_name
 from .developable import developable_share
 from .errors import GaussmapWarning, InputError, shown
+from .georeference import checked_origin
 from .splines.spline import Spline
 
 if TYPE_CHECKING:
@@ -106,6 +107,10 @@ class SamplingReport:
         Of a CAD part: whether its normals are known to point out of solids.
     edge_samples : int or None
         Of a CAD part, with ``edges=True``: how many of the samples are on sharp edges.
+    crs : str or None
+        Of a `terrain`: the coordinate reference system of the points, as "EPSG:number" or WKT.
+    origin : (float, float, float) or None
+        Of a `terrain`: what was subtracted from the coordinates of the points.
 
     Raises
     ------
@@ -127,7 +132,7 @@ class SamplingReport:
     'aligned'
     >>> report.faces, report.empty_faces, report.oriented  # not of a CAD part
     (None, None, None)
-    >>> report.edge_samples is None
+    >>> report.edge_samples is report.crs is report.origin is None
     True
     >>> report.developable_share, report.apexes, report.index
     (0.0, 0, None)
@@ -157,6 +162,8 @@ class SamplingReport:
     empty_faces: int | None = None
     oriented: bool | None = None
     edge_samples: int | None = None
+    crs: str | None = None
+    origin: tuple[float, float, float] | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.surface, str):
@@ -165,6 +172,10 @@ class SamplingReport:
             known_name(self.on, PLACES, "place of samples")
         if self.density is not None:
             known_name(self.density, CHOICES, "choice of a density")
+        if self.crs is not None and not isinstance(self.crs, str):
+            raise InputError(f"crs must be a string, not {type(self.crs).__name__}.")
+        if self.origin is not None:
+            object.__setattr__(self, "origin", checked_origin(self.origin))
         for name in COUNTS:
             value = getattr(self, name)
             object.__setattr__(self, name, None if value is None else _count(name, value))
@@ -185,7 +196,7 @@ def sampling_report(
     arrays: Mapping[str, NDArray[Any]] = MappingProxyType({}),
 ) -> SamplingReport:
     """Return the report of a sampling with `density` normals per steradian and its `arrays`."""
-    misfit = sampled.misfit
+    misfit, place = sampled.misfit, sampled.georeference
     return SamplingReport(
         surface=sampled.name,
         normals=normals,
@@ -198,6 +209,8 @@ def sampling_report(
         fit_rms=None if misfit is None else misfit.rms,
         fit_angle=None if misfit is None else misfit.angle,
         apexes=sampled.apexes,
+        crs=None if place is None else place.crs,
+        origin=None if place is None else place.origin,
     )
 
 

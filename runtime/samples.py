@@ -258,6 +258,9 @@ class Samples(SampleArrays):
             - `.parquet`, `.arrow`, `.feather`: the columns of `.csv` in binary, and the report and
               the units in the metadata of the schema; need the extra "tables" (PyArrow). Feather is
               the format of `.arrow`.
+            - `.las`, `.laz`: points, with all other columns as extra dimensions, and the CRS of a
+              `terrain`, whose `origin` is added again; coordinates are rounded to 1e-8 of the
+              extent. Need `points`, and the extra "gis" (laspy).
         progress : bool, default False
             Show on a terminal what is done, from a second on.
 

@@ -19,6 +19,7 @@ from .errors import InputError, in_memory
 from .fields import COLUMNS, checked_dtype, checked_fields, dtype_of
 from .geometry.on_spline import OnSpline
 from .geometry.on_surface import checked_place, geometry_of, place_of_samples
+from .georeference import warn_of_rounding
 from .memory import check_memory
 from .pieces import cells_of_piece, pieces_to_sample, sample_pieces
 from .progress import busy
@@ -239,6 +240,8 @@ def sample_and_normals(
     if fields is None:
         samples = without_lines(samples)
     warn_of(samples.report, request.count, 5, coverage=request.coverage, filled=filled)
+    if number == np.float32 and samples.report.origin is not None and "points" in wanted:
+        warn_of_rounding(samples.points, 5)
     return samples, normals
 
 

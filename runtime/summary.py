@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .georeference import crs_label
 from .report import SamplingReport, count_infinite, have_large_squares
 
 if TYPE_CHECKING:
@@ -45,7 +46,16 @@ def summary_of(samples: Samples) -> str:
     if report.apexes:
         tips = "a sharp tip" if report.apexes == 1 else f"{report.apexes} sharp tips"
         line += f"; the surface ends in {tips}"
-    return line + _infinite(samples)
+    return line + _place(report) + _infinite(samples)
+
+
+def _place(report: SamplingReport) -> str:
+    """Say in which reference system coordinates are, and what was subtracted from them."""
+    clause = f"; coordinates in {crs_label(report.crs)}" if report.crs else ""
+    if report.origin and any(report.origin):
+        numbers = ", ".join(f"{x:.12g}" for x in report.origin)
+        clause += f"{'' if clause else '; coordinates'} relative to ({numbers})"
+    return clause
 
 
 def misfit_clause(report: SamplingReport) -> str:

@@ -11,7 +11,7 @@ import pytest
 NAMES = (
     "Mesh Samples Spline SupportFunction Surface GaussmapError GaussmapWarning "
     "fit sample sample_many sample_stream read_cad read_part read_samples icosphere fibonacci "
-    "convolve silhouette plot curves directions errors gauss_map surfaces formulas symbolic"
+    "convolve silhouette plot terrain curves directions errors gauss_map surfaces formulas symbolic"
 )
 NAMESPACES = {
     "curves": "Curve CurveBranches CurveReport CurveSamples CurveSpline SupportFunction fit "

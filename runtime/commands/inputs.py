@@ -23,11 +23,12 @@ from ..surface.surface import Surface
 from ..surfaces import CATALOGUE, names, surface
 from .arrays import array_file, is_array_file, read_array
 from .parts import LIMITS, is_part_file, read_part_file, refuse
+from .terrains import OF_TERRAIN, has_place, is_raster_file, read_raster_file, terrain_of_array
 
 __all__ = ["arguments"]
 
 NOT_OF_FORMULAS = ("set", "spacing", "nodata")
-NOT_OF_PARTS = ("set", "domain", "spacing", "periodic", "nodata", "cells", "tolerance")
+NOT_OF_PARTS = ("set", "domain", "spacing", "periodic", "nodata", "cells", "tolerance", *OF_TERRAIN)
 PERIODIC = {"none": (False, False), "u": (True, False), "v": (False, True), "uv": (True, True)}
 
 
@@ -61,7 +62,8 @@ def _part(options: SimpleNamespace) -> Part | None:
         return None
     for name in NOT_OF_PARTS:
         if getattr(options, name) not in (None, ()):
-            raise InputError(f"--{name} is for surfaces, and '{options.surface}' is a CAD part.")
+            option = name.replace("_", "-")
+            raise InputError(f"--{option} is for surfaces, and '{options.surface}' is a CAD part.")
     return read_part_file(options.surface, options)
 
 
@@ -69,12 +71,16 @@ def _surface(options: SimpleNamespace) -> Surface:
     source = options.surface or "a formula"
     refuse([x for x in LIMITS if getattr(options, x) is not None], "is for CAD files", source)
     if options.formula is not None:
+        refuse(
+            [x for x in OF_TERRAIN if getattr(options, x) is not None], "is for elevations", source
+        )
         return _of_formula(options)
     if options.domain is not None:
         raise InputError("--domain is for --formula, which is not there.")
-    if is_array_file(options.surface):
+    if is_array_file(options.surface) or is_raster_file(options.surface):
         return _grid(options)
     _refuse_file(options.surface)
+    refuse([x for x in OF_TERRAIN if getattr(options, x) is not None], "is for elevations", source)
     name = known_name(options.surface, names(), "surface", "gaussmap surfaces")
     if options.spacing is not None:
         raise InputError(f"--spacing is for elevations in a file, and {name} is a surface by name.")
@@ -96,8 +102,8 @@ def _refuse_file(source: str) -> None:
         raise InputError(f"'{source}' is a mesh; {NO_MESHES}.")
     if Path(source).is_file():
         raise InputError(
-            f"'{source}' is neither a .npy nor a .npz file, nor a CAD part; write points (m, n, 3) "
-            "or elevations (m, n) by numpy.save."
+            f"'{source}' is neither a .npy, .npz nor .tif file, nor a CAD part; write points (m, "
+            "n, 3) or elevations (m, n) by numpy.save."
         )
     if Path(source).suffix:
         raise FileError(f"'{source}' does not exist; look at its name and folder.")
@@ -122,14 +128,18 @@ def _of_formula(options: SimpleNamespace) -> Surface:
 def _grid(options: SimpleNamespace) -> Surface:
     if options.set:
         raise InputError("--set is for surfaces by name; a grid in a file has no parameters.")
+    if is_raster_file(options.surface):
+        return read_raster_file(options)
     points = read_array(options.surface)
-    if points.ndim == 2 and points.shape[1] == 3:
+    if points.ndim == 2 and points.shape[1] == 3 and options.x is None:
         raise InputError(f"'{options.surface}' has the shape {points.shape}: {NO_CLOUDS}.")
-    if points.ndim == 2 and options.spacing is None:
+    if points.ndim == 2 and options.spacing is None and options.x is None:
         raise InputError(
             f"'{options.surface}' holds elevations {points.shape}, which need their distances: "
-            "add --spacing DX DY."
+            "add --spacing DX DY, or --x and --y, the names of arrays of coordinates."
         )
+    if has_place(options):
+        return terrain_of_array(points, options)
     if points.ndim == 3 and options.spacing is not None:
         raise InputError(
             f"--spacing is for elevations, and '{options.surface}' has the shape {points.shape}."
@@ -170,7 +180,7 @@ def _normals(options: SimpleNamespace) -> NDArray[np.float64] | None:
 def _spare_inputs(options: SimpleNamespace) -> None:
     """Refuse to write over a file that is read."""
     for source in (options.surface, options.normals):
-        if source is not None and is_array_file(source):
+        if source is not None and (is_array_file(source) or is_raster_file(source)):
             # If one of the two is not there, that is said where it is opened.
             with suppress(OSError):
                 if os.path.samefile(array_file(source), options.output):

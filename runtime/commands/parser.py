@@ -59,6 +59,9 @@ SURFACE is the name of a surface of the catalogue (see `gaussmap surfaces`), a .
 .npz file, as FILE.npz:NAME if it holds several arrays. The array is a grid of points (m, n, 3), or
 of elevations (m, n) with rows along y and columns along x, which need --spacing.
 
+A GeoTIFF, .tif or .tiff, holds elevations with their coordinates, read with pip install
+'gaussmap[gis]'. Points are in world coordinates.
+
 In place of SURFACE, --formula gives x, y and z in terms of u and v.
 
 A STEP, IGES or BREP file is a CAD part, of which all faces are sampled: .step, .stp, .iges, .igs,
@@ -71,6 +74,8 @@ examples:
   gaussmap sample torus --coverage 0.05 --density uniform -o torus.ply
   gaussmap sample torus --fields points,normals --float32 -o torus.ply
   gaussmap sample heights.npy --spacing 30 30 --count 50000 -o terrain.ply
+  gaussmap sample dem.tif --count 20000 -o terrain.laz
+  gaussmap sample dem.npz:heights --x longitude --y latitude -o terrain.ply
   gaussmap sample scan.npz:points --periodic u --normals directions.npy -o scan.csv
   gaussmap sample part.step --count 50000 --edges -o part.ply
   gaussmap sample --formula "u" "v" "u**2-v**2" --domain -1 1 -1 1 -o saddle.ply
@@ -148,7 +153,7 @@ def _sample() -> Command:
         "curvatures. Samples are the points that have prescribed normals, and samples that fill "
         "the gaps between these, where the surface is flat or developable.",
         *_sampling(default_count=10_000),
-        _output(".npz, .ply, .csv, .vtp, .xyz, .parquet, .arrow or .feather"),
+        _output(".npz, .ply, .csv, .vtp, .xyz, .parquet, .arrow, .feather, .las or .laz"),
         Option("--edges", edges, group="the surface"),
         Option("--fields NAME,NAME", names, group=group),
         Option("--progressive", prefixes, group=group),

@@ -32,7 +32,13 @@ def _checked_source(ctx: click.Context, _: click.Parameter, surface: str | None)
 
 def surface_options() -> list[Option]:
     """Return the options of everything that takes a surface."""
-    return [*_formula_options(), *_grid_options(), *_spline_options(), *cad_options()]
+    return [
+        *_formula_options(),
+        *_grid_options(),
+        *_spline_options(),
+        *_terrain_options(),
+        *cad_options(),
+    ]
 
 
 def _formula_options() -> list[Option]:
@@ -82,6 +88,29 @@ def _spline_options() -> list[Option]:
         Option("--cells M N", cells, whole(MOST), group=GROUP),
         Option("--tolerance LENGTH", tolerance, number, group=GROUP),
         Option("--on WHERE", on, click.Choice(("surface", "spline")), group=GROUP),
+    ]
+
+
+def _terrain_options() -> list[Option]:
+    band = "The band of a GeoTIFF (default: 1)."
+    coordinates = (
+        "The array of the same .npz file with the {} of elevations: one for each {}, or for each "
+        "elevation. Those named longitude and latitude are projected."
+    )
+    crs = (
+        "The coordinate reference system of the points, in lengths, such as EPSG:32617 (default: "
+        "that of the file or, if it has degrees, the zone of UTM)."
+    )
+    source_crs = "That of the file, if it says none: EPSG:4326 for degrees."
+    origin = "What is subtracted from x and y; the file that is written says so."
+    group = "coordinates of elevations"
+    return [
+        Option("--band N", band, whole(MOST), group=group),
+        Option("--x NAME", coordinates.format("x", "column"), group=group),
+        Option("--y NAME", coordinates.format("y", "row"), group=group),
+        Option("--crs CRS", crs, group=group),
+        Option("--source-crs CRS", source_crs, group=group),
+        Option("--origin X Y", origin, number, group=group),
     ]
 
 

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING
 
 from ..errors import InputError, UnknownNameError
 from ..extras import check_extra
+from ..georeference import warn_of_rounding
 from ..samples import Samples
 from .arrow import write_arrow, write_parquet
 from .gltf import write_glb
+from .las import write_las
 from .npz import read_npz, write_npz
 from .paths import (
     PathLike,
@@ -50,6 +52,8 @@ _WRITERS: dict[str, Callable[[Samples, Path], None]] = {
     ".parquet": write_parquet,
     ".arrow": write_arrow,
     ".feather": write_arrow,
+    ".las": write_las,
+    ".laz": write_las,
 }
 _READERS: dict[str, Callable[[BufferedReader], Samples]] = {".npz": read_npz, ".ply": read_ply}
 _MESH_WRITERS: dict[str, Callable[[Mesh, Path], None]] = {
@@ -70,9 +74,16 @@ _EXTRAS = {
     ".parquet": ("pyarrow", "tables"),
     ".arrow": ("pyarrow", "tables"),
     ".feather": ("pyarrow", "tables"),
+    ".las": ("laspy", "gis"),
+    ".laz": ("lazrs", "gis"),
 }
+# The formats of single precision.
+_SINGLE = (".glb", ".stl")
 # The fields that a format cannot do without.
-_NEEDED = {".ply": ("points",), ".vtp": ("points",), ".xyz": ("points", "normals")}
+_NEEDED = {
+    **dict.fromkeys((".ply", ".vtp", ".las", ".laz"), ("points",)),
+    ".xyz": ("points", "normals"),
+}
 
 
 def write_samples(samples: Samples, path: PathLike) -> None:
@@ -88,6 +99,8 @@ def write_mesh(mesh: Mesh, path: PathLike) -> None:
     suffix = known_suffix(path, MESH_SUFFIXES)
     if not len(mesh.triangles):
         raise InputError("this mesh has no triangles, and so there is nothing to write.")
+    if suffix in _SINGLE:
+        warn_of_rounding(mesh.vertices, 4)
     with atomic_path(path) as temporary:
         _MESH_WRITERS[suffix](mesh, temporary)
 

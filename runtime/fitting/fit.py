@@ -156,7 +156,7 @@ def fit(
             spline = _fitted(surface, cells)
             misfit = probe_of(surface, spline.cells).compare(spline).misfit
             spline = replace(spline, misfit=misfit, trim=surface.trim)
-    return replace(spline, apexes=sides.apexes)
+    return replace(spline, apexes=sides.apexes, georeference=surface.georeference)
 
 
 def _fit_to(surface: Surface, asked: Tolerance | None) -> Spline:

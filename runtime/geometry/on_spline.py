@@ -17,6 +17,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from ..bins import NormalBins
 from ..fields import FLOAT_NAMES, new_field
+from ..georeference import Georeference
 from ..kernels.forms import forms_on_spline
 from ..kernels.sizing import TargetDensity
 from ..kernels.tile import fill_known
@@ -78,6 +79,11 @@ class OnSpline:
     def apexes(self) -> int:
         """The number of apexes of the spline."""
         return self.spline.apexes
+
+    @property
+    def georeference(self) -> Georeference | None:
+        """Where the coordinates are on the Earth."""
+        return self.spline.georeference
 
     @property
     def misfit(self) -> Misfit | None:

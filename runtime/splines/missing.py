@@ -16,6 +16,7 @@ from ..kernels.trim import find_patches
 from .domain import Boundary, BoundaryPair, Domain
 from .ghosts import Border, Sides, coefficients_with_ring, vertices_with_ring
 from .inside import widened
+from .nodata_blocks import suspicious_block
 
 __all__ = [
     "Known",
@@ -84,12 +85,21 @@ def _warn_of_nodata(points: Array, name: str) -> None:
     highest = float(np.fmax.reduce(points, axis=None, initial=-np.inf))
     for value, usual in ((lowest, USUAL_NODATA), (highest, USUAL_LARGE_NODATA)):
         if value in usual and lowest < highest:
-            warnings.warn(
+            _warn(
                 f"{name} holds {value:.9g} {int((points == value).sum()):,} times, which often "
-                f"means that there is no data; if so, say nodata={value:.9g}.",
-                GaussmapWarning,
-                stacklevel=4,
+                f"means that there is no data; if so, say nodata={value:.9g}."
             )
+            return
+    block = suspicious_block(points) if points.ndim == 2 else None
+    if block is not None:
+        _warn(
+            f"{name} holds a block of {block[1]:,} heights of {block[0]:.9g}, where the others end "
+            f"abruptly: there may be no data; if so, say nodata={block[0]:.9g}."
+        )
+
+
+def _warn(text: str) -> None:
+    warnings.warn(text, GaussmapWarning, stacklevel=5)
 
 
 def filled(points: Array) -> Array:

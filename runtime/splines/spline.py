@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import parameter_arrays
 from ..errors import InputError
+from ..georeference import Georeference
 from ..kernels import spline as kernels
 from ..threads import over_ranges
 from ..tolerances import DATA_ERROR, SAME_PARAMETER
@@ -64,6 +65,8 @@ class Spline:
     apexes : int
         The number of open sides that are one point where the surface does not go on smoothly: the
         tip of a cone, the corner of a triangle. They are looked for where ``periodic=False``.
+    georeference : Georeference or None
+        Where the coordinates of a `terrain` are on the Earth, see `Surface`.
 
     Examples
     --------
@@ -85,8 +88,8 @@ class Spline:
     (1.0, True, None, None)
     >>> spline.misfit.rms < spline.misfit.distance < 3e-3, spline.misfit.angle < 2.0  # degrees
     (True, True)
-    >>> spline.apexes
-    0
+    >>> spline.apexes, spline.georeference
+    (0, None)
 
     """
 
@@ -97,6 +100,7 @@ class Spline:
     misfit: Misfit | None = None
     trim: Trim | None = None
     apexes: int = 0
+    georeference: Georeference | None = None
 
     def __repr__(self) -> str:
         return f"Spline({self.cells[0]} × {self.cells[1]} cells of {short_label(self.name)})"

@@ -11,8 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import real_array
 from ..errors import InputError
+from ..georeference import Georeference
 from ..splines.domain import (
+    Assumed,
     Boundary,
+    Domain,
     Periodicity,
     assumed_ends,
     checked_boundary,
@@ -62,6 +65,9 @@ class Surface(SurfaceValues):
         `fit` looks whether one of them is a single point through which the surface goes on
         smoothly, and takes that for a pole, and the other parameter for periodic. If points were
         given, `boundary` has these poles, and points that repeat the first ones are left out.
+    georeference : Georeference or None
+        Of a `terrain`: the coordinate reference system `crs`, as "EPSG:number" or WKT, and the
+        `origin` (x, y, z) that was subtracted from coordinates.
 
     Examples
     --------
@@ -69,6 +75,8 @@ class Surface(SurfaceValues):
     >>> torus = gm.surfaces.torus(major=1.0, minor=0.35)
     >>> torus.name, torus.boundary, torus.grid, torus.derivative_function, torus.trim
     ('torus', (('periodic', 'periodic'), ('periodic', 'periodic')), None, None, None)
+    >>> torus.georeference is None
+    True
     >>> double = gm.Surface.from_callable(
     ...     lambda u, v: 2 * torus.function(u, v), torus.domain, periodic=(True, True)
     ... )
@@ -266,9 +274,8 @@ class Surface(SurfaceValues):
         ((6, 4, 3), ((0.0, 150.0), (0.0, 90.0)))
 
         """
-        from ..splines.collapsed import closed_grid
-        from ..splines.grid import points_of_elevations, spline_of_points
-        from ..splines.missing import known_of_grid, without_nodata
+        from ..splines.grid import points_of_elevations
+        from ..splines.missing import without_nodata
 
         checked, assumed = "grid" if name is None else name, assumed_ends(periodic)
         array = without_nodata(_grid(points), nodata, checked)
@@ -280,19 +287,38 @@ class Surface(SurfaceValues):
             raise InputError(
                 "spacing is for elevations of shape (m, n); points (m, n, 3) need none."
             )
-        array, boundary = closed_grid(array, boundary, assumed)
-        spline = spline_of_points(array, boundary, checked, domain)
-        known = known_of_grid(array, spline.domain, boundary, checked)
-        spline = replace(spline, name=label(name, "grid"))
+        return cls._of_grid(array, boundary, assumed, domain, checked, label(name, "grid"))
+
+    @classmethod
+    def _of_grid(
+        cls,
+        points: NDArray[np.float64],
+        boundary: Boundary,
+        assumed: Assumed,
+        domain: Domain | None,
+        name: str,
+        labelled: str,
+        georeference: Georeference | None = None,
+    ) -> Surface:
+        """Return the surface of points (m, n, 3), with NaN for missing ones."""
+        from ..splines.collapsed import closed_grid
+        from ..splines.grid import spline_of_points
+        from ..splines.missing import known_of_grid
+
+        points, boundary = closed_grid(points, boundary, assumed)
+        spline = spline_of_points(points, boundary, name, domain)
+        known = known_of_grid(points, spline.domain, boundary, name)
+        spline = replace(spline, name=labelled)
         trim = None if known is None else Trim(spline.domain, boundary, (known,))
         return cls(
             spline.name,
             spline.evaluate,
             spline.domain,
             boundary,
-            array,
+            points,
             trim=trim,
             assumed_open=assumed,
+            georeference=georeference,
         )
 
     @classmethod
@@ -429,7 +455,7 @@ class Surface(SurfaceValues):
 
         """
         map_ = affine_map(matrix)
-        return self._moved(map_, map_.reflects)
+        return replace(self._moved(map_, map_.reflects), georeference=None)
 
     def flipped(self) -> Surface:
         """Return the same points with opposite normals: u is reversed, u → u0 + u1 - u.

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..checks import parameter_arrays
 from ..errors import InputError, SurfaceError
 from ..evaluation import evaluated
+from ..georeference import Georeference
 from ..splines.domain import Assumed, Boundary, Domain
 from .derivatives import NAMES, Differences, Differentiable, Function
 from .jet_functions import jet_function
@@ -34,6 +35,7 @@ class SurfaceValues:
     derivative_function: Evaluation | None = None
     trim: Trim | None = None
     assumed_open: Assumed = (False, False)
+    georeference: Georeference | None = None
 
     def evaluate(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
         """Return the points x(u, v).

@@ -671,6 +671,7 @@ class TestNames:
     def test_the_suffixes(self):
         assert SUFFIXES == (
             ".npz", ".ply", ".csv", ".vtp", ".xyz", ".parquet", ".arrow", ".feather",
+            ".las", ".laz",
         )  # fmt: skip
         assert READABLE_SUFFIXES == (".npz", ".ply")
 

@@ -1,0 +1,70 @@
+"""Where coordinates are on the Earth: their reference system, and what was subtracted from them."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .checks import as_float
+from .errors import GaussmapWarning, InputError, shown
+
+__all__ = ["Georeference", "checked_origin", "crs_label", "warn_of_rounding"]
+
+# Single precision may move points by this part of their mean distance, unless there is a warning.
+ROUNDING = 1e-3
+# Fewer points tell nothing about distances.
+FEWEST = 3
+
+Origin = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Georeference:
+    """The reference system of coordinates, as EPSG:number or WKT, and the origin of these."""
+
+    crs: str | None = None
+    origin: Origin = (0.0, 0.0, 0.0)
+
+
+def checked_origin(origin: Sequence[float] | None) -> Origin:
+    """Return an origin of two or three numbers as three; InputError for others."""
+    try:
+        values = [as_float(x) for x in (() if origin is None else origin)]
+    except (TypeError, ValueError, OverflowError):
+        values = []
+    if origin is None:
+        return 0.0, 0.0, 0.0
+    if len(values) not in (2, 3) or not all(math.isfinite(x) for x in values):
+        raise InputError(f"origin must be two or three finite numbers, not {shown(origin)}.")
+    x, y, z = [*values, 0.0][:3]
+    return x, y, z
+
+
+def crs_label(crs: str) -> str:
+    """Return EPSG:number, or the name in WKT."""
+    _, quote, rest = crs.partition('"')
+    return rest.partition('"')[0] if quote else crs
+
+
+def warn_of_rounding(points: NDArray[np.floating], stacklevel: int) -> None:
+    """Warn if single precision moves points (N, 3) of a terrain by much, relative to their gaps."""
+    if len(points) < FEWEST:
+        return
+    low, high = (x.astype(np.float64) for x in (points.min(axis=0), points.max(axis=0)))
+    largest = float(np.maximum(np.abs(low), np.abs(high)).max())
+    if not largest < float(np.finfo(np.float32).max):
+        return
+    step = float(np.spacing(np.float32(largest)))
+    if step > ROUNDING * math.dist(low, high) / math.sqrt(len(points)):
+        x, y = (f"{math.floor(q)}" for q in low[:2])
+        warnings.warn(
+            f"single precision rounds these coordinates to {step:.2g}; subtract an origin, as in "
+            f"terrain(..., origin=({x}, {y})), --origin {x} {y}.",
+            GaussmapWarning,
+            stacklevel=stacklevel,
+        )

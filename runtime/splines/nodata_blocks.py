@@ -1,0 +1,63 @@
+"""Blocks of one height that look like missing data, and not like water."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["suspicious_block"]
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+# A block has at least this number of heights, and this part of all.
+FEWEST, SMALLEST = 16, 1e-3
+# Shores are about as steep as the land. A block has no data if half of the steps at its border are
+# higher than this many times all but one in a hundred of the steps elsewhere.
+STEEPER, QUANTILE = 3.0, 0.99
+
+
+def suspicious_block(heights: Array) -> tuple[float, int] | None:
+    """Return the value of a block without data among heights (m, n), and its size; None without.
+
+    It is a connected area of the lowest or the highest value, and that is 0 or the area reaches the
+    border of the grid. Heights at its border jump, as they do not at a lake or the sea.
+    """
+    known = ~np.isnan(heights)
+    if not known.any():
+        return None
+    for value in (float(np.nanmin(heights)), float(np.nanmax(heights))):
+        block = _largest_block(heights == value)
+        size = int(block.sum())
+        if size < max(FEWEST, SMALLEST * heights.size) or size == int(known.sum()):
+            continue
+        at_border = any(block[x].any() for x in (0, -1)) or block[:, [0, -1]].any()
+        if (value == 0.0 or at_border) and _jumps(heights, block):
+            return value, size
+    return None
+
+
+def _largest_block(same: Flags) -> Flags:
+    """Return the largest connected part of flags (m, n)."""
+    if same.sum() < FEWEST:
+        return np.zeros_like(same)
+    from scipy.ndimage import label
+
+    numbers = np.asarray(label(same)[0])  # pyright: ignore[reportIndexIssue]
+    return numbers == 1 + int(np.argmax(np.bincount(numbers.ravel())[1:]))
+
+
+def _jumps(heights: Array, block: Flags) -> bool:
+    """Say whether steps at the border of a block are much higher than those elsewhere."""
+    across, elsewhere = [], []
+    for axis in (0, 1):
+        steps, inside = np.abs(np.diff(heights, axis=axis)), np.diff(block, axis=axis)
+        low = np.take(block, np.arange(block.shape[axis] - 1), axis)
+        known = ~np.isnan(steps)
+        across.append(steps[inside & known])
+        elsewhere.append(steps[~inside & ~low & known])
+    border, others = np.concatenate(across), np.concatenate(elsewhere)
+    if len(border) == 0 or len(others) == 0:
+        return False
+    usual = float(np.quantile(others, QUANTILE))
+    return usual > 0.0 and float(np.median(border)) > STEEPER * usual

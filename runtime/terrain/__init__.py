@@ -1,0 +1,1 @@
+"""Elevations as surfaces: rasters, coordinates, and reference systems."""
