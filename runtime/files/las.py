@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..extras import from_extra
 from ..fields import columns_of
+from ..reference_systems import wkt_of
 from ..samples import Samples
-from ..terrain.systems import wkt_of
 from .content import report_to_json
 
 __all__ = ["write_las"]
@@ -23,6 +23,8 @@ STEP = 2.0**-27
 LARGEST = 2**31 - 1
 # A point format of LAS 1.4 without times and colours.
 FORMAT, VERSION = 6, "1.4"
+# Where the date of a file is, which laspy writes; 0 says that it is unknown.
+DATE = 90
 # The user and the number of the record that holds the report.
 USER, RECORD = "gaussmap", 1
 
@@ -38,7 +40,6 @@ def write_las(samples: Samples, path: Path) -> None:
     header = laspy.LasHeader(point_format=FORMAT, version=VERSION)
     header.scales, header.offsets = _steps(points)
     header.generating_software = "gaussmap"
-    header.creation_date = None  # equal samples make equal files
     arrays = columns_of({x: y for x, y in samples.arrays().items() if x != "points"})
     header.add_extra_dims(
         [laspy.ExtraBytesParams(name=x, type=_kept(y)) for x, y in arrays.items()]
@@ -53,6 +54,9 @@ def write_las(samples: Samples, path: Path) -> None:
     for name, column in arrays.items():
         cloud[name] = column.astype(_kept(column), copy=False)
     cloud.write(str(path))
+    with open(path, "r+b") as file:  # equal samples make equal files
+        file.seek(DATE)
+        file.write(bytes(4))
 
 
 def _steps(points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -14,13 +14,13 @@ from ..checks import as_float, real_array, whole_number
 from ..errors import InputError, in_memory, shown
 from ..files.paths import checked_path
 from ..georeference import Georeference, Origin, checked_origin
+from ..reference_systems import checked_crs, crs_text, projected, target_crs
 from ..splines.domain import Boundary, Domain
 from ..splines.missing import without_nodata
 from ..surface.labels import label
 from ..surface.surface import Surface
 from .coordinates import check_degrees, grid_of, is_even, of_arrays, of_spacing, of_transform
 from .raster import Raster, read_raster
-from .systems import checked_crs, crs_text, projected, target_crs
 
 __all__ = ["terrain"]
 

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputError, shown
-from ..extras import from_extra
+from .errors import InputError, shown
+from .extras import from_extra
 
 __all__ = ["checked_crs", "crs_text", "projected", "target_crs", "wkt_of"]
 
