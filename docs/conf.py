@@ -5,10 +5,23 @@ import sys
 from pathlib import Path
 
 import gaussmap
+from numpydoc.xref import DEFAULT_LINKS
 from sphinx.application import Sphinx
 
 HERE = Path(__file__).parent
 sys.path.append(str(HERE / "_sphinx"))
+
+# Where the classes are that types in docstrings name; those below are not public, but returned.
+CLASSES = {
+    "gaussmap.curves": dir(gaussmap.curves),
+    "gaussmap.gauss_map": dir(gaussmap.gauss_map),
+    "gaussmap.runtime.cad.part": ["Face", "Part", "Solid"],
+    "gaussmap.runtime.fitting.misfit": ["Misfit"],
+    "gaussmap.runtime.report": ["SamplingReport"],
+    "gaussmap.runtime.support.branches": ["Branches"],
+    "gaussmap.runtime.support.convolution": ["Convolution"],
+    "gaussmap": dir(gaussmap),
+}
 
 project = "gaussmap"
 author = "The gaussmap developers"
@@ -32,11 +45,7 @@ exclude_patterns = ["_*", "**.py", "**.tmp"]
 # Every reference has a target. Docstrings have code between single backquotes: what is public is a
 # link there, the rest is code.
 nitpicky = True
-# Types of Python and NumPy are no links: the site is for reading without a network.
-nitpick_ignore_regex = [
-    ("py:obj", ".*"),
-    ("(py:(class|data|func)|std:(ref|term)|ref|term)", "(python|numpy):.*"),
-]
+nitpick_ignore_regex = [("py:obj", ".*")]
 default_role = "py:obj"
 
 # --- pages in Markdown, and notebooks ---
@@ -55,10 +64,19 @@ nb_merge_streams = True
 # --- the reference ---
 autosummary_ignore_module_all = False  # the public names are those of __all__ …
 autosummary_imported_members = True  # … and are imported from where they are defined
+autodoc_preserve_defaults = True
 autodoc_typehints = "none"  # docstrings have the types
 numpydoc_show_class_members = False  # the template of classes lists them
 numpydoc_xref_param_type = True
-numpydoc_xref_ignore = "all"  # a type that is not a public name is no link
+# Types that are classes of gaussmap are links; those of Python and NumPy would lead to the network.
+numpydoc_xref_ignore = "all"
+numpydoc_xref_aliases = {name: name for name in DEFAULT_LINKS} | {
+    name: f"{space}.{name}"
+    for space, names in CLASSES.items()
+    for name in names
+    if name[0].isupper()
+}
+autosummary_context = {"catalogue": list(gaussmap.surfaces.names())}
 
 # --- what browsers get: nothing is loaded from elsewhere ---
 html_theme = "pydata_sphinx_theme"

@@ -13,6 +13,7 @@ from .forms import ClosedForm
 from .machine import machine
 from .measure import JUDGED, Measured, Own
 from .metrics import PLACES
+from .opening import opening
 from .peer import Peer
 from .splines import NET
 
@@ -33,13 +34,16 @@ class OnSurface:
     judged: tuple[int, float, float]
 
 
-HEAD = """\
+TOP = """\
 # Performance, measured
 
 Written by `make bench-peers`: do not edit. The speed of a shared machine drifts; each ratio is the
 median of ratios of two times that were taken right after each other. What the first call compiles
 has [a page of its own](cold_start.md).
 
+"""
+
+HEAD = """\
 ## Compared with other packages
 
 Points **with normals**, as NumPy arrays, of three surfaces. Columns:
@@ -82,10 +86,11 @@ def page(surfaces: Sequence[OnSurface], series: Sequence[Series]) -> str:
     parts = [head(surfaces)]
     for measured in surfaces:
         parts += [f"### {measured.form.label}\n", table(measured)]
-    parts += ["### Targets\n", targets(surfaces)]
+    parts.insert(0, TOP + opening("\n".join(parts)))
     parts.append(wrapped(SCALE.format(last=LAST, steepest=STEEPEST, streamed=streamed())))
     parts += [scale_table(x) for x in series]
     parts += [slopes(series), "## The machine\n", wrapped("\n".join(machine()))]
+    parts += ["## Targets\n", targets(surfaces)]
     return "\n".join(parts)
 
 

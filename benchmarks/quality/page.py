@@ -15,6 +15,7 @@ from . import tasks
 from .criteria import CRITERIA, Verdict, verdicts, worst
 from .measure import COUNTS, LAST, Found, OnSurface
 from .meshers import MESHERS
+from .opening import opening
 from .ways import ROUNDS, STEPS, WAYS
 
 __all__ = ["page"]
@@ -27,7 +28,9 @@ HEAD = """\
 
 Written by `make quality`: do not edit. Points **with normals**, and meshes through them, of
 {surfaces} surfaces, by the densities of gaussmap and by others.
+"""
 
+TASKS = """\
 ## Which density for which task
 
 The numbers below the densities are errors at {last:,} points relative to **isotropic**, the
@@ -53,10 +56,6 @@ it: **aligned** puts samples in rows along parameter lines, which is best where 
 curvature ([why](alignment.md)); **isotropic** makes distances the same in all directions. **gauss**
 has the samples at given normals only, and nothing in planes and cylinders; **uniform** ignores
 curvature.
-
-Take something else for even distances in space (farthest points, Poisson disks: their gaps are
-smaller), for triangles of good shape (Gmsh), and for solids made of planes, cylinders and tori
-whose mesh may have a row of triangles for each angle (Open CASCADE).
 
 ## What is measured
 
@@ -99,15 +98,16 @@ def page(surfaces: Sequence[OnSurface], load: float | None = None) -> str:
     counts = " and ".join(f"{x:,}" for x in COUNTS)
     columns = COLUMNS.format(places=PLACES, last=LAST, clouds=ROUNDS)
     parts = [
-        wrapped(HEAD.format(last=LAST, surfaces=len(surfaces))),
+        wrapped(TASKS.format(last=LAST)),
         tasks.table(surfaces),
         wrapped(columns),
     ]
     for on in surfaces:
         parts += [f"## {on.form.label}\n", wrapped(chosen(on)), points_table(on), mesh_table(on)]
-    parts += [wrapped(TARGETS.format(counts=counts, steps=STEPS)), targets(surfaces)]
     parts += ["## The machine\n", wrapped("\n".join([*machine(), *busy(load)]))]
-    return "\n".join(parts)
+    parts += [wrapped(TARGETS.format(counts=counts, steps=STEPS)), targets(surfaces)]
+    text = "\n".join(parts)
+    return "\n".join([wrapped(HEAD.format(surfaces=len(surfaces))), opening(text), text])
 
 
 def chosen(on: OnSurface) -> str:
