@@ -56,9 +56,9 @@ def whole_number(value: object, name: str, least: int = 1) -> int:
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
         example = ""
         if isinstance(value, float | np.floating) and least <= value <= MOST:
-            example = f", {round(value)} for example"
+            example = f"; {round(value)} for example"
         raise InputError(
-            f"{name} must be a whole number of at least {least}{example}, not {shown(value)}."
+            f"{name} must be a whole number of at least {least}, not {shown(value)}{example}."
         )
     if value > MOST:
         raise InputError(f"{name} must be a whole number of at most {MOST:,}, not larger.")

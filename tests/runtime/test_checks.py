@@ -47,7 +47,7 @@ def test_whole_numbers_beyond_all_memory(value):
 def test_what_is_not_a_whole_number(value):
     with pytest.raises(
         InputError,
-        match=r"^count must be a whole number of at least 1, (\d for example, )?not .*\.$",
+        match=r"^count must be a whole number of at least 1, not .*\.$",
     ):
         whole_number(value, "count")
 
