@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from .cad.part import Part
     from .density.deviation import NormalDeviation
     from .meshes.mesh import Mesh
     from .surface.surface import Surface
@@ -327,6 +328,60 @@ class Samples(SampleArrays):
         from .pictures.plot import plot_samples
 
         return plot_samples(self, surface, color=color, view=view, axes=axes, normals=normals)
+
+    def view(
+        self, path: str | os.PathLike[str], surface: Surface | Spline | Part | None = None
+    ) -> None:
+        """Write one page for browsers: the surface and the unit sphere, which light up together.
+
+        Click a normal on the sphere, and its preimages light up on the surface; click a place on
+        the surface, and the Gaussian image of the region around it lights up on the sphere. The
+        page holds all that it needs, 5 MB and more, and works without a network.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            Name of the file, with the suffix `.html` or `.htm`. It is written whole or not at all.
+        surface : Surface, Spline or Part, optional
+            What the samples are on, if they do not know it.
+
+        Raises
+        ------
+        MissingExtraError
+            Without Plotly: ``pip install "gaussmap[view]"``.
+        UnknownNameError
+            If the suffix is none of these.
+        FileError
+            If the file cannot be written.
+        MissingFieldError
+            If the samples lack points, normals, Gaussian curvature or normal indices.
+        InputError
+            Without samples, for more than 50,000, and if the surface is not known.
+        SurfaceError
+            If the surface cannot be drawn.
+
+        Notes
+        -----
+        A click next to the dot of a sample takes the normal of that sample; another one takes the
+        direction that was clicked. The points that light up are
+
+        - the samples with exactly this normal, up to the rounding of float32, if it is a prescribed
+          one, or if several samples have it, as on planes. Made with ``normals=icosphere(…)``,
+          samples are all points with that normal.
+        - else one sample for each connected group of samples, of one sign of K, whose normals are
+          within an angle of it: the nearest one in normal. That counts preimages correctly where
+          samples are dense relative to the angle, which a slider changes, and not next to
+          parabolic lines, where two preimages are about to meet.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.sample("torus", 200, cells=(16, 16)).view("torus.html")
+
+        """
+        from .viewer.view import view
+
+        view(self, path, surface)
 
     def mesh(
         self,

@@ -1,4 +1,4 @@
-"""What `sample`, `mesh` and `plot` share: surfaces and normals that are named or in files."""
+"""What the commands that sample share: surfaces and normals that are named or in files."""
 
 from __future__ import annotations
 

@@ -109,6 +109,16 @@ to have it in every shell:
   gaussmap completion fish > ~/.config/fish/completions/gaussmap.fish
 """
 
+VIEW_EXAMPLES = """\
+`gaussmap sample --help` explains SURFACE.
+
+\b
+examples:
+  gaussmap view torus -o torus.html
+  gaussmap view torus --frequency 16 -o torus.html
+  gaussmap view heights.npy --spacing 30 30 -o terrain.html
+"""
+
 FILE = click.Path(readable=False)  # for completion; files are checked where they are used
 
 
@@ -117,7 +127,7 @@ def parser() -> click.Group:
     text = "Sample surfaces by the normals of their points, so that density follows curvature."
     program = Program(PROGRAM, help=text, epilog=EXAMPLES, context_settings=SETTINGS)
     click.version_option(__version__, message=f"{PROGRAM} %(version)s")(program)
-    for make in (_sample, _mesh, _plot, _surfaces, _faces, _formulas, _warm, _completion):
+    for make in (_sample, _mesh, _plot, _view, _surfaces, _faces, _formulas, _warm, _completion):
         program.add_command(make())
     return program
 
@@ -197,6 +207,20 @@ def _plot() -> Command:
     )
 
 
+def _view() -> Command:
+    return _command(
+        "view",
+        "Write a page with a surface and its normals, linked.",
+        "Write one page for browsers with a surface and its samples beside the unit sphere of "
+        "normals: click a normal, and its preimages light up; click a place, and the Gaussian "
+        "image of the region around it lights up. Needs Plotly: pip install 'gaussmap[view]'. A "
+        "page shows at most 50000 samples, and works without a network.",
+        *_sampling(default_count=5_000),
+        _output(".html or .htm"),
+        epilog=VIEW_EXAMPLES,
+    )
+
+
 def _surfaces() -> Command:
     return _command(
         "surfaces",
@@ -268,7 +292,7 @@ def _quiet() -> Option:
 
 
 def _sampling(default_count: int) -> list[click.Parameter]:
-    """Return the arguments that `sample`, `mesh` and `plot` share."""
+    """Return the arguments that `sample`, `mesh`, `plot` and `view` share."""
     threads = "How many threads to use (default: one for each core)."
     run = [Option("--threads T", threads, whole(MOST), group="the run"), _quiet()]
     return [surface_argument(), *_amount(default_count), *_distribution(), *surface_options(), *run]

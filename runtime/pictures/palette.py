@@ -8,6 +8,7 @@ __all__ = [
     "INK",
     "NO_SAMPLE",
     "PALE",
+    "PARABOLIC",
     "SCALE",
     "STYLE",
 ]
@@ -15,6 +16,7 @@ __all__ = [
 # Blue for elliptic and orange for hyperbolic, which colour-blind people can distinguish (Okabe and
 # Ito). The neutral colour of the scale is zero curvature.
 ELLIPTIC, HYPERBOLIC, NO_SAMPLE = "#0072b2", "#d55e00", "#a8a8a8"
+PARABOLIC = "#555555"
 SCALE = ("#7a2e00", HYPERBOLIC, "#f3b183", "#f7f7f7", "#8cc4e8", ELLIPTIC, "#003c66")
 INK, PALE, FAINT, GLOBE = "#333333", "#8a8a8a", "#e4e4e4", "#eceef0"
 STYLE = {

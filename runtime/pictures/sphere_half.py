@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..samples import Samples
 from .globe import draw_globe, view_of
 from .layout import RADIUS
-from .palette import ELLIPTIC, HYPERBOLIC, NO_SAMPLE
+from .palette import ELLIPTIC, HYPERBOLIC, NO_SAMPLE, PARABOLIC
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,11 +38,13 @@ def draw_sphere(
     index, missed = samples.normal_index, np.ones(len(normals), dtype=bool)
     if len(normals):
         missed[index[index >= 0]] = False
-    # One normal may have samples of both kinds: a disc with a ring round it.
+    curved = ~samples.parabolic
+    # One normal may have samples of several kinds: a disc with a ring round it.
     kinds = [
         _Kind("no sample", normals[missed], NO_SAMPLE, False),
-        _Kind("elliptic", samples.normals[samples.elliptic], ELLIPTIC, True),
-        _Kind("hyperbolic", samples.normals[samples.hyperbolic], HYPERBOLIC, False),
+        _Kind("elliptic", samples.normals[samples.elliptic & curved], ELLIPTIC, True),
+        _Kind("hyperbolic", samples.normals[samples.hyperbolic & curved], HYPERBOLIC, False),
+        _Kind("parabolic", samples.normals[~curved], PARABOLIC, False),
     ]
     axes.set(xlim=(-1.3, 1.3), ylim=(-1.3, 1.3), aspect="equal")
     axes.set_axis_off()

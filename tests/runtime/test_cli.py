@@ -345,6 +345,7 @@ def test_formulas(capsys: pytest.CaptureFixture[str]) -> None:
             ["sample", "--help"],
             ["how many samples", "default: 10000", "--spacing DX DY"],
         ),
+        (["view", "--help"], ["default: 5000", "gaussmap[view]", ".html or .htm"]),
         (["plot", "--help"], ["default: 2000", "gaussmap[plot]", ".png, .pdf or .svg"]),
         (["surfaces", "--help"], ["NAME"]),
         (["formulas", "--help"], ["LaTeX"]),
@@ -507,6 +508,8 @@ SQUARE = ["--domain", "-1", "1", "-1", "1"]
         (["sample", "torus", "--normals", "two.npz:points", "-o", "./two.npz"], "is read; write"),
         (["plot", "torus", "-o", "a.npz"], "'a.npz' has the suffix '.npz'; use one of .png"),
         (["plot", "torus", "-o", "missing/a.png"], "'.*missing' does not exist"),
+        (["view", "torus", "-o", "a.png"], "'a.png' has the suffix '.png'; use one of .html"),
+        (["view", "torus", "--count", "50001", "-o", "a.html"], "at most 50,000 samples"),
         (["plot", "tours", "-o", "a.png"], "did you mean torus"),
         # lists
         (["surfaces", "tours"], "no surface 'tours'; did you mean torus"),
@@ -726,7 +729,7 @@ def completed(words: str) -> list[str]:
     return done.stdout.splitlines()
 
 
-COMMANDS = ["sample", "mesh", "plot", "surfaces", "faces", "formulas", "warm", "completion"]
+COMMANDS = ["sample", "mesh", "plot", "view", "surfaces", "faces", "formulas", "warm", "completion"]
 
 
 @compiled

@@ -1,0 +1,87 @@
+// What Plotly draws: the surface with its samples, and the sphere with their normals.
+
+const column = (rows, k) => Float32Array.from({ length: rows.length / 3 }, (_, i) => rows[3 * i + k]);
+const placed = (rows, which, lift = 0) => [0, 1, 2].map((k) =>
+    Float32Array.from(which, (i) => rows[3 * i + k] + lift * normals[3 * i + k] / data.aspect_factors[k]));
+const ofKind = (k) => Array.from({ length: count }, (_, i) => i).filter((i) => kind[i] === k);
+
+// A circle is drawn as some thirty triangles, a square as two.
+const SYMBOL = count > 10000 ? "square" : "circle";
+
+function markers([x, y, z], size, color) {
+    return {
+        type: "scatter3d", mode: "markers", x, y, z, hoverinfo: "skip", showlegend: false,
+        marker: { size, color, symbol: SYMBOL, line: { width: 0 } },
+    };
+}
+
+function mesh() {
+    const vertices = decoded(data.vertices, Float32Array);
+    const triangles = decoded(data.triangles, Int32Array);
+    return {
+        type: "mesh3d", x: column(vertices, 0), y: column(vertices, 1), z: column(vertices, 2),
+        i: column(triangles, 0), j: column(triangles, 1), k: column(triangles, 2),
+        color: "#d9dee2", flatshading: data.flat, hoverinfo: "skip", showlegend: false,
+        lighting: { ambient: 0.65, diffuse: 0.55, specular: 0.05, roughness: 0.9 },
+    };
+}
+
+function globe() {
+    const x = [], y = [], z = [];
+    const add = (a, b, c) => { x.push(a); y.push(b); z.push(c); };
+    const turn = Array.from({ length: 73 }, (_, k) => k * Math.PI / 36);
+    for (let k = 0; k < 6; k++) {
+        const [c, s] = [Math.cos(k * Math.PI / 6), Math.sin(k * Math.PI / 6)];
+        for (const t of turn) add(c * Math.cos(t), s * Math.cos(t), Math.sin(t));
+        add(null, null, null);
+    }
+    for (let k = -2; k <= 2; k++) {
+        const [c, s] = [Math.cos(k * Math.PI / 6), Math.sin(k * Math.PI / 6)];
+        for (const t of turn) add(c * Math.cos(t), c * Math.sin(t), s);
+        add(null, null, null);
+    }
+    return { type: "scatter3d", mode: "lines", x, y, z, hoverinfo: "skip", showlegend: false,
+        line: { color: "#c3ccd4", width: 1.5 } };
+}
+
+function ball() {
+    const x = [], y = [], z = [], i = [], j = [], k = [], M = 48, N = 24, r = 0.985;
+    for (let a = 0; a <= M; a++) {
+        for (let b = 0; b <= N; b++) {
+            const [t, s] = [2 * Math.PI * a / M, Math.PI * (b / N - 0.5)];
+            x.push(r * Math.cos(s) * Math.cos(t)); y.push(r * Math.cos(s) * Math.sin(t)); z.push(r * Math.sin(s));
+            if (a < M && b < N) {
+                const p = a * (N + 1) + b, q = p + N + 1;
+                i.push(p, p); j.push(q, q + 1); k.push(q + 1, p + 1);
+            }
+        }
+    }
+    return { type: "mesh3d", x, y, z, i, j, k, color: "#eef1f3", hoverinfo: "skip", showlegend: false,
+        lighting: { ambient: 0.85, diffuse: 0.2, specular: 0 } };
+}
+
+const size = Math.min(Math.max(Math.sqrt(30000 / count), 1.4), 4);
+const kinds = EACH.map(ofKind);
+// These traces stay as they are; what is picked is drawn over them, see highlights.js.
+const LIFT = 0.004; // samples are drawn above the triangles, which would hide halves of them
+const layers = {
+    surface: [mesh(), ...kinds.map((which, k) => markers(placed(points, which, LIFT), size, PALE[k]))],
+    sphere: [ball(), globe(), ...kinds.map((which, k) => markers(placed(normals, which), size, PALE[k]))],
+};
+
+function layout(aspect, range, eye) {
+    const axis = (k) => ({ visible: false, range: range[k], autorange: false });
+    return {
+        margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: "white", hovermode: false, uirevision: "same",
+        scene: {
+            xaxis: axis(0), yaxis: axis(1), zaxis: axis(2), aspectmode: "manual",
+            aspectratio: { x: aspect[0], y: aspect[1], z: aspect[2] }, hovermode: false,
+            dragmode: "orbit", camera: { eye, projection: { type: "orthographic" } },
+        },
+    };
+}
+
+const EYE = { x: 1.0, y: -1.45, z: 0.95 };
+// Plotly draws four times as many pixels by default, which many samples do not need.
+const config = { displayModeBar: false, responsive: true, scrollZoom: true, plotGlPixelRatio: count > 10000 ? 1 : 2 };
+const unit = [[-1.05, 1.05], [-1.05, 1.05], [-1.05, 1.05]];
