@@ -111,7 +111,7 @@ def page(samples: Samples, surface: Surface | Spline | Part | None = None) -> st
         raise InputError("there are no samples to view.")
     check_count(len(samples))
     data = _data(samples, scene_of_samples(samples, surface))
-    here = files(__package__)
+    here = files(__name__.rpartition(".")[0])
     offline = from_extra("plotly.offline", "view", "a page with a picture to turn")
     return Template((here / "page.html").read_text(encoding="utf-8")).substitute(
         title=html.escape(" ".join(samples.report.surface.split())[:200]),
@@ -175,7 +175,7 @@ def _neighbours(points: NDArray[np.float64]) -> NDArray[np.int64]:
     count = min(NEIGHBOURS, len(points) - 1)
     if count == 0:
         return np.zeros((1, 1), np.int64)
-    nearest = tree_of(points).query(points, k=count + 1)[1]
+    nearest = np.asarray(tree_of(points).query(points, k=count + 1)[1])
     return nearest[:, 1:]
 
 

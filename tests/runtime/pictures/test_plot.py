@@ -93,7 +93,7 @@ def test_what_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     labels = texts_of(waves, tmp_path / "a.png", monkeypatch)
     assert {"x", "y", "z"} <= labels
     assert any(label.startswith("$x$ and some 中文xxx") and len(label) == 80 for label in labels)
-    assert any("prescribed normals" in label for label in labels)
+    assert any("on the unit sphere" in label for label in labels)
     assert any("samples visible" in label for label in labels)
     assert any(label.startswith("hyperbolic (") for label in labels)
     assert "Gaussian curvature $K$ (1/length²)" in labels

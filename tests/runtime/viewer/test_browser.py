@@ -61,7 +61,7 @@ def test_a_normal_and_all_its_preimages(browser: Any, pages: Path, samples: gm.S
     assert sorted(picked(browser)["best"]) == which.tolist()
     text = browser.value("byId('result').textContent")
     assert "2 samples have exactly this normal: 1 elliptic, 1 hyperbolic." in text
-    for k in which:
+    for k in which.tolist():
         if samples.normals[k] @ [0.5, -0.7, 0.45] > 0:  # not hidden
             colour = "213,94,0" if samples.hyperbolic[k] else "0,114,178"
             x, y = place_of(browser, "surface", scaled(browser, k))
