@@ -335,8 +335,9 @@ class Samples(SampleArrays):
         """Write one page for browsers: the surface and the unit sphere, which light up together.
 
         Click a normal on the sphere, and its preimages light up on the surface; click a place on
-        the surface, and the Gaussian image of the region around it lights up on the sphere. The
-        page holds all that it needs, 5 MB and more, and works without a network.
+        the surface, and the Gaussian image of the region around it lights up on the sphere. With
+        the brush, or the shift key, drag to paint. The page holds all that it needs, 5 MB and more,
+        and works without a network.
 
         Parameters
         ----------
@@ -363,7 +364,8 @@ class Samples(SampleArrays):
         Notes
         -----
         A click next to the dot of a sample takes the normal of that sample; another one takes the
-        direction that was clicked. The points that light up are
+        direction that was clicked, or, if all samples are at prescribed normals, the nearest of
+        these. The points that light up are
 
         - the samples with exactly this normal, up to the rounding of float32, if it is a prescribed
           one, or if several samples have it, as on planes. Made with ``normals=icosphere(…)``,

@@ -66,7 +66,8 @@ const kinds = EACH.map(ofKind);
 const LIFT = 0.004; // samples are drawn above the triangles, which would hide halves of them
 const layers = {
     surface: [mesh(), ...kinds.map((which, k) => markers(placed(points, which, LIFT), size, PALE[k]))],
-    sphere: [ball(), globe(), ...kinds.map((which, k) => markers(placed(normals, which), size, PALE[k]))],
+    // Larger ones below: one normal may have samples of both kinds.
+    sphere: [ball(), globe(), ...kinds.map((which, k) => markers(placed(normals, which), k ? size : 1.7 * size, PALE[k]))],
 };
 
 function layout(aspect, range, eye) {
