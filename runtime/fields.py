@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 from warnings import catch_warnings, simplefilter
 
@@ -114,10 +115,21 @@ def dtype_of(name: str, floating: DTypeLike) -> np.dtype[Any]:
     return np.dtype(np.int64 if name in INTEGER_NAMES else floating)
 
 
-def new_field(name: str, count: int, dtype: DTypeLike) -> NDArray[Any]:
-    """Return an array for the field of `count` samples, not yet filled."""
+def new_field(
+    name: str,
+    count: int,
+    dtype: DTypeLike,
+    memory: Mapping[str, NDArray[Any]] = MappingProxyType({}),
+) -> NDArray[Any]:
+    """Return an array for the field of `count` samples, not yet filled.
+
+    It is a part of that field in `memory`, if this one is large enough and has the type.
+    """
     import numpy as np
 
+    held = memory.get(name)
+    if held is not None and len(held) >= count and held.dtype == dtype and held.flags.writeable:
+        return held[:count]
     return np.empty((count, *row_shape(name)), dtype=dtype)
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -274,11 +275,15 @@ def fill(
     threads: int | None = None,
     fields: Sequence[str] = ARRAY_NAMES,
     dtype: DTypeLike = np.float64,
+    memory: Mapping[str, NDArray[Any]] = MappingProxyType({}),
 ) -> dict[str, NDArray[Any]]:
-    """Return fields of samples at the hits, see `Samples`; floats are stored as `dtype`."""
+    """Return fields of samples at the hits, see `Samples`; floats are stored as `dtype`.
+
+    They are written to the fields in `memory` that are large enough.
+    """
     count = len(hits)
     types = dict.fromkeys(FLOAT_NAMES, dtype) | dict.fromkeys(INDEX_NAMES, np.int64)
-    filled = {x: new_field(x, count, types[x]) for x in ARRAY_NAMES if x in fields}
+    filled = {x: new_field(x, count, types[x], memory) for x in ARRAY_NAMES if x in fields}
     arrays = [filled.get(name) for name in (*FLOAT_NAMES, *INDEX_NAMES)]
     pieces = hits.pieces(0, count, SAMPLES_AT_A_TIME)
 

@@ -102,6 +102,8 @@ def sample_stream(
             f"surface {surface.name!r} has {len(pieces)} pieces between lines where its normal "
             "turns; stream each of surface.pieces(), or gm.fit(surface), which rounds these lines."
         )
+    if request.normals is not None:  # the caller may change them before the last chunk
+        request = replace(request, normals=request.normals.copy())
     geometry = geometry_of(surface, cells, number, on, threads)
     return _Stream(geometry, request, size, wanted, number, progress).chunks()
 

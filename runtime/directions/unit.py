@@ -11,12 +11,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import finite_array, real_values
 from ..errors import InputError
+from ..kernels.unit import are_unit
 from ..threads import over_ranges
 
 __all__ = ["PIECE", "as_normals", "in_pieces", "normalized", "perpendicular", "unit_vector"]
 
 # The number of normals that are computed at a time, so that their arrays fit into the cache.
 PIECE = 1 << 15
+# The number of vectors that are checked at a time.
+PART = 1 << 18
 
 
 def as_normals(
@@ -24,14 +27,17 @@ def as_normals(
 ) -> NDArray[np.float64]:
     """Return directions (S, dimension), of any non-zero lengths, as unit normals, float64.
 
-    A vector that has unit length already, up to rounding, is kept bit for bit. Raises InputError
-    for another shape, an empty array, NaN, infinity, or a vector of length 0, and names its row.
+    A vector that has unit length already, up to rounding, is kept bit for bit; an array of such
+    vectors is returned itself, not a copy. Raises InputError for another shape, an empty array,
+    NaN, infinity, or a vector of length 0, and names its row.
     """
     array = real_values(normals, "normals")
     if array.ndim != 2 or array.shape[1] != dimension or array.shape[0] == 0:
         raise InputError(
             f"normals must have the shape (S, {dimension}) with S >= 1, not {array.shape}."
         )
+    if dimension == 3 and _are_unit(array, threads):
+        return array
 
     def rows(begin: int, end: int) -> NDArray[np.float64]:
         return normalized(_checked_directions(array[begin:end], begin))
@@ -82,6 +88,17 @@ def normalized(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
     length = np.sqrt(np.einsum("ij,ij->i", vectors, vectors))[:, None]
     near = np.abs(length - 1.0) <= 4.5e-16
     return vectors if near.all() else np.where(near, vectors, vectors / length)
+
+
+def _are_unit(array: NDArray[Any], threads: int | None) -> bool:
+    """Return whether an array can be used as unit vectors as it is, by kernels, too."""
+    if array.dtype != np.float64 or not array.flags.carray:
+        return False
+
+    def work(first: int, last: int) -> bool:
+        return are_unit(array, first, last)
+
+    return all(over_ranges(work, len(array), PART, threads))
 
 
 def _checked_directions(values: NDArray[Any], start: int) -> NDArray[np.float64]:

@@ -7,8 +7,8 @@ functions and solid angles take the curvature of the surface from the Gauss poin
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
@@ -52,13 +52,17 @@ class FieldsOfSamples(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class OnSpline:
-    """A spline as what is sampled; `surface` is for `OnSurface`."""
+    """A spline as what is sampled; `surface` is for `OnSurface`.
+
+    Samples at normals are written to the fields in `memory` that are large enough.
+    """
 
     on: ClassVar[str] = "spline"
 
     spline: Spline
     threads: int | None = None
     surface: Surface | None = None
+    memory: Mapping[str, NDArray[Any]] = field(default_factory=dict)
 
     @property
     def name(self) -> str:
@@ -106,7 +110,8 @@ class OnSpline:
         self, bins: NormalBins, hits: Hits, fields: Sequence[str], dtype: DTypeLike
     ) -> FieldsOfSamples:
         """Return the samples at hits, with the fields that are requested."""
-        arrays = fill(self.spline, bins, hits, self.threads, with_uv(self.spline, fields), dtype)
+        wanted = with_uv(self.spline, fields)
+        arrays = fill(self.spline, bins, hits, self.threads, wanted, dtype, self.memory)
         return FieldsOfSamples(samples_inside(self.spline, arrays, fields))
 
     def at_hits_in_turn(

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
@@ -84,8 +85,12 @@ def geometry_of(
     dtype: DTypeLike,
     on: str | None,
     threads: int | None,
+    memory: Mapping[str, NDArray[Any]] = MappingProxyType({}),
 ) -> OnSpline:
-    """Return what is sampled. Raises what `place_of_samples` and `spline_of` raise."""
+    """Return what is sampled. Raises what `place_of_samples` and `spline_of` raise.
+
+    Samples of splines at normals are written to the fields in `memory`.
+    """
     surface = named(surface)
     place = place_of_samples(surface, on)
     spline = spline_of(surface, cells, dtype)
@@ -93,7 +98,7 @@ def geometry_of(
         if surface.boundary != spline.boundary:  # poles that the fit has found
             surface = replace(surface, boundary=spline.boundary)
         return OnSurface(spline, threads, surface)
-    return OnSpline(spline, threads)
+    return OnSpline(spline, threads, memory=memory)
 
 
 @dataclass(frozen=True, eq=False)

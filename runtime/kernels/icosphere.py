@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated.icosahedron import CORNER_PLACES, EDGE_PLACES, LINES, PHI
-from .jit import inline, jit, loop
+from .jit import inline, jit, long_vectors, loop
 from .tile import STEP, TILE
 from .windows import whole_vectors
 
@@ -54,6 +54,7 @@ def write_normals(face, frequency, places, first, count, tile):
     columns of the points. Before the square root, only b φ and one sum are rounded: mirror images
     agree bit for bit, and a point of two faces is the same on both.
     """
+    long_vectors()
     a_x, b_x, a_y, b_y, a_z, b_z = line(face, 0)
     p_x, q_x, p_y, q_y, p_z, q_z = line(face, 1)
     f_x, g_x, f_y, g_y, f_z, g_z = line(face, 2)

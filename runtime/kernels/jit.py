@@ -22,13 +22,15 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
+from numba import types
 from numba.core import config as numba_config
 from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numba.extending import intrinsic
 
 from ...generated.vectors import inline
 from .. import compiling  # noqa: F401 - installs the notice of compilation
 
-__all__ = ["inline", "jit", "loop"]
+__all__ = ["inline", "jit", "long_vectors", "loop"]
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -62,6 +64,23 @@ def jit(function: Function) -> Function:
     if folder is not None and not config.DISABLE_JIT:
         kernel._cache = KernelCache(function, folder)
     return kernel
+
+
+def _long_vectors(_: object) -> tuple[Any, Callable[..., Any]]:
+    """Ask for the longest vectors of the processor in the function that calls this first.
+
+    LLVM uses half of their length unless it is told to. The results are the same.
+    """
+
+    def lowered(context: Any, builder: Any, *_: object) -> Any:
+        # llvmlite's own `add` knows no attributes with values.
+        set.add(builder.function.attributes, '"prefer-vector-width"="512"')
+        return context.get_dummy_value()
+
+    return types.void(), lowered
+
+
+long_vectors: Any = (lambda: None) if config.DISABLE_JIT else intrinsic(_long_vectors)
 
 
 class KernelCache(FunctionCache):

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ...generated.patch import sample
 from ...generated.spline import CORNERS, SCALE
 from ...generated.vectors import Patch, Vector
-from .jit import jit, loop
+from .jit import jit, long_vectors, loop
 from .patch import (
     curvatures_of_patch,
     normal_of_patch,
@@ -38,6 +38,7 @@ ONE_ROW, TWO_ROWS = np.uint64(STEP), np.uint64(2 * STEP)
 NORMAL, PATCH, PLACE, POINT, U, V, SUPPORT, GAUSSIAN, MEAN = (
     np.int64(STEP * row) for row in (0, 3, 21, 30, 33, 34, 35, 36, 37)
 )
+NORMAL_INDEX, PATCH_INDEX = np.int64(0), np.int64(STEP)
 
 
 class Place(NamedTuple):
@@ -90,6 +91,7 @@ def place_in(mu, i, j, turn):
 @loop
 def load_patch(mu, number, scale, tile, start, end):
     """Write a patch for the samples start, …, end − 1 of a tile, and up to VECTOR − 1 more."""
+    long_vectors()
     i, j, turn = place_of(number, mu.shape[1] - 2)
     patch = patch_vectors(mu, i + 1, j + 1, turn, scale)
     place = place_in(mu, i, j, turn)
@@ -129,6 +131,7 @@ def evaluate_tile(tile, count, frame, size, points, uv, support, gaussian, mean)
     The last five are only compared with None, for absent fields, which Numba resolves at compile
     time.
     """
+    long_vectors()
     frame = (frame[0], frame[1], frame[2], frame[3])
     for k in range(count):
         n = vector_in(tile, NORMAL, k)
@@ -191,18 +194,37 @@ def fill_tile(
     # The last vector is filled up with samples that are not stored.
     full = whole_vectors(count)
     evaluate_tile(tile, full, frame, SCALE * scale, points, uv, support, gaussian, mean)
-    for row in range(count):
-        k = np.uint64(start + row)  # unsigned: no check for negative indices
-        store(
-            k, vector_in(tile, POINT, row), vector_in(tile, NORMAL, row),
-            tile[U + row], tile[V + row], tile[SUPPORT + row],
-            tile[GAUSSIAN + row], tile[MEAN + row],
-            points, directions, uv, support, gaussian, mean,
-        )  # fmt: skip
-        if normal_index is not None:
-            normal_index[k] = indices[row]
-        if patch_index is not None:
-            patch_index[k] = indices[STEP + row]
+    if points is not None:
+        write_vectors(tile, POINT, count, start, points)
+    if directions is not None:
+        write_vectors(tile, NORMAL, count, start, directions)
+    if uv is not None:
+        write_numbers(tile, U, count, start, uv[:, 0])
+        write_numbers(tile, V, count, start, uv[:, 1])
+    if support is not None:
+        write_numbers(tile, SUPPORT, count, start, support)
+    if gaussian is not None:
+        write_numbers(tile, GAUSSIAN, count, start, gaussian)
+    if mean is not None:
+        write_numbers(tile, MEAN, count, start, mean)
+    if normal_index is not None:
+        write_numbers(indices, NORMAL_INDEX, count, start, normal_index)
+    if patch_index is not None:
+        write_numbers(indices, PATCH_INDEX, count, start, patch_index)
+
+
+@loop
+def write_vectors(tile, row, count, start, field):
+    """Write the vectors in three rows of a tile to a field, from number `start` on."""
+    for k in range(count):
+        set_row(field, np.uint64(start + k), vector_in(tile, row, k))
+
+
+@loop
+def write_numbers(tile, row, count, start, field):
+    """Write the numbers in a row of a tile to a field, from number `start` on."""
+    for k in range(count):
+        field[np.uint64(start + k)] = tile[np.uint64(row + k)]
 
 
 @jit

@@ -288,3 +288,31 @@ def test_command_line(tmp_path, monkeypatch, capsys):
         assert main([*few, "--fields", fields, "-o", output]) == 2
         assert message in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["a.npz"]
+
+
+# --- memory that is used again --------------------------------------------------------------------
+
+
+def test_out_is_written_again():
+    opposite = gm.sample(SPLINE, normals=-NORMALS)
+    again = gm.sample(SPLINE, normals=NORMALS, out=opposite)
+    for name in ARRAY_NAMES:
+        assert np.shares_memory(getattr(again, name), getattr(opposite, name))
+        assert getattr(again, name).tobytes() == getattr(FULL, name).tobytes()
+
+
+def test_out_that_does_not_fit_is_left_alone():
+    few = gm.sample(SPLINE, normals=NORMALS[:20])
+    single = gm.sample(SPLINE, normals=NORMALS, dtype=np.float32)
+    fixed = gm.sample(SPLINE, normals=NORMALS)
+    fixed.points.flags.writeable = False
+    for held in (few, single, fixed):
+        before = held.points.tobytes()
+        again = gm.sample(SPLINE, normals=NORMALS, out=held)
+        assert held.points.tobytes() == before
+        assert again.points.tobytes() == FULL.points.tobytes()
+
+
+def test_out_must_be_samples():
+    with pytest.raises(gm.InputError, match="out must be Samples of an earlier call, not 3"):
+        gm.sample(SPLINE, normals=NORMALS, out=3)  # pyright: ignore[reportArgumentType]

@@ -5,7 +5,8 @@ import sys
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.directions.unit import as_normals
+from gaussmap.runtime.directions.unit import as_normals, normalized
+from gaussmap.runtime.kernels.unit import are_unit
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -248,6 +249,34 @@ def test_unit_normals_are_kept_bit_for_bit(normals):
     np.testing.assert_array_equal(as_normals(normals), normals)
 
 
+def test_unit_normals_are_not_copied():
+    normals = gm.fibonacci(5000)
+    assert as_normals(normals) is normals
+    for changed in (np.asfortranarray(normals), normals.astype(np.float32), normals[:, ::-1]):
+        assert as_normals(changed) is not changed
+    longer = normals.copy()
+    longer[4321] *= 1 + 4 * ULP
+    assert as_normals(longer) is not longer
+
+
+def test_what_is_taken_for_unit_is_kept_when_it_is_normalized():
+    rng = np.random.default_rng(2)
+    near = gm.directions.random(20_000, seed=3)
+    near = np.nextafter(near, near + rng.integers(-1, 2, near.shape))
+    taken = near[[are_unit(near, k, k + 1) for k in range(len(near))]]
+    assert 0 < len(taken) < len(near)
+    assert normalized(taken) is taken
+
+
+def test_no_unit_vector():
+    normals = gm.icosphere(2)
+    for bad in (np.nan, np.inf, -2.0):
+        spoilt = normals.copy()
+        spoilt[7, 1] = bad
+        assert not are_unit(spoilt, 0, len(spoilt))
+        assert are_unit(spoilt, 0, 7)
+
+
 @given(st.lists(st.tuples(*[st.floats(-1e300, 1e300)] * 3).filter(any), min_size=1, max_size=20))
 def test_any_direction(vectors):
     normals = as_normals(vectors)
@@ -289,9 +318,6 @@ def test_the_array_of_the_user_is_left_alone():
     normals = as_normals(directions)
     normals[:] = 0.0
     assert directions.tolist() == [[3.0, 4.0, 0.0]]
-    unit = np.array([[0.0, 0.0, 1.0]])
-    as_normals(unit)[:] = 0.0
-    assert unit.tolist() == [[0.0, 0.0, 1.0]]
 
 
 @pytest.mark.parametrize(
