@@ -11,6 +11,7 @@ import pytest
 from gaussmap.runtime import fields as names
 from gaussmap.runtime.bins import NormalBins
 from gaussmap.runtime.cli import main
+from gaussmap.runtime.errors import InputError
 from gaussmap.runtime.fields import ARRAY_NAMES, FLOAT_NAMES
 from gaussmap.runtime.pictures.to_file import write_plot
 from gaussmap.runtime.samples import Samples
@@ -314,5 +315,5 @@ def test_out_that_does_not_fit_is_left_alone():
 
 
 def test_out_must_be_samples():
-    with pytest.raises(gm.InputError, match="out must be Samples of an earlier call, not 3"):
+    with pytest.raises(InputError, match="out must be Samples of an earlier call, not 3"):
         gm.sample(SPLINE, normals=NORMALS, out=3)  # pyright: ignore[reportArgumentType]
