@@ -79,6 +79,8 @@ verify: $(READY) ## run what is slow: all tests with many random examples, brows
 	$(BIN)/python -m pytest -q -m slow --hypothesis-profile=large --numprocesses auto
 	$(BIN)/python -m pytest -q -m "not slow" --hypothesis-profile=large --numprocesses auto
 	.ci/check-html
+	$(MAKE) docs
+	.ci/check-site
 
 bench: $(READY) ## run the benchmarks (ratios against the machine's own limit)
 	$(BIN)/python -m pytest benchmarks -o python_files='bench_*.py' --benchmark-only --benchmark-quiet

@@ -1,0 +1,35 @@
+"""Pages of the site that are written by hand have all of what they list."""
+
+import re
+from pathlib import Path
+
+import pytest
+from gaussmap.runtime.commands.parser import parser
+
+ROOT = Path(__file__).parents[2]
+
+
+def test_every_command_has_a_heading_and_its_help() -> None:
+    page = (ROOT / "docs" / "reference" / "command_line.md").read_text(encoding="utf-8")
+    commands = [*parser().commands]
+    assert re.findall(r"^## `gaussmap (.*)`$", page, re.MULTILINE) == commands
+    assert re.findall(r"-m gaussmap (\w+) --help$", page, re.MULTILINE) == commands
+
+
+@pytest.mark.parametrize("name", ["README.md", "CONTRIBUTING.md", "CHANGELOG.md"])
+def test_relative_links_lead_to_files(name: str) -> None:
+    links = re.findall(r"\]\(([^)#\s]+)", (ROOT / name).read_text(encoding="utf-8"))
+    relative = [x for x in links if not re.match(r"https?://", x)]
+    assert [x for x in relative if not (ROOT / x).exists()] == []
+
+
+def test_every_page_of_docs_is_in_the_site() -> None:
+    """Sphinx refuses pages outside its trees of contents; here these trees name what exists."""
+    docs = ROOT / "docs"
+    for page in ("index", "measurements", "project", "gallery/index", "reference/index"):
+        text = (docs / f"{page}.md").read_text(encoding="utf-8")
+        (block,) = re.findall(r"```{toctree}\n((?:.*\n)*?)```", text)
+        names = [x for x in block.splitlines() if x and not x.startswith(":")]
+        for name in names:
+            path = docs / Path(page).parent / name
+            assert any(path.with_suffix(x).exists() for x in (".md", ".ipynb")), path
