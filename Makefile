@@ -171,6 +171,8 @@ $(VENV)/docs/.ready: $(READY)
 	touch $@
 
 docs: $(VENV)/docs/.ready ## build the site of the documentation, out/site/index.html
+	mkdir -p out/extra
+	$(GAUSSMAP) view torus --count 2000 --quiet -o out/extra/torus.html
 	$(VENV)/docs/bin/python -m sphinx --quiet --nitpicky --fail-on-warning --keep-going \
 		--doctree-dir out/doctrees docs out/site
 

@@ -82,6 +82,7 @@ autosummary_context = {"catalogue": list(gaussmap.surfaces.names())}
 html_theme = "pydata_sphinx_theme"
 html_title = f"gaussmap {release}"
 html_static_path = ["_static"]
+html_extra_path = ["../out/extra"] if (HERE.parent / "out" / "extra").exists() else []  # the viewer
 html_css_files = ["site.css"]
 html_math_renderer = "mathml"
 html_copy_source = False
