@@ -1,0 +1,97 @@
+"""A data set for learning: 1,000 random surfaces, 2,048 points of each in one float32 array.
+
+Three of the surfaces are bad. Python functions run on one core, so that each core has a process.
+"""
+
+from concurrent.futures import ProcessPoolExecutor
+
+import gaussmap as gm
+import numpy as np
+
+COUNT, POINTS = 1_000, 2_048
+BROKEN = {17: "NaN", 400: "scalars", 999: "an exception"}
+ASKED = {
+    "density": "uniform",
+    "cells": (24, 24),
+    "fields": ("points",),
+    "dtype": np.float32,
+    "threads": 1,
+}
+
+
+def waves(seed):
+    """Return a function: a random sum of waves over the square."""
+    rng = np.random.default_rng(seed)
+    frequencies, phases = rng.uniform(0.5, 3.0, (4, 2)), rng.uniform(0, 2 * np.pi, 4)
+    heights = rng.uniform(0.05, 0.2, 4)
+
+    def position(u, v):
+        z = sum(
+            h * np.sin(a * u + b * v + p)
+            for h, (a, b), p in zip(heights, frequencies, phases, strict=True)
+        )
+        return np.stack([u, v, z], axis=-1)
+
+    return position
+
+
+def broken(kind):
+    """Return a function that is no surface."""
+
+    def position(u, v):
+        if kind == "an exception":
+            raise ValueError("no such shape")
+        if kind == "scalars":
+            return u
+        return np.stack([u, v, np.full_like(u, np.nan)], axis=-1)
+
+    return position
+
+
+def cloud(number):
+    """Return the points of a surface, or its error."""
+    f = broken(BROKEN[number]) if number in BROKEN else waves(number)
+    surface = gm.Surface.from_callable(f, domain=((-1, 1), (-1, 1)), name=f"waves {number}")
+    try:
+        return gm.sample(surface, POINTS, **ASKED).points
+    except gm.GaussmapError as error:
+        return error
+
+
+def main():
+    clouds = np.full((COUNT, POINTS, 3), np.nan, dtype=np.float32)
+    errors = {}
+    with ProcessPoolExecutor() as pool:
+        for number, found in enumerate(pool.map(cloud, range(COUNT), chunksize=10)):
+            if isinstance(found, gm.GaussmapError):
+                errors[number] = found
+            else:
+                clouds[number] = found
+    np.save("clouds.npy", clouds)
+    print(f"{COUNT - len(errors)} clouds in an array {clouds.shape} of {clouds.dtype}")
+    for number, error in errors.items():
+        print(f"surface {number}: {error}")
+    check(clouds, errors)
+
+
+# --- Is it true? The good ones are there, on their surfaces; the bad ones are known, and why. ---
+
+
+def check(clouds, errors):
+    assert list(errors) == list(BROKEN)
+    for error, why in zip(errors.values(), ("not finite", "shape", "no such shape"), strict=True):
+        assert why in str(error)
+    bad = np.isnan(clouds).any(axis=(1, 2))
+    assert np.flatnonzero(bad).tolist() == list(BROKEN)
+    # Rounding x, y and z < 1 to single precision moves each by 2**-25 at most, and a slope is
+    # below 4 * 0.2 * 3 * sqrt(2) < 3.4.
+    bound = 2**-25 * (1 + 3.4 * np.sqrt(2))
+    for number in np.flatnonzero(~bad):
+        x, y, z = clouds[number].astype(float).T
+        assert max(np.abs(x).max(), np.abs(y).max()) <= 1
+        assert np.abs(z - waves(number)(x, y)[:, 2]).max() < bound
+        assert len(np.unique(clouds[number], axis=0)) == POINTS
+
+
+if __name__ == "__main__":
+    main()
