@@ -3,6 +3,7 @@
 import re
 import sys
 from pathlib import Path
+from typing import Any
 
 import gaussmap
 from numpydoc.xref import DEFAULT_LINKS
@@ -102,6 +103,6 @@ def setup(app: Sphinx) -> None:
     app.connect("autodoc-process-docstring", _escape_bars, priority=100)
 
 
-def _escape_bars(*arguments: object) -> None:
-    lines = arguments[-1]
+def _escape_bars(*arguments: Any) -> None:
+    lines: list[str] = arguments[-1]
     lines[:] = [re.sub(r"\|(\w+)\|", r"\|\1\|", line) for line in lines]

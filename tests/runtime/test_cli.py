@@ -457,8 +457,8 @@ SQUARE = ["--domain", "-1", "1", "-1", "1"]
         # surfaces in files
         (["sample", "missing.npy", *HEIGHTS], "'missing.npy' cannot be read: No such file"),
         (["sample", "folder.npy", *HEIGHTS], "'folder.npy' cannot be read: Is a directory"),
-        (["sample", "heights.txt", *HEIGHTS], "neither a .npy nor a .npz"),
-        (["sample", "missing.tif", *HEIGHTS], "'missing.tif' does not exist; look at its name"),
+        (["sample", "heights.txt", *HEIGHTS], "neither a .npy, .npz nor .tif file"),
+        (["sample", "missing.tif", *HEIGHTS], "'missing.tif' cannot be read: No such file"),
         (["sample", "part.stl", *TO], "'part.stl' is a mesh; meshes are not taken.*CAD file"),
         (["sample", "zero.npy", *HEIGHTS], r"shape \(4, 3\): points \(N, 3\) in no order are not"),
         (["sample", "nothing.npy", *HEIGHTS], "'nothing.npy' is damaged"),
