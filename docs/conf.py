@@ -103,6 +103,6 @@ def setup(app: Sphinx) -> None:
     app.connect("autodoc-process-docstring", _escape_bars, priority=100)
 
 
-def _escape_bars(*arguments: Any) -> None:
+def _escape_bars(*arguments: Any) -> None:  # noqa: ANN401
     lines: list[str] = arguments[-1]
     lines[:] = [re.sub(r"\|(\w+)\|", r"\|\1\|", line) for line in lines]
