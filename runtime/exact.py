@@ -1,7 +1,7 @@
 """Exact decisions on undecided hits: whether a patch has a normal.
 
-Coefficients and normals are binary fractions, and the formulas need only +, − and ×. Computed with
-106 bits, and finally on integers, they give the exact sign of every form. Exact zeros (a normal on
+Coefficients and normals are binary fractions, and the formulas need only +, − and ×: on integers
+they give the exact sign of every form. Exact zeros (a normal on
 the common boundary of two Gaussian images, or of a parabolic line) are decided by Simulation of
 Simplicity (Edelsbrunner and Mücke, https://doi.org/10.1145/77635.77639): the normal is displaced by
 an infinitesimal vector, the same for all patches. The displaced normal lies on no boundary, so that
@@ -12,14 +12,12 @@ normal whose point lies outside the domain by at most the error of the data is a
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..generated.primes import PRIMES
 from ..generated.spline import CORNERS
-from .kernels import decide as kernels
+from .kernels.decide import Decided, decide_exactly
 from .kernels.patch import normals_at
 from .long_integers import forms_of_pairs
 from .splines.spline import Spline
@@ -28,11 +26,9 @@ from .tolerances import SINGULAR_POINT
 
 __all__ = ["Decision", "decide"]
 
-PAIRS_AT_A_TIME = 1 << 8
+PAIRS_AT_A_TIME = 1 << 10
 # Fewer at a time on Python integers: a pair has many of them, of about a hundred bytes each.
 LONG_PAIRS_AT_A_TIME = 1 << 14
-# The largest difference of exponents within a pair for arithmetic modulo primes.
-MOST_SHIFTED = 512
 # Two hits of one normal at the open border are the same if they are closer than this, in cells.
 SAME_PLACE = 1e-6
 
@@ -54,18 +50,16 @@ def decide(
     patches: NDArray[np.int64],
     normals: NDArray[np.float64],
     numbers: NDArray[np.int64],
-    bounds: NDArray[np.float64],
     forgiven: NDArray[np.float64],
     threads: int | None = None,
 ) -> Decision:
     """Decide which of the pairs (patches[k], normals[k]) are hits.
 
     `numbers[k]` is the number of the normal: equal normals with different numbers are all kept.
-    `bounds[k]` is the error bound of the forms in floating point. `forgiven[k]` is the tolerance of
-    W at the open border of the domain, 0 for a patch that does not touch the border. Both are in
-    units of the scaled spline.
+    `forgiven[k]` is the tolerance of W at the open border of the domain, in units of the scaled
+    spline, and 0 for a patch that does not touch the border.
     """
-    local, size, signs = _forms(spline, patches, normals, bounds, forgiven, threads)
+    local, size, signs = _forms(spline, patches, normals, threads)
     inside = (signs[:, 0] != 0) & (signs[:, 0] == signs[:, 1]) & (signs[:, 1] == signs[:, 2])
     with np.errstate(divide="ignore", invalid="ignore"):
         tolerance = np.where(size > 1024 * forgiven, forgiven / size, 0.0)
@@ -87,24 +81,17 @@ def _forms(
     spline: Spline,
     patches: NDArray[np.int64],
     normals: NDArray[np.float64],
-    bounds: NDArray[np.float64],
-    forgiven: NDArray[np.float64],
     threads: int | None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int8]]:
     """Return U/D and V/D (k, 2), |D| (k,), and the signs of U, V, W (k, 3)."""
     count = len(patches)
     local, size = np.empty((count, 2)), np.empty(count)
     signs, known = np.empty((count, 3), dtype=np.int8), np.empty(count, dtype=np.bool_)
-    pairs = kernels.Pairs(patches, normals, bounds, forgiven)
-    decided = kernels.Decided(local, size, signs, known)
+    decided = Decided(local, size, signs, known)
 
-    # Kernels for integers take long to compile, and few surfaces need them.
     def work(first: int, last: int) -> None:
         mu, scale = spline.coefficients, spline.scale
-        kernels.decide_precisely(mu, scale, pairs, first, last, decided)
-        if not known[first:last].all():
-            tables, memory = prime_tables(), _workspace()
-            kernels.decide_exactly(mu, scale, pairs, tables, first, last, memory, decided)
+        decide_exactly(mu, scale, patches, normals, first, last, np.empty(3), decided)
 
     for _ in over_ranges(work, count, PAIRS_AT_A_TIME, threads):
         pass
@@ -115,23 +102,6 @@ def _forms(
                 spline, patches[chunk], normals[chunk]
             )
     return local, size, signs
-
-
-@cache
-def prime_tables() -> kernels.PrimeTables:
-    """Return the primes and the tables for arithmetic modulo them."""
-    primes = PRIMES.tolist()
-    powers = np.array([[pow(2, k, p) for k in range(MOST_SHIFTED)] for p in primes])
-    inverses = np.array([[pow(p, -1, q) if p != q else 0 for q in primes] for p in primes])
-    return kernels.PrimeTables(PRIMES, powers, inverses)
-
-
-def _workspace() -> kernels.Workspace:
-    """Return work arrays for the residues of one pair."""
-    count = len(PRIMES)
-    shapes = (count, 5, 3), (count, 3), (4, count), (count,)
-    patches, directions, residues, digits = (np.empty(x, dtype=np.int64) for x in shapes)
-    return kernels.Workspace(patches, directions, residues, digits, np.empty(4))
 
 
 def _regular_places(
@@ -174,12 +144,14 @@ def _first_of_each_place(
     place = np.stack(np.divmod(cell, spline.cells[1]), axis=1) + np.einsum(
         "kc,kcx->kx", local, corners
     )
+    order = np.argsort(numbers, kind="stable")
+    first, last = (np.searchsorted(numbers[order], numbers, side) for side in ("left", "right"))
     for k in np.flatnonzero(near):
-        apart = place - place[k]
+        others = order[first[k] : last[k]]
+        apart = place[others] - place[k]
         for axis, (ends, cells) in enumerate(zip(spline.boundary, spline.cells, strict=True)):
             if ends[0] == "periodic":
                 apart[:, axis] -= cells * np.round(apart[:, axis] / cells)
-        others = (numbers == numbers[k]) & (np.abs(apart).max(axis=1) < SAME_PLACE) & keep
-        others[k] = False
-        keep[k] = not others.any()
+        same = (np.abs(apart).max(axis=1) < SAME_PLACE) & keep[others] & (others != k)
+        keep[k] = not same.any()
     return keep

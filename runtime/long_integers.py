@@ -1,4 +1,4 @@
-"""The forms of patches and normals on integers of any length, beyond the range of the primes.
+"""The forms of patches and normals on integers of any length, beyond those of kernels.
 
 Coefficients and normals are binary fractions, and the formulas need only +, − and ×: run on Python
 integers they give the exact sign of every form.
@@ -65,8 +65,20 @@ def _displaced_forms(vectors: Integers, n: Integers) -> tuple[Integers, NDArray[
     """Return D, U, V, W and the signs of U, V, W at n + (ε₁, ε₂, ε₃), with n ≫ ε₁ ≫ ε₂ ≫ ε₃ ≫ ε₁².
 
     A quadratic form F is then a sum of ten monomials in n, ε₁, ε₂, ε₃, each infinitesimal relative
-    to the one before; its coefficients follow from F(x + y) − F(x) − F(y). The first nonzero one
-    gives the sign. For quotients by D, the coefficients of the leading monomial of D are returned.
+    to the one before. The first nonzero one gives the sign. For quotients by D, the coefficients of
+    the leading monomial of D are returned.
+    """
+    coefficients = _monomials(vectors, n)
+    leading = np.argmax(np.asarray(coefficients != 0, dtype=bool), axis=0)
+    first = np.take_along_axis(coefficients, leading[None], axis=0)[0]
+    in_d = np.take_along_axis(coefficients, leading[None, :1].repeat(4, axis=1), axis=0)[0]
+    return in_d, sign(first[1:])
+
+
+def _monomials(vectors: Integers, n: Integers) -> Integers:
+    """Return the coefficients (10, 4, k) of the monomials in D, U, V, W.
+
+    They follow from F(x + y) − F(x) − F(y).
     """
     axes = [
         n,
@@ -78,11 +90,7 @@ def _displaced_forms(vectors: Integers, n: Integers) -> tuple[Integers, NDArray[
         for i in range(4)
         for j in range(i, 4)
     ]
-    coefficients = np.stack(monomials)
-    leading = np.argmax(np.asarray(coefficients != 0, dtype=bool), axis=0)
-    first = np.take_along_axis(coefficients, leading[None], axis=0)[0]
-    in_d = np.take_along_axis(coefficients, leading[None, :1].repeat(4, axis=1), axis=0)[0]
-    return in_d, sign(first[1:])
+    return np.stack(monomials)
 
 
 def _leading_sign(n: Integers) -> Integers:

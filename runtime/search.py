@@ -249,7 +249,7 @@ class Search:
         patches, numbers = undecided[:, 0].copy(), undecided[:, 1] >> 32
         forgiven = np.where(_on_border(self.spline, self.border, patches), bounds, 0.0)
         normals = self.bins.normals[numbers]
-        decision = decide(self.spline, patches, normals, numbers, bounds, forgiven, threads)
+        decision = decide(self.spline, patches, normals, numbers, forgiven, threads)
         return undecided[decision.which], decision.local
 
 

@@ -44,7 +44,6 @@ def derive() -> dict[str, str]:
         "curve.py": curve_source(),
         "differences.py": differences_source(),
         "faces.py": faces_source(),
-        "primes.py": primes_source(),
         "gaussian_image.py": gaussian_image_source(),
         "icosahedron.py": icosahedron_source(),
         "jet.py": jet_source(),
@@ -211,12 +210,6 @@ def spline_source() -> str:
         tables.grid(),
         functions(spline.FORMULAS),
     )
-
-
-def primes_source() -> str:
-    """Return generated/primes.py: moduli for exact integers."""
-    title = "The largest primes of which sums of twelve products of two fit into 64 bits."
-    return mathematics(title, tables.primes())
 
 
 def support_source() -> str:

@@ -122,6 +122,24 @@ ELIMINATED_FORMS = Formula.build(
     outputs=ELIMINATED,
 )
 
+OTHER_FORMS = tuple(scalar(f"{form.name}_m") for form in LINEAR_FORMS)
+
+
+def _polar(form: sp.Expr) -> sp.Expr:
+    """Return F(n + m) − F(n) − F(m) for a quadratic form F: by Euler, the derivative along m."""
+    pairs = zip(LINEAR_FORMS, OTHER_FORMS, strict=True)
+    return sum((sp.diff(form, X) * Y for X, Y in pairs), start=sp.S.Zero)
+
+
+POLAR_FORMS = Formula.build(
+    "polar_forms",
+    "The coefficients of $s t$ in the quadratic forms at $s n + t m$, from the linear forms of two "
+    "normals $n$ and $m$. With $m = n$ they are twice the quadratic forms.",
+    source="eq. (9)",
+    inputs=[*LINEAR_FORMS, *OTHER_FORMS],
+    outputs=[*((name, _polar(form)) for name, form in ELIMINATED[:3]), ELIMINATED[3]],
+)
+
 LINEAR_FORMS_OF_NORMAL = Formula.build(
     "linear_forms",
     "The linear forms in $n$ of eq. (9), from which $u$, $v$ are eliminated.",
@@ -471,6 +489,7 @@ FORMULAS = (
     FORMS,
     LINEAR_FORMS_OF_NORMAL,
     ELIMINATED_FORMS,
+    POLAR_FORMS,
     PARAMETERS,
     SUPPORT_FUNCTION,
     ENVELOPE,

@@ -1,4 +1,4 @@
-"""Tables of constants, as source for Numba: the grid, the icosahedron, primes."""
+"""Tables of constants, as source for Numba: the grid and the icosahedron."""
 
 from __future__ import annotations
 
@@ -11,10 +11,8 @@ import sympy as sp
 
 from . import icosahedron, spline
 
-__all__ = ["differences", "grid", "icosahedron_tables", "primes"]
+__all__ = ["differences", "grid", "icosahedron_tables"]
 
-# Enough for coefficients and normals of 340 bits together.
-PRIMES = 24
 # Points of a difference; central ones have this order less one.
 STENCIL = 9
 WIDTH = 106  # of the longest row of small numbers
@@ -90,14 +88,6 @@ def icosahedron_tables() -> str:
         + (f"{name} = {table!r}" if isinstance(table, float) else _array(name, table))
         for name, (comment, table) in icosahedron.tables().items()
     )
-
-
-def primes() -> str:
-    """Return the largest primes of which sums of twelve products of two fit into 64 bits."""
-    found = [2**29]
-    while len(found) <= PRIMES:
-        found.append(int(sp.prevprime(found[-1])))
-    return _array("PRIMES", found[1:])
 
 
 def _array(name: str, values: Sequence[object]) -> str:

@@ -1,8 +1,8 @@
-"""Exact decisions: the signs of the forms U, V, W of a patch and a normal.
+"""Exact decisions: the signs of the forms U, V, W of a patch and a normal, on integers.
 
-They are computed with 106 bits first, and on integers if a sign is still undecided. Exact ties are
-broken by Simulation of Simplicity (Edelsbrunner and Mücke, https://doi.org/10.1145/77635.77639):
-the normal is displaced by an infinitesimal vector, the same for all patches.
+Exact ties are broken by Simulation of Simplicity (Edelsbrunner and Mücke,
+https://doi.org/10.1145/77635.77639): the normal is displaced by an infinitesimal vector, the same
+for all patches.
 """
 
 from __future__ import annotations
@@ -10,67 +10,23 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from ...generated.patch import forms
+import numpy as np
+
+from ...generated.patch import eliminated_forms, linear_forms, polar_forms
 from ...generated.spline import NEIGHBOURS, triangle
 from ...generated.vectors import Patch, Vector
-from .double_double import DoubleDouble
 from .jit import inline, jit, loop
-from .modular import (
-    HIGHEST,
-    MANTISSA,
-    exponents_around,
-    exponents_of,
-    mixed_radix_value,
-    residue,
-    residues_of_forms,
-    residues_of_patch,
-)
 from .patch import EAST, NORTH, SOUTH, SOUTHEAST, SOUTHWEST, WEST, place_of, vector_at
 from .vectors import row_vector
+from .wide_integers import MANTISSA, rounded, wide
 
-__all__ = ["Decided", "Pairs", "PrimeTables", "Workspace", "decide_exactly", "decide_precisely"]
+__all__ = ["NORMAL_LIMBS", "PATCH_LIMBS", "SPARE", "Decided", "decide_exactly"]
 
-# The error of double-doubles relative to that of floating-point numbers: 2⁻⁵¹, with a safety factor
-# of 64.
-PRECISE = math.ldexp(1.0, -45)
-# The bits that each prime contributes to the product of primes.
-BITS = 28.99
-# Bits that the formulas add: by weights, by sums of products, and by a second normal.
-WEIGHT_BITS, SUM_BITS, FORM_BITS = 6, 2, 6
-
-
-class Pairs(NamedTuple):
-    """Pairs of patches (k,) and normals (k, 3), with the errors of their forms.
-
-    `bounds` (k,) are the rounding errors of the forms in floating point; `forgiven` (k,) is the
-    tolerance of W, positive at the open border of the domain and 0 elsewhere.
-    """
-
-    patches: Any
-    normals: Any
-    bounds: Any
-    forgiven: Any
-
-
-class PrimeTables(NamedTuple):
-    """Primes (m,), powers of two (m, …) modulo each, inverses (m, m) of primes modulo others."""
-
-    primes: Any
-    powers: Any
-    inverses: Any
-
-
-class Workspace(NamedTuple):
-    """Work arrays for m primes: patches (m, 5, 3), normals (m, 3), residues (4, m), digits (m,).
-
-    forms (4,) are D, U, V, W, in a unit of their own.
-    """
-
-    patches: Any
-    normals: Any
-    residues: Any
-    digits: Any
-    forms: Any
+# The limbs of coefficients, and of normals: those at corners, of patches along an axis, have
+# components that are rounding errors of rounding errors.
+PATCH_LIMBS, NORMAL_LIMBS = (0, 0), (0, 0, 0)
+# The bits that are left free, for weights and sums.
+SPARE = 6
 
 
 class Decided(NamedTuple):
@@ -82,214 +38,168 @@ class Decided(NamedTuple):
     known: Any
 
 
-# --- with 106 bits --------------------------------------------------------------------------------
-
-
-@inline
-def precise(x) -> Any:
-    """Return a number as a double-double."""
-    return DoubleDouble(x, 0.0)
+# --- integers -------------------------------------------------------------------------------------
 
 
 @loop
-def precise_difference(x, y, scale):
-    """Return (x − y) times a power of two."""
-    return scale * (precise(x) - precise(y))
+def widened(least, largest, x):
+    """Return the least and the largest modulus of nonzero numbers, including one more."""
+    size = abs(x)
+    if 0.0 < size < least:
+        least = size
+    if size > largest:
+        largest = size
+    return least, largest
 
 
 @loop
-def precise_neighbour(mu, i, j, turn, k, scale):
-    """Return neighbour k minus the coefficient (i, j), times a power of two."""
-    p = i + NEIGHBOURS[turn, k, 0]
-    q = j + NEIGHBOURS[turn, k, 1]
+def unit_of(least, largest, limbs):
+    """Return the exponent of a unit in which numbers of these moduli are integers, and if it fits.
+
+    It does if they have as many limbs at most, with bits to spare.
+    """
+    unit = math.frexp(least)[1] - MANTISSA
+    return unit, largest == 0.0 or math.frexp(largest)[1] - unit <= 64 * len(limbs) - SPARE
+
+
+@loop
+def unit_around(mu, i, j):
+    """Return the unit of the coefficient (i, j) and its neighbours; see `unit_of`."""
+    least, largest = np.inf, 0.0
+    for p in range(i - 1, i + 2):
+        for q in range(j - 1, j + 2):
+            for x in range(3):
+                least, largest = widened(least, largest, mu[p, q, x])
+    return unit_of(least, largest, PATCH_LIMBS)
+
+
+@loop
+def unit_of_normal(n):
+    """Return the unit of the components of a normal; see `unit_of`."""
+    least, largest = widened(np.inf, 0.0, n.x)
+    least, largest = widened(least, largest, n.y)
+    least, largest = widened(least, largest, n.z)
+    return unit_of(least, largest, NORMAL_LIMBS)
+
+
+@loop
+def wide_coefficient(mu, i, j, unit):
+    """Return a coefficient on integers."""
+    x, y, z = vector_at(mu, i, j)
     return Vector(
-        precise_difference(mu[p, q, 0], mu[i, j, 0], scale),
-        precise_difference(mu[p, q, 1], mu[i, j, 1], scale),
-        precise_difference(mu[p, q, 2], mu[i, j, 2], scale),
+        wide(x, unit, PATCH_LIMBS), wide(y, unit, PATCH_LIMBS), wide(z, unit, PATCH_LIMBS)
     )
 
 
 @loop
-def precise_forms(mu, i, j, turn, scale, n):
-    """Return D, U, V, W of a patch, times `scale`, and a normal as double-doubles."""
-    patch = triangle(
-        precise_neighbour(mu, i, j, turn, SOUTHWEST, scale),
-        precise_neighbour(mu, i, j, turn, SOUTH, scale),
-        precise_neighbour(mu, i, j, turn, SOUTHEAST, scale),
-        precise_neighbour(mu, i, j, turn, WEST, scale),
-        precise_neighbour(mu, i, j, turn, EAST, scale),
-        precise_neighbour(mu, i, j, turn, NORTH, scale),
-    )
-    return forms(patch, Vector(precise(n.x), precise(n.y), precise(n.z)))
-
-
-# --- on integers ----------------------------------------------------------------------------------
+def neighbour(mu, i, j, turn, k, centre, unit):
+    """Return neighbour k minus the coefficient."""
+    x, y, z = wide_coefficient(mu, i + NEIGHBOURS[turn, k, 0], j + NEIGHBOURS[turn, k, 1], unit)
+    return Vector(x - centre.x, y - centre.y, z - centre.z)
 
 
 @inline
-def patch_at(patches, k):
-    """Return the patch a, b, c, d, e in row k of an array (m, 5, 3); p is arbitrary."""
-    a = vector_at(patches, k, 0)
-    return Patch(
-        a,
-        vector_at(patches, k, 1),
-        vector_at(patches, k, 2),
-        vector_at(patches, k, 3),
-        vector_at(patches, k, 4),
-        a,
+def wide_patch(mu, i, j, turn, unit) -> Patch:
+    """Return the vectors of the patch of the coefficient (i, j) on integers."""
+    centre = wide_coefficient(mu, i, j, unit)
+    return triangle(
+        neighbour(mu, i, j, turn, SOUTHWEST, centre, unit),
+        neighbour(mu, i, j, turn, SOUTH, centre, unit),
+        neighbour(mu, i, j, turn, SOUTHEAST, centre, unit),
+        neighbour(mu, i, j, turn, WEST, centre, unit),
+        neighbour(mu, i, j, turn, EAST, centre, unit),
+        neighbour(mu, i, j, turn, NORTH, centre, unit),
     )
 
 
 @loop
-def load_residues(mu, i, j, turn, n, lowest, lowest_n, count, tables, work):
-    """Write the residues of a patch and of a normal modulo the first `count` primes.
+def wide_normal(n, unit):
+    """Return a normal on integers, with its first component positive.
 
     The forms are even in n, but a normal and its opposite must be displaced to opposite normals:
     where a surface is joined to its own mirror image, one patch has the one and its neighbour the
-    other. So n is taken with its first component positive.
+    other.
     """
-    first = n.x if n.x != 0.0 else n.y if n.y != 0.0 else n.z
-    side = math.copysign(1.0, first)
-    for k in range(count):
-        prime = tables.primes[k]
-        powers = tables.powers[k]
-        patch = residues_of_patch(mu, i, j, turn, lowest, prime, powers)
-        for form in range(5):
-            work.patches[k, form, 0] = patch[form].x % prime
-            work.patches[k, form, 1] = patch[form].y % prime
-            work.patches[k, form, 2] = patch[form].z % prime
-        work.normals[k, 0] = residue(side * n.x, lowest_n, prime, powers)
-        work.normals[k, 1] = residue(side * n.y, lowest_n, prime, powers)
-        work.normals[k, 2] = residue(side * n.z, lowest_n, prime, powers)
+    side = math.copysign(1.0, n.x if n.x != 0.0 else n.y if n.y != 0.0 else n.z)
+    return Vector(
+        wide(side * n.x, unit, NORMAL_LIMBS),
+        wide(side * n.y, unit, NORMAL_LIMBS),
+        wide(side * n.z, unit, NORMAL_LIMBS),
+    )
+
+
+# --- signs ----------------------------------------------------------------------------------------
 
 
 @loop
-def residues_of_monomial(s, t, count, tables, work):
-    """Write the residues of the coefficients of a monomial in D, U, V, W.
+def note(D, U, V, W, forms, signs):
+    """Note the coefficients of one monomial: they give the signs that are still zero.
 
-    At the displaced normal n + (ε₁, ε₂, ε₃) each form is a sum of the ten monomials of n, ε₁, ε₂,
-    ε₃ (0, 1, 2, 3); this one is that of s and t. It follows from F(x + y) − F(x) − F(y).
+    They are those of D, U, V, too, if D has none yet. Returns whether all signs are known.
     """
-    for k in range(count):
-        prime = tables.primes[k]
-        patch = patch_at(work.patches, k)
-        parts = ((1, 1), (1, 0), (0, 1)) if s != t else ((1, 0), (0, 0), (0, 0))
-        for which, (with_s, with_t) in enumerate(parts):
-            if with_s + with_t == 0:
-                continue
-            x, y, z = 0, 0, 0
-            for axis, taken in ((s, with_s), (t, with_t)):
-                if taken:
-                    x += work.normals[k, 0] if axis == 0 else int(axis == 1)
-                    y += work.normals[k, 1] if axis == 0 else int(axis == 2)
-                    z += work.normals[k, 2] if axis == 0 else int(axis == 3)
-            values = residues_of_forms(patch, Vector(x % prime, y % prime, z % prime), prime)
-            for form in range(4):
-                value = values[form] if which == 0 else prime - values[form]
-                before = work.residues[form, k] if which else 0
-                work.residues[form, k] = (value + before) % prime
+    if forms[0] == 0.0:
+        forms[0], forms[1], forms[2] = D, U, V
+    for k, value in enumerate((U, V, W)):
+        if signs[k] == 0:
+            signs[k] = int(value > 0.0) - int(value < 0.0)
+    return signs[0] * signs[1] * signs[2] != 0
 
 
 @inline
-def any_residue(residues, form, count):
-    """Return whether a number has a nonzero residue."""
-    found = False
-    for k in range(count):
-        found = found or residues[form, k] != 0
-    return found
-
-
-@loop
-def exact_forms(mu, i, j, turn, n, tables, work, signs):
-    """Write D, U, V, W to work.forms, and the signs of U, V, W to signs (3,).
-
-    Returns the exponent of the unit of the forms, or HIGHEST if the numbers are too long.
+def exact_forms(patch, n, forms, signs):
+    """Write D, U, V to forms (3,) and the signs of U, V, W to signs (3,), all zero before.
 
     Where a zero among U, V, W leaves undecided whether the patch has the normal, the normal is
     displaced to n + (ε₁, ε₂, ε₃), with n ≫ ε₁ ≫ ε₂ ≫ ε₃ ≫ ε₁²: a form is then a sum of ten
     monomials, each infinitesimal relative to the one before, and the first nonzero one gives
     its sign. For quotients by D, the coefficients of the leading monomial of D are written.
     """
-    lowest, highest = exponents_around(mu, i, j)
-    lowest_n, highest_n = exponents_of(n)
-    unit = 2 * (lowest + lowest_n - 2 * MANTISSA)
-    bits = highest - lowest + highest_n - lowest_n + 2 * MANTISSA
-    count = int((2 * (bits + WEIGHT_BITS + SUM_BITS) + FORM_BITS) / BITS) + 2
-    longest = max(highest - lowest, highest_n - lowest_n)
-    if count > tables.primes.size or longest >= tables.powers.shape[1]:
-        return HIGHEST
-    load_residues(mu, i, j, turn, n, lowest, lowest_n, count, tables, work)
-    for form in range(4):
-        work.forms[form] = 0.0
-    for form in range(3):
-        signs[form] = 0
-    for s in range(4):
-        for t in range(s, 4):
-            residues_of_monomial(s, t, count, tables, work)
-            leads_in_d = work.forms[0] == 0.0
-            for form in range(4):
-                known = not leads_in_d and (form == 0 or signs[form - 1] != 0)
-                if known or not any_residue(work.residues, form, count):
-                    continue
-                value = mixed_radix_value(
-                    work.residues[form, :count], tables.primes, tables.inverses, work.digits
-                )
-                if leads_in_d:
-                    work.forms[form] = value
-                if form > 0 and signs[form - 1] == 0:
-                    signs[form - 1] = int(value > 0.0) - int(value < 0.0)
-            opposite = min(signs[0], signs[1], signs[2]) < 0 < max(signs[0], signs[1], signs[2])
-            if (opposite and s + t == 0) or signs[0] * signs[1] * signs[2] != 0:
-                return unit
-    return unit
-
-
-# --- pairs of patches and normals -----------------------------------------------------------------
+    A, B, C, P, Q = linear_forms(patch, n)
+    D, U, V, W = eliminated_forms(A, B, C, P, Q)
+    known = note(rounded(D), rounded(U), rounded(V), rounded(W), forms, signs)
+    known |= min(signs[0], signs[1], signs[2]) < 0 < max(signs[0], signs[1], signs[2])
+    one = wide(1.0, 0, NORMAL_LIMBS)
+    for s in range(-1, 3):
+        if s >= 0:
+            A, B, C = patch.a[s] * one, patch.b[s] * one, patch.c[s] * one
+            P, Q = patch.d[s] * one, patch.e[s] * one
+        for t in range(max(s, 0), 3):
+            if known:
+                break
+            D, U, V, W = polar_forms(
+                A, B, C, P, Q, patch.a[t], patch.b[t], patch.c[t], patch.d[t], patch.e[t]
+            )
+            # The polar form of a vector and itself is twice the form.
+            share = 0.5 if s == t else 1.0
+            known = note(
+                share * rounded(D), share * rounded(U), share * rounded(V), rounded(W), forms, signs
+            )
 
 
 @jit
-def decide_precisely(mu, scale, pairs, first, last, decided):
-    """Decide the pairs first, …, last − 1, which are undecided in floating point, with 106 bits.
+def decide_exactly(mu, scale, patches, normals, first, last, forms, decided):
+    """Decide the pairs first, …, last − 1 of patches (k,) and normals (k, 3).
 
-    If `forgiven` is positive, the parameters are needed outside the patch, too. Signs that are
-    still undecided stay unknown.
-    """
-    columns = mu.shape[1] - 2
-    for k in range(first, last):
-        i, j, turn = place_of(pairs.patches[k], columns)
-        n = row_vector(pairs.normals, k)
-        D, U, V, W = precise_forms(mu, i + 1, j + 1, turn, scale, n)
-        bound = pairs.bounds[k]
-        least = PRECISE * bound
-        low = min(U.high, V.high, W.high)
-        high = max(U.high, V.high, W.high)
-        nearest = min(abs(U.high), abs(V.high), abs(W.high))
-        decided.known[k] = (nearest > least and abs(D.high) > bound) or (
-            low < -least and high > least and pairs.forgiven[k] == 0.0
-        )
-        if decided.known[k]:
-            for form, value in enumerate((U.high, V.high, W.high)):
-                decided.signs[k, form] = int(value > least) - int(value < -least)
-            decided.local[k, 0] = U.high / D.high
-            decided.local[k, 1] = V.high / D.high
-            decided.size[k] = abs(D.high)
-
-
-@jit
-def decide_exactly(mu, scale, pairs, tables, first, last, work, decided):
-    """Decide those of the pairs first, …, last − 1 whose signs are unknown, on integers.
-
-    The signs stay unknown if the numbers are too long for the primes.
+    They stay unknown if the numbers are too long. `forms` (3,) is a work array.
     """
     columns = mu.shape[1] - 2
     exponent = math.frexp(scale)[1] - 1
-    for k in range(first, last):
-        if decided.known[k]:
-            continue
-        i, j, turn = place_of(pairs.patches[k], columns)
-        n = row_vector(pairs.normals, k)
-        unit = exact_forms(mu, i + 1, j + 1, turn, n, tables, work, decided.signs[k])
-        decided.known[k] = unit < HIGHEST
-        decided.local[k, 0] = work.forms[1] / work.forms[0]
-        decided.local[k, 1] = work.forms[2] / work.forms[0]
-        decided.size[k] = math.ldexp(abs(work.forms[0]), unit + 2 * exponent)
+    k = first
+    while k < last:
+        number = patches[k]
+        i, j, turn = place_of(number, columns)
+        unit, fits = unit_around(mu, i + 1, j + 1)
+        patch = wide_patch(mu, i + 1, j + 1, turn, unit)
+        while k < last and patches[k] == number:
+            n = row_vector(normals, k)
+            unit_n, fits_n = unit_of_normal(n)
+            decided.known[k] = fits and fits_n
+            if decided.known[k]:
+                signs = decided.signs[k]
+                for x in range(3):
+                    forms[x], signs[x] = 0.0, 0
+                exact_forms(patch, wide_normal(n, unit_n), forms, signs)
+                decided.local[k, 0] = forms[1] / forms[0]
+                decided.local[k, 1] = forms[2] / forms[0]
+                decided.size[k] = math.ldexp(abs(forms[0]), 2 * (unit + unit_n + exponent))
+            k += 1

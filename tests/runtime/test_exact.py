@@ -6,14 +6,10 @@ from itertools import product
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.generated.primes import PRIMES
 from gaussmap.generated.spline import NEIGHBOURS, TRIANGLE_NEIGHBOURS, triangle
-from gaussmap.generated.vectors import Vector
 from gaussmap.runtime import exact, long_integers
 from gaussmap.runtime.formula_calls import python_function, vector
-from gaussmap.runtime.integers import integers, sign
-from gaussmap.runtime.kernels import decide, modular
-from gaussmap.runtime.kernels.jit import jit
+from gaussmap.runtime.integers import integers_by_row, sign
 from gaussmap.runtime.splines.domain import Boundary
 from hypothesis import given
 from hypothesis import strategies as st
@@ -21,8 +17,6 @@ from hypothesis import strategies as st
 ALIGNED = np.array([n for n in product((-1.0, 0.0, 1.0), repeat=3) if any(n)])
 PERIODIC: Boundary = (("periodic", "periodic"), ("periodic", "periodic"))
 OPEN: Boundary = (("open", "open"), ("open", "open"))
-precise_forms = jit(python_function(decide.precise_forms))
-mixed_radix_value = jit(python_function(modular.mixed_radix_value))
 
 
 def torus_of_integers(m: int, n: int, size: int, noise: np.ndarray) -> gm.Spline:
@@ -97,70 +91,91 @@ def every_pair(spline: gm.Spline, normals: np.ndarray) -> tuple[np.ndarray, np.n
     return patches, np.tile(normals, (spline.patches, 1))
 
 
-def decided(
-    spline: gm.Spline, patches: np.ndarray, normals: np.ndarray, bound: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return what the compiled decision says of pairs if the forms are known up to `bound`."""
-    bounds = np.full(len(patches), bound)
-    return exact._forms(spline, patches, normals, bounds, np.ones(len(patches)), None)
+def check_forms(spline: gm.Spline, patches: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """Compare the decisions on pairs with those of Python's integers; return the signs."""
+    local, size, signs = exact._forms(spline, patches, normals, None)
+    expected_local, expected_size, expected = long_integers.forms_of_pairs(spline, patches, normals)
+    np.testing.assert_array_equal(signs, expected)
+    inside = (signs == signs[:, :1]).all(axis=1) & (signs != 0).all(axis=1)
+    vectors, _ = long_integers._patch_vectors(spline, patches)
+    regular = inside & (long_integers._forms(vectors, integers_by_row(normals)[0])[0] != 0)
+    np.testing.assert_array_equal(size[regular], expected_size[regular])
+    # U and D are rounded once, and their quotient; the integers round it once.
+    np.testing.assert_allclose(local[inside], expected_local[inside], rtol=2**-51, atol=0.0)
+    return signs
+
+
+@pytest.fixture
+def no_long_integers(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let nothing but the kernel decide."""
+    monkeypatch.setattr(exact, "forms_of_pairs", None)
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("bound", [1e-13, np.inf])
+@pytest.mark.usefixtures("no_long_integers")
 @pytest.mark.parametrize("size", [1.0, 0.3, 1e-5, 1e150, 1e-150])
-def test_compiled_forms_are_those_of_long_integers(size: float, bound: float) -> None:
-    """With an infinite bound nothing but integers modulo primes decides."""
+def test_compiled_forms_are_those_of_long_integers(size: float) -> None:
     spline = torus_of_integers(8, 6, 8, np.zeros((8, 6, 3)))
     spline.coefficients[...] *= size
-    pairs = every_pair(spline, np.concatenate([ALIGNED, gm.icosphere(3)]))
-    local, length, signs = decided(spline, *pairs, bound)
-    expected_local, expected_length, expected_signs = long_integers.forms_of_pairs(spline, *pairs)
-    np.testing.assert_array_equal(signs, expected_signs)
-    inside = (signs == signs[:, :1]).all(axis=1) & (signs != 0).all(axis=1)
-    # U/D is rounded once by the integers; modulo primes after sums of at most 24 positive terms.
-    np.testing.assert_allclose(local[inside], expected_local[inside], rtol=2**-46, atol=0.0)
-    np.testing.assert_allclose(length[inside], expected_length[inside], rtol=2**-46)
+    check_forms(spline, *every_pair(spline, np.concatenate([ALIGNED, gm.icosphere(2)])))
 
 
 @pytest.mark.compiled
-def test_numbers_too_long_for_the_primes_are_long_integers() -> None:
+@pytest.mark.usefixtures("no_long_integers")
+@pytest.mark.parametrize("count", [2_000, pytest.param(100_000, marks=pytest.mark.slow)])
+def test_random_pairs_are_decided_as_on_long_integers(count: int) -> None:
+    rng = np.random.default_rng(7)
+    coefficients = rng.standard_normal((18, 18, 3)) * 2.0 ** rng.integers(-20, 20, (18, 18, 1))
+    spline = gm.Spline(coefficients, ((0, 16), (0, 16)), OPEN, "t")
+    normals = rng.standard_normal((count, 3)) * 2.0 ** rng.integers(-50, 50, (count, 3))
+    signs = check_forms(spline, rng.integers(0, spline.patches, count), normals)
+    assert len(np.unique(signs, axis=0)) == 8
+
+
+@pytest.mark.compiled
+@pytest.mark.usefixtures("no_long_integers")
+@pytest.mark.parametrize("count", [2_000, pytest.param(100_000, marks=pytest.mark.slow)])
+def test_symmetric_pairs_are_decided_as_on_long_integers(count: int) -> None:
+    """Small integers, among which each of the ten monomials decides some sign."""
+    rng = np.random.default_rng(8)
+    coefficients = rng.integers(-1, 2, (42, 42, 3)).astype(np.float64)
+    coefficients[20:] *= rng.integers(0, 2, (22, 42, 3))  # many zeros, and developable patches
+    spline = gm.Spline(coefficients, ((0, 40), (0, 40)), OPEN, "t")
+    patches = rng.integers(0, spline.patches, count)
+    normals = rng.integers(-2, 3, (count, 3)).astype(np.float64)
+    normals[~normals.any(axis=1)] = 1.0
+    check_forms(spline, patches, normals)
+    vectors, _ = long_integers._patch_vectors(spline, patches[:2_000])
+    n, _ = integers_by_row(normals[:2_000])
+    nonzero = np.asarray(long_integers._monomials(vectors, n) != 0, dtype=bool)
+    first = np.where(nonzero.any(axis=0), np.argmax(nonzero, axis=0), -1)
+    tied = ~nonzero[0, 1:].all(axis=0)
+    assert set(first[1:, tied].ravel().tolist()) >= set(range(10))
+
+
+@pytest.mark.compiled
+@pytest.mark.usefixtures("no_long_integers")
+def test_the_largest_numbers_do_not_overflow() -> None:
+    """All bits are set, and the exponents differ as far as they may: 69 and 133."""
+    rng = np.random.default_rng(9)
+
+    def extreme(shape: tuple[int, ...], shift: int) -> np.ndarray:
+        full = rng.choice([-1.0, 1.0], shape) * (2.0 - 2.0**-52)
+        return np.where(rng.random(shape) < 0.8, full * 2.0**shift, rng.choice([-1.0, 1.0], shape))
+
+    spline = gm.Spline(extreme((18, 18, 3), 69), ((0, 16), (0, 16)), OPEN, "t")
+    pairs = rng.integers(0, spline.patches, 2_000), extreme((2_000, 3), 133)
+    check_forms(spline, *pairs)
+    spline.coefficients[:, :, 0] *= 2.0
+    with pytest.raises(TypeError):
+        check_forms(spline, *pairs)
+
+
+@pytest.mark.compiled
+def test_numbers_too_long_for_the_kernel_are_long_integers() -> None:
     spline = torus_of_integers(8, 6, 8, np.zeros((8, 6, 3)))
     spline.coefficients[3, 3] *= 1e-200
-    patches, normals = every_pair(spline, np.array([[1.0, 0.0, 0.0], [1.0, 1e-170, 1e-290]]))
-    _, _, signs = decided(spline, patches, normals, np.inf)
-    expected = long_integers.forms_of_pairs(spline, patches, normals)[2]
-    np.testing.assert_array_equal(signs, expected)
-
-
-def test_double_doubles_carry_106_bits() -> None:
-    """Forms of random patches, against fractions: the error that the kernel allows for."""
-    rng = np.random.default_rng(3)
-    spline = gm.Spline(rng.standard_normal((4, 4, 3)), ((0, 2), (0, 2)), OPEN, "t")
-    for patch, n in zip(range(16), gm.fibonacci(16), strict=True):
-        i, j = divmod(patch // 4, 2)
-        forms = precise_forms(
-            spline.coefficients, i + 1, j + 1, patch % 4, spline.scale, Vector(*n)
-        )
-        vectors, exponent = long_integers._patch_vectors(spline, np.array([patch]))
-        whole, unit = integers(n)
-        exact_forms = long_integers._forms(vectors, whole[:, None])[:, 0]
-        scale = Fraction(2) ** (2 * (exponent + unit))
-        size = max(abs(int(x)) * scale for x in exact_forms)
-        for (high, low), value in zip(forms, exact_forms, strict=True):
-            error = abs(Fraction(high) + Fraction(low) - int(value) * scale)
-            # 40 operations in a row at most, each with an error of 2⁻¹⁰² of sums of 12 moduli.
-            assert error <= 40 * 12 * Fraction(2) ** -102 * max(size, 1)
-
-
-@given(values=st.lists(st.integers(-(2**200), 2**200), min_size=1, max_size=5))
-def test_numbers_come_back_from_their_residues(values: list[int]) -> None:
-    primes = PRIMES[:9]
-    inverses = exact.prime_tables().inverses
-    for value in values:
-        residues = np.array([value % int(p) for p in primes])
-        found = mixed_radix_value(residues, primes, inverses, np.empty(9, dtype=np.int64))
-        # Nine digits are added, with two roundings each.
-        assert abs(Fraction(found) - value) <= 18 * Fraction(2) ** -53 * abs(value)
+    check_forms(spline, *every_pair(spline, np.array([[1.0, 0.0, 0.0], [1.0, 1e-170, 1e-290]])))
 
 
 @pytest.mark.compiled
