@@ -171,7 +171,6 @@ def test_the_largest_numbers_do_not_overflow() -> None:
         check_forms(spline, *pairs)
 
 
-@pytest.mark.compiled
 def test_numbers_too_long_for_the_kernel_are_long_integers() -> None:
     spline = torus_of_integers(8, 6, 8, np.zeros((8, 6, 3)))
     spline.coefficients[3, 3] *= 1e-200
