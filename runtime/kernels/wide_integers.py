@@ -119,7 +119,7 @@ def _wide(value, unit, limbs):
         power = code >> 52 & 2047
         mantissa = code & FRACTION | (FRACTION + 1 if power > 0 else 0)
         shift = max(max(power - 1, 0) + LOWEST - unit, 0)
-        return shifted(-mantissa if code < 0 else mantissa, shift, limbs)
+        return shifted(-mantissa if code < 0 else mantissa, shift, limbs)  # pyright: ignore[reportCallIssue]
 
     return compiled
 
@@ -127,7 +127,7 @@ def _wide(value, unit, limbs):
 @overload(rounded)
 def _rounded(x):
     def compiled(x):
-        bits, exponent = leading(x)
+        bits, exponent = leading(x)  # pyright: ignore[reportCallIssue]
         return math.ldexp(float(bits), exponent)
 
     return compiled
@@ -150,7 +150,7 @@ def operation(symbol: Any, *kinds: Any) -> Callable[[Any], Any]:
                     return signature(Wide(total), *args)
                 return None
 
-        infer_global(symbol)(Template)
+        infer_global(symbol)(Template)  # pyright: ignore[reportOptionalCall]
         lower_builtin(symbol, *kinds)(lambda _, builder, signature, values: emit(builder, *values))
         return emit
 
