@@ -81,6 +81,7 @@ verify: $(READY) ## run what is slow: all tests with many random examples, brows
 	.ci/check-html
 	$(MAKE) docs
 	.ci/check-site
+	.ci/check-newcomers
 
 bench: $(READY) ## run the benchmarks (ratios against the machine's own limit)
 	$(BIN)/python -m pytest benchmarks -o python_files='bench_*.py' --benchmark-only --benchmark-quiet
