@@ -159,7 +159,8 @@ registration: $(VENV)/peers/.ready ## measure registration by Open3D's ICP again
 	$(VENV)/peers/bin/python docs/registration.py > docs/registration.tmp
 	mv docs/registration.tmp docs/registration.md
 
-# The site is built in an environment of its own, which sees the packages of .venv.
+# The site is built in an environment of its own, which sees the packages of .venv. Its pages call
+# the command `gaussmap`.
 $(VENV)/docs/.ready: $(READY)
 	$(PYTHON) -m venv --without-pip $(VENV)/docs
 	$(BIN)/python -c 'import sysconfig as s; print("import site; site.addsitedir(%r)" % s.get_path("purelib"))' \
@@ -174,7 +175,7 @@ $(VENV)/docs/.ready: $(READY)
 docs: $(VENV)/docs/.ready ## build the site of the documentation, out/site/index.html
 	mkdir -p out/extra
 	$(GAUSSMAP) view torus --count 2000 --quiet -o out/extra/torus.html
-	$(VENV)/docs/bin/python -m sphinx --quiet --nitpicky --fail-on-warning --keep-going \
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(VENV)/docs/bin/python -m sphinx --quiet --nitpicky --fail-on-warning --keep-going \
 		--doctree-dir out/doctrees docs out/site
 
 clean: ## remove what make made

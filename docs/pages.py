@@ -1,9 +1,7 @@
-"""What pages of the site call in their first cell: small pictures, and the right `gaussmap`."""
+"""What pages of the site call in their first cell: small pictures."""
 
 from __future__ import annotations
 
-import os
-import sys
 from io import BytesIO
 from typing import Any
 
@@ -19,9 +17,7 @@ COLOURS = 96
 
 
 def prepare() -> None:
-    """Make figures small, and let %%bash find the `gaussmap` of this Python."""
-    bin_folder = os.path.dirname(sys.executable)
-    os.environ["PATH"] = bin_folder + os.pathsep + os.environ.get("PATH", "")
+    """Make figures small."""
     shell: Any = get_ipython()
     plt.close(plt.figure())  # the backend of notebooks registers its own pictures first
     shell.display_formatter.formatters["image/png"].for_type(Figure, small_png)
