@@ -22,7 +22,7 @@ GRID = "a grid that follows the curvature"
 def summary_of(samples: Samples) -> str:
     """Return one line: the number of samples, where they come from, what they cover."""
     report, split = samples.report, kinds_of_points(samples).removeprefix(": ").strip(" ()")
-    line = f"{len(samples):,} samples{_origin(samples)} ({split})"
+    line = f"{_number(len(samples), 'sample')}{_origin(samples)} ({split})"
     if len(samples) != report.samples:
         line = f"{len(samples):,} of {report.samples:,}" + line.removeprefix(f"{len(samples):,}")
     if report.angle is not None:
@@ -47,6 +47,10 @@ def summary_of(samples: Samples) -> str:
         tips = "a sharp tip" if report.apexes == 1 else f"{report.apexes} sharp tips"
         line += f"; the surface ends in {tips}"
     return line + _place(report) + _infinite(samples)
+
+
+def _number(count: int, what: str) -> str:
+    return f"{count:,} {what}{'' if count == 1 else 's'}"
 
 
 def _place(report: SamplingReport) -> str:
@@ -101,7 +105,7 @@ def _origin(samples: Samples) -> str:
         return " in the gaps between normals" if normals else ""
     if not normals:
         return ""
-    given = f"found by {normals:,} normals"
+    given = f"found by {_number(normals, 'normal')}"
     if not filling:
         return f" {given}"
     return f": {len(samples) - filling:,} {given}, {filling:,} in the gaps between these"
