@@ -56,6 +56,7 @@ def test_subnormal_numbers_are_integers() -> None:
         assert found[0] == math.ldexp(math.ldexp(x, 1000), -LEAST - 1000) == wide(x, LEAST, TWO)
 
 
+@pytest.mark.compiled
 def test_wide_integers_have_no_quotient() -> None:
     with pytest.raises(Exception, match="Wide"):
         jit(lambda x: python_function(parameters)(wide(x, UNIT, TWO), 1, 1))(1.0)
