@@ -57,8 +57,8 @@ def warn_of_rounding(points: NDArray[np.floating], stacklevel: int) -> None:
         return
     low, high = (x.astype(np.float64) for x in (points.min(axis=0), points.max(axis=0)))
     largest = float(np.maximum(np.abs(low), np.abs(high)).max())
-    if not largest < float(np.finfo(np.float32).max):
-        return
+    if not math.dist(low, high) < largest < float(np.finfo(np.float32).max):
+        return  # an origin would not help
     step = float(np.spacing(np.float32(largest)))
     if step > ROUNDING * math.dist(low, high) / math.sqrt(len(points)):
         x, y = (f"{math.floor(q)}" for q in low[:2])

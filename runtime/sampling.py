@@ -183,7 +183,7 @@ def sample(
     >>> spline = gm.fit(torus)
     >>> samples = gm.sample(spline, normals=gm.icosphere(20))
     >>> again = gm.sample(spline, normals=gm.icosphere(20), out=samples)
-    >>> np.shares_memory(again.points, samples.points)
+    >>> again.points.base is samples.points
     True
     >>> from gaussmap.runtime.cad.examples import box
     >>> samples = gm.sample(box(), 60, edges=True)

@@ -67,7 +67,8 @@ const LIFT = 0.004; // samples are drawn above the triangles, which would hide h
 const layers = {
     surface: [mesh(), ...kinds.map((which, k) => markers(placed(points, which, LIFT), size, PALE[k]))],
     // Larger ones below: one normal may have samples of both kinds.
-    sphere: [ball(), globe(), ...kinds.map((which, k) => markers(placed(normals, which), k ? size : 1.7 * size, PALE[k]))],
+    sphere: [ball(), globe(), ...kinds.map((which, k) =>
+        markers(placed(normals, which, k && LIFT), k ? size : 1.4 * size, PALE[k]))],
 };
 
 function layout(aspect, range, eye) {

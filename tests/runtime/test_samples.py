@@ -185,11 +185,13 @@ class TestReport:
             "empty_faces": np.uint8(1),
             "oriented": True,
             "edge_samples": np.int64(2),
+            "crs": "EPSG:32633",
+            "origin": np.array([1, 2.0]),
         }
         report = SamplingReport("s", *numbers, **more)
         assert [type(getattr(report, f.name)) for f in fields(report)] == [
             str, int, int, int, float, int, float, float, int, str, int, float, float, float,
-            int, int, str, int, int, bool, int,
+            int, int, str, int, int, bool, int, str, tuple,
         ]  # fmt: skip
 
     @pytest.mark.parametrize("name", ["normals", "samples", "patches", "developable_patches"])
