@@ -29,7 +29,7 @@ def height(east, north):
 # The file is made here, by Rasterio, with heights at the centres of pixels.
 transform = from_origin(WEST, NORTH, PIXEL, PIXEL)
 column, row = np.meshgrid(np.arange(COLUMNS) + 0.5, np.arange(ROWS) + 0.5)
-east, north = transform * (column, row)
+east, north = transform @ (column, row)
 heights = height(east, north)
 heights[LAKE] = NODATA
 with rasterio.open(
@@ -54,7 +54,7 @@ for name in ("points.las", "again.las"):
     assert CRS.from_wkt(record.string).to_epsg() == 32632
     assert np.abs(points.T - samples.points).max() <= max(cloud.header.scales)
     # Inside the centres of the pixels, and none where heights are missing.
-    column, row = ~transform * (x, y)
+    column, row = ~transform @ (x, y)
     assert min(column.min(), row.min()) > 0.5 - 1e-6
     assert column.max() < COLUMNS - 0.5 + 1e-6
     assert row.max() < ROWS - 0.5 + 1e-6
