@@ -211,8 +211,8 @@ def _view() -> Command:
     return _command(
         "view",
         "Write a page with a surface and its normals, linked.",
-        "Write one page for browsers with a surface and its samples beside the unit sphere of "
-        "normals: click a normal, and its preimages light up; click a place, and the Gaussian "
+        "Write one page for browsers: a surface with its samples, and the unit sphere of their "
+        "normals. Click a normal, and its preimages light up; click a place, and the Gaussian "
         "image of the region around it lights up. Needs Plotly: pip install 'gaussmap[view]'. A "
         "page shows at most 50000 samples, and works without a network.",
         *_sampling(default_count=5_000),

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
-from ..viewer.view import COUNT, check_target, view_to_file
+from ..sampling import sample
+from ..viewer.view import COUNT, check_count, check_target, view
 from .console import summarize
 from .inputs import arguments
 
@@ -14,5 +15,8 @@ __all__ = ["run"]
 def run(options: SimpleNamespace) -> None:
     """Write a page with a surface, its samples and their normals, linked."""
     check_target(options.output)
-    samples = view_to_file(path=options.output, **arguments(options, default_count=COUNT))
+    given = arguments(options, default_count=COUNT)
+    check_count(given["count"] or 0)
+    samples = sample(**given)
+    view(samples, options.output, samples.spline or given["surface"])
     summarize(samples, options)

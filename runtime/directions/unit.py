@@ -91,7 +91,7 @@ def normalized(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _are_unit(array: NDArray[Any], threads: int | None) -> bool:
-    """Return whether an array can be used as unit vectors as it is, by kernels, too."""
+    """Return whether an array holds unit vectors, in the type and layout that kernels take."""
     if array.dtype != np.float64 or not array.flags.carray:
         return False
 

@@ -11,16 +11,14 @@ import base64
 import html
 import json
 import os
-from collections.abc import Sequence
 from importlib.resources import files
 from string import Template
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ..cad.part import Part
-from ..density.request import checked_request
 from ..errors import InputError
 from ..extras import check_extra, from_extra
 from ..files import paths
@@ -28,12 +26,11 @@ from ..pictures.palette import ELLIPTIC, HYPERBOLIC, PARABOLIC, SCALE
 from ..pictures.plot import scene_of_samples
 from ..pictures.scene import Scene
 from ..samples import Samples
-from ..sampling import sample_and_normals
 from ..splines.spline import Spline
 from ..surface.surface import Surface
 from ..trees import tree_of
 
-__all__ = ["COUNT", "MOST", "SUFFIXES", "check_target", "page", "view", "view_to_file"]
+__all__ = ["COUNT", "MOST", "SUFFIXES", "check_count", "check_target", "page", "view"]
 
 SUFFIXES = (".html", ".htm")
 SCRIPTS = ("samples", "scene", "camera", "picking", "selection", "highlights", "link")
@@ -58,36 +55,6 @@ def view(
     content = page(samples, surface)
     with paths.atomic_path(path) as temporary:
         temporary.write_text(content, encoding="utf-8")
-
-
-def view_to_file(
-    surface: Surface | Spline | Part,
-    path: str | os.PathLike[str],
-    normals: ArrayLike | None = None,
-    *,
-    count: int | None = None,
-    angle: float | None = None,
-    coverage: float | None = None,
-    density: str | float | None = None,
-    relax: int = 0,
-    cells: Sequence[int] | None = None,
-    on: str | None = None,
-    threads: int | None = None,
-    progress: bool = False,
-) -> Samples:
-    """Sample a surface, write the page of its samples, return the samples.
-
-    The other arguments are those of `sample`. Raises what `sample` and `view` raise; the path and
-    the count are checked before any work is done.
-    """
-    check_target(path)
-    check_count(count or 0)
-    request = checked_request(normals, count, angle, coverage, density, relax, threads)
-    samples, _ = sample_and_normals(
-        surface, request, cells=cells, on=on, threads=threads, progress=progress
-    )
-    view(samples, path, samples.spline or surface)
-    return samples
 
 
 def check_count(count: int) -> None:
