@@ -9,20 +9,27 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ..generated.icosahedron import FRAMES, STRETCHES
 from .directions.sets import PARTS, PARTS_AT_A_TIME
 from .directions.unit import perpendicular
 from .kernels import bins as kernels
 from .kernels.icosphere import is_icosphere, new_line
 from .kernels.runs import MOST_FREQUENT
+from .kernels.strips import Polyhedron
 from .threads import over_ranges, thread_count
 
-__all__ = ["NormalBins"]
+__all__ = ["NormalBins", "icosahedron"]
 
 NORMALS_PER_BIN = 4
 # The least number of normals for each thread that sorts them, and the largest number of threads.
 FEWEST_NORMALS, MOST_COUNTS = 1 << 16, 8
 # The least radius of a cap of normals, as the tangent of half its opening angle.
 NARROWEST = 2.0**-20
+
+
+def icosahedron(frequency: int) -> Polyhedron:
+    """Return the icosahedron with the points of `icosphere`."""
+    return Polyhedron(FRAMES, float(STRETCHES.max()), frequency, float(frequency))
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,6 +91,13 @@ class NormalBins:
         """The number of squares along an edge of the cube."""
         faces = 6 if self.stretch < 1.1 else 1
         return max(1, min(2048, round(math.sqrt(len(self.normals) / (faces * NORMALS_PER_BIN)))))
+
+    @cached_property
+    def cube(self) -> Polyhedron:
+        """The six faces of the cube, in the order +x, −x, +y, −y, +z, −z."""
+        x, y, z = self.frame
+        frames = np.array([[y, z, x], [y, z, -x], [z, x, y], [z, x, -y], [x, y, z], [x, y, -z]])
+        return Polyhedron(frames, self.stretch, self.grid, 2.0 * self.grid)
 
     @cached_property
     def sorted(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:

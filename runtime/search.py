@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from .bins import NormalBins
+from .bins import NormalBins, icosahedron
 from .exact import decide
 from .fields import ARRAY_NAMES, FLOAT_NAMES, INDEX_NAMES, new_field
 from .kernels.developable import count_developable, first_curved
@@ -189,8 +189,8 @@ class Search:
     @cached_property
     def all_developable(self) -> bool:
         """Whether all patches are developable, up to the rounding of their coordinates."""
-        spline, net = self.spline, np.empty((6, 3))
-        if first_curved(spline.coefficients, spline.scale, spline.noise, net) < spline.patches:
+        spline = self.spline
+        if first_curved(spline.coefficients, spline.scale, spline.noise) < spline.patches:
             return False
         return self.developable(np.arange(spline.patches)) == spline.patches
 
@@ -198,8 +198,8 @@ class Search:
         """Return how many of some patches are developable, up to the rounding of coordinates."""
         if len(patches) == 0:
             return 0
-        spline, net = self.spline, np.empty((6, 3))
-        return count_developable(spline.coefficients, spline.scale, spline.noise, patches, net)
+        spline = self.spline
+        return count_developable(spline.coefficients, spline.scale, spline.noise, patches)
 
     @cached_property
     def coefficients(self) -> Coefficients:
@@ -211,9 +211,9 @@ class Search:
         """Return a function that searches a range of patches, with its own work arrays."""
         bins = self.bins
         if bins.frequency > 0:
-            return scan_in(self.coefficients, bins.normals, bins.frequency)
+            return scan_in(self.coefficients, icosahedron(bins.frequency), bins.normals)
         ordered = Bins(bins.frame, bins.stretch, bins.grid, *bins.sorted)
-        return search_in(self.coefficients, ordered)
+        return search_in(self.coefficients, bins.cube, ordered)
 
     def results(self, first: int, last: int) -> list[SearchResult]:
         """Search the patches first, …, last − 1; return the result in one or more parts."""

@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-import math
-
 from ...generated.patch import control_normals
 from ...generated.vectors import Vector
-from ..tolerances import ANGLE_ERROR, SHORT_CONTROL_NORMAL
 from .jit import jit, loop
 from .patch import patch_vectors, place_of
 from .vectors import dot, length, row_vector, set_row
 
-__all__ = ["cone_of_normals", "least_cosine", "tangent_bounds", "write_control_normals"]
-
-# The cosine of 37 degrees: control normals within this angle of the axis form a narrow cone.
-NARROW = 0.8
+__all__ = ["least_cosine", "tangent_bounds", "write_control_normals"]
 
 
 @loop
@@ -34,43 +28,6 @@ def tangent_bounds(patch):
         max(abs(a.y), abs(b.y), abs(c.y)) + max(abs(d.y), abs(e.y)),
         max(abs(a.z), abs(b.z), abs(c.z)) + max(abs(d.z), abs(e.z)),
     )
-
-
-@loop
-def cone_of_normals(net, tangents, unit, errors, axis):
-    """Write the directions (6, 3) of control normals, their errors (6) and the axis (3) of a cone.
-
-    The errors are angles. `tangents` bounds the components of the tangents. Returns the sine of the
-    angle between the axis and any normal; it is infinite if the cone is not narrow, or if the patch
-    has a singular point, whose direction is undefined and whose error is infinite.
-    """
-    square = tangents * tangents
-    worst = 0.0
-    for x in range(3):
-        axis[x] = 0.0
-    for k in range(6):
-        size = length(row_vector(net, k))
-        inverse = 1.0 / size
-        regular = size > SHORT_CONTROL_NORMAL * square
-        errors[k] = ANGLE_ERROR * (1.0 + square * inverse) if regular else math.inf
-        worst = max(worst, errors[k])
-        for x in range(3):
-            unit[k, x] = net[k, x] * inverse if regular else 0.0
-            axis[x] += unit[k, x]
-    inverse = 1.0 / length(Vector(axis[0], axis[1], axis[2]))
-    for x in range(3):
-        axis[x] *= inverse
-    widest = 0.0
-    cosine = 1.0
-    for k in range(6):
-        cosine = min(cosine, unit[k, 0] * axis[0] + unit[k, 1] * axis[1] + unit[k, 2] * axis[2])
-        s = unit[k, 1] * axis[2] - unit[k, 2] * axis[1]
-        t = unit[k, 2] * axis[0] - unit[k, 0] * axis[2]
-        w = unit[k, 0] * axis[1] - unit[k, 1] * axis[0]
-        widest = max(widest, s * s + t * t + w * w)
-    if not (worst < math.inf and cosine >= NARROW):
-        return math.inf
-    return math.sqrt(widest) + 2.0 * worst
 
 
 @jit

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ...generated.icosahedron import CORNER_PLACES, EDGE_PLACES, LINES, PHI
 from .jit import inline, jit, long_vectors, loop
 from .tile import STEP, TILE
-from .windows import whole_vectors
+from .vectors import whole_vectors
 
 __all__ = [
     "ONE",

@@ -17,7 +17,8 @@ from ...generated.icosahedron import (
     STRETCHES,
 )
 from .jit import inline, loop
-from .windows import VECTOR, bounding_box, face_window, map_cone, set_empty, spans_of_hull
+from .vectors import VECTOR
+from .windows import bounding_box, face_window, map_cone, set_empty, spans_of_hull
 
 __all__ = ["FaceMemory", "border_points", "count_points", "points_inside"]
 

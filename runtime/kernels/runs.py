@@ -12,7 +12,7 @@ from .classify import UNDECIDED, YES
 from .icosphere import ZERO, row_start, write_normals
 from .jit import inline, jit, loop
 from .tile import STEP, TILE, fill_tile, load_patch
-from .windows import whole_vectors
+from .vectors import whole_vectors
 
 __all__ = [
     "LONGEST",

@@ -17,25 +17,17 @@ from ...generated.icosahedron import FACES, PHI, POSITIONS
 from ...generated.patch import eliminated_forms, linear_forms
 from ...generated.vectors import Vector
 from ..tolerances import ACCURATE, LATTICE_ERROR
-from .classify import (
-    NO,
-    UNDECIDED,
-    YES,
-    bound_of_forms,
-    classify,
-    count_undecided,
-    look_again,
-)
-from .developable import may_be_developable
+from .classify import NO, UNDECIDED, YES, classify, count_undecided, look_again
+from .few import NO_STARTS, Few, classify_few, store_few_runs
 from .icosphere import ONE, ZERO, write_line
 from .jit import inline, jit, loop
-from .patch import patch_vectors, place_of
 from .rows import FaceMemory, border_points, count_points, points_inside
 from .runs import store_border, store_runs, store_undecided
 from .search import FEW, Coefficients, Found
-from .tile import STEP, TILE
-from .vectors import dot, row_vector
-from .windows import Cone, load_cone, whole_vectors
+from .strips import AXIS, BOUND, FLAT, SINE, Polyhedron, Strip, patch_in, strip_of
+from .tile import STEP, TILE, vector_in
+from .vectors import dot, row_vector, whole_vectors
+from .windows import Cone, load_cone
 
 __all__ = ["scan_in"]
 
@@ -94,18 +86,21 @@ class LatticeCandidates(NamedTuple):
 
 
 def scan_in(
-    spline: Coefficients, normals: NDArray[np.float64], frequency: int
+    spline: Coefficients, icosahedron: Polyhedron, normals: NDArray[np.float64]
 ) -> Callable[[int, int, Found], tuple[int, int]]:
     """Return a function that calls `scan_patches` with work arrays of its own."""
-    cone, faces, memory = Cone.new(), FaceMemory.new(frequency), LatticeMemory.new()
+    frequency = icosahedron.grid
+    strip, few, cone = Strip.new(), Few.new(), Cone.new()
+    faces, memory = FaceMemory.new(frequency), LatticeMemory.new()
     candidates = LatticeCandidates.new(FEW, frequency)
 
     def scan(first: int, last: int, found: Found) -> tuple[int, int]:
         nonlocal candidates
         while True:
             first, needed = scan_patches(
-                spline, normals, frequency, first, last, found, cone, faces, memory, candidates
-            )
+                spline, icosahedron, normals, first, last, found,
+                strip, few, cone, faces, memory, candidates,
+            )  # fmt: skip
             if needed <= candidates.room(frequency):
                 return first, needed
             candidates = LatticeCandidates.new(2 * needed, frequency)
@@ -115,48 +110,56 @@ def scan_in(
 
 @jit
 def scan_patches(
-    spline, normals, frequency, first_patch, last_patch, found, cone, faces, memory, candidates
-):
+    spline, icosahedron, normals, first_patch, last_patch, found,
+    strip, few, cone, faces, memory, candidates,
+):  # fmt: skip
     """Find the points of an icosphere that are normals of patches, in ascending order for each.
 
     As `search_patches`, for the points (S, 3) of frequency ν; the results are packed runs.
     """
-    mu, scale, noise, border = spline
-    columns = mu.shape[1] - 2
     certain, undecided, bounds, flat, counts = found
     numbers, s, t, codes, marks, words = candidates
+    frequency = icosahedron.grid
+    begin = end = first_patch
     for number in range(first_patch, last_patch):
-        i, j, turn = place_of(number, columns)
-        patch = patch_vectors(mu, i + 1, j + 1, turn, scale)
-        sine = load_cone(patch, cone)
-        face_count, total, at_border = count_points(cone, sine, frequency, faces)
+        if number == end:
+            begin, end = strip_of(spline, icosahedron, number, last_patch, strip)
+            classify_few(icosahedron, NO_STARTS, normals, strip, end - begin, few)
+        place = number - begin
+        sine, bound = strip.rows[SINE + place], strip.rows[BOUND + place]
+        face_count, total, at_border = 0, few.starts[place + 1] - few.starts[place], False
+        if few.many[place]:
+            load_cone(strip.rows, place, cone)
+            face_count, total, at_border = count_points(cone, sine, frequency, faces)
         if total > 0 and (
             counts[0] + total + 1 > certain.shape[0]
             or counts[1] + total + 1 > undecided.shape[0]
             or total + frequency + 64 > s.size
         ):
             return number, total + 1
-        if may_be_developable(patch, cone.net, noise):
+        if strip.rows[FLAT + place] > 0.0:
             flat[counts[2]] = number
             counts[2] += 1
         if total == 0:
             continue
-        bound = bound_of_forms(mu, i, j, turn, scale, noise, border, cone.axis, sine, patch)
         before = counts[1]
+        if not few.many[place]:
+            store_few_runs(few, place, strip.faces[place], number, certain, undecided, counts)
+        patch, axis = patch_in(strip.rows, place), vector_in(strip.rows, AXIS, place)
         if at_border:
             count = border_points(faces, frequency, numbers)
-            classify_border(patch, cone.axis, sine, bound, normals, numbers, count, memory, codes)
+            classify_border(patch, axis, sine, bound, normals, numbers, count, memory, codes)
             store_border(codes, numbers, count, number, certain, undecided, counts)
         for k in range(face_count):
             face = faces.met[k]
             count = points_inside(face, faces, frequency, s, t)
-            forms_on_face(patch, cone.axis, sine, face, frequency, memory.forms)
+            forms_on_face(patch, axis, sine, face, frequency, memory.forms)
             open_ = classify_points(
                 memory.forms, bound if sine < math.inf else math.inf, frequency, s, t, count, codes
             )
             if open_ > 0:
                 classify_again(
-                    patch, cone.axis, sine, bound, face, frequency, s, t, count, memory, codes
+                    patch, axis, sine, bound, face, frequency, s, t, count, memory, codes
                 )
                 counts[1] = store_undecided(
                     face, frequency, s, t, count, codes, number, undecided, counts[1]
@@ -186,7 +189,6 @@ def forms_on_face(patch, axis, sine, face, frequency, forms):
 
     They are A, B, C, P, Q and the height along the axis, which is 1 without a cone.
     """
-    r = Vector(axis[0], axis[1], axis[2])
     corner = row_vector(POSITIONS, FACES[face, 0])
     for k in range(3):
         n, factor = corner, frequency
@@ -199,7 +201,7 @@ def forms_on_face(patch, axis, sine, face, frequency, forms):
         forms[k, 2] = C * factor
         forms[k, 3] = P * factor
         forms[k, 4] = Q * factor
-        forms[k, 5] = factor * dot(n, r)
+        forms[k, 5] = factor * dot(n, axis)
     if sine == math.inf:
         forms[0, 5], forms[1, 5], forms[2, 5] = 1.0, 0.0, 0.0
 

@@ -13,21 +13,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .classify import UNDECIDED, YES, bound_of_forms, classify, count_undecided, look_again
-from .developable import may_be_developable
+from .classify import UNDECIDED, YES, classify, count_undecided, look_again
+from .few import Few, classify_few, copy_few
 from .jit import inline, jit, loop
-from .patch import patch_vectors, place_of
 from .sort import pack_hits, store_sorted
-from .windows import (
-    VECTOR,
-    Cone,
-    face_window,
-    load_cone,
-    map_cone,
-    set_empty,
-    spans_of_hull,
-    whole_vectors,
-)
+from .strips import AXIS, BOUND, FLAT, SINE, Polyhedron, Strip, patch_in, strip_of
+from .tile import vector_in
+from .vectors import VECTOR, whole_vectors
+from .windows import Cone, face_window, load_cone, map_cone, set_empty, spans_of_hull
 
 __all__ = ["Bins", "Coefficients", "Found", "search_in"]
 
@@ -153,15 +146,18 @@ class Candidates(NamedTuple):
         return self.x.size - VECTOR
 
 
-def search_in(spline: Coefficients, bins: Bins) -> Callable[[int, int, Found], tuple[int, int]]:
+def search_in(
+    spline: Coefficients, cube: Polyhedron, bins: Bins
+) -> Callable[[int, int, Found], tuple[int, int]]:
     """Return a function that calls `search_patches` with work arrays of its own."""
-    cone, memory, candidates = Cone.new(), BinMemory.new(bins.grid), Candidates.new(FEW)
+    strip, few, cone = Strip.new(), Few.new(), Cone.new()
+    memory, candidates = BinMemory.new(bins.grid), Candidates.new(FEW)
 
     def search(first: int, last: int, found: Found) -> tuple[int, int]:
         nonlocal candidates
         while True:
             first, needed = search_patches(
-                spline, bins, first, last, found, cone, memory, candidates
+                spline, cube, bins, first, last, found, strip, few, cone, memory, candidates
             )
             if needed <= candidates.room:
                 return first, needed
@@ -171,38 +167,45 @@ def search_in(spline: Coefficients, bins: Bins) -> Callable[[int, int, Found], t
 
 
 @jit
-def search_patches(spline, bins, first, last, found, cone, memory, candidates):
+def search_patches(spline, cube, bins, first, last, found, strip, few, cone, memory, candidates):
     """Find the normals of the patches first, …, last − 1, in ascending order for each patch.
 
     Returns the patch at which the capacity was exceeded, and the number of normals that this patch
     needs; `last` and 0 at the end.
     """
-    mu, scale, noise, border = spline
-    columns = mu.shape[1] - 2
     certain, undecided, bounds, flat, counts = found
     places, numbers, x, y, z, codes, hits, scratch, digits = candidates
+    begin = end = first
     for number in range(first, last):
-        i, j, turn = place_of(number, columns)
-        patch = patch_vectors(mu, i + 1, j + 1, turn, scale)
-        sine = load_cone(patch, cone)
-        total = count_normals(bins, cone, sine, memory)
+        if number == end:
+            begin, end = strip_of(spline, cube, number, last, strip)
+            classify_few(cube, bins.starts, bins.normals, strip, end - begin, few)
+        place = number - begin
+        sine, bound = strip.rows[SINE + place], strip.rows[BOUND + place]
+        total = few.starts[place + 1] - few.starts[place]
+        if few.many[place]:
+            load_cone(strip.rows, place, cone)
+            total = count_normals(bins, cone, sine, memory)
         if (
             counts[0] + total > certain.shape[0]
             or counts[1] + total > undecided.shape[0]
             or total + VECTOR > x.size
         ):
             return number, total
-        if may_be_developable(patch, cone.net, noise):
+        if strip.rows[FLAT + place] > 0.0:
             flat[counts[2]] = number
             counts[2] += 1
         if total == 0:
             continue
-        size = rows_of_bins(bins.grid, bins.starts, memory)
-        count = gather(memory.rows, size, bins.normals, places, numbers, x, y, z)
-        bound = bound_of_forms(mu, i, j, turn, scale, noise, border, cone.axis, sine, patch)
-        classify(patch, cone.axis, sine, bound, x, y, z, codes, whole_vectors(count))
-        if sine == math.inf:
-            look_again(patch, x, y, z, codes, count)
+        if few.many[place]:
+            size = rows_of_bins(bins.grid, bins.starts, memory)
+            count = gather(memory.rows, size, bins.normals, places, numbers, x, y, z)
+            patch, axis = patch_in(strip.rows, place), vector_in(strip.rows, AXIS, place)
+            classify(patch, axis, sine, bound, x, y, z, codes, whole_vectors(count))
+            if sine == math.inf:
+                look_again(patch, x, y, z, codes, count)
+        else:
+            count = copy_few(few, place, bins.normals, places, numbers, codes)
         chosen = pack_hits(codes, YES, numbers, places, hits, count)
         counts[0] = store_sorted(hits, chosen, scratch, digits, number, certain, counts[0])
         if count_undecided(codes, count) > 0:

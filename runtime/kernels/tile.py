@@ -23,8 +23,7 @@ from .patch import (
     point_of_patch,
     vector_at,
 )
-from .vectors import dot, row_vector, set_row
-from .windows import VECTOR, whole_vectors
+from .vectors import VECTOR, dot, row_vector, set_row, whole_vectors
 
 __all__ = ["NORMAL", "STEP", "TILE", "fill_known", "fill_tile", "load_patch", "new_tile", "put"]
 

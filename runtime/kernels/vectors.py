@@ -7,7 +7,25 @@ import math
 from ...generated.vectors import Vector
 from .jit import inline, loop
 
-__all__ = ["dot", "largest_component", "length", "row_vector", "set_jet", "set_row"]
+__all__ = [
+    "VECTOR",
+    "dot",
+    "largest_component",
+    "length",
+    "row_vector",
+    "set_jet",
+    "set_row",
+    "whole_vectors",
+]
+
+# The largest number of lanes of a vectorized loop; arrays have room for as many more numbers.
+VECTOR = 16
+
+
+@inline
+def whole_vectors(count):
+    """Return the next multiple of VECTOR, for vectorized loops without a remainder."""
+    return (count + (VECTOR - 1)) & -VECTOR
 
 
 @inline

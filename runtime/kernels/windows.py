@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 
 from ...generated.vectors import Vector
 from .bins import mapped, nearest_bin, on_face
-from .cone import cone_of_normals, tangent_bounds, write_control_normals
 from .jit import inline, loop
-from .vectors import length, row_vector, set_row
+from .strips import AXIS, ERRORS, ONE_VECTOR, SINE, UNIT
+from .tile import STEP, vector_in
+from .vectors import length, row_vector, set_row, whole_vectors
 
 __all__ = [
     "Cone",
@@ -27,11 +28,8 @@ __all__ = [
     "map_cone",
     "set_empty",
     "spans_of_hull",
-    "whole_vectors",
 ]
 
-# The largest number of lanes of a vectorized loop; arrays have room for as many more numbers.
-VECTOR = 16
 # The error of the hull of a clipped cone, relative to the largest error of a control normal.
 CUT_ERROR = 1024.0
 # The least height of points of a clipped cone above the centre of the sphere.
@@ -41,12 +39,11 @@ LEAST_HEIGHT = 0.01
 class Cone(NamedTuple):
     """Work arrays for the cone of normals of a patch.
 
-    `net` (6, 3) are the control normals, `unit` (6, 3) their directions with errors `errors` (6,),
-    which are angles, and `axis` (3,) is the axis; `shown` (6, 3) and `angles` (6,) are directions
-    and errors mapped by a frame.
+    `unit` (6, 3) are the directions of control normals, `errors` (6,) their errors, which are
+    angles, and `axis` (3,) is the axis; `shown` (6, 3) and `angles` (6,) are directions and errors
+    mapped by a frame.
     """
 
-    net: NDArray[np.float64]
     unit: NDArray[np.float64]
     errors: NDArray[np.float64]
     axis: NDArray[np.float64]
@@ -56,28 +53,25 @@ class Cone(NamedTuple):
     @classmethod
     def new(cls) -> Cone:
         """Return new work arrays."""
-        return cls(*map(np.empty, ((6, 3), (6, 3), 6, 3, (6, 3), 6)))
-
-
-@inline
-def whole_vectors(count):
-    """Return the next multiple of VECTOR, for vectorized loops without a remainder."""
-    return (count + (VECTOR - 1)) & -VECTOR
+        return cls(*map(np.empty, ((6, 3), 6, 3, (6, 3), 6)))
 
 
 @loop
-def load_cone(patch, cone):
-    """Write the control normals of a patch and its cone; return the sine, see `cone_of_normals`."""
-    net, unit, errors, axis, _, _ = cone
-    write_control_normals(patch, net)
-    bounds = tangent_bounds(patch)
-    return cone_of_normals(net, max(bounds.x, bounds.y, bounds.z), unit, errors, axis)
+def load_cone(rows, k, cone):
+    """Write the cone of patch k of a strip; return its sine, which is infinite if it is wide."""
+    unit, errors, axis, _, _ = cone
+    for m in range(6):
+        set_row(unit, m, vector_in(rows, UNIT + m * ONE_VECTOR, k))
+        errors[m] = rows[ERRORS + m * STEP + k]
+    r = vector_in(rows, AXIS, k)
+    axis[0], axis[1], axis[2] = r.x, r.y, r.z
+    return rows[SINE + k]
 
 
 @loop
 def map_cone(cone, frame, stretch):
     """Write the directions and errors mapped by a frame (3, 3) of norm `stretch`."""
-    _, unit, errors, _, shown, angles = cone
+    unit, errors, _, shown, angles = cone
     for k in range(6):
         set_row(shown, k, mapped(frame, row_vector(unit, k)))
         angles[k] = errors[k] * stretch
