@@ -284,7 +284,7 @@ def fill(
     count = len(hits)
     types = dict.fromkeys(FLOAT_NAMES, dtype) | dict.fromkeys(INDEX_NAMES, np.int64)
     filled = {x: new_field(x, count, types[x], memory) for x in ARRAY_NAMES if x in fields}
-    arrays = [filled.get(name) for name in (*FLOAT_NAMES, *INDEX_NAMES)]
+    arrays = [filled[x] if x in filled else new_field(x, 0, types[x]) for x in types]
     pieces = hits.pieces(0, count, SAMPLES_AT_A_TIME)
 
     def work(first: int, last: int) -> None:
@@ -306,11 +306,11 @@ def fill_packed(
     bins: NormalBins,
     packed: PackedHits,
     start: int,
-    arrays: Sequence[NDArray[Any] | None],
+    arrays: Sequence[NDArray[Any]],
 ) -> None:
     """Fill arrays from row `start` on with the samples at packed hits.
 
-    The arrays are in the order of FLOAT_NAMES and INDEX_NAMES; None stands for an absent field.
+    The arrays are in the order of FLOAT_NAMES and INDEX_NAMES; absent fields are empty.
     """
     patches = spline.coefficients, spline.scale
     tile, indices = new_tile()

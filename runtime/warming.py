@@ -1,7 +1,7 @@
 """Compilation of all kernels ahead of time, by calls of public functions on small surfaces.
 
-Kernels are compiled for the types of their arguments. Those that fill the fields of samples are
-compiled for each selection of fields and each dtype; the common selections are compiled here.
+Kernels are compiled for the types of their arguments; those that fill the fields of samples, for
+each dtype of `sample(..., dtype=...)`.
 """
 
 from __future__ import annotations
@@ -19,7 +19,6 @@ from .cad.examples import all_kinds
 from .compiling import NOTICE
 from .directions import fibonacci, icosphere
 from .errors import FileError, GaussmapWarning, InputError
-from .fields import ARRAY_NAMES
 from .fitting.fit import fit
 from .gauss_map import GaussianImages, parabolic_lines, parabolic_points, split_patch
 from .kernels.jit import cache_folder
@@ -36,14 +35,6 @@ __all__ = ["Warmed", "warm"]
 
 CELLS = (8, 8)
 FEW = 60
-# Common selections of fields: all, those of meshes and plots, and point clouds.
-CHOICES = (
-    ARRAY_NAMES,
-    ("points", "normals", "uv"),
-    ("points", "normals"),
-    ("points",),
-    ("gaussian_curvature",),
-)
 
 
 class Warmed(NamedTuple):
@@ -112,13 +103,10 @@ def _normals() -> None:
 
 
 def _fields() -> None:
-    spline = fit(_torus(), cells=CELLS)
-    for fields in CHOICES:
-        for dtype in (np.float64, np.float32):
-            for normals in (icosphere(6), fibonacci(300)):
-                sample(spline, normals=normals, fields=fields, dtype=dtype)
-            sample(spline, count=FEW, fields=fields, dtype=dtype)
-            sample(_torus(), count=FEW, cells=CELLS, fields=fields, dtype=dtype)
+    for shape in (_torus(), fit(_torus(), cells=CELLS)):
+        for normals in (icosphere(6), fibonacci(300)):
+            sample(shape, normals=normals, dtype=np.float32)
+        sample(shape, count=FEW, dtype=np.float32)
 
 
 def _densities() -> None:

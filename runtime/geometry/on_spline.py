@@ -183,7 +183,7 @@ class OnSpline:
         fill_known(
             spline.coefficients, spline.scale, normals, spline.frame,
             here, np.column_stack([patch_index, here]), np.column_stack([uv, K, uv]),
-            *(filled.get(x) for x in FLOAT_NAMES),
+            *(filled[x] if x in filled else new_field(x, 0, dtype) for x in FLOAT_NAMES),
         )  # fmt: skip
         indices = {"normal_index": np.full(count, -1), "patch_index": patch_index}
         return FieldsOfSamples(filled | {x: y for x, y in indices.items() if x in fields})

@@ -27,9 +27,8 @@ def fill_samples(
 
     normals (S, 4) are in the order of the bins. frame = (u0, v0, du, dv): the corner of the domain
     and the size of a cell in the parameters. Absent ones of points (k, 3), directions (k, 3),
-    uv (k, 2), support, gaussian, mean and the two indices (k,) are None: Numba compiles a variant
-    without them, and without the computations that only they need. `tile` and `indices` are work
-    arrays, see `new_tile`.
+    uv (k, 2), support, gaussian, mean and the two indices (k,) are empty. `tile` and `indices` are
+    work arrays, see `new_tile`.
     """
     loaded = -1
     for begin in range(0, pairs.shape[0], TILE):

@@ -124,11 +124,10 @@ def on_surface(place, frame, size, n, u, v, x, K, H):
 
 
 @loop
-def evaluate_tile(tile, count, frame, size, points, uv, support, gaussian, mean):
+def evaluate_tile(tile, count, frame, size, curved):
     """Evaluate `count` samples of a tile; the loop has no branches, so that it is vectorized.
 
-    The last five are only compared with None, for absent fields, which Numba resolves at compile
-    time.
+    If `curved` is None, curvatures are left out, at compile time.
     """
     long_vectors()
     frame = (frame[0], frame[1], frame[2], frame[3])
@@ -153,34 +152,30 @@ def evaluate_tile(tile, count, frame, size, points, uv, support, gaussian, mean)
         )
         u, v, x, _, K, H = sample(patch, n)
         point, s, t, h, K, H = on_surface(place, frame, size, n, u, v, x, K, H)
-        if points is not None:
-            put(tile, POINT, k, point)
-        if uv is not None:
-            tile[U + k] = s
-            tile[V + k] = t
-        if support is not None:
-            tile[SUPPORT + k] = h
-        if gaussian is not None:
+        put(tile, POINT, k, point)
+        tile[U + k] = s
+        tile[V + k] = t
+        tile[SUPPORT + k] = h
+        if curved is not None:
             tile[GAUSSIAN + k] = K
-        if mean is not None:
             tile[MEAN + k] = H
 
 
 @loop
 def store(k, point, n, s, t, h, K, H, points, directions, uv, support, gaussian, mean):
-    """Write the fields of sample k that are not None."""
-    if points is not None:
+    """Write the fields of sample k that are not empty."""
+    if len(points) > 0:
         set_row(points, k, point)
-    if directions is not None:
+    if len(directions) > 0:
         set_row(directions, k, n)
-    if uv is not None:
+    if len(uv) > 0:
         uv[k, 0] = s
         uv[k, 1] = t
-    if support is not None:
+    if len(support) > 0:
         support[k] = h
-    if gaussian is not None:
+    if len(gaussian) > 0:
         gaussian[k] = K
-    if mean is not None:
+    if len(mean) > 0:
         mean[k] = H
 
 
@@ -192,38 +187,36 @@ def fill_tile(
     """Evaluate and store `count` samples of a tile, from number `start` on."""
     # The last vector is filled up with samples that are not stored.
     full = whole_vectors(count)
-    evaluate_tile(tile, full, frame, SCALE * scale, points, uv, support, gaussian, mean)
-    if points is not None:
-        write_vectors(tile, POINT, count, start, points)
-    if directions is not None:
-        write_vectors(tile, NORMAL, count, start, directions)
-    if uv is not None:
+    if len(gaussian) + len(mean) > 0:
+        evaluate_tile(tile, full, frame, SCALE * scale, True)
+    elif len(points) + len(uv) + len(support) > 0:
+        evaluate_tile(tile, full, frame, SCALE * scale, None)
+    write_vectors(tile, POINT, count, start, points)
+    write_vectors(tile, NORMAL, count, start, directions)
+    if len(uv) > 0:
         write_numbers(tile, U, count, start, uv[:, 0])
         write_numbers(tile, V, count, start, uv[:, 1])
-    if support is not None:
-        write_numbers(tile, SUPPORT, count, start, support)
-    if gaussian is not None:
-        write_numbers(tile, GAUSSIAN, count, start, gaussian)
-    if mean is not None:
-        write_numbers(tile, MEAN, count, start, mean)
-    if normal_index is not None:
-        write_numbers(indices, NORMAL_INDEX, count, start, normal_index)
-    if patch_index is not None:
-        write_numbers(indices, PATCH_INDEX, count, start, patch_index)
+    write_numbers(tile, SUPPORT, count, start, support)
+    write_numbers(tile, GAUSSIAN, count, start, gaussian)
+    write_numbers(tile, MEAN, count, start, mean)
+    write_numbers(indices, NORMAL_INDEX, count, start, normal_index)
+    write_numbers(indices, PATCH_INDEX, count, start, patch_index)
 
 
 @loop
 def write_vectors(tile, row, count, start, field):
     """Write the vectors in three rows of a tile to a field, from number `start` on."""
-    for k in range(count):
-        set_row(field, np.uint64(start + k), vector_in(tile, row, k))
+    if len(field) > 0:
+        for k in range(count):
+            set_row(field, np.uint64(start + k), vector_in(tile, row, k))
 
 
 @loop
 def write_numbers(tile, row, count, start, field):
     """Write the numbers in a row of a tile to a field, from number `start` on."""
-    for k in range(count):
-        field[np.uint64(start + k)] = tile[np.uint64(row + k)]
+    if len(field) > 0:
+        for k in range(count):
+            field[np.uint64(start + k)] = tile[np.uint64(row + k)]
 
 
 @jit
