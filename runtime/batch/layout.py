@@ -23,7 +23,6 @@ from typing import IO, Any
 from ... import __version__
 from ..errors import FileError, InputError
 from ..files.paths import PathLike, atomic_path, checked_path, reason_of
-from ..kernels.jit import digest
 
 __all__ = [
     "FILES",
@@ -89,7 +88,10 @@ class Settings:
     @classmethod
     def of_this_version(cls, **known: Any) -> Settings:  # noqa: ANN401
         """Return settings for samples that this version of the package computes."""
-        return cls(**known, formulas=digest())
+        from ..kernels.jit import digest  # Numba, which reading a data set does without
+
+        # As they are read again: tuples become lists.
+        return cls.from_json(cls(**known, formulas=digest()).to_json())
 
     def to_json(self) -> str:
         """Return the text of `dataset.json`."""
@@ -185,6 +187,7 @@ def create(folder: PathLike, settings: Settings, overwrite: bool = False) -> Set
 
 def _same(old: Settings, new: Settings, path: Path) -> Settings:
     """Return the settings of an existing data set; InputError where the new ones differ."""
+    new = Settings.from_json(new.to_json())
     for field in fields(Settings):
         had, wanted = getattr(old, field.name), getattr(new, field.name)
         if field.name == "parts_per_shard" or had == wanted:

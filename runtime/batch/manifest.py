@@ -64,9 +64,18 @@ def manifest_schema() -> Any:  # noqa: ANN401
 def manifest_table(rows: Iterable[ManifestRow]) -> Any:  # noqa: ANN401
     """Return rows as a table of Arrow."""
     arrow = from_extra("pyarrow", "batch", "a data set")
-    return arrow.Table.from_pylist([asdict(row) for row in rows], schema=manifest_schema())
+    # Paths may hold bytes that are no text, which Arrow refuses.
+    known = [
+        {name: _as_text(x) if isinstance(x, str) else x for name, x in asdict(row).items()}
+        for row in rows
+    ]
+    return arrow.Table.from_pylist(known, schema=manifest_schema())
 
 
 def rows_of(table: Any) -> list[ManifestRow]:  # noqa: ANN401
     """Return the rows that `manifest_table` was given."""
     return [ManifestRow(**row) for row in table.to_pylist()]
+
+
+def _as_text(text: str) -> str:
+    return text.encode("utf-8", "backslashreplace").decode()

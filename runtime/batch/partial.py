@@ -61,23 +61,24 @@ class PartialFile:
         self._arrow = from_extra("pyarrow", "batch", "a data set")
         self._schema = schema
         temporary = path.with_suffix(".tmp")
-        with batches_in(path, schema) as older:
-            self._file = self._arrow.OSFile(str(temporary), "wb")
-            self._writer = self._arrow.ipc.new_stream(self._file, schema)
-            for row, batch in older.values():
-                self._write(row, batch)
-        temporary.replace(path)
+        try:
+            with batches_in(path, schema) as older:
+                self._file = self._arrow.OSFile(str(temporary), "wb")
+                self._writer = self._arrow.ipc.new_stream(self._file, schema)
+                for row, batch in older.values():
+                    self._write(row, batch)
+            temporary.replace(path)
+        except BaseException:
+            temporary.unlink(missing_ok=True)
+            raise
 
     def add(self, row: ManifestRow, table: Any) -> None:  # noqa: ANN401
         """Write a part: when this returns, the part is done, even if the process is killed."""
         self._write(row, self._as_batch(table))
 
     def close(self) -> None:
-        """Close the file."""
-        try:
-            self._writer.close()
-        finally:
-            self._file.close()
+        """Close the file. The stream gets no end, for which a full disk has no room."""
+        self._file.close()
 
     def _as_batch(self, table: Any) -> Any:  # noqa: ANN401
         if table is None or not len(table):

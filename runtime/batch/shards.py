@@ -113,7 +113,8 @@ class Shard:
             for group in _row_groups(rows):
                 old = self._old([part for part in group if part not in added])
                 batches = [b for p in group for b in (old[p] if p in old else [added[p][1]])]
-                table = arrow.Table.from_batches(batches, schema=self.schema)
+                # One chunk: where chunks begin would decide where the pages of the file do.
+                table = arrow.Table.from_batches(batches, schema=self.schema).combine_chunks()
                 file.write_table(table, row_group_size=max(len(table), 1))
 
     def _old(self, parts: Sequence[int]) -> dict[int, list[Any]]:
@@ -134,7 +135,10 @@ class Shard:
     def _writing(self) -> Iterator[None]:
         try:
             yield
-        except OSError as error:
+        except BaseException as error:
+            self._close()  # what follows a broken batch would be lost
+            if not isinstance(error, OSError):
+                raise
             raise FileError(
                 f"'{self._partial}' cannot be written: {reason_of(error)}; "
                 "what is done is kept, run the same again when that is mended."

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..extras import from_extra
-from ..fields import COLUMNS, OPTIONAL_NAMES, UNITS, columns_of, dtype_of
-from ..samples import Samples
-from .layout import Settings
+from ..fields import ARRAY_NAMES, ARRAY_NAMES_OF_PART, COLUMNS, UNITS, columns_of, dtype_of
 
-__all__ = ["points_schema", "points_table"]
+if TYPE_CHECKING:  # which bring Numba; reading a data set does without
+    from ..samples import Samples
+    from .layout import Settings
+
+__all__ = ["ALWAYS", "points_schema", "points_table"]
+
+# The fields that all samples have if they were asked for, of surfaces and of CAD parts.
+ALWAYS = tuple(name for name in ARRAY_NAMES if name in ARRAY_NAMES_OF_PART)
 
 
 def points_schema(settings: Settings) -> Any:  # noqa: ANN401
@@ -24,7 +29,7 @@ def points_schema(settings: Settings) -> Any:  # noqa: ANN401
         arrow.field(
             column,
             arrow.from_numpy_dtype(dtype_of(name, settings.dtype)),
-            nullable=name in OPTIONAL_NAMES,
+            nullable=name not in ALWAYS,
         ).with_metadata({"field": name} | ({"unit": UNITS[name]} if name in UNITS else {}))
         for name in settings.fields
         for column in COLUMNS[name]

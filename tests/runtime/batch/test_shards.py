@@ -1,5 +1,8 @@
 """Shards of a data set: what is kept after a kill at any moment, and the same bytes in the end."""
 
+import errno
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -205,6 +208,102 @@ def test_damaged_files_are_done_again(tmp_path, undisturbed, data):
     assert finished(path) == undisturbed
 
 
+@contextmanager
+def files_of_at_most(size: int) -> Iterator[None]:
+    """Let no process write a larger file: as if the disk were full."""
+    resource = pytest.importorskip("resource")
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+class TestFullDisk:
+    def test_what_is_done_stays_and_parts_follow_it(self, tmp_path, undisturbed):
+        path, known = folder(tmp_path)
+        partial = shard_path(path, PARTIAL, 7)
+        with Shard(path, 7, known) as shard:
+            add(shard, 0)
+            with files_of_at_most(partial.stat().st_size + 10_000):
+                for _ in range(2):
+                    with pytest.raises(FileError, match="what is done is kept") as error:
+                        add(shard, 2)
+            assert str(error.value).count("\n") == 0
+            assert list(Shard(path, 7, known).rows) == list(shard.rows) == [0]
+            for part in (1, 2, 3, 4):  # there is room again
+                add(shard, part)
+            shard.commit(list(COUNTS))
+        assert finished(path) == undisturbed
+
+    def test_the_error_is_not_hidden_by_closing(self, tmp_path):
+        path, known = folder(tmp_path)
+        with (
+            pytest.raises(FileError, match="File too large; what is done"),
+            Shard(path, 7, known) as shard,
+            files_of_at_most(5000),
+        ):
+            add(shard, 2)
+        assert not Shard(path, 7, known).rows
+
+    def test_while_the_shard_is_finished(self, tmp_path, undisturbed):
+        path, known = folder(tmp_path)
+        with Shard(path, 7, known) as shard:
+            for part in COUNTS:
+                add(shard, part)
+            for size in (100, 1000, 100_000):
+                with files_of_at_most(size), pytest.raises(FileError, match="make room"):
+                    shard.commit(list(COUNTS))
+                assert not list((path / POINTS).iterdir()) + list((path / MANIFEST).iterdir())
+            shard.commit(list(COUNTS))
+        assert finished(path) == undisturbed
+
+    def test_for_the_manifest_only(self, tmp_path, undisturbed, monkeypatch):
+        def full(*_, **__) -> None:
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+        path, known = folder(tmp_path)
+        with Shard(path, 7, known) as shard, monkeypatch.context() as patched:
+            for part in COUNTS:
+                add(shard, part)
+            patched.setattr("pyarrow.parquet.write_table", full)
+            with pytest.raises(FileError, match="make room"):
+                shard.commit(list(COUNTS))
+        with Shard(path, 7, known) as shard:
+            assert list(shard.rows) == list(COUNTS)  # nothing has to be done again
+            shard.commit(list(COUNTS))
+        assert finished(path) == undisturbed
+
+
+def test_large_parts_have_the_same_bytes_however_they_were_read(tmp_path):
+    path, known = folder(tmp_path)
+    count = 700_000  # several pages of the Parquet file
+
+    def large(part: int) -> ManifestRow:
+        return replace(row(0), part=part, samples=count)
+
+    seen = []
+    with Shard(path, 7, known) as shard:
+        for part in (1, 2):
+            shard.add(large(part), points_table(samples(part, count), part, shard.schema))
+        shard.commit([1, 2])
+        seen.append(finished(path))
+    with Shard(path, 7, known) as shard:  # of which one is read from the Parquet file
+        shard.add(large(2), points_table(samples(2, count), 2, shard.schema))
+        shard.commit([1, 2])
+        seen.append(finished(path))
+    assert seen[0] == seen[1]
+
+
+def test_names_that_are_no_text(tmp_path):
+    path, known = folder(tmp_path)
+    with Shard(path, 7, known) as shard:
+        shard.add(replace(row(1), name="part\udcff.step", source="\0\n"))
+        shard.commit([1])
+    assert Shard(path, 7, known).rows[1].name == "part\\udcff.step"
+
+
 def test_rows_survive_json_and_arrow():
     rows = [row(0), replace(row(1), misfit=float("inf"), warnings="é\n'", angle=1e-300)]
     assert rows_of(manifest_table(rows)) == rows
@@ -216,9 +315,15 @@ class TestFolder:
         assert read_settings(path) == known
         assert create(path, replace(known, parts_per_shard=3)) == known
 
+    def test_settings_are_compared_as_they_are_read(self, tmp_path):
+        known = replace(settings(), asked={"cells": (16, 16), "angle": float("inf")})
+        assert create(tmp_path, known).asked == known.asked
+        assert create(tmp_path, known).asked == {"cells": [16, 16], "angle": float("inf")}
+
     @pytest.mark.parametrize(
         ("change", "what"),
         [
+            ({"compression": "none"}, 'compression="zstd", not "none"'),
             ({"asked": {"count": 6}}, "count=5, not 6"),
             ({"dtype": "float64"}, 'dtype="float32", not "float64"'),
             ({"formulas": "other"}, "another version"),
