@@ -14,15 +14,16 @@ from numpy.typing import NDArray
 from .. import directions
 from ..advice import NO_CLOUDS, NO_MESHES, is_mesh_file
 from ..cad.part import Part
+from ..cad.part_files import is_part_file
 from ..checks import known_name
 from ..compiling import NOTICE
 from ..errors import FileError, InputError
+from ..files.arrays import array_file, is_array_file, read_array
 from ..fitting.fit import fit
 from ..splines.spline import Spline
 from ..surface.surface import Surface
 from ..surfaces import CATALOGUE, names, surface
-from .arrays import array_file, is_array_file, read_array
-from .parts import LIMITS, is_part_file, read_part_file, refuse
+from .parts import LIMITS, read_part_file, refuse
 from .terrains import OF_TERRAIN, has_place, is_raster_file, read_raster_file, terrain_of_array
 
 __all__ = ["arguments"]

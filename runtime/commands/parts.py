@@ -2,36 +2,19 @@
 
 from __future__ import annotations
 
-import zipfile
 from collections.abc import Iterable
 from pathlib import Path
 from types import SimpleNamespace
 
 from ..advice import CAD_SUFFIXES
 from ..cad.part import Part, read_part
+from ..cad.part_files import is_part_file
 from ..errors import InputError
-from .arrays import array_file
 
-__all__ = ["LIMITS", "is_part_file", "read_part_file", "refuse"]
+__all__ = ["LIMITS", "read_part_file", "refuse"]
 
 # The options of `read_cad`.
 LIMITS = ("unit", "time_limit", "memory_limit")
-# Among the names of the arrays of a part.
-NAMES = {"about.npy", "face_loops.npy"}
-
-
-def is_part_file(source: str | None) -> bool:
-    """Say whether a text names a file that holds a part, by its suffix or its arrays."""
-    if source is None:
-        return False
-    suffix = Path(source).suffix.lower()
-    if suffix != ".npz":
-        return suffix in CAD_SUFFIXES
-    try:
-        with zipfile.ZipFile(array_file(source)) as archive:
-            return set(archive.namelist()) >= NAMES
-    except (OSError, zipfile.BadZipFile):
-        return False
 
 
 def read_part_file(source: str, options: SimpleNamespace) -> Part:

@@ -6,13 +6,13 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from ..cad.part_files import is_part_file
 from ..errors import InputError
 from ..fields import checked_fields
 from ..files.formats import check_fields, check_samples_target
 from ..sampling import sample
 from .console import summarize
 from .inputs import arguments
-from .parts import is_part_file
 
 __all__ = ["run"]
 

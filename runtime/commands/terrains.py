@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..extras import check_extra
+from ..files.arrays import array_file, read_array
 from ..surface.surface import Surface
 from ..terrain.terrain import terrain
-from .arrays import array_file, read_array
 
 __all__ = ["OF_TERRAIN", "has_place", "is_raster_file", "read_raster_file", "terrain_of_array"]
 

@@ -1,0 +1,114 @@
+"""Making a data set: what to do, on this machine or on a cluster, and watching it."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterable, Sequence, Sized
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol
+
+from ..extras import check_extra
+from ..files.paths import PathLike
+from .asked import Asked
+from .inputs import Input, Source, in_shards, inputs_of
+from .layout import FILES, Settings, create, locked, parts_per_shard
+from .local import run_locally
+from .running import Plan, Tally
+
+__all__ = ["Unwatched", "Watch", "Where", "make"]
+
+
+class Watch(Protocol):
+    """What is told of a run while it goes on, in the process that started it."""
+
+    def begin(self, parts: int | None, dashboard: str | None) -> None:
+        """Hear of the number of parts, if it is known, and the address of Dask's dashboard."""
+
+    def add(self, tally: Tally) -> None:
+        """Hear what became of the parts of a shard."""
+
+    def end(self, tally: Tally) -> None:
+        """Hear what became of all parts; not called if the run is stopped."""
+
+
+class Unwatched:
+    """Says nothing."""
+
+    def begin(self, parts: int | None, dashboard: str | None) -> None:
+        """Say nothing."""
+
+    def add(self, tally: Tally) -> None:
+        """Say nothing."""
+
+    def end(self, tally: Tally) -> None:
+        """Say nothing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Where:
+    """Where parts are sampled: so many processes here, or Dask's client or scheduler."""
+
+    workers: int
+    scheduler: Any = None
+
+
+def make(
+    sources: Iterable[Source],
+    folder: PathLike,
+    asked: Asked,
+    settings: dict[str, Any],
+    where: Where,
+    *,
+    watch: Watch,
+    overwrite: bool = False,
+    again: bool = False,
+) -> Tally:
+    """Sample all parts into a data set; return what became of them.
+
+    `settings` has the fields, dtype, compression and files of `Settings`. Raises InputError and
+    FileError where `layout.create` does, and FileError if the data set cannot be written.
+    """
+    check_extra("pyarrow", "batch", "a data set")
+    check_extra("cloudpickle", "batch", "a data set")
+    parts = len(sources) if isinstance(sources, Sized) else None
+    wanted = Settings.of_this_version(
+        asked=asked.to_json(),
+        parts_per_shard=parts_per_shard(parts, asked.arguments.get("count")),
+        **settings,
+    )
+    known = create(folder, wanted, overwrite)
+    path = Path(folder).absolute()
+    with locked(path):
+        if known.files is not None:
+            (path / FILES).mkdir(exist_ok=True)
+        plan = Plan(str(path), known, asked.stored(path), again)
+        shards = enumerate(in_shards(inputs_of(sources), known.parts_per_shard))
+        return _watched(_run(plan, shards, where, watch, parts), watch)
+
+
+def _run(
+    plan: Plan,
+    shards: Iterable[tuple[int, Sequence[Input]]],
+    where: Where,
+    watch: Watch,
+    parts: int | None,
+) -> Generator[Tally]:
+    if where.scheduler is None:
+        watch.begin(parts, None)
+        return run_locally(plan, shards, where.workers)
+    from .cluster import connected, run_on_cluster
+
+    client = connected(where.scheduler)
+    watch.begin(parts, client.dashboard_link)
+    return run_on_cluster(plan, shards, client)
+
+
+def _watched(tallies: Generator[Tally], watch: Watch) -> Tally:
+    total = Tally()
+    with closing(tallies):
+        for tally in tallies:
+            total += tally
+            watch.add(tally)
+    watch.end(total)
+    return total
