@@ -6,6 +6,8 @@ from .runtime import directions as directions
 from .runtime import errors as errors
 from .runtime import gauss_map as gauss_map
 from .runtime import surfaces as surfaces
+from .runtime.batch.dataset import Dataset as Dataset
+from .runtime.batch.dataset import open_dataset as open_dataset
 from .runtime.cad.part import read_part as read_part
 from .runtime.cad.reader import read_cad as read_cad
 from .runtime.directions import fibonacci as fibonacci

@@ -6,11 +6,16 @@ import re
 from collections.abc import Callable
 from enum import Enum
 from functools import cached_property
+from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import gaussmap as gm
 import pytest
+from gaussmap.runtime.batch.layout import Settings, create
+from gaussmap.runtime.batch.manifest import ManifestRow
+from gaussmap.runtime.batch.shards import Shard
+from gaussmap.runtime.batch.tables import points_table
 from gaussmap.runtime.fitting.misfit import Misfit
 from gaussmap.runtime.report import SamplingReport
 from gaussmap.runtime.support.branches import Branches
@@ -122,10 +127,27 @@ def test_attributes_are_documented_and_used_in_an_example(name: str) -> None:
     assert [x for x in attributes if not re.search(rf"\.{x}\b", source)] == []
 
 
+@pytest.fixture(scope="module")
+def dataset(tmp_path_factory) -> Path:
+    """Return the folder of a data set, as `sample_many` would write it in other processes."""
+    path = tmp_path_factory.mktemp("data") / "dataset"
+    samples = list(gm.sample_many(["torus", "sphere", "ellipsoid"], 500, cells=(16, 16)))
+    settings = Settings.of_this_version(asked={}, fields=samples[0].fields, parts_per_shard=1)
+    create(path, settings)
+    for k, part in enumerate(samples):
+        with Shard(path, k, settings) as shard:
+            row = ManifestRow(k, part.report.surface, "catalogue", "0", samples=len(part))
+            shard.add(row, points_table(part, k, shard.schema))
+            shard.commit([k])
+    return path
+
+
 @pytest.mark.compiled
 @pytest.mark.parametrize("name", DOCUMENTED)
-def test_examples_run(name: str, tmp_path, monkeypatch) -> None:
+def test_examples_run(name: str, tmp_path, monkeypatch, request) -> None:
     monkeypatch.chdir(tmp_path)
+    if name == "open_dataset" or name.startswith("Dataset"):
+        (tmp_path / "dataset").symlink_to(request.getfixturevalue("dataset"))
     cls = CLASSES.get(name)
     parts = [] if cls is None else [x for x in members(cls).values() if hasattr(x, "__get__")]
     properties = [x for x in parts if isinstance(x, property | cached_property)]

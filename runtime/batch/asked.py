@@ -1,9 +1,9 @@
-"""What is asked of each part of a data set: the arguments of `sample`, and the limits of a part."""
+"""What is asked of each part of a data set: the arguments of `sample`."""
 
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -13,17 +13,9 @@ from numpy.typing import NDArray
 
 from ..files.paths import atomic_path
 
-__all__ = ["Asked", "Limits", "normals_in"]
+__all__ = ["Asked", "normals_in"]
 
 NORMALS = "normals.npy"
-
-
-@dataclass(frozen=True, slots=True)
-class Limits:
-    """The longest time that a part may take, in seconds, and the most memory, in GiB."""
-
-    seconds: float
-    memory: float
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -44,10 +36,9 @@ class Asked:
     arguments: dict[str, Any]
     normals: NDArray[np.float64] | str | None = None
     measured: bool = False
-    limits: Limits = field(default_factory=lambda: Limits(600.0, 4.0))
 
     def to_json(self) -> dict[str, Any]:
-        """Return what the settings of the data set keep, without limits."""
+        """Return what the settings of the data set keep."""
         known = {name: value for name, value in self.arguments.items() if value is not None}
         if isinstance(self.normals, np.ndarray):
             data = np.ascontiguousarray(self.normals)

@@ -12,16 +12,23 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..errors import FileError, GaussmapError
-from .asked import Limits
 from .frames import read_frame
 from .serving import Task
 
-__all__ = ["Answer", "Child", "StoppedError"]
+__all__ = ["Answer", "Child", "Limits", "StoppedError"]
 
 # Modules of users are found after those of Python and of packages: none hides them.
 PROGRAM = (
-    "import sys; sys.path += {!r}; from gaussmap.runtime.batch.serving import main; main({!r})"
+    "import sys; sys.path += {!r}; from gaussmap.runtime.batch.serving import main; main({!r}, {})"
 )
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """The longest time that a part may take, in seconds, and the most memory, in GiB."""
+
+    seconds: float
+    memory: float
 
 
 class StoppedError(GaussmapError):
@@ -96,14 +103,17 @@ class Child:
         with self._lock:
             if self._stopped:
                 raise StoppedError("the run was stopped.")
-            if self._process is None or self._process.poll() is not None:
+            if self._process is not None and self._process.poll() is not None:
+                _end(self._process)  # between two parts
+                self._process = None
+            if self._process is None:
                 self._process = self._started()
             return self._process
 
     def _started(self) -> subprocess.Popen[bytes]:
         paths = [os.path.abspath(x) for x in sys.path]
         process = subprocess.Popen(
-            [sys.executable, "-P", "-c", PROGRAM.format(paths, self.limits.memory)],
+            [sys.executable, "-P", "-c", PROGRAM.format(paths, self.limits.memory, os.getpid())],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             env=os.environ | {"NUMBA_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"},

@@ -18,8 +18,7 @@ from ... import __version__
 from ..errors import FileError, InputError, shown
 from ..extras import from_extra
 from ..kernels.jit import digest
-from .asked import Limits
-from .child import Child
+from .child import Child, Limits
 from .inputs import Input
 from .layout import SETTINGS
 from .running import Plan, Tally, run_shard
@@ -128,7 +127,7 @@ def state_of(folder: str) -> tuple[str, str, bool]:
 
 def work(plan: Plan, number: int, inputs: Sequence[Input]) -> Tally:
     """Do a shard, with the process of this thread of the worker."""
-    return run_shard(plan, number, inputs, _child(plan.asked.limits))
+    return run_shard(plan, number, inputs, _child(plan.limits))
 
 
 def _child(limits: Limits) -> Child:

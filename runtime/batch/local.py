@@ -25,7 +25,7 @@ def run_locally(
     Each worker is a process, and a thread here that waits for it. Closing the iterator, errors and
     Ctrl-C end all processes.
     """
-    children = [Child(plan.asked.limits) for _ in range(workers)]
+    children = [Child(plan.limits) for _ in range(workers)]
     free, here = iter(children), threading.local()
 
     def begin() -> None:

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Generator, Iterable, Sequence, Sized
 from contextlib import closing
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
 from ..extras import check_extra
 from ..files.paths import PathLike
+from .arguments import Where
 from .asked import Asked
 from .inputs import Input, Source, in_shards, inputs_of
 from .layout import FILES, Settings, create, locked, parts_per_shard
 from .local import run_locally
 from .running import Plan, Tally
 
-__all__ = ["Unwatched", "Watch", "Where", "make"]
+__all__ = ["Unwatched", "Watch", "make"]
 
 
 class Watch(Protocol):
@@ -43,14 +43,6 @@ class Unwatched:
 
     def end(self, tally: Tally) -> None:
         """Say nothing."""
-
-
-@dataclass(frozen=True, slots=True)
-class Where:
-    """Where parts are sampled: so many processes here, or Dask's client or scheduler."""
-
-    workers: int
-    scheduler: Any = None
 
 
 def make(
@@ -82,7 +74,7 @@ def make(
     with locked(path):
         if known.files is not None:
             (path / FILES).mkdir(exist_ok=True)
-        plan = Plan(str(path), known, asked.stored(path), again)
+        plan = Plan(str(path), known, asked.stored(path), where.limits, again)
         shards = enumerate(in_shards(inputs_of(sources), known.parts_per_shard))
         return _watched(_run(plan, shards, where, watch, parts), watch)
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Self
 
 from .asked import Asked
-from .child import Answer, Child
+from .child import Answer, Child, Limits
 from .inputs import Input
 from .layout import FILES, Settings
 from .manifest import FAILED, OK, ManifestRow
@@ -38,6 +38,8 @@ class Plan:
         Those of the data set.
     asked : Asked
         What is asked of each part.
+    limits : Limits
+        Those of each part.
     again : bool
         Whether parts that failed in an earlier run are tried again.
 
@@ -46,6 +48,7 @@ class Plan:
     folder: str
     settings: Settings
     asked: Asked
+    limits: Limits
     again: bool = False
 
 
@@ -94,7 +97,8 @@ def run_shard(plan: Plan, number: int, inputs: Sequence[Input], child: Child) ->
                 tally += _tally(before, kept=True)
                 continue
             row = _row(part, answer, attempts)
-            shard.add(row, answer.table)
+            if before is None or not _fails_again(before, row):
+                shard.add(row, answer.table)
             tally += _tally(row)
         shard.commit([part.part for part in inputs])
     return tally
@@ -128,7 +132,7 @@ def _tried(
 ) -> tuple[Answer, int]:
     """Return what became of a part, and after how many attempts."""
     path = None if file is None else str(file)
-    task = Task(part, known, plan.asked, plan.settings, path)
+    task = Task(part, known, plan.asked, plan.settings, plan.limits, path)
     answer, attempts = child.sample(task), 1
     while answer.error and attempts < ATTEMPTS:
         answer, attempts = child.sample(task), attempts + 1
@@ -152,6 +156,12 @@ def _row(part: Input, answer: Answer, attempts: int) -> ManifestRow:
         warnings=about.get("warnings", ""),
         error=answer.error,
     )
+
+
+def _fails_again(before: ManifestRow, row: ManifestRow) -> bool:
+    """Say whether a part has failed as in an earlier run, so that nothing is new."""
+    then, now = (replace(x, seconds=0.0) for x in (before, row))
+    return row.status == FAILED and then == now
 
 
 def _tally(row: ManifestRow, kept: bool = False) -> Tally:

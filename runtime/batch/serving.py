@@ -37,6 +37,8 @@ class Task:
         What to sample.
     settings : Settings
         Those of the data set.
+    limits : Limits
+        Those of this process, which reading a CAD file has, too.
     file : str or None
         The path of the file of its own that the part gets.
 
@@ -46,13 +48,14 @@ class Task:
     known: str | None
     asked: Any
     settings: Any
+    limits: Any
     file: str | None = None
 
 
-def main(memory: float) -> None:
+def main(memory: float, parent: int) -> None:
     """Answer tasks until there are no more, with at most so many GiB of memory."""
     tasks, answers = _streams()
-    _end_with_parent()
+    _end_with_parent(parent)
     _limit_memory(memory)
     from ..sampling import sample  # noqa: F401 - which takes its time, and that is not a part's
     from .frames import write_frame
@@ -117,7 +120,7 @@ def _source(task: Task) -> tuple[Any, str]:
     content = content_of(path)
     if content == task.known:
         return None, content
-    limits = task.asked.limits
+    limits = task.limits
     return read_source(path, limits.seconds, limits.memory), content
 
 
@@ -161,12 +164,14 @@ def _sampled(surface: Any, task: Task) -> tuple[dict[str, Any], Any]:  # noqa: A
     return about, points_table(samples, task.input.part, points_schema(task.settings))
 
 
-def _end_with_parent() -> None:
+def _end_with_parent(parent: int) -> None:
     """Let the system end this process when that which waits for it is killed, where it can."""
     with suppress(AttributeError, OSError, TypeError):
         import ctypes
 
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+        if os.getppid() != parent:  # it was killed before
+            os._exit(1)
 
 
 def _limit_memory(gib: float) -> None:
