@@ -222,7 +222,7 @@ class Dataset:
         drop_last: bool = False,
         buffer: int = 512,
     ) -> Iterator[tuple[NDArray[Any], ...]]:
-        """Yield batches for training: the same number of points of each of several parts.
+        """Return batches for training: the same number of points of each of several parts.
 
         Parameters
         ----------
@@ -250,13 +250,13 @@ class Dataset:
         buffer : int, default 512
             From how many parts in memory the next one is drawn, if they are shuffled.
 
-        Yields
-        ------
-        tuple of array
-            For each field an array (parts, points, 3) or (parts, points); then the numbers of the
-            parts, (parts,) int64; then their labels, (parts,) int64 or float64, if any. The arrays
-            are contiguous, writable, and not used again, so that ``torch.from_numpy`` takes them
-            without a copy.
+        Returns
+        -------
+        iterator of tuple of array
+            A batch is an array (parts, points, 3) or (parts, points) for each field; then the
+            numbers of the parts, (parts,) int64; then their labels, (parts,) int64 or float64, if
+            any. The arrays are contiguous, writable, and not used again, so that
+            ``torch.from_numpy`` takes them without a copy.
 
         Raises
         ------
