@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import atexit
 import threading
-from collections.abc import Generator, Iterable, Sequence
+from collections.abc import Generator, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -35,26 +36,30 @@ PATIENCE = 30
 _HERE = threading.local()
 
 
-def connected(scheduler: Any) -> Any:  # noqa: ANN401
-    """Return a client of Dask for a client, a cluster or an address.
+@contextmanager
+def connected(scheduler: Any) -> Iterator[Any]:  # noqa: ANN401
+    """Yield a client of Dask for a client, a cluster or an address.
 
     Raises FileError if nobody answers there, InputError for anything else.
     """
     distributed = from_extra("distributed", "cluster", "sampling on a cluster")
     if isinstance(scheduler, distributed.Client):
-        return scheduler
+        yield scheduler
+        return
     if not isinstance(scheduler, str) and not hasattr(scheduler, "scheduler_address"):
         raise InputError(
             "scheduler must be a client of Dask, or the address of a scheduler such as "
             f'"tcp://host:8786", not {shown(scheduler)}.'
         )
     try:
-        return distributed.Client(scheduler, timeout=PATIENCE, set_as_default=False)
+        client = distributed.Client(scheduler, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError) as error:
         raise FileError(
             f"no scheduler of Dask answers at {shown(scheduler)}: look at the address, and that "
             "`dask scheduler` runs there."
         ) from error
+    with client:
+        yield client
 
 
 def run_on_cluster(

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterable, Sequence, Sized
-from contextlib import closing
+from collections.abc import Callable, Generator, Iterable, Iterator, Sized
+from contextlib import closing, contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -11,7 +12,7 @@ from ..extras import check_extra
 from ..files.paths import PathLike
 from .arguments import Where
 from .asked import Asked
-from .inputs import Input, Source, in_shards, inputs_of
+from .inputs import Source, in_shards, inputs_of
 from .layout import FILES, Settings, create, locked, parts_per_shard
 from .local import run_locally
 from .running import Plan, Tally
@@ -69,31 +70,28 @@ def make(
         parts_per_shard=parts_per_shard(parts, asked.arguments.get("count")),
         **settings,
     )
-    known = create(folder, wanted, overwrite)
     path = Path(folder).absolute()
-    with locked(path):
-        if known.files is not None:
-            (path / FILES).mkdir(exist_ok=True)
-        plan = Plan(str(path), known, asked.stored(path), where.limits, again)
-        shards = enumerate(in_shards(inputs_of(sources), known.parts_per_shard))
-        return _watched(_run(plan, shards, where, watch, parts), watch)
+    with _runner(where) as (run, dashboard):
+        known = create(folder, wanted, overwrite)
+        with locked(path):
+            if known.files is not None:
+                (path / FILES).mkdir(exist_ok=True)
+            plan = Plan(str(path), known, asked.stored(path), where.limits, again)
+            shards = enumerate(in_shards(inputs_of(sources), known.parts_per_shard))
+            watch.begin(parts, dashboard)
+            return _watched(run(plan, shards), watch)
 
 
-def _run(
-    plan: Plan,
-    shards: Iterable[tuple[int, Sequence[Input]]],
-    where: Where,
-    watch: Watch,
-    parts: int | None,
-) -> Generator[Tally]:
+@contextmanager
+def _runner(where: Where) -> Iterator[tuple[Callable[..., Generator[Tally]], str | None]]:
+    """Yield what runs shards, here or on a cluster, and the address of Dask's dashboard."""
     if where.scheduler is None:
-        watch.begin(parts, None)
-        return run_locally(plan, shards, where.workers)
+        yield partial(run_locally, workers=where.workers), None
+        return
     from .cluster import connected, run_on_cluster
 
-    client = connected(where.scheduler)
-    watch.begin(parts, client.dashboard_link)
-    return run_on_cluster(plan, shards, client)
+    with connected(where.scheduler) as client:
+        yield partial(run_on_cluster, client=client), client.dashboard_link
 
 
 def _watched(tallies: Generator[Tally], watch: Watch) -> Tally:
