@@ -12,10 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..files.paths import atomic_path
+from .layout import NORMALS
 
 __all__ = ["Asked", "normals_in"]
-
-NORMALS = "normals.npy"
 
 
 @dataclass(frozen=True, eq=False, slots=True)

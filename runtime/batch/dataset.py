@@ -317,7 +317,8 @@ def _samples(arrays: dict[str, NDArray[Any]], row: ManifestRow) -> Samples:
         developable_share=None, developable_patches=None, coverage=row.coverage, angle=row.angle,
         fit_distance=row.misfit, index=row.part,
     )  # fmt: skip
-    return Samples(**arrays, report=report)
+    known: dict[str, Any] = {**arrays}
+    return Samples(**known, report=report)
 
 
 def _checked_names(

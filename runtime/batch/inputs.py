@@ -22,6 +22,7 @@ from ..files.paths import checked_path, reason_of
 from ..splines.spline import Spline
 from ..surface.surface import Surface
 from ..surfaces import CATALOGUE, named
+from .manifest import as_text
 
 __all__ = ["Input", "Source", "content_of", "in_shards", "inputs_of", "read_source"]
 
@@ -57,7 +58,8 @@ def inputs_of(sources: Iterable[Source]) -> Iterator[Input]:
             yield _of_surface(part, named(source), source)
         elif isinstance(source, str | os.PathLike):
             path = checked_path(source)
-            yield Input(part, path.stem, str(path), os.path.abspath(path))
+            name, source_path = as_text(path.stem), as_text(str(path))
+            yield Input(part, name, source_path, os.path.abspath(path))
         elif isinstance(source, Surface | Spline | Part):
             yield _of_surface(part, source, type(source).__name__)
         else:
@@ -71,7 +73,8 @@ def _of_surface(part: int, surface: Surface | Spline | Part, source: str) -> Inp
     # Functions of the program itself, and of notebooks, can be unpickled nowhere else.
     pickle = from_extra("cloudpickle", "batch", "a data set of surfaces")
     try:
-        return Input(part, str(surface.name or "surface"), source, None, pickle.dumps(surface))
+        name = as_text(str(surface.name or "surface"))
+        return Input(part, name, source, None, pickle.dumps(surface))
     except Exception as error:  # of what users' functions hold
         raise InputError(
             f"part {part} ({surface.name}) cannot be sent to another process: its function cannot "

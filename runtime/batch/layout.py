@@ -5,6 +5,7 @@
     manifest/shard-000000.parquet a row for each of these parts
     partial/shard-000000.arrow    the same of a shard that is not finished
     files/                        a file for each part, if wanted
+    normals.npy                   the prescribed normals, if there are any
 
 A shard is finished when its manifest is there. No file is about all parts, so that a run over a
 million parts has nothing that all its processes write to.
@@ -21,26 +22,28 @@ from pathlib import Path
 from typing import IO, Any
 
 from ... import __version__
-from ..errors import FileError, InputError
+from ..errors import FileError, GaussmapError, InputError
 from ..files.paths import PathLike, atomic_path, checked_path, reason_of
 
 __all__ = [
     "FILES",
     "LOCK",
     "MANIFEST",
+    "NORMALS",
     "PARTIAL",
     "POINTS",
     "SETTINGS",
     "Settings",
     "create",
-    "locked",
+    "opened",
     "parts_per_shard",
     "read_settings",
+    "remove_shards",
     "shard_path",
     "shards_in",
 ]
 
-SETTINGS, LOCK = "dataset.json", ".lock"
+SETTINGS, LOCK, NORMALS = "dataset.json", ".lock", "normals.npy"
 POINTS, MANIFEST, PARTIAL, FILES = "points", "manifest", "partial", "files"
 FORMAT = 1
 # A shard has at most this many parts, and about this many samples. There are at least so many
@@ -147,6 +150,18 @@ def read_settings(folder: PathLike) -> Settings:
         raise FileError(f"'{path}' cannot be used: {error}.") from error
 
 
+@contextmanager
+def opened(folder: PathLike, settings: Settings, overwrite: bool = False) -> Iterator[Settings]:
+    """Make the folder of a data set, or go on with one, as `create` does; no other run may write.
+
+    Yields what `create` returns. Raises what it raises, and FileError if another run writes.
+    """
+    path = checked_path(folder)
+    _usable(path)
+    with locked(path):
+        yield create(path, settings, overwrite)
+
+
 def create(folder: PathLike, settings: Settings, overwrite: bool = False) -> Settings:
     """Make the folder of a data set, or go on with one; return its settings.
 
@@ -162,27 +177,53 @@ def create(folder: PathLike, settings: Settings, overwrite: bool = False) -> Set
 
     """
     path = checked_path(folder)
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-        if (path / SETTINGS).exists():
-            if not overwrite:
-                return _same(read_settings(path), settings, path)
+    _usable(path)
+    with _writing(path):
+        if (path / SETTINGS).exists() and overwrite:
             _remove(path)
-        elif any(entry.name != LOCK for entry in path.iterdir()):
-            raise FileError(
-                f"'{folder}' holds other files and no {SETTINGS}; name a new or empty folder."
-            )
+        if (path / SETTINGS).exists():
+            settings = _same(read_settings(path), settings, path)
+        else:  # first of all: without settings the folder would be of something else
+            with atomic_path(path / SETTINGS) as temporary:
+                temporary.write_text(settings.to_json(), encoding="utf-8")
         for name in (POINTS, MANIFEST, PARTIAL):
             (path / name).mkdir(exist_ok=True)
-    except FileExistsError:
-        raise FileError(f"'{folder}' is a file; name a folder for the data set.") from None
-    except FileError:
-        raise
-    except OSError as error:
-        raise FileError(f"'{folder}' cannot be written to: {reason_of(error)}.") from error
-    with atomic_path(path / SETTINGS) as temporary:
-        temporary.write_text(settings.to_json(), encoding="utf-8")
     return settings
+
+
+def _usable(path: Path) -> None:
+    """Make a folder; FileError if that fails, or if something else is in it."""
+    with _writing(path):
+        path.mkdir(parents=True, exist_ok=True)
+        if not (path / SETTINGS).exists() and any(
+            # Of a run that was killed while it wrote the settings.
+            entry.name != LOCK and not entry.name.startswith(".gaussmap-")
+            for entry in path.iterdir()
+        ):
+            raise FileError(
+                f"'{path}' holds other files and no {SETTINGS}; name a new or empty folder."
+            )
+
+
+@contextmanager
+def _writing(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except GaussmapError:
+        raise
+    except (FileExistsError, NotADirectoryError):
+        raise FileError(f"'{path}' is a file, or in one; name a folder for it.") from None
+    except OSError as error:
+        raise FileError(f"'{path}' cannot be written to: {reason_of(error)}.") from error
+
+
+def remove_shards(folder: Path, first: int) -> None:
+    """Remove the shards from a number on: they are of a list that was longer."""
+    with _writing(folder):
+        for kind in (MANIFEST, POINTS, PARTIAL):  # without its manifest a shard is not there
+            for path in (folder / kind).glob("shard-" + 6 * "[0-9]" + "*"):
+                if int(path.stem.removeprefix("shard-")) >= first:
+                    path.unlink()
 
 
 def _same(old: Settings, new: Settings, path: Path) -> Settings:
@@ -219,6 +260,7 @@ def _remove(path: Path) -> None:
     for name in (MANIFEST, POINTS, PARTIAL, FILES):
         with suppress(FileNotFoundError):
             shutil.rmtree(path / name)
+    (path / NORMALS).unlink(missing_ok=True)
     (path / SETTINGS).unlink()
 
 

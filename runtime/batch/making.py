@@ -13,7 +13,7 @@ from ..files.paths import PathLike
 from .arguments import Where
 from .asked import Asked
 from .inputs import Source, in_shards, inputs_of
-from .layout import FILES, Settings, create, locked, parts_per_shard
+from .layout import FILES, Settings, opened, parts_per_shard, remove_shards
 from .local import run_locally
 from .running import Plan, Tally
 
@@ -60,7 +60,7 @@ def make(
     """Sample all parts into a data set; return what became of them.
 
     `settings` has the fields, dtype, compression and files of `Settings`. Raises InputError and
-    FileError where `layout.create` does, and FileError if the data set cannot be written.
+    FileError where `layout.opened` does, and FileError if the data set cannot be written.
     """
     check_extra("pyarrow", "batch", "a data set")
     check_extra("cloudpickle", "batch", "a data set")
@@ -71,15 +71,15 @@ def make(
         **settings,
     )
     path = Path(folder).absolute()
-    with _runner(where) as (run, dashboard):
-        known = create(folder, wanted, overwrite)
-        with locked(path):
-            if known.files is not None:
-                (path / FILES).mkdir(exist_ok=True)
-            plan = Plan(str(path), known, asked.stored(path), where.limits, again)
-            shards = enumerate(in_shards(inputs_of(sources), known.parts_per_shard))
-            watch.begin(parts, dashboard)
-            return _watched(run(plan, shards), watch)
+    with _runner(where) as (run, dashboard), opened(folder, wanted, overwrite) as known:
+        if known.files is not None:
+            (path / FILES).mkdir(exist_ok=True)
+        plan = Plan(str(path), known, asked.stored(path), where.limits, again)
+        shards = enumerate(in_shards(inputs_of(sources), known.parts_per_shard))
+        watch.begin(parts, dashboard)
+        tally = _watched(run(plan, shards), watch)
+        remove_shards(path, -(-tally.parts // known.parts_per_shard))
+        return tally
 
 
 @contextmanager

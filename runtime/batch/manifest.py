@@ -8,7 +8,7 @@ from typing import Any
 
 from ..extras import from_extra
 
-__all__ = ["FAILED", "OK", "ManifestRow", "manifest_schema", "manifest_table", "rows_of"]
+__all__ = ["FAILED", "OK", "ManifestRow", "as_text", "manifest_schema", "manifest_table", "rows_of"]
 
 OK, FAILED = "ok", "failed"
 # The columns: the type of Arrow, whether it may be null, the unit, and what it is.
@@ -66,7 +66,7 @@ def manifest_table(rows: Iterable[ManifestRow]) -> Any:  # noqa: ANN401
     arrow = from_extra("pyarrow", "batch", "a data set")
     # Paths may hold bytes that are no text, which Arrow refuses.
     known = [
-        {name: _as_text(x) if isinstance(x, str) else x for name, x in asdict(row).items()}
+        {name: as_text(x) if isinstance(x, str) else x for name, x in asdict(row).items()}
         for row in rows
     ]
     return arrow.Table.from_pylist(known, schema=manifest_schema())
@@ -77,5 +77,6 @@ def rows_of(table: Any) -> list[ManifestRow]:  # noqa: ANN401
     return [ManifestRow(**row) for row in table.to_pylist()]
 
 
-def _as_text(text: str) -> str:
+def as_text(text: str) -> str:
+    """Return a text that can be written: bytes of a path that are no text become escapes."""
     return text.encode("utf-8", "backslashreplace").decode()

@@ -12,6 +12,7 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.runtime.batch.inputs import inputs_of
 from gaussmap.runtime.batch.running import file_name
 from gaussmap.runtime.errors import FileError, InputError
 
@@ -112,6 +113,12 @@ def test_arguments(tmp_path):
     assert not (tmp_path / "c").exists()
 
 
+def test_names_that_are_no_text(tmp_path):
+    (part,) = inputs_of([Path("a\udcff") / "b\udcff.step"])
+    assert (part.name, part.source) == ("b\\udcff", "a\\udcff/b\\udcff.step")
+    assert part.path == str(Path("a\udcff").absolute() / "b\udcff.step")
+
+
 @pytest.mark.parametrize(
     ("part", "name", "expected"),
     [
@@ -175,11 +182,14 @@ class TestSlow:
 
     def test_a_surface_that_changed_is_sampled_again(self, tmp_path):
         log = tmp_path / "log"
-        for seeds, expected in (((1, 2, 3), {1, 2, 3}), ((1, 5, 3), {5}), ((1, 5, 3, 4), {4})):
+        runs = ((1, 2, 3), {1, 2, 3}), ((1, 5, 3), {5}), ((1, 5, 3, 4), {4}), ((1, 5), set())
+        for seeds, expected in runs:
             log.write_text("")
-            gm.sample_many([waves(k, log=log) for k in seeds], 50, out=tmp_path / "set",
-                           progress=False, **ASKED)  # fmt: skip
+            data = gm.sample_many([waves(k, log=log) for k in seeds], 50, out=tmp_path / "set",
+                                  progress=False, **ASKED)  # fmt: skip
             assert {int(x) for x in log.read_text().split()} == expected
+            names = data.manifest()["name"].to_pylist()
+            assert names == [f"waves {k}" for k in seeds]
 
     def test_a_generator_and_normals(self, tmp_path):
         data = gm.sample_many((waves(k) for k in range(70)), normals=gm.icosphere(8),

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,9 +15,10 @@ from gaussmap.runtime.batch.layout import (
     POINTS,
     Settings,
     create,
-    locked,
+    opened,
     parts_per_shard,
     read_settings,
+    remove_shards,
     shard_path,
 )
 from gaussmap.runtime.batch.manifest import FAILED, ManifestRow, manifest_table, rows_of
@@ -37,9 +39,11 @@ def settings(**known) -> Settings:
 
 def samples(part: int, count: int) -> Samples:
     rng = np.random.default_rng(part)
+    vectors: dict[str, Any] = {
+        name: rng.normal(size=(count, 3)).astype(np.float32) for name in ("points", "normals")
+    }
     return Samples(
-        points=rng.normal(size=(count, 3)).astype(np.float32),
-        normals=rng.normal(size=(count, 3)).astype(np.float32),
+        **vectors,
         face_index=rng.integers(9, size=count) if part % 2 else None,
         report=SamplingReport(surface="a", normals=None, samples=count, patches=None,
                               developable_share=None, developable_patches=None),
@@ -230,7 +234,7 @@ class TestFullDisk:
                 for _ in range(2):
                     with pytest.raises(FileError, match="what is done is kept") as error:
                         add(shard, 2)
-            assert str(error.value).count("\n") == 0
+                    assert "\n" not in str(error.value)
             assert list(Shard(path, 7, known).rows) == list(shard.rows) == [0]
             for part in (1, 2, 3, 4):  # there is room again
                 add(shard, part)
@@ -367,12 +371,42 @@ class TestFolder:
             create(path, known, overwrite=True)
         assert (path / POINTS).exists()
 
-    def test_one_run_at_a_time(self, tmp_path):
-        path, _ = folder(tmp_path)
-        with locked(path), pytest.raises(FileError, match="another run"), locked(path):
-            pass
-        with locked(path):
-            pass
+    @pytest.mark.parametrize("overwrite", [False, True])
+    def test_one_run_at_a_time(self, tmp_path, overwrite):
+        path = tmp_path / "new"
+        with opened(path, settings()) as known:
+            with Shard(path, 0, known) as shard:
+                add(shard, 0)
+                shard.commit([0])
+            with (
+                pytest.raises(FileError, match="another run"),
+                opened(path, known, overwrite),
+            ):
+                pass
+            assert Shard(path, 0, known).rows
+        with opened(path, known, overwrite):
+            assert bool(Shard(path, 0, known).rows) is not overwrite
+
+    def test_a_kill_while_the_folder_is_made(self, tmp_path):
+        (tmp_path / ".gaussmap-0123.json").write_text("{")
+        (tmp_path / ".lock").touch()
+        with opened(tmp_path, settings()) as known:
+            for kind in (POINTS, MANIFEST, PARTIAL):
+                (tmp_path / kind).rmdir()
+        with opened(tmp_path, known):
+            assert (tmp_path / PARTIAL).is_dir()
+
+    def test_shards_of_a_longer_list_are_removed(self, tmp_path):
+        path, known = folder(tmp_path)
+        for number in (6, 7, 1_234_567):
+            with Shard(path, number, known) as shard:
+                add(shard, 0)
+                shard.commit([0])
+                add(shard, 1)
+        (path / POINTS / "mine.txt").touch()
+        remove_shards(path, 7)
+        left = [x.name for kind in (POINTS, MANIFEST, PARTIAL) for x in (path / kind).iterdir()]
+        assert sorted(left) == ["mine.txt", "shard-000006.arrow", *2 * ["shard-000006.parquet"]]
 
     def test_parts_per_shard(self):
         assert parts_per_shard(200, 2048) == 3
