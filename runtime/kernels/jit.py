@@ -19,7 +19,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import IO, Any, TypeVar
 
 import numba
 from numba import types
@@ -41,6 +41,8 @@ SOURCES = ("generated/*.py", "runtime/kernels/*.py", "runtime/tolerances.py")
 DAYS_KEPT = 30
 # Kernels of the catalogue are made when they are first used, perhaps by several threads.
 LOCK = threading.Lock()
+# In seconds: how long a process waits for another one that compiles, and how often it looks.
+LONGEST_WAIT, POLL = 120.0, 0.02
 # Kernels are called from Python and from one another, and never from C.
 OPTIONS = {"nogil": True, "error_model": "numpy", "fastmath": False, "no_cfunc_wrapper": True}
 
@@ -96,6 +98,55 @@ class KernelCache(FunctionCache):
             finally:
                 config.CACHE_DIR = before
         self._cache_file = CheckedFile(self.cache_path, self._impl.filename_base, "")
+        self._lock = FileLock(folder / f"{self._impl.filename_base}.lock")
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Return machine code; wait for a process that compiles it now. None: this one has to."""
+        found = super().load_overload(sig, target_context)
+        if found is None:
+            self._lock.acquire()
+            found = super().load_overload(sig, target_context)
+            if found is not None:
+                self._lock.release()
+        return found
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Save machine code, and let waiting processes load it."""
+        super().save_overload(sig, data)
+        self._lock.release()
+
+
+class FileLock:
+    """A lock between processes: many that start at a time compile each kernel once, not each.
+
+    It ends with its process. Where there are no locks, each process compiles.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._file: IO[bytes] | None = None
+
+    def acquire(self) -> None:
+        """Wait for the lock."""
+        self.release()  # an earlier compilation may have failed
+        with suppress(ImportError, OSError):  # Windows; read-only folders
+            import fcntl
+
+            self._file = open(self._path, "ab")  # noqa: SIM115 - it is open as long as it locks
+            end = time.monotonic() + LONGEST_WAIT
+            while time.monotonic() < end:
+                try:
+                    fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                    return
+                except BlockingIOError:
+                    time.sleep(POLL)
+            self.release()
+
+    def release(self) -> None:
+        """Let others have it."""
+        file, self._file = self._file, None
+        if file is not None:
+            file.close()
 
 
 class CheckedFile(IndexDataCacheFile):

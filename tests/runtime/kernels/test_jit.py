@@ -116,6 +116,33 @@ def test_damaged_machine_code_is_compiled_again(
 
 
 @pytest.mark.compiled
+@pytest.mark.compiled
+@pytest.mark.slow
+def test_two_processes_compile_a_kernel_once(tmp_path: Path) -> None:
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
+    both = [
+        subprocess.Popen([sys.executable, "-c", NORMAL], env=environment, stdout=subprocess.PIPE)
+        for _ in range(2)
+    ]
+    compiled = sorted(int(process.communicate()[0].split()[-1]) for process in both)
+    assert compiled[0] == 0
+    assert compiled[1] > 0
+
+
+def test_a_lock_that_is_held_for_too_long_is_not_waited_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(jit, "LONGEST_WAIT", 0.05)
+    first, second = (jit.FileLock(tmp_path / "lock") for _ in range(2))
+    first.acquire()
+    start = time.monotonic()
+    second.acquire()
+    assert time.monotonic() - start >= 0.05
+    first.release()
+    second.acquire()
+    second.release()
+
+
 def test_machine_code_that_cannot_be_saved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(jit, "cache_folder", lambda: tmp_path)
     kernel: Any = jit.jit(triple)
