@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from gaussmap.runtime.batch.dataset import open_dataset
 from gaussmap.runtime.batch.layout import (
     MANIFEST,
     PARTIAL,
@@ -298,6 +299,22 @@ def test_large_parts_have_the_same_bytes_however_they_were_read(tmp_path):
         shard.commit([1, 2])
         seen.append(finished(path))
     assert seen[0] == seen[1]
+
+
+def test_cad_parts_have_no_patches(tmp_path):
+    known = Settings.of_this_version(asked={}, fields=("points", "normals", "patch_index"))
+    data = create(tmp_path, known)
+    with Shard(tmp_path, 0, data) as shard:
+        for part, patches in enumerate((None, np.arange(5))):
+            vectors: dict[str, Any] = dict.fromkeys(("points", "normals"), np.ones((5, 3)))
+            some = Samples(**vectors, patch_index=patches, report=samples(0, 5).report)  # pyright: ignore[reportArgumentType]
+            shard.add(
+                ManifestRow(part, "a", "b", "c", samples=5), points_table(some, part, shard.schema)
+            )
+        shard.commit([0, 1])
+    read = open_dataset(tmp_path)
+    assert read.samples(0).fields == ("points", "normals")
+    np.testing.assert_array_equal(read.samples(1).patch_index, np.arange(5))
 
 
 def test_names_that_are_no_text(tmp_path):
