@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from ..bins import NormalBins
+from ..developable import CellMeasure
 from ..fields import FLOAT_NAMES, new_field
 from ..georeference import Georeference
 from ..kernels.forms import forms_on_spline
@@ -98,6 +99,11 @@ class OnSpline:
     def measure(self) -> tuple[Array, Array]:
         """Areas and signed solid angles of the patches, as `Spline.measure`."""
         return self.spline.measure
+
+    @cached_property
+    def _cell_measure(self) -> CellMeasure:
+        """The same of the cells."""
+        return self.spline._cell_measure
 
     @property
     def distance(self) -> float:

@@ -15,6 +15,7 @@ from ...generated.patch import NODE
 from ...generated.spline import SCALE
 from ..bins import NormalBins
 from ..checks import known_name
+from ..developable import CellMeasure
 from ..errors import InputError
 from ..fields import FLAG_NAMES
 from ..fitting.fit import spline_of
@@ -124,6 +125,11 @@ class OnSurface(OnSpline):
         nodes = self.nodes.reshape(-1, 4, 6)
         solid_angles = np.repeat((nodes[..., 3] * nodes[..., 5]).sum(axis=1) / 16.0, 4)
         return areas, solid_angles if inside is None else solid_angles * inside.shares
+
+    @cached_property
+    def _cell_measure(self) -> CellMeasure:
+        """The same of the cells."""
+        return CellMeasure.of(self.measure, self.spline.cells)
 
     @cached_property
     def nodes(self) -> Array:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..checks import parameter_arrays
+from ..developable import CellMeasure
 from ..errors import InputError
 from ..georeference import Georeference
 from ..kernels import spline as kernels
@@ -222,6 +223,11 @@ class Spline:
         if self.inside is not None:
             areas, solid_angles = areas * self.inside.shares, solid_angles * self.inside.shares
         return areas / diagonal**2 if diagonal > 0.0 else areas, solid_angles
+
+    @cached_property
+    def _cell_measure(self) -> CellMeasure:
+        """Areas, solid angles and curvatures of the cells, see `CellMeasure`."""
+        return CellMeasure.of(self.measure, self.cells)
 
     @cached_property
     def inside(self) -> Inside | None:
