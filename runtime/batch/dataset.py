@@ -12,6 +12,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from ..checks import known_name, whole_number, yes_or_no
 from ..errors import InputError, UnknownNameError, shown
+from ..extras import check_extra
 from ..fields import COLUMNS, UNITS, checked_dtype, dtype_of
 from ..files.paths import PathLike, checked_path
 from .labels import checked_labels
@@ -58,6 +59,7 @@ def open_dataset(folder: PathLike) -> Dataset:
     '3 parts with 1,500 samples'
 
     """
+    check_extra("pyarrow", "batch", "a data set")
     from_folder = checked_path(folder)
     return Dataset(from_folder, read_settings(from_folder))
 

@@ -14,6 +14,7 @@ million parts has nothing that all its processes write to.
 from __future__ import annotations
 
 import json
+import secrets
 import shutil
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -41,11 +42,13 @@ __all__ = [
     "remove_shards",
     "shard_path",
     "shards_in",
+    "temporary_path",
 ]
 
 SETTINGS, LOCK, NORMALS = "dataset.json", ".lock", "normals.npy"
 POINTS, MANIFEST, PARTIAL, FILES = "points", "manifest", "partial", "files"
 FORMAT = 1
+TEMPORARY = ".tmp"
 # A shard has at most this many parts, and about this many samples. There are at least so many
 # shards, if there are so many parts, so that all processes have work to the end.
 MOST_PARTS, MOST_SAMPLES, LEAST_SHARDS = 256, 1 << 22, 64
@@ -129,6 +132,14 @@ def shard_path(folder: Path, kind: str, number: int) -> Path:
     return folder / kind / f"shard-{number:06d}{'.arrow' if kind == PARTIAL else '.parquet'}"
 
 
+def temporary_path(folder: Path) -> Path:
+    """Return a new path for a file that is being written.
+
+    It is not where finished files are: Polars and DuckDB would take it for one of them.
+    """
+    return folder / PARTIAL / f"{secrets.token_hex(8)}{TEMPORARY}"
+
+
 def shards_in(folder: Path) -> list[int]:
     """Return the numbers of the finished shards, in order."""
     return sorted(
@@ -159,7 +170,11 @@ def opened(folder: PathLike, settings: Settings, overwrite: bool = False) -> Ite
     path = checked_path(folder)
     _usable(path)
     with locked(path):
-        yield create(path, settings, overwrite)
+        known = create(path, settings, overwrite)
+        with _writing(path):
+            for left in (path / PARTIAL).glob(f"*{TEMPORARY}"):  # by runs that were killed
+                left.unlink()
+        yield known
 
 
 def create(folder: PathLike, settings: Settings, overwrite: bool = False) -> Settings:

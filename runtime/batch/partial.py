@@ -54,13 +54,13 @@ def _whole_batches(arrow: Any, file: Any, schema: Any) -> Iterator[tuple[Manifes
 class PartialFile:
     """Appends parts to the file; what an earlier process has left is written again first.
 
-    Only whole batches of it are, so that the stream goes on after them.
+    Only whole batches of it are, so that the stream goes on after them. That is done in the file
+    `temporary`, which then takes the place of the other.
     """
 
-    def __init__(self, path: Path, schema: Any) -> None:  # noqa: ANN401
+    def __init__(self, path: Path, schema: Any, temporary: Path) -> None:  # noqa: ANN401
         self._arrow = from_extra("pyarrow", "batch", "a data set")
         self._schema = schema
-        temporary = path.with_suffix(".tmp")
         try:
             with batches_in(path, schema) as older:
                 self._file = self._arrow.OSFile(str(temporary), "wb")

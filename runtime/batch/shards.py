@@ -6,15 +6,16 @@ and of the manifest are written, in this order.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, Self
 
 from ..errors import FileError
 from ..extras import from_extra
-from ..files.paths import atomic_path, reason_of
-from .layout import MANIFEST, PARTIAL, POINTS, Settings, shard_path
+from ..files.paths import reason_of
+from .layout import MANIFEST, PARTIAL, POINTS, Settings, shard_path, temporary_path
 from .manifest import ManifestRow, manifest_table, rows_of
 from .partial import PartialFile, batches_in
 from .tables import points_schema
@@ -44,6 +45,7 @@ class Shard:
 
     def __init__(self, folder: Path, number: int, settings: Settings) -> None:
         self.schema = points_schema(settings)
+        self._folder = folder
         self._points = shard_path(folder, POINTS, number)
         self._manifest = shard_path(folder, MANIFEST, number)
         self._partial = shard_path(folder, PARTIAL, number)
@@ -67,7 +69,8 @@ class Shard:
         self._unchanged = None
         with self._writing():
             if self._file is None:
-                self._file = PartialFile(self._partial, self.schema)
+                temporary = temporary_path(self._folder)
+                self._file = PartialFile(self._partial, self.schema, temporary)
             self._file.add(row, table)
         self.rows[row.part] = row
 
@@ -81,9 +84,9 @@ class Shard:
         with self._writing():
             self._close()
         rows = {part: self.rows[part] for part in parts}
-        with atomic_path(self._points) as temporary:
+        with self._replaced(self._points) as temporary:
             self._write_points(temporary, rows)
-        with atomic_path(self._manifest) as temporary:
+        with self._replaced(self._manifest) as temporary:
             _parquet().write_table(
                 manifest_table(rows.values()), temporary, compression=self._codec
             )
@@ -132,7 +135,19 @@ class Shard:
             file.close()
 
     @contextmanager
-    def _writing(self) -> Iterator[None]:
+    def _replaced(self, path: Path) -> Iterator[Path]:
+        """Yield a path to write to; the file takes the place of `path` when it is complete."""
+        temporary = temporary_path(self._folder)
+        try:
+            with self._writing(path):
+                yield temporary
+                os.replace(temporary, path)
+        finally:
+            with suppress(OSError):
+                temporary.unlink()
+
+    @contextmanager
+    def _writing(self, path: Path | None = None) -> Iterator[None]:
         try:
             yield
         except BaseException as error:
@@ -140,7 +155,7 @@ class Shard:
             if not isinstance(error, OSError):
                 raise
             raise FileError(
-                f"'{self._partial}' cannot be written: {reason_of(error)}; "
+                f"'{path or self._partial}' cannot be written: {reason_of(error)}; "
                 "what is done is kept, run the same again when that is mended."
             ) from error
 
