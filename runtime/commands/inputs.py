@@ -26,7 +26,7 @@ from ..surfaces import CATALOGUE, names, surface
 from .parts import LIMITS, read_part_file, refuse
 from .terrains import OF_TERRAIN, has_place, is_raster_file, read_raster_file, terrain_of_array
 
-__all__ = ["arguments"]
+__all__ = ["arguments", "named_normals"]
 
 NOT_OF_FORMULAS = ("set", "spacing", "nodata")
 NOT_OF_PARTS = ("set", "domain", "spacing", "periodic", "nodata", "cells", "tolerance", *OF_TERRAIN)
@@ -37,7 +37,7 @@ def arguments(options: SimpleNamespace, default_count: int) -> dict[str, Any]:
     """Return the arguments of `sampling.sample` that were given."""
     NOTICE.quiet = options.quiet
     _spare_inputs(options)
-    normals = _normals(options)
+    normals = named_normals(options)
     surface_, cells = _part(options), None
     if surface_ is None:
         surface_, cells = _with_tolerance(_surface(options), options)
@@ -166,7 +166,8 @@ def _with_tolerance(
     return (spline, None) if surface_.grid is not None else (surface_, spline.cells)
 
 
-def _normals(options: SimpleNamespace) -> NDArray[np.float64] | None:
+def named_normals(options: SimpleNamespace) -> NDArray[np.float64] | None:
+    """Return the normals that are named or in a file; None if a number says how many samples."""
     if options.seed is not None and options.random is None:
         raise InputError("--seed is for --random COUNT, which is not there.")
     if options.frequency is not None:

@@ -13,7 +13,14 @@ import click
 from ... import __version__
 from ..fields import ARRAY_NAMES_ON_SURFACE, EDGE_NAMES, PART_NAMES
 from ..limits import MOST, MOST_FREQUENCY, MOST_STEPS
-from .completion import PROGRAM, SHELLS, densities, formula_names, surface_names
+from .completion import (
+    PROGRAM,
+    SHELLS,
+    densities,
+    formula_names,
+    surface_names,
+    surfaces_and_files,
+)
 from .options import (
     Command,
     Option,
@@ -22,7 +29,7 @@ from .options import (
     number,
     whole,
 )  # fmt: skip
-from .surface_options import cad_options, surface_argument, surface_options
+from .surface_options import cad_options, spline_options, surface_argument, surface_options
 
 __all__ = ["TO_TRY", "parser"]
 
@@ -119,6 +126,16 @@ examples:
   gaussmap view heights.npy --spacing 30 30 -o terrain.html
 """
 
+BATCH_EXAMPLES = """\
+\b
+examples:
+  gaussmap batch parts/ -o dataset
+  gaussmap batch parts/*.step torus --count 2048 --float32 -o dataset
+  gaussmap batch --list parts.txt --workers 8 --time-limit 60 -o dataset
+  gaussmap batch parts/ --scheduler tcp://10.0.0.1:8786 -o /shared/dataset
+"""
+
+FOLDER = click.Path(file_okay=False, readable=False)
 FILE = click.Path(readable=False)  # for completion; files are checked where they are used
 
 
@@ -127,7 +144,8 @@ def parser() -> click.Group:
     text = "Sample surfaces by the normals of their points, so that density follows curvature."
     program = Program(PROGRAM, help=text, epilog=EXAMPLES, context_settings=SETTINGS)
     click.version_option(__version__, message=f"{PROGRAM} %(version)s")(program)
-    for make in (_sample, _mesh, _plot, _view, _surfaces, _faces, _formulas, _warm, _completion):
+    sampling = _sample, _mesh, _plot, _view, _batch
+    for make in (*sampling, _surfaces, _faces, _formulas, _warm, _completion):
         program.add_command(make())
     return program
 
@@ -218,6 +236,55 @@ def _view() -> Command:
         *_sampling(default_count=5_000),
         _output(".html or .htm"),
         epilog=VIEW_EXAMPLES,
+    )
+
+
+def _batch() -> Command:
+    data, run = "the data set", "the run"
+    workers = "How many processes sample (default: one for each core)."
+    scheduler = (
+        "The address of a scheduler of Dask, such as tcp://host:8786, whose workers sample, and "
+        "see the folder by the same path. Needs pip install 'gaussmap[cluster]'."
+    )
+    names = (
+        f"Store these arrays only. They are {', '.join(ARRAY_NAMES_ON_SURFACE)}; of CAD parts "
+        f"{' and '.join(PART_NAMES)}, too (default: those of real numbers)."
+    )
+    parts = "A file with a part in each line, a name or a path; - for standard input."
+    files = "Write a file for each part, too, of this suffix, such as .ply."
+    measure = "Measure coverage and normal deviation of each part, which may take ten times longer."
+    again = "Try parts again that failed in an earlier run."
+    codecs = "zstd (default), snappy, gzip, lz4 or none."
+    seconds = "The longest time for a part, in seconds (default: 600)."
+    memory = "The most memory of a process, in GiB (default: its share of nine tenths of all)."
+    return _command(
+        "batch",
+        "Sample many parts into a data set.",
+        "Sample many parts, by several processes, into a folder of Parquet files: points with "
+        "normals and curvatures, and a manifest that says of each part how it went. A part that "
+        "fails does not end the run. If the run is stopped, the same command goes on with what is "
+        "missing. PARTS are names of surfaces, files (STEP, IGES, BREP, .npz and .npy), patterns "
+        "and folders. The exit code is 3 if parts failed. Needs pip install 'gaussmap[batch]'.",
+        click.Argument(["parts"], nargs=-1, required=False, shell_complete=surfaces_and_files),
+        *_amount(2048),
+        *_distribution(),
+        *spline_options(),
+        Option("-o --output FOLDER", "The folder of the data set.", FOLDER, required=True),
+        Option("--list FILE", parts, FILE),
+        Option("--fields NAME,NAME", names, group=data),
+        Option("--float32", "Store single precision: 7 digits instead of 16.", group=data),
+        Option("--compression CODEC", codecs, group=data, default="zstd"),
+        Option("--files SUFFIX", files, group=data),
+        Option("--measure", measure, group=data),
+        Option("--overwrite", "Remove the data set that is in the folder first.", group=data),
+        Option("--workers N", workers, whole(MOST), group=run, exclusive=False),
+        Option("--scheduler ADDRESS", scheduler, group=run),
+        Option("--time-limit SECONDS", seconds, number, group=run),
+        Option("--memory-limit GIB", memory, number, group=run),
+        Option("--retry-failed", again, group=run),
+        Option("--json", "Print the summary as a JSON object.", group=run),
+        _quiet(),
+        epilog=BATCH_EXAMPLES,
     )
 
 

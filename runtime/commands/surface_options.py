@@ -8,7 +8,7 @@ from ..limits import MOST
 from .completion import settings, surfaces_and_files
 from .options import Option, number, setting, whole
 
-__all__ = ["cad_options", "surface_argument", "surface_options"]
+__all__ = ["cad_options", "spline_options", "surface_argument", "surface_options"]
 
 GROUP = "the surface"
 
@@ -32,10 +32,12 @@ def _checked_source(ctx: click.Context, _: click.Parameter, surface: str | None)
 
 def surface_options() -> list[Option]:
     """Return the options of everything that takes a surface."""
+    tolerance = "Instead of --cells: the largest distance of the spline from the surface or data."
     return [
         *_formula_options(),
         *_grid_options(),
-        *_spline_options(),
+        *spline_options(),
+        Option("--tolerance LENGTH", tolerance, number, group=GROUP),
         *_terrain_options(),
         *cad_options(),
     ]
@@ -77,16 +79,15 @@ def _grid_options() -> list[Option]:
     ]
 
 
-def _spline_options() -> list[Option]:
+def spline_options() -> list[Option]:
+    """Return the options of everything that takes surfaces of which it makes splines."""
     cells = "The cells of the spline along u and v (default: 64 64 or more, or those of the grid)."
-    tolerance = "Instead of --cells: the largest distance of the spline from the surface or data."
     on = (
         "Where samples lie: on the surface itself (default) or on the spline that approximates it. "
         "Of grids in files there is the spline only."
     )
     return [
         Option("--cells M N", cells, whole(MOST), group=GROUP),
-        Option("--tolerance LENGTH", tolerance, number, group=GROUP),
         Option("--on WHERE", on, click.Choice(("surface", "spline")), group=GROUP),
     ]
 

@@ -729,7 +729,9 @@ def completed(words: str) -> list[str]:
     return done.stdout.splitlines()
 
 
-COMMANDS = ["sample", "mesh", "plot", "view", "surfaces", "faces", "formulas", "warm", "completion"]
+COMMANDS = [
+    "sample", "mesh", "plot", "view", "batch", "surfaces", "faces", "formulas", "warm", "completion"
+]  # fmt: skip
 
 
 @compiled
