@@ -20,16 +20,23 @@ from .threads import over_ranges, thread_count
 
 __all__ = ["NormalBins", "icosahedron"]
 
-NORMALS_PER_BIN = 4
+NORMALS_PER_BIN = 2
+# The least and the largest number of squares along an edge: few normals may be close together.
+COARSEST, FINEST = 32, 2048
 # The least number of normals for each thread that sorts them, and the largest number of threads.
 FEWEST_NORMALS, MOST_COUNTS = 1 << 16, 8
 # The least radius of a cap of normals, as the tangent of half its opening angle.
 NARROWEST = 2.0**-20
+# The least height of a unit vector on a face of the cube, 1/√3, and of the icosahedron, that of a
+# corner, both rounded down. Vectors in a cone with an angle θ of at most 37° are not farther from
+# its axis than 2 sin(θ/2) < 1.1 sin θ.
+CUBE_HEIGHT, ICOSAHEDRON_HEIGHT, SLOPE = 0.577, 0.525, 1.1
 
 
 def icosahedron(frequency: int) -> Polyhedron:
     """Return the icosahedron with the points of `icosphere`."""
-    return Polyhedron(FRAMES, float(STRETCHES.max()), frequency, float(frequency))
+    stretch = float(STRETCHES.max())
+    return Polyhedron(FRAMES, stretch, frequency, float(frequency), ICOSAHEDRON_HEIGHT, SLOPE, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,18 +93,25 @@ class NormalBins:
         """The norm of the frame: its longest row."""
         return float(np.linalg.norm(self.frame, axis=1).max())
 
+    @property
+    def faces(self) -> int:
+        """The number of faces of the cube with normals."""
+        return 6 if self.stretch < 1.1 else 1
+
     @cached_property
     def grid(self) -> int:
         """The number of squares along an edge of the cube."""
-        faces = 6 if self.stretch < 1.1 else 1
-        return max(1, min(2048, round(math.sqrt(len(self.normals) / (faces * NORMALS_PER_BIN)))))
+        grid = round(math.sqrt(len(self.normals) / (self.faces * NORMALS_PER_BIN)))
+        return max(COARSEST, min(grid, FINEST))
 
     @cached_property
     def cube(self) -> Polyhedron:
         """The six faces of the cube, in the order +x, −x, +y, −y, +z, −z."""
         x, y, z = self.frame
         frames = np.array([[y, z, x], [y, z, -x], [z, x, y], [z, x, -y], [x, y, z], [x, y, -z]])
-        return Polyhedron(frames, self.stretch, self.grid, 2.0 * self.grid)
+        least = CUBE_HEIGHT if self.faces == 6 else -math.inf
+        density = len(self.normals) / (self.faces * self.grid**2)
+        return Polyhedron(frames, self.stretch, self.grid, 2.0 * self.grid, least, SLOPE, density)
 
     @cached_property
     def sorted(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:

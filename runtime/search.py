@@ -28,7 +28,7 @@ __all__ = ["Hits", "PackedHits", "Search", "SearchResult", "fill", "fill_packed"
 
 # The number of patches of a range, which one thread searches. Each thread gets several ranges,
 # except on small surfaces.
-FEWEST_PATCHES, MOST_PATCHES = 64, 4096
+FEWEST_PATCHES, MOST_PATCHES = 128, 4096
 RANGES_PER_THREAD = 4
 SAMPLES_AT_A_TIME = 1 << 16
 # The initial and the largest capacity for packed hits; a patch that needs more gets it.

@@ -118,7 +118,6 @@ def scan_patches(
     As `search_patches`, for the points (S, 3) of frequency ν; the results are packed runs.
     """
     certain, undecided, bounds, flat, counts = found
-    numbers, s, t, codes, marks, words = candidates
     frequency = icosahedron.grid
     begin = end = first_patch
     for number in range(first_patch, last_patch):
@@ -126,15 +125,16 @@ def scan_patches(
             begin, end = strip_of(spline, icosahedron, number, last_patch, strip)
             classify_few(icosahedron, NO_STARTS, normals, strip, end - begin, few)
         place = number - begin
-        sine, bound = strip.rows[SINE + place], strip.rows[BOUND + place]
         face_count, total, at_border = 0, few.starts[place + 1] - few.starts[place], False
         if few.many[place]:
             load_cone(strip.rows, place, cone)
-            face_count, total, at_border = count_points(cone, sine, frequency, faces)
+            face_count, total, at_border = count_points(
+                cone, strip.rows[SINE + place], frequency, faces
+            )
         if total > 0 and (
             counts[0] + total + 1 > certain.shape[0]
             or counts[1] + total + 1 > undecided.shape[0]
-            or total + frequency + 64 > s.size
+            or total + frequency + 64 > candidates.s.size
         ):
             return number, total + 1
         if strip.rows[FLAT + place] > 0.0:
@@ -143,44 +143,45 @@ def scan_patches(
         if total == 0:
             continue
         before = counts[1]
-        if not few.many[place]:
-            store_few_runs(few, place, strip.faces[place], number, certain, undecided, counts)
-        patch, axis = patch_in(strip.rows, place), vector_in(strip.rows, AXIS, place)
-        if at_border:
-            count = border_points(faces, frequency, numbers)
-            classify_border(patch, axis, sine, bound, normals, numbers, count, memory, codes)
-            store_border(codes, numbers, count, number, certain, undecided, counts)
-        for k in range(face_count):
-            face = faces.met[k]
-            count = points_inside(face, faces, frequency, s, t)
-            forms_on_face(patch, axis, sine, face, frequency, memory.forms)
-            open_ = classify_points(
-                memory.forms, bound if sine < math.inf else math.inf, frequency, s, t, count, codes
-            )
-            if open_ > 0:
-                classify_again(
-                    patch, axis, sine, bound, face, frequency, s, t, count, memory, codes
-                )
-                counts[1] = store_undecided(
-                    face, frequency, s, t, count, codes, number, undecided, counts[1]
-                )
-            counts[0] = store_runs(
-                face,
-                frequency,
-                s,
-                t,
-                count,
-                codes,
-                marks,
-                words,
-                numbers,
-                number,
-                certain,
-                counts[0],
-            )
+        if few.many[place]:
+            search_faces(
+                number, face_count, at_border, frequency, normals, found, strip, place,
+                faces, memory, candidates,
+            )  # fmt: skip
+        else:
+            store_few_runs(few, place, number, certain, undecided, counts)
         for k in range(before, counts[1]):
-            bounds[k] = bound
+            bounds[k] = strip.rows[BOUND + place]
     return last_patch, 0
+
+
+@loop
+def search_faces(
+    number, face_count, at_border, frequency, normals, found, strip, place,
+    faces, memory, candidates,
+):  # fmt: skip
+    """Find the points on the faces met by a patch with many candidates, by rows."""
+    certain, undecided, _, _, counts = found
+    numbers, s, t, codes, marks, words = candidates
+    patch, axis = patch_in(strip.rows, place), vector_in(strip.rows, AXIS, place)
+    sine, bound = strip.rows[SINE + place], strip.rows[BOUND + place]
+    if at_border:
+        count = border_points(faces, frequency, numbers)
+        classify_border(patch, axis, sine, bound, normals, numbers, count, memory, codes)
+        store_border(codes, numbers, count, number, certain, undecided, counts)
+    for k in range(face_count):
+        face = faces.met[k]
+        count = points_inside(face, faces, frequency, s, t)
+        forms_on_face(patch, axis, sine, face, frequency, memory.forms)
+        largest = bound if sine < math.inf else math.inf
+        if classify_points(memory.forms, largest, frequency, s, t, count, codes) > 0:
+            classify_again(patch, axis, sine, bound, face, frequency, s, t, count, memory, codes)
+            counts[1] = store_undecided(
+                face, frequency, s, t, count, codes, number, undecided, counts[1]
+            )
+        counts[0] = store_runs(
+            face, frequency, s, t, count, codes, marks, words, numbers, number, certain, counts[0]
+        )
 
 
 @loop

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .jit import inline, jit, loop
 
-__all__ = ["merge_hits", "pack_hits", "store_sorted"]
+__all__ = ["insertion_sort", "merge_hits", "pack_hits", "store_sorted"]
 
 # Up to this many are sorted by insertion.
 FEW = 32

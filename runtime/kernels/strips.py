@@ -31,11 +31,15 @@ __all__ = [
     "BOUND",
     "BOX",
     "CELLS",
+    "ERRORS",
     "FLAT",
+    "ONE_VECTOR",
     "SINE",
+    "UNIT",
     "Polyhedron",
     "Strip",
     "patch_in",
+    "put_box",
     "strip_of",
 ]
 
@@ -56,13 +60,18 @@ class Polyhedron(NamedTuple):
 
     `frames` (F, 3, 3) map directions to s, t and height on a face, `stretch` is the largest length
     of their rows. Positions are (s/height + 1)/2 and (t/height + 1)/2 times `grid`; `limit` is the
-    largest sum of both.
+    largest sum of both. The height of a unit vector on its face is `least` at least, and that of a
+    vector in a cone at least that of the axis minus `slope` times the sine. `density` is the
+    mean number of normals in a square of the grid.
     """
 
     frames: NDArray[np.float64]
     stretch: float
     grid: int
     limit: float
+    least: float
+    slope: float
+    density: float
 
 
 class Strip(NamedTuple):
@@ -274,7 +283,7 @@ def write_nearest(frames, rows, faces):
 @loop
 def write_boxes(polyhedron, rows, faces):
     """Write the boxes on the nearest faces; the face becomes −1 if the cone is not inside."""
-    _, stretch, grid, limit = polyhedron
+    _, stretch, grid, limit, _, _, _ = polyhedron
     half = 0.5 * grid
     for k in range(TILE):
         f = vector_in(rows, FRAME, k)
