@@ -3,7 +3,7 @@
     dataset.json                  the settings
     points/shard-000000.parquet   the samples of consecutive parts
     manifest/shard-000000.parquet a row for each of these parts
-    partial/shard-000000.arrow    the same of a shard that is not finished
+    partial/shard-000000.arrow    the same of a shard that is not finished; see partial.py
     files/                        a file for each part, if wanted
     normals.npy                   the prescribed normals, if there are any
 
@@ -237,7 +237,7 @@ def remove_shards(folder: Path, first: int) -> None:
     with _writing(folder):
         for kind in (MANIFEST, POINTS, PARTIAL):  # without its manifest a shard is not there
             for path in (folder / kind).glob("shard-" + 6 * "[0-9]" + "*"):
-                if int(path.stem.removeprefix("shard-")) >= first:
+                if int(path.name.partition(".")[0].removeprefix("shard-")) >= first:
                     path.unlink()
 
 

@@ -1,42 +1,54 @@
-"""The file of a shard that is not finished: a stream of Arrow, with a batch for each part.
+"""The files of a shard that is not finished: streams of Arrow, with a batch for each part.
 
 The row of the manifest is in the metadata of the batch. A part is done when its batch is there
-whole: what follows the last whole batch is left by a process that was killed.
+whole: what follows the last whole batch is left by a process that was killed. So each process has
+a file of its own: the first `shard-000007.arrow`, the next `shard-000007.1.arrow`.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import asdict
+from itertools import count
 from pathlib import Path
 from typing import Any
 
 from ..extras import from_extra
 from .manifest import ManifestRow
 
-__all__ = ["PartialFile", "batches_in"]
+__all__ = ["PartialFile", "batches_in", "files_of"]
 
 ROW = b"row"
 
 
+def files_of(first: Path) -> list[Path]:
+    """Return the files of a shard that are there, the oldest one first."""
+    numbers = {path: path.suffixes[-2][1:] for path in first.parent.glob(f"{first.stem}.*.arrow")}
+    later = {int(number): path for path, number in numbers.items() if number.isdecimal()}
+    return [first] * first.exists() + [later[k] for k in sorted(later)]
+
+
 @contextmanager
-def batches_in(path: Path, schema: Any) -> Iterator[dict[int, tuple[ManifestRow, Any]]]:  # noqa: ANN401
+def batches_in(
+    files: Sequence[Path],
+    schema: Any,  # noqa: ANN401
+) -> Iterator[dict[int, tuple[ManifestRow, Any]]]:
     """Yield the row and the batch of each part, the last one if there are several.
 
-    The batches are views of the file, which is mapped into memory inside the block.
+    The batches are views of the files, which are mapped into memory inside the block.
     """
     arrow = from_extra("pyarrow", "batch", "a data set")
     found: dict[int, tuple[ManifestRow, Any]] = {}
-    try:
-        file = arrow.memory_map(str(path))
-    except (OSError, ValueError):  # there is none, or it is empty
-        yield found
-        return
-    with file:
-        for row, batch in _whole_batches(arrow, file, schema):
-            found[row.part] = row, batch
+    with ExitStack() as mapped:
+        for path in files:
+            try:
+                file = mapped.enter_context(arrow.memory_map(str(path)))
+            except (OSError, ValueError):  # it is empty
+                continue
+            for row, batch in _whole_batches(arrow, file, schema):
+                found[row.part] = row, batch
         yield found
         found.clear()
 
@@ -52,29 +64,24 @@ def _whole_batches(arrow: Any, file: Any, schema: Any) -> Iterator[tuple[Manifes
 
 
 class PartialFile:
-    """Appends parts to the file; what an earlier process has left is written again first.
+    """A new file of a shard, to which parts are appended."""
 
-    Only whole batches of it are, so that the stream goes on after them. That is done in the file
-    `temporary`, which then takes the place of the other.
-    """
-
-    def __init__(self, path: Path, schema: Any, temporary: Path) -> None:  # noqa: ANN401
+    def __init__(self, first: Path, schema: Any) -> None:  # noqa: ANN401
         self._arrow = from_extra("pyarrow", "batch", "a data set")
         self._schema = schema
+        path = _new(first)
         try:
-            with batches_in(path, schema) as older:
-                self._file = self._arrow.OSFile(str(temporary), "wb")
-                self._writer = self._arrow.ipc.new_stream(self._file, schema)
-                for row, batch in older.values():
-                    self._write(row, batch)
-            temporary.replace(path)
+            self._file = self._arrow.OSFile(str(path), "wb")
+            self._writer = self._arrow.ipc.new_stream(self._file, schema)
         except BaseException:
-            temporary.unlink(missing_ok=True)
+            path.unlink(missing_ok=True)
             raise
 
     def add(self, row: ManifestRow, table: Any) -> None:  # noqa: ANN401
         """Write a part: when this returns, the part is done, even if the process is killed."""
-        self._write(row, self._as_batch(table))
+        text = json.dumps(asdict(row)).encode()
+        self._writer.write_batch(self._as_batch(table), custom_metadata={ROW: text})
+        self._file.flush()
 
     def close(self) -> None:
         """Close the file. The stream gets no end, for which a full disk has no room."""
@@ -85,7 +92,14 @@ class PartialFile:
             return self._arrow.RecordBatch.from_pylist([], schema=self._schema)
         return table.combine_chunks().to_batches()[0]
 
-    def _write(self, row: ManifestRow, batch: Any) -> None:  # noqa: ANN401
-        text = json.dumps(asdict(row)).encode()
-        self._writer.write_batch(batch, custom_metadata={ROW: text})
-        self._file.flush()
+
+def _new(first: Path) -> Path:
+    """Make a new file, which follows those that are there."""
+    for number in count():
+        path = first.with_suffix(f".{number}.arrow") if number else first
+        try:
+            path.touch(exist_ok=False)
+        except FileExistsError:
+            continue
+        return path
+    raise AssertionError

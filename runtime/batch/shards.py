@@ -17,7 +17,7 @@ from ..extras import from_extra
 from ..files.paths import reason_of
 from .layout import MANIFEST, PARTIAL, POINTS, Settings, shard_path, temporary_path
 from .manifest import ManifestRow, manifest_table, rows_of
-from .partial import PartialFile, batches_in
+from .partial import PartialFile, batches_in, files_of
 from .tables import points_schema
 
 __all__ = ["Shard"]
@@ -52,11 +52,12 @@ class Shard:
         self._codec = settings.compression
         self._file: PartialFile | None = None
         finished = self._finished()
-        with batches_in(self._partial, self.schema) as batches:
+        partial = files_of(self._partial)
+        with batches_in(partial, self.schema) as batches:
             begun = {part: row for part, (row, _) in batches.items()}
         self.rows: dict[int, ManifestRow] = finished | begun
         # The parts of the finished shard, if nothing is to be changed.
-        self._unchanged = None if self._partial.exists() else list(finished)
+        self._unchanged = None if partial else list(finished)
 
     def __enter__(self) -> Self:
         return self
@@ -69,8 +70,7 @@ class Shard:
         self._unchanged = None
         with self._writing():
             if self._file is None:
-                temporary = temporary_path(self._folder)
-                self._file = PartialFile(self._partial, self.schema, temporary)
+                self._file = PartialFile(self._partial, self.schema)
             self._file.add(row, table)
         self.rows[row.part] = row
 
@@ -91,7 +91,8 @@ class Shard:
                 manifest_table(rows.values()), temporary, compression=self._codec
             )
         with self._writing():
-            self._partial.unlink(missing_ok=True)
+            for path in files_of(self._partial):
+                path.unlink()
         self.rows, self._unchanged = rows, list(parts)
 
     def _finished(self) -> dict[int, ManifestRow]:
@@ -108,7 +109,7 @@ class Shard:
     def _write_points(self, path: Path, rows: Mapping[int, ManifestRow]) -> None:
         arrow = from_extra("pyarrow", "batch", "a data set")
         with (
-            batches_in(self._partial, self.schema) as added,
+            batches_in(files_of(self._partial), self.schema) as added,
             _parquet().ParquetWriter(
                 path, self.schema, compression=self._codec, use_dictionary=["part"]
             ) as file,

@@ -104,11 +104,17 @@ def test_what_is_written_is_read(tmp_path):
 
 def test_any_order_and_any_interruption_end_with_the_same_bytes(tmp_path, undisturbed):
     path, known = folder(tmp_path)
-    for part in (3, 0, 4):
+    for part in (3, 0, *10 * (4,)):  # more than ten files: 10 comes after 9
         with Shard(path, 7, known) as shard:
-            add(shard, part)
+            shard.add(replace(row(4), content="old")) if part == 4 else add(shard, part)
+    with Shard(path, 7, known) as shard:
+        add(shard, 4)
+    with Shard(path, 6, known) as shard:  # another one
+        add(shard, 2)
+    assert shard_path(path, PARTIAL, 7).with_suffix(".12.arrow").exists()
     with Shard(path, 7, known) as shard:
         assert list(shard.rows) == [3, 0, 4]
+        assert shard.rows[4].content == "1"
         add(shard, 1)
         add(shard, 2)
         shard.commit(list(COUNTS))
@@ -147,7 +153,7 @@ def test_cut_at_any_byte(tmp_path):
     schema = Shard(path, 7, known).schema
     for size in range(before, after):
         partial.write_bytes(data[:size])
-        with batches_in(partial, schema) as batches:
+        with batches_in([partial], schema) as batches:
             assert list(batches) == [0], size
     partial.write_bytes(data[:after])
     assert list(Shard(path, 7, known).rows) == [0, 4]
@@ -265,7 +271,7 @@ class TestFullDisk:
                 with files_of_at_most(size), pytest.raises(FileError, match="what is done is kept"):
                     shard.commit(list(COUNTS))
                 assert not list((path / POINTS).iterdir()) + list((path / MANIFEST).iterdir())
-                assert [x.suffix for x in (path / PARTIAL).iterdir()] == [".arrow"]
+                assert [x.name for x in (path / PARTIAL).iterdir()] == ["shard-000007.arrow"]
             shard.commit(list(COUNTS))
         assert finished(path) == undisturbed
 
@@ -432,10 +438,13 @@ class TestFolder:
                 add(shard, 0)
                 shard.commit([0])
                 add(shard, 1)
+            with Shard(path, number, known) as shard:
+                add(shard, 2)
         (path / POINTS / "mine.txt").touch()
         remove_shards(path, 7)
         left = [x.name for kind in (POINTS, MANIFEST, PARTIAL) for x in (path / kind).iterdir()]
-        assert sorted(left) == ["mine.txt", "shard-000006.arrow", *2 * ["shard-000006.parquet"]]
+        shard_6 = ["shard-000006.1.arrow", "shard-000006.arrow", *2 * ["shard-000006.parquet"]]
+        assert sorted(left) == ["mine.txt", *shard_6]
 
     def test_parts_per_shard(self):
         assert parts_per_shard(200, 2048) == 3
