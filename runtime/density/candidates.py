@@ -91,6 +91,16 @@ class Candidates:
         samples = np.ascontiguousarray(samples)
         self._each(lambda k: self._parts[k].update_distances(samples, radius), len(self._parts))
 
+    def update_far(self, samples: Array, radius: float) -> None:
+        """Update the distances of parts in which some are infinite."""
+        samples = np.ascontiguousarray(samples)
+
+        def update(k: int) -> None:
+            if np.isinf(self._parts[k].grids.candidates[:, SQUARE]).any():
+                self._parts[k].update_distances(samples, radius)
+
+        self._each(update, len(self._parts))
+
     def reset_distances(self) -> None:
         """Make all distances infinite again."""
         self._each(lambda k: self._parts[k].reset_distances(), len(self._parts))
@@ -136,9 +146,9 @@ class Candidates:
         """Update the distances of every part for the samples of all other parts."""
 
         def update(k: int) -> None:
-            for other, points in samples.items():
-                if other != k:
-                    self._parts[k].update_distances(points, radius)
+            others = [points for other, points in samples.items() if other != k and len(points)]
+            if others:
+                self._parts[k].update_distances(np.concatenate(others), radius)
 
         self._each(update, len(self._parts))
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-from ..threads import over_ranges
 from .aligned import AlignedGrid
 from .cover import Cover
 from .errors_of import Errors, places_on
@@ -77,12 +76,9 @@ def better_on_grid(usual: Cover, count: int, distance: float | None) -> Cover | 
 
 def _is_better(new: Errors, old: Errors) -> bool:
     """Say whether angles in space are clearly smaller, and no other error is larger."""
-    if not (
+    return (
         new.in_space <= LEAST * old.in_space
         and new.tangent <= old.tangent
         and new.gap <= MOST_GAP * old.gap
-    ):
-        return False
-    both, threads = (new, old), new.cover.sizing.threads
-    in_normal = list(over_ranges(lambda k, _: both[k].in_normal, len(both), 1, threads))
-    return in_normal[0] <= MOST * in_normal[1]
+        and new.in_normal <= MOST * old.in_normal
+    )

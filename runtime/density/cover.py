@@ -27,6 +27,8 @@ FINE, SMALLER = 0.7, 1.3
 # Where all of the surface is to be covered, and not candidates only, triangles that may hold an
 # uncovered point are bisected until they have this radius, relative to the covering radius.
 FINEST = 0.1
+# Distances are renewed within this multiple of the radius first.
+NEAR = 1.25
 # The most triangles at a time: this number, or this multiple of the candidates.
 MANY, TIMES = 2e7, 8
 
@@ -143,7 +145,9 @@ class Cover:
     def renew_distances(self, widest: float) -> None:
         """Compute the distances of all candidates from the samples again, within `widest`."""
         self._candidates.reset_distances()
-        self._candidates.update_distances(self.points, widest)
+        # Nearly all candidates are that near to a sample. The others need the wide search.
+        self._candidates.update_distances(self.points, min(NEAR * self.radius, widest))
+        self._candidates.update_far(self.points, widest)
 
     def move_to_centres(self, first: int) -> None:
         """Move the samples from number `first` on to the centres of their Voronoi cells.

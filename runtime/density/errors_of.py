@@ -8,10 +8,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ..kernels.nearest import compare_with_nearest
 from ..splines.inside import parameters_of
-from ..trees import tree_of
-from .candidates import Candidates
 from .cover import Cover
+from .nearest import NearestSamples
 from .sizing import SizingFunction
 from .triangles import Array, Indices, Triangles
 
@@ -25,13 +25,13 @@ SEARCHES = ((300, 16, 1.0), (60, 16, 0.3), (30, 16, 0.1))
 # An even sequence in the square (Martin Roberts, 2018): the root of x³ = x + 1.
 SEQUENCE = 1.324717957244746 ** -np.array([1.0, 2.0])
 # Places are compared in normal space in parts of this number.
-AT_A_TIME = 3_000
+AT_A_TIME = 1_000
 # Normals closer than this count as one.
 SAME_NORMAL = 2.0**-17
 # K is 0 below this part of the largest one.
 FLAT = 1e-9
-# Samples are searched within a distance that is made larger by this factor, up to TIMES times.
-LARGER, TIMES = 2.0, 3
+# Samples on the same side are searched within this multiple of the distances expected.
+FARTHEST = 4.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,26 +49,30 @@ class Errors:
     angle: float
 
     @cached_property
+    def _samples(self) -> NearestSamples:
+        return NearestSamples(self.cover.points, self.cover.sizing.threads)
+
+    @cached_property
     def _nearest(self) -> tuple[Array, Indices]:
         """The distances and the numbers of the samples nearest in space."""
-        return _nearest_in_space(self.rows, self.cover, self.distance)
+        return self._samples.nearest(self.rows, FARTHEST * self.distance)
 
     @cached_property
-    def _chords(self) -> Array:
-        """The chords between the normals of places and those of the samples nearest in space."""
-        return np.linalg.norm(self.rows[:, 3:6] - self.cover.points[self._nearest[1], 3:], axis=1)
+    def _compared(self) -> tuple[float, float, Array]:
+        """The two largest errors at the samples nearest in space, and the chords of all places."""
+        chords = np.empty(len(self.rows))
+        largest = compare_with_nearest(self.rows, self.cover.points, self._nearest[1], chords)
+        return *largest, chords
 
-    @cached_property
-    def tangent(self) -> float:
-        """The largest distance from the tangent plane at the sample nearest in space."""
-        samples = self.cover.points[self._nearest[1]]
-        away = np.einsum("ij,ij->i", self.rows[:, :3] - samples[:, :3], samples[:, 3:])
-        return float(np.abs(away).max(initial=0.0))
-
-    @cached_property
+    @property
     def in_space(self) -> float:
         """The largest chord between the normals of a place and of the sample nearest in space."""
-        return float(self._chords.max(initial=0.0))
+        return self._compared[0]
+
+    @property
+    def tangent(self) -> float:
+        """The largest distance from the tangent plane at the sample nearest in space."""
+        return self._compared[1]
 
     @cached_property
     def in_normal(self) -> float:
@@ -76,12 +80,21 @@ class Errors:
 
         That is among samples with the same sign of K.
         """
-        return _in_normal(self.rows, self.cover, self.angle, self._nearest[1], self._chords)
+        return _in_normal(self.rows, self.cover, self.angle, self._nearest[1], self._compared[2])
 
     @cached_property
     def gap(self) -> float:
         """The largest distance from the nearest sample."""
-        return _widest_gap(self.cover, self.places, self._nearest[0], self.distance)
+        places, distances = self.places, self._nearest[0]
+        widest = distances.max(initial=0.0)
+        for number, each, part in SEARCHES:
+            if len(places) == 0:
+                break
+            places = _around(places, _first_of_largest(distances, number), each, part)
+            found = self._samples.nearest(places.at_places(), FARTHEST * self.distance)
+            distances = found[0]
+            widest = max(widest, distances.max(initial=0.0))
+        return float(widest)
 
 
 def places_on(sizing: SizingFunction) -> tuple[Triangles, Array]:
@@ -120,27 +133,20 @@ def _spread(weights: Array, count: int) -> Indices:
     return np.minimum(found, len(weights) - 1)
 
 
-def _nearest_in_space(rows: Array, cover: Cover, distance: float) -> tuple[Array, Indices]:
-    """Return the distances and the numbers of the samples nearest to rows (M, 8)."""
-    rows = rows.copy()
-    rows[:, 6] = 1.0
-    return _nearest(rows, cover.points, distance)
+def _first_of_largest(values: Array, number: int) -> Indices:
+    """Return the places of the largest of values, in order, `number` at most."""
+    least = -np.inf
+    if len(values) > number:
+        least = np.partition(values, len(values) - number)[len(values) - number]
+    places = np.flatnonzero(values >= least)
+    return places[np.argsort(-values[places], kind="stable")[:number]]
 
 
-def _widest_gap(cover: Cover, places: Triangles, distances: Array, distance: float) -> float:
-    """Return the largest distance at places, and at more of them around the largest ones."""
-    sizing, widest = cover.sizing, distances.max(initial=0.0)
-    for number, each, part in SEARCHES:
-        if len(places) == 0:
-            break
-        chosen = np.argsort(-distances, kind="stable")[:number]
-        centres = np.repeat(places.uv[chosen], each, axis=0)
-        patches = np.repeat(places.patches[chosen], each)
-        moved = centres + part * (_in_triangle(len(centres)) - centres)
-        places = _inside(sizing, patches, moved)
-        distances = _nearest_in_space(places.at_places(), cover, distance)[0]
-        widest = max(widest, distances.max(initial=0.0))
-    return float(widest)
+def _around(places: Triangles, chosen: Indices, each: int, part: float) -> Triangles:
+    """Return `each` places around some others, in a part of the patch."""
+    centres = np.repeat(places.uv[chosen], each, axis=0)
+    moved = centres + part * (_in_triangle(len(centres)) - centres)
+    return _inside(places.sizing, np.repeat(places.patches[chosen], each), moved)
 
 
 def _in_normal(rows: Array, cover: Cover, angle: float, nearest: Indices, chords: Array) -> float:
@@ -152,42 +158,29 @@ def _in_normal(rows: Array, cover: Cover, angle: float, nearest: Indices, chords
     flat = FLAT * np.abs(rows[:, 7]).max(initial=0.0)
     negative, of_samples = rows[:, 7] < -flat, cover.curvatures < -flat
     bounds = np.where(negative == of_samples[nearest], chords, np.inf)
-    samples = _in_normal_space(cover.points[:, 3:], of_samples)[:, :6]
-    order, largest = np.argsort(-bounds, kind="stable"), 0.0
-    for first in range(0, len(order), AT_A_TIME):
-        part = order[first : first + AT_A_TIME]
-        if bounds[part[0]] <= largest:
-            break
+    samples = NearestSamples(_distinct(cover.points[:, 3:], of_samples), cover.sizing.threads)
+    largest, left = 0.0, np.arange(len(rows))
+    while len(left):
+        number = min(AT_A_TIME, len(left) - 1)
+        part = left[np.argpartition(-bounds[left], number)[: number + 1]]
         at_places = _in_normal_space(rows[part, 3:6], negative[part])
-        largest = max(largest, float(_nearest(at_places, samples, angle)[0].max()))
+        found = samples.nearest(at_places, FARTHEST * angle)[0]
+        largest = max(largest, float(found.max()))
+        bounds[part] = 0.0
+        left = left[bounds[left] > largest]
     return largest
 
 
-def _in_normal_space(normals: Array, negative: NDArray[np.bool_]) -> Array:
-    """Return distinct normals as rows (k, 8) of candidates; signs of K are opposite sides."""
+def _distinct(normals: Array, negative: NDArray[np.bool_]) -> Array:
+    """Return normals without repetitions as samples (k, 6), see `_in_normal_space`."""
     keys = np.rint(normals / SAME_NORMAL).astype(np.int64)
     key = ((keys[:, 0] << 20) + keys[:, 1] << 20) + 2 * keys[:, 2] + negative
     once = np.unique(key, return_index=True)[1]
-    rows = np.zeros((len(once), 8))
-    rows[:, :3], rows[:, 3] = normals[once], np.where(negative[once], -1.0, 1.0)
-    rows[:, 6] = 1.0
+    return _in_normal_space(normals[once], negative[once])[:, :6]
+
+
+def _in_normal_space(normals: Array, negative: NDArray[np.bool_]) -> Array:
+    """Return normals as points of rows (k, 8); signs of K are opposite sides."""
+    rows = np.zeros((len(normals), 8))
+    rows[:, :3], rows[:, 3] = normals, np.where(negative, -1.0, 1.0)
     return rows
-
-
-def _nearest(rows: Array, samples: Array, radius: float) -> tuple[Array, Indices]:
-    """Return the distances and the numbers of the samples (N, 6) nearest to rows (M, 8).
-
-    The search is fast where there is one on the same side within the radius, or a few times that.
-    """
-    distances, numbers = np.full(len(rows), np.inf), np.full(len(rows), -1)
-    left = np.arange(len(rows))
-    for _ in range(TIMES):
-        candidates = Candidates(rows[left], radius)
-        candidates.update_distances(samples, radius)
-        distances[left], numbers[left] = candidates.distances, candidates.nearest
-        left = left[~(distances[left] <= radius)]
-        if len(left) == 0:
-            return distances, numbers
-        radius *= LARGER
-    distances[left], numbers[left] = tree_of(samples[:, :3]).query(rows[left, :3])
-    return distances, numbers

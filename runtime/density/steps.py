@@ -18,11 +18,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kernels.steps import longest_steps
+from ..kernels.steps import shared_steps
 
 __all__ = ["Forms", "Steps", "equal_steps", "steps_for_count"]
 
 Array = NDArray[np.float64]
+_Arrays = tuple[Array, Array, Array, Array, float]
 
 # The part of the limits that steps along u are given first: the best one of these, and then of
 # those in between, among forms on a coarser grid.
@@ -66,9 +67,13 @@ class Forms:
         return Forms(third, first, (self.widths[1], self.widths[0]))
 
     @cached_property
-    def largest(self) -> tuple[Array, Array]:
-        """The largest entries of the two forms along u, over v."""
-        return self.third[0].max(axis=1), self.first[0].max(axis=1)
+    def arrays(self) -> tuple[_Arrays, _Arrays]:
+        """The arguments of the kernel: the forms, and those with u and v exchanged."""
+        along_u, along_v = (
+            (x.third, x.first, x.third[0].max(axis=1), x.first[0].max(axis=1), x.widths[0].sum())
+            for x in (self, self.swapped)
+        )
+        return along_u, along_v
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,21 +175,7 @@ def _typical(forms: Forms) -> float:
 
 def _steps(forms: Forms, limits: tuple[float, float], share: float) -> Steps:
     """Return steps that give u a share of the limits, where they reach these."""
-    with np.errstate(divide="ignore"):
-        along_u = np.minimum(*(
-            share * np.sqrt(limit / x) for limit, x in zip(limits, forms.largest, strict=True)
-        ))  # fmt: skip
-    along_u = np.minimum(along_u, LONGEST * forms.widths[0].sum())
-    along_v = _longest(forms, limits, along_u)
-    along_u = _longest(forms.swapped, limits, along_v)
-    along = along_u, along_v
+    along = np.empty(len(forms.widths[0])), np.empty(len(forms.widths[1]))
+    shared_steps(*forms.arrays, limits, share, SHORTEST, LONGEST, *along)
     lengths = tuple(float((w / x).sum()) for w, x in zip(forms.widths, along, strict=True))
     return Steps(along, (lengths[0], lengths[1]), *(math.sqrt(x) / 2.0 for x in limits))
-
-
-def _longest(forms: Forms, limits: tuple[float, float], along: Array) -> Array:
-    """Return the longest steps along v for the steps along u."""
-    domain = float(forms.widths[1].sum())
-    steps = np.empty(len(forms.widths[1]))
-    longest_steps(forms.third, forms.first, limits, along, LONGEST * domain, steps)
-    return np.maximum(steps, SHORTEST * domain)

@@ -1,12 +1,12 @@
-"""The longest steps of a graded grid along one parameter, for given steps along the other one."""
+"""The steps of a graded grid along both parameters: as long as errors allow."""
 
 from __future__ import annotations
 
 import math
 
-from .jit import inline, jit
+from .jit import inline, jit, loop
 
-__all__ = ["longest_steps"]
+__all__ = ["shared_steps"]
 
 
 @inline
@@ -20,9 +20,9 @@ def longest_step(e, f, g, a, limit):
     return left / below if below > 0.0 else math.inf
 
 
-@jit
-def longest_steps(third, first, limits, along, most, steps):
-    """Write the longest steps (l,) along v for steps (k,) along u, `most` at most.
+@loop
+def longest_steps(third, first, limits, along, least, most, steps):
+    """Write the longest steps (l,) along v for steps (k,) along u, between `least` and `most`.
 
     `third` and `first` (3, k, l) are two forms with a limit each.
     """
@@ -39,3 +39,23 @@ def longest_steps(third, first, limits, along, most, steps):
                 first[0, i, j], first[1, i, j], first[2, i, j], a, limit_of_first
             )
             steps[j] = min(steps[j], in_normal, in_space)
+    for j in range(steps.size):
+        steps[j] = max(steps[j], least)
+
+
+@jit
+def shared_steps(forms, swapped, limits, share, shortest, longest, along_u, along_v):
+    """Write steps along u (k,) and v (l,) that give u a share of the limits, if these are reached.
+
+    `forms` are two forms (3, k, l), the largest first entry of each along u (k,), and the width of
+    the domain; `swapped` are the same with u and v exchanged. Steps are between the parts
+    `shortest` and `longest` of the domain.
+    """
+    third, first, largest_of_third, largest_of_first, width = forms
+    for i in range(along_u.size):
+        in_normal = share * math.sqrt(limits[0] / largest_of_third[i])
+        in_space = share * math.sqrt(limits[1] / largest_of_first[i])
+        along_u[i] = min(in_normal, in_space, longest * width)
+    other, across, _, _, height = swapped
+    longest_steps(third, first, limits, along_u, shortest * height, longest * height, along_v)
+    longest_steps(other, across, limits, along_v, shortest * width, longest * width, along_u)

@@ -164,12 +164,14 @@ class Triangulated:
         triangles, sides = (
             np.where(reverse, x[:, [0, 2, 1]], x) for x in (triangles, sides * sides[:, :1])
         )
-        used, corners = np.unique(triangles, return_inverse=True)
+        is_used = np.zeros(len(self.points), dtype=bool)
+        is_used[triangles] = True
+        used, corners = np.flatnonzero(is_used), (np.cumsum(is_used) - 1)[triangles]
         return Mesh(
             self.points[used],
             self.normals[used],
             self.uv[used],
-            corners.reshape(-1, 3).astype(np.int64),
+            corners,
             self.sample[used],
             name=self.name,
             sides=sides,

@@ -19,7 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..kernels import surfaces as kernels
+from ..kernels.links import link_triangles
 from ..splines.domain import Boundary
+from ..threads import over_ranges
 from ..tolerances import CIRCLE_HEIGHT_ERROR
 
 __all__ = ["Triangulation", "neighbours", "triangulations"]
@@ -41,7 +43,9 @@ INSIDE = 5e-10
 BULGE = 0.05
 # A domain that is periodic in both parameters is continued by this number of mean distances of
 # points first, then by these parts of a period.
-MARGIN_IN_STEPS, MARGINS = 30.0, (0.25, 1.0)
+STEPS, MARGINS = (10.0, 30.0), (0.25, 1.0)
+# It is cut into strips of about this number of points, for threads.
+STRIP = 25_000
 
 
 def triangulations(
@@ -59,7 +63,7 @@ def triangulations(
     closing = [axis for axis in (0, 1) if boundary[axis][0] in ("periodic", "mirrored")]
     has_copies = len(closing) == 2 or any(boundary[axis][0] == "mirrored" for axis in closing)
     distance = 1.0 / math.sqrt(len(positions))
-    for displacement, margin in _attempts(has_copies, MARGIN_IN_STEPS * distance):
+    for displacement, margin in _attempts(has_copies, distance):
         rng = np.random.default_rng(len(positions))
         moved = positions + displacement * distance * rng.uniform(-1.0, 1.0, positions.shape)
         for axis in {0, 1} - set(closing):
@@ -74,11 +78,13 @@ def triangulations(
                 yield _in_rectangle(np.where(is_free[:, None], moved, _curved(moved)) * lengths)
 
 
-def _attempts(has_copies: bool, near: float) -> list[tuple[float, float]]:
-    """Return the displacements and margins that are tried."""
+def _attempts(has_copies: bool, distance: float) -> list[tuple[float, float]]:
+    """Return the displacements and margins that are tried, for a mean distance of points."""
     if not has_copies:
         return [(x, 0.0) for x in (0.0, *DISPLACEMENTS)]
-    first = [(x, near) for x in DISPLACEMENTS if near < MARGINS[0]]
+    near = [steps * distance for steps in STEPS if steps * distance < MARGINS[0]]
+    first = [(DISPLACEMENTS[0], margin) for margin in near]
+    first += [(DISPLACEMENTS[1], margin) for margin in near[-1:]]
     return first + [(x, margin) for margin in MARGINS for x in DISPLACEMENTS]
 
 
@@ -88,17 +94,10 @@ def neighbours(triangles: Indices, may_end: NDArray[np.bool_]) -> tuple[Indices,
     All are there if each edge is in two triangles, or in one between two vertices where the surface
     `may_end`. Triangles at an edge of three or more are no neighbours.
     """
-    pairs = np.sort(triangles[:, [[1, 2], [2, 0], [0, 1]]].reshape(-1, 2), axis=1)
-    keys = pairs[:, 0] * len(may_end) + pairs[:, 1]
-    order = np.argsort(keys, kind="stable")
-    starts = np.flatnonzero(np.diff(keys[order], prepend=-1))
-    counts = np.diff(starts, append=len(keys))
-    first = starts[counts == 2]
-    adjacent = np.full(len(keys), -1)
-    adjacent[order[first]], adjacent[order[first + 1]] = order[first + 1] // 3, order[first] // 3
-    single = pairs[order[starts[counts == 1]]]
-    complete = bool(len(keys) and counts.max() == 2 and may_end[single].all())
-    return adjacent.reshape(-1, 3), complete
+    triangles = np.ascontiguousarray(triangles)
+    starts, adjacent = np.empty(len(may_end), dtype=np.int64), np.full(triangles.shape, -1)
+    by_end, order = np.empty((2, triangles.size), dtype=np.int64)
+    return adjacent, bool(link_triangles(triangles, may_end, starts, by_end, order, adjacent))
 
 
 # --- open rectangles ------------------------------------------------------------------------------
@@ -119,8 +118,8 @@ def _in_rectangle(points: Array) -> Triangulation:
 
 def _counterclockwise(points: Array, triangles: NDArray[Any]) -> Indices:
     """Return triangles of the plane, oriented counterclockwise."""
-    a, b, c = np.moveaxis(points[triangles], 1, 0)
-    is_clockwise = np.linalg.det(np.stack([b - a, c - a], axis=1)) < 0.0
+    a, b, c = (points[triangles[:, k]].T for k in range(3))
+    is_clockwise = (b[0] - a[0]) * (c[1] - a[1]) < (b[1] - a[1]) * (c[0] - a[0])
     return _turned(triangles, is_clockwise)
 
 
@@ -176,11 +175,11 @@ def _one_of_each(
     `original` are the numbers of the originals of points, of which the first `count` are no copies.
     A triangle with two copies of one point is left out.
     """
-    numbers = original[triangles]
-    first = np.take_along_axis(triangles, numbers.argmin(axis=1)[:, None], axis=1)[:, 0]
-    ordered = np.sort(numbers, axis=1)
-    chosen = (first < count) & (ordered[:, :-1] < ordered[:, 1:]).all(axis=1)
-    return numbers[chosen], np.where(is_mirrored[triangles[chosen]], -1, 1)
+    a, b, c = (original[triangles[:, k]] for k in range(3))
+    first = np.where(a < b, triangles[:, 0], triangles[:, 1])
+    first = np.where(c < np.minimum(a, b), triangles[:, 2], first)
+    triangles = triangles[(first < count) & (a != b) & (b != c) & (c != a)]
+    return original[triangles], np.where(is_mirrored[triangles], -1, 1)
 
 
 # --- tori and Klein bottles: periodic in both parameters ------------------------------------------
@@ -189,8 +188,6 @@ def _one_of_each(
 def _by_copies(
     positions: Array, boundary: Boundary, lengths: Array, margin: float
 ) -> Triangulation:
-    from scipy.spatial import Delaunay
-
     points, original = positions, np.arange(len(positions))
     is_mirrored = np.zeros(len(positions), dtype=bool)
     for axis in (0, 1):
@@ -203,6 +200,33 @@ def _by_copies(
                 copy[:, 1 - axis] = 1.0 - copy[:, 1 - axis]
             copies.append((copy, original[near], is_mirrored[near] ^ flips))
         points, original, is_mirrored = (np.concatenate(x) for x in zip(*copies, strict=True))
-    points = points * lengths
-    triangles = _counterclockwise(points, Delaunay(points).simplices)
-    return _one_of_each(triangles, original, len(positions), is_mirrored)
+    strips = max(len(positions) // STRIP, 1)
+
+    def work(k: int, _: int) -> Triangulation:
+        return _in_strip(points, original, is_mirrored, lengths, (k, strips, margin))
+
+    triangles, sides = zip(*over_ranges(work, strips, 1, None), strict=True)
+    return np.concatenate(triangles), np.concatenate(sides)
+
+
+def _in_strip(
+    points: Array, original: Indices, is_mirrored: NDArray[np.bool_], lengths: Array,
+    strip: tuple[int, int, float],
+) -> Triangulation:  # fmt: skip
+    """Triangulate one of equal strips along u, with a margin, and choose triangles of its points.
+
+    Those are triangles whose corner of the smallest number is in the strip, and no copy.
+    """
+    from scipy.spatial import Delaunay
+
+    number, strips, margin = strip
+    along = points[:, 0] * strips - number
+    near = np.flatnonzero((along > -margin * strips) & (along < 1.0 + margin * strips))
+    # Displaced points may be slightly outside the unit square.
+    own = (along[near] >= 0.0) | (number == 0)
+    own &= (along[near] < 1.0) | (number == strips - 1)
+    own &= original[near] == near
+    near = np.concatenate([near[own], near[~own]])
+    scaled = points[near] * lengths
+    triangles = _counterclockwise(scaled, Delaunay(scaled).simplices)
+    return _one_of_each(triangles, original[near], int(own.sum()), is_mirrored[near])
