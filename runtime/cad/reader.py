@@ -19,6 +19,7 @@ from ..checks import positive_number
 from ..errors import FileError, GaussmapWarning, InputError, shown
 from ..extras import check_extra
 from ..files.paths import PathLike, checked_path, reason_of
+from ..files.temporary import new_name, remove_left
 from ..progress import busy
 from .part import Part, read_part
 from .units import METRES, unit_named
@@ -105,7 +106,9 @@ def read_cad(
         raise InputError(f"memory_limit must be at least {LEAST_MEMORY:g} GiB, not {gib:g}.")
     _check_file(path)
     check_extra("OCP", "cad", "reading CAD files")
-    with tempfile.TemporaryDirectory(prefix="gaussmap-", ignore_cleanup_errors=True) as name:
+    remove_left(Path(tempfile.gettempdir()))
+    prefix = f"{new_name()}."  # and what tempfile makes up
+    with tempfile.TemporaryDirectory(prefix=prefix, ignore_cleanup_errors=True) as name:
         folder = Path(name)
         request = {
             "path": str(_plain(path.absolute(), folder)),
