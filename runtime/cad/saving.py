@@ -47,15 +47,14 @@ c = cos u X + sin u Y the surfaces are, as in Open CASCADE and STEP,
 
 from __future__ import annotations
 
-import zipfile
 from collections.abc import Mapping
 from io import BufferedReader
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..files.archives import archive_of
 from ..files.paths import PathLike, atomic_path, checked_path, known_suffix
 from ..files.reading import UnusableError, opened
 from .checks import checked_arrays, dtypes
@@ -94,29 +93,11 @@ def read_arrays(path: PathLike) -> tuple[dict[str, NDArray[Any]], dict[str, Any]
 
 
 def _read(file: BufferedReader) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]:
-    if not zipfile.is_zipfile(file):
-        raise UnusableError("is damaged or is no .npz file; save the part again.")
-    file.seek(0)
-    with zipfile.ZipFile(file) as archive:
-        members = {Path(x.filename).stem: x for x in archive.infolist()}
-        missing = [name for name in dtypes() if name not in members]
+    with archive_of(file) as archive:
+        missing = [name for name in dtypes() if name not in archive.names]
         if missing:
             raise UnusableError(f"is no part that gaussmap saved: it lacks {missing[0]!r}.")
-        if sum(members[name].file_size for name in dtypes()) > MOST_BYTES:
+        if archive.unpacked > MOST_BYTES:
             raise UnusableError("says that it holds more than 4 GB, and is not read.")
-        arrays = {name: _array(archive, members[name]) for name in dtypes()}
+        arrays = {name: archive.read(name) for name in dtypes()}
     return checked_arrays(arrays)
-
-
-def _array(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> NDArray[Any]:
-    """Read an array, of no more bytes than the archive says to hold of it."""
-    from numpy.lib import format as npy
-
-    with archive.open(member) as stream:
-        version = npy.read_magic(stream)
-        read_header = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
-        shape, _, dtype = read_header[version](stream)
-        if dtype.hasobject or int(np.prod(shape, dtype=object)) * dtype.itemsize > member.file_size:
-            raise UnusableError(f"is damaged: {member.filename!r} is no array of numbers.")
-    with archive.open(member) as stream:
-        return npy.read_array(stream, allow_pickle=False)

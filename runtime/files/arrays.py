@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import re
-import zipfile
+from io import BufferedReader
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..checks import known_name
 from ..errors import FileError, GaussmapError, InputError
+from .archives import archive_of
+from .reading import UnusableError
 
 __all__ = ["array_file", "is_array_file", "read_array"]
 
@@ -41,6 +43,8 @@ def read_array(source: str) -> NDArray[Any]:
             return _unpacked(file, source, key)
     except (GaussmapError, MemoryError):
         raise
+    except UnusableError as error:
+        raise FileError(f"'{file_name}' {error}") from error
     except OSError as error:
         raise FileError(f"'{file_name}' cannot be read: {error.strerror or error}.") from error
     except Exception as error:  # NumPy and zipfile raise a dozen kinds on bad bytes
@@ -50,19 +54,17 @@ def read_array(source: str) -> NDArray[Any]:
         ) from error
 
 
-def _unpacked(file: IO[bytes], source: str, key: str | None) -> NDArray[Any]:
+def _unpacked(file: BufferedReader, source: str, key: str | None) -> NDArray[Any]:
     if Path(file.name).suffix.lower() == ".npy":
         if key is not None:
             raise InputError(f"'{file.name}' holds one array, without a name; leave out ':{key}'.")
         return np.lib.format.read_array(file, allow_pickle=False)
-    if not zipfile.is_zipfile(file):  # np.load would take it for a pickle
-        raise FileError(f"'{file.name}' is damaged or no .npz file; write it again.")
-    file.seek(0)
-    with np.load(file, allow_pickle=False) as archive:
-        keys = tuple(archive.files)
+    with archive_of(file) as archive:
+        keys = archive.names
         if key is None and len(keys) != 1:
             raise InputError(
                 f"'{source}' holds {len(keys)} arrays{': ' if keys else ''}{', '.join(keys)}; "
                 f"name the one to read, as in {source}:{keys[0] if keys else 'NAME'}."
             )
-        return archive[keys[0] if key is None else known_name(key, keys, f"array in '{file.name}'")]
+        name = keys[0] if key is None else known_name(key, keys, f"array in '{file.name}'")
+        return archive.read(name)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import zipfile
 from io import BufferedReader
 from pathlib import Path
 from typing import Any
@@ -11,6 +10,7 @@ import numpy as np
 
 from ..fields import ARRAY_NAMES
 from ..samples import Samples
+from .archives import archive_of
 from .content import known_fields, lacks, report_from_json, report_to_json
 from .reading import UnusableError
 
@@ -34,20 +34,17 @@ def write_npz(samples: Samples, path: Path) -> None:
 
 def read_npz(file: BufferedReader) -> Samples:
     """Read what `write_npz` wrote; nothing is unpickled."""
-    # np.load would take anything that is no zip archive for a pickle.
-    if not zipfile.is_zipfile(file):
-        raise UnusableError("is damaged or is no .npz file; write it again.")
-    file.seek(0)
-    with np.load(file, allow_pickle=False) as archive:
-        if "format_version" in archive and int(archive["format_version"]) > _VERSION:
+    with archive_of(file) as archive:
+        names = archive.names
+        if "format_version" in names and int(archive.read("format_version")) > _VERSION:
             raise UnusableError("comes from a newer version of gaussmap; update gaussmap.")
-        fields = known_fields(archive["fields"].tolist() if "fields" in archive else ARRAY_NAMES)
-        missing = [n for n in ("format_version", "report", *fields) if n not in archive]
+        fields = known_fields(archive.read("fields").tolist() if "fields" in names else ARRAY_NAMES)
+        missing = [n for n in ("format_version", "report", *fields) if n not in names]
         if missing:
             raise lacks("arrays", missing)
-        found = {name: archive[name] for name in fields}
+        found = {name: archive.read(name) for name in fields}
         arrays: dict[str, Any] = {
             name: array.astype(array.dtype.newbyteorder("="), copy=False)
             for name, array in found.items()
         }
-        return Samples(**arrays, report=report_from_json(str(archive["report"])))
+        return Samples(**arrays, report=report_from_json(str(archive.read("report"))))

@@ -615,7 +615,7 @@ class TestNpzContent:
         bomb = np.empty(12, object)
         bomb[:] = Bomb()
         self.rewrite(tmp_path / "file.npz", **{name: bomb})
-        with pytest.raises(FileError, match=r"is damaged or is no \.npz file of gaussmap"):
+        with pytest.raises(FileError, match="is no array of numbers"):
             read_samples(tmp_path / "file.npz")
         assert not Bomb.went_off
 
