@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pyarrow
 import pytest
 from gaussmap.runtime.errors import (
     FileError,
@@ -964,6 +965,7 @@ class TestPermissionsAndLinks:
 class TestExtras:
     @every_suffix
     def test_no_format_needs_another_library(self, tmp_path, monkeypatch, suffix):
+        pyarrow.array(np.zeros(1))  # now pyarrow looks for pandas, and only once
         for library in ("pyvista", "vtkmodules", "trimesh", "meshio", "pandas"):
             monkeypatch.setitem(sys.modules, library, None)
         write_samples(make(), tmp_path / f"file{suffix}")
