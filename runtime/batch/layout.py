@@ -39,6 +39,7 @@ __all__ = [
     "opened",
     "parts_per_shard",
     "read_settings",
+    "remove_files",
     "remove_shards",
     "shard_path",
     "shards_in",
@@ -239,6 +240,15 @@ def remove_shards(folder: Path, first: int) -> None:
             for path in (folder / kind).glob("shard-" + 6 * "[0-9]" + "*"):
                 if int(path.name.partition(".")[0].removeprefix("shard-")) >= first:
                     path.unlink()
+
+
+def remove_files(folder: Path, first: int) -> None:
+    """Remove the files of the parts from a number on, if there are any."""
+    with _writing(folder):
+        for path in (folder / FILES).iterdir():
+            number = path.name.partition("-")[0].partition(".")[0]
+            if number.isdecimal() and int(number) >= first:
+                path.unlink()
 
 
 def _same(old: Settings, new: Settings, path: Path) -> Settings:

@@ -13,7 +13,7 @@ from ..files.paths import PathLike
 from .arguments import Where
 from .asked import Asked
 from .inputs import Source, in_shards, inputs_of
-from .layout import FILES, Settings, opened, parts_per_shard, remove_shards
+from .layout import FILES, Settings, opened, parts_per_shard, remove_files, remove_shards
 from .local import run_locally
 from .running import Plan, Tally
 
@@ -79,6 +79,8 @@ def make(
         watch.begin(parts, dashboard)
         tally = _watched(run(plan, shards), watch)
         remove_shards(path, -(-tally.parts // known.parts_per_shard))
+        if known.files is not None:
+            remove_files(path, tally.parts)
         return tally
 
 

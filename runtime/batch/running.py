@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Self
@@ -89,6 +89,7 @@ def run_shard(plan: Plan, number: int, inputs: Sequence[Input], child: Child) ->
     """
     tally = Tally()
     with Shard(Path(plan.folder), number, plan.settings) as shard:
+        before_all = dict(shard.rows)
         for part in inputs:
             before = shard.rows.get(part.part)
             file = _file(plan, part)
@@ -101,6 +102,7 @@ def run_shard(plan: Plan, number: int, inputs: Sequence[Input], child: Child) ->
                 shard.add(row, answer.table)
             tally += _tally(row)
         shard.commit([part.part for part in inputs])
+    _remove_files(plan, before_all, inputs)
     return tally
 
 
@@ -111,11 +113,19 @@ def file_name(part: int, name: str, suffix: str) -> str:
     return f"{part:06d}{'-' if clean else ''}{clean}{suffix}"
 
 
-def _file(plan: Plan, part: Input) -> Path | None:
+def _file(plan: Plan, part: Input | ManifestRow) -> Path | None:
     suffix = plan.settings.files
     if suffix is None:
         return None
     return Path(plan.folder) / FILES / file_name(part.part, part.name, suffix)
+
+
+def _remove_files(plan: Plan, before: Mapping[int, ManifestRow], inputs: Sequence[Input]) -> None:
+    """Remove the files of parts that are not in the list any more, or have another name now."""
+    kept = {_file(plan, part) for part in inputs}
+    for file in {_file(plan, row) for row in before.values()} - kept:
+        if file is not None:
+            file.unlink(missing_ok=True)
 
 
 def _known(plan: Plan, part: Input, before: ManifestRow | None, file: Path | None) -> str | None:

