@@ -21,6 +21,8 @@ __all__ = ["Answer", "Child", "Limits", "StoppedError"]
 PROGRAM = (
     "import sys; sys.path += {!r}; from gaussmap.runtime.batch.serving import main; main({!r}, {})"
 )
+# A process has one thread: as many processes run as there are cores.
+THREADS = ("NUMBA_NUM_THREADS", "OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +67,11 @@ class Child:
         self._lock = threading.Lock()
         self._stopped = False
 
+    @property
+    def stopped(self) -> bool:
+        """Whether `end` was called: no part is sampled any more."""
+        return self._stopped
+
     def sample(self, task: Task) -> Answer:
         """Return what became of a part.
 
@@ -96,6 +103,7 @@ class Child:
         with self._lock:
             self._stopped |= stop
             if self._process is not None:
+                self._process.kill()
                 _end(self._process)
                 self._process = None
 
@@ -116,7 +124,7 @@ class Child:
             [sys.executable, "-P", "-c", PROGRAM.format(paths, self.limits.memory, os.getpid())],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            env=os.environ | {"NUMBA_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"},
+            env=os.environ | dict.fromkeys(THREADS, "1"),
         )
         assert process.stdout is not None
         try:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import signal
 import threading
-from collections.abc import Generator, Iterable, Sequence
+from collections.abc import Generator, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from contextlib import contextmanager
 from itertools import islice
 
 from .child import Child
@@ -47,8 +49,22 @@ def run_locally(
             for future in done:
                 yield future.result()
     finally:
-        for future in waiting:
-            future.cancel()
-        for child in children:
-            child.end()
-        pool.shutdown()
+        with _without_ctrl_c():
+            for future in waiting:
+                future.cancel()
+            for child in children:
+                child.end()
+            pool.shutdown()
+
+
+@contextmanager
+def _without_ctrl_c() -> Iterator[None]:
+    """Let a second Ctrl-C not break off ending all processes, which takes a moment only."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, signal.SIG_DFL if before is None else before)

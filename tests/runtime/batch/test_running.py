@@ -274,3 +274,39 @@ def test_a_run_that_is_ended_again_and_again_ends_with_the_same_bytes(tmp_path, 
     sampled = (tmp_path / "log").read_text().split()
     # Each part is sampled once, but for those in work at the end of a run: one for each worker.
     assert len(set(sampled)) == 40
+
+
+@pytest.mark.slow
+def test_two_interrupts_leave_nothing_that_runs(tmp_path):
+    process = started(tmp_path, tmp_path / "set")
+    late = time.monotonic() + 60
+    while not (tmp_path / "log").exists():
+        assert time.monotonic() < late
+        time.sleep(0.05)
+    for _ in range(2):
+        process.send_signal(signal.SIGINT)
+        time.sleep(0.05)
+    assert process.wait(10) != 0
+    assert not left_in(process.pid)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="no limits")
+def test_a_full_disk_is_one_sentence_and_the_run_goes_on_later(tmp_path):
+    program = tmp_path / "program.py"
+    program.write_text(PROGRAM)
+    limited = tmp_path / "limited.py"
+    limited.write_text(
+        "import resource, runpy; resource.setrlimit(resource.RLIMIT_FSIZE, (2500, 2500))\n"
+        f"runpy.run_path({str(program)!r}, run_name='__main__')\n"
+    )
+    rest = [str(tmp_path / "log"), str(tmp_path / "set"), "2"]
+    found = subprocess.run(
+        [sys.executable, str(limited), *rest], stderr=subprocess.PIPE, text=True, timeout=120
+    )
+    assert found.returncode == 1
+    assert "cannot be written" in found.stderr.splitlines()[-1]
+    assert gm.open_dataset(tmp_path / "set").manifest().num_rows < 40
+    assert started(tmp_path, tmp_path / "set").wait() == 0
+    assert started(tmp_path, tmp_path / "whole").wait() == 0
+    assert data_of(tmp_path / "set") == data_of(tmp_path / "whole")
