@@ -55,11 +55,11 @@ warm: $(READY) ## compile all kernels ahead, for all processes that come
 	$(GAUSSMAP) warm
 
 test: $(READY) ## run the tests, but for those that are slow and seldom fail
-	$(BIN)/python -m pytest -q -m "not slow" --numprocesses auto
+	$(BIN)/python -m pytest -q -m "not slow" --numprocesses auto --dist worksteal
 
 coverage: $(READY) ## run kernels and formulas without compilation; fail if few of their lines ran
 	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q -m "kernels and not compiled and not slow" \
-		--numprocesses auto -W ignore::RuntimeWarning \
+		--numprocesses auto --dist worksteal -W ignore::RuntimeWarning \
 		--cov --cov-report=term:skip-covered --cov-fail-under=90
 
 # Both versions of Open CASCADE that the extra cad allows; each sees the packages of .venv.
@@ -76,8 +76,9 @@ cad-tests: $(VENV)/cad/7.9.3/.ready $(VENV)/cad/8.0.0/.ready ## read CAD files w
 	$(VENV)/cad/8.0.0/bin/python -m pytest -q tests/runtime/cad/opencascade
 
 verify: $(READY) ## run what is slow: all tests with many random examples, browsers, products
-	$(BIN)/python -m pytest -q -m slow --hypothesis-profile=large --numprocesses auto
-	$(BIN)/python -m pytest -q -m "not slow" --hypothesis-profile=large --numprocesses auto
+	$(MAKE) typecheck
+	$(BIN)/python -m pytest -q -m slow --hypothesis-profile=large --numprocesses auto --dist worksteal
+	$(BIN)/python -m pytest -q -m "not slow" --hypothesis-profile=large --numprocesses auto --dist worksteal
 	.ci/check-html
 	$(MAKE) docs
 	.ci/check-site
@@ -122,8 +123,10 @@ lint: $(READY) ## check style, and that imports go one way
 	$(BIN)/ruff format --check .
 	$(BIN)/lint-imports
 
+# Files and folders; all of them if this is empty. The types of tests are checked by `make verify`.
+TYPED :=
 typecheck: $(READY) ## check types
-	$(BIN)/pyright
+	$(BIN)/pyright $(TYPED)
 
 formulas: $(READY) ## list the formulas; `gaussmap formulas NAME` shows one
 	@$(GAUSSMAP) formulas

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
 
 from .formula import Formula
 
@@ -14,10 +15,15 @@ def functions(sources: Mapping[str, str]) -> dict[str, list[str]]:
     """Return the functions `file.name` of each name; `sources` are texts by names of files."""
     result: dict[str, list[str]] = {}
     for file in sorted(x for x in sources if x.endswith(".py")):
-        for node in ast.parse(sources[file]).body:
-            if isinstance(node, ast.FunctionDef):
-                result.setdefault(node.name, []).append(f"{file.removesuffix('.py')}.{node.name}")
+        for name in _functions_in(sources[file]):
+            result.setdefault(name, []).append(f"{file.removesuffix('.py')}.{name}")
     return result
+
+
+@lru_cache(maxsize=128)
+def _functions_in(source: str) -> tuple[str, ...]:
+    """Return the names of the functions of a module; pages ask again for each formula."""
+    return tuple(x.name for x in ast.parse(source).body if isinstance(x, ast.FunctionDef))
 
 
 def wholes(formula: Formula, formulas: Iterable[Formula]) -> list[str]:

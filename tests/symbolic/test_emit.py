@@ -415,6 +415,7 @@ def test_generated_is_up_to_date(derived):
     assert derived == files.existing(files.GENERATED)
 
 
+@pytest.mark.slow
 def test_writing_into_a_new_folder(copy):
     assert main([], copy.parent / "new" / "folder") == 0
     assert files.existing(copy.parent / "new" / "folder") == files.existing(copy)

@@ -11,7 +11,7 @@ PLACES = [{s: sp.Rational(1, 3), t: sp.Rational(-2, 5)}, {s: sp.Integer(2), t: s
 CYLINDER = [[1, 0, 1], [0, 1, 0], [0, 0, 0], ["1/2", "1/2", 0], ["1/2", 0, 0], [0, "1/2", 0]]
 
 
-@pytest.fixture(params=[1, 2], scope="module")
+@pytest.fixture(params=[1, pytest.param(2, marks=pytest.mark.slow)], scope="module")
 def triangle(request):
     generator = random.Random(request.param)
     return BezierTriangle([[generator.randint(-9, 9) for _ in range(3)] for _ in range(6)])

@@ -54,7 +54,7 @@ def lines_at(vectors, direction) -> list[tuple[Any, Any, Any]]:
     return [(x[0], x[1], x[2]) for x in found]
 
 
-@pytest.fixture(params=range(4))
+@pytest.fixture(params=[0, 1, *(pytest.param(x, marks=pytest.mark.slow) for x in (2, 3))])
 def generator(request) -> random.Random:
     return random.Random(request.param)
 

@@ -81,7 +81,7 @@ class Case:
         return (L * N - M**2) / area**2, -(E * N - 2 * F * M + G * L) / (2 * area * sp.sqrt(area))
 
 
-@pytest.fixture(scope="module", params=[1, 2])
+@pytest.fixture(scope="module", params=[1, pytest.param(2, marks=pytest.mark.slow)])
 def case(request) -> Case:
     return Case(request.param)
 

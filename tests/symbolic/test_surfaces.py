@@ -219,6 +219,9 @@ def test_every_surface_has_an_equation():
 
 
 @each_surface()
+@pytest.mark.quick_for(
+    "torus", "sphere", "ellipsoid", "hyperboloid", "helicoid", "wavy_graph", "monkey_saddle"
+)
 def test_the_equation_holds(surface):
     check = is_zero_on_cyclide if surface.name == "dupin_cyclide" else is_zero
     assert check(on_surface(EQUATIONS[surface.name], surface))
@@ -251,6 +254,7 @@ def test_the_cyclide_is_a_ring():
     assert sp.sqrt(a**2 - b**2).xreplace(defaults) < defaults[d] < defaults[a]
 
 
+@pytest.mark.slow
 def test_the_cyclide_touches_its_spheres_along_lines_of_curvature():
     surface = CATALOGUE["dupin_cyclide"]
     centre = sp.Matrix([a * sp.cos(u), b * sp.sin(u), 0])
@@ -308,6 +312,7 @@ def test_the_normal_of_the_moebius_band_comes_back_reversed():
 
 
 @each_surface(["torus", "sphere", "helicoid", "cylinder", "cone", "plane"])  # the others are slow
+@pytest.mark.quick_for("sphere", "helicoid", "cylinder", "cone", "plane")
 def test_gaussian_curvature_exactly(surface):
     assert is_zero(surface.gaussian_curvature - GAUSSIAN_CURVATURE[surface.name])
 

@@ -81,6 +81,7 @@ def test_the_coverage_of_samples_is_10_percent_off_at_most(name, density):
 
 @pytest.mark.parametrize("factor", [1e-12, 1e12, 2.0**-300, 2.0**300])
 @pytest.mark.parametrize("name", ["torus", "cone", "wavy_graph"])
+@pytest.mark.quick_for("torus")
 def test_any_unit_of_length(name, factor):
     spline = gm.fit(scaled(name, factor), (12, 12))
     points, normals = places(spline)
@@ -133,6 +134,7 @@ def test_both_sides_of_a_thin_plate_are_covered():
 
 @pytest.mark.parametrize("name", ["sphere", "torus", "cylinder", "plane"])
 @pytest.mark.parametrize("angle", [3.0, 12.0])
+@pytest.mark.quick_for("12.0")
 def test_no_point_is_farther_than_bending_allows(name, angle):
     """|x − s| κ <= r, which is twice the angle, where κ is the same everywhere."""
     radii = {"sphere": 1.0, "torus": 0.35, "cylinder": 1.0, "plane": math.inf}
@@ -189,6 +191,7 @@ def test_coverage_beside_normals_and_angle(name):
 
 
 @pytest.mark.parametrize("name", ["torus", "cylinder", "helicoid", "wavy_graph"])
+@pytest.mark.quick_for("torus", "cylinder")
 def test_coverage_beside_a_count(name):
     spline = gm.fit(gm.surfaces.surface(name), (24, 24))
     points, _ = places(spline)
@@ -315,6 +318,7 @@ def test_angles_are_kept_at_singular_points(name, cells):
 
 
 @pytest.mark.parametrize("seed", range(4))
+@pytest.mark.quick_for("0")
 def test_angles_are_kept_on_crumpled_splines(seed):
     heights = 0.35 * np.random.default_rng(seed).normal(size=(9, 9, 3))
     grid = np.moveaxis(np.stack([*np.mgrid[:9, :9], np.zeros((9, 9))]), 0, -1)

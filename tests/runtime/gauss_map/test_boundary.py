@@ -93,6 +93,7 @@ def test_parts_are_the_normals_of_the_edge(name: str) -> None:
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("name", CASES)
+@pytest.mark.quick_for("two", "third order", "line inside", "umbrella", "generic")
 def test_the_boundary_is_closed_and_has_the_solid_angle(name: str) -> None:
     """A polygon of chords of length 1/n misses areas of order 1/n².
 
@@ -112,6 +113,7 @@ def test_the_boundary_is_closed_and_has_the_solid_angle(name: str) -> None:
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("name", CASES)
+@pytest.mark.quick_for("two", "third order", "line inside", "umbrella", "generic")
 def test_membership_and_area_of_an_image_with_a_singular_point_inside_an_edge(name: str) -> None:
     image = gm.gauss_map.GaussianImage.of_patch(CASES[name][0])
     share = image.contains(gm.fibonacci(100_000)).mean()

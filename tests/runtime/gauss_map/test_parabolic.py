@@ -223,6 +223,7 @@ def test_classes_of_splines(name: str, allowed: set) -> None:
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("cells", [(16, 16), (24, 17), (64, 48)])
+@pytest.mark.quick_for("cells0", "cells2")
 def test_parabolic_circles_of_a_torus_spline(cells: tuple[int, int]) -> None:
     """Two closed polylines, each within one cell of the exact circle, going round once."""
     found = gm.gauss_map.parabolic_points(gm.fit(gm.surfaces.torus(), cells))
@@ -239,6 +240,7 @@ def test_parabolic_circles_of_a_torus_spline(cells: tuple[int, int]) -> None:
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("name", ["dupin_cyclide", "moebius_band", "wavy_graph"])
+@pytest.mark.quick_for("wavy_graph")
 def test_curvature_changes_sign_across_the_polylines_of_a_spline(name: str) -> None:
     """On both sides of the middle of every segment K has two signs, by the spline's own samples."""
     spline = gm.fit(gm.surfaces.surface(name), (12, 10))

@@ -154,6 +154,7 @@ class TestTopology:
         assert is_one_fan_at_each_vertex(mesh)
 
     @EACH
+    @pytest.mark.quick_for("torus", "cyclide", "moebius", "dome")
     def test_normals_in_symmetry_planes(self, name):
         """Four samples and more on one circle, samples on seams, at poles and at corners."""
         _, characteristic, borders = surfaces[name]
@@ -175,6 +176,7 @@ class TestTopology:
         assert (mesh.sides == 1).all()
 
     @pytest.mark.parametrize("name", ["klein", SWAPPED, "moebius"])
+    @pytest.mark.quick_for("moebius")
     def test_normals_of_one_sided_surfaces_change_sides(self, name):
         mesh = mesh_of(name, count=2000)
         assert (mesh.sides[:, 0] == 1).all()

@@ -70,6 +70,7 @@ def test_normals_without_samples_are_grey(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["sphere", "moebius_band", "helicoid", "cylinder", "plane"])
 @pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
+@pytest.mark.quick_for("plane", "sphere")
 def test_surfaces_of_all_kinds(name: str, tmp_path: Path) -> None:
     to_file.plot_to_file(gm.surfaces.surface(name), tmp_path / "a.png", count=100, cells=(16, 16))
     assert picture(tmp_path / "a.png").shape == SIZE
