@@ -16,7 +16,7 @@ TERRAIN = "$$($(BIN)/python -c '$(DEM)'):elevation" --spacing 74.5 -92.5
 
 .DEFAULT_GOAL := help
 .PHONY: help install demo generate check-generated warm test coverage cad-tests verify bench bench-guard bench-record bench-peers \
-	quality parts-quality cold-start operations lint typecheck formulas orders errata curves figures gallery meshes registration \
+	quality parts-quality cold-start batch operations lint typecheck formulas orders errata curves figures gallery meshes registration \
 	alignment docs clean
 
 help: ## list the targets
@@ -96,6 +96,10 @@ bench-record: $(READY) ## record the ratios that bench-guard compares with
 cold-start: $(READY) ## measure what the first call compiles again (docs/cold_start.md)
 	$(BIN)/python -m gaussmap.benchmarks.cold_start > docs/cold_start.tmp
 	mv docs/cold_start.tmp docs/cold_start.md
+
+batch: $(READY) ## measure what data sets of many parts cost again (docs/batch.md)
+	$(BIN)/python -m gaussmap.benchmarks.batch > docs/batch.tmp
+	mv docs/batch.tmp docs/batch.md
 
 operations: $(READY) ## record the operation counts of all kernels
 	$(BIN)/python tests/generated/test_operations.py
