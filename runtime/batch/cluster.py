@@ -10,10 +10,12 @@ from __future__ import annotations
 import atexit
 import threading
 from collections.abc import Generator, Iterable, Iterator, Sequence
+from concurrent.futures import CancelledError
 from contextlib import contextmanager
 from itertools import islice
 from pathlib import Path
 from typing import Any
+from uuid import uuid4
 
 from ... import __version__
 from ..errors import FileError, InputError, shown
@@ -69,17 +71,19 @@ def run_on_cluster(
 ) -> Generator[Tally]:
     """Yield what became of each shard, when it is finished.
 
-    Raises FileError if workers have another version or do not see the folder of the data set.
+    Raises FileError if workers have another version or do not see the folder of the data set, and
+    if the scheduler is lost. Workers finish the shards that they are at even if a run is stopped.
     """
     distributed = from_extra("distributed", "cluster", "sampling on a cluster")
     threads = _checked_workers(client, plan)
     left = iter(shards)
     done = distributed.as_completed(with_results=True, loop=client.loop)
     waiting: set[Any] = set()
+    run = f"gaussmap-{uuid4()}"
 
     def submit(number: int, inputs: Sequence[Input]) -> None:
         future = client.submit(
-            work, plan, number, inputs, pure=False, retries=LOST, key=f"{_key(plan)}-{number}"
+            work, plan, number, inputs, pure=False, retries=LOST, key=f"{run}-{number}"
         )
         waiting.add(future)
         done.add(future)
@@ -92,12 +96,14 @@ def run_on_cluster(
             yield tally
             for number, inputs in islice(left, 1):
                 submit(number, inputs)
+    except (CancelledError, distributed.scheduler.KilledWorker) as error:
+        raise FileError(
+            f"the cluster has lost shards ({type(error).__name__}): its scheduler has ended, or "
+            "workers end again and again; what is done is kept, run the same again."
+        ) from error
     finally:
-        client.cancel(list(waiting), force=True)
-
-
-def _key(plan: Plan) -> str:
-    return f"gaussmap-{Path(plan.folder).name}-{id(plan)}"
+        if waiting:
+            client.cancel(list(waiting), force=True)
 
 
 def _checked_workers(client: Any, plan: Plan) -> int:  # noqa: ANN401

@@ -9,10 +9,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Self
 
+from ..errors import FileError
 from .asked import Asked
 from .child import Answer, Child, Limits
 from .inputs import Input
-from .layout import FILES, Settings
+from .layout import FILES, Settings, read_settings
 from .manifest import FAILED, OK, ManifestRow
 from .serving import Task
 from .shards import Shard
@@ -101,6 +102,9 @@ def run_shard(plan: Plan, number: int, inputs: Sequence[Input], child: Child) ->
             if before is None or not _fails_again(before, row):
                 shard.add(row, answer.table)
             tally += _tally(row)
+        # A worker of Dask that nobody waits for may come after another run.
+        if read_settings(plan.folder).to_json() != plan.settings.to_json():
+            raise FileError(f"'{plan.folder}' holds another data set by now.")
         shard.commit([part.part for part in inputs])
     _remove_files(plan, before_all, inputs)
     return tally

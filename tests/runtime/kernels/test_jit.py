@@ -116,7 +116,6 @@ def test_damaged_machine_code_is_compiled_again(
 
 
 @pytest.mark.compiled
-@pytest.mark.compiled
 @pytest.mark.slow
 def test_two_processes_compile_a_kernel_once(tmp_path: Path) -> None:
     environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
@@ -143,6 +142,7 @@ def test_a_lock_that_is_held_for_too_long_is_not_waited_for(
     second.release()
 
 
+@pytest.mark.compiled
 def test_machine_code_that_cannot_be_saved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(jit, "cache_folder", lambda: tmp_path)
     kernel: Any = jit.jit(triple)
