@@ -17,13 +17,12 @@ from typing import Any
 
 import gaussmap as gm
 import numpy as np
+from gaussmap.runtime.batch.inputs import in_shards, inputs_of
+from gaussmap.runtime.batch.layout import MANIFEST, POINTS, Settings, create, parts_per_shard
+from gaussmap.runtime.batch.manifest import ManifestRow
+from gaussmap.runtime.batch.shards import Shard
+from gaussmap.runtime.batch.tables import points_schema, points_table
 from llvmlite.binding import get_host_cpu_name
-
-from ..runtime.batch.inputs import in_shards, inputs_of
-from ..runtime.batch.layout import MANIFEST, POINTS, Settings, create, parts_per_shard
-from ..runtime.batch.manifest import ManifestRow
-from ..runtime.batch.shards import Shard
-from ..runtime.batch.tables import points_schema, points_table
 
 __all__ = ["main", "measured", "page"]
 
@@ -160,7 +159,9 @@ def _task() -> float:
     import distributed
 
     with (
-        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as some,
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, dashboard_address="127.0.0.1:0"
+        ) as some,
         distributed.Client(some) as client,
     ):
         client.gather(client.map(float, range(100)))
