@@ -12,6 +12,7 @@ from tqdm import tqdm
 
 from .. import scale
 from .catalogue import PEERS
+from .durations import measure_durations
 from .forms import FORMS, ClosedForm
 from .measure import judge_own, measure, measure_own
 from .metrics import Places
@@ -27,9 +28,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     steps = len(FORMS) * (len(PEERS) + 1) + 1
     with tqdm(total=steps, desc="measuring", disable=None, file=sys.stderr) as bar:
         surfaces = [_on_surface(form, bar) for form in FORMS]
+        bar.set_postfix_str("cold and warm")
+        taken = measure_durations(largest)
         series = scale.measure(largest)
         bar.update()
-    print(page(surfaces, series), end="")
+    print(page(surfaces, series, taken), end="")
 
 
 def _on_surface(form: ClosedForm, bar: tqdm) -> OnSurface:

@@ -9,6 +9,7 @@ from gaussmap.docs.orders import markdown, wrapped
 
 from ..scale import LAST, STREAM, STREAMED, Series
 from .catalogue import GMSH, RECIPE, SPLIPY_RECIPE, K
+from .durations import Duration, durations
 from .forms import ClosedForm
 from .machine import machine
 from .measure import JUDGED, Measured, Own
@@ -81,12 +82,12 @@ over the {last} largest; 1 is linear, and the target is at most {steepest}. {str
 """
 
 
-def page(surfaces: Sequence[OnSurface], series: Sequence[Series]) -> str:
+def page(surfaces: Sequence[OnSurface], series: Sequence[Series], taken: Duration) -> str:
     """Return the page."""
     parts = [head(surfaces)]
     for measured in surfaces:
         parts += [f"### {measured.form.label}\n", table(measured)]
-    parts.insert(0, TOP + opening("\n".join(parts)))
+    parts.insert(0, TOP + durations(taken) + opening("\n".join(parts)))
     parts.append(wrapped(SCALE.format(last=LAST, steepest=STEEPEST, streamed=streamed())))
     parts += [scale_table(x) for x in series]
     parts += [slopes(series), "## The machine\n", wrapped("\n".join(machine()))]

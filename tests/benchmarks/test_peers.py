@@ -10,6 +10,7 @@ import pytest
 from gaussmap.benchmarks import scale
 from gaussmap.benchmarks.peers import cad, metrics, page, peer, recipe, splines
 from gaussmap.benchmarks.peers.catalogue import GMSH, PEERS, RECIPE, SPLIPY_RECIPE
+from gaussmap.benchmarks.peers.durations import Duration
 from gaussmap.benchmarks.peers.forms import FORMS, Torus, Waves
 from gaussmap.benchmarks.peers.measure import Measured, Own
 from gaussmap.benchmarks.peers.opening import opening
@@ -320,12 +321,26 @@ def text():
     rows = [(1000, 10**k, 1e-6 * (1000 + 10**k)) for k in range(3, 7)]
     linear = scale.Series("samples, 1,000 patches", rows, "10,000,000 samples were not measured")
     steep = scale.Series("patches", [(n, 0, 1e-9 * n**1.2) for n in (10, 99)])
-    return page.page(surfaces, [linear, steep])
+    taken = Duration(
+        {10**4: 0.0123, 10**6: 0.2, 10**8: 9.3}, {10**4: 0.05, 10**6: 3.2},
+        {10**4: 0.0004, 10**6: 0.025}, (1.2, 1.6), (20.0, 60.0),
+    )  # fmt: skip
+    return page.page(surfaces, [linear, steep], taken)
+
+
+def test_the_page_says_first_how_long_it_takes(text):
+    rows = [line for line in text.splitlines() if line.startswith("| ")][2:5]
+    assert rows == [
+        "| 10,000 | 0.012 | 0.05 | 0.0004 |",
+        "| 1,000,000 | 0.2 | 3.2 | 0.025 |",
+        "| 100,000,000 | 9.3 | – | – |",
+    ]
+    assert "8.0 times at 1,000,000 points" in text
 
 
 def test_tables_are_whole(text):
     tables = text.split("\n| :--")[1:]
-    assert len(tables) == 1 + 2 + 2 + 1 + 1
+    assert len(tables) == 1 + 1 + 2 + 2 + 1 + 1
     width = 0
     for line, after in pairwise(text.replace("\\|", "").splitlines()):
         if after.startswith("| :--"):
@@ -350,7 +365,7 @@ def test_targets_are_judged(text):
 
 
 def test_the_page_opens_with_what_others_do_better(text):
-    section = text.split("\n## ")[1]
+    section = text.split("\n## ")[2]
     assert section.startswith("Where gaussmap wins, where it does not\n")
     assert "| Gmsh, curvature size | 200 × | 1 of 1 | 0 of 1 |\n" in section  # missing on one
     assert f"| {RECIPE.title} | 200 × | 2 of 2 | 0 of 2 |\n" in section

@@ -1,0 +1,139 @@
+"""How long sampling takes, cold and warm: the first table of docs/performance.md."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from gaussmap.docs.orders import markdown, wrapped
+
+from .forms import FORMS
+from .recipe import by_grid
+
+__all__ = ["Duration", "durations", "measure_durations"]
+
+COUNTS = (10**4, 10**6, 10**8)
+STREAMED = 10**7
+FIRST = COUNTS[0]
+AT_NORMALS, DEFAULT, STREAM = "at normals", "default", "stream"
+# For a number of samples N; the torus has every normal twice.
+CALLS = {
+    AT_NORMALS: "gm.sample(torus, normals=gm.fibonacci(N // 2))",
+    STREAM: "sum(len(x) for x in gm.sample_stream(torus, normals=gm.fibonacci(N // 2)))",
+    DEFAULT: "gm.sample(torus, N)",
+}
+CHILD = """
+import json, time
+start = time.perf_counter()
+import gaussmap as gm
+N = COUNT
+torus = gm.surfaces.torus()
+times = []
+for k in range(REPEATED):
+    CALL
+    times.append(time.perf_counter() - start)
+    start = time.perf_counter()
+print(json.dumps(times))
+"""
+
+WORDS = """\
+## How long it takes
+
+Seconds of wall time for points of a torus with normals, parameters and curvatures, on all cores,
+the fit of the spline included; more than {stream:,} points come in chunks (`gm.sample_stream`).
+
+{table}
+
+A new process takes {warm} s for its first 10⁴ points, with imports and loading of machine code.
+The very first one on a computer compiles that code: {cold} s at normals, {cold_default} s for the
+default; `gaussmap warm` does it ahead ([details](cold_start.md)).
+
+A grid of parameters is faster, if there is a closed form: {ratio} times at {largest:,} points. Come
+here for what it does not have: the points that have given normals, each exactly once; density that
+follows curvature, and guarantees for gaps and angles; surfaces without a closed form (functions,
+data, NURBS, CAD files); offsets, silhouettes and meshes of the same samples.
+
+"""
+
+
+@dataclass(frozen=True)
+class Duration:
+    """Seconds for numbers of samples: at normals, by default, and those of NumPy's grid."""
+
+    at_normals: dict[int, float]
+    default: dict[int, float]
+    grid: dict[int, float]
+    warm: tuple[float, float]
+    cold: tuple[float, float]
+
+
+def measure_durations(largest: int) -> Duration:
+    """Measure all, up to a number of samples."""
+    counts = [x for x in COUNTS if x <= max(largest, FIRST)]
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        cold = tuple(_seconds(kind, FIRST, folder, 1)[0] for kind in (AT_NORMALS, DEFAULT))
+        new = {kind: _seconds(kind, FIRST, folder, 9) for kind in (AT_NORMALS, DEFAULT)}
+        at_normals, default = ({FIRST: min(new[kind][1:])} for kind in (AT_NORMALS, DEFAULT))
+        for count in counts[1:]:
+            kind = STREAM if count > STREAMED else AT_NORMALS
+            at_normals[count] = min(_seconds(kind, count, folder, 3 if count < STREAMED else 1))
+            if count <= STREAMED:
+                default[count] = min(_seconds(DEFAULT, count, folder, 2))
+    grid = {count: _of_grid(count) for count in counts if count <= STREAMED}
+    first = new[AT_NORMALS][0], new[DEFAULT][0]
+    return Duration(at_normals, default, grid, first, (cold[0], cold[1]))
+
+
+def durations(measured: Duration) -> str:
+    """Return the section of the page."""
+    columns = measured.at_normals, measured.default, measured.grid
+    rows = [
+        [f"{count:,}", *(_text(column[count]) if count in column else "–" for column in columns)]
+        for count in measured.at_normals
+    ]
+    header = ["points", "at normals", "default, `balanced`", "NumPy grid, closed form"]
+    largest = max(measured.grid)
+    words = WORDS.format(
+        stream=STREAMED,
+        table="TABLE",
+        warm=f"{measured.warm[0]:.1f} (default {measured.warm[1]:.1f})",
+        cold=f"{measured.cold[0]:.0f}",
+        cold_default=f"{measured.cold[1]:.0f}",
+        ratio=f"{measured.at_normals[largest] / measured.grid[largest]:.1f}",
+        largest=largest,
+    )
+    return wrapped(words).replace("TABLE\n", markdown(header, rows))
+
+
+def _seconds(kind: str, count: int, folder: Path, repeated: int) -> Sequence[float]:
+    """Return the times of calls in a new process, whose machine code is in a folder."""
+    text = CHILD.replace("COUNT", str(count)).replace("REPEATED", str(repeated))
+    run = subprocess.run(
+        [sys.executable, "-c", text.replace("CALL", CALLS[kind])],
+        env=os.environ | {"NUMBA_CACHE_DIR": str(folder)},
+        stdout=subprocess.PIPE,
+        check=True,
+    )
+    return json.loads(run.stdout)
+
+
+def _of_grid(count: int) -> float:
+    from time import perf_counter
+
+    times = []
+    for _ in range(5):
+        start = perf_counter()
+        by_grid(FORMS[0], count)
+        times.append(perf_counter() - start)
+    return min(times)
+
+
+def _text(seconds: float) -> str:
+    return f"{seconds:.2g}" if seconds < 10.0 else f"{seconds:.0f}"
