@@ -142,6 +142,9 @@ class FileLock:
                     time.sleep(POLL)
             self.release()
 
+    def __del__(self) -> None:
+        self.release()  # compilation has failed
+
     def release(self) -> None:
         """Let others have it."""
         file, self._file = self._file, None
