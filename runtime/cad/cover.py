@@ -23,7 +23,6 @@ class PartCover(Cover):
     """Samples of a part: some that are given, (N, 6) scaled points and normals, and added ones."""
 
     sizing: Space
-    added: Cells
     triangles: Cells
 
     def __init__(
@@ -33,18 +32,15 @@ class PartCover(Cover):
         show_count: Callable[[int], object] = lambda count: None,
     ) -> None:
         """Begin with given samples, whose curvatures nobody asks for."""
-        self.sizing, self.show_count = space, show_count
-        self.points = np.empty((0, 6)) if given is None else given
-        self.curvatures = np.zeros(len(self.points))
-        self.given = self.fixed = len(self.points)
-        self.grid = None
-        self.fine, self.radius_asked, self.count_asked = FINE, 0.0, None
-        self.remove_added()
+        self.sizing, self.show_count, self.grid = space, show_count, None
+        points = np.empty((0, 6)) if given is None else given
+        self._begin_with(points, np.zeros(len(points)), cast(Any, space.nothing()))
+        self.fine = FINE
 
-    def remove_added(self) -> None:
-        """Remove all samples that were added."""
-        self.points, self.curvatures = self.points[: self.given], self.curvatures[: self.given]
-        self.added = self.sizing.nothing()
+    @property
+    def added(self) -> Any:  # noqa: ANN401
+        """The cells at whose places the added samples lie."""
+        return super().added
 
     def take_candidates(self, radius: float, widest: float) -> None:
         """Take candidates for sweeps with radii that fall from `widest` to this radius."""
@@ -73,8 +69,5 @@ class PartCover(Cover):
             if numbers[self.added.pieces[k]] > 1:
                 numbers[self.added.pieces[k]] -= 1
                 removed.append(k)
-        kept = np.setdiff1d(np.arange(len(self.added)), removed)
-        self.added = self.added[kept]
-        rows = np.concatenate([np.arange(self.given), self.given + kept])
-        self.points, self.curvatures = self.points[rows], self.curvatures[rows]
+        self.keep(np.setdiff1d(np.arange(len(self.added)), removed))
         self.renew_distances(self.radius)

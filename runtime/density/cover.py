@@ -11,7 +11,7 @@ from ..samples import Samples
 from .candidates import Candidates
 from .grid import Grid
 from .sizing import SizingFunction
-from .triangles import Array, Triangles, cut_patches, refuse_more
+from .triangles import Array, Indices, Triangles, cut_patches, refuse_more
 
 __all__ = ["STEP", "Cover"]
 
@@ -40,7 +40,8 @@ class Cover:
     function. All lengths are scaled as in `SizingFunction`. Rows of `points` (N, 6), point and unit
     normal, and `curvatures` (N,), K, are the samples; the first `given` ones are those that were
     given (only the sign of their K counts, which is not scaled), the others lie at the places of
-    the triangles `added`, of which the first ones are those of the `grid`, if there is one.
+    the triangles `added`, of which the first ones are those of the `grid`, if there is one. Samples
+    are evaluated together, when somebody asks for them.
 
     Samples are chosen among the places of `triangles`. `show_count` is called with the number of
     samples when it has grown.
@@ -63,21 +64,43 @@ class Cover:
     ) -> None:
         """Begin with given samples of the same spline, and those of a grid."""
         self.sizing, self.show_count, self.grid = sizing, show_count, grid
-        self.points, self.curvatures = np.empty((0, 6)), np.empty(0)
+        points, curvatures = np.empty((0, 6)), np.empty(0)
         if given is not None:
-            self.points = np.column_stack([sizing.scaled_points(given.points), given.normals])
-            self.curvatures = given.gaussian_curvature
-        self.given, self.fine = len(self.points), FINE
-        self.radius_asked, self.count_asked = 0.0, None
-        self.added = Triangles(sizing, np.empty(0, dtype=np.int64), np.empty((0, 3, 2)))
+            points = np.column_stack([sizing.scaled_points(given.points), given.normals])
+            curvatures = given.gaussian_curvature
+        self._begin_with(
+            points, curvatures, Triangles(sizing, np.empty(0, dtype=np.int64), np.empty((0, 3, 2)))
+        )
         if grid is not None:
             self._append(grid.triangles)
-        self.fixed = len(self.points)
+        self.fixed = self.count
+
+    def _begin_with(self, points: Array, curvatures: Array, added: Triangles) -> None:
+        """Begin with given samples; `added` has no triangles."""
+        self._known = points, curvatures, added
+        self._waiting: tuple[Triangles, ...] = ()
+        self.given = self.fixed = len(points)
+        self.fine, self.radius_asked, self.count_asked = FINE, 0.0, None
+
+    @property
+    def points(self) -> Array:
+        """The points and unit normals (N, 6) of the samples."""
+        return self._evaluated[0]
+
+    @property
+    def curvatures(self) -> Array:
+        """K (N,) of the samples."""
+        return self._evaluated[1]
+
+    @property
+    def added(self) -> Triangles:
+        """The triangles at whose places the added samples lie."""
+        return self._evaluated[2]
 
     @property
     def count(self) -> int:
         """The number of samples."""
-        return len(self.points)
+        return len(self._known[0]) + sum(map(len, self._waiting))
 
     def to_radius(self, radius: float, most: int | None = None) -> None:
         """Add samples until every point is within radius/√w of one, or there are `most`."""
@@ -163,8 +186,12 @@ class Cover:
 
     def remove_added(self) -> None:
         """Remove all samples that were added, except those of the grid."""
-        self.points, self.curvatures = self.points[: self.fixed], self.curvatures[: self.fixed]
-        self.added = self.added[np.arange(self.fixed - self.given)]
+        self.keep(np.arange(self.fixed - self.given))
+
+    def keep(self, numbers: Indices) -> None:
+        """Keep some of the added samples, and remove the others."""
+        rows = np.concatenate([np.arange(self.given), self.given + numbers])
+        self._known = self.points[rows], self.curvatures[rows], self.added[numbers]
 
     def _radius_for(self, count: int) -> float:
         """Return the radius at which about `count` samples cover the surface."""
@@ -184,10 +211,24 @@ class Cover:
             self.show_count(self.count)
 
     def _append(self, triangles: Triangles) -> None:
-        rows = triangles.as_samples()
-        self.added += triangles
-        self.points = np.concatenate([self.points, rows[:, :6]])
-        self.curvatures = np.concatenate([self.curvatures, rows[:, 7]])
+        self._waiting += (triangles,)
+
+    @property
+    def _evaluated(self) -> tuple[Array, Array, Triangles]:
+        """Points and normals, curvatures and triangles of all samples, those that wait as well."""
+        if self._waiting:
+            points, curvatures, added = self._known
+            triangles = sum(self._waiting[1:], start=self._waiting[0])
+            rows = triangles.as_samples()
+            self._known, self._waiting = (
+                (
+                    np.concatenate([points, rows[:, :6]]),
+                    np.concatenate([curvatures, rows[:, 7]]),
+                    added + triangles,
+                ),
+                (),
+            )
+        return self._known
 
     def _to_radius_asked(self, widest: float, most: int | None) -> None:
         self.narrow(widest, self.radius_asked, most)

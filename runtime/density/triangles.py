@@ -50,7 +50,7 @@ class Triangles:
     def __len__(self) -> int:
         return len(self.patches)
 
-    def __getitem__(self, chosen: Indices | NDArray[np.bool_]) -> Triangles:
+    def __getitem__(self, chosen: Indices | NDArray[np.bool_] | slice) -> Triangles:
         """Return some of the triangles."""
         places = None if self.places is None else self.places[chosen]
         return Triangles(self.sizing, self.patches[chosen], self.corners[chosen], places)
@@ -78,7 +78,8 @@ class Triangles:
     @property
     def centroids(self) -> Array:
         """The parameters (M, 2) of the centroids."""
-        return self.corners.sum(axis=1) / 3.0
+        a, b, c = np.moveaxis(self.corners, 1, 0)  # sum(axis=1) takes ten times as long
+        return (a + b + c) / 3.0
 
     @property
     def uv(self) -> Array:

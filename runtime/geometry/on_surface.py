@@ -28,6 +28,7 @@ from ..report import PLACES
 from ..search import Hits
 from ..splines.inside import count_of, parameters_of, samples_inside
 from ..splines.spline import Spline
+from ..surface.derivatives import Differentiable
 from ..surface.surface import Surface
 from ..surfaces import named
 from ..threads import over_ranges
@@ -232,18 +233,23 @@ class OnSurface(OnSpline):
         Points are those of the surface; normals and densities are interpolated between the nodes
         of cells.
         """
-        points = self._points(parameters_of(self.spline, triangles.patches, triangles.uv))
-        rows[:, :3] = (points - self.spline.coefficients[0, 0]) * self._size
-        target = triangles.sizing.target
-        at_nodes, places = self._at_nodes[target._replace(floor=0.0)], triangles.uv
+        spline, target = self.spline, triangles.sizing.target
+        at_nodes = self._at_nodes[target._replace(floor=0.0)]
 
         def work(first: int, last: int) -> None:
+            part, here = triangles[first:last], rows[first:last]
+            places = part.uv
+            points = self._points(parameters_of(spline, part.patches, places))
+            here[:, :3] = (points - spline.coefficients[0, 0]) * self._size
             kernels.interpolate(
-                self.cells[1], self.nodes, at_nodes, target.floor,
-                triangles.patches, places, first, last, rows,
-            )  # fmt: skip
+                self.cells[1], self.nodes, at_nodes, target.floor, part.patches, places, here
+            )
 
-        self._in_parts(work, len(triangles))
+        if self._knows_threads:
+            self._in_parts(work, len(triangles))
+        else:
+            for first in range(0, len(triangles), POINTS_AT_A_TIME):
+                work(first, first + POINTS_AT_A_TIME)
         return rows
 
     def as_samples(self, triangles: Triangles, rows: Array) -> Array:
@@ -329,14 +335,16 @@ class OnSurface(OnSpline):
         assert self.surface is not None
         return self.surface.jets(u, v)
 
+    @property
+    def _knows_threads(self) -> bool:
+        """Whether several threads may call the function of the surface: not that of a user."""
+        function = None if self.surface is None else self.surface.function
+        return isinstance(function, Differentiable) and function.differentiable
+
     def _points(self, uv: Array) -> Array:
-        """Return the points (k, 3) of the surface: a callable may not know threads."""
+        """Return the points (k, 3) of the surface."""
         assert self.surface is not None
-        points = np.empty((len(uv), 3))
-        for first in range(0, len(uv), POINTS_AT_A_TIME):
-            part = slice(first, first + POINTS_AT_A_TIME)
-            points[part] = self.surface.evaluate(*uv[part].T)
-        return points
+        return self.surface.evaluate(*uv.T)
 
     def _evaluated(
         self, patches: NDArray[np.int64], places: Array

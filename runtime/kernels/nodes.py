@@ -104,13 +104,13 @@ def densities_on_patches(columns, at_nodes, places, densities):
 
 
 @jit
-def interpolate(columns, nodes, at_nodes, floor, patches, places, first, last, rows):
+def interpolate(columns, nodes, at_nodes, floor, patches, places, rows):
     """Replace normals and densities of rows (M, 8), at places (M, 2) of patches, by the surface's.
 
     They are interpolated from the nodes: near to a pole, and where it is folded, the normals and
     the curvature of a spline are far from those of the surface.
     """
-    for k in range(first, last):
+    for k in range(rows.shape[0]):
         i, j, _ = place_of(patches[k], columns)
         u, v = place_in_domain(patches[k], columns, places[k, 0], places[k, 1])
         cell = patches[k] // 4
