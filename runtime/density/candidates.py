@@ -118,8 +118,7 @@ class Candidates:
             now = range(turn, len(self._parts), 2)
             rows = self._each(lambda i, now=now: self._parts[now[i]].choose(radius), len(now))
             found |= zip(now, rows, strict=True)
-            chosen = {k: self._parts[k].grids.candidates[found[k], :6] for k in now}
-            self._update_other_parts(chosen, radius)
+            self._update_other_parts(dict(zip(now, rows, strict=True)), radius)
         rows = [part.order[found[k]] for k, part in enumerate(self._parts)]
         chosen = np.concatenate(rows).astype(np.int64)
         return chosen if len(chosen) <= most else chosen[np.arange(most) * len(chosen) // most]
@@ -142,13 +141,22 @@ class Candidates:
             pass
         return np.where(found < 0, -1, self._order[found])
 
-    def _update_other_parts(self, samples: Mapping[int, Array], radius: float) -> None:
-        """Update the distances of every part for the samples of all other parts."""
+    def _update_other_parts(self, chosen: Mapping[int, Numbers], radius: float) -> None:
+        """Update the distances of every part for the candidates chosen in all other parts."""
+        numbers = np.zeros(len(self._parts) + 1, dtype=np.int64)
+        for k, rows in chosen.items():
+            numbers[k + 1] = len(rows)
+        ends = np.cumsum(numbers)
+        if ends[-1] == 0 or len(self._parts) == 1:
+            return
+        samples = np.concatenate(
+            [self._parts[k].grids.candidates[rows, :6] for k, rows in chosen.items()]
+        )
 
         def update(k: int) -> None:
-            others = [points for other, points in samples.items() if other != k and len(points)]
-            if others:
-                self._parts[k].update_distances(np.concatenate(others), radius)
+            for others in (samples[: ends[k]], samples[ends[k + 1] :]):
+                if len(others):
+                    self._parts[k].update_distances(others, radius)
 
         self._each(update, len(self._parts))
 
