@@ -1,0 +1,129 @@
+"""Whole calls as users make them: with memory that is used again, streams, densities, threads.
+
+Limits are those of `bench_sample`. A baseline of streams is `gm.sample`, of threads one thread, and
+of densities the same number of samples at normals alone.
+"""
+
+from __future__ import annotations
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.benchmarks.writing import Writers, new_arrays
+from gaussmap.runtime.bins import NormalBins
+from gaussmap.runtime.search import fill, find
+from matplotlib.cbook import get_sample_data
+
+TORUS = gm.surfaces.torus()
+THREADS = 2
+
+
+def terrain() -> gm.Spline:
+    """Return real terrain with 200 × 200 cells."""
+    with get_sample_data("jacksboro_fault_dem.npz") as data:
+        heights = np.asarray(data["elevation"], dtype=np.float64)[:200, :200]
+    y, x = np.indices(heights.shape)
+    return gm.fit(gm.Surface.from_grid(np.stack([74.5 * x, -92.5 * y, heights], axis=-1)))
+
+
+# Normals, a spline, and how many rounds to time.
+WHOLE = {
+    "icosphere-500-64x64": (lambda: gm.icosphere(500), lambda: gm.fit(TORUS, (64, 64)), 5),
+    "fibonacci-1M-64x64": (lambda: gm.fibonacci(1_000_000), lambda: gm.fit(TORUS, (64, 64)), 5),
+    "icosphere-100-64x64": (lambda: gm.icosphere(100), lambda: gm.fit(TORUS, (64, 64)), 9),
+    "icosphere-100-256x256": (lambda: gm.icosphere(100), lambda: gm.fit(TORUS, (256, 256)), 5),
+    "icosphere-100-terrain": (lambda: gm.icosphere(100), terrain, 5),
+}
+DENSITIES = {
+    "balanced-10k": {"count": 10_000},
+    "isotropic-10k": {"count": 10_000, "density": "isotropic"},
+    "balanced-1M": {"count": 1_000_000},
+    "isotropic-1M": {"count": 1_000_000, "density": "isotropic"},
+    "relaxed-10k": {"count": 10_000, "relax": 2},
+    "angle-2-degrees": {"angle": 2.0},
+}
+
+
+@pytest.fixture(scope="module", params=WHOLE.values(), ids=list(WHOLE))
+def whole(request):
+    normals, spline, rounds = request.param
+    return normals(), spline(), rounds
+
+
+def test_whole_call(compare, whole):
+    normals, spline, rounds = whole
+    count = len(gm.sample(spline, normals=normals))
+    with Writers() as write:
+        compare(
+            lambda: gm.sample(spline, normals=normals),
+            limits={"new_array_limit": lambda: write(new_arrays(count))},
+            units={"samples": count},
+            rounds=rounds,
+        )
+
+
+def test_whole_call_with_out(compare, whole):
+    normals, spline, rounds = whole
+    held = gm.sample(spline, normals=normals)
+    arrays = new_arrays(len(held))
+    with Writers() as write:
+        compare(
+            lambda: gm.sample(spline, normals=normals, out=held),
+            limits={"writing_limit": lambda: write(arrays)},
+            units={"samples": len(held)},
+            rounds=rounds,
+        )
+
+
+@pytest.mark.parametrize("number", [10_000_000])
+def test_stream(compare, number):
+    spline = gm.fit(TORUS, (64, 64))
+    compare(
+        lambda: sum(map(len, gm.sample_stream(spline, number))),
+        baselines={"sample": lambda: len(gm.sample(spline, number, density="gauss"))},
+        units={"samples": number},
+        rounds=3,
+    )
+
+
+@pytest.mark.parametrize("step", ["find", "fill"])
+@pytest.mark.parametrize("cells", [8, 64, 256])
+def test_threads(compare, step, cells):
+    """Kernels in two threads, beside the same in one."""
+    spline, bins = gm.fit(TORUS, (cells, cells)), NormalBins(gm.icosphere(200))
+    hits = find(spline, bins)
+
+    def run(threads: int) -> None:
+        if step == "find":
+            find(spline, bins, threads)
+        else:
+            fill(spline, bins, hits, threads)
+
+    compare(
+        lambda: run(THREADS),
+        baselines={"one_thread": lambda: run(1)},
+        units={"samples": len(hits)},
+        rounds=9,
+    )
+
+
+@pytest.mark.parametrize("arguments", DENSITIES.values(), ids=list(DENSITIES))
+def test_density(compare, arguments):
+    count = len(gm.sample(TORUS, **arguments))
+    compare(
+        lambda: gm.sample(TORUS, **arguments),
+        baselines={"gauss": lambda: gm.sample(TORUS, count, density="gauss")},
+        units={"samples": count},
+        rounds=3 if count > 100_000 else 5,
+    )
+
+
+@pytest.mark.parametrize("density", ["balanced", "isotropic"])
+def test_mesh(compare, density):
+    samples = gm.sample(TORUS, 100_000, density=density)
+    compare(
+        samples.mesh,
+        baselines={"sample": lambda: gm.sample(TORUS, 100_000, density=density)},
+        units={"samples": len(samples)},
+        rounds=3,
+    )
