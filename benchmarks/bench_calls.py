@@ -20,7 +20,8 @@ THREADS = 2
 
 def terrain() -> gm.Spline:
     """Return real terrain with 200 × 200 cells."""
-    with get_sample_data("jacksboro_fault_dem.npz") as data:
+    file = get_sample_data("jacksboro_fault_dem.npz", asfileobj=False)
+    with np.load(str(file)) as data:
         heights = np.asarray(data["elevation"], dtype=np.float64)[:200, :200]
     y, x = np.indices(heights.shape)
     return gm.fit(gm.Surface.from_grid(np.stack([74.5 * x, -92.5 * y, heights], axis=-1)))
