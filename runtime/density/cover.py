@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -33,6 +34,15 @@ NEAR = 1.25
 MANY, TIMES = 2e7, 8
 
 
+class _Known(NamedTuple):
+    """What is known of samples, see `Cover`."""
+
+    points: Array
+    curvatures: Array
+    exact: Array | None
+    added: Triangles
+
+
 class Cover:
     """Samples of a spline: some that are given, and others that are added until it is covered.
 
@@ -41,7 +51,8 @@ class Cover:
     normal, and `curvatures` (N,), K, are the samples; the first `given` ones are those that were
     given (only the sign of their K counts, which is not scaled), the others lie at the places of
     the triangles `added`, of which the first ones are those of the `grid`, if there is one. Samples
-    are evaluated together, when somebody asks for them.
+    are evaluated together, when somebody asks for them; `exact` (added, k) are the other columns of
+    their rows, see `OnSpline.as_samples`.
 
     Samples are chosen among the places of `triangles`. `show_count` is called with the number of
     samples when it has grown.
@@ -77,7 +88,7 @@ class Cover:
 
     def _begin_with(self, points: Array, curvatures: Array, added: Triangles) -> None:
         """Begin with given samples; `added` has no triangles."""
-        self._known = points, curvatures, added
+        self._known = _Known(points, curvatures, None, added)
         self._waiting: tuple[Triangles, ...] = ()
         self.given = self.fixed = len(points)
         self.fine, self.radius_asked, self.count_asked = FINE, 0.0, None
@@ -85,22 +96,27 @@ class Cover:
     @property
     def points(self) -> Array:
         """The points and unit normals (N, 6) of the samples."""
-        return self._evaluated[0]
+        return self._evaluated.points
 
     @property
     def curvatures(self) -> Array:
         """K (N,) of the samples."""
-        return self._evaluated[1]
+        return self._evaluated.curvatures
+
+    @property
+    def exact(self) -> Array | None:
+        """The other columns (added, k) of the added samples; None without any sample."""
+        return self._evaluated.exact
 
     @property
     def added(self) -> Triangles:
         """The triangles at whose places the added samples lie."""
-        return self._evaluated[2]
+        return self._evaluated.added
 
     @property
     def count(self) -> int:
         """The number of samples."""
-        return len(self._known[0]) + sum(map(len, self._waiting))
+        return len(self._known.points) + sum(map(len, self._waiting))
 
     def to_radius(self, radius: float, most: int | None = None) -> None:
         """Add samples until every point is within radius/√w of one, or there are `most`."""
@@ -181,8 +197,11 @@ class Cover:
         moved = first + np.flatnonzero(chosen[first:] >= 0)
         triangles = self.triangles[chosen[moved]]
         rows = triangles.as_samples()
-        self.points[moved], self.curvatures[moved] = rows[:, :6], rows[:, 7]
-        self.added.write(moved - self.given, triangles)
+        points, curvatures, exact, added = self._evaluated
+        points[moved], curvatures[moved] = rows[:, :6], rows[:, 7]
+        if exact is not None:
+            exact[moved - self.given] = rows[:, 8:]
+        added.write(moved - self.given, triangles)
 
     def remove_added(self) -> None:
         """Remove all samples that were added, except those of the grid."""
@@ -191,7 +210,9 @@ class Cover:
     def keep(self, numbers: Indices) -> None:
         """Keep some of the added samples, and remove the others."""
         rows = np.concatenate([np.arange(self.given), self.given + numbers])
-        self._known = self.points[rows], self.curvatures[rows], self.added[numbers]
+        points, curvatures, exact, added = self._evaluated
+        exact = None if exact is None else exact[numbers]
+        self._known = _Known(points[rows], curvatures[rows], exact, added[numbers])
 
     def _radius_for(self, count: int) -> float:
         """Return the radius at which about `count` samples cover the surface."""
@@ -214,19 +235,20 @@ class Cover:
         self._waiting += (triangles,)
 
     @property
-    def _evaluated(self) -> tuple[Array, Array, Triangles]:
-        """Points and normals, curvatures and triangles of all samples, those that wait as well."""
+    def _evaluated(self) -> _Known:
+        """What is known of all samples, those that wait as well."""
         if self._waiting:
-            points, curvatures, added = self._known
+            known = self._known
             triangles = sum(self._waiting[1:], start=self._waiting[0])
             rows = triangles.as_samples()
-            self._known, self._waiting = (
-                (
-                    np.concatenate([points, rows[:, :6]]),
-                    np.concatenate([curvatures, rows[:, 7]]),
-                    added + triangles,
-                ),
+            self._waiting, self._known = (
                 (),
+                _Known(
+                    np.concatenate([known.points, rows[:, :6]]),
+                    np.concatenate([known.curvatures, rows[:, 7]]),
+                    np.concatenate([*([] if known.exact is None else [known.exact]), rows[:, 8:]]),
+                    known.added + triangles,
+                ),
             )
         return self._known
 

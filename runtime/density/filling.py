@@ -152,7 +152,7 @@ class Filling:
         """Return the samples at normals, followed by the added ones."""
         added, given = cover.points[cover.given :, 3:].copy(), at_normals.samples
         arrays, unrefined = self.geometry.at_places(
-            cover.added, added, cover.curvatures[cover.given :], fields, dtype
+            cover.added, added, cover.curvatures[cover.given :], cover.exact, fields, dtype
         )
         if given is not None:
             arrays = {

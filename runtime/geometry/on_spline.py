@@ -159,7 +159,10 @@ class OnSpline:
         return rows
 
     def as_samples(self, triangles: Triangles, rows: Array) -> Array:
-        """Return the rows (M, 8) of candidates that have become samples."""
+        """Return the rows (M, 8 + k) of candidates that have become samples.
+
+        The columns after those of candidates are for `at_places`.
+        """
         return rows
 
     def normal_chords(self, triangles: Triangles, rows: Array) -> Array:
@@ -175,12 +178,13 @@ class OnSpline:
         triangles: Triangles,
         normals: Array,
         K: Array,
+        exact: Array | None,
         fields: Sequence[str],
         dtype: DTypeLike,
     ) -> FieldsOfSamples:
         """Return the samples at the places of triangles; see `as_samples`.
 
-        normals (M, 3) and the signs of K (M,) are those of their rows.
+        normals (M, 3), the signs of K (M,) and the columns `exact` are those of their rows.
         """
         patch_index, uv = triangles.patches, triangles.uv
         count, spline = len(triangles), self.spline

@@ -253,15 +253,19 @@ class OnSurface(OnSpline):
         return rows
 
     def as_samples(self, triangles: Triangles, rows: Array) -> Array:
-        """Return the rows (M, 8) of candidates that have become samples.
+        """Return the rows (M, 12) of candidates that have become samples.
 
-        Where the surface is singular, they are what they were.
+        The last columns are the point, without a scale, and H. Where the surface is singular, they
+        are NaN, and the others what they were.
         """
-        points, normals, K, _ = self._evaluated(triangles.patches, triangles.uv)
+        found = np.full((len(rows), 12), np.nan)
+        found[:, :8] = rows
+        points, normals, K, H = self._evaluated(triangles.patches, triangles.uv)
         there = normals.any(axis=1)
-        rows[there, :3] = (points[there] - self.spline.coefficients[0, 0]) * self._size
-        rows[there, 3:6], rows[there, 7] = normals[there], K[there]
-        return rows
+        found[there, :3] = (points[there] - self.spline.coefficients[0, 0]) * self._size
+        found[there, 3:6], found[there, 7] = normals[there], K[there]
+        found[there, 8:11], found[there, 11] = points[there], H[there]
+        return found
 
     def normal_chords(self, triangles: Triangles, rows: Array) -> Array:
         """Return how far normals of triangles (M,) are from those of their rows; 2 if unknown.
@@ -291,23 +295,24 @@ class OnSurface(OnSpline):
         triangles: Triangles,
         normals: Array,
         K: Array,
+        exact: Array | None,
         fields: Sequence[str],
         dtype: DTypeLike,
     ) -> FieldsOfSamples:
         """Return the samples at the places of triangles; see `as_samples`."""
-        arrays = super().at_places(triangles, normals, K, fields, dtype).fields
-        points, normals, K, H = self._evaluated(triangles.patches, triangles.uv)
-        there: NDArray[np.bool_] = np.any(normals, axis=1)
-        exact = {
+        arrays = super().at_places(triangles, normals, K, exact, fields, dtype).fields
+        points, H = np.split(np.empty((0, 4)) if exact is None else exact, [3], axis=1)
+        there: NDArray[np.bool_] = ~np.isnan(H[:, 0])
+        moved = {
             "uv": parameters_of(self.spline, triangles.patches, triangles.uv),
             "points": points,
             "normals": normals,
             "support": np.einsum("ij,ij->i", points, normals),
             "gaussian_curvature": K,
-            "mean_curvature": H,
+            "mean_curvature": H[:, 0],
         }
-        for name in set(arrays) & set(exact):
-            arrays[name][there] = exact[name][there]
+        for name in set(arrays) & set(moved):
+            arrays[name][there] = moved[name][there]
         flags: Fields = {name: there for name in FLAG_NAMES if name in fields}
         return FieldsOfSamples(arrays | flags, int(np.count_nonzero(~there)))
 
