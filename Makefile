@@ -127,7 +127,7 @@ lint: $(READY) ## check style, and that imports go one way
 	$(BIN)/ruff format --check .
 	$(BIN)/lint-imports
 
-# Files and folders; all of them if this is empty. The types of tests are checked by `make verify`.
+# Files and folders; all of them if this is empty: CI checks those of the package, `make verify` all.
 TYPED :=
 typecheck: $(READY) ## check types
 	$(BIN)/pyright $(TYPED)

@@ -235,6 +235,7 @@ def test_integer_patches(name, data):
 @pytest.mark.compiled
 @EACH
 @given(data=st.data())
+@pytest.mark.quick_for("forms", "support_function", "envelope", "orientation")
 def test_patches_of_any_floats(name, data):
     check_where_bounded(name, data.draw(numbers(name, floats)))
 

@@ -430,11 +430,13 @@ def test_an_installed_package_keeps_its_kernels(tmp_path, capsys, monkeypatch):
         assert "clone the repository, and run `make generate`" in capsys.readouterr().err
 
 
+@pytest.mark.slow  # and a step of CI
 def test_check_passes(copy, capsys):
     assert main(["--check"], copy) == 0
     assert capsys.readouterr() == ("", "")
 
 
+@pytest.mark.slow
 def test_check_shows_what_differs(copy, capsys):
     text = (copy / "patch.py").read_text(encoding="utf-8")
     (copy / "patch.py").write_text(text.replace("A * C - B * B", "A * C"), encoding="utf-8")
@@ -452,6 +454,7 @@ def test_check_shows_what_differs(copy, capsys):
     assert files.existing(copy) == before
 
 
+@pytest.mark.slow
 def test_writing_removes_orphans_only(copy):
     (copy / "orphan.py").write_text("pass\n", encoding="utf-8")
     (copy / "folder").mkdir()

@@ -36,7 +36,9 @@ def test_the_points_lie_on_the_patch(triangle):
 
 
 @pytest.mark.parametrize("place", PLACES)
-@pytest.mark.parametrize("distance", ["1/3", -2, sp.Symbol("R", positive=True)])
+@pytest.mark.parametrize(
+    "distance", [pytest.param("1/3", marks=pytest.mark.slow), -2, sp.Symbol("R", positive=True)]
+)
 @pytest.mark.quick_for("place0")
 def test_the_offset_is_rational_and_at_the_distance(triangle, distance, place):
     offset, patch = triangle.rational_offset(distance), triangle.rational_offset(0)

@@ -258,6 +258,7 @@ def test_arcs_lie_on_the_cones(generator):
         assert (point.diff(t) - along).applyfunc(sp.expand) == sp.zeros(3, 1)
 
 
+@pytest.mark.slow
 def test_solid_angle_form_has_the_element_of_area_as_derivative():
     """In any chart n(x, y): ∂ω_y/∂x − ∂ω_x/∂y = det(n, n_x, n_y)/|n|³."""
     x, y = sp.symbols("x y", real=True)

@@ -174,12 +174,14 @@ def test_support_function_is_the_distance_of_the_tangent_plane(case):
         assert h == dot(case.normal, case.p).subs(place)
 
 
+@pytest.mark.slow
 def test_parameters_invert_the_normal(case):
     at_normal = dict(zip(n, case.normal, strict=True))
     D, U, V, W = (case.triangle.forms[name].xreplace(at_normal) for name in "DUVW")
     assert sp.expand(U - u * D) == sp.expand(V - v * D) == sp.expand(W - (1 - u - v) * D) == 0
 
 
+@pytest.mark.slow
 def test_hessian_annihilates_the_normal_and_is_that_of_the_formula(case):
     hessian = case.triangle.hessian
     assert (hessian * n).applyfunc(sp.cancel) == sp.zeros(3, 1)
@@ -234,6 +236,7 @@ def test_gaussian_curvature_is_that_of_the_fundamental_forms(case):
         assert case.at_normal(case.triangle.gaussian_curvature, place) == K
 
 
+@pytest.mark.slow
 def test_mean_curvature_is_that_of_the_fundamental_forms_and_of_the_radii(case):
     for place in case.places:
         K, H = case.curvatures(place)

@@ -35,6 +35,7 @@ def test_steps_keep_both_limits_and_use_one_everywhere():
     assert np.maximum(*used).min() >= 1.0 - 1e-12
 
 
+@pytest.mark.compiled
 def test_steps_for_a_count_have_it_and_the_smallest_angle():
     """Without a distance the integral of equal steps: ∫∫ du dv / a b, by numbers."""
     forms = torus_forms()
@@ -44,6 +45,7 @@ def test_steps_for_a_count_have_it_and_the_smallest_angle():
     assert steps.angle < others[0].angle < others[1].angle
 
 
+@pytest.mark.compiled
 def test_too_small_a_distance_is_made_larger():
     assert steps_for_count(torus_forms(), 100.0, 1e-3).count <= 110.0
 

@@ -66,7 +66,7 @@ def test_coverage_is_kept_and_reported(name, cells):
 
 @pytest.mark.parametrize("density", ["balanced", "uniform", 0.5, 2.0])
 @pytest.mark.parametrize("name", CATALOGUE)
-@pytest.mark.quick_for("torus", "ellipsoid", "cylinder")
+@pytest.mark.quick_for("torus")
 def test_the_coverage_of_samples_is_10_percent_off_at_most(name, density):
     """The places are a grid: a point may be half its diagonal farther than they are."""
     spline = gm.fit(gm.surfaces.surface(name), even(name, (12, 10)))
@@ -132,7 +132,9 @@ def test_both_sides_of_a_thin_plate_are_covered():
 # --- bending --------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["sphere", "torus", "cylinder", "plane"])
+@pytest.mark.parametrize(
+    "name", ["sphere", pytest.param("torus", marks=pytest.mark.slow), "cylinder", "plane"]
+)
 @pytest.mark.parametrize("angle", [3.0, 12.0])
 @pytest.mark.quick_for("12.0")
 def test_no_point_is_farther_than_bending_allows(name, angle):
@@ -302,7 +304,7 @@ SINGULAR = {
 }
 
 
-@pytest.mark.parametrize("cells", [(20, 20), (20, 21)])
+@pytest.mark.parametrize("cells", [(20, 20), pytest.param((20, 21), marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", SINGULAR)
 @pytest.mark.quick_for("swallowtail")
 def test_angles_are_kept_at_singular_points(name, cells):

@@ -48,6 +48,7 @@ def test_parts_are_their_shares_of_the_whole(name, radius):
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "ellipsoid", "cone"])
+@pytest.mark.quick_for("torus", "wavy_graph", "cone")
 def test_no_point_of_a_triangle_is_outside_of_its_radius(name):
     triangles = cut_patches(sizing_of(name, (6, 4)), 0.3)
     for cut in (triangles, triangles.halves.halves):

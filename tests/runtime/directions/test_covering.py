@@ -157,7 +157,12 @@ def test_against_a_search(count: int, seed: int, squeezed: float, shift: float) 
 
 
 @pytest.mark.parametrize(
-    "normals", [gm.fibonacci(500), gm.directions.random(300), gm.directions.healpix(4)]
+    "normals",
+    [
+        pytest.param(gm.fibonacci(500), marks=pytest.mark.slow),
+        gm.directions.random(300),
+        gm.directions.healpix(4),
+    ],
 )
 def test_sets_against_a_search(normals: Array) -> None:
     check(normals)

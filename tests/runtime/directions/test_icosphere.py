@@ -98,7 +98,7 @@ def test_hits_can_be_cut_anywhere(size: int) -> None:
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("frequency", [1, 2, 3, 7, 64, 200])
+@pytest.mark.parametrize("frequency", [1, 2, 3, 7, 64, pytest.param(200, marks=pytest.mark.slow)])
 def test_points_stay_as_they_are(frequency: int) -> None:
     """`sample` takes them for unit vectors, and so sees that they are those of an icosahedron."""
     normals = gm.icosphere(frequency)

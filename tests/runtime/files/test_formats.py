@@ -217,7 +217,7 @@ class TestRoundTrip:
 class TestOtherReaders:
     """What other programs find in the files."""
 
-    @pytest.mark.parametrize("count", [0, 1, 12, 5000])
+    @pytest.mark.parametrize("count", [0, 1, 12, pytest.param(5000, marks=pytest.mark.slow)])
     def test_csv(self, tmp_path, count):
         samples = make(count)
         write_samples(samples, tmp_path / "file.csv")

@@ -570,7 +570,7 @@ def test_small_closed_curve() -> None:
     ("size", "factor", "sharp"),
     [(5.0, 1.0, 1.0), (3.0, 1.0, 2.0), (2.0, 1.0, 10.0), (1.0, 0.1, 50.0)],
 )  # fmt: skip
-@pytest.mark.quick_for("5.0")
+@pytest.mark.slow
 def test_bump_has_one_circle_and_is_flat_far_from_it(
     size: float, factor: float, sharp: float
 ) -> None:

@@ -54,6 +54,11 @@ surfaces: dict[str, tuple[Callable[[], gm.Surface], int, int]] = {
 }  # fmt: skip
 CONE = pytest.param("cone", marks=compiled)  # Python raises at an apex, where kernels divide by 0
 EACH = pytest.mark.parametrize("name", [x if x != "cone" else CONE for x in surfaces])
+# Without compilation a few are enough.
+UNCOMPILED = ("torus", "octant")
+FEW_UNCOMPILED = pytest.mark.parametrize(
+    "name", [x if x in UNCOMPILED else pytest.param(x, marks=compiled) for x in surfaces]
+)
 
 
 def on_grid(name: str, lines: tuple[int, int], between: Any = None, graded: bool = True) -> Any:
@@ -102,7 +107,7 @@ def check(name: str, mesh: gm.Mesh) -> None:
 
 
 class TestTopology:
-    @EACH
+    @FEW_UNCOMPILED
     @pytest.mark.parametrize("prefer", PREFER)
     def test_a_grid_makes_the_whole_surface(self, name, prefer, monkeypatch):
         monkeypatch.setattr(triangulation, "triangulations", no_qhull)
@@ -114,7 +119,7 @@ class TestTopology:
         np.testing.assert_array_equal(used, np.arange(len(samples)))
         np.testing.assert_array_equal(mesh.vertices[mesh.sample_index >= 0], samples.points)
 
-    @EACH
+    @FEW_UNCOMPILED
     @pytest.mark.parametrize("prefer", PREFER)
     def test_samples_between_the_lines(self, name, prefer):
         """At random, on lines and sides, next to sides, at corners, poles and other samples."""

@@ -39,6 +39,7 @@ def drawn(figure: Figure) -> np.ndarray:
     return np.asarray(dots.get_array())  # pyright: ignore[reportAttributeAccessIssue]
 
 
+@pytest.mark.slow
 def test_it_is_the_picture_of_the_command_line(samples: gm.Samples, tmp_path: Path) -> None:
     assert samples.spline is not None
     write_plot(samples, samples.spline, (), tmp_path / "a.png")

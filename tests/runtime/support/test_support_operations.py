@@ -289,7 +289,7 @@ COMPOSITIONS: dict[str, Callable[[gm.SupportFunction], gm.SupportFunction]] = {
 @pytest.mark.compiled
 @pytest.mark.parametrize("operation", COMPOSITIONS.values(), ids=COMPOSITIONS)
 @pytest.mark.parametrize("h", [ELLIPSOIDS[1], "n_x**3 + n_y*n_z + 2"])
-@pytest.mark.quick_for("offset", "all")
+@pytest.mark.quick_for("all")
 def test_expression_of_a_composition(operation: Any, h: str) -> None:
     """What an operation says it is, given as one expression, is what it does."""
     composed = operation(given(h))

@@ -70,7 +70,7 @@ def exact_place(net: list[list[Any]], normal: Array) -> tuple[Fraction, Fraction
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("net", [OF_12, MIXED], ids=["formula 12", "mixed"])
-@pytest.mark.parametrize("factor", [1.0, 0.1])
+@pytest.mark.parametrize("factor", [pytest.param(1.0, marks=pytest.mark.slow), 0.1])
 @pytest.mark.quick_for("mixed")
 def test_membership_and_parameters_are_exact(net: list[list[Any]], factor: float) -> None:
     points = (factor * np.array(net)).tolist()
