@@ -136,8 +136,8 @@ class Triangles:
         return self._written_by(kernels.evaluate_centroids, corners, *sizing, rows)
 
     def as_samples(self) -> Array:
-        """Return what `at_places` returns, with points, normals and K of what is sampled."""
-        return self.sizing.geometry.as_samples(self, self.at_places())
+        """Return rows as of `at_places`, with points, normals and K of what is sampled."""
+        return self.sizing.geometry.as_samples(self)
 
     @property
     def deepest(self) -> NDArray[np.bool_]:

@@ -158,12 +158,12 @@ class OnSpline:
         """Return the rows (M, 8) of `Triangles.at_places`, from those of the spline."""
         return rows
 
-    def as_samples(self, triangles: Triangles, rows: Array) -> Array:
+    def as_samples(self, triangles: Triangles) -> Array:
         """Return the rows (M, 8 + k) of candidates that have become samples.
 
         The columns after those of candidates are for `at_places`.
         """
-        return rows
+        return triangles.at_places()
 
     def normal_chords(self, triangles: Triangles, rows: Array) -> Array:
         """Return how far normals of triangles (M,) are from those of their rows, at most.

@@ -252,20 +252,20 @@ class OnSurface(OnSpline):
                 work(first, first + POINTS_AT_A_TIME)
         return rows
 
-    def as_samples(self, triangles: Triangles, rows: Array) -> Array:
+    def as_samples(self, triangles: Triangles) -> Array:
         """Return the rows (M, 12) of candidates that have become samples.
 
-        The last columns are the point, without a scale, and H. Where the surface is singular, they
-        are NaN, and the others what they were.
+        The last columns are the point, without a scale, and H; the target density is left out, NaN.
+        Where the surface is singular, the last columns are NaN, and the others those of candidates.
         """
-        found = np.full((len(rows), 12), np.nan)
-        found[:, :8] = rows
         points, normals, K, H = self._evaluated(triangles.patches, triangles.uv)
-        there = normals.any(axis=1)
-        found[there, :3] = (points[there] - self.spline.coefficients[0, 0]) * self._size
-        found[there, 3:6], found[there, 7] = normals[there], K[there]
-        found[there, 8:11], found[there, 11] = points[there], H[there]
-        return found
+        rows = np.full((len(triangles), 12), np.nan)
+        rows[:, :3] = (points - self.spline.coefficients[0, 0]) * self._size
+        rows[:, 3:6], rows[:, 7], rows[:, 8:11], rows[:, 11] = normals, K, points, H
+        singular = ~normals.any(axis=1)
+        if singular.any():
+            rows[singular, :8], rows[singular, 8:] = triangles[singular].at_places(), np.nan
+        return rows
 
     def normal_chords(self, triangles: Triangles, rows: Array) -> Array:
         """Return how far normals of triangles (M,) are from those of their rows; 2 if unknown.
