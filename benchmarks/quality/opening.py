@@ -27,8 +27,8 @@ OTHERS = ("Open3D", "PyMeshLab", "Gmsh", "Open CASCADE", "grid of parameters")
 SMALL = 1e-300  # instead of 0, in quotients
 
 WORDS = """\
-The default density of gaussmap, beside the best one of all other tools on each of {surfaces}
-surfaces, at about 10,000 points. A quotient is the error of the default relative to the smallest
+On each of {surfaces} surfaces, the default density of gaussmap is compared with the best of all
+other tools, at about 10,000 points. A quotient is the error of the default relative to the smallest
 one of the others: below 1, gaussmap is better.
 
 - **Take gaussmap where normals count**: for E, G and the worst angle of meshes it is better than

@@ -262,7 +262,7 @@ class OnSurface(OnSpline):
         rows = np.full((len(triangles), 12), np.nan)
         rows[:, :3] = (points - self.spline.coefficients[0, 0]) * self._size
         rows[:, 3:6], rows[:, 7], rows[:, 8:11], rows[:, 11] = normals, K, points, H
-        singular = ~normals.any(axis=1)
+        singular: NDArray[np.bool_] = ~np.any(normals, axis=1)
         if singular.any():
             rows[singular, :8], rows[singular, 8:] = triangles[singular].at_places(), np.nan
         return rows
