@@ -237,19 +237,17 @@ class Cover:
     @property
     def _evaluated(self) -> _Known:
         """What is known of all samples, those that wait as well."""
-        if self._waiting:
-            known = self._known
-            triangles = sum(self._waiting[1:], start=self._waiting[0])
-            rows = triangles.as_samples()
-            self._waiting, self._known = (
-                (),
-                _Known(
-                    np.concatenate([known.points, rows[:, :6]]),
-                    np.concatenate([known.curvatures, rows[:, 7]]),
-                    np.concatenate([*([] if known.exact is None else [known.exact]), rows[:, 8:]]),
-                    known.added + triangles,
-                ),
-            )
+        if not self._waiting:
+            return self._known
+        points, curvatures, exact, added = self._known
+        triangles = sum(self._waiting[1:], start=self._waiting[0])
+        rows = triangles.as_samples()
+        self._waiting, self._known = (), _Known(
+            np.concatenate([points, rows[:, :6]]),
+            np.concatenate([curvatures, rows[:, 7]]),
+            rows[:, 8:].copy() if exact is None else np.concatenate([exact, rows[:, 8:]]),
+            added + triangles,
+        )  # fmt: skip
         return self._known
 
     def _to_radius_asked(self, widest: float, most: int | None) -> None:
