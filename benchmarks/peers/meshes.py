@@ -60,7 +60,7 @@ def trimesh_by_curvature(form: ClosedForm, count: int) -> Work:
 
 def _trimesh(form: ClosedForm, count: int, by_curvature: bool) -> Work:
     import trimesh
-    from trimesh.sample_index import sample_surface
+    from trimesh.sample import sample_surface
     from trimesh.triangles import points_to_barycentric
 
     points, normals, faces = triangles(form)

@@ -63,14 +63,14 @@ Points **with normals**, as NumPy arrays, of three surfaces. Columns:
   ([glossary](glossary.md)).
 
 Splipy and geomdl use a cubic B-spline that interpolates the surface at {net} × {net} points; in
-their rows gaussmap samples the same B-spline, evaluated by Splipy. Gmsh and Open CASCADE mesh this
-B-spline, too, except for the torus, which is one of their primitives. NumPy's grid computes
-trigonometric functions along its two sides only. Meshes have exact normals at their vertices, and
-their samples have interpolated ones. gaussmap is given the normals of a Fibonacci lattice, which
-are not timed; with `count=…, density="gauss"` it computes them, and finds the number that is
-needed. The recipes draw points at random; samples of gaussmap also have curvatures and parameters,
-and so have those of NumPy's recipe. Each package uses its default number of threads; that of
-gaussmap is one for each core.
+their rows gaussmap samples the same B-spline, by `gm.Surface.from_nurbs`. Gmsh and Open CASCADE
+mesh this B-spline, too, except for the torus, which is one of their primitives. NumPy's grid
+computes trigonometric functions along its two sides only. Meshes have exact normals at their
+vertices, and their samples have interpolated ones. gaussmap is given the normals of a Fibonacci
+lattice, which are not timed; with `count=…, density="gauss"` it computes them, and finds the number
+that is needed. The recipes draw points at random; samples of gaussmap also have curvatures and
+parameters, and so have those of NumPy's recipe. Each package uses its default number of threads;
+that of gaussmap is one for each core.
 """
 
 SCALE = """\

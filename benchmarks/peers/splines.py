@@ -44,18 +44,9 @@ def net(form: ClosedForm) -> Any:
 
 
 def surface_of_net(form: ClosedForm) -> gm.Surface:
-    """Return the B-spline for gaussmap; on lattices, which a fit asks for, it is fast."""
-    spline, surface = net(form), form.surface
-
-    def evaluate(u: Array, v: Array) -> Array:
-        if u.ndim == 2 and (u[:, :1] == u).all() and (v[:1] == v).all():
-            return spline(u[:, 0], v[0])
-        if u.ndim == 2 and (u[:1] == u).all() and (v[:, :1] == v).all():
-            return np.swapaxes(spline(u[0], v[:, 0]), 0, 1)
-        return spline(u.ravel(), v.ravel(), tensor=False).reshape(*u.shape, 3)
-
-    return gm.Surface.from_callable(
-        evaluate, surface.domain, surface.boundary, name=f"B-spline of {form.name}"
+    """Return the B-spline for gaussmap."""
+    return gm.Surface.from_nurbs(
+        net(form), periodic=form.surface.boundary, name=f"B-spline of {form.name}"
     )
 
 

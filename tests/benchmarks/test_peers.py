@@ -178,22 +178,11 @@ def test_random_places_have_their_density():
 
 
 @FORM
-def test_the_net_is_evaluated_at_any_parameters(form, monkeypatch):
-    """A spline that is the surface itself takes the place of Splipy's."""
-
-    def spline(u, v, tensor=True):
-        return form.evaluate(u[:, None], v[None, :])[0] if tensor else form.evaluate(u, v)[0]
-
-    monkeypatch.setattr(splines, "net", lambda form: spline)
+def test_the_net_is_close_to_the_surface(form):
     surface = splines.surface_of_net(form)
     u, v = places_inside(form, 12)
-    for pair in ((u[:, None], v), (u, v[:5, None]), (u, v), (u.reshape(3, 4), v.reshape(3, 4))):
-        expected = form.surface.evaluate(*pair)
-        assert surface.evaluate(*pair) == pytest.approx(expected, abs=1e-15)
+    assert surface.evaluate(u, v) == pytest.approx(form.surface.evaluate(u, v), abs=1e-4)
     assert surface.boundary == form.surface.boundary
-    assert gm.fit(surface, (8, 8)).coefficients == pytest.approx(
-        gm.fit(form.surface, (8, 8)).coefficients, abs=1e-14
-    )
 
 
 # --- metrics --------------------------------------------------------------------------------------
