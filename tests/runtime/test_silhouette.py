@@ -78,6 +78,7 @@ def test_silhouette_of_a_torus(direction: Any) -> None:
 @pytest.mark.parametrize("direction", DIRECTIONS)
 @pytest.mark.parametrize("normals", [1, 2, 10, 90, 97, 180])
 @pytest.mark.parametrize("cells", [(16, 16), (33, 20)])
+@pytest.mark.quick_for("cells0")
 def test_every_normal_has_its_points_once(direction: Any, normals: int, cells: Any) -> None:
     """Σ sign K = 0 on a torus; 10 and 90 normals contain the axes, where the torus is parabolic."""
     samples = gm.silhouette(gm.fit(TORUS, cells), direction, count=2 * normals)

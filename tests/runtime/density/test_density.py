@@ -100,6 +100,7 @@ def test_what_has_no_area_is_refused():
 @pytest.mark.compiled
 @pytest.mark.parametrize("relax", [0, 2])
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band", "ellipsoid"])
+@pytest.mark.quick_for("torus", "moebius_band")
 def test_all_samples_of_the_normals_are_kept(name, relax):
     spline = gm.fit(gm.surfaces.surface(name), (16, 16))
     for normals in (gm.icosphere(8), gm.fibonacci(500)):

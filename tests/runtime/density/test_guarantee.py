@@ -307,6 +307,7 @@ SINGULAR = {
 @pytest.mark.parametrize("cells", [(20, 20), pytest.param((20, 21), marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", SINGULAR)
 @pytest.mark.quick_for("swallowtail")
+@pytest.mark.slow
 def test_angles_are_kept_at_singular_points(name, cells):
     """Places nearer to a singular point than triangles are cut would need another bound."""
     surface = gm.Surface.from_callable(

@@ -553,6 +553,7 @@ def test_steep_waves_are_resolved() -> None:
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
 def test_small_closed_curve() -> None:
     """A dent of 1/20 of the domain in a paraboloid: its rings are found, and are closed."""
     found = gm.gauss_map.parabolic_points(

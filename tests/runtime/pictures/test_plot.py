@@ -157,6 +157,7 @@ def test_no_pyplot(tmp_path: Path) -> None:
     assert (done.stdout, done.stderr) == ("True False\n", "")
 
 
+@pytest.mark.slow
 def test_extreme_sizes(tmp_path: Path) -> None:
     for radius in (1e-100, 1e100):
         sphere = gm.surfaces.sphere(radius=radius)

@@ -115,6 +115,7 @@ def jets_of_scipy(degrees, knots, points, weights, uv):
 
 @pytest.mark.parametrize("p", range(1, 6))
 @pytest.mark.parametrize("q", range(1, 6))
+@pytest.mark.quick_for("1", "5")
 def test_random_surfaces_agree_with_scipy(p, q):
     clamped, rational = bool((p + q) % 2), bool(p % 2 or q % 3)
     knots = random_knots(p, clamped), random_knots(q, clamped)
