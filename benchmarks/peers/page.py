@@ -87,7 +87,7 @@ def page(surfaces: Sequence[OnSurface], series: Sequence[Series], taken: Duratio
     parts = [head(surfaces)]
     for measured in surfaces:
         parts += [f"### {measured.form.label}\n", table(measured)]
-    parts.insert(0, TOP + durations(taken) + opening("\n".join(parts)))
+    parts.insert(0, TOP + durations(taken) + "\n" + opening("\n".join(parts)))
     parts.append(wrapped(SCALE.format(last=LAST, steepest=STEEPEST, streamed=streamed())))
     parts += [scale_table(x) for x in series]
     parts += [slopes(series), "## The machine\n", wrapped("\n".join(machine()))]
