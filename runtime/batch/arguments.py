@@ -8,7 +8,7 @@ from typing import Any
 
 from numpy.typing import DTypeLike
 
-from ..checks import known_name, pair_of_cells, positive_number
+from ..checks import known_name, pair_of_cells, positive_number, whole_number
 from ..density.request import Request
 from ..fields import FLOAT_NAMES, PART_NAMES, checked_dtype, checked_fields
 from ..files.formats import SUFFIXES
@@ -77,7 +77,7 @@ def where(
     workers: int | None, scheduler: object, time_limit: float, memory_limit: float | None
 ) -> Where:
     """Return where parts are sampled, and within which limits."""
-    count = thread_count(workers)
+    count = thread_count(None) if workers is None else whole_number(workers, "workers")
     memory = SHARE * most_memory() / GIB / count if memory_limit is None else memory_limit
     limits = Limits(
         positive_number(time_limit, "time_limit", "seconds"),

@@ -108,6 +108,8 @@ def test_arguments(tmp_path):
         sampled(out=tmp_path / "c", compression="zip")
     with pytest.raises(LookupError, match="suffix"):
         sampled(out=tmp_path / "c", files="ply")
+    with pytest.raises(InputError, match="workers must be a whole number"):
+        sampled(out=tmp_path / "c", workers=0)
     with pytest.raises(FileError, match="new or empty"):
         sampled(out=tmp_path)
     assert not (tmp_path / "c").exists()
