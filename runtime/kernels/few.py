@@ -76,7 +76,7 @@ def classify_few(polyhedron, starts, normals, strip, count, few):
 
     `normals` (S, …) are in the order of bins with these `starts`, or those of an icosphere.
     """
-    at = 0
+    at = np.int64(0)  # typed: a literal number is compiled for itself
     for k in range(count):
         few.starts[k] = at
         end = write_candidates(polyhedron, starts, strip, k, few, at)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from .greedy import distance_to_cells, normal_of
+from .greedy import NO_NUMBER, distance_to_cells, normal_of
 from .hash_grids import CELL, bucket_of
 from .jit import jit, loop
 from .vectors import dot, row_vector
@@ -56,7 +56,7 @@ def nearest_samples(grids, order, rings, rows, first, last, squares, numbers):
             min(x.z - k_x * cell, (k_x + 1) * cell - x.z),
         )
         square = math.inf
-        number = -1
+        number = NO_NUMBER
         for ring in range(rings + 1):
             for i in range(i_x - ring, i_x + ring + 1):
                 x_gap = distance_to_cells(i, cell, x.x)
@@ -75,7 +75,7 @@ def nearest_samples(grids, order, rings, rows, first, last, squares, numbers):
             if square < reach * reach:
                 break
         else:
-            number = -1
+            number = NO_NUMBER
         squares[row] = square
         numbers[row] = number
 
