@@ -72,8 +72,8 @@ $(VENV)/cad/%/.ready: $(READY)
 	touch $@
 
 cad-tests: $(VENV)/cad/7.9.3/.ready $(VENV)/cad/8.0.0/.ready ## read CAD files with two versions of Open CASCADE
-	$(VENV)/cad/7.9.3/bin/python -m pytest -q tests/runtime/cad/opencascade
-	$(VENV)/cad/8.0.0/bin/python -m pytest -q tests/runtime/cad/opencascade
+	$(VENV)/cad/7.9.3/bin/python -m pytest -q tests/tools/cad/opencascade
+	$(VENV)/cad/8.0.0/bin/python -m pytest -q tests/tools/cad/opencascade
 
 verify: $(READY) ## run what is slow: all tests with many random examples, browsers, products
 	$(MAKE) typecheck

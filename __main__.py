@@ -23,7 +23,7 @@ def main() -> int:
     if heard:
         signal.signal(signal.SIGINT, _leave)
     gc.disable()
-    from .runtime import cli
+    from .tools.commands import cli
 
     def ready() -> None:
         gc.freeze()

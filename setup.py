@@ -5,7 +5,7 @@ pyproject.toml says everything else; its `packages.find` cannot put a name in fr
 
 from setuptools import find_namespace_packages, setup
 
-FOLDERS = ("generated", "runtime", "runtime.*", "symbolic", "symbolic.*")
+FOLDERS = ("generated", "runtime", "runtime.*", "symbolic", "symbolic.*", "tools", "tools.*")
 
 setup(
     packages=[

@@ -10,8 +10,8 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.benchmarks.writing import Writers, new_arrays
-from gaussmap.runtime.bins import NormalBins
-from gaussmap.runtime.search import fill, find
+from gaussmap.runtime.search.bins import NormalBins
+from gaussmap.runtime.search.search import fill, find
 from matplotlib.cbook import get_sample_data
 
 TORUS = gm.surfaces.torus()

@@ -20,8 +20,8 @@ from time import process_time
 
 import gaussmap as gm
 import numpy as np
-from gaussmap.runtime.bins import NormalBins
-from gaussmap.runtime.search import Search, fill_packed, find
+from gaussmap.runtime.search.bins import NormalBins
+from gaussmap.runtime.search.search import Search, fill_packed, find
 from llvmlite.binding import get_host_cpu_name
 
 from .writing import Arrays, Writers, new_arrays

@@ -10,7 +10,7 @@ from types import TracebackType
 
 import numba
 import numpy as np
-from gaussmap.runtime.threads import thread_count
+from gaussmap.runtime.base.threads import thread_count
 
 __all__ = ["Arrays", "Writers", "new_arrays"]
 

@@ -13,9 +13,9 @@ from gaussmap.benchmarks.peers.metrics import Places
 from gaussmap.benchmarks.quality.surfaces import SmallFillets
 from gaussmap.docs.drawing import Picture, panels
 from gaussmap.docs.figures import FOLDER, filled
-from gaussmap.runtime.files.paths import atomic_path
-from gaussmap.runtime.pictures.palette import ELLIPTIC, HYPERBOLIC, STYLE
-from gaussmap.runtime.pictures.scene import Scene, quadrangles, view
+from gaussmap.tools.files.paths import atomic_path
+from gaussmap.tools.pictures.palette import ELLIPTIC, HYPERBOLIC, STYLE
+from gaussmap.tools.pictures.scene import Scene, quadrangles, view
 
 __all__ = ["NAME", "draw", "pair"]
 

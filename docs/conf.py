@@ -16,11 +16,11 @@ sys.path.append(str(HERE / "_sphinx"))
 CLASSES = {
     "gaussmap.curves": dir(gaussmap.curves),
     "gaussmap.gauss_map": dir(gaussmap.gauss_map),
-    "gaussmap.runtime.cad.part": ["Face", "Part", "Solid"],
-    "gaussmap.runtime.fitting.misfit": ["Misfit"],
-    "gaussmap.runtime.report": ["SamplingReport"],
-    "gaussmap.runtime.support.branches": ["Branches"],
-    "gaussmap.runtime.support.convolution": ["Convolution"],
+    "gaussmap.tools.cad.part": ["Face", "Part", "Solid"],
+    "gaussmap.runtime.spline.misfit": ["Misfit"],
+    "gaussmap.runtime.samples.report": ["SamplingReport"],
+    "gaussmap.tools.support.branches": ["Branches"],
+    "gaussmap.tools.support.convolution": ["Convolution"],
     "gaussmap": dir(gaussmap),
 }
 

@@ -8,8 +8,8 @@ import sympy as sp
 from gaussmap.docs.curves import PIECES, TURN, Polygon, TrueCurve, by_normals, t
 from gaussmap.docs.drawing import HALO, Floats, panels
 from gaussmap.docs.orders import listed
-from gaussmap.runtime.pictures.palette import ELLIPTIC, HYPERBOLIC, INK, NO_SAMPLE
 from gaussmap.symbolic.display import latex_of
+from gaussmap.tools.pictures.palette import ELLIPTIC, HYPERBOLIC, INK, NO_SAMPLE
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure

@@ -14,8 +14,8 @@ import matplotlib.style
 from gaussmap.docs.curve_figures import figure_4, figure_5
 from gaussmap.docs.patch_figures import figure_2, figure_3
 from gaussmap.docs.surface_figures import figure_6, figure_7
-from gaussmap.runtime.files.paths import atomic_path
-from gaussmap.runtime.pictures.palette import STYLE
+from gaussmap.tools.files.paths import atomic_path
+from gaussmap.tools.pictures.palette import STYLE
 from matplotlib.figure import Figure
 
 FOLDER = Path(__file__).parent / "figures"

@@ -11,9 +11,9 @@ import numpy as np
 from gaussmap.docs.drawing import MESH, TINTS, Floats, Globe, Picture, panels
 from gaussmap.generated import patch as formulas
 from gaussmap.generated.vectors import Patch as Vectors
-from gaussmap.runtime.formula_calls import python_function, vector
-from gaussmap.runtime.pictures.palette import INK
-from gaussmap.runtime.pictures.scene import Scene, quadrangles, view
+from gaussmap.runtime.base.formula_calls import python_function, vector
+from gaussmap.tools.pictures.palette import INK
+from gaussmap.tools.pictures.scene import Scene, quadrangles, view
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D

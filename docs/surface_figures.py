@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import gaussmap as gm
 import numpy as np
 from gaussmap.docs.drawing import MESH, TINTS, Floats, Globe, Picture, panels
-from gaussmap.runtime.pictures.palette import ELLIPTIC, HYPERBOLIC, INK, PALE
-from gaussmap.runtime.pictures.scene import Scene, quadrangles, view
+from gaussmap.tools.pictures.palette import ELLIPTIC, HYPERBOLIC, INK, PALE
+from gaussmap.tools.pictures.scene import Scene, quadrangles, view
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray

@@ -8,22 +8,22 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from .bins import NormalBins
-from .checks import whole_number
-from .choice import choose
-from .density.request import Request, checked_request
-from .errors import InputError
-from .fields import checked_dtype, checked_fields
-from .geometry.on_spline import FieldsOfSamples, OnSpline
-from .geometry.on_surface import geometry_of, place_of_samples
-from .pieces import pieces_to_sample
-from .report import SamplingReport, count_infinite, sampling_report, warn_of
-from .samples import Samples
-from .search import Hits, Search, merged
-from .splines.spline import Spline
+from .base.checks import whole_number
+from .base.errors import InputError
+from .base.threads import over_ranges, shown
+from .density.chosen_normals import choose
+from .density.on_pieces import pieces_to_sample
+from .place.on_spline import FieldsOfSamples, OnSpline
+from .place.on_surface import geometry_of, place_of_samples
+from .samples.fields import checked_dtype, checked_fields
+from .samples.report import SamplingReport, count_infinite, sampling_report, warn_of
+from .samples.request import Request, checked_request
+from .samples.samples import Samples
+from .search.bins import NormalBins
+from .search.search import Hits, Search, merged
+from .spline.spline import Spline
 from .surface.surface import Surface
-from .surfaces import named
-from .threads import over_ranges, shown
+from .surface.surfaces import named
 
 __all__ = ["sample_stream"]
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["mathml", "page"]
 
 # The text of the kernels is read to say which of them call a formula.
-KERNELS = GENERATED.parent / "runtime" / "kernels"
+KERNELS = tuple(GENERATED.parent / place / "kernels" for place in ("runtime", "tools"))
 GENERATOR = f"Written by `gaussmap formulas --html` with SymPy {sp.__version__}."
 WORD_JOINER = "\u2060"  # no line ends here
 BRACKETS = {"(": "prefix", "[": "prefix", ")": "postfix", "]": "postfix"}
@@ -109,7 +109,8 @@ def _names(names: list[str]) -> str:
 
 @cache
 def _callers() -> dict[str, list[str]]:
-    return callers({x: y for x, y in _texts(KERNELS).items() if x.endswith(".py")})
+    texts = {x: y for folder in KERNELS for x, y in _texts(folder).items()}
+    return callers({x: y for x, y in sorted(texts.items()) if x.endswith(".py")})
 
 
 @cache

@@ -18,22 +18,22 @@ HERE = Path(__file__).parent
 # no other file. In those of SOME only the tests that are marked do.
 OF_KERNELS = (
     "generated",
-    "runtime/curves",
+    "tools/curves",
     "runtime/density",
-    "runtime/gauss_map",
+    "tools/gauss_map",
     "runtime/kernels",
-    "runtime/meshes",
-    "runtime/support",
-    "runtime/test_exact.py",
-    "runtime/refinement",
+    "tools/meshes",
+    "tools/support",
+    "runtime/search/test_exact.py",
+    "runtime/place/test_refinement.py",
     "runtime/surface/test_nurbs.py",
-    "runtime/splines/test_spline.py",
+    "runtime/spline/test_spline.py",
 )
 SOME = (
     "runtime/surface/test_derivatives.py",
-    "runtime/surface/test_trim.py",
-    "runtime/test_developable.py",
-    "runtime/test_offset.py",
+    "runtime/domain/test_trim.py",
+    "runtime/spline/test_developable.py",
+    "tools/support/test_offset.py",
     "symbolic/test_emit.py",
 )
 

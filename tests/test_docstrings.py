@@ -12,14 +12,15 @@ from typing import Any
 
 import gaussmap as gm
 import pytest
-from gaussmap.runtime.batch.layout import Settings, create
-from gaussmap.runtime.batch.manifest import ManifestRow
-from gaussmap.runtime.batch.shards import Shard
-from gaussmap.runtime.batch.tables import points_table
-from gaussmap.runtime.fitting.misfit import Misfit
-from gaussmap.runtime.report import SamplingReport
-from gaussmap.runtime.support.branches import Branches
-from gaussmap.runtime.support.convolution import Convolution
+from gaussmap.runtime.base.later import Later
+from gaussmap.runtime.samples.report import SamplingReport
+from gaussmap.runtime.spline.misfit import Misfit
+from gaussmap.tools.batch.layout import Settings, create
+from gaussmap.tools.batch.manifest import ManifestRow
+from gaussmap.tools.batch.shards import Shard
+from gaussmap.tools.batch.tables import points_table
+from gaussmap.tools.support.branches import Branches
+from gaussmap.tools.support.convolution import Convolution
 from numpydoc.docscrape import NumpyDocString
 from numpydoc.validate import validate
 
@@ -62,7 +63,12 @@ def members(cls: type) -> dict[str, Any]:
     found: dict[str, Any] = dict.fromkeys(getattr(cls, "__dataclass_fields__", ()))
     for base in reversed(cls.__mro__):
         if base.__module__.startswith("gaussmap"):
-            found |= {name: x for name, x in vars(base).items() if name not in found}
+            names = [x for x in vars(base) if x not in found]
+            # Some methods are loaded when they are first asked for.
+            found |= {
+                x: getattr(cls, x) if isinstance(vars(base)[x], Later) else vars(base)[x]
+                for x in names
+            }
     return {name: x for name, x in found.items() if not name.startswith("_")}
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from gaussmap.benchmarks.peers.forms import FORMS
-from gaussmap.runtime.cli import main
+from gaussmap.tools.commands.cli import main
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -12,7 +12,7 @@ from typing import Any
 
 import gaussmap as gm
 import numpy as np
-from gaussmap.runtime.cad.part import Part
+from gaussmap.tools.cad.part import Part
 
 from ..peers.forms import Array
 from .reference import reference

@@ -8,8 +8,8 @@ from functools import cache
 from statistics import median
 
 import gaussmap as gm
-from gaussmap.runtime.density.request import checked_request
-from gaussmap.runtime.sampling import sample_and_normals
+from gaussmap.runtime.sample import sample_and_normals
+from gaussmap.runtime.samples.request import checked_request
 
 from .catalogue import MILLION
 from .forms import Array, ClosedForm

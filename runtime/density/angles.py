@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from ..threads import thread_count
-from ..trees import tree_of
+from ..base.threads import thread_count
+from ..base.trees import tree_of
 from .candidates import Candidates
 from .cover import STEP, Cover
 from .triangles import Array, Indices

@@ -8,15 +8,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..bins import NormalBins
-from ..choice import NORMALS_PER_SAMPLE
-from ..developable import curved_solid_angle
-from ..fields import ARRAY_NAMES_ON_SURFACE
-from ..geometry.on_spline import OnSpline
-from ..lattice import Lattice
-from ..report import sampling_report
-from ..samples import Samples
-from ..search import find
+from ..place.on_spline import OnSpline
+from ..samples.fields import ARRAY_NAMES_ON_SURFACE
+from ..samples.report import sampling_report
+from ..samples.samples import Samples
+from ..search.bins import NormalBins
+from ..search.search import find
+from ..spline.developable import curved_solid_angle
+from .chosen_normals import NORMALS_PER_SAMPLE
+from .lattice import Lattice
 
 __all__ = [
     "SamplesAtNormals",

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.on_spline import OnSpline
+from ..place.on_spline import OnSpline
 from .lines import Axis
 
 __all__ = ["breaks_along"]

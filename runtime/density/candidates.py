@@ -8,10 +8,10 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.threads import over_ranges
 from ..kernels.centres import link_cells, move_to_centres
 from ..kernels.greedy import choose_far, update_distances
 from ..kernels.hash_grids import DENSITY, LEVELS, SQUARE, HashGrids, measure, sort_candidates
-from ..threads import over_ranges
 
 __all__ = ["Candidates"]
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..samples import Samples
+from ..samples.samples import Samples
 from .candidates import Candidates
 from .grid import Grid
 from .sizing import SizingFunction

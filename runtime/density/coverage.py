@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ..trees import tree_of
+from ..base.trees import tree_of
 from .candidates import Candidates
 from .sizing import SizingFunction
 from .triangles import Array, Triangles, cut_patches

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 
-from ..threads import thread_count
-from ..trees import tree_of
+from ..base.threads import thread_count
+from ..base.trees import tree_of
+from ..samples.whole import NormalDeviation
 from .sizing import SizingFunction
 from .triangles import Array, Triangles, cut_patches
 
-__all__ = ["NormalDeviation", "normal_deviation"]
+__all__ = ["normal_deviation"]
 
 # Places for each sample at which normals are compared at first, and the least number of them.
 PLACES, FEWEST = 16, 20_000
@@ -21,30 +21,6 @@ PLACES, FEWEST = 16, 20_000
 CUTS = 6
 # Decimal places to which normals have to differ in the search for the nearest one.
 DIGITS = 9
-
-
-class NormalDeviation(NamedTuple):
-    """The largest angles between normals of a surface and those of its samples, in degrees.
-
-    Attributes
-    ----------
-    normal_space : float
-        Between the normal of a point and the nearest normal of any sample.
-    space : float
-        Between the normal of a point and that of the sample nearest in space.
-
-    Examples
-    --------
-    >>> import gaussmap as gm
-    >>> samples = gm.sample("torus", angle=20.0, cells=(16, 16))
-    >>> deviation = samples.normal_deviation()
-    >>> deviation.normal_space <= 20.0, deviation.space >= deviation.normal_space
-    (True, True)
-
-    """
-
-    normal_space: float
-    space: float
 
 
 def normal_deviation(sizing: SizingFunction, points: Array, normals: Array) -> NormalDeviation:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..kernels.nearest import compare_with_nearest
-from ..splines.inside import parameters_of
+from ..spline.inside import parameters_of
 from .cover import Cover
 from .nearest import NearestSamples
 from .sizing import SizingFunction

@@ -10,13 +10,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from ..developable import curved_solid_angle
-from ..errors import SurfaceError
-from ..geometry.on_spline import OnSpline
-from ..report import sampling_report
-from ..samples import Samples
-from ..threads import counted
-from ..tolerances import FLAT_SURFACE, LENGTH_ERROR
+from ..base.errors import SurfaceError
+from ..base.threads import counted
+from ..base.tolerances import FLAT_SURFACE, LENGTH_ERROR
+from ..place.on_spline import OnSpline
+from ..samples.report import sampling_report
+from ..samples.request import BY_CURVATURE, Request
+from ..samples.samples import Samples
+from ..spline.developable import curved_solid_angle
 from .angles import cover_normals
 from .at_normals import (
     SamplesAtNormals,
@@ -25,13 +26,12 @@ from .at_normals import (
     sample_at_normals,
     without_samples,
 )
-from .choosing import GREEDY, better_on_grid, fewer_on_grid
 from .cover import Cover
 from .coverage import coverage
 from .grid import lines_of
+from .grid_or_round import GREEDY, better_on_grid, fewer_on_grid
 from .on_grid import cover_on_grid
 from .relaxation import relax
-from .request import BY_CURVATURE, Request
 from .sizing import SizingFunction, TargetDensity
 from .triangles import subdivisions
 

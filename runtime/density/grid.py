@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..fields import GRID_NAMES
-from ..samples import Samples
+from ..samples.fields import GRID_NAMES
+from ..samples.samples import Samples
 from .triangles import Triangles
 
 __all__ = ["Grid", "lines_of", "without_lines"]

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..splines.inside import FINEST, Inside, parameters_of, subcentroids
+from ..spline.inside import FINEST, Inside, parameters_of, subcentroids
 
 if TYPE_CHECKING:
     from .triangles import Triangles

@@ -10,12 +10,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..developable import curved_solid_angle
-from ..errors import SurfaceError
-from ..geometry.on_spline import OnSpline
-from ..tolerances import FLAT_SURFACE
+from ..base.errors import SurfaceError
+from ..base.tolerances import FLAT_SURFACE
+from ..place.on_spline import OnSpline
+from ..samples.request import BY_CURVATURE, Request
+from ..spline.developable import curved_solid_angle
 from .filling import FLAT_SHARE, GREEDY, SAVED, WIDER, WIDEST_GAP, spacing
-from .request import BY_CURVATURE, Request
 from .sizing import SizingFunction, TargetDensity
 
 __all__ = ["Law", "allotted"]

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.threads import over_ranges
+from ..base.trees import tree_of
 from ..kernels.hash_grids import CELL, HashGrids, measure, sort_candidates
 from ..kernels.hash_grids import LEVELS as POWERS
 from ..kernels.nearest import nearest_samples
-from ..threads import over_ranges
-from ..trees import tree_of
 
 __all__ = ["NearestSamples"]
 

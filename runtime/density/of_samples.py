@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..fitting.fit import fit
-from ..splines.spline import Spline
+from ..samples.whole import NormalDeviation
+from ..spline.spline import Spline
 from ..surface.surface import Surface
 from .coverage import coverage
-from .deviation import NormalDeviation, normal_deviation
+from .deviation import normal_deviation
 from .law import area_of
 from .sizing import SizingFunction, uniform
 

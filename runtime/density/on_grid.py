@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from ..samples.request import Request
 from .aligned import AlignedGrid
 from .cover import Cover
-from .request import Request
 from .sizing import SizingFunction, TargetDensity
 from .steps import Steps
 from .triangles import subdivisions

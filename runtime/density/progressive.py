@@ -7,8 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ..splines.spline import scale_to_one
-from ..trees import tree_of
+from ..base.scales import scale_to_one
+from ..base.trees import tree_of
 from .candidates import Candidates
 
 __all__ = ["progressive_order"]

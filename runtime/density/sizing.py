@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated.spline import SCALE
-from ..geometry.on_spline import OnSpline
-from ..geometry.on_surface import OnSurface
+from ..base.threads import over_ranges
 from ..kernels.sizing import TargetDensity, integrate_density
-from ..splines.spline import Spline
+from ..place.on_spline import OnSpline
+from ..place.on_surface import OnSurface
+from ..spline.spline import Spline
 from ..surface.surface import Surface
-from ..threads import over_ranges
 
 __all__ = ["SizingFunction", "TargetDensity", "uniform"]
 

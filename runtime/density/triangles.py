@@ -9,9 +9,9 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputError
+from ..base.errors import InputError
+from ..base.threads import over_ranges
 from ..kernels import triangles as kernels
-from ..threads import over_ranges
 from .inside import inside_trim
 from .sizing import SizingFunction
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import whole_number
+from ..base.checks import whole_number
 
 __all__ = ["arc_of_normals", "circle"]
 

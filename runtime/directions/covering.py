@@ -7,7 +7,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..tolerances import CAP_RADIUS_ERROR
+from ..base.tolerances import CAP_RADIUS_ERROR
 from .regions import angles_between
 from .unit import as_normals
 

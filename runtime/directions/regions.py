@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import finite_number
-from ..errors import InputError
-from ..tolerances import TRIPLE_PRODUCT_ERROR
+from ..base.checks import finite_number
+from ..base.errors import InputError
+from ..base.tolerances import TRIPLE_PRODUCT_ERROR
 from .unit import as_normals, unit_vector
 
 __all__ = ["angles_between", "cap", "polygon"]

@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated.icosahedron import FACE_RADIUS
-from .. import compiling  # noqa: F401 - announces compilation on terminals
-from ..checks import whole_number
-from ..errors import InputError, in_memory
-from ..extras import from_extra
+from ..base import compiling  # noqa: F401 - announces compilation on terminals
+from ..base.checks import whole_number
+from ..base.errors import InputError, in_memory
+from ..base.extras import from_extra
+from ..base.threads import over_ranges
 from ..kernels.icosphere import new_line, write_points
-from ..threads import over_ranges
 from .unit import PIECE, as_normals, in_pieces, normalized
 
 __all__ = [

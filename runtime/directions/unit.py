@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import finite_array, real_values
-from ..errors import InputError
+from ..base.checks import finite_array, real_values
+from ..base.errors import InputError
+from ..base.threads import over_ranges
 from ..kernels.unit import are_unit
-from ..threads import over_ranges
 
 __all__ = ["PIECE", "as_normals", "in_pieces", "normalized", "perpendicular", "unit_vector"]
 

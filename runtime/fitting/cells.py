@@ -6,10 +6,10 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ..checks import positive_number
-from ..errors import InputError
-from ..splines.spline import Spline
-from ..tolerances import DATA_ERROR
+from ..base.checks import positive_number
+from ..base.errors import InputError
+from ..base.tolerances import DATA_ERROR
+from ..spline.spline import Spline
 from .misfit import Comparison, Misfit
 
 __all__ = ["FAR_OFF", "Bounds", "Goal", "Tolerance", "checked_tolerance", "refined"]

@@ -10,19 +10,20 @@ from functools import partial
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from ..advice import about_value
-from ..errors import GaussmapWarning, InputError, SurfaceError, in_memory
-from ..progress import busy
-from ..splines.collapsed import found_sides
-from ..splines.domain import Boundary, Domain
-from ..splines.ghosts import Sides
-from ..splines.missing import known_of_values
-from ..splines.quasi_interpolant import apart, checked_cells, fit_grid, fit_values, not_too_large
-from ..splines.spline import Spline, short_label
+from ..base.advice import about_value
+from ..base.errors import GaussmapWarning, InputError, SurfaceError, in_memory
+from ..base.progress import busy
+from ..domain.domain import Boundary, Domain
+from ..spline.ghosts import Sides
+from ..spline.misfit import Misfit
+from ..spline.missing import known_of_values
+from ..spline.quasi_interpolant import apart, checked_cells, fit_grid, fit_values, not_too_large
+from ..spline.spline import Spline, short_label
+from ..surface.collapsed import found_sides
 from ..surface.surface import Surface
-from ..surfaces import named
+from ..surface.surfaces import named
 from .cells import FAR_OFF, Bounds, Tolerance, checked_tolerance, refined
-from .misfit import Comparison, Misfit, compare_with_data
+from .misfit import Comparison, compare_with_data
 from .probe import probe_of, variation
 
 __all__ = ["DEFAULT_CELLS", "fit", "spline_of"]

@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..splines.domain import Domain
-from ..splines.spline import Spline
+from ..domain.domain import Domain
+from ..spline.spline import Spline
 from ..surface.surface import Surface
 from .misfit import Comparison, Misfit, angles_between, evaluated, squared_lengths
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...generated.patch import forms, parameters
 from ...generated.vectors import Vector
-from ..tolerances import ACCURATE
+from ..base.tolerances import ACCURATE
 from .jit import inline, loop
 from .patch import normal_of_patch
 from .vectors import dot

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ...generated.icosahedron import CORNER_PLACES, EDGE_PLACES
 from ...generated.vectors import Vector
-from ..tolerances import ACCURATE
+from ..base.tolerances import ACCURATE
 from .bins import nearest_bin
 from .boxes import box_in, box_on_face, may_reach
 from .classify import NO, UNDECIDED, YES, code_of

@@ -28,7 +28,7 @@ from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.extending import intrinsic
 
 from ...generated.vectors import inline
-from .. import compiling  # noqa: F401 - installs the notice of compilation
+from ..base import compiling  # noqa: F401 - installs the notice of compilation
 
 __all__ = ["inline", "jit", "long_vectors", "loop"]
 
@@ -36,7 +36,12 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 config: Any = numba_config  # Numba makes its attributes at run time
 PACKAGE = Path(__file__).parents[2]
-SOURCES = ("generated/*.py", "runtime/kernels/*.py", "runtime/tolerances.py")
+SOURCES = (
+    "generated/*.py",
+    "runtime/kernels/*.py",
+    "tools/kernels/*.py",
+    "runtime/base/tolerances.py",
+)
 # Folders of other sources are removed after this many days without use.
 DAYS_KEPT = 30
 # Kernels of the catalogue are made when they are first used, perhaps by several threads.

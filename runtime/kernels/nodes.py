@@ -10,7 +10,7 @@ import math
 from ...generated.jet import at_jet
 from ...generated.spline import CORNERS
 from ...generated.vectors import Vector
-from ..tolerances import VANISHING
+from ..base.tolerances import VANISHING
 from .jit import inline, jit, loop
 from .patch import place_of
 from .refine import patch_of_jet

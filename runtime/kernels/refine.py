@@ -16,7 +16,7 @@ from ...generated.jet import at_jet, at_pole, polar_chart
 from ...generated.jet import newton as newton_of_jet
 from ...generated.patch import envelope, tangents
 from ...generated.vectors import Patch, Vector
-from ..tolerances import VANISHING
+from ..base.tolerances import VANISHING
 from .jit import inline, jit
 from .vectors import dot, row_vector, set_jet, set_row
 

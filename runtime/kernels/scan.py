@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ...generated.icosahedron import FACES, PHI, POSITIONS
 from ...generated.patch import eliminated_forms, linear_forms
 from ...generated.vectors import Vector
-from ..tolerances import ACCURATE, LATTICE_ERROR
+from ..base.tolerances import ACCURATE, LATTICE_ERROR
 from .classify import NO, UNDECIDED, YES, classify, count_undecided, look_again
 from .few import NO_STARTS, Few, classify_few, store_few_runs
 from .icosphere import ONE, ZERO, write_line

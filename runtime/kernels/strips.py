@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ...generated.patch import control_normals
 from ...generated.spline import triangle
 from ...generated.vectors import Patch, Vector
-from ..tolerances import ANGLE_ERROR, FORM_ERROR, SHORT_CONTROL_NORMAL
+from ..base.tolerances import ANGLE_ERROR, FORM_ERROR, SHORT_CONTROL_NORMAL
 from .cone import tangent_bounds
 from .developable import may_be_developable
 from .jit import inline, loop

@@ -9,7 +9,7 @@ import math
 
 from ...generated.patch import part_normals, sides
 from ...generated.spline import SCALE
-from ..tolerances import VANISHING
+from ..base.tolerances import VANISHING
 from .jit import inline, jit, loop
 from .patch import patch_of, place_of, point_of_patch
 from .sizing import density_and_normal, enclosing_radius

@@ -1,1 +1,5 @@
-"""Surfaces that people bring: formulas, functions, grids, NURBS; derivatives, trims, motions."""
+"""Surfaces: the catalogue, functions, NURBS and grids, with domains, trims and derivatives."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach(__name__, ["surfaces"])

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..splines.quasi_interpolant import apart
+from ..spline.quasi_interpolant import apart
 from .nurbs import Nurbs
 
 __all__ = ["CREASE_ANGLE", "creases", "smoothly_closed"]

@@ -6,7 +6,7 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
-from ..splines.domain import Boundary, BoundaryPair, Domain, Interval
+from ..domain.domain import Boundary, BoundaryPair, Domain, Interval
 from .derivatives import Differentiable
 from .moved import Moved
 

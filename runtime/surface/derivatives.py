@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated.differences import FIRST, FIRST_CHANGE, SECOND, SECOND_CHANGE
-from ..splines.domain import Boundary, BoundaryPair, Domain, Interval
+from ..domain.domain import Boundary, BoundaryPair, Domain, Interval
 
 __all__ = [
     "NAMES",

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import SurfaceError
-from ..evaluation import returned
-from ..splines.domain import Boundary, Domain
+from ..base.errors import SurfaceError
+from ..base.evaluation import returned
+from ..domain.domain import Boundary, Domain
 from .derivatives import NAMES, Differences, Differentiable, Function
 
 __all__ = ["jet_function"]

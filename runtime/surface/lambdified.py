@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputError
-from ..expressions import as_position
+from ..base.errors import InputError
 from .derivatives import NAMES, Differentiable
+from .expressions import as_position
 
 if TYPE_CHECKING:
     import sympy

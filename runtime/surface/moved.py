@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import real_array
-from ..errors import InputError
-from ..evaluation import returned
-from ..splines.domain import Boundary, Domain, Interval
+from ..base.checks import real_array
+from ..base.errors import InputError
+from ..base.evaluation import returned
+from ..domain.domain import Boundary, Domain, Interval
+from ..domain.trim import Trim, TrimPart
 from .derivatives import Differences, Differentiable
-from .trim import Part, Trim
 
 if TYPE_CHECKING:
     from .surface import Surface
@@ -150,11 +150,11 @@ def turned_trim(trim: Trim, boundary: Boundary) -> Trim:
 class Turned:
     """One condition of a trim after u → total - u."""
 
-    part: Part
+    part: TrimPart
     total: float
 
     @staticmethod
-    def of(part: Part, total: float) -> Part:
+    def of(part: TrimPart, total: float) -> TrimPart:
         """Return a condition after reversal, the original one after two."""
         return part.part if isinstance(part, Turned) else Turned(part, total)
 

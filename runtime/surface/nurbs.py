@@ -8,11 +8,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import compiling  # noqa: F401 - announces compilation on terminals
-from ..errors import InputError
+from ..base import compiling  # noqa: F401 - announces compilation on terminals
+from ..base.errors import InputError
+from ..base.tolerances import SAME_PARAMETER
+from ..domain.domain import Domain
 from ..kernels import nurbs as kernels
-from ..splines.domain import Domain
-from ..tolerances import SAME_PARAMETER
 from .derivatives import Differentiable
 
 __all__ = ["Nurbs"]

@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import real_array, whole_number
-from ..errors import InputError, shown
+from ..base.checks import real_array, whole_number
+from ..base.errors import InputError, shown
 from .nurbs import Nurbs
 
 __all__ = ["MOST_DEGREE", "nurbs_of"]

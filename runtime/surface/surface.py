@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import real_array
-from ..errors import InputError
-from ..georeference import Georeference
-from ..splines.domain import (
+from ..base.checks import real_array
+from ..base.errors import InputError
+from ..base.georeference import Georeference
+from ..domain.domain import (
     Assumed,
     Boundary,
     Domain,
@@ -21,10 +21,10 @@ from ..splines.domain import (
     checked_boundary,
     checked_domain,
 )
-from ..splines.quasi_interpolant import fit_grid
+from ..domain.trim import Trim, trimmed_by
+from ..spline.quasi_interpolant import fit_grid
 from .labels import label
 from .moved import IDENTITY, AffineMap, Moved, affine_map, moved_grid, turned_trim
-from .trim import Trim, trimmed_by
 from .values import Evaluation, SurfaceValues
 
 if TYPE_CHECKING:
@@ -205,7 +205,7 @@ class Surface(SurfaceValues):
         array([3., 0., 0.])
 
         """
-        from ..expressions import numbers, two_symbols
+        from .expressions import numbers, two_symbols
         from .lambdified import compiled
 
         f = compiled(position, two_symbols(parameters))
@@ -274,8 +274,8 @@ class Surface(SurfaceValues):
         ((6, 4, 3), ((0.0, 150.0), (0.0, 90.0)))
 
         """
-        from ..splines.grid import points_of_elevations
-        from ..splines.missing import without_nodata
+        from ..spline.grid import points_of_elevations
+        from ..spline.missing import without_nodata
 
         checked, assumed = "grid" if name is None else name, assumed_ends(periodic)
         array = without_nodata(_grid(points), nodata, checked)
@@ -301,9 +301,9 @@ class Surface(SurfaceValues):
         georeference: Georeference | None = None,
     ) -> Surface:
         """Return the surface of points (m, n, 3), with NaN for missing ones."""
-        from ..splines.collapsed import closed_grid
-        from ..splines.grid import spline_of_points
-        from ..splines.missing import known_of_grid
+        from ..spline.grid import spline_of_points
+        from ..spline.missing import known_of_grid
+        from .collapsed import closed_grid
 
         points, boundary = closed_grid(points, boundary, assumed)
         spline = spline_of_points(points, boundary, name, domain)

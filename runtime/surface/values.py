@@ -9,14 +9,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import parameter_arrays
-from ..errors import InputError, SurfaceError
-from ..evaluation import evaluated
-from ..georeference import Georeference
-from ..splines.domain import Assumed, Boundary, Domain
+from ..base.checks import parameter_arrays
+from ..base.errors import InputError, SurfaceError
+from ..base.evaluation import evaluated
+from ..base.georeference import Georeference
+from ..domain.domain import Assumed, Boundary, Domain
+from ..domain.trim import Trim
 from .derivatives import NAMES, Differences, Differentiable, Function
 from .jet_functions import jet_function
-from .trim import Trim
 
 __all__ = ["Evaluation", "SurfaceValues"]
 

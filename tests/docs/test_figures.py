@@ -10,9 +10,9 @@ import pytest
 from gaussmap.docs import curve_figures, figures, patch_figures
 from gaussmap.docs.curves import by_normals
 from gaussmap.generated import patch as kernels
-from gaussmap.runtime.formula_calls import python_function, vector
-from gaussmap.runtime.pictures.palette import ELLIPTIC, HYPERBOLIC
-from gaussmap.runtime.pictures.scene import quadrangles
+from gaussmap.runtime.base.formula_calls import python_function, vector
+from gaussmap.tools.pictures.palette import ELLIPTIC, HYPERBOLIC
+from gaussmap.tools.pictures.scene import quadrangles
 from matplotlib.colors import to_rgb
 from matplotlib.image import imread
 

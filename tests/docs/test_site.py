@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
-from gaussmap.runtime.commands.parser import parser
+from gaussmap.tools.commands.parser import parser
 
 ROOT = Path(__file__).parents[2]
 

@@ -13,7 +13,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 # The folders whose functions are counted, with what stands before the names of their files.
-FOLDERS = {"generated": "", "runtime/kernels": "kernels."}
+FOLDERS = {"generated": "", "runtime/kernels": "kernels.", "tools/kernels": "kernels."}
 RECORD = Path(__file__).with_name("operations.json")
 
 

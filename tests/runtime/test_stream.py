@@ -9,11 +9,13 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime import choice, search, stream
-from gaussmap.runtime.bins import NormalBins
+from gaussmap.runtime import stream
+from gaussmap.runtime.density import chosen_normals as choice
 from gaussmap.runtime.directions.unit import as_normals
-from gaussmap.runtime.samples import Samples
-from gaussmap.runtime.search import Search, find
+from gaussmap.runtime.samples.samples import Samples
+from gaussmap.runtime.search import search
+from gaussmap.runtime.search.bins import NormalBins
+from gaussmap.runtime.search.search import Search, find
 
 TORUS = gm.fit(gm.surfaces.torus(), (12, 8))
 

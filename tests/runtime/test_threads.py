@@ -8,8 +8,8 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.fields import ARRAY_NAMES
-from gaussmap.runtime.threads import over_ranges, thread_count
+from gaussmap.runtime.base.threads import over_ranges, thread_count
+from gaussmap.runtime.samples.fields import ARRAY_NAMES
 
 
 @pytest.mark.parametrize("threads", [1, 2, 3, 16])
@@ -116,8 +116,8 @@ def test_threads_that_are_none(threads):
 @pytest.mark.parametrize("name", ["torus", "sphere", "moebius_band", "wavy_graph"])
 def test_any_number_of_threads_gives_the_same_bits(name, monkeypatch):
     """More patches and samples than go into one range; normals on symmetry planes among them."""
-    monkeypatch.setattr("gaussmap.runtime.search.MOST_PATCHES", 500)
-    monkeypatch.setattr("gaussmap.runtime.search.SAMPLES_AT_A_TIME", 333)
+    monkeypatch.setattr("gaussmap.runtime.search.search.MOST_PATCHES", 500)
+    monkeypatch.setattr("gaussmap.runtime.search.search.SAMPLES_AT_A_TIME", 333)
     surface = gm.surfaces.surface(name)
     asked: dict[str, Any]
     for asked in ({"normals": gm.icosphere(24)}, {"count": 2000}):
@@ -134,9 +134,9 @@ def test_any_number_of_threads_gives_the_same_bits(name, monkeypatch):
 @pytest.mark.compiled
 def test_ranges_do_not_show_in_the_result(monkeypatch):
     whole = gm.sample(gm.surfaces.torus(), normals=gm.icosphere(16), cells=(24, 24), threads=1)
-    monkeypatch.setattr("gaussmap.runtime.search.MOST_PATCHES", 7)
-    monkeypatch.setattr("gaussmap.runtime.search.ROOM", 1)
-    monkeypatch.setattr("gaussmap.runtime.search.SAMPLES_AT_A_TIME", 11)
+    monkeypatch.setattr("gaussmap.runtime.search.search.MOST_PATCHES", 7)
+    monkeypatch.setattr("gaussmap.runtime.search.search.ROOM", 1)
+    monkeypatch.setattr("gaussmap.runtime.search.search.SAMPLES_AT_A_TIME", 11)
     pieces = gm.sample(gm.surfaces.torus(), normals=gm.icosphere(16), cells=(24, 24), threads=2)
     for array in ARRAY_NAMES:
         assert getattr(whole, array).tobytes() == getattr(pieces, array).tobytes()

@@ -19,7 +19,7 @@ DOCTYPE = "<!DOCTYPE html>\n"
 NAMES = (*formulas, *surfaces.CATALOGUE)
 EACH_FORMULA = pytest.mark.parametrize("formula", formulas.values(), ids=formulas)
 GENERATED = sorted(files.GENERATED.glob("*.py"))
-KERNELS = sorted(html.KERNELS.glob("*.py"))
+KERNELS = sorted(path for folder in html.KERNELS for path in folder.glob("*.py"))
 
 
 @cache
@@ -167,7 +167,7 @@ def test_each_generated_function_is_listed(path):
 
 @pytest.mark.parametrize("path", KERNELS, ids=lambda path: path.name)
 def test_each_call_of_a_kernel_is_listed(path):
-    """Read runtime/kernels line by line: who calls a function is listed with its formula."""
+    """Read all kernels line by line: who calls a function is listed with its formula."""
     text = path.read_text(encoding="utf-8")
     imported = re.findall(r"^from \.\.\.generated\.(\w+) import ([^()]*?|\([^()]*\))$", text, re.M)
     names = {x: file for file, y in imported for x in re.findall(r"\w+", y) if x in formulas}

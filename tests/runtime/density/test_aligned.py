@@ -7,9 +7,9 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.runtime.base.errors import InputError
 from gaussmap.runtime.density.lines import Axis
 from gaussmap.runtime.density.steps import Forms, equal_steps, steps_for_count
-from gaussmap.runtime.errors import InputError
 
 CELLS = (16, 16)
 

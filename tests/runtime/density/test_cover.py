@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from gaussmap.runtime.density.cover import Cover
 from gaussmap.runtime.density.sizing import SizingFunction, TargetDensity
-from gaussmap.runtime.geometry.on_spline import OnSpline
+from gaussmap.runtime.place.on_spline import OnSpline
 
 
 @pytest.mark.compiled

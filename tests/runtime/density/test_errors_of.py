@@ -8,7 +8,7 @@ import pytest
 from gaussmap.runtime.density.cover import Cover
 from gaussmap.runtime.density.errors_of import Errors, places_on
 from gaussmap.runtime.density.sizing import SizingFunction, TargetDensity
-from gaussmap.runtime.geometry.on_spline import OnSpline
+from gaussmap.runtime.place.on_spline import OnSpline
 from scipy.spatial import KDTree
 
 

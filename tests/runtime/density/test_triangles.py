@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from gaussmap.runtime.density.sizing import SizingFunction, TargetDensity
 from gaussmap.runtime.density.triangles import Triangles, cut_patches
-from gaussmap.runtime.geometry.on_spline import OnSpline
+from gaussmap.runtime.place.on_spline import OnSpline
 
 RADII = pytest.mark.parametrize("radius", [0.5, pytest.param(0.06, marks=pytest.mark.compiled)])
 

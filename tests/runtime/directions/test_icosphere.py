@@ -3,10 +3,10 @@
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.bins import NormalBins
 from gaussmap.runtime.directions.unit import as_normals
-from gaussmap.runtime.fields import INDEX_NAMES
-from gaussmap.runtime.search import fill, find
+from gaussmap.runtime.samples.fields import INDEX_NAMES
+from gaussmap.runtime.search.bins import NormalBins
+from gaussmap.runtime.search.search import fill, find
 from hypothesis import given
 from hypothesis import strategies as st
 

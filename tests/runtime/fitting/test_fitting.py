@@ -7,7 +7,7 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.errors import GaussmapWarning, InputError
+from gaussmap.runtime.base.errors import GaussmapWarning, InputError
 from numpy.typing import NDArray
 
 Array = NDArray[Any]

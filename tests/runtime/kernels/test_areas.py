@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from gaussmap.runtime.kernels.areas import corner_areas
+from gaussmap.tools.kernels.areas import corner_areas
 
 CORNERS = np.array([(0.0, 0.0, 0.0), (3.0, 0.0, 0.0), (0.0, 4.0, 0.0)])
 

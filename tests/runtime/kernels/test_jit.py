@@ -49,7 +49,7 @@ def normal_of_copy(folder: Path) -> tuple[list[float], int]:
 @pytest.mark.slow
 def test_a_changed_formula_is_compiled_again(tmp_path: Path) -> None:
     package = tmp_path / "gaussmap"
-    for name in ("generated", "runtime"):
+    for name in ("generated", "runtime"):  # no tools
         ignored = shutil.ignore_patterns("__pycache__")
         shutil.copytree(PACKAGE / name, package / name, ignore=ignored)
     for path in PACKAGE.glob("__init__.py*"):
@@ -185,15 +185,18 @@ def test_folders_that_were_not_used_for_long_are_removed(tmp_path: Path) -> None
 def test_the_digest_covers_all_that_kernels_are_made_of() -> None:
     """Whatever a kernel imports from this package is among the sources of the digest."""
     code = (
-        "import sys, importlib, pathlib, gaussmap.runtime.kernels as kernels\n"
-        "for path in pathlib.Path(kernels.__file__).parent.glob('*.py'):\n"
-        "    importlib.import_module(f'gaussmap.runtime.kernels.{path.stem}')\n"
+        "import sys, importlib, pathlib, gaussmap\n"
+        "package = pathlib.Path(gaussmap.__file__).parent\n"
+        "for place in ('runtime', 'tools'):\n"
+        "    for path in (package / place / 'kernels').glob('*.py'):\n"
+        "        importlib.import_module(f'gaussmap.{place}.kernels.{path.stem}')\n"
         "print(*(x.__file__ for name, x in sys.modules.items() if name.startswith('gaussmap')))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     loaded = {Path(name) for name in done.stdout.split() if not name.endswith("__init__.py")}
     sources = {path for name in jit.SOURCES for path in jit.PACKAGE.glob(name)}
-    notice = PACKAGE / "runtime" / "compiling.py"  # only tells the user that kernels are compiled
+    # This only tells the user that kernels are compiled.
+    notice = PACKAGE / "runtime" / "base" / "compiling.py"
     assert {x.resolve() for x in loaded} <= {x.resolve() for x in (*sources, notice)}
 
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from gaussmap.generated.patch import parameters
-from gaussmap.runtime.formula_calls import python_function
+from gaussmap.runtime.base.formula_calls import python_function
 from gaussmap.runtime.kernels.jit import jit
 from gaussmap.runtime.kernels.wide_integers import rounded, wide
 from hypothesis import example, given

@@ -10,7 +10,7 @@ import geomdl.BSpline
 import geomdl.NURBS
 import numpy as np
 import pytest
-from gaussmap.runtime.errors import InputError
+from gaussmap.runtime.base.errors import InputError
 from gaussmap.runtime.surface.nurbs import Nurbs
 from scipy.interpolate import NdBSpline
 from splipy import surface_factory

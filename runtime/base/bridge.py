@@ -1,0 +1,72 @@
+"""The one bridge from the runtime to `gaussmap.symbolic`; its functions load SymPy when called.
+
+Nothing else in the runtime imports `gaussmap.symbolic`, so that sampling never waits for SymPy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ...symbolic import BezierTriangle, Formula
+
+__all__ = [
+    "bezier_triangle",
+    "formula_page",
+    "formulas",
+    "kernel_source",
+    "latex_of",
+    "normal_components",
+    "reading",
+]
+
+
+def bezier_triangle(control_points: Sequence[Sequence[Any]]) -> BezierTriangle:
+    """Return the quadratic patch of exact control points (6, 3)."""
+    from ...symbolic import BezierTriangle
+
+    return BezierTriangle(control_points, normal_components())
+
+
+def formula_page() -> str:
+    """Return the HTML page of all formulas."""
+    from ...symbolic import html
+
+    return html.page()
+
+
+def formulas() -> Mapping[str, Formula]:
+    """Return all formulas by their names."""
+    from ...symbolic import formulas
+
+    return formulas
+
+
+def kernel_source(expression: Any, condition: Any = True) -> str:  # noqa: ANN401
+    """Return the Python source of the kernel of a support function; see `symbolic.expression`."""
+    from ...symbolic.expression import kernel_source
+
+    return kernel_source(expression, condition)
+
+
+def latex_of(expression: Any) -> str:  # noqa: ANN401
+    """Return an expression as LaTeX."""
+    from ...symbolic.display import latex_of
+
+    return latex_of(expression)
+
+
+def normal_components() -> tuple[Any, ...]:
+    """Return the symbols n_x, n_y, n_z."""
+    from ...symbolic.patch import n
+
+    return n.components
+
+
+def reading() -> ModuleType:
+    """Return the module that reads the texts of users, `symbolic.reading`."""
+    from ...symbolic import reading
+
+    return reading

@@ -1,0 +1,109 @@
+"""The normals to search for: prescribed ones, or a lattice that yields a number of samples."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.limits import MOST
+from ..place.on_spline import OnSpline
+from ..search.bins import NormalBins
+from ..search.search import Hits, fill, find
+from ..spline.developable import curved_solid_angle
+from ..spline.inside import count_of, samples_inside
+from .lattice import Lattice
+
+__all__ = ["Chosen", "choose"]
+
+# The relative accuracy of the number of samples, and the largest number of attempts.
+NEAR_ENOUGH = 0.01
+ATTEMPTS = 20
+# The first attempts scale the density by the ratio of the counts. The others vary it by this step
+# up and down: if there are few samples, several appear or vanish at once.
+IN_PROPORTION, DITHER = 6, 0.008
+# The largest number of normals per requested sample (a thin Gaussian image has few samples).
+NORMALS_PER_SAMPLE = 100
+# For larger counts, the density is extrapolated from this count.
+PILOT = 1_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class Chosen:
+    """The normals to search for: an array, or a lattice with `density` normals per steradian.
+
+    `found` holds the bins and the hits if the search has been made already.
+    """
+
+    source: NDArray[np.float64] | Lattice
+    density: float
+    found: tuple[NormalBins, Hits] | None = None
+
+    def __len__(self) -> int:
+        """Return the number of normals."""
+        if isinstance(self.source, Lattice):
+            return self.source.size(self.density)
+        return len(self.source)
+
+    def part(self, first: int, last: int, threads: int | None) -> NDArray[np.float64]:
+        """Return the normals first, …, last − 1."""
+        if isinstance(self.source, Lattice):
+            return self.source.normals(self.density, first, last, threads)
+        return self.source[first:last]
+
+
+def choose(geometry: OnSpline, request: NDArray[np.float64] | int, progress: bool) -> Chosen:
+    """Return prescribed normals (S, 3) as they are, or a lattice with about `request` samples.
+
+    For more samples than `PILOT`, the density is extrapolated from that of `PILOT` samples.
+    """
+    if not isinstance(request, int):
+        return Chosen(request, len(request) / (4 * math.pi))
+    pilot = min(request, PILOT)
+    chosen, samples = _adapted(geometry, pilot, progress)
+    if pilot == request or not isinstance(chosen.source, Lattice):
+        return chosen
+    most = chosen.source.density_of(min(NORMALS_PER_SAMPLE * request, MOST))
+    return Chosen(chosen.source, min(chosen.density * request / (samples or pilot), most))
+
+
+def _adapted(geometry: OnSpline, count: int, progress: bool) -> tuple[Chosen, int]:
+    """Adapt the density of a lattice to `count` samples; return it and the number of samples."""
+    spline, threads = geometry.spline, geometry.threads
+    lattice = Lattice.around(spline)
+    densest = lattice.density_of(NORMALS_PER_SAMPLE * max(count, 1000))
+    total = float(np.abs(geometry.measure[1]).sum())
+    resolved = curved_solid_angle(geometry, min(count / max(total, 1e-300), densest))
+    if resolved == 0.0:
+        lattice, density = Lattice.everywhere(), count / (4 * math.pi)
+    else:
+        density = count / resolved
+    best: Chosen | None = None
+    samples = 0
+    for attempt in range(1, ATTEMPTS + 1):
+        density = min(density, densest)
+        bins = NormalBins(lattice.normals(density, threads=threads), threads)
+        hits = find(spline, bins, threads, progress)
+        number = _number_inside(geometry, bins, hits)
+        if best is None or abs(number - count) < abs(samples - count):
+            best, samples = Chosen(lattice, density, (bins, hits)), number
+        if abs(number - count) <= NEAR_ENOUGH * count or resolved == 0.0:
+            break
+        if attempt < IN_PROPORTION or number == 0:
+            density *= count / number if number else 2.0
+        else:
+            step = attempt - IN_PROPORTION + 1
+            density = count / resolved * (1.0 + (-1) ** step * (step // 2) * DITHER)
+    assert best is not None
+    return best, samples
+
+
+def _number_inside(geometry: OnSpline, bins: NormalBins, hits: Hits) -> int:
+    """Return the number of hits that are inside the trim of a spline."""
+    spline = geometry.spline
+    if spline.trim is None:
+        return len(hits)
+    uv = fill(spline, bins, hits, geometry.threads, ("uv",))
+    return count_of(samples_inside(spline, uv, ("uv",)))

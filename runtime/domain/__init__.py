@@ -1,0 +1,1 @@
+"""Domains of parameters: their boundary conditions, and trims."""

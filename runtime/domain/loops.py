@@ -1,0 +1,224 @@
+"""Loops in the parameter plane: closed polygons, and whether a point is inside of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.checks import real_array
+from ..base.errors import InputError, shown
+from ..base.scales import scale_to_one
+from ..base.threads import over_ranges
+from ..kernels import trim as kernels
+from .domain import Boundary, Domain
+
+__all__ = ["Loops", "checked_loops"]
+
+Array = NDArray[np.float64]
+
+# A closed polygon of n segments is sorted into about this number of cells for each of them.
+CELLS_A_SEGMENT, MOST_ROWS = 8, 2048
+# The lists of all cells have about at most this number of entries.
+MOST_ENTRIES = 1 << 24
+# Segments belong to all cells that they may touch: in units of a cell, and of the rounding of the
+# largest coordinate.
+MARGIN, MARGIN_IN_ROUNDINGS = 1e-9, 16.0
+POINTS_AT_A_TIME = 1 << 14
+# The largest number of times that a loop may run around a periodic direction.
+MOST_PERIODS = 100
+# Points on an open side of the domain stand for points inside, at this part of the domain.
+INSIDE = 1e-13
+
+
+@dataclass(frozen=True, eq=False)
+class Loops:
+    """Closed polygons (k, 2) in the parameter plane; a point is inside by the even-odd rule.
+
+    The first point of a polygon is not repeated. Loops may run beyond the seam of a periodic
+    direction: a point is inside if it, or its copy any number of periods away, is.
+    """
+
+    polygons: tuple[Array, ...]
+    domain: Domain
+    boundary: Boundary
+
+    def contains(self, uv: Array, threads: int | None = None) -> NDArray[np.bool_]:
+        """Return whether points (k, 2) of the domain are inside, as booleans (k,)."""
+        cells, shifts = self._cells
+        places, inside = np.ascontiguousarray(self._inwards(uv)), np.empty(len(uv), dtype=np.bool_)
+
+        def work(first: int, last: int) -> None:
+            kernels.find_inside(cells, shifts, places, first, last, inside)
+
+        for _ in over_ranges(work, len(uv), POINTS_AT_A_TIME, threads):
+            pass
+        return inside
+
+    def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> NDArray[np.bool_]:
+        """Return the cells (m, n) of a grid on the domain that the polygons may pass."""
+        low, high = np.array(domain).T
+        steps = (high - low) / cells
+        points = np.concatenate([_steps(x, steps / 2.0) for x in self.polygons])
+        passed = np.zeros(cells, dtype=np.bool_)
+        for a, b, c, d in self.shifts:
+            # The shifts are their own inverses where they turn a direction.
+            places = np.stack([a * (points[:, 0] - b), c * (points[:, 1] - d)], axis=1)
+            i, j = np.floor((places - low) / steps).astype(np.int64).T
+            for di, dj in np.ndindex(3, 3):
+                k, m = i + di - 1, j + dj - 1
+                here = (k >= 0) & (k < cells[0]) & (m >= 0) & (m < cells[1])
+                passed[k[here], m[here]] = True
+        return passed
+
+    def _inwards(self, uv: Array) -> Array:
+        """Move points on open sides into the domain, by far less than its size."""
+        low, high = np.array(self.domain).T
+        nudge = INSIDE * (high - low)
+        is_open = np.array([not _closes(ends) for ends in self.boundary])
+        return np.clip(
+            uv, np.where(is_open, low + nudge, -np.inf), np.where(is_open, high - nudge, np.inf)
+        )
+
+    @cached_property
+    def box(self) -> Array:
+        """(2, 2) float64: the smallest and the largest u and v."""
+        points = np.concatenate(self.polygons)
+        return np.stack([points.min(axis=0), points.max(axis=0)])
+
+    @cached_property
+    def shifts(self) -> Array:
+        """The copies (s, 4) of a point of the domain, (a u + b, c v + d), that may be inside."""
+        (u0, u1), (v0, v1) = self.domain
+        along_u, along_v = (self._periods(axis) for axis in (0, 1))
+        rows = []
+        for k in along_u:
+            for m in along_v:
+                turned_v = self.boundary[0][0] == "mirrored" and k % 2
+                turned_u = self.boundary[1][0] == "mirrored" and m % 2
+                a, b = (-1.0, u0 + u1) if turned_u else (1.0, 0.0)
+                c, d = (-1.0, v0 + v1) if turned_v else (1.0, 0.0)
+                rows.append((a, b + k * (u1 - u0), c, d + m * (v1 - v0)))
+        return np.array(rows)
+
+    def _periods(self, axis: int) -> list[int]:
+        """Return by how many periods points may be shifted along an axis, 0 first."""
+        low, high = self.domain[axis]
+        if not _closes(self.boundary[axis]):
+            return [0]
+        period = high - low
+        first = math.floor((float(self.box[0, axis]) - high) / period)
+        last = math.ceil((float(self.box[1, axis]) - low) / period)
+        return sorted({0, *range(first, last + 1)}, key=abs)
+
+    @cached_property
+    def _cells(self) -> tuple[kernels.Cells, Array]:
+        """The segments sorted into cells, and the shifts, both scaled by powers of two."""
+        sizes = self.box[1] - self.box[0]
+        scales = np.array([scale_to_one(float(x)) for x in sizes])
+        ends = [np.stack([x, np.roll(x, -1, axis=0)], axis=1) for x in self.polygons]
+        segments = np.concatenate(ends) * scales
+        # The lower end first: then a side that two polygons share is the same for both.
+        (u, v), (w, z) = segments[:, 0].T, segments[:, 1].T
+        turned = (v > z) | ((v == z) & (u > w))
+        segments[turned] = segments[turned][:, ::-1]
+        segments = np.ascontiguousarray(segments.reshape(-1, 4))
+        sizes = np.where(sizes > 0.0, sizes * scales, 1.0)
+        reach = (np.abs(segments[:, 2:] - segments[:, :2]) / sizes).sum()
+        count = min(math.ceil(math.sqrt(CELLS_A_SEGMENT * len(segments))), MOST_ROWS)
+        count = max(min(count, int(MOST_ENTRIES / reach)), 1) if reach > 0.0 else count
+        steps = sizes / count
+        frame = np.concatenate([self.box[0] * scales, 1.0 / steps, steps])
+        cells = kernels.Cells(
+            segments, frame, np.zeros(count * count + 1, dtype=np.int64),
+            np.empty(0, dtype=np.int32), np.empty((count, count), dtype=np.bool_),
+        )  # fmt: skip
+        rounding = np.spacing(np.abs(self.box * scales).max(axis=0))
+        margins = MARGIN * steps + MARGIN_IN_ROUNDINGS * rounding
+        kernels.find_parities(cells)
+        kernels.list_segments(cells, margins, False)
+        starts = np.cumsum(cells.starts)
+        cells = cells._replace(starts=starts.copy(), members=np.empty(starts[-1], dtype=np.int32))
+        kernels.list_segments(cells, margins, True)
+        return cells._replace(starts=starts), self.shifts * np.repeat(scales, 2)
+
+
+def _steps(polygon: Array, steps: Array) -> Array:
+    """Return points on a polygon (k, 2), no farther apart than `steps` (2,) along u and v."""
+    along = np.roll(polygon, -1, axis=0) - polygon
+    parts = np.ceil(np.abs(along / steps).max(axis=1)).astype(np.int64) + 1
+    owner = np.repeat(np.arange(len(polygon)), parts)
+    number = np.arange(len(owner)) - (np.cumsum(parts) - parts)[owner]
+    return polygon[owner] + (number / parts[owner])[:, None] * along[owner]
+
+
+def _closes(ends: Sequence[str]) -> bool:
+    return ends[0] in ("periodic", "mirrored")
+
+
+# --- reading loops --------------------------------------------------------------------------------
+
+
+def checked_loops(loops: object, domain: Domain, boundary: Boundary) -> Loops:
+    """Return loops; InputError if they are no polygons, and says why."""
+    polygons = [_polygon(x, k) for k, x in enumerate(_rings(loops))]
+    if not polygons:
+        raise InputError("loops is empty; give at least one closed polygon of points u, v.")
+    for k, polygon in enumerate(polygons):
+        for axis, (low, high) in enumerate(domain):
+            size = max(np.abs(polygon[:, axis] - low).max(), np.abs(polygon[:, axis] - high).max())
+            if _closes(boundary[axis]) and size > MOST_PERIODS * (high - low):
+                raise InputError(
+                    f"loop {k} is more than {MOST_PERIODS} periods of {'uv'[axis]} away from the "
+                    f"domain ({low}, {high})."
+                )
+    return Loops(tuple(polygons), domain, boundary)
+
+
+def _rings(loops: Any) -> list[Any]:  # noqa: ANN401
+    """Return the closed polygons of what may be a geometry, one of them, or a sequence of both."""
+    if hasattr(loops, "__geo_interface__"):
+        return _rings_of_geometry(loops.__geo_interface__)
+    if isinstance(loops, str | bytes | dict) or not isinstance(loops, Iterable):
+        raise InputError(
+            "loops must be a sequence of closed polygons, arrays (k, 2) of points u, v, or a "
+            f"Polygon of Shapely, not {shown(loops)}."
+        )
+    if isinstance(loops, np.ndarray) and loops.ndim == 2:
+        return [loops]
+    rings: list[Any] = []
+    for item in loops:
+        geometry = hasattr(item, "__geo_interface__")
+        rings.extend(_rings_of_geometry(item.__geo_interface__) if geometry else [item])
+    return rings
+
+
+def _rings_of_geometry(geometry: Any) -> list[Any]:  # noqa: ANN401
+    """Return the exteriors and the holes of a geometry."""
+    kind = geometry.get("type") if isinstance(geometry, dict) else None
+    if kind not in ("Polygon", "MultiPolygon"):
+        raise InputError(f"loops must be a Polygon or a MultiPolygon, not a {shown(kind)}.")
+    coordinates = geometry["coordinates"]
+    polygons = [coordinates] if kind == "Polygon" else coordinates
+    return [[point[:2] for point in ring] for polygon in polygons for ring in polygon]
+
+
+def _polygon(points: Any, number: int) -> Array:  # noqa: ANN401
+    """Return the points (k, 2) of a polygon, the first one not repeated."""
+    array = real_array(points, f"loop {number}")
+    if array.ndim != 2 or array.shape[1] != 2:
+        raise InputError(
+            f"loop {number} must have the shape (k, 2), points u, v, not {array.shape}."
+        )
+    if not np.isfinite(array).all():
+        raise InputError(f"loop {number} holds NaN or infinity.")
+    if len(array) > 1 and (array[0] == array[-1]).all():
+        array = array[:-1]
+    if len(array) < 3:
+        raise InputError(f"loop {number} has {len(array)} points; a polygon needs at least 3.")
+    return array

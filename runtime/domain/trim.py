@@ -1,0 +1,208 @@
+"""The trim of a surface: the part of its domain that belongs to it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.errors import InputError, SurfaceError, shown
+from ..base.evaluation import called
+from .domain import Boundary, Domain
+from .loops import Loops, checked_loops
+
+__all__ = ["Predicate", "Trim", "TrimPart", "trimmed_by"]
+
+Array = NDArray[np.float64]
+
+POINTS_AT_A_TIME = 1 << 20
+
+
+class TrimPart(Protocol):
+    """One condition of a trim."""
+
+    def contains(self, uv: Array, threads: int | None = None) -> NDArray[np.bool_]:
+        """Return whether points (k, 2) of the domain fulfil it, as booleans (k,)."""
+        ...
+
+    def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> NDArray[np.bool_] | None:
+        """Return the cells (m, n) of a grid that its border may pass, None if that is unknown."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Trim:
+    """The part of a domain that belongs to a surface: where all conditions hold.
+
+    Made by `Surface.trimmed`, and for grids with missing points. It pickles if its predicates do.
+
+    Attributes
+    ----------
+    domain : ((u0, u1), (v0, v1)) of float
+        The rectangle of the parameters.
+    boundary : pair of pairs of str
+        The boundary conditions, see `Surface`.
+    parts : tuple
+        The conditions: closed polygons, predicates, and points of a grid that are there.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> half = gm.surfaces.torus().trimmed(within=lambda u, v: u < 3)
+    >>> len(half.trim.parts), half.trim.domain == half.domain, half.trim.boundary == half.boundary
+    (1, True, True)
+
+    """
+
+    domain: Domain
+    boundary: Boundary
+    parts: tuple[TrimPart, ...]
+
+    def contains(self, uv: Array, threads: int | None = None) -> NDArray[np.bool_]:
+        """Return whether points belong to the surface.
+
+        Parameters
+        ----------
+        uv : (k, 2) float64 array
+            Parameters u, v in the domain; periodic ones are taken modulo the period.
+        threads : int, optional
+            The number of threads, by default one for each core.
+
+        Returns
+        -------
+        (k,) bool array
+            Whether all conditions hold.
+
+        Raises
+        ------
+        SurfaceError
+            If a predicate raises, or returns anything but booleans.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> import numpy as np
+        >>> triangle = gm.surfaces.torus().trimmed([[(1, 1), (2, 1), (1, 2)]])
+        >>> triangle.trim.contains(np.array([[1.2, 1.2], [1.8, 1.8]]))
+        array([ True, False])
+
+        """
+        wrapped = self._wrapped(uv)
+        inside = self.parts[0].contains(wrapped, threads)
+        for part in self.parts[1:]:
+            if inside.any():
+                inside[inside] = part.contains(wrapped[inside], threads)
+        return inside
+
+    def cells_of_border(
+        self, domain: Domain, cells: tuple[int, int]
+    ) -> tuple[NDArray[np.bool_], bool]:
+        """Return the cells (m, n) that the border is known to pass, and whether these are all.
+
+        Parameters
+        ----------
+        domain : ((u0, u1), (v0, v1)) of float
+            The rectangle of the cells.
+        cells : (int, int)
+            The numbers (m, n) of cells.
+
+        Returns
+        -------
+        (m, n) bool array
+            The cells that the border may pass.
+        bool
+            False if there is a predicate, whose border is not known.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> corner = gm.surfaces.sphere().trimmed([[(1, 1), (1.1, 1), (1, 1.1)]])
+        >>> passed, all_known = corner.trim.cells_of_border(corner.domain, (20, 20))
+        >>> int(passed.sum()), all_known
+        (9, True)
+
+        """
+        passed, all_known = np.zeros(cells, dtype=np.bool_), True
+        for part in self.parts:
+            found = part.cells_of_border(domain, cells)
+            if found is None:
+                all_known = False
+            else:
+                passed |= found
+        return passed, all_known
+
+    def with_boundary(self, boundary: Boundary) -> Trim:
+        """Return the trim of a surface whose boundary conditions have been found."""
+        if boundary == self.boundary:
+            return self
+        parts = [replace(x, boundary=boundary) if isinstance(x, Loops) else x for x in self.parts]
+        return Trim(self.domain, boundary, tuple(parts))
+
+    def and_(self, *parts: TrimPart) -> Trim:
+        """Return the trim with further conditions."""
+        return replace(self, parts=(*self.parts, *parts))
+
+    def _wrapped(self, uv: Array) -> Array:
+        """Bring periodic parameters into the domain."""
+        for axis, (low, high) in enumerate(self.domain):
+            kind = self.boundary[axis][0]
+            if kind not in ("periodic", "mirrored"):
+                continue
+            beyond = (uv[:, axis] < low) | (uv[:, axis] > high)
+            if beyond.any():
+                uv = uv.copy()
+                turns = np.floor((uv[beyond, axis] - low) / (high - low))
+                uv[beyond, axis] = np.clip(uv[beyond, axis] - turns * (high - low), low, high)
+                if kind == "mirrored":
+                    odd = np.flatnonzero(beyond)[np.mod(turns, 2.0) == 1.0]
+                    uv[odd, 1 - axis] = sum(self.domain[1 - axis]) - uv[odd, 1 - axis]
+        return uv
+
+
+@dataclass(frozen=True, eq=False)
+class Predicate:
+    """A vectorized callable f(u, v) → booleans, of the surface with a name."""
+
+    function: Callable[[Array, Array], Any]
+    name: str
+
+    def contains(self, uv: Array, threads: int | None = None) -> NDArray[np.bool_]:
+        """Return what the callable says of points (k, 2)."""
+        starts = range(0, len(uv), POINTS_AT_A_TIME)
+        found = [self._part(uv[first : first + POINTS_AT_A_TIME]) for first in starts]
+        return np.concatenate([np.empty(0, dtype=np.bool_), *found])
+
+    def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> None:
+        """Return None: where the callable changes is not known."""
+
+    def _part(self, uv: Array) -> NDArray[np.bool_]:
+        label = f"the predicate within=... of surface {self.name!r}"
+        found = called(self.function, (uv[:, 0], uv[:, 1]), label)
+        if not isinstance(found, np.ndarray) or found.dtype != np.bool_:
+            kind = found.dtype if isinstance(found, np.ndarray) else type(found).__name__
+            raise SurfaceError(f"{label} must return an array of booleans, not {kind}.")
+        if found.shape != (len(uv),):
+            raise SurfaceError(
+                f"{label} returned the shape {found.shape} for parameters of shape {(len(uv),)}; "
+                "it must return a boolean for each."
+            )
+        return found
+
+
+def trimmed_by(
+    trim: Trim | None, loops: object, within: object, domain: Domain, boundary: Boundary, name: str
+) -> Trim:
+    """Return a trim with the conditions of `Surface.trimmed`; InputError if they are unusable."""
+    parts: list[TrimPart] = []
+    if loops is not None:
+        parts.append(checked_loops(loops, domain, boundary))
+    if within is not None:
+        if not callable(within):
+            raise InputError(f"within must be callable as f(u, v), not {shown(within)}.")
+        parts.append(Predicate(within, name))
+    if not parts:
+        raise InputError("trimmed needs loops, within=..., or both.")
+    return Trim(domain, boundary, tuple(parts)) if trim is None else trim.and_(*parts)

@@ -1,1 +1,0 @@
-"""What samples lie on: a spline, or the surface that it approximates."""

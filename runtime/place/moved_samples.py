@@ -1,0 +1,61 @@
+"""Samples at normals, moved from a spline to its surface."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from ..kernels.refine import CONTRARY as OTHER_SIGN
+from ..kernels.refine import FOUND, Target
+from ..samples.fields import FLAG_NAMES, dtype_of
+from ..search.bins import NormalBins
+from ..search.search import Hits, fill
+from ..spline.spline import Spline
+from ..surface.surface import Surface
+from .newton import refine
+from .on_spline import Fields, FieldsOfSamples
+
+__all__ = ["CONTRARY", "as_fields", "moved_samples", "part_of"]
+
+CONTRARY = "contrary"
+# The fields of samples that are moved; others follow from them.
+NEEDED = (
+    *("points", "normals", "uv", "gaussian_curvature", "mean_curvature"),
+    *("normal_index", "patch_index"),
+)
+
+
+def moved_samples(
+    surface: Surface, spline: Spline, bins: NormalBins, hits: Hits, threads: int | None
+) -> Fields:
+    """Return the samples at hits, on the surface where they could be moved to it.
+
+    They have all fields but the support, in float64, and CONTRARY says where Newton's method led to
+    a place with the other sign of K.
+    """
+    arrays = fill(spline, bins, hits, threads, NEEDED, np.float64)
+    signs = np.copysign(1.0, arrays["gaussian_curvature"])
+    states = np.empty(len(signs), dtype=np.int8)
+    target = Target(
+        arrays["normals"], signs, arrays["uv"], arrays["points"],
+        arrays["gaussian_curvature"], arrays["mean_curvature"], states,
+    )  # fmt: skip
+    refine(surface, spline, target, threads)
+    return arrays | {FLAG_NAMES[0]: states == FOUND, CONTRARY: states == OTHER_SIGN}
+
+
+def part_of(arrays: Fields, kept: NDArray[np.bool_]) -> Fields:
+    """Return some of the samples."""
+    return arrays if kept.all() else {name: array[kept] for name, array in arrays.items()}
+
+
+def as_fields(arrays: Fields, fields: Sequence[str], dtype: DTypeLike) -> FieldsOfSamples:
+    """Return the fields that are requested of samples with all fields but the support."""
+    unrefined = int(np.count_nonzero(~arrays[FLAG_NAMES[0]]))
+    if "support" in fields:
+        support = np.einsum("ij,ij->i", arrays["points"], arrays["normals"])
+        arrays = arrays | {"support": support}
+    kept = {x: arrays[x].astype(dtype_of(x, dtype), copy=False) for x in fields}
+    return FieldsOfSamples(kept, unrefined)

@@ -1,0 +1,217 @@
+"""Samples of a spline moved to the surface that it approximates, by Newton's method.
+
+The samples of a spline at prescribed normals are close to those of the surface. Newton's method for
+n·x_u = n·x_v = 0 leads from one to the other, where the surface is neither parabolic nor singular.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.threads import over_ranges
+from ..base.tolerances import NORMAL_ERROR, NORMAL_NOISE
+from ..kernels.refine import (
+    CLAMPED,
+    FOUND,
+    FREE,
+    NOT_FOUND,
+    PERIODIC,
+    Box,
+    Rows,
+    Target,
+    begin,
+    evaluate_jets,
+    newton,
+)
+from ..spline.spline import Spline
+from ..surface.surface import Surface
+from .pole_charts import PoleChart, pole_charts
+
+__all__ = ["evaluate_on_surface", "refine"]
+
+Array = NDArray[np.float64]
+Numbers = NDArray[np.int64]
+Jets = Callable[[Array, Array], Array]
+
+ROWS_AT_A_TIME = 4096
+# When this part of some rows is left, which need more steps than the others, they are left for the
+# end, when there are more of their kind.
+FEW = 1 / 32
+MOST_STEPS = 32
+
+
+@dataclass(frozen=True, eq=False)
+class Parameters:
+    """Two parameters of a surface: the 2-jets, and what happens at the ends of the parameters.
+
+    `size` times the surface has cells of about the size 1. The angle of normals may not get smaller
+    than `noise`, because of rounding.
+    """
+
+    jets: Jets
+    box: Box
+    size: float
+    noise: float
+
+    @classmethod
+    def of_domain(cls, surface: Surface, spline: Spline) -> Parameters:
+        """Return the parameters u and v."""
+        (u0, u1), (v0, v1) = surface.domain
+        along_u, along_v = (
+            PERIODIC if ends[0] == "periodic" else CLAMPED for ends in spline.boundary
+        )
+        _, _, du, dv = spline.frame.tolist()
+        box = Box((u0, u1, v0, v1), (along_u, along_v), (du, dv))
+        return cls(surface.jets, box, spline.scale, max(NORMAL_NOISE, spline.noise))
+
+    @classmethod
+    def of_chart(cls, chart: PoleChart, spline: Spline) -> Parameters:
+        """Return s and t of a chart at a pole; they have no ends, but the rounding of u and v."""
+        largest = max(abs(chart.end), abs(chart.other))
+        ends = (-largest, largest, -largest, largest)
+        box = Box(ends, (FREE, FREE), (chart.cell, chart.cell))
+        return cls(chart.jets, box, spline.scale, max(NORMAL_NOISE, spline.noise))
+
+    def solve(self, target: Target, numbers: Numbers, few: int) -> Numbers:
+        """Move rows from target.uv on; return the numbers of the last ones, at most `few`."""
+        count, rows = len(numbers), Rows.new(numbers)
+        begin(target.uv, count, rows, self.box)
+        for _ in range(MOST_STEPS):
+            if count <= few:
+                return numbers[:count]
+            jets = self.jets(rows.place[0, :count], rows.place[1, :count])
+            count = newton(
+                jets, count, rows, target, self.box, self.size, NORMAL_ERROR**2, self.noise**2
+            )
+        return numbers[:0]
+
+
+def refine(surface: Surface, spline: Spline, target: Target, threads: int | None = None) -> None:
+    """Move samples of a spline at unit normals to the surface.
+
+    Overwrites the parameters, points and curvatures where the normal of the surface has become the
+    prescribed one, up to NORMAL_ERROR, and K has its sign of target.signs. Elsewhere they stay
+    those of the spline: at parabolic and singular points, and where the place of the normal is
+    outside the domain or farther than three cells away. Next to a pole K may change its sign, since
+    the spline has folds there. target.state is overwritten everywhere.
+    """
+    target.state[:] = NOT_FOUND
+    charts = pole_charts(surface, spline)
+    next_to_poles = _refine_away(surface, spline, charts, target, threads)
+    for chart, rows in zip(charts, next_to_poles, strict=True):
+        _refine_at_pole(chart, Parameters.of_chart(chart, spline), target, rows, threads)
+
+
+def _refine_away(
+    surface: Surface,
+    spline: Spline,
+    charts: list[PoleChart],
+    target: Target,
+    threads: int | None,
+) -> list[Numbers]:
+    """Move the samples that are not next to a pole; return the others, for each chart."""
+    domain = Parameters.of_domain(surface, spline)
+
+    def work(first: int, last: int) -> tuple[Numbers, list[Numbers]]:
+        part = Target._make(x[first:last] for x in target)
+        at_poles = [np.flatnonzero(x.near(part.uv)) for x in charts]
+        numbers = np.arange(last - first)
+        if charts:
+            numbers = np.delete(numbers, np.concatenate(at_poles))
+        left = domain.solve(part, numbers, int(len(numbers) * FEW))
+        return first + left, [first + x for x in at_poles]
+
+    none = np.empty(0, np.int64)
+    results = [(none, [none for _ in charts])]
+    results += over_ranges(work, len(target.uv), ROWS_AT_A_TIME, threads)
+    _finish(domain, target, np.concatenate([x for x, _ in results]), threads)
+    return [np.concatenate([x[k] for _, x in results]) for k in range(len(charts))]
+
+
+def _finish(parameters: Parameters, target: Target, numbers: Numbers, threads: int | None) -> None:
+    """Move the rows that are left over."""
+
+    def work(first: int, last: int) -> None:
+        rows = numbers[first:last]
+        part = Target._make(x[rows] for x in target)
+        parameters.solve(part, np.arange(len(rows)), 0)
+        _put(target, rows, part)
+
+    for _ in over_ranges(work, len(numbers), ROWS_AT_A_TIME, threads):
+        pass
+
+
+def _refine_at_pole(
+    chart: PoleChart, parameters: Parameters, target: Target, numbers: Numbers, threads: int | None
+) -> None:
+    """Move rows next to a pole in its chart, whatever the sign of K."""
+
+    def work(first: int, last: int) -> None:
+        rows = numbers[first:last]
+        part = Target._make(x[rows] for x in target)
+        part.normals[:] *= chart.orientation
+        part.signs[:] = 0.0
+        part.uv[:] = chart.places(part.uv)
+        parameters.solve(part, np.arange(len(rows)), 0)
+        part.uv[:] = chart.parameters(part.uv)
+        part.mean[:] *= chart.orientation
+        _put(target, rows, part)
+
+    for _ in over_ranges(work, len(numbers), ROWS_AT_A_TIME, threads):
+        pass
+
+
+def _put(target: Target, rows: Numbers, part: Target) -> None:
+    """Write what was found into the arrays of all samples."""
+    target.state[rows] = part.state
+    found = part.state == FOUND
+    for array, values in zip(target[2:-1], part[2:-1], strict=True):
+        array[rows[found]] = values[found]
+
+
+def evaluate_on_surface(
+    surface: Surface, spline: Spline, uv: Array, threads: int | None = None
+) -> tuple[Array, Array, Array, Array]:
+    """Return points (k, 3), unit normals (k, 3), K (k,) and H (k,) at parameters (k, 2).
+
+    Normals and curvatures are 0 at singular points that are no poles.
+    """
+    count = len(uv)
+    points, normals = np.empty((count, 3)), np.empty((count, 3))
+    gaussian, mean = np.empty(count), np.empty(count)
+    charts = pole_charts(surface, spline)
+
+    def work(first: int, last: int) -> None:
+        part = slice(first, last)
+        jets = surface.jets(uv[part, 0].copy(), uv[part, 1].copy())
+        points[part] = jets[:, 0]
+        scales = np.array([spline.scale, *spline.frame[2:]])
+        evaluate_jets(jets, scales, normals[part], gaussian[part], mean[part])
+        for chart in charts:
+            rows = first + np.flatnonzero(chart.next_to(uv[part]))
+            if len(rows):
+                _evaluate_at_pole(chart, spline.scale, uv, rows, normals, gaussian, mean)
+
+    for _ in over_ranges(work, count, ROWS_AT_A_TIME, threads):
+        pass
+    return points, normals, gaussian, mean
+
+
+def _evaluate_at_pole(
+    chart: PoleChart,
+    size: float,
+    uv: Array,
+    rows: Numbers,
+    normals: Array,
+    gaussian: Array,
+    mean: Array,
+) -> None:
+    """Write normals and curvatures of rows next to a pole."""
+    s, t = chart.places(uv[rows]).T.copy()
+    n, K, H = np.empty((len(rows), 3)), np.empty(len(rows)), np.empty(len(rows))
+    evaluate_jets(chart.jets(s, t), np.array([size, chart.cell, chart.cell]), n, K, H)
+    normals[rows], gaussian[rows], mean[rows] = n * chart.orientation, K, H * chart.orientation

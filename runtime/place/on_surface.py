@@ -1,0 +1,364 @@
+"""A surface as what is sampled: samples are moved to it from its spline."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from ...generated.patch import NODE
+from ...generated.spline import SCALE
+from ..base.checks import known_name
+from ..base.errors import InputError
+from ..base.threads import over_ranges
+from ..fitting.fit import spline_of
+from ..kernels import nodes as kernels
+from ..kernels.forms import forms_of_jets
+from ..kernels.sizing import TargetDensity
+from ..samples.fields import FLAG_NAMES
+from ..samples.report import PLACES
+from ..search.bins import NormalBins
+from ..search.search import Hits
+from ..spline.developable import CellMeasure
+from ..spline.inside import count_of, parameters_of, samples_inside
+from ..spline.spline import Spline
+from ..surface.derivatives import Differentiable
+from ..surface.surface import Surface
+from ..surface.surfaces import named
+from .moved_samples import CONTRARY, as_fields, moved_samples, part_of
+from .newton import evaluate_on_surface
+from .on_spline import Array, Fields, FieldsOfSamples, OnSpline
+from .pole_charts import PoleChart, pole_charts
+from .repeats import kept_once
+
+if TYPE_CHECKING:
+    from .triangles import Triangles
+
+__all__ = ["OnSurface", "checked_place", "geometry_of", "place_of_samples"]
+
+AT_A_TIME, POINTS_AT_A_TIME = 1 << 12, 1 << 16
+# The places of the nodes of a patch at which target densities are integrated, see `sizing`.
+NODES = np.array([
+    [1.0 - 2.0 * NODE, NODE], [NODE, 1.0 - 2.0 * NODE], [NODE, NODE], [1.0 / 3.0, 1.0 / 3.0],
+])  # fmt: skip
+# The corners of triangles, moved inwards by this part: the surface may be singular in one, at a
+# pole. Angles to the corners are made larger by LARGER for that.
+INWARDS, LARGER = 2.0**-8, 1.0 + 2.0**-6
+# Corners are looked at where the normals of surface and spline are farther apart than this part of
+# what those of a triangle vary by.
+AWAY = 0.25
+
+
+def place_of_samples(surface: object, on: str | None) -> str:
+    """Return "surface" or "spline": where samples of a surface are to lie.
+
+    Raises UnknownNameError for another place, InputError if it is the surface and cannot be.
+    """
+    known = isinstance(surface, Surface) and surface.evaluable
+    if checked_place(on) is None:
+        return "surface" if known else "spline"
+    if on == "surface" and not known:
+        if isinstance(surface, Surface):
+            raise InputError(
+                f'on="surface" needs a surface that can be evaluated everywhere, and '
+                f"{surface.name!r} was given by points; its spline is all there is: leave out on=…."
+            )
+        if isinstance(surface, Spline):
+            raise InputError(
+                f'on="surface" needs the surface, not its spline: sample the Surface of which '
+                f"{surface.name!r} is a spline, with cells={surface.cells}."
+            )
+    return str(on)
+
+
+def checked_place(on: str | None) -> str | None:
+    """Return "surface", "spline" or None; UnknownNameError otherwise."""
+    return None if on is None else known_name(on, PLACES, "place of samples")
+
+
+def geometry_of(
+    surface: Surface | Spline | str,
+    cells: Sequence[int] | None,
+    dtype: DTypeLike,
+    on: str | None,
+    threads: int | None,
+    memory: Mapping[str, NDArray[Any]] = MappingProxyType({}),
+) -> OnSpline:
+    """Return what is sampled. Raises what `place_of_samples` and `spline_of` raise.
+
+    Samples of splines at normals are written to the fields in `memory`.
+    """
+    surface = named(surface)
+    place = place_of_samples(surface, on)
+    spline = spline_of(surface, cells, dtype)
+    if place == "surface" and isinstance(surface, Surface):
+        if surface.boundary != spline.boundary:  # poles that the fit has found
+            surface = replace(surface, boundary=spline.boundary)
+        return OnSurface(spline, threads, surface)
+    return OnSpline(spline, threads, memory=memory)
+
+
+@dataclass(frozen=True, eq=False)
+class OnSurface(OnSpline):
+    """A surface as what is sampled, and its spline, on which samples are searched."""
+
+    on: ClassVar[str] = "surface"
+
+    _at_nodes: dict[TargetDensity, Array] = field(default_factory=dict, repr=False)
+
+    @property
+    def distance(self) -> float:
+        """How far the points of the surface are from those of the spline, at most: measured."""
+        return 0.0 if self.misfit is None else self.misfit.distance
+
+    @cached_property
+    def measure(self) -> tuple[Array, Array]:
+        """Areas and signed solid angles of the patches, as `Spline.measure`.
+
+        The solid angle is that of the cell, in equal parts: K at its Gauss points.
+        """
+        areas, inside = self.spline.measure[0], self.spline.inside
+        nodes = self.nodes.reshape(-1, 4, 6)
+        solid_angles = np.repeat((nodes[..., 3] * nodes[..., 5]).sum(axis=1) / 16.0, 4)
+        return areas, solid_angles if inside is None else solid_angles * inside.shares
+
+    @cached_property
+    def _cell_measure(self) -> CellMeasure:
+        """The same of the cells."""
+        return CellMeasure.of(self.measure, self.spline.cells)
+
+    @cached_property
+    def nodes(self) -> Array:
+        """Unit normal, K, H and area element (4 cells, 6) at the Gauss points of the cells.
+
+        Lengths are scaled as in splines. Where the surface is singular, all of them are 0.
+        """
+        count = self.patches
+        nodes, columns = np.empty((count, 6)), self.cells[1]
+        ends = 0.5 + kernels.GAUSS * np.array([-0.5, 0.5])
+        u0, v0, du, dv = self.spline.frame
+
+        def work(first: int, last: int) -> None:
+            cell, node = np.divmod(np.arange(first, last), 4)
+            u = u0 + du * (cell // columns + ends[node // 2])
+            v = v0 + dv * (cell % columns + ends[node % 2])
+            jets = self._jets(u, v)
+            kernels.evaluate_nodes(jets, self._size, self.spline.frame, first, nodes)
+
+        self._in_parts(work, count)
+        return nodes
+
+    # --- samples at normals -----------------------------------------------------------------------
+
+    def at_hits(
+        self, bins: NormalBins, hits: Hits, fields: Sequence[str], dtype: DTypeLike
+    ) -> FieldsOfSamples:
+        """Return the samples at hits, with the fields that are requested.
+
+        Those that meet are one.
+        """
+        arrays = self._moved(bins, hits)
+        return as_fields(part_of(arrays, self._kept_once(arrays)), fields, dtype)
+
+    def at_hits_in_turn(
+        self,
+        bins: NormalBins,
+        groups: Iterator[Hits],
+        fields: Sequence[str],
+        dtype: DTypeLike,
+        size: int,
+    ) -> Iterator[FieldsOfSamples]:
+        """Yield the samples at groups of at most `size` hits, which are all of these normals.
+
+        Those next to poles come last: several of them, in different groups, may be one. Those that
+        meet elsewhere, which happens on coarse splines only, are not looked for.
+        """
+        held: list[Fields] = []
+        for hits in groups:
+            arrays = self._moved(bins, hits)
+            at_poles = self._at_poles(arrays)
+            if at_poles.any():
+                held.append(part_of(arrays, at_poles))
+                arrays = part_of(arrays, ~at_poles)
+            yield as_fields(arrays, fields, dtype)
+        if held:
+            arrays = {x: np.concatenate([part[x] for part in held]) for x in held[0]}
+            arrays = part_of(arrays, self._kept_once(arrays))
+            for first in range(0, count_of(arrays), size):
+                part = {name: x[first : first + size] for name, x in arrays.items()}
+                yield as_fields(part, fields, dtype)
+
+    def _moved(self, bins: NormalBins, hits: Hits) -> Fields:
+        """Return all fields but the support of the samples at hits, those inside the trim."""
+        assert self.surface is not None
+        arrays = moved_samples(self.surface, self.spline, bins, hits, self.threads)
+        return samples_inside(self.spline, arrays, tuple(arrays))
+
+    def _at_poles(self, arrays: Fields) -> NDArray[np.bool_]:
+        """Return which samples are next to a pole."""
+        at_poles = [chart.near(arrays["uv"]) for chart in self._charts]
+        return np.logical_or.reduce([np.zeros(len(arrays["uv"]), dtype=bool), *at_poles])
+
+    def _kept_once(self, arrays: Fields) -> NDArray[np.bool_]:
+        """Return which samples do not repeat another one."""
+        return kept_once(
+            arrays["points"], arrays["gaussian_curvature"], arrays["normal_index"],
+            arrays[FLAG_NAMES[0]], arrays[CONTRARY], self._at_poles(arrays),
+            1.0 / self.spline.scale,
+        )  # fmt: skip
+
+    @cached_property
+    def _charts(self) -> list[PoleChart]:
+        assert self.surface is not None
+        return pole_charts(self.surface, self.spline)
+
+    # --- samples that fill gaps -------------------------------------------------------------------
+
+    def densities(self, target: TargetDensity, radii: Array, densities: Array) -> Array:
+        """Return the target densities (patches, 4), without the floor, at the nodes of patches."""
+        found, at_nodes = np.empty_like(densities), np.empty((self.patches // 4, 4))
+        kernels.densities_at_nodes(self.nodes, radii, target, at_nodes)
+        self._at_nodes[target] = at_nodes
+        kernels.densities_on_patches(self.cells[1], at_nodes, NODES, found)
+        return found
+
+    def as_candidates(self, triangles: Triangles, rows: Array) -> Array:
+        """Return the rows (M, 8) of `Triangles.at_places`, from those of the spline.
+
+        Points are those of the surface; normals and densities are interpolated between the nodes
+        of cells.
+        """
+        spline, target = self.spline, triangles.sizing.target
+        at_nodes = self._at_nodes[target._replace(floor=0.0)]
+
+        def work(first: int, last: int) -> None:
+            part, here = triangles[first:last], rows[first:last]
+            places = part.uv
+            points = self._points(parameters_of(spline, part.patches, places))
+            here[:, :3] = (points - spline.coefficients[0, 0]) * self._size
+            kernels.interpolate(
+                self.cells[1], self.nodes, at_nodes, target.floor, part.patches, places, here
+            )
+
+        if self._knows_threads:
+            self._in_parts(work, len(triangles))
+        else:
+            for first in range(0, len(triangles), POINTS_AT_A_TIME):
+                work(first, first + POINTS_AT_A_TIME)
+        return rows
+
+    def as_samples(self, triangles: Triangles) -> Array:
+        """Return the rows (M, 12) of candidates that have become samples.
+
+        The last columns are the point, without a scale, and H; the target density is left out, NaN.
+        Where the surface is singular, the last columns are NaN, and the others those of candidates.
+        """
+        points, normals, K, H = self._evaluated(triangles.patches, triangles.uv)
+        rows = np.full((len(triangles), 12), np.nan)
+        rows[:, :3] = (points - self.spline.coefficients[0, 0]) * self._size
+        rows[:, 3:6], rows[:, 7], rows[:, 8:11], rows[:, 11] = normals, K, points, H
+        singular: NDArray[np.bool_] = ~np.any(normals, axis=1)
+        if singular.any():
+            rows[singular, :8], rows[singular, 8:] = triangles[singular].at_places(), np.nan
+        return rows
+
+    def normal_chords(self, triangles: Triangles, rows: Array) -> Array:
+        """Return how far normals of triangles (M,) are from those of their rows; 2 if unknown.
+
+        The normals are taken from the spline, as far away as those at the place of the triangle
+        are. Where that is too much, next to poles for example, they are those at the corners.
+        """
+        away = np.linalg.norm(triangles.on_spline()[:, 3:6] - rows[:, 3:6], axis=1)
+        chords = triangles.normal_chords(rows)
+        far = (away > AWAY * chords) | (chords >= 2.0)
+        chords += away
+        if far.any():
+            chords[far] = self._chords_to_corners(triangles[far], rows[far])
+        return np.minimum(chords, 2.0)
+
+    def _chords_to_corners(self, triangles: Triangles, rows: Array) -> Array:
+        longest = np.zeros(len(triangles))
+        for weights in (1.0 - INWARDS) * np.eye(3) + INWARDS / 3.0:
+            places = np.einsum("k,ikx->ix", weights, triangles.corners)
+            normals = self._evaluated(triangles.patches, places)[1]
+            chords = np.linalg.norm(normals - rows[:, 3:6], axis=1)
+            longest = np.maximum(longest, np.where(normals.any(axis=1), LARGER * chords, 2.0))
+        return longest
+
+    def at_places(
+        self,
+        triangles: Triangles,
+        normals: Array,
+        K: Array,
+        exact: Array | None,
+        fields: Sequence[str],
+        dtype: DTypeLike,
+    ) -> FieldsOfSamples:
+        """Return the samples at the places of triangles; see `as_samples`."""
+        arrays = super().at_places(triangles, normals, K, exact, fields, dtype).fields
+        points, H = np.split(np.empty((0, 4)) if exact is None else exact, [3], axis=1)
+        there: NDArray[np.bool_] = ~np.isnan(H[:, 0])
+        moved = {
+            "uv": parameters_of(self.spline, triangles.patches, triangles.uv),
+            "points": points,
+            "normals": normals,
+            "support": np.einsum("ij,ij->i", points, normals),
+            "gaussian_curvature": K,
+            "mean_curvature": H[:, 0],
+        }
+        for name in set(arrays) & set(moved):
+            arrays[name][there] = moved[name][there]
+        flags: Fields = {name: there for name in FLAG_NAMES if name in fields}
+        return FieldsOfSamples(arrays | flags, int(np.count_nonzero(~there)))
+
+    def forms(self, cells: Array) -> Array:
+        """Return the fundamental forms (k, 7) at places (k, 2) in cells; see `forms_of_jets`."""
+        found, frame = np.empty((len(cells), 7)), self.spline.frame
+        scales = np.array([self._size, *frame[2:]])
+        u, v = (frame[:2] + frame[2:] * cells).T.copy()
+
+        def work(first: int, last: int) -> None:
+            forms_of_jets(self._jets(u[first:last], v[first:last]), scales, found[first:last])
+
+        self._in_parts(work, len(cells))
+        return found
+
+    # --- evaluation -------------------------------------------------------------------------------
+
+    @property
+    def _size(self) -> float:
+        """The scaled length of a length 1 of the surface."""
+        return SCALE * self.spline.scale
+
+    def _jets(self, u: Array, v: Array) -> Array:
+        """Return the 2-jets (k, 6, 3) of the surface."""
+        assert self.surface is not None
+        return self.surface.jets(u, v)
+
+    @property
+    def _knows_threads(self) -> bool:
+        """Whether several threads may call the function of the surface: not that of a user."""
+        function = None if self.surface is None else self.surface.function
+        return isinstance(function, Differentiable) and function.differentiable
+
+    def _points(self, uv: Array) -> Array:
+        """Return the points (k, 3) of the surface."""
+        assert self.surface is not None
+        return self.surface.evaluate(*uv.T)
+
+    def _evaluated(
+        self, patches: NDArray[np.int64], places: Array
+    ) -> tuple[Array, Array, Array, Array]:
+        """Return points, normals, K and H at places (M, 2) of patches (M,)."""
+        assert self.surface is not None
+        uv = parameters_of(self.spline, patches, places)
+        return evaluate_on_surface(self.surface, self.spline, uv, self.threads)
+
+    def _in_parts(self, work: Callable[[int, int], None], count: int) -> None:
+        for _ in over_ranges(work, count, AT_A_TIME, self.threads):
+            pass

@@ -1,1 +1,0 @@
-"""Points of a surface near those of its spline: Newton's method, regular charts at poles."""

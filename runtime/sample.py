@@ -1,0 +1,303 @@
+"""`sample`: from a surface to its samples, in one call."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+from .base.checks import yes_or_no
+from .base.errors import InputError, in_memory, shown
+from .base.georeference import warn_of_rounding
+from .base.memory import check_memory
+from .base.progress import busy
+from .density.chosen_normals import choose
+from .density.filling import filled_samples
+from .density.grid import without_lines
+from .density.law import Law
+from .density.on_pieces import cells_of_piece, pieces_to_sample, sample_pieces
+from .place.on_spline import OnSpline
+from .place.on_surface import checked_place, geometry_of, place_of_samples
+from .samples.fields import COLUMNS, checked_dtype, checked_fields, dtype_of
+from .samples.report import sampling_report, warn_of
+from .samples.request import ON_GRIDS, Request, checked_request
+from .samples.samples import Samples
+from .samples.whole import Whole
+from .search.bins import NormalBins
+from .search.search import find
+from .spline.spline import Spline
+from .surface.surface import Surface
+from .surface.surfaces import named
+
+__all__ = ["sample", "sample_and_normals"]
+
+
+def sample(
+    surface: Surface | Spline | Whole | str,
+    count: int | None = None,
+    *,
+    normals: ArrayLike | None = None,
+    angle: float | None = None,
+    coverage: float | None = None,
+    density: str | float | None = None,
+    relax: int = 0,
+    cells: Sequence[int] | None = None,
+    on: str | None = None,
+    fields: Sequence[str] | None = None,
+    dtype: DTypeLike = np.float64,
+    threads: int | None = None,
+    progress: bool = False,
+    edges: bool = False,
+    out: Samples | None = None,
+) -> Samples:
+    """Return points of a surface with their normals, dense where it is curved.
+
+    The number of samples follows from one of `count`, `normals`, `angle` and `coverage`; the
+    surface is first approximated by a spline (see `fit`).
+
+    Parameters
+    ----------
+    surface : Surface, Spline, Part or str
+        The surface, or its name in the catalogue (see `gaussmap.surfaces`). A spline is taken as it
+        is. Of a NURBS with lines where its normal turns the pieces are sampled, with one target
+        density for all (see `Surface.pieces`); then `spline` of the samples is None. Of a CAD part
+        (see `read_part`) all faces are sampled as one surface, see Notes.
+    count : int, optional
+        The number of samples. It is met exactly, but for ``density="gauss"``: within 2 % (or 5
+        samples) where the Gaussian image is resolved.
+    normals : (S, 3) array_like, optional
+        Directions of any length but 0, such as ``icosphere(32)``: every point that has one of these
+        normals, each exactly once.
+    angle : float, optional
+        The largest angle, in degrees and at most 90, between the normal of any point of the surface
+        and that of the sample nearest in normal. Next to singular points of the spline, such as
+        cusps, it holds as far as triangles of a thousandth of a patch resolve them. Not with
+        ``density="gauss"``: next to open borders, normals alone leave up to half as much again.
+    coverage : float, optional
+        The largest distance, in the unit L of the surface, from any point of it to the nearest
+        sample. Alone, or beside one of the others.
+    density : {"gauss", "balanced", "isotropic", "aligned", "uniform"} or float, optional
+        The target density. "gauss", the default with `normals` alone: |K|, from normals alone
+        (paper, Sect. 4.2); developable regions get no samples. "balanced", the default otherwise:
+        the same from fewer normals, and samples that fill the gaps, so that no point is farther
+        from a sample than r/κ, nor than r/√λ (see Notes); or "aligned", if it is clearly better at
+        20,000 places; the report says which. "isotropic": "balanced" that is never aligned.
+        "aligned": on a grid of lines u = const and v = const, spaced by how fast the normal turns
+        along them, for `count`, `angle` and `coverage`: fewer samples for the same angles where
+        parameters run along lines of curvature. "uniform": the same everywhere, for `count` or
+        `coverage`. A number α, 0 < α ≤ 8: |K|^α, for `count`; uniform where the curvature is below
+        the error of the spline.
+    relax : int, default 0
+        Steps, at most 10, that move the samples that fill gaps to better places. Two or three are
+        enough; they take 20 to 40 times as long as the sampling and 30 kB of memory for each sample
+        instead of 2 kB.
+    cells : (int, int), optional
+        The numbers of cells of the spline along u and v, see `fit`. Pieces of a surface share them,
+        in proportion to their parameters.
+    on : {"surface", "spline"}, optional
+        Where samples are to lie. "surface": on the surface itself. A sample at a prescribed normal
+        is moved from the spline by Newton's method to the point whose normal is the prescribed one;
+        where there is none near by, it stays on the spline and is marked, see `Samples.on_surface`.
+        Others are evaluated at their parameters. "spline": on the spline. By default on the
+        surface, unless it is given by points or as a spline.
+    fields : sequence of str, optional
+        The arrays of `Samples` that are computed and stored, such as ``("points", "normals")``; all
+        by default.
+    dtype : dtype_like, default numpy.float64
+        With numpy.float32, all numbers but the indices are rounded when they are stored; they are
+        computed in float64.
+    threads : int, optional
+        The number of threads, by default one for each core. The samples do not depend on it.
+    progress : bool, default False
+        Show on a terminal what is done, from a second on.
+    edges : bool, default False
+        Of a CAD part: add samples on its sharp edges, where the normals of two faces differ by more
+        than 1°. They come last and in addition: the others, and the count, angle and coverage that
+        these meet, stay the same. See Notes.
+    out : Samples, optional
+        Samples of an earlier call that are no longer needed: their memory is used again for samples
+        of a spline at normals, where it is large enough. That is faster for millions of samples,
+        since the system clears new memory. What is read from `out` afterwards, and from other
+        samples with the same arrays, is not defined.
+
+    Returns
+    -------
+    Samples
+        The samples at normals, by patch and then by normal, and after them those that fill gaps:
+        their `kind` is "filling" and their `normal_index` −1. Those on a grid, of `kind` "grid",
+        come first. The report gives the angle and the
+        coverage that were reached, if they were asked for.
+
+    Raises
+    ------
+    InputError
+        For unusable arguments, and too little memory.
+    UnknownNameError
+        For an unknown surface, field or density.
+    SurfaceError
+        If the surface cannot be evaluated, or has no area.
+
+    Warns
+    -----
+    GaussmapWarning
+        If developable regions get no samples, or if `count` or `coverage` cannot be met.
+
+    See Also
+    --------
+    sample_many : the samples of several surfaces.
+    sample_stream : samples in chunks, in bounded memory.
+    Samples.coverage : the coverage of any samples.
+
+    Notes
+    -----
+    For ``density="balanced"``, κ is the larger principal curvature: neighbouring normals differ by
+    about r, twice the angle. λ is half the mean of κ², or follows from `coverage`.
+
+    All faces of a part have one target density, and one count; angle and coverage hold for the part
+    as a whole. λ is three times the mean of κ² there, 5 % of a count go where normals are farthest
+    from those of all samples, and every face has a sample if there are twice as many samples as
+    faces. `density` is "balanced", "uniform", a number, or "gauss" with `normals`; `cells` and `on`
+    are not for parts.
+
+    Samples on edges have the `kind` "edge" and the normals of both faces, `normals` and
+    `other_normals`. They are on both faces exactly, or, where the faces of the file do not meet, on
+    the first one and as near to the other as in the file. However few samples there are, each edge
+    has some at both ends and one or more in between, such that the normals of neither face turn by
+    more than between neighbours elsewhere, about, and gaps are no wider than in flat regions. A
+    corner has one sample, with the normals of the edge that is sharpest there. Borders of open
+    shells have one face only, and are no edges. `Samples.weights` are 0 on edges.
+
+    The samples of a spline at a normal have Σ sign K = χ/2, for every normal of every closed
+    surface, those at poles included; χ is the Euler characteristic.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> samples = gm.sample("torus", 500)
+    >>> samples.points.shape
+    (500, 3)
+    >>> torus = gm.surfaces.torus(major=1.0, minor=0.35)
+    >>> gm.sample(torus, normals=[[1, 0, 0], [0, 1, 1]]).normal_index.tolist().count(1)
+    2
+    >>> spline = gm.fit(torus)
+    >>> samples = gm.sample(spline, normals=gm.icosphere(20))
+    >>> again = gm.sample(spline, normals=gm.icosphere(20), out=samples)
+    >>> again.points.base is samples.points
+    True
+    >>> from gaussmap.tools.cad.examples import box
+    >>> samples = gm.sample(box(), 60, edges=True)
+    >>> len(samples), samples.report.edge_samples, int((samples.kind == "edge").sum())
+    (100, 40, 40)
+
+    """
+    request = checked_request(normals, count, angle, coverage, density, relax, threads)
+    with busy("sampling", progress):
+        return sample_and_normals(
+            surface,
+            request,
+            cells=cells,
+            on=on,
+            fields=fields,
+            dtype=dtype,
+            threads=threads,
+            progress=progress,
+            edges=edges,
+            out=out,
+        )[0]
+
+
+@in_memory
+def sample_and_normals(
+    surface: Surface | Spline | Whole | str,
+    request: Request,
+    *,
+    cells: Sequence[int] | None,
+    threads: int | None,
+    progress: bool,
+    fields: Sequence[str] | None = None,
+    dtype: DTypeLike = np.float64,
+    on: str | None = None,
+    edges: bool = False,
+    out: Samples | None = None,
+) -> tuple[Samples, NDArray[np.float64]]:
+    """Return what `sample` returns, and the unit normals that were asked."""
+    edges = yes_or_no(edges, "edges")
+    if not isinstance(out, Samples | None):
+        raise InputError(f"out must be Samples of an earlier call, not {shown(out)}.")
+    if isinstance(surface, Whole):
+        return _of_whole(surface, request, cells, on, fields, dtype, threads, progress, edges)
+    if edges:
+        raise InputError("edges=True is for CAD parts; other surfaces have no sharp edges.")
+    surface, number = named(surface), checked_dtype(dtype)
+    wanted = checked_fields(
+        fields, place_of_samples(surface, on) == "surface", grid=request.density in ON_GRIDS
+    )
+    filled = request.density != "gauss"
+    memory = {} if out is None else out.arrays()
+    if request.count is not None:
+        row = sum(len(COLUMNS[name]) * dtype_of(name, number).itemsize for name in wanted)
+        check_memory(request.count * row, f"{request.count:,} samples")
+
+    def sampled(
+        geometry: OnSpline, request: Request, floor: float | None = None
+    ) -> tuple[Samples, NDArray[np.float64]]:
+        arguments = geometry, request, wanted, number, progress if floor is None else False
+        return filled_samples(*arguments, floor) if filled else _by_normals(*arguments)
+
+    def geometry(part: Surface | Spline | str, cells: Sequence[int] | None) -> OnSpline:
+        return geometry_of(part, cells, number, on, threads, memory)
+
+    if isinstance(surface, Surface) and (pieces := pieces_to_sample(surface)):
+        parts = [geometry(x, cells_of_piece(surface, x, cells)) for x in pieces]
+        samples, normals = sample_pieces(surface, Law(parts, request), sampled, progress)
+    else:
+        samples, normals = sampled(geometry(surface, cells), request)
+    if fields is None:
+        samples = without_lines(samples)
+    warn_of(samples.report, request.count, 5, coverage=request.coverage, filled=filled)
+    if number == np.float32 and samples.report.origin is not None and "points" in wanted:
+        warn_of_rounding(samples.points, 5)
+    return samples, normals
+
+
+def _of_whole(
+    part: Whole,
+    request: Request,
+    cells: Sequence[int] | None,
+    on: str | None,
+    fields: Sequence[str] | None,
+    dtype: DTypeLike,
+    threads: int | None,
+    progress: bool,
+    edges: bool,
+) -> tuple[Samples, NDArray[np.float64]]:
+    """Return the samples of a CAD part; InputError for what it does not have."""
+    number, wanted = checked_dtype(dtype), checked_fields(fields, True, part=True, edges=edges)
+    if cells is not None:
+        raise InputError("cells=... are for splines; the faces of a part need none.")
+    if checked_place(on) == "spline":
+        raise InputError('on="spline" is for surfaces; samples of a part lie on its faces.')
+    samples, searched = part.sampled(request, wanted, number, threads, progress, edges)
+    filled = request.density != "gauss"
+    warn_of(samples.report, request.count, 6, coverage=request.coverage, filled=filled)
+    return samples, searched
+
+
+def _by_normals(
+    geometry: OnSpline,
+    request: Request,
+    fields: tuple[str, ...],
+    dtype: np.dtype[np.floating],
+    progress: bool,
+) -> tuple[Samples, NDArray[np.float64]]:
+    """Return the points that have the normals that are asked, and these."""
+    chosen, threads = choose(geometry, request.normals_or_count, progress), geometry.threads
+    bins, hits = chosen.found or (NormalBins(chosen.part(0, len(chosen), threads), threads), None)
+    if hits is None:
+        hits = find(geometry.spline, bins, threads, progress)
+    found = geometry.at_hits(bins, hits, fields, dtype)
+    report = sampling_report(
+        geometry, len(bins.normals), found.number, chosen.density, hits.developable, found.fields
+    )
+    return geometry.samples(found.fields, report, found.unrefined), bins.normals

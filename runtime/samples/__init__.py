@@ -1,0 +1,1 @@
+"""Samples: their fields, their report, and what they lie on."""

@@ -1,0 +1,287 @@
+"""The arrays of samples: fields, types, shapes, and rows."""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..base.checks import checked_array, checked_rows
+from ..base.errors import InputError, MissingFieldError
+from ..spline.spline import Spline
+from ..surface.surface import Surface
+from .fields import COLUMNS, DERIVED, OPTIONAL_NAMES, REAL_NAMES, dtype_of, row_shape
+from .kinds import is_parabolic
+from .offset_of import OffsetOf
+from .report import SamplingReport, common_report
+from .whole import Whole
+
+__all__ = ["SampleArrays"]
+
+# What a field is set to that was not asked for; reading it raises MissingFieldError.
+_NOT_ASKED: Any = None
+
+
+@dataclass(frozen=True, eq=False, slots=True, repr=False)
+class SampleArrays:
+    """The data of `Samples`, which documents them."""
+
+    points: NDArray[np.float64] = _NOT_ASKED
+    normals: NDArray[np.float64] = _NOT_ASKED
+    uv: NDArray[np.float64] = _NOT_ASKED
+    support: NDArray[np.float64] = _NOT_ASKED
+    gaussian_curvature: NDArray[np.float64] = _NOT_ASKED
+    mean_curvature: NDArray[np.float64] = _NOT_ASKED
+    normal_index: NDArray[np.int64] = _NOT_ASKED
+    patch_index: NDArray[np.int64] = _NOT_ASKED
+    on_surface: NDArray[np.bool_] | None = None
+    row: NDArray[np.int64] | None = None
+    column: NDArray[np.int64] | None = None
+    face_index: NDArray[np.int64] | None = None
+    solid_index: NDArray[np.int64] | None = None
+    other_normals: NDArray[np.float64] | None = None
+    other_uv: NDArray[np.float64] | None = None
+    other_face_index: NDArray[np.int64] | None = None
+    report: SamplingReport = field(kw_only=True)
+    spline: Spline | None = field(default=None, kw_only=True)
+    surface: Surface | Whole | None = field(default=None, kw_only=True)
+    offset_of: OffsetOf | None = field(default=None, kw_only=True)
+
+    def __post_init__(self) -> None:
+        arrays = {name: getattr(self, name) for name in COLUMNS}
+        arrays = {name: array for name, array in arrays.items() if array is not None}
+        if not arrays:
+            raise InputError("samples need at least one array, such as points.")
+        count = (np.shape(next(iter(arrays.values()))) or (0,))[0]
+        floating = _common_dtype(arrays)
+        for name in COLUMNS:
+            if name in arrays:
+                shape, dtype = (count, *row_shape(name)), dtype_of(name, floating)
+                object.__setattr__(self, name, checked_array(name, arrays[name], shape, dtype))
+            elif name not in OPTIONAL_NAMES:
+                object.__delattr__(self, name)  # an empty slot, for which __getattr__ speaks
+        if not isinstance(self.report, SamplingReport):
+            raise InputError(f"report must be a SamplingReport, not {type(self.report).__name__}.")
+        if not isinstance(self.spline, Spline | None):
+            raise InputError(f"spline must be a Spline or None, not {type(self.spline).__name__}.")
+        if not isinstance(self.surface, Surface | Whole | None):
+            name = type(self.surface).__name__
+            raise InputError(f"surface must be a Surface or None, not {name}.")
+        if not isinstance(self.offset_of, OffsetOf | None):
+            name = type(self.offset_of).__name__
+            raise InputError(f"offset_of must be an OffsetOf or None, not {name}.")
+
+    def __getattr__(self, name: str) -> Any:  # noqa: ANN401
+        if name in COLUMNS or name in DERIVED:
+            needed = [x for x in DERIVED.get(name, (name,)) if x not in self.fields]
+            subject = "" if name in COLUMNS else f"{name} needs {' and '.join(needed)}, but "
+            raise MissingFieldError(
+                f"{subject}these samples hold {', '.join(self.fields)} only; "
+                f"add {' and '.join(repr(x) for x in needed)} to fields=... when sampling."
+            )
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        base = self.offset_of
+        if base is not None:
+            base = replace(base, surface=_if_it_pickles(base.surface))
+        spline = self.spline
+        if spline is not None and spline.trim is not None and not _pickles(spline.trim):
+            spline = None
+        state = self.arrays(), self.report, spline, _if_it_pickles(self.surface), base
+        return _rebuilt, (type(self), *state)
+
+    @classmethod
+    def concatenate(cls, parts: Iterable[Self]) -> Self:
+        """Join several parts into one, such as the chunks of a stream.
+
+        Parameters
+        ----------
+        parts : iterable of Samples
+            At least one; all with the same fields and dtype.
+
+        Returns
+        -------
+        Samples
+            The rows of all parts, in turn. The report counts all of them; entries that the reports
+            of the parts do not agree about are None. The spline, the surface and `offset_of` are
+            kept if all parts have the same.
+
+        Raises
+        ------
+        InputError
+            If there is no part, or if the parts have different fields or dtypes.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> chunks = gm.sample_stream("torus", 200, chunk=64, cells=(16, 16))
+        >>> len(gm.Samples.concatenate(chunks))
+        200
+
+        """
+        try:
+            pieces = list(parts)
+        except TypeError:
+            pieces = []
+        if not all(isinstance(part, cls) for part in pieces) or not pieces:
+            raise InputError("concatenate takes Samples, at least one.")
+        kinds = {(part.fields, part.dtype) for part in pieces}
+        if len(kinds) > 1:
+            raise InputError("these samples do not fit together: they have other fields or dtypes.")
+        arrays = {
+            name: np.concatenate([getattr(part, name) for part in pieces])
+            for name in pieces[0].fields
+        }
+        report = common_report([part.report for part in pieces], arrays)
+        same: dict[str, Any] = {
+            name: value if all(getattr(part, name) == value for part in pieces) else None
+            for name in ("spline", "surface", "offset_of")
+            for value in [getattr(pieces[0], name)]
+        }
+        return cls(**arrays, report=report, **same)
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Return the fields by their names.
+
+        Returns
+        -------
+        dict of str to array
+            The fields that the samples hold; not copies.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> samples = gm.sample("torus", 50, fields=("points", "uv"), cells=(16, 16))
+        >>> {name: array.shape for name, array in samples.arrays().items()}
+        {'points': (50, 3), 'uv': (50, 2)}
+
+        """
+        found: dict[str, NDArray[Any]] = {}
+        for name in COLUMNS:
+            with suppress(AttributeError):
+                # Past __getattr__, which asks here what there is.
+                array = object.__getattribute__(self, name)
+                if array is not None:
+                    found[name] = array
+        return found
+
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """The names of the arrays that the samples hold, a tuple of str."""
+        return tuple(self.arrays())
+
+    @property
+    def dtype(self) -> np.dtype[np.floating]:
+        """The type of all numbers except the indices: float64 or float32."""
+        return _common_dtype(self.arrays())
+
+    @property
+    def elliptic(self) -> NDArray[np.bool_]:
+        """(N,) bool array: where the Gaussian curvature is positive (its sign bit is clear).
+
+        Elliptic and hyperbolic samples are all samples. So Σ sign K = χ/2 holds for them, and the
+        parabolic ones are among them.
+        """
+        return ~self.hyperbolic
+
+    @property
+    def parabolic(self) -> NDArray[np.bool_]:
+        """(N,) bool array: where the Gaussian curvature is zero, up to rounding.
+
+        Its sign says nothing there: on planes, cylinders, and where it changes.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.sample("cylinder", 100, cells=(16, 16)).parabolic.all()
+        np.True_
+
+        """
+        return is_parabolic(self)
+
+    @property
+    def hyperbolic(self) -> NDArray[np.bool_]:
+        """(N,) bool array: where the Gaussian curvature is negative (its sign bit is set)."""
+        return np.signbit(self.gaussian_curvature)
+
+    @property
+    def kind(self) -> NDArray[np.str_]:
+        """(N,) str array: "normal" at prescribed normals, "grid", "edge", else "filling".
+
+        "grid" is for those on a grid, and "edge" for those on sharp edges.
+        """
+        kinds = np.where(self.normal_index < 0, "filling", "normal")
+        if self.row is not None:
+            kinds[self.row >= 0] = "grid"
+        if self.other_face_index is not None:
+            kinds[self.other_face_index >= 0] = "edge"
+        return kinds
+
+    @property
+    def principal_curvatures(self) -> NDArray[np.floating]:
+        """(N, 2) float64: the principal curvatures, in 1/L, the larger one first.
+
+        They are computed from K and H. Where the two nearly agree, K and H determine their
+        difference only to about 1e-8 relative to H (3e-4 if they are float32); elsewhere both are
+        accurate, however different their sizes. NaN where H² − K is not finite, or where H² and K
+        are too small for float64.
+        """
+        K, H = (x.astype(np.float64) for x in (self.gaussian_curvature, self.mean_curvature))
+        with np.errstate(all="ignore"):
+            square = H * H - K
+            least = np.finfo(np.float64).tiny
+            known = np.isfinite(square) & ((np.maximum(H * H, np.abs(K)) >= least) | (H == 0.0))
+            root = np.where(known, np.sqrt(np.maximum(square, 0.0)), np.nan)
+            # H − root would cancel when |K| is small against H²; K / (H + root) does not.
+            far = H + np.copysign(root, H)
+            near = np.where(root > 0.0, K / far, H)
+            both = np.stack([np.maximum(far, near), np.minimum(far, near)], axis=1)
+            return both.astype(self.dtype, copy=False)
+
+    def __len__(self) -> int:
+        return len(next(iter(self.arrays().values())))
+
+    def __getitem__(self, key: ArrayLike | slice) -> Self:
+        rows = key if isinstance(key, slice) else checked_rows(key, len(self))
+        arrays = {name: array[rows] for name, array in self.arrays().items()}
+        return type(self)(
+            **arrays, report=self.report,
+            spline=self.spline, surface=self.surface, offset_of=self.offset_of,
+        )  # fmt: skip
+
+
+def _rebuilt(
+    cls: type[SampleArrays],
+    arrays: dict[str, NDArray[Any]],
+    report: SamplingReport,
+    spline: Spline | None,
+    surface: Surface | Whole | None = None,
+    offset_of: OffsetOf | None = None,
+) -> SampleArrays:
+    """Return samples that were copied or pickled."""
+    return cls(**arrays, report=report, spline=spline, surface=surface, offset_of=offset_of)
+
+
+def _if_it_pickles(surface: Whole | Surface | None) -> Any:  # noqa: ANN401 - of the same type
+    """Return a surface, or None if it cannot be pickled: its function may be a lambda."""
+    return surface if _pickles(surface) else None
+
+
+def _pickles(value: object) -> bool:
+    try:
+        pickle.dumps(value)
+    except Exception:  # pickling raises anything
+        return False
+    return True
+
+
+def _common_dtype(arrays: Mapping[str, object]) -> np.dtype[np.floating]:
+    """Return float32 if all that may be float32 is, otherwise float64."""
+    types = {getattr(arrays[name], "dtype", None) for name in REAL_NAMES if name in arrays}
+    return np.dtype(np.float32 if types == {np.dtype(np.float32)} else np.float64)

@@ -1,0 +1,38 @@
+"""What samples of an offset come from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..spline.spline import Spline
+from ..surface.surface import Surface
+from .whole import Whole
+
+__all__ = ["OffsetOf"]
+
+
+@dataclass(frozen=True)
+class OffsetOf:
+    """Where samples of an offset come from, so that they can be meshed.
+
+    Attributes
+    ----------
+    distance : float
+        The distance by which they were moved along the normals, in L.
+    spline : Spline or None
+        The spline that was sampled, None if it is unknown.
+    surface : Surface, Part or None
+        The surface, or the CAD part, on which the samples were.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> moved = gm.sample("torus", 200, cells=(16, 16)).offset(0.1).offset(0.1)
+    >>> moved.offset_of.distance, moved.offset_of.spline, moved.spline, moved.surface
+    (0.2, Spline(16 × 16 cells of torus), None, None)
+
+    """
+
+    distance: float
+    spline: Spline | None = None
+    surface: Surface | Whole | None = None

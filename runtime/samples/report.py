@@ -1,0 +1,354 @@
+"""The report of a sampling, and the warning if it is not what was requested."""
+
+from __future__ import annotations
+
+import math
+import operator
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Protocol, SupportsIndex
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.checks import known_name
+from ..base.errors import GaussmapWarning, InputError, shown
+from ..base.georeference import checked_origin
+from ..spline.developable import Measured, developable_share
+
+if TYPE_CHECKING:
+    from ..base.georeference import Georeference
+    from ..spline.misfit import Misfit
+
+__all__ = [
+    "PLACES",
+    "SamplingReport",
+    "common_report",
+    "count_infinite",
+    "count_unrefined",
+    "have_large_squares",
+    "sampling_report",
+    "warn_of",
+]
+
+WORTH_A_WARNING = 0.01
+# A count is missed if the difference exceeds this share of it plus this number of samples: on a
+# symmetric surface several appear or vanish at once.
+COUNT_TOLERANCE, FEW = 0.02, 5
+# A share is a quotient of sums, so rounding may carry it this far beyond 0 or 1.
+SHARE_ROUNDING = 1e-9
+# Where samples lie.
+PLACES = ("surface", "spline")
+# What density="balanced" chooses between; for several pieces it may be both.
+CHOICES = ("aligned", "isotropic", "mixed")
+COUNTS = (
+    "normals", "patches", "developable_patches", "infinite_curvatures", "unrefined", "apexes",
+    "index", "faces", "empty_faces", "edge_samples",
+)  # fmt: skip
+DISTANCES = ("coverage", "angle", "fit_distance", "fit_rms", "fit_angle")
+
+
+@dataclass(frozen=True, slots=True)
+class SamplingReport:
+    """A report on a sampling.
+
+    A number is None if it is unknown: a .ply file that another program rewrote has the samples, but
+    not the report.
+
+    Attributes
+    ----------
+    surface : str
+        Label of the surface.
+    normals : int or None
+        The number of prescribed normals.
+    samples : int
+        The number of samples.
+    patches : int or None
+        The number of patches of the spline.
+    developable_share : float or None
+        The developable share of the area (K ≈ 0), from 0 to 1, which no set of normals samples.
+    developable_patches : int or None
+        The number of patches that are developable up to the rounding of their coordinates, and so
+        have no support function (those at a pole are among them).
+    coverage : float or None
+        A bound of the distance of any point of the surface from the nearest sample, in the unit of
+        the surface. Known if a coverage was requested; see also `Samples.coverage`.
+    angle : float or None
+        A bound of the angle, in degrees, between the normal of any point of the surface and that of
+        the sample nearest in normal. Known if an angle was requested.
+    infinite_curvatures : int or None
+        The number of samples with infinite Gaussian curvature: at singular points of the spline,
+        which a coarse one may have, and where 1/L² exceeds the largest number of its type, on
+        surfaces smaller than 1e-154 (1e-19 with float32). Known if `gaussian_curvature` was
+        requested.
+    on : {"surface", "spline"} or None
+        Where the samples lie: on the surface, or on the spline that approximates it.
+    unrefined : int or None
+        With ``on="surface"``, the number of samples at prescribed normals that could not be moved
+        from the spline to the point of the surface that has the normal; see `Samples.on_surface`.
+    fit_distance, fit_rms : float or None
+        The largest distance of the spline from the surface, or from the data, that it approximates,
+        and the root mean square of the distance; see `Spline.misfit`.
+    fit_angle : float or None
+        The largest angle, in degrees, between normals of spline and surface; unknown for data.
+    apexes : int or None
+        The number of sides of the domain that are one point, through which the surface does not go
+        on smoothly; see `Spline.apexes`.
+    index : int or None
+        The number of the surface among those of `sample_many`.
+    density : {"aligned", "isotropic", "mixed"} or None
+        Which of the two ``density="balanced"`` has chosen; "mixed" if pieces of the surface have
+        different ones. None for other densities.
+    faces, empty_faces : int or None
+        Of a CAD part: the number of its faces, and how many of them have no sample.
+    oriented : bool or None
+        Of a CAD part: whether its normals are known to point out of solids.
+    edge_samples : int or None
+        Of a CAD part, with ``edges=True``: how many of the samples are on sharp edges.
+    crs : str or None
+        Of a `terrain`: the coordinate reference system of the points, as "EPSG:number" or WKT.
+    origin : (float, float, float) or None
+        Of a `terrain`: what was subtracted from the coordinates of the points.
+
+    Raises
+    ------
+    InputError
+        If a count is not an integer or is negative, the share is outside 0…1, or the label is not a
+        string.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> report = gm.sample("torus", angle=20.0, cells=(16, 16)).report
+    >>> report.surface, report.patches, report.developable_patches, report.infinite_curvatures
+    ('torus', 1024, 0, 0)
+    >>> report.normals <= report.samples, report.angle <= 20.0, report.coverage is None
+    (True, True, True)
+    >>> report.on, report.unrefined
+    ('surface', 0)
+    >>> report.density
+    'aligned'
+    >>> report.faces, report.empty_faces, report.oriented  # not of a CAD part
+    (None, None, None)
+    >>> report.edge_samples is report.crs is report.origin is None
+    True
+    >>> report.developable_share, report.apexes, report.index
+    (0.0, 0, None)
+    >>> report.fit_rms < report.fit_distance < 1.1e-3, report.fit_angle < 0.6
+    (True, True)
+
+    """
+
+    surface: str
+    normals: int | None
+    samples: int
+    patches: int | None
+    developable_share: float | None
+    developable_patches: int | None
+    coverage: float | None = None
+    angle: float | None = None
+    infinite_curvatures: int | None = None
+    on: str | None = None
+    unrefined: int | None = None
+    fit_distance: float | None = None
+    fit_rms: float | None = None
+    fit_angle: float | None = None
+    apexes: int | None = None
+    index: int | None = None
+    density: str | None = None
+    faces: int | None = None
+    empty_faces: int | None = None
+    oriented: bool | None = None
+    edge_samples: int | None = None
+    crs: str | None = None
+    origin: tuple[float, float, float] | None = None
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.surface, str):
+            raise InputError(f"surface must be a string, not {type(self.surface).__name__}.")
+        if self.on is not None:
+            known_name(self.on, PLACES, "place of samples")
+        if self.density is not None:
+            known_name(self.density, CHOICES, "choice of a density")
+        if self.crs is not None and not isinstance(self.crs, str):
+            raise InputError(f"crs must be a string, not {type(self.crs).__name__}.")
+        if self.origin is not None:
+            object.__setattr__(self, "origin", checked_origin(self.origin))
+        for name in COUNTS:
+            value = getattr(self, name)
+            object.__setattr__(self, name, None if value is None else _count(name, value))
+        object.__setattr__(self, "samples", _count("samples", self.samples))
+        if self.developable_share is not None:
+            object.__setattr__(self, "developable_share", _share(self.developable_share))
+        for name in DISTANCES:
+            value = getattr(self, name)
+            object.__setattr__(self, name, None if value is None else _distance(name, value))
+
+
+class Sampled(Measured, Protocol):
+    """What is sampled: a spline, or a surface beside its spline."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def patches(self) -> int: ...
+    @property
+    def apexes(self) -> int: ...
+    @property
+    def misfit(self) -> Misfit | None: ...
+    @property
+    def georeference(self) -> Georeference | None: ...
+
+
+def sampling_report(
+    sampled: Sampled,
+    normals: int,
+    samples: int,
+    density: float,
+    developable: int | None,
+    arrays: Mapping[str, NDArray[Any]] = MappingProxyType({}),
+) -> SamplingReport:
+    """Return the report of a sampling with `density` normals per steradian and its `arrays`."""
+    misfit, place = sampled.misfit, sampled.georeference
+    return SamplingReport(
+        surface=sampled.name,
+        normals=normals,
+        samples=samples,
+        patches=sampled.patches,
+        developable_share=developable_share(sampled, density),
+        developable_patches=developable,
+        infinite_curvatures=count_infinite(arrays),
+        fit_distance=None if misfit is None else misfit.distance,
+        fit_rms=None if misfit is None else misfit.rms,
+        fit_angle=None if misfit is None else misfit.angle,
+        apexes=sampled.apexes,
+        crs=None if place is None else place.crs,
+        origin=None if place is None else place.origin,
+    )
+
+
+def warn_of(
+    report: SamplingReport,
+    count: int | None,
+    stacklevel: int,
+    coverage: float | None = None,
+    filled: bool = False,
+) -> None:
+    """Warn if samples leave out a part of the surface, or miss a count or a coverage.
+
+    If they are `filled`, the parts that normals cannot sample have samples, too.
+    """
+    reasons = [] if filled else _unseen(report)
+    reasons += _missed(report, count, coverage) + _unrefined(report)
+    if reasons:
+        message = f"surface {report.surface!r}: {'; '.join(reasons)}."
+        warnings.warn(message, GaussmapWarning, stacklevel=stacklevel)
+
+
+def _unseen(report: SamplingReport) -> list[str]:
+    """Return reasons: the part of the surface that no set of normals samples."""
+    share = report.developable_share or 0.0
+    if share > WORTH_A_WARNING:
+        return [
+            f"{100 * share:.0f} % of its area is flat or developable (K = 0), which no set "
+            "of normals samples"
+        ]
+    if report.samples == 0 and report.developable_patches == report.patches:
+        return ["it is flat or developable up to the rounding of its coordinates"]
+    return ["none of the normals lies in its Gaussian image"] if report.samples == 0 else []
+
+
+def _missed(report: SamplingReport, count: int | None, coverage: float | None) -> list[str]:
+    """Return reasons: the requested numbers that are not met."""
+    reasons, samples = [], report.samples - (report.edge_samples or 0)
+    if count is not None and abs(samples - count) > COUNT_TOLERANCE * count + FEW:
+        reasons.append(f"there are {samples} samples instead of the requested {count}")
+    if coverage is not None and report.coverage is not None and report.coverage > coverage:
+        reasons.append(
+            f"with {report.samples} samples the coverage is {report.coverage:.3g} instead of the "
+            f"requested {coverage:g}"
+        )
+    return reasons
+
+
+def _unrefined(report: SamplingReport) -> list[str]:
+    """Return reasons: the samples that are not on the surface."""
+    unrefined = report.unrefined or 0
+    if unrefined <= WORTH_A_WARNING * report.samples:
+        return []
+    return [
+        f"{unrefined} of {report.samples} samples could not be moved to the surface, and lie on "
+        "its spline (see Samples.on_surface); more cells=... help unless the surface is parabolic "
+        "or singular there"
+    ]
+
+
+def common_report(
+    reports: Sequence[SamplingReport], arrays: Mapping[str, NDArray[Any]]
+) -> SamplingReport:
+    """Return what reports agree about, with the number of all samples."""
+    common: dict[str, Any] = {
+        x.name: getattr(reports[0], x.name)
+        if len({getattr(report, x.name) for report in reports}) == 1
+        else None
+        for x in fields(SamplingReport)
+    }
+    common["surface"] = common["surface"] or "several surfaces"
+    common["samples"] = len(next(iter(arrays.values())))
+    common["infinite_curvatures"] = count_infinite(arrays)
+    common["unrefined"] = count_unrefined(arrays)
+    return SamplingReport(**common)
+
+
+def count_infinite(arrays: Mapping[str, NDArray[Any]]) -> int | None:
+    """Return at how many samples K is infinite; None if K is not among their fields."""
+    if "gaussian_curvature" not in arrays:
+        return None
+    return int(np.isinf(arrays["gaussian_curvature"]).sum())
+
+
+def count_unrefined(arrays: Mapping[str, NDArray[Any]]) -> int | None:
+    """Return how many samples are not on the surface; None if that is not among their fields."""
+    if "on_surface" not in arrays:
+        return None
+    return int(np.count_nonzero(~arrays["on_surface"]))
+
+
+def have_large_squares(H: NDArray[np.floating], dtype: np.dtype[Any]) -> bool:
+    """Say whether the curvatures H, where they are finite, have squares that a type cannot hold."""
+    finite = np.abs(H[np.isfinite(H)].astype(np.float64))
+    return float(finite.max(initial=0.0)) > math.sqrt(float(np.finfo(dtype).max))
+
+
+def _count(name: str, value: SupportsIndex) -> int:
+    """Return `value` as a plain int ≥ 0: a NumPy integer would not go into JSON."""
+    try:
+        count = operator.index(value)
+    except TypeError:
+        raise InputError(f"{name} must be an integer, not {shown(value)}.") from None
+    if count < 0:
+        raise InputError(f"{name} must not be negative, and is {count}.")
+    return count
+
+
+def _distance(name: str, value: float) -> float:
+    """Return `value` as a plain float ≥ 0."""
+    try:
+        distance = float(value)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} must be a number, not {shown(value)}.") from None
+    if not distance >= 0.0:
+        raise InputError(f"{name} must not be negative, and is {distance!r}.")
+    return distance
+
+
+def _share(value: float) -> float:
+    try:
+        share = float(value)
+    except (TypeError, ValueError):
+        raise InputError(f"developable_share must be a number, not {shown(value)}.") from None
+    if not math.isfinite(share) or not -SHARE_ROUNDING <= share <= 1.0 + SHARE_ROUNDING:
+        raise InputError(f"developable_share must lie between 0 and 1, and is {share!r}.")
+    return min(max(share, 0.0), 1.0)

@@ -1,0 +1,121 @@
+"""The checked arguments of a sampling: normals, count, angle, coverage, density and relaxation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..base.checks import checked_count, known_name, positive_number, whole_number
+from ..base.errors import InputError
+from ..base.limits import MOST_STEPS
+from ..base.threads import thread_count
+from ..directions.sets import frequency_within, icosphere
+from ..directions.unit import as_normals
+
+__all__ = ["BY_CURVATURE", "DENSITIES", "ON_GRIDS", "Request", "checked_request"]
+
+# Those that follow the larger principal curvature.
+BY_CURVATURE = ("balanced", "isotropic", "aligned")
+# Of these, those that may take a grid.
+ON_GRIDS = ("balanced", "aligned")
+DENSITIES = ("gauss", "balanced", "isotropic", "aligned", "uniform")
+BALANCED = [[x] for x in ("normals", "count", "angle", "coverage")] + [
+    [x, "coverage"] for x in ("normals", "count", "angle")
+]
+# Beyond this |K|^α is so uneven that all samples crowd around the point of the largest |K|.
+LARGEST_POWER = 8.0
+
+
+@dataclass(frozen=True, eq=False)
+class Request:
+    """What to sample: one of normals (S, 3), a count, an angle in degrees and a coverage.
+
+    A coverage may also be given with one of the others. `density` is one of `DENSITIES`, or α for
+    |K|^α; `relax` is the number of steps of relaxation.
+    """
+
+    normals: NDArray[np.float64] | None
+    count: int | None
+    angle: float | None
+    coverage: float | None
+    density: str | float
+    relax: int
+
+    @property
+    def normals_or_count(self) -> NDArray[np.float64] | int:
+        """The normals, or the count, for samples at normals alone."""
+        return self.directions if self.count is None else self.count
+
+    @property
+    def directions(self) -> NDArray[np.float64]:
+        """The normals, or those of an icosphere that is fine enough for the angle."""
+        if self.normals is not None:
+            return self.normals
+        assert self.angle is not None
+        return icosphere(frequency_within(self.angle))
+
+
+def checked_request(
+    normals: ArrayLike | None,
+    count: int | None,
+    angle: float | None,
+    coverage: float | None,
+    density: str | float | None,
+    relax: int,
+    threads: int | None,
+) -> Request:
+    """Return a request; InputError (or UnknownNameError) if the arguments are invalid."""
+    thread_count(threads)
+    number = None if count is None else checked_count(count)
+    amounts = {"normals": normals, "count": count, "angle": angle, "coverage": coverage}
+    given = [name for name, value in amounts.items() if value is not None]
+    if not given or len({*given} - {"coverage"}) > 1:
+        raise InputError(
+            "say how many samples by one of normals=..., count=..., angle=... and coverage=...; "
+            + (f"{' and '.join(given)} do not go together." if given else "none is given.")
+        )
+    kind = _density(density, "gauss" if given == ["normals"] else "balanced")
+    _check_that_they_fit(kind, given)
+    steps = whole_number(relax, "relax", least=0)
+    if steps > MOST_STEPS:
+        raise InputError(f"relax must be at most {MOST_STEPS}, not {steps}.")
+    if kind == "gauss" and steps:
+        raise InputError(
+            'relax moves samples that normals did not ask for; density="gauss" has none.'
+        )
+    return Request(
+        None if normals is None else as_normals(normals, threads=threads),
+        number,
+        None if angle is None else positive_number(angle, "angle", " degrees", most=90.0),
+        None if coverage is None else positive_number(coverage, "coverage"),
+        kind,
+        steps,
+    )
+
+
+def _density(density: str | float | None, default: str) -> str | float:
+    if density is None:
+        return default
+    if isinstance(density, str):
+        return known_name(density, DENSITIES, "density")
+    return positive_number(density, "density, as the power of |K|,", most=LARGEST_POWER)
+
+
+def _check_that_they_fit(density: str | float, given: list[str]) -> None:
+    """Raise InputError for amounts that a density does not support."""
+    fitting = {
+        # No angle: next to open borders normals alone leave more than they are apart.
+        "gauss": [["normals"], ["count"]],
+        "balanced": BALANCED,
+        "isotropic": BALANCED,
+        "aligned": [x for x in BALANCED if "normals" not in x],
+        "uniform": [["count"], ["coverage"]],
+    }.get(str(density), [["count"]])
+    if given not in fitting:
+        shown = f'"{density}"' if isinstance(density, str) else density
+        raise InputError(
+            f"density={shown} cannot be asked for by {' and '.join(f'{x}=...' for x in given)}; "
+            f"use {' or '.join(f'{x[0]}=...' for x in fitting if len(x) == 1)}."
+        )

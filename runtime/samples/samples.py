@@ -1,0 +1,173 @@
+"""What a sampling returns: points, normals, parameters, curvatures, and how it went."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..base.errors import InputError
+from ..spline.spline import Spline, short_label
+from .arrays import SampleArrays
+from .methods import Methods
+from .summary import kinds_of_points, summary_of
+from .whole import Whole
+
+__all__ = ["Samples", "spline_if_one", "spline_or"]
+
+
+@dataclass(frozen=True, eq=False, slots=True, repr=False)
+class Samples(SampleArrays, Methods):
+    """N samples of a surface, one row each; lengths in the unit L of the surface.
+
+    `sample` and the other samplers make them. A boolean mask (N,), an index array or a slice
+    picks rows, with the same report and spline: ``samples[samples.elliptic]``;
+    `Samples.concatenate` joins several.
+
+    With ``dtype=numpy.float32``, all numbers except the indices are float32. Fields that were not
+    requested (`fields` of `sample`) are missing: reading them raises MissingFieldError, an
+    AttributeError. All arrays are C-contiguous; one that is not is copied.
+
+    With ``on="surface"`` (see `sample`), points, normals and curvatures are those of the surface at
+    `uv`. A sample with a `normal_index` has the prescribed normal; that of the surface differs from
+    it by rounding, 1e-12 where it is regular. With ``on="spline"``, and where `on_surface` is
+    False, all of them are those of the spline.
+
+    Attributes
+    ----------
+    points : (N, 3) float64 array
+        Points of the surface, in L.
+    normals : (N, 3) float64 array
+        Unit normals at the points.
+    uv : (N, 2) float64 array
+        Parameters of the points.
+    support : (N,) float64 array
+        Support function h = n·x (4), in L.
+    gaussian_curvature : (N,) float64 array
+        Gaussian curvature K, in 1/L². Points are hyperbolic where its sign bit is set, −0.0
+        included; those where it is zero up to rounding are `parabolic`, too. On surfaces smaller
+        than 1e-154 it may be infinite, on those larger than 1e154 zero: float64 does not hold it.
+    mean_curvature : (N,) float64 array
+        Mean curvature H, in 1/L, positive for a sphere with outward normals.
+    normal_index : (N,) int64 array
+        Rows of the prescribed normals; −1 for a sample that fills a gap.
+    patch_index : (N,) int64 array
+        Patches of the spline in which the samples were found.
+    on_surface : (N,) bool array or None
+        Whether the sample is on the surface. False for one at a prescribed normal that could not be
+        moved there from the spline: next to parabolic and singular points, and next to open borders
+        where the surface has that normal outside of its domain only. None with ``on="spline"``, or
+        if it was not requested.
+    row, column : (N,) int64 array or None
+        For samples on a grid (see ``density="aligned"`` of `sample`): the numbers of the lines
+        v = const and u = const on which a sample is, from 0 upwards; −1 for one that is on no grid.
+        None if no sample is, or if they were not requested.
+    report : SamplingReport
+        A report on the sampling.
+    spline : Spline or None
+        The spline that was sampled; None if it is unknown, as for samples from a file, and for
+        samples of several pieces (see `Surface.pieces`), each of which has one.
+    face_index, solid_index : (N,) int64 array or None
+        Of a CAD part: the places of the sample's face and solid in `Part.faces` and `Part.solids`;
+        −1 for a face that belongs to no solid. `uv` are those of the surface of the face. None for
+        other samples.
+    other_normals : (N, 3) float64 array or None
+        Of samples with ``edges=True``: unit normals of the other face of a sample on a sharp edge,
+        whose `normals`, `uv`, curvatures and `face_index` are those of the first; else NaN.
+    other_uv : (N, 2) float64 array or None
+        Of samples with ``edges=True``: parameters on the other face of a sharp edge; else NaN.
+    other_face_index : (N,) int64 array or None
+        Of samples with ``edges=True``: the other face of a sample on a sharp edge; −1 for others.
+    surface : Surface, Part or None
+        The surface, or the CAD part, on which the samples are; None with ``on="spline"``, for
+        samples from a file, and after pickling if the surface does not pickle.
+    offset_of : OffsetOf or None
+        For samples of an `offset`: its distance, and the spline and the surface of the samples that
+        were moved.
+
+    Raises
+    ------
+    InputError
+        If an array has another shape or dtype, or if there is none.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> samples = gm.sample("torus", 200, cells=(16, 16))
+    >>> samples
+    Samples(200 points on torus: 125 dome-shaped, 75 saddle-shaped)
+    >>> samples[samples.elliptic][:10]
+    Samples(10 points on torus: 10 dome-shaped)
+    >>> samples.points.shape, samples.normals.shape, samples.uv.shape
+    ((200, 3), (200, 3), (200, 2))
+    >>> K, H = samples.gaussian_curvature, samples.mean_curvature
+    >>> bool((samples.principal_curvatures.sum(axis=1) - 2 * H).max() < 1e-12)
+    True
+    >>> bool((K[samples.hyperbolic] < 0).all())
+    True
+    >>> samples.fields
+    ('points', 'normals', 'uv', 'support', ..., 'patch_index', 'on_surface')
+    >>> bool(abs(samples.support).max() < 1.36), bool(samples.patch_index.max() < 1024)
+    (True, True)
+    >>> filling = samples.normal_index == -1
+    >>> bool((samples.kind[filling] == "filling").all())
+    True
+    >>> samples.dtype, samples.spline, samples.report.samples
+    (dtype('float64'), Spline(16 × 16 cells of torus), 200)
+    >>> samples.on_surface.all(), samples.surface.name
+    (np.True_, 'torus')
+    >>> on_grid = gm.sample("torus", 200, density="aligned", cells=(16, 16))
+    >>> bool((on_grid.row >= -1).all()), bool((on_grid.column >= -1).all())
+    (True, True)
+    >>> samples.face_index is samples.solid_index is None  # not of a CAD part
+    True
+    >>> samples.other_normals is samples.other_uv is samples.other_face_index is None
+    True
+    >>> samples.offset_of, samples.offset(0.1).offset_of.distance
+    (None, 0.1)
+
+    """
+
+    def summary(self) -> str:
+        """Return one line: the number of samples, where they come from, what they cover.
+
+        Returns
+        -------
+        str
+            The line, without a line break.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.sample("torus", normals=[[1, 0, 0], [0, 1, 1]], cells=(16, 16)).summary()
+        '4 samples found by 2 normals (2 dome-shaped, 2 saddle-shaped)'
+
+        """
+        return summary_of(self)
+
+    def __repr__(self) -> str:
+        label = short_label(self.report.surface)
+        return f"Samples({len(self):,} points on {label}{kinds_of_points(self)})"
+
+
+def spline_if_one(samples: Samples, spline: Spline | None) -> Spline | None:
+    """Return what `spline_or` returns, but None for samples on several pieces."""
+    on_pieces = spline is None and samples.spline is None and samples.surface is not None
+    return None if on_pieces else spline_or(samples, spline)
+
+
+def spline_or(samples: Samples, spline: Spline | None) -> Spline:
+    """Return the spline that is given, else that of the samples; InputError without one."""
+    spline = samples.spline if spline is None else spline
+    if spline is None and isinstance(samples.surface, Whole):
+        raise InputError(
+            "this is for samples of one surface, and these are of a CAD part; sample "
+            "part.faces[0].surface, for example."
+        )
+    if spline is None:
+        raise InputError(
+            "these samples do not know the spline that was sampled (those from a file, of an "
+            "offset and of several pieces do not); give it, as in "
+            "samples.mesh(gm.fit(surface)), or sample each of surface.pieces()."
+        )
+    if not isinstance(spline, Spline):
+        raise InputError(f"spline must be a Spline, not {type(spline).__name__}.")
+    return spline

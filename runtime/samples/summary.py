@@ -1,0 +1,140 @@
+"""The summary of samples: one line on their numbers, and on what the report says."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..base.georeference import crs_label
+from .report import SamplingReport, count_infinite, have_large_squares
+
+if TYPE_CHECKING:
+    from .samples import Samples
+
+__all__ = ["kinds_of_points", "misfit_clause", "summary_of"]
+
+# Terms of the glossary in plain words: K = 0 (developable, parabolic), and a graded grid.
+FLAT = "flat or curved one way only"
+GRID = "a grid that follows the curvature"
+
+
+def summary_of(samples: Samples) -> str:
+    """Return one line: the number of samples, where they come from, what they cover."""
+    report, split = samples.report, kinds_of_points(samples).removeprefix(": ").strip(" ()")
+    line = f"{_number(len(samples), 'sample')}{_origin(samples)} ({split})"
+    if len(samples) != report.samples:
+        line = f"{len(samples):,} of {report.samples:,}" + line.removeprefix(f"{len(samples):,}")
+    if report.angle is not None:
+        line += f"; every normal is within {report.angle:.3g}° of that of a sample"
+    if report.coverage is not None:
+        line += f"; every point is within {report.coverage:.3g} of a sample"
+    if report.developable_share is not None and not _filling(samples):
+        share = f"{100.0 * report.developable_share:.2f}"
+        if share != "0.00":
+            line += f"; {share} % of the surface is {FLAT}, where normals find no samples"
+    if report.on == "spline":
+        line += misfit_clause(report)
+    if report.faces is not None:
+        line += f"; {report.faces:,} faces"
+        if report.empty_faces:
+            line += f", {report.empty_faces:,} of them without samples"
+    if report.edge_samples is not None:
+        line += f"; {report.edge_samples:,} of the samples are on sharp edges"
+    if report.unrefined:
+        line += f"; {report.unrefined:,} samples could not be moved to the surface from its spline"
+    if report.apexes:
+        tips = "a sharp tip" if report.apexes == 1 else f"{report.apexes} sharp tips"
+        line += f"; the surface ends in {tips}"
+    return line + _place(report) + _infinite(samples)
+
+
+def _number(count: int, what: str) -> str:
+    return f"{count:,} {what}{'' if count == 1 else 's'}"
+
+
+def _place(report: SamplingReport) -> str:
+    """Say in which reference system coordinates are, and what was subtracted from them."""
+    clause = f"; coordinates in {crs_label(report.crs)}" if report.crs else ""
+    if report.origin and any(report.origin):
+        numbers = ", ".join(f"{x:.12g}" for x in report.origin)
+        clause += f"{'' if clause else '; coordinates'} relative to ({numbers})"
+    return clause
+
+
+def misfit_clause(report: SamplingReport) -> str:
+    """Say how far the spline is from the surface, or from the data, if that is known."""
+    if report.fit_distance is None or report.fit_rms is None:
+        return ""
+    if report.fit_angle is None:
+        return (
+            f"; they lie on a spline within {report.fit_distance:.3g} of the data (root mean "
+            f"square {report.fit_rms:.3g})"
+        )
+    return (
+        f"; they lie on a spline within {report.fit_distance:.3g} of the surface, its normals "
+        f"within {report.fit_angle:.3g}°"
+    )
+
+
+def _filling(samples: Samples) -> int:
+    """Return how many samples are at no prescribed normal nor edge, as far as that is known."""
+    if "normal_index" not in samples.fields:
+        return 0
+    filling = samples.normal_index < 0
+    if samples.other_face_index is not None:
+        filling &= samples.other_face_index < 0
+    return int(filling.sum())
+
+
+def _on_grid(samples: Samples) -> str:
+    """Say how many samples are on a grid, or that it is the better choice for all."""
+    count = 0 if samples.row is None else int((samples.row >= 0).sum())
+    if count == 0:
+        return f" of {GRID}" if samples.report.density == "aligned" else ""
+    rest = len(samples) - count
+    return f": {count:,} on {GRID}" + (f", {rest:,} in its gaps" if rest else "")
+
+
+def _origin(samples: Samples) -> str:
+    """Say how many samples have prescribed normals, and how many fill gaps."""
+    normals, filling = samples.report.normals, _filling(samples)
+    if grid := _on_grid(samples):
+        return grid
+    if filling == len(samples) > 0:
+        return " in the gaps between normals" if normals else ""
+    if not normals:
+        return ""
+    given = f"found by {_number(normals, 'normal')}"
+    if not filling:
+        return f" {given}"
+    return f": {len(samples) - filling:,} {given}, {filling:,} in the gaps between these"
+
+
+def _infinite(samples: Samples) -> str:
+    """Say at how many samples K is infinite, and why."""
+    if not count_infinite(samples.arrays()):
+        return ""
+    infinite = np.isinf(samples.gaussian_curvature)
+    reason = "the spline is singular"
+    if "mean_curvature" in samples.fields and have_large_squares(
+        samples.mean_curvature, samples.dtype
+    ):
+        reason = f"it is too large for {samples.dtype}"
+    return f"; K is infinite at {int(infinite.sum()):,} samples, where {reason}"
+
+
+def kinds_of_points(samples: Samples) -> str:
+    """Return the numbers of points of each kind, or which fields there are.
+
+    Those that are elliptic (K > 0) are called dome-shaped, bowls included, as sides are arbitrary.
+    Parabolic points are counted as such, and not by the sign bit of K.
+    """
+    if "gaussian_curvature" not in samples.fields:
+        return f" ({', '.join(samples.fields)} only)"
+    parabolic, negative = samples.parabolic, samples.hyperbolic
+    zero, hyperbolic = (int(np.count_nonzero(x)) for x in (parabolic, negative & ~parabolic))
+    elliptic = len(samples) - hyperbolic - zero
+    numbers = {"dome-shaped": elliptic, "saddle-shaped": hyperbolic, FLAT: zero}
+    said = [f"{number:,} {kind}" for kind, number in numbers.items() if number]
+    return f": {', '.join(said or ['none'])}"

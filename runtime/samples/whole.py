@@ -1,0 +1,70 @@
+"""What samples may lie on that is more than one surface: it answers for all of them."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+if TYPE_CHECKING:
+    from .request import Request
+    from .samples import Samples
+
+__all__ = ["NormalDeviation", "Whole"]
+
+
+class NormalDeviation(NamedTuple):
+    """The largest angles between normals of a surface and those of its samples, in degrees.
+
+    Attributes
+    ----------
+    normal_space : float
+        Between the normal of a point and the nearest normal of any sample.
+    space : float
+        Between the normal of a point and that of the sample nearest in space.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> samples = gm.sample("torus", angle=20.0, cells=(16, 16))
+    >>> deviation = samples.normal_deviation()
+    >>> deviation.normal_space <= 20.0, deviation.space >= deviation.normal_space
+    (True, True)
+
+    """
+
+    normal_space: float
+    space: float
+
+
+class Whole(ABC):
+    """A CAD part, for example."""
+
+    @abstractmethod
+    def sampled(
+        self,
+        request: Request,
+        fields: Sequence[str],
+        dtype: DTypeLike,
+        threads: int | None,
+        progress: bool,
+        edges: bool,
+    ) -> tuple[Samples, NDArray[np.float64]]:
+        """Return what `sample` returns, and the unit normals that were asked."""
+
+    @abstractmethod
+    def coverage_of(self, points: NDArray[np.floating], threads: int | None) -> float:
+        """Return what `Samples.coverage` returns, for points (N, 3)."""
+
+    @abstractmethod
+    def deviation_of(
+        self, points: NDArray[np.floating], normals: NDArray[np.floating], threads: int | None
+    ) -> NormalDeviation:
+        """Return what `Samples.normal_deviation` returns, for points and normals (N, 3)."""
+
+    @abstractmethod
+    def weights_of(self, samples: Samples) -> NDArray[np.float64]:
+        """Return what `Samples.weights` returns."""

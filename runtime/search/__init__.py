@@ -1,0 +1,1 @@
+"""The search: every point of a spline at given normals, each exactly once."""

@@ -1,0 +1,157 @@
+"""Exact decisions on undecided hits: whether a patch has a normal.
+
+Coefficients and normals are binary fractions, and the formulas need only +, − and ×: on integers
+they give the exact sign of every form. Exact zeros (a normal on
+the common boundary of two Gaussian images, or of a parabolic line) are decided by Simulation of
+Simplicity (Edelsbrunner and Mücke, https://doi.org/10.1145/77635.77639): the normal is displaced by
+an infinitesimal vector, the same for all patches. The displaced normal lies on no boundary, so that
+exactly one of the patches has it. There is a tolerance only at the open border of the domain: a
+normal whose point lies outside the domain by at most the error of the data is a hit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...generated.spline import CORNERS
+from ..base.threads import over_ranges
+from ..base.tolerances import SINGULAR_POINT
+from ..kernels.decide import Decided, decide_exactly
+from ..kernels.patch import normals_at
+from ..spline.spline import Spline
+from .long_integers import forms_of_pairs
+
+__all__ = ["Decision", "decide"]
+
+PAIRS_AT_A_TIME = 1 << 10
+# Fewer at a time on Python integers: a pair has many of them, of about a hundred bytes each.
+LONG_PAIRS_AT_A_TIME = 1 << 14
+# Two hits of one normal at the open border are the same if they are closer than this, in cells.
+SAME_PLACE = 1e-6
+
+
+@dataclass(frozen=True)
+class Decision:
+    """The pairs of a patch and a normal that are hits.
+
+    `which` (k,) are their positions among all pairs. `local` (k, 5) holds u, v, the sign of K, and
+    the parameters at which curvatures are evaluated: u, v, or a nearby point if that is singular.
+    """
+
+    which: NDArray[np.int64]
+    local: NDArray[np.float64]
+
+
+def decide(
+    spline: Spline,
+    patches: NDArray[np.int64],
+    normals: NDArray[np.float64],
+    numbers: NDArray[np.int64],
+    forgiven: NDArray[np.float64],
+    threads: int | None = None,
+) -> Decision:
+    """Decide which of the pairs (patches[k], normals[k]) are hits.
+
+    `numbers[k]` is the number of the normal: equal normals with different numbers are all kept.
+    `forgiven[k]` is the tolerance of W at the open border of the domain, in units of the scaled
+    spline, and 0 for a patch that does not touch the border.
+    """
+    local, size, signs = _forms(spline, patches, normals, threads)
+    inside = (signs[:, 0] != 0) & (signs[:, 0] == signs[:, 1]) & (signs[:, 1] == signs[:, 2])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        tolerance = np.where(size > 1024 * forgiven, forgiven / size, 0.0)
+        near = (signs[:, 0] != 0) & (signs[:, 0] == signs[:, 1]) & (tolerance > 0.0) & ~inside
+        total = local.sum(axis=1)
+        near &= total <= 1.0 + tolerance
+        local[near] /= total[near, None]
+    which = np.flatnonzero(inside | near)
+    regular, directions = _regular_places(spline, patches[which], local[which])
+    towards = np.einsum("kx,kx->k", directions, normals[which]) > 0.0
+    which, regular = which[towards], regular[towards]
+    place, number = local[which], numbers[which]
+    keep = _first_of_each_place(spline, patches[which], number, place, near[which])
+    at = np.column_stack([place, signs[which, :1].astype(np.float64), regular])
+    return Decision(which[keep], at[keep])
+
+
+def _forms(
+    spline: Spline,
+    patches: NDArray[np.int64],
+    normals: NDArray[np.float64],
+    threads: int | None,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int8]]:
+    """Return U/D and V/D (k, 2), |D| (k,), and the signs of U, V, W (k, 3)."""
+    count = len(patches)
+    local, size = np.empty((count, 2)), np.empty(count)
+    signs, known = np.empty((count, 3), dtype=np.int8), np.empty(count, dtype=np.bool_)
+    decided = Decided(local, size, signs, known)
+
+    def work(first: int, last: int) -> None:
+        mu, scale = spline.coefficients, spline.scale
+        decide_exactly(mu, scale, patches, normals, first, last, np.empty(3), decided)
+
+    for _ in over_ranges(work, count, PAIRS_AT_A_TIME, threads):
+        pass
+    for first in range(0, count, LONG_PAIRS_AT_A_TIME):
+        chunk = first + np.flatnonzero(~known[first : first + LONG_PAIRS_AT_A_TIME])
+        if len(chunk) > 0:
+            local[chunk], size[chunk], signs[chunk] = forms_of_pairs(
+                spline, patches[chunk], normals[chunk]
+            )
+    return local, size, signs
+
+
+def _regular_places(
+    spline: Spline, patches: NDArray[np.int64], local: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return regular points (k, 2) and the normals there (k, 3), not of unit length.
+
+    A point is singular if p_u × p_v is negligible relative to that at the centre of the patch; it
+    is then moved slightly towards the centre.
+    """
+
+    def normals(places: NDArray[np.float64]) -> NDArray[np.float64]:
+        result = np.empty((len(patches), 3))
+        normals_at(spline.coefficients, spline.scale, patches, places, result)
+        return result
+
+    centre = np.full_like(local, 1 / 3)
+    lengths = (np.linalg.norm(normals(x), axis=1) for x in (local, centre))
+    singular = np.less_equal(next(lengths), SINGULAR_POINT * next(lengths))
+    places = np.where(singular[:, None], local + SINGULAR_POINT * (centre - local), local)
+    return places, normals(places)
+
+
+# --- the open border ------------------------------------------------------------------------------
+
+
+def _first_of_each_place(
+    spline: Spline,
+    patches: NDArray[np.int64],
+    numbers: NDArray[np.int64],
+    local: NDArray[np.float64],
+    near: NDArray[np.bool_],
+) -> NDArray[np.bool_]:
+    """Return which hits to keep: near the border, those that coincide with no other hit."""
+    keep = np.ones(len(patches), dtype=bool)
+    if not near.any():
+        return keep
+    cell, turn = np.divmod(patches, 4)
+    corners = CORNERS[turn]
+    place = np.stack(np.divmod(cell, spline.cells[1]), axis=1) + np.einsum(
+        "kc,kcx->kx", local, corners
+    )
+    order = np.argsort(numbers, kind="stable")
+    first, last = (np.searchsorted(numbers[order], numbers, side) for side in ("left", "right"))
+    for k in np.flatnonzero(near):
+        others = order[first[k] : last[k]]
+        apart = place[others] - place[k]
+        for axis, (ends, cells) in enumerate(zip(spline.boundary, spline.cells, strict=True)):
+            if ends[0] == "periodic":
+                apart[:, axis] -= cells * np.round(apart[:, axis] / cells)
+        same = (np.abs(apart).max(axis=1) < SAME_PLACE) & keep[others] & (others != k)
+        keep[k] = not same.any()
+    return keep

@@ -1,0 +1,110 @@
+"""The forms of patches and normals on integers of any length, beyond those of kernels.
+
+Coefficients and normals are binary fractions, and the formulas need only +, − and ×: run on Python
+integers they give the exact sign of every form.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...generated.patch import forms
+from ...generated.spline import NEIGHBOURS, TRIANGLE_NEIGHBOURS, triangle
+from ..base.formula_calls import patch, python_function, vector
+from ..base.integers import Integers, integers, integers_by_row, ratio, sign
+from ..spline.spline import Spline
+
+__all__ = ["forms_of_pairs"]
+
+
+def forms_of_pairs(
+    spline: Spline, patches: NDArray[np.int64], normals: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int8]]:
+    """Return U/D and V/D (k, 2), |D| (k,) and the signs of U, V, W (k, 3) of pairs.
+
+    Where a zero among U, V, W leaves undecided whether the patch has the normal, the values are
+    those of a normal that is displaced by an infinitesimal vector.
+    """
+    vectors, exponent = _patch_vectors(spline, patches)
+    n, exponents = integers_by_row(normals)
+    n = n * _leading_sign(n)
+    values = _forms(vectors, n)
+    signs = sign(values[1:])
+    tied = (signs == 0).any(axis=0) & ((signs.min(axis=0) >= 0) | (signs.max(axis=0) <= 0))
+    if tied.any():
+        values[:, tied], signs[:, tied] = _displaced_forms(vectors[..., tied], n[:, tied])
+    size = _scaled(np.abs(values[0]), 2 * (exponent + exponents))
+    local = np.full((len(patches), 2), np.nan)
+    some = np.asarray(values[0] != 0, dtype=bool)
+    for k in (0, 1):
+        local[some, k] = ratio(values[k + 1, some], values[0, some])
+    return local, size, signs.T
+
+
+def _patch_vectors(spline: Spline, patches: NDArray[np.int64]) -> tuple[Integers, int]:
+    """Return a, b, c, d, e (5, 3, k) of the patches as integers, and the exponent of their unit."""
+    cell, turn = np.divmod(patches, 4)
+    i, j = np.divmod(cell, spline.cells[1])
+    steps = NEIGHBOURS[turn]
+    around = spline.coefficients[i[:, None] + 1 + steps[..., 0], j[:, None] + 1 + steps[..., 1]]
+    values, exponent = integers(around)
+    differences = values - values[:, 4:5]
+    read = np.moveaxis(differences[:, TRIANGLE_NEIGHBOURS], 1, 0)
+    vectors = python_function(triangle)(*map(vector, read))
+    return np.array(vectors[:5], dtype=object), exponent + int(np.log2(spline.scale))
+
+
+def _forms(vectors: Integers, n: Integers) -> Integers:
+    """Return D, U, V, W (4, k), exactly."""
+    values = python_function(forms)(patch(np.moveaxis(vectors, -1, 0)), vector(n.T))
+    return np.array(values, dtype=object)
+
+
+def _displaced_forms(vectors: Integers, n: Integers) -> tuple[Integers, NDArray[np.int8]]:
+    """Return D, U, V, W and the signs of U, V, W at n + (ε₁, ε₂, ε₃), with n ≫ ε₁ ≫ ε₂ ≫ ε₃ ≫ ε₁².
+
+    A quadratic form F is then a sum of ten monomials in n, ε₁, ε₂, ε₃, each infinitesimal relative
+    to the one before. The first nonzero one gives the sign. For quotients by D, the coefficients of
+    the leading monomial of D are returned.
+    """
+    coefficients = _monomials(vectors, n)
+    leading = np.argmax(np.asarray(coefficients != 0, dtype=bool), axis=0)
+    first = np.take_along_axis(coefficients, leading[None], axis=0)[0]
+    in_d = np.take_along_axis(coefficients, leading[None, :1].repeat(4, axis=1), axis=0)[0]
+    return in_d, sign(first[1:])
+
+
+def _monomials(vectors: Integers, n: Integers) -> Integers:
+    """Return the coefficients (10, 4, k) of the monomials in D, U, V, W.
+
+    They follow from F(x + y) − F(x) − F(y).
+    """
+    axes = [
+        n,
+        *(np.array([[x], [y], [z]], dtype=object) for x, y, z in np.eye(3, dtype=int).tolist()),
+    ]
+    alone = [_forms(vectors, x + 0 * n) for x in axes]
+    monomials = [
+        alone[i] if i == j else _forms(vectors, axes[i] + axes[j] + 0 * n) - alone[i] - alone[j]
+        for i in range(4)
+        for j in range(i, 4)
+    ]
+    return np.stack(monomials)
+
+
+def _leading_sign(n: Integers) -> Integers:
+    """Return the sign of the first nonzero component of each column.
+
+    The forms are even in n. A normal and its opposite must be displaced to opposite normals: where
+    a surface is joined to its own mirror image, one patch has the one and its neighbour the other.
+    """
+    signs = sign(n)
+    first = np.argmax(signs != 0, axis=0)
+    return np.take_along_axis(signs, first[None], axis=0).astype(object)
+
+
+def _scaled(values: Integers, exponents: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return values × 2^exponents as floats."""
+    pairs = zip(values, exponents.tolist(), strict=True)
+    return np.array([x << e if e >= 0 else x / (1 << -e) for x, e in pairs], dtype=np.float64)

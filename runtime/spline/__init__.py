@@ -1,0 +1,1 @@
+"""Splines of quadratic patches, of grids and points."""

@@ -1,0 +1,73 @@
+"""The developable share of a surface (K ≈ 0), which no set of normals samples."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["CellMeasure", "Measured", "curved_solid_angle", "developable_share"]
+
+Array = NDArray[np.float64]
+# Regions that 10,000 normals would sample count as curved, even with fewer normals.
+LEAST_DENSITY = 10_000 / (4 * math.pi)
+
+
+class CellMeasure(NamedTuple):
+    """Of the cells (m n,): areas, absolute solid angles of their images, and the largest |K| there.
+
+    K is the signed solid angle of a cell divided by its area: on a developable surface the elliptic
+    and hyperbolic errors of the spline cancel in it. It also vanishes where K changes its sign,
+    hence the maximum over the cell and its neighbours.
+    """
+
+    areas: Array
+    solid_angles: Array
+    curvatures: Array
+
+    @classmethod
+    def of(cls, measure: tuple[Array, Array], cells: tuple[int, int]) -> CellMeasure:
+        """Return that of the cells from areas and signed solid angles of the patches (4 m n,)."""
+        areas, signed = (x.reshape(*cells, 4).sum(axis=2) for x in measure)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            curvatures = np.where(areas > 0.0, np.abs(signed) / areas, 0.0)
+        for axis in (0, 1):
+            widths = [(1, 1) if k == axis else (0, 0) for k in (0, 1)]
+            padded = np.pad(curvatures, widths, mode="edge")
+            shifted = (
+                np.take(padded, np.arange(k, k + curvatures.shape[axis]), axis) for k in range(3)
+            )
+            curvatures = np.maximum.reduce(list(shifted))
+        solid_angles = np.abs(measure[1]).reshape(-1, 4).sum(axis=1)
+        return cls(measure[0].reshape(-1, 4).sum(axis=1), solid_angles, curvatures.ravel())
+
+    def curved(self, density: float) -> NDArray[np.bool_]:
+        """Return which cells are curved enough to be sampled, as booleans (m n,).
+
+        A cell counts if |K| times the density is at least 1, in units of the diagonal of the
+        bounding box: a surface of that size with this |K| would have a sample.
+        """
+        return self.curvatures * max(density, LEAST_DENSITY) >= 1.0
+
+
+class Measured(Protocol):
+    """A spline, or a surface beside its spline."""
+
+    def _measure_of_cells(self) -> CellMeasure:
+        """Return areas, solid angles and curvatures of the cells."""
+        ...
+
+
+def developable_share(sampled: Measured, density: float) -> float:
+    """Return the share of the area that `density` normals per steradian do not sample."""
+    cells = sampled._measure_of_cells()
+    total = float(cells.areas.sum())
+    return float(cells.areas[~cells.curved(density)].sum()) / total if total > 0.0 else 1.0
+
+
+def curved_solid_angle(sampled: Measured, density: float) -> float:
+    """Return the solid angle of the Gaussian image of curved cells, with multiplicity."""
+    cells = sampled._measure_of_cells()
+    return float(cells.solid_angles[cells.curved(density)].sum())

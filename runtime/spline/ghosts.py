@@ -1,0 +1,150 @@
+"""Ghost coefficients, one ring outside the domain: what the boundary conditions demand of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...generated import spline as formulas
+from ..base.formula_calls import python_function
+from ..domain.domain import Boundary, BoundaryPair
+from .planar_ring import ring_around
+
+__all__ = ["Border", "Sides", "coefficients_with_ring", "vertices_with_ring"]
+
+Array = NDArray[np.float64]
+Sides = tuple[tuple[Array, Array], tuple[Array, Array]]
+
+
+@dataclass(frozen=True, eq=False)
+class Border:
+    """The spline on the border of the domain: the univariate quasi-interpolant of the border.
+
+    `sides` are the middle Bézier points of the edges along u at the low and the high end of v, then
+    along v at the low and the high end of u; `corners` (2, 2, 3) the values at the corners.
+    """
+
+    sides: Sides
+    corners: Array
+
+    @classmethod
+    def of_values(cls, middles: Sides, g: Array) -> Border:
+        """Return the border from values at the middles of its edges and at all vertices."""
+        south, north = (
+            python_function(formulas.edge_point)(f, row[:-1], row[1:])
+            for f, row in zip(middles[0], (g[:, 0], g[:, -1]), strict=True)
+        )
+        west, east = (
+            python_function(formulas.edge_point)(f, row[:-1], row[1:])
+            for f, row in zip(middles[1], (g[0], g[-1]), strict=True)
+        )
+        return cls(((south, north), (west, east)), g[:: len(g) - 1, :: g.shape[1] - 1])
+
+    @classmethod
+    def of_vertices(cls, ringed: Array) -> Border:
+        """Return the border from values at the vertices and one ring more."""
+        sides = [
+            python_function(formulas.edge_point_from_vertices)(
+                row[1:-2], row[2:-1], row[:-3], row[3:]
+            )
+            for row in (ringed[:, 1], ringed[:, -2], ringed[1], ringed[-2])
+        ]
+        corners = ringed[1 :: len(ringed) - 3, 1 :: ringed.shape[1] - 3][:2, :2]
+        return cls(((sides[0], sides[1]), (sides[2], sides[3])), corners)
+
+
+def coefficients_with_ring(inner: Array, border: Border, boundary: Boundary) -> Array:
+    """Return the coefficients (m + 2, n + 2, 3) with one ring outside the inner ones (m, n, 3).
+
+    Open sides follow the border, periodic ones are copied. At a pole the outer coefficients are the
+    first inner ones mirrored in one point, their mean, so that this end of the spline is exactly
+    one point; the inner ones are moved to one plane, so that it has one normal (planar_ring.py).
+    """
+    result = np.pad(inner, [(1, 1), (1, 1), (0, 0)])
+    turned = np.swapaxes(result, 0, 1)
+    _open_rows(result, boundary[0], border.sides[1])
+    _open_rows(turned, boundary[1], border.sides[0])
+    _close(result, turned, boundary)
+    for i, j in ((0, 0), (0, -1), (-1, 0), (-1, -1)):
+        if boundary[0][i] == boundary[1][j] == "open":
+            a, b = (1, -2)[i], (1, -2)[j]
+            result[i, j] = python_function(formulas.beyond_corner)(
+                border.corners[i, j], result[a, j], result[i, b], result[a, b]
+            )
+    return result
+
+
+def _open_rows(rows: Array, boundary: BoundaryPair, sides: tuple[Array, Array]) -> None:
+    """Write the rows outside the open ends of the first axis."""
+    for end, side, outside, first in zip(boundary, sides, (0, -1), (1, -2), strict=True):
+        if end == "open":
+            rows[outside, 1:-1] = python_function(formulas.beyond_edge)(side, rows[first, 1:-1])
+
+
+def _close(result: Array, turned: Array, boundary: Boundary) -> None:
+    """Write the rows outside poles and periodic ends.
+
+    Poles come first, and what runs along v comes before what runs along u, where u is open: then
+    copies hold the ring along the other parameter too.
+    """
+    directions = ((turned, boundary[1]), (result, boundary[0]))
+    for rows, end in directions:
+        for kind, outside, first in zip(end, (0, -1), (1, -2), strict=True):
+            if kind == "pole":
+                _close_pole(rows, outside, first)
+    for rows, end in directions:
+        if end[0] in ("periodic", "mirrored"):
+            step = 1 if end[0] == "periodic" else -1
+            rows[0], rows[-1] = rows[-2, ::step].copy(), rows[1, ::step].copy()
+
+
+def _close_pole(rows: Array, outside: int, first: int) -> None:
+    ring, pole = ring_around(rows[first, 1:-1])
+    rows[first, 1:-1] = ring
+    rows[outside, 1:-1] = python_function(formulas.beyond_edge)(pole, ring)
+
+
+# --- vertices -------------------------------------------------------------------------------------
+
+
+def vertices_with_ring(values: Array, boundary: Boundary) -> Array:
+    """Add the values (m, n, 3) at the vertices one step outside the domain.
+
+    Values of a periodic direction come without the repeated last row and get two rows at the high
+    end; others get one row at each end. The row beyond a pole is the one before it, half a period
+    away, or extrapolated if half a period is no whole number of points.
+    """
+    if "pole" in boundary[0]:
+        swapped = vertices_with_ring(np.swapaxes(values, 0, 1), (boundary[1], boundary[0]))
+        return np.ascontiguousarray(np.swapaxes(swapped, 0, 1))
+    turned = np.swapaxes(values, 0, 1)
+    reverse = values[::-1]  # of vertices that close, the first stays the first
+    reverse = np.roll(reverse, 1, axis=0) if boundary[0][0] in ("periodic", "mirrored") else reverse
+    opposite = np.roll(turned, len(values) // 2, axis=1)
+    low, high = _beyond(turned, np.swapaxes(reverse, 0, 1), opposite, boundary[1])
+    ringed = np.swapaxes(np.concatenate([low, turned, high]), 0, 1)
+    low, high = _beyond(ringed, ringed[:, ::-1], ringed, boundary[0])
+    return np.ascontiguousarray(np.concatenate([low, ringed, high]))
+
+
+def _beyond(
+    rows: Array, mirrored: Array, opposite: Array, boundary: BoundaryPair
+) -> tuple[Array, Array]:
+    """Return the rows before the first and after the last one.
+
+    `mirrored` are the same rows with the other parameter reversed, `opposite` those half a period
+    away along it.
+    """
+    if boundary[0] in ("periodic", "mirrored"):
+        source = rows if boundary[0] == "periodic" else mirrored
+        return source[-1:], source[:2]
+    parts = []
+    for end, step, first in zip(boundary, (1, -1), (0, -1), strict=True):
+        if end == "pole" and rows.shape[1] % 2 == 0:
+            parts.append(opposite[first + step][None])
+        else:
+            inside = (rows[first + k * step] for k in range(3))
+            parts.append(python_function(formulas.extrapolation)(*inside)[None])
+    return parts[0], parts[1]

@@ -1,0 +1,121 @@
+"""Points on a grid that are to be a surface: scans, elevation models, images."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.advice import NO_CLOUDS
+from ..base.checks import as_float
+from ..base.errors import InputError, shown
+from ..domain.domain import Boundary, Domain
+from .missing import filled
+from .quasi_interpolant import apart, fit_grid
+from .spline import Spline
+
+__all__ = ["points_of_elevations", "spline_of_points"]
+
+# A last row this near to the first, relative to the distance of two rows, is the first row again.
+REPEATED = 1e-3
+
+
+def spline_of_points(
+    points: NDArray[np.float64], boundary: Boundary, name: str, domain: Domain | None = None
+) -> Spline:
+    """Return the spline of points (m, n, 3) at the vertices of its cells."""
+    _check(points, boundary, name)
+    cells = tuple(
+        count if "periodic" in end or "mirrored" in end else count - 1
+        for count, end in zip(points.shape, boundary, strict=False)
+    )
+    if domain is None:
+        domain = (0.0, float(cells[0])), (0.0, float(cells[1]))
+    spline = fit_grid(points, domain, boundary, name)
+    _check_closed(points, boundary, name)
+    return spline
+
+
+def points_of_elevations(
+    elevations: NDArray[np.float64], spacing: Sequence[float] | None, boundary: Boundary, name: str
+) -> tuple[NDArray[np.float64], Domain]:
+    """Return the points (m, n, 3) of elevations (rows along y, columns along x), and their domain.
+
+    They are ordered such that normals point upward.
+    """
+    if boundary != (("open", "open"), ("open", "open")):
+        raise InputError("elevations are a graph and cannot be periodic.")
+    rows, columns = elevations.shape
+    if columns == 3:
+        raise InputError(f"{name} has the shape {elevations.shape}: {NO_CLOUDS}.")
+    dx, dy = _spacing(spacing, max(rows, columns))
+    _check(elevations[..., None], boundary, name)
+    x, y = dx * np.arange(columns), dy * np.arange(rows) + 0.0
+    if dy < 0.0:
+        elevations, y = elevations[::-1], y[::-1]
+    points = np.empty((columns, rows, 3))
+    points[..., 0] = x[:, None]
+    points[..., 1] = y
+    points[..., 2] = elevations.T
+    return points, ((float(x[0]), float(x[-1])), (float(y[0]), float(y[-1])))
+
+
+def _spacing(spacing: Sequence[float] | None, count: int) -> tuple[float, float]:
+    try:
+        dx, dy = (as_float(x) for x in (() if spacing is None else spacing))
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(
+            f"elevations (m, n) need spacing=(dx, dy), two numbers, not {shown(spacing)}."
+        ) from None
+    if not np.isfinite([dx * count, dy * count]).all() or dx <= 0.0 or dy == 0.0:
+        raise InputError(
+            f"spacing must be finite and the map too, dx > 0 and dy not 0, not ({dx}, {dy})."
+        )
+    return dx, dy
+
+
+def _check(points: NDArray[np.float64], boundary: Boundary, name: str) -> None:
+    for axis, end in enumerate(boundary):
+        least = 3 if end[0] in ("periodic", "mirrored") else 4
+        if points.shape[axis] < least:
+            raise InputError(
+                f"{name} has {points.shape[0]} x {points.shape[1]} points; it needs at least "
+                f"{least} along axis {axis}, for 3 x 3 cells."
+            )
+    bad = np.isinf(points).any(axis=2)
+    if bad.any():
+        i, j = np.unravel_index(int(np.argmax(bad)), bad.shape)
+        raise InputError(
+            f"{name} holds {int(bad.sum())} points with infinity, the first at [{i}, {j}]; make "
+            "them NaN if they are missing."
+        )
+    if np.isnan(points).any(axis=2).all():
+        raise InputError(f"all points of {name} are missing: each holds NaN, or nodata.")
+
+
+def _farthest(first: NDArray[np.float64], second: NDArray[np.float64]) -> float:
+    """Return the largest difference, NaN if all of them are missing."""
+    return float(np.fmax.reduce(np.abs(first - second), axis=None))
+
+
+def _check_closed(points: NDArray[np.float64], boundary: Boundary, name: str) -> None:
+    if "mirrored" in boundary[0] and "mirrored" in boundary[1]:
+        raise InputError(
+            f"{name} cannot be mirrored along both axes: one of its corners would be missing; use "
+            "a callable."
+        )
+    for axis, (low, high) in enumerate(boundary):
+        rows = np.swapaxes(points, 0, axis)
+        if low in ("periodic", "mirrored"):
+            first = rows[0] if low == "periodic" else rows[0, ::-1]
+            if _farthest(rows[-1], first) < REPEATED * _farthest(rows[1], rows[0]):
+                raise InputError(
+                    f"{name} repeats its first points at the end of axis {axis}, which is "
+                    "periodic; leave them out."
+                )
+        for end, row in ((low, 0), (high, -1)):
+            at_pole = rows[row][~np.isnan(rows[row]).any(axis=1)]
+            if end == "pole" and len(at_pole) and apart(at_pole, at_pole[:1], filled(points)):
+                place = f"points[{row}]" if axis == 0 else f"points[:, {row}]"
+                raise InputError(f"{name} has no pole at {place}: they are not one point.")

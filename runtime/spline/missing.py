@@ -1,0 +1,190 @@
+"""Grids with missing points: what of their spline does not depend on these."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.checks import as_float
+from ..base.errors import GaussmapWarning, InputError, shown
+from ..domain.domain import Boundary, BoundaryPair, Domain
+from ..kernels import spline as kernels
+from ..kernels.trim import find_patches
+from .ghosts import Border, Sides, coefficients_with_ring, vertices_with_ring
+from .inside import widened
+from .nodata_blocks import suspicious_block
+
+__all__ = [
+    "Known",
+    "filled",
+    "known_of_grid",
+    "known_of_values",
+    "without_nodata",
+]
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+# What grids of elevations usually hold where there are none.
+USUAL_NODATA = (-9999.0, -99999.0, -32768.0, float(np.finfo(np.float32).min))
+USUAL_LARGE_NODATA = (float(np.finfo(np.float32).max), 1e20)
+# The rows of points next to a pole that all patches around it depend on.
+ROWS_AT_POLE = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Known:
+    """The patches of a spline on a grid of cells that depend on no missing point.
+
+    `patches` (4 m n,) says which of them do not.
+    """
+
+    domain: Domain
+    cells: tuple[int, int]
+    patches: Flags
+
+    def contains(self, uv: Array, threads: int | None = None) -> Flags:
+        """Return whether points (k, 2) of the domain are in such patches, as booleans (k,)."""
+        low, high = np.array(self.domain).T
+        places = (uv - low) / (high - low) * self.cells
+        found = np.empty(len(uv), dtype=np.int64)
+        find_patches(places, *self.cells, found)
+        return self.patches[found]
+
+    def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags | None:
+        """Return the cells (m, n) that the border passes, None for cells of another grid."""
+        if (domain, cells) != (self.domain, self.cells):
+            return None
+        of_cell = self.patches.reshape(*cells, 4).astype(np.float64)
+        least, most = -widened(-of_cell.min(axis=2)), widened(of_cell.max(axis=2))
+        return least < most
+
+
+def without_nodata(points: Array, nodata: object, name: str) -> Array:
+    """Return points or elevations with NaN in place of `nodata`; a warning if some look like it."""
+    if nodata is None:
+        _warn_of_nodata(points, name)
+        return points
+    try:
+        value = as_float(nodata)  # pyright: ignore[reportArgumentType]
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"nodata must be a number, not {shown(nodata)}.") from None
+    with np.errstate(over="ignore"):
+        bad = (points == value) | (points == float(np.float32(value)))
+    if points.ndim == 3:
+        bad = bad.any(axis=2, keepdims=True)
+    return np.where(bad, np.nan, points)
+
+
+def _warn_of_nodata(points: Array, name: str) -> None:
+    lowest = float(np.fmin.reduce(points, axis=None, initial=np.inf))
+    highest = float(np.fmax.reduce(points, axis=None, initial=-np.inf))
+    for value, usual in ((lowest, USUAL_NODATA), (highest, USUAL_LARGE_NODATA)):
+        if value in usual and lowest < highest:
+            _warn(
+                f"{name} holds {value:.9g} {int((points == value).sum()):,} times, which often "
+                f"means that there is no data; if so, say nodata={value:.9g}."
+            )
+            return
+    block = suspicious_block(points) if points.ndim == 2 else None
+    if block is not None:
+        _warn(
+            f"{name} holds a block of {block[1]:,} heights of {block[0]:.9g}, where the others end "
+            f"abruptly: there may be no data; if so, say nodata={block[0]:.9g}."
+        )
+
+
+def _warn(text: str) -> None:
+    warnings.warn(text, GaussmapWarning, stacklevel=5)
+
+
+def filled(points: Array) -> Array:
+    """Return points (m, n, 3) with those of the nearest points in place of missing numbers."""
+    bad = np.isnan(points)
+    if not bad.any():
+        return points
+    from scipy.ndimage import distance_transform_edt
+
+    touched = bad.any(axis=2)
+    nearest: NDArray[np.int32] = np.empty((2, *touched.shape), dtype=np.int32)
+    distance_transform_edt(touched, return_distances=False, return_indices=True, indices=nearest)
+    return np.where(bad, points[nearest[0], nearest[1]], points)
+
+
+def known_of_grid(points: Array, domain: Domain, boundary: Boundary, name: str) -> Known | None:
+    """Return which patches of the spline of a grid depend on no point with NaN; None if all do.
+
+    Raises InputError if none is left.
+    """
+    bad = np.isnan(points).any(axis=2)
+    if not bad.any():
+        return None
+    for axis, ends in enumerate(boundary):
+        for end, rows in ((ends[0], slice(ROWS_AT_POLE)), (ends[1], slice(-ROWS_AT_POLE, None))):
+            turned = np.swapaxes(bad, 0, axis)
+            if end == "pole" and turned[rows].any():
+                turned[rows] = True
+    zeros = np.zeros((*bad.shape, 3))
+    zeros[bad] = np.nan
+    values = vertices_with_ring(zeros, _without_poles(boundary))
+    inner = np.empty((values.shape[0] - 3, values.shape[1] - 3, 3))
+    kernels.fit_vertices(values, inner)
+    known = _known(inner, Border.of_vertices(values), domain, boundary)
+    if not known.patches.any():
+        raise InputError(
+            f"{int(bad.sum()):,} of the {bad.size:,} points of {name} are missing, and every part "
+            "of its spline depends on one of them; fill them, or crop the grid."
+        )
+    return known
+
+
+def known_of_values(
+    exists: Callable[[Array], Flags], domain: Domain, boundary: Boundary, cells: tuple[int, int]
+) -> Known:
+    """Return which patches of a quasi-interpolant depend on no value that does not exist.
+
+    `exists` says that of points (k, 2) of the domain.
+    """
+    u, v = (
+        low + (high - low) * (np.arange(2 * count + 1) / (2 * count))
+        for (low, high), count in zip(domain, cells, strict=True)
+    )
+
+    def values(along_u: Array, along_v: Array) -> Array:
+        uv = np.stack(np.meshgrid(along_u, along_v, indexing="ij"), axis=-1)
+        bad = ~exists(uv.reshape(-1, 2)).reshape(uv.shape[:2])
+        return np.where(np.repeat(bad[..., None], 3, axis=2), np.nan, 0.0)
+
+    centres, vertices = values(u[1::2], v[1::2]), values(u[::2], v[::2])
+    at_v, at_u = values(u[1::2], v[[0, -1]]), values(u[[0, -1]], v[1::2])
+    middles: Sides = (at_v[:, 0], at_v[:, 1]), (at_u[0], at_u[1])
+    inner = np.empty_like(centres)
+    kernels.fit_centres_and_vertices(centres, vertices, inner)
+    return _known(inner, Border.of_values(middles, vertices), domain, boundary)
+
+
+def _known(inner: Array, border: Border, domain: Domain, boundary: Boundary) -> Known:
+    """Return the patches without NaN in their control nets, from coefficients (m, n, 3) with it."""
+    for axis, ends in enumerate(boundary):
+        rows = np.swapaxes(inner, 0, axis)
+        for end, first in zip(ends, (0, -1), strict=True):
+            if end == "pole" and np.isnan(rows[first]).any():
+                rows[first] = np.nan  # the coefficients around a pole depend on one another
+    coefficients = coefficients_with_ring(inner, border, _without_poles(boundary))
+    m, n = inner.shape[:2]
+    nets = np.empty((4 * m * n, 6, 3))
+    kernels.control_nets(coefficients, nets)
+    return Known(domain, (m, n), np.asarray(~np.isnan(nets).any(axis=(1, 2))))
+
+
+def _without_poles(boundary: Boundary) -> Boundary:
+    """Return boundary conditions with open ends in place of poles, which refuse NaN."""
+
+    def pair(ends: BoundaryPair) -> BoundaryPair:
+        return ("open", "open") if "pole" in ends else ends
+
+    return pair(boundary[0]), pair(boundary[1])

@@ -1,0 +1,101 @@
+"""The coefficients of a spline from values of a surface: local averages (paper, Sect. 3.1)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.checks import pair_of_cells
+from ..base.errors import InputError, SurfaceError
+from ..base.memory import check_memory
+from ..base.scales import LARGEST_EXPONENT
+from ..domain.domain import Boundary, Domain
+from ..kernels import spline as kernels
+from .ghosts import Border, Sides, coefficients_with_ring, vertices_with_ring
+from .missing import filled
+from .spline import Spline
+
+__all__ = ["apart", "checked_cells", "fit_grid", "fit_values", "not_too_large"]
+
+MOST_CELLS = 10**9
+# What is said to be one point may be this far apart, relative to the size of the surface.
+SAME_POINT = 1e-6
+# The values at centres and vertices, and the coefficients of a cell, of three numbers each.
+BYTES_A_CELL = 72
+
+
+def fit_values(
+    centres: NDArray[np.float64],
+    vertices: NDArray[np.float64],
+    middles: Sides,
+    domain: Domain,
+    boundary: Boundary,
+    name: str,
+) -> Spline:
+    """Return the spline of values at centres (m, n, 3) and vertices (m + 1, n + 1, 3) of cells.
+
+    `middles` are the values in the middle of the edges on the border of the domain.
+    """
+    inner = np.empty_like(centres)
+    kernels.fit_centres_and_vertices(centres, vertices, inner)
+    border = Border.of_values(middles, vertices)
+    return _spline(inner, border, domain, boundary, name)
+
+
+def fit_grid(points: NDArray[np.float64], domain: Domain, boundary: Boundary, name: str) -> Spline:
+    """Return the spline with one cell between any four neighbouring points (m, n, 3) of a grid.
+
+    Missing points are filled.
+    """
+    values = vertices_with_ring(not_too_large(filled(points), name), boundary)
+    inner = np.empty((values.shape[0] - 3, values.shape[1] - 3, 3))
+    checked_cells(inner.shape[:2])
+    kernels.fit_vertices(values, inner)
+    border = Border.of_vertices(values)
+    return _spline(inner, border, domain, boundary, name)
+
+
+def _spline(
+    inner: NDArray[np.float64], border: Border, domain: Domain, boundary: Boundary, name: str
+) -> Spline:
+    """Return a spline; SurfaceError if its numbers are so small that they have fewer digits."""
+    coefficients = coefficients_with_ring(inner, border, boundary)
+    if 0.0 < float(np.abs(coefficients).max()) < 2.0**-LARGEST_EXPONENT:
+        raise SurfaceError(
+            f"the coordinates of {name!r} are too small to compute with: choose another unit of "
+            "length, in which some are larger than 1e-301."
+        )
+    return Spline(coefficients, domain, boundary, name)
+
+
+def apart(
+    first: NDArray[np.float64], second: NDArray[np.float64], points: NDArray[np.float64]
+) -> bool:
+    """Return whether equal points differ by more than rounding, relative to all points."""
+    extent = points.max(axis=0).max(axis=0) - points.min(axis=0).min(axis=0)  # fastest this way
+    size = float(extent.max())
+    rounding = 64.0 * float(np.spacing(np.abs(points).max()))
+    return float(np.abs(first - second).max()) > SAME_POINT * size + rounding
+
+
+def not_too_large(points: NDArray[np.float64], name: str) -> NDArray[np.float64]:
+    """Return points; SurfaceError if formulas would overflow with them."""
+    if np.abs(points).max() > 2.0**LARGEST_EXPONENT:
+        raise SurfaceError(
+            f"the coordinates of {name!r} are too large to compute with: choose another unit of "
+            "length, in which they are smaller than 1e301."
+        )
+    return points
+
+
+def checked_cells(cells: Sequence[int]) -> tuple[int, int]:
+    """Return numbers of cells (m, n); InputError if there are too few or too many."""
+    m, n = pair_of_cells(cells)
+    if min(m, n) < 3:
+        raise InputError(f"at least 3 x 3 cells are needed, not {m} x {n}.")
+    if m * n > MOST_CELLS:
+        raise InputError(f"at most {MOST_CELLS:,} cells are possible, not {m:,} x {n:,}.")
+    check_memory(BYTES_A_CELL * m * n, f"{m:,} x {n:,} cells")
+    return m, n

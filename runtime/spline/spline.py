@@ -1,0 +1,332 @@
+"""The C¹ quadratic spline that approximates a surface: evaluation, control nets, area."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..base.checks import parameter_arrays
+from ..base.errors import InputError
+from ..base.georeference import Georeference
+from ..base.scales import scale_to_one
+from ..base.threads import over_ranges
+from ..base.tolerances import DATA_ERROR, SAME_PARAMETER
+from ..domain.domain import Boundary, Domain
+from ..kernels import spline as kernels
+from .developable import CellMeasure
+from .inside import Inside
+
+if TYPE_CHECKING:
+    from ..domain.trim import Trim
+    from .misfit import Misfit
+
+__all__ = ["Spline", "short_label"]
+
+LONGEST_LABEL = 40
+PATCHES_AT_A_TIME = 1 << 14
+
+
+def short_label(name: str) -> str:
+    """Return a name on one line, cut if it is long."""
+    label = " ".join(name.split())
+    return label if len(label) <= LONGEST_LABEL else label[: LONGEST_LABEL - 1] + "…"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Spline:
+    """A C¹ quadratic triangular spline on the criss-cross grid (paper, Sect. 3.1); made by `fit`.
+
+    Patches are numbered cell by cell (cell = i n + j, i along u), in each cell south, east, north,
+    west.
+
+    Attributes
+    ----------
+    coefficients : (m + 2, n + 2, 3) float64 array
+        One vector for each cell and for one ring of ghost cells outside. They define the spline
+        exactly; control nets follow from them with rounding.
+    domain : ((u0, u1), (v0, v1)) of float
+        The rectangle of the parameters.
+    boundary : pair of pairs of str
+        For u and for v, the boundary conditions at the low and the high end, see `Surface`.
+    name : str
+        Label of the surface.
+    misfit : Misfit or None
+        How far the spline is from the surface, or from the data, that it approximates: the largest
+        and the root mean square of the distance, and the largest angle between the normals. None if
+        it was not made by `fit`.
+    trim : Trim or None
+        The part of the domain that belongs to the surface, None for all of it; see
+        `Surface.trimmed`.
+    apexes : int
+        The number of open sides that are one point where the surface does not go on smoothly: the
+        tip of a cone, the corner of a triangle. They are looked for where ``periodic=False``.
+    georeference : Georeference or None
+        Where the coordinates of a `terrain` are on the Earth, see `Surface`.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> spline = gm.fit("torus", (16, 12))
+    >>> spline
+    Spline(16 × 12 cells of torus)
+    >>> spline.cells, spline.patches, spline.coefficients.shape, spline.control_nets.shape
+    ((16, 12), 768, (18, 14, 3), (768, 6, 3))
+    >>> spline.boundary, spline.name
+    ((('periodic', 'periodic'), ('periodic', 'periodic')), 'torus')
+    >>> (u0, u1), (v0, v1) = spline.domain
+    >>> bool((spline.frame == [u0, v0, (u1 - u0) / 16, (v1 - v0) / 12]).all())
+    True
+    >>> areas, solid_angles = spline.measure
+    >>> bool(areas.min() > 0), bool(abs(solid_angles.sum()) < 1e-2)  # 2π χ = 0 on a torus
+    (True, True)
+    >>> spline.scale, spline.noise < 1e-13, spline.trim, spline.inside
+    (1.0, True, None, None)
+    >>> spline.misfit.rms < spline.misfit.distance < 3e-3, spline.misfit.angle < 2.0  # degrees
+    (True, True)
+    >>> spline.apexes, spline.georeference
+    (0, None)
+
+    """
+
+    coefficients: NDArray[np.float64]
+    domain: Domain
+    boundary: Boundary
+    name: str
+    misfit: Misfit | None = None
+    trim: Trim | None = None
+    apexes: int = 0
+    georeference: Georeference | None = None
+
+    def __repr__(self) -> str:
+        return f"Spline({self.cells[0]} × {self.cells[1]} cells of {short_label(self.name)})"
+
+    @property
+    def cells(self) -> tuple[int, int]:
+        """The numbers (m, n) of cells along u and along v."""
+        return self.coefficients.shape[0] - 2, self.coefficients.shape[1] - 2
+
+    @property
+    def patches(self) -> int:
+        """The number of quadratic patches, four for each cell."""
+        return 4 * self.cells[0] * self.cells[1]
+
+    @cached_property
+    def control_nets(self) -> NDArray[np.float64]:
+        """(patches, 6, 3) float64 array: the Bézier nets.
+
+        Each is in the order b200, b020, b002, b110, b101, b011.
+        """
+        nets = np.empty((self.patches, 6, 3))
+        kernels.control_nets(self.coefficients, nets)
+        return nets
+
+    @cached_property
+    def frame(self) -> NDArray[np.float64]:
+        """(4,) float64 array: the corner of the domain and the size of a cell, (u0, v0, du, dv)."""
+        (u0, u1), (v0, v1) = self.domain
+        return np.array([u0, v0, (u1 - u0) / self.cells[0], (v1 - v0) / self.cells[1]])
+
+    @cached_property
+    def scale(self) -> float:
+        """A power of two that brings the differences of neighbouring coefficients to about 1."""
+        steps = [np.abs(np.diff(self.coefficients, axis=axis)).max() for axis in (0, 1)]
+        return scale_to_one(float(max(steps)))
+
+    @cached_property
+    def noise(self) -> float:
+        """A bound of the rounding of the coordinates, times `scale`."""
+        return DATA_ERROR * float(np.abs(self.coefficients * self.scale).max())
+
+    def evaluate(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
+        """Return the points of the spline at parameters.
+
+        Parameters
+        ----------
+        u, v : array_like
+            Parameters that broadcast together. Periodic ones are taken modulo the period.
+
+        Returns
+        -------
+        (..., 3) float64 array
+            The points.
+
+        Raises
+        ------
+        InputError
+            If a parameter that is not periodic lies outside the domain, or any is NaN or infinite.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.fit("torus", (64, 64)).evaluate([0.0, 0.5], 0.0).shape
+        (2, 3)
+
+        """
+        return self._evaluate(u, v)[0]
+
+    def normals(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
+        """Return the unit normals of the spline at parameters, along p_u × p_v.
+
+        Parameters
+        ----------
+        u, v : array_like
+            As in `evaluate`.
+
+        Returns
+        -------
+        (..., 3) float64 array
+            The normals; NaN at poles, and at singular points where p_u × p_v vanishes exactly.
+
+        Raises
+        ------
+        InputError
+            As `evaluate`.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.fit("torus", (64, 64)).normals(0.0, 0.0).round(6) + 0.0
+        array([1., 0., 0.])
+
+        """
+        vectors = self._evaluate(u, v)[1]
+        with np.errstate(invalid="ignore"):
+            vectors /= np.abs(vectors).max(axis=-1, keepdims=True)
+            return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+
+    @cached_property
+    def measure(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Areas and solid angles of the patches, by quadrature: two (patches,) float64 arrays.
+
+        Those of the parts inside the trim, if there is one, by their shares of the parameters.
+        Areas are in units of the squared diagonal of the bounding box of the coefficients. Solid
+        angles are signed, and those of the Gaussian images.
+        """
+        areas, solid_angles = np.empty(self.patches), np.empty(self.patches)
+
+        def work(first: int, last: int) -> None:
+            kernels.measure_patches(
+                self.coefficients, self.scale, first, last,
+                areas[first:last], solid_angles[first:last],
+            )  # fmt: skip
+
+        for _ in over_ranges(work, self.patches, PATCHES_AT_A_TIME, None):
+            pass
+        inner = self.coefficients[1:-1, 1:-1].reshape(-1, 3) * self.scale
+        diagonal = float(np.linalg.norm(np.ptp(inner, axis=0)))
+        if self.inside is not None:
+            areas, solid_angles = areas * self.inside.shares, solid_angles * self.inside.shares
+        return areas / diagonal**2 if diagonal > 0.0 else areas, solid_angles
+
+    def _measure_of_cells(self) -> CellMeasure:
+        """Return areas, solid angles and curvatures of the cells."""
+        return self._cell_measure
+
+    @cached_property
+    def _cell_measure(self) -> CellMeasure:
+        """Areas, solid angles and curvatures of the cells, see `CellMeasure`."""
+        return CellMeasure.of(self.measure, self.cells)
+
+    @cached_property
+    def inside(self) -> Inside | None:
+        """The part of each patch inside the trim, None without one."""
+        return None if self.trim is None else Inside.of(self)
+
+    def _evaluate(
+        self, u: ArrayLike, v: ArrayLike
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        u_array, v_array = parameter_arrays(u, v)
+        places = np.stack([u_array.ravel(), v_array.ravel()], axis=1)
+        cells = self.in_cells(places)
+        points, normals = self._evaluated(cells)
+        return points.reshape(*u_array.shape, 3), normals.reshape(*u_array.shape, 3)
+
+    def normals_in_cells(self, cells: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return normals of the spline at places that are given in cells.
+
+        Parameters
+        ----------
+        cells : (k, 2) float64 array
+            Places inside the domain, in cells from its corner; see `in_cells`.
+
+        Returns
+        -------
+        (k, 3) float64 array
+            The normals p_u × p_v, up to a common positive factor; 0 at poles.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> import numpy as np
+        >>> gm.fit("plane", (4, 4)).normals_in_cells(np.array([[0.5, 2.0]]))[0, 2] > 0
+        np.True_
+
+        """
+        return self._evaluated(cells)[1]
+
+    def _evaluated(
+        self, cells: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        points, normals = np.empty((len(cells), 3)), np.empty((len(cells), 3))
+        kernels.evaluate(self.coefficients, self.scale, cells, points, normals)
+        for axis, (count, ends) in enumerate(zip(self.cells, self.boundary, strict=True)):
+            for end, place in zip(ends, (0, count), strict=True):
+                if end == "pole":  # all but rounding
+                    normals[np.abs(cells[:, axis] - place) <= SAME_PARAMETER * count] = 0.0
+        return points, normals
+
+    def in_cells(self, places: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return parameters as numbers of cells from the corner of the domain.
+
+        Parameters
+        ----------
+        places : (k, 2) float64 array
+            Parameters u, v. Periodic ones are taken modulo the period.
+
+        Returns
+        -------
+        (k, 2) float64 array
+            The cell of a parameter and the place in it: 2.5 is the middle of the third cell.
+
+        Raises
+        ------
+        InputError
+            As `evaluate`.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> import numpy as np
+        >>> gm.fit("torus", (16, 16)).in_cells(np.array([[np.pi, 0.0]]))
+        array([[8., 0.]])
+
+        """
+        return self._wrapped((places - self.frame[:2]) / self.frame[2:], places)
+
+    def _wrapped(
+        self, cells: NDArray[np.float64], places: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Bring periodic coordinates (in cells) back into the domain; refuse others outside it."""
+        for axis, name in enumerate("uv"):
+            count = self.cells[axis]
+            if self.boundary[axis][0] in ("periodic", "mirrored"):
+                with np.errstate(invalid="ignore"):
+                    turns = np.where(cells[:, axis] == count, 0.0, np.floor(cells[:, axis] / count))
+                    cells[:, axis] -= turns * count
+                if self.boundary[axis][0] == "mirrored":
+                    other = 1 - axis
+                    odd = np.mod(turns, 2.0) == 1.0
+                    cells[odd, other] = self.cells[other] - cells[odd, other]
+            slack = 1e-9 * count
+            inside = (cells[:, axis] >= -slack) & (cells[:, axis] <= count + slack)
+            if not inside.all():
+                worst = int(np.argmin(inside))
+                raise InputError(
+                    f"{name} = {places[worst, axis]} lies outside the domain {self.domain[axis]} "
+                    f"of {self.name!r}."
+                )
+        return cells

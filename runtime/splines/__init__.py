@@ -1,1 +1,0 @@
-"""From values on a grid to C¹ quadratic splines: domains, boundary conditions, missing values."""

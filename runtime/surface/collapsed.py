@@ -1,0 +1,180 @@
+"""Sides of the domain that are one point: poles, where the surface goes on smoothly, and apexes.
+
+A disk in polar coordinates has such a side, and a sphere has two. Where nobody said how a surface
+ends, they are found from a few points: the side is one point, the other parameter closes smoothly,
+and so do the meridians, each continued by the opposite one. A side that is one point without that
+is an apex: the tip of a cone, the corner of a triangle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...generated import spline as formulas
+from ..base.errors import SurfaceError
+from ..base.formula_calls import python_function
+from ..domain.domain import Assumed, Boundary
+from ..spline.quasi_interpolant import SAME_POINT
+
+if TYPE_CHECKING:
+    from .surface import Surface
+
+__all__ = ["FoundSides", "closed_grid", "found_sides"]
+
+Array = NDArray[np.float64]
+
+# A line along a side has this number of steps, an even one.
+STEPS = 16
+# The distance of the lines near a side as a part of the domain. Far from the origin, relative to
+# its size, it is the cube root of the rounding, where that is more.
+LEAST_STEP, MOST_STEP = 1e-4, 1e-2
+# A surface goes on smoothly if the next point is predicted from three up to this part of the step.
+# The error is of second order relative to the step, which is that of the grid for data.
+KINK, KINK_OF_DATA = 1e-2, 0.3
+# Rounding of coordinates, in units of the last place: they come from several operations each.
+ROUNDING = 64.0
+
+
+@dataclass(frozen=True)
+class FoundSides:
+    """The boundary conditions of a surface, and the number of open sides that are one point."""
+
+    boundary: Boundary
+    apexes: int
+
+
+def found_sides(surface: Surface) -> FoundSides:
+    """Return the boundary conditions of a surface, with the poles among the sides assumed open.
+
+    A surface that cannot be evaluated next to its sides keeps its own: if that is an error, the fit
+    says so at a place of its own.
+    """
+    if any(surface.assumed_open):
+        with np.errstate(all="ignore"), suppress(SurfaceError):
+            if surface.grid is None:
+                return _Sides.of_surface(surface).found()
+            return _Sides.of_grid(surface.grid, surface.boundary, surface.assumed_open).found()
+    return FoundSides(surface.boundary, 0)
+
+
+def closed_grid(points: Array, boundary: Boundary, assumed: Assumed) -> tuple[Array, Boundary]:
+    """Return a grid (m, n, 3) and its boundary conditions, with poles that nobody declared.
+
+    Where a parameter turns out to be periodic, the points at its end are left out: they are those
+    at its beginning.
+    """
+    if not any(assumed) or min(points.shape[:2]) < 4:
+        return points, boundary
+    with np.errstate(all="ignore"):
+        found = _Sides.of_grid(points, boundary, assumed).found().boundary
+    for axis in (0, 1):
+        if boundary[axis][0] != "periodic" == found[axis][0]:
+            points = points[:-1] if axis == 0 else points[:, :-1]
+    return points, found
+
+
+@dataclass(frozen=True)
+class _Sides:
+    """The sides of a surface.
+
+    `lines(axis, end)` are the points (3, k, 3) on a side and on two lines next to it, all from one
+    end to the other. `repeated` says whether both ends are there if these are one point. `same` is
+    how far points may be apart that are one, `rounding` that of a combination of a few points.
+    """
+
+    lines: Callable[[int, int], Array]
+    boundary: Boundary
+    assumed: Assumed
+    repeated: bool
+    kink: float
+    same: float
+    rounding: float
+
+    @classmethod
+    def of_surface(cls, surface: Surface) -> _Sides:
+        """Return the sides of a surface, which is evaluated when one of them is looked at."""
+        parts = [low + (high - low) * np.linspace(0.0, 1.0, 5) for low, high in surface.domain]
+        size, last_place = _extent(surface.evaluate(parts[0][:, None], parts[1]))
+        part = np.clip(np.cbrt(last_place / (size or 1.0)), LEAST_STEP, MOST_STEP)
+
+        def lines(axis: int, end: int) -> Array:
+            low, high = surface.domain[1 - axis]
+            along = np.append(low + (high - low) * (np.arange(STEPS) / STEPS), high)
+            low, high = surface.domain[axis]
+            step = part * ((high - low) if end == 0 else (low - high))
+            across = (low, high)[end] + step * np.arange(3)[:, None]
+            return surface.evaluate(*((across, along) if axis == 0 else (along, across)))
+
+        same, rounding = SAME_POINT * size + ROUNDING * last_place, ROUNDING * last_place
+        return cls(lines, surface.boundary, surface.assumed_open, True, KINK, same, rounding)
+
+    @classmethod
+    def of_grid(cls, points: Array, boundary: Boundary, assumed: Assumed) -> _Sides:
+        """Return the sides of a grid of points; those with NaN are not one point."""
+
+        def lines(axis: int, end: int) -> Array:
+            rows = np.swapaxes(points, 0, axis)
+            return rows[:3] if end == 0 else rows[:-4:-1]
+
+        size, last_place = _extent(points)
+        same, rounding = SAME_POINT * size + ROUNDING * last_place, ROUNDING * last_place
+        return cls(lines, boundary, assumed, False, KINK_OF_DATA, same, rounding)
+
+    def found(self) -> FoundSides:
+        """Return the boundary conditions with those that are found."""
+        kinds, apexes = [list(ends) for ends in self.boundary], 0
+        for axis, end in ((0, 0), (0, 1), (1, 0), (1, 1)):
+            if self.assumed[axis] and self.boundary[axis][end] == "open":
+                near = self.lines(axis, end)
+                if not float(np.ptp(near[0], axis=0).max()) <= self.same:
+                    continue
+                if self._is_pole(1 - axis, near):
+                    kinds[axis][end] = "pole"
+                    kinds[1 - axis] = ["periodic", "periodic"]
+                else:
+                    apexes += 1
+        boundary = (kinds[0][0], kinds[0][1]), (kinds[1][0], kinds[1][1])
+        return FoundSides(cast(Boundary, boundary), apexes)
+
+    def _is_pole(self, around: int, near: Array) -> bool:
+        """Return whether parameter `around` closes, and each meridian continues the opposite one.
+
+        `near` (3, k, 3) are the points on the side and on two lines next to it. Meridians that have
+        no tangent at the side (x_u = x_v = 0) may end in a cusp.
+        """
+        repeated = self.repeated
+        if self.boundary[around][0] != "periodic":
+            if not self.assumed[around] or not self._closes(around):
+                return False
+            repeated = True
+        if repeated:
+            near = near[:, :-1]
+        half, odd = divmod(near.shape[1], 2)
+        opposite = (np.roll(near[1], half, axis=0) + np.roll(near[1], half + odd, axis=0)) / 2.0
+        step, bend = (np.abs(np.diff(near, k, axis=0)[0]).max() for k in (1, 2))
+        return bool(bend < step) and self._goes_on(near, opposite)
+
+    def _closes(self, axis: int) -> bool:
+        """Return whether a parameter closes: points and tangents are the same at its two ends."""
+        low, high = self.lines(axis, 0), self.lines(axis, 1)
+        is_same = bool(np.abs(low[0] - high[0]).max() <= self.same)
+        return is_same and self._goes_on(low, high[1])
+
+    def _goes_on(self, near: Array, beyond: Array) -> bool:
+        """Return whether lines at the distances 0, 1, 2 (3, k, 3) predict the one at −1 (k, 3)."""
+        step = float(np.abs(near[1] - near[0]).max())
+        predicted = python_function(formulas.extrapolation)(*near)
+        return bool(np.abs(predicted - beyond).max() <= self.kink * step + self.rounding)
+
+
+def _extent(points: Array) -> tuple[float, float]:
+    """Return the size of points (m, n, 3), and the unit in the last place of their coordinates."""
+    low, high = (f.reduce(points, axis=(0, 1)) for f in (np.fmin, np.fmax))  # without NaN
+    largest = np.maximum(np.abs(low), np.abs(high)).max()
+    return float((high - low).max()), float(np.spacing(largest))

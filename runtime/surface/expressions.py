@@ -1,0 +1,154 @@
+"""Texts and SymPy expressions of a user: the way from the runtime to SymPy.
+
+What texts may hold stands in `symbolic.reading`. SymPy is imported on first use.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from numbers import Number
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..base import bridge
+from ..base.errors import InputError, shown
+
+if TYPE_CHECKING:
+    import sympy
+
+__all__ = [
+    "as_condition",
+    "as_expression",
+    "as_position",
+    "interval",
+    "numbers",
+    "one_symbol",
+    "two_symbols",
+]
+
+
+def as_position(position: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> tuple[Any, ...]:
+    """Return three expressions in two symbols, or two in one; InputError if they are not."""
+    import sympy as sp
+
+    by_name = {symbol.name: symbol for symbol in symbols}
+    expressions = [as_expression(entry, by_name) for entry in _coordinates(position, len(symbols))]
+    if any(e.has(sp.nan, sp.zoo) for e in expressions):
+        raise InputError(f"position is not finite: {shown(position)}.")
+    expressions = [
+        e.subs({s: by_name[s.name] for s in e.free_symbols if s.name in by_name})
+        for e in expressions
+    ]
+    unknown = set().union(*(e.free_symbols for e in expressions)) - set(symbols)
+    if unknown:
+        names = ", ".join(sorted(map(str, unknown)))
+        raise InputError(f"position holds symbols that are neither parameter nor number: {names}.")
+    return tuple(expressions)
+
+
+def numbers(domain: Sequence[Sequence[Any]]) -> list[list[float]]:
+    """Return a domain whose ends may be expressions as floats; raise InputError if it is none."""
+    try:
+        return [[float(as_expression(end, {})) for end in ends] for ends in domain]
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(
+            f"domain must be ((u0, u1), (v0, v1)) in numbers, not {shown(domain)}."
+        ) from None
+
+
+def interval(domain: Sequence[Any]) -> list[float]:
+    """Return the ends of an interval, which may be expressions, as floats; InputError if not."""
+    try:
+        return [float(as_expression(end, {})) for end in domain]
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"domain must be (t0, t1) in numbers, not {shown(domain)}.") from None
+
+
+def _coordinates(position: Sequence[Any], parameters: int) -> tuple[Any, ...]:
+    """Return the coordinates, one more than there are parameters."""
+    names = "(x, y, z)" if parameters == 2 else "(x, y)"
+    try:
+        coordinates = () if isinstance(position, str) else tuple(position)
+    except TypeError:
+        coordinates = ()
+    if len(coordinates) != parameters + 1:
+        number = "three" if parameters == 2 else "two"
+        raise InputError(
+            f"position must be {number} SymPy expressions {names}, not {shown(position)}."
+        )
+    return coordinates
+
+
+def two_symbols(parameters: Sequence[Any]) -> list[sympy.Symbol]:
+    """Return the parameters of a surface, symbols or their names; InputError if they are not."""
+    try:
+        u, v = (_symbol(x) for x in parameters)
+    except (TypeError, ValueError):
+        u = v = None
+    if u is None or v is None or u.name == v.name:
+        raise InputError(f"parameters must be two SymPy symbols (u, v), not {shown(parameters)}.")
+    return [u, v]
+
+
+def one_symbol(parameter: sympy.Symbol | str) -> list[sympy.Symbol]:
+    """Return the parameter of a curve, a symbol or its name; InputError if it is not."""
+    symbol = _symbol(parameter)
+    if symbol is None:
+        raise InputError(f"the parameter must be a SymPy symbol such as t, not {shown(parameter)}.")
+    return [symbol]
+
+
+def _symbol(entry: object) -> sympy.Symbol | None:
+    import sympy as sp
+
+    if isinstance(entry, str) and entry.isidentifier():
+        return sp.Symbol(entry)
+    return entry if isinstance(entry, sp.Symbol) else None
+
+
+def as_expression(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401 - SymPy has no types
+    """Return an expression or the one that a text stands for, in which `symbols` come first.
+
+    Raises InputError with the reason if it is none, or holds what kernels cannot compute.
+    """
+    import sympy as sp
+
+    expression = _read(entry, symbols)
+    if not isinstance(expression, sp.Expr | sp.MatrixBase):
+        raise InputError(f"{shown(entry)} is not a SymPy expression.")
+    return expression
+
+
+def as_condition(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401 - SymPy has no types
+    """Return the Boolean of SymPy that is given, or that a text stands for; InputError if none."""
+    from sympy.logic.boolalg import Boolean
+
+    condition = _read(entry, symbols)
+    if not isinstance(condition, Boolean) or condition.is_Symbol:
+        raise InputError(f"{shown(entry)} is not a condition.")
+    return condition
+
+
+def _read(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401
+    """Return what SymPy makes of a text, a number or an expression; None for anything else.
+
+    SymPy itself would run texts as Python, those in lists as well, so that it gets none.
+    """
+    import sympy as sp
+
+    reading = bridge.reading()
+    try:
+        if isinstance(entry, str):
+            return reading.read(entry, symbols)
+        if not isinstance(entry, sp.Basic | sp.MatrixBase | Number | np.bool_):
+            return None
+        expression = sp.sympify(entry, strict=True)
+        reading.refuse_unusable(expression)
+    except reading.ReadingError as error:
+        raise InputError(
+            f"{shown(entry)} is not a SymPy expression that can be compiled: {error}."
+        ) from None
+    except (sp.SympifyError, ValueError, TypeError, RecursionError):
+        return None
+    return expression

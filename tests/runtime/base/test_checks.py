@@ -1,0 +1,141 @@
+"""What every argument goes through."""
+
+from decimal import Decimal
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from gaussmap.runtime.base.checks import parameter_arrays, real_array, whole_number
+from gaussmap.runtime.base.errors import InputError
+
+
+@pytest.mark.parametrize("value", [1, 7, np.int8(7), np.uint64(7), 10**9])
+def test_whole_numbers(value):
+    result = whole_number(value, "count")
+    assert result == value
+    assert type(result) is int
+
+
+@pytest.mark.parametrize("value", [10**9 + 1, 10**30, 10**400])
+def test_whole_numbers_beyond_all_memory(value):
+    with pytest.raises(InputError, match=r"^count must be a whole number of at most 1,000,000,000"):
+        whole_number(value, "count")
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        0,
+        -1,
+        True,
+        False,
+        np.True_,
+        1.0,
+        1.5,
+        np.float32(3),
+        float("nan"),
+        float("inf"),
+        "5",
+        None,
+        [5],
+        np.array(5),
+        1j,
+        Fraction(4, 2),
+    ],
+    ids=repr,
+)
+def test_what_is_not_a_whole_number(value):
+    with pytest.raises(
+        InputError,
+        match=r"^count must be a whole number of at least 1, not .*\.$",
+    ):
+        whole_number(value, "count")
+
+
+def test_real_arrays_come_as_copies_in_c_order():
+    source = np.asfortranarray(np.arange(12.0).reshape(3, 4))
+    source.setflags(write=False)
+    result = real_array(source, "a grid")
+    assert result.flags.c_contiguous
+    assert result.flags.writeable
+    assert not np.shares_memory(result, source)
+    np.testing.assert_array_equal(result, source)
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        [[1, 2], [3, 4]],
+        ((1.0, 2.0), (3.0, 4.0)),
+        np.array([[1, 2], [3, 4]], np.int16),
+        np.array([[1, 2], [3, 4]], np.float16),
+        np.array([[1, 2], [3, 4]], ">f8"),
+        np.array([[1, 2], [3, 4]], np.longdouble),
+        np.array([[1, 0, 2], [3, 0, 4]])[:, ::2],
+        np.ma.masked_array([[1, 2], [3, 4]], mask=False),
+    ],
+)
+def test_what_counts_as_an_array_of_real_numbers(values):
+    result = real_array(values, "a grid")
+    assert result.dtype == np.float64
+    assert type(result) is np.ndarray
+    assert result.tolist() == [[1.0, 2.0], [3.0, 4.0]]
+
+
+def test_booleans_and_single_numbers_are_real():
+    assert real_array([True, False], "a grid").tolist() == [1.0, 0.0]
+    assert real_array(3, "u").shape == ()
+
+
+def test_too_large_for_float64_is_infinite_without_a_warning():
+    huge = np.longdouble("1e400")
+    if not np.isfinite(huge):
+        pytest.skip("long double is no longer than double here")
+    assert real_array([huge], "u").tolist() == [np.inf]
+
+
+@pytest.mark.parametrize(
+    ("values", "complaint"),
+    [
+        (np.ones(3) * 1j, "not of type complex128"),
+        (np.ones(3, complex), "not of type complex128"),  # even if the imaginary part is zero
+        (["1", "2"], "not of type <U1"),
+        (b"12", "not of type .S2"),
+        (np.ones(3, object), "not of type object"),
+        ([Decimal(1)], "not of type object"),
+        ([None, 1.0], "not of type object"),
+        (None, "not of type object"),
+        ({}, "not of type object"),
+        (iter([1.0]), "not of type object"),
+        (np.zeros(2, "M8[s]"), "not of type datetime64"),
+        ([[1.0, 2.0], [3.0]], "with equal rows"),
+        (np.ma.masked_array([1.0, 2.0], mask=[True, False]), "masked entries"),
+    ],
+)
+def test_what_is_not_an_array_of_real_numbers(values, complaint):
+    with pytest.raises(InputError, match=rf"^a grid [^\n]*{complaint}[^\n]*\.$"):
+        real_array(values, "a grid")
+
+
+def test_parameters_broadcast_together():
+    u, v = parameter_arrays([[1], [2]], [3, 4, 5])
+    assert u.tolist() == [[1, 1, 1], [2, 2, 2]]
+    assert v.tolist() == [[3, 4, 5], [3, 4, 5]]
+    u, v = parameter_arrays(1, 2)
+    assert u.shape == v.shape == ()
+
+
+def test_parameters_that_do_not_fit_together():
+    with pytest.raises(InputError, match=r"shapes are \(3,\) and \(2,\)"):
+        parameter_arrays([1, 2, 3], [1, 2])
+    with pytest.raises(InputError, match=r"^u must be"):
+        parameter_arrays("a", 1)
+    with pytest.raises(InputError, match=r"^v must be"):
+        parameter_arrays(1, 1j)
+
+
+def test_fractions_are_real_numbers() -> None:
+    values = real_array([[Fraction(1, 3), 2]], "values")
+    np.testing.assert_array_equal(values, [[1 / 3, 2.0]])
+    with pytest.raises(InputError, match="not of type object"):
+        real_array([[Fraction(1, 3), "2"]], "values")

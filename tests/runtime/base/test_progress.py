@@ -1,0 +1,90 @@
+"""What a terminal shows while work takes longer than a second."""
+
+from __future__ import annotations
+
+import inspect
+import io
+import sys
+import time
+from typing import Any
+
+import gaussmap as gm
+import pytest
+from gaussmap.runtime.base import progress
+from gaussmap.runtime.base.compiling import NOTICE
+
+pytestmark = pytest.mark.compiled
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def terminal_of(monkeypatch: pytest.MonkeyPatch) -> Terminal:
+    """Make standard error a terminal. (No fixture: pytest sets it again after these.)"""
+    shown = Terminal()
+    monkeypatch.setattr(sys, "stderr", shown)
+    monkeypatch.setattr(progress, "PATIENCE", 0.05)
+    monkeypatch.setattr(progress, "INTERVAL", 0.01)
+    return shown
+
+
+def test_what_takes_long_is_shown_and_erased(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = terminal_of(monkeypatch)
+    with progress.busy("thinking", True):
+        time.sleep(0.2)
+    lines = [line.strip() for line in terminal.getvalue().split("\r") if line.strip()]
+    assert len(lines) > 1
+    assert set(lines) == {"thinking: 00:00"}
+    assert terminal.getvalue().endswith("\r")
+
+
+def test_what_is_quick_or_not_asked_for_is_not_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = terminal_of(monkeypatch)
+    with progress.busy("thinking", False):
+        time.sleep(0.1)
+    with progress.busy("thinking", True):
+        pass
+    monkeypatch.setattr(NOTICE, "line", "compiling")  # has the line already
+    with progress.busy("thinking", True):
+        time.sleep(0.1)
+    assert "thinking" not in terminal.getvalue()
+
+
+def test_an_error_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = terminal_of(monkeypatch)
+
+    def fail() -> None:
+        with progress.busy("thinking", True):
+            time.sleep(0.1)
+            raise KeyError
+
+    with pytest.raises(KeyError):
+        fail()
+    assert terminal.getvalue().endswith("\r")
+
+
+CALLS = [gm.sample, gm.fit, gm.read_cad, gm.sample_many, gm.sample_stream, gm.silhouette]
+METHODS = ["mesh", "coverage", "normal_deviation", "weights", "progressive", "write"]
+
+
+@pytest.mark.parametrize(
+    "call", [*CALLS, *(getattr(gm.Samples, name) for name in METHODS)], ids=lambda x: x.__name__
+)
+def test_everything_that_may_take_long_has_it(call: Any) -> None:
+    assert "progress" in inspect.signature(call).parameters
+
+
+def test_calls_with_progress(monkeypatch: pytest.MonkeyPatch, tmp_path: Any) -> None:
+    terminal_of(monkeypatch)
+    spline = gm.fit("torus", (8, 8), progress=True)
+    samples = gm.sample(spline, 60, progress=True)
+    assert len(samples.progressive(progress=True)) == 60
+    assert len(samples.weights(progress=True)) == 60
+    assert samples.mesh(progress=True).summary() == samples.mesh().summary()
+    assert samples.coverage(progress=True) == samples.coverage()
+    assert samples.normal_deviation(progress=True) == samples.normal_deviation()
+    samples.write(tmp_path / "a.npz", progress=True)
+    for call in samples.mesh, samples.coverage, samples.weights, samples.progressive:
+        assert inspect.signature(call).parameters["progress"].default is False

@@ -1,0 +1,246 @@
+"""Samples of surfaces with lines where the normal turns: of all smooth pieces, as one."""
+
+import math
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.runtime.base.errors import GaussmapWarning, InputError, SurfaceError
+from gaussmap.runtime.density.law import allotted
+from gaussmap.runtime.density.on_pieces import cells_of_piece
+from gaussmap.runtime.sample import sample_and_normals
+from gaussmap.runtime.samples.request import checked_request
+from gaussmap.tools.pictures.to_file import plot_to_file
+
+CELLS = (24, 24)
+ROOT = math.sqrt(0.5)
+AROUND = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)])
+CIRCLE_WEIGHTS = np.array([1, ROOT] * 4 + [1])
+CIRCLE_KNOTS = [0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4]
+# From 15° to 60° above the equator of a unit sphere, the upper part of the barrel.
+LOW, HIGH = math.radians(15.0), math.radians(60.0)
+
+
+def barrel():
+    """Two zones of unit spheres with the edge z = 0 in common; u goes round the z axis.
+
+    The centre of the upper one is sin LOW below the edge. Both are exact NURBS.
+    """
+    middle, half = (LOW + HIGH) / 2, (HIGH - LOW) / 2
+    arc = np.array([
+        (math.cos(HIGH), math.sin(HIGH)),
+        (math.cos(middle) / math.cos(half), math.sin(middle) / math.cos(half)),
+        (math.cos(LOW), math.sin(LOW)),
+    ]) - [0.0, math.sin(LOW)]  # fmt: skip
+    profile = np.concatenate([arc * [1, -1], arc[-2::-1]])
+    points = np.empty((9, 5, 3))
+    points[:, :, :2] = AROUND[:, None] * profile[:, 0, None]
+    points[:, :, 2] = profile[:, 1]
+    weights = CIRCLE_WEIGHTS[:, None] * [1, math.cos(half), 1, math.cos(half), 1]
+    knots = CIRCLE_KNOTS, [0, 0, 0, 1, 1, 2, 2, 2]
+    return gm.Surface.from_nurbs((2, 2), knots, points, weights, name="barrel")
+
+
+def roof(factor=1.0):
+    """Two rectangles of 5 × 2 and 5 × 4 with a right angle between them."""
+    points = [[[0, y, 2], [0, y, 0], [4, y, 0]] for y in (0, 5)]
+    points = factor * np.array(points, dtype=float)
+    return gm.Surface.from_nurbs((1, 1), ([0, 0, 1, 1], [0, 0, 1, 3, 3]), points, name="roof")
+
+
+def report_of(samples) -> Any:
+    return samples.report
+
+
+def piece_of(samples, line):
+    return (samples.uv[:, 1] > line).astype(int)
+
+
+@pytest.mark.parametrize(("on", "tolerance"), [("spline", 2e-2), ("surface", 1e-11)])
+def test_every_point_with_a_normal_once(on, tolerance):
+    """The normals of the edge belong to no piece."""
+    directions = gm.directions.fibonacci(300)
+    latitude = np.arcsin(directions[:, 2])
+    inside = (np.abs(latitude) > LOW) & (np.abs(latitude) < HIGH)
+    clear = np.abs(np.abs(latitude) - LOW) > 0.01
+    clear &= np.abs(np.abs(latitude) - HIGH) > 0.01
+    samples = gm.sample(barrel(), normals=directions[clear], density="gauss", cells=CELLS, on=on)
+    assert np.array_equal(np.sort(samples.normal_index), np.flatnonzero(inside[clear]))
+    assert np.array_equal(piece_of(samples, 1.0) == 1, samples.normals[:, 2] > 0)
+    sides = np.sign(samples.normals[:, 2:])
+    centres = np.array([0, 0, -math.sin(LOW)]) * sides
+    assert np.allclose(samples.points - centres, samples.normals, atol=tolerance)
+
+
+def test_patches_are_numbered_through_all_pieces():
+    samples = gm.sample(barrel(), 200, cells=CELLS)
+    assert samples.report.patches == 2 * 4 * 24 * 12
+    assert np.array_equal(samples.patch_index >= 4 * 24 * 12, piece_of(samples, 1.0) == 1)
+    assert samples.spline is None
+    assert samples.report.surface == "barrel"
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 100, 257])
+@pytest.mark.parametrize("density", ["balanced", "uniform", 0.5])
+def test_the_count_is_exact(count, density):
+    request = checked_request(None, count, None, None, density, 0, None)
+    samples, normals = sample_and_normals(
+        barrel(), request, cells=CELLS, threads=None, progress=False
+    )
+    assert len(samples) == samples.report.samples == count
+    upper = piece_of(samples, 1.0).sum()
+    assert abs(2 * upper - count) <= 1  # both pieces are alike
+    given = samples.normal_index >= 0
+    assert np.allclose(normals[samples.normal_index[given]], samples.normals[given])
+    assert len(normals) == samples.report.normals
+
+
+@pytest.mark.parametrize("factor", [1e-6, 1.0, 1e6])
+def test_flat_pieces_share_a_count_by_their_areas(factor):
+    for density in ("balanced", "uniform", 2.0):
+        samples = gm.sample(roof(factor), 300, density=density, cells=CELLS)
+        assert piece_of(samples, 1.0).sum() == 200
+
+
+def test_an_angle_holds_on_all_pieces():
+    samples = gm.sample(barrel(), angle=6.0, cells=CELLS)
+    lower, upper = np.bincount(piece_of(samples, 1.0))
+    assert lower == pytest.approx(upper, rel=0.05)
+    assert report_of(samples).angle <= 6.0
+    assert samples.normal_index.max() < report_of(samples).normals  # of one icosphere
+
+
+def test_coverage_holds_on_all_pieces():
+    samples = gm.sample(roof(), coverage=0.5, cells=CELLS)
+    x = np.stack(np.meshgrid(np.linspace(0, 4, 60), np.linspace(0, 5, 60)), axis=-1).reshape(-1, 2)
+    for points in (
+        np.insert(x, 2, 0.0, axis=1),
+        np.insert(x * [0.5, 1], 0, 0.0, axis=1)[:, [0, 2, 1]],
+    ):
+        distances = np.linalg.norm(points[:, None] - samples.points, axis=2).min(axis=1)
+        assert distances.max() <= report_of(samples).coverage <= 0.5
+
+
+@pytest.mark.slow
+def test_coverage_and_normal_deviation_are_of_all_pieces():
+    samples = gm.sample(barrel(), coverage=0.2, cells=CELLS, on="surface")
+    assert report_of(samples).coverage <= 0.2
+    assert samples.coverage() <= 1.1 * 0.2
+    deviation = samples.normal_deviation()
+    assert 1.0 < deviation.normal_space <= deviation.space * (1.0 + 1e-6)  # as far as searched
+    lower = samples[piece_of(samples, 1.0) == 0]
+    assert lower.coverage() > 0.4
+    assert lower.normal_deviation().normal_space > 60.0
+
+
+def test_samples_of_pieces_have_no_mesh():
+    samples = gm.sample(barrel(), 50, cells=CELLS)
+    with pytest.raises(InputError, match=r"of several pieces .* each of surface.pieces\(\)"):
+        samples.mesh()
+    meshes = [gm.sample(x, 50, cells=CELLS).mesh() for x in barrel().pieces()]
+    assert all(len(x.triangles) > 50 for x in meshes)
+
+
+def test_a_picture_of_pieces(tmp_path):
+    path = tmp_path / "barrel.png"
+    samples = plot_to_file(barrel(), path, count=100, cells=CELLS)
+    assert len(samples) == 100
+    assert path.stat().st_size > 10_000
+
+
+def test_a_count_that_covers_all_pieces():
+    least = len(gm.sample(roof(), coverage=0.5, density="uniform", cells=CELLS))
+    samples = gm.sample(roof(), least + 40, coverage=0.5, cells=CELLS)
+    assert len(samples) == least + 40
+    assert report_of(samples).coverage <= 0.5
+    with pytest.warns(GaussmapWarning, match="the coverage is"):
+        few = gm.sample(roof(), least // 2, coverage=0.5, cells=CELLS)
+    assert len(few) == least // 2
+
+
+def test_gauss_samples_by_count():
+    samples = gm.sample(barrel(), 200, density="gauss", cells=CELLS)
+    assert len(samples) == pytest.approx(200, abs=8)
+    assert (samples.normal_index >= 0).all()
+
+
+def test_the_report_sums_up():
+    samples = gm.sample(
+        barrel(), coverage=0.2, cells=CELLS, fields=("points", "gaussian_curvature")
+    )
+    report = report_of(samples)
+    alone = [report_of(gm.sample(x, coverage=0.2, cells=(24, 12))) for x in barrel().pieces()]
+    assert report.patches == sum(x.patches for x in alone)
+    assert report.fit_distance == max(x.fit_distance for x in alone)
+    assert report.fit_rms == pytest.approx(math.sqrt(sum(x.fit_rms**2 for x in alone) / 2))
+    assert report.coverage <= 0.2
+    assert report.developable_share == 0.0
+    assert samples.fields == ("points", "gaussian_curvature")
+
+
+def test_trimmed_pieces():
+    """Of the narrow piece nothing is left, of the wide one a half."""
+    half = roof().trimmed([[(0, 2), (1, 2), (1, 3), (0, 3)]])
+    samples = gm.sample(half, 100, cells=CELLS)
+    assert len(samples) == 100
+    assert samples.points[:, 0].min() >= 2.0
+    with pytest.raises(SurfaceError, match="their trim leaves nothing"):
+        gm.sample(roof().trimmed(within=lambda u, v: u > 2.0), 100, cells=CELLS)
+
+
+def test_many_pieces_are_refused():
+    count = 60
+    points = np.random.default_rng(0).random((count, count, 3))
+    knots = [0, *range(count), count - 1]
+    surface = gm.Surface.from_nurbs((1, 1), (knots, knots), points)
+    with pytest.raises(InputError, match=r"3,481 pieces between lines where its normal turns"):
+        gm.sample(surface, 100)
+
+
+def test_streams_are_of_one_piece():
+    with pytest.raises(InputError, match=r"2 pieces .*surface.pieces\(\)"):
+        gm.sample_stream(barrel(), 100)
+
+
+def test_cells_of_pieces():
+    surface = roof()
+    assert [cells_of_piece(surface, x, (12, 30)) for x in surface.pieces()] == [(12, 10), (12, 20)]
+    assert cells_of_piece(surface, surface.pieces()[0], None) is None
+    assert cells_of_piece(surface, surface.pieces()[0], (3, 3)) == (4, 4)
+
+
+@pytest.mark.parametrize(
+    ("count", "needs", "least", "parts"),
+    [
+        (10, [1.0, 1.0], [0, 0], [5, 5]),
+        (11, [2.0, 1.0, 1.0], [0, 0, 0], [5, 3, 3]),
+        (10, [1e9, 1.0, 0.0], [1, 1, 0], [9, 1, 0]),
+        (10, [1.0, 1.0, 2.0], [6, 0, 0], [6, 1, 3]),
+        (2, [1.0, 5.0, 3.0], [1, 1, 1], [0, 1, 1]),
+        (10, [1.0, 1.0], [15, 5], [7, 3]),
+    ],
+)
+def test_parts_of_a_count(count, needs, least, parts):
+    found = allotted(count, np.array(needs), np.array(least))
+    assert found.sum() == count
+    assert np.abs(found - parts).max() <= (count == 10 and least == [15, 5])
+
+
+def test_poles_and_apexes_of_pieces():
+    """A cone on a hemisphere: the pole is found, and the apex told."""
+    half = math.radians(45.0)
+    arc = [(0, -1), (math.tan(half), -1), (1, 0)]
+    profile = np.array([*arc, (0.5, 0.5), (0, 1)])
+    points = np.empty((9, 5, 3))
+    points[:, :, :2] = AROUND[:, None] * profile[:, 0, None]
+    points[:, :, 2] = profile[:, 1]
+    weights = CIRCLE_WEIGHTS[:, None] * [1, math.cos(half), 1, 1, 1]
+    knots = CIRCLE_KNOTS, [0, 0, 0, 1, 1, 2, 2, 2]
+    buoy = gm.Surface.from_nurbs((2, 2), knots, points, weights)
+    samples = gm.sample(buoy, 200, cells=CELLS)
+    assert len(samples) == 200
+    assert report_of(samples).apexes == 1
+    areas = 2 * math.pi, math.pi * math.sqrt(2.0)
+    cone = gm.sample(buoy, 400, density="uniform", cells=CELLS).uv[:, 1] > 1.0
+    assert cone.mean() == pytest.approx(areas[1] / sum(areas), rel=0.02)

@@ -1,0 +1,347 @@
+"""Surfaces on a part of their domain: inside loops, and where a predicate holds."""
+
+import pickle
+
+import gaussmap as gm
+import numpy as np
+import pytest
+import shapely
+from gaussmap.runtime.base.trees import tree_of
+from gaussmap.runtime.domain.domain import Boundary
+from gaussmap.runtime.domain.loops import checked_loops
+from gaussmap.runtime.domain.trim import Trim
+
+UNIT = ((0.0, 1.0), (0.0, 1.0))
+OPEN: Boundary = (("open", "open"), ("open", "open"))
+SQUARE = np.array([(1.0, 1.0), (4.0, 1.0), (4.0, 4.0), (1.0, 4.0)])
+ACROSS_SEAM = np.array([(5.0, 5.0), (8.0, 5.0), (8.0, 8.0), (5.0, 8.0)])
+TURN = 2.0 * np.pi
+
+
+def half(u, v):
+    return u < 0.5
+
+
+def trim_of(of: gm.Surface | gm.Spline) -> Trim:
+    assert of.trim is not None
+    return of.trim
+
+
+def crossings(polygons, places):
+    """Return whether places are inside, by the number of sides on their right."""
+    inside = np.zeros(len(places), dtype=bool)
+    for polygon in polygons:
+        for (a, b), (c, d) in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
+            spans = (b <= places[:, 1]) != (d <= places[:, 1])
+            with np.errstate(all="ignore"):
+                at = a + (c - a) * (places[:, 1] - b) / (d - b)
+            inside ^= spans & (at > places[:, 0])
+    return inside
+
+
+def circle(count, centre, radius):
+    angles = np.linspace(0.0, TURN, count, endpoint=False)
+    return centre + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+
+
+def graph():
+    def f(u, v):
+        return np.stack([u, v, 0.2 * np.sin(3 * u) * np.cos(3 * v)], axis=-1)
+
+    return gm.Surface.from_callable(f, UNIT)
+
+
+def torus():
+    return gm.surfaces.torus()
+
+
+@pytest.mark.kernels
+class TestEvenOdd:
+    @pytest.mark.parametrize("count", [3, 8, 60])
+    def test_random_loops(self, count):
+        rng = np.random.default_rng(count)
+        polygons = [rng.uniform(-0.2, 1.2, (count, 2)) for _ in range(3)]
+        places = rng.uniform(0, 1, (1000, 2))
+        found = checked_loops(polygons, UNIT, OPEN).contains(places)
+        np.testing.assert_array_equal(found, crossings(polygons, places))
+
+    def test_places_on_vertices_and_sides(self):
+        rng = np.random.default_rng(0)
+        places = (np.indices((9, 9)).reshape(2, -1).T + 1.0) / 10.0
+        for _ in range(60):
+            # Multiples of 1/64: products of differences are exact.
+            polygons = [rng.integers(0, 10, (6, 2)) / 8.0 for _ in range(2)]
+            at = np.round(places * 8.0).astype(np.float64) / 8.0
+            at = at[((at > 0.0) & (at < 1.0)).all(axis=1)]
+            found = checked_loops(polygons, UNIT, OPEN).contains(at)
+            np.testing.assert_array_equal(found, crossings(polygons, at))
+
+    def test_two_loops_with_a_common_side_hold_each_point_once(self):
+        rng = np.random.default_rng(1)
+        corners = rng.uniform(0.2, 0.8, (2, 2))
+        left = np.array([(0.0, 0.0), *corners, (0.0, 1.0)])
+        right = np.array([(1.0, 1.0), *corners[::-1], (1.0, 0.0)])
+        bottom = np.array([(0.0, 0.0), (1.0, 0.0), corners[0]])
+        top = np.array([(0.0, 1.0), corners[1], (1.0, 1.0)])
+        shares = rng.uniform(0, 1, (2000, 1))
+        places = np.concatenate([corners[0] + shares * (corners[1] - corners[0]), corners])
+        found = [
+            checked_loops([x], UNIT, OPEN).contains(places) for x in (left, right, bottom, top)
+        ]
+        np.testing.assert_array_equal(np.sum(found, axis=0), 1)
+
+    @pytest.mark.parametrize("scale", [1e-300, 1e-9, 1e9, 1e300])
+    def test_scale_and_position_do_not_matter(self, scale):
+        rng = np.random.default_rng(2)
+        polygon, places = rng.uniform(0, 1, (20, 2)), rng.uniform(0, 1, (500, 2))
+        scaled = checked_loops([polygon * scale], ((0.0, scale), (0.0, scale)), OPEN)
+        np.testing.assert_array_equal(scaled.contains(places * scale), crossings([polygon], places))
+        far = checked_loops([polygon + 1e6], ((1e6, 1e6 + 1.0), (1e6, 1e6 + 1.0)), OPEN)
+        assert (far.contains(places + 1e6) != crossings([polygon], places)).sum() <= 1
+
+    @pytest.mark.compiled
+    def test_loops_of_many_points_against_shapely(self):
+        angles = np.linspace(0.0, TURN, 4000, endpoint=False)
+        star = 0.5 + (0.25 + 0.24 * np.cos(200 * angles))[:, None] * circle(4000, 0.0, 1.0)
+        teeth = np.stack([np.linspace(0.01, 0.99, 998), np.tile([0.01, 0.9], 499)], axis=1)
+        teeth = np.concatenate([teeth, [[0.99, 0.999], [0.01, 0.999]]])
+        places = np.random.default_rng(3).uniform(0, 1, (5000, 2))
+        for polygon in (star, teeth, teeth[:, ::-1]):
+            found = checked_loops([polygon], UNIT, OPEN).contains(places)
+            expected = shapely.contains_xy(shapely.Polygon(polygon), *places.T)
+            np.testing.assert_array_equal(found, expected)
+
+    def test_a_loop_on_the_border_of_the_domain_holds_the_border(self):
+        border = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
+        places = np.concatenate([border, [(1.0, 0.3), (0.3, 1.0)]])
+        assert checked_loops([border], UNIT, OPEN).contains(places).all()
+
+
+class TestPeriods:
+    def test_a_loop_across_the_seam(self):
+        trim = trim_of(torus().trimmed([ACROSS_SEAM]))
+        places = np.array(
+            [(5.5, 5.5), (1.0, 1.0), (5.5, 1.0), (3.0, 3.0), (TURN, 0.0), (0.0, TURN)]
+        )
+        inside = [True, True, True, False, True, True]
+        np.testing.assert_array_equal(trim.contains(places), inside)
+        np.testing.assert_array_equal(trim.contains(places - 4 * TURN), inside)
+
+    def test_a_copy_of_a_point_is_enough(self):
+        # Twice around, with an overlap: not even-odd between the copies.
+        trim = trim_of(
+            torus().trimmed([np.array([(1.0, 1.0), (9.0, 1.0), (9.0, 2.0), (1.0, 2.0)])])
+        )
+        u = np.linspace(0.0, TURN, 50)
+        assert trim.contains(np.stack([u, np.full(50, 1.5)], axis=1)).all()
+
+    def test_the_other_parameter_is_reversed_on_a_moebius_band(self):
+        band = gm.surfaces.moebius_band()
+        (u0, u1), (v0, v1) = band.domain
+        low = v0 + 0.1 * (v1 - v0), v0 + 0.3 * (v1 - v0)
+        box = [(u1 - 1.0, low[0]), (u1 + 1.0, low[0]), (u1 + 1.0, low[1]), (u1 - 1.0, low[1])]
+        trim = trim_of(band.trimmed([box]))
+        v = v0 + 0.2 * (v1 - v0)
+        places = np.array([(u1 - 0.5, v), (u0 + 0.5, v0 + v1 - v), (u0 + 0.5, v)])
+        np.testing.assert_array_equal(trim.contains(places), [True, True, False])
+
+
+class TestInput:
+    def test_a_polygon_of_shapely(self):
+        disc = shapely.Point(0.5, 0.5).buffer(0.4, 64)
+        ring = disc.difference(shapely.Point(0.5, 0.5).buffer(0.2, 64))
+        other = shapely.MultiPolygon([shapely.box(0, 0, 0.1, 0.1), shapely.box(0.9, 0.9, 1, 1)])
+        places = np.random.default_rng(0).uniform(0, 1, (2000, 2))
+        for shape in (disc, ring, other):
+            trim = trim_of(graph().trimmed(shape))
+            np.testing.assert_array_equal(
+                trim.contains(places), shapely.contains_xy(shape, *places.T)
+            )
+        both = trim_of(graph().trimmed([ring, other, SQUARE / 10]))
+        assert both.contains(places).any()
+
+    def test_conditions_add_up(self):
+        places = np.random.default_rng(1).uniform(0, TURN, (5000, 2))
+        u, v = places.T
+        surface = torus().trimmed([SQUARE], within=lambda u, v: v < 3).trimmed([SQUARE + 1.0])
+        inside = (u > 2) & (u < 4) & (v > 2) & (v < 3)
+        np.testing.assert_array_equal(trim_of(surface).contains(places), inside)
+
+    def test_a_trim_pickles(self):
+        trim = trim_of(graph().trimmed([SQUARE / 5], within=half))
+        places = np.random.default_rng(2).uniform(0, 1, (100, 2))
+        other = pickle.loads(pickle.dumps(trim))
+        np.testing.assert_array_equal(trim.contains(places), other.contains(places))
+
+    def test_samples_pickle_without_a_spline_whose_predicate_does_not(self):
+        surface = torus().trimmed(within=lambda u, v: u < 1)
+        samples = gm.sample(surface, 50, cells=(8, 8))
+        other = pickle.loads(pickle.dumps(samples))
+        assert other.spline is None
+        assert other.surface is None
+        np.testing.assert_array_equal(other.points, samples.points)
+        samples = gm.sample(torus().trimmed([SQUARE - 1.0], within=half), 20, cells=(8, 8))
+        other = pickle.loads(pickle.dumps(samples))
+        assert trim_of(other.spline).contains(samples.uv).all()
+
+    @pytest.mark.parametrize(
+        ("arguments", "words"),
+        [
+            ({"loops": [[(0, 0), (1, 1)]]}, "loop 0 has 2 points; a polygon needs at least 3"),
+            ({"loops": [[(0, 0), (1, 1), (0, 0)]]}, "loop 0 has 2 points"),
+            ({"loops": [SQUARE, [(0, 0), (1, np.nan), (1, 0)]]}, "loop 1 holds NaN"),
+            ({"loops": [np.zeros((4, 3))]}, r"loop 0 must have the shape \(k, 2\)"),
+            ({"loops": []}, "loops is empty"),
+            ({"loops": "square"}, "loops must be a sequence"),
+            ({"loops": 3}, "loops must be a sequence"),
+            ({"loops": shapely.Point(0, 0)}, "a Polygon or a MultiPolygon, not a 'Point'"),
+            ({"loops": [SQUARE + 1e9]}, "more than 100 periods of u"),
+            ({"within": 3}, "within must be callable"),
+            ({}, "trimmed needs loops"),
+        ],
+    )
+    def test_unusable_arguments(self, arguments, words):
+        with pytest.raises(gm.errors.InputError, match=words):
+            torus().trimmed(**arguments)
+
+    @pytest.mark.parametrize(
+        ("within", "words"),
+        [
+            (lambda u, v: 1 / 0, "raised ZeroDivisionError"),
+            (lambda u, v: u[:2] < 1, r"returned the shape \(2,\)"),
+            (lambda u, v: u, "must return an array of booleans, not float64"),
+            (lambda u, v: True, "must return an array of booleans, not bool"),
+            (lambda u, v: u > 7, "leaves nothing of it"),
+        ],
+    )
+    def test_unusable_predicates(self, within, words):
+        with pytest.raises(gm.errors.SurfaceError, match=words):
+            gm.sample(torus().trimmed(within=within), 50, cells=(8, 8))
+
+    @pytest.mark.parametrize("kind", [{"density": "gauss"}, {"density": "uniform"}, {}])
+    def test_nothing_left(self, kind):
+        nothing = torus().trimmed([SQUARE]).trimmed([SQUARE + 3.1])
+        with pytest.raises(gm.errors.SurfaceError, match="leaves nothing of it"):
+            gm.sample(nothing, 50, cells=(8, 8), **kind)
+
+
+PARTS = {
+    "annulus": torus().trimmed([circle(40, 3.0, 1.5), circle(40, 3.0, 0.7)]),
+    "seam": torus().trimmed([ACROSS_SEAM]),
+    "predicate": graph().trimmed(within=lambda u, v: (u - 0.4) ** 2 + v**2 < 0.25),
+    "thin": graph().trimmed([[(0.1, 0.1), (0.9, 0.2), (0.9, 0.21), (0.1, 0.11)]]),
+}
+
+
+def inner_points(surface, cells, count):
+    """Return the spline, and points of it with their normals from all over the part."""
+    spline = gm.fit(surface, cells)
+    low, high = np.array(surface.domain).T
+    uv = low + (high - low) * np.random.default_rng(0).uniform(0, 1, (count, 2))
+    uv = uv[trim_of(surface).contains(uv)]
+    return spline, spline.evaluate(*uv.T), spline.normals(*uv.T)
+
+
+class TestSampling:
+    @pytest.mark.parametrize("name", PARTS)
+    def test_coverage_holds_on_the_part(self, name):
+        spline, points, _ = inner_points(PARTS[name], (12, 12), 40_000)
+        size = 0.15 if name in ("annulus", "seam") else 0.03
+        samples = gm.sample(spline, coverage=size)
+        assert trim_of(spline).contains(samples.uv).all()
+        promised = samples.report.coverage
+        assert promised is not None
+        assert tree_of(samples.points).query(points)[0].max() <= promised <= size
+        found = samples.coverage()
+        assert tree_of(samples.points).query(points)[0].max() <= found
+
+    @pytest.mark.parametrize("name", PARTS)
+    def test_angle_holds_on_the_part(self, name):
+        spline, _, normals = inner_points(PARTS[name], (12, 12), 10_000)
+        samples = gm.sample(spline, angle=8.0)
+        assert trim_of(spline).contains(samples.uv).all()
+        chords = tree_of(samples.normals).query(normals)[0].max()
+        promised = samples.report.angle
+        assert promised is not None
+        assert np.degrees(2 * np.arcsin(chords / 2)) <= promised <= 8.0
+
+    @pytest.mark.parametrize("density", ["balanced", "uniform", 0.5, "gauss"])
+    @pytest.mark.parametrize("name", PARTS)
+    def test_count_is_met(self, name, density):
+        spline = gm.fit(PARTS[name], (12, 12))
+        samples = gm.sample(spline, 300, density=density, fields=("points", "patch_index"))
+        assert samples.fields == ("points", "patch_index")
+        if density == "gauss":
+            assert abs(len(samples) - 300) <= 11
+        else:
+            assert len(samples) == 300
+
+    def test_samples_on_the_surface_cover_the_part(self):
+        surface = PARTS["annulus"]
+        samples = gm.sample(surface, coverage=0.2, cells=(12, 12), on="surface")
+        assert trim_of(surface).contains(samples.uv).all()
+        assert np.abs(surface.evaluate(*samples.uv.T) - samples.points).max() < 1e-14
+        uv = np.random.default_rng(3).uniform(1.0, 5.0, (20_000, 2))
+        points = surface.evaluate(*uv[trim_of(surface).contains(uv)].T)
+        assert tree_of(samples.points).query(points)[0].max() <= 0.2
+
+    def test_relaxed_samples_stay_inside(self):
+        spline = gm.fit(PARTS["annulus"], (12, 12))
+        samples = gm.sample(spline, 100, relax=2)
+        assert len(samples) == 100
+        assert trim_of(spline).contains(samples.uv).all()
+
+    def test_samples_at_normals_are_those_of_the_whole_that_are_inside(self):
+        normals = gm.icosphere(12)
+        whole = gm.sample("torus", normals=normals, cells=(12, 12))
+        part = gm.sample(PARTS["annulus"], normals=normals, cells=(12, 12))
+        inside = trim_of(PARTS["annulus"]).contains(whole.uv)
+        assert 0 < inside.sum() < len(whole)
+        for name in whole.fields:
+            np.testing.assert_array_equal(getattr(part, name), getattr(whole, name)[inside])
+        assert part.report.samples == inside.sum()
+
+    @pytest.mark.parametrize("fields", [None, ("points",)])
+    def test_a_stream_is_the_same(self, fields):
+        spline = gm.fit(PARTS["annulus"], (12, 12))
+        chunks = list(gm.sample_stream(spline, 500, chunk=64, fields=fields))
+        samples = gm.sample(spline, 500, density="gauss", fields=fields)
+        joined = gm.Samples.concatenate(chunks)
+        assert max(map(len, chunks)) <= 64
+        assert min(map(len, chunks)) > 0
+        for name in samples.fields:
+            np.testing.assert_array_equal(getattr(samples, name), getattr(joined, name))
+
+    def test_a_stream_of_nothing_is_one_empty_chunk(self):
+        spline = gm.fit(PARTS["predicate"], (12, 12))
+        with pytest.warns(gm.GaussmapWarning, match="none of the normals"):
+            chunks = list(gm.sample_stream(spline, normals=[[0, 0, -1]], chunk=4))
+        assert [len(x) for x in chunks] == [0]
+
+    def test_the_areas_of_patches_are_those_inside(self):
+        disc = graph().trimmed([circle(200, 0.5, 0.3)])
+        flat = gm.Surface.from_callable(lambda u, v: np.stack([u, v, 0 * u], axis=-1), UNIT)
+        spline = gm.fit(flat.trimmed([circle(200, 0.5, 0.3)]), (12, 12))
+        assert spline.inside is not None
+        share = spline.inside.shares.mean()
+        assert share == pytest.approx(np.pi * 0.3**2, rel=2e-3)
+        assert spline.measure[0].sum() * 2.0 == pytest.approx(share, rel=0.2)  # of the diagonal²
+        inside = gm.fit(disc, (12, 12)).inside
+        assert inside is not None
+        assert inside.shares.mean() == share
+
+    def test_a_developable_part_is_all_of_the_rest(self):
+        # A plane with a bump: without the bump all of it is flat.
+        def f(u, v):
+            bump = np.exp(-100 * ((u - 0.5) ** 2 + (v - 0.5) ** 2))
+            return np.stack([u, v, 0.2 * bump], axis=-1)
+
+        surface = gm.Surface.from_callable(f, UNIT)
+        rest = surface.trimmed(within=lambda u, v: u < 0.1)
+        shares = [
+            gm.sample(x, 50, cells=(16, 16)).report.developable_share for x in (surface, rest)
+        ]
+        assert shares[0] is not None
+        assert shares[1] is not None
+        assert shares[0] < 0.6
+        assert shares[1] > 0.9

@@ -1,0 +1,319 @@
+"""Only some fields, and float32: the same numbers, and a sentence for what is missing."""
+
+import copy
+import pickle
+from dataclasses import replace
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.runtime.base.errors import InputError
+from gaussmap.runtime.samples import fields as names
+from gaussmap.runtime.samples.fields import ARRAY_NAMES, FLOAT_NAMES
+from gaussmap.runtime.samples.samples import Samples
+from gaussmap.runtime.search.bins import NormalBins
+from gaussmap.runtime.search.search import fill, find
+from gaussmap.tools.commands.cli import main
+from gaussmap.tools.pictures.to_file import write_plot
+
+# The vertices of the icosphere lie in planes of symmetry: some samples are decided exactly.
+NORMALS = gm.icosphere(6)
+SPLINE = gm.fit(gm.surfaces.torus(), (12, 8))
+FULL = gm.sample(SPLINE, normals=NORMALS)
+SUBSETS = [(name,) for name in ARRAY_NAMES] + [
+    ("points", "normals"),
+    ("mean_curvature", "uv"),
+    ("patch_index", "support", "gaussian_curvature"),
+    ("normal_index", "patch_index"),
+]
+
+
+def narrow(fields: Any = ("points",), **options: Any) -> Samples:
+    return gm.sample(SPLINE, normals=NORMALS, fields=fields, **options)
+
+
+# --- what is stored -------------------------------------------------------------------------------
+
+
+def test_some_samples_are_decided_exactly():
+    assert 0 < len(find(SPLINE, NormalBins(NORMALS)).exact) < len(FULL)
+
+
+@pytest.mark.parametrize("fields", SUBSETS, ids="-".join)
+def test_fields_are_those_of_a_full_sampling(fields):
+    samples = narrow(fields)
+    assert len(samples) == len(FULL)
+    known = FULL.report.infinite_curvatures if "gaussian_curvature" in fields else None
+    assert samples.report == replace(FULL.report, infinite_curvatures=known)
+    assert samples.fields == tuple(name for name in ARRAY_NAMES if name in fields)
+    for name in ARRAY_NAMES:
+        assert hasattr(samples, name) == (name in fields)
+    for name in fields:
+        assert getattr(samples, name).tobytes() == getattr(FULL, name).tobytes()
+
+
+def test_nothing_is_filled_that_is_not_wanted(monkeypatch):
+    bins = NormalBins(NORMALS)
+    hits = find(SPLINE, bins)
+    assert set(fill(SPLINE, bins, hits, fields=("uv", "patch_index"))) == {"uv", "patch_index"}
+
+    def filled(*arguments):
+        raise AssertionError("what was decided exactly has its indices already")
+
+    monkeypatch.setattr("gaussmap.runtime.search.search.fill_known", filled)
+    assert narrow(("patch_index",)).fields == ("patch_index",)
+
+
+@pytest.mark.parametrize("dtype", [np.float32, "float32", np.dtype(np.float32), "f4"])
+def test_float32_is_float64_rounded_once(dtype):
+    samples = narrow(None, dtype=dtype)
+    assert samples.dtype == np.float32
+    for name in FLOAT_NAMES:
+        array = getattr(samples, name)
+        assert array.dtype == np.float32
+        assert array.tobytes() == getattr(FULL, name).astype(np.float32).tobytes()
+    for name in names.INDEX_NAMES:
+        assert getattr(samples, name).dtype == np.int64
+        assert (getattr(samples, name) == getattr(FULL, name)).all()
+    assert (samples.elliptic == FULL.elliptic).all()
+
+
+def test_principal_curvatures_of_float32():
+    samples = narrow(("gaussian_curvature", "mean_curvature"), dtype=np.float32)
+    found = samples.principal_curvatures
+    assert found.dtype == np.float32
+    # H² − K has the rounding of both, its root that times the half of its inverse.
+    size = np.abs(FULL.mean_curvature) + np.sqrt(np.abs(FULL.gaussian_curvature))
+    gap = np.ptp(FULL.principal_curvatures, axis=1)
+    error = np.abs(found - FULL.principal_curvatures).max(axis=1)
+    assert (error <= 4 * 2.0**-24 * size * (1 + size / gap)).all()
+
+
+# --- what is missing ------------------------------------------------------------------------------
+
+
+def test_a_missing_field_is_said_to_be():
+    samples = narrow(("points", "normals"))
+    with pytest.raises(
+        gm.errors.MissingFieldError, match=r"hold points, normals only; add 'uv' to fields="
+    ):
+        _ = samples.uv
+    for name in ("elliptic", "hyperbolic", "principal_curvatures"):
+        assert not hasattr(samples, name)
+        with pytest.raises(gm.errors.MissingFieldError, match=f"^{name} needs gaussian_curvature"):
+            getattr(samples, name)
+    lacks_mean = narrow(("gaussian_curvature",))
+    assert lacks_mean.elliptic.any()
+    with pytest.raises(gm.errors.MissingFieldError, match="needs mean_curvature, but"):
+        _ = lacks_mean.principal_curvatures
+    with pytest.raises(AttributeError, match="has no attribute 'curvature'") as caught:
+        _ = samples.curvature  # pyright: ignore[reportAttributeAccessIssue]
+    assert not isinstance(caught.value, gm.GaussmapError)
+
+
+def test_pictures_say_what_they_need(tmp_path):
+    with pytest.raises(gm.errors.MissingFieldError, match="add 'normal_index' to fields"):
+        write_plot(narrow(), SPLINE, NORMALS, tmp_path / "a.png")
+    assert not any(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ("points", r"must be a tuple of names, such as \('points',\), not a string"),
+        ("points,uv", "not a string"),
+        ((), "fields is empty"),
+        ([], "fields is empty"),
+        (3, "must be a tuple of names, not 3"),
+        (("points", "points"), "names 'points' twice"),
+        (("points", "normal"), "no field 'normal'; did you mean normals"),
+        (("colour",), "no field 'colour'; there is points, normals, uv"),
+        ((1,), "no field 1"),
+        ((None,), "no field None"),
+        (("elliptic",), "elliptic is computed when it is read, from 'gaussian_curvature'"),
+        (("principal_curvatures",), "from 'gaussian_curvature' and 'mean_curvature'"),
+    ],
+)
+def test_fields_that_are_none(fields, message):
+    error = gm.errors.UnknownNameError if "no field" in message else gm.errors.InputError
+    for call in (
+        lambda: narrow(fields),
+        lambda: next(gm.sample_many([SPLINE], normals=NORMALS, fields=fields)),
+        lambda: gm.sample_stream(SPLINE, normals=NORMALS, fields=fields),
+    ):
+        with pytest.raises(error, match=message):
+            call()
+
+
+@pytest.mark.parametrize(
+    "dtype", ["float16", np.float128, int, ">f4", "numbers", object, 7, "f4,f4", None, "f("]
+)
+def test_types_that_are_none(dtype):
+    for call in (
+        lambda: narrow(dtype=dtype),
+        lambda: next(gm.sample_many([SPLINE], normals=NORMALS, dtype=dtype)),
+        lambda: gm.sample_stream(SPLINE, normals=NORMALS, dtype=dtype),
+    ):
+        with pytest.raises(gm.errors.InputError, match="dtype must be float32 or float64, not"):
+            call()
+
+
+# --- samples of few fields ------------------------------------------------------------------------
+
+
+def test_text():
+    samples = narrow(("points", "uv"))
+    assert repr(samples) == f"Samples({len(FULL):,} points on torus (points, uv only))"
+    assert samples.summary().split(";")[0] == (
+        f"{len(FULL):,} samples found by {len(NORMALS):,} normals (points, uv only)"
+    )
+
+
+def test_copies_pickles_and_parts():
+    samples = narrow(("uv", "normal_index"), dtype=np.float32)
+    whole = slice(None)
+    for other in (copy.copy(samples), copy.deepcopy(samples), pickle.loads(pickle.dumps(samples)),
+                  samples[whole], Samples.concatenate([samples[:5], samples[5:]])):  # fmt: skip
+        assert other.fields == ("uv", "normal_index")
+        assert other.dtype == np.float32
+        assert other.uv.tobytes() == samples.uv.tobytes()
+        assert other.normal_index.tobytes() == samples.normal_index.tobytes()
+
+
+def test_concatenation():
+    parts = [FULL[:10], FULL[10:10], FULL[10:]]
+    joined = Samples.concatenate(iter(parts))
+    assert joined.report == FULL.report
+    for name in ARRAY_NAMES:
+        assert getattr(joined, name).tobytes() == getattr(FULL, name).tobytes()
+    other = replace(FULL, report=replace(FULL.report, surface="other", normals=3))
+    report = Samples.concatenate([FULL, other]).report
+    assert (report.surface, report.normals) == ("several surfaces", None)
+    assert (report.samples, report.patches) == (2 * len(FULL), FULL.report.patches)
+    for unusable in ([], [FULL, narrow()], [FULL, narrow(None, dtype="f4")], [1], [FULL, None]):
+        with pytest.raises(gm.errors.InputError):
+            Samples.concatenate(unusable)  # pyright: ignore[reportArgumentType]
+
+
+def test_samples_need_one_array_and_one_type():
+    with pytest.raises(gm.errors.InputError, match="need at least one array"):
+        Samples(report=FULL.report)
+    single = narrow(dtype=np.float32)
+    with pytest.raises(gm.errors.InputError, match="points must be a float64 array"):
+        Samples(points=single.points, normals=FULL.normals, report=FULL.report)
+
+
+# --- files ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("suffix", [".npz", ".ply"])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("fields", [("points",), ("points", "uv", "patch_index"), ARRAY_NAMES])
+def test_files_keep_fields_and_types(tmp_path, suffix, dtype, fields):
+    samples = narrow(fields, dtype=dtype)
+    samples.write(tmp_path / f"a{suffix}")
+    again = gm.read_samples(tmp_path / f"a{suffix}")
+    assert again.fields == samples.fields
+    assert again.report == samples.report
+    for name in fields:
+        assert getattr(again, name).dtype == getattr(samples, name).dtype
+        assert getattr(again, name).tobytes() == getattr(samples, name).tobytes()
+
+
+def test_text_of_float32_reads_back(tmp_path):
+    samples = narrow(("points", "normals", "normal_index"), dtype=np.float32)
+    samples.write(tmp_path / "a.csv")
+    assert (tmp_path / "a.csv").read_text().startswith("x,y,z,nx,ny,nz,normal_index\n")
+    rows = np.loadtxt(tmp_path / "a.csv", delimiter=",", skiprows=1)
+    assert rows[:, :3].astype(np.float32).tobytes() == samples.points.tobytes()
+    assert (rows[:, 6] == samples.normal_index).all()
+    samples.write(tmp_path / "a.xyz")
+    assert np.loadtxt(tmp_path / "a.xyz", dtype=np.float32)[:, 3:].tobytes() == (
+        samples.normals.tobytes()
+    )
+
+
+def test_vtp_of_few_fields(tmp_path):
+    pyvista = pytest.importorskip("pyvista")
+    narrow(("points", "uv"), dtype=np.float32).write(tmp_path / "a.vtp")
+    cloud = pyvista.read(tmp_path / "a.vtp")
+    assert cloud.points.dtype == np.float32
+    assert list(cloud.point_data) == ["uv"]
+
+
+@pytest.mark.parametrize(
+    ("suffix", "fields", "lacking"),
+    [
+        (".ply", ("uv",), "'points'"),
+        (".vtp", ("normals",), "'points'"),
+        (".xyz", ("uv",), "'points' and 'normals'"),
+        (".xyz", ("points",), "'normals'"),
+    ],
+)
+def test_formats_say_what_they_need(tmp_path, suffix, fields, lacking):
+    with pytest.raises(gm.errors.InputError, match=f"a {suffix} file needs {lacking}; add"):
+        narrow(fields).write(tmp_path / f"a{suffix}")
+    assert not any(tmp_path.iterdir())
+
+
+def test_a_file_that_lacks_what_it_promises(tmp_path):
+    narrow(("points", "uv")).write(tmp_path / "a.ply")
+    whole = (tmp_path / "a.ply").read_bytes()
+    for old, new, message in (
+        (b"fields points uv", b"fields points support", "lacks the columns support"),
+        (b"fields points uv", b"fields points colour", "fields that gaussmap does not know"),
+        (b"comment gaussmap fields points uv\n", b"", "lacks the columns nx"),
+    ):
+        (tmp_path / "b.ply").write_bytes(whole.replace(old, new))
+        with pytest.raises(gm.errors.FileError, match=message):
+            gm.read_samples(tmp_path / "b.ply")
+
+
+# --- the command line -----------------------------------------------------------------------------
+
+
+@pytest.mark.compiled
+def test_command_line(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    few = ["sample", "torus", "--frequency", "4", "--cells", "12", "8"]
+    assert main([*few, "--fields", "points,uv", "--float32", "-o", "a.npz"]) == 0
+    assert "(points, uv only)" in capsys.readouterr().out
+    samples = gm.read_samples("a.npz")
+    assert (samples.fields, samples.dtype) == (("points", "uv"), np.float32)
+    for fields, output, message in (
+        ("points,colour", "b.npz", "there is no field 'colour'"),
+        ("points,,uv", "b.npz", "there is no field ''"),
+        ("uv", "b.ply", "a .ply file needs 'points'"),
+    ):
+        assert main([*few, "--fields", fields, "-o", output]) == 2
+        assert message in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["a.npz"]
+
+
+# --- memory that is used again --------------------------------------------------------------------
+
+
+def test_out_is_written_again():
+    opposite = gm.sample(SPLINE, normals=-NORMALS)
+    again = gm.sample(SPLINE, normals=NORMALS, out=opposite)
+    for name in ARRAY_NAMES:
+        assert np.shares_memory(getattr(again, name), getattr(opposite, name))
+        assert getattr(again, name).tobytes() == getattr(FULL, name).tobytes()
+
+
+def test_out_that_does_not_fit_is_left_alone():
+    few = gm.sample(SPLINE, normals=NORMALS[:20])
+    single = gm.sample(SPLINE, normals=NORMALS, dtype=np.float32)
+    fixed = gm.sample(SPLINE, normals=NORMALS)
+    fixed.points.flags.writeable = False
+    for held in (few, single, fixed):
+        before = held.points.tobytes()
+        again = gm.sample(SPLINE, normals=NORMALS, out=held)
+        assert held.points.tobytes() == before
+        assert again.points.tobytes() == FULL.points.tobytes()
+
+
+def test_out_must_be_samples():
+    with pytest.raises(InputError, match="out must be Samples of an earlier call, not 3"):
+        gm.sample(SPLINE, normals=NORMALS, out=3)  # pyright: ignore[reportArgumentType]

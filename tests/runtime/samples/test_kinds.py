@@ -1,0 +1,56 @@
+"""Parabolic samples: K is zero up to rounding, whatever its sign bit says."""
+
+import warnings
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+
+from ..surface.test_poles import ROTATION
+
+
+@pytest.mark.parametrize("name", ["plane", "cylinder"])
+@pytest.mark.parametrize("shift", [0.0, 1e6])
+@pytest.mark.parametrize("factor", [1.0, 1e-9, 1e9])
+@pytest.mark.parametrize("cells", [(16, 16), (48, 100)])
+def test_planes_and_cylinders_are_parabolic(name, shift, factor, cells):
+    surface = gm.surfaces.surface(name)
+    moved = gm.Surface.from_callable(
+        lambda u, v: factor * (surface.evaluate(u, v) @ ROTATION.T + shift), surface.domain
+    )
+    samples = gm.sample(gm.fit(moved, cells), 100)
+    assert samples.parabolic.all()
+    assert "(100 flat or curved one way only)" in samples.summary()
+    assert (samples.elliptic ^ samples.hyperbolic).all()
+
+
+@pytest.mark.parametrize("factor", [1.0, 1e-9, 1e9, 1e-100])
+def test_curved_surfaces_are_not(factor):
+    torus = gm.surfaces.torus()
+    scaled = gm.Surface.from_callable(
+        lambda u, v: factor * torus.evaluate(u, v), torus.domain, (True, True)
+    )
+    samples = gm.sample(gm.fit(scaled, (16, 16)), 200)
+    assert not samples.parabolic.any()
+    assert "flat" not in samples.summary()
+
+
+@pytest.mark.parametrize("height", [1e-3, 1e-6])
+def test_gentle_waves_are_curved(height):
+    waves = gm.Surface.from_callable(
+        lambda u, v: np.stack([u, v, height * np.sin(u) * np.cos(v)], axis=-1), ((0, 6), (0, 6))
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", gm.GaussmapWarning)
+        assert gm.sample(gm.fit(waves, (32, 32)), 300).parabolic.sum() <= 3
+
+
+def test_samples_with_few_fields():
+    cylinder = gm.fit("cylinder", (16, 16))
+    alone = gm.sample(cylinder, 50, fields=("gaussian_curvature",))
+    assert alone.parabolic.all()
+    with pytest.raises(gm.errors.MissingFieldError, match="parabolic needs gaussian_curvature"):
+        gm.sample(cylinder, 50, fields=("points",)).parabolic  # noqa: B018
+    rows: dict[str, Any] = {x: y[:0] for x, y in gm.sample(cylinder, 50).arrays().items()}
+    assert gm.Samples(**rows, report=alone.report).parabolic.shape == (0,)

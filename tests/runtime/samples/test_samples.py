@@ -1,0 +1,465 @@
+from __future__ import annotations
+
+import copy
+import pickle
+from dataclasses import FrozenInstanceError, fields, replace
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.runtime.base.errors import InputError
+from gaussmap.runtime.samples.fields import (
+    ARRAY_NAMES,
+    ARRAY_NAMES_ON_SURFACE,
+    EDGE_NAMES,
+    GRID_NAMES,
+    PART_NAMES,
+)
+from gaussmap.runtime.samples.report import SamplingReport
+from gaussmap.runtime.samples.samples import Samples
+from hypothesis import given
+from hypothesis import strategies as st
+
+REPORT = SamplingReport("torus", 8, 12, 4, 0.125, 1)
+FLAT = "of the surface is flat or curved one way only, where normals find no samples"
+
+
+def torus(count: Any = 12, **changes: Any) -> Samples:
+    """Points of the torus with radii 2 and 1; the outer half is elliptic."""
+    rng = np.random.default_rng(1)
+    u, v = rng.uniform(0.0, 2.0 * np.pi, (2, count))
+    normals = np.stack([np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)], axis=1)
+    points = 2.0 * np.stack([np.cos(u), np.sin(u), np.zeros(count)], axis=1) + normals
+    across = np.cos(v) / (2.0 + np.cos(v))
+    arrays: dict[str, Any] = {
+        "points": points,
+        "normals": normals,
+        "uv": np.stack([u, v], axis=1),
+        "support": np.sum(points * normals, axis=1),
+        "gaussian_curvature": across,
+        "mean_curvature": (1.0 + across) / 2.0,
+        "normal_index": np.arange(count),
+        "patch_index": np.arange(count) // 4,
+        "report": REPORT,
+    }
+    return Samples(**(arrays | changes))
+
+
+def curved(K: object, H: object) -> Samples:
+    K = np.array(K, dtype=float, ndmin=1)
+    return torus(len(K), gaussian_curvature=K, mean_curvature=np.array(H, dtype=float, ndmin=1))
+
+
+class TestConstruction:
+    def test_the_array_names_are_the_fields(self):
+        arrays = (*ARRAY_NAMES_ON_SURFACE, *GRID_NAMES, *PART_NAMES, *EDGE_NAMES)
+        assert (*arrays, "report", "spline", "surface", "offset_of") == tuple(
+            field.name for field in fields(Samples)
+        )
+
+    def test_the_spline_is_kept_by_picking_copying_and_concatenating(self):
+        spline = gm.fit(gm.surfaces.torus(), cells=(8, 8))
+        samples = gm.sample(spline, count=100)
+        halves = [samples[:50], samples[50:]]
+        assert all(part.spline is spline for part in (*halves, Samples.concatenate(halves)))
+        copied = pickle.loads(pickle.dumps(samples)).spline
+        np.testing.assert_array_equal(copied.coefficients, spline.coefficients)
+        other = gm.sample(gm.surfaces.torus(), count=100, cells=(8, 8), on="spline")
+        assert Samples.concatenate([samples, other]).spline is None
+        assert torus().spline is None
+
+    def test_what_is_no_spline_is_refused(self):
+        with pytest.raises(InputError, match="spline must be a Spline or None, not Surface"):
+            torus(spline=gm.surfaces.torus())
+
+    def test_the_surface_is_kept_and_pickled_if_it_pickles(self):
+        surface = gm.Surface.from_callable(np.cross, ((0, 1), (0, 1)))
+        samples = torus(surface=surface)
+        halves = [samples[:5], samples[5:]]
+        assert all(part.surface is surface for part in (*halves, Samples.concatenate(halves)))
+        assert Samples.concatenate([samples, torus()]).surface is None
+        assert pickle.loads(pickle.dumps(samples)).surface.domain == surface.domain
+        unpicklable = gm.Surface.from_callable(lambda u, v: u, ((0, 1), (0, 1)))
+        other = pickle.loads(pickle.dumps(torus(surface=unpicklable)))
+        assert other.surface is None
+        np.testing.assert_array_equal(other.points, samples.points)
+        with pytest.raises(InputError, match="surface must be a Surface or None, not str"):
+            torus(surface="torus")
+
+    def test_whether_samples_are_on_the_surface_is_optional(self):
+        there = np.arange(12) % 5 > 0
+        samples = torus(on_surface=there)
+        assert samples.fields == ARRAY_NAMES_ON_SURFACE
+        assert torus().fields == ARRAY_NAMES
+        assert torus().on_surface is None
+        assert replace(torus(), report=REPORT).on_surface is None
+        np.testing.assert_array_equal(samples[3:].on_surface, there[3:])
+        joined = Samples.concatenate([samples[:6], samples[6:]])
+        np.testing.assert_array_equal(joined.on_surface, there)
+        assert joined.report.unrefined == 3
+        assert Samples.concatenate([torus()]).report.unrefined is None
+        with pytest.raises(InputError, match="on_surface must be a bool array"):
+            torus(on_surface=np.ones(12))
+
+    def test_length(self):
+        assert len(torus(12)) == 12
+        assert len(torus(0)) == 0
+
+    @pytest.mark.parametrize("name", ARRAY_NAMES)
+    def test_wrong_shapes_are_named(self, name):
+        good = getattr(torus(), name)
+        for bad in (good[:-1], good[..., None], good.ravel()[0]):
+            with pytest.raises(InputError) as caught:
+                torus(**{name: np.array(bad)})
+            # When the points are wrong, all the others seem to be.
+            assert "shape" in str(caught.value)
+            assert name == "points" or str(caught.value).startswith(f"{name} must be")
+
+    @pytest.mark.parametrize("name", ARRAY_NAMES)
+    def test_wrong_dtypes_are_named(self, name):
+        good = getattr(torus(), name)
+        for bad in (
+            good.astype(np.float32),
+            good.astype(object),
+            good.astype(good.dtype.newbyteorder()),
+        ):
+            with pytest.raises(InputError, match=f"^{name} must be a {good.dtype} array"):
+                torus(**{name: bad})
+
+    @pytest.mark.parametrize("name", ARRAY_NAMES)
+    def test_lists_are_refused(self, name):
+        with pytest.raises(InputError, match=f"^{name} must be a NumPy array, not list"):
+            torus(**{name: getattr(torus(), name).tolist()})
+
+    @pytest.mark.parametrize("name", ARRAY_NAMES)
+    def test_arrays_become_contiguous(self, name):
+        good = getattr(torus(), name)
+        strided = np.repeat(good, 2, axis=0)[::2]
+        assert not strided.flags.c_contiguous
+        result = getattr(torus(**{name: strided}), name)
+        assert result.flags.c_contiguous
+        np.testing.assert_array_equal(result, good)
+
+    def test_contiguous_arrays_are_not_copied(self):
+        support = torus().support
+        assert torus(support=support).support is support
+
+    def test_the_report_must_be_one(self):
+        with pytest.raises(InputError, match="report must be a SamplingReport, not dict"):
+            torus(report={})
+
+    def test_samples_are_frozen(self):
+        with pytest.raises(FrozenInstanceError):
+            torus().support = np.zeros(12)  # pyright: ignore[reportAttributeAccessIssue]
+
+    def test_equality_is_identity(self):
+        samples = torus()
+        assert samples == samples
+        assert samples != torus()
+
+    def test_copies_and_pickles(self):
+        samples = torus()
+        for other in (copy.deepcopy(samples), pickle.loads(pickle.dumps(samples))):
+            assert other.report == samples.report
+            for name in ARRAY_NAMES:
+                np.testing.assert_array_equal(getattr(other, name), getattr(samples, name))
+
+
+class TestReport:
+    def test_numpy_numbers_become_plain(self):
+        numbers: Any = np.int64(3), np.int32(2), np.uint8(1), np.float32(0.5), 0
+        more: Any = {
+            "coverage": np.float32(2),
+            "angle": np.int64(3),
+            "infinite_curvatures": np.int8(4),
+            "on": "surface",
+            "unrefined": np.uint8(2),
+            "fit_distance": np.float32(1),
+            "fit_rms": np.int8(1),
+            "fit_angle": np.float64(1),
+            "apexes": np.int16(1),
+            "index": np.int64(7),
+            "density": "aligned",
+            "faces": np.int32(3),
+            "empty_faces": np.uint8(1),
+            "oriented": True,
+            "edge_samples": np.int64(2),
+            "crs": "EPSG:32633",
+            "origin": np.array([1, 2.0]),
+        }
+        report = SamplingReport("s", *numbers, **more)
+        assert [type(getattr(report, f.name)) for f in fields(report)] == [
+            str, int, int, int, float, int, float, float, int, str, int, float, float, float,
+            int, int, str, int, int, bool, int, str, tuple,
+        ]  # fmt: skip
+
+    @pytest.mark.parametrize("name", ["normals", "samples", "patches", "developable_patches"])
+    @pytest.mark.parametrize("bad", [-1, 1.5, "3"])
+    def test_bad_counts_are_named(self, name, bad):
+        with pytest.raises(InputError, match=f"^{name} must"):
+            replace(REPORT, **{name: bad})
+
+    @pytest.mark.parametrize("bad", [-0.1, 1.1, np.nan, np.inf, "much"])
+    def test_bad_shares(self, bad):
+        with pytest.raises(InputError, match=r"^developable_share must"):
+            replace(REPORT, developable_share=bad)
+
+    @pytest.mark.parametrize("name", ["coverage", "angle", "fit_distance", "fit_rms", "fit_angle"])
+    @pytest.mark.parametrize("bad", [-0.1, np.nan, "much", [1.0]])
+    def test_bad_distances(self, name, bad):
+        with pytest.raises(InputError, match=f"^{name} must"):
+            replace(REPORT, **{name: bad})
+
+    def test_rounding_of_the_share_is_forgiven(self):
+        assert replace(REPORT, developable_share=-1e-15).developable_share == 0.0
+        assert replace(REPORT, developable_share=1.0 + 1e-15).developable_share == 1.0
+
+    def test_the_label_must_be_text(self):
+        with pytest.raises(InputError, match=r"^surface must be a string, not bytes"):
+            replace(REPORT, surface=b"torus")  # pyright: ignore[reportArgumentType]
+
+    def test_unknown_numbers(self):
+        report = SamplingReport("s", None, 0, None, None, None)
+        assert report.normals is report.patches is report.developable_share is None
+
+    def test_the_number_of_samples_is_always_known(self):
+        with pytest.raises(InputError, match=r"^samples must be an integer"):
+            replace(REPORT, samples=None)  # pyright: ignore[reportArgumentType]
+
+
+class TestCurvatures:
+    def test_the_sign_bit_counts(self):
+        samples = curved([1.0, 0.0, -0.0, -1.0], 0.0 * np.ones(4))
+        assert samples.elliptic.tolist() == [True, True, False, False]
+        assert samples.hyperbolic.tolist() == [False, False, True, True]
+
+    def test_the_torus(self):
+        samples = torus(1000)
+        across = np.cos(samples.uv[:, 1]) / (2.0 + np.cos(samples.uv[:, 1]))
+        expected = np.stack([np.ones(1000), across], axis=1)
+        np.testing.assert_allclose(samples.principal_curvatures, expected, rtol=0, atol=4e-15)
+
+    @pytest.mark.parametrize(
+        ("K", "H", "expected"),
+        [
+            (4.0, 2.0, (2.0, 2.0)),  # sphere
+            (4.0, -2.0, (-2.0, -2.0)),  # sphere, inward normals
+            (1.0 + 1e-15, 1.0, (1.0, 1.0)),  # sphere, rounded: the discriminant is negative
+            (-1.0, 0.0, (1.0, -1.0)),  # minimal surface
+            (-1.0, -0.0, (1.0, -1.0)),
+            (0.0, 0.0, (0.0, 0.0)),  # plane
+            (-0.0, 0.5, (1.0, 0.0)),  # cylinder
+            (-0.0, -0.5, (0.0, -1.0)),
+            (2.0, -1.5, (-1.0, -2.0)),
+        ],
+    )
+    def test_simple_surfaces(self, K, H, expected):
+        assert curved(K, H).principal_curvatures.tolist() == [list(expected)]
+
+    def test_no_cancellation(self):
+        # Curvatures 1 and 1e-20: H alone does not know the second one.
+        big, small = curved(1e-20, 0.5).principal_curvatures[0]
+        assert (big, small) == (1.0, 1e-20)
+
+    @given(
+        st.floats(-1e3, 1e3).filter(lambda k: k == 0 or abs(k) > 1e-3),
+        st.floats(-1e3, 1e3).filter(lambda k: k == 0 or abs(k) > 1e-3),
+    )
+    def test_product_and_mean_come_back(self, first, second):
+        K, H = first * second, (first + second) / 2.0
+        big, small = curved(K, H).principal_curvatures[0]
+        size = max(abs(first), abs(second))
+        assert big >= small
+        # The root of a difference of squares: half the digits near umbilics.
+        assert [big, small] == pytest.approx(
+            sorted([first, second], reverse=True), rel=0, abs=4e-8 * size
+        )
+        assert (big + small) / 2.0 == pytest.approx(H, rel=0, abs=4e-16 * size)
+
+    @pytest.mark.parametrize(
+        ("K", "H"), [(np.inf, 1.0), (-np.inf, 1.0), (np.nan, 1.0), (1.0, np.inf), (1.0, np.nan)]
+    )
+    def test_not_finite(self, K, H):
+        assert np.isnan(curved(K, H).principal_curvatures).all()
+
+    def test_none(self):
+        samples = torus(0)
+        assert samples.principal_curvatures.shape == (0, 2)
+        assert samples.elliptic.shape == samples.hyperbolic.shape == (0,)
+
+
+class TestIndexing:
+    @pytest.mark.parametrize(
+        "key",
+        [
+            slice(None),
+            slice(2, 7),
+            slice(None, None, -3),
+            slice(5, 5),
+            np.arange(12) % 3 == 0,
+            np.zeros(12, bool),
+            np.array([7, 0, 7, -1]),
+            np.array([3, 1], np.uint8),
+            [4, 2],
+            [],
+        ],
+        ids=str,
+    )
+    def test_all_arrays_are_cut_alike(self, key):
+        samples = torus(12)
+        part = samples[key]
+        rows = np.arange(12)[key if not isinstance(key, list) else np.array(key, int)]
+        assert len(part) == len(rows)
+        assert part.report is samples.report
+        for name in ARRAY_NAMES:
+            array = getattr(part, name)
+            assert array.flags.c_contiguous
+            np.testing.assert_array_equal(array, getattr(samples, name)[rows])
+
+    @pytest.mark.parametrize(
+        ("key", "message"),
+        [
+            (3, "picked by"),
+            (np.int64(3), "picked by"),
+            ([0.5], "picked by"),
+            ("support", "picked by"),
+            ([[0, 1]], "picked by"),
+            (None, "picked by"),
+            (np.ones(11, bool), "the mask has 11 entries, but there are 12 samples"),
+            (np.ones(0, bool), "the mask has 0 entries"),
+            ([12], "out of range: there are 12 samples"),
+            ([-13], "out of range"),
+        ],
+        ids=str,
+    )
+    def test_bad_keys(self, key, message):
+        with pytest.raises(InputError, match=message):
+            torus(12)[key]
+
+    def test_the_halves_make_the_whole(self):
+        samples = torus(500)
+        elliptic, hyperbolic = samples[samples.elliptic], samples[samples.hyperbolic]
+        assert len(elliptic) > 0
+        assert len(hyperbolic) > 0
+        assert len(elliptic) + len(hyperbolic) == 500
+        assert (elliptic.gaussian_curvature > 0).all()
+        assert (hyperbolic.gaussian_curvature < 0).all()
+
+
+class TestText:
+    def samples(self) -> Samples:
+        K = np.ones(10012)
+        K[:5000] = -1.0
+        report = SamplingReport("torus", 1234567, 10012, 4, 0.03125, 0)
+        return torus(10012, gaussian_curvature=K, report=report)
+
+    def test_repr(self):
+        assert repr(self.samples()) == (
+            "Samples(10,012 points on torus: 5,012 dome-shaped, 5,000 saddle-shaped)"
+        )
+
+    def test_repr_of_parabolic_samples(self):
+        """The sign bit makes them elliptic or hyperbolic, and no text says so."""
+        samples = curved([0.0, -0.0, 1e-12, -1e-12, 1e-3, -1e-3], np.ones(6))
+        assert samples.hyperbolic.tolist() == [False, True, False, True, False, True]
+        assert samples.parabolic.tolist() == [True, True, True, True, False, False]
+        assert repr(samples).endswith(
+            ": 1 dome-shaped, 1 saddle-shaped, 4 flat or curved one way only)"
+        )
+
+    def test_repr_stays_one_short_line(self):
+        samples = torus(report=replace(REPORT, surface="x**2 +\n y**2 " * 20))
+        assert len(repr(samples)) < 100
+        assert repr(samples).startswith("Samples(12 points on x**2 + y**2 x**2")
+        assert "…:" in repr(samples)
+        assert "\n" not in repr(samples)
+
+    def test_summary(self):
+        assert self.samples().summary() == (
+            "10,012 samples found by 1,234,567 normals (5,012 dome-shaped, 5,000 saddle-shaped); "
+            "3.12 % of the surface is flat or curved one way only, where normals find no samples"
+        )
+
+    @pytest.mark.parametrize(
+        ("share", "end"),
+        [
+            (0.0, ""),
+            (4.9e-5, ""),
+            (
+                5.1e-5,
+                f"; 0.01 % {FLAT}",
+            ),
+            (
+                1.0,
+                f"; 100.00 % {FLAT}",
+            ),
+        ],
+    )
+    def test_summary_of_the_developable_share(self, share, end):
+        samples = self.samples()
+        samples = replace(samples, report=replace(samples.report, developable_share=share))
+        start = "10,012 samples found by 1,234,567 normals (5,012 dome-shaped, 5,000 saddle-shaped)"
+        assert samples.summary() == start + end
+
+    def test_summary_of_samples_that_fill_gaps(self):
+        indices = np.arange(10012) - 5012
+        samples = replace(self.samples(), normal_index=np.maximum(indices, -1))
+        assert samples.summary() == (
+            "10,012 samples: 5,000 found by 1,234,567 normals, 5,012 in the gaps between these "
+            "(5,012 dome-shaped, 5,000 saddle-shaped)"
+        )
+        assert samples[:5012].summary() == (
+            "5,012 of 10,012 samples in the gaps between normals "
+            "(12 dome-shaped, 5,000 saddle-shaped)"
+        )
+        without = replace(samples, report=replace(samples.report, normals=0))
+        assert without[:10].summary() == "10 of 10,012 samples (10 saddle-shaped)"
+
+    def test_summary_of_samples_that_are_not_on_the_surface(self):
+        report = replace(self.samples().report, developable_share=0.0, unrefined=1234)
+        assert (
+            replace(self.samples(), report=report)
+            .summary()
+            .endswith(
+                "saddle-shaped); 1,234 samples could not be moved to the surface from its spline"
+            )
+        )
+
+    @pytest.mark.parametrize(
+        ("on", "angle", "end"),
+        [
+            ("surface", 0.03161, ""),
+            (
+                "spline",
+                0.03161,
+                "; they lie on a spline within 1.07e-05 of the surface, its normals within 0.0316°",
+            ),
+            (
+                "spline",
+                None,
+                "; they lie on a spline within 1.07e-05 of the data (root mean square 6.03e-06)",
+            ),
+        ],
+    )
+    def test_summary_of_the_misfit(self, on, angle, end):
+        known = {"fit_distance": 1.0696e-5, "fit_rms": 6.0347e-6, "fit_angle": angle}
+        report = replace(self.samples().report, developable_share=0.0, on=on, **known)
+        summary = replace(self.samples(), report=report).summary()
+        assert summary.endswith("5,000 saddle-shaped)" + end)
+
+    def test_summary_of_a_part(self):
+        assert self.samples()[:10].summary() == (
+            "10 of 10,012 samples found by 1,234,567 normals (10 saddle-shaped); "
+            "3.12 % of the surface is flat or curved one way only, where normals find no samples"
+        )
+
+    def test_summary_of_what_is_unknown(self):
+        report = SamplingReport("an unknown surface", None, 10012, None, None, None)
+        samples = replace(self.samples(), report=report)
+        assert samples.summary() == "10,012 samples (5,012 dome-shaped, 5,000 saddle-shaped)"
+
+
+def test_write(tmp_path):
+    torus().write(tmp_path / "torus.xyz")
+    assert np.loadtxt(tmp_path / "torus.xyz").shape == (12, 6)

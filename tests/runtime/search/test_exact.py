@@ -1,0 +1,214 @@
+"""Exact decisions: splines and normals full of exact ties, against what topology demands."""
+
+from fractions import Fraction
+from itertools import product
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.generated.spline import NEIGHBOURS, TRIANGLE_NEIGHBOURS, triangle
+from gaussmap.runtime.base.formula_calls import python_function, vector
+from gaussmap.runtime.base.integers import integers_by_row, sign
+from gaussmap.runtime.domain.domain import Boundary
+from gaussmap.runtime.search import exact, long_integers
+from hypothesis import given
+from hypothesis import strategies as st
+
+ALIGNED = np.array([n for n in product((-1.0, 0.0, 1.0), repeat=3) if any(n)])
+PERIODIC: Boundary = (("periodic", "periodic"), ("periodic", "periodic"))
+OPEN: Boundary = (("open", "open"), ("open", "open"))
+
+
+def torus_of_integers(m: int, n: int, size: int, noise: np.ndarray) -> gm.Spline:
+    """A closed spline whose coefficients are small integers: most of its ties are exact."""
+    u, v = np.meshgrid(2 * np.pi * np.arange(m) / m, 2 * np.pi * np.arange(n) / n, indexing="ij")
+    ring = 2.0 + np.cos(v)
+    inner = np.round(size * np.stack([ring * np.cos(u), ring * np.sin(u), np.sin(v)], -1)) + noise
+    return gm.Spline(
+        np.pad(inner, [(1, 1), (1, 1), (0, 0)], mode="wrap"), ((0, m), (0, n)), PERIODIC, "t"
+    )
+
+
+def sign_sums(spline: gm.Spline, normals: np.ndarray) -> np.ndarray:
+    samples = gm.sample(spline, normals=normals)
+    signs = np.where(samples.elliptic, 1, -1)
+    return np.bincount(samples.normal_index, weights=signs, minlength=len(normals))
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("size", [4, 8, 64])
+@pytest.mark.parametrize("cells", [(8, 8), (12, 8), (16, 12), (10, 6)])
+def test_integer_torus(size: int, cells: tuple[int, int]) -> None:
+    spline = torus_of_integers(*cells, size, np.zeros((*cells, 3)))
+    normals = np.concatenate([ALIGNED, gm.icosphere(4)])
+    assert (sign_sums(spline, normals) == 0).all()
+
+
+@pytest.mark.compiled
+@given(seed=st.integers(0, 2**32 - 1), height=st.integers(0, 4))
+def test_dented_integer_torus(seed: int, height: int) -> None:
+    noise = np.random.default_rng(seed).integers(-height, height + 1, (12, 10, 3))
+    spline = torus_of_integers(12, 10, 64, noise)
+    normals = np.concatenate([ALIGNED, gm.icosphere(3)])
+    assert (sign_sums(spline, normals) == 0).all()
+
+
+def test_forms_on_integers_are_those_of_fractions() -> None:
+    spline = torus_of_integers(6, 5, 50, np.zeros((6, 5, 3)))
+    spline.coefficients[...] *= 0.3  # no integers any more, and a common exponent to find
+    patches = np.arange(spline.patches)
+    vectors, exponent = long_integers._patch_vectors(spline, patches)
+    unit = Fraction(2) ** exponent / Fraction(spline.scale)
+    for patch in patches[::7]:
+        cell, turn = divmod(int(patch), 4)
+        i, j = divmod(cell, spline.cells[1])
+        around = [
+            [Fraction(float(x)) for x in spline.coefficients[i + 1 + di, j + 1 + dj]]
+            for di, dj in NEIGHBOURS[turn]
+        ]
+        read = np.array([around[k] for k in TRIANGLE_NEIGHBOURS]) - np.array(around[4])
+        expected = python_function(triangle)(*map(vector, read))[:5]
+        assert (vectors[..., patch] * unit == np.array(expected)).all()
+
+
+def test_infinitesimal_displacement_agrees_with_a_small_one() -> None:
+    """Real displacements in the same order of size give the same signs, for small integers."""
+    rng = np.random.default_rng(5)
+    n = np.array([[int(x) for x in row] for row in rng.integers(-1, 2, (3, 400))], dtype=object)
+    vectors = np.array(
+        [[int(x) for x in row] for row in rng.integers(-3, 4, (15, 400))], dtype=object
+    ).reshape(5, 3, 400)
+    _, signs = long_integers._displaced_forms(vectors, n)
+    # In bits: n 64 · 20, ε 16 · 20, 4 · 20 and 20, so that also n ε₃ ≫ ε₁² and ε₁ ε₃ ≫ ε₂².
+    shifts = (1 << 320, 1 << 80, 1 << 20)
+    moved = np.array([(x << 1280) + e for x, e in zip(n, shifts, strict=True)], dtype=object)
+    assert (signs == sign(long_integers._forms(vectors, moved)[1:])).all()
+    assert (sign(long_integers._forms(vectors, n)[1:]) == 0).any()
+
+
+def every_pair(spline: gm.Spline, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    patches = np.repeat(np.arange(spline.patches), len(normals))
+    return patches, np.tile(normals, (spline.patches, 1))
+
+
+def check_forms(spline: gm.Spline, patches: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """Compare the decisions on pairs with those of Python's integers; return the signs."""
+    local, size, signs = exact._forms(spline, patches, normals, None)
+    expected_local, expected_size, expected = long_integers.forms_of_pairs(spline, patches, normals)
+    np.testing.assert_array_equal(signs, expected)
+    inside = (signs == signs[:, :1]).all(axis=1) & (signs != 0).all(axis=1)
+    vectors, _ = long_integers._patch_vectors(spline, patches)
+    regular = inside & (long_integers._forms(vectors, integers_by_row(normals)[0])[0] != 0)
+    np.testing.assert_array_equal(size[regular], expected_size[regular])
+    # U and D are rounded once, and their quotient; the integers round it once.
+    np.testing.assert_allclose(local[inside], expected_local[inside], rtol=2**-51, atol=0.0)
+    return signs
+
+
+@pytest.fixture
+def no_long_integers(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let nothing but the kernel decide."""
+    monkeypatch.setattr(exact, "forms_of_pairs", None)
+
+
+@pytest.mark.compiled
+@pytest.mark.usefixtures("no_long_integers")
+@pytest.mark.parametrize("size", [1.0, 0.3, 1e-5, 1e150, 1e-150])
+def test_compiled_forms_are_those_of_long_integers(size: float) -> None:
+    spline = torus_of_integers(8, 6, 8, np.zeros((8, 6, 3)))
+    spline.coefficients[...] *= size
+    check_forms(spline, *every_pair(spline, np.concatenate([ALIGNED, gm.icosphere(2)])))
+
+
+@pytest.mark.compiled
+@pytest.mark.usefixtures("no_long_integers")
+@pytest.mark.parametrize("count", [2_000, pytest.param(100_000, marks=pytest.mark.slow)])
+def test_random_pairs_are_decided_as_on_long_integers(count: int) -> None:
+    rng = np.random.default_rng(7)
+    coefficients = rng.standard_normal((18, 18, 3)) * 2.0 ** rng.integers(-20, 20, (18, 18, 1))
+    spline = gm.Spline(coefficients, ((0, 16), (0, 16)), OPEN, "t")
+    normals = rng.standard_normal((count, 3)) * 2.0 ** rng.integers(-50, 50, (count, 3))
+    signs = check_forms(spline, rng.integers(0, spline.patches, count), normals)
+    assert len(np.unique(signs, axis=0)) == 8
+
+
+@pytest.mark.compiled
+@pytest.mark.usefixtures("no_long_integers")
+@pytest.mark.parametrize("count", [2_000, pytest.param(100_000, marks=pytest.mark.slow)])
+def test_symmetric_pairs_are_decided_as_on_long_integers(count: int) -> None:
+    """Small integers, among which each of the ten monomials decides some sign."""
+    rng = np.random.default_rng(8)
+    coefficients = rng.integers(-1, 2, (42, 42, 3)).astype(np.float64)
+    coefficients[20:] *= rng.integers(0, 2, (22, 42, 3))  # many zeros, and developable patches
+    spline = gm.Spline(coefficients, ((0, 40), (0, 40)), OPEN, "t")
+    patches = rng.integers(0, spline.patches, count)
+    normals = rng.integers(-2, 3, (count, 3)).astype(np.float64)
+    normals[~normals.any(axis=1)] = 1.0
+    check_forms(spline, patches, normals)
+    vectors, _ = long_integers._patch_vectors(spline, patches[:2_000])
+    n, _ = integers_by_row(normals[:2_000])
+    nonzero = np.asarray(long_integers._monomials(vectors, n) != 0, dtype=bool)
+    first = np.where(nonzero.any(axis=0), np.argmax(nonzero, axis=0), -1)
+    tied = ~nonzero[0, 1:].all(axis=0)
+    assert set(first[1:, tied].ravel().tolist()) >= set(range(10))
+
+
+@pytest.mark.compiled
+@pytest.mark.usefixtures("no_long_integers")
+def test_the_largest_numbers_do_not_overflow() -> None:
+    """All bits are set, and the exponents differ as far as they may: 69 and 133."""
+    rng = np.random.default_rng(9)
+
+    def extreme(shape: tuple[int, ...], shift: int) -> np.ndarray:
+        full = rng.choice([-1.0, 1.0], shape) * (2.0 - 2.0**-52)
+        return np.where(rng.random(shape) < 0.8, full * 2.0**shift, rng.choice([-1.0, 1.0], shape))
+
+    spline = gm.Spline(extreme((18, 18, 3), 69), ((0, 16), (0, 16)), OPEN, "t")
+    pairs = rng.integers(0, spline.patches, 2_000), extreme((2_000, 3), 133)
+    check_forms(spline, *pairs)
+    spline.coefficients[:, :, 0] *= 2.0
+    with pytest.raises(TypeError):
+        check_forms(spline, *pairs)
+
+
+def test_numbers_too_long_for_the_kernel_are_long_integers() -> None:
+    spline = torus_of_integers(8, 6, 8, np.zeros((8, 6, 3)))
+    spline.coefficients[3, 3] *= 1e-200
+    check_forms(spline, *every_pair(spline, np.array([[1.0, 0.0, 0.0], [1.0, 1e-170, 1e-290]])))
+
+
+@pytest.mark.compiled
+def test_parabolic_normal_of_a_torus_has_a_sensible_place() -> None:
+    """n = ±z touches the torus along whole circles: one point of each sign remains."""
+    samples = gm.sample(
+        gm.surfaces.torus(), normals=[[0, 0, 1], [0, 0, -1]], cells=(16, 16), on="spline"
+    )
+    assert sorted(samples.normal_index.tolist()) == [0, 0, 1, 1]
+    assert int(samples.elliptic.sum()) == int(samples.hyperbolic.sum()) == 2
+    np.testing.assert_allclose(np.abs(samples.points[:, 2]), 0.35, atol=2e-3)
+    np.testing.assert_allclose(np.hypot(*samples.points[:, :2].T), 1.0, atol=2e-2)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("name", ["catenoid", "hyperboloid"])
+def test_border_vertices_of_a_closed_ring_count_once(name: str) -> None:
+    """The first and the last vertex on the border are one place: its normal is asked twice."""
+    spline = gm.fit(gm.surfaces.surface(name), (12, 8))
+    for v in spline.domain[1]:
+        normals = spline.normals(np.linspace(*spline.domain[0], 13), v)
+        samples = gm.sample(spline, normals=normals)
+        np.testing.assert_array_equal(np.bincount(samples.normal_index, minlength=13), 1)
+
+
+@pytest.mark.compiled
+def test_equal_normals_are_answered_alike() -> None:
+    """Those of the vertices on the border, where rounding lets several patches answer."""
+    spline = gm.fit(gm.surfaces.elliptic_paraboloid(), (12, 8))
+    (u_0, u_1), (v_0, v_1) = spline.domain
+    u, v = np.linspace(u_0, u_1, 13), np.linspace(v_0, v_1, 9)
+    normals = np.concatenate([spline.normals(u, end) for end in (v_0, v_1)])
+    normals = np.concatenate([normals, *(spline.normals(end, v) for end in (u_0, u_1))])
+    samples = gm.sample(spline, normals=np.concatenate([normals, normals]))
+    counts = np.bincount(samples.normal_index, minlength=2 * len(normals))
+    np.testing.assert_array_equal(counts[: len(normals)], 1)
+    np.testing.assert_array_equal(counts[len(normals) :], 1)

@@ -1,0 +1,331 @@
+"""Every preimage of every normal once: Σ sign K = χ/2 (math.md, Sect. 4) needs no reference."""
+
+import math
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.generated import patch as formulas
+from gaussmap.generated.vectors import Patch, Vector
+from gaussmap.runtime.base.formula_calls import python_function, vector
+from gaussmap.runtime.density.lattice import Lattice
+from gaussmap.runtime.search.bins import NormalBins
+from gaussmap.runtime.search.search import find
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+pytestmark = pytest.mark.compiled
+
+Array = NDArray[np.float64]
+TORUS = gm.surfaces.torus(major=1.0, minor=0.35)
+
+
+def count_preimages(
+    samples: gm.Samples, normals: int
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return, for each normal, how many elliptic and how many hyperbolic preimages came back."""
+    elliptic, hyperbolic = (
+        np.bincount(samples.normal_index[kind], minlength=normals)
+        for kind in (samples.elliptic, samples.hyperbolic)
+    )
+    return elliptic, hyperbolic
+
+
+def check_torus(samples: gm.Samples, normals: Array, axis: Array) -> None:
+    elliptic, hyperbolic = count_preimages(samples, len(normals))
+    assert (elliptic == hyperbolic).all()
+    away = np.abs(normals @ axis) < np.cos(np.radians(2.0))
+    assert (elliptic[away] == 1).all()
+    assert samples.report.developable_patches == 0
+    assert np.isfinite(samples.points).all()
+    assert np.isfinite(samples.gaussian_curvature).all()
+
+
+def moved(surface: gm.Surface, rotation: Array, shift: float, factor: float) -> gm.Surface:
+    def evaluate(u: Array, v: Array) -> Array:
+        return factor * (surface.evaluate(u, v) @ rotation.T) + shift
+
+    return gm.Surface(surface.name, evaluate, surface.domain, surface.boundary)
+
+
+def rotation_of(quaternion: tuple[float, float, float, float]) -> Array:
+    w, x, y, z = np.array(quaternion) / np.linalg.norm(quaternion)
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+quaternions = st.tuples(*[st.floats(-1.0, 1.0)] * 4).filter(lambda q: np.linalg.norm(q) > 0.1)
+
+
+@pytest.mark.parametrize("cells", [16, 32, 64, 96])
+@pytest.mark.parametrize("frequency", [10, 32, 100])
+def test_torus_icosphere(cells: int, frequency: int) -> None:
+    normals = gm.icosphere(frequency)
+    samples = gm.sample(TORUS, normals=normals, cells=(cells, cells), on="spline")
+    check_torus(samples, normals, np.array([0.0, 0.0, 1.0]))
+
+
+@pytest.mark.parametrize("cells", [(3, 3), (4, 7), (8, 5), (9, 9)])
+@pytest.mark.parametrize(
+    "normals", [gm.icosphere(9), gm.fibonacci(20_000)], ids=["aligned", "generic"]
+)
+def test_patches_that_bend_far(cells: tuple[int, int], normals: Array) -> None:
+    elliptic, hyperbolic = count_preimages(
+        gm.sample(TORUS, normals=normals, cells=cells, on="spline"), len(normals)
+    )
+    assert (elliptic == hyperbolic).all()
+    assert elliptic.sum() >= len(normals)
+
+
+@pytest.mark.parametrize("cells", [16, 32, 64, 96])
+def test_torus_fibonacci(cells: int) -> None:
+    normals = gm.fibonacci(10**6)
+    samples = gm.sample(TORUS, normals=normals, cells=(cells, cells), on="spline")
+    check_torus(samples, normals, np.array([0.0, 0.0, 1.0]))
+
+
+@pytest.mark.parametrize("cells", [16, 40, 64])
+def test_torus_healpix(cells: int) -> None:
+    for normals in (
+        gm.directions.healpix(1),
+        gm.directions.healpix(8),
+        gm.directions.healpix(64),
+        gm.directions.random(50_000),
+    ):
+        samples = gm.sample(TORUS, normals=normals, cells=(cells, cells), on="spline")
+        check_torus(samples, normals, np.array([0.0, 0.0, 1.0]))
+
+
+@pytest.mark.parametrize("shift", [0.0, 1e6, 1e9])
+@pytest.mark.parametrize("factor", [1.0, 1e9, 1e-9, 1e12, 1e-12, 1e150, 1e-150])
+@pytest.mark.parametrize("turned", [False, True])
+def test_torus_moved_and_scaled(shift: float, factor: float, turned: bool) -> None:
+    rotation = rotation_of((0.5, 0.1, -0.7, 0.3)) if turned else np.eye(3)
+    normals = gm.icosphere(10) @ rotation.T
+    for cells in ((16, 16), (40, 24), (96, 96)):
+        surface = moved(TORUS, rotation, shift * factor, factor)
+        check_torus(
+            gm.sample(surface, normals=normals, cells=cells, on="spline"), normals, rotation[:, 2]
+        )
+
+
+@given(of_surface=quaternions, of_normals=quaternions, exponent=st.integers(-9, 9))
+def test_torus_turned_at_random(
+    of_surface: tuple[float, float, float, float],
+    of_normals: tuple[float, float, float, float],
+    exponent: int,
+) -> None:
+    turn = rotation_of(of_surface)
+    normals = gm.icosphere(8) @ rotation_of(of_normals).T
+    surface = moved(TORUS, turn, 0.0, 10.0**exponent)
+    check_torus(
+        gm.sample(surface, normals=normals, cells=(32, 20), on="spline"), normals, turn[:, 2]
+    )
+
+
+@pytest.mark.parametrize("name", ["sphere", "ellipsoid"])
+@pytest.mark.parametrize("cells", [(16, 16), (32, 20), (64, 64), (96, 96)])
+def test_sphere_like_surfaces_have_every_normal_once(name: str, cells: tuple[int, int]) -> None:
+    for normals in (gm.icosphere(10), gm.icosphere(32), gm.fibonacci(10**5)):
+        samples = gm.sample(gm.surfaces.surface(name), normals=normals, cells=cells, on="spline")
+        elliptic, hyperbolic = count_preimages(samples, len(normals))
+        assert (elliptic - hyperbolic == 1).all()
+
+
+@pytest.mark.parametrize(
+    ("cells", "shift"), [(512, 1e6), (128, 1e8), (128, 1e9), (32, 1e10), (32, 1e12)]
+)
+def test_sphere_so_far_away_that_patches_are_mostly_rounding(cells: int, shift: float) -> None:
+    normals = gm.fibonacci(20_000)
+    surface = moved(gm.surfaces.sphere(), np.eye(3), shift, 1.0)
+    samples = gm.sample(surface, normals=normals, cells=(cells, cells), on="spline")
+    assert samples.report.developable_patches
+    elliptic, hyperbolic = count_preimages(samples, len(normals))
+    assert (elliptic - hyperbolic == 1).all()
+
+
+@pytest.mark.parametrize(
+    ("minor", "shift", "cells"), [(1e-6, 0.0, 128), (0.35, 1e9, 256), (0.35, 1e12, 32)]
+)
+def test_torus_that_is_mostly_rounding(minor: float, shift: float, cells: int) -> None:
+    surface = moved(gm.surfaces.torus(minor=minor), np.eye(3), shift, 1.0)
+    normals = gm.fibonacci(20_000)
+    samples = gm.sample(surface, normals=normals, cells=(cells, cells), on="spline")
+    assert samples.report.developable_patches
+    elliptic, hyperbolic = count_preimages(samples, len(normals))
+    assert (elliptic == hyperbolic).all()
+    if shift < 1e12:
+        assert (elliptic == 1).all()
+
+
+@pytest.mark.parametrize("height", [1e-2, 1e-4, 1e-6, 1e-8])
+def test_gentle_waves_are_decided_in_floating_point(height: float) -> None:
+    """Their normals crowd in a small cap, and yet each patch is compared with a few only."""
+    surface = gm.Surface.from_callable(
+        lambda u, v: np.stack([u, v, height * np.sin(u) * np.cos(v)], axis=-1),
+        domain=((0.0, 2 * np.pi), (0.0, 2 * np.pi)),
+    )
+    spline = gm.fit(surface, (32, 32))
+    normals = spline.normals(*np.random.default_rng(0).uniform(1.0, 5.0, (2, 5000)))
+    hits = find(spline, NormalBins(normals))
+    assert len(hits.exact) < 0.05 * len(hits)  # at the border, where rounding is forgiven
+    assert np.bincount(hits.normal_index, minlength=len(normals)).min() >= 1
+
+
+def test_seam_of_a_moebius_band() -> None:
+    """A normal on the seam belongs to one side, which the other side sees as its opposite."""
+    band = gm.surfaces.moebius_band()
+    for cells in ((16, 5), (64, 64), (33, 12)):
+        samples = gm.sample(
+            band, normals=[[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]], cells=cells, on="spline"
+        )
+        assert len(samples) == 1
+
+
+@pytest.mark.parametrize("cells", [(16, 16), (40, 24)])
+@pytest.mark.parametrize("frequency", [4, 10, 32])
+def test_klein_bottle(cells: tuple[int, int], frequency: int) -> None:
+    """It has no oriented normals, but for every line the signs of K sum to χ = 0."""
+
+    def eight(u: Array, v: Array) -> Array:
+        c, s = np.cos(u / 2), np.sin(u / 2)
+        radius = 2.0 + c * np.sin(v) - s * np.sin(2 * v)
+        return np.stack(
+            [radius * np.cos(u), radius * np.sin(u), s * np.sin(v) + c * np.sin(2 * v)], axis=-1
+        )
+
+    bottle = gm.Surface.from_callable(
+        eight, domain=((0.0, 2 * np.pi), (-np.pi, np.pi)), periodic=("mirrored", True)
+    )
+    normals = gm.icosphere(frequency)
+    elliptic, hyperbolic = count_preimages(
+        gm.sample(bottle, normals=normals, cells=cells, on="spline"), len(normals)
+    )
+    order = np.lexsort(normals.T)
+    signed = elliptic - hyperbolic
+    assert (normals[order] == -normals[order[::-1]]).all()  # the set is symmetric, bit for bit
+    assert (signed[order] + signed[order[::-1]] == 0).all()
+
+
+@pytest.mark.parametrize("cells", [16, 32, 64])
+def test_cyclide(cells: int) -> None:
+    for normals in (gm.icosphere(32), gm.fibonacci(10**5)):
+        samples = gm.sample(
+            gm.surfaces.dupin_cyclide(), normals=normals, cells=(cells, cells), on="spline"
+        )
+        elliptic, hyperbolic = count_preimages(samples, len(normals))
+        assert (elliptic == hyperbolic).all()
+
+
+@pytest.mark.parametrize("cells", [(16, 16), (33, 17), (64, 64)])
+@pytest.mark.parametrize("frequency", [2, 10, 31, 32, 100])
+def test_symmetric_ellipsoid_patch(cells: tuple[int, int], frequency: int) -> None:
+    """Icosahedral normals in the symmetry planes: those inside the Gaussian image come once."""
+    normals = gm.icosphere(frequency)
+    planes = (np.abs(normals) == 0.0).any(axis=1)
+    assert planes.any()
+    samples = gm.sample(gm.surfaces.ellipsoid_patch(), normals=normals, cells=cells, on="spline")
+    axes = np.array([1.0, 0.6, 0.3])
+    height = np.abs(axes[2] * normals[:, 2]) / np.linalg.norm(axes * normals, axis=1)
+    latitude = np.degrees(np.arcsin(height))
+    elliptic, hyperbolic = count_preimages(samples, len(normals))
+    assert not hyperbolic.any()
+    assert (elliptic[latitude < 59.0] == 1).all()
+    assert (elliptic[latitude > 61.0] == 0).all()
+
+
+@pytest.mark.parametrize("name", ["plane", "cylinder", "cone"])
+@pytest.mark.parametrize("shift", [0.0, 1e6])
+@pytest.mark.parametrize("factor", [1.0, 1e-9, 1e9])
+@pytest.mark.parametrize("quaternion", [(1.0, 0.0, 0.0, 0.0), (0.5, 0.1, -0.7, 0.3)])
+def test_developable_surfaces(
+    name: str, shift: float, factor: float, quaternion: tuple[float, float, float, float]
+) -> None:
+    surface = moved(gm.surfaces.surface(name), rotation_of(quaternion), shift * factor, factor)
+    with pytest.warns(gm.GaussmapWarning, match="flat or developable"):
+        samples = gm.sample(surface, normals=gm.icosphere(32), cells=(32, 32), on="spline")
+    assert np.isfinite(samples.points).all()
+    assert np.isfinite(samples.gaussian_curvature).all()
+    assert samples.report.developable_share == pytest.approx(1.0)
+    if name != "cone":  # its spline is slightly elliptic and hyperbolic
+        assert len(samples) == 0
+        assert samples.report.developable_patches == samples.report.patches
+        return
+    # What comes is the error of the spline: pairs of one elliptic and one hyperbolic sample.
+    elliptic, hyperbolic = count_preimages(samples, 10242)
+    assert abs(int(elliptic.sum()) - int(hyperbolic.sum())) <= 2
+    assert len(samples) <= 0.15 * 10242
+
+
+def test_plain_sign_test_fails_where_this_one_does_not() -> None:
+    """Without the exact decision, normals on patch boundaries are lost or doubled."""
+    normals = gm.icosphere(10)
+    spline = gm.fit(TORUS, (16, 16))
+    claims = np.zeros(len(normals), dtype=int)
+    for index in range(spline.patches):
+        patch = vectors_of(spline, index)
+        _, U, V, W = python_function(formulas.forms)(patch, vector(normals))
+        claims += (np.minimum(np.minimum(U, V), W) > 0) | (np.maximum(np.maximum(U, V), W) < 0)
+    exact = np.bincount(gm.sample(spline, normals=normals).normal_index, minlength=len(normals))
+    exact += np.bincount(gm.sample(spline, normals=-normals).normal_index, minlength=len(normals))
+    assert (exact == 4).all()  # two sheets, each seen by n and by −n
+    assert (claims != 4).any()
+
+
+def vectors_of(spline: gm.Spline, index: int) -> Patch:
+    net = spline.control_nets[index]
+    return python_function(formulas.power_form)(*(Vector(*point) for point in net))
+
+
+@pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band", "enneper", "helicoid"])
+@pytest.mark.parametrize("cells", [(3, 3), (6, 5)])
+@pytest.mark.parametrize("cap", [180.0, 40.0, 3.0])
+def test_search_by_bins_finds_what_brute_force_finds(
+    name: str, cells: tuple[int, int], cap: float
+) -> None:
+    """Generic normals lie on no boundary: there the signs of U, V, W and of N·n decide alone."""
+    spline = gm.fit(gm.surfaces.surface(name), cells)
+    axis = spline.normals(*np.mean(spline.domain, axis=1) + 0.1)
+    lattice = Lattice(axis, math.cos(math.radians(cap - 1e-3)))
+    normals = lattice.normals(lattice.density_of(4000))
+    found = set()
+    for index in range(spline.patches):
+        patch = vectors_of(spline, index)
+        D, U, V, W = python_function(formulas.forms)(patch, vector(normals))
+        c3 = python_function(formulas.orientation)(patch, vector(normals))
+        inside = (np.minimum(np.minimum(U, V), W) > 0) | (np.maximum(np.maximum(U, V), W) < 0)
+        found |= {(index, int(k)) for k in np.flatnonzero(inside & (c3 > 0) & (D != 0))}
+    samples = gm.sample(spline, normals=normals)
+    pairs = list(zip(samples.patch_index.tolist(), samples.normal_index.tolist(), strict=True))
+    assert pairs == sorted(found)
+    assert len(pairs) > 500
+
+
+def test_open_border_belongs_to_the_surface() -> None:
+    """Half of a symmetric surface: normals in the plane of symmetry lie on its border."""
+    half = gm.Surface.from_callable(
+        lambda u, v: np.stack([u, v, u * u + 0.75 * v * v], axis=-1), ((0.0, 1.0), (-1.0, 1.0))
+    )
+    v = np.linspace(-0.99, 0.99, 777)
+    normals = np.column_stack([0.0 * v, -1.5 * v, np.ones_like(v)])
+    for cells in ((3, 3), (7, 5), (16, 16), (37, 41)):
+        samples = gm.sample(half, normals=normals, cells=cells, on="spline")
+        assert (np.bincount(samples.normal_index, minlength=len(v)) == 1).all()
+        assert np.abs(samples.uv[:, 0]).max() < 1e-12
+        np.testing.assert_allclose(np.sort(samples.uv[:, 1]), v, rtol=0, atol=1e-12)
+
+
+def test_corners_of_the_border_come_once() -> None:
+    bowl = gm.Surface.from_callable(
+        lambda u, v: np.stack([u, v, 0.5 * (u * u + v * v)], axis=-1), ((0.0, 1.0), (0.0, 1.0))
+    )
+    corners = np.array([[-x, -y, 1.0] for x in (0.0, 1.0) for y in (0.0, 1.0)])
+    for cells in ((3, 3), (8, 8), (5, 9)):
+        samples = gm.sample(bowl, normals=corners, cells=cells, on="spline")
+        assert sorted(samples.normal_index.tolist()) == [0, 1, 2, 3]

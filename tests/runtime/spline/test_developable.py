@@ -1,0 +1,112 @@
+"""The developable share of the area, and the solid angle of the Gaussian image of the rest."""
+
+import math
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.runtime.spline.developable import curved_solid_angle, developable_share
+
+DENSE = 1e5 / (4 * math.pi)
+
+
+def moved(surface, factor=1.0, shift=0.0):
+    return gm.Surface(
+        surface.name,
+        lambda u, v: factor * surface.evaluate(u, v) + shift,
+        surface.domain,
+        surface.boundary,
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "solid_angle"),
+    [
+        ("torus", 8 * math.pi),  # twice the sphere
+        ("dupin_cyclide", 8 * math.pi),
+        ("sphere", 4 * math.pi),
+        ("ellipsoid", 4 * math.pi),
+        ("catenoid", 4 * math.pi * math.tanh(1.0)),
+        ("hyperbolic_paraboloid", None),
+        ("wavy_graph", None),
+        ("moebius_band", None),
+        ("helicoid", None),
+        ("enneper", None),
+    ],
+)
+def test_curved_surfaces_are_curved(name, solid_angle):
+    spline = gm.fit(gm.surfaces.surface(name))
+    assert developable_share(spline, DENSE) < 0.005
+    if solid_angle is not None:
+        assert curved_solid_angle(spline, DENSE) == pytest.approx(solid_angle, rel=0.02)
+
+
+@pytest.mark.parametrize("name", ["plane", "cylinder", "cone"])
+@pytest.mark.parametrize("factor", [1.0, 1e-12, 1e12])
+@pytest.mark.parametrize("shift", [0.0, 1e6])
+def test_developable_surfaces_are_so_entirely(name, factor, shift):
+    spline = gm.fit(moved(gm.surfaces.surface(name), factor, shift * factor), (32, 32))
+    assert developable_share(spline, DENSE) == pytest.approx(1.0)
+    assert curved_solid_angle(spline, DENSE) == 0.0
+
+
+@pytest.mark.kernels
+@pytest.mark.parametrize(("name", "share"), [("cylinder", 1.0), ("plane", 1.0), ("torus", 0.0)])
+def test_few_patches(name, share):
+    spline = gm.fit(gm.surfaces.surface(name), (4, 4))
+    assert developable_share(spline, DENSE) == pytest.approx(share)
+
+
+def test_a_slanted_plane_and_a_slanted_graph_over_it():
+    plane = gm.fit(gm.surfaces.plane(slope_u=0.3, slope_v=-2.0))
+    assert developable_share(plane, DENSE) == pytest.approx(1.0)
+    rolled = gm.Surface.from_callable(
+        lambda u, v: np.stack([u, v, np.sin(u + 2 * v)], axis=-1), ((-1, 1), (-1, 1))
+    )
+    assert developable_share(gm.fit(rolled), DENSE) > 0.9
+
+
+@pytest.mark.parametrize("share", [0.25, 0.5, 0.75])
+@pytest.mark.parametrize("flat", ["flat", "rolled"])
+def test_surfaces_that_are_developable_in_part(share, flat):
+    """Flat or a cylinder for u < share, then a saddle; a graph: its area is nearly that of uv."""
+
+    def graph(u, v):
+        beyond = np.maximum(u - share, 0.0)
+        height = 8.0 * beyond**2 * (1 + 4 * v * v) - 8.0 * beyond**2 * v
+        return np.stack([u, v, 0.01 * (height + (v * v if flat == "rolled" else 0.0))], axis=-1)
+
+    spline = gm.fit(gm.Surface.from_callable(graph, ((0.0, 1.0), (0.0, 1.0))), (64, 64))
+    assert developable_share(spline, DENSE) == pytest.approx(share, abs=0.06)
+
+
+@pytest.mark.compiled
+def test_a_point_and_a_curve_are_developable():
+    for f in (lambda u, v: np.zeros((*u.shape, 3)), lambda u, v: np.stack([u, u * u, u], axis=-1)):
+        spline = gm.fit(gm.Surface.from_callable(f, ((0, 1), (0, 1))), (4, 4))
+        assert developable_share(spline, DENSE) == 1.0
+        assert curved_solid_angle(spline, DENSE) == 0.0
+
+
+def test_few_normals_count_as_ten_thousand():
+    spline = gm.fit(gm.surfaces.torus())
+    assert (
+        developable_share(spline, 1e-6) == developable_share(spline, 10_000 / (4 * math.pi)) == 0.0
+    )
+
+
+def test_slight_curvature_needs_many_normals():
+    """A graph whose normals turn by 10⁻⁴ radians covers a solid angle of 10⁻⁸."""
+    bowl = gm.fit(gm.surfaces.elliptic_paraboloid(a=100.0, b=100.0), (8, 8))
+    assert developable_share(bowl, DENSE * 1e-1) == pytest.approx(1.0)
+    assert developable_share(bowl, DENSE * 1e6) == 0.0
+    assert curved_solid_angle(bowl, DENSE * 1e6) == pytest.approx((4e-4) ** 2, rel=1e-3)
+
+
+@pytest.mark.parametrize("name", ["torus", "cylinder", "wavy_graph"])
+@pytest.mark.parametrize("exponent", [-900, -30, 30, 900])
+def test_the_unit_of_length_does_not_matter(name, exponent):
+    surface = gm.surfaces.surface(name)
+    plain, scaled = gm.fit(surface, (16, 16)), gm.fit(moved(surface, 2.0**exponent), (16, 16))
+    assert developable_share(plain, DENSE) == developable_share(scaled, DENSE)
+    assert curved_solid_angle(plain, DENSE) == curved_solid_angle(scaled, DENSE)

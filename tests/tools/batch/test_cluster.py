@@ -1,0 +1,140 @@
+"""Runs on a cluster: a scheduler of Dask and two workers on this machine, each a process."""
+
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.runtime.base.errors import FileError, InputError
+from gaussmap.tools.batch.arguments import where
+from gaussmap.tools.batch.asked import Asked
+from gaussmap.tools.batch.making import Unwatched, make
+from gaussmap.tools.batch.running import Tally
+
+pytest.importorskip("pyarrow")
+distributed = pytest.importorskip("distributed")
+PARTS = 40
+STORED = {"fields": ("points", "normals"), "dtype": "float32", "compression": "zstd", "files": None}
+ASKED = Asked({"count": 50, "density": "uniform", "cells": [8, 8]})
+
+
+def waves(seed: int) -> gm.Surface:
+    def position(u, v):
+        time.sleep(0.005)
+        return np.stack([u, v, np.sin(u + seed) * np.cos(v)], axis=-1)
+
+    return gm.Surface.from_callable(position, ((-1, 1), (-1, 1)), name=f"waves {seed}")
+
+
+def free_port() -> int:
+    with socket.socket() as place:
+        place.bind(("127.0.0.1", 0))
+        return place.getsockname()[1]
+
+
+def data_of(folder: Path) -> dict[str, Any]:
+    manifest = gm.open_dataset(folder).manifest().drop_columns(["seconds", "attempts"])
+    points = {x.name: x.read_bytes() for x in sorted((folder / "points").iterdir())}
+    return {"points": points, "manifest": manifest.to_pylist()}
+
+
+class Cluster:
+    """A scheduler and workers of one thread each, which can be killed."""
+
+    def __init__(self, folder: Path, workers: int) -> None:
+        self.address = f"tcp://127.0.0.1:{free_port()}"
+        port = self.address.rpartition(":")[2]
+        self.folder = folder
+        self.processes = [
+            self.start("scheduler", "--host", "127.0.0.1", "--port", port, "--no-dashboard")
+        ]
+        for _ in range(workers):
+            self.add_worker()
+
+    def start(self, kind: str, *arguments: str) -> subprocess.Popen[bytes]:
+        command = [sys.executable, "-m", f"distributed.cli.dask_{kind}", *arguments]
+        return subprocess.Popen(
+            command, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL, cwd=self.folder
+        )
+
+    def add_worker(self) -> None:
+        self.processes.append(
+            self.start("worker", self.address, "--nthreads", "1", "--no-nanny", "--no-dashboard")
+        )
+
+    def end(self) -> None:
+        for process in self.processes:
+            process.kill()
+            process.wait()
+
+
+@pytest.fixture
+def cluster(tmp_path: Path) -> Iterator[Cluster]:
+    (tmp_path / "workers").mkdir()
+    found = Cluster(tmp_path / "workers", 2)
+    yield found
+    found.end()
+
+
+class Killer(Unwatched):
+    """Kills a worker when ten parts are done, and counts all."""
+
+    def __init__(self, cluster: Cluster) -> None:
+        self.cluster, self.parts, self.killed = cluster, 0, False
+
+    def add(self, tally: Tally) -> None:
+        self.parts += tally.parts
+        if self.parts >= 10 and not self.killed:
+            self.killed = True
+            self.cluster.processes[1].kill()
+
+
+@pytest.mark.slow
+def test_a_worker_that_is_killed_loses_nothing(tmp_path, cluster):
+    parts = [waves(k) for k in range(PARTS)]
+    killer = Killer(cluster)
+    tally = make(parts, tmp_path / "cluster", ASKED, STORED,
+                 where(None, cluster.address, 60.0, 4.0), watch=killer)  # fmt: skip
+    assert killer.killed
+    assert (tally.parts, tally.failed) == (PARTS, 0)
+    make(parts, tmp_path / "here", ASKED, STORED, where(2, None, 60.0, 4.0), watch=Unwatched())
+    assert data_of(tmp_path / "cluster") == data_of(tmp_path / "here")
+    assert not list((tmp_path / "cluster" / "partial").iterdir())
+
+
+@pytest.mark.slow
+def test_the_same_call_with_a_client(tmp_path, cluster):
+    with distributed.Client(cluster.address, set_as_default=False) as client:
+        data = gm.sample_many(
+            ["torus", "sphere", "missing.step"], 50, out=tmp_path / "set", scheduler=client,
+            progress=False, density="uniform", cells=(8, 8),
+        )  # fmt: skip
+        assert data.manifest()["status"].to_pylist() == ["ok", "ok", "failed"]
+        assert client.status == "running"
+
+
+@pytest.mark.slow
+def test_a_scheduler_without_workers(tmp_path, monkeypatch):
+    monkeypatch.setattr("gaussmap.tools.batch.cluster.PATIENCE", 3)
+    found = Cluster(tmp_path, 0)
+    try:
+        with pytest.raises(FileError, match="has no workers"):
+            gm.sample_many(["torus"], 50, out=tmp_path / "set", scheduler=found.address)
+    finally:
+        found.end()
+
+
+def test_bad_schedulers(tmp_path, monkeypatch):
+    monkeypatch.setattr("gaussmap.tools.batch.cluster.PATIENCE", 1)
+    with pytest.raises(InputError, match="address of a scheduler"):
+        gm.sample_many(["torus"], 50, out=tmp_path / "set", scheduler=5)
+    with pytest.raises(FileError, match="no scheduler of Dask answers"):
+        gm.sample_many(
+            ["torus"], 50, out=tmp_path / "set", scheduler=f"tcp://127.0.0.1:{free_port()}"
+        )

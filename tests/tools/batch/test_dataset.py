@@ -1,0 +1,220 @@
+"""`Dataset`: what is in it, read by itself and by pandas, Polars and DuckDB."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.runtime.base.errors import FileError, InputError, UnknownNameError
+from gaussmap.runtime.samples.fields import columns_of
+from gaussmap.tools.batch.dataset import Dataset
+from gaussmap.tools.batch.layout import MANIFEST, POINTS, shard_path
+from gaussmap.tools.batch.manifest import COLUMNS as MANIFEST_COLUMNS
+
+from . import made
+
+pytest.importorskip("pyarrow")
+PARTS, SAMPLES = len(made.COUNTS), sum(made.COUNTS)
+
+
+@pytest.fixture(scope="module")
+def dataset(tmp_path_factory) -> Dataset:
+    return made.write(tmp_path_factory.mktemp("data") / "set")
+
+
+def test_what_it_says_of_itself(dataset):
+    assert len(dataset) == PARTS
+    assert dataset.fields == made.FIELDS
+    assert dataset.units == {"points": "L", "normals": "1", "gaussian_curvature": "1/L^2"}
+    assert dataset.summary() == f"{PARTS} parts, 1 of which failed, with {SAMPLES} samples"
+    assert repr(dataset) == f"Dataset('{dataset.folder}')"
+
+
+def test_manifest(dataset):
+    table = dataset.manifest()
+    assert table.column_names == list(MANIFEST_COLUMNS)
+    assert table["part"].to_pylist() == list(range(PARTS))
+    assert table["samples"].to_pylist() == list(made.COUNTS)
+    assert table.schema.field("misfit").metadata[b"unit"] == b"L"
+    assert dataset.manifest(["error", "part"]).to_pylist()[made.BROKEN] == {
+        "error": "no such file.",
+        "part": made.BROKEN,
+    }
+
+
+@pytest.mark.parametrize("part", [0, 1, 2, 3, 10])
+def test_samples_of_a_part(dataset, part):
+    found, expected = dataset.samples(part), made.samples_of(part, made.COUNTS[part])
+    absent = set() if made.COUNTS[part] else {"on_surface", "face_index"} & {*found.fields}
+    assert {*found.fields} - absent == {*expected.fields} - absent
+    for name in expected.fields:
+        assert getattr(found, name).flags.writeable
+        np.testing.assert_array_equal(getattr(found, name), getattr(expected, name), strict=True)
+    assert (found.report.surface, found.report.index) == (f"part {part}", part)
+    assert (found.report.fit_distance, found.report.samples) == (0.25, made.COUNTS[part])
+
+
+@pytest.mark.parametrize(
+    ("part", "error", "text"),
+    [
+        (made.BROKEN, UnknownNameError, "'broken'.*has failed: no such file"),
+        (13, UnknownNameError, "no part 13"),
+        (10**6, UnknownNameError, "no part"),
+        (-1, InputError, "at least 0"),
+        ("part 1", InputError, "whole number"),
+    ],
+)
+def test_parts_that_are_not_there(dataset, part, error, text):
+    with pytest.raises(error, match=text):
+        dataset.samples(part)
+
+
+@pytest.mark.parametrize(
+    ("columns", "error"),
+    [("part", InputError), ([], InputError), (["part", "part"], InputError),
+     (["parts"], UnknownNameError), (3, InputError)],
+)  # fmt: skip
+def test_columns_that_are_not_there(dataset, columns, error):
+    with pytest.raises(error):
+        dataset.manifest(columns)
+
+
+def test_a_shard_that_is_not_finished_is_not_there(tmp_path):
+    dataset = made.write(tmp_path)
+    shard_path(tmp_path, MANIFEST, 1).unlink()
+    assert len(dataset) == PARTS - made.SEPARATE
+    with pytest.raises(UnknownNameError):
+        dataset.samples(made.SEPARATE)
+    for number in (0, 2):
+        shard_path(tmp_path, MANIFEST, number).unlink()
+    assert (len(dataset), len(dataset.manifest())) == (0, 0)
+    assert dataset.summary() == "0 parts with 0 samples"
+
+
+def test_files_that_are_damaged_or_missing(tmp_path):
+    dataset = made.write(tmp_path)
+    points, manifest = (shard_path(tmp_path, kind, 0) for kind in (POINTS, MANIFEST))
+    points.write_bytes(shard_path(tmp_path, POINTS, 1).read_bytes())
+    with pytest.raises(FileError, match="does not belong to its manifest"):
+        dataset.samples(0)
+    points.write_bytes(points.read_bytes()[:-100])
+    with pytest.raises(FileError, match=r"cannot be read.*again"):
+        dataset.samples(0)
+    points.unlink()
+    with pytest.raises(FileError, match=r"cannot be read.*again"):
+        list(dataset.batches(8))
+    manifest.write_bytes(b"")
+    with pytest.raises(FileError, match="cannot be read"):
+        dataset.summary()
+    with pytest.raises(FileError, match="no data set"):
+        gm.open_dataset(tmp_path / "points")
+    with pytest.raises(InputError, match="a path"):
+        gm.open_dataset(3)  # pyright: ignore[reportArgumentType]
+
+
+def test_reading_needs_no_numba(dataset):
+    code = (
+        "import sys, gaussmap as gm;"
+        f"print(len(list(gm.open_dataset({str(dataset.folder)!r}).batches(8, shuffle=1))));"
+        "assert not {'numba', 'sympy', 'scipy'} & {*sys.modules}"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.stdout == "1\n", done.stderr
+
+
+class TestOtherReaders:
+    """Each reads what was written: columns, types, and what parts lack as null."""
+
+    def expected(self) -> dict[str, np.ndarray]:
+        held = [made.samples_of(k, count) for k, count in enumerate(made.COUNTS) if count]
+        arrays = [columns_of(x.arrays()) for x in held]
+        return {name: np.concatenate([x[name] for x in arrays]) for name in arrays[0]
+                if name not in ("on_surface", "face_index")}  # fmt: skip
+
+    def faces(self) -> int:
+        return sum(count for part, count in enumerate(made.COUNTS) if part % 3 == 2)
+
+    def test_pandas(self, dataset):
+        pandas = pytest.importorskip("pandas")
+        table = pandas.read_parquet(dataset.folder / "points")
+        for name, column in self.expected().items():
+            np.testing.assert_array_equal(table[name].to_numpy(), column, strict=True)
+        assert table["face_index"].notna().sum() == self.faces()
+        manifest = pandas.read_parquet(dataset.folder / "manifest")
+        counts = table.groupby("part").size().reindex(manifest["part"], fill_value=0)
+        assert counts.tolist() == manifest["samples"].tolist() == list(made.COUNTS)
+        one = pandas.read_parquet(dataset.folder / "points", filters=[("part", "==", 2)])
+        assert len(one) == made.COUNTS[2]
+
+    def test_polars(self, dataset):
+        polars = pytest.importorskip("polars")
+        points = polars.scan_parquet(dataset.folder / "points" / "*.parquet")
+        table = points.collect()
+        for name, column in self.expected().items():
+            np.testing.assert_array_equal(table[name].to_numpy(), column, strict=True)
+        assert table.schema["on_surface"] == polars.Boolean
+        assert table.schema["part"] == table.schema["face_index"] == polars.Int64
+        assert len(table) - table["face_index"].null_count() == self.faces()
+        manifest = polars.scan_parquet(dataset.folder / "manifest" / "*.parquet")
+        joined = points.join(manifest, on="part").filter(polars.col("name") == "part 2").collect()
+        assert len(joined) == made.COUNTS[2]
+
+    def test_duckdb(self, dataset):
+        duckdb = pytest.importorskip("duckdb")
+        points, manifest = (f"'{dataset.folder}/{x}/*.parquet'" for x in ("points", "manifest"))
+        columns = ", ".join(self.expected())
+        table = duckdb.sql(f"SELECT {columns} FROM {points} ORDER BY part, normal_index")
+        for name, column in table.fetchnumpy().items():
+            np.testing.assert_array_equal(column, self.expected()[name])
+        rows = duckdb.sql(
+            f"SELECT m.part, any_value(m.samples), count(p.part), count(p.face_index) "
+            f"FROM {manifest} m LEFT JOIN {points} p USING (part) GROUP BY m.part ORDER BY m.part"
+        ).fetchall()
+        assert rows == [
+            (k, count, count, count * (k % 3 == 2)) for k, count in enumerate(made.COUNTS)
+        ]
+        types = dict(duckdb.sql(f"SELECT * FROM {points}").description and [
+            (x[0], str(x[1])) for x in duckdb.sql(f"DESCRIBE SELECT * FROM {points}").fetchall()
+        ])  # fmt: skip
+        assert types["part"] == "BIGINT"
+        assert types["x"] == "DOUBLE"
+        assert types["on_surface"] == "BOOLEAN"
+
+
+def test_row_groups_are_found_by_the_part(dataset):
+    import pyarrow.parquet as parquet
+
+    for path in sorted((dataset.folder / POINTS).iterdir()):
+        file = parquet.ParquetFile(path).metadata
+        for group in range(file.num_row_groups):
+            known = file.row_group(group).column(0)
+            assert known.path_in_schema == "part"
+            assert known.statistics.min <= known.statistics.max
+            assert known.compression == "ZSTD"
+
+
+@pytest.mark.parametrize("compression", ["none", "zstd", "snappy"])
+def test_single_precision_and_compression(tmp_path, compression):
+    import pyarrow.parquet as parquet
+
+    dataset = made.write(tmp_path, dtype="float32", compression=compression)
+    found = dataset.samples(4)
+    assert found.points.dtype == found.gaussian_curvature.dtype == np.float32
+    assert found.normal_index.dtype == np.int64
+    np.testing.assert_array_equal(found.points, made.samples_of(4, 70, "float32").points)
+    column = parquet.ParquetFile(shard_path(tmp_path, POINTS, 0)).metadata.row_group(0).column(1)
+    assert column.compression == {"none": "UNCOMPRESSED"}.get(compression, compression.upper())
+    assert column.physical_type == "FLOAT"
+
+
+def test_it_is_opened_again_after_pickling(dataset):
+    import pickle
+
+    assert len(pickle.loads(pickle.dumps(dataset)).manifest()) == PARTS
+
+
+def test_paths_of_all_kinds(dataset, monkeypatch):
+    monkeypatch.chdir(dataset.folder.parent)
+    assert len(gm.open_dataset("set")) == len(gm.open_dataset(Path("set"))) == PARTS

@@ -1,0 +1,208 @@
+"""Batches for training: every part once, reproducible, divided among workers, in own memory."""
+
+import tracemalloc
+from collections import Counter
+
+import numpy as np
+import pytest
+from gaussmap.runtime.base.errors import InputError, UnknownNameError
+from gaussmap.tools.batch.dataset import Dataset
+
+from . import made
+
+pytest.importorskip("pyarrow")
+HELD = [part for part, count in enumerate(made.COUNTS) if count]
+# The first columns of points are the number of the part and the row.
+PART, ROW = 0, 1
+
+
+@pytest.fixture(scope="module")
+def dataset(tmp_path_factory) -> Dataset:
+    return made.write(tmp_path_factory.mktemp("data") / "set")
+
+
+def points_by_part(batches) -> dict[int, np.ndarray]:
+    found: dict[int, np.ndarray] = {}
+    for points, *_, numbers in batches:
+        for part, cloud in zip(numbers.tolist(), points, strict=True):
+            assert part not in found
+            assert (cloud[:, PART] == part).all()
+            found[part] = cloud
+    return found
+
+
+def test_in_the_order_of_the_list(dataset):
+    batches = list(dataset.batches(40, 4))
+    assert [x[2].tolist() for x in batches] == [HELD[k : k + 4] for k in range(0, 12, 4)]
+    for points, normals, numbers in batches:
+        assert points.shape == normals.shape == (len(numbers), 40, 3)
+        for cloud, n, part in zip(points, normals, numbers.tolist(), strict=True):
+            known = made.samples_of(part, made.COUNTS[part])
+            rows = np.arange(40) % made.COUNTS[part]
+            np.testing.assert_array_equal(cloud, known.points[rows])
+            np.testing.assert_array_equal(n, known.normals[rows])
+
+
+@pytest.mark.parametrize("buffer", [1, 3, 512])
+def test_shuffled_every_part_comes_once(dataset, buffer):
+    batches = list(dataset.batches(45, 4, shuffle=3, buffer=buffer))
+    assert [len(x[2]) for x in batches] == [4, 4, 3]
+    found = points_by_part(batches)
+    assert sorted(found) == HELD
+    assert list(found) != HELD
+    for part, cloud in found.items():
+        rows = Counter(cloud[:, ROW].astype(int).tolist())
+        least, rest = divmod(45, made.COUNTS[part])
+        # Without repetition, or each row as often as any other, but for one.
+        assert {*rows.values()} <= {least, least + 1} - {0}
+        assert len(rows) == min(45, made.COUNTS[part])
+        assert sum(x == least + 1 for x in rows.values()) == rest if least else True
+
+
+def test_points_belong_to_their_normals(dataset):
+    for points, normals, numbers in dataset.batches(20, 4, shuffle=1):
+        for cloud, n, part in zip(points, normals, numbers.tolist(), strict=True):
+            known = made.samples_of(part, made.COUNTS[part])
+            np.testing.assert_array_equal(n, known.normals[cloud[:, ROW].astype(int)])
+
+
+def test_the_same_seed_gives_the_same_batches(dataset):
+    def run(seed: int | tuple[int, ...]) -> list[bytes]:
+        return [a.tobytes() for x in dataset.batches(16, 3, shuffle=seed, buffer=4) for a in x]
+
+    assert run(0) == run(0) == run((0,))
+    assert len({tuple(run(x)) for x in (0, 1, (0, 0), (0, 1), (1, 0))}) == 5
+
+
+@pytest.mark.parametrize("workers", [1, 2, 3, 5])
+def test_workers_divide_the_parts_and_draw_the_same_points(dataset, workers):
+    alone = points_by_part(dataset.batches(30, 4, shuffle=7))
+    found: dict[int, np.ndarray] = {}
+    for k in range(workers):
+        part = points_by_part(dataset.batches(30, 4, shuffle=7, shard=(k, workers)))
+        assert not part.keys() & found.keys()
+        found |= part
+    assert sorted(found) == HELD
+    for part, cloud in found.items():
+        np.testing.assert_array_equal(cloud, alone[part])
+
+
+def test_all_orders_come(dataset):
+    """Each of the 11 parts is the first one about equally often."""
+    firsts = Counter(
+        int(next(dataset.batches(1, 1, shuffle=seed, fields=("points",)))[1][0])
+        for seed in range(110)
+    )
+    # Binomial with mean 10 and deviation 3; the seeds are fixed.
+    assert sorted(firsts) == HELD
+    assert max(firsts.values()) <= 22
+
+
+def test_the_last_batch(dataset):
+    assert [len(x[-1]) for x in dataset.batches(8, 4, drop_last=True)] == [4, 4]
+    assert [len(x[-1]) for x in dataset.batches(8, 100, shuffle=0)] == [11]
+    assert not list(dataset.batches(8, 100, drop_last=True))
+
+
+def test_fields_and_what_parts_lack(dataset):
+    fields = ("face_index", "on_surface", "normals", "gaussian_curvature", "normal_index")
+    for *arrays, numbers in dataset.batches(10, 4, fields=fields, dtype=np.float32):
+        faces, on, normals, K, index = arrays
+        assert [x.dtype for x in arrays] == [np.int64, np.bool_, *2 * [np.float32], np.int64]
+        assert normals.shape == (len(numbers), 10, 3)
+        assert K.shape == index.shape == faces.shape == (len(numbers), 10)
+        for k, part in enumerate(numbers.tolist()):
+            assert (faces[k] >= 0).all() if part % 3 == 2 else (faces[k] == -1).all()
+            assert not on[k].any() or part % 3 != 1
+
+
+def test_labels(dataset):
+    by_part = {part: part % 4 for part in range(13)}
+    for *_, numbers, labels in dataset.batches(8, 4, shuffle=0, labels=by_part):
+        assert labels.dtype == np.int64
+        np.testing.assert_array_equal(labels, numbers % 4)
+    by_name = {f"part {part}": part / 2 for part in HELD}
+    for *_, numbers, labels in dataset.batches(8, 4, labels=by_name):
+        np.testing.assert_array_equal(labels, numbers / 2, strict=True)
+    for *_, numbers, labels in dataset.batches(8, 4, labels="samples"):
+        np.testing.assert_array_equal(labels, [made.COUNTS[x] for x in numbers], strict=True)
+    assert next(dataset.batches(8, labels="misfit"))[-1].tolist() == [0.25] * 11
+    with pytest.raises(InputError, match="part 2 has no label"):
+        list(dataset.batches(8, labels={0: 1}))
+
+
+def test_arrays_are_taken_by_pytorch_without_a_copy(dataset):
+    """What torch.from_numpy and from_dlpack ask for: writable, contiguous, native, own memory."""
+    seen = []
+    by_part = dict.fromkeys(range(13), 1.5)
+    for batch in dataset.batches(32, 4, shuffle=0, dtype="float32", labels=by_part):
+        for array in batch:
+            assert array.flags.c_contiguous
+            assert array.flags.writeable
+            assert array.flags.aligned
+            assert array.flags.owndata
+            assert array.dtype.isnative
+            shared = np.from_dlpack(array)
+            assert np.shares_memory(shared, array)
+            shared[...] = 0  # a user may write to it
+        assert [x.dtype.name for x in batch] == ["float32", "float32", "int64", "float64"]
+        assert not any(np.shares_memory(a, b) for a in batch for b in seen)
+        seen += batch
+
+
+def test_pytorch(dataset):
+    torch = pytest.importorskip("torch")
+
+    class Clouds(torch.utils.data.IterableDataset):
+        def __iter__(self):
+            worker = torch.utils.data.get_worker_info()
+            shard = (worker.id, worker.num_workers) if worker else (0, 1)
+            for batch in dataset.batches(32, 4, shuffle=0, dtype="float32", shard=shard):
+                yield tuple(torch.from_numpy(x) for x in batch)
+
+    for workers in (0, 2):
+        batches = list(torch.utils.data.DataLoader(Clouds(), batch_size=None, num_workers=workers))
+        assert sorted(x for *_, part in batches for x in part.tolist()) == HELD
+
+
+@pytest.mark.parametrize(
+    ("wrong", "error", "text"),
+    [
+        ({"points": 0}, InputError, "points"),
+        ({"parts": 2.5}, InputError, "parts"),
+        ({"shuffle": -1}, InputError, "shuffle"),
+        ({"shuffle": True}, InputError, "shuffle"),
+        ({"shuffle": ()}, InputError, "shuffle"),
+        ({"shuffle": "seed"}, InputError, "shuffle"),
+        ({"shard": (2, 2)}, InputError, "from 0 to 1"),
+        ({"shard": 3}, InputError, "pair"),
+        ({"shard": (0, 0)}, InputError, "shard"),
+        ({"fields": "points"}, InputError, "tuple of names"),
+        ({"fields": ()}, InputError, "at least one"),
+        ({"fields": ("points", "points")}, InputError, "twice"),
+        ({"fields": ("uv",)}, UnknownNameError, "no field 'uv'"),
+        ({"fields": ("part",)}, UnknownNameError, "no field"),
+        ({"dtype": "int32"}, InputError, "dtype"),
+        ({"labels": "name"}, UnknownNameError, "column of numbers"),
+        ({"labels": [1, 2]}, InputError, "mapping"),
+        ({"labels": {0: "chair"}}, InputError, "must be a number, not 'chair'"),
+        ({"buffer": 0}, InputError, "buffer"),
+        ({"drop_last": np.zeros(2)}, InputError, "drop_last"),
+    ],
+)
+def test_wrong_arguments_are_refused_at_once(dataset, wrong, error, text):
+    with pytest.raises(error, match=text):
+        dataset.batches(**wrong)
+
+
+def test_memory_does_not_grow_with_the_number_of_parts(tmp_path):
+    peaks = []
+    for parts in (30, 150):
+        dataset = made.write(tmp_path / str(parts), parts * (200,))
+        tracemalloc.start()
+        for _ in dataset.batches(100, 4, shuffle=0, buffer=16):
+            pass
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    # 16 parts in the buffer and 4 in a batch; as many again while a batch is put together.
+    assert max(peaks) < 2 * (16 + 4) * 100 * 6 * 8 + 300_000

@@ -1,0 +1,314 @@
+"""Runs over many parts: what fails is a row, what is stopped goes on, any workers give the same."""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.runtime.base.errors import FileError, InputError
+from gaussmap.tools.batch.inputs import inputs_of
+from gaussmap.tools.batch.running import file_name
+
+pytest.importorskip("pyarrow")
+pytest.importorskip("cloudpickle")
+ASKED: dict[str, Any] = {"density": "uniform", "cells": (8, 8), "dtype": "float32"}
+
+
+def waves(seed: int, wait: float = 0.0, log: Path | None = None) -> gm.Surface:
+    """Return a surface; `log` gets a line for each time that it is sampled."""
+
+    def position(u, v):
+        if u.size > 17 * 17 and log is not None:
+            with open(log, "a") as file:
+                file.write(f"{seed}\n")
+        time.sleep(wait)
+        return np.stack([u, v, np.sin(u + seed) * np.cos(v)], axis=-1)
+
+    return gm.Surface.from_callable(position, ((-1, 1), (-1, 1)), name=f"waves {seed}")
+
+
+def doing(what: str) -> gm.Surface:
+    """Return a surface that does something bad when it is evaluated."""
+
+    def position(u, v):
+        if what == "raises":
+            raise ZeroDivisionError("by hand")
+        if what == "hangs":
+            time.sleep(1000)
+        if what == "exits":
+            os._exit(3)
+        if what == "is killed":
+            os.kill(os.getpid(), signal.SIGKILL)
+        if what == "takes all memory":
+            np.ones(1 << 40)
+        if what == "takes all memory bit by bit":
+            kept = []
+            while True:
+                kept.append(np.ones(1 << 24))
+        return u
+
+    return gm.Surface.from_callable(position, ((-1, 1), (-1, 1)), name=what)
+
+
+def data_of(folder: Path) -> dict[str, Any]:
+    """Return the bytes of all files with points, and the manifest without times."""
+    manifest = gm.open_dataset(folder).manifest().drop_columns(["seconds", "attempts"])
+    points = {x.name: x.read_bytes() for x in sorted((folder / "points").iterdir())}
+    return {"points": points, "manifest": manifest.to_pylist()}
+
+
+def test_rows_of_what_is_sampled_and_what_fails(tmp_path):
+    (tmp_path / "bad.npz").write_bytes(b"PK bad")
+    np.save(
+        tmp_path / "grid.npy",
+        np.stack(np.meshgrid(*2 * [np.arange(9.0)], [0, 1.0])[:3], -1)[:, :, 0] ** 2,
+    )
+    parts = [waves(1), "torus", doing("raises"), tmp_path / "bad.npz", "missing.step",
+             tmp_path / "grid.npy"]  # fmt: skip
+    out = tmp_path / "set"
+    data = gm.sample_many(parts, 100, out=out, workers=1, progress=False, **ASKED)
+    rows = data.manifest().to_pylist()
+    assert [row["status"] for row in rows] == ["ok", "ok", "failed", "failed", "failed", "ok"]
+    assert [row["samples"] for row in rows] == [100, 100, 0, 0, 0, 100]
+    assert [row["attempts"] for row in rows] == [1, 1, 2, 2, 2, 1]
+    assert "by hand" in rows[2]["error"]
+    assert "damaged" in rows[3]["error"]
+    assert "missing.step' does not exist" in rows[4]["error"]
+    assert all(len(row["content"]) == 64 for row in rows if row["status"] == "ok")
+    first = data_of(out)
+    changed = {x: x.stat().st_mtime_ns for x in (out / "points").iterdir()}
+    gm.sample_many(parts, 100, out=out, workers=2, progress=False, **ASKED)
+    assert data_of(out) == first
+    assert {x: x.stat().st_mtime_ns for x in (out / "points").iterdir()} == changed
+    expected = gm.sample(parts[0], 100, fields=("points", "normals"), **ASKED)
+    np.testing.assert_array_equal(data.samples(0).points, expected.points)
+    np.testing.assert_array_equal(data.samples(0).normals, expected.normals)
+    with pytest.raises(InputError, match="count=100, not 101"):
+        gm.sample_many(parts, 101, out=out, progress=False, **ASKED)
+
+
+def test_arguments(tmp_path):
+    def sampled(parts: Any = ("torus",), **known: Any) -> object:
+        return gm.sample_many(parts, 10, **known)  # pyright: ignore[reportCallIssue]
+
+    with pytest.raises(InputError, match="for data sets"):
+        sampled(workers=2)
+    with pytest.raises(InputError, match="on_error"):
+        sampled(out=tmp_path / "a", on_error="skip")
+    with pytest.raises(InputError, match="part 1 must be a Surface"):
+        sampled(["torus", 5], out=tmp_path / "b", progress=False)
+    with pytest.raises(LookupError, match="compression"):
+        sampled(out=tmp_path / "c", compression="zip")
+    with pytest.raises(LookupError, match="suffix"):
+        sampled(out=tmp_path / "c", files="ply")
+    with pytest.raises(InputError, match="workers must be a whole number"):
+        sampled(out=tmp_path / "c", workers=0)
+    with pytest.raises(FileError, match="new or empty"):
+        sampled(out=tmp_path)
+    assert not (tmp_path / "c").exists()
+
+
+def test_names_that_are_no_text(tmp_path):
+    (part,) = inputs_of([Path("a\udcff") / "b\udcff.step"])
+    assert (part.name, part.source) == ("b\\udcff", "a\\udcff/b\\udcff.step")
+    assert part.path == str(Path("a\udcff").absolute() / "b\udcff.step")
+
+
+@pytest.mark.parametrize(
+    ("part", "name", "expected"),
+    [
+        (3, "../../etc/passwd", "000003-etc-passwd.ply"),
+        (0, "/a/b", "000000-a-b.ply"),
+        (1_234_567, "", "1234567.ply"),
+        (1, "Größe 5\n", "000001-Groe-5.ply"),
+        (1, "." * 5, "000001.ply"),
+        (1, "x" * 1000, f"000001-{'x' * 60}.ply"),
+    ],
+)
+def test_names_of_files_stay_in_their_folder(part, name, expected):
+    assert file_name(part, name, ".ply") == expected
+
+
+@pytest.mark.slow
+class TestSlow:
+    def test_what_ends_a_process_is_a_row(self, tmp_path):
+        kinds = [
+            "raises", "hangs", "exits", "is killed", "takes all memory",
+            "takes all memory bit by bit",
+        ]  # fmt: skip
+        parts = [x for kind in kinds for x in (doing(kind), waves(len(kind)))]
+        data = gm.sample_many(
+            parts, 50, out=tmp_path / "set", workers=2, progress=False, time_limit=3.0,
+            memory_limit=2.0, **ASKED,
+        )  # fmt: skip
+        rows = data.manifest().to_pylist()
+        assert [row["status"] for row in rows] == ["failed", "ok"] * len(kinds)
+        errors = [row["error"] for row in rows[::2]]
+        assert "by hand" in errors[0]
+        assert "longer than time_limit (3 s)" in errors[1]
+        assert "exit code 3" in errors[2]
+        assert "signal 9" in errors[3]
+        assert "memory" in errors[4]
+        assert "memory" in errors[5]
+        assert all(row["attempts"] == 2 for row in rows[::2])
+        seen = gm.sample_many(
+            parts, 50, out=tmp_path / "set", workers=2, progress=False, time_limit=3.0,
+            memory_limit=2.0, retry_failed=True, **ASKED,
+        ).manifest()  # fmt: skip
+        assert seen["status"].to_pylist() == data.manifest()["status"].to_pylist()
+
+    def test_a_file_for_each_part(self, tmp_path):
+        parts = [waves(1), "torus"]
+        out = tmp_path / "set"
+        gm.sample_many(parts, 50, out=out, files=".ply", progress=False, **ASKED)
+        names = sorted(x.name for x in (out / "files").iterdir())
+        assert names == ["000000-waves-1.ply", "000001-torus.ply"]
+        (out / "files" / names[0]).unlink()
+        gm.sample_many(parts, 50, out=out, files=".ply", progress=False, **ASKED)
+        assert len(gm.read_samples(out / "files" / names[0])) == 50
+        gm.sample_many(["sphere"], 50, out=out, files=".ply", progress=False, **ASKED)
+        assert [x.name for x in (out / "files").iterdir()] == ["000000-sphere.ply"]
+
+    def test_any_number_of_workers_gives_the_same_bytes(self, tmp_path):
+        parts = [waves(k) for k in range(130)]
+        for workers in (1, 2, 3):
+            gm.sample_many(parts, 50, out=tmp_path / f"{workers}", workers=workers,
+                           progress=False, **ASKED)  # fmt: skip
+        assert data_of(tmp_path / "1") == data_of(tmp_path / "2") == data_of(tmp_path / "3")
+        assert len(list((tmp_path / "1" / "points").iterdir())) == 65
+
+    def test_a_surface_that_changed_is_sampled_again(self, tmp_path):
+        log = tmp_path / "log"
+        runs = ((1, 2, 3), {1, 2, 3}), ((1, 5, 3), {5}), ((1, 5, 3, 4), {4}), ((1, 5), set())
+        for seeds, expected in runs:
+            log.write_text("")
+            data = gm.sample_many([waves(k, log=log) for k in seeds], 50, out=tmp_path / "set",
+                                  progress=False, **ASKED)  # fmt: skip
+            assert {int(x) for x in log.read_text().split()} == expected
+            names = data.manifest()["name"].to_pylist()
+            assert names == [f"waves {k}" for k in seeds]
+
+    def test_a_generator_and_normals(self, tmp_path):
+        data = gm.sample_many((waves(k) for k in range(70)), normals=gm.icosphere(8),
+                              out=tmp_path / "set", progress=False, cells=(8, 8))  # fmt: skip
+        assert len(data) == 70
+        for k in (0, 69):
+            expected = gm.sample(waves(k), normals=gm.icosphere(8), cells=(8, 8)).points
+            np.testing.assert_array_equal(data.samples(k).points, expected)
+
+
+PROGRAM = """
+import sys, time
+from pathlib import Path
+import numpy as np
+import gaussmap as gm
+
+def waves(seed, log):
+    def position(u, v):
+        if u.size > 17 * 17:
+            with open(log, "a") as file:
+                file.write(f"{seed}\\n")
+        time.sleep(0.01)
+        return np.stack([u, v, np.sin(u + seed) * np.cos(v)], axis=-1)
+    return gm.Surface.from_callable(position, ((-1, 1), (-1, 1)), name=f"waves {seed}")
+
+log, out, workers = sys.argv[1:4]
+gm.sample_many([waves(k, log) for k in range(40)], 50, out=out, workers=int(workers),
+               density="uniform", cells=(8, 8), dtype="float32", progress=False)
+"""
+
+
+def started(tmp_path: Path, out: Path, workers: int = 2) -> subprocess.Popen[bytes]:
+    program = tmp_path / "program.py"
+    program.write_text(PROGRAM)
+    command = [sys.executable, str(program), str(tmp_path / "log"), str(out), str(workers)]
+    return subprocess.Popen(command, stderr=subprocess.DEVNULL, start_new_session=True)
+
+
+def left_in(group: int) -> list[str]:
+    """Return the processes of a group that still run."""
+    listed = subprocess.run(["ps", "-eo", "pgid,stat,args"], capture_output=True, text=True)
+    rows = [line.split(None, 2) for line in listed.stdout.splitlines()[1:]]
+    return [x[2] for x in rows if x[0] == str(group) and not x[1].startswith("Z")]
+
+
+def read_by_others(folder: Path) -> None:
+    """Read what is finished of a data set; readers that take all files of a folder do, too."""
+    polars = pytest.importorskip("polars")
+    data = gm.open_dataset(folder)
+    parts = data.manifest()["part"].to_pylist()
+    for kind in ("points", "manifest"):
+        if any((folder / kind).iterdir()):
+            table = polars.scan_parquet(folder / kind / "*.parquet").collect()
+            assert {*parts} <= {*table["part"]}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", [signal.SIGKILL, signal.SIGINT, signal.SIGTERM])
+def test_a_run_that_is_ended_again_and_again_ends_with_the_same_bytes(tmp_path, kind):
+    assert started(tmp_path, tmp_path / "whole").wait() == 0
+    (tmp_path / "log").unlink()
+    out = tmp_path / "set"
+    pause = random.Random(int(kind))
+    for _ in range(20):
+        process = started(tmp_path, out)
+        time.sleep(pause.uniform(0.8, 3.0))
+        process.send_signal(kind)
+        start = time.monotonic()
+        code = process.wait(60)
+        while left_in(process.pid):
+            assert time.monotonic() - start < 60.0
+            time.sleep(0.1)
+        if code == 0:
+            break
+        if (out / "dataset.json").exists():
+            read_by_others(out)
+    assert started(tmp_path, out).wait() == 0
+    assert data_of(out) == data_of(tmp_path / "whole")
+    assert not list((out / "partial").iterdir())
+    sampled = (tmp_path / "log").read_text().split()
+    # Each part is sampled once, but for those in work at the end of a run: one for each worker.
+    assert len(set(sampled)) == 40
+
+
+@pytest.mark.slow
+def test_two_interrupts_leave_nothing_that_runs(tmp_path):
+    process = started(tmp_path, tmp_path / "set")
+    late = time.monotonic() + 60
+    while not (tmp_path / "log").exists():
+        assert time.monotonic() < late
+        time.sleep(0.05)
+    for _ in range(2):
+        process.send_signal(signal.SIGINT)
+        time.sleep(0.05)
+    assert process.wait(10) != 0
+    assert not left_in(process.pid)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="no limits")
+def test_a_full_disk_is_one_sentence_and_the_run_goes_on_later(tmp_path):
+    program = tmp_path / "program.py"
+    program.write_text(PROGRAM)
+    limited = tmp_path / "limited.py"
+    limited.write_text(
+        "import resource, runpy; resource.setrlimit(resource.RLIMIT_FSIZE, (2500, 2500))\n"
+        f"runpy.run_path({str(program)!r}, run_name='__main__')\n"
+    )
+    rest = [str(tmp_path / "log"), str(tmp_path / "set"), "2"]
+    found = subprocess.run(
+        [sys.executable, str(limited), *rest], stderr=subprocess.PIPE, text=True, timeout=120
+    )
+    assert found.returncode == 1
+    assert "cannot be written" in found.stderr.splitlines()[-1]
+    assert gm.open_dataset(tmp_path / "set").manifest().num_rows < 40
+    assert started(tmp_path, tmp_path / "set").wait() == 0
+    assert started(tmp_path, tmp_path / "whole").wait() == 0
+    assert data_of(tmp_path / "set") == data_of(tmp_path / "whole")

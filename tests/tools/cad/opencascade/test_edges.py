@@ -1,0 +1,132 @@
+"""Samples on sharp edges against what Open CASCADE says of both faces."""
+
+# pyright: reportMissingImports=false, reportOptionalSubscript=false, reportOptionalOperand=false
+# pyright: reportArgumentType=false, reportOptionalMemberAccess=false
+
+import gaussmap as gm
+import numpy as np
+import pytest
+
+pytest.importorskip("OCP")
+
+from gaussmap.tools.cad.faces import own_parameters
+from gaussmap.tools.cad.opencascade.shapes import parts_of
+from gaussmap.tools.cad.part import part_of
+from OCP.BRepAdaptor import BRepAdaptor_Surface
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut, BRepAlgoAPI_Fuse
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeVertex, BRepBuilderAPI_NurbsConvert
+from OCP.BRepExtrema import BRepExtrema_DistShapeShape
+from OCP.BRepFilletAPI import BRepFilletAPI_MakeFillet
+from OCP.BRepPrimAPI import (
+    BRepPrimAPI_MakeBox,
+    BRepPrimAPI_MakeCone,
+    BRepPrimAPI_MakeCylinder,
+    BRepPrimAPI_MakeSphere,
+)
+from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt, gp_Vec
+from OCP.TopAbs import TopAbs_Orientation, TopAbs_ShapeEnum
+from OCP.TopoDS import TopoDS
+
+from .conftest import compound
+
+FACE, EDGE = TopAbs_ShapeEnum.TopAbs_FACE, TopAbs_ShapeEnum.TopAbs_EDGE
+
+
+def box():
+    return BRepPrimAPI_MakeBox(3.0, 2.0, 1.0).Shape()
+
+
+def rounded(most=None):
+    """Return a box whose first edges are rounded."""
+    whole = box()
+    fillet, seen = BRepFilletAPI_MakeFillet(whole), []
+    for edge in parts_of(whole, EDGE):
+        if not any(edge.IsSame(x) for x in seen):
+            seen.append(edge)
+    for edge in seen[:most]:
+        fillet.Add(0.2, TopoDS.Edge(edge))
+    return fillet.Shape()
+
+
+def cut_ball():
+    """Return a ball from which a cylinder off its axis is cut: curves within a tolerance."""
+    axis = gp_Ax2(gp_Pnt(0.7, 0.2, -5.0), gp_Dir(0.0, 0.1, 1.0))
+    ball = BRepPrimAPI_MakeSphere(2.0).Shape()
+    return BRepAlgoAPI_Cut(ball, BRepPrimAPI_MakeCylinder(axis, 0.8, 10.0).Shape()).Shape()
+
+
+def cone_and_cylinder():
+    axis = gp_Ax2(gp_Pnt(-3.0, 0.0, 1.0), gp_Dir(1.0, 0.0, 0.0))
+    cone = BRepPrimAPI_MakeCone(1.5, 0.0, 4.0).Shape()
+    return BRepAlgoAPI_Fuse(cone, BRepPrimAPI_MakeCylinder(axis, 0.4, 6.0).Shape()).Shape()
+
+
+def eighth():
+    """Return an eighth of a ball, with a corner at its pole."""
+    return BRepPrimAPI_MakeSphere(gp_Pnt(1.0, 2.0, 3.0), 1.0, 0.0, np.pi / 2, np.pi / 2).Shape()
+
+
+# The numbers of sharp edges: seams cut closed curves into two.
+SHAPES = {
+    "box": (box, 12),
+    "cylinder": (lambda: BRepPrimAPI_MakeCylinder(1.0, 2.0).Shape(), 2),
+    "cone": (lambda: BRepPrimAPI_MakeCone(1.0, 0.0, 2.0).Shape(), 1),
+    "one edge rounded": (lambda: rounded(1), 13),
+    "all edges rounded": (rounded, 0),
+    "cut ball": (cut_ball, 4),
+    "as NURBS": (lambda: BRepBuilderAPI_NurbsConvert(cut_ball(), True).Shape(), 4),
+    "cone and cylinder": (cone_and_cylinder, 6),
+    "eighth": (eighth, 6),
+}
+# Curves of intersection that Open CASCADE computed are borders within its default tolerance.
+COMPUTED = {"cut ball": 1e-7, "as NURBS": 1e-7, "cone and cylinder": 1e-7}
+
+
+def checked(samples, part, shape, tolerance):
+    """Compare samples on edges with both of their faces, whose borders have this tolerance."""
+    faces = [TopoDS.Face(x) for x in parts_of(shape, FACE)]
+    size = np.linalg.norm(np.ptp(samples.points, axis=0))
+    edge = samples[samples.kind == "edge"]
+    sides = (
+        (edge.face_index, edge.uv, edge.normals),
+        (edge.other_face_index, edge.other_uv, edge.other_normals),
+    )
+    for indices, uv, normals in sides:
+        assert np.isfinite(normals).all()
+        for k, (index, place, normal) in enumerate(zip(indices, uv, normals, strict=True)):
+            face, known = faces[index], part.faces[index]
+            (own,) = own_parameters(known.surface, place[None], is_reversed=known.reversed)
+            point, along_u, along_v = gp_Pnt(), gp_Vec(), gp_Vec()
+            BRepAdaptor_Surface(face, False).D1(*own.tolist(), point, along_u, along_v)
+            found = np.array([point.X(), point.Y(), point.Z()])
+            assert np.linalg.norm(found - edge.points[k]) <= 1e-9 * size
+            cross = along_u.Crossed(along_v)
+            if face.Orientation() == TopAbs_Orientation.TopAbs_REVERSED:
+                cross.Reverse()
+            truth = np.array([cross.X(), cross.Y(), cross.Z()]) / cross.Magnitude()
+            assert np.linalg.norm(truth - normal) <= 1e-9
+            vertex = BRepBuilderAPI_MakeVertex(gp_Pnt(*edge.points[k].tolist())).Vertex()
+            assert BRepExtrema_DistShapeShape(vertex, face).Value() <= 1e-9 * size + tolerance
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_samples_lie_on_both_faces(name, write, read):
+    make, count = SHAPES[name]
+    shape = make()
+    part = part_of(read(write(shape, "part.brep")))
+    samples = gm.sample(part, 40, edges=True)
+    edge = samples[samples.kind == "edge"]
+    pairs = set(zip(edge.face_index, edge.other_face_index, strict=True))
+    assert len(part.arrays["edge_faces"]) == count
+    assert pairs == set(map(tuple, part.arrays["edge_faces"]))
+    assert (samples.report.edge_samples > 0) == (count > 0)
+    checked(samples, part, shape, COMPUTED.get(name, 0.0))
+
+
+def test_loose_faces_are_sewn_and_borders_are_no_edges(write, read):
+    faces = [x.Moved(x.Location()) for x in parts_of(box(), FACE)]
+    part = part_of(read(write(compound(*faces[:5]), "open.brep")))
+    assert len(part.arrays["edge_faces"]) == 8
+    assert gm.sample(part, 40, edges=True).report.edge_samples > 8
+    single = part_of(read(write(faces[0], "face.brep")))
+    assert gm.sample(single, 10, edges=True).report.edge_samples == 0

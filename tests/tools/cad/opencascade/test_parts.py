@@ -1,0 +1,311 @@
+"""Files to parts: trims, units, orientation, names, damage, sharp edges."""
+
+# pyright: reportMissingImports=false
+
+import re
+
+import numpy as np
+import pytest
+
+pytest.importorskip("OCP")
+
+from gaussmap.tools.cad.inspection import BadFileError
+from gaussmap.tools.cad.opencascade.shapes import parts_of, sequence
+from OCP.BRep import BRep_Tool
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCylinder, BRepPrimAPI_MakeSphere
+from OCP.gp import gp_Ax2, gp_Dir, gp_Pln, gp_Pnt, gp_Pnt2d, gp_Trsf, gp_Vec
+from OCP.IntTools import IntTools_FClass2d
+from OCP.Quantity import Quantity_Color, Quantity_TypeOfColor
+from OCP.STEPCAFControl import STEPCAFControl_Writer
+from OCP.TCollection import TCollection_ExtendedString
+from OCP.TDataStd import TDataStd_Name
+from OCP.TDocStd import TDocStd_Document
+from OCP.TopAbs import TopAbs_Orientation, TopAbs_ShapeEnum, TopAbs_State
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS
+from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool
+
+from .conftest import compound, in_loops, points_of
+
+FACE = TopAbs_ShapeEnum.TopAbs_FACE
+
+
+def box(a=30.0, b=20.0, c=10.0):
+    return BRepPrimAPI_MakeBox(a, b, c).Shape()
+
+
+def drilled_box():
+    drill = gp_Ax2(gp_Pnt(10.0, 10.0, -1.0), gp_Dir(0.0, 0.0, 1.0))
+    return BRepAlgoAPI_Cut(box(), BRepPrimAPI_MakeCylinder(drill, 4.0, 12.0).Shape()).Shape()
+
+
+def outward(face, centre) -> bool:
+    """Return whether the normal of a plane face points away from a point."""
+    o, x, y, _ = face.geometry.numbers.reshape(4, 3)
+    uv = np.concatenate(face.loops).mean(axis=0)
+    normal = np.cross(x, y) * (-1.0 if face.reversed else 1.0)
+    return float((o + uv[0] * x + uv[1] * y - centre) @ normal) > 0.0
+
+
+# --- trims ----------------------------------------------------------------------------------------
+
+
+def test_what_is_inside_of_loops_is_inside_of_the_face(write, read):
+    shape, rng = drilled_box(), np.random.default_rng(1)
+    part = read(write(shape, "part.brep"))
+    assert sorted(x.kind for x in (f.geometry for f in part.faces)) == ["cylinder"] + 6 * ["plane"]
+    for shape_of, face in zip(parts_of(shape, FACE), part.faces, strict=True):
+        (u0, u1), (v0, v1) = face.domain
+        uv = rng.random((400, 2)) * (u1 - u0, v1 - v0) + (u0, v0)
+        # The middles of all sides of the polygons, too: their ends may be on the curves.
+        uv = np.concatenate([uv, *((x + np.roll(x, 1, axis=0)) / 2.0 for x in face.loops)])
+        whole = TopoDS.Face(shape_of.Oriented(TopAbs_Orientation.TopAbs_FORWARD))
+        truth = IntTools_FClass2d(whole, 1e-9)
+        out = np.array(
+            [truth.Perform(gp_Pnt2d(*x)) == TopAbs_State.TopAbs_OUT for x in uv.tolist()]
+        )
+        assert not out[in_loops(uv, face.loops)].any()
+        assert not out[400:].any()
+        assert (out[:400] == in_loops(uv[:400], face.loops)).mean() < 0.01
+
+
+def test_polygons_leave_circles_to_the_side_of_the_face(write, read):
+    part = read(write(drilled_box(), "part.brep"))
+    holed = [x for x in part.faces if len(x.loops) == 2]
+    assert len(holed) == 2
+    for face in holed:
+        loop = max(face.loops, key=len)
+        ring = points_of(face.geometry, loop)[:, :2] - (10.0, 10.0)
+        middles = (ring + np.roll(ring, 1, axis=0)) / 2.0
+        radii = np.hypot(*np.concatenate([ring, middles]).T)
+        assert radii.min() > 4.0 * (1.0 - 1e-9)  # the hole is inside of its polygon
+        assert radii.max() < 4.0 + 1e-4 * 30.0
+
+
+def test_areas_are_those_of_the_shapes(write, read):
+    part = read(write(drilled_box()))
+    whole = 2 * (30 * 20 + 20 * 10 + 30 * 10) - 2 * np.pi * 16 + 2 * np.pi * 4 * 10
+    assert sum(x.area for x in part.faces) == pytest.approx(whole, rel=1e-12)
+
+
+# --- units ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("code", "unit", "length"), [("MM", "mm", 1.0), ("INCH", "in", 25.4),
+                                                      ("M", "m", 1000.0)])  # fmt: skip
+def test_boxes_have_sides_in_the_unit_of_the_file(code, unit, length, write, read):
+    path = write(box(), unit=code)
+    part = read(path)
+    assert (part.unit, part.metres) == (unit, pytest.approx(length / 1000.0))
+    corners = np.concatenate([points_of(x.geometry, x.loops[0]) for x in part.faces])
+    sides = np.ptp(corners, axis=0) * length
+    np.testing.assert_allclose(sides, (30.0, 20.0, 10.0), rtol=1e-11)
+    assert sum(x.area for x in part.faces) == pytest.approx(2200.0 / length**2)
+    again = read(path, unit="cm")
+    assert again.unit == "cm"
+    corners = np.concatenate([points_of(x.geometry, x.loops[0]) for x in again.faces])
+    np.testing.assert_allclose(np.ptp(corners, axis=0), (3.0, 2.0, 1.0), rtol=1e-11)
+
+
+# --- orientation ----------------------------------------------------------------------------------
+
+
+def some_reversed(shape):
+    """Return the faces of a shape, every other one reversed, with edges of their own."""
+    found = []
+    for k, face in enumerate(parts_of(shape, FACE)):
+        surface = BRep_Tool.Surface_s(TopoDS.Face(face))
+        u0, u1, v0, v1 = bounds(face)
+        made = BRepBuilderAPI_MakeFace(surface, u0, u1, v0, v1, 1e-7).Face()
+        found.append(made.Reversed() if k % 2 else made)
+    return found
+
+
+def bounds(face):
+    from OCP.BRepTools import BRepTools
+
+    return BRepTools.UVBounds_s(TopoDS.Face(face))
+
+
+def test_loose_faces_are_sewn_and_point_outward(write, read):
+    faces = some_reversed(box())
+    part = read(write(compound(*faces), "part.brep"))
+    assert part.oriented
+    assert len(part.solid_names) == 1
+    assert {x.solid_index for x in part.faces} == {0}
+    assert all(outward(x, (15.0, 10.0, 5.0)) for x in part.faces)
+    open_part = read(write(compound(*faces[:5]), "open.brep"))
+    assert not open_part.oriented
+    assert {x.solid_index for x in open_part.faces} == {-1}
+    # Of an open shell the normals are those of one side.
+    assert len({outward(x, (15.0, 10.0, 5.0)) for x in open_part.faces}) == 1
+
+
+def test_a_solid_that_is_inside_out_is_turned(write, read):
+    part = read(write(box().Reversed(), "part.brep"))
+    assert part.oriented
+    assert all(outward(x, (15.0, 10.0, 5.0)) for x in part.faces)
+
+
+def test_a_hollow_has_normals_into_itself(write, read):
+    inner = gp_Trsf()
+    inner.SetTranslation(gp_Vec(10.0, 5.0, 2.0))
+    hollow = box(4.0, 4.0, 4.0).Moved(TopLoc_Location(inner))
+    part = read(write(compound(*some_reversed(box()), *some_reversed(hollow)), "part.brep"))
+    assert part.oriented
+    assert [outward(x, (12.0, 7.0, 4.0)) for x in part.faces] == 6 * [True] + 6 * [False]
+
+
+# --- assemblies -----------------------------------------------------------------------------------
+
+
+def labelled(tool, shape, name):
+    label = tool.AddShape(shape, False)
+    TDataStd_Name.Set_s(label, TCollection_ExtendedString(name))
+    return label
+
+
+def test_assemblies_have_names_colours_and_placements(tmp_path, read, capfd):
+    document = TDocStd_Document(TCollection_ExtendedString("test"))
+    tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+    colors = XCAFDoc_DocumentTool.ColorTool_s(document.Main())
+    frame, pin_shape = tool.NewShape(), box(2.0, 2.0, 8.0)
+    TDataStd_Name.Set_s(frame, TCollection_ExtendedString("frame"))
+    pin = labelled(tool, pin_shape, "pin")
+    red, blue = ((0.8, 0.5, 0.25), (0.0, 0.0, 1.0))  # as the file has them
+    rgb = Quantity_TypeOfColor.Quantity_TOC_sRGB
+    colors.SetColor(pin, Quantity_Color(*red, rgb), XCAFDoc_ColorType.XCAFDoc_ColorSurf)
+    top = tool.AddSubShape(pin, list(parts_of(pin_shape, FACE))[5])
+    colors.SetColor(top, Quantity_Color(*blue, rgb), XCAFDoc_ColorType.XCAFDoc_ColorSurf)
+    for x in (0.0, 10.0):
+        place = gp_Trsf()
+        place.SetTranslation(gp_Vec(x, 0.0, 0.0))
+        tool.AddComponent(frame, pin, TopLoc_Location(place))
+    tool.UpdateAssemblies()
+    writer = STEPCAFControl_Writer()
+    writer.SetColorMode(True)
+    writer.SetNameMode(True)
+    writer.Transfer(document)
+    writer.Write(str(tmp_path / "assembly.step"))
+    capfd.readouterr()
+    part = read(tmp_path / "assembly.step")
+    assert part.solid_names == ["frame/pin", "frame/pin"]
+    assert [x.solid_index for x in part.faces] == 6 * [0] + 6 * [1]
+    assert sorted(x.color for x in part.faces) == 2 * [blue] + 10 * [red]
+    lows = [
+        min(points_of(x.geometry, x.loops[0])[:, 0].min() for x in part.faces if x.solid_index == k)
+        for k in (0, 1)
+    ]
+    assert lows == pytest.approx([0.0, 10.0])
+
+
+# --- damage ---------------------------------------------------------------------------------------
+
+
+def test_a_face_that_lacks_something_fails_and_the_others_do_not(write, read):
+    path = write(drilled_box())
+    text = path.read_text()
+    whole = read(path)
+    path.write_text(re.sub(r"(ADVANCED_FACE\('',\()(#\d+)", r"\g<1>#999999", text, count=1))
+    part = read(path)
+    failed = [x for x in part.faces if x.reason]
+    assert [x.reason.endswith("refers to #999999, which the file lacks") for x in failed] == [True]
+    assert failed[0].name.startswith("#")
+    assert not part.oriented
+    good = sorted(x.area for x in part.faces if not x.reason)
+    assert all(min(abs(a - x.area) for x in whole.faces) < 1e-9 for a in good)
+    assert len(good) == 6
+
+
+@pytest.mark.parametrize("number", ["nan", "1.E+400", "'text'"])
+def test_numbers_that_are_none_cost_only_their_faces(number, write, read):
+    path = write(box())
+    text = path.read_text()
+    vertex = re.search(r"VERTEX_POINT\('',(#\d+)\)", text)
+    assert vertex is not None
+    point = rf"({vertex[1]} = CARTESIAN_POINT\('',\()[^,]*,"
+    path.write_text(re.sub(point, rf"\g<1>{number},", text))
+    part = read(path)
+    assert [bool(x.reason) for x in part.faces] == 3 * [False] + 3 * [True]
+    path.write_text(re.sub(r"(CARTESIAN_POINT\('',\()[^,]*,", rf"\g<1>{number},", text))
+    with pytest.raises(BadFileError):
+        read(path)
+
+
+def test_files_without_faces_are_refused(write, read):
+    edge = BRepBuilderAPI_MakeEdge(gp_Pnt(0.0, 0.0, 0.0), gp_Pnt(1.0, 2.0, 0.0)).Edge()
+    with pytest.raises(BadFileError, match="has no faces"):
+        read(write(edge, "edge.brep"))
+
+
+@pytest.mark.parametrize("suffix", ["step", "iges", "brep"])
+def test_files_that_end_too_early_are_refused(suffix, write, read):
+    path = write(drilled_box(), f"part.{suffix}")
+    assert len(read(path).faces) == 7
+    content = path.read_bytes().rstrip()
+    for length in (*(len(content) * k // 10 for k in range(1, 10)), len(content) - 20):
+        path.write_bytes(content[:length])
+        with pytest.raises(BadFileError, match=r"is (truncated|damaged|empty)"):
+            read(path)
+
+
+@pytest.mark.parametrize("kind", ["PLANE", "VERTEX_POINT", "EDGE_LOOP", "LINE"])
+def test_faces_of_entities_that_are_missing_are_named(kind, write, read):
+    path = write(drilled_box())
+    path.write_text(re.sub(rf"\n#\d+ = {kind}\([^;]*;", "", path.read_text(), count=1))
+    part = read(path)
+    assert len(part.faces) == 7
+    reasons = [x.reason for x in part.faces if x.reason]
+    assert 1 <= len(reasons) <= 5
+    assert all("which the file lacks" in x for x in reasons)
+
+
+def test_faces_that_open_cascade_leaves_out_are_told(write, read):
+    path = write(drilled_box())
+    text = path.read_text()
+    path.write_text(text.replace("CYLINDRICAL_SURFACE(", "MYSTERIOUS_SURFACE(", 1))
+    assert read(path).warnings == [
+        "1 of 7 faces are missing: Open CASCADE cannot make them; export the file again."
+    ]
+    path.write_text(re.sub(r"(SOLID_BREP\('',)#\d+", r"\g<1>#99999", text))
+    with pytest.raises(BadFileError, match="can make none of its 7 faces"):
+        read(path)
+
+
+def test_a_plane_without_boundary_fails(write, read):
+    plane = BRepBuilderAPI_MakeFace(gp_Pln(gp_Pnt(0.0, 0.0, 0.0), gp_Dir(0.0, 0.0, 1.0))).Face()
+    part = read(write(compound(box(), plane), "part.brep"))
+    assert [x.reason for x in part.faces if x.reason] == [
+        "it has no boundary, and its surface has no end"
+    ]
+    assert [x.geometry.kind for x in part.faces] == 6 * ["plane"] + ["unknown"]
+
+
+def test_a_face_of_no_area_fails(write, read):
+    flat = BRepBuilderAPI_MakeFace(gp_Pln(), 0.0, 1e-6, 0.0, 1e-7).Face()
+    part = read(write(compound(box(), flat), "part.brep"))
+    assert [x.reason for x in part.faces if x.reason] == ["its area is zero"]
+
+
+# --- sharp edges ----------------------------------------------------------------------------------
+
+
+def test_sharp_edges_are_the_same_points_on_both_faces(write, read):
+    part = read(write(drilled_box()), unit="in")
+    assert len(part.edges) == 14
+    for edge in part.edges:
+        first, second = (part.faces[k].geometry for k in edge.faces)
+        one = points_of(first, edge.parameters[:, :2])
+        other = points_of(second, edge.parameters[:, 2:])
+        np.testing.assert_allclose(one, other, atol=1e-6)
+
+
+def test_smooth_edges_are_not_sharp(write, read):
+    part = read(write(BRepPrimAPI_MakeSphere(5.0).Shape()))
+    assert len(part.edges) == 0
+
+
+def test_sequences_are_those_of_either_version():
+    assert sequence("TDF.TDF_LabelSequence", "Sequence_TDF_Label").Length() == 0

@@ -1,0 +1,72 @@
+"""CAD parts on the command line."""
+
+# pyright: reportOptionalMemberAccess=false
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.tools.cad.records import FaceRecord, Geometry
+from gaussmap.tools.commands.cli import main
+
+
+@pytest.fixture
+def saved(made, tmp_path, monkeypatch):
+    """Save a part with a face that failed, and go to its folder."""
+    monkeypatch.chdir(tmp_path)
+    failed = FaceRecord(Geometry("unknown"), reason="it has no surface")
+    made.part([*made.cylinder_faces(), failed]).save("part.npz")
+    return "part.npz"
+
+
+def test_faces(saved, capsys):
+    assert main(["faces", saved]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [x.split() for x in lines] == [
+        ["0", "cylinder", "12.5664", "1", "loop"],
+        ["1", "plane", "3.14159", "1", "loop"],
+        ["2", "plane", "3.14159", "1", "loop"],
+        ["3", "unknown", "0", "0", "loops", "failed:", "it", "has", "no", "surface"],
+    ]
+
+
+def test_sample(saved, capsys):
+    assert main(["sample", saved, "--count", "60", "-o", "out.ply"]) == 0
+    captured = capsys.readouterr()
+    assert "out.ply: 60 samples" in captured.out
+    assert "4 faces, 1 of them without samples" in captured.out
+    assert "1 of 4 faces cannot be sampled" in captured.err
+    samples = gm.read_samples("out.ply")
+    assert len(samples) == 60
+    assert set(samples.face_index.tolist()) == {0, 1, 2}
+    fields = ["--fields", "points,face_index", "--quiet"]
+    assert main(["sample", saved, "--coverage", "0.5", "-o", "out.npz", *fields]) == 0
+    assert np.isfinite(gm.read_samples("out.npz").points).all()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["sample", "part.npz", "--cells", "4", "4", "-o", "o.ply"], "--cells is for surfaces"),
+        (["sample", "part.npz", "--set", "a=1", "-o", "o.ply"], "--set is for surfaces"),
+        (["sample", "part.npz", "--on", "spline", "-o", "o.ply"], 'on="spline" is for surfaces'),
+        (["sample", "part.npz", "-o", "part.npz"], "'part.npz' is read"),
+        (["mesh", "part.npz", "-o", "o.ply"], "these are of a CAD part"),
+        (["faces", "none.npz"], "'none.npz' cannot be read"),
+        (["faces", "part.txt"], "is no CAD part by its suffix"),
+    ],
+)
+@pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
+def test_errors(saved, capsys, arguments, message):
+    assert main(arguments) == 2
+    error = capsys.readouterr().err.splitlines()[-1]
+    assert error.startswith("gaussmap: error: ")
+    assert message in error
+
+
+def test_without_open_cascade(tmp_path, capsys, monkeypatch):
+    """Without the extra, the error says how to install it; nothing else is needed for that."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "part.step").write_text("ISO-10303-21;")
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    assert main(["sample", "part.step", "--count", "10", "-o", "out.ply"]) == 2
+    assert 'pip install "gaussmap[cad]"' in capsys.readouterr().err

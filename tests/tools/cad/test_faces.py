@@ -1,0 +1,297 @@
+"""Surfaces of faces: exact derivatives, domains and their ends, trims, normals."""
+
+import math
+import pickle
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.runtime.surface.derivatives import numerical_jets
+from gaussmap.tools.cad.faces import face_surface, own_parameters
+from gaussmap.tools.cad.records import Geometry, Net
+
+TURN = 2.0 * math.pi
+OPEN, PERIODIC = ("open", "open"), ("periodic", "periodic")
+Z = np.array([0.36, 0.48, 0.8])
+X = np.array([0.8, -0.6, 0.0])
+ORIGIN = np.array([1.0, -2.0, 0.5])
+KNOTS = np.array([0.0, 0, 0, 0, 1, 2, 2, 2, 2])
+ROUND = math.sqrt(0.5)
+CIRCLE = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)])
+
+
+def placed(*more, left_handed=False):
+    y = np.cross(Z, X) * (-1.0 if left_handed else 1.0)
+    return np.concatenate([ORIGIN, X, y, Z, more])
+
+
+def curve(weights=None):
+    t = np.linspace(0.0, 2.0, 5)
+    points = np.stack([2.0 + np.sin(2 * t), 0.3 * t**2, 2.0 * t], axis=1)
+    return Net((3,), (KNOTS,), points, weights)
+
+
+def circle(centre=(3.0, 0.0, 0.0), normal_axis=1, count=9):
+    """Return a circle of radius 1 as NURBS over [0, 4], with double knots."""
+    axes = [k for k in range(3) if k != normal_axis]
+    points = np.tile(np.array(centre), (count, 1))
+    points[:, axes] += CIRCLE
+    knots = np.array([0.0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4])
+    return Net((2,), (knots,), points, np.array([1, ROUND] * 4 + [1]))
+
+
+def waves():
+    x, y = np.meshgrid(np.arange(5.0), np.arange(5.0), indexing="ij")
+    points = np.stack([x, y, np.sin(x + 0.5 * y)], axis=2)
+    return Geometry("nurbs", net=Net((3, 3), (KNOTS, KNOTS), points, 1.0 + 0.1 * x * y))
+
+
+WEIGHTS = np.array([1.0, 2.0, 1.0, 0.5, 1.0])
+AXIS = np.concatenate([ORIGIN, Z])
+GEOMETRIES = {
+    "plane": (Geometry("plane", placed()), ((-1, 2), (0, 3))),
+    "cylinder": (Geometry("cylinder", placed(1.5)), ((0.5, 4), (-1, 2))),
+    "cone": (Geometry("cone", placed(1.5, -0.4)), ((0.5, 4), (-1, 2))),
+    "sphere": (Geometry("sphere", placed(1.5)), ((0.5, 4), (-1.2, 1))),
+    "torus": (Geometry("torus", placed(1.5, 0.4)), ((0.5, 4), (2, 6))),
+    "left-handed": (Geometry("torus", placed(1.5, 0.4, left_handed=True)), ((0.5, 4), (2, 6))),
+    "nurbs": (waves(), ((0.1, 1.9), (0.2, 2.0))),
+    "revolution": (Geometry("revolution", AXIS, curve(WEIGHTS)), ((0.5, 4), (0.2, 2.0))),
+    "extrusion": (Geometry("extrusion", Z, curve(WEIGHTS)), ((0.2, 2.0), (-1, 2))),
+}
+DISTANCE, TWICE = 0.02, np.array([0.03])
+OFFSETS = {
+    name: (Geometry("offset", np.array([DISTANCE]), basis=basis), domain)
+    for name, (basis, domain) in GEOMETRIES.items()
+} | {
+    "twice": (
+        Geometry("offset", TWICE, basis=Geometry("offset", np.array([-0.1]), basis=waves())),
+        ((0.1, 1.9), (0.2, 2.0)),
+    ),
+    "spindle, left-handed": (
+        Geometry(
+            "offset", np.array([0.2]), basis=Geometry("torus", placed(0.4, 1.5, left_handed=True))
+        ),
+        ((0.5, 4), (-1, 1)),
+    ),
+}  # fmt: skip
+
+
+def places(domain, count=60):
+    low, high = np.array(domain, dtype=float).T
+    return low + (high - low) * (0.02 + 0.96 * np.random.default_rng(2).random((count, 2)))
+
+
+def normals_of(jets):
+    normals = np.cross(jets[:, 1], jets[:, 2])
+    return normals / np.linalg.norm(normals, axis=1, keepdims=True)
+
+
+def area_of(surface, count=400):
+    """Return the area inside the trim, by the midpoint rule."""
+    (u0, u1), (v0, v1) = surface.domain
+    part = (np.arange(count) + 0.5) / count
+    u, v = np.meshgrid(u0 + (u1 - u0) * part, v0 + (v1 - v0) * part, indexing="ij")
+    jets = surface.jets(u.ravel(), v.ravel())
+    areas = np.linalg.norm(np.cross(jets[:, 1], jets[:, 2]), axis=1)
+    if surface.trim is not None:
+        areas = areas[surface.trim.contains(np.stack([u.ravel(), v.ravel()], axis=1))]
+    return float(areas.sum()) * (u1 - u0) * (v1 - v0) / count**2
+
+
+@pytest.mark.parametrize("case", [*GEOMETRIES.values(), *OFFSETS.values()])
+def test_derivatives_are_those_of_the_points(case):
+    surface = face_surface(*case)
+    uv = places(case[1], 12)
+    u, v = uv[(np.abs(uv - KNOTS[4]) > 0.02).all(axis=1)].T  # second derivatives may jump there
+    jets = surface.jets(u, v)
+    assert np.array_equal(surface.evaluate(u, v), jets[:, 0])
+    numerical = numerical_jets(surface.evaluate, u, v, (2.0**-9, 2.0**-9))
+    # Rounding 8 ε/h² = 5e-10, and more next to the ends of the table of weights.
+    assert np.abs(jets - numerical).max() < 2e-8 * max(np.abs(jets).max(), 1.0)
+
+
+@pytest.mark.parametrize("name", [*GEOMETRIES])
+def test_offsets_are_at_their_distance_along_the_normals(name):
+    geometry, domain = GEOMETRIES[name]
+    u, v = places(domain).T
+    jets, moved = (face_surface(x, domain).jets(u, v) for x in (geometry, OFFSETS[name][0]))
+    assert np.allclose(moved[:, 0], jets[:, 0] + DISTANCE * normals_of(jets), atol=1e-13)
+    assert np.allclose(normals_of(moved), normals_of(jets), atol=1e-13)
+
+
+def test_elementary_surfaces_are_where_their_numbers_say():
+    local = {name: face_surface(*GEOMETRIES[name]) for name in ("cylinder", "cone", "torus")}
+    for name, surface in local.items():
+        u, v = places(surface.domain).T
+        from_origin = surface.evaluate(u, v) - ORIGIN
+        y = np.cross(Z, X)
+        angles = np.arctan2(from_origin @ y, from_origin @ X)
+        assert np.allclose(np.cos(angles - u), 1.0)
+        radius = np.hypot(from_origin @ y, from_origin @ X)
+        wanted = {
+            "cylinder": (1.5 + 0 * v, v),
+            "cone": (1.5 - v * math.sin(0.4), v * math.cos(0.4)),
+            "torus": (1.5 + 0.4 * np.cos(v), 0.4 * np.sin(v)),
+        }[name]
+        assert np.allclose((radius, from_origin @ Z), wanted, atol=1e-14)
+
+
+# --- ends -----------------------------------------------------------------------------------------
+
+
+def test_whole_turns_close_and_poles_are_poles():
+    turn, half = (0.3, 0.3 + TURN - 1e-9), (-math.pi / 2, 1.0)
+    sphere = face_surface(Geometry("sphere", placed(1.0)), (turn, half))
+    assert sphere.boundary == (PERIODIC, ("pole", "open"))
+    assert sphere.domain == ((0.3, 0.3 + TURN), (-math.pi / 2, 1.0))
+    misfit = gm.fit(sphere, (12, 6)).misfit
+    assert misfit
+    assert misfit.distance < 0.02
+    sector = face_surface(Geometry("sphere", placed(1.0)), ((0, 2), half))
+    assert sector.boundary == (OPEN, OPEN)
+    assert gm.fit(sector, (12, 6)).apexes == 1
+    torus = face_surface(Geometry("torus", placed(1.0, 0.3)), (turn, (1.0, 1.0 + TURN)))
+    assert torus.boundary == (PERIODIC, PERIODIC)
+    cone = face_surface(Geometry("cone", placed(0.0, 0.5)), (turn, (0.0, 1.0)))
+    assert (cone.boundary, gm.fit(cone, (24, 4)).apexes) == ((PERIODIC, OPEN), 1)
+
+
+def test_a_band_that_turns_twice_is_open_and_has_its_area():
+    width, steps = 0.3, np.linspace(0.0, 12.0, 200)
+    low, high = (np.stack([steps, 0.2 * steps + x], axis=1) for x in (0.0, width))
+    domain = (0.0, 12.0), (0.0, 2.4 + width)
+    band = face_surface(
+        Geometry("cylinder", placed(2.0)), domain, [np.concatenate([low, high[::-1]])]
+    )
+    assert band.boundary == (OPEN, OPEN)
+    assert area_of(band) == pytest.approx(2.0 * 12.0 * width, rel=2e-3)
+    # One turn on is the same point of the cylinder, but in another place of the band.
+    assert band.trim
+    inside = band.trim.contains(np.array([(1.0, 0.35), (1.0 + TURN, 0.35), (1.0 + TURN, 1.6)]))
+    assert inside.tolist() == [True, False, True]
+
+
+def test_revolutions_close_both_ways():
+    geometry = Geometry("revolution", np.concatenate([np.zeros(3), [0, 0, 1]]), circle())
+    torus = face_surface(geometry, ((0.0, TURN), (0.0, 4.0)))
+    assert torus.boundary == (PERIODIC, PERIODIC)
+    assert torus.pieces() == (torus,)
+    assert area_of(torus, 60) == pytest.approx(TURN**2 * 3.0, rel=1e-3)
+    # A domain that begins within the period goes on around it.
+    later = face_surface(geometry, ((0.0, TURN), (1.5, 5.5)))
+    assert later.boundary == (PERIODIC, PERIODIC)
+    u, v = places(((0.0, TURN), (1.5, 5.5))).T
+    assert np.allclose(later.jets(u, v), torus.jets(u, v % 4.0), atol=1e-12)
+    part = face_surface(geometry, ((0.0, 1.0), (3.5, 4.5)))
+    assert part.boundary == (OPEN, OPEN)
+    assert np.allclose(part.jets(u, v * 0 + 4.25), torus.jets(u, v * 0 + 0.25), atol=1e-12)
+
+
+def test_extrusions_of_closed_curves_close():
+    tube = face_surface(Geometry("extrusion", np.array([0, 1, 0]), circle()), ((0, 4), (-1, 2)))
+    assert tube.boundary == (PERIODIC, OPEN)
+    assert area_of(tube, 60) == pytest.approx(TURN * 3.0, rel=1e-3)
+
+
+def test_the_profile_of_a_vase_has_a_pole_on_the_axis():
+    points = np.array([(0.0, 0, 0), (1, 0, 0), (2, 0, 1), (1, 0, 2), (1.5, 0, 3)])
+    geometry = Geometry("revolution", AXIS, Net((3,), (KNOTS,), ORIGIN + points @ frame()))
+    vase = face_surface(geometry, ((0.0, TURN), (0.0, 2.0)))
+    assert gm.fit(vase, (24, 24)).boundary == (PERIODIC, ("pole", "open"))
+
+
+def frame():
+    """Return the rows x, y, z of a frame whose last axis is Z."""
+    return np.array([X, np.cross(Z, X), Z])
+
+
+# --- kinks, trims, normals ------------------------------------------------------------------------
+
+
+def kinked():
+    """Return a polygon of three sides as a NURBS curve, with kinks at 1 and 2."""
+    points = np.array([(1.0, 0, 0), (2, 0, 0), (2, 0, 1), (1, 0, 2)])
+    return Net((1,), (np.array([0.0, 0, 1, 2, 3, 3]),), points)
+
+
+@pytest.mark.parametrize("kind", ["revolution", "extrusion", "offset"])
+def test_kinks_cut_surfaces_into_pieces(kind):
+    axis = 1 if kind != "extrusion" else 0
+    geometry = Geometry("revolution", np.array([0, 0, 0, 0, 0, 1.0]), kinked())
+    domain = (0.0, TURN), (0.0, 3.0)
+    if kind == "extrusion":
+        geometry, domain = Geometry("extrusion", np.array([0.0, 1, 0]), kinked()), domain[::-1]
+    if kind == "offset":
+        geometry = Geometry("offset", np.array([0.1]), basis=geometry)
+    pieces = face_surface(geometry, domain).pieces()
+    assert [x.domain[axis] for x in pieces] == [(0.0, 1.0), (1.0, 2.0), (2.0, 3.0)]
+    at_kink = [1.0, 1.0]
+    sides = [x.derivatives(*((0.5, at_kink) if axis else (at_kink, 0.5))) for x in pieces[:2]]
+    turned = (normals_of(sides[0]) * normals_of(sides[1])).sum(axis=1)
+    assert np.allclose(turned, 0.0, atol=1e-14)
+    # Faces end at kinks, up to the rounding of a file; what is beyond is no piece.
+    ends = ((0.0, TURN), (1.0 - 1e-9, 3.0)) if axis else ((1.0 - 1e-9, 3.0), (0.0, TURN))
+    assert [x.domain[axis] for x in face_surface(geometry, ends).pieces()] == [
+        (1.0, 2.0),
+        (2.0, 3.0),
+    ]
+
+
+def test_only_loops_that_cut_something_off_are_a_trim():
+    geometry, domain = GEOMETRIES["plane"]
+    border = np.array([(-1, 0), (0, 0), (2, 0), (2, 3), (-1, 3)])
+    hole = np.array([(0, 1), (1, 1), (1, 2)])
+    assert face_surface(geometry, domain, [border]).trim is None
+    assert face_surface(geometry, domain, [border[::-1] + 1e-12]).trim is None
+    assert face_surface(geometry, domain, [border[:4]]).trim is not None
+    holed = face_surface(geometry, domain, [border, hole])
+    assert area_of(holed) == pytest.approx(8.5, rel=2e-3)
+
+
+@pytest.mark.parametrize("name", ["plane", "torus", "left-handed", "nurbs", "revolution"])
+def test_reversed_faces_have_opposite_normals(name):
+    geometry, domain = GEOMETRIES[name]
+    (u0, u1), (v0, v1) = domain
+    corner = np.array([(u0, v0), (u1, v0), (u1, v1)])
+    forward, back = (face_surface(geometry, domain, [corner], is_reversed=x) for x in (False, True))
+    uv = places(domain)
+    other = own_parameters(back, uv, is_reversed=True)
+    jets, turned = forward.jets(*uv.T), back.jets(*other.T)
+    assert np.allclose(jets[:, 0], turned[:, 0], atol=1e-13)
+    assert np.allclose(normals_of(jets), -normals_of(turned), atol=1e-12)
+    assert forward.trim
+    assert back.trim
+    assert np.array_equal(forward.trim.contains(uv), back.trim.contains(other))
+    assert np.allclose(own_parameters(back, other, is_reversed=True), uv, atol=1e-14)
+    assert own_parameters(forward, uv, is_reversed=False) is uv
+
+
+@pytest.mark.parametrize("name", ["plane", "nurbs", "revolution"])
+def test_surfaces_of_faces_are_pickled(name):
+    geometry, domain = GEOMETRIES[name]
+    triangle = np.array([(0.5, 1), (1.5, 1), (1, 1.5)])
+    surface = face_surface(geometry, domain, [triangle], is_reversed=True)
+    uv = places(domain)
+    surface.jets(*uv.T)
+    copy = pickle.loads(pickle.dumps(surface))
+    assert np.array_equal(copy.jets(*uv.T), surface.jets(*uv.T))
+    assert surface.trim
+    assert np.array_equal(copy.trim.contains(uv), surface.trim.contains(uv))
+
+
+def test_what_is_no_surface_is_refused():
+    with pytest.raises(gm.errors.InputError, match="'unknown' has no surface"):
+        face_surface(Geometry("unknown"), ((0, 1), (0, 1)))
+    with pytest.raises(gm.errors.InputError, match="outside its surface"):
+        face_surface(waves(), ((0, 1), (7, 8)))
+    with pytest.raises(gm.errors.InputError, match="empty or infinite"):
+        face_surface(GEOMETRIES["plane"][0], ((0, 0), (0, 1)))
+
+
+def test_a_whole_domain_ends_at_the_last_knot():
+    # low + (high - low) is beyond it, in the last digits of low
+    ends = (-6.589091811, 1.421085e-14)
+    net = Net((1, 2), (np.repeat(ends, 2), np.repeat([0.0, 1], 3)), np.eye(3)[np.mgrid[:2, :3][1]])
+    surface = face_surface(Geometry("nurbs", net=net), (ends, (0, 1)))
+    assert surface.domain == (ends, (0.0, 1.0))

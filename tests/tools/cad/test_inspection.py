@@ -1,0 +1,123 @@
+"""Files before they are read: their formats, whether they are whole, their damaged faces."""
+
+import pytest
+from gaussmap.tools.cad.damaged_step import without_damaged_faces
+from gaussmap.tools.cad.inspection import BadFileError, checked_format
+from gaussmap.tools.cad.preparation import prepared
+
+STEP = b"""ISO-10303-21;
+HEADER;
+FILE_NAME('a (nan) part','',(''),(''),'','','');
+ENDSEC;
+DATA;
+#1=CLOSED_SHELL('',(#2,#3));
+#2=ADVANCED_FACE('top',(#4),#5,.T.);
+#3=ADVANCED_FACE('',(#6),#5,.T.);
+#4=FACE_BOUND('',#7,.T.);
+#5=PLANE('a;#99',#8);
+#6=FACE_BOUND('',#9,.T.);
+#7=POINT('',(1.,2.));
+#8=POINT('',(0.,0.));
+#9=POINT('',(3.,4.E+20)); /* #98 */
+ENDSEC;
+END-ISO-10303-21;
+"""
+BREP = b"""DBRep_DrawableShape
+
+CASCADE Topology V1
+TShapes 2
+Ve
+1e-07
+0 0 0
+*
+So
++2 0 *
+
++1 0
+"""
+
+
+def iges(lines=(("S", 1), ("G", 1), ("D", 2), ("P", 1)), end=True) -> bytes:
+    rows = [f"{letter.lower() * 5:72}{letter}{k + 1:7}" for letter, n in lines for k in range(n)]
+    counts = "".join(f"{letter}{n:7}" for letter, n in lines)
+    return "\n".join([*rows, *([f"{counts:72}T{1:7}"] if end else [])]).encode()
+
+
+@pytest.mark.parametrize(
+    ("content", "form"), [(STEP, "STEP"), (BREP, "BREP"), (BREP + b"0\n", "BREP"), (iges(), "IGES")]
+)
+def test_formats_are_known_by_their_content(content, form):
+    assert checked_format(content) == (form, True)
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        (b"", "is empty"),
+        (b" \n", "is empty"),
+        (b"hello\n" * 50, "is not a STEP, IGES or BREP file"),
+        (bytes(range(256)) * 20, "is not a STEP, IGES or BREP file"),
+        (STEP[:300], "is truncated"),
+        (BREP[:-8], "is truncated"),
+        (BREP.replace(b"TShapes 2", b"TShapes 3"), "is truncated"),
+        (BREP.replace(b"0 0 0", b"0 nan 0"), "not finite"),
+        (iges(end=False), "is truncated"),
+        (iges().replace(b"D      2P", b"D      4P"), "is damaged: its last line says 4 lines"),
+        (iges().replace(b"ppppp", b",NaN,"), "not finite"),
+    ],
+)
+def test_what_is_wrong_is_one_sentence(content, reason):
+    with pytest.raises(BadFileError, match=reason) as error:
+        checked_format(content)
+    assert str(error.value).count(". ") == 0
+
+
+def test_texts_and_comments_are_no_numbers_and_no_references():
+    assert checked_format(STEP) == ("STEP", True)
+    assert without_damaged_faces(STEP, {})[1] == ()
+
+
+@pytest.mark.parametrize("number", [b"nan", b"-NaN", b"inf", b"1.E+400", b"2.5E999"])
+def test_a_face_with_numbers_that_are_not_finite_is_left_out(number):
+    content = STEP.replace(b"3.,4.", number + b",4.")
+    assert checked_format(content) == ("STEP", False)
+    rest, lost = without_damaged_faces(content, {})
+    assert [(x.name, x.reason) for x in lost] == [
+        ("#3", "its #9 holds a number that is not finite")
+    ]
+    assert b"#1=CLOSED_SHELL('',(#2));" in rest
+    assert without_damaged_faces(rest, {})[1] == ()
+
+
+def test_a_number_that_is_not_finite_and_in_no_face_is_an_error():
+    content = STEP.replace(b"ENDSEC;\nEND", b"#10=AXIS('',(nan));\nENDSEC;\nEND")
+    with pytest.raises(BadFileError, match="in #10"):
+        without_damaged_faces(content, {})
+
+
+def test_faces_that_refer_to_nothing_are_left_out():
+    rest, lost = without_damaged_faces(STEP.replace(b"#4),#5", b"#77),#5"), {})
+    assert [(x.name, x.reason) for x in lost] == [
+        ("top", "its #2 refers to #77, which the file lacks")
+    ]
+    assert b"#1=CLOSED_SHELL('',(#3));" in rest
+    rest, lost = without_damaged_faces(STEP.replace(b"(#2,#3)", b"(#2,#77)"), {})
+    assert [(x.name, x.reason) for x in lost] == [("#77", "the file lacks it")]
+    assert b"#1=CLOSED_SHELL('',(#2));" in rest
+
+
+def test_both_faces_of_a_damaged_surface_are_left_out():
+    rest, lost = without_damaged_faces(STEP, {8: "its #8 is damaged"})
+    assert [x.name for x in lost] == ["top", "#3"]
+    assert b"#1=CLOSED_SHELL('',());" in rest
+
+
+def test_a_copy_is_made_of_files_with_damaged_faces_only(tmp_path):
+    path = tmp_path / "part.step"
+    path.write_bytes(STEP)
+    assert prepared(path, tmp_path).path == path
+    path.write_bytes(STEP.replace(b"3.,4.", b"nan,4."))
+    source = prepared(path, tmp_path)
+    assert source.path != path
+    assert source.path.read_bytes() == source.content
+    assert len(source.lost) == 1

@@ -1,0 +1,109 @@
+"""`read_cad`: the process that reads, its limits, and what it says."""
+
+import _thread
+import os
+import sys
+import tempfile
+import threading
+import time
+
+import pytest
+from gaussmap.runtime.base.errors import FileError, InputError, MissingExtraError
+from gaussmap.tools.cad import reader
+from gaussmap.tools.cad.reader import read_cad
+
+
+@pytest.fixture
+def installed(monkeypatch):
+    """Let Open CASCADE seem to be there: these files are refused before it is loaded."""
+    monkeypatch.setattr(reader, "check_extra", lambda *_: None)
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [(b"", "is empty."), (b"hello\n" * 9, "is not a STEP, IGES or BREP file.")],
+)
+def test_bad_files_are_refused_in_a_sentence(content, reason, tmp_path, installed):
+    path = tmp_path / "part.step"
+    path.write_bytes(content)
+    with pytest.raises(FileError) as error:
+        read_cad(path)
+    assert str(error.value) == f"'{path}' {reason}"
+
+
+def test_paths_that_are_no_files_are_refused(tmp_path):
+    with pytest.raises(FileError, match="is a folder"):
+        read_cad(tmp_path)
+    with pytest.raises(FileError, match="does not exist"):
+        read_cad(tmp_path / "part.step")
+    os.mkfifo(tmp_path / "pipe.step")
+    with pytest.raises(FileError, match="is no file"):
+        read_cad(tmp_path / "pipe.step")
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        {"unit": "ell"},
+        {"unit": 3},
+        {"time_limit": 0},
+        {"time_limit": float("nan")},
+        {"memory_limit": -1},
+        {"memory_limit": 0.5},
+        {"memory_limit": "much"},
+    ],
+)
+def test_arguments_are_checked(arguments, tmp_path):
+    with pytest.raises(InputError, match=next(iter(arguments))):
+        read_cad(tmp_path / "part.step", **arguments)
+
+
+def test_without_open_cascade_the_extra_is_named(tmp_path, monkeypatch):
+    path = tmp_path / "part.step"
+    path.write_bytes(b"ISO-10303-21;")
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    with pytest.raises(MissingExtraError, match=r"gaussmap\[cad\]"):
+        read_cad(path)
+
+
+def sleeping(code: str) -> list[str]:
+    return [sys.executable, "-c", code]
+
+
+def test_a_process_that_hangs_is_gone_after_the_limit(tmp_path, installed, monkeypatch):
+    path, alive = tmp_path / "part.step", tmp_path / "alive"
+    path.write_bytes(b"ISO-10303-21;")
+    # A process with a child of its own, which both would write to a file in a while.
+    write = f"import time; time.sleep(1.5); open({str(alive)!r}, 'w')"
+    code = f"import os, sys; os.fork(); {write}"
+    monkeypatch.setattr(reader, "_command", lambda request: sleeping(code))
+    start = time.perf_counter()
+    with pytest.raises(FileError, match=r"was not read within 0\.5 s"):
+        read_cad(path, time_limit=0.5)
+    assert time.perf_counter() - start < 2.5
+    time.sleep(1.5)
+    assert not alive.exists()
+
+
+def test_a_process_that_crashes_is_an_error(tmp_path, installed, monkeypatch):
+    path = tmp_path / "part.step"
+    path.write_bytes(b"ISO-10303-21;")
+    code = "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
+    monkeypatch.setattr(reader, "_command", lambda request: sleeping(code))
+    with pytest.raises(FileError, match=r"crash \(SIGSEGV\)"):
+        read_cad(path)
+
+
+def test_an_interruption_leaves_nothing_behind(tmp_path, installed, monkeypatch):
+    path, folder, alive = tmp_path / "part.step", tmp_path / "temporary", tmp_path / "alive"
+    path.write_bytes(b"ISO-10303-21;")
+    folder.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(folder))
+    code = f"import time; time.sleep(1.0); open({str(alive)!r}, 'w')"
+    monkeypatch.setattr(reader, "_command", lambda request: sleeping(code))
+    threading.Timer(0.3, _thread.interrupt_main).start()
+    with pytest.raises(KeyboardInterrupt):
+        read_cad(path)
+    assert list(folder.iterdir()) == []
+    time.sleep(1.0)
+    assert not alive.exists()

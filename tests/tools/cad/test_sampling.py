@@ -1,0 +1,264 @@
+"""Samples of parts: one count, coverage and angle for all faces, and what samples know."""
+
+# pyright: reportOptionalMemberAccess=false, reportOptionalOperand=false, reportOperatorIssue=false
+# pyright: reportArgumentType=false, reportAttributeAccessIssue=false
+
+import pickle
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.runtime.density.angles import choose_apart
+from gaussmap.tools.cad.cells import BEND_U
+from gaussmap.tools.cad.part import Part
+from gaussmap.tools.cad.records import FaceRecord, Geometry
+from gaussmap.tools.cad.results import space_of
+from scipy.spatial import cKDTree
+
+
+@pytest.fixture(scope="module")
+def cylinder(made) -> Part:
+    return made.part(made.cylinder_faces(), "cylinder")
+
+
+@pytest.fixture(scope="module")
+def plates(made) -> Part:
+    """Return a part with a hole, a sphere whose normals are reversed, a torus, and a tiny face."""
+    turn, circle = made.TURN, np.linspace(0.0, made.TURN, 720, endpoint=False)
+    hole = 0.5 + 0.3 * np.stack([np.cos(circle), np.sin(circle)], axis=1)
+    plate = made.face(
+        "plane",
+        made.placement(),
+        (0.0, 1.0),
+        (0.0, 1.0),
+        1.0 - np.pi * 0.09,
+        loops=[made.rectangle(0, 1, 0, 1), hole],
+    )
+    ball = made.face(
+        "sphere",
+        [*made.placement((0.5, 0.5, 1.0)), 0.25],
+        (0.0, turn),
+        (-np.pi / 2, np.pi / 2),
+        np.pi / 4,
+        (turn, 0.0),
+        reversed=True,
+        solid_index=0,
+    )
+    ring = made.face(
+        "torus",
+        [*made.placement((0.5, 0.5, 2.0)), 0.4, 0.1],
+        (0.0, turn),
+        (0.0, turn),
+        4 * np.pi**2 * 0.04,
+        (turn, turn),
+        solid_index=1,
+    )
+    tiny = made.face("plane", made.placement((3.0, 0.0, 0.0)), (0.0, 1e-4), (0.0, 2e-4), 2e-8)
+    return made.part([plate, ball, ring, tiny], "plates", False)
+
+
+def points_on_cylinder(count: int = 40_000) -> np.ndarray:
+    """Return points of the cylinder of radius 1 and height 2, from no evaluation of ours."""
+    rng = np.random.default_rng(0)
+    phi, z = rng.uniform(0, 2 * np.pi, count), rng.uniform(0, 2, count)
+    r = np.sqrt(rng.uniform(0, 1, count))
+    side = np.stack([np.cos(phi), np.sin(phi), z], axis=1)
+    ends = np.stack([r * np.cos(phi), r * np.sin(phi), 2.0 * (z > 1)], axis=1)
+    return np.concatenate([side, ends])
+
+
+def gap(samples: gm.Samples, points: np.ndarray) -> float:
+    return float(cKDTree(samples.points).query(points)[0].max())
+
+
+@pytest.mark.parametrize("count", [1, 2, 5, 6, 7, 60, 500])
+def test_count_is_exact(cylinder, count):
+    samples = gm.sample(cylinder, count)
+    assert len(samples) == count == samples.report.samples
+    if count >= 6:  # twice the faces
+        assert set(samples.face_index.tolist()) == {0, 1, 2}
+        assert samples.report.empty_faces == 0
+
+
+@pytest.mark.parametrize("density", ["balanced", "uniform", 0.5])
+def test_samples_are_on_their_faces(plates, density):
+    samples = gm.sample(plates, 400, density=density)
+    points, normals, faces = samples.points, samples.normals, samples.face_index
+    assert len(samples) == 400
+    on_plate, on_ball, on_ring, on_tiny = (faces == k for k in range(4))
+    assert np.abs(points[on_plate, 2]).max() == 0.0
+    assert np.hypot(*(points[on_plate, :2] - 0.5).T).min() > 0.3 * np.cos(np.pi / 720) - 1e-6
+    from_centre = points[on_ball] - [0.5, 0.5, 1.0]
+    np.testing.assert_allclose(np.linalg.norm(from_centre, axis=1), 0.25, atol=1e-14)
+    np.testing.assert_allclose(normals[on_ball], -from_centre / 0.25, atol=1e-13)  # reversed
+    np.testing.assert_allclose(samples.mean_curvature[on_ball], -4.0, rtol=1e-12)
+    np.testing.assert_allclose(samples.gaussian_curvature[on_ball], 16.0, rtol=1e-12)
+    x, y, z = (points[on_ring] - [0.5, 0.5, 2.0]).T
+    np.testing.assert_allclose(np.hypot(np.hypot(x, y) - 0.4, z), 0.1, atol=1e-14)
+    assert on_tiny.sum() >= 1
+    assert samples.solid_index.tolist() == np.array([-1, 0, 1, -1])[faces].tolist()
+    assert samples.report.oriented is False
+    for k, face in enumerate(plates.faces):
+        here = faces == k
+        evaluated = face.surface.evaluate(*samples.uv[here].T)
+        np.testing.assert_allclose(evaluated, points[here], atol=1e-15)
+
+
+@pytest.mark.parametrize("coverage", [0.5, 0.2])
+@pytest.mark.parametrize("density", ["balanced", "uniform"])
+def test_coverage_holds_for_the_part(cylinder, coverage, density):
+    samples = gm.sample(cylinder, coverage=coverage, density=density)
+    assert gap(samples, points_on_cylinder()) <= samples.report.coverage <= coverage
+    assert samples.coverage() <= 1.02 * samples.report.coverage
+    # Squares of half the diagonal cover as much by twice as many samples; edges cost some.
+    assert len(samples) < 1.6 * cylinder.area / (2 * coverage**2) + 30
+
+
+def test_count_and_coverage(cylinder):
+    samples = gm.sample(cylinder, 200, coverage=0.42)
+    assert len(samples) == 200
+    assert gap(samples, points_on_cylinder()) <= samples.report.coverage <= 0.42
+
+
+def test_coverage_that_a_count_cannot_reach(cylinder):
+    with pytest.warns(gm.GaussmapWarning, match="the coverage is"):
+        samples = gm.sample(cylinder, 20, coverage=0.05)
+    assert len(samples) == 20
+
+
+def test_angle_holds_for_the_part(plates):
+    samples = gm.sample(plates, angle=15.0)
+    assert samples.report.angle <= 15.0
+    rng = np.random.default_rng(1)
+    normals = rng.normal(size=(20_000, 3))
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)  # those of the sphere are all
+    chords = cKDTree(samples.normals).query(normals)[0]
+    assert np.degrees(2 * np.arcsin(chords.max() / 2)) <= 15.0
+    assert samples.normal_deviation().normal_space <= 15.0
+
+
+def test_prescribed_normals(plates):
+    normals = np.array([[1.0, 2, 2], [-2, 1, 2], [2, -2, 1]]) / 3
+    with pytest.warns(gm.GaussmapWarning, match="33 % of its area is flat"):
+        samples = gm.sample(plates, normals=normals)
+    assert samples.report.normals == 3
+    # Once on the sphere, and twice on the torus; planes have one normal only.
+    assert np.bincount(samples.face_index, minlength=4).tolist() == [0, 3, 6, 0]
+    np.testing.assert_allclose(samples.normals, normals[samples.normal_index], atol=1e-12)
+    ball = samples[samples.face_index == 1]
+    np.testing.assert_allclose(ball.points, [0.5, 0.5, 1.0] - 0.25 * ball.normals, atol=1e-12)
+    filled = gm.sample(plates, normals=normals, density="balanced")
+    assert (filled.normal_index >= 0).sum() == 9
+    assert (filled.normal_index < 0).sum() > 20
+
+
+def test_weights_add_up_to_the_areas(plates):
+    samples = gm.sample(plates, 300)
+    weights = samples.weights()
+    areas = np.bincount(samples.face_index, weights, 4)
+    np.testing.assert_allclose(areas, [x.area for x in plates.faces], rtol=1e-12)
+    # Twice the integral of z² over the sphere is that over a shell: its moment.
+    ball = samples.face_index == 1
+    moment = (weights * (samples.points[:, 2] - 1.0) ** 2)[ball].sum()
+    assert moment == pytest.approx(4 * np.pi / 3 * 0.25**4, rel=0.05)
+
+
+def test_threads_and_repeats_give_the_same(plates):
+    one, other = (gm.sample(plates, 250, threads=x) for x in (1, 3))
+    again = gm.sample(pickle.loads(pickle.dumps(plates)), 250)
+    for name, array in one.arrays().items():
+        assert np.array_equal(array, getattr(other, name))
+        assert np.array_equal(array, getattr(again, name))
+
+
+def test_relaxed(cylinder):
+    samples = gm.sample(cylinder, 150, relax=2, density="uniform")
+    assert len(samples) == 150
+    assert samples.coverage() < gm.sample(cylinder, 150, density="uniform").coverage()
+
+
+def test_a_narrow_face_keeps_its_coverage(made):
+    """A sliver across the domain, thinner than cells: places next to its border cover it."""
+    sliver = np.array([(0.0, 0.0), (1.0, 0.9999), (1.0, 1.0), (0.0, 0.0001)])
+    face = made.face(
+        "plane", made.placement(), (0.0, 1.0), (0.0, 1.0), 1e-4, loops=[sliver], solid_index=0
+    )
+    samples = gm.sample(made.part([face, *made.box_faces(2.0, 2.0, 2.0)]), coverage=0.1)
+    along = np.linspace(0, 1, 2000)
+    points = np.stack([along, 0.9999 * along + 5e-5, 0 * along], axis=1)
+    assert gap(samples, points) <= 0.1
+    assert (samples.face_index == 0).sum() >= 1
+
+
+def test_failed_faces_are_left_out(made):
+    faces = made.box_faces()
+    faces[2] = FaceRecord(Geometry("unknown"), reason="it has no surface")
+    flat = made.face("plane", made.placement(), (0.0, 1.0), (0.0, 1.0), 0.0)
+    part = made.part([*faces, flat])
+    with pytest.warns(gm.GaussmapWarning, match="2 of 7 faces cannot be sampled"):
+        samples = gm.sample(part, 50)
+    assert set(samples.face_index.tolist()) == {0, 1, 3, 4, 5}
+    assert (samples.report.faces, samples.report.empty_faces) == (7, 2)
+    assert "7 faces, 2 of them without samples" in samples.summary()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "match"),
+    [
+        ({"count": 10, "cells": (8, 8)}, "cells=... are for splines"),
+        ({"count": 10, "on": "spline"}, "is for surfaces"),
+        ({"count": 10, "density": "gauss"}, "goes with normals"),
+        ({"count": 10, "density": "aligned"}, "is for surfaces"),
+        ({"count": 10, "fields": ("row",)}, "on a grid only"),
+        ({"coverage": 1e-9}, "more than"),
+    ],
+)
+def test_unusable_arguments(cylinder, arguments, match):
+    with pytest.raises(gm.errors.InputError, match=match):
+        gm.sample(cylinder, **arguments)
+
+
+def test_parts_without_faces(made):
+    with pytest.raises(gm.errors.SurfaceError, match="has no face that can be sampled"):
+        gm.sample(made.part([]), 10)
+
+
+def test_samples_in_files_and_other_methods(cylinder, tmp_path):
+    samples = gm.sample(cylinder, 40)
+    for name in ("a.npz", "a.ply"):
+        samples.write(tmp_path / name)
+        again = gm.read_samples(tmp_path / name)
+        assert again.fields == samples.fields
+        assert np.array_equal(again.face_index, samples.face_index)
+        assert again.report == samples.report
+    few = samples[:5]
+    assert few.surface is cylinder
+    assert len(gm.Samples.concatenate([few, few]).solid_index) == 10
+    assert pickle.loads(pickle.dumps(samples)).surface.name == "cylinder"
+    with pytest.raises(gm.errors.InputError, match="of a CAD part"):
+        samples.mesh()
+    with pytest.raises(gm.errors.InputError, match="of CAD parts only"):
+        gm.sample("torus", 10, cells=(8, 8), fields=("face_index",))
+    assert gm.sample("torus", 10, cells=(8, 8)).face_index is None
+    chosen = gm.sample(cylinder, 10, fields=("points", "solid_index"))
+    assert chosen.fields == ("points", "solid_index")
+    assert gm.sample(cylinder, 10, dtype=np.float32).points.dtype == np.float32
+
+
+def test_candidates_for_normals_are_no_more_than_asked(plates):
+    space = space_of(plates, 1)
+    for most in (0, 500):
+        cells = space.cut_by_normals(1e-3, most)
+        assert len(cells) <= most + len(space.first)
+    whole = space.cut_by_normals(0.2, np.inf)  # few are enough: the chord is the one asked for
+    assert whole.numbers[:, BEND_U].max() <= 0.5
+
+
+def test_normals_are_chosen_far_from_known_ones():
+    known, normals = gm.icosphere(3), gm.fibonacci(2000)
+    near, widest = 0.1, 1.0
+    chosen = choose_apart(np.concatenate([normals, np.zeros((1, 3))]), near, 1, widest, None, known)
+    every = np.concatenate([known, normals[chosen]])
+    distances, _ = cKDTree(every).query(normals, k=2)
+    assert distances[:, 0].max() <= near
+    assert distances[chosen, 1].min() > near * 0.98

@@ -1,0 +1,193 @@
+"""Parts in files: the same again, and one sentence for anything else."""
+
+import io
+import pickle
+import zipfile
+from contextlib import suppress
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.tools.cad.part import Part, read_part
+from gaussmap.tools.cad.records import EdgeRecord, FaceRecord, Geometry, Net
+from gaussmap.tools.cad.saving import write_arrays
+
+
+def nurbs(m: int, n: int, rational: bool) -> Net:
+    rng = np.random.default_rng(0)
+    knots = tuple(np.r_[[0.0] * 3, np.linspace(0, 1, k - 1)[1:-1], [1.0] * 3] for k in (m, n))
+    weights = rng.uniform(1, 2, (m, n)) if rational else None
+    return Net((2, 2), knots, rng.normal(size=(m, n, 3)), weights)
+
+
+def curve() -> Net:
+    return Net((1,), (np.array([0.0, 0.0, 1.0, 1.0]),), np.array([[1.0, 0, 0], [1, 0, 2]]))
+
+
+@pytest.fixture
+def everything(made) -> Part:
+    """Return a part with each kind of record."""
+    square = [made.rectangle(0, 1, 0, 1), made.rectangle(0.2, 0.4, 0.2, 0.4)]
+    basis = Geometry("nurbs", net=nurbs(4, 5, True))
+    geometries = [
+        Geometry("nurbs", net=nurbs(3, 4, False)),
+        Geometry("offset", np.array([0.5]), basis=Geometry("offset", np.array([0.1]), basis=basis)),
+        Geometry("revolution", np.array([0.0, 0, 0, 0, 0, 1]), net=curve()),
+        Geometry("extrusion", np.array([0.0, 1, 0]), net=curve()),
+        Geometry("unknown"),
+    ]
+    faces = [FaceRecord(x, ((0, 1), (0, 1)), loops=square, area=1.0) for x in geometries]
+    faces[-1] = FaceRecord(geometries[-1], reason="it has no surface")
+    edge = EdgeRecord((0, 2), np.arange(12.0).reshape(3, 4))
+    return made.part([*made.box_faces(), *faces], "all", False, solid_names=["bolt"], edges=[edge])
+
+
+def same(one: Part, other: Part) -> bool:
+    return one.about == other.about and all(
+        np.array_equal(x, other.arrays[name], equal_nan=x.dtype.kind == "f")
+        for name, x in one.arrays.items()
+    )
+
+
+def test_read_again(everything, tmp_path):
+    everything.save(tmp_path / "part.npz")
+    again = read_part(tmp_path / "part.npz")
+    assert same(everything, again)
+    assert same(everything, pickle.loads(pickle.dumps(everything)))
+
+
+def test_geometries_are_unpacked(everything):
+    faces = everything.faces[6:]
+    assert [x.kind for x in faces] == ["nurbs", "offset", "revolution", "extrusion", "unknown"]
+    net, wanted = faces[0].geometry.net, nurbs(3, 4, False)
+    assert net is not None
+    assert net.weights is None
+    assert net.degrees == (2, 2)
+    assert np.array_equal(net.points, wanted.points)
+    assert all(map(np.array_equal, net.knots, wanted.knots))
+    inner = faces[1].geometry.basis
+    assert inner is not None
+    assert inner.numbers.tolist() == [0.1]
+    assert inner.basis is not None
+    deep, wanted = inner.basis.net, nurbs(4, 5, True)
+    assert deep is not None
+    assert deep.weights is not None
+    assert wanted.weights is not None
+    assert np.array_equal(deep.weights, wanted.weights)
+    line = faces[2].geometry.net
+    assert line is not None
+    assert line.degrees == (1,)
+    assert np.array_equal(line.points, curve().points)
+    assert [x.shape for x in faces[0].loops] == [(4, 2), (4, 2)]
+    assert faces[4].loops == ()
+
+
+def test_what_a_part_says(everything, made):
+    assert (len(everything), everything.unit, everything.metres, everything.oriented) == (
+        11,
+        "mm",
+        1e-3,
+        False,
+    )
+    assert everything.area == pytest.approx(22 + 4)
+    assert [x.index for x in everything.failed] == [10]
+    with pytest.raises(gm.errors.SurfaceError, match="face 10 of 'all' cannot be used: it has no"):
+        everything.failed[0].surface  # noqa: B018
+    (solid,) = everything.solids
+    assert (solid.name, solid.faces.tolist(), solid.area) == ("bolt", list(range(6)), 22.0)
+    first = everything.faces[0]
+    assert (first.name, first.color, first.solid_index, first.reversed) == ("side", None, 0, True)
+    assert made.part(made.cylinder_faces()).faces[0].color == (1.0, 0.5, 0.0)
+
+
+def test_no_faces(made, tmp_path):
+    everything = made.part([], "empty")
+    everything.save(tmp_path / "part.npz")
+    again = read_part(tmp_path / "part.npz")
+    assert len(again) == 0
+    assert again.faces == () == again.solids
+    assert again.area == 0.0
+
+
+def test_numbers_that_are_not_finite_fail_one_face(everything, tmp_path):
+    everything.arrays["net_points"][0, 0] = np.nan  # of face 6
+    everything.arrays["net_points"][-1, 3] = np.inf  # of the basis of the basis of face 7
+    everything.arrays["numbers"][0] = np.nan
+    everything.save(tmp_path / "part.npz")
+    failed = read_part(tmp_path / "part.npz").failed
+    assert [x.index for x in failed] == [0, 6, 7, 10]
+    assert failed[0].reason == "its numbers are not finite"
+
+
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [
+        ("number_starts", lambda x: x[::-1].copy()),
+        ("number_starts", lambda x: x + 1),
+        ("kind", lambda x: x + 50),
+        ("kind", lambda x: x.astype(np.float64)),
+        ("basis", lambda x: np.where(x < 0, x, 0)),
+        ("net", lambda x: np.where(x < 0, x, 10**6)),
+        ("net_degrees", lambda x: x + 10**9),
+        ("net_shapes", lambda x: x + 1),
+        ("knots", lambda x: x[1:]),
+        ("edge_faces", lambda x: x + 10**6),
+        ("solid_index", lambda x: x + 10**6),
+        ("area", lambda x: x[1:]),
+        ("domain", lambda x: x.reshape(-1, 4)),
+        ("reversed", lambda x: x.astype(object)),
+        ("about", lambda x: x[1:]),
+        ("about", lambda x: np.frombuffer(b'{"format": "no"}', dtype=np.uint8)),
+    ],
+)
+def test_damaged_arrays(everything, tmp_path, name, change):
+    arrays = {**everything.arrays, name: change(everything.arrays[name])}
+    write_arrays(arrays, tmp_path / "part.npz")
+    with pytest.raises(gm.errors.FileError, match=r"part\.npz' (is damaged|is no part|comes from)"):
+        read_part(tmp_path / "part.npz")
+
+
+def test_truncated_foreign_and_missing_files(everything, tmp_path):
+    everything.save(tmp_path / "part.npz")
+    whole = (tmp_path / "part.npz").read_bytes()
+    for length in (0, 3, 1000, len(whole) // 2, len(whole) - 1):
+        (tmp_path / "cut.npz").write_bytes(whole[:length])
+        with pytest.raises(gm.errors.FileError, match=r"cut\.npz' is damaged"):
+            read_part(tmp_path / "cut.npz")
+    np.savez(tmp_path / "other.npz", a=np.arange(3))
+    with pytest.raises(gm.errors.FileError, match="is no part that gaussmap saved: it lacks"):
+        read_part(tmp_path / "other.npz")
+    with pytest.raises(gm.errors.FileError, match="cannot be read"):
+        read_part(tmp_path / "none.npz")
+    with pytest.raises(gm.errors.UnknownNameError):
+        read_part(tmp_path / "part.step")
+
+
+def test_flipped_bytes_never_crash(everything, tmp_path):
+    """Each is read, or refused by an error of ours: archives have checksums of their arrays."""
+    everything.save(tmp_path / "part.npz")
+    whole = (tmp_path / "part.npz").read_bytes()
+    rng = np.random.default_rng(1)
+    for place in rng.integers(0, len(whole), 60).tolist():
+        changed = bytearray(whole)
+        changed[place] ^= 1 << int(rng.integers(8))
+        (tmp_path / "bad.npz").write_bytes(changed)
+        with suppress(gm.errors.FileError):
+            read_part(tmp_path / "bad.npz")
+
+
+def test_an_array_that_says_it_is_huge(everything, tmp_path):
+    """A header may say anything: no memory is taken for what the file does not hold."""
+    everything.save(tmp_path / "part.npz")
+    with zipfile.ZipFile(tmp_path / "part.npz") as old:
+        members = {x.filename: old.read(x) for x in old.infolist()}
+    header = io.BytesIO()
+    np.lib.format.write_array_header_1_0(
+        header, {"descr": "<f8", "fortran_order": False, "shape": (1 << 40,)}
+    )
+    members["numbers.npy"] = header.getvalue()
+    with zipfile.ZipFile(tmp_path / "huge.npz", "w") as new:
+        for name, content in members.items():
+            new.writestr(name, content)
+    with pytest.raises(gm.errors.FileError, match=r"is damaged: 'numbers\.npy'"):
+        read_part(tmp_path / "huge.npz")

@@ -1,0 +1,787 @@
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import warnings
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.tools.commands import sample as sampling
+from gaussmap.tools.commands.cli import main
+from gaussmap.tools.files import formats
+
+FEW = ["--count", "60", "--cells", "8", "8"]
+
+compiled = pytest.mark.compiled
+posix = pytest.mark.skipif(os.name != "posix", reason="needs POSIX")
+
+GAUSS = ["--density", "gauss"]
+EIGHT = ["--cells", "8", "8"]
+
+
+def gaussmap(*arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "gaussmap", *arguments],
+        cwd=cwd, capture_output=True, text=True, encoding="utf-8", check=False,
+        env={**os.environ, "PYTHONIOENCODING": "utf-8"},
+    )  # fmt: skip
+
+
+@pytest.fixture(autouse=True)
+def _in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.fixture
+def files() -> None:
+    """Good and bad input in the current folder."""
+    heights = np.add.outer(np.arange(7.0) ** 2, np.arange(9.0) ** 2)
+    sheet = np.stack([*np.meshgrid(np.arange(9.0), np.arange(7.0)), heights], axis=2)
+    np.save("heights.npy", heights)
+    np.save("points.npy", sheet)
+    np.savez("one.npz", heights=heights)
+    np.savez("two.npz", heights=heights, points=sheet)
+    np.savez("none.npz")
+    np.save("directions.npy", gm.icosphere(3))
+    np.save("volume.npy", np.zeros((3, 4, 5)))
+    np.save("complex.npy", heights + 1j)
+    np.save("objects.npy", np.array([[{}, {}]]), allow_pickle=True)
+    np.save("empty.npy", np.zeros((0, 0)))
+    np.save("nan.npy", np.full_like(heights, np.nan))
+    np.save("small.npy", heights[:2, :2])
+    np.save("zero.npy", np.zeros((4, 3)))
+    whole = Path("heights.npy").read_bytes()
+    Path("cut.npy").write_bytes(whole[:-40])
+    Path("cut_header.npy").write_bytes(whole[:40])
+    Path("huge.npy").write_bytes(whole.replace(b"(7, 9), }", b"(7777777777777777, 9), }", 1))
+    Path("nothing.npy").write_bytes(b"")
+    Path("text.npy").write_text("1 2 3")
+    Path("cut.npz").write_bytes(Path("two.npz").read_bytes()[:-40])
+    Path("text.npz").write_text("1 2 3")
+    Path("heights.txt").write_text("1 2 3")
+    Path("folder.npy").mkdir()
+
+
+# ── What it does ─────────────────────────────────────────────────────────────────────────────────
+
+
+@compiled
+def test_sample_a_surface_by_name() -> None:
+    done = gaussmap("sample", "torus", "--count", "10000", "-o", "torus.ply")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert re.fullmatch(
+        r"torus\.ply: 10,000 samples: [\d,]+ on a grid that follows the curvature, [\d,]+ in its "
+        r"gaps \([\d,]+ dome-shaped, [\d,]+ saddle-shaped\)\n",
+        done.stdout,
+    )
+    samples = gm.read_samples("torus.ply")
+    assert len(samples) == 10_000
+    distance = np.hypot(np.hypot(*samples.points[:, :2].T) - 1.0, samples.points[:, 2])
+    np.testing.assert_allclose(distance, 0.35, rtol=1e-3)
+
+
+@compiled
+def test_sample_elevations() -> None:
+    x, y = np.meshgrid(np.linspace(-1, 1, 50), np.linspace(-1, 1, 40))
+    np.save("heights.npy", 100 * np.exp(-3 * (x * x + y * y)))
+    arguments = ["--spacing", "30", "-30", "--count", "5_000", "-o", "terrain.npz"]
+    done = gaussmap("sample", "heights.npy", *arguments)
+    assert (done.returncode, done.stderr) == (0, "")
+    samples = gm.read_samples("terrain.npz")
+    assert abs(len(samples) - 5000) < 250
+    assert samples.report.surface == "heights.npy"
+    assert samples.points[:, 0].max() <= 49 * 30
+    assert samples.points[:, 1].min() >= -39 * 30
+    assert samples.points[:, 1].max() <= 0.0
+    assert (samples.normals[:, 2] > 0).all()
+
+
+@compiled
+def test_tolerance_of_data_and_what_the_summary_says_of_them() -> None:
+    x, y = np.meshgrid(np.linspace(-1, 1, 50), np.linspace(-1, 1, 40))
+    np.save("heights.npy", 100 * np.exp(-3 * (x * x + y * y)))
+    arguments = ["--spacing", "30", "30", "--tolerance", "1", "--count", "300", "-o", "a.npz"]
+    done = gaussmap("sample", "heights.npy", *arguments)
+    assert done.returncode == 0
+    assert "; they lie on a spline within 0." in done.stdout
+    assert "of the data (root mean square 0." in done.stdout
+    report = gm.read_samples("a.npz").report
+    assert report.fit_distance is not None
+    assert report.fit_distance <= 1.0
+    assert report.patches is not None
+    assert report.patches < 4 * 49 * 39
+
+
+@compiled
+def test_missing_elevations_are_left_out() -> None:
+    x, y = np.meshgrid(np.linspace(-1, 1, 30), np.linspace(-1, 1, 30))
+    heights = np.exp(-3 * (x * x + y * y))
+    heights[:, 20:] = -9999.0
+    np.save("heights.npy", heights)
+    arguments = ["--spacing", "1", "1", "--nodata", "-9999", "--count", "300", "-o", "part.npz"]
+    assert main(["sample", "heights.npy", *arguments]) == 0
+    samples = gm.read_samples("part.npz")
+    assert len(samples) == 300
+    assert 15.0 < samples.points[:, 0].max() < 20.0
+    assert samples.points[:, 2].min() > 0.0
+
+
+def test_parameters_and_cells_arrive() -> None:
+    assert (
+        main(["sample", "torus", "--set", "major=2", "--set", "minor=0.5", *FEW, "-o", "a.npz"])
+        == 0
+    )
+    samples = gm.read_samples("a.npz")
+    assert np.hypot(*samples.points[:, :2].T).max() == pytest.approx(2.5, rel=0.05)
+    assert samples.report.patches == 4 * 8 * 8
+
+
+def test_the_normals_of_an_icosphere() -> None:
+    arguments = ["--frequency", "3", "--cells", "8", "8", "-o", "a.npz"]
+    assert main(["sample", "torus", *GAUSS, *arguments]) == 0
+    samples = gm.read_samples("a.npz")
+    assert samples.report.normals == 10 * 3**2 + 2
+    np.testing.assert_array_equal(samples.normals, gm.icosphere(3)[samples.normal_index])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "normals"),
+    [
+        (["--healpix", "4"], gm.directions.healpix(4)),
+        (["--random", "150"], gm.directions.random(150)),
+        (["--random", "150", "--seed", "7"], gm.directions.random(150, seed=7)),
+        (["--seed", "0", "--random", "150"], gm.directions.random(150, seed=0)),
+    ],
+)
+def test_other_sets_of_normals(arguments: list[str], normals: np.ndarray) -> None:
+    assert main(["sample", "torus", *GAUSS, *arguments, *EIGHT, "-o", "a.npz"]) == 0
+    samples = gm.read_samples("a.npz")
+    assert samples.report.normals == len(normals)
+    np.testing.assert_array_equal(samples.normals, normals[samples.normal_index])
+
+
+@pytest.mark.usefixtures("files")
+@pytest.mark.parametrize("source", ["directions.npy", "both.npz:those"])
+def test_normals_from_a_file(source: str) -> None:
+    np.savez("both.npz", those=5 * gm.icosphere(3), others=np.zeros(3))
+    assert main(["sample", "torus", *GAUSS, "--normals", source, *EIGHT, "-o", "a.npz"]) == 0
+    samples = gm.read_samples("a.npz")
+    np.testing.assert_allclose(
+        samples.normals, gm.icosphere(3)[samples.normal_index], rtol=0, atol=1e-15
+    )
+
+
+@pytest.mark.parametrize(
+    ("arguments", "options"),
+    [
+        (["--count", "200"], {"count": 200}),
+        (["--angle", "20"], {"angle": 20.0}),
+        (["--coverage", "0.3"], {"coverage": 0.3}),
+        (["--count", "200", "--coverage", "0.5"], {"count": 200, "coverage": 0.5}),
+        (["--count", "200", "--relax", "1"], {"count": 200, "relax": 1}),
+        (["--count", "200", "--density", "uniform"], {"count": 200, "density": "uniform"}),
+        (["--count", "200", "--density", "0.5"], {"count": 200, "density": 0.5}),
+        (["--count", "200", "--density", "gauss"], {"count": 200, "density": "gauss"}),
+        (["--frequency", "3"], {"normals": gm.icosphere(3), "density": "balanced"}),
+    ],
+)
+@compiled
+def test_how_many_and_where(arguments: list[str], options: dict[str, Any]) -> None:
+    assert main(["sample", "torus", *arguments, *EIGHT, "-o", "a.npz"]) == 0
+    expected = gm.sample(gm.surfaces.torus(), **options, cells=(8, 8))
+    samples = gm.read_samples("a.npz")
+    assert samples.report == expected.report
+    np.testing.assert_array_equal(samples.points, expected.points)
+
+
+def test_progressive() -> None:
+    arguments = ["sample", "torus", "--count", "200", *EIGHT]
+    assert main([*arguments, "-o", "a.npz"]) == 0
+    assert main([*arguments, "--progressive", "-o", "b.ply"]) == 0
+    ordered = gm.read_samples("a.npz").progressive()
+    np.testing.assert_array_equal(gm.read_samples("b.ply").points, ordered.points)
+
+
+def test_a_formula() -> None:
+    """Numbers may be texts, and values may begin with a dash."""
+    texts = ["-u", "v", "u**2-v**2"]
+    domain = ["--domain", "-1", "1", "-1/2", "0.5"]
+    assert main(["sample", "--formula", *texts, *domain, *FEW, "-o", "a.npz"]) == 0
+    surface = gm.Surface.from_sympy(("-u", "v", "u**2 - v**2"), "uv", ((-1, 1), (-0.5, 0.5)))
+    samples = gm.read_samples("a.npz")
+    assert samples.report.surface == "(-u, v, u**2-v**2)"
+    np.testing.assert_array_equal(samples.points, gm.sample(surface, 60, cells=(8, 8)).points)
+
+
+@compiled
+def test_a_periodic_formula() -> None:
+    texts = ["cos(u)*(3+cos(v))", "sin(u)*(3+cos(v))", "sin(v)"]
+    domain = ["--domain", "0", "2*pi", "0", "2*pi", "--periodic", "uv"]
+    assert main(["mesh", "--formula", *texts, *domain, *FEW, "-o", "a.stl"]) == 0
+    triangles = int.from_bytes(Path("a.stl").read_bytes()[80:84], "little")
+    assert triangles == 2 * 60  # closed, of genus 1
+
+
+@pytest.mark.usefixtures("files")
+@pytest.mark.parametrize("source", ["points.npy", "two.npz:points", "./two.npz:points"])
+def test_a_grid_of_points(source: str) -> None:
+    assert main(["sample", source, "--count", "20", "-o", "a.npz"]) == 0
+    samples = gm.read_samples("a.npz")
+    assert samples.report.patches == 4 * 6 * 8
+    assert samples.report.surface in ("points.npy", "two.npz")
+    assert samples.points[:, :2].max() <= 8.0
+
+
+@compiled
+@pytest.mark.parametrize("axis", ["u", "v", "uv"])
+def test_a_periodic_grid(axis: str) -> None:
+    u, v = np.meshgrid(*2 * [2 * np.pi * np.arange(8) / 8], indexing="ij")
+    radius = 3 + np.cos(v)
+    np.save("ring.npy", np.stack([radius * np.cos(u), radius * np.sin(u), np.sin(v)], axis=2))
+    assert main(["sample", "ring.npy", "--periodic", axis, "--frequency", "2", "-o", "a.npz"]) == 0
+    cells = np.prod([8 if letter in axis else 7 for letter in "uv"])
+    assert gm.read_samples("a.npz").report.patches == 4 * cells
+
+
+@pytest.mark.parametrize("suffix", [".npz", ".ply", ".csv", ".xyz"])
+def test_every_file_type(suffix: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["sample", "torus", *FEW, "-o", f"a{suffix}"]) == 0
+    out, err = capsys.readouterr()
+    assert re.fullmatch(
+        rf"a{suffix}: 60 samples: \d+ found by \d+ normals, \d+ in the gaps between these .*\n", out
+    )
+    assert err == ""
+    assert Path(f"a{suffix}").stat().st_size > 1000
+
+
+def test_quiet(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    progress = []
+    sample = sampling.sample
+
+    def spy(*arguments: object, **options: object) -> gm.Samples:
+        progress.append(options["progress"])
+        return sample(*arguments, **options)  # pyright: ignore[reportArgumentType]
+
+    monkeypatch.setattr(sampling, "sample", spy)
+    assert main(["sample", "torus", *FEW, "-o", "a.npz", "--quiet"]) == 0
+    assert capsys.readouterr() == ("", "")
+    assert main(["sample", "torus", *FEW, "-o", "a.npz"]) == 0
+    assert progress == [False, True]
+
+
+def test_the_default_is_a_count(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = {}
+
+    def spy(**options: object) -> gm.Samples:
+        asked.update(options)
+        raise gm.errors.InputError("enough")
+
+    monkeypatch.setattr(sampling, "sample", spy)
+    assert main(["sample", "torus", "-o", "a.npz"]) == 2
+    assert (asked["count"], asked["normals"]) == (10_000, None)
+    assert main(["sample", "torus", "--frequency", "2", "--threads", "3", "-o", "a.npz"]) == 2
+    assert (asked["count"], asked["threads"]) == (None, 3)
+
+
+def test_warnings_are_lines(capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["sample", "plane", *GAUSS, "--count", "50", *EIGHT, "-o", "a.npz"]
+    for _ in range(2):  # and every time
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            assert main(arguments) == 0
+        out, err = capsys.readouterr()
+        assert len(out.splitlines()) == 1
+        assert re.fullmatch(r"gaussmap: warning: surface 'plane': .*\n", err)
+    assert len(gm.read_samples("a.npz")) == 0
+
+
+def test_surfaces(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["surfaces"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == list(gm.surfaces.names())
+    assert re.match(r"torus +The torus round", lines[0])
+    assert main(["surfaces", "torus"]) == 0
+    assert capsys.readouterr().out == gm.surfaces.describe("torus") + "\n"
+
+
+def test_formulas(capsys: pytest.CaptureFixture[str]) -> None:
+    from gaussmap.symbolic import formulas
+    from gaussmap.tools.commands.completion import formula_names
+
+    anything: Any = None
+    assert formula_names(anything, anything, "") == [*formulas]
+    assert main(["formulas"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == list(formulas)
+    name, formula = next(iter(formulas.items()))
+    assert formula.sentence in lines[0]
+    assert formula.source in lines[0]
+    assert main(["formulas", name]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith(f"{name}: {formula.sentence}")
+    assert formula.text() in out
+    for arguments in (["--latex", name], [name, "--latex"]):
+        assert main(["formulas", *arguments]) == 0
+        assert capsys.readouterr().out == formula.latex() + "\n"
+    assert main(["formulas", "--latex"]) == 0
+    out = capsys.readouterr().out
+    assert all(f.latex() in out for f in formulas.values())
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--version"], [f"gaussmap {gm.__version__}"]),
+        (["--help"], ["examples:", "gaussmap sample torus --count 10000 -o torus.ply"]),
+        (
+            ["sample", "--help"],
+            ["how many samples", "default: 10000", "--spacing DX DY"],
+        ),
+        (["view", "--help"], ["default: 5000", "gaussmap[view]", ".html or .htm"]),
+        (["plot", "--help"], ["default: 2000", "gaussmap[plot]", ".png, .pdf or .svg"]),
+        (["surfaces", "--help"], ["NAME"]),
+        (["formulas", "--help"], ["LaTeX"]),
+    ],
+)
+def test_help(
+    arguments: list[str], words: Sequence[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(arguments) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    assert all(word in out for word in words)
+    assert max(map(len, out.splitlines())) <= 100
+    assert out.isascii()
+
+
+def test_a_terminal_gets_wrapped_lines(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "70")
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    assert main(["surfaces"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) > len(gm.surfaces.names())
+    assert max(map(len, lines)) <= 70
+
+
+# ── What can go wrong ────────────────────────────────────────────────────────────────────────────
+
+TO = ["-o", "a.npz"]
+HEIGHTS = ["--spacing", "1", "1", *TO]
+SADDLE = ["--formula", "u", "v", "u**2-v**2"]
+SQUARE = ["--domain", "-1", "1", "-1", "1"]
+
+
+@pytest.mark.usefixtures("files")
+@pytest.mark.parametrize(
+    ("command", "message"),
+    [
+        # the command itself
+        (["sampel"], r"no such command 'sampel'.*'sample'.* \(see `gaussmap --help`\)"),
+        (["sample"], r"missing argument 'SURFACE', or --formula X Y Z \(see `gaussmap sample"),
+        (["sample", "torus"], r"missing option '-o' / '--output' \(see `gaussmap sample --help`\)"),
+        (["sample", "torus", "-o"], "option '-o' requires an argument .*gaussmap sample --help"),
+        (["sample", "torus", "--cout", "5", *TO], "no such option '--cout'.*'--count'"),
+        (["sample", "torus", "--coun", "5", *TO], "no such option '--coun'"),
+        (["sample", "torus", "--count", "5", "--frequency", "3", *TO], "--frequency is not allow"),
+        (["sample", "torus", "--random", "5", "--healpix", "4", *TO], "not allowed with"),
+        (["sample", "torus", "--seed", "5", *TO], "--seed is for --random COUNT, which is not"),
+        (["sample", "torus", "--seed", "5", "--frequency", "3", *TO], "--seed is for --random"),
+        (["sample", "torus", "--random", "5", "--seed", "-1", *TO], "--seed: .* from 0 to"),
+        (["sample", "torus", "--random", "5", "--seed", *TO], "--seed: it must be .*, not '-o'"),
+        (["sample", "torus", "--healpix", "3", *TO], "nside must be a power of 2, not 3"),
+        (["torus"], "no such command 'torus'; did you mean `gaussmap sample torus`"),
+        (["part.step", *TO], "did you mean `gaussmap sample part.step`"),
+        (["--nonsense", "surfaces"], "no such option '--nonsense'"),
+        # numbers
+        *[
+            (["sample", "torus", f"--{option}", number, *TO], f"--{option}: it must be a whole")
+            for option in ("count", "frequency", "healpix", "random", "threads")
+            for number in ("0", "-5", "abc", "1e4", "2.0", "nan", "", "9" * 5000)
+        ],
+        (["sample", "torus", "--angle", "91", *TO], "a positive number of at most 90"),
+        (["sample", "torus", "--angle", "x", *TO], "--angle: it must be a number, not 'x'"),
+        (["sample", "torus", "--coverage", "-1", *TO], "coverage must be a positive number, not"),
+        (["sample", "torus", "--density", "flat", *TO], "there is no density"),
+        (["sample", "torus", "--density", "-2", *TO], "a positive number of at most 8, not"),
+        (["sample", "torus", *GAUSS, "--coverage", "1", *TO], "cannot be asked for by coverage="),
+        (["sample", "torus", *GAUSS, "--relax", "1", *TO], 'density="gauss" has none'),
+        (["sample", "torus", "--relax", "11", *TO], "--relax: it must be a whole number"),
+        (["sample", "torus", "--progressive", "--fields", "uv", *TO], "needs points and normals"),
+        (["sample", "torus", "--cells", "8", "0", *TO], "--cells: it must be a whole number"),
+        (["sample", "torus", "--cells", "8", *TO], "--cells: it must be .*, not '-o'"),
+        (["sample", "torus", "--cells", "2", "8", *TO], "at least 3 x 3 cells"),
+        # surfaces by name
+        (["sample", "tours", *TO], "no surface 'tours'; did you mean torus.* `gaussmap surfaces`"),
+        (["sample", "TORUS", *TO], r"did you mean torus\?"),
+        (["sample", "x" * 50, *TO], "See `gaussmap surfaces` for all names"),
+        (["sample", "", *TO], "there is no surface ''"),
+        (["sample", "two\nlines", *TO], "there is no surface"),
+        (["sample", "torus", "--set", "radius=1", *TO], "torus parameter 'radius'.*major, minor"),
+        (["sample", "torus", "--set", "mayor=1", *TO], r"did you mean major\?"),
+        (["sample", "torus", "--set", "name=1", *TO], "no torus parameter 'name'"),
+        (["sample", "torus", "--set", "minor", *TO], "--set: it must be NAME=VALUE"),
+        (["sample", "torus", "--set", "minor=", *TO], "--set: it must be NAME=VALUE"),
+        (["sample", "torus", "--set", "=2", *TO], "--set: it must be NAME=VALUE"),
+        (["sample", "torus", "--set", "minor=x", *TO], "--set: it must be a number, not 'x'"),
+        (["sample", "torus", "--set", "minor=nan", *TO], "minor of torus must be a positive"),
+        (["sample", "torus", "--set", "minor=-1", *TO], "minor of torus must be a positive"),
+        (["sample", "torus", "--set", "minor=1", "--set", "minor=2", *TO], "same parameter twice"),
+        (["sample", "torus", "--spacing", "1", "1", *TO], "--spacing is for elevations"),
+        (["sample", "torus", "--periodic", "u", *TO], "--periodic is for grids"),
+        # surfaces by formula
+        (["sample", "torus", *SADDLE, *TO], "give SURFACE or --formula, not both"),
+        (["mesh", *SADDLE, "-o", "a.ply"], "ranges of u and v: add --domain U0 U1 V0 V1"),
+        (["plot", "torus", *SQUARE, "-o", "a.png"], "--domain is for --formula, which is not"),
+        (["sample", *SADDLE, *SQUARE, "--set", "a=1", *TO], "--set does not go together"),
+        (["sample", *SADDLE, *SQUARE, "--unit", "mm", *TO], "--unit is for CAD files, and 'a for"),
+        (["sample", *SADDLE, "--domain", "0", "x", "0", "1", *TO], "domain must be"),
+        (["sample", "--formula", "u", "v", "w", *SQUARE, *TO], "neither parameter nor number: w"),
+        (["sample", "--formula", "u", "v", "open('a')", *SQUARE, *TO], "not a SymPy expression"),
+        # parts
+        (["sample", "torus", "--time-limit", "3", *TO], "--time-limit is for CAD files, and 'tor"),
+        (["sample", "a.step", "--memory-limit", "0", *TO], "memory_limit must be a positive"),
+        (["faces", "a.step", "--unit", "parsec"], "unit must be one of nm"),
+        (["faces", "a.step", "--time-limit", "9"], "'a.step' does not exist"),
+        (["sample", "torus", "--tolerance", "1e-30", *TO], "is below the rounding of coordinates"),
+        (["sample", "torus", "--tolerance", "1", "--cells", "8", "8", *TO], "do not go together"),
+        # surfaces in files
+        (["sample", "missing.npy", *HEIGHTS], "'missing.npy' cannot be read: No such file"),
+        (["sample", "folder.npy", *HEIGHTS], "'folder.npy' cannot be read: Is a directory"),
+        (["sample", "heights.txt", *HEIGHTS], "neither a .npy, .npz nor .tif file"),
+        (["sample", "missing.tif", *HEIGHTS], "'missing.tif' cannot be read: No such file"),
+        (["sample", "part.stl", *TO], "'part.stl' is a mesh; meshes are not taken.*CAD file"),
+        (["sample", "zero.npy", *HEIGHTS], r"shape \(4, 3\): points \(N, 3\) in no order are not"),
+        (["sample", "nothing.npy", *HEIGHTS], "'nothing.npy' is damaged"),
+        (["sample", "text.npy", *HEIGHTS], "'text.npy' is damaged"),
+        (["sample", "cut.npy", *HEIGHTS], "'cut.npy' is damaged"),
+        (["sample", "cut_header.npy", *HEIGHTS], "'cut_header.npy' is damaged"),
+        (["sample", "huge.npy", *HEIGHTS], "'huge.npy' is damaged|not enough memory"),
+        (["sample", "objects.npy", *HEIGHTS], "'objects.npy' is damaged, or holds objects"),
+        (["sample", "complex.npy", *HEIGHTS], "real numbers, not of type complex128"),
+        (["sample", "text.npz", *HEIGHTS], "'text.npz' is damaged or is no .npz"),
+        (["sample", "cut.npz", *HEIGHTS], "'cut.npz' is damaged or is no .npz"),
+        (["sample", "two.npz", *HEIGHTS], "2 arrays: heights, points; name .* two.npz:heights"),
+        (["sample", "none.npz", *HEIGHTS], "'none.npz' holds 0 arrays;"),
+        (["sample", "points.npy:x", *HEIGHTS], "'points.npy' holds one array, without a name"),
+        (["sample", "two.npz:point", *HEIGHTS], r"in 'two.npz' 'point'; did you mean points\?"),
+        (["sample", "two.npz:x", *HEIGHTS], "in 'two.npz' 'x'; there is heights, points."),
+        (["sample", "missing.npz:x", *HEIGHTS], "'missing.npz' cannot be read"),
+        (["sample", "volume.npy", *TO], r"shape \(m, n, 3\), or .* not \(3, 4, 5\)"),
+        (["sample", "empty.npy", *HEIGHTS], "empty.npy has"),
+        (["sample", "small.npy", *HEIGHTS], "small.npy has 2 x 2 points"),
+        (["sample", "nan.npy", *HEIGHTS], "all points of nan.npy are missing"),
+        (["sample", "heights.npy", *HEIGHTS, "--nodata", "x"], "--nodata: it must be a number"),
+        (["sample", "torus", "--nodata", "1", *TO], "--nodata is for grids in a file"),
+        (["sample", "heights.npy", *TO], "elevations .* add --spacing DX DY"),
+        (["sample", "heights.npy", "--spacing", "nan", "1", *TO], "spacing must be finite"),
+        (["sample", "heights.npy", "--spacing", "1", "0", *TO], "spacing must be finite"),
+        (["sample", "heights.npy", "--spacing", "1", "y", *TO], "--spacing: it must be a number"),
+        (["sample", "heights.npy", "--spacing", "1", *TO], "--spacing: it must be .*, not '-o'"),
+        (["sample", "heights.npy", "--periodic", "u", *HEIGHTS], "cannot be periodic"),
+        (["sample", "heights.npy", "--periodic", "w", *HEIGHTS], "--periodic: 'w' is not one of"),
+        (["sample", "heights.npy", "--set", "a=1", *HEIGHTS], "--set is for surfaces by name"),
+        (["sample", "points.npy", *HEIGHTS], "--spacing is for elevations, and 'points.npy'"),
+        # normals in files
+        (["sample", "torus", "--normals", "missing.npy", *TO], "'missing.npy' cannot be read"),
+        (["sample", "torus", "--normals", "heights.txt", *TO], "neither a .npy nor a .npz"),
+        (["sample", "torus", "--normals", "heights.npy", *TO], r"shape \(S, 3\)"),
+        (["sample", "torus", "--normals", "zero.npy", *TO], "zero vector"),
+        (["sample", "torus", "--normals", "cut.npy", *TO], "'cut.npy' is damaged"),
+        # the output
+        (["sample", "torus", "-o", "a.stl"], "the suffix '.stl' of meshes; use one of .*mesh`"),
+        (["sample", "torus", "-o", "a.xlsx"], "'a.xlsx' has the suffix '.xlsx'; use one of .npz,"),
+        (["sample", "torus", "-o", "a"], "'a' has no suffix"),
+        (["sample", "torus", "-o", ""], "the name of the file is empty"),
+        (["sample", "torus", "-o", "missing/a.npz"], "'.*missing' does not exist"),
+        (["sample", "torus", "-o", "heights.txt/a.npz"], "not a folder"),
+        (["sample", "two.npz:points", "-o", "two.npz"], "'two.npz' is read; write to another"),
+        (["sample", "torus", "--normals", "two.npz:points", "-o", "./two.npz"], "is read; write"),
+        (["plot", "torus", "-o", "a.npz"], "'a.npz' has the suffix '.npz'; use one of .png"),
+        (["plot", "torus", "-o", "missing/a.png"], "'.*missing' does not exist"),
+        (["view", "torus", "-o", "a.png"], "'a.png' has the suffix '.png'; use one of .html"),
+        (["view", "torus", "--count", "50001", "-o", "a.html"], "at most 50,000 samples"),
+        (["plot", "tours", "-o", "a.png"], "did you mean torus"),
+        # lists
+        (["surfaces", "tours"], "no surface 'tours'; did you mean torus"),
+        (["surfaces", "torus", "sphere"], r"unexpected extra argument \(sphere\)"),
+        (["formulas", "support_functoin"], r"no formula 'support_functoin'; did you mean"),
+    ],
+)  # fmt: skip
+def test_an_error_is_one_line(
+    command: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = {path: path.is_file() and path.read_bytes() for path in Path().iterdir()}
+    assert main(command) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert re.fullmatch(r"gaussmap: error: [^\n]+\n", err)
+    assert re.search(message, err)
+    assert {path: path.is_file() and path.read_bytes() for path in Path().iterdir()} == before
+
+
+def test_bad_output_is_found_before_the_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    def work(**_: object) -> None:
+        pytest.fail("worked in vain")
+
+    monkeypatch.setattr(sampling, "sample", work)
+    assert main(["sample", "torus", "-o", "a.stl"]) == 2
+    assert main(["sample", "torus", "-o", "missing/a.ply"]) == 2
+
+
+@compiled
+def test_healpix_that_is_not_installed(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "astropy_healpix", None)
+    assert main(["sample", "torus", "--healpix", "4", *TO]) == 2
+    assert 'run: pip install "gaussmap[spheres]"' in capsys.readouterr().err
+    assert not Path("a.npz").exists()
+
+
+def test_an_error_in_a_process() -> None:
+    done = gaussmap("sample", "tours", "-o", "a.ply")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert re.fullmatch("gaussmap: error: there is no surface 'tours'; .*\n", done.stderr)
+
+
+def test_no_memory(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    def sample(**_: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr(sampling, "sample", sample)
+    assert main(["sample", "torus", *TO]) == 2
+    assert re.fullmatch("gaussmap: error: there is not enough memory.*\n", capsys.readouterr().err)
+
+
+def test_a_bug_keeps_its_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
+    def sample(**_: object) -> None:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(sampling, "sample", sample)
+    with pytest.raises(ZeroDivisionError):
+        main(["sample", "torus", *TO])
+
+
+def test_interrupted_while_writing(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def half(samples: gm.Samples, path: Path) -> None:
+        path.write_text("half")
+        raise KeyboardInterrupt
+
+    monkeypatch.setitem(formats._WRITERS, ".npz", half)
+    Path("a.npz").write_text("old")
+    assert main(["sample", "torus", *FEW, "-o", "a.npz"]) == 130
+    assert capsys.readouterr() == ("", "gaussmap: interrupted\n")
+    assert [path.read_text() for path in Path().iterdir()] == ["old"]
+
+
+def test_interrupted_in_a_callback(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As by LLVM: the interrupt is lost, and the compiler then fails."""
+
+    class Unraisable:
+        exc_type = KeyboardInterrupt
+
+    def sample(**_: object) -> None:
+        sys.unraisablehook(Unraisable())  # pyright: ignore[reportArgumentType]
+        raise RuntimeError("compilation failed")
+
+    monkeypatch.setattr(sampling, "sample", sample)
+    hook = sys.unraisablehook
+    assert main(["sample", "torus", *TO]) == 130
+    assert capsys.readouterr() == ("", "gaussmap: interrupted\n")
+    assert sys.unraisablehook is hook
+
+
+@compiled
+@posix
+def test_interrupted_by_a_signal(tmp_path: Path) -> None:
+    os.mkfifo("pipe.npy")  # who reads from it is past the imports
+    # A test run in the background ignores interrupts, and what it starts would do so too.
+    code = (
+        "import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler); "
+        "from gaussmap.__main__ import main; sys.exit(main())"
+    )
+    command = [sys.executable, "-c", code, "sample", "pipe.npy", "-o", "a.ply"]
+    with (
+        subprocess.Popen(
+            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        ) as process,
+        open("pipe.npy", "wb"),
+    ):
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=30)
+    assert (process.returncode, out, err) == (130, "", "gaussmap: interrupted\n")
+    assert [path.name for path in tmp_path.iterdir()] == ["pipe.npy"]
+
+
+@compiled
+@posix
+@pytest.mark.parametrize("command", [["surfaces"], ["--help"], ["surfaces", "torus"]])
+def test_a_reader_that_goes_away(command: list[str]) -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    done = subprocess.run(
+        [sys.executable, "-m", "gaussmap", *command],
+        stdout=writer, stderr=subprocess.PIPE, check=False,
+    )  # fmt: skip
+    os.close(writer)
+    assert done.stderr == b""
+    assert done.returncode == 141 or command == ["--help"]  # argparse may have swallowed it
+
+
+@compiled
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
+def test_standard_output_is_full() -> None:
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "gaussmap", "surfaces"],
+            stdout=full, stderr=subprocess.PIPE, text=True, check=False,
+        )  # fmt: skip
+    assert done.returncode == 2
+    assert re.fullmatch("gaussmap: error: standard output cannot be written: .*\n", done.stderr)
+
+
+@compiled
+def test_an_old_terminal() -> None:
+    """One that knows ASCII only, with Python told to be strict."""
+    done = subprocess.run(
+        [sys.executable, "-X", "utf8=0", "-m", "gaussmap", "surfaces"],
+        capture_output=True, check=False, env={**os.environ, "PYTHONIOENCODING": "ascii:strict"},
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert b"x?/a?" in done.stdout
+
+
+@compiled
+def test_heavy_imports_are_lazy() -> None:
+    code = (
+        "import sys, gaussmap.tools.commands.cli, gaussmap.tools.pictures.to_file\n"
+        "print({'matplotlib', 'sympy', 'pyvista', 'tqdm'} & set(sys.modules))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "set()\n"
+
+
+@compiled
+@pytest.mark.parametrize(
+    "arguments", [[], ["--help"], ["sample", "--help"], ["sample", "torus"], ["--version"]]
+)
+def test_help_and_usage_need_no_arrays(arguments: list[str]) -> None:
+    code = (
+        f"import sys; from gaussmap.tools.commands.cli import main; main({arguments})\n"
+        "print({'numpy', 'numba', 'scipy', 'sympy'} & set(sys.modules), file=sys.stderr)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stderr.endswith("set()\n")
+
+
+def test_a_bare_call_shows_help(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--help"]) == 0
+    text = capsys.readouterr().out
+    commands = text[: text.index("  examples:")]
+    assert main([]) == 0
+    out, err = capsys.readouterr()
+    assert out.startswith(commands)
+    assert err == ""
+    tried = [line for line in out[len(commands) :].splitlines() if line.startswith("    gaussmap")]
+    assert len(tried) == 3
+    for line in tried[:2]:  # the third one needs Matplotlib
+        command = line.split("  ")[2].split()
+        assert main(command[1:]) == 0
+    assert len(Path("torus.csv").read_text().splitlines()) == 1001
+
+
+def test_exit_codes() -> None:
+    """A command without its arguments is an error, help is none."""
+    assert [main(x) for x in ([], ["--version"], ["mesh", "-h"], ["mesh"], ["mehs"])] == [
+        0, 0, 0, 2, 2,
+    ]  # fmt: skip
+
+
+# ── Completion by shells ─────────────────────────────────────────────────────────────────────────
+
+
+def completed(words: str) -> list[str]:
+    """Return what a shell is offered for the last word."""
+    variables = {
+        "_GAUSSMAP_COMPLETE": "bash_complete",
+        "COMP_WORDS": words,
+        "COMP_CWORD": str(len(words.split(" ")) - 1),
+    }
+    done = subprocess.run(
+        [sys.executable, "-m", "gaussmap"],
+        capture_output=True, text=True, check=True, env={**os.environ, **variables},
+    )  # fmt: skip
+    assert done.stderr == ""
+    return done.stdout.splitlines()
+
+
+COMMANDS = [
+    "sample", "mesh", "plot", "view", "batch", "surfaces", "faces", "formulas", "warm", "completion"
+]  # fmt: skip
+
+
+@compiled
+@pytest.mark.parametrize(
+    ("words", "offered"),
+    [
+        ("gaussmap ", COMMANDS),
+        ("gaussmap sample --co", ["--count", "--coverage"]),
+        ("gaussmap plot tor", ["torus", "file:tor"]),
+        ("gaussmap surfaces tor", ["torus"]),
+        ("gaussmap sample torus --set mi", ["minor="]),
+        ("gaussmap formulas support_f", ["support_function"]),
+        ("gaussmap completion z", ["zsh"]),
+        ("gaussmap mesh torus --density un", ["uniform"]),
+        ("gaussmap mesh torus -o a", ["file:a"]),
+    ],
+)
+def test_completion(words: str, offered: list[str]) -> None:
+    lines = [line.partition(",") for line in completed(words)]
+    assert [x if kind == "plain" else f"{kind}:{x}" for kind, _, x in lines] == offered
+
+
+@compiled
+def test_completion_is_quick() -> None:
+    code = (
+        "import sys, os; from gaussmap.tools.commands.cli import main\n"
+        "for words in ('sample to', 'formulas s', 'sample torus --set m'):\n"
+        "    line = f'gaussmap {words}'\n"
+        "    os.environ.update(COMP_WORDS=line, COMP_CWORD=str(line.count(' ')),"
+        " _GAUSSMAP_COMPLETE='bash_complete')\n"
+        "    assert main([]) == 0\n"
+        "print({'numpy', 'numba', 'scipy', 'sympy'} & set(sys.modules))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    lines = done.stdout.splitlines()
+    assert lines[-1] == "set()"
+    assert {"plain,torus", "plain,support_function", "plain,minor="} <= {*lines}
+
+
+@compiled
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_completion_is_installed(shell: str) -> None:
+    if shutil.which(shell) is None:
+        pytest.skip(f"{shell} is not installed")
+    install = f"{sys.executable} -m gaussmap completion {shell}"
+    evaluate = f"{install} | source" if shell == "fish" else f'eval "$({install})"'
+    asked = {"bash": "complete -p gaussmap", "fish": "complete -c gaussmap"}
+    before = "autoload -Uz compinit; compinit -u; " if shell == "zsh" else ""
+    after = asked.get(shell, "echo ${_comps[gaussmap]}")
+    done = subprocess.run(
+        [shell, "-c", f"{before}{evaluate}; {after}"], capture_output=True, text=True, check=True
+    )
+    assert "_gaussmap_completion" in done.stdout

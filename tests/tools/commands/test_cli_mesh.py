@@ -1,0 +1,88 @@
+"""`gaussmap mesh`."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.tools.commands import cli
+from gaussmap.tools.commands.cli import main
+
+FEW = ["--count", "100", "--cells", "8", "8"]
+ISOTROPIC = ["--density", "isotropic"]
+
+
+@pytest.fixture(autouse=True)
+def _in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.mark.parametrize("suffix", ["ply", "obj", "stl", "vtk", "vtu"])
+def test_a_mesh_is_written(suffix: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["mesh", "torus", *FEW, "-o", f"torus.{suffix}"]) == 0
+    out, err = capsys.readouterr()
+    pattern = rf"torus\.{suffix}: (\d+) vertices, (\d+) triangles, closed; 95 % have .*\n"
+    found = re.fullmatch(pattern, out)
+    assert found is not None
+    assert err == ""
+    mesh = pytest.importorskip("pyvista").read(f"torus.{suffix}")
+    assert mesh.n_cells == int(found[2]) == 2 * int(found[1])
+
+
+def test_a_missing_library_is_told_at_once(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    assert main(["mesh", "torus", "-o", "torus.glb"]) == cli.FAILED
+    assert 'run: pip install "gaussmap[trimesh]"' in capsys.readouterr().err
+
+
+def test_normals_of_a_part(capsys: pytest.CaptureFixture[str]) -> None:
+    normals = gm.icosphere(16)
+    np.save("cap.npy", normals[normals[:, 2] > 0.9])
+    part = ["mesh", "torus", "--normals", "cap.npy", "--cells", "8", "8", "-o", "cap.ply"]
+    assert main([*part, "--deviation", "10"]) == 0
+    out = capsys.readouterr().out
+    worst = float(re.findall(r"([\d.]+)° \(worst\)", out)[0])
+    assert worst <= 10.0
+    assert "edges on the border" in out
+
+
+@pytest.mark.parametrize("prefer", ["shape", "normals"])
+def test_what_triangles_are_preferred(prefer: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["mesh", "torus", *FEW, *ISOTROPIC, "--prefer", prefer, "-o", "torus.ply"]) == 0
+    small = float(re.findall(r"angles of at least ([\d.]+)°", capsys.readouterr().out)[0])
+    assert (small > 25.0) == (prefer == "shape")
+
+
+def test_quiet(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["mesh", "torus", *FEW, "--quiet", "-o", "torus.ply"]) == 0
+    assert capsys.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["torus", "-o", "torus.npz"], "use one of .ply, .obj, .stl, .vtk, .vtu, .vtp, .glb"),
+        (["torus", "-o", "no/torus.ply"], "create the folder first"),
+        (["torus", *FEW, "--deviation", "0", "-o", "a.ply"], "angle must lie between 0 and 180"),
+        (["torus", "--deviation", "wide", "-o", "torus.ply"], "it must be a number, not 'wide'"),
+        (["torus", "--prefer", "size", "-o", "torus.ply"], "'size' is not one of"),
+        (["torus", "--count", "3", "--cells", "8", "8", "-o", "a.ply"], "too few"),
+        (["plane", *FEW, "--density", "gauss", "-o", "plane.ply"], "there are no samples"),
+    ],
+)
+@pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
+def test_errors_are_lines(
+    arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["mesh", *arguments]) == cli.FAILED
+    out, err = capsys.readouterr()
+    assert out == ""
+    (line,) = [x for x in err.splitlines() if "warning" not in x]
+    assert line.startswith("gaussmap: error: ")
+    assert message in line
+    assert not list(Path().iterdir())

@@ -1,0 +1,190 @@
+"""The first half second: Ctrl-C, compilation that is shown, caches that cannot be written."""
+
+import io
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import gaussmap as gm
+import numba
+import pytest
+from gaussmap.runtime.base import compiling
+from gaussmap.runtime.kernels import jit
+from numba.core import config
+
+posix = pytest.mark.skipif(os.name != "posix", reason="needs signals")
+
+# Runs the command, and presses Ctrl-C when a module is first imported.
+INTERRUPTED = """
+import os, signal, sys
+
+class Finder:
+    def find_spec(self, name, path=None, target=None):
+        if name == "{module}":
+            os.kill(os.getpid(), signal.SIGINT)
+
+sys.meta_path.insert(0, Finder())
+sys.argv = ["gaussmap", "surfaces", "torus"]
+{before}
+from gaussmap.__main__ import main
+sys.exit(main())
+"""
+
+
+def run(code: str) -> tuple[int, str, str]:
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    return done.returncode, done.stdout, done.stderr
+
+
+@posix
+@pytest.mark.parametrize("module", ["gaussmap.runtime", "numpy", "llvmlite", "numba.core.types"])
+def test_interrupted_while_importing(module: str) -> None:
+    # A test run in the background ignores interrupts, and what it starts would do so too.
+    before = "signal.signal(signal.SIGINT, signal.default_int_handler)"
+    code = INTERRUPTED.format(module=module, before=before)
+    assert run(code) == (130, "", "gaussmap: interrupted\n")
+
+
+@pytest.mark.slow
+def test_texts_of_surfaces_take_no_derivation() -> None:
+    code = """
+import sys
+import gaussmap as gm
+gm.Surface.from_sympy(("u", "v", "u*v"), "uv", ((0, 1), (0, 1)))
+print(*sorted(x for x in sys.modules if x.startswith("gaussmap.symbolic")))
+assert "envelope" in gm.symbolic.formulas, gm.symbolic.BezierTriangle
+"""
+    assert run(code) == (0, "gaussmap.symbolic gaussmap.symbolic.reading\n", "")
+
+
+@posix
+def test_who_ignores_interrupts_goes_on_doing_so() -> None:
+    code = INTERRUPTED.format(module="numba", before="signal.signal(signal.SIGINT, signal.SIG_IGN)")
+    status, out, err = run(code)
+    assert (status, err) == (0, "")
+    assert out.startswith("torus")
+
+
+@posix
+def test_interrupted_when_all_is_done() -> None:
+    code = (
+        "import os, signal, sys, weakref\n"
+        "from gaussmap.__main__ import main\n"
+        "sys.argv = ['gaussmap', 'surfaces', 'torus']\n"
+        "class At: pass\n"
+        "at = At()\n"
+        "weakref.finalize(at, lambda: os.kill(os.getpid(), signal.SIGINT))\n"
+        "sys.exit(main())"
+    )
+    status, out, err = run(code)
+    assert (status, err) == (0, "")
+    assert out.startswith("torus")
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def compiled_now(module: str = "gaussmap.kernels") -> Any:
+    """Return a function that calls another; both have still to be compiled."""
+
+    @numba.njit
+    def inner(x):
+        return x + 1
+
+    def outer(x):
+        return inner(x) + 1
+
+    outer.__module__ = module
+    return numba.njit(outer)
+
+
+@pytest.mark.compiled
+def test_compilation_is_shown_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    monkeypatch.setattr(compiling, "PATIENCE", 0.0)
+    outer = compiled_now()
+    assert outer(1) == 3
+    assert outer(2) == 4
+    first, *lines, last = terminal.getvalue().split(compiling.ERASE)
+    assert (first, last) == ("", "")
+    pattern = r"gaussmap: compiling kernels, only once here \(\d+ s\): outer"
+    assert lines
+    assert all(re.fullmatch(pattern, line) for line in lines)
+    assert outer(1.5) == 3.5
+    assert terminal.getvalue().count("outer") > len(lines)
+    assert terminal.getvalue().endswith(compiling.ERASE)
+
+
+@pytest.mark.compiled
+def test_compilation_is_not_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Not in files, not if it is quick, not if it is of others, and not to who wants quiet."""
+    monkeypatch.setattr(compiling, "PATIENCE", 0.0)
+    for stream in (io.StringIO(), None):
+        monkeypatch.setattr(sys, "stderr", stream)
+        assert compiled_now()(1) == 3
+        assert stream is None or stream.getvalue() == ""
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    assert compiled_now(module="somebody.else")(1) == 3
+    with monkeypatch.context() as patch:
+        patch.setattr(compiling.NOTICE, "quiet", True)
+        assert compiled_now()(1) == 3
+    monkeypatch.setattr(compiling, "PATIENCE", 1e9)
+    assert compiled_now()(1) == 3
+    assert terminal.getvalue() == ""
+
+
+# One public name of each module.
+PUBLIC = {
+    getattr(getattr(gm, name), "__module__", name): name for name in dir(gm) if name != "symbolic"
+}.values()
+
+
+@pytest.mark.compiled
+@pytest.mark.slow
+def test_who_compiles_tells(tmp_path: Path) -> None:
+    """Whichever name is used first, the notice is there if kernels are."""
+    code = (
+        "import os, sys, numba, scipy.spatial, scipy.special, gaussmap as gm\n"  # once, not in each
+        "sys.pycache_prefix, sys.dont_write_bytecode = sys.argv.pop(1), False\n"
+        "KERNELS = 'gaussmap.generated.', 'gaussmap.runtime.kernels.'\n"
+        "for name in sys.argv[1:]:\n"
+        "    if os.fork():\n"
+        "        assert os.wait()[1] == 0\n"
+        "        continue\n"
+        "    getattr(gm, name)\n"
+        "    kernels = [x for x in sys.modules if x.startswith(KERNELS)]\n"
+        "    print(name, len(kernels), 'gaussmap.runtime.base.compiling' in sys.modules)\n"
+        "    sys.exit()"
+    )
+    if not hasattr(os, "fork"):
+        pytest.skip("needs fork")
+    command = [sys.executable, "-c", code, str(tmp_path), *PUBLIC]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    rows = [line.split() for line in done.stdout.splitlines()]
+    assert {row[0] for row in rows} == {*PUBLIC}
+    assert [row for row in rows if row[1] != "0" and row[2] != "True"] == []
+    assert sum(row[1] != "0" for row in rows) > 10
+
+
+@pytest.mark.compiled
+def test_a_cache_that_cannot_be_written(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Kernels are compiled all the same, and not kept."""
+    nowhere = Path(os.devnull) / "cache"
+    monkeypatch.setattr(jit, "PACKAGE", nowhere)
+    monkeypatch.setattr(config, "CACHE_DIR", "")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(nowhere))
+    monkeypatch.setattr(jit, "cache_folder", jit.cache_folder.__wrapped__)
+    monkeypatch.setattr(jit, "digest", lambda: "0")
+
+    def triple(x: float) -> float:
+        return 3 * x
+
+    assert jit.cache_folder() is None
+    assert jit.jit(triple)(2.0) == 6.0

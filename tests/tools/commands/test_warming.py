@@ -1,0 +1,106 @@
+"""`gaussmap warm`: afterwards nothing that people do every day compiles anything."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from gaussmap.runtime.kernels import jit
+from gaussmap.tools.cad.examples import all_kinds
+from gaussmap.tools.commands import warming
+from gaussmap.tools.commands.cli import main
+
+# Runs the command line, and prints the names of the kernels that were compiled.
+WATCHED = """
+import sys
+from numba.core import event
+
+class Watcher(event.Listener):
+    def on_start(self, event):
+        print("compiled", event.data["dispatcher"].py_func.__name__)
+
+    def on_end(self, event):
+        pass
+
+event.register("numba:compile", Watcher())
+from gaussmap.tools.commands.cli import main
+sys.exit(main())
+"""
+
+EVERY_DAY = [
+    ["sample", "torus", "--count", "1000", "-o", "a.ply"],
+    ["sample", "torus", "--count", "1000", "--float32", "-o", "a.csv"],
+    ["sample", "ellipsoid", "--frequency", "8", "--density", "gauss", "-o", "a.npz"],
+    ["sample", "wavy_graph", "--random", "500", "--fields", "points,normals", "-o", "a.ply"],
+    ["sample", "heights.npy", "--spacing", "30", "30", "--angle", "5", "-o", "a.npz"],
+    ["sample", "cylinder", "--coverage", "0.2", "--density", "uniform", "-o", "a.npz"],
+    ["sample", "monkey_saddle", "--count", "500", "--relax", "1", "--progressive", "-o", "a.npz"],
+    ["mesh", "sphere", "--count", "1000", "-o", "a.stl"],
+    ["sample", "part.npz", "--count", "500", "-o", "a.ply"],
+]
+
+
+def watched(*arguments: str, folder: Path) -> list[str]:
+    done = subprocess.run(
+        [sys.executable, "-c", WATCHED, *arguments],
+        cwd=folder, capture_output=True, text=True, check=False,
+        env={**os.environ, "NUMBA_CACHE_DIR": str(folder / "cache")},
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (0, "")
+    return done.stdout.splitlines()
+
+
+@pytest.mark.slow
+@pytest.mark.compiled
+def test_nothing_is_left_to_compile(tmp_path: Path) -> None:
+    np.save(tmp_path / "heights.npy", np.hypot(*np.mgrid[-1:1:20j, -1:1:30j]) ** 3)
+    all_kinds().save(tmp_path / "part.npz")
+    *compiled, line = watched("warm", folder=tmp_path)
+    assert len(compiled) > 30
+    assert line.startswith(f"kernels in {tmp_path / 'cache' / 'kernels-'}")
+    assert " compiled in " in line
+    (line,) = watched("warm", folder=tmp_path)
+    assert line.endswith(": all were compiled already")
+    assert watched("warm", "--quiet", folder=tmp_path) == []
+    for command in EVERY_DAY:
+        (line,) = watched(*command, folder=tmp_path)
+        assert line.startswith("a.")
+
+
+def test_nothing_can_be_compiled(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(warming, "WORK", ())
+    monkeypatch.setattr(warming.config, "DISABLE_JIT", 1)
+    assert main(["warm"]) == 2
+    assert "NUMBA_DISABLE_JIT is set" in capsys.readouterr().err
+
+
+def test_a_folder_that_cannot_be_written(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(warming, "WORK", ())
+    monkeypatch.setattr(warming.config, "DISABLE_JIT", 0)
+    monkeypatch.setattr(warming, "cache_folder", lambda: None)
+    assert main(["warm"]) == 2
+    assert "set NUMBA_CACHE_DIR" in capsys.readouterr().err
+
+
+@pytest.mark.compiled
+def test_a_terminal_sees_what_is_done(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def some_work() -> None:
+        assert warming.NOTICE.quiet
+
+    monkeypatch.setattr(warming, "WORK", (some_work,))
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    assert main(["warm"]) == 0
+    out, err = capsys.readouterr()
+    assert out == f"kernels in {jit.cache_folder()}: all were compiled already\n"
+    assert "some_work" in err
+    assert not warming.NOTICE.quiet
+    assert main(["warm", "--quiet"]) == 0
+    assert capsys.readouterr() == ("", "")

@@ -1,0 +1,197 @@
+"""Samples and meshes as objects of other libraries, which are not needed until then."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.runtime.samples.fields import ARRAY_NAMES
+from gaussmap.runtime.samples.report import SamplingReport
+from gaussmap.runtime.samples.samples import Samples
+
+DTYPES = pytest.mark.parametrize("dtype", [np.float64, np.float32])
+
+
+def samples(count: int = 5, dtype: Any = np.float64, fields: Any = ARRAY_NAMES) -> Samples:
+    """Numbers that are not on any surface: conversions only carry them."""
+    rng = np.random.default_rng(1)
+    arrays = {
+        "points": rng.normal(size=(count, 3)),
+        "normals": rng.normal(size=(count, 3)),
+        "uv": rng.normal(size=(count, 2)),
+        "support": rng.normal(size=count),
+        "gaussian_curvature": rng.normal(size=count),
+        "mean_curvature": rng.normal(size=count),
+    }
+    chosen: dict[str, Any] = {x: y.astype(dtype) for x, y in arrays.items() if x in fields}
+    if "normal_index" in fields:
+        chosen |= {"normal_index": np.arange(count) - 1, "patch_index": np.arange(count) + 7}
+    return Samples(**chosen, report=SamplingReport("noise", count, count, 1, 0.0, 0))
+
+
+def mesh() -> gm.Mesh:
+    found = samples(4)
+    normals = found.normals / np.linalg.norm(found.normals, axis=1, keepdims=True)
+    triangles = np.array([[0, 1, 2], [1, 3, 2]])
+    return gm.Mesh(found.points, normals, found.uv, triangles, np.array([3, 1, -1, 0]))
+
+
+class TestPandas:
+    @DTYPES
+    def test_columns_are_those_of_a_csv_file(self, tmp_path, dtype):
+        pytest.importorskip("pandas")
+        found = samples(dtype=dtype)
+        frame = found.to_dataframe()
+        found.write(tmp_path / "noise.csv")
+        with open(tmp_path / "noise.csv", encoding="ascii") as file:
+            assert file.readline().strip().split(",") == list(frame)
+            rows = np.loadtxt(file, delimiter=",")
+        for name, column in zip(frame, rows.T, strict=True):
+            expected = np.int64 if name.endswith("index") else dtype
+            assert frame[name].dtype == expected
+            np.testing.assert_array_equal(frame[name], column.astype(expected))
+
+    def test_fewer_fields_and_no_samples(self):
+        pytest.importorskip("pandas")
+        assert list(samples(fields=("points",)).to_dataframe()) == ["x", "y", "z"]
+        assert samples(0).to_dataframe().shape == (0, 13)
+
+    def test_it_copies(self):
+        pytest.importorskip("pandas")
+        found = samples()
+        frame = found.to_dataframe()
+        frame.loc[0, "x"] = 100.0
+        assert found.points[0, 0] != 100.0
+
+
+class TestPyvista:
+    @DTYPES
+    @pytest.mark.parametrize("count", [0, 5])
+    def test_samples(self, dtype, count):
+        pytest.importorskip("pyvista")
+        found = samples(count, dtype)
+        cloud = found.to_pyvista()
+        assert cloud.n_points == count
+        np.testing.assert_array_equal(cloud.points, found.points)
+        data = cloud.GetPointData()
+        assert data.GetNumberOfArrays() == len(ARRAY_NAMES) - 1
+        if count:
+            for name in ARRAY_NAMES[1:]:
+                np.testing.assert_array_equal(cloud.point_data[name], getattr(found, name))
+            assert data.GetNormals().GetName() == "normals"
+
+    def test_mesh(self):
+        pytest.importorskip("pyvista")
+        ours = mesh()
+        theirs = ours.to_pyvista()
+        np.testing.assert_array_equal(theirs.points, ours.vertices)
+        np.testing.assert_array_equal(theirs.regular_faces, ours.triangles)
+        for name in ("normals", "uv", "sample_index"):
+            np.testing.assert_array_equal(theirs.point_data[name], getattr(ours, name))
+
+    def test_it_copies(self):
+        pytest.importorskip("pyvista")
+        found, surface = samples(), mesh()
+        found.to_pyvista().points.fill(100.0)
+        found.to_pyvista().point_data["uv"].fill(100.0)
+        surface.to_pyvista().points.fill(100.0)
+        assert max(np.abs(x).max() for x in (found.points, found.uv, surface.vertices)) < 100.0
+
+
+class TestTrimesh:
+    @DTYPES
+    def test_samples(self, dtype):
+        pytest.importorskip("trimesh")
+        found = samples(dtype=dtype)
+        cloud = found.to_trimesh()
+        np.testing.assert_array_equal(cloud.vertices, found.points)
+        for name in ARRAY_NAMES[1:]:
+            np.testing.assert_array_equal(cloud.metadata[name], getattr(found, name))
+
+    def test_mesh(self):
+        pytest.importorskip("trimesh")
+        ours = mesh()
+        theirs = ours.to_trimesh()
+        np.testing.assert_array_equal(theirs.vertices, ours.vertices)
+        np.testing.assert_array_equal(theirs.faces, ours.triangles)
+        np.testing.assert_allclose(theirs.vertex_normals, ours.normals, rtol=0, atol=1e-15)
+        np.testing.assert_array_equal(theirs.vertex_attributes["uv"], ours.uv)
+        np.testing.assert_array_equal(theirs.vertex_attributes["sample_index"], ours.sample_index)
+
+    @pytest.mark.compiled
+    def test_a_torus_is_watertight_and_has_its_volume(self):
+        pytest.importorskip("trimesh")
+        errors = []
+        for count in (1000, 4000):
+            torus = gm.sample(gm.surfaces.torus(major=1, minor=0.35), count=count)
+            theirs = torus.mesh().to_trimesh()
+            assert theirs.is_watertight
+            assert theirs.is_winding_consistent
+            assert theirs.euler_number == 0
+            errors.append(1 - theirs.volume / (2 * np.pi**2 * 0.35**2))
+        # The tube is cut by chords that turn by up to 45°, which lose up to 1 − sin x/x = 0.1; then
+        # the error falls with the number of vertices.
+        assert 0.0 < errors[1] < errors[0] / 2 < 0.05
+
+
+class TestOpen3d:
+    """Open3D is half a gigabyte, and not installed for development: see `make bench-peers`."""
+
+    @DTYPES
+    def test_samples(self, dtype):
+        pytest.importorskip("open3d")
+        found = samples(dtype=dtype)
+        cloud = found.to_open3d()
+        np.testing.assert_array_equal(np.asarray(cloud.points), found.points)
+        np.testing.assert_array_equal(np.asarray(cloud.normals), found.normals)
+        assert not samples(fields=("points",)).to_open3d().has_normals()
+
+    def test_mesh(self):
+        pytest.importorskip("open3d")
+        ours = mesh()
+        theirs = ours.to_open3d()
+        np.testing.assert_array_equal(np.asarray(theirs.vertices), ours.vertices)
+        np.testing.assert_array_equal(np.asarray(theirs.triangles), ours.triangles)
+        np.testing.assert_array_equal(np.asarray(theirs.vertex_normals), ours.normals)
+
+
+@pytest.mark.parametrize(
+    ("library", "extra", "convert"),
+    [
+        ("pandas", "pandas", lambda: samples().to_dataframe()),
+        ("pyvista", "vtk", lambda: samples().to_pyvista()),
+        ("pyvista", "vtk", lambda: mesh().to_pyvista()),
+        ("trimesh", "trimesh", lambda: samples().to_trimesh()),
+        ("trimesh", "trimesh", lambda: mesh().to_trimesh()),
+        ("open3d", "open3d", lambda: samples().to_open3d()),
+        ("open3d", "open3d", lambda: mesh().to_open3d()),
+    ],
+)
+def test_a_library_that_is_not_installed(library, extra, convert, monkeypatch):
+    monkeypatch.setitem(sys.modules, library, None)
+    message = rf'^this needs {library}, but it is not installed; run: .* "gaussmap\[{extra}\]"$'
+    with pytest.raises(gm.errors.MissingExtraError, match=message):
+        convert()
+
+
+@pytest.mark.parametrize("convert", ["to_pyvista", "to_trimesh", "to_open3d"])
+def test_points_are_needed(convert):
+    with pytest.raises(gm.errors.MissingFieldError, match="add 'points' to fields"):
+        getattr(samples(fields=("uv",)), convert)()
+
+
+@pytest.mark.slow
+def test_meshes_load_what_triangulates_and_nothing_heavier():
+    code = (
+        "import sys, gaussmap as gm;"
+        "samples = gm.sample(gm.surfaces.torus(), normals=gm.icosphere(8));"
+        "before = 'scipy.spatial' in sys.modules; samples.mesh();"
+        "heavy = ('sympy', 'pandas', 'pyvista', 'trimesh', 'open3d', 'matplotlib');"
+        "print(before, 'scipy.spatial' in sys.modules, [x for x in heavy if x in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "False True []"

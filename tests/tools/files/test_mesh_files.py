@@ -1,0 +1,101 @@
+"""What stands in files of meshes, to the last bit."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.tools.files.formats import MESH_SUFFIXES
+
+
+def noise(count: int = 5000) -> gm.Mesh:
+    """Vertices of all sizes, and triangles between any of them; the first one has no area."""
+    rng = np.random.default_rng(1)
+    normals = rng.normal(size=(count, 3))
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    triangles = rng.integers(0, count, (2 * count, 3))
+    triangles[0] = 7
+    vertices = rng.normal(size=(count, 3)) * 10.0 ** rng.integers(-300, 30, (count, 1))
+    vertices[0] = -0.0, 5e-324, 0.1
+    return gm.Mesh(vertices, normals, rng.normal(size=(count, 2)), triangles, np.arange(count) - 1)
+
+
+def rows(path: Path, first: str) -> np.ndarray:
+    """Return the numbers of the lines of a text that begin with a word."""
+    lines = [line.replace("//", " ").split() for line in path.read_text().splitlines()]
+    return np.array([[float(x) for x in line[1:]] for line in lines if line[0] == first])
+
+
+def test_obj_holds_every_bit(tmp_path):
+    mesh = noise()
+    mesh.write(tmp_path / "a.obj")
+    assert rows(tmp_path / "a.obj", "v").tobytes() == mesh.vertices.tobytes()
+    assert rows(tmp_path / "a.obj", "vn").tobytes() == mesh.normals.tobytes()
+    corners = rows(tmp_path / "a.obj", "f")
+    np.testing.assert_array_equal(corners[:, ::2], mesh.triangles + 1)
+    np.testing.assert_array_equal(corners[:, 1::2], mesh.triangles + 1)
+
+
+def test_ply_holds_every_bit(tmp_path):
+    trimesh = pytest.importorskip("trimesh")
+    mesh = noise()
+    mesh.write(tmp_path / "a.ply")
+    with open(tmp_path / "a.ply", "rb") as file:
+        raw = trimesh.exchange.ply.load_ply(file)["metadata"]["_ply_raw"]
+    expected = np.hstack([mesh.vertices, mesh.normals, mesh.uv])
+    vertices = raw["vertex"]["data"]
+    assert vertices.dtype.names == ("x", "y", "z", "nx", "ny", "nz", "u", "v")
+    assert np.stack([vertices[x] for x in vertices.dtype.names], axis=1).tobytes() == (
+        expected.tobytes()
+    )
+    np.testing.assert_array_equal(raw["face"]["data"]["vertex_indices"]["f1"], mesh.triangles)
+
+
+def test_stl_has_the_normals_of_triangles(tmp_path):
+    mesh = noise()
+    mesh.write(tmp_path / "a.stl")
+    content = (tmp_path / "a.stl").read_bytes()
+    assert not content.startswith(b"solid")  # which would say that it is text
+    assert int.from_bytes(content[80:84], "little") == len(mesh.triangles)
+    floats = np.frombuffer(content[84:], [("f", "<f4", 12), ("attribute", "<u2")])["f"]
+    corners = mesh.vertices[mesh.triangles]
+    assert floats[:, 3:].tobytes() == corners.astype("<f4").tobytes()
+    assert floats[0, :3].tolist() == [0, 0, 0]
+    sizes = np.linalg.norm(floats[:, :3], axis=1)
+    # Where squares of lengths do not underflow a normal has the length 1.
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    usual = np.abs(across).max(axis=1) > 1e-140
+    assert usual.sum() > 100
+    np.testing.assert_allclose(sizes[usual], 1, atol=1e-6)
+    assert np.isfinite(floats[:, :3]).all()
+
+
+@pytest.mark.parametrize("suffix", [".vtk", ".vtu", ".vtp"])
+def test_vtk_reads_every_bit(tmp_path, suffix):
+    pv = pytest.importorskip("pyvista")
+    mesh = noise()
+    mesh.write(tmp_path / f"a{suffix}")
+    again = pv.read(tmp_path / f"a{suffix}")
+    assert isinstance(again, pv.PolyData if suffix == ".vtp" else pv.UnstructuredGrid)
+    assert np.asarray(again.points).tobytes() == mesh.vertices.tobytes()
+    connectivity = again.regular_faces if suffix == ".vtp" else again.cells_dict[5]
+    np.testing.assert_array_equal(connectivity, mesh.triangles)
+    uv = {"uv": mesh.uv} if suffix == ".vtp" else {"u": mesh.uv[:, 0], "v": mesh.uv[:, 1]}
+    expected = {"normals": mesh.normals, "sample_index": mesh.sample_index} | uv
+    assert set(again.point_data.keys()) == set(expected)
+    for name, array in expected.items():
+        found = np.asarray(again.point_data[name])
+        assert found.dtype == array.dtype
+        assert found.tobytes() == array.tobytes()
+    if suffix != ".vtk":
+        assert again.point_data.active_normals_name == "normals"
+
+
+@pytest.mark.parametrize("suffix", [x for x in MESH_SUFFIXES if x != ".glb"])
+def test_large_numbers_warn_of_nothing(tmp_path, suffix):
+    mesh = noise(100)
+    huge = gm.Mesh(mesh.vertices * 1e270, mesh.normals, mesh.uv, mesh.triangles, mesh.sample_index)
+    huge.write(tmp_path / f"a{suffix}")
+    assert (tmp_path / f"a{suffix}").stat().st_size > 5000

@@ -1,0 +1,150 @@
+"""Tables in files: what pyarrow and pandas read, and text by Polars and without it."""
+
+from __future__ import annotations
+
+import importlib.util
+import io
+import json
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.runtime.base import extras
+from gaussmap.runtime.samples.fields import columns_of
+from gaussmap.runtime.samples.report import SamplingReport
+from gaussmap.tools.commands.cli import main
+from gaussmap.tools.files import packed, tables
+from gaussmap.tools.files.formats import check_samples_target
+
+BINARY = [".parquet", ".arrow", ".feather"]
+
+
+def noise(count: int, dtype: Any = np.float64) -> gm.Samples:
+    """Samples of numbers of all sizes, some of which are neither finite nor normal."""
+    rng = np.random.default_rng(count)
+    sizes = 10.0 ** rng.integers(-300 if dtype == np.float64 else -40, 30, (count, 3))
+    points = (rng.normal(size=(count, 3)) * sizes).astype(dtype)
+    points[0], points[1] = (-0.0, 5e-324, 0.1), (1e22, 1e-5, 123456789012345680.0)
+    curvature = rng.normal(size=count).astype(dtype)
+    curvature[:3] = np.inf, -np.inf, np.nan
+    return gm.Samples(
+        points=points,
+        uv=rng.random((count, 2)).astype(dtype),
+        gaussian_curvature=curvature,
+        normal_index=rng.integers(-1, 1 << 62, count),
+        on_surface=rng.random(count) < 0.5,
+        report=SamplingReport("noise", count, count, 1, 0.25, 0),
+    )
+
+
+def assert_equal(column: Any, wanted: np.ndarray) -> None:
+    found = np.asarray(column)
+    assert found.dtype == wanted.dtype
+    assert np.ascontiguousarray(found).tobytes() == np.ascontiguousarray(wanted).tobytes()
+
+
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+@pytest.mark.parametrize("suffix", BINARY)
+def test_arrow_keeps_every_bit_types_units_and_the_report(tmp_path, suffix, dtype):
+    arrow, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
+    samples, path = noise(5000, dtype), tmp_path / f"a{suffix}"
+    samples.write(path)
+    read = (
+        parquet.read_table(path) if suffix == ".parquet" else arrow.ipc.open_file(path).read_all()
+    )
+    columns = columns_of(samples.arrays())
+    assert read.column_names == list(columns)
+    for name, column in columns.items():
+        assert_equal(read[name].to_numpy(), column)
+    about = read.schema.metadata
+    assert about[b"gaussmap"] == gm.__version__.encode()
+    assert SamplingReport(**json.loads(about[b"report"])) == samples.report
+    assert read.schema.field("y").metadata[b"unit"] == b"L"
+    assert read.schema.field("gaussian_curvature").metadata[b"unit"] == b"1/L^2"
+    assert read.schema.field("v").metadata[b"field"] == b"uv"
+
+
+@pytest.mark.parametrize("suffix", BINARY)
+def test_pandas_reads_it(tmp_path, suffix):
+    pandas = pytest.importorskip("pandas")
+    samples, path = noise(7), tmp_path / f"a{suffix}"
+    samples.write(path)
+    frame = (pandas.read_parquet if suffix == ".parquet" else pandas.read_feather)(path)
+    pandas.testing.assert_frame_equal(frame, samples.to_dataframe())
+
+
+@pytest.mark.parametrize("suffix", BINARY)
+def test_without_pyarrow_the_extra_is_named_before_sampling(tmp_path, monkeypatch, suffix, capsys):
+    found = importlib.util.find_spec
+    monkeypatch.setattr(
+        "importlib.util.find_spec", lambda name: None if name == "pyarrow" else found(name)
+    )
+    path = str(tmp_path / f"a{suffix}")
+    with pytest.raises(gm.errors.MissingExtraError, match=r'pip install "gaussmap\[tables\]"'):
+        check_samples_target(path)
+    assert main(["sample", "torus", "-o", path]) == 2
+    assert f"a {suffix} file needs pyarrow" in capsys.readouterr().err
+
+
+def written(samples: gm.Samples, monkeypatch: pytest.MonkeyPatch, least: int) -> list[str]:
+    """Return the lines of a .csv file; Polars writes `least` samples and more."""
+    monkeypatch.setattr(tables, "_WORTH_AN_IMPORT", least)
+    columns, file = columns_of(samples.arrays()), io.BytesIO()
+    tables.write_rows(file, ",".join(["{}"] * len(columns)) + "\n", list(columns.values()))
+    return file.getvalue().decode("ascii").splitlines()
+
+
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+def test_polars_writes_the_same_numbers(monkeypatch, dtype):
+    pytest.importorskip("polars")
+    monkeypatch.setattr(tables, "_ROWS_OF_POLARS", 400)
+    samples = noise(1000, dtype)
+    texts = written(samples, monkeypatch, 0), written(samples, monkeypatch, 1001)
+    assert texts[0] != texts[1]  # Polars writes fewer digits
+    for text in texts:
+        rows = [line.split(",") for line in text]
+        for k, column in enumerate(columns_of(samples.arrays()).values()):
+            kind = int if column.dtype.kind in "ib" else float
+            numbers = np.array([kind(row[k]) for row in rows])
+            assert_equal(numbers.astype(column.dtype), column)
+
+
+def test_polars_writes_meshes(tmp_path, monkeypatch):
+    pytest.importorskip("polars")
+    vertices, normals = np.random.default_rng(1).random((2, 5, 3))
+    triangles = np.array([[0, 1, 2], [4, 3, 2]])
+    mesh = gm.Mesh(vertices, normals, np.zeros((5, 2)), triangles, np.arange(5))
+    texts = []
+    for least in 0, 100:
+        monkeypatch.setattr(tables, "_WORTH_AN_IMPORT", least)
+        mesh.write(tmp_path / "a.obj")
+        texts.append((tmp_path / "a.obj").read_text().splitlines())
+    one, other = texts
+    assert one[0] == other[0]
+    assert one[-2:] == other[-2:] == ["f 1//1 2//2 3//3", "f 5//5 4//4 3//3"]
+    for a, b in zip(one[1:-2], other[1:-2], strict=True):
+        assert a.split()[0] == b.split()[0]
+        assert [*map(float, a.split()[1:])] == [*map(float, b.split()[1:])]
+
+
+def test_text_without_polars(monkeypatch):
+    samples = noise(20)
+    monkeypatch.setattr(tables, "if_installed", lambda _: None)
+    assert len(written(samples, monkeypatch, 0)) == 20
+    assert extras.if_installed("no_such_module") is None
+
+
+def test_ply_by_several_threads(tmp_path, monkeypatch):
+    samples = gm.Samples(
+        points=np.random.default_rng(0).random((10_007, 3)),
+        normal_index=np.arange(10_007),
+        on_surface=np.arange(10_007) % 3 == 0,
+        report=SamplingReport("noise", 0, 10_007, 1, 0.0, 0),
+    )
+    samples.write(tmp_path / "one.ply")
+    monkeypatch.setattr(packed, "_FOR_A_THREAD", 1000)
+    monkeypatch.setattr(packed, "thread_count", lambda _: 3)
+    samples.write(tmp_path / "three.ply")
+    assert (tmp_path / "one.ply").read_bytes() == (tmp_path / "three.ply").read_bytes()
+    assert gm.read_samples(tmp_path / "three.ply").points.tobytes() == samples.points.tobytes()

@@ -1,0 +1,462 @@
+"""Gaussian images: against definitions in exact arithmetic, quadrature, and topology."""
+
+from fractions import Fraction
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.generated import patch as formulas
+from gaussmap.generated.vectors import Vector
+from gaussmap.runtime.base.formula_calls import patch, python_function, vector
+from gaussmap.tools.gauss_map.patches import Patches
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+# Its normals fill an octant: e_x, e_y, e_z at the corners, and coordinate planes along the edges.
+OCTANT = np.array([[2, 0, 0], [0, 2, 0], [0, 0, 2], [2, 2, 1], [2, 1, 2], [1, 2, 2]], dtype=float)
+CYLINDER = np.array(
+    [[1, 0, 1], [0, 1, 0], [0, 0, 0], [0.5, 0.5, 0], [0.5, 0, 0], [0, 0.5, 0]], dtype=float
+)
+PLANE = np.array([[4, 0, 8], [0, 4, 12], [0, 0, 0], [2, 2, 10], [2, 0, 4], [0, 2, 6]], dtype=float)
+FOLDED_PLANE = np.array(
+    [[1, 0, 0], [0, 1, 0], [0, 0, 0], [0, 1, 0], [1, 1, 0], [1, 0, 0]], dtype=float
+)
+LINE = np.outer([2.0, 4.0, 0.0, 3.0, 1.0, 2.0], [1.0, 2.0, 3.0])
+
+
+def net_of(a, b, c, d, e) -> Array:
+    """Return the control points of ½ a u² + b uv + ½ c v² + d u + e v."""
+    a, b, c, d, e = (np.array(x, dtype=float) for x in (a, b, c, d, e))
+    return np.array([d + a / 2, e + c / 2, 0 * a, (b + d + e) / 2, d / 2, e / 2])
+
+
+# D(N(u,v)) = (v + 2)² u: the edge u = 0 is a parabolic line.
+BIANGLE = net_of([1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 2, 0], [0, 1, 2])
+
+
+def random_patch(seed: int, bend: float = 9.0) -> Array:
+    """Return integer control points near the plane z = 0, farther from it for a larger bend."""
+    flat = np.array([[8, 0, 0], [0, 8, 0], [0, 0, 0], [4, 4, 0], [4, 0, 0], [0, 4, 0]], dtype=float)
+    noise = np.random.default_rng(seed).integers(-9, 10, (6, 3))
+    return np.round(8.0 * flat + bend * noise).astype(np.float64)
+
+
+def measured(net: Array, corners: Array, order: int = 60) -> float:
+    """Return the integral of dS over a triangle by Gauss-Legendre quadrature."""
+    nodes, weights = np.polynomial.legendre.leggauss(order)
+    x, y = (g.ravel() for g in np.meshgrid(0.5 + 0.5 * nodes, 0.5 + 0.5 * nodes))
+    weight = np.outer(weights, weights).ravel() / 4.0 * (1.0 - y)
+    barycentric = np.stack([x * (1.0 - y), y, (1.0 - x) * (1.0 - y)])
+    u, v = (corners.T @ barycentric)[:2]
+    area = abs(np.linalg.det(np.column_stack([corners, np.ones(3)])))
+    vectors = Patches.of_control_points(net[None]).vectors[0]
+    N = np.array(np.broadcast_arrays(*python_function(formulas.tangents)(patch(vectors), u, v)[2]))
+    A, B, C = (vectors[k] @ N for k in range(3))
+    return float((weight * (A * C - B * B) / np.linalg.norm(N, axis=0) ** 3).sum() * area)
+
+
+TRIANGLE = np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]])
+
+
+# --- one patch ------------------------------------------------------------------------------------
+
+
+def test_octant() -> None:
+    image = gm.gauss_map.GaussianImage.of_patch(OCTANT)
+    assert image.kind == "triangle"
+    assert image.patch_class == gm.gauss_map.PatchClass.ELLIPTIC
+    assert all(arc.is_great_circle and not arc.is_point for arc in image.arcs)
+    assert image.solid_angle == pytest.approx(np.pi / 2, rel=1e-14)
+    assert image.area == image.solid_angle
+    inside = [[1, 1, 1], [1, 2, 3], [1e-12, 1, 1]]
+    border = [[0, 1, 1], [1, 0, 3], [0, 0, 1], [1e-300, 1, 1]]
+    outside = [[-1, -1, -1], [-1e-300, 1, 1], [1, 1, -1e-12], [0, 0, -1]]
+    assert image.contains(inside + border).all()
+    assert not image.contains(outside).any()
+
+
+def test_arcs_are_the_normals_of_the_edges_and_lie_on_the_cones() -> None:
+    for seed in range(20):
+        net = random_patch(seed, 3.0)
+        image = gm.gauss_map.GaussianImage.of_patch(net)
+        vectors = patch(Patches.of_control_points(net[None]).vectors[0])
+        share = np.linspace(0.0, 1.0, 9)
+        edges = [(0 * share, 1 - share), (share, 0 * share), (1 - share, share)]
+        for arc, cone, (u, v) in zip(image.arcs, image.cones, edges, strict=True):
+            normals = np.array(python_function(formulas.tangents)(vectors, u, v)[2]).T
+            normals /= np.linalg.norm(normals, axis=1)[:, None]
+            points = arc.points(9)
+            np.testing.assert_allclose(points, normals, rtol=0, atol=1e-13)
+            on_cone = np.einsum("kx,xy,ky->k", points, cone, points)
+            assert np.abs(on_cone).max() <= 1e-13 * np.linalg.norm(cone)
+            np.testing.assert_allclose(np.linalg.norm(points, axis=1), 1.0, rtol=1e-15)
+
+
+def test_cones_have_one_sign_at_the_normals_inside() -> None:
+    image = gm.gauss_map.GaussianImage.of_patch(OCTANT)
+    forms = np.einsum("x,kxy,y->k", [1.0, 2.0, 3.0], image.cones, [1.0, 2.0, 3.0])
+    assert (forms > 0).all() or (forms < 0).all()
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_solid_angle_is_the_integral_of_the_curvature(seed: int) -> None:
+    """Nearly flat patches: there 60 × 60 nodes are exact up to rounding."""
+    net = random_patch(seed, 1.5)
+    image = gm.gauss_map.GaussianImage.of_patch(net)
+    assert image.solid_angle == pytest.approx(measured(net, TRIANGLE), abs=1e-13)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_area_is_the_integral_of_the_absolute_curvature(seed: int) -> None:
+    net = random_patch(seed, 1.5)
+    image = gm.gauss_map.GaussianImage.of_patch(net)
+    total = 0.0
+    for piece in image.pieces:
+        fan = [piece.corners[[0, k, k + 1]] for k in range(1, len(piece.corners) - 1)]
+        value = sum(measured(net, triangle) for triangle in fan)
+        assert np.sign(value) == piece.sign
+        total += abs(value)
+    assert image.area == pytest.approx(total, abs=1e-13)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("seed", range(8))
+def test_area_is_the_share_of_the_sphere_that_it_contains(seed: int) -> None:
+    """Wild patches, with singular points inside: 100 000 normals count the area to 1 %."""
+    net = np.random.default_rng(seed).integers(-9, 10, (6, 3)).astype(float)
+    image = gm.gauss_map.GaussianImage.of_patch(net)
+    share = image.contains(gm.fibonacci(100_000)).mean()
+    assert image.area == pytest.approx(4 * np.pi * share, abs=0.01)
+
+
+@pytest.mark.compiled
+@pytest.mark.slow
+def test_solid_angle_is_additive_where_singular_points_are_inside() -> None:
+    """Four quarters of a wild patch are patches, and their images make up that of the whole."""
+    mixed = 0
+    for seed in range(20):
+        net = np.random.default_rng(100 + seed).integers(-9, 10, (6, 3)).astype(float)
+        b200, b020, b002, b110, b101, b011 = net
+        uv, uw, vw = ((x + 2 * y + z) / 4 for x, y, z in (
+            (b200, b110, b020), (b200, b101, b002), (b020, b011, b002)
+        ))  # fmt: skip
+        near_u, near_v, near_w = (
+            (x + y + z + t) / 4
+            for x, y, z, t in (
+                (b200, b110, b101, b011), (b020, b110, b011, b101), (b002, b101, b011, b110)
+            )
+        )  # fmt: skip
+        quarters = [
+            [b200, uv, uw, (b200 + b110) / 2, (b200 + b101) / 2, near_u],
+            [uv, b020, vw, (b020 + b110) / 2, near_v, (b020 + b011) / 2],
+            [uw, vw, b002, near_w, (b002 + b101) / 2, (b002 + b011) / 2],
+            [vw, uw, uv, near_w, near_v, near_u],
+        ]
+        images = [gm.gauss_map.GaussianImage.of_patch(x) for x in (net, *quarters)]
+        mixed += images[0].kind == "bow tie"
+        whole, *parts = (image.solid_angle for image in images)
+        assert whole == pytest.approx(sum(parts), abs=1e-10)
+        whole, *parts = (image.area for image in images)
+        assert whole == pytest.approx(sum(parts), abs=1e-10)
+    assert mixed > 5
+
+
+# --- membership, exactly --------------------------------------------------------------------------
+
+
+def by_definition(net: Array, n: list[int]) -> bool:
+    """Solve n·p_u = n·p_v = 0 in fractions; D must not vanish."""
+    integers = net.astype(int).astype(object) * Fraction(1)
+    vectors = python_function(formulas.power_form)(*map(vector, integers))
+    a, b, c, d, e, _ = vectors
+    A, B, C, P, Q = (sum(x * y for x, y in zip(n, z, strict=True)) for z in (a, b, c, d, e))
+    determinant = A * C - B * B
+    u, v = (B * Q - C * P) / Fraction(determinant), (B * P - A * Q) / Fraction(determinant)
+    field = python_function(formulas.tangents)(vectors, u, v)[2]
+    towards = sum(x * y for x, y in zip(field, n, strict=True))
+    return bool(u >= 0 and v >= 0 and u + v <= 1 and towards > 0)
+
+
+@given(
+    seed=st.integers(0, 10**6),
+    normals=st.lists(st.tuples(*[st.integers(-4, 4)] * 3), min_size=5, max_size=20),
+)
+def test_membership_is_that_of_the_definition(seed: int, normals: list) -> None:
+    net = np.random.default_rng(seed).integers(-3, 4, (6, 3)).astype(float)
+    vectors = python_function(formulas.power_form)(*map(vector, net))
+    D = [python_function(formulas.forms)(vectors, Vector(*n))[0] for n in normals]
+    asked = [n for n, value in zip(normals, D, strict=True) if value != 0]
+    if asked:
+        found = gm.gauss_map.GaussianImage.of_patch(net).contains(asked)
+        assert found.tolist() == [by_definition(net, list(n)) for n in asked]
+
+
+def test_border_belongs_to_the_image_and_what_lies_beyond_does_not() -> None:
+    """Normals on an edge of an integer patch, moved by one part in 2⁵⁰ along the gradient of V."""
+    image = gm.gauss_map.GaussianImage.of_patch(2 * BIANGLE)
+    vectors = python_function(formulas.power_form)(*map(vector, 2 * BIANGLE))
+    u = np.array([0.25, 0.5, 0.75])
+    normals = np.array(python_function(formulas.tangents)(vectors, u, 0.0)[2]).T
+    assert image.contains(normals).all()
+    away = normals @ image.cones[1]
+    away /= np.abs(away).max(axis=1, keepdims=True)
+    sides = [image.contains(normals + sign * 2.0**-50 * away) for sign in (1, -1)]
+    assert (sides[0] != sides[1]).all()
+
+
+def test_parabolic_line_inside_has_its_normal() -> None:
+    """Moved to u = −½ … ½ the patch has the line u = 0 inside: all of it has the normal e_x."""
+    a, b, c, d, e = np.eye(3)[0], np.eye(3)[1], np.eye(3)[2], [0, 2, 0], [0, 1, 2]
+    moved = net_of(4 * a, 4 * b, 4 * c, 2 * (np.array(d) - a), 2 * (np.array(e) - b))
+    image = gm.gauss_map.GaussianImage.of_patch(moved)
+    assert image.kind == "bow tie"
+    assert image.contains([[1, 0, 0]]).all()
+    assert not image.contains([[-1, 0, 0], [0, 1, 0]]).any()
+
+
+# --- degenerate images ----------------------------------------------------------------------------
+
+
+def test_biangle() -> None:
+    image = gm.gauss_map.GaussianImage.of_patch(BIANGLE)
+    assert image.kind == "biangle"
+    assert [arc.is_point for arc in image.arcs] == [True, False, False]
+    np.testing.assert_allclose(image.arcs[0].points(5), np.tile([1.0, 0.0, 0.0], (5, 1)))
+    assert image.area == pytest.approx(measured(BIANGLE, TRIANGLE), abs=1e-12)
+    assert image.contains([[1, 0, 0]]).all()
+
+
+def test_developable_patch_is_an_arc() -> None:
+    image = gm.gauss_map.GaussianImage.of_patch(CYLINDER)
+    assert (image.kind, image.patch_class) == ("arc", gm.gauss_map.PatchClass.DEVELOPABLE)
+    assert image.solid_angle == image.area == 0.0
+    assert all(arc.is_great_circle for arc in image.arcs)
+    np.testing.assert_array_equal(
+        image.contains([[0, 0, 1], [-1, 0, 1], [-2, 0, 1], [-3, 0, 1], [1, 0, 1], [-1, 1e-9, 1]]),
+        [True, True, True, False, False, False],
+    )
+
+
+def test_plane_is_a_point() -> None:
+    image = gm.gauss_map.GaussianImage.of_patch(PLANE)
+    assert (image.kind, image.patch_class, image.area) == (
+        "point",
+        gm.gauss_map.PatchClass.PLANAR,
+        0.0,
+    )
+    assert all(arc.is_point and arc.is_great_circle for arc in image.arcs)
+    asked = [[-2, -3, 1], [-4, -6, 2], [2, 3, -1], [-2, -3, 1 + 1e-15]]
+    assert image.contains(asked).tolist() == [True, True, False, False]
+    folded = gm.gauss_map.GaussianImage.of_patch(FOLDED_PLANE)
+    assert folded.kind == "point"
+    assert folded.contains([[0, 0, 1], [0, 0, -1], [0, 1, 1]]).tolist() == [True, True, False]
+
+
+@pytest.mark.parametrize("net", [LINE, np.zeros((6, 3)), np.ones((6, 3))])
+def test_what_has_no_normals_is_empty(net: Array) -> None:
+    image = gm.gauss_map.GaussianImage.of_patch(net)
+    assert (image.kind, image.patch_class) == ("empty", gm.gauss_map.PatchClass.SINGULAR)
+    assert image.solid_angle == image.area == 0.0
+    assert not image.contains([[1, 0, 0], [3, -2, 1]]).any()
+    assert np.isnan(image.arcs[0].points(3)).all()
+
+
+@pytest.mark.compiled
+def test_singular_corner_adds_a_side() -> None:
+    """With p_u and p_v parallel at a corner, the normals near it fill part of a great circle."""
+    net = net_of([2, 3, -1], [1, 3, 1], [2, 1, 1], [1, 0, 0], [2, 0, 0])
+    image = gm.gauss_map.GaussianImage.of_patch(net)
+    assert image.kind == "polygon"
+    share = image.contains(gm.fibonacci(200_000)).mean()
+    assert image.area == pytest.approx(4 * np.pi * share, abs=0.005)
+    ends = image.arcs[0].points(5)[-1], image.arcs[1].points(5)[0]
+    assert np.isfinite(ends).all()
+    assert np.abs(np.array(ends)[:, 0]).max() == 0.0  # perpendicular to both tangents
+    assert np.linalg.norm(ends[0] - ends[1]) > 0.1
+
+
+@pytest.mark.compiled
+def test_images_at_a_pole() -> None:
+    """One triangle of a cell has a whole edge in the pole, two have one corner there."""
+    images = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.sphere(), (8, 6))
+    cell = 5  # the northernmost one for the first step of u
+    kinds = [images[4 * cell + turn].kind for turn in range(4)]
+    assert kinds == ["triangle", "triangle", "arc", "triangle"]
+    for turn in range(1, 4):
+        points = np.concatenate([arc.points(5) for arc in images[4 * cell + turn].arcs])
+        assert np.abs(points - [0, 0, 1]).max(axis=1).min() < 1e-15
+
+
+def test_developable_patch_with_a_curve_of_singular_points_is_an_arc() -> None:
+    image = gm.gauss_map.GaussianImage.of_patch(
+        net_of([-1, 0, -1], [0, -2, 2], [-3, -1, -2], [1, 0, 0], [2, 0, 0])
+    )
+    assert (image.kind, image.area) == ("arc", 0.0)
+    assert not image.contains(gm.fibonacci(5000)).any()
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("factor", [1e-150, 1e-12, 1e12, 1e100])
+def test_scale_does_not_matter(factor: float) -> None:
+    for seed in range(5):
+        net = random_patch(seed)
+        image, other = (gm.gauss_map.GaussianImage.of_patch(x) for x in (net, net * factor))
+        assert image.kind == other.kind
+        assert other.area == pytest.approx(image.area, rel=1e-11)
+        normals = gm.fibonacci(500)
+        assert (image.contains(normals) == other.contains(normals)).all()
+
+
+def test_translation_costs_only_its_rounding() -> None:
+    for net, kind in ((OCTANT, "triangle"), (CYLINDER, "arc"), (PLANE, "point")):
+        moved = net / 3.0 + 1e6
+        image = gm.gauss_map.GaussianImage.of_patch(moved)
+        assert image.kind == kind
+        assert image.area == pytest.approx(gm.gauss_map.GaussianImage.of_patch(net).area, abs=1e-8)
+    assert all(
+        arc.is_great_circle for arc in gm.gauss_map.GaussianImage.of_patch(OCTANT / 3 + 1e6).arcs
+    )
+
+
+# --- all patches of a spline ----------------------------------------------------------------------
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize(
+    "cells", [(16, 16), *(pytest.param(x, marks=pytest.mark.slow) for x in ((33, 17), (64, 64)))]
+)
+@pytest.mark.slow
+def test_closed_surfaces_have_the_solid_angle_of_their_topology(cells: tuple[int, int]) -> None:
+    torus = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.torus(), cells)
+    assert torus.solid_angles.sum() == pytest.approx(0.0, abs=1e-11)
+    cyclide = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.dupin_cyclide(), cells)
+    assert cyclide.solid_angles.sum() == pytest.approx(0.0, abs=1e-9)
+    assert cyclide.areas.sum() == pytest.approx(8 * np.pi, rel=0.01)
+    even = (cells[0] + cells[0] % 2, cells[1])
+    for name in ("sphere", "ellipsoid"):
+        images = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.surface(name), even)
+        assert images.solid_angles.sum() == pytest.approx(4 * np.pi, abs=1e-11)
+
+
+@pytest.mark.compiled
+def test_torus_covers_the_sphere_twice() -> None:
+    """Where cells end at the parabolic circles no patch is mixed, and each half covers 4π."""
+    images = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.torus(), (32, 32))
+    elliptic = images.patch_classes == gm.gauss_map.PatchClass.ELLIPTIC
+    assert images.solid_angles[elliptic].sum() == pytest.approx(4 * np.pi, abs=1e-11)
+    assert images.solid_angles[~elliptic].sum() == pytest.approx(-4 * np.pi, abs=1e-11)
+    assert images.areas.sum() == pytest.approx(8 * np.pi, abs=1e-11)
+    assert len(images) == len(images.areas) == images.spline.patches
+
+
+@pytest.mark.compiled
+def test_sheets() -> None:
+    images = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.torus(), (16, 16))
+    normals = gm.icosphere(10)
+    assert (images.sheets(normals, 1) == images.sheets(normals, -1)).all()
+    assert (images.sheets(normals) == images.sheets(normals, 1) + images.sheets(normals, -1)).all()
+    away = np.abs(normals[:, 2]) < 0.999
+    assert (images.sheets(normals)[away] == 2).all()
+    sphere = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.sphere(), (16, 16))
+    assert (sphere.sheets(normals, 1) - sphere.sheets(normals, -1) == 1).all()
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("name", ["wavy_graph", "moebius_band"])
+def test_sheets_are_the_images_that_contain_a_normal(name: str) -> None:
+    images = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.surface(name), (4, 3))
+    normals = gm.fibonacci(1500) + np.array([0.01, 0.02, 0.03])  # no tie with a symmetry
+    count = np.sum([image.contains(normals) for image in images], axis=0)
+    np.testing.assert_array_equal(images.sheets(normals), count)
+    assert count.max() > 1
+
+
+@pytest.mark.compiled
+@pytest.mark.slow
+def test_solid_angles_of_a_spline_are_those_of_its_patches() -> None:
+    images = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.dupin_cyclide(), (8, 6))
+    single = np.array([(x.solid_angle, x.area) for x in images])
+    np.testing.assert_allclose(images.solid_angles, single[:, 0], rtol=0, atol=1e-12)
+    np.testing.assert_allclose(images.areas, single[:, 1], rtol=0, atol=1e-12)
+
+
+@pytest.mark.compiled
+def test_quadrature_of_the_sampler_agrees() -> None:
+    """`Spline.measure` uses three nodes a patch: its error falls with the size of the cells."""
+    errors = []
+    for cells in (16, 32):
+        spline = gm.fit(gm.surfaces.ellipsoid_patch(), (cells, cells))
+        exact = gm.gauss_map.GaussianImages.of_spline(spline).solid_angles
+        errors.append(np.abs(spline.measure[1] - exact).max() / exact.max())
+    assert errors[1] < 0.35 * errors[0] < 0.01
+
+
+# --- bad input ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "points",
+    [
+        [], OCTANT[:5], np.zeros((6, 2)), np.zeros((2, 6, 3)), "abc", None, 5,
+        np.where(np.eye(6, 3) > 0, np.nan, OCTANT), np.full((6, 3), np.inf), OCTANT * 1j,
+        OCTANT * 1e305,
+    ],
+)  # fmt: skip
+def test_bad_control_points(points) -> None:
+    for call in (
+        gm.gauss_map.GaussianImage.of_patch,
+        gm.gauss_map.parabolic_lines,
+        gm.gauss_map.split_patch,
+    ):
+        with pytest.raises(gm.errors.InputError, match="control_points"):
+            call(points)
+
+
+@pytest.mark.parametrize(
+    "normals", [[], [[0, 0, 0]], [[np.nan, 0, 1]], [1, 2, 3], [[1, 2]], "n", [[1j, 0, 0]]]
+)
+def test_bad_normals(normals) -> None:
+    image = gm.gauss_map.GaussianImage.of_patch(OCTANT)
+    with pytest.raises(gm.errors.InputError, match="normals"):
+        image.contains(normals)
+
+
+def test_other_bad_input() -> None:
+    spline = gm.fit(gm.surfaces.torus(), (4, 4))
+    images = gm.gauss_map.GaussianImages.of_spline(spline)
+    with pytest.raises(gm.errors.InputError, match="cells"):
+        gm.gauss_map.GaussianImages.of_spline(spline, (4, 4))
+    with pytest.raises(gm.errors.InputError, match="Surface"):
+        gm.gauss_map.GaussianImages.of_spline(5)  # pyright: ignore[reportArgumentType]
+    with pytest.raises(gm.errors.InputError, match="sign"):
+        images.sheets([[0, 0, 1]], 2)
+    with pytest.raises(gm.errors.InputError, match="normals"):
+        images.sheets([[0, 0, 0]])
+    with pytest.raises(IndexError):
+        images[len(images)]
+    for count in (1, 0, 2.5, None):
+        with pytest.raises(
+            gm.errors.InputError, match="count must be a whole number of at least 2"
+        ):
+            gm.gauss_map.GaussianImage.of_patch(OCTANT).arcs[0].points(count)  # pyright: ignore[reportArgumentType]
+
+
+def test_a_double_parabolic_line_inside_pinches_the_image() -> None:
+    points = [
+        [1, 0, 0.2], [-0.3, 1, 0], [0, 0, 0], [0.85, 0.5, -0.15], [0.5, 0, -0.15], [-0.15, 0.5, 0]
+    ]  # fmt: skip
+    image = gm.gauss_map.GaussianImage.of_patch(points)
+    assert [piece.sign for piece in image.pieces] == [-1, -1]
+    assert image.kind == "bow tie"
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("sign", [np.array([1, 1]), "1", 1.0, True, None, 2])
+def test_a_sign_is_one_whole_number(sign: Any) -> None:
+    images = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.torus(), (8, 8))
+    with pytest.raises(gm.errors.InputError, match="sign must be 1, -1 or 0"):
+        images.sheets([[0.0, 0.0, 1.0]], sign=sign)

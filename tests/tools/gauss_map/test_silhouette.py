@@ -1,0 +1,320 @@
+"""Silhouettes: perpendicular, complete, exact on sphere and torus, aligned directions included."""
+
+import pickle
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.tools.gauss_map.silhouette import great_circle
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+EPS = 2.0**-52
+MAJOR, MINOR = 1.0, 0.35
+TORUS = gm.surfaces.torus(major=MAJOR, minor=MINOR)
+AXES = [[1, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, 0, -5]]
+DIRECTIONS = [*AXES, [1, 1, 0], [1, -1, 1], [1, 2, 3], [-0.3, 0.1, 1e-9]]
+
+compiled = pytest.mark.compiled
+
+
+def unit(direction: Any) -> Array:
+    return np.asarray(direction, dtype=float) / np.linalg.norm(direction)
+
+
+# --- the circle -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("direction", DIRECTIONS)
+def test_a_great_circle_goes_round_its_axis(direction: Any) -> None:
+    axis = unit(direction)
+    normals = great_circle(axis, 36)
+    assert np.abs(np.linalg.norm(normals, axis=1) - 1).max() <= 2 * EPS
+    assert np.abs(normals @ axis).max() <= (0 if np.abs(axis).max() == 1 else 4 * EPS)
+    turned = np.cross(normals, np.roll(normals, -1, axis=0))  # anticlockwise, in equal steps
+    np.testing.assert_allclose(
+        turned, np.sin(np.radians(10)) * axis + 0 * turned, rtol=0, atol=8 * EPS
+    )
+
+
+# --- exact cases ----------------------------------------------------------------------------------
+
+
+@compiled
+@pytest.mark.parametrize("direction", DIRECTIONS)
+def test_silhouette_of_a_sphere_is_a_great_circle(direction: Any) -> None:
+    """Support functions of surfaces of size 1 are off by 1e-5 (docs/orders.md)."""
+    samples = gm.silhouette(gm.surfaces.sphere(radius=2.0), direction, count=100)
+    assert (samples.normal_index == np.arange(100)).all()
+    assert (samples.normals == great_circle(unit(direction), 100)).all()
+    assert samples.elliptic.all()
+    assert np.abs(samples.support - 2.0).max() < 5e-5
+    assert np.abs(samples.points @ unit(direction)).max() < 2e-3  # normals are of second order
+
+
+@compiled
+@pytest.mark.parametrize("direction", DIRECTIONS)
+def test_silhouette_of_a_torus(direction: Any) -> None:
+    """h = r ± R √(n_x² + n_y²), outside (K > 0) and inside (K < 0)."""
+    samples = gm.silhouette(TORUS, direction, count=300)
+    assert np.abs(samples.normals @ unit(direction)).max() <= 4 * EPS
+    across = MAJOR * np.hypot(samples.normals[:, 0], samples.normals[:, 1])
+    exact = MINOR + np.where(samples.elliptic, across, -across)
+    assert np.abs(samples.support - exact).max() < 2e-5  # docs/orders.md
+    tube = np.hypot(np.hypot(*samples.points[:, :2].T) - MAJOR, samples.points[:, 2])
+    assert np.abs(tube - MINOR).max() < 2e-5
+    if direction in ([0, 0, 1], [0, 0, -5]):
+        radius = np.hypot(*samples.points[:, :2].T)
+        expected = np.where(samples.elliptic, MAJOR + MINOR, MAJOR - MINOR)
+        assert np.abs(radius - expected).max() < 2e-5
+        assert np.abs(samples.points[:, 2]).max() < 2e-4  # normals are of second order
+
+
+# --- every point once -----------------------------------------------------------------------------
+
+
+@compiled
+@pytest.mark.parametrize("direction", DIRECTIONS)
+@pytest.mark.parametrize("normals", [1, 2, 10, 90, 97, 180])
+@pytest.mark.parametrize("cells", [(16, 16), (33, 20)])
+@pytest.mark.quick_for("cells0")
+def test_every_normal_has_its_points_once(direction: Any, normals: int, cells: Any) -> None:
+    """Σ sign K = 0 on a torus; 10 and 90 normals contain the axes, where the torus is parabolic."""
+    samples = gm.silhouette(gm.fit(TORUS, cells), direction, count=2 * normals)
+    assert samples.report.normals == normals
+    signs = np.where(samples.elliptic, 1, -1)
+    sums, sheets = np.zeros((2, normals), dtype=int)
+    np.add.at(sums, samples.normal_index, signs)
+    np.add.at(sheets, samples.normal_index, 1)
+    assert not sums.any()
+    generic = np.abs(great_circle(unit(direction), normals)[:, 2]) < 0.999
+    assert (sheets[generic] == 2).all()
+
+
+@compiled
+def test_its_normals_are_those_of_the_spline_there() -> None:
+    """N·d = 0 at the parameters; and where N·d changes its sign along u, there is a sample."""
+    spline = gm.fit(gm.surfaces.wavy_graph(), (24, 24))
+    axis = unit([1.0, 0.3, 0.15])
+    samples = gm.silhouette(spline, axis, count=3000)
+    assert np.abs(spline.normals(*samples.uv.T) @ axis).max() < 1e-9
+    (u0, u1), (v0, v1) = spline.domain
+    u, v = np.meshgrid(np.linspace(u0, u1, 100), np.linspace(v0, v1, 41)[1:-1], indexing="ij")
+    along = spline.normals(u, v) @ axis
+    i, j = np.nonzero(along[1:] * along[:-1] < 0)
+    assert len(i) > 20
+    middles = np.stack([(u[i, j] + u[i + 1, j]) / 2, v[i, j]], axis=1)
+    distances = np.linalg.norm(middles[:, None] - samples.uv, axis=2).min(axis=1)
+    assert distances.max() < 0.05 * (u1 - u0)
+
+
+@compiled
+def test_samples_are_ordered_by_normal_and_then_by_patch() -> None:
+    samples = gm.silhouette(TORUS, [1, 2, 3], count=200, cells=(16, 16))
+    order = np.lexsort((samples.patch_index, samples.normal_index))
+    assert (order == np.arange(len(samples))).all()
+    assert samples.spline is not None
+    assert samples.spline.cells == (16, 16)
+
+
+@compiled
+@pytest.mark.parametrize("direction", [[0, 0, 1], [1, 2, 3], [0.5, 0, 2]])
+@pytest.mark.parametrize("outside", [True, False])
+def test_the_order_is_that_along_the_outline(direction: Any, outside: bool) -> None:
+    """A step of the normal by 2π/s moves the point by that times the largest radius at most."""
+    samples = gm.silhouette(TORUS, direction, count=2000)
+    part = samples[samples.elliptic == outside]
+    steps = np.linalg.norm(part.points - np.roll(part.points, 1, axis=0), axis=1)
+    radius = 1 / np.abs(part.principal_curvatures).min()
+    assert steps.max() <= 1.01 * radius * 2 * np.pi / len(part)
+    assert len(part) == 1000
+
+
+@compiled
+@pytest.mark.parametrize(("factor", "shift"), [(1e12, 0.0), (1e-12, 0.0), (1.0, 1e6)])
+def test_far_and_of_any_size(factor: float, shift: float) -> None:
+    moved = gm.Surface(
+        "moved", lambda u, v: factor * TORUS.evaluate(u, v) + shift, TORUS.domain, TORUS.boundary
+    )
+    samples = gm.silhouette(moved, [0, 0, 1], count=100, cells=(24, 24))
+    assert (np.bincount(samples.normal_index) == 2).all()
+    radius = np.hypot(*((samples.points - shift) / factor)[:, :2].T)
+    expected = np.where(samples.elliptic, MAJOR + MINOR, MAJOR - MINOR)
+    assert np.abs(radius - expected).max() < 1e-3
+
+
+# --- polylines ------------------------------------------------------------------------------------
+
+
+def open_lines(samples: Any) -> list[NDArray[np.int64]]:
+    """Return the polylines, without the last row of closed ones; each sample is in one of them."""
+    lines = [x[:-1] if len(x) > 1 and x[0] == x[-1] else x for x in samples.polylines]
+    assert sorted(np.concatenate(lines).tolist()) == list(range(len(samples)))
+    return lines
+
+
+def is_closed(line: NDArray[np.int64]) -> bool:
+    return len(line) > 1 and line[0] == line[-1]
+
+
+@compiled
+@pytest.mark.parametrize("direction", DIRECTIONS)
+def test_the_polyline_of_a_sphere_goes_round_once(direction: Any) -> None:
+    """Over the poles, too: its points have the angles of their normals."""
+    samples = gm.silhouette("sphere", direction, count=100)
+    (line,) = samples.polylines
+    assert is_closed(line)
+    (order,) = open_lines(samples)
+    steps = np.diff(np.append(order, order[0])) % 100  # normals are in order
+    assert (steps == 1).all() or (steps == 99).all()
+
+
+@compiled
+@pytest.mark.parametrize("direction", [[1, 2, 3], [0.3, -1, 0.5], [0, 0, 1], [0, 1, 4]])
+@pytest.mark.parametrize("cells", [(16, 16), (40, 27)])
+def test_polylines_of_a_torus(direction: Any, cells: Any) -> None:
+    """Its contour generator tan v = −(d_x cos u + d_y sin u) / d_z is two closed curves."""
+    samples = gm.silhouette(TORUS, direction, count=600, cells=cells)
+    open_lines(samples)
+    assert len(samples.polylines) == 2
+    d = unit(direction)
+    for line in samples.polylines:
+        assert is_closed(line)
+        u, v = samples.uv[line].T
+        turns = np.diff(u)
+        turns -= 2 * np.pi * np.round(turns / (2 * np.pi))
+        assert abs(turns.sum()) == pytest.approx(2 * np.pi)
+        assert (np.sign(turns) == np.sign(turns.sum())).all()
+        # One of two branches, half a turn of v apart.
+        side = np.cos(v) * d[2] - np.sin(v) * (d[0] * np.cos(u) + d[1] * np.sin(u))
+        assert (side > 0).all() or (side < 0).all()
+
+
+@compiled
+def test_polylines_end_at_borders_and_pass_parabolic_points() -> None:
+    """Those of a graph seen from the side: steps are as the curve in (u, v) is."""
+    samples = gm.silhouette(gm.surfaces.wavy_graph(), [1.0, 0.3, 0.15], count=2000, cells=(24, 24))
+    lines = open_lines(samples)
+    assert len(lines) == 4
+    for line in lines:
+        uv = samples.uv[line]
+        steps = np.linalg.norm(np.diff(uv, axis=0), axis=1)
+        # Where a curve is nearly straight points are far apart, but in order: no way back.
+        assert (np.einsum("kx,kx->k", np.diff(uv, axis=0)[1:], np.diff(uv, axis=0)[:-1]) > 0).all()
+        assert steps.max() < 0.2
+        assert (np.abs(uv[[0, -1]]).max(axis=1) > 0.9).all()
+    mixed = [len(set(samples.elliptic[x].tolist())) == 2 for x in lines]
+    assert any(mixed)
+
+
+@compiled
+@pytest.mark.parametrize(
+    ("name", "closed"), [("ellipsoid", [True]), ("catenoid", [True]), ("moebius_band", [False] * 2)]
+)
+def test_polylines_of_other_surfaces(name: str, closed: list[bool]) -> None:
+    samples = gm.silhouette(gm.surfaces.surface(name), [1, 2, 3], count=400)
+    lines = open_lines(samples)
+    assert [is_closed(x) for x in samples.polylines] == closed
+    for line in lines:
+        steps = np.linalg.norm(np.diff(samples.points[line], axis=0), axis=1)
+        assert steps.max() < 0.05 * np.ptp(samples.points, axis=0).max()
+
+
+@compiled
+def test_polylines_are_cut_at_a_trim() -> None:
+    low, high = 0.1, 2.5
+    square = [[low, 0.2], [high, 0.2], [high, 6.0], [low, 6.0]]
+    samples = gm.silhouette(TORUS.trimmed([square]), [1, 2, 3], count=400)
+    whole = gm.silhouette(TORUS, [1, 2, 3], count=2 * (samples.report.normals or 0))
+    u, v = whole.uv.T
+    inside = (u > low) & (u < high) & (v > 0.2) & (v < 6.0)
+    np.testing.assert_array_equal(samples.points, whole.points[inside])
+    assert len(samples) == pytest.approx(400, rel=0.05)
+    for line in open_lines(samples):
+        steps = np.diff(samples.uv[line, 0])
+        assert (steps > 0).all() or (steps < 0).all()
+    assert not any(map(is_closed, samples.polylines))
+
+
+@compiled
+def test_what_is_made_of_a_silhouette() -> None:
+    outline = gm.silhouette(TORUS, [1, 2, 3], count=100)
+    again = pickle.loads(pickle.dumps(outline))
+    for ours, theirs in zip(again.polylines, outline.polylines, strict=True):
+        np.testing.assert_array_equal(ours, theirs)
+    for part in (outline[:10], gm.Samples.concatenate([outline, outline]), outline.offset(0.1)):
+        assert type(part) is gm.Samples
+    lean = gm.silhouette(TORUS, [1, 2, 3], count=100, fields=("points",))
+    np.testing.assert_array_equal(lean.polylines[0], outline.polylines[0])
+    assert lean.fields == ("points",)
+
+
+# --- count, fields, warnings ----------------------------------------------------------------------
+
+
+@compiled
+@pytest.mark.parametrize("name", ["torus", "hyperboloid", "enneper", "wavy_graph", "moebius_band"])
+def test_count_is_met(name: str) -> None:
+    samples = gm.silhouette(gm.surfaces.surface(name), [1, 0.2, 0.3], count=400)
+    assert abs(len(samples) - 400) <= 0.05 * 400 + 1
+
+
+@compiled
+def test_fields_and_float32() -> None:
+    everything = gm.silhouette(TORUS, [1, 2, 3], count=100)
+    some = gm.silhouette(TORUS, [1, 2, 3], count=100, fields=("points",), dtype=np.float32)
+    assert some.fields == ("points",)
+    assert (some.points == everything.points.astype(np.float32)).all()
+
+
+@compiled
+@pytest.mark.parametrize("name", ["plane", "cylinder", "cone"])
+@pytest.mark.parametrize("direction", [[0, 0, 1], [1, 2, 3]])
+def test_developable_surfaces_warn(name: str, direction: Any) -> None:
+    with pytest.warns(gm.GaussmapWarning, match="flat or developable") as said:
+        samples = gm.silhouette(gm.surfaces.surface(name), direction, count=50, cells=(16, 16))
+    assert said[0].filename == __file__
+    if name != "cone":  # whose spline is slightly elliptic and hyperbolic
+        assert len(samples) == 0
+
+
+@compiled
+def test_no_silhouette() -> None:
+    """A bowl seen from above has no vertical tangent plane."""
+    bowl = gm.surfaces.elliptic_paraboloid()
+    with pytest.warns(
+        gm.GaussmapWarning,
+        match=r"none of the normals.*; there are 0 samples instead of the requested 20",
+    ):
+        samples = gm.silhouette(bowl, [0, 0, 1], count=20)
+    assert len(samples) == 0
+    assert samples.polylines == ()
+
+
+@pytest.mark.parametrize(
+    ("direction", "message"),
+    [
+        ([0, 0, 0], "^direction is the zero vector, which has no direction"),
+        ([0, np.nan, 0], "^direction holds NaN or infinity"),
+        ([np.inf, 0, 0], "^direction holds NaN or infinity"),
+        ([0, 1], r"^direction must have the shape \(3,\), not \(2,\)"),
+        ([[0, 0, 1]], r"^direction must have the shape \(3,\), not \(1, 3\)"),
+        ("z", "^direction must be an array of real numbers"),
+    ],
+)
+def test_directions_that_are_none(direction: Any, message: str) -> None:
+    with pytest.raises(gm.errors.InputError, match=message):
+        gm.silhouette(TORUS, direction, count=10)
+
+
+@pytest.mark.parametrize("scale", [5e-324, 1e-300, 1e300])
+def test_directions_of_any_length(scale: float) -> None:
+    tiny = gm.silhouette(TORUS, [0, 0, scale], count=8, cells=(8, 8))
+    assert (tiny.points == gm.silhouette(TORUS, [0, 0, 1], count=8, cells=(8, 8)).points).all()
+
+
+@pytest.mark.parametrize("count", [0, -1, 1.5, None, "9"])
+def test_counts_that_are_none(count: Any) -> None:
+    with pytest.raises(gm.errors.InputError, match="count must be a whole number of at least 1"):
+        gm.silhouette(TORUS, [0, 0, 1], count=count)

@@ -1,0 +1,282 @@
+"""Meshes of samples on a graded grid: topology, samples between its lines, and other samples."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.runtime.base.tolerances import NO_AREA
+from gaussmap.runtime.samples.report import SamplingReport
+from gaussmap.tools.meshes import triangulation
+from gaussmap.tools.meshes.lattice import Lattice
+from gaussmap.tools.meshes.meshing import Triangulated
+from gaussmap.tools.meshes.triangulation import neighbours
+
+from .test_meshing import PREFER, TURN, components, is_one_fan_at_each_vertex, latitude
+
+pytestmark = pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
+compiled = pytest.mark.compiled
+
+
+def octant(u: Any, v: Any) -> Any:
+    """An eighth of the unit sphere: the side v = π/2 is one point, an apex."""
+    return latitude(u, v)
+
+
+QUARTER = (0.0, np.pi / 2)
+surfaces: dict[str, tuple[Callable[[], gm.Surface], int, int]] = {
+    # surface, Euler characteristic, number of borders
+    "torus": (gm.surfaces.torus, 0, 0),
+    "ellipsoid": (gm.surfaces.ellipsoid, 2, 0),
+    "ellipsoid, v closes": (
+        lambda: gm.Surface.from_callable(
+            lambda u, v: latitude(v, u) * [2.0, 1.0, 1.0],
+            ((-np.pi / 2, np.pi / 2), TURN), ("pole", True),
+        ), 2, 0,
+    ),
+    "cylinder": (gm.surfaces.cylinder, 0, 2),
+    "cone": (
+        lambda: gm.Surface.from_callable(
+            lambda u, v: np.stack([v * np.cos(u), v * np.sin(u), 0.7 * v], axis=-1),
+            (TURN, (0.0, 1.0)), (True, False),
+        ), 1, 1,
+    ),
+    "graph": (gm.surfaces.wavy_graph, 1, 1),
+    "belt, v closes": (
+        lambda: gm.Surface.from_callable(
+            lambda u, v: latitude(v, u), ((-1.0, 1.0), TURN), (False, True)
+        ), 0, 2,
+    ),
+    "octant": (lambda: gm.Surface.from_callable(octant, (QUARTER, QUARTER), (False, False)), 1, 1),
+}  # fmt: skip
+CONE = pytest.param("cone", marks=compiled)  # Python raises at an apex, where kernels divide by 0
+EACH = pytest.mark.parametrize("name", [x if x != "cone" else CONE for x in surfaces])
+# Without compilation a few are enough.
+UNCOMPILED = ("torus", "octant")
+FEW_UNCOMPILED = pytest.mark.parametrize(
+    "name", [x if x in UNCOMPILED else pytest.param(x, marks=compiled) for x in surfaces]
+)
+
+
+def on_grid(name: str, lines: tuple[int, int], between: Any = None, graded: bool = True) -> Any:
+    """Return samples on a grid of lines of u and v, and at places in the unit square `between`."""
+    surface = surfaces[name][0]()
+    spline = gm.fit(surface, cells=(16, 16))
+    places = [(np.arange(n) + 0.5) / n for n in lines]
+    if graded:
+        places = [x + 0.08 * np.sin(2 * np.pi * x) for x in places]
+    column, row = (x.ravel() for x in np.indices(lines))
+    unit = np.stack([places[0][column], places[1][row]], axis=1)
+    if between is not None:
+        unit = np.concatenate([unit, between])
+        row, column = (np.append(x, np.full(len(between), -1)) for x in (row, column))
+    low, high = np.array(spline.domain).T
+    uv = low + unit * (high - low)
+    return gm.Samples(
+        points=spline.evaluate(*uv.T), normals=spline.normals(*uv.T), uv=uv, row=row,
+        column=column, report=SamplingReport(name, None, len(uv), None, None, None), spline=spline,
+        surface=surface,
+    )  # fmt: skip
+
+
+def changed(samples: gm.Samples, **fields: Any) -> gm.Samples:
+    """Return samples with other fields."""
+    arrays: dict[str, Any] = samples.arrays() | fields
+    return gm.Samples(
+        **arrays, report=samples.report, spline=samples.spline, surface=samples.surface
+    )
+
+
+def no_qhull(*_: object) -> Any:
+    raise AssertionError("a lattice needs no Delaunay triangulation")
+
+
+def check(name: str, mesh: gm.Mesh) -> None:
+    """Check that a mesh is the whole surface, without folds and flat triangles."""
+    _, characteristic, borders = surfaces[name]
+    assert mesh.euler_characteristic == characteristic
+    assert (components(mesh.boundary_edges) if borders else 0) == borders
+    assert is_one_fan_at_each_vertex(mesh)
+    assert mesh.smallest_angles.min() > np.degrees(NO_AREA)
+    assert mesh.angles.max() < 90.0
+    directed = mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    assert len(np.unique(directed, axis=0)) == len(directed)
+
+
+class TestTopology:
+    @FEW_UNCOMPILED
+    @pytest.mark.parametrize("prefer", PREFER)
+    def test_a_grid_makes_the_whole_surface(self, name, prefer, monkeypatch):
+        monkeypatch.setattr(triangulation, "triangulations", no_qhull)
+        samples = on_grid(name, (14, 11))
+        assert Lattice.of(samples, samples.spline) is not None
+        mesh = samples.mesh(prefer=prefer)
+        check(name, mesh)
+        used = mesh.sample_index[mesh.sample_index >= 0]
+        np.testing.assert_array_equal(used, np.arange(len(samples)))
+        np.testing.assert_array_equal(mesh.vertices[mesh.sample_index >= 0], samples.points)
+
+    @FEW_UNCOMPILED
+    @pytest.mark.parametrize("prefer", PREFER)
+    def test_samples_between_the_lines(self, name, prefer):
+        """At random, on lines and sides, next to sides, at corners, poles and other samples."""
+        grid = on_grid(name, (14, 11)).uv
+        low, high = np.array(surfaces[name][0]().domain).T
+        unit = (grid - low) / (high - low)
+        rng = np.random.default_rng(3)
+        special = [
+            [0.0, 0.3], [1.0, 0.62], [0.41, 0.0], [0.77, 1.0], [1e-4, 0.5], [0.21, 1.0 - 1e-4],
+            [0.0, 0.0], [unit[5, 0], 0.37], [0.13, unit[5, 1]], unit[40], unit[41],
+        ]  # fmt: skip
+        between = np.concatenate([rng.uniform(0.0, 1.0, (20, 2)), special])
+        samples = on_grid(name, (14, 11), between)
+        mesh = samples.mesh(prefer=prefer)
+        check(name, mesh)
+        assert Triangulated.on_lattice(samples, samples.spline) is not None
+        used = set(mesh.sample_index.tolist()) - {-1}
+        # Of three in a line, as on a cone, one may be left out.
+        assert len(set(range(len(grid))) - used - {40, 41}) <= (name == "cone")
+        assert prefer == "shape" or len(used) >= len(samples) - 5
+
+    def test_it_covers_the_parameters_once(self):
+        rng = np.random.default_rng(5)
+        samples = on_grid("graph", (12, 15), rng.uniform(0.0, 1.0, (40, 2)))
+        start = Triangulated.on_lattice(samples, samples.spline)
+        assert start is not None
+        a, b, c = np.moveaxis(start.uv[start.triangles], 1, 0)
+        areas = np.linalg.det(np.stack([b - a, c - a], axis=1)) / 2
+        assert areas.min() > 0.0
+        assert areas.sum() == pytest.approx(4.0, rel=1e-12)
+
+    @pytest.mark.parametrize("name", ["torus", CONE, "graph"])
+    def test_neighbours_are_those_of_the_triangles(self, name):
+        rng = np.random.default_rng(6)
+        samples = on_grid(name, (24, 20), rng.uniform(0.0, 1.0, (40, 2)))
+        start = Triangulated.on_lattice(samples, samples.spline)
+        assert start is not None
+        fresh, is_whole = neighbours(start.triangles, np.ones(len(start.points), dtype=bool))
+        assert is_whole
+        np.testing.assert_array_equal(start.neighbours, fresh)
+
+    def test_a_border_close_to_samples_gets_points_opposite_to_them(self):
+        """On the disk of a flat belt the chords of the outer circle are inside of these samples."""
+        disk = gm.Surface.from_callable(
+            lambda u, v: np.stack([v * np.cos(u), v * np.sin(u), 0.0 * u], axis=-1),
+            (TURN, (0.5, 1.0)), (True, False),
+        )  # fmt: skip
+        surfaces["disk"] = (lambda: disk, 0, 2)
+        between = np.stack([np.linspace(0.03, 0.9, 9), np.full(9, 0.999)], axis=1)
+        for prefer in PREFER:
+            check("disk", on_grid("disk", (12, 6), between).mesh(prefer=prefer))
+        del surfaces["disk"]
+
+    def test_too_few_lines_are_no_lattice(self):
+        for lines in ((2, 9), (9, 2)):
+            samples = on_grid("torus", lines)
+            assert Lattice.of(samples, samples.spline) is None
+
+    def test_grids_of_one_line(self):
+        for name, lines in (("ellipsoid", (5, 1)), ("graph", (1, 1)), ("graph", (1, 6))):
+            samples = on_grid(name, lines)
+            assert Lattice.of(samples, samples.spline) is not None
+            mesh = samples.mesh()
+            assert mesh.euler_characteristic == surfaces[name][1]
+
+
+class TestOtherSamples:
+    def test_the_order_does_not_matter(self):
+        samples = on_grid("graph", (12, 9))
+        order = np.random.default_rng(1).permutation(len(samples))
+        first, second = samples.mesh(), samples[order].mesh()
+        assert Lattice.of(samples[order], samples.spline) is not None
+        at = [
+            {tuple(sorted(map(tuple, x))) for x in mesh.vertices[mesh.triangles].tolist()}
+            for mesh in (first, second)
+        ]
+        assert at[0] == at[1]
+
+    @compiled
+    @pytest.mark.parametrize("name", ["torus", "graph"])
+    def test_parts_and_changed_samples_are_no_lattice(self, name):
+        samples = on_grid(name, (12, 9))
+        uv = samples.uv.copy()
+        uv[3] = uv[40]
+        rows = samples.row.copy()
+        rows[:2] = rows[1::-1] + 1
+        moved = changed(samples, uv=np.roll(samples.uv, 1, axis=0))
+        others = [
+            samples[1:], samples[samples.column != 4], samples[::2], changed(samples, uv=uv), moved,
+            changed(samples, row=rows), changed(samples, row=samples.column, column=samples.row),
+            gm.Samples.concatenate([samples, samples]), changed(samples, row=None),
+        ]  # fmt: skip
+        for other in others:
+            assert Lattice.of(other, samples.spline) is None
+        for other in others[1:3]:
+            assert other.mesh().euler_characteristic == surfaces[name][1]
+
+    @compiled
+    def test_folds_that_flips_do_not_remove(self):
+        """A few samples at random between few lines: then Qhull triangulates them."""
+        rng = np.random.default_rng(6)
+        samples = on_grid("torus", (12, 15), rng.uniform(0.0, 1.0, (40, 2)))
+        assert Lattice.of(samples, samples.spline) is not None
+        assert Triangulated.on_lattice(samples, samples.spline) is None
+        check("torus", samples.mesh())
+
+    @compiled
+    def test_too_many_between_the_lines(self):
+        rng = np.random.default_rng(2)
+        samples = on_grid("graph", (6, 6), rng.uniform(0.0, 1.0, (40, 2)))
+        assert Lattice.of(samples, samples.spline) is None
+        assert samples.mesh().euler_characteristic == 1
+
+    def test_one_sided_and_trimmed_surfaces_are_no_lattice(self):
+        band = gm.surfaces.moebius_band()
+        spline = gm.fit(band, cells=(16, 16))
+        samples = on_grid("graph", (12, 9))
+        assert Lattice.of(changed(samples, uv=spline.frame[:2] + samples.uv**2), spline) is None
+
+    def test_float32_and_files(self, tmp_path):
+        samples = on_grid("torus", (12, 9))
+        samples.write(tmp_path / "samples.npz")
+        with np.load(tmp_path / "samples.npz") as data:
+            arrays = {x: data[x] for x in ("points", "normals", "uv", "row", "column")}
+        for kind in (np.float64, np.float32):
+            typed = {x: y.astype(kind) if y.dtype.kind == "f" else y for x, y in arrays.items()}
+            again = gm.Samples(**typed, report=samples.report)
+            assert Lattice.of(again, samples.spline) is not None
+            check("torus", again.mesh(samples.spline))
+
+
+@compiled
+class TestAligned:
+    @pytest.mark.parametrize("prefer", PREFER)
+    @pytest.mark.parametrize("name", ["torus", "ellipsoid", "graph"])
+    def test_samples_of_that_density(self, name, prefer):
+        samples = gm.sample(surfaces[name][0](), count=700, density="aligned", cells=(16, 16))
+        assert samples.spline is not None
+        assert Triangulated.on_lattice(samples, samples.spline) is not None
+        check(name, samples.mesh(prefer=prefer))
+
+    def test_they_are_better_than_isotropic_ones(self):
+        meshes = [
+            gm.sample("torus", 1500, density=x, cells=(16, 16)).mesh(prefer="normals")
+            for x in ("aligned", "isotropic")
+        ]
+        assert meshes[0].angles.max() < 0.7 * meshes[1].angles.max()
+
+    def test_weights_and_offsets(self):
+        samples = gm.sample("torus", 700, density="aligned", cells=(16, 16))
+        area = 4 * np.pi**2 * 0.35  # the torus (1, 0.35)
+        assert samples.weights().sum() == pytest.approx(area, rel=1e-3)
+        check("torus", samples.offset(0.05).mesh())
+
+    def test_a_part_by_angle(self):
+        samples = gm.sample("torus", 700, density="aligned", cells=(16, 16))
+        assert samples.row is not None
+        whole, part = samples.mesh(angle=90.0), samples[samples.row > 3].mesh(angle=30.0)
+        check("torus", whole)
+        assert len(part.boundary_edges) > 0

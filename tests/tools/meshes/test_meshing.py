@@ -1,0 +1,658 @@
+"""Meshes through samples: topology, seams, poles, borders, flips, and samples that are too few."""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Callable
+from typing import Any, Literal
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.benchmarks.peers.untuned import Boss
+from gaussmap.runtime.base.tolerances import NO_AREA
+from gaussmap.runtime.samples.report import SamplingReport
+from gaussmap.tools.meshes.improvement import flip_edges
+from gaussmap.tools.meshes.meshing import Triangulated
+from gaussmap.tools.meshes.triangulation import neighbours
+
+pytestmark = pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
+compiled = pytest.mark.compiled
+
+CAP = gm.icosphere(60)[gm.icosphere(60)[:, 2] > 0.9]
+
+
+def klein(u: Any, v: Any) -> Any:
+    """The figure-8 immersion: v is mirrored after a turn of u."""
+    ring = 2 + np.cos(u / 2) * np.sin(v) - np.sin(u / 2) * np.sin(2 * v)
+    height = np.sin(u / 2) * np.sin(v) + np.cos(u / 2) * np.sin(2 * v)
+    return np.stack([ring * np.cos(u), ring * np.sin(u), height], axis=-1)
+
+
+def latitude(u: Any, v: Any) -> Any:
+    return np.stack([np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)], axis=-1)
+
+
+TURN = (0.0, 2 * np.pi)
+surfaces: dict[str, tuple[Callable[[], gm.Surface], int, int]] = {
+    # surface, Euler characteristic, number of borders
+    "torus": (gm.surfaces.torus, 0, 0),
+    "cyclide": (gm.surfaces.dupin_cyclide, 0, 0),
+    "sphere": (gm.surfaces.sphere, 2, 0),
+    "ellipsoid": (gm.surfaces.ellipsoid, 2, 0),
+    "graph": (gm.surfaces.wavy_graph, 1, 1),
+    "helicoid": (gm.surfaces.helicoid, 1, 1),
+    "belt": (gm.surfaces.ellipsoid_patch, 0, 2),
+    "catenoid": (gm.surfaces.catenoid, 0, 2),
+    "moebius": (gm.surfaces.moebius_band, 0, 1),
+    "klein": (
+        lambda: gm.Surface.from_callable(klein, (TURN, (-np.pi, np.pi)), ("mirrored", True)), 0, 0,
+    ),
+    "klein, v flips": (
+        lambda: gm.Surface.from_callable(
+            lambda u, v: klein(v, u), ((-np.pi, np.pi), TURN), (True, "mirrored")
+        ), 0, 0,
+    ),
+    "dome": (
+        lambda: gm.Surface.from_callable(
+            latitude, (TURN, (0.0, np.pi / 2)), (True, ("open", "pole"))
+        ), 1, 1,
+    ),
+    "dome, pole first": (
+        lambda: gm.Surface.from_callable(
+            latitude, (TURN, (-np.pi / 2, 0.0)), (True, ("pole", "open"))
+        ), 1, 1,
+    ),
+    "belt, v closes": (
+        lambda: gm.Surface.from_callable(
+            lambda u, v: latitude(v, u), ((-1.0, 1.0), TURN), (False, True)
+        ), 0, 2,
+    ),
+}  # fmt: skip
+EACH = pytest.mark.parametrize(
+    "name",
+    [pytest.param(x, marks=pytest.mark.slow) if x.startswith("klein") else x for x in surfaces],
+)
+# Without compilation a few kinds are enough.
+UNCOMPILED = ("sphere", "helicoid", "catenoid", "klein")
+FEW_UNCOMPILED = pytest.mark.parametrize(
+    "name", [x if x in UNCOMPILED else pytest.param(x, marks=compiled) for x in surfaces]
+)
+ORIENTABLE = [name for name in surfaces if not name.startswith(("klein", "moebius"))]
+
+
+PREFER: tuple[Literal["shape", "normals"], ...] = ("shape", "normals")
+
+
+def mesh_of(name: str, prefer: Literal["shape", "normals"] = "shape", **options: Any) -> gm.Mesh:
+    return gm.sample(surfaces[name][0](), **(options or {"count": 600})).mesh(prefer=prefer)
+
+
+def components(edges: np.ndarray) -> int:
+    """Return how many closed lines edges make: each vertex is in two of them."""
+    assert (np.unique(edges, return_counts=True)[1] == 2).all()
+    label = {int(x): int(x) for x in np.unique(edges)}
+    for _ in edges:
+        for a, b in edges.tolist():
+            label[a] = label[b] = min(label[a], label[b])
+    return len(set(label.values()))
+
+
+def is_one_fan_at_each_vertex(mesh: gm.Mesh) -> bool:
+    """Say whether the edges opposite to each vertex make one line, open or closed."""
+    around: dict[int, list[tuple[int, int]]] = {k: [] for k in range(len(mesh.vertices))}
+    for a, b, c in mesh.triangles.tolist():
+        for x, edge in ((a, (b, c)), (b, (c, a)), (c, (a, b))):
+            around[x].append(edge)
+    for link in around.values():
+        reached, waiting = set(), [link[0][0]]
+        while waiting:
+            x = waiting.pop()
+            reached.add(x)
+            waiting += [y for edge in link if x in edge for y in edge if y not in reached]
+        if reached != {x for edge in link for x in edge}:
+            return False
+    return True
+
+
+def samples_at(name: str, count: int) -> gm.Samples:
+    """Return samples at random parameters: a mesh needs no more of them than points and normals."""
+    surface = surfaces[name][0]()
+    spline = gm.fit(surface, cells=(8, 8))
+    low, high = np.array(surface.domain).T
+    uv = np.random.default_rng(1).uniform(low, high, (count, 2))
+    return gm.Samples(
+        points=spline.evaluate(*uv.T), normals=spline.normals(*uv.T), uv=uv,
+        report=SamplingReport(name, None, count, None, None, None), spline=spline,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("prefer", PREFER)
+@FEW_UNCOMPILED
+def test_samples_anywhere(name, prefer):
+    _, characteristic, borders = surfaces[name]
+    mesh = samples_at(name, 100).mesh(prefer=prefer)
+    assert mesh.euler_characteristic == characteristic
+    assert (components(mesh.boundary_edges) if borders else 0) == borders
+    assert is_one_fan_at_each_vertex(mesh)
+    assert mesh.smallest_angles.min() > np.degrees(NO_AREA)
+    assert prefer == "shape" or (mesh.sample_index >= 0).sum() == 100
+
+
+@compiled
+class TestTopology:
+    @EACH
+    @pytest.mark.parametrize("prefer", PREFER)
+    @pytest.mark.parametrize("count", [60, 600])
+    @pytest.mark.quick_for("60")
+    def test_it_is_that_of_the_surface(self, name, prefer, count):
+        _, characteristic, borders = surfaces[name]
+        mesh = mesh_of(name, prefer, count=count)
+        edges = np.sort(mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+        times = np.unique(edges, axis=0, return_counts=True)[1]
+        assert set(times.tolist()) == ({1, 2} if borders else {2})
+        assert mesh.euler_characteristic == characteristic
+        assert (components(mesh.boundary_edges) if borders else 0) == borders
+        assert is_one_fan_at_each_vertex(mesh)
+
+    @EACH
+    @pytest.mark.quick_for("torus", "cyclide", "moebius", "dome")
+    def test_normals_in_symmetry_planes(self, name):
+        """Four samples and more on one circle, samples on seams, at poles and at corners."""
+        _, characteristic, borders = surfaces[name]
+        mesh = mesh_of(name, normals=gm.icosphere(12))
+        assert mesh.euler_characteristic == characteristic
+        assert (components(mesh.boundary_edges) if borders else 0) == borders
+        # no two vertices at one place, but for those that immersions bring together
+        if not name.startswith("klein"):
+            size = np.ptp(mesh.vertices, axis=0).max()
+            rounded = np.round(mesh.vertices / size, 9)
+            assert len(np.unique(rounded, axis=0)) == len(rounded)
+
+    @pytest.mark.parametrize("name", ORIENTABLE)
+    def test_triangles_are_seen_counterclockwise_from_where_normals_point(self, name):
+        mesh = mesh_of(name, count=600)
+        directed = mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+        assert len(np.unique(directed, axis=0)) == len(directed)
+        assert mesh.angles.max() < 90.0
+        assert (mesh.sides == 1).all()
+
+    @pytest.mark.parametrize("name", ["klein", "klein, v flips", "moebius"])
+    @pytest.mark.quick_for("moebius")
+    def test_normals_of_one_sided_surfaces_change_sides(self, name):
+        mesh = mesh_of(name, count=2000)
+        assert (mesh.sides[:, 0] == 1).all()
+        assert 0 < (mesh.sides == -1).any(axis=1).sum() < len(mesh.triangles) / 4
+        assert mesh.angles.max() < 90.0
+
+    def test_every_sample_is_a_vertex(self):
+        samples = gm.sample(gm.surfaces.wavy_graph(), count=500)
+        mesh = samples.mesh(prefer="normals")
+        is_sample = mesh.sample_index >= 0
+        assert sorted(mesh.sample_index[is_sample].tolist()) == list(range(len(samples)))
+        own = mesh.sample_index[is_sample]
+        for ours, theirs in ((mesh.vertices, samples.points), (mesh.normals, samples.normals),
+                             (mesh.uv, samples.uv)):  # fmt: skip
+            np.testing.assert_array_equal(ours[is_sample], theirs[own])
+
+    def test_a_pole_is_one_vertex_with_the_normal_of_those_round_it(self):
+        samples = gm.sample(gm.surfaces.ellipsoid(a=2, b=1, c=1), count=600, density="gauss")
+        mesh = samples.mesh()
+        poles = mesh.sample_index == -1
+        assert poles.sum() == 2
+        assert isinstance(samples.surface, gm.Surface)
+        ends = samples.surface.evaluate(0.0, [-np.pi / 2, np.pi / 2])
+        order = np.argsort(mesh.vertices[poles, 2])
+        np.testing.assert_array_equal(mesh.vertices[poles][order], ends)
+        # the mean normal of vertices that are up to 20 degrees away
+        assert (mesh.normals[poles, 2][order] * [-1, 1] > np.cos(np.radians(20))).all()
+
+    def test_a_sample_at_a_pole_is_the_pole(self):
+        mesh = mesh_of("sphere", normals=np.concatenate([gm.fibonacci(100), [[0, 0, 1]]]))
+        assert (mesh.vertices[:, 2] > 1 - 1e-6).sum() == 1
+        assert mesh.euler_characteristic == 2
+
+
+@compiled
+class TestBorders:
+    def test_a_graph_is_meshed_up_to_its_corners(self):
+        mesh = mesh_of("graph", count=1000)
+        border = np.unique(mesh.boundary_edges)
+        u, v = mesh.uv[border].T
+        assert ((np.abs(u) == 1.0) | (np.abs(v) == 1.0)).all()
+        corners = mesh.uv[(np.abs(mesh.uv) == 1.0).all(axis=1)]
+        assert sorted(map(tuple, corners)) == [(-1, -1), (-1, 1), (1, -1), (1, 1)]
+        # what the triangles cover in (u, v) is the whole square
+        a, b, c = np.moveaxis(mesh.uv[mesh.triangles], 1, 0)
+        areas = np.linalg.det(np.stack([b - a, c - a], axis=1)) / 2
+        assert areas.sum() == pytest.approx(4.0, rel=1e-12)
+
+    def test_added_points_are_about_as_far_apart_as_samples_near_them(self):
+        """On a belt of the unit sphere S samples have the distance √(4π/S); see border_spacing.
+
+        The fourth nearest of random points is √(4/(ρ π/2)) away to within its scatter 1/√4.
+        """
+        mesh = mesh_of("belt, v closes", "normals", normals=gm.fibonacci(4000))
+        for low in (True, False):
+            added = (mesh.sample_index < 0) & ((mesh.uv[:, 0] < 0) == low)
+            spacing = 2 * np.pi * np.cos(1.0) / added.sum()
+            assert spacing == pytest.approx(np.sqrt(4 * np.pi / 4000), rel=0.5)
+
+    def test_samples_on_the_border_are_its_vertices(self):
+        """The saddle z = u v over [−1, 1]² has the normals (−v, −u, 1)."""
+        saddle = gm.Surface.from_callable(
+            lambda u, v: np.stack([u, v, u * v], axis=-1), ((-1, 1), (-1, 1))
+        )
+        u, v = (x.ravel() for x in np.meshgrid(*[np.linspace(-1, 1, 9)] * 2, indexing="ij"))
+        samples = gm.sample(
+            saddle, normals=np.stack([-v, -u, np.ones_like(u)], axis=1), cells=(4, 4)
+        )
+        on_border = (np.abs(samples.uv) > 1 - 1e-9).any(axis=1).sum()
+        assert on_border > 8
+        mesh = samples.mesh()
+        border = np.unique(mesh.boundary_edges)
+        assert (mesh.sample_index[border] >= 0).sum() == on_border
+        assert mesh.euler_characteristic == 1
+        a, b, c = np.moveaxis(mesh.uv[mesh.triangles], 1, 0)
+        assert (np.linalg.det(np.stack([b - a, c - a], axis=1)) > 1e-6).all()
+
+    def test_a_side_that_is_one_point(self):
+        """The pole of a paraboloid that nobody called one: an open end of length 0."""
+        bowl = gm.Surface.from_callable(
+            lambda u, v: np.stack([v * np.cos(u), v * np.sin(u), v**2], axis=-1),
+            (TURN, (0.0, 1.0)), (True, False),
+        )  # fmt: skip
+        mesh = gm.sample(bowl, count=300).mesh()
+        assert mesh.euler_characteristic == 1
+        assert components(mesh.boundary_edges) == 1
+        assert (np.linalg.norm(mesh.vertices, axis=1) < 1e-9).sum() <= 1
+        assert np.isfinite(mesh.normals).all()
+
+
+@compiled
+class TestFlips:
+    @pytest.mark.parametrize("name", ["torus", "graph", "moebius"])
+    def test_no_flip_is_left_that_helps(self, name):
+        """Each pair of triangles is compared with the other one, in NumPy."""
+        samples = gm.sample(surfaces[name][0](), count=300, density="isotropic")
+        assert samples.spline is not None
+        state = Triangulated.of(samples, samples.spline)
+        assert flip_edges(state, "normals") > 0
+        assert flip_edges(state, "normals") == 0
+        joined = {tuple(x) for x in np.sort(state.mesh().edges, axis=1).tolist()}
+        for t, k in np.ndindex(len(state.triangles), 3):
+            if state.neighbours[t, k] >= 0:
+                before, after, edge = flipped(state, t, k, int(state.neighbours[t, k]))
+                assert tuple(sorted(edge)) in joined or after <= before + 1e-12
+
+    @pytest.mark.parametrize("name", ["torus", "graph", "klein"])
+    def test_neighbours_stay_those_of_the_triangles(self, name):
+        samples = gm.sample(surfaces[name][0](), count=300, density="isotropic")
+        assert samples.spline is not None
+        state = Triangulated.of(samples, samples.spline)
+        flip_edges(state, "normals")
+        anywhere = np.ones(len(state.points), dtype=bool)
+        fresh, is_whole = neighbours(state.triangles, anywhere)
+        assert is_whole
+        np.testing.assert_array_equal(state.neighbours, fresh)
+
+    def test_on_a_sphere_the_angle_is_that_of_the_circumcircle(self):
+        """A plane at the distance d from the centre cuts the unit sphere in the angle acos d."""
+        mesh = mesh_of("sphere", "normals", normals=gm.fibonacci(500))
+        on_sphere = gm.Mesh(
+            mesh.normals, mesh.normals, mesh.uv, mesh.triangles, mesh.sample_index
+        )  # fmt: skip
+        a, b, c = np.moveaxis(mesh.normals[mesh.triangles], 1, 0)
+        normal = np.cross(b - a, c - a)
+        distance = np.einsum("kx,kx->k", a, normal) / np.linalg.norm(normal, axis=1)
+        # acos near 1 turns an error ε into √(2 ε)
+        np.testing.assert_allclose(
+            on_sphere.angles, np.degrees(np.arccos(distance)), atol=np.degrees(3e-8)
+        )
+
+    def test_they_make_the_worst_angle_smaller_and_never_larger(self):
+        samples = gm.sample(gm.surfaces.torus(), count=2000, density="isotropic")
+        assert samples.spline is not None
+        state = Triangulated.of(samples, samples.spline)
+        before = state.mesh().angles
+        flip_edges(state, "normals")
+        after = state.mesh().angles
+        assert after.max() < before.max()
+        assert after.mean() < before.mean()
+
+
+@compiled
+class TestShape:
+    """Small angles: 5 % below 25° and one in a thousand below 5° at most; and no folds."""
+
+    @pytest.mark.parametrize("name", ["torus", "cylinder", "sphere", "boss", "terrain"])
+    @pytest.mark.quick_for("torus", "cylinder", "sphere")
+    def test_angles_of_triangles(self, name):
+        samples = samples_of(name)
+        shape, normals = (samples.mesh(prefer=x) for x in PREFER)
+        angles = shape.smallest_angles
+        border = np.isin(shape.triangles, np.unique(shape.boundary_edges)).any(axis=1)
+        assert np.quantile(angles[~border], 0.05) >= 25.0
+        assert (angles < 5.0).mean() <= 1e-3
+        assert normals.smallest_angles.min() > np.degrees(NO_AREA)
+        # Flips turn triangles away from normals by 30 degrees at most, and collapses of such
+        # triangles a little farther: cos 40° is cos 30° − 0.1.
+        assert shape.angles.max() < 40.0
+        assert normals.angles.mean() < shape.angles.mean() or name == "sphere"
+        assert shape.euler_characteristic == normals.euler_characteristic
+
+    def test_flips_make_triangles_delaunay(self):
+        """No point of a pair of triangles lies in the circle of the other: angles sum up to π."""
+        mesh = gm.sample(gm.surfaces.torus(), count=500).mesh()
+        corners = mesh.vertices[mesh.triangles]
+        sums: dict[tuple[int, int], float] = {}
+        for k in range(3):
+            e, f = (corners[:, (k + x) % 3] - corners[:, k] for x in (1, 2))
+            angles = np.arccos((e * f).sum(axis=1) / lengths(e) / lengths(f))
+            for edge, angle in zip(np.roll(mesh.triangles, -k - 1, axis=1), angles, strict=True):
+                key = tuple(sorted(edge[:2].tolist()))
+                sums[key] = sums.get(key, 0.0) + float(angle)
+        # The triangles of a pair are in two planes: the sum is that of the plane up to the angle
+        # between them, squared.
+        assert max(sums.values()) < np.pi + 0.1
+
+    @pytest.mark.parametrize("prefer", PREFER)
+    @pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-9, 1e-12])
+    def test_samples_that_nearly_coincide(self, prefer, gap):
+        first = samples_at("torus", 200)
+        spline = first.spline
+        assert spline is not None
+        u, v = np.concatenate([first.uv, first.uv[:50] + gap * np.array([0.6, 0.8])]).T
+        samples = gm.Samples(
+            points=spline.evaluate(u, v), normals=spline.normals(u, v), uv=np.stack([u, v], axis=1),
+            report=first.report, spline=spline,
+        )  # fmt: skip
+        mesh = samples.mesh(prefer=prefer)
+        assert mesh.euler_characteristic == 0
+        assert mesh.smallest_angles.min() > (5.0 if prefer == "shape" else np.degrees(NO_AREA))
+        assert mesh.angles.max() < 1.1 * first.mesh(prefer=prefer).angles.max()
+        assert prefer == "shape" or len(mesh.vertices) == (250 if gap >= 1e-3 else 200)
+
+    @pytest.mark.parametrize("prefer", PREFER)
+    def test_samples_in_line(self, prefer):
+        """On the rulings of a cylinder; on its borders and close to them, too."""
+        spline = gm.fit(gm.surfaces.cylinder(), cells=(8, 8))
+        (u0, u1), (v0, v1) = spline.domain
+        u, v = np.meshgrid(np.linspace(u0, u1, 9)[:-1], [0.0, 1e-9, 1e-5, 0.3, 0.5, 0.7, 1.0])
+        u, v = u.ravel(), v0 + (v1 - v0) * v.ravel()
+        samples = gm.Samples(
+            points=spline.evaluate(u, v), normals=spline.normals(u, v), uv=np.stack([u, v], axis=1),
+            report=samples_at("torus", 1).report, spline=spline,
+        )  # fmt: skip
+        mesh = samples.mesh(prefer=prefer)
+        assert (mesh.euler_characteristic, components(mesh.boundary_edges)) == (0, 2)
+        assert mesh.smallest_angles.min() > np.degrees(NO_AREA)
+
+    def test_triangles_across_gaps_cost_no_samples(self):
+        samples = gm.sample(gm.surfaces.torus(), count=2000, density="isotropic")
+        part = samples[samples.points[:, 0] > 0.3]
+        mesh = part.mesh(angle=25.0)
+        assert len(mesh.vertices) > 0.98 * len(part)
+        assert mesh.angles.max() <= 25.0
+        assert np.quantile(mesh.smallest_angles, 0.05) > 25.0
+
+    @pytest.mark.parametrize("prefer", ["angles", None, 1, ["shape"]])
+    def test_what_is_no_preference(self, prefer):
+        with pytest.raises(gm.errors.InputError, match="prefer must be 'shape' or 'normals', not"):
+            gm.sample(gm.surfaces.torus(), count=100).mesh(prefer=prefer)
+
+
+def samples_of(name: str) -> gm.Samples:
+    """Return 3,000 samples of a surface on which thin triangles are likely."""
+    if name == "boss":
+        return gm.sample(Boss().surface, count=3000, density="isotropic")
+    if name != "terrain":
+        return gm.sample(name, count=3000, density="isotropic")
+    x, y = np.meshgrid(np.linspace(-3, 3, 60), np.linspace(-3, 3, 50))
+    phases = np.random.default_rng(5).uniform(0, 2 * np.pi, 12)
+    heights = sum(
+        np.sin(k * (x * np.cos(p) + y * np.sin(p)) + 7 * p) / k**1.5
+        for k, p in enumerate(phases, start=1)
+    )
+    return gm.sample(
+        gm.Surface.from_grid(heights, spacing=(0.1, 0.12)), count=3000, density="isotropic"
+    )
+
+
+def lengths(vectors: np.ndarray) -> np.ndarray:
+    return np.linalg.norm(vectors, axis=-1)
+
+
+def flipped(state: Triangulated, t: int, k: int, other: int) -> tuple[float, float, set[int]]:
+    """Return the smallest cosine of two triangles, that of the two others, and their edge."""
+    c, a, b = np.roll(state.triangles[t], -k)
+    side = dict(zip((c, a, b), np.roll(state.sides[t], -k), strict=True))
+    (at,) = set(range(3)) - {list(state.triangles[other]).index(x) for x in (a, b)}
+    d = state.triangles[other, at]
+    there = dict(zip(state.triangles[other], state.sides[other], strict=True))
+    side[d] = there[d] * there[a] * side[a]
+
+    def cosine(*corners: int) -> float:
+        p, q, r = state.points[list(corners)]
+        normal = np.cross(q - p, r - p)
+        normal /= np.linalg.norm(normal)
+        return min(float(side[x] * (normal @ state.normals[x])) for x in corners)
+
+    before = min(cosine(c, a, b), cosine(d, b, a))
+    return before, min(cosine(c, a, d), cosine(d, b, c)), {int(c), int(d)}
+
+
+@compiled
+class TestInput:
+    def test_samples_at_one_place_are_one_vertex(self):
+        samples = gm.sample(gm.surfaces.torus(), count=300)
+        twice = samples[np.concatenate([np.arange(len(samples))] * 2)]
+        mesh = twice.mesh()
+        assert len(mesh.vertices) == len(samples)
+        assert sorted(mesh.sample_index.tolist()) == list(range(len(samples)))
+
+    def test_a_point_on_the_seam_given_on_both_sides_is_one_vertex(self):
+        samples = gm.sample(gm.surfaces.torus(), normals=gm.icosphere(8))
+        uv = samples.uv.copy()
+        on_seam = np.abs(np.remainder(uv[:, 0] + 1.0, 2 * np.pi) - 1.0) < 1e-12
+        assert on_seam.any()
+        uv[on_seam, 0] = 0.0
+        other = uv.copy()
+        other[on_seam, 0] = 2 * np.pi
+        arrays: dict[str, Any] = {name: getattr(samples, name) for name in samples.fields}
+        parts = [
+            gm.Samples(**{**arrays, "uv": x}, report=samples.report, spline=samples.spline)
+            for x in (uv, other)
+        ]
+        mesh = gm.Samples.concatenate(parts).mesh(prefer="normals")
+        assert len(mesh.vertices) == len(samples)
+        assert mesh.euler_characteristic == 0
+
+    @pytest.mark.parametrize("scale", [1e-12, 1e12, 1e-100, 1e100])
+    def test_scale_changes_nothing(self, scale):
+        """But rounding: a power of two next to the scale changes nothing at all."""
+        scale = 2.0 ** round(np.log2(scale))
+        small = gm.surfaces.torus()
+        large = gm.Surface.from_callable(
+            lambda u, v: scale * small.evaluate(u, v), small.domain, (True, True)
+        )
+        normals = gm.fibonacci(300)
+        ours, theirs = (
+            gm.sample(x, normals=normals, cells=(32, 32), on="spline").mesh()
+            for x in (large, small)
+        )
+        np.testing.assert_array_equal(ours.triangles, theirs.triangles)
+
+    def test_far_from_the_origin(self):
+        near = gm.surfaces.torus()
+        far = gm.Surface.from_callable(
+            lambda u, v: near.evaluate(u, v) + 1e6, near.domain, (True, True)
+        )
+        ours, theirs = (gm.sample(x, normals=gm.fibonacci(300)).mesh() for x in (far, near))
+        assert ours.euler_characteristic == 0
+        # points are rounded to 1e-10, which turns triangles of the size 0.1 by 1e-9
+        assert ours.angles.max() == pytest.approx(theirs.angles.max(), abs=1e-4)
+
+    def test_float32_samples_give_a_mesh_in_float64(self):
+        mesh = gm.sample(gm.surfaces.torus(), count=1000, dtype=np.float32).mesh()
+        assert mesh.euler_characteristic == 0
+        assert mesh.vertices.dtype == np.float64
+
+    def test_the_normals_asked_do_not_matter(self):
+        samples = gm.sample(gm.surfaces.torus(), count=300)
+        lean = gm.sample(gm.surfaces.torus(), count=300, fields=("points", "normals", "uv"))
+        np.testing.assert_array_equal(lean.mesh().triangles, samples.mesh().triangles)
+
+    def test_part_of_the_surface(self):
+        """Normals in a cap give an upper ring of the torus; triangles across the rest go."""
+        samples = gm.sample(gm.surfaces.torus(), normals=CAP)
+        whole, part = samples.mesh(prefer="normals"), samples.mesh(angle=20)
+        assert (len(whole.boundary_edges), whole.euler_characteristic) == (0, 0)
+        assert part.angles.max() <= 20.0
+        assert len(part.triangles) < len(whole.triangles)
+        assert len(part.boundary_edges) > 0
+        assert whole.angles.max() > 90.0
+        # The normals of the cap are up to 25.8° from the axis: they reach r (1 − cos) down.
+        assert part.vertices[:, 2].min() > 0.35 * 0.9 - 1e-3
+
+    def test_an_angle_of_180_degrees_leaves_out_nothing(self):
+        samples = gm.sample(gm.surfaces.torus(), count=200)
+        assert len(samples.mesh(angle=180).triangles) == 400
+
+    @pytest.mark.parametrize("angle", [0, -1, 181, np.nan, np.inf, "20", True])
+    def test_unusable_angles(self, angle):
+        with pytest.raises(gm.errors.InputError, match=r"^angle must "):
+            gm.sample(gm.surfaces.torus(), count=100).mesh(angle=angle)
+
+    @pytest.mark.parametrize("name", ["torus", "sphere", "klein"])
+    @pytest.mark.parametrize("count", [1, 2, 3, 5])
+    @pytest.mark.quick_for("torus", "sphere")
+    def test_too_few_samples_for_a_closed_surface(self, name, count):
+        samples = gm.sample(surfaces[name][0](), count=100, density="gauss")[:count]
+        if name == "sphere" and count > 1:
+            mesh = samples.mesh()  # and two poles
+            assert mesh.euler_characteristic == 2
+        else:
+            with pytest.raises(gm.errors.InputError, match="too few, or leave too large gaps"):
+                samples.mesh()
+
+    @pytest.mark.parametrize("name", ["graph", "belt", "moebius"])
+    @pytest.mark.parametrize("count", [1, 2, 3])
+    def test_a_border_needs_few_samples(self, name, count):
+        mesh = gm.sample(surfaces[name][0](), count=100)[:count].mesh(prefer="normals")
+        assert mesh.euler_characteristic == surfaces[name][1]
+        assert (mesh.sample_index >= 0).sum() == count
+
+    @pytest.mark.parametrize("name", ["torus", "sphere", "graph", "belt"])
+    def test_samples_in_line(self, name):
+        """On a line of the parameters: whole, or an error that says why not."""
+        surface = surfaces[name][0]()
+        spline = gm.fit(surface)
+        (u0, u1), (v0, v1) = surface.domain
+        u, v = np.linspace(u0, u1, 20)[1:-1], np.full(18, (0.7 * v0 + 0.3 * v1))
+        samples = gm.Samples(
+            points=spline.evaluate(u, v), normals=spline.normals(u, v),
+            uv=np.stack([u, v], axis=1),
+            report=SamplingReport(name, None, 18, None, None, None), spline=spline,
+        )  # fmt: skip
+        if name == "torus":  # on one circle: triangles would have a corner twice
+            with pytest.raises(gm.errors.InputError, match="leave too large gaps"):
+                samples.mesh()
+        else:
+            assert samples.mesh().euler_characteristic == surfaces[name][1]
+
+    def test_ruled_samples(self):
+        """Normals of a cone come in lines that rounding bends: flips have to end."""
+        mesh = gm.sample(gm.surfaces.cone(), count=3000).mesh()
+        assert mesh.euler_characteristic == 0
+
+    def test_no_samples(self):
+        samples = gm.sample(gm.surfaces.plane(), count=100)
+        with pytest.raises(gm.errors.InputError, match="there are no samples"):
+            samples[:0].mesh()
+
+    def test_samples_of_a_file_need_their_spline(self, tmp_path):
+        spline = gm.fit(gm.surfaces.torus())
+        samples = gm.sample(spline, count=300)
+        samples.write(tmp_path / "torus.npz")
+        again = gm.read_samples(tmp_path / "torus.npz")
+        with pytest.raises(
+            gm.errors.InputError, match=r"give it, as in samples\.mesh\(gm\.fit\(surface\)"
+        ):
+            again.mesh()
+        np.testing.assert_array_equal(again.mesh(spline).triangles, samples.mesh().triangles)
+        with pytest.raises(gm.errors.InputError, match="spline must be a Spline, not Surface"):
+            again.mesh(gm.surfaces.torus())  # pyright: ignore[reportArgumentType]
+
+    def test_a_spline_with_another_domain(self):
+        samples = gm.sample(gm.surfaces.wavy_graph(), count=100)
+        square = gm.Surface.from_callable(
+            lambda u, v: np.stack([u, v, u * v], axis=-1), ((0, 1), (0, 1))
+        )
+        with pytest.raises(gm.errors.InputError, match="lies outside the domain"):
+            samples.mesh(gm.fit(square))
+
+    @pytest.mark.parametrize("lacking", ["points", "normals", "uv"])
+    def test_fields_that_lack(self, lacking):
+        fields = [name for name in ("points", "normals", "uv") if name != lacking]
+        with pytest.raises(gm.errors.MissingFieldError, match=lacking):
+            gm.sample(gm.surfaces.torus(), count=100, fields=fields).mesh()
+
+
+def samples_on(surface: gm.Surface, **options: Any) -> gm.Samples:
+    """Return samples that know their surface."""
+    samples = gm.sample(surface, **options)
+    arrays: dict[str, Any] = samples.arrays()
+    return gm.Samples(**arrays, report=samples.report, spline=samples.spline, surface=surface)
+
+
+@compiled
+class TestOffsets:
+    @pytest.mark.parametrize("prefer", PREFER)
+    @pytest.mark.parametrize("name", ["torus", "sphere", "graph", "moebius", "dome"])
+    def test_an_offset_has_the_topology_of_the_surface(self, name, prefer):
+        _, characteristic, borders = surfaces[name]
+        samples = samples_on(surfaces[name][0](), count=400, fields=("points", "normals", "uv"))
+        mesh = samples.offset(0.05).offset(0.05).mesh(prefer=prefer)
+        assert mesh.euler_characteristic == characteristic
+        assert (components(mesh.boundary_edges) if borders else 0) == borders
+        # Every vertex is 0.1 away from the surface, those on borders and at poles, too.
+        own = mesh.sample_index >= 0
+        np.testing.assert_allclose(
+            mesh.vertices[own], (samples.points + 0.1 * samples.normals)[mesh.sample_index[own]]
+        )
+        if not own.all():
+            exact = surfaces[name][0]().evaluate(*mesh.uv[~own].T)
+            np.testing.assert_allclose(lengths(mesh.vertices[~own] - exact), 0.1, rtol=1e-12)
+
+    def test_the_offset_of_a_sphere_is_a_sphere(self):
+        """Of the area 4π 1.5², to the rounding of triangles that normals bend: h⁴."""
+        samples = gm.sample(gm.surfaces.sphere(), count=2000).offset(0.5)
+        np.testing.assert_allclose(lengths(samples.mesh().vertices), 1.5, rtol=1e-4)
+        assert samples.weights().sum() == pytest.approx(4 * np.pi * 2.25, rel=1e-4)
+
+    def test_rows_copies_and_parts(self):
+        samples = gm.sample(gm.surfaces.torus(), count=300).offset(0.1)
+        triangles = samples.mesh().triangles
+        halves = gm.Samples.concatenate([samples[:100], samples[100:]])
+        for again in (samples[:], pickle.loads(pickle.dumps(samples)), halves):
+            np.testing.assert_array_equal(again.mesh().triangles, triangles)
+
+    def test_an_unknown_offset_has_no_mesh(self, tmp_path):
+        gm.sample(gm.surfaces.torus(), count=100).offset(0.1).write(tmp_path / "a.npz")
+        with pytest.raises(gm.errors.InputError, match="do not know the spline"):
+            gm.read_samples(tmp_path / "a.npz").mesh()
+        with pytest.raises(gm.errors.InputError, match="offset_of must be an OffsetOf or None"):
+            gm.Samples(
+                points=np.zeros((1, 3)), report=samples_at("torus", 1).report,
+                offset_of=0.1,  # pyright: ignore[reportArgumentType]
+            )  # fmt: skip
+
+    def test_vertices_on_borders_are_on_the_surface(self):
+        """And not on the spline, if that is where samples are."""
+        belt = gm.surfaces.ellipsoid_patch()
+        mesh = samples_on(belt, count=300, cells=(12, 12)).mesh()
+        added = mesh.sample_index < 0
+        assert added.sum() > 10
+        exact = belt.evaluate(*mesh.uv[added].T)
+        np.testing.assert_allclose(mesh.vertices[added], exact, atol=1e-14)

@@ -1,0 +1,39 @@
+"""Triangulations that are made in strips, and which triangles share an edge."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from gaussmap.runtime.domain.domain import Boundary, BoundaryCondition
+from gaussmap.tools.meshes import triangulation
+
+
+@pytest.mark.parametrize("kind", ["periodic", "mirrored"])
+def test_strips_give_the_triangles_of_the_whole(kind: BoundaryCondition, monkeypatch):
+    positions = np.random.default_rng(5).random((900, 2))
+    boundary: Boundary = ((kind, kind), ("periodic", "periodic"))
+    found = []
+    for strip in (1000, 200):
+        monkeypatch.setattr(triangulation, "STRIP", strip)
+        free = np.ones(len(positions), dtype=bool)
+        triangles, sides = next(
+            iter(triangulation.triangulations(positions, free, boundary, np.array([2.0, 1.0])))
+        )
+        first = triangles.argmin(axis=1)[:, None]
+        turned = (first + np.arange(3)) % 3
+        rows = [np.take_along_axis(x, turned, axis=1) for x in (triangles, sides)]
+        found.append(np.unique(np.hstack(rows), axis=0))
+        assert triangulation.neighbours(triangles, ~free)[1]
+    np.testing.assert_array_equal(*found)
+
+
+def test_edges_of_one_two_and_three_triangles():
+    triangles = np.array([[0, 1, 2], [2, 1, 3], [3, 1, 4]])
+    adjacent, is_closed = triangulation.neighbours(triangles, np.ones(5, dtype=bool))
+    np.testing.assert_array_equal(adjacent, [[1, -1, -1], [2, -1, 0], [-1, -1, 1]])
+    assert is_closed
+    assert not triangulation.neighbours(triangles, np.arange(5) > 0)[1]
+    third = np.concatenate([triangles, [[1, 2, 5]]])
+    adjacent, is_closed = triangulation.neighbours(third, np.ones(6, dtype=bool))
+    assert not is_closed
+    np.testing.assert_array_equal(adjacent[:2], [[-1, -1, -1], [2, -1, -1]])

@@ -1,0 +1,141 @@
+"""Meshes and weights of trimmed surfaces end at the border."""
+
+from dataclasses import replace
+
+import gaussmap as gm
+import numpy as np
+import pytest
+import shapely
+from gaussmap.tools.meshes.border import border_lines
+
+pytestmark = pytest.mark.compiled
+
+TURN = 2.0 * np.pi
+
+
+def circle(count, centre, radius):
+    angles = np.linspace(0.0, TURN, count, endpoint=False)
+    return centre + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+
+
+def plane(u, v):
+    return np.stack([u, v, 0.0 * u], axis=-1)
+
+
+PLANE = gm.Surface.from_callable(plane, ((0.0, 1.0), (0.0, 1.0)), name="plane")
+TORUS = gm.surfaces.torus()
+X = np.linspace(0.0, 1.0, 21)
+HEIGHTS = np.where(
+    (np.abs(X[:, None] - 0.5) < 0.11) & (np.abs(X - 0.6) < 0.11), np.nan, 0.1 * np.sin(5 * X)
+)
+# Surfaces with the Euler characteristics of their parts.
+PARTS = {
+    "hole": (PLANE.trimmed(shapely.box(0, 0, 1, 1).difference(shapely.box(0.3, 0.3, 0.7, 0.6))), 0),
+    "disc": (PLANE.trimmed([circle(200, 0.5, 0.4)]), 1),
+    "half": (PLANE.trimmed(within=lambda u, v: u + v < 1.0), 1),
+    "annulus": (TORUS.trimmed([circle(100, 3.0, 1.5), circle(100, 3.0, 0.7)]), 0),
+    "seam": (TORUS.trimmed([circle(100, TURN, 1.2)]), 1),
+    "torus with a hole": (TORUS.trimmed(within=lambda u, v: np.hypot(u - 3, v - 2) > 0.7), -1),
+    "cap": (gm.surfaces.sphere().trimmed(within=lambda u, v: v > 0.5), 1),
+    "band": (gm.surfaces.cylinder().trimmed(within=lambda u, v: np.abs(v) < 0.3), 0),
+    "moebius": (gm.surfaces.moebius_band().trimmed(within=lambda u, v: np.abs(u - 3) > 0.4), 1),
+    "grid": (gm.Surface.from_grid(HEIGHTS, spacing=(0.05, 0.05)), 0),
+}
+
+
+def area(spline, count=600):
+    """Return the area inside the trim, by the midpoint rule."""
+    (u0, u1), (v0, v1) = spline.domain
+    parts = (np.arange(count) + 0.5) / count
+    u, v = (x.ravel() for x in np.meshgrid(u0 + (u1 - u0) * parts, v0 + (v1 - v0) * parts))
+    inside = spline.trim.contains(np.stack([u, v], axis=1))
+    u, v, step = u[inside], v[inside], 1e-5
+    along = spline.evaluate(u + step, v) - spline.evaluate(u - step, v)
+    across = spline.evaluate(u, v + step) - spline.evaluate(u, v - step)
+    sizes = np.linalg.norm(np.cross(along, across), axis=1) / (4 * step * step)
+    return sizes.sum() * (u1 - u0) * (v1 - v0) / count**2
+
+
+@pytest.mark.parametrize("name", PARTS)
+def test_a_mesh_ends_at_the_border(name):
+    surface, characteristic = PARTS[name]
+    spline = gm.fit(surface, None if name == "grid" else (16, 16))
+    samples = gm.sample(spline, 300)
+    mesh = samples.mesh()
+    assert mesh.euler_characteristic == characteristic
+    ends = np.unique(mesh.boundary_edges)
+    assert np.count_nonzero(mesh.sample_index[ends] >= 0) <= 3  # that are so close to the border
+    ends = ends[mesh.sample_index[ends] < 0]
+    # Each of its ends is on the border: points on both sides, or only inside the domain.
+    low, high = np.array(spline.domain).T
+    around = 2e-6 * circle(16, 0.0, 1.0) * (high - low)
+    places = (mesh.uv[ends][:, None] + around).reshape(-1, 2)
+    is_open = np.array([kinds[0] not in ("periodic", "mirrored") for kinds in spline.boundary])
+    beyond = (is_open & ((places < low) | (places > high))).any(axis=1)
+    places = np.where(is_open, np.clip(places, low, high), places)
+    assert spline.trim is not None
+    inside = (spline.trim.contains(places) & ~beyond).reshape(len(ends), -1)
+    known = name == "grid"  # whose own evaluation of places on edges is not exact
+    assert np.mean(inside.any(axis=1) & ~inside.all(axis=1)) >= (0.9 if known else 1.0)
+    assert samples.weights().sum() == pytest.approx(area(spline), rel=6e-3)
+
+
+def test_weights_of_a_disc():
+    samples = gm.sample(gm.fit(PARTS["disc"][0], (16, 16)), 1000, density="uniform")
+    weights = samples.weights()
+    assert (weights > 0.0).all()
+    assert weights.sum() == pytest.approx(np.pi * 0.16, rel=1e-3)
+    assert weights @ samples.points[:, 0] == pytest.approx(np.pi * 0.16 * 0.5, rel=2e-3)
+    square = ((samples.points[:, :2] - 0.5) ** 2).sum(axis=1)
+    assert weights @ square == pytest.approx(np.pi * 0.4**4 / 2.0, rel=1e-2)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", PARTS)
+def test_weights_converge(name):
+    surface, _ = PARTS[name]
+    spline = gm.fit(surface, None if name == "grid" else (32, 32))
+    expected = area(spline, 3000)
+    for density in ("balanced", "uniform"):
+        total = gm.sample(spline, 4000, density=density).weights().sum()
+        assert total == pytest.approx(expected, rel=1e-3)
+
+
+def test_borders_are_those_of_all_conditions():
+    # Two rectangles that touch, in one loop each: no border between them. And a predicate.
+    left = np.array([(0.1, 0.1), (0.5, 0.1), (0.5, 0.9), (0.1, 0.9)])
+    surface = PLANE.trimmed([left, left + np.array([0.4, 0.0])]).trimmed(
+        within=lambda u, v: v < 0.5
+    )
+    lines = border_lines(gm.fit(surface, (8, 8)))
+    lengths = [np.linalg.norm(np.diff(x, axis=0), axis=1).sum() for x in lines]
+    assert sum(lengths) == pytest.approx(2 * (0.8 + 0.4), rel=1e-3)
+    points = np.concatenate(lines)
+    assert not ((np.abs(points[:, 0] - 0.5) < 1e-6) & (np.abs(points[:, 1] - 0.3) < 0.15)).any()
+
+
+def test_a_loop_around_the_whole_torus_has_no_border():
+    whole = [(0.0, 0.0), (TURN, 0.0), (TURN, TURN), (0.0, TURN)]
+    spline = gm.fit(TORUS.trimmed([whole]), (16, 16))
+    assert border_lines(spline) == []
+    mesh = gm.sample(spline, 200).mesh()
+    assert mesh.euler_characteristic == 0
+    assert not len(mesh.boundary_edges)
+
+
+def test_samples_on_the_border_are_its_vertices():
+    strip = TORUS.trimmed(within=lambda u, v: u < 1).flipped()
+    spline = gm.fit(strip, (16, 16))
+    samples = gm.sample(spline, 150)
+    on_border = samples.uv[::40].copy()
+    on_border[:, 0] = spline.domain[0][1]
+    u, v = on_border.T
+    added = replace(
+        samples[: len(u)], uv=on_border, points=spline.evaluate(u, v), normals=spline.normals(u, v)
+    )
+    joined = gm.Samples.concatenate([samples, added])
+    mesh = joined.mesh()
+    assert mesh.euler_characteristic == 0
+    ends = mesh.sample_index[np.unique(mesh.boundary_edges)]
+    assert set(range(150, 150 + len(u))) <= set(ends.tolist())
+    assert (joined.weights() > 0.0).all()

@@ -1,0 +1,167 @@
+"""`gm.plot` and `samples.plot`: figures from Python."""
+
+from __future__ import annotations
+
+import importlib.util
+from io import BytesIO
+from pathlib import Path
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.tools.cad.examples import all_kinds, box
+from gaussmap.tools.commands.cli import main
+from gaussmap.tools.pictures.part_scene import part_scene
+from gaussmap.tools.pictures.scene import view
+from gaussmap.tools.pictures.to_file import write_plot
+
+pytest.importorskip("matplotlib")
+from matplotlib import image
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+from mpl_toolkits.mplot3d.art3d import Path3DCollection
+
+pytestmark = pytest.mark.compiled  # every picture evaluates a fine mesh
+
+
+@pytest.fixture(scope="module")
+def samples() -> gm.Samples:
+    return gm.sample(gm.fit(gm.surfaces.torus(), cells=(16, 16)), 300, density="isotropic")
+
+
+def texts(figure: Figure) -> set[str]:
+    return {x.get_text() for x in figure.findobj(Text)}  # pyright: ignore[reportAttributeAccessIssue]
+
+
+def drawn(figure: Figure) -> np.ndarray:
+    """Return the values of the visible samples, that the colours show."""
+    (dots,) = figure.findobj(Path3DCollection)
+    return np.asarray(dots.get_array())  # pyright: ignore[reportAttributeAccessIssue]
+
+
+@pytest.mark.slow
+def test_it_is_the_picture_of_the_command_line(samples: gm.Samples, tmp_path: Path) -> None:
+    assert samples.spline is not None
+    write_plot(samples, samples.spline, (), tmp_path / "a.png")
+    samples.plot().savefig(tmp_path / "b.png")
+    gm.plot(samples.spline, samples).savefig(tmp_path / "c.png")
+    first, *others = (image.imread(tmp_path / f"{x}.png") for x in "abc")
+    for other in others:
+        assert np.mean(np.abs(first - other).max(axis=2) > 0.1) < 0.002
+
+
+@pytest.mark.slow
+def test_notebooks_show_it(samples: gm.Samples) -> None:
+    content = samples.plot()._repr_png_()  # pyright: ignore[reportAttributeAccessIssue]
+    assert image.imread(BytesIO(content)).shape == (980, 1800, 4)
+
+
+@pytest.mark.parametrize(
+    ("color", "label"),
+    [
+        ("support", "support (length)"),
+        ("mean_curvature", "mean curvature (1/length²)"),
+        ("nz", "nz"),
+    ],
+)
+@pytest.mark.quick_for("nz")
+def test_colours_by_a_column(color: str, label: str, samples: gm.Samples) -> None:
+    figure = samples.plot(color=color)
+    assert label.replace("1/length²", "1/length") in texts(figure)
+    arrays = {"nz": samples.normals[:, 2]}
+    values = arrays[color] if color in arrays else getattr(samples, color)
+    assert np.isin(drawn(figure), values).all()
+
+
+def test_colours_by_an_array(samples: gm.Samples) -> None:
+    values = np.arange(len(samples))
+    assert np.isin(drawn(samples.plot(color=values)), values).all()
+    with pytest.raises(gm.errors.InputError, match="a number for each of the 300 samples"):
+        samples.plot(color=values[:5])
+
+
+def test_the_view_decides_what_is_visible(samples: gm.Samples) -> None:
+    above = drawn(samples.plot(color="nz", view=(90, 0)))
+    below = drawn(samples.plot(color="nz", view=(-90, 0)))
+    assert above.min() > -0.2
+    assert below.max() < 0.2
+    np.testing.assert_allclose(view(90, 0)[2], [0, 0, 1], atol=1e-12)
+
+
+def test_axes_of_ones_own(samples: gm.Samples) -> None:
+    figure = Figure()
+    solid, flat = figure.add_subplot(1, 2, 1, projection="3d"), figure.add_subplot(1, 2, 2)
+    assert samples.plot(axes=solid) is figure
+    assert len(flat.collections) == 0
+    assert samples.plot(axes=(solid, flat)) is figure
+    assert len(flat.collections) > 2
+    assert len(figure.axes) == 2
+    for bad in (flat, (solid, solid), (), (solid, flat, flat), (1,)):
+        with pytest.raises(gm.errors.InputError, match="axes must be three-dimensional"):
+            samples.plot(axes=bad)  # pyright: ignore[reportArgumentType]
+
+
+@pytest.mark.slow
+def test_normals_without_samples(samples: gm.Samples) -> None:
+    found = gm.sample("elliptic_paraboloid", normals=gm.icosphere(4), cells=(16, 16))
+    assert not any("no sample" in x for x in texts(found.plot()))
+    assert any("no sample" in x for x in texts(found.plot(normals=gm.icosphere(4))))
+    with pytest.raises(gm.errors.InputError, match="too few normals"):
+        samples.plot(normals=[[0, 0, 1]])
+
+
+def test_an_offset_is_drawn_where_it_is(samples: gm.Samples) -> None:
+    figure = samples.offset(0.2).plot(color="nz", view=(90, 0))
+    assert len(drawn(figure)) > 100
+    low, high = figure.axes[0].get_xlim()
+    assert high - low == pytest.approx(2 * 1.55, rel=0.02)
+
+
+def test_by_default_samples_are_made() -> None:
+    figure = gm.plot("sphere")
+    assert any(x.startswith("2,000 samples") for x in texts(figure))
+
+
+def test_samples_of_parts() -> None:
+    part = box()
+    found = gm.sample(part, 60, edges=True)
+    figure = found.plot(color="face_index")
+    assert {*np.unique(drawn(figure))} < {*range(6)}  # three of six sides are visible
+    assert any("samples visible" in x for x in texts(figure))
+    assert len(drawn(gm.plot(part, found))) == len(drawn(figure))
+
+
+@pytest.mark.slow
+def test_faces_of_all_kinds_and_their_trims() -> None:
+    scene = part_scene(all_kinds())
+    assert np.isfinite(scene.quadrangles).all()
+    a, b, c, _ = np.moveaxis(part_scene(box()).quadrangles, 1, 0)
+    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+    assert areas.sum() == pytest.approx(22.0)
+
+
+def test_errors(samples: gm.Samples, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(
+        gm.errors.UnknownNameError, match="no column 'suport'; did you mean support"
+    ):
+        samples.plot(color="suport")
+    with pytest.raises(gm.errors.InputError, match="view"):
+        samples.plot(view=(1, 2, 3))
+    with pytest.raises(gm.errors.InputError, match="samples must be Samples"):
+        gm.plot("sphere", 5)  # pyright: ignore[reportArgumentType]
+    samples.write(tmp_path / "a.npz")
+    read = gm.read_samples(tmp_path / "a.npz")
+    with pytest.raises(gm.errors.InputError, match="do not know their surface"):
+        read.plot()
+    assert len(drawn(read.plot(samples.spline))) > 100
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    with pytest.raises(gm.errors.MissingExtraError, match=r'pip install "gaussmap\[plot\]"'):
+        samples.plot()
+
+
+@pytest.mark.slow
+def test_the_command_draws_parts(tmp_path: Path) -> None:
+    box().save(tmp_path / "box.npz")
+    path = tmp_path / "box.png"
+    assert main(["plot", str(tmp_path / "box.npz"), "--count", "40", "-o", str(path)]) == 0
+    assert image.imread(path).shape == (980, 1800, 4)

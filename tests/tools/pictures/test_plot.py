@@ -1,0 +1,235 @@
+from __future__ import annotations
+
+import importlib.util
+import subprocess
+import sys
+from pathlib import Path
+from xml.etree import ElementTree
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.tools.commands.cli import main
+from gaussmap.tools.pictures import palette, to_file
+
+pytest.importorskip("matplotlib")
+from matplotlib import colors, image
+from matplotlib.figure import Figure
+
+pytestmark = pytest.mark.compiled  # every picture evaluates a fine mesh
+
+SIZE = (980, 1800, 4)
+
+
+@pytest.fixture(scope="module")
+def torus() -> gm.Spline:
+    return gm.fit(gm.surfaces.torus(), cells=(24, 24))
+
+
+def picture(path: Path) -> np.ndarray:
+    return image.imread(path)
+
+
+def share(pixels: np.ndarray, colour: str) -> float:
+    """The share of the pixels that have about a colour."""
+    return float(np.mean(np.abs(pixels[..., :3] - colors.to_rgb(colour)).max(axis=2) < 0.08))
+
+
+# ── Pictures ─────────────────────────────────────────────────────────────────────────────────────
+
+
+def test_png(torus: gm.Spline, tmp_path: Path) -> None:
+    path = tmp_path / "torus.png"
+    samples = to_file.plot_to_file(torus, path, count=600, density="isotropic")
+    assert abs(len(samples) - 600) < 30
+    pixels = picture(path)
+    assert pixels.shape == SIZE
+    left, right = np.split(pixels, 2, axis=1)
+    for half in (left, right):
+        assert 0.3 < np.mean(half[..., :3].min(axis=2) > 0.99) < 0.9  # neither blank nor full
+    assert share(right, palette.ELLIPTIC) > 0.002
+    assert share(right, palette.HYPERBOLIC) > 0.002
+    assert share(left, palette.HYPERBOLIC) > 0.001
+    assert not np.all(left[..., 0] == left[..., 2])
+
+
+def test_the_samples_are_those_of_sample(tmp_path: Path) -> None:
+    surface = gm.surfaces.monkey_saddle()
+    drawn = to_file.plot_to_file(surface, tmp_path / "a.png", count=50)
+    assert (drawn.points == gm.sample(surface, count=50).points).all()
+
+
+def test_normals_without_samples_are_grey(tmp_path: Path) -> None:
+    surface = gm.surfaces.elliptic_paraboloid()
+    samples = to_file.plot_to_file(surface, tmp_path / "a.png", gm.fibonacci(300), cells=(16, 16))
+    assert 0 < len(samples) < 150
+    right = np.split(picture(tmp_path / "a.png"), 2, axis=1)[1]
+    assert share(right, palette.NO_SAMPLE) > 0.005
+    assert share(right, palette.HYPERBOLIC) < 0.0001
+
+
+@pytest.mark.parametrize("name", ["sphere", "moebius_band", "helicoid", "cylinder", "plane"])
+@pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
+@pytest.mark.quick_for("plane", "sphere")
+def test_surfaces_of_all_kinds(name: str, tmp_path: Path) -> None:
+    to_file.plot_to_file(gm.surfaces.surface(name), tmp_path / "a.png", count=100, cells=(16, 16))
+    assert picture(tmp_path / "a.png").shape == SIZE
+
+
+@pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
+def test_terrain(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    x, y = np.meshgrid(np.linspace(-2, 2, 30), np.linspace(-2, 2, 20))
+    hill = gm.Surface.from_grid(np.exp(-x * x - y * y), spacing=(100.0, 100.0))
+    labels = texts_of(hill, tmp_path / "a.png", monkeypatch)
+    assert "z (exaggerated 500×)" in labels
+    assert any("10^{-" in label and "length²" in label for label in labels)
+
+
+def test_what_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    waves = gm.Surface.from_callable(
+        lambda u, v: np.stack([u, v, 0.3 * np.sin(3 * u) * v], axis=-1),
+        ((-1, 1), (-1, 1)),
+        name="$x$ and\nsome 中文" + 100 * "x",
+    )
+    labels = texts_of(waves, tmp_path / "a.png", monkeypatch)
+    assert {"x", "y", "z"} <= labels
+    assert any(label.startswith("$x$ and some 中文xxx") and len(label) == 80 for label in labels)
+    assert any("on the unit sphere" in label for label in labels)
+    assert any("samples visible" in label for label in labels)
+    assert any(label.startswith("hyperbolic (") for label in labels)
+    assert "Gaussian curvature $K$ (1/length²)" in labels
+
+
+def texts_of(surface: gm.Surface, path: Path, monkeypatch: pytest.MonkeyPatch) -> set[str]:
+    from matplotlib.text import Text
+
+    figures = []
+    save = Figure.savefig
+
+    def spy(figure: Figure, *arguments: object, **options: object) -> None:
+        figures.append(figure)
+        save(figure, *arguments, **options)  # pyright: ignore[reportArgumentType]
+
+    monkeypatch.setattr(Figure, "savefig", spy)
+    to_file.plot_to_file(surface, path, count=100, density="isotropic")
+    return {
+        text.get_text()
+        for text in figures[0].findobj(Text)
+        if text.get_visible()  # pyright: ignore[reportAttributeAccessIssue]
+    }
+
+
+@pytest.mark.parametrize("suffix", [".pdf", ".svg", ".PNG"])
+@pytest.mark.quick_for(".svg")
+def test_other_suffixes_and_equal_bytes(suffix: str, torus: gm.Spline, tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        to_file.plot_to_file(torus, tmp_path / f"{name}{suffix}", count=100)
+    content = (tmp_path / f"a{suffix}").read_bytes()
+    assert content == (tmp_path / f"b{suffix}").read_bytes()
+    assert content.startswith({".pdf": b"%PDF", ".svg": b"<?xml", ".PNG": b"\x89PNG"}[suffix])
+    if suffix == ".svg":
+        assert ElementTree.fromstring(content).tag.endswith("svg")
+
+
+def test_no_global_state(torus: gm.Spline, tmp_path: Path) -> None:
+    import matplotlib
+
+    to_file.plot_to_file(torus, tmp_path / "a.png", count=50)
+    with matplotlib.rc_context({"figure.facecolor": "red", "font.size": 30, "text.color": "red"}):
+        before = dict(matplotlib.rcParams)
+        to_file.plot_to_file(torus, tmp_path / "b.png", count=50)
+        assert dict(matplotlib.rcParams) == before
+    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
+
+
+@pytest.mark.slow
+def test_no_pyplot(tmp_path: Path) -> None:
+    code = (
+        "import sys, gaussmap as gm\n"
+        "from gaussmap.tools.pictures.to_file import plot_to_file\n"
+        "plot_to_file(gm.surfaces.torus(), sys.argv[1], count=50)\n"
+        "print('matplotlib' in sys.modules, 'matplotlib.pyplot' in sys.modules)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, str(tmp_path / "a.png")],
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert (done.stdout, done.stderr) == ("True False\n", "")
+
+
+@pytest.mark.slow
+def test_extreme_sizes(tmp_path: Path) -> None:
+    for radius in (1e-100, 1e100):
+        sphere = gm.surfaces.sphere(radius=radius)
+        to_file.plot_to_file(sphere, tmp_path / "a.png", count=50, cells=(16, 16))
+        assert picture(tmp_path / "a.png").shape == SIZE
+
+
+# ── Errors ───────────────────────────────────────────────────────────────────────────────────────
+
+
+def test_nothing_half_written(
+    torus: gm.Spline, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "a.png"
+    path.write_text("old")
+
+    def half(figure: Figure, path: Path, **_: object) -> None:
+        path.write_text("half")
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Figure, "savefig", half)
+    with pytest.raises(KeyboardInterrupt):
+        to_file.plot_to_file(torus, path, count=50)
+    assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("a.png", "old")]
+
+
+@pytest.mark.parametrize("name", ["plane", "cylinder"])
+def test_samples_that_no_normal_gave(name: str, tmp_path: Path) -> None:
+    drawn = to_file.plot_to_file(
+        gm.surfaces.surface(name), tmp_path / "a.png", count=50, cells=(8, 8)
+    )
+    assert set(drawn.kind) <= {"filling", "grid"}
+    assert picture(tmp_path / "a.png").shape == SIZE
+
+
+def test_bad_targets(torus: gm.Spline, tmp_path: Path) -> None:
+    with pytest.raises(gm.errors.UnknownNameError, match=r"use one of \.png, \.pdf, \.svg"):
+        to_file.plot_to_file(torus, tmp_path / "a.jpg", count=50)
+    with pytest.raises(gm.errors.FileError, match="does not exist"):
+        to_file.plot_to_file(torus, tmp_path / "missing" / "a.png", count=50)
+
+
+def test_bad_arguments(torus: gm.Spline, tmp_path: Path) -> None:
+    path = tmp_path / "a.png"
+    with pytest.raises(gm.errors.InputError, match="already has its cells"):
+        to_file.plot_to_file(torus, path, count=50, cells=(8, 8))
+    with pytest.raises(gm.errors.InputError, match="say how many samples"):
+        to_file.plot_to_file(torus, path)
+    with pytest.raises(gm.errors.InputError, match="no samples to draw"):
+        to_file.write_plot(gm.sample(torus, normals=[[0, 0, 1]])[:0], torus, [], path)
+    with pytest.raises(gm.errors.InputError, match="too few normals"):
+        to_file.write_plot(gm.sample(torus, count=50), torus, [(0, 0, 1)], path)
+    assert not path.exists()
+
+
+def test_without_matplotlib(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    with pytest.raises(gm.errors.MissingExtraError, match=r'pip install "gaussmap\[plot\]"'):
+        to_file.check_target(tmp_path / "a.png")
+    assert main(["plot", "torus", "-o", str(tmp_path / "a.png")]) == 2
+    assert 'pip install "gaussmap[plot]"' in capsys.readouterr().err
+
+
+def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "a.png"
+    assert main(["plot", "torus", "--count", "200", "--cells", "16", "16", "-o", str(path)]) == 0
+    out, err = capsys.readouterr()
+    assert out.startswith(f"{path}: ")
+    assert "200 samples: " in out
+    assert err == ""
+    assert picture(path).shape == SIZE
+    assert main(["plot", "torus", "--frequency", "2", "--quiet", "-o", str(path)]) == 0
+    assert capsys.readouterr() == ("", "")

@@ -1,0 +1,257 @@
+"""Offsets of samples: against exact offsets, against support functions, where they fold."""
+
+import pickle
+import warnings
+from dataclasses import replace
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.runtime.samples.report import SamplingReport
+from gaussmap.runtime.samples.samples import Samples
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+EPS = 2.0**-52
+MAJOR, MINOR = 2.0, 0.5
+FIELDS = ("points", "support", "gaussian_curvature", "mean_curvature")
+
+
+def exact_torus(minor: float = MINOR, scale: float = 1.0, shift: float = 0.0) -> Samples:
+    """Points of a torus from their closed form, in normals that do not depend on `minor`."""
+    u, v = np.random.default_rng(3).uniform(0.0, 2 * np.pi, (2, 500))
+    normals = np.stack([np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)], axis=1)
+    circle = np.stack([np.cos(u), np.sin(u), np.zeros(500)], axis=1)
+    points = scale * (MAJOR * circle + minor * normals) + shift
+    along, across = 1 / minor, np.cos(v) / (MAJOR + minor * np.cos(v))
+    return Samples(
+        points=points,
+        normals=normals,
+        uv=np.stack([u, v], axis=1),
+        support=np.einsum("ij,ij->i", points, normals),
+        gaussian_curvature=along * across / scale**2,
+        mean_curvature=(along + across) / 2 / scale,
+        normal_index=np.arange(500),
+        patch_index=np.arange(500) // 4,
+        report=SamplingReport("torus", 500, 500, 125, 0.0, 0),
+    )
+
+
+def curved(K: object, H: object, **changes: Any) -> Samples:
+    K = np.array(K, dtype=float, ndmin=1)
+    H = np.array(H, dtype=float, ndmin=1)
+    report = SamplingReport("s", None, len(K), None, None, None)
+    return Samples(**({"gaussian_curvature": K, "mean_curvature": H, "report": report} | changes))
+
+
+# --- exact cases ----------------------------------------------------------------------------------
+
+
+@pytest.mark.kernels
+@pytest.mark.parametrize("scale", [1.0, 1e-12, 1e12])
+@pytest.mark.parametrize("ratio", [0.25, -0.125, -0.4375, 1.0, 0.0])
+def test_the_offset_of_a_torus_is_a_torus(scale: float, ratio: float) -> None:
+    """K and H carry the rounding of K, H and of the sum s, which may be small beside its terms."""
+    before, after = exact_torus(scale=scale), exact_torus(MINOR + ratio, scale)
+    d = ratio * scale
+    moved = before.offset(d)
+    K, H = before.gaussian_curvature, before.mean_curvature
+    terms = 1 + 2 * np.abs(H * d) + np.abs(K) * d * d
+    loss = 8 * EPS * terms / np.abs(1 + 2 * H * d + K * d * d)
+    assert np.abs(moved.points - after.points).max() <= 8 * EPS * 4 * scale
+    assert np.abs(moved.support - after.support).max() <= 16 * EPS * 4 * scale
+    largest = np.abs(after.principal_curvatures).max(axis=1)
+    H_error = np.abs(moved.mean_curvature - after.mean_curvature)
+    K_error = np.abs(moved.gaussian_curvature - after.gaussian_curvature)
+    assert (H_error <= loss * largest).all()
+    assert (K_error <= 8 * EPS * largest**2 + loss * np.abs(after.gaussian_curvature)).all()
+
+
+def test_what_an_offset_keeps() -> None:
+    before = exact_torus()
+    moved = before.offset(-0.25)
+    for name in ("normals", "uv", "normal_index", "patch_index"):
+        assert (getattr(moved, name) == getattr(before, name)).all()
+    assert moved.report == replace(
+        before.report,
+        surface="torus offset by -0.25",
+        developable_share=None,
+        infinite_curvatures=0,
+    )
+    assert (before.points == exact_torus().points).all()  # and of the old ones nothing is changed
+    assert (before.gaussian_curvature == exact_torus().gaussian_curvature).all()
+    for name in FIELDS:
+        assert (getattr(before.offset(0.0), name) == getattr(before, name)).all()
+
+
+@pytest.mark.parametrize("d", [0.75, -0.25])
+def test_there_and_back(d: float) -> None:
+    """K and H are at most 4/3 and the sums s at least 1/4, so that each way loses some 10 ε."""
+    before = exact_torus()
+    back = before.offset(d).offset(-d)
+    for name in FIELDS:
+        difference = getattr(back, name) - getattr(before, name)
+        assert np.abs(difference).max() <= 128 * EPS
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("d", [0.1, -0.2])
+def test_it_is_the_offset_of_the_support_function(d: float) -> None:
+    """The same kernel for K and H; its points are moved as here."""
+    spline, normals = gm.fit(gm.surfaces.torus(), (32, 24)), gm.fibonacci(1500)
+    moved = gm.sample(spline, normals=normals).offset(d)
+    assert moved.spline is None
+    order = np.lexsort((moved.patch_index, moved.normal_index))
+    branches = gm.SupportFunction.of_spline(spline).offset(d).branches(normals)
+    assert (moved.normal_index[order] == branches.normal_index).all()
+    assert (moved.gaussian_curvature[order] == branches.gaussian_curvature).all()
+    assert (moved.mean_curvature[order] == branches.mean_curvature).all()
+    assert np.abs(moved.points[order] - branches.points).max() <= 4 * EPS
+    assert np.abs(moved.support[order] - branches.support).max() <= 8 * EPS
+
+
+@pytest.mark.compiled
+def test_float32_is_rounded_once() -> None:
+    spline, normals = gm.fit(gm.surfaces.torus(), (32, 24)), gm.fibonacci(500)
+    narrow = gm.sample(spline, normals=normals, dtype=np.float32).offset(0.1)
+    wide = gm.sample(spline, normals=normals).offset(0.1)
+    assert narrow.dtype == np.float32
+    for name in FIELDS:
+        a, b = getattr(narrow, name), getattr(wide, name)
+        np.testing.assert_allclose(a, b, rtol=0, atol=8 * 2.0**-23 * np.abs(b).max())
+
+
+# --- folds ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("K", "H", "d", "folds"),
+    [
+        (1.0, 1.0, -0.5, False),
+        (1.0, 1.0, -2.0, True),  # both radii are passed: s > 0, m < 0
+        (1.0, 1.0, 2.0, False),
+        (1.0, -1.0, 2.0, True),  # normals that point inwards
+        (1.0, -1.0, -2.0, False),
+        (-1.0, 0.0, 2.0, True),
+        (-1.0, 0.0, -2.0, True),
+        (-1.0, 0.0, 0.5, False),
+        (0.0, 0.5, -2.0, True),  # a cylinder
+        (0.0, 0.5, 2.0, False),
+        (0.0, 0.0, 1e9, False),  # a plane
+    ],
+)
+def test_where_it_folds(K: float, H: float, d: float, folds: bool) -> None:
+    samples = curved(K, H)
+    if folds:
+        with pytest.warns(gm.GaussmapWarning, match=r"at 1 of 1 samples.*smallest radius.* 1\.$"):
+            samples.offset(d)
+    else:
+        samples.offset(d)
+
+
+def test_the_warning_counts_and_names_the_smallest_radius() -> None:
+    """Radii 2, 4 and 8, and a saddle with 1 and −3."""
+    R_1, R_2 = np.array([2.0, 4.0, 8.0, 1.0]), np.array([2.0, 4.0, 8.0, -3.0])
+    samples = curved(1 / (R_1 * R_2), (R_1 + R_2) / (2 * R_1 * R_2))
+    for d, count, smallest in ((-5.0, 3, "1"), (3.5, 1, "3"), (-1.5, 1, "1")):
+        expected = rf"distance {d:g} reaches .* at {count} of 4 .* that side is {smallest}\.$"
+        with pytest.warns(gm.GaussmapWarning, match=expected) as caught:
+            samples.offset(d)
+        assert caught[0].filename == __file__
+
+
+@pytest.mark.parametrize("radius", [1.0, 0.1, 3.0, 1e-9, 1e9, 0.7])
+def test_an_offset_to_a_point(radius: float) -> None:
+    with pytest.warns(gm.GaussmapWarning, match="folds"):
+        moved = curved(1 / radius**2, 1 / radius).offset(-radius)
+    assert moved.gaussian_curvature.tolist() == [np.inf]
+    assert np.isnan(moved.mean_curvature).all()
+    assert np.isnan(moved.principal_curvatures).all()
+
+
+def test_an_offset_by_one_radius() -> None:
+    """To the circle in the middle of the tube, and to the line in the middle of a cylinder."""
+    with pytest.warns(gm.GaussmapWarning, match="at 500 of 500"):
+        moved = exact_torus().offset(-MINOR)
+    assert np.isinf(moved.gaussian_curvature).all()
+    assert (moved.elliptic == exact_torus().elliptic).all()
+    assert np.abs(np.linalg.norm(moved.points, axis=1) - MAJOR).max() <= 8 * EPS * MAJOR
+    with pytest.warns(gm.GaussmapWarning, match="at 1 of 1"):
+        assert np.isnan(curved(0.0, 0.5).offset(-1.0).gaussian_curvature).all()
+
+
+def test_float32_vanishes_within_its_own_rounding() -> None:
+    K, H = (np.array([x], dtype=np.float32) for x in (1 / 0.09, 1 / 0.3))
+    with pytest.warns(gm.GaussmapWarning, match="folds"):
+        moved = curved(0, 0, gaussian_curvature=K, mean_curvature=H).offset(-0.3)
+    assert moved.gaussian_curvature.tolist() == [np.inf]
+
+
+def test_singular_samples_stay_so() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", gm.GaussmapWarning)
+        moved = curved([np.nan, np.inf, -np.inf], [np.nan, np.inf, 1.0]).offset(-1.0)
+    assert np.isnan(moved.gaussian_curvature).all()
+    with pytest.warns(gm.GaussmapWarning, match=r"that side is 0\.$"):
+        curved(-np.inf, 1.0).offset(-1.0)
+
+
+def test_a_far_offset_is_nearly_a_sphere() -> None:
+    samples = exact_torus()
+    with pytest.warns(gm.GaussmapWarning, match="folds"):
+        moved = samples.offset(1e30)
+    np.testing.assert_allclose(moved.mean_curvature, 1e-30, rtol=1e-12)
+    np.testing.assert_allclose(moved.gaussian_curvature, 1e-60, rtol=1e-12)
+    with pytest.warns(gm.GaussmapWarning, match="folds"):
+        assert np.isfinite(samples.offset(1e300).gaussian_curvature).all()
+
+
+# --- fields, and what is refused ------------------------------------------------------------------
+
+
+def only(*names: str) -> Samples:
+    samples = exact_torus()
+    return Samples(**{x: getattr(samples, x) for x in names}, report=samples.report)
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("points", "normals"),
+        ("normals",),
+        ("support",),
+        ("gaussian_curvature", "mean_curvature"),
+        ("uv", "normal_index"),
+    ],
+)
+def test_fields_that_are_there_are_moved(names: tuple[str, ...]) -> None:
+    moved, everything = only(*names).offset(-0.25), exact_torus().offset(-0.25)
+    assert set(moved.fields) == set(names)
+    for name in names:
+        assert (getattr(moved, name) == getattr(everything, name)).all()
+
+
+@pytest.mark.parametrize(
+    ("names", "missing"),
+    [
+        (("points",), "offset of points needs normals, but these samples hold points only"),
+        (("normals", "gaussian_curvature"), "needs mean_curvature, .* add 'mean_curvature' to"),
+        (("mean_curvature",), "needs gaussian_curvature"),
+    ],
+)
+def test_fields_that_are_needed(names: tuple[str, ...], missing: str) -> None:
+    with pytest.raises(gm.errors.MissingFieldError, match=missing):
+        only(*names).offset(0.1)
+
+
+@pytest.mark.parametrize("distance", [np.nan, np.inf, "1", None, [1.0, 2.0], 1j])
+def test_distances_that_are_none(distance: Any) -> None:
+    with pytest.raises(gm.errors.InputError, match=r"^distance must be a finite number, not "):
+        exact_torus().offset(distance)
+
+
+def test_no_samples_and_other_ways_to_get_them() -> None:
+    assert len(exact_torus()[:0].offset(-9.0)) == 0
+    moved = pickle.loads(pickle.dumps(exact_torus().offset(0.5)))[[1, 2]]
+    assert moved.report.surface == "torus offset by 0.5"

@@ -1,0 +1,126 @@
+"""Samples of terrain as point clouds, read again by laspy; and elevations on the command line."""
+
+import json
+from pathlib import Path
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.runtime.base.errors import InputError
+from gaussmap.tools.commands.cli import main
+
+laspy = pytest.importorskip("laspy")
+rasterio = pytest.importorskip("rasterio")
+
+from affine import Affine  # noqa: E402
+
+SHAPE = 14, 17
+ROWS, COLUMNS = np.indices(SHAPE)
+HEIGHTS = 200.0 + 40.0 * np.sin(ROWS / 3.0) * np.cos(COLUMNS / 4.0)
+X, Y = 500_000.0 + 30.0 * np.arange(17), 4_100_000.0 - 30.0 * np.arange(14)
+
+
+@pytest.fixture(scope="module")
+def samples() -> gm.Samples:
+    origin = 500_000.0, 4_099_000.0, 100.0
+    return gm.sample(gm.terrain(HEIGHTS, x=X, y=Y, crs=32617, origin=origin), 100)
+
+
+@pytest.mark.parametrize("suffix", [".las", ".laz"])
+def test_point_clouds(samples: gm.Samples, tmp_path: Path, suffix: str) -> None:
+    samples.write(tmp_path / f"x{suffix}")
+    cloud = laspy.read(tmp_path / f"x{suffix}")
+    found, expected = np.asarray(cloud.xyz), samples.points + np.array(samples.report.origin)
+    step = cloud.header.scales.max()
+    assert step <= 480.0 * 2.0**-27
+    # Half a step, and the rounding of float64 at 4.1e6.
+    assert np.abs(found - expected).max() <= step / 2 + 2 * np.spacing(4.1e6)
+    np.testing.assert_array_equal(np.stack([cloud.nx, cloud.ny, cloud.nz], 1), samples.normals)
+    np.testing.assert_array_equal(cloud.gaussian_curvature, samples.gaussian_curvature)
+    np.testing.assert_array_equal(cloud.normal_index, samples.normal_index)
+    (wkt,) = [x.string for x in cloud.header.vlrs if hasattr(x, "string")]
+    assert rasterio.crs.CRS.from_wkt(wkt).to_epsg() == 32617
+    assert cloud.header.global_encoding.wkt
+    (report,) = [x.record_data for x in cloud.header.vlrs if x.user_id == "gaussmap"]
+    assert json.loads(report)["crs"] == samples.report.crs == "EPSG:32617"
+
+
+def test_other_point_clouds(tmp_path: Path) -> None:
+    torus = gm.sample("torus", 60, cells=(8, 8))
+    torus.write(tmp_path / "x.las")
+    cloud = laspy.read(tmp_path / "x.las")
+    assert np.abs(np.asarray(cloud.xyz) - torus.points).max() <= 1e-8
+    np.testing.assert_array_equal(cloud.on_surface, torus.on_surface)
+    torus[:0].write(tmp_path / "x.las")
+    assert len(laspy.read(tmp_path / "x.las").points) == 0
+    torus[:1].write(tmp_path / "x.las")
+    np.testing.assert_allclose(laspy.read(tmp_path / "x.las").xyz, torus.points[:1], atol=1e-3)
+    with pytest.raises(InputError, match=r"a \.las file needs 'points'"):
+        gm.sample("torus", 60, cells=(8, 8), fields=("normals",)).write(tmp_path / "y.las")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder with a GeoTIFF and an .npz file."""
+    folder = tmp_path_factory.mktemp("terrain")
+    transform = Affine(30.0, 0.0, X[0] - 15.0, 0.0, -30.0, Y[0] + 15.0)
+    with rasterio.open(
+        folder / "dem.tif", "w", driver="GTiff", count=1, height=14, width=17, dtype="float64",
+        crs="EPSG:32617", transform=transform,
+    ) as file:  # fmt: skip
+        file.write(HEIGHTS, 1)
+    np.savez(
+        folder / "dem.npz", heights=HEIGHTS, x=X, y=Y,
+        lon=-84.4 + 1e-3 * np.arange(17), lat=36.7 - 1e-3 * np.arange(14),
+    )  # fmt: skip
+    return folder
+
+
+def run(folder: Path, *arguments: str) -> gm.Samples:
+    output = str(folder / "x.npz")
+    assert main(["sample", *arguments, "--count", "60", "--quiet", "-o", output]) == 0
+    return gm.read_samples(output)
+
+
+def test_commands(folder: Path) -> None:
+    tif, npz = str(folder / "dem.tif"), str(folder / "dem.npz:heights")
+    origin = "--origin", "500000", "4100000"
+    of_tif = run(folder, tif, *origin)
+    of_npz = run(folder, npz, "--x", "x", "--y", "y", "--crs", "EPSG:32617", *origin)
+    np.testing.assert_array_equal(of_tif.points, of_npz.points)
+    assert of_tif.report.crs == of_npz.report.crs == "EPSG:32617"
+    assert run(folder, npz, "--x", "lon", "--y", "lat").report.crs == "EPSG:32616"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("{tif}", "--x", "x"), "--x is for .npz files"),
+        (("{tif}", "--band", "2"), "has 1 band, and no band 2"),
+        (("{tif}", "--periodic", "u"), "--periodic is for grids of points"),
+        (("{tif}", "--spacing", "1", "1"), "has its own coordinates"),
+        (("{npz}:heights", "--x", "x"), "--x and --y go together"),
+        (("{npz}:heights", "--x", "x", "--y", "z"), "no array"),
+        (("{npz}:heights", "--band", "1", "--spacing", "1", "1"), "--band is for GeoTIFF"),
+        (("{npz}:heights",), "add --spacing DX DY, or --x and --y"),
+        (("torus", "--origin", "1", "1"), "--origin is for elevations"),
+        (("torus", "--source-crs", "EPSG:4326"), "--source-crs is for elevations"),
+        (("missing.tif",), "cannot be read"),
+    ],
+)
+def test_commands_that_are_refused(
+    folder: Path, capsys: pytest.CaptureFixture[str], arguments: tuple[str, ...], said: str
+) -> None:
+    names = {"tif": folder / "dem.tif", "npz": folder / "dem.npz"}
+    command = [x.format(**names) for x in arguments]
+    assert main(["sample", *command, "-o", str(folder / "no.ply")]) == 2
+    text = capsys.readouterr().err
+    assert said in text
+    assert text.count("\n") == 1
+
+
+def test_files_that_are_read_are_spared(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    link = folder / "dem.ply"
+    link.symlink_to(folder / "dem.tif")
+    assert main(["sample", str(folder / "dem.tif"), "-o", str(link)]) == 2
+    assert "is read; write to another file" in capsys.readouterr().err

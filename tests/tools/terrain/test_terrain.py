@@ -1,0 +1,250 @@
+"""Elevations in GeoTIFF files and arrays: where points are, what is missing, what is refused."""
+
+import warnings
+from pathlib import Path
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.runtime.base.errors import FileError, GaussmapWarning, InputError
+
+rasterio = pytest.importorskip("rasterio")
+
+from affine import Affine  # noqa: E402
+from rasterio.crs import CRS  # noqa: E402
+from rasterio.warp import transform as warped  # noqa: E402
+
+SHAPE = 14, 17
+ROWS, COLUMNS = np.indices(SHAPE)
+HEIGHTS = 200.0 + 40.0 * np.sin(ROWS / 3.0) * np.cos(COLUMNS / 4.0)
+NORTH_UP = Affine(30.0, 0.0, 500_000.0, 0.0, -30.0, 4_100_000.0)
+PLACED: dict[str, Any] = {"transform": NORTH_UP, "crs": "EPSG:32617"}
+
+
+def write(path: Path, heights: np.ndarray = HEIGHTS, tags: Any = None, **profile: Any) -> Path:
+    bands = heights[None] if heights.ndim == 2 else heights
+    count, rows, columns = bands.shape
+    described = {"driver": "GTiff", "count": count, "height": rows, "width": columns}
+    with (
+        warnings.catch_warnings(),
+        rasterio.open(path, "w", dtype=heights.dtype, **described, **profile) as file,
+    ):
+        file.write(bands)
+        for name, value in (tags or {}).items():
+            if name == "AREA_OR_POINT":
+                file.update_tags(**{name: value})
+            else:
+                setattr(file, name, value)
+    return path
+
+
+def world(path: Path) -> np.ndarray:
+    """Return the points (m, n, 3) that rasterio says."""
+    with rasterio.open(path) as file:
+        a, b, c, d, e, f = tuple(file.transform)[:6]
+    x, y = a * (COLUMNS + 0.5) + b * (ROWS + 0.5) + c, d * (COLUMNS + 0.5) + e * (ROWS + 0.5) + f
+    return np.stack([x, y, HEIGHTS], axis=-1)
+
+
+def assert_same_points(surface: gm.Surface, expected: np.ndarray, atol: float = 1e-9) -> None:
+    assert surface.grid is not None
+    found = surface.grid.reshape(-1, 3)
+    expected = expected.reshape(-1, 3)
+    order = [np.lexsort(x.round(3).T) for x in (found, expected)]
+    np.testing.assert_allclose(found[order[0]], expected[order[1]], rtol=0.0, atol=atol)
+    u, v = np.array(surface.domain).mean(axis=1)
+    assert gm.fit(surface).normals(u, v)[2] > 0.0  # upward
+
+
+@pytest.mark.parametrize(
+    "transform",
+    [
+        NORTH_UP,
+        Affine(30.0, 0.0, 500_000.0, 0.0, 20.0, 4_000_000.0),  # south up
+        Affine(-30.0, 0.0, 500_000.0, 0.0, -30.0, 4_000_000.0),
+        NORTH_UP @ Affine.rotation(30.0),
+        NORTH_UP @ Affine.shear(20.0, 0.0),
+        NORTH_UP @ Affine.rotation(140.0) @ Affine.scale(1.0, -1.0),
+    ],
+)
+@pytest.mark.parametrize("kind", ["Area", "Point"])
+def test_points_are_where_rasterio_says(tmp_path: Path, transform: Affine, kind: str) -> None:
+    tags = {"AREA_OR_POINT": kind}
+    path = write(tmp_path / "dem.tif", transform=transform, crs="EPSG:32617", tags=tags)
+    surface = gm.terrain(path)
+    assert_same_points(surface, world(path))
+    assert surface.georeference is not None
+    assert surface.georeference.crs == "EPSG:32617"
+    if transform.is_rectilinear:
+        u, v = (np.mean(x) for x in surface.domain)
+        np.testing.assert_allclose(surface.evaluate(u, v)[:2], (u, v), rtol=1e-12)
+
+
+def test_degrees_become_the_zone_of_utm(tmp_path: Path) -> None:
+    for longitude, latitude, number in (
+        (-84.4, 36.7, 32616), (151.2, -33.9, 32756), (10.0, 85.0, 32661)
+    ):  # fmt: skip
+        place = Affine(1e-3, 0.0, longitude, 0.0, -1e-3, latitude)
+        path = write(tmp_path / "dem.tif", transform=place, crs="EPSG:4326")
+        surface, expected = gm.terrain(path), world(path)
+        x, y = warped(
+            CRS.from_epsg(4326), CRS.from_epsg(number), *expected[..., :2].reshape(-1, 2).T
+        )[:2]
+        expected[..., 0], expected[..., 1] = np.reshape(x, SHAPE), np.reshape(y, SHAPE)
+        assert_same_points(surface, expected, 1e-6)
+        assert surface.georeference == gm.fit(surface).georeference
+        assert surface.georeference is not None
+        assert surface.georeference.crs == f"EPSG:{number}"
+
+
+def test_arrays_of_degrees_are_refused_or_projected() -> None:
+    x, y = -84.4 + 1e-3 * np.arange(SHAPE[1]), 36.7 - 1e-3 * np.arange(SHAPE[0])
+    with pytest.raises(InputError, match="look like degrees"):
+        gm.terrain(HEIGHTS, x=x, y=y)
+    surface = gm.terrain(HEIGHTS, x=x, y=y, source_crs=4326)
+    same = gm.terrain(HEIGHTS, *(), x=np.broadcast_to(x, SHAPE), y=y, crs="EPSG:4326")
+    assert surface.grid is not None
+    np.testing.assert_array_equal(surface.grid, same.grid)
+    dx, dy = np.ptp(surface.grid[..., 0]), np.ptp(surface.grid[..., 1])
+    assert 1420 < dx < 1510  # 16 thousandths of 111.3 km · cos 36.7°, and the turn of the grid
+    assert 1440 < dy < 1490
+
+
+def test_uneven_and_curved_coordinates() -> None:
+    x = np.cumsum(1.0 + 0.2 * np.sin(np.arange(SHAPE[1])))
+    y = 10.0 * np.sqrt(1.0 + np.arange(SHAPE[0]))[::-1]
+    uneven = gm.terrain(HEIGHTS, x=x, y=y)
+    assert uneven.domain == ((0.0, SHAPE[1] - 1.0), (0.0, SHAPE[0] - 1.0))
+    expected = np.stack([*np.broadcast_arrays(x, y[:, None]), HEIGHTS], axis=-1)
+    assert_same_points(uneven, expected)
+    curved = gm.terrain(
+        HEIGHTS, x=x + 0.01 * ROWS * COLUMNS, y=np.broadcast_to(y[:, None], SHAPE) + 0.01 * COLUMNS
+    )
+    assert curved.grid is not None
+    with pytest.raises(InputError, match="fold"):
+        gm.terrain(HEIGHTS, x=x, y=np.abs(np.arange(SHAPE[0]) - 5.0))
+    with pytest.raises(InputError, match="transposed"):
+        gm.terrain(HEIGHTS, x=y, y=x)
+
+
+@pytest.mark.parametrize("kind", ["int16", "uint8", "float32"])
+def test_nodata_scale_and_offset(tmp_path: Path, kind: str) -> None:
+    stored = HEIGHTS.round().astype(kind)
+    missing = np.zeros(SHAPE, dtype=bool)
+    missing[6:9, 7:10] = True
+    stored[missing] = 7
+    tags = {"scales": (0.5,), "offsets": (100.0,)}
+    path = write(tmp_path / "dem.tif", stored, nodata=7, tags=tags, **PLACED)
+    surface = gm.terrain(path)
+    assert surface.grid is not None
+    heights = surface.grid[..., 2].T[::-1]
+    np.testing.assert_array_equal(np.isnan(heights), missing)
+    np.testing.assert_array_equal(heights[~missing], 0.5 * stored[~missing] + 100.0)
+    samples = gm.sample(surface, 200)
+    columns, rows = (samples.points[:, :2] - (500_000.0, 4_100_000.0)).T / ((30.0,), (-30.0,))
+    at = (rows - 0.5).round().astype(int), (columns - 0.5).round().astype(int)
+    assert not missing[at].any()
+    other = gm.terrain(path, nodata=float(stored[0, 0]))
+    assert other.grid is not None
+    assert np.isnan(other.grid[0, -1, 2])
+    assert not np.isnan(other.grid[8, 6, 2])
+
+
+def test_bands_masks_and_units(tmp_path: Path) -> None:
+    two = np.stack([HEIGHTS, HEIGHTS + 5.0]).astype("f4")
+    path = write(tmp_path / "two.tif", two, tags={"units": ("metre", "foot")}, **PLACED)
+    first = gm.terrain(path)
+    assert first.grid is not None
+    assert first.grid[0, -1, 2] == two[0, 0, 0]
+    with pytest.raises(InputError, match="heights in foot and x, y in met"):
+        gm.terrain(path, band=2)
+    with pytest.raises(InputError, match="has 2 bands, and no band 3"):
+        gm.terrain(path, band=3)
+
+
+def test_what_has_no_place_is_refused(tmp_path: Path) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        path = write(tmp_path / "plain.tif")
+    with pytest.raises(InputError, match="not georeferenced"):
+        gm.terrain(path)
+    surface = gm.terrain(path, spacing=(30.0, -30.0))
+    assert surface.domain == ((0.0, 480.0), (-390.0, 0.0))
+    grid = gm.Surface.from_grid(HEIGHTS, spacing=(30.0, -30.0)).grid
+    np.testing.assert_array_equal(surface.grid, grid)
+    placed = write(tmp_path / "dem.tif", **PLACED)
+    wrong: list[tuple[dict[str, Any], str]] = [
+        ({"x": [1.0], "y": [1.0]}, "x and y are for arrays"),
+        ({"spacing": (1, 1)}, "has its own"),
+        ({"crs": "EPSG:4326"}, "has degrees"),
+        ({"crs": "no system"}, "must be a coordinate reference system"),
+        ({"origin": (1.0,)}, "two or three finite numbers"),
+        ({"nodata": "x"}, "nodata must be a number"),
+    ]
+    for unusable, said in wrong:
+        with pytest.raises(InputError, match=said):
+            gm.terrain(placed, **unusable)
+    incomplete: list[dict[str, Any]] = [
+        {}, {"x": np.arange(17.0)}, {"spacing": (0, 1)}, {"spacing": "a"}
+    ]  # fmt: skip
+    for arguments in incomplete:
+        with pytest.raises(InputError):
+            gm.terrain(HEIGHTS, **arguments)
+    with pytest.raises(InputError):
+        gm.terrain(HEIGHTS[0], spacing=(1, 1))
+
+
+def test_damaged_files(tmp_path: Path) -> None:
+    whole = write(tmp_path / "dem.tif", HEIGHTS.astype("f4"), **PLACED).read_bytes()
+    for k, content in enumerate((b"", b"II*\0junk", whole[:600], b"<VRTDataset/>")):
+        path = tmp_path / f"damaged{k}.tif"
+        path.write_bytes(content)
+        with pytest.raises(FileError, match="damaged or is no GeoTIFF"):
+            gm.terrain(path)
+    with pytest.raises(FileError, match="cannot be read"):
+        gm.terrain(tmp_path / "missing.tif")
+    path = write(tmp_path / "complex.tif", HEIGHTS.astype("complex64"), **PLACED)
+    with pytest.raises(FileError, match="complex"):
+        gm.terrain(path)
+
+
+def test_too_large_files(tmp_path: Path) -> None:
+    path, size = tmp_path / "large.tif", 300_000
+    sparse = {"driver": "GTiff", "count": 1, "height": size, "width": size, "dtype": "uint8"}
+    with rasterio.open(path, "w", tiled=True, SPARSE_OK=True, BIGTIFF="YES", **sparse, **PLACED):
+        pass
+    with pytest.raises(FileError, match=r"300,000 x 300,000 heights.*coarsen it"):
+        gm.terrain(path)
+
+
+def test_an_origin_is_subtracted_and_kept(tmp_path: Path) -> None:
+    path, origin = write(tmp_path / "dem.tif", **PLACED), (500_000.0, 4_099_000.0, 100.0)
+    far, near = gm.terrain(path), gm.terrain(path, origin=origin)
+    assert far.grid is not None
+    np.testing.assert_array_equal(near.grid, far.grid - origin)
+    samples = gm.sample(near, 100)
+    assert samples.report.origin == origin
+    assert "coordinates in EPSG:32617 relative to (500000, 4099000, 100)" in samples.summary()
+    for suffix in (".npz", ".ply"):
+        samples.write(tmp_path / f"x{suffix}")
+        assert gm.read_samples(tmp_path / f"x{suffix}").report == samples.report
+    with pytest.warns(GaussmapWarning, match=r"rounds these coordinates to 0.25.*--origin 5000"):
+        gm.sample(far, 100, dtype=np.float32)
+    gm.sample(near, 100, dtype=np.float32)
+    with pytest.warns(GaussmapWarning, match="rounds these coordinates"):
+        gm.sample(far, 100).mesh().write(tmp_path / "x.stl")
+
+
+def test_blocks_without_data_are_told_from_water() -> None:
+    rng = np.random.default_rng(1)
+    i, j = np.indices((60, 70))
+    land = 150 + 60 * np.sin(i / 9) * np.cos(j / 11) + 0.2 * i + rng.normal(0, 1, i.shape)
+    for value in (0.0, -1.0, 5000.0):
+        holed = np.where(i + j < 30, value, land)
+        with pytest.warns(GaussmapWarning, match=rf"block of 465 heights of {value:.0f}.*nodata="):
+            gm.terrain(holed, spacing=(30, 30))
+    gm.terrain(np.where(i + j < 30, 0.0, land), spacing=(30, 30), nodata=0.0)
+    gm.terrain(np.maximum(land, 120.0), spacing=(30, 30))  # lakes
+    gm.terrain(np.maximum(land - 150.0, 0.0), spacing=(30, 30))  # the sea
+    gm.terrain(np.minimum(land, 180.0), spacing=(30, 30))  # tablelands

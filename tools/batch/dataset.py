@@ -1,0 +1,359 @@
+"""`Dataset`: what a folder of many sampled parts holds, and how it is read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, SupportsIndex
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from ...runtime.base.checks import known_name, whole_number, yes_or_no
+from ...runtime.base.errors import InputError, UnknownNameError, shown
+from ...runtime.base.extras import check_extra
+from ...runtime.samples.fields import COLUMNS, UNITS, checked_dtype, dtype_of
+from ..files.paths import PathLike, checked_path
+from .labels import checked_labels
+from .layout import Settings, read_settings
+from .loader import Loader
+from .manifest import COLUMNS as MANIFEST_COLUMNS
+from .manifest import FAILED, ManifestRow
+from .reading import arrays_in, count_parts, manifest_of, row_of, rows_of_part, stacked
+
+if TYPE_CHECKING:
+    import pyarrow
+
+    from ...runtime.samples.samples import Samples
+
+__all__ = ["Dataset", "open_dataset"]
+
+
+def open_dataset(folder: PathLike) -> Dataset:
+    """Open a data set: a folder that `sample_many` has written with ``out=folder``.
+
+    Parameters
+    ----------
+    folder : str or Path
+        The folder. A run may still be writing to it: its shards are seen as they are finished.
+
+    Returns
+    -------
+    Dataset
+        The data set. Its files are read when they are needed.
+
+    Raises
+    ------
+    MissingExtraError
+        Without the extra `batch`.
+    FileError
+        If the folder holds no data set, or one of another version of gaussmap's format.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> # made by gm.sample_many(["torus", "sphere", "ellipsoid"], 500, out="dataset")
+    >>> dataset = gm.open_dataset("dataset")
+    >>> dataset.summary()
+    '3 parts with 1,500 samples'
+
+    """
+    check_extra("pyarrow", "batch", "a data set")
+    from_folder = checked_path(folder)
+    return Dataset(from_folder, read_settings(from_folder))
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Dataset:
+    """The samples of many parts, in a folder; `open_dataset` opens it.
+
+    Parts have the numbers that they had in the list of `sample_many`, from 0 on. A part is there
+    when its shard is finished. ``len(dataset)`` is the number of parts, those that failed included.
+
+    Attributes
+    ----------
+    folder : Path
+        Where it is.
+    settings : Settings
+        What all parts have in common: ``settings.asked`` is what was asked for of each of them,
+        ``settings.dtype`` the type of the numbers.
+
+    Notes
+    -----
+    The columns, and how pandas, Polars and DuckDB read the files, are described in
+    docs/datasets.md.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> # made by gm.sample_many(["torus", "sphere", "ellipsoid"], 500, out="dataset")
+    >>> dataset = gm.open_dataset("dataset")
+    >>> len(dataset), dataset.folder.name, dataset.settings.dtype
+    (3, 'dataset', 'float64')
+    >>> dataset.fields[:3], dataset.units["gaussian_curvature"]
+    (('points', 'normals', 'uv'), '1/L^2')
+
+    """
+
+    folder: Path
+    settings: Settings
+
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """The fields that the samples have, a tuple of str; some parts may lack some of them."""
+        return self.settings.fields
+
+    @property
+    def units(self) -> dict[str, str]:
+        """The units of fields by their names: L is the unit of length of the part."""
+        return {name: UNITS[name] for name in self.fields if name in UNITS}
+
+    def __len__(self) -> int:
+        return count_parts(self.folder)
+
+    def __repr__(self) -> str:
+        return f"Dataset({str(self.folder)!r})"
+
+    def summary(self) -> str:
+        """Return one line: the numbers of parts and of samples.
+
+        Returns
+        -------
+        str
+            The line, without a line break.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.open_dataset("dataset").summary()
+        '3 parts with 1,500 samples'
+
+        """
+        table = self.manifest(("status", "samples"))
+        failed = int((np.asarray(table["status"]) == FAILED).sum())
+        samples = int(np.asarray(table["samples"]).sum())
+        some = f", {failed:,} of which failed," if failed else ""
+        return f"{len(table):,} part{'s' if len(table) != 1 else ''}{some} with {samples:,} samples"
+
+    def manifest(self, columns: Sequence[str] | None = None) -> pyarrow.Table:
+        """Return the manifest: a row for each part, what became of it.
+
+        Parameters
+        ----------
+        columns : sequence of str, optional
+            The columns that are wanted; all by default.
+
+        Returns
+        -------
+        pyarrow.Table
+            The rows in the order of the parts. The metadata of the columns has what they mean, and
+            their units.
+
+        Raises
+        ------
+        MissingExtraError
+            Without the extra `batch`.
+        UnknownNameError
+            For a column that does not exist.
+        FileError
+            If a file cannot be read.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> table = gm.open_dataset("dataset").manifest(["part", "name", "status", "samples"])
+        >>> table.to_pylist()[1]
+        {'part': 1, 'name': 'sphere', 'status': 'ok', 'samples': 500}
+
+        """
+        return manifest_of(self.folder, _checked_names(columns, MANIFEST_COLUMNS, "column"))
+
+    def samples(self, part: SupportsIndex) -> Samples:
+        """Return the samples of a part.
+
+        Parameters
+        ----------
+        part : int
+            The number of the part.
+
+        Returns
+        -------
+        Samples
+            The samples, in the order in which `sample` has returned them. The report has what the
+            manifest knows, and None for the rest.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such part, or if it failed.
+        FileError
+            If a file cannot be read.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> samples = gm.open_dataset("dataset").samples(0)
+        >>> samples
+        Samples(500 points on torus: ...)
+
+        """
+        number = whole_number(part, "part", least=0)
+        shard = number // self.settings.parts_per_shard
+        row = row_of(self.folder, shard, number)
+        if row is None:
+            raise UnknownNameError(f"there is no part {number} in '{self.folder}'.")
+        if row.status == FAILED:
+            raise UnknownNameError(f"part {number} ('{row.name}') has failed: {row.error}")
+        table = rows_of_part(self.folder, shard, row)
+        held = [name for name in self.fields if table[COLUMNS[name][0]].null_count < len(table)]
+        wanted = held or self.fields  # a part without samples has empty arrays
+        arrays = {name: stacked(x, name) for name, x in arrays_in(table, wanted).items()}
+        return _samples(arrays, row)
+
+    def batches(
+        self,
+        points: int = 2048,
+        parts: int = 16,
+        *,
+        fields: Sequence[str] = ("points", "normals"),
+        shuffle: int | Sequence[int] | None = None,
+        dtype: DTypeLike | None = None,
+        labels: str | Mapping[int, float] | Mapping[str, float] | None = None,
+        shard: tuple[int, int] = (0, 1),
+        drop_last: bool = False,
+        buffer: int = 512,
+    ) -> Iterator[tuple[NDArray[Any], ...]]:
+        """Return batches for training: the same number of points of each of several parts.
+
+        Parameters
+        ----------
+        points : int, default 2048
+            How many points of each part. Of a part with fewer all are taken, and some again.
+        parts : int, default 16
+            How many parts are in a batch; parts without samples are left out.
+        fields : sequence of str, default ("points", "normals")
+            What is wanted of the samples. What a part lacks is NaN, −1 or False.
+        shuffle : int or sequence of int, optional
+            A seed, by which the parts are shuffled, and points are drawn at random, those of a part
+            without repetition where there are enough. ``shuffle=(seed, epoch)`` gives each epoch an
+            order of its own. Without it parts come in the order of the list, with their first
+            points.
+        dtype : {float32, float64}, optional
+            The type of the numbers; that of the data set by default.
+        labels : str or mapping, optional
+            A number for each part: the name of a column of the manifest, or a mapping from the
+            numbers of parts, or from their names.
+        shard : (int, int), default (0, 1)
+            ``(i, n)`` is for worker `i` of `n`, from 0 on: each part is in the batches of one of
+            them. Whole files are divided among them.
+        drop_last : bool, default False
+            Leave out the last batch if it has fewer parts.
+        buffer : int, default 512
+            From how many parts in memory the next one is drawn, if they are shuffled.
+
+        Returns
+        -------
+        iterator of tuple of array
+            A batch is an array (parts, points, 3) or (parts, points) for each field; then the
+            numbers of the parts, (parts,) int64; then their labels, (parts,) int64 or float64, if
+            any. The arrays are contiguous, writable, and not used again, so that
+            ``torch.from_numpy`` takes them without a copy.
+
+        Raises
+        ------
+        InputError
+            If an argument is out of range, or a part has no label.
+        UnknownNameError
+            If the data set has no such field, or the manifest no such column.
+        FileError
+            If a file cannot be read.
+
+        Notes
+        -----
+        The same seed gives the same batches. The points that are drawn of a part do not depend on
+        the number of workers. At most `buffer` parts, one batch, and one row group of a file (about
+        2^17 samples, or one part) are in memory.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> dataset = gm.open_dataset("dataset")
+        >>> for points, normals, part in dataset.batches(256, 2, shuffle=0, dtype="float32"):
+        ...     print(points.shape, normals.dtype, part.shape)
+        (2, 256, 3) float32 (2,)
+        (1, 256, 3) float32 (1,)
+        >>> kinds = {"torus": 0, "sphere": 1, "ellipsoid": 1}
+        >>> points, part, kind = next(dataset.batches(100, 3, fields=("points",), labels=kinds))
+        >>> part.tolist(), kind.tolist()
+        ([0, 1, 2], [0, 1, 1])
+
+        """
+        known, label_type = checked_labels(labels, self.manifest)
+        return Loader(
+            folder=self.folder,
+            points=whole_number(points, "points"),
+            parts=whole_number(parts, "parts"),
+            types=self._types(fields, dtype),
+            seed=_checked_seed(shuffle),
+            buffer=whole_number(buffer, "buffer"),
+            shard=_checked_shard(shard),
+            drop_last=yes_or_no(drop_last, "drop_last"),
+            labels=known,
+            label_type=label_type,
+        ).batches()
+
+    def _types(self, fields: Sequence[str], dtype: DTypeLike | None) -> dict[str, np.dtype[Any]]:
+        number = checked_dtype(self.settings.dtype if dtype is None else dtype)
+        names = _checked_names(fields, self.fields, "field") or self.fields
+        return {name: dtype_of(name, number) for name in names}
+
+
+def _samples(arrays: dict[str, NDArray[Any]], row: ManifestRow) -> Samples:
+    # Here, and not above: they bring Numba, which reading batches does without.
+    from ...runtime.samples.report import SamplingReport
+    from ...runtime.samples.samples import Samples
+
+    report = SamplingReport(
+        surface=row.name, normals=None, samples=row.samples, patches=None,
+        developable_share=None, developable_patches=None, coverage=row.coverage, angle=row.angle,
+        fit_distance=row.misfit, index=row.part,
+    )  # fmt: skip
+    known: dict[str, Any] = {**arrays}
+    return Samples(**known, report=report)
+
+
+def _checked_names(
+    names: Sequence[str] | None, known: Sequence[str] | Mapping[str, Any], kind: str
+) -> tuple[str, ...] | None:
+    """Return names, each known; None stands for all."""
+    if names is None:
+        return None
+    if isinstance(names, str):
+        raise InputError(f"{kind}s must be a tuple of names, such as ({shown(names)},).")
+    try:
+        wanted = tuple(names)
+    except TypeError:
+        raise InputError(f"{kind}s must be a tuple of names, not {shown(names)}.") from None
+    if not wanted or len(set(wanted)) < len(wanted):
+        raise InputError(f"{kind}s must name at least one {kind}, and none twice.")
+    return tuple(known_name(name, tuple(known), kind) for name in wanted)
+
+
+def _checked_seed(seed: int | Sequence[int] | None) -> tuple[int, ...] | None:
+    if seed is None:
+        return None
+    if isinstance(seed, Sequence) and not isinstance(seed, str) and seed:
+        return tuple(whole_number(x, "shuffle", least=0) for x in seed)
+    return (whole_number(seed, "shuffle", least=0),)
+
+
+def _checked_shard(shard: tuple[int, int]) -> tuple[int, int]:
+    try:
+        index, count = shard
+    except (TypeError, ValueError):
+        raise InputError(f"shard must be a pair (i, n), not {shown(shard)}.") from None
+    index, count = whole_number(index, "shard[0]", least=0), whole_number(count, "shard[1]")
+    if index >= count:
+        raise InputError(f"shard is ({index}, {count}); workers count from 0 to {count - 1}.")
+    return index, count

@@ -1,0 +1,164 @@
+"""The parts of a data set: surfaces, and files that a worker reads."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...runtime.base.advice import CAD_SUFFIXES
+from ...runtime.base.errors import FileError, InputError, shown
+from ...runtime.base.extras import from_extra
+from ...runtime.spline.spline import Spline
+from ...runtime.surface.surface import Surface
+from ...runtime.surface.surfaces import CATALOGUE, named
+from ..cad.part import Part, read_part
+from ..cad.part_files import is_part_file
+from ..files.arrays import is_array_file, read_array
+from ..files.paths import checked_path, reason_of
+from .manifest import as_text
+
+__all__ = ["Input", "Source", "content_of", "in_shards", "inputs_of", "read_source"]
+
+Source = Surface | Spline | Part | str | os.PathLike[str]
+# Surfaces are known again by their points at so many parameters along u and v: more than a cell, so
+# that small changes are seen, and fewer than sampling takes.
+LATTICE = 17
+CHUNK = 1 << 20
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """A part: its number in the list, its name, where it comes from, and what a worker gets.
+
+    That is the path of a file, or a pickled surface. Only the worker unpickles it.
+    """
+
+    part: int
+    name: str
+    source: str
+    path: str | None = None
+    pickled: bytes = b""
+
+
+def inputs_of(sources: Iterable[Source]) -> Iterator[Input]:
+    """Yield the parts of a list, one by one.
+
+    Names of files are not looked at: a worker does that. Raises InputError for what is neither a
+    surface nor a text.
+    """
+    for part, source in enumerate(sources):
+        if isinstance(source, str) and source in CATALOGUE:
+            yield _of_surface(part, named(source), source)
+        elif isinstance(source, str | os.PathLike):
+            path = checked_path(source)
+            name, source_path = as_text(path.stem), as_text(str(path))
+            yield Input(part, name, source_path, os.path.abspath(path))
+        elif isinstance(source, Surface | Spline | Part):
+            yield _of_surface(part, source, type(source).__name__)
+        else:
+            raise InputError(
+                f"part {part} must be a Surface, Spline or Part, the name of a surface, or a path, "
+                f"not {shown(source)}."
+            )
+
+
+def _of_surface(part: int, surface: Surface | Spline | Part, source: str) -> Input:
+    # Functions of the program itself, and of notebooks, can be unpickled nowhere else.
+    pickle = from_extra("cloudpickle", "batch", "a data set of surfaces")
+    try:
+        name = as_text(str(surface.name or "surface"))
+        return Input(part, name, source, None, pickle.dumps(surface))
+    except Exception as error:  # of what users' functions hold
+        raise InputError(
+            f"part {part} ({surface.name}) cannot be sent to another process: its function cannot "
+            f"be pickled ({type(error).__name__}: {error})."
+        ) from error
+
+
+def in_shards(inputs: Iterable[Input], size: int) -> Iterator[list[Input]]:
+    """Yield lists of `size` consecutive parts, and of what is left."""
+    waiting = iter(inputs)
+    while shard := list(islice(waiting, size)):
+        yield shard
+
+
+# --- in the worker --------------------------------------------------------------------------------
+
+
+def content_of(source: Surface | Spline | Part | Path) -> str:
+    """Return a SHA-256 of what is sampled: of a file's bytes, or of a surface's points.
+
+    A surface that is given by a function is known by its points at a lattice of parameters: what
+    its code says does not matter.
+    """
+    digest = hashlib.sha256(type(source).__name__.encode())
+    if isinstance(source, Path):
+        _add_file(digest, source)
+    elif isinstance(source, Part):
+        for name in sorted(source.arrays):
+            _add_array(digest, source.arrays[name])
+    elif isinstance(source, Spline):
+        _add_array(digest, source.coefficients)
+        digest.update(repr((source.domain, source.boundary)).encode())
+    else:
+        _add_surface(digest, source)
+    return digest.hexdigest()
+
+
+def _add_surface(digest: Any, surface: Surface) -> None:  # noqa: ANN401
+    digest.update(repr((surface.domain, surface.boundary, surface.assumed_open)).encode())
+    if surface.grid is not None:
+        _add_array(digest, surface.grid)
+        return
+    u, v = np.meshgrid(*(np.linspace(low, high, LATTICE) for low, high in surface.domain))
+    _add_array(digest, surface.evaluate(u, v))
+    if surface.trim is not None:
+        _add_array(digest, surface.trim.contains(np.stack([u.ravel(), v.ravel()], axis=-1), 1))
+        for condition in surface.trim.parts:
+            for polygon in getattr(condition, "polygons", ()):
+                _add_array(digest, polygon)
+
+
+def _add_array(digest: Any, array: Any) -> None:  # noqa: ANN401
+    array = np.ascontiguousarray(array)
+    digest.update(f"{array.dtype.str}{array.shape}".encode())
+    digest.update(array.data)
+
+
+def _add_file(digest: Any, path: Path) -> None:  # noqa: ANN401
+    try:
+        with open(path, "rb") as file:
+            while chunk := file.read(CHUNK):
+                digest.update(chunk)
+    except FileNotFoundError:
+        raise FileError(f"'{path}' does not exist.") from None
+    except OSError as error:
+        raise FileError(f"'{path}' cannot be read: {reason_of(error)}.") from error
+
+
+def read_source(path: Path, seconds: float, memory: float) -> Surface | Part:
+    """Return the part or the surface in a file. Raises what the functions for each format raise."""
+    name = str(path)
+    if path.suffix.lower() in CAD_SUFFIXES:
+        from ..cad.reader import read_cad
+
+        return read_cad(path, time_limit=seconds, memory_limit=memory)
+    if is_part_file(name):
+        return read_part(path)
+    if not is_array_file(name):
+        raise InputError(
+            f"'{name}' is neither a CAD file ({', '.join(CAD_SUFFIXES)}) nor a .npz or .npy file."
+        )
+    points = read_array(name)
+    if points.ndim != 3:
+        raise InputError(
+            f"'{name}' has the shape {points.shape}; a part in an array is points (m, n, 3)."
+        )
+    return Surface.from_grid(points, name=path.stem)

@@ -1,0 +1,316 @@
+"""`sample_many`: the samples of many surfaces, in the order of these, or as a data set."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+from typing import Any, Literal, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, DTypeLike
+
+from ...runtime.base.checks import known_name, yes_or_no
+from ...runtime.base.errors import GaussmapError, GaussmapWarning, InputError, shown
+from ...runtime.place.on_surface import checked_place
+from ...runtime.sample import sample_and_normals
+from ...runtime.samples.fields import checked_dtype, checked_fields
+from ...runtime.samples.request import Request, checked_request
+from ...runtime.samples.samples import Samples
+from ...runtime.spline.spline import Spline
+from ...runtime.surface.surface import Surface
+from ..files.paths import PathLike
+from .arguments import CODEC, SECONDS, asked_of, stored, where
+from .dataset import Dataset, open_dataset
+from .inputs import Source
+from .making import Unwatched, make
+from .watching import Bar
+
+__all__ = ["sample_many"]
+
+Surfaces = Iterable[Surface | Spline | str]
+ON_ERROR = ("raise", "skip", "none", "return")
+
+
+@overload
+def sample_many(
+    surfaces: Surfaces,
+    count: int | None = None,
+    *,
+    normals: ArrayLike | None = None,
+    progress: bool = True,
+    on_error: Literal["none"],
+    angle: float | None = None,
+    coverage: float | None = None,
+    density: str | float | None = None,
+    relax: int = 0,
+    cells: Sequence[int] | None = None,
+    on: str | None = None,
+    fields: Sequence[str] | None = None,
+    dtype: DTypeLike = np.float64,
+    threads: int | None = None,
+) -> Iterator[Samples | None]: ...
+
+
+@overload
+def sample_many(
+    surfaces: Surfaces,
+    count: int | None = None,
+    *,
+    normals: ArrayLike | None = None,
+    progress: bool = True,
+    on_error: Literal["return"],
+    angle: float | None = None,
+    coverage: float | None = None,
+    density: str | float | None = None,
+    relax: int = 0,
+    cells: Sequence[int] | None = None,
+    on: str | None = None,
+    fields: Sequence[str] | None = None,
+    dtype: DTypeLike = np.float64,
+    threads: int | None = None,
+) -> Iterator[Samples | GaussmapError]: ...
+
+
+@overload
+def sample_many(
+    surfaces: Surfaces,
+    count: int | None = None,
+    *,
+    normals: ArrayLike | None = None,
+    progress: bool = True,
+    on_error: Literal["raise", "skip"] = "raise",
+    angle: float | None = None,
+    coverage: float | None = None,
+    density: str | float | None = None,
+    relax: int = 0,
+    cells: Sequence[int] | None = None,
+    on: str | None = None,
+    fields: Sequence[str] | None = None,
+    dtype: DTypeLike = np.float64,
+    threads: int | None = None,
+) -> Iterator[Samples]: ...
+
+
+@overload
+def sample_many(
+    surfaces: Iterable[Source],
+    count: int | None = None,
+    *,
+    normals: ArrayLike | None = None,
+    progress: bool = True,
+    on_error: None = None,
+    angle: float | None = None,
+    coverage: float | None = None,
+    density: str | float | None = None,
+    relax: int = 0,
+    cells: Sequence[int] | None = None,
+    on: str | None = None,
+    fields: Sequence[str] | None = None,
+    dtype: DTypeLike = np.float64,
+    threads: None = None,
+    out: PathLike,
+    workers: int | None = None,
+    scheduler: object = None,
+    time_limit: float = SECONDS,
+    memory_limit: float | None = None,
+    measure: bool = False,
+    files: str | None = None,
+    compression: str = CODEC,
+    overwrite: bool = False,
+    retry_failed: bool = False,
+) -> Dataset: ...
+
+
+def sample_many(
+    surfaces: Iterable[Source],
+    count: int | None = None,
+    *,
+    normals: ArrayLike | None = None,
+    progress: bool = True,
+    on_error: str | None = None,
+    angle: float | None = None,
+    coverage: float | None = None,
+    density: str | float | None = None,
+    relax: int = 0,
+    cells: Sequence[int] | None = None,
+    on: str | None = None,
+    fields: Sequence[str] | None = None,
+    dtype: DTypeLike = np.float64,
+    threads: int | None = None,
+    out: PathLike | None = None,
+    workers: int | None = None,
+    scheduler: object = None,
+    time_limit: float = SECONDS,
+    memory_limit: float | None = None,
+    measure: bool = False,
+    files: str | None = None,
+    compression: str = CODEC,
+    overwrite: bool = False,
+    retry_failed: bool = False,
+) -> Iterator[Samples | GaussmapError | None] | Dataset:
+    """Yield the samples of each of several surfaces, in order; or make a data set of them.
+
+    With `out` the parts are sampled by several processes, on this machine or on a cluster, into a
+    folder of Parquet files (docs/datasets.md). What fails is a row of its manifest. If the run is
+    stopped, or killed, the same call goes on with what is missing.
+
+    Parameters
+    ----------
+    surfaces : iterable of Surface, Spline or str
+        The surfaces; they may be made one by one. With `out` also CAD parts and paths: CAD files,
+        parts that were saved, and points (m, n, 3) in .npz and .npy files.
+    count, normals, angle, coverage, density, relax, cells, on, fields, dtype, threads : optional
+        As in `sample`. With `out`, the fields are those without indices by default, and each
+        process has one thread.
+    progress : bool, default True
+        Show a bar on standard error, if that is a terminal.
+    on_error : {"raise", "skip", "none", "return"}, default "raise"
+        Without `out`, what happens if a surface cannot be sampled: its error is raised; or it is
+        left out with a warning; or None is yielded in its place, with a warning; or its error is
+        yielded there.
+    out : path, optional
+        The folder of the data set. All that follow are for data sets only.
+    workers : int, optional
+        The number of processes; by default one for each core.
+    scheduler : str or distributed.Client, optional
+        The address of a scheduler of Dask, or a client: its workers sample the parts, and see the
+        folder by the same path. The extra `cluster` brings Dask.
+    time_limit : float, default 600.0
+        The longest time for a part, in seconds.
+    memory_limit : float, optional
+        The most memory of a process, in GiB (not on macOS and Windows); by default the workers
+        share nine tenths of this machine's.
+    measure : bool, default False
+        Measure coverage and normal deviation of each part for the manifest, where they were not
+        asked for; that may take ten times as long as sampling.
+    files : str, optional
+        A suffix such as ".ply": each part gets a file of its own in the folder ``files``, too.
+    compression : {"zstd", "snappy", "gzip", "lz4", "none"}, default "zstd"
+        That of the Parquet files.
+    overwrite : bool, default False
+        Remove the data set that is in the folder first.
+    retry_failed : bool, default False
+        Try parts again that failed in an earlier run.
+
+    Yields
+    ------
+    Samples, GaussmapError or None
+        The samples of the next surface: ``samples.report.index`` is its number among `surfaces`,
+        from 0 on, and ``samples.report.surface`` its name.
+
+    Returns
+    -------
+    Dataset
+        With `out`, the data set.
+
+    Raises
+    ------
+    InputError
+        For arguments with which no surface can be sampled, and if the folder has a data set with
+        other settings.
+    FileError
+        If the folder holds something else or cannot be written to, if another run writes to it, or
+        if Dask's scheduler or its workers cannot be used.
+    MissingExtraError
+        If an extra is missing: `batch` for data sets, `cluster` for schedulers.
+    GaussmapError
+        If a surface cannot be sampled, unless `on_error` says otherwise; a note says which one.
+
+    Warns
+    -----
+    GaussmapWarning
+        If a surface is left out, or None stands for it.
+
+    Notes
+    -----
+    Without `out`, surfaces are sampled one after the other, each on all cores; Python functions run
+    on one core. With `out`, each process samples a surface on one core: that is faster for many.
+
+    A part is known again by its content: the bytes of its file, or points of its surface.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> for samples in gm.sample_many(["torus", "sphere"], 500):
+    ...     print(samples.report.surface, len(samples))
+    torus 500
+    sphere 500
+    >>> broken = gm.Surface.from_callable(lambda u, v: u, ((0, 1), (0, 1)))
+    >>> list(gm.sample_many(["torus", broken], 500, on_error="return"))
+    [Samples(500 points on torus: ...), SurfaceError(...)]
+    >>> parts = gm.sample_many(["torus", "missing.step"], 500, cells=(16, 16), out="parts")
+    >>> parts.manifest()["status"].to_pylist()
+    ['ok', 'failed']
+
+    """
+    request = checked_request(normals, count, angle, coverage, density, relax, threads)
+    shows = yes_or_no(progress, "progress")
+    flat = isinstance(surfaces, np.ndarray) and surfaces.ndim == 0
+    if isinstance(surfaces, str | bytes) or flat or not isinstance(surfaces, Iterable):
+        raise InputError(f"sample_many takes surfaces to go through, not {shown(surfaces)}.")
+    of_data_sets = {
+        "workers": workers, "scheduler": scheduler, "memory_limit": memory_limit, "files": files
+    }  # fmt: skip
+    if out is None:
+        for name, value in of_data_sets.items():
+            if value is not None:
+                raise InputError(f"{name}=… is for data sets; name the folder of one by out=….")
+        checked_fields(fields, checked_place(on) != "spline")
+        action = known_name(on_error or "raise", ON_ERROR, "value of on_error")
+        how = {"cells": cells, "on": on, "fields": fields, "threads": threads}
+        return _each(surfaces, request, how | {"dtype": checked_dtype(dtype)}, action, shows)
+    if on_error is not None or threads is not None:
+        name = "threads" if on_error is None else "on_error"
+        raise InputError(f"{name}=… does not go together with out=…; leave it out.")
+    make(
+        surfaces,
+        out,
+        asked_of(request, cells, on, yes_or_no(measure, "measure")),
+        stored(fields, dtype, compression, files),
+        where(workers, scheduler, time_limit, memory_limit),
+        watch=Bar() if shows else Unwatched(),
+        overwrite=yes_or_no(overwrite, "overwrite"),
+        again=yes_or_no(retry_failed, "retry_failed"),
+    )
+    return open_dataset(out)
+
+
+def _each(
+    surfaces: Iterable[Any], request: Request, how: dict[str, Any], on_error: str, shows: bool
+) -> Iterator[Samples | GaussmapError | None]:
+    """Yield the samples of each surface, or what `on_error` says."""
+    from tqdm import tqdm
+
+    bar = tqdm(surfaces, desc="sampling", unit="surface", disable=None if shows else True)
+    for place, surface in enumerate(bar):
+        try:
+            samples, _ = sample_and_normals(surface, request, progress=False, **how)
+        except GaussmapError as error:
+            where = f"surface {place} ({_name(surface)})"
+            if on_error in ("raise", "return"):
+                error.add_note(f"This is {where} of sample_many.")
+            if on_error == "raise":
+                raise
+            if on_error == "return":
+                yield error
+                continue
+            left = "left out" if on_error == "skip" else "None"
+            warnings.warn(f"{where} is {left}: {error}", GaussmapWarning, stacklevel=2)
+            if on_error == "none":
+                yield None
+        else:
+            yield _numbered(samples, place)
+
+
+def _numbered(samples: Samples, index: int) -> Samples:
+    """Return samples whose report has the number of the surface."""
+    report = replace(samples.report, index=index)
+    known = {"spline": samples.spline, "surface": samples.surface}
+    return Samples(**samples.arrays(), report=report, **known)
+
+
+def _name(surface: object) -> str:
+    """Return the name of a surface, or the type of what is none."""
+    name = getattr(surface, "name", surface if isinstance(surface, str) else None)
+    return name or type(surface).__name__

@@ -1,0 +1,60 @@
+"""Where the borders of a face run in its parameters, on a raster: which boxes they may pass."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.domain.domain import Domain
+from ...runtime.domain.trim import Trim
+
+__all__ = ["Border"]
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class Border:
+    """The border of a trim on a raster of n × n pixels over the domain."""
+
+    trim: Trim
+    domain: Domain
+    n: int
+
+    def passes(self, boxes: Array) -> Flags:
+        """Return which boxes (M, 4), u0, v0, u1, v1, the border may pass."""
+        i, j = self._pixels(boxes[:, :2])
+        k, m = self._pixels(boxes[:, 2:])
+        sums = self._sums
+        return sums[k + 1, m + 1] - sums[i, m + 1] - sums[k + 1, j] + sums[i, j] > 0
+
+    def near(self, boxes: Array, places: Array) -> Flags:
+        """Return which places (k, 2) are in pixels that some boxes (M, 4) reach into."""
+        marks = np.zeros((self.n + 1, self.n + 1), dtype=np.int64)
+        i, j = self._pixels(boxes[:, :2])
+        k, m = self._pixels(boxes[:, 2:])
+        np.add.at(marks, (i, j), 1)
+        np.add.at(marks, (k + 1, m + 1), 1)
+        np.add.at(marks, (i, m + 1), -1)
+        np.add.at(marks, (k + 1, j), -1)
+        covered = marks.cumsum(axis=0).cumsum(axis=1) > 0
+        return covered[self._pixels(places)]
+
+    def _pixels(self, places: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        low, high = np.array(self.domain).T
+        found = np.floor((places - low) * (self.n / (high - low))).astype(np.int64)
+        i, j = np.clip(found, 0, self.n - 1).T
+        return i, j
+
+    @cached_property
+    def _sums(self) -> NDArray[np.int32]:
+        """(n + 1, n + 1): the number of pixels below and left that the border may pass."""
+        passed, all_known = self.trim.cells_of_border(self.domain, (self.n, self.n))
+        sums = np.zeros((self.n + 1, self.n + 1), dtype=np.int32)
+        np.cumsum(passed, axis=0, out=sums[1:, 1:])
+        np.cumsum(sums[1:, 1:], axis=1, out=sums[1:, 1:])
+        return sums if all_known else np.add.outer(np.arange(self.n + 1), np.arange(self.n + 1))

@@ -1,0 +1,173 @@
+"""Samples on the sharp edges of a part, as far apart as its other samples are there."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from ...runtime.base.trees import tree_of
+from ...runtime.density.filling import spacing
+from ...runtime.samples.fields import EDGE_NAMES, INTEGER_NAMES, dtype_of, row_shape
+from .cells import Array, Flags, Indices
+from .edges import Edges, Sides, edges_of, exact_places, sides_at
+from .space import Space
+
+__all__ = ["with_edges"]
+
+# Steps are measured between this many places of an edge, or more.
+PLACES = 32
+# So many steps are there between two ends: an edge may lose the samples there to its neighbours.
+FEWEST = 2
+# Ends of edges that are closer than this part of the size of the part are one corner.
+SAME_CORNER = 1e-5
+# Of a step that is left over so much is not worth a sample.
+SLACK = 1e-6
+
+
+def with_edges(
+    space: Space,
+    count: int,
+    arrays: Mapping[str, NDArray[Any]],
+    fields: Sequence[str],
+    dtype: DTypeLike,
+) -> dict[str, NDArray[Any]]:
+    """Return fields of `count` samples of a part, followed by those on its sharp edges.
+
+    These are in the order of the edges. Each corner, where edges end, has one.
+    """
+    found = {x: y.astype(dtype_of(x, dtype)) for x, y in _on_edges(space, count).items()}
+    others = {
+        name: np.full((count, *row_shape(name)), -1 if name in INTEGER_NAMES else np.nan)
+        for name in EDGE_NAMES
+    }
+    both = {**others, **arrays}
+    return {
+        name: np.concatenate([both[name].astype(found[name].dtype, copy=False), found[name]])
+        for name in fields
+    }
+
+
+def _on_edges(space: Space, count: int) -> dict[str, NDArray[Any]]:
+    """Return all fields of the samples on edges of a part that has `count` others."""
+    edges = edges_of(space)
+    owner, places, ends = _spaced(edges, _step(space, count), max(count, 1))
+    sides, rows = exact_places(edges, owner, places)
+    size = space.size / space.unit
+    solids = np.array([x.face.solid_index for x in space.pieces])[sides.pieces[:, 0]]
+    kept = _one_a_corner(sides, solids, ends[rows], SAME_CORNER * size)
+    return _arrays(space, sides[kept])
+
+
+def _step(space: Space, count: int) -> float:
+    """Return the distance between neighbours among `count` samples where the density is 1."""
+    integral = space.integral
+    if not (count and integral > 0.0):
+        return math.inf
+    return math.sqrt(3.0) * spacing(count / integral)
+
+
+def _spaced(edges: Edges, step: float, most: int) -> tuple[Indices, Array, Flags]:
+    """Return the edges (M,) and places (M,) of samples, and which are at the ends.
+
+    Ends are those of edges, and places where edges begin to be sharp. No part of an edge between
+    two ends has more than `most` steps.
+    """
+    owner, places = _many_places(edges)
+    sides = sides_at(edges.space, edges.pieces[owner], edges.at(owner, places))
+    sharp = np.flatnonzero(sides.sharp)
+    owner, places, costs = owner[sharp], places[sharp], _costs(edges.space, sides[sharp]) / step
+    apart = np.flatnonzero((np.diff(owner) != 0) | (np.diff(sharp) != 1)) + 1
+    found, lengths = [np.empty(0)], []
+    for rows in np.split(np.arange(len(sharp)), apart) if len(sharp) else ():
+        found.append(_divided(places[rows], costs[rows[:-1]], most))
+        lengths.append(len(found[-1]))
+    runs = np.repeat(np.arange(len(lengths)), lengths)
+    firsts = np.concatenate([[0], apart])[: len(lengths)]
+    ends = np.diff(runs, prepend=-1, append=len(lengths)) != 0
+    return owner[firsts][runs], np.concatenate(found), ends[:-1] | ends[1:]
+
+
+def _many_places(edges: Edges) -> tuple[Indices, Array]:
+    """Return edges (M,) and places (M,) on them, `PLACES` parts of each or more."""
+    steps = np.diff(edges.starts) - 1
+    parts = -(-PLACES // np.maximum(steps, 1))
+    counts = steps * parts + 1
+    owner = np.repeat(np.arange(len(edges)), counts)
+    number = np.arange(len(owner)) - (np.cumsum(counts) - counts)[owner]
+    return owner, number / parts[owner]
+
+
+def _costs(space: Space, sides: Sides) -> Array:
+    """Return the lengths (M − 1,) between neighbouring places, in units of the sizing function.
+
+    Where the target density follows the curvature, normals turn by no more than this between them.
+    """
+    target = space.target
+    lengths = np.linalg.norm(np.diff(sides.points[:, 0], axis=0), axis=1) * space.unit
+    costs = math.sqrt(space.floor) * lengths
+    if target.curvature_weight > 0.0:
+        turns = np.linalg.norm(np.diff(sides.normals, axis=0), axis=2).max(axis=1)
+        costs = np.maximum(costs, turns)
+    if target.gauss_weight > 0.0:
+        K = np.abs(sides.curvatures[:, :, 0]).max(axis=1) / space.unit**2
+        with np.errstate(divide="ignore"):
+            K = np.minimum(np.maximum(K[:-1], K[1:]), 1.0 / lengths**2)
+        costs = np.maximum(costs, lengths * K ** (target.exponent / 2.0))
+    return costs
+
+
+def _divided(places: Array, costs: Array, most: int) -> Array:
+    """Return places with equal costs between them, 1 at most, from the first to the last."""
+    if not len(costs):
+        return places
+    if not costs.any():
+        costs = np.full(len(costs), SLACK / len(costs))
+    total = np.concatenate([[0.0], np.cumsum(costs)])
+    parts = max(math.ceil(min(total[-1], most) - SLACK), FEWEST)
+    found = np.interp(total[-1] * np.arange(parts + 1) / parts, total, places)
+    found[[0, -1]] = places[[0, -1]]
+    return found
+
+
+def _one_a_corner(sides: Sides, solids: Indices, ends: Flags, tolerance: float) -> Indices:
+    """Return which samples stay: of ends that are one corner, that with the largest angle.
+
+    Corners of two solids that touch are two.
+    """
+    rows = np.flatnonzero(ends)
+    dropped = np.zeros(len(sides), dtype=np.bool_)
+    if len(rows):
+        points = np.empty((len(rows), 4))
+        points[:, :3], points[:, 3] = sides.points[rows, 0], 2.0 * tolerance * solids[rows]
+        near = tree_of(points).query_ball_point(points, tolerance)
+        for k in np.argsort(-sides.chords[rows].round(9), kind="stable").tolist():
+            if not dropped[rows[k]]:
+                dropped[rows[near[k]]] = True
+                dropped[rows[k]] = False
+    return np.flatnonzero(~dropped)
+
+
+def _arrays(space: Space, sides: Sides) -> dict[str, NDArray[Any]]:
+    """Return all fields of samples."""
+    count, points, normals = len(sides), sides.points[:, 0], sides.normals[:, 0]
+    faces = np.array([x.face.index for x in space.pieces])[sides.pieces]
+    solids = np.array([x.face.solid_index for x in space.pieces])[sides.pieces[:, 0]]
+    return {
+        "points": points,
+        "normals": normals,
+        "uv": sides.uv[:, :2],
+        "support": np.einsum("ij,ij->i", points, normals),
+        "gaussian_curvature": sides.curvatures[:, 0, 0],
+        "mean_curvature": sides.curvatures[:, 0, 1],
+        "normal_index": np.full(count, -1),
+        "on_surface": np.ones(count, dtype=np.bool_),
+        "face_index": faces[:, 0],
+        "solid_index": solids,
+        "other_normals": sides.normals[:, 1],
+        "other_uv": sides.uv[:, 2:],
+        "other_face_index": faces[:, 1],
+    }

@@ -1,0 +1,249 @@
+"""Places on the sharp edges of a part, as parameters on both of the faces that meet there."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...runtime.kernels.refine import evaluate_jets
+from .cells import Array, Flags, Indices
+from .faces import own_parameters
+from .records import SHARP
+from .space import Space
+
+__all__ = ["Edges", "Sides", "edges_of", "exact_places", "sides_at"]
+
+# Newton's method ends where the points on both faces are closer than this part of the part's size,
+# and has found a place if they are within so many times that.
+SAME, FOUND, MOST_ROUNDS = 1e-14, 1e3, 12
+# A place moves so many times as far as the faces are apart there, by the sine of their angle.
+TIMES_APART = 3.0
+# Points of a file whose two faces are farther apart, relative to the size, are on no edge.
+APART = 1e-4
+# A surface collapses where it is so many times longer along one parameter than along the other;
+# parameters beyond its domain by this part of it are its end.
+COLLAPSED, BEYOND = 1e10, 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class Edges:
+    """The sharp edges (E,) of a part: polylines of parameters.
+
+    The points of edge i are `points` (k, 4) from `starts`[i] to `starts`[i + 1]: u, v on the
+    surfaces of the two `pieces` (E, 2) of a space.
+    """
+
+    space: Space
+    pieces: Indices
+    points: Array
+    starts: Indices
+
+    def __len__(self) -> int:
+        return len(self.pieces)
+
+    def at(self, edges: Indices, places: Array) -> Array:
+        """Return parameters (M, 4) at places (M,), 0 at the first point of an edge, 1 at the next.
+
+        Between two points they are interpolated.
+        """
+        last = np.diff(self.starts)[edges] - 1
+        before = np.minimum(np.floor(places).astype(np.int64), last - 1)
+        first = self.starts[:-1][edges] + before
+        share = (places - before)[:, None]
+        return self.points[first] + share * (self.points[first + 1] - self.points[first])
+
+
+def edges_of(space: Space) -> Edges:
+    """Return the sharp edges between the pieces of a space."""
+    arrays = space.pieces[0].face.part.arrays
+    known = np.full(len(arrays["area"]), -1)
+    known[[x.face.index for x in space.pieces]] = np.arange(len(space.pieces))
+    pieces, counts = known[arrays["edge_faces"]], np.diff(arrays["edge_point_starts"])
+    owner, points = np.repeat(np.arange(len(counts)), counts), arrays["edge_points"]
+    finite = np.bincount(owner, np.isfinite(points).all(axis=1), len(counts)) == counts
+    usable = (pieces >= 0).all(axis=1) & (counts >= 2) & finite
+    starts = np.concatenate([[0], np.cumsum(counts[usable])])
+    return Edges(
+        space, pieces[usable], _of_surfaces(space, pieces[owner], points)[usable[owner]], starts
+    )
+
+
+def _of_surfaces(space: Space, pieces: Indices, points: Array) -> Array:
+    """Return parameters (k, 4) of the surfaces of pieces (k, 2), from those of the file."""
+    found = points.copy()
+    for side in (0, 1):
+        columns = slice(2 * side, 2 * side + 2)
+        for k, rows in _grouped(pieces[:, side]):
+            if k >= 0 and (face := space.pieces[k].face).reversed:
+                uv = found[rows, columns]
+                found[rows, columns] = own_parameters(face.surface, uv, is_reversed=True)
+    return found
+
+
+def _grouped(pieces: Indices) -> Iterator[tuple[int, Indices]]:
+    """Yield the pieces, and the rows of each."""
+    order = np.argsort(pieces, kind="stable")
+    ends = np.flatnonzero(np.diff(pieces[order])) + 1
+    for rows in np.split(order, ends) if len(order) else ():
+        yield int(pieces[rows[0]]), rows
+
+
+# --- both sides -----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class Sides:
+    """The two faces at places (M,): `pieces` (M, 2), and u, v (M, 4) on their surfaces.
+
+    Of each: points (M, 2, 3) in L, tangents x_u, x_v (M, 2, 2, 3), unit normals (M, 2, 3), which
+    are 0 where there are none, and the curvatures K, H (M, 2, 2). `collapsed` (M, 2) says where a
+    side of a surface is one point, as a pole; of these only those of spheres have normals.
+    """
+
+    pieces: Indices
+    uv: Array
+    points: Array
+    tangents: Array
+    normals: Array
+    curvatures: Array
+    collapsed: Flags
+
+    def __len__(self) -> int:
+        return len(self.uv)
+
+    def __getitem__(self, rows: Indices | Flags) -> Sides:
+        """Return some of the places."""
+        return Sides(*(x[rows] for x in vars(self).values()))
+
+    @property
+    def chords(self) -> Array:
+        """The chords (M,) of the angles between the normals, 0 where there are none."""
+        chords = np.linalg.norm(self.normals[:, 0] - self.normals[:, 1], axis=1)
+        return np.where(np.all(np.any(self.normals, axis=2), axis=1), chords, 0.0)
+
+    @property
+    def sharp(self) -> Flags:
+        """Where the normals differ by more than `SHARP` degrees."""
+        return self.chords > 2.0 * math.sin(math.radians(SHARP) / 2.0)
+
+    @property
+    def apart(self) -> Array:
+        """The distances (M,) between the points of the two faces, in L."""
+        return np.linalg.norm(self.points[:, 0] - self.points[:, 1], axis=1)
+
+
+def sides_at(space: Space, pieces: Indices, uv: Array) -> Sides:
+    """Return what is known of both faces at places (M,)."""
+    order = np.argsort(pieces.ravel(), kind="stable")
+    owner, count = pieces.ravel()[order], len(order)
+    places, scales = _inside(space, owner, uv.reshape(-1, 2)[order]), np.array([space.unit, 1.0, 1])
+    vectors, normals = np.empty((count, 3, 3)), np.empty((count, 3))
+    K, H = np.empty(count), np.empty(count)
+    ends = np.flatnonzero(np.diff(owner, append=-1)) + 1
+    first = 0
+    for last in ends.tolist():
+        k, rows = int(owner[first]), slice(first, last)
+        jets = space.pieces[k].surface.jets(*places[rows].T.copy())
+        scales[1:] = space.sizes[k]
+        evaluate_jets(jets, scales, normals[rows], K[rows], H[rows])
+        vectors[rows] = jets[:, :3]
+        first = last
+    lengths = np.linalg.norm(vectors[:, 1:], axis=2) * space.sizes[owner]
+    collapsed = lengths.min(axis=1) * COLLAPSED <= lengths.max(axis=1)
+    balls = np.array([x.face.kind == "sphere" for x in space.pieces])
+    normals[collapsed & ~balls[owner]] = 0.0
+    back = np.empty(count, dtype=np.int64)
+    back[order] = np.arange(count)
+    return Sides(
+        pieces,
+        places[back].reshape(-1, 4),
+        vectors[back, 0].reshape(-1, 2, 3),
+        vectors[back, 1:].reshape(-1, 2, 2, 3),
+        normals[back].reshape(-1, 2, 3),
+        np.stack([K, H], axis=1)[back].reshape(-1, 2, 2),
+        collapsed[back].reshape(-1, 2),
+    )
+
+
+def _inside(space: Space, owner: Indices, places: Array) -> Array:
+    """Return places (k, 2), those that are beyond the domain by rounding at its end."""
+    low, high = np.array([x.surface.domain for x in space.pieces])[owner].transpose(2, 0, 1)
+    slack = BEYOND * (high - low)
+    places = np.where((places < low) & (places >= low - slack), low, places)
+    return np.where((places > high) & (places <= high + slack), high, places)
+
+
+# --- exact places ---------------------------------------------------------------------------------
+
+
+def exact_places(edges: Edges, owner: Indices, places: Array) -> tuple[Sides, Indices]:
+    """Return both sides at sharp places of edges (M,), and which of the places these are.
+
+    The faces intersect there: by Newton's method from the places, across the edge. Where they do
+    not, because the faces of the file meet within a tolerance only, a point of the file that is
+    near is taken; where the faces are farther apart than `APART`, there is none.
+    """
+    space, pieces = edges.space, edges.pieces[owner]
+    starts = sides_at(space, pieces, edges.at(owner, places))
+    of_file = sides_at(space, pieces, edges.at(owner, places.round()))
+    near = of_file.apart <= APART * _size(space)
+    rows = np.flatnonzero(starts.sharp & near & ~starts.collapsed.any(axis=1))
+    uv = of_file.uv.copy()
+    solved, found = _intersections(space, starts[rows])
+    uv[rows[found]] = solved[found]
+    sides = sides_at(space, pieces, uv)
+    kept = np.flatnonzero(near & sides.sharp)
+    return sides[kept], kept
+
+
+def _size(space: Space) -> float:
+    """Return the size of the part in L."""
+    return space.size / space.unit
+
+
+def _intersections(space: Space, starts: Sides) -> tuple[Array, Flags]:
+    """Return parameters (M, 4) where two faces intersect near places, and which were found.
+
+    Both points meet in the plane across the edge.
+    """
+    along = np.cross(starts.normals[:, 0], starts.normals[:, 1])
+    least = math.sin(math.radians(SHARP) / 2.0)  # at cusps, too, where normals are opposite
+    sines = np.maximum(np.linalg.norm(along, axis=1, keepdims=True), least)
+    along /= sines
+    same = SAME * _size(space)
+    most = TIMES_APART * starts.apart / sines[:, 0] + same
+    rows, uv, found = np.arange(len(starts)), starts.uv.copy(), starts.uv.copy()
+    best = np.full(len(starts), np.inf)
+    for _ in range(MOST_ROUNDS):
+        sides = sides_at(space, starts.pieces[rows], uv[rows])
+        moved = sides.points[:, 0] - starts.points[rows, 0]
+        ahead = np.einsum("ij,ij->i", moved, along[rows])
+        errors = np.hypot(sides.apart, ahead)
+        better = (errors < best[rows]) & (np.linalg.norm(moved, axis=1) <= most[rows])
+        best[rows[better]], found[rows[better]] = errors[better], uv[rows[better]]
+        again = better & (errors > same)
+        if not again.any():
+            break
+        rows = rows[again]
+        uv[rows] -= _step(sides[again], along[rows], ahead[again])
+    return found, best <= FOUND * same
+
+
+def _step(sides: Sides, along: Array, ahead: Array) -> Array:
+    """Return Newton's steps (M, 4) for points that coincide, in planes across `along`."""
+    one, other = sides.tangents[:, 0], sides.tangents[:, 1]
+    matrices = np.zeros((len(sides), 4, 4))
+    matrices[:, :3, :2] = one.transpose(0, 2, 1)
+    matrices[:, :3, 2:] = -other.transpose(0, 2, 1)
+    matrices[:, 3, :2] = np.einsum("ikx,ix->ik", one, along)
+    errors = np.column_stack([sides.points[:, 0] - sides.points[:, 1], ahead])
+    scales = np.linalg.norm(matrices[:, :3], axis=1)
+    scales[scales == 0.0] = 1.0
+    matrices /= scales[:, None, :]
+    regular = np.abs(np.linalg.det(matrices)) > np.finfo(np.float64).eps
+    steps = np.zeros((len(sides), 4))
+    steps[regular] = np.linalg.solve(matrices[regular], errors[regular, :, None])[..., 0]
+    return steps / scales

@@ -1,0 +1,96 @@
+"""A part that needs no CAD file, for examples and tests."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+
+from .part import Part, part_of
+from .records import EdgeRecord, FaceRecord, Geometry, Net, PartRecord
+
+__all__ = ["all_kinds", "box", "box_edges", "box_faces"]
+
+
+def box(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> Part:
+    """Return a box in mm with a corner at the origin, and normals that point outward.
+
+    Examples
+    --------
+    >>> from gaussmap.tools.cad.examples import box
+    >>> box(), box().area
+    (Part(box: 6 faces, 1 solid, mm), 22.0)
+
+    """
+    faces = box_faces(width, depth, height)
+    edges = box_edges(width, depth, height)
+    return part_of(PartRecord("box", "mm", 1e-3, True, faces, ["box"], edges))
+
+
+def box_faces(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> list[FaceRecord]:
+    """Return the faces of a box."""
+    size, axes, found = np.array([width, depth, height]), np.eye(3), []
+    for k in range(3):
+        across, along = (k + 1) % 3, (k + 2) % 3
+        a, b = float(size[across]), float(size[along])
+        loop = np.array([(0.0, 0.0), (a, 0.0), (a, b), (0.0, b)])
+        for far in (False, True):
+            origin = size * axes[k] * far
+            numbers = np.concatenate([origin, axes[across], axes[along], axes[k]])
+            face = FaceRecord(
+                Geometry("plane", numbers),
+                ((0.0, a), (0.0, b)),
+                loops=[loop],
+                reversed=not far,
+                area=a * b,
+                name="side",
+                solid_index=0,
+            )
+            found.append(face)
+    return found
+
+
+def box_edges(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> list[EdgeRecord]:
+    """Return the twelve sharp edges between the faces of `box_faces`."""
+    size, found = np.array([width, depth, height]), []
+    for first, second in itertools.combinations(range(3), 2):
+        for far in itertools.product((False, True), repeat=2):
+            ends = np.zeros((2, 3))
+            ends[1, 3 - first - second] = size[3 - first - second]
+            ends[:, [first, second]] = size[[first, second]] * far
+            columns = [(k + step) % 3 for k in (first, second) for step in (1, 2)]
+            faces = 2 * first + far[0], 2 * second + far[1]
+            found.append(EdgeRecord(faces, ends[:, columns]))
+    return found
+
+
+def all_kinds() -> Part:
+    """Return a part with a face of each kind, cut by a circle of parameters.
+
+    Examples
+    --------
+    >>> from gaussmap.tools.cad.examples import all_kinds
+    >>> [face.kind for face in all_kinds().faces][-3:]
+    ['revolution', 'extrusion', 'offset']
+
+    """
+    place, z = np.concatenate([np.zeros(3), np.eye(3).ravel()]), np.array([0.0, 0.0, 1.0])
+    knots, u = np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0]), np.arange(3) / 2.0
+    x, y = np.meshgrid(u, u, indexing="ij")
+    points, weights = np.stack([x, y, x * x + x * y], axis=2), 1.0 + x * y
+    curve = Net((2,), (knots,), points[1] + [1.0, 0.0, 0.0], weights[1])
+    nets = [Net((2, 2), (knots, knots), points, w) for w in (None, weights)]
+    geometries = [
+        Geometry("plane", place),
+        *(Geometry(kind, np.append(place, 1.0)) for kind in ("cylinder", "sphere")),
+        *(Geometry(kind, np.append(place, [2.0, 0.5])) for kind in ("cone", "torus")),
+        *(Geometry("nurbs", net=net) for net in nets),
+        Geometry("revolution", np.concatenate([np.zeros(3), z]), curve),
+        Geometry("extrusion", z, curve),
+        Geometry("offset", np.array([0.1]), basis=Geometry("nurbs", net=nets[1])),
+    ]
+    angles = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
+    circle = 0.5 + 0.4 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    ends = (0.1, 0.9)
+    faces = [FaceRecord(x, (ends, ends), loops=[circle], area=0.5) for x in geometries]
+    return part_of(PartRecord("kinds", "mm", 1e-3, False, faces))

@@ -1,0 +1,280 @@
+"""Surfaces of faces: from the arrays of a face to a surface with exact derivatives and its trim.
+
+Parameters are those of Open CASCADE and STEP, see `saving`; their domain is that of the loops.
+Planes, cylinders, cones, spheres, tori and surfaces of revolution are evaluated in their own frame,
+and placed. What is extruded is a NURBS. Second derivatives of offsets are numerical (see `offset`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.base.errors import InputError
+from ...runtime.domain.domain import Boundary, BoundaryPair, Domain, Interval, checked_domain
+from ...runtime.surface.derivatives import Differentiable
+from ...runtime.surface.moved import AffineMap, Moved
+from ...runtime.surface.nurbs import Nurbs
+from ...runtime.surface.surface import Surface
+from ...runtime.surface.surfaces import CatalogueFunction
+from .nets import SAME_END, curve_of_net, nurbs_of_curve, nurbs_of_net, nurbs_over
+from .offset import Offset
+from .records import Geometry
+from .turned import Curve, Line, Turned
+
+if TYPE_CHECKING:
+    from .part import Face
+
+__all__ = ["face_surface", "own_parameters", "surface_of"]
+
+Array = NDArray[np.float64]
+
+TURN = 2.0 * math.pi
+QUARTER = math.pi / 2.0
+OPEN: BoundaryPair = ("open", "open")
+PERIODIC: BoundaryPair = ("periodic", "periodic")
+# A loop is the border of the domain if it is as near to it as this part of the domain.
+ON_BORDER = 1e-9
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A surface without its trim: its function, before it is placed, and its boundary conditions.
+
+    `collapses` says whether sides that are one point have to be looked for.
+    """
+
+    function: Differentiable
+    domain: Domain
+    boundary: Boundary
+    placement: AffineMap | None = None
+    collapses: bool = False
+
+
+def surface_of(face: Face) -> Surface:
+    """Return the surface of a face with its trim, and normals on its outer side.
+
+    If the face is reversed, u is, too: `own_parameters` gives those of the file. Raises InputError
+    for numbers that define no surface.
+    """
+    return face_surface(
+        face.geometry, face.domain, face.loops, is_reversed=face.reversed, name=face.label
+    )
+
+
+def face_surface(
+    geometry: Geometry,
+    domain: Sequence[Sequence[float]],
+    loops: Sequence[Array] = (),
+    *,
+    is_reversed: bool = False,
+    name: str = "face",
+) -> Surface:
+    """Return the surface of a geometry over the bounds of the loops, with its trim."""
+    shape = _shape(geometry, checked_domain(domain))
+    assumed = (shape.collapses, shape.collapses)
+    surface = Surface(name, shape.function, shape.domain, shape.boundary, assumed_open=assumed)
+    if shape.placement is not None:
+        moved = Moved(surface, shape.placement, turned=False, ends=shape.domain[0])
+        surface = replace(surface, function=moved)
+    if len(loops) and not _is_whole(loops, surface.domain):
+        surface = surface.trimmed(loops)
+    return surface.flipped() if is_reversed else surface
+
+
+def own_parameters(surface: Surface, uv: Array, *, is_reversed: bool) -> Array:
+    """Return the parameters (k, 2) of the file from those of the surface of a face, or back."""
+    if not is_reversed:
+        return uv
+    total = sum(surface.domain[0])
+    return np.stack([total - uv[:, 0], uv[:, 1]], axis=1)
+
+
+def _is_whole(loops: Sequence[Array], domain: Domain) -> bool:
+    """Return whether one loop goes around the whole domain."""
+    if len(loops) != 1:
+        return False
+    (loop,) = loops
+    low, high = np.array(domain).T
+    places = (loop - low) / (high - low)
+    at_border = np.minimum(np.abs(places), np.abs(places - 1.0)).min(axis=1) <= ON_BORDER
+    x, y = places.T
+    area = (x * np.roll(y, -1) - y * np.roll(x, -1)).sum() / 2.0
+    return bool(at_border.all()) and abs(abs(area) - 1.0) <= 4.0 * ON_BORDER
+
+
+# --- kinds ----------------------------------------------------------------------------------------
+
+
+def _shape(geometry: Geometry, domain: Domain) -> Shape:
+    """Return the surface of a geometry; InputError for an unknown kind."""
+    if geometry.kind not in BUILDERS:
+        raise InputError(f"a face of the kind {geometry.kind!r} has no surface.")
+    return BUILDERS[geometry.kind](geometry, domain)
+
+
+def _placement(numbers: Array) -> AffineMap:
+    origin, *axes = np.asarray(numbers[:12], dtype=np.float64).reshape(4, 3)
+    return AffineMap(np.stack(axes, axis=1), origin)
+
+
+def _plane(geometry: Geometry, domain: Domain) -> Shape:
+    function = CatalogueFunction("plane", (0.0, 0.0))
+    return Shape(function, domain, (OPEN, OPEN), _placement(geometry.numbers))
+
+
+def _cylinder(geometry: Geometry, domain: Domain) -> Shape:
+    radius = float(geometry.numbers[12])
+    return _turned_line(geometry, domain, radius, (0.0, 0.0, 1.0))
+
+
+def _cone(geometry: Geometry, domain: Domain) -> Shape:
+    radius, angle = geometry.numbers[12:].tolist()
+    return _turned_line(geometry, domain, radius, (math.sin(angle), 0.0, math.cos(angle)))
+
+
+def _turned_line(
+    geometry: Geometry, domain: Domain, radius: float, along: tuple[float, float, float]
+) -> Shape:
+    around, ends = _around(domain[0])
+    function = Turned(Line((radius, 0.0, 0.0), along))
+    collapses = along[0] != 0.0
+    return Shape(
+        function, (around, domain[1]), (ends, OPEN), _placement(geometry.numbers), collapses
+    )
+
+
+def _sphere(geometry: Geometry, domain: Domain) -> Shape:
+    """Return a sphere: a torus whose circles meet in one, where it is cut off at the poles."""
+    function = CatalogueFunction("torus", (0.0, float(geometry.numbers[12])))
+    around, ends = _around(domain[0])
+    slack = SAME_END * TURN
+    low, high = (
+        math.copysign(QUARTER, x) if abs(abs(x) - QUARTER) <= slack else x for x in domain[1]
+    )
+    at_poles = tuple(
+        "pole" if abs(x) == QUARTER and ends == PERIODIC else "open" for x in (low, high)
+    )
+    boundary = cast(Boundary, (ends, at_poles))
+    return Shape(
+        function, (around, (low, high)), boundary, _placement(geometry.numbers), ends != PERIODIC
+    )
+
+
+def _torus(geometry: Geometry, domain: Domain) -> Shape:
+    major, minor = geometry.numbers[12:].tolist()
+    function = CatalogueFunction("torus", (major, minor))
+    (around, ends), (across, ends_across) = map(_around, domain)
+    return Shape(
+        function,
+        (around, across),
+        (ends, ends_across),
+        _placement(geometry.numbers),
+        abs(major) <= abs(minor),
+    )
+
+
+def _nurbs(geometry: Geometry, domain: Domain) -> Shape:
+    assert geometry.net is not None
+    return _of_nurbs(nurbs_over(nurbs_of_net(geometry.net), domain))
+
+
+def _extrusion(geometry: Geometry, domain: Domain) -> Shape:
+    assert geometry.net is not None
+    nurbs = nurbs_of_curve(geometry.net, np.asarray(geometry.numbers), domain[1])
+    return replace(_of_nurbs(nurbs_over(nurbs, domain)), collapses=False)
+
+
+def _of_nurbs(nurbs: Nurbs) -> Shape:
+    u, v = (PERIODIC if closes else OPEN for closes in nurbs.periodic)
+    return Shape(nurbs, nurbs.domain, (u, v), None, collapses=True)
+
+
+def _revolution(geometry: Geometry, domain: Domain) -> Shape:
+    """Turn the curve about the z axis of a frame, whose x axis is arbitrary."""
+    assert geometry.net is not None
+    origin, axis = np.asarray(geometry.numbers).reshape(2, 3)
+    frame = _frame(axis)
+    net = replace(geometry.net, points=(geometry.net.points - origin) @ frame)
+    around, ends = _around(domain[0])
+    curve = nurbs_over(curve_of_net(net), (domain[1], (0.0, 1.0)))
+    across = PERIODIC if curve.periodic[0] else OPEN
+    placement = AffineMap(frame, origin)
+    return Shape(Turned(Curve(curve)), (around, curve.domain[0]), (ends, across), placement, True)
+
+
+def _frame(axis: Array) -> Array:
+    """Return a rotation (3, 3) whose last column is an axis."""
+    z = axis / np.linalg.norm(axis)
+    x = np.cross(z, np.eye(3)[np.abs(z).argmin()])
+    x /= np.linalg.norm(x)
+    return np.stack([x, np.cross(z, x), z], axis=1).astype(np.float64)
+
+
+def _around(interval: Interval) -> tuple[Interval, BoundaryPair]:
+    """Return an interval of an angle, and whether it is a whole turn, which it then is exactly."""
+    low, high = interval
+    if abs(high - low - TURN) <= SAME_END * TURN:
+        return (low, low + TURN), PERIODIC
+    return interval, OPEN
+
+
+# --- offsets --------------------------------------------------------------------------------------
+
+
+def _offset(geometry: Geometry, domain: Domain) -> Shape:
+    """Return an offset: of planes, cylinders, cones, spheres and tori, another one of its kind."""
+    assert geometry.basis is not None
+    basis, distance = geometry.basis, float(geometry.numbers[0])
+    same_kind = _moved_numbers(basis, distance, domain)
+    if same_kind is not None:
+        return _shape(replace(basis, numbers=same_kind), domain)
+    shape = _shape(basis, domain)
+    if shape.placement is not None and shape.placement.reflects:
+        distance = -distance
+    return replace(shape, function=Offset(shape.function, distance, shape.domain), collapses=True)
+
+
+def _moved_numbers(basis: Geometry, distance: float, domain: Domain) -> Array | None:
+    """Return the numbers of the surface of the same kind at a distance; None if there is none.
+
+    The distance is along x_u × x_v, which points away from the axis if the frame is right-handed
+    and the radius positive.
+    """
+    if basis.kind not in ("plane", "cylinder", "cone", "sphere", "torus"):
+        return None
+    numbers = np.array(basis.numbers, dtype=np.float64)
+    z, middle = numbers[9:12], sum(domain[1]) / 2.0
+    moved = distance * float(np.sign(np.linalg.det(numbers[3:12].reshape(3, 3))))
+    if basis.kind == "plane":
+        numbers[:3] += moved * z
+    elif basis.kind in ("cylinder", "sphere"):
+        numbers[12] += moved
+    elif basis.kind == "cone":
+        radius, angle = numbers[12:]
+        moved *= math.copysign(1.0, radius + middle * math.sin(angle))
+        numbers[:3] -= moved * math.sin(angle) * z
+        numbers[12] += moved * math.cos(angle)
+    elif abs(numbers[12]) > abs(numbers[13]):
+        numbers[13] += moved
+    else:  # its normal points to the axis where it has passed it
+        return None
+    return numbers
+
+
+BUILDERS: dict[str, Callable[[Geometry, Domain], Shape]] = {
+    "plane": _plane,
+    "cylinder": _cylinder,
+    "cone": _cone,
+    "sphere": _sphere,
+    "torus": _torus,
+    "nurbs": _nurbs,
+    "extrusion": _extrusion,
+    "revolution": _revolution,
+    "offset": _offset,
+}

@@ -1,0 +1,123 @@
+"""NURBS of faces over the domain of the face: cut off, or continued around a period."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.base.errors import InputError
+from ...runtime.domain.domain import Interval
+from ...runtime.spline.quasi_interpolant import apart
+from ...runtime.surface.creases import creases, smoothly_closed
+from ...runtime.surface.nurbs import Nurbs
+from ...runtime.surface.nurbs_input import nurbs_of_arrays
+from .records import Net
+
+__all__ = ["SAME_END", "curve_of_net", "nurbs_of_curve", "nurbs_of_net", "nurbs_over"]
+
+Array = NDArray[np.float64]
+
+# Ends of domains that differ by less than this, relative to the period or the length, are the same:
+# CAD systems compare parameters to 1e-9, and faces leave larger gaps along their seams.
+SAME_END = 1e-7
+
+
+def nurbs_of_net(net: Net) -> Nurbs:
+    """Return the NURBS surface of a net over all of its knots; InputError if it is none."""
+    return nurbs_of_arrays(net.degrees, net.knots, net.points, net.weights)
+
+
+def nurbs_of_curve(net: Net, along: Array, length: Interval) -> Nurbs:
+    """Return the surface of a NURBS curve at u that is moved by v along a vector (3,).
+
+    v is between the ends of `length`. InputError if the net is no curve.
+    """
+    (degree,), (knots,) = net.degrees, net.knots
+    points = net.points[:, None] + along * np.array(length)[:, None]
+    weights = None if net.weights is None else np.repeat(net.weights[:, None], 2, axis=1)
+    return nurbs_of_arrays((degree, 1), (knots, np.repeat(length, 2)), points, weights)
+
+
+def curve_of_net(net: Net) -> Nurbs:
+    """Return a NURBS curve as the line v = 0 of a surface.
+
+    The surface goes along the direction in which the curve is shortest, so that its normals turn
+    where the curve has a kink.
+    """
+    points = net.points - net.points.mean(axis=0)
+    direction = np.linalg.svd(points, full_matrices=True)[2][-1]
+    return nurbs_of_curve(net, direction * np.abs(points).max(), (0.0, 1.0))
+
+
+def nurbs_over(nurbs: Nurbs, domain: tuple[Interval, Interval]) -> Nurbs:
+    """Return a NURBS over a domain, with its creases, and periodic where it closes smoothly.
+
+    A domain beyond the ends is continued around the period if they meet, and else cut off.
+    """
+    for axis in (0, 1):
+        nurbs = _over(nurbs, axis, domain[axis])
+    return replace(nurbs, creases=creases(nurbs))
+
+
+def _over(nurbs: Nurbs, axis: int, interval: Interval) -> Nurbs:
+    """Return a NURBS over an interval of u (axis 0) or v (axis 1)."""
+    (first, last), (low, high) = nurbs.domain[axis], interval
+    period, slack = last - first, SAME_END * (last - first)
+    if low < first - slack or high > last + slack:
+        nurbs = _continued(nurbs, axis, interval)
+        first, last = nurbs.domain[axis]
+    low, high = (_at_knot(nurbs.knots[axis], x, slack) for x in interval)
+    low, high = max(low, first), min(high, last)
+    if not low < high:
+        raise InputError(
+            f"the face is at {'uv'[axis]} from {interval[0]} to {interval[1]}, outside its surface."
+        )
+    whole = abs(high - low - period) <= slack
+    parts = list(nurbs.domain)
+    parts[axis] = (low, min(low + period, last) if whole else high)
+    nurbs = nurbs.restricted((parts[0], parts[1]))
+    periodic = list(nurbs.periodic)
+    periodic[axis] = whole and smoothly_closed(nurbs, axis)
+    return replace(nurbs, periodic=(periodic[0], periodic[1]))
+
+
+def _at_knot(knots: Array, end: float, slack: float) -> float:
+    """Return the knot that is the end of an interval up to a slack, else the end itself.
+
+    Faces end where their surface has a kink: beyond it there is a piece without an area.
+    """
+    nearest = float(knots[np.abs(knots - end).argmin()])
+    return nearest if abs(nearest - end) <= slack else end
+
+
+def _continued(nurbs: Nurbs, axis: int, interval: Interval) -> Nurbs:
+    """Return copies of a NURBS, shifted by its period, that cover an interval.
+
+    If its ends along the axis do not meet, it is returned unchanged.
+    """
+    (first, last), degree = nurbs.domain[axis], nurbs.degrees[axis]
+    points, knots = np.moveaxis(nurbs.points, axis, 0), nurbs.knots[axis]
+    clamped = (knots[: degree + 1] == first).all() and (knots[-degree - 1 :] == last).all()
+    if not clamped or apart(points[:1], points[-1:], nurbs.points):
+        return nurbs
+    period = last - first
+    before = max(int(np.ceil((first - interval[0]) / period - SAME_END)), 0)
+    after = max(int(np.ceil((interval[1] - last) / period - SAME_END)), 0)
+    turns = np.arange(-before, after + 1)
+    inner = knots[degree + 1 : -degree - 1]
+    parts = [np.full(degree + 1, first - before * period)]
+    for turn in turns:
+        end = last + turn * period
+        parts += [inner + turn * period, np.full(degree + (turn == after), end)]
+    joined = np.concatenate([points, *[points[1:]] * (len(turns) - 1)])
+    all_knots, domain = list(nurbs.knots), list(nurbs.domain)
+    all_knots[axis] = np.concatenate(parts)
+    domain[axis] = (first - before * period, last + after * period)
+    return replace(
+        nurbs,
+        knots=(all_knots[0], all_knots[1]),
+        points=np.ascontiguousarray(np.moveaxis(joined, 0, axis)),
+        domain=(domain[0], domain[1]),
+    )

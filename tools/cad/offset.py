@@ -1,0 +1,120 @@
+"""Offset surfaces: the points at a distance from another surface, along its normals.
+
+Points and first derivatives follow from the 2-jet of the other surface. Second derivatives need
+its third ones, too. These are numerical: differences of its second derivatives at nine places of
+one knot span. The second derivatives are good to about 1e-12, relative to the largest; 1e-10 where
+the reader has interpolated a circle or another curve that is no NURBS.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...generated.differences import FIRST
+from ...runtime.domain.domain import Domain
+from ...runtime.surface.cutting import Creased
+from ...runtime.surface.derivatives import Differentiable, nodes_between, shifts_inside, weighted
+from ...runtime.surface.moved import Moved
+from ...runtime.surface.nurbs import Nurbs
+from ..kernels import faces as kernels
+from .turned import Curve, Turned
+
+__all__ = ["Offset", "knots_of"]
+
+Array = NDArray[np.float64]
+
+# A step is the largest power of two up to this part of a knot span.
+STEP = 1 / 128
+NODES = np.arange(9)[:, None] - 4
+# Where the other surface has no normal, at a pole or an apex, it is taken at this part of the
+# domain from there.
+BESIDE = 1e-7
+
+
+@dataclass(frozen=True, eq=False)
+class Offset(Differentiable):
+    """The points x + distance n of a surface x(u,v) with unit normals n along x_u × x_v."""
+
+    basis: Differentiable
+    distance: float
+    domain: Domain
+
+    def __call__(self, u: Array, v: Array) -> Array:
+        """Return the points (..., 3)."""
+        places = u.ravel(), v.ravel()
+        points = self._points(*places)
+        lost = ~np.isfinite(points).all(axis=1)
+        if lost.any():
+            points[lost] = self._beside(*(x[lost] for x in places))
+        return points.reshape(*u.shape, 3)
+
+    def jets(self, u: Array, v: Array) -> Array:
+        """Return positions and derivatives (k, 6, 3); NaN where the other surface is singular."""
+        jets = self.basis.jets(u, v)
+        along_u, along_v = self._differences(0, u, v), self._differences(1, u, v)
+        thirds = np.concatenate([along_u, along_v[:, 2:]], axis=1)
+        return self._at_distance(jets, thirds)
+
+    @property
+    def creases(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """The values of u, and those of v, where the other surface is not smooth."""
+        return self.basis.creases if isinstance(self.basis, Creased) else ((), ())
+
+    def restricted(self, domain: Domain) -> Offset:
+        """Return a part of the surface, evaluated from inside where it is not smooth."""
+        part = self.basis.restricted(domain) if isinstance(self.basis, Creased) else self.basis
+        return replace(self, basis=part, domain=domain)
+
+    def _at_distance(self, jets: Array, thirds: Array) -> Array:
+        """Return positions and derivatives (k, 6, 3), of jets and third derivatives (k, 4, 3)."""
+        out = np.empty_like(jets)
+        kernels.offset(self.distance, jets, thirds, out)
+        return out
+
+    def _points(self, u: Array, v: Array) -> Array:
+        """Return points (k, 3)."""
+        return self._at_distance(self.basis.jets(u, v), np.zeros((len(u), 4, 3)))[:, 0]
+
+    def _differences(self, axis: int, u: Array, v: Array) -> Array:
+        """Return the derivatives (k, 3, 3) of x_uu, x_uv, x_vv by u (axis 0) or v (axis 1)."""
+        values = (u, v)[axis]
+        low, high = self._span(axis, values)
+        step = np.exp2(np.floor(np.log2((high - low) * STEP)))
+        shifts, _ = shifts_inside(values, step, low, high)
+        nodes = nodes_between(values, NODES + shifts, step, low, high)
+        others = np.broadcast_to((v, u)[axis], nodes.shape)
+        places = (nodes, others) if axis == 0 else (others, nodes)
+        seconds = self.basis.jets(*(x.ravel() for x in places)).reshape(9, -1, 6, 3)[:, :, 3:]
+        seconds = seconds - seconds[4]
+        by = [weighted(FIRST, shifts, seconds[:, :, k]) for k in range(3)]
+        return np.stack(by, axis=1) / step[:, None, None]
+
+    def _span(self, axis: int, values: Array) -> tuple[Array, Array]:
+        """Return the ends of the knot spans that hold values (k,), inside the domain."""
+        (first, last), knots = self.domain[axis], knots_of(self.basis, axis)
+        inner = np.unique(knots[(knots > first) & (knots < last)])
+        lines = np.concatenate([[first], inner, [last]])
+        place = np.clip(np.searchsorted(lines, values, "right") - 1, 0, len(lines) - 2)
+        return lines[place], lines[place + 1]
+
+    def _beside(self, u: Array, v: Array) -> Array:
+        """Return points (k, 3) where the other surface has no normal."""
+        (u0, u1), (v0, v1) = self.domain
+        u_in, v_in = u + BESIDE * ((u0 + u1) / 2 - u), v + BESIDE * ((v0 + v1) / 2 - v)
+        moved = self._points(u_in, v_in) - self.basis.jets(u_in, v_in)[:, 0]
+        return self.basis.jets(u, v)[:, 0] + moved
+
+
+def knots_of(function: Differentiable, axis: int) -> Array:
+    """Return the knots of the function of a face in u (axis 0) or v (axis 1), not reversed."""
+    if isinstance(function, Moved):
+        function = cast(Differentiable, function.surface.function)
+    if isinstance(function, Nurbs):
+        return function.knots[axis]
+    if isinstance(function, Turned) and isinstance(function.profile, Curve) and axis == 1:
+        return function.profile.surface.knots[0]
+    return knots_of(function.basis, axis) if isinstance(function, Offset) else np.empty(0)

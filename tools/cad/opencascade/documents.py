@@ -1,0 +1,135 @@
+"""What a CAD file holds: shapes with their placements, names and colours."""
+
+# pyright: reportMissingImports=false
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from OCP.Quantity import Quantity_Color, Quantity_TypeOfColor
+from OCP.TCollection import TCollection_ExtendedString
+from OCP.TDataStd import TDataStd_Name
+from OCP.TDF import TDF_Label
+from OCP.TDocStd import TDocStd_Document
+from OCP.TopLoc import TopLoc_Location
+from OCP.XCAFDoc import (
+    XCAFDoc_ColorTool,
+    XCAFDoc_ColorType,
+    XCAFDoc_DocumentTool,
+    XCAFDoc_ShapeTool,
+)
+
+from .shapes import Table, sequence
+
+__all__ = ["Document", "PlacedShape", "Style", "new_document", "pieces_of"]
+
+Color = tuple[float, float, float]
+
+MOST_LEVELS = 100
+DIGITS = 6  # of colours
+
+
+@dataclass(frozen=True)
+class Style:
+    """A name, or "", and a colour, or None."""
+
+    name: str = ""
+    color: Color | None = None
+
+
+@dataclass(frozen=True)
+class PlacedShape:
+    """A shape in its place, the names of the assemblies that it is in, and its colour."""
+
+    shape: Any
+    name: str = ""
+    color: Color | None = None
+
+
+@dataclass
+class Document:
+    """What a file holds; `styles` are those of parts of the pieces, wherever they are placed."""
+
+    pieces: list[PlacedShape]
+    styles: Table[Style] = field(default_factory=lambda: Table(placed=False))
+    unit: str = "mm"
+    warnings: list[str] = field(default_factory=list)
+
+
+def new_document() -> Any:  # noqa: ANN401
+    """Return an empty document in millimetres, which a reader of STEP or IGES can fill."""
+    document = TDocStd_Document(TCollection_ExtendedString("part"))
+    XCAFDoc_DocumentTool.SetLengthUnit_s(document, 1e-3)
+    return document
+
+
+def pieces_of(document: Any) -> Document:  # noqa: ANN401
+    """Return what a reader has put into a document."""
+    found = Document([])
+    tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+    labels = _labels()
+    tool.GetFreeShapes(labels)
+    for label in _each(labels):
+        found.pieces.extend(_walked(label, TopLoc_Location(), (), None, found.styles))
+    return found
+
+
+def _walked(
+    label: Any,  # noqa: ANN401
+    place: Any,  # noqa: ANN401
+    names: tuple[str, ...],
+    color: Color | None,
+    styles: Table[Style],
+) -> Iterator[PlacedShape]:
+    """Yield the shapes of a label: itself, or those of its components."""
+    own_color = _color(label)
+    if XCAFDoc_ShapeTool.IsReference_s(label):
+        referred = TDF_Label()
+        XCAFDoc_ShapeTool.GetReferredShape_s(label, referred)
+        place = place.Multiplied(XCAFDoc_ShapeTool.GetLocation_s(label))
+        yield from _walked(referred, place, names, own_color or color, styles)
+        return
+    names = (*names, _name(label))
+    color = own_color or color
+    if XCAFDoc_ShapeTool.IsAssembly_s(label) and len(names) <= MOST_LEVELS:
+        components = _labels()
+        XCAFDoc_ShapeTool.GetComponents_s(label, components)
+        for component in _each(components):
+            yield from _walked(component, place, names, color, styles)
+        return
+    parts = _labels()
+    XCAFDoc_ShapeTool.GetSubShapes_s(label, parts)
+    for part in _each(parts):
+        styles.set(XCAFDoc_ShapeTool.GetShape_s(part), Style(_name(part), _color(part)))
+    shape = XCAFDoc_ShapeTool.GetShape_s(label)
+    if shape is not None and not shape.IsNull():
+        yield PlacedShape(shape.Moved(place), "/".join(x for x in names if x), color)
+
+
+def _labels() -> Any:  # noqa: ANN401
+    return sequence("TDF.TDF_LabelSequence", "Sequence_TDF_Label")
+
+
+def _each(labels: Any) -> Iterator[Any]:  # noqa: ANN401
+    return (labels.Value(k) for k in range(1, labels.Length() + 1))
+
+
+def _name(label: Any) -> str:  # noqa: ANN401
+    if not label.IsAttribute(TDataStd_Name.GetID_s()):  # or else FindAttribute crashes
+        return ""
+    attribute = TDataStd_Name()
+    label.FindAttribute(TDataStd_Name.GetID_s(), attribute)
+    name = " ".join(attribute.Get().ToExtString().split())
+    return "" if name.startswith("=>[") else name  # Open CASCADE's own for components
+
+
+def _color(label: Any) -> Color | None:  # noqa: ANN401
+    color = Quantity_Color()
+    for kind in (XCAFDoc_ColorType.XCAFDoc_ColorSurf, XCAFDoc_ColorType.XCAFDoc_ColorGen):
+        if XCAFDoc_ColorTool.GetColor_s(label, kind, color):
+            # As files have it: Open CASCADE itself holds linear values, in single precision.
+            red, green, blue = color.Values(Quantity_TypeOfColor.Quantity_TOC_sRGB)
+            return round(red, DIGITS), round(green, DIGITS), round(blue, DIGITS)
+    return None

@@ -1,0 +1,134 @@
+"""Reading STEP, IGES and BREP files with Open CASCADE."""
+
+# pyright: reportMissingImports=false
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from OCP.BRep import BRep_Builder
+from OCP.BRepTools import BRepTools
+from OCP.IFSelect import IFSelect_ReturnStatus
+from OCP.IGESCAFControl import IGESCAFControl_Reader
+from OCP.STEPCAFControl import STEPCAFControl_Reader
+from OCP.TopoDS import TopoDS_Shape
+
+from ..damaged_step import LostFace, numbers_of_entities
+from ..inspection import BadFileError
+from ..preparation import Source
+from ..units import METRES, unit_named
+from .documents import Document, PlacedShape, new_document, pieces_of
+from .shapes import sequence
+
+__all__ = ["read_file"]
+
+# Of what Open CASCADE says of the entities of a file, in small letters, what makes a face unusable.
+UNRESOLVED = "unresolved"
+DAMAGE = ("not a real", UNRESOLVED)
+
+
+def read_file(source: Source) -> tuple[Document, tuple[LostFace, ...]]:
+    """Return what a file holds, in millimetres, and the faces that were left out.
+
+    BadFileError says why a file cannot be read.
+    """
+    if source.format == "STEP":
+        return _step(source)
+    read = _iges if source.format == "IGES" else _brep
+    return read(source.path), ()
+
+
+def _step(source: Source) -> tuple[Document, tuple[LostFace, ...]]:
+    reader = _read_step(source.path)
+    damaged = _damaged(reader, source.content)
+    repaired = None if damaged is None else source.without(damaged)
+    if repaired is not None:
+        source, reader = repaired, _read_step(repaired.path)
+    document = new_document()
+    reader.Transfer(document)
+    found = pieces_of(document)
+    _set_unit(found, reader.ChangeReader())
+    return found, source.lost
+
+
+def _read_step(path: Path) -> Any:  # noqa: ANN401
+    return _read_by(STEPCAFControl_Reader(), path)
+
+
+def _read_by(reader: Any, path: Path) -> Any:  # noqa: ANN401
+    """Return the reader, with names and colours of the file; BadFileError if it cannot read it."""
+    reader.SetNameMode(True)
+    reader.SetColorMode(True)
+    reader.SetLayerMode(False)
+    if reader.ReadFile(str(path)) != IFSelect_ReturnStatus.IFSelect_RetDone:
+        raise BadFileError("is damaged: Open CASCADE cannot read it; export it again.")
+    return reader
+
+
+def _damaged(reader: Any, content: bytes) -> Mapping[int, str] | None:  # noqa: ANN401
+    """Return the entities that Open CASCADE calls damaged, with reasons; None if there are none."""
+    found: dict[int, str] = {}
+    checks = reader.ChangeReader().WS().ModelCheckList()
+    if checks.IsEmpty(True):
+        return None
+    checks.Start()
+    while checks.More():
+        check = checks.Value()
+        texts = [check.CFail(k) for k in range(1, check.NbFails() + 1)]
+        bad = [x for x in texts if any(word in x.lower() for word in DAMAGE)]
+        if bad:
+            found[checks.Number()] = bad[0]
+        checks.Next()
+    if not found:
+        return None
+    numbers = numbers_of_entities(content)
+    if len(numbers) != reader.ChangeReader().StepModel().NbEntities():
+        return {}  # those that are missing are found without
+    return {
+        numbers[k - 1]: f"its #{numbers[k - 1]} is damaged ({text})"
+        for k, text in found.items()
+        if k > 0 and UNRESOLVED not in text.lower()
+    }
+
+
+def _set_unit(document: Document, reader: Any) -> None:  # noqa: ANN401
+    """Find the unit of a STEP file: it may have several."""
+    names = [sequence("TColStd.TColStd_SequenceOfAsciiString", "Sequence_TCollection_AsciiString")]
+    names += [type(names[0])(), type(names[0])()]
+    reader.FileUnits(*names)
+    found = [names[0].Value(k).ToCString() for k in range(1, names[0].Length() + 1)]
+    units = list(dict.fromkeys(unit_named(x) or x for x in found if x.strip()))
+    known = [x for x in units if x in METRES]
+    document.unit = known[0] if known else "mm"
+    if len(units) > 1:
+        document.warnings.append(
+            f"its lengths are in several units ({', '.join(units)}); "
+            f"all are in {document.unit} now."
+        )
+    elif len(known) < len(units):
+        document.warnings.append(
+            f"its unit of length, {units[0]!r}, is not known; lengths are in mm."
+        )
+
+
+def _iges(path: Path) -> Document:
+    reader = _read_by(IGESCAFControl_Reader(), path)
+    metres = reader.IGESModel().GlobalSection().UnitValue() / 1e3
+    document = new_document()
+    reader.Transfer(document)
+    found = pieces_of(document)
+    close = [x for x, length in METRES.items() if abs(metres / length - 1.0) < 1e-6]
+    if close:
+        found.unit = close[0]
+    else:
+        found.warnings.append(f"its unit of length is {metres:g} m; lengths are in mm.")
+    return found
+
+
+def _brep(path: Path) -> Document:
+    shape = TopoDS_Shape()
+    if not BRepTools.Read_s(shape, str(path), BRep_Builder()) or shape.IsNull():
+        raise BadFileError("is damaged or truncated: Open CASCADE cannot read it; save it again.")
+    return Document([PlacedShape(shape)])

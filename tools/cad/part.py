@@ -1,0 +1,365 @@
+"""A CAD part: its faces, solids and unit, held as arrays only."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from ...runtime.base.errors import SurfaceError
+from ...runtime.samples.whole import Whole
+from ..files.paths import PathLike
+from .layout import geometry_of, packed
+from .records import Geometry, PartRecord
+from .saving import read_arrays, write_arrays
+
+if TYPE_CHECKING:
+    from ...runtime.samples.request import Request
+    from ...runtime.samples.samples import Samples
+    from ...runtime.samples.whole import NormalDeviation
+    from ...runtime.surface.surface import Surface
+
+__all__ = ["Face", "Part", "Solid", "part_of", "read_part"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Part(Whole):
+    """A CAD part, as `read_cad` and `read_part` return it.
+
+    It holds arrays only: it can be pickled and saved, and needs no CAD library. Lengths are in the
+    unit L of its file. `sample` takes it as a surface.
+
+    Attributes
+    ----------
+    arrays : dict of str to array
+        The numbers of all faces, in the format of the files of `save`.
+    about : dict
+        What is no array, such as names.
+
+    """
+
+    arrays: dict[str, NDArray[Any]]
+    about: dict[str, Any]
+
+    def __repr__(self) -> str:
+        faces, solids = len(self), len(self.solids)
+        return (
+            f"Part({self.name}: {faces} face{'s' * (faces != 1)}, "
+            f"{solids} solid{'s' * (solids != 1)}, {self.unit})"
+        )
+
+    def __len__(self) -> int:
+        return len(self.arrays["area"])
+
+    @property
+    def name(self) -> str:
+        """The name of the file that the part was read from."""
+        return str(self.about.get("name", "part"))
+
+    @property
+    def unit(self) -> str:
+        """The unit L of all lengths, as "mm" or "in"."""
+        return str(self.about.get("unit", ""))
+
+    @property
+    def metres(self) -> float:
+        """The length of the unit, in metres."""
+        return float(self.about.get("metres", 1.0))
+
+    @property
+    def oriented(self) -> bool:
+        """Whether the normals of all faces are known to point outward, out of solids."""
+        return bool(self.about.get("oriented", False))
+
+    @cached_property
+    def faces(self) -> tuple[Face, ...]:
+        """All faces; those that `failed`, too."""
+        return tuple(Face(self, k) for k in range(len(self)))
+
+    @property
+    def failed(self) -> tuple[Face, ...]:
+        """The faces that cannot be used; their `reason` says why."""
+        return tuple(self.faces[k] for k in sorted(map(int, self._reasons)))
+
+    @cached_property
+    def area(self) -> float:
+        """The area of all faces inside their trims, in L²."""
+        areas = self.arrays["area"]
+        return float(areas[np.isfinite(areas)].sum())
+
+    @cached_property
+    def solids(self) -> tuple[Solid, ...]:
+        """The solids; faces that belong to none are loose."""
+        index = self.arrays["solid_index"]
+        names = list(self.about.get("solid_names", ()))
+        count = max(len(names), int(index.max(initial=-1)) + 1)
+        order = np.argsort(index, kind="stable")
+        ends = np.searchsorted(index[order], np.arange(count + 1))
+        faces = [order[ends[k] : ends[k + 1]] for k in range(count)]
+        names += [""] * (count - len(names))
+        return tuple(Solid(self, k, str(names[k]), x) for k, x in enumerate(faces))
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the reader noticed, in sentences."""
+        return tuple(map(str, self.about.get("warnings", ())))
+
+    @cached_property
+    def _reasons(self) -> dict[str, str]:
+        return dict(self.about.get("reasons", {}))
+
+    def save(self, path: PathLike) -> None:
+        """Write the part to a `.npz` file, which `read_part` reads.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            Name of the file.
+
+        Raises
+        ------
+        UnknownNameError
+            If the suffix is not `.npz`.
+        FileError
+            If the file cannot be written.
+
+        """
+        write_arrays(self.arrays, path)
+
+    def sampled(
+        self,
+        request: Request,
+        fields: Sequence[str],
+        dtype: DTypeLike,
+        threads: int | None,
+        progress: bool,
+        edges: bool,
+    ) -> tuple[Samples, Array]:
+        """Return what `sample` returns, and the unit normals that were asked."""
+        from .sampling import sample_part
+
+        return sample_part(self, request, fields, dtype, threads, progress, edges)
+
+    def coverage_of(self, points: NDArray[np.floating], threads: int | None) -> float:
+        """Return what `Samples.coverage` returns, for points (N, 3)."""
+        from .results import reached_coverage, space_of
+
+        space = space_of(self, threads)
+        return reached_coverage(space, space.scaled_points(points)) / space.unit
+
+    def deviation_of(
+        self, points: NDArray[np.floating], normals: NDArray[np.floating], threads: int | None
+    ) -> NormalDeviation:
+        """Return what `Samples.normal_deviation` returns, for points and normals (N, 3)."""
+        from .results import deviation, space_of
+
+        space = space_of(self, threads)
+        return deviation(space, space.scaled_points(points), normals.astype(np.float64))
+
+    def weights_of(self, samples: Samples) -> Array:
+        """Return what `Samples.weights` returns: areas that add up to those of the faces."""
+        from .results import space_of, weights
+
+        return weights(space_of(self, None), samples)
+
+    def __getstate__(self) -> dict[str, object]:
+        """Return what is pickled: the fields, without what is made of them."""
+        return {"arrays": self.arrays, "about": self.about}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Face:
+    """A face of a part: a surface and its trim.
+
+    Attributes
+    ----------
+    part : Part
+        The part.
+    index : int
+        The place in `part.faces`.
+
+    """
+
+    part: Part
+    index: int
+
+    def __repr__(self) -> str:
+        name = f" {self.name!r}" if self.name else ""
+        return f"Face({self.index}{name}: {self.kind}, area {self.area:g})"
+
+    @property
+    def kind(self) -> str:
+        """One of plane, cylinder, cone, sphere, torus, nurbs, revolution, extrusion, offset.
+
+        It is "unknown" for a face that failed before that was found out.
+        """
+        return self.geometry.kind
+
+    @property
+    def area(self) -> float:
+        """The area inside the trim, in L², as the CAD library integrates it."""
+        return float(self._row("area"))
+
+    @property
+    def name(self) -> str:
+        """The name in the file, or ""."""
+        return str(self.part.about.get("face_names", {}).get(str(self.index), ""))
+
+    @property
+    def color(self) -> tuple[float, float, float] | None:
+        """Red, green and blue, from 0 to 1; None if the file gives none."""
+        red, green, blue = self._row("color").tolist()
+        return None if np.isnan(red) else (red, green, blue)
+
+    @property
+    def solid_index(self) -> int:
+        """The place in `part.solids` of the solid that it belongs to; −1 for none."""
+        return int(self._row("solid_index"))
+
+    @property
+    def reversed(self) -> bool:
+        """Whether the normal is opposite to x_u × x_v of the geometry."""
+        return bool(self._row("reversed"))
+
+    @property
+    def reason(self) -> str:
+        """Why the face failed; "" if it did not."""
+        return self.part._reasons.get(str(self.index), "")
+
+    @property
+    def domain(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """The bounds of the loops: ((u0, u1), (v0, v1))."""
+        (u0, u1), (v0, v1) = self._row("domain").tolist()
+        return (u0, u1), (v0, v1)
+
+    @property
+    def periods(self) -> tuple[float, float]:
+        """The periods of the geometry in u and v, 0 where it has none."""
+        along_u, along_v = self._row("periods").tolist()
+        return along_u, along_v
+
+    @property
+    def geometry(self) -> Geometry:
+        """The surface without its trim, as numbers: views of the arrays of the part."""
+        return geometry_of(self.part.arrays, self.index)
+
+    @property
+    def loops(self) -> tuple[Array, ...]:
+        """The closed polygons (k, 2) in u and v that trim it; the first point is not repeated."""
+        arrays = self.part.arrays
+        first, last = arrays["face_loops"][self.index : self.index + 2].tolist()
+        starts = arrays["loop_point_starts"]
+        return tuple(arrays["loop_points"][starts[k] : starts[k + 1]] for k in range(first, last))
+
+    @cached_property
+    def surface(self) -> Surface:
+        """The surface with its trim. Its parameters are those of the file.
+
+        Its normals point outward: if the face is reversed, u is, too. SurfaceError for a face that
+        failed.
+        """
+        if self.reason:
+            raise SurfaceError(f"{self.label} cannot be used: {self.reason}.")
+        from .faces import surface_of
+
+        return surface_of(self)
+
+    @property
+    def label(self) -> str:
+        """What messages call it."""
+        name = f" ({self.name!r})" if self.name else ""
+        return f"face {self.index}{name} of {self.part.name!r}"
+
+    def _row(self, name: str) -> NDArray[Any]:
+        return self.part.arrays[name][self.index]
+
+    def __getstate__(self) -> dict[str, object]:
+        """Return what is pickled: the fields, without what is made of them."""
+        return {"part": self.part, "index": self.index}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Solid:
+    """A solid of a part.
+
+    Attributes
+    ----------
+    part : Part
+        The part.
+    index : int
+        The place in `part.solids`.
+    name : str
+        The name in the file, or "".
+    faces : (k,) int64 array
+        The indices of its faces.
+
+    """
+
+    part: Part
+    index: int
+    name: str
+    faces: NDArray[np.int64]
+
+    def __repr__(self) -> str:
+        return f"Solid({self.index} {self.name!r}: {len(self.faces)} faces)"
+
+    @property
+    def area(self) -> float:
+        """The area of its faces, in L²."""
+        return float(np.nansum(self.part.arrays["area"][self.faces]))
+
+
+def part_of(record: PartRecord) -> Part:
+    """Return the part of records in memory, without checks."""
+    from .checks import about_of
+
+    arrays = packed(record)
+    return Part(arrays, about_of(arrays))
+
+
+def read_part(path: PathLike) -> Part:
+    """Read a part from a `.npz` file that `Part.save` wrote; no CAD library is needed.
+
+    Nothing is ever unpickled.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        Name of the file.
+
+    Returns
+    -------
+    Part
+        The part.
+
+    Raises
+    ------
+    UnknownNameError
+        If the suffix is not `.npz`.
+    FileError
+        If the file is missing, unreadable, damaged, or not from gaussmap.
+
+    See Also
+    --------
+    sample : samples of a part.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> from gaussmap.tools.cad.examples import box
+    >>> box(1.0, 2.0, 3.0).save("box.npz")
+    >>> part = gm.read_part("box.npz")
+    >>> part, part.faces[0]
+    (Part(box: 6 faces, 1 solid, mm), Face(0 'side': plane, area 6))
+    >>> samples = gm.sample(part, 100)
+    >>> len(samples), sorted(set(samples.face_index.tolist()))
+    (100, [0, 1, 2, 3, 4, 5])
+
+    """
+    return Part(*read_arrays(path))

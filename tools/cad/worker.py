@@ -1,0 +1,94 @@
+"""The process that reads a CAD file: `python -m gaussmap.tools.cad.worker`.
+
+It imports Open CASCADE and NumPy, and never Numba. Its standard output is closed, for readers print
+to it; what it has to say is in files of the folder that it is given: `part.npz`, or a sentence
+in `error.txt`, that continues "'path' …".
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+from contextlib import suppress
+from pathlib import Path
+
+__all__ = ["ERROR", "PART", "main"]
+
+PART, ERROR = "part.npz", "error.txt"
+# Of Linux: the signal that a process gets when its parent ends.
+PR_SET_PDEATHSIG = 1
+
+
+def main(text: str) -> None:
+    """Read a file into a part: what to read, and the limits, are a JSON object."""
+    request = json.loads(text)
+    folder = Path(request["folder"])
+    _end_with_parent()
+    _limit(request["memory"], request["seconds"])
+    try:
+        message = _read(request, folder)
+    except MemoryError:
+        message = "needs more memory than memory_limit; raise it."
+    if message:
+        (folder / ERROR).write_text(message, encoding="utf-8")
+
+
+def _read(request: dict[str, str], folder: Path) -> str:
+    """Write the part; return why it cannot be read, or nothing."""
+    from .inspection import BadFileError
+    from .preparation import prepared
+
+    try:  # before Open CASCADE is loaded, which takes a second
+        source = prepared(Path(request["path"]), folder)
+    except BadFileError as error:
+        return str(error)
+    except OSError as error:
+        return f"cannot be read: {error.strerror or type(error).__name__}."
+    try:
+        from .opencascade.parts import part_record
+    except ImportError as error:
+        return f"cannot be read: Open CASCADE does not load ({error})."
+    from .saving import write_record
+
+    try:
+        record = part_record(source, request["name"], request["unit"])
+        write_record(record, folder / PART)
+    except BadFileError as error:
+        return str(error)
+    except MemoryError:
+        raise
+    except Exception as error:  # of Open CASCADE
+        reason = " ".join(f"{type(error).__name__}: {error}".split())[:200].rstrip(".")
+        return f"cannot be read: Open CASCADE fails on it ({reason})."
+    return ""
+
+
+def _end_with_parent() -> None:
+    """Let the system end this process when that which waits for it is killed, where it can."""
+    with suppress(AttributeError, OSError, TypeError):
+        import ctypes
+
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
+
+
+def _limit(memory: float, seconds: float) -> None:
+    """Limit memory in bytes, and processor time, for the case that nobody waits any more."""
+    with suppress(ImportError, OSError, ValueError):  # some systems have no limits
+        import resource
+
+        for kind, limit in (
+            (resource.RLIMIT_AS, int(memory)),
+            (resource.RLIMIT_CPU, int(seconds) + 5),
+            (resource.RLIMIT_CORE, 0),
+        ):
+            _, hard = resource.getrlimit(kind)
+            low = limit if hard == resource.RLIM_INFINITY else min(limit, hard)
+            with suppress(OSError, ValueError):
+                resource.setrlimit(kind, (low, hard))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
+    os._exit(0)  # all is written, and Open CASCADE takes a third of a second to be unloaded

@@ -1,0 +1,104 @@
+"""`gaussmap batch`."""
+
+from __future__ import annotations
+
+import json
+import time
+from types import SimpleNamespace
+from typing import Any
+
+import click
+import numpy as np
+
+from ...runtime.base.compiling import NOTICE
+from ...runtime.samples.request import checked_request
+from ..batch.arguments import SECONDS, asked_of, stored, where
+from ..batch.making import Unwatched, make
+from ..batch.running import Tally
+from ..batch.watching import progress
+from .console import say, table
+from .inputs import named_normals
+from .part_lists import listed
+
+__all__ = ["run"]
+
+# The exit code if parts failed, and the default number of samples.
+SOME_FAILED, COUNT = 3, 2048
+
+
+def run(options: SimpleNamespace) -> None:
+    """Sample many parts into a data set."""
+    NOTICE.quiet = options.quiet
+    parts, normals = listed(options.parts, options.list), named_normals(options)
+    amount = options.count, options.angle, options.coverage
+    count = COUNT if normals is None and amount == (None, None, None) else options.count
+    request = checked_request(
+        normals, count, options.angle, options.coverage, options.density, options.relax, None
+    )
+    fields = None if options.fields is None else options.fields.split(",")
+    start = time.monotonic()
+    tally = make(
+        parts,
+        options.output,
+        asked_of(request, options.cells, options.on, options.measure),
+        stored(
+            fields,
+            np.float32 if options.float32 else np.float64,
+            options.compression,
+            options.files,
+        ),
+        where(
+            options.workers,
+            options.scheduler,
+            SECONDS if options.time_limit is None else options.time_limit,
+            options.memory_limit,
+        ),
+        watch=Unwatched() if options.quiet else progress(),
+        overwrite=options.overwrite,
+        again=options.retry_failed,
+    )
+    _report(options, tally, time.monotonic() - start)
+    if tally.failed:
+        raise click.exceptions.Exit(SOME_FAILED)
+
+
+def _report(options: SimpleNamespace, tally: Tally, seconds: float) -> None:
+    if options.json:
+        say(json.dumps(_as_json(options, tally, seconds)))
+    elif not options.quiet:
+        table(_rows(options, tally, seconds))
+
+
+def _as_json(options: SimpleNamespace, tally: Tally, seconds: float) -> dict[str, Any]:
+    failures = [{"name": name, "error": error} for name, error in tally.failures]
+    return {
+        "dataset": options.output,
+        "parts": tally.parts,
+        "ok": tally.ok,
+        "kept": tally.kept,
+        "failed": tally.failed,
+        "samples": tally.samples,
+        "seconds": seconds,
+        "failures": failures,
+    }
+
+
+def _rows(options: SimpleNamespace, tally: Tally, seconds: float) -> list[tuple[str, str]]:
+    """Return names and sentences of the summary."""
+    rows = [
+        ("data set", f"{options.output}: {tally.samples:,} samples of {_parts(tally.parts)}"),
+        ("sampled", f"{_parts(tally.ok)} in {seconds:.1f} s"),
+    ]
+    if tally.kept:
+        rows.append(("kept", f"{_parts(tally.kept)} of an earlier run"))
+    if tally.failed:
+        rows.append(("failed", f"{_parts(tally.failed)}; the manifest says why"))
+        rows += [(f"  {name}", error) for name, error in tally.failures]
+        if tally.failed > len(tally.failures):
+            rows.append(("  …", f"and {tally.failed - len(tally.failures):,} more"))
+        rows.append(("next", "mend these and run the same again, with --retry-failed"))
+    return rows
+
+
+def _parts(count: int) -> str:
+    return f"{count:,} part{'' if count == 1 else 's'}"

@@ -1,0 +1,117 @@
+"""Standard output and standard error, and Ctrl-C."""
+
+from __future__ import annotations
+
+import _thread
+import os
+import shutil
+import sys
+import textwrap
+import threading
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any, TextIO
+
+if TYPE_CHECKING:
+    from ...runtime.samples.samples import Samples
+    from ..meshes.mesh import Mesh
+
+__all__ = [
+    "complain",
+    "fail",
+    "flush",
+    "give_up_output",
+    "interruptible",
+    "say",
+    "show_warning",
+    "summarize",
+    "table",
+    "write",
+]
+
+
+def say(text: str) -> None:
+    """Print to standard output."""
+    write(text, sys.stdout)
+
+
+def summarize(result: Samples | Mesh, options: SimpleNamespace) -> None:
+    """Print what was written, unless the command is to be quiet."""
+    if not options.quiet:
+        say(f"{options.output}: {result.summary()}")
+
+
+def table(rows: Iterable[tuple[str, str]]) -> None:
+    """Print one line a row, for people wrapped under its own column."""
+    pairs = list(rows)
+    width = max(len(name) for name, _ in pairs) + 2
+    for name, sentence in pairs:
+        line = f"{name:{width}}{sentence}"
+        if sys.stdout is not None and sys.stdout.isatty():
+            columns = max(shutil.get_terminal_size().columns, width + 20)
+            line = textwrap.fill(line, columns, subsequent_indent=" " * width)
+        say(line)
+
+
+def complain(text: str) -> None:
+    """Print one line to standard error; if nobody hears it, go on."""
+    with suppress(OSError, ValueError):
+        write(f"gaussmap: {' '.join(text.split())}", sys.stderr)
+
+
+def fail(message: str) -> None:
+    """Print an error."""
+    complain(f"error: {message}")
+
+
+def show_warning(message: Warning | str, *_: object, **__: object) -> None:
+    """Print a warning; stands in for `warnings.showwarning`."""
+    complain(f"warning: {message}")
+
+
+def write(text: str, stream: TextIO | None) -> None:
+    """Print a text, with `?` for what the stream's encoding lacks; Python has no closed streams."""
+    if stream is not None:
+        encoding = stream.encoding or "utf-8"
+        print(text.encode(encoding, "replace").decode(encoding), file=stream)
+
+
+def flush() -> None:
+    """Let errors of standard output be known now."""
+    if sys.stdout is not None:
+        sys.stdout.flush()
+
+
+@contextmanager
+def interruptible() -> Iterator[None]:
+    """Let Ctrl-C work during compilation too: a callback from LLVM would swallow it."""
+    previous = sys.unraisablehook
+    again: list[threading.Timer] = []
+
+    def interrupt_again(unraisable: Any) -> None:  # noqa: ANN401
+        if unraisable.exc_type is KeyboardInterrupt:
+            again.append(threading.Timer(0.1, _thread.interrupt_main))
+            again[-1].start()
+        else:
+            previous(unraisable)
+
+    sys.unraisablehook = interrupt_again
+    try:
+        yield
+    except Exception as error:
+        if again:  # the compiler may have stumbled over it
+            raise KeyboardInterrupt from error
+        raise
+    finally:
+        sys.unraisablehook = previous
+        for timer in again:
+            timer.cancel()
+
+
+def give_up_output() -> None:
+    """Let what is left in standard output go nowhere, or Python complains at its end."""
+    with suppress(OSError, ValueError):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)

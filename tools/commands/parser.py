@@ -1,0 +1,430 @@
+"""What the command line understands: commands and their options, shared ones declared once.
+
+Nothing here needs NumPy or Numba, so that help and completion are quick. The work of a command is
+done by `run` in the module of its name, see `options.Command`.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from ... import __version__
+from ...runtime.base.limits import MOST, MOST_FREQUENCY, MOST_STEPS
+from ...runtime.samples.fields import ARRAY_NAMES_ON_SURFACE, EDGE_NAMES, PART_NAMES
+from .completion import (
+    PROGRAM,
+    SHELLS,
+    densities,
+    formula_names,
+    surface_names,
+    surfaces_and_files,
+)
+from .options import (
+    Command,
+    Option,
+    Program,
+    density,
+    number,
+    whole,
+)  # fmt: skip
+from .surface_options import cad_options, spline_options, surface_argument, surface_options
+
+__all__ = ["TO_TRY", "parser"]
+
+SETTINGS = {"help_option_names": ["-h", "--help"]}
+
+EXAMPLES = """\
+\b
+examples:
+  gaussmap sample torus --count 10000 -o torus.ply
+  gaussmap sample torus --set major=1.0 --set minor=0.2 --frequency 32 -o torus.npz
+  gaussmap sample heights.npy --spacing 30 30 --count 50000 -o terrain.ply
+  gaussmap mesh torus --count 5000 -o torus.obj
+  gaussmap plot torus -o torus.png
+  gaussmap surfaces torus
+  gaussmap formulas --latex
+  gaussmap formulas --html formulas.html
+
+`gaussmap COMMAND --help` explains a command.
+"""
+
+# What `gaussmap` alone shows in place of the examples.
+TO_TRY = """\
+\b
+three commands to try:
+  gaussmap surfaces                                 the surfaces that have names
+  gaussmap sample torus --count 1000 -o torus.csv   1,000 points with normals and curvatures
+  gaussmap plot torus -o torus.png                  a picture; pip install 'gaussmap[plot]' first
+
+`gaussmap --help` has more examples, and `gaussmap COMMAND --help` explains a command.
+"""
+
+SAMPLE_EXAMPLES = """\
+SURFACE is the name of a surface of the catalogue (see `gaussmap surfaces`), a .npy file, or an
+.npz file, as FILE.npz:NAME if it holds several arrays. The array is a grid of points (m, n, 3), or
+of elevations (m, n) with rows along y and columns along x, which need --spacing.
+
+A GeoTIFF, .tif or .tiff, holds elevations with their coordinates, read with pip install
+'gaussmap[gis]'. Points are in world coordinates.
+
+In place of SURFACE, --formula gives x, y and z in terms of u and v.
+
+A STEP, IGES or BREP file is a CAD part, of which all faces are sampled: .step, .stp, .iges, .igs,
+.brep or .brp, read with pip install 'gaussmap[cad]'; or an .npz file of part.save.
+
+\b
+examples:
+  gaussmap sample torus --count 10000 -o torus.ply
+  gaussmap sample torus --set minor=0.2 --frequency 32 -o torus.npz
+  gaussmap sample torus --coverage 0.05 --density uniform -o torus.ply
+  gaussmap sample torus --fields points,normals --float32 -o torus.ply
+  gaussmap sample heights.npy --spacing 30 30 --count 50000 -o terrain.ply
+  gaussmap sample dem.tif --count 20000 -o terrain.laz
+  gaussmap sample dem.npz:heights --x longitude --y latitude -o terrain.ply
+  gaussmap sample scan.npz:points --periodic u --normals directions.npy -o scan.csv
+  gaussmap sample part.step --count 50000 --edges -o part.ply
+  gaussmap sample --formula "u" "v" "u**2-v**2" --domain -1 1 -1 1 -o saddle.ply
+"""
+
+MESH_EXAMPLES = """\
+`gaussmap sample --help` explains SURFACE.
+
+\b
+examples:
+  gaussmap mesh torus --count 5000 -o torus.obj
+  gaussmap mesh heights.npy --spacing 30 30 --count 50000 -o terrain.ply
+  gaussmap mesh torus --normals cap.npy --deviation 20 -o part.stl
+"""
+
+PLOT_EXAMPLES = """\
+`gaussmap sample --help` explains SURFACE.
+
+\b
+examples:
+  gaussmap plot torus -o torus.png
+  gaussmap plot wavy_graph --set frequency=4 --count 4000 -o waves.pdf
+  gaussmap plot heights.npy --spacing 30 30 --cells 80 80 -o terrain.png
+"""
+
+COMPLETION_EXAMPLES = """\
+\b
+to have it in every shell:
+  echo 'eval "$(gaussmap completion bash)"' >> ~/.bashrc
+  echo 'eval "$(gaussmap completion zsh)"' >> ~/.zshrc
+  gaussmap completion fish > ~/.config/fish/completions/gaussmap.fish
+"""
+
+VIEW_EXAMPLES = """\
+`gaussmap sample --help` explains SURFACE.
+
+\b
+examples:
+  gaussmap view torus -o torus.html
+  gaussmap view torus --frequency 16 -o torus.html
+  gaussmap view heights.npy --spacing 30 30 -o terrain.html
+"""
+
+BATCH_EXAMPLES = """\
+\b
+examples:
+  gaussmap batch parts/ -o dataset
+  gaussmap batch parts/*.step torus --count 2048 --float32 -o dataset
+  gaussmap batch --list parts.txt --workers 8 --time-limit 60 -o dataset
+  gaussmap batch parts/ --scheduler tcp://10.0.0.1:8786 -o /shared/dataset
+"""
+
+FOLDER = click.Path(file_okay=False, readable=False)
+FILE = click.Path(readable=False)  # for completion; files are checked where they are used
+
+
+def parser() -> click.Group:
+    """Return the program with all of its commands."""
+    text = "Sample surfaces by the normals of their points, so that density follows curvature."
+    program = Program(PROGRAM, help=text, epilog=EXAMPLES, context_settings=SETTINGS)
+    click.version_option(__version__, message=f"{PROGRAM} %(version)s")(program)
+    sampling = _sample, _mesh, _plot, _view, _batch
+    for make in (*sampling, _surfaces, _faces, _formulas, _warm, _completion):
+        program.add_command(make())
+    return program
+
+
+def _command(
+    name: str, short: str, text: str, *parameters: click.Parameter, epilog: str = ""
+) -> Command:
+    return Command(
+        name,
+        params=[*parameters],
+        short_help=short,
+        help=text,
+        epilog=epilog,
+        context_settings=SETTINGS,
+    )
+
+
+def _sample() -> Command:
+    group = "contents of the file"
+    known = ", ".join(ARRAY_NAMES_ON_SURFACE)
+    of_parts, on_edges = " and ".join(PART_NAMES), ", ".join(EDGE_NAMES)
+    names = (
+        f"Write these arrays only (default: all). They are {known}; of CAD parts {of_parts}, too; "
+        f"with --edges {on_edges}, too."
+    )
+    prefixes = "Order the samples such that every prefix of them is well distributed."
+    single = "Write single precision: 7 digits instead of 16."
+    edges = "Of a CAD part: add samples on its sharp edges, with the normals of both faces."
+    return _command(
+        "sample",
+        "Sample a surface and write the samples to a file.",
+        "Sample a surface and write the samples to a file: points with normals, parameters and "
+        "curvatures. Samples are the points that have prescribed normals, and samples that fill "
+        "the gaps between these, where the surface is flat or developable.",
+        *_sampling(default_count=10_000),
+        _output(".npz, .ply, .csv, .vtp, .xyz, .parquet, .arrow, .feather, .las or .laz"),
+        Option("--edges", edges, group="the surface"),
+        Option("--fields NAME,NAME", names, group=group),
+        Option("--progressive", prefixes, group=group),
+        Option("--float32", single, group=group),
+        epilog=SAMPLE_EXAMPLES,
+    )
+
+
+def _mesh() -> Command:
+    deviation = (
+        "Leave out triangles whose normal deviates by more from a normal at their corners; for "
+        "samples of a part of the surface."
+    )
+    prefer = (
+        "shape (default): triangles with large angles; samples very close to others are left out. "
+        "normals: triangles as close to the normals as the samples allow, thin where the surface "
+        "is curved in one direction only."
+    )
+    return _command(
+        "mesh",
+        "Sample a surface and write a triangle mesh of it.",
+        "Sample a surface and write a triangle mesh of it. The vertices are the samples, and "
+        "points on open borders and at poles.",
+        *_sampling(default_count=10_000),
+        _output(".ply, .obj, .stl, .vtk, .vtu, .vtp or .glb"),
+        Option("--deviation DEGREES", deviation, number),
+        Option("--prefer KIND", prefer, click.Choice(("shape", "normals")), default="shape"),
+        epilog=MESH_EXAMPLES,
+    )
+
+
+def _plot() -> Command:
+    return _command(
+        "plot",
+        "Draw a surface, its samples and their normals.",
+        "Draw a surface with its samples, coloured by Gaussian curvature, and the unit sphere with "
+        "their normals. Needs Matplotlib: pip install 'gaussmap[plot]'.",
+        *_sampling(default_count=2_000),
+        _output(".png, .pdf or .svg"),
+        epilog=PLOT_EXAMPLES,
+    )
+
+
+def _view() -> Command:
+    return _command(
+        "view",
+        "Write a page with a surface and its normals, linked.",
+        "Write one page for browsers: a surface with its samples, and the unit sphere of their "
+        "normals. Click a normal, and its preimages light up; click a place, and the Gaussian "
+        "image of the region around it lights up. Needs Plotly: pip install 'gaussmap[view]'. A "
+        "page shows at most 50000 samples, and works without a network.",
+        *_sampling(default_count=5_000),
+        _output(".html or .htm"),
+        epilog=VIEW_EXAMPLES,
+    )
+
+
+def _batch() -> Command:
+    data, run = "the data set", "the run"
+    workers = "How many processes sample (default: one for each core)."
+    scheduler = (
+        "The address of a scheduler of Dask, such as tcp://host:8786, whose workers sample, and "
+        "see the folder by the same path. Needs pip install 'gaussmap[cluster]'."
+    )
+    names = (
+        f"Store these arrays only. They are {', '.join(ARRAY_NAMES_ON_SURFACE)}; of CAD parts "
+        f"{' and '.join(PART_NAMES)}, too (default: those of real numbers)."
+    )
+    parts = "A file with a part in each line, a name or a path; - for standard input."
+    files = "Write a file for each part, too, of this suffix, such as .ply."
+    measure = "Measure coverage and normal deviation of each part, which may take ten times longer."
+    again = "Try parts again that failed in an earlier run."
+    codecs = "zstd (default), snappy, gzip, lz4 or none."
+    seconds = "The longest time for a part, in seconds (default: 600)."
+    memory = "The most memory of a process, in GiB (default: its share of nine tenths of all)."
+    return _command(
+        "batch",
+        "Sample many parts into a data set.",
+        "Sample many parts, by several processes, into a folder of Parquet files: points with "
+        "normals and curvatures, and a manifest that says of each part how it went. A part that "
+        "fails does not end the run. If the run is stopped, the same command goes on with what is "
+        "missing. PARTS are names of surfaces, files (STEP, IGES, BREP, .npz and .npy), patterns "
+        "and folders. The exit code is 3 if parts failed. Needs pip install 'gaussmap[batch]'.",
+        click.Argument(["parts"], nargs=-1, required=False, shell_complete=surfaces_and_files),
+        *_amount(2048),
+        *_distribution(),
+        *spline_options(),
+        Option("-o --output FOLDER", "The folder of the data set.", FOLDER, required=True),
+        Option("--list FILE", parts, FILE),
+        Option("--fields NAME,NAME", names, group=data),
+        Option("--float32", "Store single precision: 7 digits instead of 16.", group=data),
+        Option("--compression CODEC", codecs, group=data, default="zstd"),
+        Option("--files SUFFIX", files, group=data),
+        Option("--measure", measure, group=data),
+        Option("--overwrite", "Remove the data set that is in the folder first.", group=data),
+        Option("--workers N", workers, whole(MOST), group=run, exclusive=False),
+        Option("--scheduler ADDRESS", scheduler, group=run),
+        Option("--time-limit SECONDS", seconds, number, group=run),
+        Option("--memory-limit GIB", memory, number, group=run),
+        Option("--retry-failed", again, group=run),
+        Option("--json", "Print the summary as a JSON object.", group=run),
+        _quiet(),
+        epilog=BATCH_EXAMPLES,
+    )
+
+
+def _surfaces() -> Command:
+    return _command(
+        "surfaces",
+        "List the surfaces of the catalogue, or explain one.",
+        "List the surfaces of the catalogue; with NAME, its parameters.",
+        click.Argument(["name"], required=False, shell_complete=surface_names),
+    )
+
+
+def _faces() -> Command:
+    return _command(
+        "faces",
+        "List the faces of a CAD part.",
+        "List the faces of a CAD part, a line for each: its index, kind, area, number of loops, "
+        "name, and why it failed if it cannot be used. PART is a STEP, IGES or BREP file, or an "
+        ".npz file of part.save.",
+        click.Argument(["part"], type=FILE),
+        *cad_options(),
+    )
+
+
+def _formulas() -> Command:
+    page = (
+        "Write all formulas, and the surfaces, to one page for browsers. Needs pip install "
+        "'gaussmap[html]'."
+    )
+    return _command(
+        "formulas",
+        "List the formulas that the program computes with, or show one.",
+        "List the formulas that the program computes with; with NAME, show it.",
+        click.Argument(["name"], required=False, shell_complete=formula_names),
+        Option("--latex", "Show LaTeX (of all without a NAME).", exclusive=True),
+        Option("--html FILE.html", page, FILE, exclusive=True),
+    )
+
+
+def _warm() -> Command:
+    return _command(
+        "warm",
+        "Compile all kernels ahead of time.",
+        "Compile all kernels ahead of time and keep them on disk, so that neither other commands "
+        "nor Python programs wait for the compiler on this computer. For Dockerfiles and CI. Takes "
+        "some minutes at first, and seconds when everything is compiled.",
+        _quiet(),
+    )
+
+
+def _completion() -> Command:
+    text = (
+        "Print what bash, zsh or fish has to run in order to complete commands, options, surfaces, "
+        "formulas and files."
+    )
+    return _command(
+        "completion",
+        "Let a shell complete commands, surfaces and files.",
+        text,
+        click.Argument(["shell"], type=click.Choice(SHELLS)),
+        epilog=COMPLETION_EXAMPLES,
+    )
+
+
+def _output(suffixes: str) -> Option:
+    return Option("-o --output OUT", f"The file to write: {suffixes}.", FILE, required=True)
+
+
+def _quiet() -> Option:
+    text = "Print nothing but warnings and errors: no summary, no progress."
+    return Option("--quiet", text, group="the run")
+
+
+def _sampling(default_count: int) -> list[click.Parameter]:
+    """Return the arguments that `sample`, `mesh`, `plot` and `view` share."""
+    threads = "How many threads to use (default: one for each core)."
+    run = [Option("--threads T", threads, whole(MOST), group="the run"), _quiet()]
+    return [surface_argument(), *_amount(default_count), *_distribution(), *surface_options(), *run]
+
+
+def _amount(default_count: int) -> list[Option]:
+    one_of: dict[str, Any] = {
+        "group": "how many samples (one of these; --coverage alone or with another one)",
+        "exclusive": True,
+    }
+    beside = {**one_of, "exclusive": False}
+    return [
+        Option("--count N", f"N samples (default: {default_count}).", whole(MOST), **one_of),
+        Option(
+            "--angle DEGREES",
+            "As many samples as it takes for the normal of every point to lie within this angle of "
+            "the normal of a sample.",
+            number,
+            **one_of,
+        ),
+        Option(
+            "--coverage LENGTH",
+            "As many samples as it takes for every point to lie within this distance of a sample.",
+            number,
+            **beside,
+        ),
+        Option(
+            "--frequency NU",
+            "Normals: the 10 NU^2 + 2 vertices of an icosphere, an icosahedron whose edges are "
+            "divided into NU.",
+            whole(MOST_FREQUENCY),
+            **one_of,
+        ),
+        Option(
+            "--healpix NSIDE",
+            "Normals: the 12 NSIDE^2 centres of the HEALPix pixels, NSIDE a power of 2. Needs pip "
+            "install 'gaussmap[spheres]'.",
+            whole(MOST_FREQUENCY),
+            **one_of,
+        ),
+        Option("--random COUNT", "Normals: COUNT random ones, uniform.", whole(MOST), **one_of),
+        Option("--seed N", "The seed of --random (default: 0).", whole(MOST, least=0), **beside),
+        Option("--normals FILE.npy", "Normals: an array (S, 3), of any lengths.", FILE, **one_of),
+    ]
+
+
+def _distribution() -> list[Option]:
+    return [
+        Option(
+            "--density HOW",
+            "gauss: proportional to |K|, prescribed normals only. balanced (default): that, with "
+            "samples that fill the gaps, or aligned if that is better. isotropic: never aligned. "
+            "aligned: on a grid of lines u = const and v = const, spaced by how fast the normal "
+            "turns. uniform: the same everywhere. A number A: proportional to |K|^A.",
+            density,
+            group="how dense",
+            default="balanced",
+            shell_complete=densities,
+        ),
+        Option(
+            "--relax STEPS",
+            "Distribute the samples that fill gaps more evenly, in 2 or 3 steps, at more cost "
+            "(default: 0).",
+            whole(MOST_STEPS, least=0),
+            group="how dense",
+            default="0",
+        ),
+    ]

@@ -1,0 +1,65 @@
+"""The parts that a command names: surfaces, files, folders, patterns, and lists of these."""
+
+from __future__ import annotations
+
+import glob
+import sys
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from ...runtime.base.advice import CAD_SUFFIXES
+from ...runtime.base.errors import FileError, InputError
+from ...runtime.surface.surfaces import CATALOGUE
+from ..files.paths import reason_of
+
+__all__ = ["listed"]
+
+# What is taken out of folders.
+SUFFIXES = (*CAD_SUFFIXES, ".npz", ".npy")
+
+
+def listed(named: Iterable[str], list_file: str | None) -> list[str]:
+    """Return the parts that are named, and those of a list with a line for each; - is the input.
+
+    A folder stands for the files of known suffixes in it and in its folders, a pattern for all that
+    it matches, each in the order of names.
+
+    Raises InputError if there are none, FileError if a list cannot be read.
+    """
+    parts = [part for text in [*named, *_lines(list_file)] for part in _expanded(text)]
+    if not parts:
+        raise InputError("there are no parts: name surfaces, files or folders, or give --list.")
+    return parts
+
+
+def _lines(list_file: str | None) -> Iterator[str]:
+    """Yield the lines of a list that are neither empty nor comments."""
+    if list_file is None:
+        return
+    try:
+        text = sys.stdin.read() if list_file == "-" else Path(list_file).read_text("utf-8")
+    except OSError as error:
+        raise FileError(f"'{list_file}' cannot be read: {reason_of(error)}.") from error
+    except ValueError as error:
+        raise FileError(f"'{list_file}' is no list: it is not a text in UTF-8.") from error
+    for line in text.splitlines():
+        if (part := line.strip()) and not part.startswith("#"):
+            yield part
+
+
+def _expanded(text: str) -> list[str]:
+    if text in CATALOGUE:
+        return [text]
+    path = Path(text)
+    if path.is_dir():
+        files = (x for x in path.rglob("*") if x.suffix.lower() in SUFFIXES and x.is_file())
+        found = sorted(str(x) for x in files)
+        if not found:
+            raise InputError(f"'{text}' has no files of parts: {', '.join(SUFFIXES)}.")
+        return found
+    if glob.has_magic(text) and not path.exists():
+        found = sorted(glob.glob(text, recursive=True))
+        if not found:
+            raise InputError(f"'{text}' matches no files.")
+        return found
+    return [text]

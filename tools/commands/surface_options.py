@@ -1,0 +1,128 @@
+"""The options that say which surface it is, and how it is read and approximated."""
+
+from __future__ import annotations
+
+import click
+
+from ...runtime.base.limits import MOST
+from .completion import settings, surfaces_and_files
+from .options import Option, number, setting, whole
+
+__all__ = ["cad_options", "spline_options", "surface_argument", "surface_options"]
+
+GROUP = "the surface"
+
+
+def surface_argument() -> click.Argument:
+    """Return the argument SURFACE, which --formula may stand for."""
+    return click.Argument(
+        ["surface"], required=False, callback=_checked_source, shell_complete=surfaces_and_files
+    )
+
+
+def _checked_source(ctx: click.Context, _: click.Parameter, surface: str | None) -> str | None:
+    """Return SURFACE; UsageError unless there is either that or --formula."""
+    formula = ctx.params.get("formula")  # options that are given are read before arguments
+    if surface is None and formula is None:
+        raise click.UsageError("missing argument 'SURFACE', or --formula X Y Z", ctx)
+    if surface is not None and formula is not None:
+        raise click.UsageError("give SURFACE or --formula, not both", ctx)
+    return surface
+
+
+def surface_options() -> list[Option]:
+    """Return the options of everything that takes a surface."""
+    tolerance = "Instead of --cells: the largest distance of the spline from the surface or data."
+    return [
+        *_formula_options(),
+        *_grid_options(),
+        *spline_options(),
+        Option("--tolerance LENGTH", tolerance, number, group=GROUP),
+        *_terrain_options(),
+        *cad_options(),
+    ]
+
+
+def _formula_options() -> list[Option]:
+    parameter = "A parameter of a surface of the catalogue; may be repeated."
+    formula = (
+        'In place of SURFACE: its coordinates, three texts such as "cos(u)" in u and v. They are '
+        "read as mathematics, and never run."
+    )
+    domain = 'The ranges of u and v for --formula; numbers, or texts such as "2*pi".'
+    return [
+        Option(
+            "--set NAME=VALUE",
+            parameter,
+            setting,
+            group=GROUP,
+            multiple=True,
+            shell_complete=settings,
+        ),
+        Option("--formula X Y Z", formula, group=GROUP),
+        Option("--domain U0 U1 V0 V1", domain, group=GROUP),
+    ]
+
+
+def _grid_options() -> list[Option]:
+    spacing = "The grid spacing of elevations; DY < 0 if rows run from north to south."
+    periodic = (
+        "In which directions a grid of points or a formula is periodic: none (default), u, v or "
+        "uv. Do not repeat the first row of a grid at the end."
+    )
+    nodata = "The number that stands for missing data in a grid, such as -9999; NaN does anyway."
+    axes = click.Choice(("none", "u", "v", "uv"))
+    return [
+        Option("--spacing DX DY", spacing, number, group=GROUP),
+        Option("--periodic AXES", periodic, axes, group=GROUP),
+        Option("--nodata NUMBER", nodata, number, group=GROUP),
+    ]
+
+
+def spline_options() -> list[Option]:
+    """Return the options of everything that takes surfaces of which it makes splines."""
+    cells = "The cells of the spline along u and v (default: 64 64 or more, or those of the grid)."
+    on = (
+        "Where samples lie: on the surface itself (default) or on the spline that approximates it. "
+        "Of grids in files there is the spline only."
+    )
+    return [
+        Option("--cells M N", cells, whole(MOST), group=GROUP),
+        Option("--on WHERE", on, click.Choice(("surface", "spline")), group=GROUP),
+    ]
+
+
+def _terrain_options() -> list[Option]:
+    band = "The band of a GeoTIFF (default: 1)."
+    coordinates = (
+        "The array of the same .npz file with the {} of elevations: one for each {}, or for each "
+        "elevation. Those named longitude and latitude are projected."
+    )
+    crs = (
+        "The coordinate reference system of the points, in lengths, such as EPSG:32617 (default: "
+        "that of the file or, if it has degrees, the zone of UTM)."
+    )
+    source_crs = "That of the file, if it says none: EPSG:4326 for degrees."
+    origin = "What is subtracted from x and y; the file that is written says so."
+    group = "coordinates of elevations"
+    return [
+        Option("--band N", band, whole(MOST), group=group),
+        Option("--x NAME", coordinates.format("x", "column"), group=group),
+        Option("--y NAME", coordinates.format("y", "row"), group=group),
+        Option("--crs CRS", crs, group=group),
+        Option("--source-crs CRS", source_crs, group=group),
+        Option("--origin X Y", origin, number, group=group),
+    ]
+
+
+def cad_options() -> list[Option]:
+    """Return the options of commands that read STEP, IGES and BREP files."""
+    unit = "The unit of lengths: mm, cm, m, in, ft ... (default: that of the file)."
+    seconds = "The longest time for reading, in seconds (default: 120)."
+    memory = "The most memory for reading, in GiB (default: 4)."
+    group = "reading CAD files"
+    return [
+        Option("--unit UNIT", unit, group=group),
+        Option("--time-limit SECONDS", seconds, number, group=group),
+        Option("--memory-limit GIB", memory, number, group=group),
+    ]

@@ -1,0 +1,19 @@
+"""`gaussmap surfaces`."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+from ...runtime.base.checks import known_name
+from ...runtime.surface.surfaces import CATALOGUE, describe, names
+from .console import say, table
+
+__all__ = ["run"]
+
+
+def run(options: SimpleNamespace) -> None:
+    """List all surfaces, or explain one."""
+    if options.name is not None:
+        say(describe(known_name(options.name, names(), "surface", "gaussmap surfaces")))
+    else:
+        table((name, CATALOGUE[name]["sentence"]) for name in names())

@@ -1,0 +1,241 @@
+"""`sample`: every point of a planar curve that has one of the normals, exactly once.
+
+The normals are sorted by angle, and each joint of the spline has one position in this order. The
+normals of an arc are those between the positions of its two joints, ascending where κ > 0 and
+descending where κ < 0. Neighbouring arcs share a joint and its position, so that no normal is lost
+or doubled there, whatever the rounding of the position. On a closed curve the sum of sign κ over
+the preimages of a normal is the turning number, for every normal. A normal that is exactly that of
+an inflection has two preimages there or none, as has one close to it.
+
+Where the normals of neighbouring joints differ by the rounding of the coordinates only, the curve
+is straight, and the joints get one position.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...runtime.base.checks import checked_count
+from ...runtime.base.errors import GaussmapWarning, InputError, in_memory
+from ...runtime.directions.circle import arc_of_normals, circle
+from ...runtime.directions.unit import as_normals
+from ..kernels import curve as kernels
+from .curve import Curve
+from .fitting import fit
+from .samples import CurveReport, CurveSamples
+from .spline import CurveSpline, angles_of
+
+__all__ = ["filled", "find", "sample"]
+
+Array = NDArray[np.float64]
+
+# The largest number of attempts to meet `count` by changing the number of normals.
+TRIES = 6
+# Arcs that this many uniform normals would sample are not straight, even with fewer normals.
+LEAST_NORMALS = 1_000
+WORTH_A_WARNING = 0.01
+
+
+@dataclass(frozen=True, eq=False)
+class Hits:
+    """Pairs of an arc and a normal that it has, along the curve, with the sign of κ."""
+
+    piece_index: NDArray[np.int64]
+    normal_index: NDArray[np.int64]
+    signs: Array
+
+    def __len__(self) -> int:
+        return len(self.signs)
+
+
+@in_memory
+def sample(
+    curve: Curve | CurveSpline,
+    count: int | None = None,
+    *,
+    normals: ArrayLike | None = None,
+    pieces: int | None = None,
+) -> CurveSamples:
+    """Return every point of a planar curve that has one of the given normals, each exactly once.
+
+    Uniform normals give samples with the density |κ| (paper, Sect. 4.1).
+
+    Parameters
+    ----------
+    curve : Curve or CurveSpline
+        The curve; a `Curve` is first approximated by a spline.
+    count : int, optional
+        The approximate number of samples, at uniform normals. Either this or `normals`.
+    normals : (S, 2) array_like, optional
+        Directions of any length but 0, such as ``gm.directions.circle(100)``.
+    pieces : int, optional
+        The number of arcs of the spline, see `fit`.
+
+    Returns
+    -------
+    CurveSamples
+        The samples in order along the curve.
+
+    Raises
+    ------
+    InputError
+        For unusable arguments.
+    SurfaceError
+        For a curve that cannot be evaluated.
+
+    Warns
+    -----
+    GaussmapWarning
+        If parts of the curve are straight, so that no set of normals can sample them, or if `count`
+        cannot be met.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> circle = gm.curves.Curve.from_sympy(("cos(t)", "sin(t)"), "t", (0, "2*pi"), True)
+    >>> len(gm.curves.sample(circle, normals=gm.directions.circle(10)))
+    10
+
+    """
+    if (normals is None) == (count is None):
+        raise InputError("give either normals=... or count=..., and not both.")
+    asked = None if count is None else checked_count(count)
+    directions = None if normals is None else as_normals(normals, 2)
+    if isinstance(curve, CurveSpline) and pieces is not None:
+        raise InputError("pieces=... is for curves; this spline already has its pieces.")
+    spline = curve if isinstance(curve, CurveSpline) else fit(curve, pieces)
+    if directions is None:
+        assert asked is not None
+        directions, hits = _by_count(spline, asked)
+    else:
+        hits = find(spline, directions)
+    samples = filled(spline, directions, hits)
+    _warn(samples.report, asked)
+    return samples
+
+
+def find(spline: CurveSpline, normals: Array) -> Hits:
+    """Return all pairs of an arc of a spline and one of the unit normals (S, 2) that it has."""
+    angles = angles_of(normals)
+    order = np.argsort(angles, kind="stable")
+    places = _places(spline, angles[order])
+    steps = np.where(spline.reversing, 0, np.diff(places))
+    counts, signs = np.abs(steps), np.sign(steps)
+    first = np.where(steps > 0, places[:-1], places[:-1] - 1)
+    number = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
+    ranks = np.repeat(first, counts) + np.repeat(signs, counts) * number
+    return Hits(
+        np.repeat(np.arange(spline.pieces), counts),
+        order[np.mod(ranks, len(normals))],
+        np.repeat(signs, counts).astype(np.float64),
+    )
+
+
+def _places(spline: CurveSpline, angles: Array) -> NDArray[np.int64]:
+    """Return the number of sorted angles before each joint, full turns included.
+
+    Along straight arcs the normal is constant. The ends of an open curve belong to it: they are
+    moved outwards by the rounding of their normal.
+    """
+    ends, turns = spline.angles[0].copy(), spline.angles[1].copy()
+    curved = np.flatnonzero(~spline.straight)
+    with np.errstate(divide="ignore"):
+        errors = spline.noise / np.hypot(*spline.joint_normals.T)
+    start = int(curved[0]) + 1 if len(curved) else 1
+    kernels.merge_joints(ends, turns, errors, start if spline.periodic else 0)
+    if not spline.periodic:
+        for joint, outwards in ((0, -1.0), (-1, 1.0)):
+            if not spline.straight[joint]:
+                ends[joint] += outwards * math.copysign(errors[joint], spline.turning_angles[joint])
+        beyond = (ends > np.pi).astype(np.int64) - (ends <= -np.pi)
+        ends -= 2 * np.pi * beyond
+        turns += beyond
+    return np.searchsorted(angles, ends).astype(np.int64) + len(angles) * turns
+
+
+def _by_count(spline: CurveSpline, count: int) -> tuple[Array, Hits]:
+    """Return uniform normals with about `count` samples, and these."""
+    curved = np.flatnonzero(~spline.straight)
+    total = float(np.abs(spline.turning_angles[curved]).sum())
+    if total == 0.0:
+        normals = circle(count)
+        return normals, find(spline, normals)
+    angles = spline.angles[0] + 2 * np.pi * spline.angles[1]
+    joints = angles[np.concatenate([curved, curved + 1])]
+    low, high = float(joints.min()), float(joints.max())
+    width, density = min(high - low, 2 * np.pi), count / total
+    best: tuple[Array, Hits] | None = None
+    for _ in range(TRIES):
+        size = max(1, round(density * width))
+        normals = arc_of_normals(low, high, size) if high - low < 2 * np.pi else circle(size)
+        hits = find(spline, normals)
+        if best is None or abs(len(hits) - count) < abs(len(best[1]) - count):
+            best = normals, hits
+        if len(hits) == count:
+            break
+        density *= count / max(len(hits), 1)
+    assert best is not None
+    return best
+
+
+def filled(spline: CurveSpline, normals: Array, hits: Hits) -> CurveSamples:
+    """Return the samples at hits of unit normals (S, 2)."""
+    count = len(hits)
+    points, directions = np.empty((count, 2)), np.empty((count, 2))
+    parameters, support, curvature = (np.empty(count) for _ in range(3))
+    with np.errstate(all="ignore"):  # uncompiled code warns where κ ≈ 0
+        kernels.fill_samples(
+            spline.coefficients, spline.scale, normals, spline.domain[0], spline.step,
+            hits.piece_index, hits.normal_index, hits.signs,
+            points, directions, parameters, support, curvature,
+        )  # fmt: skip
+    report = CurveReport(
+        curve=spline.name,
+        normals=len(normals),
+        samples=count,
+        pieces=spline.pieces,
+        straight_share=_straight_share(spline, len(normals)),
+        inflections=len(spline.inflections),
+        turning_number=spline.turning_number,
+    )
+    ends = spline.evaluate(spline.domain) if not spline.periodic else np.empty((0, 2))
+    return CurveSamples(
+        points, directions, parameters, support, curvature,
+        hits.normal_index, hits.piece_index, ends, report,
+    )  # fmt: skip
+
+
+def _straight_share(spline: CurveSpline, normals: int) -> float:
+    """Return the share of the length where κ ≈ 0, so that it has no samples.
+
+    An arc is straight if a curve with its curvature and the length of this one gets no sample.
+    """
+    joints = spline.scale * spline.evaluate(spline.joints)
+    lengths = np.hypot(*np.diff(joints, axis=0).T)
+    total = float(lengths.sum())
+    if total == 0.0:
+        return 1.0
+    density = max(normals, LEAST_NORMALS) / (2 * np.pi)
+    angles = np.where(spline.reversing, 0.0, np.abs(spline.turning_angles))
+    straight = angles * total * density < lengths
+    return float(lengths[straight].sum()) / total
+
+
+def _warn(report: CurveReport, count: int | None) -> None:
+    """Warn of straight parts, and of a count that is not met."""
+    reasons = []
+    if report.straight_share > WORTH_A_WARNING:
+        share = 100 * report.straight_share
+        reasons.append(f"{share:.0f} % of its length is straight and has no samples")
+    elif report.samples == 0:
+        reasons.append("it has none of the normals")
+    if count is not None and abs(report.samples - count) > 0.05 * count + 1:
+        reasons.append(f"there are {report.samples} samples instead of the requested {count}")
+    if reasons:
+        message = f"curve {report.curve!r}: {'; '.join(reasons)}."
+        warnings.warn(message, GaussmapWarning, stacklevel=3)

@@ -1,0 +1,47 @@
+"""Arrow's tables: .parquet files, and .arrow files, also called Feather."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ... import __version__
+from ...runtime.base.extras import from_extra
+from ...runtime.samples.fields import COLUMNS, UNITS, columns_of
+from ...runtime.samples.samples import Samples
+from .content import report_to_json
+
+__all__ = ["write_arrow", "write_parquet"]
+
+
+def write_parquet(samples: Samples, path: Path) -> None:
+    """Write a column for each number of a sample, and the report in the metadata of the schema."""
+    table = _table(samples, path)
+    # Not dictionaries: numbers of samples seldom repeat, and trying takes half of the time.
+    from_extra("pyarrow.parquet", "tables", "a .parquet file").write_table(
+        table, path, use_dictionary=False
+    )
+
+
+def write_arrow(samples: Samples, path: Path) -> None:
+    """Write the same as `write_parquet` in Arrow's own format, uncompressed: it can be mapped."""
+    table = _table(samples, path)
+    arrow = from_extra("pyarrow", "tables", "this")
+    with arrow.OSFile(str(path), "wb") as file, arrow.ipc.new_file(file, table.schema) as writer:
+        writer.write_table(table)
+
+
+def _table(samples: Samples, path: Path) -> Any:  # noqa: ANN401
+    arrow = from_extra("pyarrow", "tables", f"a {path.suffix} file")
+    fields = [
+        arrow.field(column, arrow.from_numpy_dtype(array.dtype), nullable=False).with_metadata(
+            {"field": name} | ({"unit": UNITS[name]} if name in UNITS else {})
+        )
+        for name, array in samples.arrays().items()
+        for column in COLUMNS[name]
+    ]
+    about = {"gaussmap": __version__, "report": report_to_json(samples.report)}
+    columns = [arrow.array(np.ascontiguousarray(x)) for x in columns_of(samples.arrays()).values()]
+    return arrow.table(columns, schema=arrow.schema(fields, metadata=about))

@@ -1,0 +1,36 @@
+"""The metadata of samples in files: the report, and which fields there are."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict
+
+from ...runtime.samples.fields import COLUMNS
+from ...runtime.samples.report import SamplingReport
+from .reading import UnusableError
+
+__all__ = ["known_fields", "lacks", "report_from_json", "report_to_json"]
+
+
+def report_to_json(report: SamplingReport) -> str:
+    """Return a report as a line of ASCII."""
+    return json.dumps(asdict(report))
+
+
+def report_from_json(text: str) -> SamplingReport:
+    """Return the report that `report_to_json` was given."""
+    return SamplingReport(**json.loads(text))
+
+
+def known_fields(names: Iterable[str]) -> tuple[str, ...]:
+    """Return the fields that a file says to hold, in the order of `COLUMNS`."""
+    held = set(names)
+    if not held or not held <= set(COLUMNS):
+        raise UnusableError("holds fields that gaussmap does not know; update gaussmap.")
+    return tuple(name for name in COLUMNS if name in held)
+
+
+def lacks(what: str, missing: Sequence[str]) -> UnusableError:
+    """Return the error for a file without some arrays or columns."""
+    return UnusableError(f"lacks the {what} {', '.join(missing)}; read a file that gaussmap wrote.")

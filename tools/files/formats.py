@@ -1,0 +1,184 @@
+"""The formats of files: which there are, by their suffixes, and what writes and reads them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from io import BufferedReader
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...runtime.base.errors import InputError, UnknownNameError
+from ...runtime.base.extras import check_extra
+from ...runtime.base.georeference import warn_of_rounding
+from ...runtime.samples.samples import Samples
+from .arrow import write_arrow, write_parquet
+from .gltf import write_glb
+from .las import write_las
+from .npz import read_npz, write_npz
+from .paths import (
+    PathLike,
+    atomic_path,
+    check_target,
+    checked_path,
+    known_suffix,
+)
+from .ply import read_ply, write_mesh_ply, write_ply
+from .reading import opened
+from .tables import write_csv, write_xyz
+from .triangles import write_obj, write_stl
+from .vtk import write_mesh_vtp, write_vtk, write_vtp, write_vtu
+
+if TYPE_CHECKING:
+    from ..meshes.mesh import Mesh
+
+__all__ = [
+    "MESH_SUFFIXES",
+    "READABLE_SUFFIXES",
+    "SUFFIXES",
+    "check_fields",
+    "check_mesh_target",
+    "check_samples_target",
+    "read_samples",
+    "write_mesh",
+    "write_samples",
+]
+
+_WRITERS: dict[str, Callable[[Samples, Path], None]] = {
+    ".npz": write_npz,
+    ".ply": write_ply,
+    ".csv": write_csv,
+    ".vtp": write_vtp,
+    ".xyz": write_xyz,
+    ".parquet": write_parquet,
+    ".arrow": write_arrow,
+    ".feather": write_arrow,
+    ".las": write_las,
+    ".laz": write_las,
+}
+_READERS: dict[str, Callable[[BufferedReader], Samples]] = {".npz": read_npz, ".ply": read_ply}
+_MESH_WRITERS: dict[str, Callable[[Mesh, Path], None]] = {
+    ".ply": write_mesh_ply,
+    ".obj": write_obj,
+    ".stl": write_stl,
+    ".vtk": write_vtk,
+    ".vtu": write_vtu,
+    ".vtp": write_mesh_vtp,
+    ".glb": write_glb,
+}
+SUFFIXES, READABLE_SUFFIXES = tuple(_WRITERS), tuple(_READERS)
+MESH_SUFFIXES = tuple(_MESH_WRITERS)
+
+# The library that writes a format, and the extra that brings it.
+_EXTRAS = {
+    ".glb": ("trimesh", "trimesh"),
+    ".parquet": ("pyarrow", "tables"),
+    ".arrow": ("pyarrow", "tables"),
+    ".feather": ("pyarrow", "tables"),
+    ".las": ("laspy", "gis"),
+    ".laz": ("lazrs", "gis"),
+}
+# The formats of single precision.
+_SINGLE = (".glb", ".stl")
+# The fields that a format cannot do without.
+_NEEDED = {
+    **dict.fromkeys((".ply", ".vtp", ".las", ".laz"), ("points",)),
+    ".xyz": ("points", "normals"),
+}
+
+
+def write_samples(samples: Samples, path: PathLike) -> None:
+    """Write samples to a file; see `Samples.write`."""
+    suffix = _suffix_of_samples(path)
+    check_fields(path, samples.fields)
+    with atomic_path(path) as temporary:
+        _WRITERS[suffix](samples, temporary)
+
+
+def write_mesh(mesh: Mesh, path: PathLike) -> None:
+    """Write a mesh to a file; see `Mesh.write`."""
+    suffix = known_suffix(path, MESH_SUFFIXES)
+    if not len(mesh.triangles):
+        raise InputError("this mesh has no triangles, and so there is nothing to write.")
+    if suffix in _SINGLE:
+        warn_of_rounding(mesh.vertices, 4)
+    with atomic_path(path) as temporary:
+        _MESH_WRITERS[suffix](mesh, temporary)
+
+
+def check_samples_target(path: PathLike) -> None:
+    """Raise now what writing samples to `path` would raise later, see `check_target`."""
+    _suffix_of_samples(path)
+    check_target(path, SUFFIXES)
+    _check_library(path)
+
+
+def _suffix_of_samples(path: PathLike) -> str:
+    """Return the suffix; UnknownNameError if it is none, with a hint if it is one of meshes."""
+    suffix = checked_path(path).suffix.lower()
+    if suffix in MESH_SUFFIXES and suffix not in SUFFIXES:
+        raise UnknownNameError(
+            f"'{path}' has the suffix '{suffix}' of meshes; use one of {', '.join(SUFFIXES)} for "
+            "samples, or write samples.mesh() (`gaussmap mesh`)."
+        )
+    return known_suffix(path, SUFFIXES)
+
+
+def check_mesh_target(path: PathLike) -> None:
+    """Raise now what writing a mesh to `path` would raise later, see `check_target`."""
+    check_target(path, MESH_SUFFIXES)
+    _check_library(path)
+
+
+def _check_library(path: PathLike) -> None:
+    suffix = checked_path(path).suffix.lower()
+    if suffix in _EXTRAS:
+        check_extra(*_EXTRAS[suffix], purpose=f"a {suffix} file")
+
+
+def check_fields(path: PathLike, fields: Sequence[str]) -> None:
+    """Raise InputError if the format of a file, told by its suffix, needs other fields too."""
+    suffix = checked_path(path).suffix.lower()
+    lacking = [repr(name) for name in _NEEDED.get(suffix, ()) if name not in fields]
+    if lacking:
+        raise InputError(
+            f"a {suffix} file needs {' and '.join(lacking)}; add that to the fields, or write a "
+            ".npz or .csv file."
+        )
+
+
+def read_samples(path: PathLike) -> Samples:
+    """Read samples from a `.npz` or `.ply` file that `write_samples` wrote.
+
+    A `.ply` file that another program rewrote is read if it is binary and has all the columns. If
+    it has lost the comments that hold the report, the report's numbers are None. A file of fewer
+    fields says in a comment which these are. Nothing is ever unpickled.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        Name of the file.
+
+    Returns
+    -------
+    Samples
+        The samples and their report, without the spline.
+
+    Raises
+    ------
+    UnknownNameError
+        If the suffix is neither `.npz` nor `.ply`.
+    FileError
+        If the file is missing, unreadable, damaged, or not from gaussmap.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> gm.sample("torus", 500).write("torus.npz")
+    >>> len(gm.read_samples("torus.npz"))
+    500
+
+    """
+    path = checked_path(path)
+    suffix = known_suffix(path, READABLE_SUFFIXES)
+    with opened(path, f"{suffix} file of gaussmap", "samples") as file:
+        return _READERS[suffix](file)

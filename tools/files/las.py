@@ -1,0 +1,80 @@
+"""Point clouds of surveyors: .las files and .laz, compressed, by laspy."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.base.errors import InputError
+from ...runtime.base.extras import from_extra
+from ...runtime.samples.fields import columns_of
+from ...runtime.samples.samples import Samples
+from .content import report_to_json
+from .reference_systems import wkt_of
+
+__all__ = ["write_las"]
+
+# Coordinates are whole numbers of steps, 32 bits each. Steps are this part of the extent, rounded
+# down to a power of ten: far below the distances of samples, and what is left of 32 bits suffices.
+STEP = 2.0**-27
+LARGEST = 2**31 - 1
+# A point format of LAS 1.4 without times and colours.
+FORMAT, VERSION = 6, "1.4"
+# Where the date of a file is, which laspy writes; 0 says that it is unknown.
+DATE = 90
+# The user and the number of the record that holds the report.
+USER, RECORD = "gaussmap", 1
+
+
+def write_las(samples: Samples, path: Path) -> None:
+    """Write points, all other fields as extra dimensions, the CRS, and the report in a record.
+
+    The origin of the samples is added again: the points are in world coordinates.
+    """
+    laspy = from_extra("laspy", "gis", f"a {path.suffix} file")
+    report = samples.report
+    points = samples.points.astype(np.float64) + np.array(report.origin or (0.0, 0.0, 0.0))
+    header = laspy.LasHeader(point_format=FORMAT, version=VERSION)
+    header.scales, header.offsets = _steps(points)
+    header.generating_software = "gaussmap"
+    arrays = columns_of({x: y for x, y in samples.arrays().items() if x != "points"})
+    header.add_extra_dims(
+        [laspy.ExtraBytesParams(name=x, type=_kept(y)) for x, y in arrays.items()]
+    )
+    if report.crs is not None:
+        header.vlrs.append(laspy.vlrs.known.WktCoordinateSystemVlr(wkt_of(report.crs)))
+        header.global_encoding.wkt = True
+    text = report_to_json(report).encode("ascii")
+    header.vlrs.append(laspy.VLR(USER, RECORD, "report", text))
+    cloud = laspy.LasData(header)
+    cloud.x, cloud.y, cloud.z = points.T
+    for name, column in arrays.items():
+        cloud[name] = column.astype(_kept(column), copy=False)
+    cloud.write(str(path))
+    with open(path, "r+b") as file:  # equal samples make equal files
+        file.seek(DATE)
+        file.write(bytes(4))
+
+
+def _steps(points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the steps and the offsets of the three coordinates."""
+    if not len(points):
+        return np.full(3, 1e-3), np.zeros(3)
+    low, high = points.min(axis=0), points.max(axis=0)
+    extent = float((high - low).max())
+    step = 10.0 ** math.floor(math.log10(extent * STEP)) if extent > 0.0 else 1e-3
+    with np.errstate(over="ignore", invalid="ignore"):
+        offsets = np.floor((low + high) / 2.0)
+        if not (np.isfinite(offsets).all() and extent / 2.0 / step + 1.0 / step < LARGEST):
+            offsets = (low + high) / 2.0
+    if not (np.isfinite(offsets).all() and 1e-300 < step < 1e300):
+        raise InputError("a .las file cannot hold these coordinates; write a .ply file instead.")
+    return np.full(3, step), offsets
+
+
+def _kept(column: NDArray[np.generic]) -> np.dtype[np.generic]:
+    """Return the type of an extra dimension: there are no booleans."""
+    return np.dtype(np.uint8) if column.dtype == np.bool_ else column.dtype

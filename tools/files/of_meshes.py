@@ -1,0 +1,131 @@
+"""The methods of `Mesh` that write it, and that make the objects of other libraries."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+from .formats import write_mesh
+from .interop import mesh_to_open3d, mesh_to_pyvista, mesh_to_trimesh
+
+if TYPE_CHECKING:
+    import open3d  # pyright: ignore[reportMissingImports]
+    import pyvista
+    import trimesh
+
+    from ..meshes.mesh import Mesh
+
+__all__ = ["to_open3d", "to_pyvista", "to_trimesh", "write"]
+
+
+def write(self: Mesh, path: str | os.PathLike[str]) -> None:
+    """Write the mesh to a file; its suffix, in any case, chooses the format.
+
+    An existing file is replaced once the new one is complete; if anything fails, it stays as it
+    was. The same mesh gives the same bytes.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        Name of the file. The suffix is one of
+
+        - `.ply`: binary; vertices with normals and u, v.
+        - `.obj`: text of 17 digits; vertices with normals.
+        - `.stl`: binary, float32; triangles alone.
+        - `.vtk`, `.vtu`: VTK's unstructured grid with normals, u, v and `sample_index`.
+        - `.vtp`: VTK's PolyData with normals, uv and `sample_index`.
+        - `.glb`: binary glTF with normals, float32; needs the extra `trimesh`. Coordinates stay
+          as they are, while viewers show y upwards.
+
+    Raises
+    ------
+    UnknownNameError
+        If the suffix is none of these.
+    FileError
+        If the file cannot be written.
+    MissingExtraError
+        For a `.glb` file without the extra `trimesh`.
+    InputError
+        If the mesh has no triangles, more vertices than a `.ply` file can number, or larger
+        coordinates than a `.glb` file can hold.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> from pathlib import Path
+    >>> gm.sample("torus", 200, cells=(16, 16)).mesh().write("torus.stl")
+    >>> Path("torus.stl").stat().st_size  # 84 + 50 · 400
+    20084
+
+    """
+    write_mesh(self, path)
+
+
+def to_pyvista(self: Mesh) -> pyvista.PolyData:
+    """Return the mesh with normals, uv and sample_index as point data.
+
+    Returns
+    -------
+    pyvista.PolyData
+        A copy, as of the other conversions.
+
+    Raises
+    ------
+    MissingExtraError
+        Without the extra `vtk`.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> gm.sample("torus", 200, cells=(16, 16)).mesh().to_pyvista().n_cells
+    400
+
+    """
+    return mesh_to_pyvista(self)
+
+
+def to_trimesh(self: Mesh) -> trimesh.Trimesh:
+    """Return the mesh with its normals, and uv and sample_index as vertex attributes.
+
+    Returns
+    -------
+    trimesh.Trimesh
+        The mesh.
+
+    Raises
+    ------
+    MissingExtraError
+        Without the extra `trimesh`.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> gm.sample("torus", 200, cells=(16, 16)).mesh().to_trimesh().is_watertight
+    True
+
+    """
+    return mesh_to_trimesh(self)
+
+
+def to_open3d(self: Mesh) -> open3d.geometry.TriangleMesh:
+    """Return the mesh with its normals.
+
+    Returns
+    -------
+    open3d.geometry.TriangleMesh
+        The mesh.
+
+    Raises
+    ------
+    MissingExtraError
+        Without the extra `open3d`.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> mesh = gm.sample("torus", 200, cells=(16, 16)).mesh()
+    >>> mesh.to_open3d().is_watertight()  # doctest: +SKIP
+    True
+
+    """
+    return mesh_to_open3d(self)

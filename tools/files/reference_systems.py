@@ -1,0 +1,96 @@
+"""Coordinate reference systems: which one points are in, and projections, by rasterio."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.base.errors import InputError, shown
+from ...runtime.base.extras import from_extra
+
+__all__ = ["checked_crs", "crs_text", "projected", "target_crs", "wkt_of"]
+
+Array = NDArray[np.float64]
+
+# Beyond this latitude there is no UTM, but UPS; north and south.
+LAST_LATITUDE, POLAR = 84.0, (32661, 32761)
+# More degrees of longitude than this fit into no zone of UTM: the scale is wrong by a percent.
+WIDEST_ZONE = 12.0
+# Points that are projected at a time.
+AT_A_TIME = 1 << 17
+
+
+def checked_crs(crs: str | int | None, name: str) -> Any:  # noqa: ANN401
+    """Return a CRS of rasterio for EPSG:number, a number or WKT; InputError for others."""
+    if crs is None:
+        return None
+    rasterio = from_extra("rasterio.crs", "gis", f"{name}=...")
+    errors = from_extra("rasterio.errors", "gis", f"{name}=...")
+    try:
+        with from_extra("rasterio", "gis", f"{name}=...").Env():
+            found = rasterio.CRS.from_user_input(crs)
+            found.to_wkt()
+            return found
+    except (errors.CRSError, TypeError, ValueError, OverflowError):
+        raise InputError(
+            f"{name} must be a coordinate reference system, such as EPSG:32617, not {shown(crs)}."
+        ) from None
+
+
+def target_crs(source: Any, target: Any, x: Array, y: Array, name: str) -> Any:  # noqa: ANN401
+    """Return the CRS, in lengths, that points are to be in: the one asked for, the source, or UTM.
+
+    x and y are coordinates in the source. Raises InputError for a system of degrees, and if none is
+    known.
+    """
+    if target is not None and target.is_geographic:
+        raise InputError(
+            f"crs={crs_text(target)} has degrees, and normals need lengths; say one in metres, such"
+            " as that of UTM, EPSG:326NN north and 327NN south of the equator for zone NN."
+        )
+    if target is not None or source is None or not source.is_geographic:
+        return target if target is not None else source
+    middle, latitude = float(x.min() + x.max()) / 2.0, float(y.min() + y.max()) / 2.0
+    if np.abs(y).max() > 90.0:
+        raise InputError(f"{name} has latitudes beyond 90 degrees; are x and y exchanged?")
+    south = latitude < 0.0
+    if abs(latitude) > LAST_LATITUDE:
+        number = POLAR[south]
+    elif float(np.ptp(x)) > WIDEST_ZONE:
+        raise InputError(
+            f"{name} spans {float(np.ptp(x)):.0f} degrees of longitude, too many for UTM; say a "
+            "projection, as in crs='EPSG:3035', or crop it."
+        )
+    else:
+        number = (32701 if south else 32601) + int((middle + 180.0) % 360.0 // 6.0)
+    return checked_crs(number, "crs")
+
+
+def projected(source: Any, target: Any, x: Array, y: Array, name: str) -> tuple[Array, Array]:  # noqa: ANN401
+    """Return coordinates of one shape in another system; InputError if some have none there."""
+    warp = from_extra("rasterio.warp", "gis", "a projection")
+    flat_x, flat_y = x.ravel(), y.ravel()
+    found = np.empty((2, x.size))
+    for first in range(0, x.size, AT_A_TIME):
+        part = slice(first, first + AT_A_TIME)
+        found[:, part] = warp.transform(source, target, flat_x[part], flat_y[part])[:2]
+    if not np.isfinite(found).all():
+        raise InputError(
+            f"{name} has places that {crs_text(target)} does not hold; say another crs."
+        )
+    return found[0].reshape(x.shape), found[1].reshape(x.shape)
+
+
+def crs_text(crs: Any) -> str:  # noqa: ANN401
+    """Return EPSG:number if that is exactly the system, else its WKT."""
+    number = crs.to_epsg(confidence_threshold=100)
+    if number is not None and checked_crs(number, "crs") == crs:
+        return f"EPSG:{number}"
+    return crs.to_wkt()
+
+
+def wkt_of(crs: str) -> str:
+    """Return the WKT (version 1, as LAS has it) of what `crs_text` returned."""
+    return checked_crs(crs, "crs").to_wkt()

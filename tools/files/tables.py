@@ -1,0 +1,77 @@
+"""Text with a line for each sample: .csv and .xyz."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from itertools import chain
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.base.extras import if_installed
+from ...runtime.samples.fields import columns_of
+from ...runtime.samples.samples import Samples
+
+__all__ = ["write_csv", "write_rows", "write_xyz"]
+
+# As many digits as it takes to read the same numbers again.
+_DIGITS = {"i8": "%d", "u1": "%d", "f4": "%.9g", "f8": "%.17g"}
+_ROWS = 4096
+# Fewer rows are written before Polars is imported; more at once take memory and save no time.
+_WORTH_AN_IMPORT, _ROWS_OF_POLARS = 20_000, 1 << 18
+
+
+def write_csv(samples: Samples, path: Path) -> None:
+    """Write a line of names, and one for each sample."""
+    columns = columns_of(samples.arrays())
+    with open(path, "wb") as file:
+        file.write((",".join(columns) + "\n").encode("ascii"))
+        write_rows(file, ",".join(["{}"] * len(columns)) + "\n", list(columns.values()))
+
+
+def write_xyz(samples: Samples, path: Path) -> None:
+    """Write lines `x y z nx ny nz`."""
+    with open(path, "wb") as file:
+        write_rows(file, "{} {} {} {} {} {}\n", [*samples.points.T, *samples.normals.T])
+
+
+def write_rows(file: BinaryIO, line: str, columns: Sequence[NDArray[Any]]) -> None:
+    """Write columns as lines, in which their numbers take the places of the braces.
+
+    Words are separated by spaces or by commas. Polars writes many rows ten times as fast as Python,
+    in as few digits as it takes to read the same numbers again, if it is installed.
+    """
+    columns = [column.view(np.uint8) if column.dtype == np.bool_ else column for column in columns]
+    polars = if_installed("polars") if len(columns[0]) >= _WORTH_AN_IMPORT else None
+    if polars is None:
+        file.writelines(_formatted(line, columns))
+        return
+    separator = "," if "," in line else " "
+    words = line.rstrip("\n").split(separator)
+    for start in range(0, len(columns[0]), _ROWS_OF_POLARS):
+        block = [column[start : start + _ROWS_OF_POLARS] for column in columns]
+        table = _table(polars, words, block)
+        table.write_csv(file, include_header=False, separator=separator, quote_style="never")
+
+
+def _formatted(line: str, columns: Sequence[NDArray[Any]]) -> Iterator[bytes]:
+    pattern = line.format(*(_DIGITS[column.dtype.str[1:]] for column in columns))
+    for start in range(0, len(columns[0]), _ROWS):
+        block = [column[start : start + _ROWS].tolist() for column in columns]
+        numbers = tuple(chain.from_iterable(zip(*block, strict=True)))
+        yield (pattern * len(block[0]) % numbers).encode("ascii")
+
+
+def _table(polars: Any, words: Sequence[str], columns: Sequence[NDArray[Any]]) -> Any:  # noqa: ANN401
+    """Return a column for each word of a line."""
+    waiting = iter(f"n{k}" for k in range(len(columns)))
+    numbers = {f"n{k}": np.ascontiguousarray(column) for k, column in enumerate(columns)}
+    expressions = []
+    for k, word in enumerate(words):
+        names = [next(waiting) for _ in re.findall(r"{}", word)]
+        text = polars.col(names[0]) if word == "{}" else polars.format(word, *names)
+        expressions.append(text.alias(f"w{k}"))
+    return polars.DataFrame(numbers).select(expressions)

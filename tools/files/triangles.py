@@ -1,0 +1,46 @@
+"""Triangles for programs that know little else: .obj and .stl."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...runtime.base.scales import scales_to_one
+from .tables import write_rows
+
+if TYPE_CHECKING:
+    from ..meshes.mesh import Mesh
+
+__all__ = ["write_obj", "write_stl"]
+
+_STL_ROW = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+
+
+def write_obj(mesh: Mesh, path: Path) -> None:
+    """Write text: vertices, their normals, and triangles that name both."""
+    # Not trimesh: it writes a fixed number of digits behind the point, none of small numbers.
+    with open(path, "wb") as file:
+        file.write(b"# written by gaussmap\n")
+        write_rows(file, "v {} {} {}\n", [*mesh.vertices.T])
+        write_rows(file, "vn {} {} {}\n", [*mesh.normals.T])
+        corners = np.repeat(mesh.triangles.T + 1, 2, axis=0)
+        write_rows(file, "f {}//{} {}//{} {}//{}\n", [*corners])
+
+
+def write_stl(mesh: Mesh, path: Path) -> None:
+    """Write triangles with normals of their own, in single precision."""
+    corners = mesh.vertices[mesh.triangles]
+    rows = np.zeros(len(corners), _STL_ROW)
+    with np.errstate(all="ignore"):  # what single precision does not hold, triangles without area
+        edges = corners[:, 1:] - corners[:, :1]
+        edges *= scales_to_one(np.abs(edges).max(axis=2))[..., None]  # each: no product underflows
+        across = np.cross(edges[:, 0], edges[:, 1])
+        size = np.sqrt(np.einsum("ij,ij->i", across, across))[:, None]
+        np.divide(across, size, out=rows["normal"], where=size > 0.0, casting="same_kind")
+        rows["corners"] = corners
+    with open(path, "wb") as file:
+        file.write(b"written by gaussmap".ljust(80))
+        file.write(np.uint32(len(rows)).astype("<u4").tobytes())
+        file.write(rows.data)

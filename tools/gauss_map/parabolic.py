@@ -1,0 +1,321 @@
+"""`parabolic_points`: where the Gaussian curvature of a spline or of a surface vanishes."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.base.checks import pair_of_cells
+from ...runtime.base.errors import GaussmapWarning, InputError, shown
+from ...runtime.base.scales import scale_to_one
+from ...runtime.fitting.fit import fit, spline_of
+from ...runtime.spline.spline import Spline
+from ...runtime.surface.surface import Surface
+from ...runtime.surface.surfaces import named
+from .classes import PatchClass, classify_patches
+from .curvature_field import CurvatureField
+from .parabolic_spline import polylines_of
+from .parabolic_surface import field_of, search
+from .polylines import refined
+from .rectangles import merged
+from .saddles import critical_points
+
+__all__ = ["ParabolicCurve", "ParabolicPoint", "ParabolicPoints", "parabolic_points"]
+
+Array = NDArray[np.float64]
+NEWTON_STEPS = 6
+MOST_CELLS = 128
+# A share of the domain that is worth a warning.
+WORTH_A_WARNING = 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class ParabolicCurve:
+    """A polyline of parabolic points.
+
+    Attributes
+    ----------
+    uv : (k, 2) float64 array
+        Parameters of the vertices. In a periodic direction they continue beyond the end of the
+        domain, without jumps.
+    points : (k, 3) float64 array
+        The vertices in space.
+    closed : bool
+        Whether the curve is closed; its last vertex then repeats the first.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> curve = gm.gauss_map.parabolic_points("torus").curves[0]
+    >>> curve.closed, curve.uv.shape == (len(curve.points), 2)
+    (True, True)
+
+    """
+
+    uv: Array
+    points: Array
+    closed: bool
+
+    def __repr__(self) -> str:
+        return f"ParabolicCurve({'closed' if self.closed else 'open'}, {len(self.uv):,} vertices)"
+
+
+@dataclass(frozen=True, eq=False)
+class ParabolicPoint:
+    """A place where the curvature touches zero without a change of sign.
+
+    Attributes
+    ----------
+    uv : (2,) float64 array
+        Its parameters.
+    point : (3,) float64 array
+        The point in space.
+    box : (2, 2) float64 array
+        Lowest and highest parameters of the rectangle that isolates it. A rectangle longer than the
+        tolerance contains a curve of such points, or a closed curve too small to trace, or K is
+        zero up to its error on all of it.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> f = ("u", "v", "u**4 + u**2*v**2 + v**4")
+    >>> bowl = gm.Surface.from_sympy(f, ("u", "v"), domain=((-1, "9/10"), (-1, "9/10")))
+    >>> place, = gm.gauss_map.parabolic_points(bowl).isolated
+    >>> place.uv.round(3) + 0.0, place.point.round(3) + 0.0
+    (array([0., 0.]), array([0., 0., 0.]))
+    >>> bool((place.box[0] <= place.uv).all() and (place.uv <= place.box[1]).all())
+    True
+
+    """
+
+    uv: Array
+    point: Array
+    box: Array
+
+
+@dataclass(frozen=True, eq=False)
+class ParabolicPoints:
+    """The parabolic points of a surface.
+
+    Attributes
+    ----------
+    curves : tuple of ParabolicCurve
+        Curves across which the Gaussian curvature changes its sign. They end at the border of the
+        surface, at a "mirrored" seam, and where they meet or cross; one may lie on the border.
+    isolated : tuple of ParabolicPoint
+        Places where the curvature touches zero without a change of sign.
+    flat : (k, 2, 2) float64 array
+        Rectangles of the parameter plane (lowest and highest corner) in which it vanishes up to
+        its error.
+    developable : bool
+        Whether it vanishes up to its error everywhere.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> found = gm.gauss_map.parabolic_points("torus")
+    >>> found
+    ParabolicPoints(2 curves, 0 isolated, 0 flat rectangles)
+    >>> len(found.curves), len(found.isolated), len(found.flat), found.developable
+    (2, 0, 0, False)
+
+    """
+
+    curves: tuple[ParabolicCurve, ...]
+    isolated: tuple[ParabolicPoint, ...]
+    flat: Array
+    developable: bool
+
+    def __repr__(self) -> str:
+        counts = f"{len(self.curves):,} curves, {len(self.isolated):,} isolated"
+        whole = ", developable" if self.developable else ""
+        return f"ParabolicPoints({counts}, {len(self.flat):,} flat rectangles{whole})"
+
+
+def parabolic_points(
+    surface: Surface | Spline | str,
+    *,
+    tolerance: float = 1e-4,
+    cells: Sequence[int] | None = None,
+) -> ParabolicPoints:
+    """Find the parabolic points of a surface or a spline (paper, Sect. 3.2 and Remark 3.1).
+
+    Parameters
+    ----------
+    surface : Surface, Spline or str
+        Of a `Spline`, and of a surface given by a grid of points, which is a spline, exact lines
+        inside patches and the edges across which the curvature changes its sign. Any other
+        `Surface` has to be smooth; its own curvature is used.
+    tolerance : float, default 1e-4
+        Largest distance of polylines from the curves in space, and largest size of the rectangles
+        that isolate points, relative to the size of the surface and of its domain; 1e-7 to 0.1.
+    cells : pair of int, optional
+        Numbers (m, n) of panels on which a smooth surface is interpolated, at most 128 each. By
+        default 8 × 8, or as many as it takes to resolve the surface, at most 64 × 64. For a grid of
+        points, the cells of its spline (see `fit`).
+
+    Returns
+    -------
+    ParabolicPoints
+        Curves across which K changes its sign, places where it only touches zero, flat rectangles.
+
+    Raises
+    ------
+    InputError
+        For a tolerance out of range, unusable `cells`, `cells` together with a spline, or anything
+        but a surface or a spline.
+    SurfaceError
+        If the surface cannot be evaluated.
+
+    Warns
+    -----
+    GaussmapWarning
+        If the curvature cannot be computed on more than 0.01 % of the domain (a pole, a crease);
+        these parts are left out.
+
+    Notes
+    -----
+    A smooth surface is interpolated on each panel by polynomials of degree 15 and differentiated.
+    The error of K is estimated: it is about 1e-9 where the surface is resolved, and up to 1 % of K
+    on the panel where it is not. Where K is less than its error, its sign is not used: such places
+    are `flat`. Zeros of K of higher order are located only as accurately as K is known. Curves
+    closer to each other than a cell (1/16 of a panel) may be missed or joined wrongly; so may a
+    crossing at which they are separated by less than 1/16 of a cell.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> gm.gauss_map.parabolic_points(gm.surfaces.torus())
+    ParabolicPoints(2 curves, 0 isolated, 0 flat rectangles)
+
+    """
+    limit, surface = _tolerance(tolerance), named(surface)
+    if isinstance(surface, Spline):
+        return _of_spline(spline_of(surface, cells), limit)
+    if not isinstance(surface, Surface):
+        raise InputError(
+            f"parabolic_points takes a Surface or a Spline, not {type(surface).__name__}."
+        )
+    if surface.grid is not None:
+        return _of_spline(fit(surface, cells), limit)
+    return _of_surface(surface, limit, _panels(cells))
+
+
+def _of_spline(spline: Spline, tolerance: float) -> ParabolicPoints:
+    classes = classify_patches(spline).reshape(-1, 4)
+    curves = []
+    scale = spline.scale
+    size = tolerance * _size(spline.coefficients[1:-1, 1:-1].reshape(-1, 3) * scale)
+    for uv, closed in polylines_of(spline):
+        finer = refined(uv, lambda x: scale * _evaluated(spline, x), size, lambda x: x)
+        curves.append(ParabolicCurve(finer, _evaluated(spline, finer), closed))
+    flat = np.isin(classes, (PatchClass.PLANAR, PatchClass.DEVELOPABLE, PatchClass.SINGULAR))
+    i, j = np.divmod(np.flatnonzero(flat.all(axis=1)), spline.cells[1])
+    corners = np.stack([[i, j], [i + 1, j + 1]]).transpose(2, 0, 1)
+    boxes = spline.frame[:2] + corners * spline.frame[2:]
+    return ParabolicPoints(tuple(curves), (), merged(boxes), bool(flat.all()))
+
+
+def _of_surface(
+    surface: Surface, tolerance: float, panels: tuple[int, int] | None
+) -> ParabolicPoints:
+    field = field_of(surface, panels)
+    extent = np.array([high - low for low, high in surface.domain])
+    found = search(field, 0.125 * tolerance * extent)
+    if found.unresolved > WORTH_A_WARNING:
+        warnings.warn(
+            f"the curvature of {surface.name!r} cannot be computed on "
+            f"{100.0 * found.unresolved:.3g} % of its domain (a pole, a crease, fine detail, or "
+            "coordinates with too few digits), which is left out; the spline of the surface "
+            "(`fit`) has parabolic points everywhere.",
+            GaussmapWarning,
+            stacklevel=3,
+        )
+    grid = surface.evaluate(*np.meshgrid(*(np.linspace(*ends, 17) for ends in surface.domain)))
+    scale = scale_to_one(float(np.ptp(grid, axis=(0, 1)).max()))
+    size = tolerance * _size(grid.reshape(-1, 3) * scale)
+    limits = _limits(surface)
+    curves = []
+    for uv, closed in found.polylines:
+        finer = refined(
+            uv,
+            lambda x: scale * _evaluated(surface, x),
+            size,
+            lambda x: np.clip(_onto_curve(field, x), *limits),
+        )
+        curves.append(ParabolicCurve(finer, _evaluated(surface, finer), closed))
+    isolated = []
+    for box in found.boxes:
+        uv = _lowest(field, box)
+        isolated.append(ParabolicPoint(uv, _evaluated(surface, uv[None])[0], box))
+    return ParabolicPoints(tuple(curves), tuple(isolated), found.flat, bool(field.flat.all()))
+
+
+# --- places on the curves and points K = 0 --------------------------------------------------------
+
+
+def _onto_curve(field: CurvatureField, places: Array) -> Array:
+    """Move places (k, 2) along the gradient of K to where it vanishes, by Newton steps."""
+    for _ in range(NEWTON_STEPS):
+        K, slope = field.evaluate(places), field.gradient(places)
+        square = np.einsum("kx,kx->k", slope, slope)
+        step = np.divide(K, square, out=np.zeros_like(K), where=square > 0.0)
+        places = places - step[:, None] * slope
+    return places
+
+
+def _lowest(field: CurvatureField, box: Array) -> Array:
+    """Return the place in a rectangle where the gradient of K vanishes, else its middle."""
+    middle = box.mean(axis=0)
+    place = critical_points(field, middle[None], box[1] - box[0])
+    inside = ((box[0] <= place[0]) & (place[0] <= box[1])).all()
+    return place[0] if inside else middle
+
+
+# --- arguments and evaluation ---------------------------------------------------------------------
+
+
+def _evaluated(surface: Surface | Spline, uv: Array) -> Array:
+    """Return the points (k, 3) at parameters (k, 2), which may lie beyond a periodic end."""
+    inside = uv.copy()
+    for axis, ((low, high), ends) in enumerate(zip(surface.domain, surface.boundary, strict=True)):
+        if ends[0] == "periodic":
+            inside[:, axis] = low + np.mod(inside[:, axis] - low, high - low)
+    return surface.evaluate(inside[:, 0], inside[:, 1])
+
+
+def _limits(surface: Surface) -> tuple[Array, Array]:
+    """Return the lowest and highest parameters, infinite where the surface is periodic."""
+    pairs = [
+        (-np.inf, np.inf) if ends[0] == "periodic" else domain
+        for domain, ends in zip(surface.domain, surface.boundary, strict=True)
+    ]
+    low, high = np.array(pairs).T
+    return low, high
+
+
+def _size(points: Array) -> float:
+    return float(np.linalg.norm(np.ptp(points, axis=0)))
+
+
+def _tolerance(tolerance: float) -> float:
+    try:
+        value = float(tolerance)
+    except (TypeError, ValueError):
+        raise InputError(f"tolerance must be a number, not {shown(tolerance)}.") from None
+    if not 1e-7 <= value <= 0.1:
+        raise InputError(f"tolerance must lie between 1e-7 and 0.1, and is {shown(tolerance)}.")
+    return value
+
+
+def _panels(cells: Sequence[int] | None) -> tuple[int, int] | None:
+    if cells is None:
+        return None
+    m, n = pair_of_cells(cells)
+    if max(m, n) > MOST_CELLS:
+        raise InputError(f"at most {MOST_CELLS} x {MOST_CELLS} cells can be used, not {m} x {n}.")
+    return m, n

@@ -1,0 +1,232 @@
+"""Solid angles of Gaussian images: line integrals along the arcs of their boundaries."""
+
+from __future__ import annotations
+
+import math
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...generated.gaussian_image import boundary_arc
+from ...runtime.base.formula_calls import python_function, vector
+from ..kernels.solid_angle import integrate_arcs
+
+__all__ = ["boundary_of", "by_boundary", "is_wide", "solid_angles", "triangle_of"]
+
+Array = NDArray[np.float64]
+# Normals of one triangle must be this near to their mean (as a cosine); wider ones are subdivided.
+NARROW = 0.5
+# A sum of unit normals shorter than this has no direction.
+SMALL = 1e-9
+# Around a singular point inside, wide triangles remain at any depth. Those that remain after DEPTH
+# subdivisions are omitted, a solid angle of about 2^-26 (deeper, rounding costs more). Along a
+# curve of singular points their number soon exceeds MOST_WIDE, and about 2^-12 is omitted.
+DEPTH = 26
+MOST_WIDE = 20_000
+LEFT_OUT = 2.0**-6
+# Gauss-Legendre on an arc and on its halves agree to this, or the halves are cut again; so are arcs
+# with an end that is shorter than the rest by this factor, where the direction may turn too fast to
+# be seen by either.
+SHORT = 1.0 / 16.0
+NODES = 16
+AGREEMENT = 1e-15
+ARC_DEPTH = 40
+MOST_PARTS = 1_000_000
+# Poles to choose from, and how many normals of each arc have to be far from the opposite pole.
+POLES = np.array([x for x in product((-1.0, 0.0, 1.0), repeat=3) if any(x)])
+POLES /= np.linalg.norm(POLES, axis=1, keepdims=True)
+SAMPLES = 9
+# The edges of a triangle, counter-clockwise in (u, v): their corners, and the opposite one.
+EDGES = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
+
+
+def solid_angles(normals: Array) -> Array:
+    """Return the solid angles (k,) of triangles, given the polar forms of their normal fields.
+
+    Singular points, where N vanishes, have to be corners (exactly zero) for the full accuracy.
+
+    `normals` (k, 3, 3, 3) holds the control normal of each two corners. The result is the integral
+    of the Gaussian curvature over the surface: negative where that is hyperbolic; what overlaps
+    counts as often as it is covered. Exact up to rounding, about 1e-15 for each triangle.
+    """
+    result = np.zeros(len(normals))
+    owners, poles, narrow = _narrow(normals)
+    arcs = boundary_of(narrow)
+    integrals = integrate(np.concatenate(arcs), np.tile(poles, (len(arcs), 1)))
+    np.add.at(result, np.tile(owners, len(arcs)), integrals)
+    return result
+
+
+def by_boundary(normals: Array, about: float) -> float:
+    """Return the solid angle of one triangle (3, 3, 3, 3) by the integral along its boundary alone.
+
+    That is known up to whole spheres, which `about` decides. It is as good at a singular corner,
+    where subdivision has to leave something out. `about` itself if the boundary is not closed.
+    """
+    arcs = np.concatenate(boundary_of(normals[None]))
+    columns = map(vector, np.moveaxis(arcs[..., None, :], 1, 0))
+    arc, _ = python_function(boundary_arc)(*columns, np.linspace(0.0, 1.0, SAMPLES))
+    curve = np.stack(arc)
+    lengths = np.linalg.norm(curve, axis=0)
+    curve = np.divide(curve, lengths, out=np.zeros_like(curve), where=lengths > 0.0)
+    pole = POLES[int((POLES @ curve.reshape(3, -1)).min(axis=1).argmax())]
+    whole = float(integrate(arcs, np.tile(pole, (len(arcs), 1))).sum())
+    better = math.remainder(whole - about, 4.0 * math.pi)
+    return about + better if abs(better) < LEFT_OUT else about
+
+
+def is_wide(normals: Array) -> NDArray[np.bool_]:
+    """Say which triangles (k,) have normals that are not all near their mean."""
+    return ~_near_mean(normals)[1] & normals.any(axis=(1, 2, 3))
+
+
+def triangle_of(normals: Array, corners: Array) -> Array:
+    """Return the polar forms (k, 3, 3, 3) of triangles with barycentric corners (k, 3, 3)."""
+    return np.einsum("kia,kjb,kabx->kijx", corners, corners, normals, optimize=True)
+
+
+def boundary_of(normals: Array) -> list[Array]:
+    """Return the arcs (k, 3, 3) that bound the images of k triangles, counter-clockwise.
+
+    Three belong to the edges, from u = 1 on. An edge without normals has its limit, which is part
+    of a great circle. Three more close the boundary at the corners that are singular points: the
+    limits of the normals there, which lie on a great circle; they are points at regular corners.
+    """
+    edges = []
+    for i, j, k in EDGES:
+        arc = np.stack([normals[:, i, i], normals[:, i, j], normals[:, j, j]], axis=1)
+        ends = normals[:, i, k], normals[:, j, k]
+        limit = np.stack([ends[0], 0.5 * (ends[0] + ends[1]), ends[1]], axis=1)
+        edges.append(np.where(np.any(arc, axis=(1, 2), keepdims=True), arc, limit))
+    corners = []
+    for before, after in ((edges[2], edges[0]), (edges[0], edges[1]), (edges[1], edges[2])):
+        start, end = _first(before[:, ::-1]), _first(after)
+        corners.append(np.stack([start, 0.5 * (start + end), end], axis=1))
+    return edges + corners
+
+
+def integrate(arcs: Array, poles: Array) -> Array:
+    """Return the integrals (k,) of the solid-angle form along arcs (k, 3, 3), up to rounding."""
+    nodes, weights = np.polynomial.legendre.leggauss(NODES)
+    nodes, weights = 0.5 + 0.5 * nodes, 0.5 * weights
+
+    def once(arcs: Array, poles: Array) -> Array:
+        integrals = np.empty(len(arcs))
+        integrate_arcs(arcs, poles, nodes, weights, integrals)
+        return integrals
+
+    result = np.zeros(len(arcs))
+    curved = np.any(arcs[:, 0] != arcs[:, 2], axis=1) | np.any(arcs[:, 0] != arcs[:, 1], axis=1)
+    owners = np.flatnonzero(curved)
+    arcs, poles = np.ascontiguousarray(arcs[owners]), np.ascontiguousarray(poles[owners])
+    whole = once(arcs, poles)
+    for _ in range(ARC_DEPTH):
+        if not 0 < len(owners) < MOST_PARTS:
+            break
+        parts = _halves(arcs)
+        twice = np.repeat(poles, 2, axis=0)
+        integrals = once(parts, twice).reshape(-1, 2)
+        rough = np.abs(integrals.sum(axis=1) - whole) > AGREEMENT + 8.0 * np.spacing(np.abs(whole))
+        rough |= _has_short_end(arcs)
+        np.add.at(result, owners[~rough], integrals[~rough].sum(axis=1))
+        owners = np.repeat(owners[rough], 2)
+        arcs, poles = parts[np.repeat(rough, 2)], twice[np.repeat(rough, 2)]
+        whole = integrals[rough].ravel()
+    np.add.at(result, owners, whole)
+    return result
+
+
+def _halves(arcs: Array) -> Array:
+    """Return the two halves (2 k, 3, 3) of quadratic Bézier curves, one after the other."""
+    left, right = (0.5 * (arcs[:, k] + arcs[:, k + 1]) for k in (0, 1))
+    middle = 0.5 * (left + right)
+    parts = np.stack([arcs[:, 0], left, middle, middle, right, arcs[:, 2]], axis=1)
+    return parts.reshape(-1, 3, 3)
+
+
+# --- triangles that are narrow enough -------------------------------------------------------------
+
+QUARTERS = 0.5 * np.array(
+    [
+        [[2, 0, 0], [1, 1, 0], [1, 0, 1]],
+        [[1, 1, 0], [0, 2, 0], [0, 1, 1]],
+        [[1, 0, 1], [0, 1, 1], [0, 0, 2]],
+        [[0, 1, 1], [1, 0, 1], [1, 1, 0]],
+    ],
+    dtype=float,
+)
+
+
+def _narrow(normals: Array) -> tuple[NDArray[np.intp], Array, Array]:
+    """Subdivide triangles until each has its normals near a pole.
+
+    Returns the number of the triangle of which each is a part, the poles (m, 3) and the polar forms
+    (m, 3, 3, 3). What has no normals is left out.
+    """
+    owners: NDArray[np.intp] = np.arange(len(normals))
+    found = []
+    for depth in range(DEPTH):
+        means, ready = _near_mean(normals)
+        found.append((owners[ready], means[ready], normals[ready]))
+        wide = ~ready & normals.any(axis=(1, 2, 3))
+        if not wide.any() or (depth > 8 and np.count_nonzero(wide) > MOST_WIDE):
+            break
+        normals, which = _cut(normals[wide])
+        owners = owners[wide][which]
+    owner, pole, part = (np.concatenate(x) for x in zip(*found, strict=True))
+    return owner, pole, part
+
+
+def _near_mean(normals: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Return the mean directions (k, 3) of control normals, and whether all are near to them."""
+    net = normals.reshape(-1, 9, 3)
+    lengths = np.linalg.norm(net, axis=2, keepdims=True)
+    directions = np.divide(net, lengths, out=np.zeros_like(net), where=lengths > 0.0)
+    means = directions.sum(axis=1)
+    sizes = np.linalg.norm(means, axis=1, keepdims=True)
+    means = np.divide(means, sizes, out=np.zeros_like(means), where=sizes > SMALL)
+    cosines = np.einsum("kix,kx->ki", directions, means)
+    cosines[lengths[..., 0] == 0.0] = 1.0
+    return means, (cosines.min(axis=1) > NARROW) & (sizes[:, 0] > SMALL)
+
+
+def _cut(normals: Array) -> tuple[Array, NDArray[np.intp]]:
+    """Cut triangles into smaller ones; also returns the number of the triangle that each is from.
+
+    Into four, but at a singular corner where the normals turn by more than 60 degrees into two,
+    from that corner on: smaller triangles there turn as much.
+    """
+    whole = np.ones(len(normals), dtype=bool)
+    parts, which = [], []
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        left, right = normals[:, i, j], normals[:, i, k]
+        lengths = np.linalg.norm(left, axis=1) * np.linalg.norm(right, axis=1)
+        turning = np.einsum("kx,kx->k", left, right) < NARROW * lengths
+        here = np.flatnonzero(whole & turning & ~normals[:, i, i].any(axis=1))
+        whole[here] = False
+        for end in (j, k):
+            corners = np.eye(3)
+            corners[end] = 0.5 * (np.eye(3)[j] + np.eye(3)[k])
+            parts.append(triangle_of(normals[here], np.broadcast_to(corners, (len(here), 3, 3))))
+            which.append(here)
+    here = np.flatnonzero(whole)
+    for corners in QUARTERS:
+        parts.append(triangle_of(normals[here], np.broadcast_to(corners, (len(here), 3, 3))))
+        which.append(here)
+    return np.concatenate(parts), np.concatenate(which)
+
+
+def _has_short_end(arcs: Array) -> NDArray[np.bool_]:
+    """Say which arcs begin or end near a singular point, but not in it."""
+    lengths = np.linalg.norm(arcs, axis=2)
+    ends = np.where(lengths[:, ::2] > 0.0, lengths[:, ::2], np.inf)
+    return ends.min(axis=1) < SHORT * lengths.max(axis=1)
+
+
+def _first(arcs: Array) -> Array:
+    """Return the first control normal (k, 3) of each arc that is not zero, of unit length."""
+    nonzero = arcs.any(axis=2)
+    first = np.take_along_axis(arcs, nonzero.argmax(axis=1)[:, None, None], axis=1)[:, 0]
+    length = np.linalg.norm(first, axis=1, keepdims=True)
+    return np.divide(first, length, out=np.zeros_like(first), where=length > 0.0)

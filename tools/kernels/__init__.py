@@ -1,0 +1,1 @@
+"""Compiled loops of the tools, as those of `runtime/kernels/`."""

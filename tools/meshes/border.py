@@ -1,0 +1,249 @@
+"""The border of a trimmed surface: polylines in the parameter domain, scaled to the unit square."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.domain.domain import Boundary
+from ...runtime.domain.loops import Loops
+from ...runtime.domain.trim import TrimPart
+from ...runtime.spline.missing import Known
+from ...runtime.spline.spline import Spline
+from ..gauss_map.chains import Segment, joined
+
+__all__ = ["border_lines", "wrapped"]
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+# Polylines are cut into this number of steps for each cell.
+STEPS_A_CELL = 8
+# Whether a segment is a border is tested at this distance from its middle on both sides.
+ASIDE = 1e-7
+# What is closer to an open side than this lies on it.
+ON_SIDE = 1e-9
+# The border of a predicate is searched on a grid with this number of nodes for each cell, of these
+# numbers of nodes, and then by bisections; so are middles of its segments, several times.
+NODES_A_CELL, FEWEST, MOST, BISECTIONS, PASSES = 4, 64, 1024, 40, 5
+MOST_POINTS = 50_000
+
+
+def border_lines(spline: Spline) -> list[Array]:
+    """Return polylines (k, 2) that bound the part of a spline inside its trim.
+
+    Borders on open sides of the domain are left out. Closed polylines repeat their first point.
+    Those across seams may run beyond the unit square.
+    """
+    assert spline.trim is not None
+    lines = []
+    for part in spline.trim.parts:
+        others = [x for x in spline.trim.parts if x is not part]
+        for line in _lines(part, spline):
+            dense = _with_crossings(_dense(line, spline), spline.boundary)
+            lines += _pieces(dense, _is_border(dense, part, others, spline))
+    return lines
+
+
+def wrapped(positions: Array, boundary: Boundary) -> Array:
+    """Return positions (k, 2) in the unit square, across its seams."""
+    positions = positions.copy()
+    for axis, (end, _) in enumerate(boundary):
+        if end in ("periodic", "mirrored"):
+            turns = np.floor(positions[:, axis])
+            positions[:, axis] -= turns
+            if end == "mirrored":
+                odd = np.mod(turns, 2.0) == 1.0
+                positions[odd, 1 - axis] = 1.0 - positions[odd, 1 - axis]
+    return positions
+
+
+def _uv(positions: Array, spline: Spline) -> Array:
+    low, high = np.array(spline.domain).T
+    return low + wrapped(positions, spline.boundary) * (high - low)
+
+
+def _lines(part: TrimPart, spline: Spline) -> list[Array]:
+    """Return the polylines where one condition changes, whatever the others are."""
+    low, high = np.array(spline.domain).T
+    if isinstance(part, Loops):
+        closed = [np.concatenate([x, x[:1]]) for x in part.polygons]
+        return [(x - low) / (high - low) for x in closed]
+    if isinstance(part, Known):
+        segments = list(_edges_of_known(part, spline.boundary))
+    else:
+        segments = list(_changes(part, spline))
+        return [_refined(line, part, spline) for line, _ in joined(segments)]
+    return [line for line, _ in joined(segments)]
+
+
+def _dense(line: Array, spline: Spline) -> Array:
+    """Cut the segments of a polyline into short steps."""
+    along = np.diff(line, axis=0)
+    reach = (np.abs(along) * spline.cells).max(axis=1, initial=0.0)
+    parts = np.maximum(np.ceil(STEPS_A_CELL * reach), 1).astype(np.int64)
+    owner = np.repeat(np.arange(len(along)), parts)
+    number = np.arange(len(owner)) - (np.cumsum(parts) - parts)[owner]
+    points = line[owner] + (number / parts[owner])[:, None] * along[owner]
+    return np.concatenate([points, line[-1:]])
+
+
+def _with_crossings(line: Array, boundary: Boundary) -> Array:
+    """Insert the points at which a polyline crosses open sides, exactly on them."""
+    for axis, ends in enumerate(boundary):
+        if ends[0] in ("periodic", "mirrored"):
+            continue
+        for side in (0.0, 1.0):
+            line[np.abs(line[:, axis] - side) <= ON_SIDE, axis] = side
+            before, after = line[:-1, axis] - side, line[1:, axis] - side
+            at = np.flatnonzero(before * after < 0.0)
+            share = (before[at] / (before[at] - after[at]))[:, None]
+            crossings = line[at] + share * (line[at + 1] - line[at])
+            crossings[:, axis] = side
+            line = np.insert(line, at + 1, crossings, axis=0)
+    return line
+
+
+def _is_border(line: Array, part: TrimPart, others: list[TrimPart], spline: Spline) -> Flags:
+    """Say which segments of a polyline have the surface on just one side, inside the domain."""
+    middles, along = (line[1:] + line[:-1]) / 2.0, np.diff(line, axis=0)
+    lengths = np.linalg.norm(along, axis=1)
+    aside = np.stack([-along[:, 1], along[:, 0]], axis=1)
+    aside *= (ASIDE / np.where(lengths > 0.0, lengths, 1.0))[:, None]
+    found = lengths > 0.0
+    for axis, ends in enumerate(spline.boundary):
+        if ends[0] not in ("periodic", "mirrored"):
+            found &= (middles[:, axis] > ON_SIDE) & (middles[:, axis] < 1.0 - ON_SIDE)
+    places = middles + aside, middles - aside
+    if isinstance(part, Loops):
+        left, right = (part.contains(_uv(x, spline)) for x in places)
+        found &= left != right
+    for other in others:
+        left, right = (other.contains(_uv(x, spline)) for x in places)
+        found &= left | right
+    return found
+
+
+def _pieces(line: Array, kept: Flags) -> list[Array]:
+    """Return the parts of a polyline with consecutive segments that are kept."""
+    if kept.all():
+        return [line]
+    if (line[0] == line[-1]).all():
+        start = int(np.argmin(kept))  # of a closed one, begin where it is open
+        line = np.concatenate([line[start:-1], line[: start + 1]])
+        kept = np.roll(kept, -start)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], kept, [False]]).astype(np.int8)))
+    return [line[first : last + 1] for first, last in edges.reshape(-1, 2)]
+
+
+# --- missing points of a grid ---------------------------------------------------------------------
+
+
+def _edges_of_known(part: Known, boundary: Boundary) -> Iterator[Segment]:
+    """Yield the edges between a patch that is known and one that is not."""
+    m, n = part.cells
+    known = part.patches.reshape(m, n, 4)
+    closes = [ends[0] == "periodic" for ends in boundary]
+
+    def place(i: float, j: float) -> tuple[float, float]:
+        return (i % m if closes[0] else i, j % n if closes[1] else j)
+
+    def segment(*ends: tuple[float, float]) -> Segment:
+        return place(*ends[0]), place(*ends[1]), np.array(ends) / (m, n)
+
+    # The corner between a patch and the next one of the cell, counterclockwise from the south.
+    for turn, (di, dj) in enumerate([(1, 0), (1, 1), (0, 1), (0, 0)]):
+        for i, j in np.argwhere(known[..., turn] != known[..., (turn + 1) % 4]).tolist():
+            yield segment((i + 0.5, j + 0.5), (i + di, j + dj))
+    for axis, first, second in ((0, 1, 3), (1, 2, 0)):
+        following = np.roll(known[..., second], -1, axis=axis)
+        end = boundary[axis][0]
+        if end == "mirrored":
+            last = (-1, slice(None)) if axis == 0 else (slice(None), -1)
+            following[last] = following[last][::-1]
+        differs = known[..., first] != following
+        if end not in ("periodic", "mirrored"):
+            differs[(-1, slice(None)) if axis == 0 else (slice(None), -1)] = False
+        for i, j in np.argwhere(differs).tolist():
+            yield segment(
+                *([(i + 1, j), (i + 1, j + 1)] if axis == 0 else [(i, j + 1), (i + 1, j + 1)])
+            )
+
+
+# --- predicates -----------------------------------------------------------------------------------
+
+
+def _changes(part: TrimPart, spline: Spline) -> Iterator[Segment]:
+    """Yield the segments on which a condition changes: marching squares, refined by bisection."""
+    counts = [int(np.clip(NODES_A_CELL * x, FEWEST, MOST)) for x in spline.cells]
+    closes = [ends[0] == "periodic" for ends in spline.boundary]
+    nodes = np.stack(
+        np.meshgrid(*(np.linspace(0.0, 1.0, k + 1) for k in counts), indexing="ij"), -1
+    )
+
+    def contains(positions: Array) -> Flags:
+        return part.contains(_uv(positions.reshape(-1, 2), spline)).reshape(positions.shape[:-1])
+
+    inside = contains(nodes)
+    crossings = []
+    for axis in (0, 1):
+        if closes[axis]:
+            inside[(-1, slice(None)) if axis == 0 else (slice(None), -1)] = (
+                inside[0] if axis == 0 else inside[:, 0]
+            )
+    for axis in (0, 1):
+        start, end = (nodes[:-1], nodes[1:]) if axis == 0 else (nodes[:, :-1], nodes[:, 1:])
+        at_start, at_end = (
+            (inside[:-1], inside[1:]) if axis == 0 else (inside[:, :-1], inside[:, 1:])
+        )
+        changes = at_start != at_end
+        found = np.full((*changes.shape, 2), np.nan)
+        found[changes] = _bisected(start[changes], end[changes], at_start[changes], part, spline)
+        crossings.append(found)
+    along_u, along_v = crossings
+
+    def node(axis: int, i: int, j: int) -> tuple[int, int, int]:
+        return (axis, i % counts[0] if closes[0] else i, j % counts[1] if closes[1] else j)
+
+    sides = [along_u[:, :-1], along_v[1:], along_u[:, 1:], along_v[:-1]]  # south, east, north, west
+    cut = ~np.isnan(np.stack([x[..., 0] for x in sides], axis=-1))
+    for i, j in np.argwhere(cut.any(axis=2)).tolist():
+        names = [node(0, i, j), node(1, i + 1, j), node(0, i, j + 1), node(1, i, j)]
+        ends = np.flatnonzero(cut[i, j]).tolist()
+        pairs = [(ends[0], ends[1])]
+        if len(ends) == 4:
+            centre = (nodes[i, j] + nodes[i + 1, j + 1]) / 2.0
+            alike = bool(contains(centre[None])[0]) == bool(inside[i, j])
+            pairs = [(0, 1), (2, 3)] if alike else [(0, 3), (1, 2)]
+        for a, b in pairs:
+            yield names[a], names[b], np.stack([sides[a][i, j], sides[b][i, j]])
+
+
+def _refined(line: Array, part: TrimPart, spline: Spline) -> Array:
+    """Insert points of the border of a condition near the middles of the segments of a polyline."""
+    for _ in range(PASSES):
+        if len(line) > MOST_POINTS:
+            break
+        middles, along = (line[1:] + line[:-1]) / 2.0, np.diff(line, axis=0)
+        aside = np.stack([-along[:, 1], along[:, 0]], axis=1) / 2.0
+        low, high = middles - aside, middles + aside
+        for axis, ends in enumerate(spline.boundary):
+            if ends[0] not in ("periodic", "mirrored"):
+                low[:, axis], high[:, axis] = (np.clip(x[:, axis], 0.0, 1.0) for x in (low, high))
+        left, right = (part.contains(_uv(x, spline)) for x in (low, high))
+        here = left != right
+        middles[here] = _bisected(low[here], high[here], left[here], part, spline)
+        line = np.insert(line, np.arange(1, len(line)), middles, axis=0)
+    return line
+
+
+def _bisected(low: Array, high: Array, at_low: Flags, part: TrimPart, spline: Spline) -> Array:
+    """Return where a condition changes between positions low and high (k, 2), by bisection."""
+    low, high = low.copy(), high.copy()
+    for _ in range(BISECTIONS):
+        middle = (low + high) / 2.0
+        same = part.contains(_uv(middle, spline)) == at_low
+        low[same], high[~same] = middle[same], middle[~same]
+    return (low + high) / 2.0

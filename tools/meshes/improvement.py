@@ -1,0 +1,118 @@
+"""Better triangles: flips of edges towards the normals or to larger angles, and collapses."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.base.errors import InputError, shown
+from ...runtime.base.tolerances import NO_AREA
+from ..kernels import collapses
+from ..kernels import flips as kernels
+from .mesh import scaled
+
+if TYPE_CHECKING:
+    from .meshing import Triangulated
+
+__all__ = ["Prefer", "checked_prefer", "flip_edges", "improved"]
+
+Prefer = Literal["normals", "shape"]
+KINDS = ("shape", "normals")
+
+# For better shapes a triangle may deviate by this angle (degrees) from a normal at a corner, and
+# not more, unless it did before.
+LARGEST_DEVIATION = 30.0
+# Triangles with smaller angles (degrees) than these are removed, one bound after the other, until
+# the angle that this part of all triangles falls below is at least ENOUGH.
+SMALLEST = (5.0, 10.0, 15.0, 20.0, 25.0)
+PART, ENOUGH = 0.05, 25.0
+# For each bound at most this number of times: a collapse may allow another one.
+ROUNDS = 4
+
+
+def checked_prefer(prefer: object) -> Prefer:
+    """Return what a mesh is to prefer; InputError if that is unknown."""
+    if prefer not in KINDS:
+        raise InputError(f"prefer must be 'shape' or 'normals', not {shown(prefer)}.")
+    return prefer  # pyright: ignore[reportReturnType]
+
+
+def improved(mesh: Triangulated, prefer: Prefer, angle: float) -> Triangulated:
+    """Return a mesh with better triangles, by flips and, where these do not suffice, collapses.
+
+    For "normals" edges are collapsed at triangles without area only. So are those between samples
+    on a graded grid, whose cells may be long: of the others, those in angles below the smallest
+    bound are left out. No flip makes a triangle deviate from normals by more than `angle` degrees.
+    """
+    least = math.cos(math.radians(min(angle, LARGEST_DEVIATION)))
+    flip_edges(mesh, prefer, least)
+    has_grid = bool(mesh.is_node.any())
+    if prefer == "normals" or has_grid:
+        mesh = _without_small_angles(mesh, prefer, NO_AREA, least)
+    if prefer == "normals":
+        return mesh
+    if has_grid:
+        mesh = replace(mesh, is_free=mesh.is_free & ~mesh.is_node)
+        return _without_small_angles(mesh, prefer, math.tan(math.radians(SMALLEST[0])), least)
+    for smallest in SMALLEST:
+        if smallest > SMALLEST[0] and _has_good_shape(mesh):
+            break
+        mesh = _without_small_angles(mesh, prefer, math.tan(math.radians(smallest)), least)
+    return mesh
+
+
+def flip_edges(mesh: Triangulated, prefer: Prefer, least: float = 1.0) -> int:
+    """Flip edges until no flip improves triangles; return the number of flips.
+
+    For "shape" cosines between triangles and normals may fall, down to `least`.
+    """
+    return kernels.flip_edges(
+        scaled(mesh.points),
+        mesh.normals,
+        mesh.triangles,
+        mesh.sides,
+        mesh.neighbours,
+        prefer == "shape",
+        least,
+        np.arange(len(mesh.triangles)),
+        np.ones(len(mesh.triangles), dtype=np.bool_),
+    )
+
+
+def tangents_of(mesh: Triangulated) -> NDArray[np.float64]:
+    """Return the tangent of the smallest angle of each triangle (k,)."""
+    tangents = np.empty(len(mesh.triangles))
+    kernels.smallest_tangents(scaled(mesh.points), mesh.triangles, tangents)
+    return tangents
+
+
+def _has_good_shape(mesh: Triangulated) -> bool:
+    """Say whether few enough triangles, but for those on borders, have small angles."""
+    inner = tangents_of(mesh)[(mesh.neighbours >= 0).all(axis=1)]
+    few = math.tan(math.radians(ENOUGH))
+    return bool(np.count_nonzero(inner < few) <= PART * len(inner))
+
+
+def _without_small_angles(
+    mesh: Triangulated, prefer: Prefer, smallest: float, least: float
+) -> Triangulated:
+    """Collapse and flip edges at triangles below the tangent `smallest`, while that helps."""
+    for _ in range(ROUNDS):
+        if tangents_of(mesh).min(initial=np.inf) >= smallest or not collapses.collapse_edges(
+            scaled(mesh.points),
+            mesh.normals,
+            mesh.triangles,
+            mesh.sides,
+            mesh.neighbours,
+            mesh.is_free,
+            smallest,
+            least,
+        ):
+            break
+        mesh = mesh.chosen(mesh.triangles[:, 0] >= 0)
+        flip_edges(mesh, prefer, least)
+    return mesh

@@ -1,0 +1,195 @@
+"""A triangle mesh through samples, and how it writes itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.base.checks import checked_array
+from ...runtime.base.errors import InputError
+from ...runtime.base.scales import scale_to_one
+from ...runtime.spline.spline import short_label
+from ..kernels.flips import smallest_cosines, smallest_tangents
+from .methods import Methods
+
+if TYPE_CHECKING:
+    pass
+
+__all__ = ["Mesh", "centred", "scaled"]
+
+# The default of `sides`: 1 everywhere.
+_ALL_ALIKE: Any = None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Mesh(Methods):
+    """A mesh of T triangles between M vertices of a surface; made by `Samples.mesh`.
+
+    All arrays are C-contiguous; one that is not is copied.
+
+    Attributes
+    ----------
+    vertices : (M, 3) float64 array
+        Points of the surface.
+    normals : (M, 3) float64 array
+        The unit normals of the surface there; at a pole the mean of those around it.
+    uv : (M, 2) float64 array
+        The parameters. They jump where a triangle crosses a seam.
+    triangles : (T, 3) int64 array
+        Rows of `vertices`, counterclockwise as seen from where the normals point; on a one-sided
+        surface from where that at the first corner points.
+    sample_index : (M,) int64 array
+        The number of the sample at a vertex; −1 for points added on open borders and at poles.
+    name : str
+        Label of the surface.
+    sides : (T, 3) int64 array
+        1, or −1 where the normal at a corner points to the other side than that at the first
+        corner: on a one-sided surface normals change sides somewhere. By default 1.
+
+    Raises
+    ------
+    InputError
+        If an array has another shape or dtype, or a triangle has a vertex that does not exist.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> mesh = gm.sample("torus", 200, cells=(16, 16)).mesh()
+    >>> mesh
+    Mesh(200 vertices, 400 triangles on torus)
+    >>> mesh.vertices.shape, mesh.normals.shape, mesh.uv.shape, mesh.triangles.shape
+    ((200, 3), (200, 3), (200, 2), (400, 3))
+    >>> bool((mesh.sample_index >= 0).all()), bool((mesh.sides == 1).all()), mesh.name
+    (True, True, 'torus')
+    >>> len(mesh.edges), len(mesh.boundary_edges), mesh.euler_characteristic
+    (600, 0, 0)
+    >>> bool(mesh.angles.mean() < 30), bool(mesh.smallest_angles.min() > 5)
+    (True, True)
+
+    """
+
+    vertices: NDArray[np.float64]
+    normals: NDArray[np.float64]
+    uv: NDArray[np.float64]
+    triangles: NDArray[np.int64]
+    sample_index: NDArray[np.int64]
+    name: str = "surface"
+    sides: NDArray[np.int64] = _ALL_ALIKE
+
+    def __post_init__(self) -> None:
+        count = len(self.vertices) if isinstance(self.vertices, np.ndarray) else 0
+        faces = len(self.triangles) if isinstance(self.triangles, np.ndarray) else 0
+        if self.sides is None:
+            object.__setattr__(self, "sides", np.ones((faces, 3), dtype=np.int64))
+        floating, whole = np.dtype(np.float64), np.dtype(np.int64)
+        wanted: dict[str, tuple[np.dtype[Any], tuple[int, ...]]] = {
+            "vertices": (floating, (count, 3)),
+            "normals": (floating, (count, 3)),
+            "uv": (floating, (count, 2)),
+            "triangles": (whole, (faces, 3)),
+            "sample_index": (whole, (count,)),
+            "sides": (whole, (faces, 3)),
+        }
+        for name, (dtype, shape) in wanted.items():
+            array = checked_array(name, getattr(self, name), shape, dtype)
+            object.__setattr__(self, name, array)
+        if faces and not 0 <= self.triangles.min() <= self.triangles.max() < count:
+            raise InputError(f"triangles have vertices that are not there: there are {count}.")
+
+    def __repr__(self) -> str:
+        return (
+            f"Mesh({len(self.vertices):,} vertices, {len(self.triangles):,} triangles on "
+            f"{short_label(self.name)})"
+        )
+
+    @cached_property
+    def _edges(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """The edges (E, 2), and in how many triangles each of them is."""
+        pairs = np.sort(self.triangles[:, [[1, 2], [2, 0], [0, 1]]].reshape(-1, 2), axis=1)
+        count = max(len(self.vertices), 1)
+        keys, times = np.unique(pairs[:, 0] * count + pairs[:, 1], return_counts=True)
+        return np.stack(np.divmod(keys, count), axis=1), times
+
+    @property
+    def edges(self) -> NDArray[np.int64]:
+        """(E, 2) int64 array: the edges, each once, as pairs of vertices."""
+        return self._edges[0]
+
+    @property
+    def boundary_edges(self) -> NDArray[np.int64]:
+        """(B, 2) int64 array: the edges of only one triangle; none if the mesh is closed."""
+        edges, times = self._edges
+        return edges[times == 1]
+
+    @property
+    def euler_characteristic(self) -> int:
+        """M − E + T: 2 for a sphere, 1 for a disk, 0 for a torus, a band or a Klein bottle."""
+        return len(self.vertices) - len(self.edges) + len(self.triangles)
+
+    @cached_property
+    def angles(self) -> NDArray[np.float64]:
+        """(T,) float64 array: the largest angle between a triangle and the normals at its corners.
+
+        In degrees; 180 for a triangle without area.
+        """
+        cosines = np.empty(len(self.triangles))
+        if len(cosines):
+            points = scaled(self.vertices)
+            smallest_cosines(points, self.normals, self.triangles, self.sides, cosines)
+        return np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0)))
+
+    @cached_property
+    def smallest_angles(self) -> NDArray[np.float64]:
+        """(T,) float64 array: the smallest angle of each triangle, in degrees; at most 60."""
+        tangents = np.empty(len(self.triangles))
+        if len(tangents):
+            smallest_tangents(scaled(self.vertices), self.triangles, tangents)
+        return np.degrees(np.arctan(tangents))
+
+    def summary(self) -> str:
+        """Return one line: vertices, triangles, whether it is closed, the quality of triangles.
+
+        Returns
+        -------
+        str
+            The line, without a line break.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.sample("torus", 200, cells=(16, 16)).mesh().summary()
+        '200 vertices, 400 triangles, closed; 95 % have angles of at least 3...°; they deviate ...'
+
+        """
+        added = int(np.count_nonzero(self.sample_index < 0))
+        line = f"{len(self.vertices):,} vertices"
+        line += f" ({added:,} of them added)" if added else ""
+        line += f", {len(self.triangles):,} triangles"
+        if not len(self.triangles):
+            return line
+        border = len(self.boundary_edges)
+        line += f", {border:,} edges on the border" if border else ", closed"
+        small, mean, worst = (
+            np.quantile(self.smallest_angles, 0.05),
+            self.angles.mean(),
+            self.angles.max(),
+        )
+        line += f"; 95 % have angles of at least {small:.1f}°"
+        return f"{line}; they deviate from the normals by {mean:.2f}° (mean), {worst:.2f}° (worst)"
+
+
+def scaled(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return points (k, 3) centred and scaled to a size of about 1: products do not overflow."""
+    around, scale = centred(points)
+    return around * scale
+
+
+def centred(points: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
+    """Return points (k, 3) centred, and a power of two that scales them to about 1."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    around = points - (low / 2.0 + high / 2.0)
+    return around, scale_to_one(float(np.abs(around).max()))

@@ -1,0 +1,289 @@
+"""From samples to a mesh: vertices, their triangulation, and its improvement."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.base.errors import InputError, shown
+from ...runtime.domain.domain import Boundary
+from ...runtime.place.newton import evaluate_on_surface
+from ...runtime.spline.spline import Spline
+from ...runtime.surface.surface import Surface
+from ..kernels.flips import smallest_cosines
+from .filled_lattice import lattice_triangles
+from .improvement import checked_prefer, flip_edges, improved
+from .mesh import Mesh, scaled
+from .triangulation import neighbours, triangulations
+from .trimming import trimmed_triangles
+from .vertices import Vertices, before_offset, boundary_of
+
+if TYPE_CHECKING:
+    from ...runtime.samples.samples import Samples
+
+__all__ = ["Triangulated", "mesh_of"]
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+WHOLE = 180.0  # degrees: no triangle deviates by more
+
+
+def mesh_of(samples: Samples, spline: Spline, angle: float | None, prefer: str) -> Mesh:
+    """Return what `Samples.mesh` returns."""
+    preferred = checked_prefer(prefer)
+    largest = WHOLE if angle is None else _checked_angle(angle)
+    if not len(samples):
+        raise InputError("there are no samples, and so there is nothing to make a mesh of.")
+    triangulated = Triangulated.on_lattice(samples, spline)
+    if triangulated is None:
+        triangulated = Triangulated.of(samples, spline, must_be_whole=angle is None)
+    if largest < WHOLE:
+        flip_edges(triangulated, "normals")
+        triangulated = triangulated.within(largest)
+    triangulated = improved(triangulated, preferred, largest)
+    return (triangulated.within(largest) if largest < WHOLE else triangulated).mesh()
+
+
+def _checked_angle(angle: object) -> float:
+    if isinstance(angle, bool) or not isinstance(angle, int | float | np.number):
+        raise InputError(f"angle must be a number of degrees, not {shown(angle)}.")
+    if not 0.0 < angle <= WHOLE:
+        raise InputError(f"angle must lie between 0 and 180 degrees, and is {shown(angle)}.")
+    return float(angle)
+
+
+@dataclass(frozen=True, eq=False)
+class Triangulated:
+    """Samples and added vertices in a triangulation of the parameter domain.
+
+    `sample` and `is_free` are those of `Vertices`; `triangles`, `sides` and `neighbours` (k, 3)
+    those of `kernels.flips`, which changes them in place; `is_node` says which vertices are on a
+    graded grid.
+    """
+
+    name: str
+    uv: Array
+    sample: Indices
+    is_free: NDArray[np.bool_]
+    points: Array
+    normals: Array
+    triangles: Indices
+    sides: Indices
+    neighbours: Indices
+    is_node: NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, samples: Samples, spline: Spline, must_be_whole: bool = True) -> Triangulated:
+        """Triangulate samples anywhere; InputError if the whole is required and that fails."""
+        boundary = boundary_of(spline)
+        vertices = Vertices.of(samples, spline, boundary)
+        if spline.trim is None:
+            triangles, sides, adjacent = _triangles(vertices, spline, boundary, must_be_whole)
+        else:
+            vertices, triangles, sides, adjacent, is_whole = trimmed_triangles(
+                vertices, samples, spline, boundary, _lengths(spline),
+                lambda x: _triangles(x, spline, boundary, False),
+            )  # fmt: skip
+            if not len(triangles) or (must_be_whole and not is_whole):
+                raise _too_few(len(vertices.sample), spline.name)
+        return cls._through(samples, spline, vertices, triangles, sides, adjacent)
+
+    @classmethod
+    def on_lattice(cls, samples: Samples, spline: Spline) -> Triangulated | None:
+        """Triangulate samples on a graded grid, and flip edges towards the normals.
+
+        None if they are on no complete grid, or if some triangles remain folded: too many samples
+        are between its lines, or all are too far apart.
+        """
+        found = lattice_triangles(samples, spline)
+        if found is None:
+            return None
+        vertices, triangles, adjacent, is_node = found
+        sides = np.ones_like(triangles)
+        mesh = cls._through(samples, spline, vertices, triangles, sides, adjacent)
+        flip_edges(mesh, "normals")
+        is_folded = mesh.cosines().min() < 0.0
+        return None if is_folded else replace(mesh, is_node=is_node)
+
+    @classmethod
+    def _through(
+        cls, samples: Samples, spline: Spline, vertices: Vertices,
+        triangles: Indices, sides: Indices, adjacent: Indices,
+    ) -> Triangulated:  # fmt: skip
+        """Add the points and normals of vertices."""
+        uv, points, normals = _on_surface(vertices, samples, spline)
+        _fill_missing(normals, triangles, sides)
+        if samples.offset_of is not None:
+            points = _moved(vertices, points, normals, samples)
+        return cls(
+            spline.name, uv, vertices.sample, vertices.is_free,
+            points, normals, triangles, sides, adjacent, np.zeros_like(vertices.is_free),
+        )  # fmt: skip
+
+    def cosines(self) -> Array:
+        """Return the smallest cosine of each triangle and the normals at its corners."""
+        cosines = np.empty(len(self.triangles))
+        smallest_cosines(scaled(self.points), self.normals, self.triangles, self.sides, cosines)
+        return cosines
+
+    def within(self, angle: float) -> Triangulated:
+        """Leave out the triangles that deviate by more than `angle` degrees from normals.
+
+        Raises InputError if an edge is then in more than two triangles.
+        """
+        chosen = self.cosines() >= math.cos(math.radians(angle))
+        if not chosen.any():
+            raise InputError(
+                f"every triangle deviates by more than {angle:g} degrees from a normal at a "
+                "corner; allow a larger angle, or take more samples."
+            )
+        triangles = self.triangles[chosen]
+        adjacent, is_surface = neighbours(triangles, np.ones(len(self.points), dtype=bool))
+        if not is_surface:
+            raise _too_few(len(self.points), self.name)
+        return replace(self, triangles=triangles, sides=self.sides[chosen], neighbours=adjacent)
+
+    def chosen(self, which: NDArray[np.bool_]) -> Triangulated:
+        """Choose triangles; the others are neighbours of none of them."""
+        number = np.cumsum(which) - 1
+        adjacent = self.neighbours[which]
+        adjacent = np.where(adjacent >= 0, number[adjacent], -1)
+        return replace(
+            self, triangles=self.triangles[which], sides=self.sides[which], neighbours=adjacent
+        )
+
+    def mesh(self) -> Mesh:
+        """Return the mesh."""
+        triangles, sides = self.triangles, self.sides
+        reverse = sides[:, :1] < 0
+        triangles, sides = (
+            np.where(reverse, x[:, [0, 2, 1]], x) for x in (triangles, sides * sides[:, :1])
+        )
+        is_used = np.zeros(len(self.points), dtype=bool)
+        is_used[triangles] = True
+        used, corners = np.flatnonzero(is_used), (np.cumsum(is_used) - 1)[triangles]
+        return Mesh(
+            self.points[used],
+            self.normals[used],
+            self.uv[used],
+            corners,
+            self.sample[used],
+            name=self.name,
+            sides=sides,
+        )
+
+
+def _triangles(
+    vertices: Vertices, spline: Spline, boundary: Boundary, must_be_whole: bool
+) -> tuple[Indices, Indices, Indices]:
+    """Return triangles (k, 3), their sides of the surface, and their neighbours.
+
+    Raises InputError if there is no triangulation, or if the whole surface is required and is not
+    triangulated: each edge in two triangles or on an open side of the domain, with the Euler
+    characteristic of the surface.
+    """
+    found = None
+    lengths = _lengths(spline)
+    for triangles, sides in triangulations(vertices.positions, vertices.is_free, boundary, lengths):
+        adjacent, is_closed = neighbours(triangles, ~vertices.is_free)
+        found = triangles, sides, adjacent
+        if is_closed and _characteristic(triangles, adjacent) == _characteristic_of(boundary):
+            return found
+    if found is None or must_be_whole:
+        raise _too_few(len(vertices.sample), spline.name)
+    return found
+
+
+def _characteristic(triangles: Indices, adjacent: Indices) -> int:
+    """Return the Euler characteristic of triangles with their neighbours."""
+    edges = (adjacent.size + int(np.count_nonzero(adjacent < 0))) // 2
+    used = int(np.count_nonzero(np.bincount(triangles.ravel())))
+    return used - edges + len(triangles)
+
+
+def _characteristic_of(boundary: Boundary) -> int:
+    """Return the Euler characteristic of a surface; each pole closes a hole of a band."""
+    closing = [kinds[0] in ("periodic", "mirrored") for kinds in boundary]
+    if all(closing):
+        return int(boundary[0][0] == boundary[1][0] == "mirrored")  # the projective plane
+    return sum(end == "pole" for kinds in boundary for end in kinds) if any(closing) else 1
+
+
+def _too_few(count: int, name: str) -> InputError:
+    return InputError(
+        f"the vertices on {name!r}, {count:,} in all, are too few, or leave too large gaps, for "
+        "a mesh of the whole; take more samples or normals in all directions, or leave out the "
+        "triangles across gaps, by angle=... of mesh() or --deviation of the command."
+    )
+
+
+def _lengths(spline: Spline) -> Array:
+    """Return the mean lengths (2,) of a spline along u and along v, 1 where they vanish."""
+    inner = spline.coefficients[1:-1, 1:-1] * spline.scale
+    steps = [np.linalg.norm(np.diff(inner, axis=axis), axis=2).mean() for axis in (0, 1)]
+    lengths = np.array(steps) * spline.cells
+    return np.where(lengths > 0.0, lengths, 1.0)
+
+
+def _on_surface(vertices: Vertices, samples: Samples, spline: Spline) -> tuple[Array, Array, Array]:
+    """Return parameters, points and unit normals of vertices; NaN for missing normals.
+
+    Points of an offset are those of the surface.
+    """
+    uv = vertices.uv(spline)
+    points, normals = np.empty((2, len(uv), 3))
+    is_sample = vertices.sample >= 0
+    own = vertices.sample[is_sample]
+    uv[is_sample] = samples.uv[own]
+    points[is_sample], normals[is_sample] = before_offset(samples)[own], samples.normals[own]
+    base = samples.offset_of or samples
+    added = uv[~is_sample]
+    if not isinstance(base.surface, Surface) or not len(added):
+        points[~is_sample], normals[~is_sample] = (
+            spline.evaluate(*added.T),
+            spline.normals(*added.T),
+        )
+    else:
+        points[~is_sample], found = evaluate_on_surface(base.surface, spline, added)[:2]
+        normals[~is_sample] = np.where(found.any(axis=1, keepdims=True), found, np.nan)
+    normals[_is_added_at_apex(vertices, spline)] = np.nan
+    return uv, points, normals
+
+
+def _is_added_at_apex(vertices: Vertices, spline: Spline) -> NDArray[np.bool_]:
+    """Say which vertices are added where a side is one point, and no pole: it has no normal."""
+    found = np.zeros(len(vertices.sample), dtype=bool)
+    boundary = boundary_of(spline, apexes=True)
+    for axis, place in ((0, 0), (0, 1), (1, 0), (1, 1)):
+        if boundary[axis][place] == "pole" != spline.boundary[axis][place]:
+            found |= (vertices.positions[:, axis] == place) & (vertices.sample < 0)
+    return found
+
+
+def _moved(vertices: Vertices, points: Array, normals: Array, samples: Samples) -> Array:
+    """Return the points of an offset: the samples, and added vertices moved as they were."""
+    assert samples.offset_of is not None
+    is_sample = vertices.sample >= 0
+    moved = points + samples.offset_of.distance * normals
+    moved[is_sample] = samples.points[vertices.sample[is_sample]]
+    return moved
+
+
+def _fill_missing(normals: Array, triangles: Indices, sides: Indices) -> None:
+    """Give vertices without a normal, such as poles, the mean of the normals around them.
+
+    It is 0 if these are missing, too.
+    """
+    missing = np.asarray(~np.isfinite(normals).all(axis=1))
+    normals[missing] = 0.0
+    touching = missing[triangles].any(axis=1)
+    corners, side = triangles[touching], sides[touching, :, None]
+    sums = np.zeros_like(normals)
+    np.add.at(sums, corners, side * (side * normals[corners]).sum(axis=1, keepdims=True))
+    lengths = np.linalg.norm(sums[missing], axis=1, keepdims=True)
+    normals[missing] = sums[missing] / np.where(lengths > 0.0, lengths, 1.0)

@@ -1,0 +1,66 @@
+"""The area of the surface that belongs to each sample."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.base.errors import SurfaceError
+from ...runtime.base.scales import scale_to_one
+from ...runtime.base.trees import tree_of
+from ..kernels.areas import corner_areas
+from .mesh import Mesh, centred
+
+if TYPE_CHECKING:
+    from ...runtime.samples.samples import Samples
+
+__all__ = ["area_weights"]
+
+Array = NDArray[np.float64]
+
+# Areas that are smaller than the mean one by this factor need not be accurate.
+SMALLEST = 1e-6
+
+
+def area_weights(samples: Samples, angle: float | None) -> Array:
+    """Return what `Samples.weights` returns."""
+    mesh = samples.mesh(angle=angle, prefer="normals")
+    parts, triangles = _areas(mesh), mesh.triangles
+    is_sample = mesh.sample_index[triangles] >= 0
+    number = is_sample.sum(axis=1)
+    # The parts of added vertices go to the samples at the other corners.
+    added = np.where(is_sample, 0.0, parts).sum(axis=1) / np.maximum(number, 1)
+    shares = np.where(is_sample, parts + added[:, None], 0.0)
+    samples_of, parts_of = mesh.sample_index[triangles[is_sample]], shares[is_sample]
+    weights = np.zeros(len(samples))
+    np.add.at(weights, samples_of, parts_of)
+    lost = number == 0
+    if lost.any():
+        centroids = mesh.vertices[triangles[lost]].mean(axis=1)
+        weights += _nearest(samples.points, centroids, parts[lost].sum(axis=1))
+    return weights
+
+
+def _areas(mesh: Mesh) -> Array:
+    """Return the parts (T, 3) of the areas over triangles that belong to their corners."""
+    points, scale = centred(mesh.vertices)
+    areas = np.empty(mesh.triangles.shape)
+    corner_areas(points * scale, mesh.normals, mesh.triangles, mesh.sides, areas)
+    least, limits = SMALLEST * float(areas.sum()) / len(areas), np.finfo(np.float64)
+    with np.errstate(over="ignore", under="ignore"):
+        smallest, total = least / scale / scale, float(areas.sum()) / scale / scale
+    if (total > limits.max or smallest < limits.tiny) and least > 0.0:
+        raise SurfaceError(
+            f"the areas of {mesh.name!r} are too {'large' if scale < 1.0 else 'small'} for "
+            "float64; choose another unit of length."
+        )
+    return areas / scale / scale
+
+
+def _nearest(points: Array, centroids: Array, areas: Array) -> Array:
+    """Return areas (N,): those at `centroids`, each added to the nearest of points (N, 3)."""
+    scale = scale_to_one(float(np.abs(points).max()))
+    nearest = tree_of(points * scale).query(centroids * scale)[1]
+    return np.bincount(nearest, areas, minlength=len(points)).astype(np.float64)

@@ -1,0 +1,475 @@
+"""The methods of `Samples` that tools define; each loads its tool when it is called.
+
+`Samples` takes them from here (see `runtime/base/later.py`), and imports nothing of tools.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..runtime.base.progress import busy
+from ..runtime.samples.samples import spline_or
+from ..runtime.samples.whole import Whole
+
+if TYPE_CHECKING:
+    import open3d  # pyright: ignore[reportMissingImports]
+    import pandas
+    import pyvista
+    import trimesh
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ..runtime.samples.samples import Samples
+    from ..runtime.spline.spline import Spline
+    from ..runtime.surface.surface import Surface
+    from .cad.part import Part
+    from .meshes.mesh import Mesh
+
+__all__ = [
+    "mesh",
+    "offset",
+    "plot",
+    "to_dataframe",
+    "to_open3d",
+    "to_pyvista",
+    "to_trimesh",
+    "view",
+    "weights",
+    "write",
+]
+
+
+def write(self: Samples, path: str | os.PathLike[str], *, progress: bool = False) -> None:
+    """Write the samples to a file; its suffix, in any case, chooses the format.
+
+    An existing file is replaced once the new one is complete; if anything fails, it stays as it
+    was. Files hold the fields that the samples hold, float32 as float32.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        Name of the file. The suffix is one of
+
+        - `.npz`: everything, the report included; reads back bit for bit.
+        - `.ply`: binary, one vertex a sample, all columns and the report (in comments); reads
+          back bit for bit. Indices are 32-bit. Needs the field `points`.
+        - `.csv`: a header row and one row a sample; as many digits as it takes to read the same
+          numbers again. With the extra "tables" Polars writes it, ten times as fast.
+        - `.xyz`: rows `x y z nx ny nz`, digits as in `.csv`, no header. Needs `points` and
+          `normals`.
+        - `.vtp`: VTK PolyData with all arrays, and the report as field data; needs `points`.
+        - `.parquet`, `.arrow`, `.feather`: the columns of `.csv` in binary, and the report and
+          the units in the metadata of the schema; need the extra "tables" (PyArrow). Feather is
+          the format of `.arrow`.
+        - `.las`, `.laz`: points, with all other columns as extra dimensions, and the CRS of a
+          `terrain`, whose `origin` is added again; coordinates are rounded to 1e-8 of the
+          extent. Need `points`, and the extra "gis" (laspy).
+    progress : bool, default False
+        Show on a terminal what is done, from a second on.
+
+    Raises
+    ------
+    UnknownNameError
+        If the suffix is none of these.
+    FileError
+        If the file cannot be written.
+    InputError
+        If an index does not fit into a `.ply` file, or the format needs a missing field.
+    MissingExtraError
+        If a library that the format needs is not installed.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> gm.sample("torus", 200, cells=(16, 16)).write("torus.ply")
+    >>> len(gm.read_samples("torus.ply"))
+    200
+
+    """
+    from .files.formats import write_samples
+
+    with busy("writing", progress):
+        write_samples(self, path)
+
+
+def mesh(
+    self: Samples,
+    spline: Spline | None = None,
+    *,
+    angle: float | None = None,
+    prefer: Literal["shape", "normals"] = "shape",
+    progress: bool = False,
+) -> Mesh:
+    """Return a triangle mesh of the whole surface through the samples.
+
+    Neighbours are those of a Delaunay triangulation of the parameters: the mesh closes where
+    the surface does, has one vertex at a pole, and reaches open borders by points that are
+    added there, as far apart as the samples near them. Then edges are flipped. Samples that
+    coincide become one vertex.
+
+    Samples on a complete graded grid (`row` and `column`) need no Delaunay triangulation: each
+    cell of the grid is cut along a diagonal, and samples between its lines are inserted. Points
+    are added where its lines meet open borders. Samples of trimmed and of one-sided surfaces,
+    parts of grids, and grids with more than 30 % of other samples are meshed as any others.
+
+    Parameters
+    ----------
+    spline : Spline, optional
+        The spline of the samples, if they do not know it; for an offset that of `offset_of`.
+    angle : float, optional
+        In degrees. Triangles that deviate from a normal at a corner by more are left out, for
+        samples of a part of the surface only.
+    prefer : {"shape", "normals"}, default "shape"
+        - "shape": triangles are Delaunay on the surface, and have angles as large as the
+          samples allow. A sample so close to others that a smallest angle stays below 5° is
+          left out, and further ones until 95 % of the smallest angles are 25° at least. A grid
+          keeps its samples, in long cells, too; for well-shaped triangles sample with
+          ``density="isotropic"``.
+        - "normals": triangles deviate from the normals at their corners as little as the
+          samples allow. They are long and thin where the surface is curved in one direction
+          only, and one sample is left out where a triangle would have no area.
+    progress : bool, default False
+        Show on a terminal what is done, from a second on.
+
+    Returns
+    -------
+    Mesh
+        The vertices, normals, parameters and triangles.
+
+    Raises
+    ------
+    MissingFieldError
+        Unless the samples have the fields points, normals and uv.
+    InputError
+        Without samples or spline, if a sample lies outside its domain, if `angle` leaves no
+        triangle, and, without it, if there are too few samples for a mesh that closes.
+
+    Notes
+    -----
+    Well-shaped triangles are the default because most programs that read a mesh need them:
+    simulation, smoothing, simplification, discrete curvatures, and files of single precision,
+    in which thin triangles lose their area. They cost accuracy: with the same number of
+    vertices, distances and angles to the surface are larger by about a third than with
+    "normals", see docs/meshes.md. That is the better choice for rendering, and for areas,
+    volumes and other integrals: `weights` uses it.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> samples = gm.sample("torus", 200, cells=(16, 16))
+    >>> samples.mesh()
+    Mesh(200 vertices, 400 triangles on torus)
+    >>> accurate = samples.mesh(prefer="normals")
+    >>> bool(accurate.angles.mean() < samples.mesh().angles.mean())
+    True
+
+    """
+    from .meshes.meshing import mesh_of
+
+    if spline is None and self.offset_of is not None:
+        spline = self.offset_of.spline
+    with busy("meshing", progress):
+        return mesh_of(self, spline_or(self, spline), angle, prefer)
+
+
+def weights(
+    self: Samples, *, angle: float | None = None, progress: bool = False
+) -> NDArray[np.float64]:
+    """Return the area of the surface that each sample stands for.
+
+    Σ w f(points) approximates the integral of f over the surface: its area for f = 1, the
+    volume of a closed surface for f = support / 3, 2π times the Euler characteristic for f =
+    gaussian_curvature. The error falls with the square of the distance between samples, that is
+    as 1 / N; that of the area as 1 / N², down to that of the spline. The weights are taken from
+    the mesh of the samples; its triangles are curved by the normals.
+
+    Parameters
+    ----------
+    angle : float, optional
+        In degrees, as in `mesh`.
+    progress : bool, default False
+        Show on a terminal what is done, from a second on.
+
+    Returns
+    -------
+    (N,) float64 array
+        Areas in L². Of samples that coincide, all but one have 0.
+
+    Raises
+    ------
+    MissingFieldError, InputError
+        As `mesh`.
+    SurfaceError
+        If float64 does not hold the areas, of surfaces larger than about 1e150 or smaller than
+        1e-150.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> samples = gm.sample("torus", 500)
+    >>> f"{samples.weights().sum():.1f}"  # 4π² · 0.35
+    '13.8'
+
+    """
+    from .meshes.weights import area_weights
+
+    with busy("computing weights", progress):
+        if isinstance(self.surface, Whole):
+            return self.surface.weights_of(self)
+        return area_weights(self, angle)
+
+
+def offset(self: Samples, distance: float) -> Samples:
+    """Return the samples moved along their normals: the offset surface x + d n.
+
+    Points, support and curvatures are those of the offset, if the samples have them; normals,
+    parameters and indices stay. `spline` and `surface` are None; `offset_of` has those of these
+    samples, from which `mesh` and `weights` of the offset take the neighbours.
+
+    Parameters
+    ----------
+    distance : float
+        The distance d, in L. For d < 0 the offset lies inwards, if normals point outwards.
+
+    Returns
+    -------
+    Samples
+        One for each sample. Where a radius of curvature becomes 0, the offset is singular: K is
+        infinite with its old sign, or NaN if it was 0, and H is NaN.
+
+    Raises
+    ------
+    InputError
+        Unless the distance is a finite number, and for curvatures whose squares their type does
+        not hold (of surfaces smaller than 1e-154 or larger than 1e154).
+    MissingFieldError
+        If points lack their normals, or one of the curvatures the other one.
+
+    Warns
+    -----
+    GaussmapWarning
+        If the offset folds, because d passes a radius of curvature of that side: at how many
+        samples (if they have curvatures), and the smallest radius. Normals stay there, too.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> gm.sample("sphere", normals=[[1, 0, 0]]).offset(0.5).points.round(3) + 0.0
+    array([[1.5, 0. , 0. ]])
+
+    """
+    from .support.offset import offset as moved_along_normals
+
+    return moved_along_normals(self, distance)
+
+
+def plot(
+    self: Samples,
+    surface: Surface | Spline | None = None,
+    *,
+    color: str | ArrayLike = "gaussian_curvature",
+    view: Sequence[float] = (28.0, -55.0),
+    axes: Axes | Sequence[Axes] | None = None,
+    normals: ArrayLike | None = None,
+) -> Figure:
+    """Draw the samples on their surface, and the unit sphere with their normals.
+
+    Parameters
+    ----------
+    surface : Surface, Spline or Part, optional
+        What the samples are on, if they do not know it.
+    color, view, axes, normals : optional
+        As in `plot`: what the colours show, elevation and azimuth in degrees, axes of your own,
+        the prescribed normals.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure, see `plot`.
+
+    Raises
+    ------
+    MissingExtraError, MissingFieldError, UnknownNameError, InputError, SurfaceError
+        As `plot`; InputError if the surface is not known.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> samples = gm.sample("torus", 200, cells=(16, 16))
+    >>> samples.plot(color="support", view=(60, 0)).savefig("torus.png")
+
+    """
+    from .pictures.plot import plot_samples
+
+    return plot_samples(self, surface, color=color, view=view, axes=axes, normals=normals)
+
+
+def view(
+    self: Samples, path: str | os.PathLike[str], surface: Surface | Spline | Part | None = None
+) -> None:
+    """Write one page for browsers: the surface and the unit sphere, which light up together.
+
+    Click a normal on the sphere, and its preimages light up on the surface; click a place on
+    the surface, and the Gaussian image of the region around it lights up on the sphere. With
+    the brush, or the shift key, drag to paint. The page holds all that it needs, 5 MB and more,
+    and works without a network.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        Name of the file, with the suffix `.html` or `.htm`. It is written whole or not at all.
+    surface : Surface, Spline or Part, optional
+        What the samples are on, if they do not know it.
+
+    Raises
+    ------
+    MissingExtraError
+        Without Plotly: ``pip install "gaussmap[view]"``.
+    UnknownNameError
+        If the suffix is none of these.
+    FileError
+        If the file cannot be written.
+    MissingFieldError
+        If the samples lack points, normals, Gaussian curvature or normal indices.
+    InputError
+        Without samples, for more than 50,000, and if the surface is not known.
+    SurfaceError
+        If the surface cannot be drawn.
+
+    Notes
+    -----
+    A click next to the dot of a sample takes the normal of that sample; another one takes the
+    direction that was clicked, or, if all samples are at prescribed normals, the nearest of
+    these. The points that light up are
+
+    - the samples with exactly this normal, up to the rounding of float32, if it is a prescribed
+      one, or if several samples have it, as on planes. Made with ``normals=icosphere(…)``,
+      samples are all points with that normal.
+    - else one sample for each connected group of samples, of one sign of K, whose normals are
+      within an angle of it: the nearest one in normal. That counts preimages correctly where
+      samples are dense relative to the angle, which a slider changes, and not next to
+      parabolic lines, where two preimages are about to meet.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> gm.sample("torus", 200, cells=(16, 16)).view("torus.html")
+
+    """
+    from .viewer.view import view as write_page
+
+    write_page(self, path, surface)
+
+
+def to_dataframe(self: Samples) -> pandas.DataFrame:
+    """Return a table with one row for each sample and the columns of a `.csv` file.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A copy, as of the other conversions.
+
+    Raises
+    ------
+    MissingExtraError
+        Without the extra `pandas`.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> table = gm.sample("torus", 200, cells=(16, 16)).to_dataframe()
+    >>> len(table), list(table.columns)[:4]
+    (200, ['x', 'y', 'z', 'nx'])
+
+    """
+    from .files.interop import samples_to_dataframe
+
+    return samples_to_dataframe(self)
+
+
+def to_pyvista(self: Samples) -> pyvista.PolyData:
+    """Return the points with all other fields as point data.
+
+    Returns
+    -------
+    pyvista.PolyData
+        The normals are its normals.
+
+    Raises
+    ------
+    MissingExtraError
+        Without the extra `vtk`.
+    MissingFieldError
+        Unless the samples have the field points.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> gm.sample("torus", 200, cells=(16, 16)).to_pyvista().n_points
+    200
+
+    """
+    from .files.interop import samples_to_pyvista
+
+    return samples_to_pyvista(self)
+
+
+def to_trimesh(self: Samples) -> trimesh.PointCloud:
+    """Return the points in float64, with all other fields in `metadata`.
+
+    Returns
+    -------
+    trimesh.PointCloud
+        The points.
+
+    Raises
+    ------
+    MissingExtraError
+        Without the extra `trimesh`.
+    MissingFieldError
+        Unless the samples have the field points.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> cloud = gm.sample("torus", 200, cells=(16, 16)).to_trimesh()
+    >>> cloud.vertices.shape, cloud.metadata["normals"].shape
+    ((200, 3), (200, 3))
+
+    """
+    from .files.interop import samples_to_trimesh
+
+    return samples_to_trimesh(self)
+
+
+def to_open3d(self: Samples) -> open3d.geometry.PointCloud:
+    """Return the points in float64, with their normals if the samples have them.
+
+    Returns
+    -------
+    open3d.geometry.PointCloud
+        The points.
+
+    Raises
+    ------
+    MissingExtraError
+        Without the extra `open3d`.
+    MissingFieldError
+        Unless the samples have the field points.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> samples = gm.sample("torus", 200, cells=(16, 16))
+    >>> samples.to_open3d().has_normals()  # doctest: +SKIP
+    True
+
+    """
+    from .files.interop import samples_to_open3d
+
+    return samples_to_open3d(self)

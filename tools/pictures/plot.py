@@ -1,0 +1,291 @@
+"""One picture of a sampling: the surface with its samples, the unit sphere with their normals."""
+
+from __future__ import annotations
+
+import textwrap
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...runtime.base.checks import finite_array
+from ...runtime.base.errors import InputError
+from ...runtime.base.extras import check_extra
+from ...runtime.directions.unit import as_normals
+from ...runtime.fitting.fit import spline_of
+from ...runtime.sample import sample
+from ...runtime.samples.samples import Samples
+from ...runtime.spline.spline import Spline
+from ...runtime.surface.surface import Surface
+from ...runtime.surface.surfaces import named
+from ..cad.part import Part
+from .colours import CURVATURE, checked_values, colours_of, draw_scale
+from .layout import (
+    HEIGHT,
+    LEFT,
+    LEGENDS,
+    MIDDLE,
+    RADIUS,
+    RIGHT,
+    TITLES,
+    WIDTH,
+    box,
+    write,
+)  # fmt: skip
+from .palette import PALE, STYLE
+from .part_scene import part_scene
+from .scene import AZIMUTH, ELEVATION, Scene
+from .scene import view as rows_of_view
+from .sphere_half import draw_sphere
+from .surface_half import View, draw_surface
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+__all__ = ["COUNT", "checked_normals", "draw", "plot", "plot_samples", "scene_of"]
+
+COUNT = 2_000  # samples, if no number is given
+DOTS_PER_INCH = 200
+LONGEST_LINE = 140  # letters of the summary
+VIEW = (ELEVATION, AZIMUTH)
+
+
+def plot(
+    surface: Surface | Spline | Part | str,
+    samples: Samples | None = None,
+    *,
+    color: str | ArrayLike = CURVATURE,
+    view: Sequence[float] = VIEW,
+    axes: Axes | Sequence[Axes] | None = None,
+    normals: ArrayLike | None = None,
+) -> Figure:
+    """Draw a surface or CAD part with samples, and the unit sphere with their normals.
+
+    On the left are the visible samples in colour. On the right is the unit sphere with the normals,
+    seen from the same direction, or turned towards their mean if they are concentrated. The heights
+    of a surface that are very small or large relative to its width are rescaled, and the label of
+    the axis gives the factor.
+
+    Parameters
+    ----------
+    surface : Surface, Spline, Part or str
+        What is drawn, as `sample` takes it.
+    samples : Samples, optional
+        Samples of it; by default 2,000 are made.
+    color : str or (N,) array_like, default "gaussian_curvature"
+        What the colours on the left show: the name of a column, as in tables ("support", "z",
+        "nx", "mean_curvature", "face_index" …), or a number for each sample.
+    view : (float, float), default (28, -55)
+        Elevation and azimuth of the viewer, in degrees.
+    axes : Axes3D, or (Axes3D, Axes), optional
+        Axes of your own to draw into: the surface only, or the surface and the sphere. They get no
+        title, legend and scale of colours. What is hidden is left out for this view only.
+    normals : (S, 3) array_like, optional
+        The prescribed normals of the samples: those without a sample are drawn in grey.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure. Notebooks show it; ``figure.savefig("torus.png")`` writes it. Pyplot does not
+        know it.
+
+    Raises
+    ------
+    MissingExtraError
+        Without Matplotlib: ``pip install "gaussmap[plot]"``.
+    MissingFieldError
+        If the samples lack points, normals, Gaussian curvature or normal indices.
+    UnknownNameError
+        For an unknown column.
+    InputError
+        For other unusable arguments.
+    SurfaceError
+        If the surface cannot be evaluated.
+
+    See Also
+    --------
+    Samples.plot : the same, of samples that know their surface.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> torus = gm.fit(gm.surfaces.torus(), cells=(16, 16))
+    >>> figure = gm.plot(torus, gm.sample(torus, 200), color="mean_curvature", view=(60, 0))
+    >>> figure.savefig("torus.png")
+
+    """
+    check_extra("matplotlib", "plot", "a picture")
+    seen_from = _checked_view(view)
+    panels = _checked_axes(axes)
+    if not isinstance(surface, Spline | Part):
+        surface = named(surface)
+    if samples is None:
+        samples = sample(surface, COUNT)
+    directions = checked_normals(samples, () if normals is None else normals)
+    checked_values(samples, color)
+    scene = scene_of(surface, rows_of_view(*seen_from))
+    return draw(samples, scene, directions, color=color, view=seen_from, axes=panels)
+
+
+def plot_samples(
+    samples: Samples,
+    surface: Surface | Spline | Part | None = None,
+    *,
+    color: str | ArrayLike = CURVATURE,
+    view: Sequence[float] = VIEW,
+    axes: Axes | Sequence[Axes] | None = None,
+    normals: ArrayLike | None = None,
+) -> Figure:
+    """Return what `plot` returns, for `Samples.plot`."""
+    check_extra("matplotlib", "plot", "a picture")
+    seen_from = _checked_view(view)
+    panels = _checked_axes(axes)
+    directions = checked_normals(samples, () if normals is None else normals)
+    checked_values(samples, color)
+    scene = scene_of_samples(samples, surface, rows_of_view(*seen_from))
+    return draw(samples, scene, directions, color=color, view=seen_from, axes=panels)
+
+
+def scene_of_samples(
+    samples: Samples,
+    surface: Surface | Spline | Part | None = None,
+    seen_from: NDArray[np.float64] | None = None,
+) -> Scene:
+    """Return the scene of what samples are on; InputError if that is unknown."""
+    base = samples.offset_of
+    for known in (surface, samples.spline, samples.surface):
+        if known is not None:
+            return scene_of(known, seen_from)  # pyright: ignore[reportArgumentType]
+    if base is not None and base.spline is not None:
+        return Scene.of(base.spline, seen_from, base.distance)
+    raise InputError(
+        "these samples do not know their surface (those from a file do not); give it, as in "
+        "samples.plot(surface)."
+    )
+
+
+def scene_of(
+    surface: Surface | Spline | Part, seen_from: NDArray[np.float64] | None = None
+) -> Scene:
+    """Return the scene of a surface, its spline, or a part."""
+    if isinstance(surface, Part):
+        return part_scene(surface, seen_from)
+    if not isinstance(surface, Surface | Spline):
+        kind = type(surface).__name__
+        raise InputError(f"surface must be a Surface, a Spline or a Part, not {kind}.")
+    # Of several pieces one spline is drawn, which rounds the edges between them.
+    return Scene.of(spline_of(surface, None), seen_from)
+
+
+def checked_normals(samples: Samples, normals: ArrayLike) -> NDArray[np.float64]:
+    """Return the prescribed normals as unit vectors (S, 3), none if none are given.
+
+    Raises InputError if there are too few of them for the samples.
+    """
+    if not isinstance(samples, Samples):
+        raise InputError(f"samples must be Samples, not {type(samples).__name__}.")
+    if np.size(normals) == 0 and len(samples):
+        return np.empty((0, 3))
+    if np.size(normals) == 0:
+        raise InputError("there are no samples to draw; give the normals that they were to have.")
+    directions = as_normals(normals)
+    if len(samples) and int(samples.normal_index.max()) >= len(directions):
+        raise InputError("the samples do not belong to these normals: there are too few normals.")
+    return directions
+
+
+def _checked_view(view: Sequence[float]) -> View:
+    elevation, azimuth = finite_array(view, (2,), "view").tolist()
+    return elevation, azimuth
+
+
+def _checked_axes(axes: Axes | Sequence[Axes] | None) -> tuple[Any, ...]:
+    """Return no axes, those of the surface, or those of the surface and the sphere."""
+    if axes is None:
+        return ()
+    from matplotlib.axes import Axes as AnyAxes
+    from mpl_toolkits.mplot3d import Axes3D
+
+    panels: tuple[Any, ...] = (axes,) if isinstance(axes, AnyAxes) else tuple(axes)
+    flat = all(isinstance(x, AnyAxes) and not isinstance(x, Axes3D) for x in panels[1:])
+    if len(panels) not in (1, 2) or not isinstance(panels[0], Axes3D) or not flat:
+        raise InputError(
+            'axes must be three-dimensional axes, made with projection="3d", or a pair of these '
+            "and of ordinary ones for the sphere."
+        )
+    return panels
+
+
+def draw(
+    samples: Samples,
+    scene: Scene,
+    normals: NDArray[np.float64],
+    *,
+    color: str | ArrayLike = CURVATURE,
+    view: View = VIEW,
+    axes: Sequence[Any] = (),
+    dots_per_inch: float = DOTS_PER_INCH,
+) -> Figure:
+    """Draw samples on a scene, and the prescribed normals, into a new figure or into axes."""
+    with _style():
+        colours = colours_of(samples, color)
+        if axes:
+            draw_surface(axes[0], samples, scene, colours, view, zoomed=False)
+            if len(axes) == 2:
+                _sphere_axes(axes[1])
+                draw_sphere(axes[1], samples, normals, scene.view)
+            return axes[0].figure
+        from .figure import Picture
+
+        figure = Picture(figsize=(WIDTH, HEIGHT), dpi=dots_per_inch)
+        _write_titles(figure, samples)
+        place = box(LEFT, MIDDLE, 4.5, 4.5)
+        left: Any = figure.add_axes(place, projection="3d")
+        visible = draw_surface(left, samples, scene, colours, view, zoomed=True)
+        if len(samples):
+            draw_scale(figure.add_axes(box(LEFT, LEGENDS + 0.06, 2.7, 0.1)), colours)
+        title = f"{visible:,} of {len(samples):,} samples visible"
+        write(figure, LEFT, TITLES, title if len(samples) else "no samples")
+        right = figure.add_axes(box(RIGHT, MIDDLE, 2.6 * RADIUS, 2.6 * RADIUS))
+        _sphere_axes(right)
+        handles = draw_sphere(right, samples, normals, scene.view)
+        figure.legend(
+            handles=handles, loc="center", bbox_to_anchor=(RIGHT / WIDTH, LEGENDS / HEIGHT),
+            ncols=3, frameon=False, handletextpad=0.1, columnspacing=1.4,
+        )  # fmt: skip
+        whose = "their normals" if len(samples) else "the prescribed normals"
+        write(figure, RIGHT, TITLES, f"{whose}, on the unit sphere")
+    return figure
+
+
+@contextmanager
+def _style() -> Iterator[None]:
+    """Draw with matplotlib's defaults, so that a picture does not depend on the user's settings."""
+    import matplotlib.style
+
+    with (
+        matplotlib.style.context(["default", STYLE]),
+        warnings.catch_warnings(),
+        np.errstate(all="ignore"),
+    ):
+        warnings.filterwarnings("ignore", message="Glyph .* missing")  # in the name of a surface
+        yield
+
+
+def _sphere_axes(axes: Axes) -> None:
+    axes.set(xlim=(-1.3, 1.3), ylim=(-1.3, 1.3), aspect="equal")
+    axes.set_axis_off()
+
+
+def _write_titles(figure: Figure, samples: Samples) -> None:
+    """Write the name of the surface and the summary of the samples."""
+    name = " ".join(samples.report.surface.split())
+    write(figure, WIDTH / 2, 4.64, name if len(name) <= 80 else name[:79] + "…", fontsize=11)
+    lines = textwrap.wrap(samples.summary(), LONGEST_LINE)
+    for k, line in enumerate(lines):
+        place = 4.43 + 0.03 * (len(lines) - 1) - 0.12 * k
+        write(figure, WIDTH / 2, place, line, fontsize=7.5, color=PALE)

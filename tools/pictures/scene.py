@@ -1,0 +1,186 @@
+"""Visibility of points in a picture.
+
+Matplotlib draws in three dimensions without a depth test. Here a point is hidden if a triangle of
+a mesh of the surface lies between it and the viewer.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.spline.spline import Spline
+
+__all__ = ["AZIMUTH", "ELEVATION", "Scene", "front", "height_factor", "quadrangles", "view"]
+
+ELEVATION, AZIMUTH = 28.0, -55.0  # of the viewer, in degrees
+MESH, MOST_MESH = 112, 224  # quadrangles along u and v: the number of cells, within these limits
+ISOLINES = 16  # parameter lines along u and v
+# A surface hides a sample if it is nearer to the viewer by this fraction of its diameter.
+HIDING = 0.01
+# A ratio of height to width below LOW or above HIGH is changed to about the second number.
+LOW, LOW_WANTED = 0.1, 0.25
+HIGH, HIGH_WANTED = 10.0, 2.0
+
+
+def view(elevation: float = ELEVATION, azimuth: float = AZIMUTH) -> NDArray[np.float64]:
+    """Return the rows (3, 3) right, up, and towards a viewer at two angles in degrees."""
+    angles = math.radians(elevation), math.radians(azimuth)
+    s, c, S, C = (f(angle) for angle in angles for f in (math.sin, math.cos))
+    return np.array([[-S, C, 0.0], [-s * C, -s * S, c], [c * C, c * S, s]])
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """A surface as quadrangles (Q, 4, 3) and lines on it, heights are drawn times `factor`.
+
+    The corners of a quadrangle are in cyclic order; that of a triangle repeats the last one. Each
+    line is an array (k, 3). `view` holds the rows right, up, and towards the viewer.
+    """
+
+    quadrangles: NDArray[np.float64]
+    lines: tuple[NDArray[np.float64], ...] = ()
+    factor: float = 1.0
+    view: NDArray[np.float64] = field(default_factory=view)
+
+    @classmethod
+    def of(
+        cls,
+        spline: Spline,
+        seen_from: NDArray[np.float64] | None = None,
+        distance: float = 0.0,
+    ) -> Scene:
+        """Return the scene of a spline, or of its offset, with heights rescaled if necessary."""
+        u, v = (
+            np.linspace(low, high, min(max(MESH, count), MOST_MESH) + 1)
+            for (low, high), count in zip(spline.domain, spline.cells, strict=True)
+        )
+        mesh = spline.evaluate(u[:, None], v)
+        if distance:
+            mesh = mesh + distance * np.nan_to_num(spline.normals(u[:, None], v))
+        pieces = [x[_some(len(x))] for x in (mesh, np.swapaxes(mesh, 0, 1))]
+        return cls.made(quadrangles(mesh), (*pieces[0], *pieces[1]), seen_from)
+
+    @classmethod
+    def made(
+        cls,
+        quadrangles: NDArray[np.float64],
+        lines: tuple[NDArray[np.float64], ...],
+        seen_from: NDArray[np.float64] | None = None,
+    ) -> Scene:
+        """Return the scene of quadrangles and lines, with heights rescaled if necessary."""
+        factor = height_factor(np.ptp(quadrangles.reshape(-1, 3), axis=0))
+        return cls(quadrangles, lines, factor, view() if seen_from is None else seen_from)
+
+    def seen(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return points (..., 3) as right, up, and nearness to the viewer."""
+        return (points * [1.0, 1.0, self.factor]) @ self.view.T
+
+    @cached_property
+    def triangles(self) -> NDArray[np.float64]:
+        """The halves (T, 3, 3) of the quadrangles, in the coordinates of `seen`."""
+        seen = self.seen(self.quadrangles)
+        return np.concatenate([seen[:, [0, 1, 2]], seen[:, [0, 2, 3]]])
+
+    @cached_property
+    def brightness(self) -> NDArray[np.float64]:
+        """The brightness (Q,) of the quadrangles, 0 … 1; the light comes from the upper left."""
+        a, b, c, d = np.moveaxis(self.seen(self.quadrangles), 1, 0)
+        size = np.abs([c - a, d - b]).max() or 1.0
+        normals = np.cross((c - a) / size, (d - b) / size)
+        length = np.linalg.norm(normals, axis=1, keepdims=True)
+        normals /= np.where(length > 0.0, length, 1.0)
+        normals *= np.where(normals[:, 2:] < 0.0, -1.0, 1.0)  # both sides are lit
+        lamp = np.array([-0.45, 0.6, 0.7])
+        return np.clip(normals @ (lamp / np.linalg.norm(lamp)), 0.0, 1.0)
+
+    @cached_property
+    def visible_lines(self) -> NDArray[np.float64]:
+        """The visible segments (k, 2, 3) of the lines."""
+        if not self.lines:
+            return np.empty((0, 2, 3))
+        seen = self.visible(np.concatenate(self.lines))
+        ends = np.cumsum([len(line) for line in self.lines])
+        segments = np.concatenate([np.stack([x[:-1], x[1:]], axis=1) for x in self.lines])
+        # A segment begins at each point but the last one of each line.
+        first = np.delete(np.arange(len(seen)), ends - 1)
+        return segments[seen[first] & seen[first + 1]]
+
+    def visible(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Return which points (P, 3) of the surface are visible, as booleans (P,)."""
+        seen = self.seen(points)
+        diameter = float(np.linalg.norm(np.ptp(self.triangles.reshape(-1, 3), axis=0)))
+        return seen[:, 2] >= front(self.triangles, seen[:, :2]) - HIDING * diameter
+
+
+def _some(count: int) -> NDArray[np.int64]:
+    """Return the numbers of the parameter lines that are drawn, of `count`."""
+    return np.linspace(0, count - 1, ISOLINES + 1).round().astype(np.int64)
+
+
+def quadrangles(mesh: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the quadrangles (Q, 4, 3) of a mesh (m + 1, n + 1, 3), corners in cyclic order."""
+    corners = mesh[:-1, :-1], mesh[1:, :-1], mesh[1:, 1:], mesh[:-1, 1:]
+    return np.stack([x.reshape(-1, 3) for x in corners], axis=1)
+
+
+def front(triangles: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the depth of the front one of triangles (T, 3, 3) at places (P, 2); −∞ without one."""
+    flat = triangles[..., :2]
+    grid = max(1, round(math.sqrt(len(triangles)) / 2))
+    lowest, highest = flat.min(axis=(0, 1)), flat.max(axis=(0, 1))
+    step = np.where(highest > lowest, highest - lowest, 1.0) / grid
+
+    def square(points: NDArray[np.float64]) -> NDArray[np.int64]:
+        return np.clip(np.floor((points - lowest) / step), 0, grid - 1).astype(np.int64)
+
+    # Every triangle is listed in all squares that its bounding box meets.
+    first, last = square(flat.min(axis=1)), square(flat.max(axis=1))
+    sizes = last - first + 1
+    owner, k = _runs(sizes.prod(axis=1))
+    i, j = np.divmod(k, sizes[owner, 1])
+    listed = (first[owner, 0] + i) * grid + first[owner, 1] + j
+    order = np.argsort(listed, kind="stable")
+    starts = np.searchsorted(listed[order], np.arange(grid * grid + 1))
+
+    own = square(places) @ [grid, 1]
+    place, k = _runs(starts[own + 1] - starts[own])
+    near = triangles[owner[order[starts[own][place] + k]]]
+    a, b, c = np.moveaxis(near[..., :2] - places[place][:, None], 1, 0)
+    weights = np.stack([_cross(b, c), _cross(c, a), _cross(a, b)], axis=1)
+    total = weights.sum(axis=1, keepdims=True)
+    weights /= np.where(total == 0.0, np.nan, total)
+    inside = (weights >= -1e-9).all(axis=1)
+    front = np.full(len(places), -np.inf)
+    np.maximum.at(front, place[inside], np.einsum("ij,ij->i", weights, near[..., 2])[inside])
+    return front
+
+
+def _runs(counts: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return each k repeated counts[k] times, and the numbers 0 … counts[k] − 1 for each k."""
+    which = np.repeat(np.arange(len(counts)), counts)
+    return which, np.arange(len(which)) - (np.cumsum(counts) - counts)[which]
+
+
+def _cross(left: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.float64]:
+    return left[:, 0] * right[:, 1] - left[:, 1] * right[:, 0]
+
+
+def height_factor(extent: NDArray[np.float64]) -> float:
+    """Return the factor of heights: 1, unless the surface is very flat or very high."""
+    width, height = float(extent[:2].max()), float(extent[2])
+    if LOW * width <= height <= HIGH * width or height <= 1e-9 * width or width <= 1e-9 * height:
+        return 1.0
+    if height < LOW * width:
+        return _round(LOW_WANTED * width / height)
+    return 1.0 / _round(height / (HIGH_WANTED * width))
+
+
+def _round(factor: float) -> float:
+    """Return the largest of …, 1, 2, 5, 10, 20, … that is not above a factor."""
+    power = 10.0 ** math.floor(math.log10(factor))
+    return power * max(digit for digit in (1, 2, 5) if digit * power <= factor * (1 + 1e-9))

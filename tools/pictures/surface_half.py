@@ -1,0 +1,100 @@
+"""The left half of a picture: the surface with its visible samples."""
+
+from __future__ import annotations
+
+import math
+from itertools import product
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.samples.samples import Samples
+from .colours import Colours
+from .layout import ROOM_HEIGHT, ROOM_WIDTH
+from .palette import INK
+from .scene import Scene
+
+__all__ = ["View", "draw_surface"]
+
+View = tuple[float, float]  # elevation and azimuth of the viewer, in degrees
+
+
+def draw_surface(
+    axes: Any,  # noqa: ANN401
+    samples: Samples,
+    scene: Scene,
+    colours: Colours,
+    view: View,
+    zoomed: bool,
+) -> int:
+    """Draw the surface and its visible samples into three-dimensional axes; return their number."""
+    from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
+
+    axes.computed_zorder = False
+    _frame(axes, scene, view, zoomed)
+    greys = (0.60 + 0.33 * scene.brightness)[:, None] * [0.98, 0.99, 1.0]
+    # Quadrangles are rasterized, also in .pdf and .svg files: seams would show between them.
+    axes.add_collection3d(
+        Poly3DCollection(
+            scene.quadrangles, facecolors=greys, edgecolors=greys, linewidths=0.3,
+            rasterized=True, zorder=1,
+        )
+    )  # fmt: skip
+    axes.add_collection3d(
+        Line3DCollection(scene.visible_lines, colors="white", linewidths=0.4, zorder=2)
+    )
+    if len(samples) == 0:
+        return 0
+    visible = scene.visible(samples.points.astype(np.float64))
+    area = min(max(12_000 / len(samples), 0.5), 16.0)
+    axes.scatter(
+        *samples.points[visible].T, c=colours.values[visible], cmap=colours.scale,
+        norm=colours.norm, s=area, depthshade=False, edgecolors=INK,
+        linewidths=min(0.2, 0.09 * math.sqrt(area)), zorder=3,
+    )  # fmt: skip
+    return int(np.count_nonzero(visible))
+
+
+def _frame(axes: Any, scene: Scene, view: View, zoomed: bool) -> None:  # noqa: ANN401
+    """Set the viewer, the limits, the same scale along all axes, and the labels."""
+    from matplotlib.ticker import FixedLocator, MaxNLocator
+
+    points = scene.quadrangles.reshape(-1, 3)
+    factors = np.array([1.0, 1.0, scene.factor])
+    extent = np.ptp(points, axis=0) * factors
+    margin = np.maximum(extent, 0.02 * extent.max() or 1.0) / factors / 2
+    limits = (points.min(axis=0) + points.max(axis=0)) / 2 + np.outer([-1.0, 1.0], margin)
+    axes.set_proj_type("ortho")
+    axes.view_init(*view)
+    axes.set(xlim=limits[:, 0], ylim=limits[:, 1], zlim=limits[:, 2])
+    aspect = 2 * margin * factors
+    axes.set_box_aspect(aspect, zoom=_zoom(axes, aspect) if zoomed else 1.0)
+    axes.patch.set_visible(False)
+
+    label = "z"
+    if scene.factor != 1.0:
+        by = max(scene.factor, 1 / scene.factor)
+        label = f"z ({'exaggerated' if scene.factor > 1.0 else 'reduced'} {by:g}×)"
+    low = extent[2] < 0.7 * extent.max()  # then matplotlib puts the label of z far away
+    names = (axes.xaxis, "x", 1), (axes.yaxis, "y", 1), (axes.zaxis, label, -4 if low else 3)
+    for k, (axis, name, distance) in enumerate(names):
+        axis.set_label_text(name)
+        axis.labelpad = distance
+        flat = extent[k] < 0.02 * extent.max()
+        middle = FixedLocator([limits[:, k].mean()])
+        axis.set_major_locator(middle if flat else MaxNLocator(4, prune="both"))
+    axes.tick_params(labelsize=6.5, pad=-1, colors=INK)
+
+
+def _zoom(axes: Any, aspect: NDArray[np.float64]) -> float:  # noqa: ANN401
+    """Return the zoom at which the box fills its part of the figure."""
+    from mpl_toolkits.mplot3d.proj3d import proj_transform
+
+    axes.set_box_aspect(aspect)
+    corners = np.array(list(product(axes.get_xlim(), axes.get_ylim(), axes.get_zlim())))
+    x, y, z = corners.T
+    across, along, _ = proj_transform(x, y, z, axes.get_proj())
+    pixels = axes.transData.transform(np.stack([across, along], axis=1))
+    width, height = np.ptp(pixels, axis=0) / axes.figure.dpi
+    return float(min(ROOM_WIDTH / width, ROOM_HEIGHT / height))

@@ -1,0 +1,215 @@
+"""`convolve`: all sums of two points with the same normal, with what both surfaces have there."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...runtime.base.checks import checked_rows
+from ...runtime.base.errors import GaussmapWarning, InputError
+from ...runtime.base.threads import over_ranges
+from ...runtime.directions.unit import as_normals
+from ...runtime.fitting.fit import spline_of
+from ...runtime.samples.fields import new_field
+from ...runtime.samples.report import SamplingReport, count_infinite, sampling_report, warn_of
+from ...runtime.samples.samples import Samples
+from ...runtime.spline.spline import Spline, short_label
+from ...runtime.surface.surface import Surface
+from ...runtime.surface.surfaces import named
+from .branches import Branches, curvatures
+from .function import SupportFunction
+from .operations import pairs
+
+__all__ = ["Convolution", "convolve"]
+
+# The number of sums that are computed at a time; there may be many more of them than branches.
+PIECE = 1 << 14
+
+
+@dataclass(frozen=True, eq=False, slots=True, repr=False)
+class Convolution:
+    """The k sums of two points with the same normal, by normal, then by branch of the first.
+
+    A boolean mask (k,), an index array or a slice picks some of them:
+    ``sums[sums.samples.elliptic]``.
+
+    Attributes
+    ----------
+    samples : Samples
+        Samples of the convolution surface, without `uv` and `patch_index`, of which there are two.
+    first, second : Branches
+        The branches of both surfaces at the prescribed normals.
+    rows : (k, 2) int64 array
+        Rows of `first` and of `second` whose points a sample is the sum of.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> import numpy as np
+    >>> ball = gm.surfaces.ellipsoid(a=0.2, b=0.1, c=0.1)
+    >>> sums = gm.convolve("torus", ball, [[1, 0, 0], [0, 1, 1]], cells=(16, 16))
+    >>> sums[sums.samples.elliptic]
+    Convolution(Samples(2 points on torus + ellipsoid: 2 dome-shaped))
+    >>> i, j = sums.rows.T
+    >>> np.allclose(sums.samples.points, sums.first.points[i] + sums.second.points[j])
+    True
+    >>> sums.first_uv.shape, sums.second_uv.shape
+    ((4, 2), (4, 2))
+
+    """
+
+    samples: Samples
+    first: Branches
+    second: Branches
+    rows: NDArray[np.int64]
+
+    @property
+    def first_uv(self) -> NDArray[np.float64]:
+        """(k, 2) float64 array: parameters of the point of the first surface, or NaN."""
+        return self.first.uv[self.rows[:, 0]]
+
+    @property
+    def second_uv(self) -> NDArray[np.float64]:
+        """(k, 2) float64 array: parameters of the point of the second surface, or NaN."""
+        return self.second.uv[self.rows[:, 1]]
+
+    def __len__(self) -> int:
+        """Return the number of sums."""
+        return len(self.rows)
+
+    def __getitem__(self, key: ArrayLike | slice) -> Convolution:
+        rows = key if isinstance(key, slice) else checked_rows(key, len(self))
+        return replace(self, samples=self.samples[rows], rows=self.rows[rows])
+
+    def __repr__(self) -> str:
+        return f"Convolution({self.samples!r})"
+
+
+def convolve(
+    first: Surface | Spline | SupportFunction | str,
+    second: Surface | Spline | SupportFunction | str,
+    normals: ArrayLike,
+    *,
+    cells: Sequence[int] | None = None,
+) -> Convolution:
+    """Return every sum of two points of two surfaces that have the same normal.
+
+    Support functions add, h = h₁ + h₂ (7), and so do points and Hessians. A normal with i points on
+    the first surface and j on the second has i j sums; on folded surfaces these are very many.
+
+    Parameters
+    ----------
+    first, second : Surface, Spline, SupportFunction or str
+        The two surfaces, or their names in the catalogue.
+    normals : (S, 3) array_like
+        Directions of any length but 0, such as ``icosphere(32)``.
+    cells : (int, int), optional
+        The cells of the splines, if a surface is a `Surface`; see `fit`.
+
+    Returns
+    -------
+    Convolution
+        The sums as samples, and the points of both surfaces.
+
+    Raises
+    ------
+    InputError
+        For unusable normals, for `cells` without a `Surface`, and for objects that are no surface.
+    UnknownNameError
+        If there is no surface of that name.
+    SurfaceError
+        As `fit`.
+
+    Warns
+    -----
+    GaussmapWarning
+        If developable regions are left out, or if there are no sums.
+
+    Notes
+    -----
+    For two convex bodies whose normals point outwards the result lies on the boundary of their
+    Minkowski sum. For others it lies on the convolution surface, of which that boundary is a part:
+    other sheets lie inside the sum. A body B, moved by t, meets a body A where t lies in the sum of
+    A and −B, that is B reflected in the origin. The outward normals of −B are −n, so it is
+    ``SupportFunction.of_spline(B).scaled(-1).reversed()``.
+
+    K and H come from the sum of the Hessians: an infinite radius (a parabolic point) makes them
+    NaN, a sum of radii that is 0 infinite or NaN.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> ball = gm.SupportFunction.from_sympy("1/10")
+    >>> sums = gm.convolve("torus", ball, gm.icosphere(2))
+    >>> bool((abs(sums.samples.support - sums.first.support[sums.rows[:, 0]] - 0.1) < 1e-15).all())
+    True
+
+    """
+    directions = as_normals(normals)
+    first, second = named(first), named(second)
+    if cells is not None and not any(isinstance(x, Surface) for x in (first, second)):
+        raise InputError("cells=... is for surfaces, and neither of these is a Surface.")
+    one, first_name = _branches(first, directions, cells)
+    two, second_name = _branches(second, directions, cells)
+    i, j = pairs(one.normal_index, two.normal_index, len(directions))
+    name = f"{short_label(first_name)} + {short_label(second_name)}"
+    if len(one) and len(two) and not len(i):
+        message = f"surface {name!r}: no normal has points on both of the two."
+        warnings.warn(message, GaussmapWarning, stacklevel=2)
+    arrays = _sums(one, two, i, j)
+    infinite = count_infinite(arrays)
+    report = SamplingReport(
+        name, len(directions), len(i), None, None, None, infinite_curvatures=infinite
+    )
+    samples = Samples(**arrays, report=report)
+    return Convolution(samples, one, two, np.stack([i, j], axis=1))
+
+
+def _sums(
+    one: Branches, two: Branches, i: NDArray[np.int64], j: NDArray[np.int64]
+) -> dict[str, Any]:
+    """Return what samples hold of the sums of the branches i of the one and j of the other."""
+    names = ("points", "normals", "support", "gaussian_curvature", "mean_curvature")
+    arrays: dict[str, NDArray[Any]] = {x: new_field(x, len(i), np.float64) for x in names}
+
+    def work(begin: int, end: int) -> None:
+        here, first, second = slice(begin, end), i[begin:end], j[begin:end]
+        normals = one.normals[first]
+        with np.errstate(all="ignore"):  # infinite radii are answers, too
+            hessian = one.hessian[first] + two.hessian[second]
+            _, K, H = curvatures(normals, hessian)
+        arrays["points"][here] = one.points[first] + two.points[second]
+        arrays["normals"][here] = normals
+        arrays["support"][here] = one.support[first] + two.support[second]
+        arrays["gaussian_curvature"][here], arrays["mean_curvature"][here] = K, H
+
+    for _ in over_ranges(work, len(i), PIECE, None):
+        pass
+    return arrays | {"normal_index": one.normal_index[i]}
+
+
+def _branches(
+    surface: Surface | Spline | SupportFunction,
+    normals: NDArray[np.float64],
+    cells: Sequence[int] | None,
+) -> tuple[Branches, str]:
+    """Return the branches of a surface at normals, and its name; warn of developable regions."""
+    if isinstance(surface, SupportFunction):
+        return surface.branches(normals), repr(surface)
+    if not isinstance(surface, Surface | Spline):
+        raise InputError(
+            "convolve takes two of Surface, Spline and SupportFunction, not "
+            f"{type(surface).__name__}."
+        )
+    spline = spline_of(surface, cells if isinstance(surface, Surface) else None)
+    branches = SupportFunction.of_spline(spline).branches(normals)
+    density = len(normals) / (4 * math.pi)
+    report = sampling_report(spline, len(normals), len(branches), density, None)
+    warn_of(report, None, stacklevel=4)
+    return branches, spline.name

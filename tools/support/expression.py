@@ -1,0 +1,182 @@
+"""A support function that a user writes as h(n): compiled like gaussmap's own formulas."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from keyword import iskeyword
+from typing import TYPE_CHECKING, Any
+
+import numba
+import numpy as np
+from numba.core.errors import NumbaError
+from numpy.typing import NDArray
+
+from ...runtime.base import bridge
+from ...runtime.base.errors import InputError, shown
+from ...runtime.surface.expressions import as_condition, as_expression
+from .branches import Sheets, curvatures
+
+if TYPE_CHECKING:
+    import sympy
+
+__all__ = ["ExpressionSource"]
+
+LONGEST_TEXT = 60
+DEEPEST = 40  # second derivatives of deeper expressions take minutes
+
+
+@dataclass(frozen=True, eq=False)
+class ExpressionSource:
+    """A support function h in the real symbols n_x, n_y, n_z, where `condition` holds.
+
+    `source` is the Python source of its kernel.
+    """
+
+    h: sympy.Expr
+    condition: Any
+    source: str
+
+    @classmethod
+    def checked(cls, h: object, normal: Sequence[Any], domain: object) -> ExpressionSource:
+        """Make one from what a user gives; InputError if it cannot be used."""
+        depth = bridge.reading().depth
+        names = _names(normal)
+        expression = _in_normal(as_expression(h, _symbols(names)), names, "h")
+        condition = _condition(domain, names)
+        if max(depth(expression), depth(condition)) > DEEPEST:
+            raise InputError(
+                f"h = {_short(expression)} is nested too deeply to be differentiated; expand it."
+            )
+        try:
+            source = bridge.kernel_source(expression, condition)
+            compile(source, "<support function>", "exec")
+        except (RecursionError, MemoryError, SyntaxError):  # SyntaxError: too many brackets
+            raise InputError(
+                f"h = {_short(expression)} is nested too deeply to be compiled."
+            ) from None
+        except (NotImplementedError, ValueError, TypeError, AttributeError) as error:
+            raise InputError(
+                f"h = {_short(expression)} cannot be compiled: {_culprits(expression, condition)}, "
+                "which kernels cannot compute."
+            ) from error
+        return cls(expression, condition, source)
+
+    def sheets(self, normals: NDArray[np.float64]) -> Sheets:
+        """Return the branch of each normal in the domain where h and its gradient are finite."""
+        count = len(normals)
+        inside = np.empty(count, dtype=np.bool_)
+        points, hessian = np.empty((count, 3)), np.empty((count, 3, 3))
+        try:
+            self._evaluate(normals, inside, points, hessian)
+        except NumbaError as error:
+            raise InputError(
+                f"h = {_short(self.h)} cannot be compiled: it is no function that Numba knows."
+            ) from error
+        rows = np.flatnonzero(inside & np.isfinite(points).all(axis=1))
+        points, hessian = points[rows], hessian[rows]
+        _, gaussian, mean = curvatures(normals[rows], hessian)
+        nowhere = np.full(len(rows), -1, dtype=np.int64)
+        return Sheets(
+            rows, points, hessian, gaussian, mean, nowhere, np.full((len(rows), 2), np.nan)
+        )
+
+    def expression(self) -> sympy.Expr:
+        """Return h as it was given."""
+        return self.h
+
+    def domain(self) -> Any:  # noqa: ANN401 - a Boolean of SymPy
+        """Return the condition that was given."""
+        return self.condition
+
+    def __str__(self) -> str:
+        return f"h = {_short(self.h)}"
+
+    @cached_property
+    def _evaluate(self) -> Callable[..., None]:
+        return _kernel(self.source)
+
+
+@lru_cache(maxsize=128)
+def _kernel(source: str) -> Callable[..., None]:
+    """Compile a module that defines `evaluate`, once in a process."""
+    namespace: dict[str, Any] = {"__name__": __name__}  # whose kernel it is
+    exec(compile(source, "<support function>", "exec"), namespace)
+    return numba.njit(nogil=True, error_model="numpy")(namespace["evaluate"])
+
+
+def _names(normal: Sequence[Any]) -> list[str]:
+    """Return the names of the components of the normal; InputError unless they are three."""
+    try:
+        names = [x if isinstance(x, str) else x.name for x in normal]
+    except (TypeError, AttributeError):
+        names = []
+    usable = all(isinstance(x, str) and x.isidentifier() and not iskeyword(x) for x in names)
+    if len(names) != 3 or len(set(names)) != 3 or not usable:
+        raise InputError(f"normal must be three symbols, or their names, not {shown(normal)}.")
+    return names
+
+
+def _symbols(names: Sequence[str]) -> dict[str, Any]:
+    """Return real symbols for what stands in a text."""
+    import sympy as sp
+
+    return {name: sp.Symbol(name, real=True) for name in names}
+
+
+def _in_normal(expression: Any, names: Sequence[str], what: str) -> Any:  # noqa: ANN401
+    """Write an expression in the real symbols n_x, n_y, n_z; InputError if there are others."""
+    import sympy as sp
+
+    if expression.is_Matrix:
+        raise InputError(f"{what} must be a number for each normal, not a matrix.")
+    if unknown := sorted({x.name for x in expression.free_symbols} - set(names)):
+        raise InputError(
+            f"{what} holds symbols that are no component of the normal: {', '.join(unknown)}."
+        )
+    if expression.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
+        raise InputError(f"{what} is not finite: {_short(expression)}.")
+    if expression.has(sp.I):
+        raise InputError(f"{what} is not real: {_short(expression)}.")
+    components = dict(zip(names, bridge.normal_components(), strict=True))
+    return expression.xreplace({x: components[x.name] for x in expression.free_symbols})
+
+
+def _condition(domain: object, names: Sequence[str]) -> Any:  # noqa: ANN401 - SymPy has no types
+    """Return a Boolean of SymPy from one, a text or None; InputError if it is none."""
+    if domain is None:
+        domain = True
+    try:
+        condition = as_condition(domain, _symbols(names))
+    except InputError as error:
+        raise InputError(
+            f"domain must be a condition such as 'n_z > 0' or '(n_x > 0) & (n_y > 0)': {error}"
+        ) from None
+    return _in_normal(condition, names, "domain")
+
+
+def _culprits(*expressions: Any) -> str:  # noqa: ANN401 - SymPy has no types
+    """Say which functions, as the user wrote them, cannot be compiled or differentiated."""
+    import sympy as sp
+
+    def is_unusable(part: Any) -> bool:  # noqa: ANN401
+        try:
+            bridge.kernel_source(part)
+        except (NotImplementedError, ValueError, TypeError, AttributeError):
+            return True
+        return False
+
+    kinds = (sp.Function, sp.Integral, sp.Derivative, sp.Sum, sp.Product, sp.Limit)
+    parts = {x for e in expressions for x in e.atoms(*kinds) if is_unusable(x)}
+    inner = {x for x in parts if not any(y != x and x.has(y) for y in parts)}
+    names = sorted({x.func.__name__ for x in inner})
+    return f"it uses {', '.join(names)}" if names else "it or a derivative uses a function"
+
+
+def _short(expression: object) -> str:
+    try:
+        text = str(expression)
+    except RecursionError:
+        return "…"
+    return text if len(text) <= LONGEST_TEXT else f"{text[: LONGEST_TEXT - 1]}…"

@@ -1,0 +1,106 @@
+"""Offsets of samples: x + d n, with the same normals, and their curvatures."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.base.checks import finite_number
+from ...runtime.base.errors import GaussmapWarning, InputError, MissingFieldError
+from ...runtime.base.tolerances import CURVATURE_ERROR
+from ...runtime.samples.offset_of import OffsetOf
+from ...runtime.samples.report import count_infinite, have_large_squares
+from ...runtime.samples.samples import Samples
+from ..kernels import support as kernels
+
+__all__ = ["offset"]
+
+Array = NDArray[np.float64]
+
+# The fields from which those of an offset are computed.
+NEEDED = {
+    "points": ("normals",),
+    "gaussian_curvature": ("mean_curvature",),
+    "mean_curvature": ("gaussian_curvature",),
+}
+
+
+def offset(samples: Samples, distance: float) -> Samples:
+    """Return `samples.offset(distance)`."""
+    d = finite_number(distance, "distance")
+    _check_fields(samples)
+    arrays: dict[str, Any] = {x: getattr(samples, x) for x in samples.fields}
+    moved: dict[str, Array] = {}
+    with np.errstate(all="ignore"):  # infinite curvatures are valid
+        if "points" in arrays:
+            moved["points"] = arrays["points"] + d * arrays["normals"].astype(np.float64)
+        if "support" in arrays:
+            moved["support"] = arrays["support"].astype(np.float64) + d
+        if "gaussian_curvature" in arrays:
+            moved |= _curvatures(samples, d)
+        arrays |= {name: array.astype(samples.dtype) for name, array in moved.items()}
+    report = replace(
+        samples.report,
+        surface=f"{samples.report.surface} offset by {d:g}",
+        developable_share=None,  # areas change, except those of planar regions
+        infinite_curvatures=count_infinite(arrays),
+        fit_distance=None,  # of the spline, which has no offset
+        fit_rms=None,
+        fit_angle=None,
+    )
+    base = samples.offset_of or OffsetOf(0.0, samples.spline, samples.surface)
+    return Samples(**arrays, report=report, offset_of=replace(base, distance=base.distance + d))
+
+
+def _curvatures(samples: Samples, d: float) -> dict[str, Array]:
+    """Return K and H of the offset, and warn if it is folded."""
+    K = samples.gaussian_curvature.astype(np.float64)
+    H = samples.mean_curvature.astype(np.float64)
+    _check_squares(samples, H)
+    folded = np.empty(len(samples), dtype=np.bool_)
+    rounding = CURVATURE_ERROR * float(np.finfo(samples.dtype).eps)
+    kernels.offset_curvatures(d, rounding, K, H, folded)
+    if folded.any():
+        _warn(samples, d, folded)
+    return {"gaussian_curvature": K, "mean_curvature": H}
+
+
+def _check_squares(samples: Samples, H: Array) -> None:
+    """Raise InputError if K, about the square of H, is not what it should be for its range."""
+    K = samples.gaussian_curvature
+    too_large = have_large_squares(H, K.dtype)
+    squares = np.maximum(np.abs(K), H * H)
+    too_small = float(np.abs(H).max(initial=0.0)) > 0.0 and squares.max() < np.finfo(K.dtype).tiny
+    if too_large or too_small:
+        raise InputError(
+            f"the curvatures of the offset cannot be computed: squares of those of the samples are "
+            f"too {'small' if too_small else 'large'} for {K.dtype}; choose another unit of "
+            "length, or sample without curvatures."
+        )
+
+
+def _check_fields(samples: Samples) -> None:
+    for name, needed in NEEDED.items():
+        missing = [x for x in needed if x not in samples.fields]
+        if name in samples.fields and missing:
+            raise MissingFieldError(
+                f"the offset of {name} needs {missing[0]}, but these samples hold "
+                f"{', '.join(samples.fields)} only; add {missing[0]!r} to fields=... when sampling."
+            )
+
+
+def _warn(samples: Samples, d: float, folded: NDArray[np.bool_]) -> None:
+    """Warn of samples at which the offset is folded, with the smallest radius of curvature."""
+    towards = -np.sign(d) * samples[folded].principal_curvatures
+    largest = np.where(np.isnan(towards), np.inf, towards).max()  # NaN: a curvature is infinite
+    warnings.warn(
+        f"surface {samples.report.surface!r}: the distance {d:g} reaches a radius of curvature at "
+        f"{int(folded.sum()):,} of {len(samples):,} samples, where the offset folds; the smallest "
+        f"radius on that side is {1.0 / largest:g}.",
+        GaussmapWarning,
+        stacklevel=5,
+    )

@@ -1,0 +1,149 @@
+"""Where support functions come from: a spline, one patch, an expression."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Protocol, cast
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...generated import patch as formulas
+from ...runtime.base.bridge import bezier_triangle
+from ...runtime.base.errors import InputError
+from ...runtime.base.formula_calls import python_function, vector
+from ...runtime.search.bins import NormalBins
+from ...runtime.search.search import fill, find
+from ...runtime.spline.spline import Spline
+from ..gauss_map.membership import PatchNormals
+from ..gauss_map.patches import checked_control_points
+from ..kernels import support as kernels
+from .branches import Sheets
+
+if TYPE_CHECKING:
+    import sympy
+
+__all__ = ["PatchSource", "Source", "SplineSource"]
+
+# Quadratic and cubic forms in three variables that vanish here vanish everywhere.
+FOR_QUADRATICS = [(2, 0, 0), (0, 2, 0), (0, 0, 2), (1, 1, 0), (1, 0, 1), (0, 1, 1)]
+FOR_CUBICS = [(i, j, 3 - i - j) for i in range(4) for j in range(4 - i)]
+
+
+class Source(Protocol):
+    """A support function: what it has at unit normals (S, 3), and how it is written."""
+
+    def sheets(self, normals: NDArray[np.float64]) -> Sheets:
+        """Return all branches, by normal."""
+        ...
+
+    def expression(self) -> sympy.Expr | None:
+        """Return h in n_x, n_y, n_z, on the unit sphere; None if no one expression says it."""
+        ...
+
+    def domain(self) -> Any:  # noqa: ANN401 - a Boolean of SymPy
+        """Return the condition on n_x, n_y, n_z for a branch; None if no one condition says it."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class SplineSource:
+    """The support functions of all patches of a spline, each normal of each exactly once."""
+
+    spline: Spline
+
+    def sheets(self, normals: NDArray[np.float64]) -> Sheets:
+        """Return all branches, by normal and then by patch."""
+        bins = NormalBins(normals)
+        hits = find(self.spline, bins)
+        fields = fill(self.spline, bins, hits)
+        known = np.full((len(hits), 2), np.nan)
+        known[hits.exact] = hits.local[:, 3:5]
+        order = np.argsort(hits.normal_index, kind="stable")
+        patches, rows = hits.patch_index[order], hits.normal_index[order]
+        hessian = np.empty((len(hits), 3, 3))
+        kernels.hessians_of_patches(
+            self.spline.coefficients,
+            self.spline.scale,
+            patches,
+            normals[rows],
+            known[order],
+            hessian,
+        )
+        return Sheets(
+            rows, fields["points"][order], hessian, fields["gaussian_curvature"][order],
+            fields["mean_curvature"][order], patches, fields["uv"][order],
+        )  # fmt: skip
+
+    def expression(self) -> None:
+        """Return None: a spline has one expression for each patch."""
+
+    def domain(self) -> None:
+        """Return None: a spline has one domain for each patch."""
+
+    def __str__(self) -> str:
+        return f"{self.spline.name}, {self.spline.patches:,} patches"
+
+
+@dataclass(frozen=True, eq=False)
+class PatchSource:
+    """The support function of one quadratic Bézier triangle (10) with `control_points` (6, 3).
+
+    A normal belongs to it if the closed triangle has a regular point with that oriented normal.
+    What rounding leaves open is decided in exact arithmetic.
+    """
+
+    control_points: NDArray[np.float64]
+
+    @classmethod
+    def checked(cls, control_points: ArrayLike) -> PatchSource:
+        """Make one; InputError unless the patch has a support function."""
+        source = cls(checked_control_points(control_points))
+        vectors = source._normals.exact_vectors
+        D, *_ = python_function(formulas.forms)(vectors, vector(np.array(FOR_QUADRATICS, object)))
+        if not D.any():
+            raise InputError("the patch is flat or developable: it has no support function.")
+        c3 = python_function(formulas.orientation)(vectors, vector(np.array(FOR_CUBICS, object)))
+        if not c3.any():
+            raise InputError("the patch has no regular point, so it has no normals.")
+        return source
+
+    def sheets(self, normals: NDArray[np.float64]) -> Sheets:
+        """Return the branch of each normal that has one."""
+        members = self._normals.members(normals)
+        rows = np.flatnonzero(members.inside)
+        count, uv, signs = len(rows), members.uv[rows], members.signs[rows]
+        points, hessian = np.empty((count, 3)), np.empty((count, 3, 3))
+        gaussian, mean = np.empty(count), np.empty(count)
+        u, v = np.ascontiguousarray(uv.T)
+        vectors, scale = self._normals.vectors, self._normals.scale
+        kernels.branches_of_patch(vectors, normals[rows], u, v, points, hessian, gaussian, mean)
+        points, hessian = self.control_points[2] + points / scale, hessian / scale
+        gaussian, mean = gaussian * scale * scale, mean * scale
+        gaussian = np.where(signs != 0, np.copysign(gaussian, signs), gaussian)
+        return Sheets(rows, points, hessian, gaussian, mean, np.zeros(count, dtype=np.int64), uv)
+
+    def expression(self) -> sympy.Expr:
+        """Return the cubic over the quadratic form, with the exact values of the control points."""
+        return self._symbolic.support_function
+
+    def domain(self) -> Any:  # noqa: ANN401 - a Boolean of SymPy
+        """Return the closed Gaussian image: U, V, W of one sign, without singular points."""
+        import sympy as sp
+
+        D, U, V, W = self._symbolic.forms.values()
+        at_least, unequal = cast(Any, sp.Ge), cast(Any, sp.Ne)  # typed as numbers, too
+        inside = [sp.And(*(at_least(s * x, 0) for x in (U, V, W))) for s in (1, -1)]
+        return sp.And(sp.Or(*inside), unequal(D, 0), sp.Gt(self._symbolic.orientation, 0))
+
+    def __str__(self) -> str:
+        return "quadratic patch"
+
+    @cached_property
+    def _symbolic(self) -> Any:  # noqa: ANN401 - SymPy is loaded here only
+        return bezier_triangle(self.control_points.tolist())
+
+    @cached_property
+    def _normals(self) -> PatchNormals:
+        return PatchNormals(self.control_points)

@@ -1,0 +1,91 @@
+"""The coordinates of heights: of pixels of a raster, or of arrays x and y."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...runtime.base.checks import real_array
+from ...runtime.base.errors import InputError
+
+__all__ = ["check_degrees", "grid_of", "of_arrays", "of_spacing", "of_transform"]
+
+Array = NDArray[np.float64]
+
+# Distances are equal if they differ by this part; coordinates in single precision do.
+EQUAL = 1e-3
+# Heights that vary by more than this multiple of the extent along x and y are over degrees.
+TOO_STEEP = 10.0
+
+
+def of_transform(transform: Sequence[float], shape: tuple[int, int]) -> tuple[Array, Array]:
+    """Return x and y at the centres of pixels: (n,) and (m,) if rows run along x, else (m, n)."""
+    a, b, c, d, e, f = transform
+    rows, columns = (np.arange(count, dtype=np.float64) + 0.5 for count in shape)
+    if b == 0.0 and d == 0.0:
+        return a * columns + c, e * rows + f
+    rows = rows[:, None]
+    return a * columns + b * rows + c, d * columns + e * rows + f
+
+
+def of_spacing(spacing: tuple[float, float], shape: tuple[int, int]) -> tuple[Array, Array]:
+    """Return x and y from 0 on, for distances dx > 0 and dy, negative from north to south."""
+    dx, dy = spacing
+    rows, columns = (np.arange(count, dtype=np.float64) for count in shape)
+    return dx * columns, dy * rows + 0.0
+
+
+def of_arrays(x: ArrayLike, y: ArrayLike, shape: tuple[int, int]) -> tuple[Array, Array]:
+    """Return x (n,) and y (m,), or both (m, n); InputError for other shapes, and for NaN."""
+    found = []
+    for name, values, count, axis in (("x", x, shape[1], 1), ("y", y, shape[0], 0)):
+        array = real_array(values, name)
+        if array.shape not in ((count,), shape):
+            word = "columns" if axis else "rows"
+            raise InputError(
+                f"{name} must have the shape ({count},), a number for each of the {word} of the "
+                f"heights {shape}, or the shape of these, not {array.shape}; are the heights "
+                "transposed, or x and y exchanged?"
+            )
+        if not np.isfinite(array).all():
+            raise InputError(f"{name} holds NaN or infinity; only heights may be missing.")
+        if array.ndim == 2 and (array == array.take([0], axis=1 - axis)).all():
+            array = array.take(0, axis=1 - axis)  # it says the same in all rows, or columns
+        found.append(array)
+    if found[0].ndim == found[1].ndim:
+        return found[0], found[1]
+    along_x = found[0] if found[0].ndim == 2 else np.broadcast_to(found[0], shape)
+    along_y = found[1] if found[1].ndim == 2 else np.broadcast_to(found[1][:, None], shape)
+    return along_x, along_y
+
+
+def grid_of(x: Array, y: Array) -> tuple[Array, Array]:
+    """Return x and y as arrays (m, n)."""
+    if x.ndim == 2:
+        return x, y
+    shape = len(y), len(x)
+    return np.broadcast_to(x, shape), np.broadcast_to(y[:, None], shape)
+
+
+def is_even(values: Array) -> bool:
+    """Say whether numbers (k,) have equal distances, but for rounding."""
+    mean = (values[-1] - values[0]) / (len(values) - 1)
+    return bool(mean != 0.0 and np.abs(np.diff(values) / mean - 1.0).max() <= EQUAL)
+
+
+def check_degrees(x: Array, y: Array, heights: Array, name: str) -> None:
+    """Raise InputError if coordinates without a CRS look like degrees, and heights like metres."""
+    ranges = [float(np.nanmax(q) - np.nanmin(q)) for q in (x, y, heights)]
+    if (
+        np.abs(x).max() <= 360.0
+        and np.abs(y).max() <= 90.0
+        and ranges[2] > TOO_STEEP * max(ranges[:2])
+    ):
+        raise InputError(
+            f"{name} has x from {x.min():.6g} to {x.max():.6g} and y from {y.min():.6g} to "
+            f"{y.max():.6g}, which look like degrees, and heights that vary by {ranges[2]:.6g}: "
+            "normals need one unit; say source_crs='EPSG:4326' (--source-crs), and they are "
+            "projected."
+        )

@@ -1,0 +1,94 @@
+"""Elevations in GeoTIFF files, read by rasterio."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.base.errors import InputError
+from ...runtime.base.extras import from_extra
+from ...runtime.base.memory import GIB, memory_limit
+from ..files.reading import UnusableError, opened
+
+__all__ = ["BYTES_A_HEIGHT", "Raster", "read_raster"]
+
+# Of the heights, their points, and the spline with one cell between any four of them.
+BYTES_A_HEIGHT = 250
+
+Array = NDArray[np.float64]
+
+
+class Raster(NamedTuple):
+    """Heights (m, n), NaN where there are none, and how a file places them.
+
+    `transform` (a, b, c, d, e, f) takes a column and a row, counted from the corner of the first
+    pixel, to x = a column + b row + c and y = d column + e row + f; None if the file says nothing.
+    `unit` is that of the heights, or empty.
+    """
+
+    heights: Array
+    transform: tuple[float, ...] | None
+    crs: Any
+    unit: str
+
+
+def read_raster(path: Path, band: int, nodata: float | None) -> Raster:
+    """Return a band of a GeoTIFF, with scale and offset applied.
+
+    `nodata` counts in place of the file's own, and is compared before that. Raises FileError,
+    InputError for a band that is not there, and MissingExtraError.
+    """
+    rasterio = from_extra("rasterio", "gis", "reading GeoTIFF files")
+    quiet = warnings.catch_warnings()
+    with opened(path, "GeoTIFF", "elevations"), quiet:
+        warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
+        with rasterio.open(path, driver="GTiff") as dataset:
+            bands = dataset.count
+            if band <= bands:
+                _check_memory(dataset.height, dataset.width)
+                heights = _heights(dataset, band, nodata)
+                return Raster(
+                    heights, _transform(dataset), dataset.crs, dataset.units[band - 1] or ""
+                )
+    raise InputError(f"'{path}' has {bands} band{'s' * (bands > 1)}, and no band {band}.")
+
+
+def _heights(dataset: Any, band: int, nodata: float | None) -> Array:  # noqa: ANN401
+    if np.issubdtype(np.dtype(dataset.dtypes[band - 1]), np.complexfloating):
+        raise UnusableError("holds complex numbers, and no elevations.")
+    if nodata is None:
+        found = dataset.read(band, masked=True)
+        values, missing = found.data, np.ma.getmaskarray(found)
+    else:
+        values = dataset.read(band)
+        with np.errstate(over="ignore"):
+            missing = (values == nodata) | (values == np.float64(np.float32(nodata)))
+    heights = values.astype(np.float64)
+    heights *= dataset.scales[band - 1]
+    heights += dataset.offsets[band - 1]
+    heights[missing] = np.nan
+    return heights
+
+
+def _transform(dataset: Any) -> tuple[float, ...] | None:  # noqa: ANN401
+    if not dataset.transform.is_identity:
+        return tuple(dataset.transform)[:6]
+    if dataset.gcps[0] or dataset.rpcs is not None:
+        raise UnusableError(
+            "is placed by ground control points or a camera model; rectify it first, with gdalwarp."
+        )
+    return None
+
+
+def _check_memory(rows: int, columns: int) -> None:
+    needed, limit = float(rows) * columns * BYTES_A_HEIGHT, memory_limit()
+    if needed > limit:
+        raise UnusableError(
+            f"has {rows:,} x {columns:,} heights, which need at least {needed / GIB:,.0f} GiB of "
+            f"memory, and there are {limit / GIB:,.1f} GiB; crop it, or coarsen it, as with "
+            "gdal_translate -outsize 25% 25% -r average."
+        )

@@ -1,0 +1,267 @@
+"""`terrain`: elevations of a file or an array as a surface in world coordinates."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...runtime.base.checks import as_float, real_array, whole_number
+from ...runtime.base.errors import InputError, in_memory, shown
+from ...runtime.base.georeference import Georeference, Origin, checked_origin
+from ...runtime.domain.domain import Boundary, Domain
+from ...runtime.spline.missing import without_nodata
+from ...runtime.surface.labels import label
+from ...runtime.surface.surface import Surface
+from ..files.paths import checked_path
+from ..files.reference_systems import checked_crs, crs_text, projected, target_crs
+from .coordinates import check_degrees, grid_of, is_even, of_arrays, of_spacing, of_transform
+from .raster import Raster, read_raster
+
+__all__ = ["terrain"]
+
+Array = NDArray[np.float64]
+
+OPEN: Boundary = ("open", "open"), ("open", "open")
+# Units of heights, by the names that files give them, in metres.
+UNITS = {
+    **dict.fromkeys(("m", "metre", "metres", "meter", "meters"), 1.0),
+    **dict.fromkeys(("ft", "foot", "feet", "international foot"), 0.3048),
+    **dict.fromkeys(("us survey foot", "us-ft", "ftus"), 1200.0 / 3937.0),
+    **dict.fromkeys(("km", "kilometre", "kilometer"), 1000.0),
+    **dict.fromkeys(("cm", "centimetre", "centimeter"), 0.01),
+}
+SAME_UNIT = 1e-5
+
+
+@in_memory
+def terrain(
+    source: str | os.PathLike[str] | ArrayLike,
+    *,
+    x: ArrayLike | None = None,
+    y: ArrayLike | None = None,
+    spacing: Sequence[float] | None = None,
+    band: int = 1,
+    nodata: float | None = None,
+    crs: str | int | None = None,
+    source_crs: str | int | None = None,
+    origin: Sequence[float] | None = None,
+    name: str | None = None,
+) -> Surface:
+    """Make a surface of elevations in a GeoTIFF, or in an array, in world coordinates.
+
+    Heights are at the centres of pixels. Degrees are projected, and the heights stay as they are:
+    the grid of points is what it was, and nothing is resampled. Samples, and files of them, know
+    the reference system (`SamplingReport.crs`).
+
+    Parameters
+    ----------
+    source : str, os.PathLike or (m, n) array_like
+        Name of a GeoTIFF, whose transform, CRS, nodata, mask, scale and offset are respected; or
+        elevations, with rows along y and columns along x. Both are in the unit of x and y.
+    x, y : (n,) and (m,), or (m, n) array_like, optional
+        The coordinates of an array: one for each column and one for each row, or for each height.
+        Distances need not be equal.
+    spacing : (float, float), optional
+        Instead: the distances dx and dy of an array, or of a GeoTIFF that says none, from (0, 0)
+        on. A negative dy means that rows run from north to south.
+    band : int, default 1
+        The band of a GeoTIFF.
+    nodata : float, optional
+        The number that stands for missing heights, in place of that of the file, before scale and
+        offset. NaN and masked entries do so anyway. What depends on missing heights is left out,
+        see `Surface.from_grid`.
+    crs : str or int, optional
+        The coordinate reference system that points are to have, such as "EPSG:32617" or its number,
+        in lengths. By default that of the source, or, if that has degrees, the zone of UTM in which
+        its middle is (UPS beyond 84° of latitude).
+    source_crs : str or int, optional
+        The CRS of the source if it says none, or a wrong one; ``"EPSG:4326"`` for longitudes x and
+        latitudes y. Without it, `crs` counts.
+    origin : (float, float) or (float, float, float), optional
+        What is subtracted from x, y and z, so that numbers are small: single precision (float32,
+        .stl, .glb) rounds world coordinates to decimetres.
+    name : str, optional
+        Label of the surface. By default the name of the file, or "terrain".
+
+    Returns
+    -------
+    Surface
+        The surface, with normals upward, and its `georeference`. If rows and columns run along x
+        and y at equal distances, u and v are x and y; else the fractional column and row.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read, is damaged, no GeoTIFF, or too large for the memory.
+    InputError
+        For other arguments than these; for a file or an array without coordinates, coordinates that
+        fold, degrees that are not said to be degrees, heights in another unit than x and y, and as
+        `Surface.from_grid`.
+    MissingExtraError
+        Without Rasterio, if it is needed: for files, and for `crs`; the extra is "gis".
+
+    Warns
+    -----
+    GaussmapWarning
+        If heights look like missing data: usual numbers such as −9999, and blocks of one height
+        where the others end abruptly.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> import numpy as np
+    >>> x, y = 500_000.0 + 30.0 * np.arange(12), 4_100_000.0 - 30.0 * np.arange(10)
+    >>> heights = 200.0 + 40.0 * np.sin(x / 90.0) * np.cos(y[:, None] / 120.0)
+    >>> hills = gm.terrain(heights, x=x, y=y, origin=(500_000, 4_100_000))
+    >>> hills.domain, hills.georeference.origin
+    (((0.0, 330.0), (-270.0, 0.0)), (500000.0, 4100000.0, 0.0))
+    >>> samples = gm.sample(hills, 100)
+    >>> samples.report.origin, samples.report.crs
+    ((500000.0, 4100000.0, 0.0), None)
+
+    """
+    start, asked, given = checked_origin(origin), checked_crs(crs, "crs"), None
+    if source_crs is not None:
+        given = checked_crs(source_crs, "source_crs")
+    if isinstance(source, str | os.PathLike):
+        if x is not None or y is not None:
+            raise InputError("x and y are for arrays; a GeoTIFF has its own coordinates.")
+        path = checked_path(source)
+        said = path.name if name is None else name
+        raster = read_raster(path, whole_number(band, "band"), _nodata(nodata))
+        raster = raster._replace(heights=without_nodata(raster.heights, None, repr(said)))
+        at_x, at_y = _of_raster(raster, spacing, path)
+    else:
+        said = "terrain" if name is None else name
+        raster = Raster(_elevations(source, nodata, said), None, None, "")
+        at_x, at_y = _of_array(raster.heights, x, y, spacing)
+    system = given if given is not None else raster.crs if raster.crs is not None else asked
+    return _surface(raster, (at_x, at_y), (system, asked), start, said)
+
+
+def _nodata(nodata: float | None) -> float | None:
+    if nodata is None:
+        return None
+    try:
+        return as_float(nodata)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"nodata must be a number, not {shown(nodata)}.") from None
+
+
+def _elevations(source: ArrayLike, nodata: float | None, name: str) -> Array:
+    missing = np.ma.getmaskarray(np.ma.asarray(source)) if np.ma.is_masked(source) else None
+    heights = np.array(real_array(np.ma.getdata(source), "elevations"))
+    if heights.ndim != 2:
+        raise InputError(f"elevations must have the shape (m, n), not {heights.shape}.")
+    if missing is not None:
+        heights[missing] = np.nan
+    return without_nodata(heights, nodata, name)
+
+
+def _of_raster(raster: Raster, spacing: Sequence[float] | None, path: Path) -> tuple[Array, Array]:
+    if raster.transform is not None and spacing is not None:
+        raise InputError(f"'{path}' has its own coordinates; leave out spacing.")
+    if raster.transform is not None:
+        return of_transform(raster.transform, _shape(raster.heights))
+    if spacing is None:
+        raise InputError(
+            f"'{path}' is not georeferenced; say the size of its pixels by spacing=(dx, dy) "
+            "(--spacing DX DY), dy < 0 if rows run from north to south."
+        )
+    return of_spacing(_spacing(spacing), _shape(raster.heights))
+
+
+def _of_array(
+    heights: Array, x: ArrayLike | None, y: ArrayLike | None, spacing: Sequence[float] | None
+) -> tuple[Array, Array]:
+    if (x is None) != (y is None) or (x is None) == (spacing is None):
+        raise InputError(
+            "an array of elevations needs x and y, its coordinates, or spacing=(dx, dy)."
+        )
+    if spacing is not None:
+        return of_spacing(_spacing(spacing), _shape(heights))
+    assert x is not None
+    assert y is not None
+    return of_arrays(x, y, _shape(heights))
+
+
+def _shape(heights: Array) -> tuple[int, int]:
+    return heights.shape[0], heights.shape[1]
+
+
+def _spacing(spacing: Sequence[float]) -> tuple[float, float]:
+    try:
+        dx, dy = (as_float(x) for x in spacing)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"spacing must be two numbers, not {shown(spacing)}.") from None
+    if not (np.isfinite([dx, dy]).all() and dx > 0.0 and dy != 0.0):
+        raise InputError(f"spacing must be finite, dx > 0 and dy not 0, not ({dx}, {dy}).")
+    return dx, dy
+
+
+def _surface(
+    raster: Raster,
+    coordinates: tuple[Array, Array],
+    systems: tuple[Any, Any],
+    origin: Origin,
+    name: str,
+) -> Surface:
+    """Return the surface; `systems` are the CRS of the coordinates and the one asked for."""
+    (x, y), heights, (source, asked) = coordinates, raster.heights, systems
+    if min(heights.shape) < 2:
+        raise InputError(f"{name} has {heights.shape[0]} x {heights.shape[1]} heights; too few.")
+    if source is None:
+        check_degrees(x, y, heights, name)
+    if source is not None and asked is not None and source == asked and source.is_geographic:
+        asked = None  # it says what x and y are
+    system = target_crs(source, asked, x, y, name)
+    if system is not None and source != system:
+        x, y = projected(source, system, *grid_of(x, y), name)
+    _check_unit(raster.unit, system, name)
+    points, domain = _points(x, y, heights, name)
+    points -= origin
+    if domain is not None:
+        (x0, x1), (y0, y1) = domain
+        domain = (x0 - origin[0], x1 - origin[0]), (y0 - origin[1], y1 - origin[1])
+    place = Georeference(None if system is None else crs_text(system), origin)
+    return Surface._of_grid(points, OPEN, (False, False), domain, name, label(name, name), place)
+
+
+def _points(x: Array, y: Array, heights: Array, name: str) -> tuple[Array, Domain | None]:
+    """Return points (n, m, 3), columns first, such that normals point upward; and their domain."""
+    even = x.ndim == 1 and is_even(x) and is_even(y)
+    if even:
+        if x[0] > x[-1]:
+            x, heights = x[::-1], heights[:, ::-1]
+        if y[0] > y[-1]:
+            y, heights = y[::-1], heights[::-1]
+        x, y = (np.linspace(q[0], q[-1], len(q)) for q in (x, y))
+    points = np.stack([*grid_of(x, y), heights], axis=-1).swapaxes(0, 1)
+    if even:
+        return points, ((float(x[0]), float(x[-1])), (float(y[0]), float(y[-1])))
+    a, b = np.diff(points[..., :2], axis=0)[:, :-1], np.diff(points[..., :2], axis=1)[:-1]
+    areas = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    if not ((areas > 0.0).all() or (areas < 0.0).all()):
+        raise InputError(
+            f"the coordinates x, y of {name} fold, or some repeat: along rows and columns they "
+            "must go one way."
+        )
+    return (points if areas.flat[0] > 0.0 else points[:, ::-1].copy()), None
+
+
+def _check_unit(unit: str, system: Any, name: str) -> None:  # noqa: ANN401
+    """Raise InputError if heights are known to be in another unit than x and y."""
+    metres = UNITS.get(unit.strip().lower())
+    if metres is None or system is None:
+        return
+    along, factor = system.linear_units_factor
+    if abs(factor / metres - 1.0) > SAME_UNIT:
+        raise InputError(
+            f"{name} has heights in {unit} and x, y in {along}: normals need one unit; say a CRS "
+            f"in {unit} by crs=... (--crs), to which x and y are projected."
+        )

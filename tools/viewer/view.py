@@ -1,0 +1,156 @@
+"""One page with the surface and its unit sphere of normals, which light up together.
+
+Plotly.js draws it: it is the library for three dimensions in browsers whose package on the registry
+holds all of it in one script, which goes into the page (k3d needs Jupyter's widgets, and
+pythreejs is bundled for notebooks only). The page needs no network.
+"""
+
+from __future__ import annotations
+
+import base64
+import html
+import json
+import os
+from importlib.resources import files
+from string import Template
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.base.errors import InputError
+from ...runtime.base.extras import check_extra, from_extra
+from ...runtime.base.trees import tree_of
+from ...runtime.samples.samples import Samples
+from ...runtime.spline.spline import Spline
+from ...runtime.surface.surface import Surface
+from ..cad.part import Part
+from ..files import paths
+from ..pictures.palette import ELLIPTIC, HYPERBOLIC, PARABOLIC, SCALE
+from ..pictures.plot import scene_of_samples
+from ..pictures.scene import Scene
+
+__all__ = ["COUNT", "MOST", "SUFFIXES", "check_count", "check_target", "page", "view"]
+
+SUFFIXES = (".html", ".htm")
+SCRIPTS = ("samples", "scene", "camera", "picking", "selection", "highlights", "link")
+COUNT = 5_000  # samples, if no number is given
+MOST = 50_000  # samples in a page, which stays fluid
+NEIGHBOURS = 8  # of each sample, for connected groups
+LEAST_ANGLE, MOST_ANGLE = 1.0, 20.0  # of the cap around a normal at first, in degrees
+PARABOLIC_LEGEND = (
+    f'<span class="dot" style="background:{PARABOLIC}"></span>parabolic (K = 0)'  # flat, too
+)
+PALE_PARABOLIC = "#b9b9b9"
+RADIUS = 10.0  # of the region around a place at first, in per cent of the diameter
+
+
+def view(
+    samples: Samples,
+    path: str | os.PathLike[str],
+    surface: Surface | Spline | Part | None = None,
+) -> None:
+    """Write the page of samples; see `Samples.view`."""
+    check_target(path)
+    content = page(samples, surface)
+    with paths.atomic_path(path) as temporary:
+        temporary.write_text(content, encoding="utf-8")
+
+
+def check_count(count: int) -> None:
+    """Raise InputError if a page cannot show this number of samples."""
+    if count > MOST:
+        raise InputError(
+            f"a page shows at most {MOST:,} samples, not {count:,}; take fewer, or some, as in "
+            "samples.progressive()[:50_000].view(path)."
+        )
+
+
+def check_target(path: str | os.PathLike[str]) -> None:
+    """Raise what `view` would raise later, for its path or if plotly is missing."""
+    paths.check_target(path, SUFFIXES)
+    check_extra("plotly", "view", "a page with a picture to turn")
+
+
+def page(samples: Samples, surface: Surface | Spline | Part | None = None) -> str:
+    """Return the page as text."""
+    if not len(samples):
+        raise InputError("there are no samples to view.")
+    check_count(len(samples))
+    data = _data(samples, scene_of_samples(samples, surface))
+    here = files(__name__.rpartition(".")[0])
+    offline = from_extra("plotly.offline", "view", "a page with a picture to turn")
+    return Template((here / "page.html").read_text(encoding="utf-8")).substitute(
+        title=html.escape(" ".join(samples.report.surface.split())[:200]),
+        summary=html.escape(samples.summary()),
+        style=(here / "style.css").read_text(encoding="utf-8"),
+        script="\n".join((here / f"{x}.js").read_text(encoding="utf-8") for x in SCRIPTS),
+        plotly=offline.get_plotlyjs().replace("</script", "<\\/script"),
+        # A "<" in the text could end the script that it stands in.
+        data=json.dumps(data, allow_nan=False).replace("<", "\\u003c"),
+        elliptic=ELLIPTIC,
+        hyperbolic=HYPERBOLIC,
+        parabolic_legend=PARABOLIC_LEGEND if samples.parabolic.any() else "",
+    )
+
+
+def _data(samples: Samples, scene: Scene) -> dict[str, Any]:
+    """Return what the script reads: coordinates relative to the centre, the diameter being 1."""
+    corners = scene.quadrangles.reshape(-1, 3)
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    middle, diameter = low / 2 + high / 2, float(np.linalg.norm(high - low)) or 1.0
+    vertices, numbers = np.unique(
+        ((corners - middle) / diameter).astype(np.float32), axis=0, return_inverse=True
+    )
+    a, b, c, d = numbers.reshape(-1, 4).T
+    triangles = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+    one, two, three = triangles.T
+    triangles = triangles[(one != two) & (two != three) & (three != one)]
+    factors = np.array([1.0, 1.0, scene.factor])
+    reach = 1.04 * np.maximum((high - low) / diameter / 2, 0.02)
+    aspect = reach * factors
+    points = (samples.points.astype(np.float64) - middle) / diameter
+    normals = samples.normals.astype(np.float64)
+    return {
+        "points": _encoded(points, np.float32),
+        "normals": _encoded(normals, np.float32),
+        "kind": _encoded(np.where(samples.parabolic, 2, samples.hyperbolic), np.uint8),
+        "prescribed": _encoded(samples.normal_index >= 0, np.uint8),
+        "neighbours": _encoded(_neighbours(points), np.int32),
+        "vertices": _encoded(vertices, np.float32),
+        "triangles": _encoded(triangles, np.int32),
+        "flat": bool((scene.quadrangles[:, 2] == scene.quadrangles[:, 3]).all()),
+        "aspect": (2.7 * aspect / np.linalg.norm(aspect)).tolist(),
+        "aspect_factors": factors.tolist(),
+        "range": np.stack([-reach, reach], axis=1).tolist(),
+        "centre": middle.tolist(),
+        "diameter": diameter,
+        "angle": _spacing(normals),
+        "radius": RADIUS,
+        "colours": [ELLIPTIC, HYPERBOLIC, PARABOLIC],
+        "pale": [SCALE[4], SCALE[2], PALE_PARABOLIC],
+    }
+
+
+def _encoded(array: NDArray[Any], dtype: type[np.generic]) -> str:
+    little = np.ascontiguousarray(array, dtype=np.dtype(dtype).newbyteorder("<"))
+    return base64.b64encode(little.tobytes()).decode("ascii")
+
+
+def _neighbours(points: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return the nearest samples of each one, as rows (N, k)."""
+    count = min(NEIGHBOURS, len(points) - 1)
+    if count == 0:
+        return np.zeros((1, 1), np.int64)
+    nearest = np.asarray(tree_of(points).query(points, k=count + 1)[1])
+    return nearest[:, 1:]
+
+
+def _spacing(normals: NDArray[np.float64]) -> float:
+    """Return the angle in degrees within which nearly every normal has another one beside it."""
+    distinct = np.unique(normals.round(6), axis=0)
+    if len(distinct) < 2:
+        return LEAST_ANGLE
+    distances = tree_of(distinct).query(distinct, k=2)[0][:, 1]
+    angle = np.degrees(2.0 * np.arcsin(min(float(np.percentile(distances, 95.0)) / 2.0, 1.0)))
+    return float(np.clip(angle, LEAST_ANGLE, MOST_ANGLE).round(1))
