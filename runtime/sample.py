@@ -34,7 +34,7 @@ __all__ = ["sample", "sample_and_normals"]
 
 
 def sample(
-    surface: Surface | Spline | Whole | str,
+    surface: Surface | Spline | Whole[Samples] | str,
     count: int | None = None,
     *,
     normals: ArrayLike | None = None,
@@ -209,7 +209,7 @@ def sample(
 
 @in_memory
 def sample_and_normals(
-    surface: Surface | Spline | Whole | str,
+    surface: Surface | Spline | Whole[Samples] | str,
     request: Request,
     *,
     cells: Sequence[int] | None,
@@ -262,7 +262,7 @@ def sample_and_normals(
 
 
 def _of_whole(
-    part: Whole,
+    part: Whole[Samples],
     request: Request,
     cells: Sequence[int] | None,
     on: str | None,

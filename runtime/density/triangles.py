@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..base.errors import InputError
 from ..base.threads import over_ranges
 from ..kernels import triangles as kernels
-from .inside import inside_trim
+from ..spline.inside import FINEST, Inside, parameters_of, subcentroids
 from .sizing import SizingFunction
 
 __all__ = ["Array", "Indices", "Triangles", "cut_patches", "refuse_more", "subdivisions"]
@@ -33,6 +33,10 @@ NARROW = 0.1
 DEEPEST = 2.0**-10
 # Triangles are numbered by 32 bits.
 MOST = 2e9
+# A triangle with its centroid outside is tested at the centroids of its parts, PARTS² of them. If
+# all of these are outside, it is cut, until it is so large relative to the patch, and then dropped.
+PARTS = 4
+SMALLEST = PARTS / FINEST
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +105,7 @@ class Triangles:
 
         The four of a triangle (4 M) follow one another if there is no trim.
         """
-        return inside_trim(self.uncut_quarters)
+        return _inside_trim(self.uncut_quarters)
 
     @property
     def uncut_quarters(self) -> Triangles:
@@ -118,7 +122,7 @@ class Triangles:
         Without those outside the trim.
         """
         corners = self._written_by(kernels.bisect, self.corners, np.empty((2 * len(self), 3, 2)))
-        return inside_trim(Triangles(self.sizing, np.repeat(self.patches, 2), corners))
+        return _inside_trim(Triangles(self.sizing, np.repeat(self.patches, 2), corners))
 
     def at_places(self) -> Array:
         """Return scaled point, unit normal, target density and K (M, 8) at the places.
@@ -192,7 +196,7 @@ def cut_patches(sizing: SizingFunction, radius: float) -> Triangles:
 
     for _ in over_ranges(work, len(parts), PATCHES_AT_A_TIME, sizing.threads):
         pass
-    triangles = inside_trim(Triangles(sizing, patches, corners))
+    triangles = _inside_trim(Triangles(sizing, patches, corners))
     return _bisect_narrow(triangles, narrow, radius) if narrow.any() else triangles
 
 
@@ -234,3 +238,55 @@ def refuse_more(sizing: SizingFunction, number: float, most: float) -> None:
             f"surface {sizing.spline.name!r} would have to be searched in more than {most:.0e} "
             "places; ask for a larger coverage or angle, or for fewer samples or normals."
         )
+
+
+def _inside_trim(triangles: Triangles) -> Triangles:
+    """Return the triangles that have a part inside the trim of their spline."""
+    inside = triangles.sizing.spline.inside
+    if inside is None:
+        return triangles
+    triangles = triangles[inside.reached[triangles.patches]]
+    at_centroid = _contains(triangles, triangles.centroids)
+    found = triangles[at_centroid]
+    left = triangles[~at_centroid]
+    left = left[_may_reach(left, inside)]
+    while len(left):
+        left, some = _with_places(left)
+        found += left[some]
+        left = left[~some]
+        large = np.ptp(left.corners[:, :, 0], axis=1) > SMALLEST
+        left = left[large].uncut_quarters
+        at_centroid = _contains(left, left.centroids)
+        found += left[at_centroid]
+        left = left[~at_centroid]
+    found = found[np.argsort(found.patches, kind="stable")]
+    return found.at(found.uv)
+
+
+def _may_reach(triangles: Triangles, inside: Inside) -> NDArray[np.bool_]:
+    """Say which triangles with centroids outside may have a part inside."""
+    spline, width = triangles.sizing.spline, len(inside.near) // triangles.sizing.spline.cells[0]
+    small = np.abs(np.diff(triangles.corners, axis=1)).max(axis=(1, 2)) <= 1.0 / width
+    return ~small | inside.is_near(spline, triangles.patches, triangles.centroids)
+
+
+def _with_places(triangles: Triangles) -> tuple[Triangles, NDArray[np.bool_]]:
+    """Give triangles places inside, in the middle of those known; say which ones have one."""
+    places = subcentroids(PARTS)
+    first, along, across = np.moveaxis(triangles.corners, 1, 0)[..., None, :]
+    points = first + places[:, :1] * (along - first) + places[:, 1:] * (across - first)
+    is_inside = _contains(triangles, points)
+    number = is_inside.sum(axis=1)
+    mean = np.where(is_inside[..., None], points, 0.0).sum(axis=1) / np.maximum(number, 1)[:, None]
+    squares = ((points - mean[:, None]) ** 2).sum(axis=2)
+    best = np.where(is_inside, squares, np.inf).argmin(axis=1)
+    return triangles.at(points[np.arange(len(points)), best]), number > 0
+
+
+def _contains(triangles: Triangles, places: Array) -> NDArray[np.bool_]:
+    """Say which places (M, …, 2) of triangles are inside the trim."""
+    spline = triangles.sizing.spline
+    assert spline.trim is not None
+    each = places[0, ..., 0].size if len(places) else 1
+    uv = parameters_of(spline, np.repeat(triangles.patches, each), places.reshape(-1, 2))
+    return spline.trim.contains(uv, triangles.sizing.threads).reshape(places.shape[:-1])

@@ -13,10 +13,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..base.checks import checked_array, checked_rows
 from ..base.errors import InputError, MissingFieldError
+from ..base.tolerances import DERIVATIVE_ERROR, PATCH_ERROR
 from ..spline.spline import Spline
 from ..surface.surface import Surface
 from .fields import COLUMNS, DERIVED, OPTIONAL_NAMES, REAL_NAMES, dtype_of, row_shape
-from .kinds import is_parabolic
 from .offset_of import OffsetOf
 from .report import SamplingReport, common_report
 from .whole import Whole
@@ -49,7 +49,7 @@ class SampleArrays:
     other_face_index: NDArray[np.int64] | None = None
     report: SamplingReport = field(kw_only=True)
     spline: Spline | None = field(default=None, kw_only=True)
-    surface: Surface | Whole | None = field(default=None, kw_only=True)
+    surface: Surface | Whole[Any] | None = field(default=None, kw_only=True)
     offset_of: OffsetOf | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
@@ -203,7 +203,7 @@ class SampleArrays:
         np.True_
 
         """
-        return is_parabolic(self)
+        return _is_parabolic(self)
 
     @property
     def hyperbolic(self) -> NDArray[np.bool_]:
@@ -261,14 +261,14 @@ def _rebuilt(
     arrays: dict[str, NDArray[Any]],
     report: SamplingReport,
     spline: Spline | None,
-    surface: Surface | Whole | None = None,
+    surface: Surface | Whole[Any] | None = None,
     offset_of: OffsetOf | None = None,
 ) -> SampleArrays:
     """Return samples that were copied or pickled."""
     return cls(**arrays, report=report, spline=spline, surface=surface, offset_of=offset_of)
 
 
-def _if_it_pickles(surface: Whole | Surface | None) -> Any:  # noqa: ANN401 - of the same type
+def _if_it_pickles(surface: Whole[Any] | Surface | None) -> Any:  # noqa: ANN401 - of the same type
     """Return a surface, or None if it cannot be pickled: its function may be a lambda."""
     return surface if _pickles(surface) else None
 
@@ -285,3 +285,37 @@ def _common_dtype(arrays: Mapping[str, object]) -> np.dtype[np.floating]:
     """Return float32 if all that may be float32 is, otherwise float64."""
     types = {getattr(arrays[name], "dtype", None) for name in REAL_NAMES if name in arrays}
     return np.dtype(np.float32 if types == {np.dtype(np.float32)} else np.float64)
+
+
+def _is_parabolic(samples: SampleArrays) -> NDArray[np.bool_]:
+    """Return at which samples (N,) one principal curvature is zero, up to rounding.
+
+    With an error t of both of them, κ₁ κ₂ has the error t (|κ₁| + |κ₂| + t), and |κ₁| + |κ₂| = 2|H|
+    where κ₂ is about 0; H = 1/D is assumed if it is unknown, D the diagonal of the bounding box.
+    """
+    K = samples.gaussian_curvature.astype(np.float64)
+    diagonal, error = _size_and_error(samples)
+    if not diagonal > 0.0:
+        return np.zeros(len(K), dtype=bool)
+    with np.errstate(over="ignore", invalid="ignore"):
+        bend = np.ones_like(K)
+        if "mean_curvature" in samples.fields:
+            bend = np.abs(samples.mean_curvature.astype(np.float64)) * diagonal
+        return np.abs(K) * diagonal * diagonal <= error * (2.0 * bend + error)
+
+
+def _size_and_error(samples: SampleArrays) -> tuple[float, float]:
+    """Return the diagonal of the bounding box, and the error of a curvature relative to 1/D.
+
+    The diagonal is 0 if it is unknown: without points, and without the spline.
+    """
+    spline = samples.spline
+    if spline is not None:
+        points, cells = spline.coefficients[1:-1, 1:-1].reshape(-1, 3), max(spline.cells)
+    elif "points" in samples.fields and len(samples.points) > 0:
+        points, cells = samples.points.astype(np.float64), 0
+    else:
+        return 0.0, 0.0
+    diagonal = float(np.linalg.norm(np.ptp(points, axis=0)))
+    rounding = float(np.spacing(np.abs(points).max())) / (diagonal or 1.0)
+    return diagonal, rounding * max(DERIVATIVE_ERROR, PATCH_ERROR * cells**2)

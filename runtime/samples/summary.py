@@ -10,7 +10,7 @@ from ..base.georeference import crs_label
 from .report import SamplingReport, count_infinite, have_large_squares
 
 if TYPE_CHECKING:
-    from .samples import Samples
+    from .arrays import SampleArrays
 
 __all__ = ["kinds_of_points", "misfit_clause", "summary_of"]
 
@@ -19,7 +19,7 @@ FLAT = "flat or curved one way only"
 GRID = "a grid that follows the curvature"
 
 
-def summary_of(samples: Samples) -> str:
+def summary_of(samples: SampleArrays) -> str:
     """Return one line: the number of samples, where they come from, what they cover."""
     report, split = samples.report, kinds_of_points(samples).removeprefix(": ").strip(" ()")
     line = f"{_number(len(samples), 'sample')}{_origin(samples)} ({split})"
@@ -77,7 +77,7 @@ def misfit_clause(report: SamplingReport) -> str:
     )
 
 
-def _filling(samples: Samples) -> int:
+def _filling(samples: SampleArrays) -> int:
     """Return how many samples are at no prescribed normal nor edge, as far as that is known."""
     if "normal_index" not in samples.fields:
         return 0
@@ -87,7 +87,7 @@ def _filling(samples: Samples) -> int:
     return int(filling.sum())
 
 
-def _on_grid(samples: Samples) -> str:
+def _on_grid(samples: SampleArrays) -> str:
     """Say how many samples are on a grid, or that it is the better choice for all."""
     count = 0 if samples.row is None else int((samples.row >= 0).sum())
     if count == 0:
@@ -96,7 +96,7 @@ def _on_grid(samples: Samples) -> str:
     return f": {count:,} on {GRID}" + (f", {rest:,} in its gaps" if rest else "")
 
 
-def _origin(samples: Samples) -> str:
+def _origin(samples: SampleArrays) -> str:
     """Say how many samples have prescribed normals, and how many fill gaps."""
     normals, filling = samples.report.normals, _filling(samples)
     if grid := _on_grid(samples):
@@ -111,7 +111,7 @@ def _origin(samples: Samples) -> str:
     return f": {len(samples) - filling:,} {given}, {filling:,} in the gaps between these"
 
 
-def _infinite(samples: Samples) -> str:
+def _infinite(samples: SampleArrays) -> str:
     """Say at how many samples K is infinite, and why."""
     if not count_infinite(samples.arrays()):
         return ""
@@ -124,7 +124,7 @@ def _infinite(samples: Samples) -> str:
     return f"; K is infinite at {int(infinite.sum()):,} samples, where {reason}"
 
 
-def kinds_of_points(samples: Samples) -> str:
+def kinds_of_points(samples: SampleArrays) -> str:
     """Return the numbers of points of each kind, or which fields there are.
 
     Those that are elliptic (K > 0) are called dome-shaped, bowls included, as sides are arbitrary.

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 if TYPE_CHECKING:
     from .request import Request
-    from .samples import Samples
 
 __all__ = ["NormalDeviation", "Whole"]
+
+Samples = TypeVar("Samples")  # gm.Samples, which stand on this
 
 
 class NormalDeviation(NamedTuple):
@@ -40,7 +41,7 @@ class NormalDeviation(NamedTuple):
     space: float
 
 
-class Whole(ABC):
+class Whole(ABC, Generic[Samples]):
     """A CAD part, for example."""
 
     @abstractmethod

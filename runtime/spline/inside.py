@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..base.errors import SurfaceError
 from ..base.threads import over_ranges
+from ..domain.domain import Domain
+from ..domain.trim import Trim
 from ..kernels.trim import to_cells
-
-if TYPE_CHECKING:
-    from .spline import Spline
 
 __all__ = [
     "FINEST",
@@ -38,6 +37,23 @@ POINTS_AT_A_TIME, PLACES_AT_A_TIME = 1 << 20, 1 << 16
 MOST_CELLS = 1 << 22
 
 
+class Trimmed(Protocol):
+    """A spline with a trim, as far as it is needed here."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def domain(self) -> Domain: ...
+    @property
+    def trim(self) -> Trim | None: ...
+    @property
+    def cells(self) -> tuple[int, int]: ...
+    @property
+    def patches(self) -> int: ...
+    @property
+    def frame(self) -> Array: ...
+
+
 @dataclass(frozen=True, eq=False)
 class Inside:
     """The shares (patches,) of the patches inside a trim, from 0 to 1, by their parameters.
@@ -51,7 +67,7 @@ class Inside:
     near: NDArray[np.bool_]
 
     @classmethod
-    def of(cls, spline: Spline) -> Inside:
+    def of(cls, spline: Trimmed) -> Inside:
         """Measure the patches of a spline; SurfaceError if its trim leaves nothing."""
         assert spline.trim is not None
         passed, all_known = spline.trim.cells_of_border(spline.domain, spline.cells)
@@ -71,7 +87,7 @@ class Inside:
         near = _near_border(spline, passed, shares)
         return cls(shares, cut | (shares > 0.0), near)
 
-    def is_near(self, spline: Spline, patches: NDArray[np.int64], places: Array) -> Flags:
+    def is_near(self, spline: Trimmed, patches: NDArray[np.int64], places: Array) -> Flags:
         """Say which parameters (k, 2) of patches (k,) are next to the border."""
         parts = len(self.near) // spline.cells[0]
         i, j = (parts * places_in_cells(spline, patches, places)).astype(np.int64).T
@@ -79,7 +95,7 @@ class Inside:
         return self.near[np.clip(i, 0, m - 1), np.clip(j, 0, n - 1)]
 
 
-def _near_border(spline: Spline, passed: Flags, shares: Array) -> Flags:
+def _near_border(spline: Trimmed, passed: Flags, shares: Array) -> Flags:
     """Return `Inside.near`, for the cells (m, n) that the border may pass."""
     assert spline.trim is not None
     m, n = spline.cells
@@ -95,13 +111,13 @@ def _near_border(spline: Spline, passed: Flags, shares: Array) -> Flags:
     return known | (widened(number) != -widened(-number))
 
 
-def with_uv(spline: Spline, fields: Sequence[str]) -> tuple[str, ...]:
+def with_uv(spline: Trimmed, fields: Sequence[str]) -> tuple[str, ...]:
     """Return fields of samples, and uv too if the spline has a trim, which needs it."""
     return (*fields, "uv") if spline.trim is not None and "uv" not in fields else tuple(fields)
 
 
 def samples_inside(
-    spline: Spline, arrays: dict[str, NDArray[Any]], fields: Sequence[str]
+    spline: Trimmed, arrays: dict[str, NDArray[Any]], fields: Sequence[str]
 ) -> dict[str, NDArray[Any]]:
     """Return fields of the samples that are inside the trim of a spline; `arrays` have uv, too."""
     if spline.trim is None:
@@ -115,7 +131,7 @@ def count_of(arrays: dict[str, NDArray[Any]]) -> int:
     return len(next(iter(arrays.values())))
 
 
-def places_in_cells(spline: Spline, patches: NDArray[np.int64], places: Array) -> Array:
+def places_in_cells(spline: Trimmed, patches: NDArray[np.int64], places: Array) -> Array:
     """Return parameters (k, 2) of patches (k,) in cells from the corner of the domain."""
     cells, places = np.empty((len(patches), 2)), np.ascontiguousarray(places)
 
@@ -127,7 +143,7 @@ def places_in_cells(spline: Spline, patches: NDArray[np.int64], places: Array) -
     return cells
 
 
-def parameters_of(spline: Spline, patches: NDArray[np.int64], places: Array) -> Array:
+def parameters_of(spline: Trimmed, patches: NDArray[np.int64], places: Array) -> Array:
     """Return the parameters (k, 2) of the surface at parameters (k, 2) of patches (k,)."""
     uv = places_in_cells(spline, patches, places)
     uv *= spline.frame[2:]
@@ -146,7 +162,7 @@ def subcentroids(parts: int) -> Array:
     return np.concatenate(places) / parts
 
 
-def _shares(spline: Spline, patches: NDArray[np.int64], parts: int) -> Array:
+def _shares(spline: Trimmed, patches: NDArray[np.int64], parts: int) -> Array:
     """Return the shares of patches (k,) by the centroids of their parts."""
     assert spline.trim is not None
     places, shares = subcentroids(parts), np.empty(len(patches))

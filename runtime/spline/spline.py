@@ -124,7 +124,7 @@ class Spline:
         kernels.control_nets(self.coefficients, nets)
         return nets
 
-    @cached_property
+    @property
     def frame(self) -> NDArray[np.float64]:
         """(4,) float64 array: the corner of the domain and the size of a cell, (u0, v0, du, dv)."""
         (u0, u1), (v0, v1) = self.domain

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,9 +21,7 @@ from ..base.errors import SurfaceError
 from ..base.formula_calls import python_function
 from ..domain.domain import Assumed, Boundary
 from ..spline.quasi_interpolant import SAME_POINT
-
-if TYPE_CHECKING:
-    from .surface import Surface
+from .values import SurfaceValues
 
 __all__ = ["FoundSides", "closed_grid", "found_sides"]
 
@@ -49,7 +47,7 @@ class FoundSides:
     apexes: int
 
 
-def found_sides(surface: Surface) -> FoundSides:
+def found_sides(surface: SurfaceValues) -> FoundSides:
     """Return the boundary conditions of a surface, with the poles among the sides assumed open.
 
     A surface that cannot be evaluated next to its sides keeps its own: if that is an error, the fit
@@ -97,7 +95,7 @@ class _Sides:
     rounding: float
 
     @classmethod
-    def of_surface(cls, surface: Surface) -> _Sides:
+    def of_surface(cls, surface: SurfaceValues) -> _Sides:
         """Return the sides of a surface, which is evaluated when one of them is looked at."""
         parts = [low + (high - low) * np.linspace(0.0, 1.0, 5) for low, high in surface.domain]
         size, last_place = _extent(surface.evaluate(parts[0][:, None], parts[1]))

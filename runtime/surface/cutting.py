@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Protocol, runtime_checkable
+from typing import Protocol, TypeVar, runtime_checkable
 
 from ..domain.domain import Boundary, BoundaryPair, Domain, Interval
 from .derivatives import Differentiable
 from .moved import Moved
-
-if TYPE_CHECKING:
-    from .surface import Surface
+from .values import SurfaceValues
 
 __all__ = ["Creased", "pieces_of"]
+
+Surface = TypeVar("Surface", bound=SurfaceValues)
 
 
 @runtime_checkable
@@ -54,7 +54,7 @@ def _moved_pieces(surface: Surface, moved: Moved) -> tuple[Surface, ...]:
     return tuple(replace(x, name=f"{x.name} (piece {k + 1})") for k, x in enumerate(after))
 
 
-def _moved(surface: Surface, moved: Moved, piece: Surface) -> Surface:
+def _moved(surface: Surface, moved: Moved, piece: SurfaceValues) -> Surface:
     """Return the part of a moved surface that is a piece of the surface before."""
     (low, high), along_v = piece.domain
     (at_low, at_high), ends_v = piece.boundary
@@ -80,7 +80,7 @@ def _piece(surface: Surface, function: Creased, number: int, domain: Domain) -> 
     )
 
 
-def _boundary(surface: Surface, domain: Domain) -> Boundary:
+def _boundary(surface: SurfaceValues, domain: Domain) -> Boundary:
     """Return the boundary conditions of a part: new ends are open."""
     along_u, along_v = (
         _ends(*x) for x in zip(surface.boundary, surface.domain, domain, strict=True)

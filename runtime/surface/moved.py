@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,9 +13,7 @@ from ..base.evaluation import returned
 from ..domain.domain import Boundary, Domain, Interval
 from ..domain.trim import Trim, TrimPart
 from .derivatives import Differences, Differentiable
-
-if TYPE_CHECKING:
-    from .surface import Surface
+from .values import SurfaceValues
 
 __all__ = ["IDENTITY", "AffineMap", "Moved", "affine_map", "moved_grid", "turned_trim"]
 
@@ -76,13 +73,13 @@ def affine_map(matrix: ArrayLike) -> AffineMap:
 class Moved(Differentiable):
     """The function of a surface that is moved; if it is `turned`, u is reversed between `ends`."""
 
-    surface: Surface
+    surface: SurfaceValues
     map: AffineMap
     turned: bool
     ends: Interval
 
     @classmethod
-    def of(cls, surface: Surface) -> Moved:
+    def of(cls, surface: SurfaceValues) -> Moved:
         """Return the function of a surface as a moved one: its own, if it is one."""
         if isinstance(surface.function, Moved):
             return surface.function

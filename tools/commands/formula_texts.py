@@ -10,7 +10,7 @@ from ...runtime.base import bridge
 from ...runtime.base.checks import known_name
 
 if TYPE_CHECKING:
-    from ...symbolic import Formula
+    from ...runtime.base.bridge import Formula
 
 __all__ = ["Formulas", "formulas"]
 

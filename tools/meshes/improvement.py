@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +14,7 @@ from ...runtime.base.tolerances import NO_AREA
 from ..kernels import collapses
 from ..kernels import flips as kernels
 from .mesh import scaled
-
-if TYPE_CHECKING:
-    from .meshing import Triangulated
+from .triangulated import Triangulated
 
 __all__ = ["Prefer", "checked_prefer", "flip_edges", "improved"]
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,10 +13,10 @@ from ...runtime.domain.domain import Boundary
 from ...runtime.place.newton import evaluate_on_surface
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
-from ..kernels.flips import smallest_cosines
 from .filled_lattice import lattice_triangles
 from .improvement import checked_prefer, flip_edges, improved
-from .mesh import Mesh, scaled
+from .mesh import Mesh
+from .triangulated import Triangulated, too_few
 from .triangulation import neighbours, triangulations
 from .trimming import trimmed_triangles
 from .vertices import Vertices, before_offset, boundary_of
@@ -25,7 +24,7 @@ from .vertices import Vertices, before_offset, boundary_of
 if TYPE_CHECKING:
     from ...runtime.samples.samples import Samples
 
-__all__ = ["Triangulated", "mesh_of"]
+__all__ = ["mesh_of", "triangulated_on_lattice"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -39,14 +38,14 @@ def mesh_of(samples: Samples, spline: Spline, angle: float | None, prefer: str) 
     largest = WHOLE if angle is None else _checked_angle(angle)
     if not len(samples):
         raise InputError("there are no samples, and so there is nothing to make a mesh of.")
-    triangulated = Triangulated.on_lattice(samples, spline)
-    if triangulated is None:
-        triangulated = Triangulated.of(samples, spline, must_be_whole=angle is None)
+    mesh = triangulated_on_lattice(samples, spline)
+    if mesh is None:
+        mesh = triangulated(samples, spline, must_be_whole=angle is None)
     if largest < WHOLE:
-        flip_edges(triangulated, "normals")
-        triangulated = triangulated.within(largest)
-    triangulated = improved(triangulated, preferred, largest)
-    return (triangulated.within(largest) if largest < WHOLE else triangulated).mesh()
+        flip_edges(mesh, "normals")
+        mesh = mesh.within(largest)
+    mesh = improved(mesh, preferred, largest)
+    return (mesh.within(largest) if largest < WHOLE else mesh).mesh()
 
 
 def _checked_angle(angle: object) -> float:
@@ -57,125 +56,52 @@ def _checked_angle(angle: object) -> float:
     return float(angle)
 
 
-@dataclass(frozen=True, eq=False)
-class Triangulated:
-    """Samples and added vertices in a triangulation of the parameter domain.
-
-    `sample` and `is_free` are those of `Vertices`; `triangles`, `sides` and `neighbours` (k, 3)
-    those of `kernels.flips`, which changes them in place; `is_node` says which vertices are on a
-    graded grid.
-    """
-
-    name: str
-    uv: Array
-    sample: Indices
-    is_free: NDArray[np.bool_]
-    points: Array
-    normals: Array
-    triangles: Indices
-    sides: Indices
-    neighbours: Indices
-    is_node: NDArray[np.bool_]
-
-    @classmethod
-    def of(cls, samples: Samples, spline: Spline, must_be_whole: bool = True) -> Triangulated:
-        """Triangulate samples anywhere; InputError if the whole is required and that fails."""
-        boundary = boundary_of(spline)
-        vertices = Vertices.of(samples, spline, boundary)
-        if spline.trim is None:
-            triangles, sides, adjacent = _triangles(vertices, spline, boundary, must_be_whole)
-        else:
-            vertices, triangles, sides, adjacent, is_whole = trimmed_triangles(
-                vertices, samples, spline, boundary, _lengths(spline),
-                lambda x: _triangles(x, spline, boundary, False),
-            )  # fmt: skip
-            if not len(triangles) or (must_be_whole and not is_whole):
-                raise _too_few(len(vertices.sample), spline.name)
-        return cls._through(samples, spline, vertices, triangles, sides, adjacent)
-
-    @classmethod
-    def on_lattice(cls, samples: Samples, spline: Spline) -> Triangulated | None:
-        """Triangulate samples on a graded grid, and flip edges towards the normals.
-
-        None if they are on no complete grid, or if some triangles remain folded: too many samples
-        are between its lines, or all are too far apart.
-        """
-        found = lattice_triangles(samples, spline)
-        if found is None:
-            return None
-        vertices, triangles, adjacent, is_node = found
-        sides = np.ones_like(triangles)
-        mesh = cls._through(samples, spline, vertices, triangles, sides, adjacent)
-        flip_edges(mesh, "normals")
-        is_folded = mesh.cosines().min() < 0.0
-        return None if is_folded else replace(mesh, is_node=is_node)
-
-    @classmethod
-    def _through(
-        cls, samples: Samples, spline: Spline, vertices: Vertices,
-        triangles: Indices, sides: Indices, adjacent: Indices,
-    ) -> Triangulated:  # fmt: skip
-        """Add the points and normals of vertices."""
-        uv, points, normals = _on_surface(vertices, samples, spline)
-        _fill_missing(normals, triangles, sides)
-        if samples.offset_of is not None:
-            points = _moved(vertices, points, normals, samples)
-        return cls(
-            spline.name, uv, vertices.sample, vertices.is_free,
-            points, normals, triangles, sides, adjacent, np.zeros_like(vertices.is_free),
+def triangulated(samples: Samples, spline: Spline, must_be_whole: bool = True) -> Triangulated:
+    """Triangulate samples anywhere; InputError if the whole is required and that fails."""
+    boundary = boundary_of(spline)
+    vertices = Vertices.of(samples, spline, boundary)
+    if spline.trim is None:
+        triangles, sides, adjacent = _triangles(vertices, spline, boundary, must_be_whole)
+    else:
+        vertices, triangles, sides, adjacent, is_whole = trimmed_triangles(
+            vertices, samples, spline, boundary, _lengths(spline),
+            lambda x: _triangles(x, spline, boundary, False),
         )  # fmt: skip
+        if not len(triangles) or (must_be_whole and not is_whole):
+            raise too_few(len(vertices.sample), spline.name)
+    return _through(samples, spline, vertices, triangles, sides, adjacent)
 
-    def cosines(self) -> Array:
-        """Return the smallest cosine of each triangle and the normals at its corners."""
-        cosines = np.empty(len(self.triangles))
-        smallest_cosines(scaled(self.points), self.normals, self.triangles, self.sides, cosines)
-        return cosines
 
-    def within(self, angle: float) -> Triangulated:
-        """Leave out the triangles that deviate by more than `angle` degrees from normals.
+def triangulated_on_lattice(samples: Samples, spline: Spline) -> Triangulated | None:
+    """Triangulate samples on a graded grid, and flip edges towards the normals.
 
-        Raises InputError if an edge is then in more than two triangles.
-        """
-        chosen = self.cosines() >= math.cos(math.radians(angle))
-        if not chosen.any():
-            raise InputError(
-                f"every triangle deviates by more than {angle:g} degrees from a normal at a "
-                "corner; allow a larger angle, or take more samples."
-            )
-        triangles = self.triangles[chosen]
-        adjacent, is_surface = neighbours(triangles, np.ones(len(self.points), dtype=bool))
-        if not is_surface:
-            raise _too_few(len(self.points), self.name)
-        return replace(self, triangles=triangles, sides=self.sides[chosen], neighbours=adjacent)
+    None if they are on no complete grid, or if some triangles remain folded: too many samples
+    are between its lines, or all are too far apart.
+    """
+    found = lattice_triangles(samples, spline)
+    if found is None:
+        return None
+    vertices, triangles, adjacent, is_node = found
+    sides = np.ones_like(triangles)
+    mesh = _through(samples, spline, vertices, triangles, sides, adjacent)
+    flip_edges(mesh, "normals")
+    is_folded = mesh.cosines().min() < 0.0
+    return None if is_folded else replace(mesh, is_node=is_node)
 
-    def chosen(self, which: NDArray[np.bool_]) -> Triangulated:
-        """Choose triangles; the others are neighbours of none of them."""
-        number = np.cumsum(which) - 1
-        adjacent = self.neighbours[which]
-        adjacent = np.where(adjacent >= 0, number[adjacent], -1)
-        return replace(
-            self, triangles=self.triangles[which], sides=self.sides[which], neighbours=adjacent
-        )
 
-    def mesh(self) -> Mesh:
-        """Return the mesh."""
-        triangles, sides = self.triangles, self.sides
-        reverse = sides[:, :1] < 0
-        triangles, sides = (
-            np.where(reverse, x[:, [0, 2, 1]], x) for x in (triangles, sides * sides[:, :1])
-        )
-        is_used = np.zeros(len(self.points), dtype=bool)
-        is_used[triangles] = True
-        used, corners = np.flatnonzero(is_used), (np.cumsum(is_used) - 1)[triangles]
-        return Mesh(
-            self.points[used],
-            self.normals[used],
-            self.uv[used],
-            corners,
-            self.sample[used],
-            name=self.name,
-            sides=sides,
-        )
+def _through(
+    samples: Samples, spline: Spline, vertices: Vertices,
+    triangles: Indices, sides: Indices, adjacent: Indices,
+) -> Triangulated:  # fmt: skip
+    """Add the points and normals of vertices."""
+    uv, points, normals = _on_surface(vertices, samples, spline)
+    _fill_missing(normals, triangles, sides)
+    if samples.offset_of is not None:
+        points = _moved(vertices, points, normals, samples)
+    return Triangulated(
+        spline.name, uv, vertices.sample, vertices.is_free,
+        points, normals, triangles, sides, adjacent, np.zeros_like(vertices.is_free),
+    )  # fmt: skip
 
 
 def _triangles(
@@ -195,7 +121,7 @@ def _triangles(
         if is_closed and _characteristic(triangles, adjacent) == _characteristic_of(boundary):
             return found
     if found is None or must_be_whole:
-        raise _too_few(len(vertices.sample), spline.name)
+        raise too_few(len(vertices.sample), spline.name)
     return found
 
 
@@ -212,14 +138,6 @@ def _characteristic_of(boundary: Boundary) -> int:
     if all(closing):
         return int(boundary[0][0] == boundary[1][0] == "mirrored")  # the projective plane
     return sum(end == "pole" for kinds in boundary for end in kinds) if any(closing) else 1
-
-
-def _too_few(count: int, name: str) -> InputError:
-    return InputError(
-        f"the vertices on {name!r}, {count:,} in all, are too few, or leave too large gaps, for "
-        "a mesh of the whole; take more samples or normals in all directions, or leave out the "
-        "triangles across gaps, by angle=... of mesh() or --deviation of the command."
-    )
 
 
 def _lengths(spline: Spline) -> Array:

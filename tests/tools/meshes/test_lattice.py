@@ -12,7 +12,7 @@ from gaussmap.runtime.base.tolerances import NO_AREA
 from gaussmap.runtime.samples.report import SamplingReport
 from gaussmap.tools.meshes import triangulation
 from gaussmap.tools.meshes.lattice import Lattice
-from gaussmap.tools.meshes.meshing import Triangulated
+from gaussmap.tools.meshes.meshing import triangulated_on_lattice
 from gaussmap.tools.meshes.triangulation import neighbours
 
 from .test_meshing import PREFER, TURN, components, is_one_fan_at_each_vertex, latitude
@@ -135,7 +135,7 @@ class TestTopology:
         samples = on_grid(name, (14, 11), between)
         mesh = samples.mesh(prefer=prefer)
         check(name, mesh)
-        assert Triangulated.on_lattice(samples, samples.spline) is not None
+        assert triangulated_on_lattice(samples, samples.spline) is not None
         used = set(mesh.sample_index.tolist()) - {-1}
         # Of three in a line, as on a cone, one may be left out.
         assert len(set(range(len(grid))) - used - {40, 41}) <= (name == "cone")
@@ -144,7 +144,7 @@ class TestTopology:
     def test_it_covers_the_parameters_once(self):
         rng = np.random.default_rng(5)
         samples = on_grid("graph", (12, 15), rng.uniform(0.0, 1.0, (40, 2)))
-        start = Triangulated.on_lattice(samples, samples.spline)
+        start = triangulated_on_lattice(samples, samples.spline)
         assert start is not None
         a, b, c = np.moveaxis(start.uv[start.triangles], 1, 0)
         areas = np.linalg.det(np.stack([b - a, c - a], axis=1)) / 2
@@ -155,7 +155,7 @@ class TestTopology:
     def test_neighbours_are_those_of_the_triangles(self, name):
         rng = np.random.default_rng(6)
         samples = on_grid(name, (24, 20), rng.uniform(0.0, 1.0, (40, 2)))
-        start = Triangulated.on_lattice(samples, samples.spline)
+        start = triangulated_on_lattice(samples, samples.spline)
         assert start is not None
         fresh, is_whole = neighbours(start.triangles, np.ones(len(start.points), dtype=bool))
         assert is_whole
@@ -223,7 +223,7 @@ class TestOtherSamples:
         rng = np.random.default_rng(6)
         samples = on_grid("torus", (12, 15), rng.uniform(0.0, 1.0, (40, 2)))
         assert Lattice.of(samples, samples.spline) is not None
-        assert Triangulated.on_lattice(samples, samples.spline) is None
+        assert triangulated_on_lattice(samples, samples.spline) is None
         check("torus", samples.mesh())
 
     @compiled
@@ -258,7 +258,7 @@ class TestAligned:
     def test_samples_of_that_density(self, name, prefer):
         samples = gm.sample(surfaces[name][0](), count=700, density="aligned", cells=(16, 16))
         assert samples.spline is not None
-        assert Triangulated.on_lattice(samples, samples.spline) is not None
+        assert triangulated_on_lattice(samples, samples.spline) is not None
         check(name, samples.mesh(prefer=prefer))
 
     def test_they_are_better_than_isotropic_ones(self):
