@@ -63,6 +63,26 @@ def test_import_loads_nothing_heavy() -> None:
     assert done.stdout.strip() == "[]"
 
 
+def test_sampling_loads_no_tools() -> None:
+    """The runtime stands alone; methods of samples that tools define are loaded when called."""
+    code = """
+import sys
+import gaussmap as gm
+torus = gm.surfaces.torus()
+for request in ({"count": 200}, {"coverage": 0.5}, {"angle": 30.0}, {"normals": [[0, 0, 1]]}):
+    samples = gm.sample(torus, cells=(16, 16), **request)
+for density in ("gauss", "aligned", "isotropic", "uniform"):
+    samples = gm.sample(torus, 200, cells=(16, 16), density=density)
+print(len(list(gm.sample_stream(torus, 200, cells=(16, 16)))), samples.summary(), samples.coverage())
+tools = lambda: [x for x in sys.modules if x.startswith("gaussmap.tools")]
+print(tools())
+samples.weights()
+print(bool(tools()))
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-2:] == ["[]", "True"]
+
+
 def test_sampling_loads_neither_sympy_nor_matplotlib() -> None:
     heavy = "('sympy', 'matplotlib', 'pyvista', 'tqdm')"
     code = f"import sys; from gaussmap import *; print([x for x in {heavy} if x in sys.modules])"
