@@ -12,7 +12,6 @@ import pytest
 from gaussmap.runtime import stream
 from gaussmap.runtime.density import chosen_normals as choice
 from gaussmap.runtime.directions.unit import as_normals
-from gaussmap.runtime.samples.samples import Samples
 from gaussmap.runtime.search import search
 from gaussmap.runtime.search.bins import NormalBins
 from gaussmap.runtime.search.search import Search, find
@@ -54,7 +53,7 @@ def test_chunks_make_the_whole(name, threads, monkeypatch):
             chunks = list(gm.sample_stream(spline, chunk=size, threads=threads, **asked))
             assert [len(x) for x in chunks[:-1]] == [size] * (len(chunks) - 1)
             assert 0 < len(chunks[-1]) <= size
-            joined = Samples.concatenate(chunks)
+            joined = gm.Samples.concatenate(chunks)
             same(joined, whole)
             assert joined.report.developable_share == whole.report.developable_share
             assert joined.report.normals == whole.report.normals
@@ -67,7 +66,7 @@ def test_fields_and_types(fields, dtype):
     options = {"normals": gm.icosphere(5), "fields": fields, "dtype": dtype}
     for threads in (1, 2):
         chunks = gm.sample_stream(TORUS, chunk=37, threads=threads, **options)
-        same(Samples.concatenate(chunks), gm.sample(TORUS, **options))
+        same(gm.Samples.concatenate(chunks), gm.sample(TORUS, **options))
 
 
 def test_one_patch_with_more_samples_than_a_chunk():
@@ -76,7 +75,7 @@ def test_one_patch_with_more_samples_than_a_chunk():
     assert np.bincount(whole.patch_index).max() > 3 * 5
     chunks = list(gm.sample_stream(spline, normals=gm.fibonacci(500), chunk=5))
     assert max(map(len, chunks)) == 5
-    same(Samples.concatenate(chunks), whole)
+    same(gm.Samples.concatenate(chunks), whole)
 
 
 @pytest.mark.parametrize("name", ["wavy_graph", "monkey_saddle"])
@@ -91,7 +90,10 @@ def test_a_sample_of_two_ranges_comes_once(name, monkeypatch):
     monkeypatch.setattr(search, "FEWEST_PATCHES", 1)
     monkeypatch.setattr(search, "MOST_PATCHES", 1)
     for threads in (1, 2):
-        same(Samples.concatenate(gm.sample_stream(spline, normals=normals, threads=threads)), whole)
+        same(
+            gm.Samples.concatenate(gm.sample_stream(spline, normals=normals, threads=threads)),
+            whole,
+        )
     alone, apart = Search(spline, NormalBins(normals)), 0
     for patch in range(spline.patches):
         for found in alone.results(patch, patch + 1):
@@ -107,7 +109,7 @@ def test_blocks_of_normals(size, asked, monkeypatch):
     monkeypatch.setattr(stream, "NORMALS_AT_A_TIME", size)
     chunks = list(gm.sample_stream(TORUS, chunk=50, **asked))
     assert max(map(len, chunks)) <= 50
-    joined = Samples.concatenate(chunks)
+    joined = gm.Samples.concatenate(chunks)
     order = np.lexsort((whole.normal_index, whole.patch_index, whole.normal_index // size))
     same(joined, whole[order])
     assert joined.report.normals == whole.report.normals
@@ -128,7 +130,7 @@ def test_a_count_is_concluded_from_a_smaller_one(name, monkeypatch):
     samples = gm.sample(spline, count=50_000, density="gauss")
     assert abs(len(samples) - 50_000) <= 2500
     assert 10 * max(tried) < (samples.report.normals or 0)
-    same(Samples.concatenate(gm.sample_stream(spline, count=50_000, chunk=9999)), samples)
+    same(gm.Samples.concatenate(gm.sample_stream(spline, count=50_000, chunk=9999)), samples)
 
 
 # --- what there is to say -------------------------------------------------------------------------
@@ -244,13 +246,13 @@ def test_an_error_ends_the_work(threads, error, monkeypatch):
 def test_streams_in_several_python_threads():
     whole = gm.sample(TORUS, normals=gm.icosphere(8))
     narrow = gm.sample(TORUS, normals=gm.icosphere(8), fields=("points",), dtype=np.float32)
-    found: list[Samples] = [whole] * 6
+    found: list[gm.Samples] = [whole] * 6
     start = threading.Barrier(6, timeout=30)
 
     def work(k):
         options = {"fields": ("points",), "dtype": np.float32} if k % 2 else {}
         start.wait()
-        found[k] = Samples.concatenate(
+        found[k] = gm.Samples.concatenate(
             gm.sample_stream(
                 TORUS, normals=gm.icosphere(8), chunk=100 + k, threads=1 + k % 3, **options
             )
@@ -270,7 +272,9 @@ def test_streams_may_be_interleaved():
     second = gm.sample_stream(QUARTER, normals=gm.icosphere(6), chunk=7)
     parts = [one for one, _ in zip(first, second, strict=False)]
     assert len(parts) > 3
-    same(Samples.concatenate(parts), gm.sample(TORUS, normals=gm.icosphere(6))[: 20 * len(parts)])
+    same(
+        gm.Samples.concatenate(parts), gm.sample(TORUS, normals=gm.icosphere(6))[: 20 * len(parts)]
+    )
 
 
 # --- memory ---------------------------------------------------------------------------------------

@@ -7,7 +7,6 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.base.errors import InputError
 from gaussmap.runtime.density.lines import Axis
 from gaussmap.runtime.density.steps import Forms, equal_steps, steps_for_count
 
@@ -90,7 +89,7 @@ def test_fields_are_there_if_asked_or_used():
     none = gm.sample("sphere", 300, fields=("points", "column"), cells=CELLS)
     assert none.column is not None
     assert (none.column == -1).all()
-    with pytest.raises(InputError, match="row is a field of samples on a grid only"):
+    with pytest.raises(gm.errors.InputError, match="row is a field of samples on a grid only"):
         gm.sample("torus", 300, fields=("points", "row"), density="uniform", cells=CELLS)
 
 
@@ -161,7 +160,9 @@ def test_balanced_takes_the_better_one():
 def test_prescribed_normals_are_never_on_a_grid():
     samples = gm.sample("torus", normals=gm.icosphere(4), density="balanced", cells=CELLS)
     assert samples.report.density == "isotropic"
-    with pytest.raises(InputError, match=r"density=.aligned. cannot be asked for by normals"):
+    with pytest.raises(
+        gm.errors.InputError, match=r"density=.aligned. cannot be asked for by normals"
+    ):
         gm.sample("torus", normals=gm.icosphere(4), density="aligned")
 
 

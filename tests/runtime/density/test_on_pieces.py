@@ -6,7 +6,6 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.base.errors import GaussmapWarning, InputError, SurfaceError
 from gaussmap.runtime.density.law import allotted
 from gaussmap.runtime.density.on_pieces import cells_of_piece
 from gaussmap.runtime.sample import sample_and_normals
@@ -136,7 +135,9 @@ def test_coverage_and_normal_deviation_are_of_all_pieces():
 
 def test_samples_of_pieces_have_no_mesh():
     samples = gm.sample(barrel(), 50, cells=CELLS)
-    with pytest.raises(InputError, match=r"of several pieces .* each of surface.pieces\(\)"):
+    with pytest.raises(
+        gm.errors.InputError, match=r"of several pieces .* each of surface.pieces\(\)"
+    ):
         samples.mesh()
     meshes = [gm.sample(x, 50, cells=CELLS).mesh() for x in barrel().pieces()]
     assert all(len(x.triangles) > 50 for x in meshes)
@@ -154,7 +155,7 @@ def test_a_count_that_covers_all_pieces():
     samples = gm.sample(roof(), least + 40, coverage=0.5, cells=CELLS)
     assert len(samples) == least + 40
     assert report_of(samples).coverage <= 0.5
-    with pytest.warns(GaussmapWarning, match="the coverage is"):
+    with pytest.warns(gm.GaussmapWarning, match="the coverage is"):
         few = gm.sample(roof(), least // 2, coverage=0.5, cells=CELLS)
     assert len(few) == least // 2
 
@@ -185,7 +186,7 @@ def test_trimmed_pieces():
     samples = gm.sample(half, 100, cells=CELLS)
     assert len(samples) == 100
     assert samples.points[:, 0].min() >= 2.0
-    with pytest.raises(SurfaceError, match="their trim leaves nothing"):
+    with pytest.raises(gm.errors.SurfaceError, match="their trim leaves nothing"):
         gm.sample(roof().trimmed(within=lambda u, v: u > 2.0), 100, cells=CELLS)
 
 
@@ -194,12 +195,14 @@ def test_many_pieces_are_refused():
     points = np.random.default_rng(0).random((count, count, 3))
     knots = [0, *range(count), count - 1]
     surface = gm.Surface.from_nurbs((1, 1), (knots, knots), points)
-    with pytest.raises(InputError, match=r"3,481 pieces between lines where its normal turns"):
+    with pytest.raises(
+        gm.errors.InputError, match=r"3,481 pieces between lines where its normal turns"
+    ):
         gm.sample(surface, 100)
 
 
 def test_streams_are_of_one_piece():
-    with pytest.raises(InputError, match=r"2 pieces .*surface.pieces\(\)"):
+    with pytest.raises(gm.errors.InputError, match=r"2 pieces .*surface.pieces\(\)"):
         gm.sample_stream(barrel(), 100)
 
 

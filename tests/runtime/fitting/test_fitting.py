@@ -7,7 +7,6 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.base.errors import GaussmapWarning, InputError
 from numpy.typing import NDArray
 
 Array = NDArray[Any]
@@ -111,13 +110,15 @@ def test_what_a_coarse_spline_does_not_see_is_found() -> None:
     ],
 )
 def test_unusable_tolerances(arguments, said: str) -> None:
-    with pytest.raises(InputError, match=said):
+    with pytest.raises(gm.errors.InputError, match=said):
         gm.fit("torus", **arguments)
 
 
 def test_what_cannot_be_reached_is_said() -> None:
     step = graph(lambda u, v: (u > 0.4371) * 0.1, name="step")
-    with pytest.warns(GaussmapWarning, match="'step': the tolerance is not reached; .* within 0.0"):
+    with pytest.warns(
+        gm.GaussmapWarning, match="'step': the tolerance is not reached; .* within 0.0"
+    ):
         spline = gm.fit(step, tolerance=1e-3)
     assert spline.cells[0] <= 4096
     assert spline.patches <= 2**22
@@ -160,7 +161,9 @@ def test_default_wastes_no_cells_on_folds_and_poles() -> None:
 
 def test_default_is_bounded_and_says_when_it_is_far_off() -> None:
     noise = graph(lambda u, v: 0.05 * np.sin(1e5 * np.sin(1e3 * u + 777 * v)), name="noise")
-    with pytest.warns(GaussmapWarning, match="'noise': the accuracy of the default is not reach"):
+    with pytest.warns(
+        gm.GaussmapWarning, match="'noise': the accuracy of the default is not reach"
+    ):
         assert gm.fit(noise).cells == (64, 64)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -190,8 +193,8 @@ def test_tolerance_for_data() -> None:
 
 def test_data_that_are_rougher_than_the_tolerance() -> None:
     surface = data()
-    with pytest.warns(GaussmapWarning, match="the tolerance is not reached"):
+    with pytest.warns(gm.GaussmapWarning, match="the tolerance is not reached"):
         spline = gm.fit(surface, tolerance=1e-9)
     assert np.array_equal(spline.coefficients, gm.fit(surface).coefficients)
-    with pytest.raises(InputError, match="data have no normals"):
+    with pytest.raises(gm.errors.InputError, match="data have no normals"):
         gm.fit(surface, normal_tolerance=1.0)

@@ -6,7 +6,6 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.base.errors import GaussmapWarning, InputError, UnknownNameError
 from gaussmap.runtime.base.tolerances import NORMAL_ERROR
 from gaussmap.runtime.samples.fields import ARRAY_NAMES, ARRAY_NAMES_ON_SURFACE
 from scipy.spatial import KDTree
@@ -137,7 +136,9 @@ def test_angle_and_coverage_hold_for_the_surface():
 
 def test_a_coverage_below_the_misfit_is_reached_as_far_as_possible():
     torus = gm.surfaces.torus()
-    with pytest.warns(GaussmapWarning, match=r"coverage is 0\.\d+ instead of the requested 0\.05"):
+    with pytest.warns(
+        gm.GaussmapWarning, match=r"coverage is 0\.\d+ instead of the requested 0\.05"
+    ):
         samples = gm.sample(torus, coverage=0.05, density="isotropic", cells=(6, 6))
     report = samples.report
     assert report.coverage is not None
@@ -207,7 +208,9 @@ class TestStream:
         np.testing.assert_allclose(joined.points[order], expected, atol=1e-11)
 
     def test_no_samples(self):
-        with pytest.warns(GaussmapWarning, match="none of the normals lies in its Gaussian image"):
+        with pytest.warns(
+            gm.GaussmapWarning, match="none of the normals lies in its Gaussian image"
+        ):
             chunks = [*gm.sample_stream("catenoid", normals=[[0, 0, 1]], cells=CELLS, on="surface")]
         assert [len(chunk) for chunk in chunks] == [0]
 
@@ -217,25 +220,27 @@ class TestArguments:
         spline = gm.fit("torus", CELLS)
         heights = np.hypot(*np.mgrid[-1:1:8j, -1:1:9j]) ** 3
         grid = gm.Surface.from_grid(heights, spacing=(1, 1), name="hill")
-        with pytest.raises(InputError, match="needs the surface, not its spline"):
+        with pytest.raises(gm.errors.InputError, match="needs the surface, not its spline"):
             gm.sample(spline, 10, on="surface")
-        with pytest.raises(InputError, match="'hill' was given by points"):
+        with pytest.raises(gm.errors.InputError, match="'hill' was given by points"):
             gm.sample(grid, 10, on="surface")
         assert gm.sample(grid, 50).report.on == gm.sample(spline, 50).report.on == "spline"
 
     @pytest.mark.parametrize("on", ["surfaces", "", 1])
     def test_other_places_are_refused(self, on):
         for sampler in (gm.sample, gm.sample_stream):
-            with pytest.raises(UnknownNameError, match="there is no place of samples"):
+            with pytest.raises(gm.errors.UnknownNameError, match="there is no place of samples"):
                 sampler("torus", 10, on=on)
 
     def test_whether_samples_are_on_the_surface_is_a_field_of_those_only(self):
-        with pytest.raises(InputError, match="on_surface is a field of samples on the surface"):
+        with pytest.raises(
+            gm.errors.InputError, match="on_surface is a field of samples on the surface"
+        ):
             gm.sample("torus", 10, fields=("points", "on_surface"), on="spline")
 
     def test_many(self):
         surfaces = ["torus", gm.fit("torus", CELLS)]
-        with pytest.warns(GaussmapWarning, match="needs the surface, not its spline"):
+        with pytest.warns(gm.GaussmapWarning, match="needs the surface, not its spline"):
             (samples,) = gm.sample_many(surfaces, 50, on="surface", on_error="skip", progress=False)
         assert samples.report.on == "surface"
 

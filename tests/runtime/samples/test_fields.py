@@ -8,7 +8,6 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.base.errors import InputError
 from gaussmap.runtime.samples import fields as names
 from gaussmap.runtime.samples.fields import ARRAY_NAMES, FLOAT_NAMES
 from gaussmap.runtime.samples.samples import Samples
@@ -315,5 +314,5 @@ def test_out_that_does_not_fit_is_left_alone():
 
 
 def test_out_must_be_samples():
-    with pytest.raises(InputError, match="out must be Samples of an earlier call, not 3"):
+    with pytest.raises(gm.errors.InputError, match="out must be Samples of an earlier call, not 3"):
         gm.sample(SPLINE, normals=NORMALS, out=3)  # pyright: ignore[reportArgumentType]

@@ -8,7 +8,6 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.base.errors import InputError
 from gaussmap.runtime.samples.fields import (
     ARRAY_NAMES,
     ARRAY_NAMES_ON_SURFACE,
@@ -70,7 +69,9 @@ class TestConstruction:
         assert torus().spline is None
 
     def test_what_is_no_spline_is_refused(self):
-        with pytest.raises(InputError, match="spline must be a Spline or None, not Surface"):
+        with pytest.raises(
+            gm.errors.InputError, match="spline must be a Spline or None, not Surface"
+        ):
             torus(spline=gm.surfaces.torus())
 
     def test_the_surface_is_kept_and_pickled_if_it_pickles(self):
@@ -84,7 +85,9 @@ class TestConstruction:
         other = pickle.loads(pickle.dumps(torus(surface=unpicklable)))
         assert other.surface is None
         np.testing.assert_array_equal(other.points, samples.points)
-        with pytest.raises(InputError, match="surface must be a Surface or None, not str"):
+        with pytest.raises(
+            gm.errors.InputError, match="surface must be a Surface or None, not str"
+        ):
             torus(surface="torus")
 
     def test_whether_samples_are_on_the_surface_is_optional(self):
@@ -99,7 +102,7 @@ class TestConstruction:
         np.testing.assert_array_equal(joined.on_surface, there)
         assert joined.report.unrefined == 3
         assert Samples.concatenate([torus()]).report.unrefined is None
-        with pytest.raises(InputError, match="on_surface must be a bool array"):
+        with pytest.raises(gm.errors.InputError, match="on_surface must be a bool array"):
             torus(on_surface=np.ones(12))
 
     def test_length(self):
@@ -110,7 +113,7 @@ class TestConstruction:
     def test_wrong_shapes_are_named(self, name):
         good = getattr(torus(), name)
         for bad in (good[:-1], good[..., None], good.ravel()[0]):
-            with pytest.raises(InputError) as caught:
+            with pytest.raises(gm.errors.InputError) as caught:
                 torus(**{name: np.array(bad)})
             # When the points are wrong, all the others seem to be.
             assert "shape" in str(caught.value)
@@ -124,12 +127,12 @@ class TestConstruction:
             good.astype(object),
             good.astype(good.dtype.newbyteorder()),
         ):
-            with pytest.raises(InputError, match=f"^{name} must be a {good.dtype} array"):
+            with pytest.raises(gm.errors.InputError, match=f"^{name} must be a {good.dtype} array"):
                 torus(**{name: bad})
 
     @pytest.mark.parametrize("name", ARRAY_NAMES)
     def test_lists_are_refused(self, name):
-        with pytest.raises(InputError, match=f"^{name} must be a NumPy array, not list"):
+        with pytest.raises(gm.errors.InputError, match=f"^{name} must be a NumPy array, not list"):
             torus(**{name: getattr(torus(), name).tolist()})
 
     @pytest.mark.parametrize("name", ARRAY_NAMES)
@@ -146,7 +149,7 @@ class TestConstruction:
         assert torus(support=support).support is support
 
     def test_the_report_must_be_one(self):
-        with pytest.raises(InputError, match="report must be a SamplingReport, not dict"):
+        with pytest.raises(gm.errors.InputError, match="report must be a SamplingReport, not dict"):
             torus(report={})
 
     def test_samples_are_frozen(self):
@@ -197,18 +200,18 @@ class TestReport:
     @pytest.mark.parametrize("name", ["normals", "samples", "patches", "developable_patches"])
     @pytest.mark.parametrize("bad", [-1, 1.5, "3"])
     def test_bad_counts_are_named(self, name, bad):
-        with pytest.raises(InputError, match=f"^{name} must"):
+        with pytest.raises(gm.errors.InputError, match=f"^{name} must"):
             replace(REPORT, **{name: bad})
 
     @pytest.mark.parametrize("bad", [-0.1, 1.1, np.nan, np.inf, "much"])
     def test_bad_shares(self, bad):
-        with pytest.raises(InputError, match=r"^developable_share must"):
+        with pytest.raises(gm.errors.InputError, match=r"^developable_share must"):
             replace(REPORT, developable_share=bad)
 
     @pytest.mark.parametrize("name", ["coverage", "angle", "fit_distance", "fit_rms", "fit_angle"])
     @pytest.mark.parametrize("bad", [-0.1, np.nan, "much", [1.0]])
     def test_bad_distances(self, name, bad):
-        with pytest.raises(InputError, match=f"^{name} must"):
+        with pytest.raises(gm.errors.InputError, match=f"^{name} must"):
             replace(REPORT, **{name: bad})
 
     def test_rounding_of_the_share_is_forgiven(self):
@@ -216,7 +219,7 @@ class TestReport:
         assert replace(REPORT, developable_share=1.0 + 1e-15).developable_share == 1.0
 
     def test_the_label_must_be_text(self):
-        with pytest.raises(InputError, match=r"^surface must be a string, not bytes"):
+        with pytest.raises(gm.errors.InputError, match=r"^surface must be a string, not bytes"):
             replace(REPORT, surface=b"torus")  # pyright: ignore[reportArgumentType]
 
     def test_unknown_numbers(self):
@@ -224,7 +227,7 @@ class TestReport:
         assert report.normals is report.patches is report.developable_share is None
 
     def test_the_number_of_samples_is_always_known(self):
-        with pytest.raises(InputError, match=r"^samples must be an integer"):
+        with pytest.raises(gm.errors.InputError, match=r"^samples must be an integer"):
             replace(REPORT, samples=None)  # pyright: ignore[reportArgumentType]
 
 
@@ -334,7 +337,7 @@ class TestIndexing:
         ids=str,
     )
     def test_bad_keys(self, key, message):
-        with pytest.raises(InputError, match=message):
+        with pytest.raises(gm.errors.InputError, match=message):
             torus(12)[key]
 
     def test_the_halves_make_the_whole(self):

@@ -10,7 +10,6 @@ import geomdl.BSpline
 import geomdl.NURBS
 import numpy as np
 import pytest
-from gaussmap.runtime.base.errors import InputError
 from gaussmap.runtime.surface.nurbs import Nurbs
 from scipy.interpolate import NdBSpline
 from splipy import surface_factory
@@ -173,7 +172,7 @@ def test_ends_are_those_of_the_domain_and_period():
     assert (low, high) == (0.0, 4.0)
     corner = surface.evaluate(low, 0.0)
     assert np.allclose(surface.evaluate([high, high + 4.0, low - 8.0], 0.0), corner, atol=1e-15)
-    with pytest.raises(InputError, match=r"v = 2.5 lies outside the domain \(0.0, 2.0\)"):
+    with pytest.raises(gm.errors.InputError, match=r"v = 2.5 lies outside the domain \(0.0, 2.0\)"):
         sphere().evaluate(0.0, 2.5)
     assert np.isnan(surface.jets(np.array([np.nan]), np.zeros(1))).any()
 
@@ -409,7 +408,7 @@ SQUARE = [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]]
     ],
 )  # fmt: skip
 def test_errors(arguments, message):
-    with pytest.raises(InputError, match=message):
+    with pytest.raises(gm.errors.InputError, match=message):
         gm.Surface.from_nurbs(*arguments)
 
 
@@ -422,7 +421,7 @@ def test_errors(arguments, message):
 )
 def test_knots_that_occur_too_often(knots, message):
     points = net(4, 2)
-    with pytest.raises(InputError, match=message):
+    with pytest.raises(gm.errors.InputError, match=message):
         gm.Surface.from_nurbs((1, 1), (knots, LINE), points)
 
 
@@ -434,7 +433,7 @@ def test_trimmed_surfaces_of_geomdl_are_refused():
     trim = geomdl.BSpline.Curve()
     trim.degree, trim.ctrlpts, trim.knotvector = 1, [[0.1, 0.1], [0.9, 0.9]], LINE
     surface.trims = [trim]
-    with pytest.raises(InputError, match="has trim curves"):
+    with pytest.raises(gm.errors.InputError, match="has trim curves"):
         gm.Surface.from_nurbs(surface)
 
 

@@ -2,10 +2,9 @@
 
 from pathlib import Path
 
+import gaussmap as gm
 import numpy as np
 from gaussmap.runtime.samples.report import SamplingReport
-from gaussmap.runtime.samples.samples import Samples
-from gaussmap.tools.batch.dataset import Dataset, open_dataset
 from gaussmap.tools.batch.layout import Settings, create
 from gaussmap.tools.batch.manifest import FAILED, ManifestRow
 from gaussmap.tools.batch.shards import Shard
@@ -18,11 +17,11 @@ BROKEN = 12
 SEPARATE = 5  # parts of a shard
 
 
-def samples_of(part: int, count: int, dtype: str = "float64") -> Samples:
+def samples_of(part: int, count: int, dtype: str = "float64") -> gm.Samples:
     """Return samples by which the part and the row are known again."""
     rng = np.random.default_rng(part)
     on_spline, of_cad = part % 3 == 1, part % 3 == 2
-    return Samples(
+    return gm.Samples(
         points=np.column_stack([np.full(count, part), np.arange(count), rng.random(count)]).astype(
             dtype
         ),
@@ -47,7 +46,7 @@ def write(
     counts: tuple[int, ...] = COUNTS,
     dtype: str = "float64",
     compression: str = "zstd",
-) -> Dataset:
+) -> gm.Dataset:
     """Write a data set with parts of so many samples."""
     known = Settings.of_this_version(
         asked={}, fields=FIELDS, dtype=dtype, parts_per_shard=SEPARATE, compression=compression
@@ -60,4 +59,4 @@ def write(
                 table = points_table(samples_of(part, counts[part], dtype), part, shard.schema)
                 shard.add(row_of(part, counts[part]), None if part == BROKEN else table)
             shard.commit(parts)
-    return open_dataset(folder)
+    return gm.open_dataset(folder)

@@ -11,7 +11,6 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.base.errors import FileError, InputError
 from gaussmap.tools.batch.arguments import where
 from gaussmap.tools.batch.asked import Asked
 from gaussmap.tools.batch.making import Unwatched, make
@@ -124,7 +123,7 @@ def test_a_scheduler_without_workers(tmp_path, monkeypatch):
     monkeypatch.setattr("gaussmap.tools.batch.cluster.PATIENCE", 3)
     found = Cluster(tmp_path, 0)
     try:
-        with pytest.raises(FileError, match="has no workers"):
+        with pytest.raises(gm.errors.FileError, match="has no workers"):
             gm.sample_many(["torus"], 50, out=tmp_path / "set", scheduler=found.address)
     finally:
         found.end()
@@ -132,9 +131,9 @@ def test_a_scheduler_without_workers(tmp_path, monkeypatch):
 
 def test_bad_schedulers(tmp_path, monkeypatch):
     monkeypatch.setattr("gaussmap.tools.batch.cluster.PATIENCE", 1)
-    with pytest.raises(InputError, match="address of a scheduler"):
+    with pytest.raises(gm.errors.InputError, match="address of a scheduler"):
         gm.sample_many(["torus"], 50, out=tmp_path / "set", scheduler=5)
-    with pytest.raises(FileError, match="no scheduler of Dask answers"):
+    with pytest.raises(gm.errors.FileError, match="no scheduler of Dask answers"):
         gm.sample_many(
             ["torus"], 50, out=tmp_path / "set", scheduler=f"tcp://127.0.0.1:{free_port()}"
         )

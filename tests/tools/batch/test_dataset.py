@@ -7,9 +7,7 @@ from pathlib import Path
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.base.errors import FileError, InputError, UnknownNameError
 from gaussmap.runtime.samples.fields import columns_of
-from gaussmap.tools.batch.dataset import Dataset
 from gaussmap.tools.batch.layout import MANIFEST, POINTS, shard_path
 from gaussmap.tools.batch.manifest import COLUMNS as MANIFEST_COLUMNS
 
@@ -20,7 +18,7 @@ PARTS, SAMPLES = len(made.COUNTS), sum(made.COUNTS)
 
 
 @pytest.fixture(scope="module")
-def dataset(tmp_path_factory) -> Dataset:
+def dataset(tmp_path_factory) -> gm.Dataset:
     return made.write(tmp_path_factory.mktemp("data") / "set")
 
 
@@ -59,11 +57,11 @@ def test_samples_of_a_part(dataset, part):
 @pytest.mark.parametrize(
     ("part", "error", "text"),
     [
-        (made.BROKEN, UnknownNameError, "'broken'.*has failed: no such file"),
-        (13, UnknownNameError, "no part 13"),
-        (10**6, UnknownNameError, "no part"),
-        (-1, InputError, "at least 0"),
-        ("part 1", InputError, "whole number"),
+        (made.BROKEN, gm.errors.UnknownNameError, "'broken'.*has failed: no such file"),
+        (13, gm.errors.UnknownNameError, "no part 13"),
+        (10**6, gm.errors.UnknownNameError, "no part"),
+        (-1, gm.errors.InputError, "at least 0"),
+        ("part 1", gm.errors.InputError, "whole number"),
     ],
 )
 def test_parts_that_are_not_there(dataset, part, error, text):
@@ -73,9 +71,14 @@ def test_parts_that_are_not_there(dataset, part, error, text):
 
 @pytest.mark.parametrize(
     ("columns", "error"),
-    [("part", InputError), ([], InputError), (["part", "part"], InputError),
-     (["parts"], UnknownNameError), (3, InputError)],
-)  # fmt: skip
+    [
+        ("part", gm.errors.InputError),
+        ([], gm.errors.InputError),
+        (["part", "part"], gm.errors.InputError),
+        (["parts"], gm.errors.UnknownNameError),
+        (3, gm.errors.InputError),
+    ],
+)
 def test_columns_that_are_not_there(dataset, columns, error):
     with pytest.raises(error):
         dataset.manifest(columns)
@@ -85,7 +88,7 @@ def test_a_shard_that_is_not_finished_is_not_there(tmp_path):
     dataset = made.write(tmp_path)
     shard_path(tmp_path, MANIFEST, 1).unlink()
     assert len(dataset) == PARTS - made.SEPARATE
-    with pytest.raises(UnknownNameError):
+    with pytest.raises(gm.errors.UnknownNameError):
         dataset.samples(made.SEPARATE)
     for number in (0, 2):
         shard_path(tmp_path, MANIFEST, number).unlink()
@@ -97,20 +100,20 @@ def test_files_that_are_damaged_or_missing(tmp_path):
     dataset = made.write(tmp_path)
     points, manifest = (shard_path(tmp_path, kind, 0) for kind in (POINTS, MANIFEST))
     points.write_bytes(shard_path(tmp_path, POINTS, 1).read_bytes())
-    with pytest.raises(FileError, match="does not belong to its manifest"):
+    with pytest.raises(gm.errors.FileError, match="does not belong to its manifest"):
         dataset.samples(0)
     points.write_bytes(points.read_bytes()[:-100])
-    with pytest.raises(FileError, match=r"cannot be read.*again"):
+    with pytest.raises(gm.errors.FileError, match=r"cannot be read.*again"):
         dataset.samples(0)
     points.unlink()
-    with pytest.raises(FileError, match=r"cannot be read.*again"):
+    with pytest.raises(gm.errors.FileError, match=r"cannot be read.*again"):
         list(dataset.batches(8))
     manifest.write_bytes(b"")
-    with pytest.raises(FileError, match="cannot be read"):
+    with pytest.raises(gm.errors.FileError, match="cannot be read"):
         dataset.summary()
-    with pytest.raises(FileError, match="no data set"):
+    with pytest.raises(gm.errors.FileError, match="no data set"):
         gm.open_dataset(tmp_path / "points")
-    with pytest.raises(InputError, match="a path"):
+    with pytest.raises(gm.errors.InputError, match="a path"):
         gm.open_dataset(3)  # pyright: ignore[reportArgumentType]
 
 

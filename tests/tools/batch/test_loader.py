@@ -3,10 +3,9 @@
 import tracemalloc
 from collections import Counter
 
+import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.base.errors import InputError, UnknownNameError
-from gaussmap.tools.batch.dataset import Dataset
 
 from . import made
 
@@ -17,7 +16,7 @@ PART, ROW = 0, 1
 
 
 @pytest.fixture(scope="module")
-def dataset(tmp_path_factory) -> Dataset:
+def dataset(tmp_path_factory) -> gm.Dataset:
     return made.write(tmp_path_factory.mktemp("data") / "set")
 
 
@@ -127,7 +126,7 @@ def test_labels(dataset):
     for *_, numbers, labels in dataset.batches(8, 4, labels="samples"):
         np.testing.assert_array_equal(labels, [made.COUNTS[x] for x in numbers], strict=True)
     assert next(dataset.batches(8, labels="misfit"))[-1].tolist() == [0.25] * 11
-    with pytest.raises(InputError, match="part 2 has no label"):
+    with pytest.raises(gm.errors.InputError, match="part 2 has no label"):
         list(dataset.batches(8, labels={0: 1}))
 
 
@@ -168,26 +167,26 @@ def test_pytorch(dataset):
 @pytest.mark.parametrize(
     ("wrong", "error", "text"),
     [
-        ({"points": 0}, InputError, "points"),
-        ({"parts": 2.5}, InputError, "parts"),
-        ({"shuffle": -1}, InputError, "shuffle"),
-        ({"shuffle": True}, InputError, "shuffle"),
-        ({"shuffle": ()}, InputError, "shuffle"),
-        ({"shuffle": "seed"}, InputError, "shuffle"),
-        ({"shard": (2, 2)}, InputError, "from 0 to 1"),
-        ({"shard": 3}, InputError, "pair"),
-        ({"shard": (0, 0)}, InputError, "shard"),
-        ({"fields": "points"}, InputError, "tuple of names"),
-        ({"fields": ()}, InputError, "at least one"),
-        ({"fields": ("points", "points")}, InputError, "twice"),
-        ({"fields": ("uv",)}, UnknownNameError, "no field 'uv'"),
-        ({"fields": ("part",)}, UnknownNameError, "no field"),
-        ({"dtype": "int32"}, InputError, "dtype"),
-        ({"labels": "name"}, UnknownNameError, "column of numbers"),
-        ({"labels": [1, 2]}, InputError, "mapping"),
-        ({"labels": {0: "chair"}}, InputError, "must be a number, not 'chair'"),
-        ({"buffer": 0}, InputError, "buffer"),
-        ({"drop_last": np.zeros(2)}, InputError, "drop_last"),
+        ({"points": 0}, gm.errors.InputError, "points"),
+        ({"parts": 2.5}, gm.errors.InputError, "parts"),
+        ({"shuffle": -1}, gm.errors.InputError, "shuffle"),
+        ({"shuffle": True}, gm.errors.InputError, "shuffle"),
+        ({"shuffle": ()}, gm.errors.InputError, "shuffle"),
+        ({"shuffle": "seed"}, gm.errors.InputError, "shuffle"),
+        ({"shard": (2, 2)}, gm.errors.InputError, "from 0 to 1"),
+        ({"shard": 3}, gm.errors.InputError, "pair"),
+        ({"shard": (0, 0)}, gm.errors.InputError, "shard"),
+        ({"fields": "points"}, gm.errors.InputError, "tuple of names"),
+        ({"fields": ()}, gm.errors.InputError, "at least one"),
+        ({"fields": ("points", "points")}, gm.errors.InputError, "twice"),
+        ({"fields": ("uv",)}, gm.errors.UnknownNameError, "no field 'uv'"),
+        ({"fields": ("part",)}, gm.errors.UnknownNameError, "no field"),
+        ({"dtype": "int32"}, gm.errors.InputError, "dtype"),
+        ({"labels": "name"}, gm.errors.UnknownNameError, "column of numbers"),
+        ({"labels": [1, 2]}, gm.errors.InputError, "mapping"),
+        ({"labels": {0: "chair"}}, gm.errors.InputError, "must be a number, not 'chair'"),
+        ({"buffer": 0}, gm.errors.InputError, "buffer"),
+        ({"drop_last": np.zeros(2)}, gm.errors.InputError, "drop_last"),
     ],
 )
 def test_wrong_arguments_are_refused_at_once(dataset, wrong, error, text):

@@ -12,7 +12,6 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.base.errors import FileError, InputError
 from gaussmap.tools.batch.inputs import inputs_of
 from gaussmap.tools.batch.running import file_name
 
@@ -90,7 +89,7 @@ def test_rows_of_what_is_sampled_and_what_fails(tmp_path):
     expected = gm.sample(parts[0], 100, fields=("points", "normals"), **ASKED)
     np.testing.assert_array_equal(data.samples(0).points, expected.points)
     np.testing.assert_array_equal(data.samples(0).normals, expected.normals)
-    with pytest.raises(InputError, match="count=100, not 101"):
+    with pytest.raises(gm.errors.InputError, match="count=100, not 101"):
         gm.sample_many(parts, 101, out=out, progress=False, **ASKED)
 
 
@@ -98,19 +97,19 @@ def test_arguments(tmp_path):
     def sampled(parts: Any = ("torus",), **known: Any) -> object:
         return gm.sample_many(parts, 10, **known)  # pyright: ignore[reportCallIssue]
 
-    with pytest.raises(InputError, match="for data sets"):
+    with pytest.raises(gm.errors.InputError, match="for data sets"):
         sampled(workers=2)
-    with pytest.raises(InputError, match="on_error"):
+    with pytest.raises(gm.errors.InputError, match="on_error"):
         sampled(out=tmp_path / "a", on_error="skip")
-    with pytest.raises(InputError, match="part 1 must be a Surface"):
+    with pytest.raises(gm.errors.InputError, match="part 1 must be a Surface"):
         sampled(["torus", 5], out=tmp_path / "b", progress=False)
     with pytest.raises(LookupError, match="compression"):
         sampled(out=tmp_path / "c", compression="zip")
     with pytest.raises(LookupError, match="suffix"):
         sampled(out=tmp_path / "c", files="ply")
-    with pytest.raises(InputError, match="workers must be a whole number"):
+    with pytest.raises(gm.errors.InputError, match="workers must be a whole number"):
         sampled(out=tmp_path / "c", workers=0)
-    with pytest.raises(FileError, match="new or empty"):
+    with pytest.raises(gm.errors.FileError, match="new or empty"):
         sampled(out=tmp_path)
     assert not (tmp_path / "c").exists()
 

@@ -7,12 +7,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.base.errors import FileError, InputError
 from gaussmap.runtime.samples.report import SamplingReport
-from gaussmap.runtime.samples.samples import Samples
-from gaussmap.tools.batch.dataset import open_dataset
 from gaussmap.tools.batch.layout import (
     MANIFEST,
     PARTIAL,
@@ -40,12 +38,12 @@ def settings(**known) -> Settings:
     return Settings.of_this_version(asked={"count": 5}, fields=FIELDS, dtype="float32", **known)
 
 
-def samples(part: int, count: int) -> Samples:
+def samples(part: int, count: int) -> gm.Samples:
     rng = np.random.default_rng(part)
     vectors: dict[str, Any] = {
         name: rng.normal(size=(count, 3)).astype(np.float32) for name in ("points", "normals")
     }
-    return Samples(
+    return gm.Samples(
         **vectors,
         face_index=rng.integers(9, size=count) if part % 2 else None,
         report=SamplingReport(surface="a", normals=None, samples=count, patches=None,
@@ -243,7 +241,7 @@ class TestFullDisk:
             add(shard, 0)
             with files_of_at_most(partial.stat().st_size + 10_000):
                 for _ in range(2):
-                    with pytest.raises(FileError, match="what is done is kept") as error:
+                    with pytest.raises(gm.errors.FileError, match="what is done is kept") as error:
                         add(shard, 2)
                     assert "\n" not in str(error.value)
             assert list(Shard(path, 7, known).rows) == list(shard.rows) == [0]
@@ -255,7 +253,7 @@ class TestFullDisk:
     def test_the_error_is_not_hidden_by_closing(self, tmp_path):
         path, known = folder(tmp_path)
         with (
-            pytest.raises(FileError, match="File too large; what is done"),
+            pytest.raises(gm.errors.FileError, match="File too large; what is done"),
             Shard(path, 7, known) as shard,
             files_of_at_most(5000),
         ):
@@ -268,7 +266,10 @@ class TestFullDisk:
             for part in COUNTS:
                 add(shard, part)
             for size in (100, 1000, 100_000):
-                with files_of_at_most(size), pytest.raises(FileError, match="what is done is kept"):
+                with (
+                    files_of_at_most(size),
+                    pytest.raises(gm.errors.FileError, match="what is done is kept"),
+                ):
                     shard.commit(list(COUNTS))
                 assert not list((path / POINTS).iterdir()) + list((path / MANIFEST).iterdir())
                 assert [x.name for x in (path / PARTIAL).iterdir()] == ["shard-000007.arrow"]
@@ -284,7 +285,7 @@ class TestFullDisk:
             for part in COUNTS:
                 add(shard, part)
             patched.setattr("pyarrow.parquet.write_table", full)
-            with pytest.raises(FileError, match="what is done is kept"):
+            with pytest.raises(gm.errors.FileError, match="what is done is kept"):
                 shard.commit(list(COUNTS))
         with Shard(path, 7, known) as shard:
             assert list(shard.rows) == list(COUNTS)  # nothing has to be done again
@@ -318,12 +319,12 @@ def test_cad_parts_have_no_patches(tmp_path):
     with Shard(tmp_path, 0, data) as shard:
         for part, patches in enumerate((None, np.arange(5))):
             vectors: dict[str, Any] = dict.fromkeys(("points", "normals"), np.ones((5, 3)))
-            some = Samples(**vectors, patch_index=patches, report=samples(0, 5).report)  # pyright: ignore[reportArgumentType]
+            some = gm.Samples(**vectors, patch_index=patches, report=samples(0, 5).report)  # pyright: ignore[reportArgumentType]
             shard.add(
                 ManifestRow(part, "a", "b", "c", samples=5), points_table(some, part, shard.schema)
             )
         shard.commit([0, 1])
-    read = open_dataset(tmp_path)
+    read = gm.open_dataset(tmp_path)
     assert read.samples(0).fields == ("points", "normals")
     np.testing.assert_array_equal(read.samples(1).patch_index, np.arange(5))
 
@@ -364,7 +365,7 @@ class TestFolder:
     )
     def test_other_settings(self, tmp_path, change, what):
         path, known = folder(tmp_path)
-        with pytest.raises(InputError, match="another folder") as error:
+        with pytest.raises(gm.errors.InputError, match="another folder") as error:
             create(path, replace(known, **change))
         assert what in str(error.value)
         assert create(path, replace(known, **change), overwrite=True) == replace(known, **change)
@@ -382,20 +383,20 @@ class TestFolder:
     def test_folders_of_something_else(self, tmp_path):
         (tmp_path / "a").write_text("b")
         for overwrite in (False, True):
-            with pytest.raises(FileError, match="new or empty folder"):
+            with pytest.raises(gm.errors.FileError, match="new or empty folder"):
                 create(tmp_path, settings(), overwrite)
-        with pytest.raises(FileError, match="is a file"):
+        with pytest.raises(gm.errors.FileError, match="is a file"):
             create(tmp_path / "a", settings())
-        with pytest.raises(FileError, match="no data set"):
+        with pytest.raises(gm.errors.FileError, match="no data set"):
             read_settings(tmp_path)
 
     @pytest.mark.parametrize("text", ["", "{}", "[1]", '{"format": 99}', "\0"])
     def test_damaged_settings(self, tmp_path, text):
         path, known = folder(tmp_path)
         (path / "dataset.json").write_text(text)
-        with pytest.raises(FileError, match="cannot be used"):
+        with pytest.raises(gm.errors.FileError, match="cannot be used"):
             create(path, known)
-        with pytest.raises(FileError, match="not of gaussmap"):
+        with pytest.raises(gm.errors.FileError, match="not of gaussmap"):
             create(path, known, overwrite=True)
         assert (path / POINTS).exists()
 
@@ -407,7 +408,7 @@ class TestFolder:
                 add(shard, 0)
                 shard.commit([0])
             with (
-                pytest.raises(FileError, match="another run"),
+                pytest.raises(gm.errors.FileError, match="another run"),
                 opened(path, known, overwrite),
             ):
                 pass

@@ -7,10 +7,9 @@ import tempfile
 import threading
 import time
 
+import gaussmap as gm
 import pytest
-from gaussmap.runtime.base.errors import FileError, InputError, MissingExtraError
 from gaussmap.tools.cad import reader
-from gaussmap.tools.cad.reader import read_cad
 
 
 @pytest.fixture
@@ -26,19 +25,19 @@ def installed(monkeypatch):
 def test_bad_files_are_refused_in_a_sentence(content, reason, tmp_path, installed):
     path = tmp_path / "part.step"
     path.write_bytes(content)
-    with pytest.raises(FileError) as error:
-        read_cad(path)
+    with pytest.raises(gm.errors.FileError) as error:
+        gm.read_cad(path)
     assert str(error.value) == f"'{path}' {reason}"
 
 
 def test_paths_that_are_no_files_are_refused(tmp_path):
-    with pytest.raises(FileError, match="is a folder"):
-        read_cad(tmp_path)
-    with pytest.raises(FileError, match="does not exist"):
-        read_cad(tmp_path / "part.step")
+    with pytest.raises(gm.errors.FileError, match="is a folder"):
+        gm.read_cad(tmp_path)
+    with pytest.raises(gm.errors.FileError, match="does not exist"):
+        gm.read_cad(tmp_path / "part.step")
     os.mkfifo(tmp_path / "pipe.step")
-    with pytest.raises(FileError, match="is no file"):
-        read_cad(tmp_path / "pipe.step")
+    with pytest.raises(gm.errors.FileError, match="is no file"):
+        gm.read_cad(tmp_path / "pipe.step")
 
 
 @pytest.mark.parametrize(
@@ -54,16 +53,16 @@ def test_paths_that_are_no_files_are_refused(tmp_path):
     ],
 )
 def test_arguments_are_checked(arguments, tmp_path):
-    with pytest.raises(InputError, match=next(iter(arguments))):
-        read_cad(tmp_path / "part.step", **arguments)
+    with pytest.raises(gm.errors.InputError, match=next(iter(arguments))):
+        gm.read_cad(tmp_path / "part.step", **arguments)
 
 
 def test_without_open_cascade_the_extra_is_named(tmp_path, monkeypatch):
     path = tmp_path / "part.step"
     path.write_bytes(b"ISO-10303-21;")
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
-    with pytest.raises(MissingExtraError, match=r"gaussmap\[cad\]"):
-        read_cad(path)
+    with pytest.raises(gm.errors.MissingExtraError, match=r"gaussmap\[cad\]"):
+        gm.read_cad(path)
 
 
 def sleeping(code: str) -> list[str]:
@@ -78,8 +77,8 @@ def test_a_process_that_hangs_is_gone_after_the_limit(tmp_path, installed, monke
     code = f"import os, sys; os.fork(); {write}"
     monkeypatch.setattr(reader, "_command", lambda request: sleeping(code))
     start = time.perf_counter()
-    with pytest.raises(FileError, match=r"was not read within 0\.5 s"):
-        read_cad(path, time_limit=0.5)
+    with pytest.raises(gm.errors.FileError, match=r"was not read within 0\.5 s"):
+        gm.read_cad(path, time_limit=0.5)
     assert time.perf_counter() - start < 2.5
     time.sleep(1.5)
     assert not alive.exists()
@@ -90,8 +89,8 @@ def test_a_process_that_crashes_is_an_error(tmp_path, installed, monkeypatch):
     path.write_bytes(b"ISO-10303-21;")
     code = "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
     monkeypatch.setattr(reader, "_command", lambda request: sleeping(code))
-    with pytest.raises(FileError, match=r"crash \(SIGSEGV\)"):
-        read_cad(path)
+    with pytest.raises(gm.errors.FileError, match=r"crash \(SIGSEGV\)"):
+        gm.read_cad(path)
 
 
 def test_an_interruption_leaves_nothing_behind(tmp_path, installed, monkeypatch):
@@ -103,7 +102,7 @@ def test_an_interruption_leaves_nothing_behind(tmp_path, installed, monkeypatch)
     monkeypatch.setattr(reader, "_command", lambda request: sleeping(code))
     threading.Timer(0.3, _thread.interrupt_main).start()
     with pytest.raises(KeyboardInterrupt):
-        read_cad(path)
+        gm.read_cad(path)
     assert list(folder.iterdir()) == []
     time.sleep(1.0)
     assert not alive.exists()

@@ -8,7 +8,7 @@ from contextlib import suppress
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.cad.part import Part, read_part
+from gaussmap.tools.cad.part import Part
 from gaussmap.tools.cad.records import EdgeRecord, FaceRecord, Geometry, Net
 from gaussmap.tools.cad.saving import write_arrays
 
@@ -51,7 +51,7 @@ def same(one: Part, other: Part) -> bool:
 
 def test_read_again(everything, tmp_path):
     everything.save(tmp_path / "part.npz")
-    again = read_part(tmp_path / "part.npz")
+    again = gm.read_part(tmp_path / "part.npz")
     assert same(everything, again)
     assert same(everything, pickle.loads(pickle.dumps(everything)))
 
@@ -103,7 +103,7 @@ def test_what_a_part_says(everything, made):
 def test_no_faces(made, tmp_path):
     everything = made.part([], "empty")
     everything.save(tmp_path / "part.npz")
-    again = read_part(tmp_path / "part.npz")
+    again = gm.read_part(tmp_path / "part.npz")
     assert len(again) == 0
     assert again.faces == () == again.solids
     assert again.area == 0.0
@@ -114,7 +114,7 @@ def test_numbers_that_are_not_finite_fail_one_face(everything, tmp_path):
     everything.arrays["net_points"][-1, 3] = np.inf  # of the basis of the basis of face 7
     everything.arrays["numbers"][0] = np.nan
     everything.save(tmp_path / "part.npz")
-    failed = read_part(tmp_path / "part.npz").failed
+    failed = gm.read_part(tmp_path / "part.npz").failed
     assert [x.index for x in failed] == [0, 6, 7, 10]
     assert failed[0].reason == "its numbers are not finite"
 
@@ -144,7 +144,7 @@ def test_damaged_arrays(everything, tmp_path, name, change):
     arrays = {**everything.arrays, name: change(everything.arrays[name])}
     write_arrays(arrays, tmp_path / "part.npz")
     with pytest.raises(gm.errors.FileError, match=r"part\.npz' (is damaged|is no part|comes from)"):
-        read_part(tmp_path / "part.npz")
+        gm.read_part(tmp_path / "part.npz")
 
 
 def test_truncated_foreign_and_missing_files(everything, tmp_path):
@@ -153,14 +153,14 @@ def test_truncated_foreign_and_missing_files(everything, tmp_path):
     for length in (0, 3, 1000, len(whole) // 2, len(whole) - 1):
         (tmp_path / "cut.npz").write_bytes(whole[:length])
         with pytest.raises(gm.errors.FileError, match=r"cut\.npz' is damaged"):
-            read_part(tmp_path / "cut.npz")
+            gm.read_part(tmp_path / "cut.npz")
     np.savez(tmp_path / "other.npz", a=np.arange(3))
     with pytest.raises(gm.errors.FileError, match="is no part that gaussmap saved: it lacks"):
-        read_part(tmp_path / "other.npz")
+        gm.read_part(tmp_path / "other.npz")
     with pytest.raises(gm.errors.FileError, match="cannot be read"):
-        read_part(tmp_path / "none.npz")
+        gm.read_part(tmp_path / "none.npz")
     with pytest.raises(gm.errors.UnknownNameError):
-        read_part(tmp_path / "part.step")
+        gm.read_part(tmp_path / "part.step")
 
 
 def test_flipped_bytes_never_crash(everything, tmp_path):
@@ -173,7 +173,7 @@ def test_flipped_bytes_never_crash(everything, tmp_path):
         changed[place] ^= 1 << int(rng.integers(8))
         (tmp_path / "bad.npz").write_bytes(changed)
         with suppress(gm.errors.FileError):
-            read_part(tmp_path / "bad.npz")
+            gm.read_part(tmp_path / "bad.npz")
 
 
 def test_an_array_that_says_it_is_huge(everything, tmp_path):
@@ -190,4 +190,4 @@ def test_an_array_that_says_it_is_huge(everything, tmp_path):
         for name, content in members.items():
             new.writestr(name, content)
     with pytest.raises(gm.errors.FileError, match=r"is damaged: 'numbers\.npy'"):
-        read_part(tmp_path / "huge.npz")
+        gm.read_part(tmp_path / "huge.npz")

@@ -8,7 +8,6 @@ from pathlib import Path
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.base.errors import FileError, InputError
 from gaussmap.tools.batch.running import Tally
 from gaussmap.tools.batch.watching import Log
 from gaussmap.tools.commands.cli import main
@@ -84,9 +83,9 @@ def test_lists() -> None:
     Path("list").write_text("torus\n # no\n../../etc/passwd\n", "utf-8")
     assert listed([], "list") == ["torus", "../../etc/passwd"]
     Path("list").write_bytes(b"\xff\xfe")
-    with pytest.raises(FileError, match="UTF-8"):
+    with pytest.raises(gm.errors.FileError, match="UTF-8"):
         listed([], "list")
-    with pytest.raises(InputError, match="no parts"):
+    with pytest.raises(gm.errors.InputError, match="no parts"):
         listed([], None)
 
 

@@ -9,7 +9,6 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.base.errors import FileError
 from gaussmap.tools.commands.cli import main
 from gaussmap.tools.files.arrays import read_array
 
@@ -48,9 +47,11 @@ def test_a_bomb_is_refused_before_anything_is_unpacked(bomb, capsys, monkeypatch
 
     monkeypatch.setattr(zipfile.ZipFile, "open", fail)
     for read in (gm.read_samples, gm.read_part):
-        with pytest.raises(FileError):
+        with pytest.raises(gm.errors.FileError):
             read(bomb)
-    with pytest.raises(FileError, match=r"would unpack to 419 MB, more than 100 times as much"):
+    with pytest.raises(
+        gm.errors.FileError, match=r"would unpack to 419 MB, more than 100 times as much"
+    ):
         read_array(str(bomb))
     assert main(["sample", str(bomb), "--spacing", "1", "1", "-o", "a.ply"]) == 2
     assert "numpy.savez" in capsys.readouterr().err
@@ -62,7 +63,7 @@ def test_a_size_that_lies_is_noticed(bomb, tmp_path):
     struct.pack_into("<I", data, directory + 24, 4096)  # the size that the directory tells
     path = tmp_path / "lie.npz"
     path.write_bytes(data)
-    with pytest.raises(FileError):
+    with pytest.raises(gm.errors.FileError):
         read_array(str(path))
 
 
@@ -73,7 +74,7 @@ def test_shapes_that_lie(tmp_path, shape):
     whole = npy(np.arange(4.0)).replace(text, f"{shape}, }}".encode(), 1)
     assert len(whole) == len(data)
     write(tmp_path / "a.npz", points=whole)
-    with pytest.raises(FileError):
+    with pytest.raises(gm.errors.FileError):
         read_array(str(tmp_path / "a.npz"))
 
 
@@ -87,12 +88,12 @@ def test_names_lead_nowhere(tmp_path):
     inner = tmp_path / "a" / "b"
     inner.mkdir(parents=True)
     write(inner / "a.npz", **{"../../evil": npy(np.ones(3)), "/etc/evil": npy(np.ones(4))})
-    with pytest.raises(FileError):
+    with pytest.raises(gm.errors.FileError):
         gm.read_samples(inner / "a.npz")
     assert [x.name for x in tmp_path.rglob("*")] == ["a", "b", "a.npz"]
 
 
 def test_pickles_are_not_read(tmp_path):
     np.savez(tmp_path / "a.npz", points=np.array([{}, {}]))
-    with pytest.raises(FileError, match="is no array of numbers"):
+    with pytest.raises(gm.errors.FileError, match="is no array of numbers"):
         read_array(str(tmp_path / "a.npz"))

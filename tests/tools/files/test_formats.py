@@ -17,19 +17,12 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
+import gaussmap as gm
 import numpy as np
 import pyarrow
 import pytest
-from gaussmap.runtime.base.errors import (
-    FileError,
-    GaussmapError,
-    InputError,
-    MissingExtraError,
-    UnknownNameError,
-)
 from gaussmap.runtime.samples.fields import ARRAY_NAMES
 from gaussmap.runtime.samples.report import SamplingReport
-from gaussmap.runtime.samples.samples import Samples
 from gaussmap.tools.files.formats import (
     READABLE_SUFFIXES,
     SUFFIXES,
@@ -50,7 +43,7 @@ every_suffix = pytest.mark.parametrize("suffix", SUFFIXES)
 every_readable = pytest.mark.parametrize("suffix", READABLE_SUFFIXES)
 
 
-def make(count: int = 12, label: str = "torus") -> Samples:
+def make(count: int = 12, label: str = "torus") -> gm.Samples:
     """Random numbers of all sizes, signed zeros and non-finite values among the curvatures."""
     rng = np.random.default_rng(count)
     # Not beyond 1e140: VTK's reader warns if it finds vectors whose squared length overflows.
@@ -59,7 +52,7 @@ def make(count: int = 12, label: str = "torus") -> Samples:
         for name, tail in [("points", (3,)), ("normals", (3,)), ("uv", (2,)), ("support", ())]
     }
     special = np.resize([-0.0, 0.0, np.inf, -np.inf, np.nan, 5e-324, -1.1, 0.1], count)
-    return Samples(
+    return gm.Samples(
         **arrays,
         gaussian_curvature=special,
         mean_curvature=special[::-1].copy(),
@@ -69,7 +62,7 @@ def make(count: int = 12, label: str = "torus") -> Samples:
     )
 
 
-def columns_of(samples: Samples) -> dict[str, np.ndarray]:
+def columns_of(samples: gm.Samples) -> dict[str, np.ndarray]:
     """The 13 columns, spelled out apart from the code under test."""
     flat = [*samples.points.T, *samples.normals.T, *samples.uv.T]
     flat += [samples.support, samples.gaussian_curvature, samples.mean_curvature]
@@ -77,7 +70,7 @@ def columns_of(samples: Samples) -> dict[str, np.ndarray]:
     return dict(zip(COLUMNS, flat, strict=True))
 
 
-def assert_same(samples: Samples, other: Samples) -> None:
+def assert_same(samples: gm.Samples, other: gm.Samples) -> None:
     """Equal bit for bit, report included."""
     assert other.report == samples.report
     for name in ARRAY_NAMES:
@@ -322,7 +315,7 @@ class TestOtherReaders:
 class TestForeignPly:
     """.ply files that another program rewrote."""
 
-    def rewrite(self, path: Path, faces: bytes = b"", **columns: np.ndarray) -> Samples:
+    def rewrite(self, path: Path, faces: bytes = b"", **columns: np.ndarray) -> gm.Samples:
         """Write samples as others do, with some columns changed."""
         samples = make()
         data = columns_of(samples) | columns
@@ -380,7 +373,7 @@ class TestForeignPly:
     )
     def test_indices_must_be_integers(self, tmp_path, name, column, kind):
         self.rewrite(tmp_path / "file.ply", **{name: column})
-        with pytest.raises(FileError, match=f"has {kind} numbers as {name}"):
+        with pytest.raises(gm.errors.FileError, match=f"has {kind} numbers as {name}"):
             read_samples(tmp_path / "file.ply")
 
     @pytest.mark.parametrize("gone", COLUMNS)
@@ -388,14 +381,14 @@ class TestForeignPly:
         write_samples(make(), tmp_path / "file.ply")
         content = (tmp_path / "file.ply").read_bytes()
         (tmp_path / "file.ply").write_bytes(content.replace(f" {gone}\n".encode(), b" else\n"))
-        with pytest.raises(FileError, match=rf"file.ply' lacks the columns {gone};"):
+        with pytest.raises(gm.errors.FileError, match=rf"file.ply' lacks the columns {gone};"):
             read_samples(tmp_path / "file.ply")
 
     def test_text_ply(self, tmp_path):
         columns = [f"property double {name}" for name in "xyz"]
         header = ["ply", "format ascii 1.0", "element vertex 2", *columns, "end_header"]
         (tmp_path / "file.ply").write_text("\n".join([*header, "1 1 1", "1 1 1\n"]))
-        with pytest.raises(FileError, match=r"is a text \.ply file"):
+        with pytest.raises(gm.errors.FileError, match=r"is a text \.ply file"):
             read_samples(tmp_path / "file.ply")
 
     @pytest.mark.parametrize(
@@ -430,7 +423,7 @@ class TestForeignPly:
         content = (tmp_path / "file.ply").read_bytes()
         assert change[0] in content
         (tmp_path / "file.ply").write_bytes(content.replace(*change, 1))
-        with pytest.raises(FileError, match=r"file\.ply"):
+        with pytest.raises(gm.errors.FileError, match=r"file\.ply"):
             read_samples(tmp_path / "file.ply")
         assert capsys.readouterr() == ("", "")
 
@@ -439,14 +432,16 @@ class TestForeignPly:
         content = (tmp_path / "file.ply").read_bytes()
         content = content.replace(b"element vertex 12", b"element vertex 12000000000")
         (tmp_path / "file.ply").write_bytes(content)
-        with pytest.raises(FileError, match="ends early; write it again"):
+        with pytest.raises(gm.errors.FileError, match="ends early; write it again"):
             read_samples(tmp_path / "file.ply")
 
     def test_trailing_bytes(self, tmp_path):
         write_samples(make(), tmp_path / "file.ply")
         with open(tmp_path / "file.ply", "ab") as file:
             file.write(b"\n")
-        with pytest.raises(FileError, match=r"has [\d,]+ bytes instead of [\d,]+; write it again"):
+        with pytest.raises(
+            gm.errors.FileError, match=r"has [\d,]+ bytes instead of [\d,]+; write it again"
+        ):
             read_samples(tmp_path / "file.ply")
 
 
@@ -460,7 +455,9 @@ class TestIndicesInPly:
     @pytest.mark.parametrize("value", [2**31, -(2**31) - 1, 2**32])
     def test_too_large(self, tmp_path, name, value):
         samples = replace(make(2), **{name: np.array([0, value])})
-        with pytest.raises(InputError, match=rf"^{name} goes up to {abs(value):,}, but a \.ply"):
+        with pytest.raises(
+            gm.errors.InputError, match=rf"^{name} goes up to {abs(value):,}, but a \.ply"
+        ):
             write_samples(samples, tmp_path / "file.ply")
         assert litter(tmp_path) == []
         write_samples(samples, tmp_path / "file.npz")
@@ -475,7 +472,7 @@ class TestDamagedFiles:
         path = tmp_path / f"cut{suffix}"
         for length in range(len(content)):
             path.write_bytes(content[:length])
-            with pytest.raises(FileError) as caught:
+            with pytest.raises(gm.errors.FileError) as caught:
                 read_samples(path)
             assert str(caught.value).startswith(f"'{path}' ")
             assert "\n" not in str(caught.value)
@@ -494,7 +491,7 @@ class TestDamagedFiles:
             path.write_bytes(bad)
             try:
                 result = read_samples(path)
-            except FileError:
+            except gm.errors.FileError:
                 continue
             # Dates and the like; what is read is read right.
             assert_same(samples, result)
@@ -513,7 +510,7 @@ class TestDamagedFiles:
                 path.write_bytes(bad)
                 try:
                     assert len(read_samples(path)) == 5
-                except FileError:
+                except gm.errors.FileError:
                     noticed += 1
         assert noticed > end
         assert capsys.readouterr() == ("", "")
@@ -537,18 +534,18 @@ class TestDamagedFiles:
     )
     def test_foreign_files(self, tmp_path, suffix, content):
         (tmp_path / f"file{suffix}").write_bytes(content)
-        with pytest.raises(FileError, match=rf"file\{suffix}'"):
+        with pytest.raises(gm.errors.FileError, match=rf"file\{suffix}'"):
             read_samples(tmp_path / f"file{suffix}")
 
     def test_a_plain_numpy_array(self, tmp_path):
         with open(tmp_path / "file.npz", "wb") as file:
             np.save(file, np.ones(3))
-        with pytest.raises(FileError, match=r"is damaged or is no \.npz file"):
+        with pytest.raises(gm.errors.FileError, match=r"is damaged or is no \.npz file"):
             read_samples(tmp_path / "file.npz")
 
     def test_the_message_is_one_sentence_with_advice(self, tmp_path):
         (tmp_path / "file.npz").write_bytes(b"PK")
-        with pytest.raises(FileError) as caught:
+        with pytest.raises(gm.errors.FileError) as caught:
             read_samples(tmp_path / "file.npz")
         assert str(caught.value) == (
             f"'{tmp_path / 'file.npz'}' is damaged or is no .npz file; write it again."
@@ -567,7 +564,7 @@ class TestDamagedFiles:
         (tmp_path / f"bad{suffix}").write_bytes((tmp_path / f"good{suffix}").read_bytes()[:-9])
         monkeypatch.setattr(builtins, "open", spy)
         read_samples(tmp_path / f"good{suffix}")
-        with pytest.raises(FileError):
+        with pytest.raises(gm.errors.FileError):
             read_samples(tmp_path / f"bad{suffix}")
         monkeypatch.undo()
         assert len(opened) == 2
@@ -598,17 +595,21 @@ class TestNpzContent:
     @pytest.mark.parametrize("gone", [*ARRAY_NAMES, "report", "format_version"])
     def test_missing_arrays_are_named(self, tmp_path, gone):
         self.rewrite(tmp_path / "file.npz", **{gone: None})
-        with pytest.raises(FileError, match=rf"file\.npz' lacks the arrays {gone};"):
+        with pytest.raises(gm.errors.FileError, match=rf"file\.npz' lacks the arrays {gone};"):
             read_samples(tmp_path / "file.npz")
 
     def test_all_missing_arrays_are_named(self, tmp_path):
         np.savez(tmp_path / "file.npz", points=np.ones((2, 3)))
-        with pytest.raises(FileError, match="arrays format_version, report, normals, uv, support"):
+        with pytest.raises(
+            gm.errors.FileError, match="arrays format_version, report, normals, uv, support"
+        ):
             read_samples(tmp_path / "file.npz")
 
     def test_a_newer_version(self, tmp_path):
         self.rewrite(tmp_path / "file.npz", format_version=2, points=None)
-        with pytest.raises(FileError, match="comes from a newer version of gaussmap; update"):
+        with pytest.raises(
+            gm.errors.FileError, match="comes from a newer version of gaussmap; update"
+        ):
             read_samples(tmp_path / "file.npz")
 
     @pytest.mark.parametrize("name", ARRAY_NAMES)
@@ -616,13 +617,13 @@ class TestNpzContent:
         bomb = np.empty(12, object)
         bomb[:] = Bomb()
         self.rewrite(tmp_path / "file.npz", **{name: bomb})
-        with pytest.raises(FileError, match="is no array of numbers"):
+        with pytest.raises(gm.errors.FileError, match="is no array of numbers"):
             read_samples(tmp_path / "file.npz")
         assert not Bomb.went_off
 
     def test_a_bare_pickle_is_never_read(self, tmp_path):
         (tmp_path / "file.npz").write_bytes(pickle.dumps(Bomb()))
-        with pytest.raises(FileError, match=r"is damaged or is no \.npz file"):
+        with pytest.raises(gm.errors.FileError, match=r"is damaged or is no \.npz file"):
             read_samples(tmp_path / "file.npz")
         assert not Bomb.went_off
         pickle.loads(pickle.dumps(Bomb()))
@@ -645,7 +646,7 @@ class TestNpzContent:
     )
     def test_wrong_entries(self, tmp_path, name, value, message):
         self.rewrite(tmp_path / "file.npz", **{name: value})
-        with pytest.raises(FileError, match=message):
+        with pytest.raises(gm.errors.FileError, match=message):
             read_samples(tmp_path / "file.npz")
 
     def test_the_other_byte_order(self, tmp_path):
@@ -678,30 +679,34 @@ class TestNames:
 
     def test_no_name(self):
         for call in (lambda: write_samples(make(), ""), lambda: read_samples("")):
-            with pytest.raises(InputError, match="the name of the file is empty"):
+            with pytest.raises(gm.errors.InputError, match="the name of the file is empty"):
                 call()
 
     @pytest.mark.parametrize("name", ["file.stl", "file", "file.npz.gz", ".npz", "file.", "."])
     def test_unknown_suffixes(self, tmp_path, monkeypatch, name):
         monkeypatch.chdir(tmp_path)
-        with pytest.raises(UnknownNameError, match=r"use one of \.npz, \.ply, \.csv, \.vtp, \.xyz"):
+        with pytest.raises(
+            gm.errors.UnknownNameError, match=r"use one of \.npz, \.ply, \.csv, \.vtp, \.xyz"
+        ):
             write_samples(make(), name)
-        with pytest.raises(UnknownNameError, match=r"use one of \.npz, \.ply\.$"):
+        with pytest.raises(gm.errors.UnknownNameError, match=r"use one of \.npz, \.ply\.$"):
             read_samples(name)
-        with pytest.raises(UnknownNameError):
+        with pytest.raises(gm.errors.UnknownNameError):
             check(name)
         assert litter(tmp_path) == []
 
     @pytest.mark.parametrize("suffix", sorted(set(SUFFIXES) - set(READABLE_SUFFIXES)))
     def test_write_only_suffixes(self, tmp_path, suffix):
         write_samples(make(), tmp_path / f"file{suffix}")
-        with pytest.raises(UnknownNameError, match=rf"the suffix '\{suffix}'; use one of \.npz"):
+        with pytest.raises(
+            gm.errors.UnknownNameError, match=rf"the suffix '\{suffix}'; use one of \.npz"
+        ):
             read_samples(tmp_path / f"file{suffix}")
 
     @pytest.mark.parametrize("bad", [None, 3, b"file.npz", "fi\0le.npz"])
     @pytest.mark.parametrize("call", [lambda p: write_samples(make(), p), read_samples, check])
     def test_not_a_path(self, bad, call):
-        with pytest.raises(InputError, match="path"):
+        with pytest.raises(gm.errors.InputError, match="path"):
             call(bad)
 
 
@@ -720,21 +725,23 @@ every_writer = pytest.mark.parametrize(
 @every_writer
 class TestBadTargets:
     def test_missing_folder(self, tmp_path, write):
-        with pytest.raises(FileError, match=r"no/file\.npz' cannot.*no' does not exist; create"):
+        with pytest.raises(
+            gm.errors.FileError, match=r"no/file\.npz' cannot.*no' does not exist; create"
+        ):
             write(tmp_path / "no" / "file.npz")
         assert litter(tmp_path) == []
 
     def test_a_file_as_folder(self, tmp_path, write):
         (tmp_path / "no").write_text("old")
-        with pytest.raises(FileError, match="no' is not a folder; create"):
+        with pytest.raises(gm.errors.FileError, match="no' is not a folder; create"):
             write(tmp_path / "no" / "file.npz")
-        with pytest.raises(FileError, match="deep' does not exist; create"):
+        with pytest.raises(gm.errors.FileError, match="deep' does not exist; create"):
             write(tmp_path / "no" / "deep" / "file.npz")
         assert (tmp_path / "no").read_text() == "old"
 
     def test_a_folder_as_file(self, tmp_path, write):
         (tmp_path / "file.npz").mkdir()
-        with pytest.raises(FileError, match=r"file\.npz' is a folder; give the name"):
+        with pytest.raises(gm.errors.FileError, match=r"file\.npz' is a folder; give the name"):
             write(tmp_path / "file.npz")
         assert litter(tmp_path) == ["file.npz"]
 
@@ -742,42 +749,46 @@ class TestBadTargets:
         if not hasattr(os, "mkfifo"):
             pytest.skip("needs pipes")
         os.mkfifo(tmp_path / "file.npz")
-        with pytest.raises(FileError, match="is a device or a pipe"):
+        with pytest.raises(gm.errors.FileError, match="is a device or a pipe"):
             write(tmp_path / "file.npz")
         assert (tmp_path / "file.npz").is_fifo()
 
     def test_a_device_is_not_replaced(self, tmp_path, write):
         (tmp_path / "file.npz").symlink_to(os.devnull)
-        with pytest.raises(FileError, match="is a device or a pipe"):
+        with pytest.raises(gm.errors.FileError, match="is a device or a pipe"):
             write(tmp_path / "file.npz")
         assert stat.S_ISCHR(os.stat(os.devnull).st_mode)
 
     def test_a_protected_file(self, tmp_path, write, monkeypatch):
         (tmp_path / "file.npz").write_text("old")
         monkeypatch.setattr(os, "access", lambda path, mode: mode != os.W_OK)
-        with pytest.raises(FileError, match=r"file\.npz' is write-protected; unprotect"):
+        with pytest.raises(gm.errors.FileError, match=r"file\.npz' is write-protected; unprotect"):
             write(tmp_path / "file.npz")
         assert (tmp_path / "file.npz").read_text() == "old"
         assert litter(tmp_path) == ["file.npz"]
 
     def test_a_read_only_folder(self, read_only_folder, write):
-        with pytest.raises(FileError, match="Permission denied; choose a folder that you may"):
+        with pytest.raises(
+            gm.errors.FileError, match="Permission denied; choose a folder that you may"
+        ):
             write(read_only_folder / "file.npz")
 
     def test_a_folder_that_takes_no_files(self, write):
         if not os.path.isdir("/proc/self"):
             pytest.skip("needs /proc")
-        with pytest.raises(FileError, match=r"'/proc/self/file\.npz' cannot be written: "):
+        with pytest.raises(
+            gm.errors.FileError, match=r"'/proc/self/file\.npz' cannot be written: "
+        ):
             write("/proc/self/file.npz")
 
     def test_too_long_a_name(self, tmp_path, write):
-        with pytest.raises(FileError, match="cannot be written: File name too long"):
+        with pytest.raises(gm.errors.FileError, match="cannot be written: File name too long"):
             write(tmp_path / ("n" * 300 + ".npz"))
         assert litter(tmp_path) == []
 
     def test_a_loop_of_links(self, tmp_path, write):
         (tmp_path / "file.npz").symlink_to(tmp_path / "file.npz")
-        with pytest.raises(FileError, match="cannot be written: Too many levels"):
+        with pytest.raises(gm.errors.FileError, match="cannot be written: Too many levels"):
             write(tmp_path / "file.npz")
         assert litter(tmp_path) == ["file.npz"]
 
@@ -794,7 +805,7 @@ class TestCheckTarget:
 
     def test_other_suffixes(self, tmp_path):
         check_target(tmp_path / "picture.png", (".png", ".svg"))
-        with pytest.raises(UnknownNameError, match=r"use one of \.png, \.svg"):
+        with pytest.raises(gm.errors.UnknownNameError, match=r"use one of \.png, \.svg"):
             check_target(tmp_path / "picture.npz", (".png", ".svg"))
 
     def test_the_longest_name(self, tmp_path):
@@ -807,13 +818,17 @@ class TestCheckTarget:
 class TestReadErrors:
     @every_readable
     def test_missing(self, tmp_path, suffix):
-        with pytest.raises(FileError, match=rf"file\{suffix}' cannot be read: No such file"):
+        with pytest.raises(
+            gm.errors.FileError, match=rf"file\{suffix}' cannot be read: No such file"
+        ):
             read_samples(tmp_path / f"file{suffix}")
 
     @every_readable
     def test_a_folder(self, tmp_path, suffix):
         (tmp_path / f"file{suffix}").mkdir()
-        with pytest.raises(FileError, match=rf"file\{suffix}' cannot be read: Is a directory"):
+        with pytest.raises(
+            gm.errors.FileError, match=rf"file\{suffix}' cannot be read: Is a directory"
+        ):
             read_samples(tmp_path / f"file{suffix}")
 
 
@@ -841,14 +856,14 @@ class TestAtomicity:
         path.write_text("old")
         pytest.importorskip("pyvista")  # before the limit: importing it writes files too
         message = rf"file\{suffix}' cannot.*File too large; make room"
-        with pytest.raises(FileError, match=message), tiny_disk():
+        with pytest.raises(gm.errors.FileError, match=message), tiny_disk():
             write_samples(make(100), path)
         assert path.read_text() == "old"
         assert litter(tmp_path) == [path.name]
 
     @pytest.mark.parametrize("old", [True, False])
     @pytest.mark.parametrize(
-        "error", [KeyboardInterrupt, SystemExit, ValueError, MemoryError, InputError]
+        "error", [KeyboardInterrupt, SystemExit, ValueError, MemoryError, gm.errors.InputError]
     )
     def test_failure_inside(self, tmp_path, old, error):
         path = tmp_path / "picture.png"
@@ -869,15 +884,15 @@ class TestAtomicity:
     )
     def test_disk_errors_inside(self, tmp_path, code, hint):
         path = tmp_path / "picture.png"
-        with pytest.raises(FileError) as caught:
+        with pytest.raises(gm.errors.FileError) as caught:
             fail(path, OSError(code, os.strerror(code)))
         assert str(caught.value) == f"'{path}' cannot be written: {hint}."
         assert isinstance(caught.value.__cause__, OSError)
         assert litter(tmp_path) == []
 
     def test_errors_of_our_own_pass(self, tmp_path):
-        error = FileError("about another file")
-        with pytest.raises(FileError) as caught, atomic_path(tmp_path / "picture.png"):
+        error = gm.errors.FileError("about another file")
+        with pytest.raises(gm.errors.FileError) as caught, atomic_path(tmp_path / "picture.png"):
             raise error
         assert caught.value is error
 
@@ -889,14 +904,19 @@ class TestAtomicity:
             raise PermissionError(errno.EACCES, "Permission denied")
 
         monkeypatch.setattr(os, "replace", refuse)
-        with pytest.raises(FileError, match=r"file\.npz' cannot be written: Permission denied"):
+        with pytest.raises(
+            gm.errors.FileError, match=r"file\.npz' cannot be written: Permission denied"
+        ):
             write_samples(make(), path)
         assert path.read_text() == "old"
         assert litter(tmp_path) == ["file.npz"]
 
     def test_a_block_that_writes_nothing(self, tmp_path):
         (tmp_path / "file.txt").write_text("old")
-        with pytest.raises(FileError, match="No such file"), atomic_path(tmp_path / "file.txt"):
+        with (
+            pytest.raises(gm.errors.FileError, match="No such file"),
+            atomic_path(tmp_path / "file.txt"),
+        ):
             pass
         assert (tmp_path / "file.txt").read_text() == "old"
 
@@ -958,7 +978,7 @@ class TestPermissionsAndLinks:
 
     def test_a_link_into_a_missing_folder(self, tmp_path):
         (tmp_path / "link.npz").symlink_to(tmp_path / "no" / "file.npz")
-        with pytest.raises(FileError, match=r"link\.npz' cannot.*no' does not exist"):
+        with pytest.raises(gm.errors.FileError, match=r"link\.npz' cannot.*no' does not exist"):
             write_samples(make(), tmp_path / "link.npz")
 
 
@@ -981,5 +1001,10 @@ class TestExtras:
 
 
 def test_every_error_is_a_gaussmap_error():
-    for error in (FileError, InputError, MissingExtraError, UnknownNameError):
-        assert issubclass(error, GaussmapError)
+    for error in (
+        gm.errors.FileError,
+        gm.errors.InputError,
+        gm.errors.MissingExtraError,
+        gm.errors.UnknownNameError,
+    ):
+        assert issubclass(error, gm.GaussmapError)

@@ -11,12 +11,11 @@ import numpy as np
 import pytest
 from gaussmap.runtime.samples.fields import ARRAY_NAMES
 from gaussmap.runtime.samples.report import SamplingReport
-from gaussmap.runtime.samples.samples import Samples
 
 DTYPES = pytest.mark.parametrize("dtype", [np.float64, np.float32])
 
 
-def samples(count: int = 5, dtype: Any = np.float64, fields: Any = ARRAY_NAMES) -> Samples:
+def samples(count: int = 5, dtype: Any = np.float64, fields: Any = ARRAY_NAMES) -> gm.Samples:
     """Numbers that are not on any surface: conversions only carry them."""
     rng = np.random.default_rng(1)
     arrays = {
@@ -30,7 +29,7 @@ def samples(count: int = 5, dtype: Any = np.float64, fields: Any = ARRAY_NAMES) 
     chosen: dict[str, Any] = {x: y.astype(dtype) for x, y in arrays.items() if x in fields}
     if "normal_index" in fields:
         chosen |= {"normal_index": np.arange(count) - 1, "patch_index": np.arange(count) + 7}
-    return Samples(**chosen, report=SamplingReport("noise", count, count, 1, 0.0, 0))
+    return gm.Samples(**chosen, report=SamplingReport("noise", count, count, 1, 0.0, 0))
 
 
 def mesh() -> gm.Mesh:

@@ -9,7 +9,6 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.samples.report import SamplingReport
-from gaussmap.runtime.samples.samples import Samples
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -18,14 +17,14 @@ MAJOR, MINOR = 2.0, 0.5
 FIELDS = ("points", "support", "gaussian_curvature", "mean_curvature")
 
 
-def exact_torus(minor: float = MINOR, scale: float = 1.0, shift: float = 0.0) -> Samples:
+def exact_torus(minor: float = MINOR, scale: float = 1.0, shift: float = 0.0) -> gm.Samples:
     """Points of a torus from their closed form, in normals that do not depend on `minor`."""
     u, v = np.random.default_rng(3).uniform(0.0, 2 * np.pi, (2, 500))
     normals = np.stack([np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)], axis=1)
     circle = np.stack([np.cos(u), np.sin(u), np.zeros(500)], axis=1)
     points = scale * (MAJOR * circle + minor * normals) + shift
     along, across = 1 / minor, np.cos(v) / (MAJOR + minor * np.cos(v))
-    return Samples(
+    return gm.Samples(
         points=points,
         normals=normals,
         uv=np.stack([u, v], axis=1),
@@ -38,11 +37,13 @@ def exact_torus(minor: float = MINOR, scale: float = 1.0, shift: float = 0.0) ->
     )
 
 
-def curved(K: object, H: object, **changes: Any) -> Samples:
+def curved(K: object, H: object, **changes: Any) -> gm.Samples:
     K = np.array(K, dtype=float, ndmin=1)
     H = np.array(H, dtype=float, ndmin=1)
     report = SamplingReport("s", None, len(K), None, None, None)
-    return Samples(**({"gaussian_curvature": K, "mean_curvature": H, "report": report} | changes))
+    return gm.Samples(
+        **({"gaussian_curvature": K, "mean_curvature": H, "report": report} | changes)
+    )
 
 
 # --- exact cases ----------------------------------------------------------------------------------
@@ -210,9 +211,9 @@ def test_a_far_offset_is_nearly_a_sphere() -> None:
 # --- fields, and what is refused ------------------------------------------------------------------
 
 
-def only(*names: str) -> Samples:
+def only(*names: str) -> gm.Samples:
     samples = exact_torus()
-    return Samples(**{x: getattr(samples, x) for x in names}, report=samples.report)
+    return gm.Samples(**{x: getattr(samples, x) for x in names}, report=samples.report)
 
 
 @pytest.mark.parametrize(

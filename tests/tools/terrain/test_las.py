@@ -6,7 +6,6 @@ from pathlib import Path
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.base.errors import InputError
 from gaussmap.tools.commands.cli import main
 
 laspy = pytest.importorskip("laspy")
@@ -55,7 +54,7 @@ def test_other_point_clouds(tmp_path: Path) -> None:
     assert len(laspy.read(tmp_path / "x.las").points) == 0
     torus[:1].write(tmp_path / "x.las")
     np.testing.assert_allclose(laspy.read(tmp_path / "x.las").xyz, torus.points[:1], atol=1e-3)
-    with pytest.raises(InputError, match=r"a \.las file needs 'points'"):
+    with pytest.raises(gm.errors.InputError, match=r"a \.las file needs 'points'"):
         gm.sample("torus", 60, cells=(8, 8), fields=("normals",)).write(tmp_path / "y.las")
 
 

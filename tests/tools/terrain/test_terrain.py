@@ -7,7 +7,6 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.base.errors import FileError, GaussmapWarning, InputError
 
 rasterio = pytest.importorskip("rasterio")
 
@@ -100,7 +99,7 @@ def test_degrees_become_the_zone_of_utm(tmp_path: Path) -> None:
 
 def test_arrays_of_degrees_are_refused_or_projected() -> None:
     x, y = -84.4 + 1e-3 * np.arange(SHAPE[1]), 36.7 - 1e-3 * np.arange(SHAPE[0])
-    with pytest.raises(InputError, match="look like degrees"):
+    with pytest.raises(gm.errors.InputError, match="look like degrees"):
         gm.terrain(HEIGHTS, x=x, y=y)
     surface = gm.terrain(HEIGHTS, x=x, y=y, source_crs=4326)
     same = gm.terrain(HEIGHTS, *(), x=np.broadcast_to(x, SHAPE), y=y, crs="EPSG:4326")
@@ -122,9 +121,9 @@ def test_uneven_and_curved_coordinates() -> None:
         HEIGHTS, x=x + 0.01 * ROWS * COLUMNS, y=np.broadcast_to(y[:, None], SHAPE) + 0.01 * COLUMNS
     )
     assert curved.grid is not None
-    with pytest.raises(InputError, match="fold"):
+    with pytest.raises(gm.errors.InputError, match="fold"):
         gm.terrain(HEIGHTS, x=x, y=np.abs(np.arange(SHAPE[0]) - 5.0))
-    with pytest.raises(InputError, match="transposed"):
+    with pytest.raises(gm.errors.InputError, match="transposed"):
         gm.terrain(HEIGHTS, x=y, y=x)
 
 
@@ -157,9 +156,9 @@ def test_bands_masks_and_units(tmp_path: Path) -> None:
     first = gm.terrain(path)
     assert first.grid is not None
     assert first.grid[0, -1, 2] == two[0, 0, 0]
-    with pytest.raises(InputError, match="heights in foot and x, y in met"):
+    with pytest.raises(gm.errors.InputError, match="heights in foot and x, y in met"):
         gm.terrain(path, band=2)
-    with pytest.raises(InputError, match="has 2 bands, and no band 3"):
+    with pytest.raises(gm.errors.InputError, match="has 2 bands, and no band 3"):
         gm.terrain(path, band=3)
 
 
@@ -167,7 +166,7 @@ def test_what_has_no_place_is_refused(tmp_path: Path) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         path = write(tmp_path / "plain.tif")
-    with pytest.raises(InputError, match="not georeferenced"):
+    with pytest.raises(gm.errors.InputError, match="not georeferenced"):
         gm.terrain(path)
     surface = gm.terrain(path, spacing=(30.0, -30.0))
     assert surface.domain == ((0.0, 480.0), (-390.0, 0.0))
@@ -183,15 +182,15 @@ def test_what_has_no_place_is_refused(tmp_path: Path) -> None:
         ({"nodata": "x"}, "nodata must be a number"),
     ]
     for unusable, said in wrong:
-        with pytest.raises(InputError, match=said):
+        with pytest.raises(gm.errors.InputError, match=said):
             gm.terrain(placed, **unusable)
     incomplete: list[dict[str, Any]] = [
         {}, {"x": np.arange(17.0)}, {"spacing": (0, 1)}, {"spacing": "a"}
     ]  # fmt: skip
     for arguments in incomplete:
-        with pytest.raises(InputError):
+        with pytest.raises(gm.errors.InputError):
             gm.terrain(HEIGHTS, **arguments)
-    with pytest.raises(InputError):
+    with pytest.raises(gm.errors.InputError):
         gm.terrain(HEIGHTS[0], spacing=(1, 1))
 
 
@@ -200,12 +199,12 @@ def test_damaged_files(tmp_path: Path) -> None:
     for k, content in enumerate((b"", b"II*\0junk", whole[:600], b"<VRTDataset/>")):
         path = tmp_path / f"damaged{k}.tif"
         path.write_bytes(content)
-        with pytest.raises(FileError, match="damaged or is no GeoTIFF"):
+        with pytest.raises(gm.errors.FileError, match="damaged or is no GeoTIFF"):
             gm.terrain(path)
-    with pytest.raises(FileError, match="cannot be read"):
+    with pytest.raises(gm.errors.FileError, match="cannot be read"):
         gm.terrain(tmp_path / "missing.tif")
     path = write(tmp_path / "complex.tif", HEIGHTS.astype("complex64"), **PLACED)
-    with pytest.raises(FileError, match="complex"):
+    with pytest.raises(gm.errors.FileError, match="complex"):
         gm.terrain(path)
 
 
@@ -214,7 +213,7 @@ def test_too_large_files(tmp_path: Path) -> None:
     sparse = {"driver": "GTiff", "count": 1, "height": size, "width": size, "dtype": "uint8"}
     with rasterio.open(path, "w", tiled=True, SPARSE_OK=True, BIGTIFF="YES", **sparse, **PLACED):
         pass
-    with pytest.raises(FileError, match=r"300,000 x 300,000 heights.*coarsen it"):
+    with pytest.raises(gm.errors.FileError, match=r"300,000 x 300,000 heights.*coarsen it"):
         gm.terrain(path)
 
 
@@ -229,10 +228,10 @@ def test_an_origin_is_subtracted_and_kept(tmp_path: Path) -> None:
     for suffix in (".npz", ".ply"):
         samples.write(tmp_path / f"x{suffix}")
         assert gm.read_samples(tmp_path / f"x{suffix}").report == samples.report
-    with pytest.warns(GaussmapWarning, match=r"rounds these coordinates to 0.25.*--origin 5000"):
+    with pytest.warns(gm.GaussmapWarning, match=r"rounds these coordinates to 0.25.*--origin 5000"):
         gm.sample(far, 100, dtype=np.float32)
     gm.sample(near, 100, dtype=np.float32)
-    with pytest.warns(GaussmapWarning, match="rounds these coordinates"):
+    with pytest.warns(gm.GaussmapWarning, match="rounds these coordinates"):
         gm.sample(far, 100).mesh().write(tmp_path / "x.stl")
 
 
@@ -242,7 +241,9 @@ def test_blocks_without_data_are_told_from_water() -> None:
     land = 150 + 60 * np.sin(i / 9) * np.cos(j / 11) + 0.2 * i + rng.normal(0, 1, i.shape)
     for value in (0.0, -1.0, 5000.0):
         holed = np.where(i + j < 30, value, land)
-        with pytest.warns(GaussmapWarning, match=rf"block of 465 heights of {value:.0f}.*nodata="):
+        with pytest.warns(
+            gm.GaussmapWarning, match=rf"block of 465 heights of {value:.0f}.*nodata="
+        ):
             gm.terrain(holed, spacing=(30, 30))
     gm.terrain(np.where(i + j < 30, 0.0, land), spacing=(30, 30), nodata=0.0)
     gm.terrain(np.maximum(land, 120.0), spacing=(30, 30))  # lakes

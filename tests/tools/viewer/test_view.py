@@ -7,7 +7,6 @@ from pathlib import Path
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.base.errors import InputError, MissingExtraError, UnknownNameError
 from gaussmap.tools.cad.examples import box
 from gaussmap.tools.commands.cli import main
 from gaussmap.tools.viewer import view as module
@@ -53,13 +52,13 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
 def test_what_is_refused(
     samples: gm.Samples, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    with pytest.raises(UnknownNameError, match=r"\.html"):
+    with pytest.raises(gm.errors.UnknownNameError, match=r"\.html"):
         samples.view(tmp_path / "torus.png")
-    with pytest.raises(InputError, match="no samples to view"):
+    with pytest.raises(gm.errors.InputError, match="no samples to view"):
         samples[:0].view(tmp_path / "none.html")
-    with pytest.raises(InputError, match=r"at most 50,000 samples, not 64,800"):
+    with pytest.raises(gm.errors.InputError, match=r"at most 50,000 samples, not 64,800"):
         samples[np.arange(len(samples)).repeat(200)].view(tmp_path / "many.html")
     monkeypatch.setitem(sys.modules, "plotly", None)
-    with pytest.raises(MissingExtraError, match=r"gaussmap\[view\]"):
+    with pytest.raises(gm.errors.MissingExtraError, match=r"gaussmap\[view\]"):
         samples.view(tmp_path / "torus.html")
     assert not list(tmp_path.iterdir())
