@@ -2,7 +2,7 @@
 
 import gc
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -80,3 +80,11 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         for item in items:
             if item.get_closest_marker("compiled"):
                 item.add_marker(skip)
+
+
+@pytest.fixture(scope="session")
+def main() -> Callable[..., int]:
+    """The command line in this process: it takes the arguments, and returns the exit code."""
+    from gaussmap.tools.commands.cli import main
+
+    return main

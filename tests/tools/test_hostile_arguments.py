@@ -1,5 +1,6 @@
 """Whatever is handed over, the answer is a result or one sentence of a GaussmapError."""
 
+from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
@@ -8,7 +9,6 @@ import numpy as np
 import pytest
 from gaussmap.runtime.base import memory
 from gaussmap.runtime.base.errors import in_memory, shown
-from gaussmap.tools.commands.cli import main
 
 TORUS = gm.surfaces.torus()
 
@@ -276,7 +276,7 @@ LONE = "\udc80"
     ids=lambda x: ascii(" ".join(x)),
 )  # fmt: skip
 def test_lone_surrogates_on_the_command_line(
-    arguments: list[str], capsys: pytest.CaptureFixture[str]
+    arguments: list[str], capsys: pytest.CaptureFixture[str], main: Callable[..., int]
 ) -> None:
     """A byte that is no UTF-8 arrives as a lone surrogate."""
     assert main(arguments) == 2

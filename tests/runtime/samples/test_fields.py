@@ -13,7 +13,6 @@ from gaussmap.runtime.samples.fields import ARRAY_NAMES, FLOAT_NAMES
 from gaussmap.runtime.samples.samples import Samples
 from gaussmap.runtime.search.bins import NormalBins
 from gaussmap.runtime.search.search import fill, find
-from gaussmap.tools.commands.cli import main
 from gaussmap.tools.pictures.to_file import write_plot
 
 # The vertices of the icosphere lie in planes of symmetry: some samples are decided exactly.
@@ -273,7 +272,7 @@ def test_a_file_that_lacks_what_it_promises(tmp_path):
 
 
 @pytest.mark.compiled
-def test_command_line(tmp_path, monkeypatch, capsys):
+def test_command_line(tmp_path, monkeypatch, capsys, main):
     monkeypatch.chdir(tmp_path)
     few = ["sample", "torus", "--frequency", "4", "--cells", "12", "8"]
     assert main([*few, "--fields", "points,uv", "--float32", "-o", "a.npz"]) == 0

@@ -6,7 +6,6 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.tools.cad.records import FaceRecord, Geometry
-from gaussmap.tools.commands.cli import main
 
 
 @pytest.fixture
@@ -18,7 +17,7 @@ def saved(made, tmp_path, monkeypatch):
     return "part.npz"
 
 
-def test_faces(saved, capsys):
+def test_faces(saved, capsys, main):
     assert main(["faces", saved]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert [x.split() for x in lines] == [
@@ -29,7 +28,7 @@ def test_faces(saved, capsys):
     ]
 
 
-def test_sample(saved, capsys):
+def test_sample(saved, capsys, main):
     assert main(["sample", saved, "--count", "60", "-o", "out.ply"]) == 0
     captured = capsys.readouterr()
     assert "out.ply: 60 samples" in captured.out
@@ -56,14 +55,14 @@ def test_sample(saved, capsys):
     ],
 )
 @pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
-def test_errors(saved, capsys, arguments, message):
+def test_errors(saved, capsys, arguments, message, main):
     assert main(arguments) == 2
     error = capsys.readouterr().err.splitlines()[-1]
     assert error.startswith("gaussmap: error: ")
     assert message in error
 
 
-def test_without_open_cascade(tmp_path, capsys, monkeypatch):
+def test_without_open_cascade(tmp_path, capsys, monkeypatch, main):
     """Without the extra, the error says how to install it; nothing else is needed for that."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "part.step").write_text("ISO-10303-21;")

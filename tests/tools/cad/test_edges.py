@@ -13,7 +13,6 @@ import pytest
 from gaussmap.tools.cad.examples import box, box_edges
 from gaussmap.tools.cad.part import Part
 from gaussmap.tools.cad.records import EdgeRecord, FaceRecord, Geometry
-from gaussmap.tools.commands.cli import main
 from scipy.spatial import cKDTree
 
 SIZES = np.array([1.0, 2.0, 3.0])
@@ -244,7 +243,7 @@ def test_unusable_arguments(surface, arguments, match):
         gm.sample(surface, 10, **arguments)
 
 
-def test_command_line(tmp_path, monkeypatch, capsys):
+def test_command_line(tmp_path, monkeypatch, capsys, main):
     monkeypatch.chdir(tmp_path)
     box().save("box.npz")
     assert main(["sample", "box.npz", "--count", "60", "--edges", "-o", "out.ply"]) == 0

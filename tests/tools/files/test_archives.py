@@ -9,7 +9,6 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.commands.cli import main
 from gaussmap.tools.files.arrays import read_array
 
 
@@ -41,7 +40,7 @@ def bomb(tmp_path_factory) -> Path:
     return path
 
 
-def test_a_bomb_is_refused_before_anything_is_unpacked(bomb, capsys, monkeypatch):
+def test_a_bomb_is_refused_before_anything_is_unpacked(bomb, capsys, monkeypatch, main):
     def fail(*_: object, **__: object) -> None:
         raise AssertionError("it is unpacked")
 

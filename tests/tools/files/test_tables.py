@@ -13,7 +13,6 @@ import pytest
 from gaussmap.runtime.base import extras
 from gaussmap.runtime.samples.fields import columns_of
 from gaussmap.runtime.samples.report import SamplingReport
-from gaussmap.tools.commands.cli import main
 from gaussmap.tools.files import packed, tables
 from gaussmap.tools.files.formats import check_samples_target
 
@@ -75,7 +74,9 @@ def test_pandas_reads_it(tmp_path, suffix):
 
 
 @pytest.mark.parametrize("suffix", BINARY)
-def test_without_pyarrow_the_extra_is_named_before_sampling(tmp_path, monkeypatch, suffix, capsys):
+def test_without_pyarrow_the_extra_is_named_before_sampling(
+    tmp_path, monkeypatch, suffix, capsys, main
+):
     found = importlib.util.find_spec
     monkeypatch.setattr(
         "importlib.util.find_spec", lambda name: None if name == "pyarrow" else found(name)

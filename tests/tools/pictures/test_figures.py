@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
 
@@ -10,7 +11,6 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.tools.cad.examples import all_kinds, box
-from gaussmap.tools.commands.cli import main
 from gaussmap.tools.pictures.part_scene import part_scene
 from gaussmap.tools.pictures.scene import view
 from gaussmap.tools.pictures.to_file import write_plot
@@ -160,7 +160,7 @@ def test_errors(samples: gm.Samples, tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 
 @pytest.mark.slow
-def test_the_command_draws_parts(tmp_path: Path) -> None:
+def test_the_command_draws_parts(tmp_path: Path, main: Callable[..., int]) -> None:
     box().save(tmp_path / "box.npz")
     path = tmp_path / "box.png"
     assert main(["plot", str(tmp_path / "box.npz"), "--count", "40", "-o", str(path)]) == 0

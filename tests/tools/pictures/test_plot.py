@@ -3,13 +3,13 @@ from __future__ import annotations
 import importlib.util
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree
 
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.commands.cli import main
 from gaussmap.tools.pictures import palette, to_file
 
 pytest.importorskip("matplotlib")
@@ -214,7 +214,10 @@ def test_bad_arguments(torus: gm.Spline, tmp_path: Path) -> None:
 
 
 def test_without_matplotlib(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    main: Callable[..., int],
 ) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     with pytest.raises(gm.errors.MissingExtraError, match=r'pip install "gaussmap\[plot\]"'):
@@ -223,7 +226,9 @@ def test_without_matplotlib(
     assert 'pip install "gaussmap[plot]"' in capsys.readouterr().err
 
 
-def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_command_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], main: Callable[..., int]
+) -> None:
     path = tmp_path / "a.png"
     assert main(["plot", "torus", "--count", "200", "--cells", "16", "16", "-o", str(path)]) == 0
     out, err = capsys.readouterr()

@@ -1,12 +1,12 @@
 """Samples of terrain as point clouds, read again by laspy; and elevations on the command line."""
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.commands.cli import main
 
 laspy = pytest.importorskip("laspy")
 rasterio = pytest.importorskip("rasterio")
@@ -75,20 +75,20 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def run(folder: Path, *arguments: str) -> gm.Samples:
+def run(main: Callable[..., int], folder: Path, *arguments: str) -> gm.Samples:
     output = str(folder / "x.npz")
     assert main(["sample", *arguments, "--count", "60", "--quiet", "-o", output]) == 0
     return gm.read_samples(output)
 
 
-def test_commands(folder: Path) -> None:
+def test_commands(folder: Path, main: Callable[..., int]) -> None:
     tif, npz = str(folder / "dem.tif"), str(folder / "dem.npz:heights")
     origin = "--origin", "500000", "4100000"
-    of_tif = run(folder, tif, *origin)
-    of_npz = run(folder, npz, "--x", "x", "--y", "y", "--crs", "EPSG:32617", *origin)
+    of_tif = run(main, folder, tif, *origin)
+    of_npz = run(main, folder, npz, "--x", "x", "--y", "y", "--crs", "EPSG:32617", *origin)
     np.testing.assert_array_equal(of_tif.points, of_npz.points)
     assert of_tif.report.crs == of_npz.report.crs == "EPSG:32617"
-    assert run(folder, npz, "--x", "lon", "--y", "lat").report.crs == "EPSG:32616"
+    assert run(main, folder, npz, "--x", "lon", "--y", "lat").report.crs == "EPSG:32616"
 
 
 @pytest.mark.parametrize(
@@ -108,7 +108,11 @@ def test_commands(folder: Path) -> None:
     ],
 )
 def test_commands_that_are_refused(
-    folder: Path, capsys: pytest.CaptureFixture[str], arguments: tuple[str, ...], said: str
+    folder: Path,
+    capsys: pytest.CaptureFixture[str],
+    main: Callable[..., int],
+    arguments: tuple[str, ...],
+    said: str,
 ) -> None:
     names = {"tif": folder / "dem.tif", "npz": folder / "dem.npz"}
     command = [x.format(**names) for x in arguments]
@@ -118,7 +122,9 @@ def test_commands_that_are_refused(
     assert text.count("\n") == 1
 
 
-def test_files_that_are_read_are_spared(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_files_that_are_read_are_spared(
+    folder: Path, capsys: pytest.CaptureFixture[str], main: Callable[..., int]
+) -> None:
     link = folder / "dem.ply"
     link.symlink_to(folder / "dem.tif")
     assert main(["sample", str(folder / "dem.tif"), "-o", str(link)]) == 2

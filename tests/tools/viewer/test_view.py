@@ -2,13 +2,13 @@
 
 import re
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.tools.cad.examples import box
-from gaussmap.tools.commands.cli import main
 from gaussmap.tools.viewer import view as module
 
 pytest.importorskip("plotly")
@@ -38,7 +38,9 @@ def test_text_of_users_is_text(samples: gm.Samples) -> None:
     assert "<script>alert" not in text
 
 
-def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], main: Callable[..., int]
+) -> None:
     path = tmp_path / "part.html"
     box().save(tmp_path / "part.npz")
     assert main(["view", str(tmp_path / "part.npz"), "--count", "60", "-o", str(path)]) == 0

@@ -10,7 +10,6 @@ import pytest
 
 pytest.importorskip("OCP")
 
-from gaussmap.tools.commands.cli import main
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
 
 
@@ -53,7 +52,7 @@ def test_a_file_that_takes_too_long_is_an_error(write):
     assert time.perf_counter() - start < 2.1
 
 
-def test_files_have_any_name_and_are_only_read(tmp_path, write, monkeypatch, capfd):
+def test_files_have_any_name_and_are_only_read(tmp_path, write, monkeypatch, capfd, main):
     folder = tmp_path / "Teile und Stücke"
     folder.mkdir()
     write(box(), "box.step").rename(folder / "große Kiste.stp")
