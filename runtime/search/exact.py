@@ -24,7 +24,7 @@ from ..kernels.patch import normals_at
 from ..spline.spline import Spline
 from .long_integers import forms_of_pairs
 
-__all__ = ["Decision", "decide"]
+__all__ = ["Decision", "decide", "decided_forms"]
 
 PAIRS_AT_A_TIME = 1 << 10
 # Fewer at a time on Python integers: a pair has many of them, of about a hundred bytes each.
@@ -59,7 +59,7 @@ def decide(
     `forgiven[k]` is the tolerance of W at the open border of the domain, in units of the scaled
     spline, and 0 for a patch that does not touch the border.
     """
-    local, size, signs = _forms(spline, patches, normals, threads)
+    local, size, signs = decided_forms(spline, patches, normals, threads)
     inside = (signs[:, 0] != 0) & (signs[:, 0] == signs[:, 1]) & (signs[:, 1] == signs[:, 2])
     with np.errstate(divide="ignore", invalid="ignore"):
         tolerance = np.where(size > 1024 * forgiven, forgiven / size, 0.0)
@@ -77,7 +77,7 @@ def decide(
     return Decision(which[keep], at[keep])
 
 
-def _forms(
+def decided_forms(
     spline: Spline,
     patches: NDArray[np.int64],
     normals: NDArray[np.float64],

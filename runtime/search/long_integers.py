@@ -15,7 +15,13 @@ from ..base.formula_calls import patch, python_function, vector
 from ..base.integers import Integers, integers, integers_by_row, ratio, sign
 from ..spline.spline import Spline
 
-__all__ = ["forms_of_pairs"]
+__all__ = [
+    "displaced_forms",
+    "exact_forms",
+    "forms_of_pairs",
+    "monomials_of_forms",
+    "patch_vectors",
+]
 
 
 def forms_of_pairs(
@@ -26,14 +32,14 @@ def forms_of_pairs(
     Where a zero among U, V, W leaves undecided whether the patch has the normal, the values are
     those of a normal that is displaced by an infinitesimal vector.
     """
-    vectors, exponent = _patch_vectors(spline, patches)
+    vectors, exponent = patch_vectors(spline, patches)
     n, exponents = integers_by_row(normals)
     n = n * _leading_sign(n)
-    values = _forms(vectors, n)
+    values = exact_forms(vectors, n)
     signs = sign(values[1:])
     tied = (signs == 0).any(axis=0) & ((signs.min(axis=0) >= 0) | (signs.max(axis=0) <= 0))
     if tied.any():
-        values[:, tied], signs[:, tied] = _displaced_forms(vectors[..., tied], n[:, tied])
+        values[:, tied], signs[:, tied] = displaced_forms(vectors[..., tied], n[:, tied])
     size = _scaled(np.abs(values[0]), 2 * (exponent + exponents))
     local = np.full((len(patches), 2), np.nan)
     some = np.asarray(values[0] != 0, dtype=bool)
@@ -42,7 +48,7 @@ def forms_of_pairs(
     return local, size, signs.T
 
 
-def _patch_vectors(spline: Spline, patches: NDArray[np.int64]) -> tuple[Integers, int]:
+def patch_vectors(spline: Spline, patches: NDArray[np.int64]) -> tuple[Integers, int]:
     """Return a, b, c, d, e (5, 3, k) of the patches as integers, and the exponent of their unit."""
     cell, turn = np.divmod(patches, 4)
     i, j = np.divmod(cell, spline.cells[1])
@@ -55,27 +61,27 @@ def _patch_vectors(spline: Spline, patches: NDArray[np.int64]) -> tuple[Integers
     return np.array(vectors[:5], dtype=object), exponent + int(np.log2(spline.scale))
 
 
-def _forms(vectors: Integers, n: Integers) -> Integers:
+def exact_forms(vectors: Integers, n: Integers) -> Integers:
     """Return D, U, V, W (4, k), exactly."""
     values = python_function(forms)(patch(np.moveaxis(vectors, -1, 0)), vector(n.T))
     return np.array(values, dtype=object)
 
 
-def _displaced_forms(vectors: Integers, n: Integers) -> tuple[Integers, NDArray[np.int8]]:
+def displaced_forms(vectors: Integers, n: Integers) -> tuple[Integers, NDArray[np.int8]]:
     """Return D, U, V, W and the signs of U, V, W at n + (ε₁, ε₂, ε₃), with n ≫ ε₁ ≫ ε₂ ≫ ε₃ ≫ ε₁².
 
     A quadratic form F is then a sum of ten monomials in n, ε₁, ε₂, ε₃, each infinitesimal relative
     to the one before. The first nonzero one gives the sign. For quotients by D, the coefficients of
     the leading monomial of D are returned.
     """
-    coefficients = _monomials(vectors, n)
+    coefficients = monomials_of_forms(vectors, n)
     leading = np.argmax(np.asarray(coefficients != 0, dtype=bool), axis=0)
     first = np.take_along_axis(coefficients, leading[None], axis=0)[0]
     in_d = np.take_along_axis(coefficients, leading[None, :1].repeat(4, axis=1), axis=0)[0]
     return in_d, sign(first[1:])
 
 
-def _monomials(vectors: Integers, n: Integers) -> Integers:
+def monomials_of_forms(vectors: Integers, n: Integers) -> Integers:
     """Return the coefficients (10, 4, k) of the monomials in D, U, V, W.
 
     They follow from F(x + y) − F(x) − F(y).
@@ -84,9 +90,9 @@ def _monomials(vectors: Integers, n: Integers) -> Integers:
         n,
         *(np.array([[x], [y], [z]], dtype=object) for x, y, z in np.eye(3, dtype=int).tolist()),
     ]
-    alone = [_forms(vectors, x + 0 * n) for x in axes]
+    alone = [exact_forms(vectors, x + 0 * n) for x in axes]
     monomials = [
-        alone[i] if i == j else _forms(vectors, axes[i] + axes[j] + 0 * n) - alone[i] - alone[j]
+        alone[i] if i == j else exact_forms(vectors, axes[i] + axes[j] + 0 * n) - alone[i] - alone[j]
         for i in range(4)
         for j in range(i, 4)
     ]

@@ -11,7 +11,7 @@ from gaussmap.runtime.samples.fields import ARRAY_NAMES
 from gaussmap.symbolic.surfaces import CATALOGUE
 
 DEVELOPABLE = ("plane", "cylinder", "cone")
-CURVED = [name for name in CATALOGUE if name not in DEVELOPABLE]
+CURVED = [name for name in gm.surfaces.names() if name not in DEVELOPABLE]
 SQUARE = ((0.0, 1.0), (0.0, 1.0))
 TORUS = gm.surfaces.torus(major=1.0, minor=0.35)
 # The corners of the triangles south, east, north, west of a cell, from its centre.

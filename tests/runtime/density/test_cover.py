@@ -4,17 +4,14 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.density.cover import Cover
-from gaussmap.runtime.density.sizing import SizingFunction, TargetDensity
-from gaussmap.runtime.place.on_spline import OnSpline
+from gaussmap.runtime.density.sizing import uniform
 
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "plane"])
 def test_what_is_filled_up_is_far_from_all_samples(name):
     """Also from those that came for places between the candidates."""
-    sizing = SizingFunction(
-        OnSpline(gm.fit(gm.surfaces.surface(name), (16, 16))), TargetDensity(floor=1.0)
-    )
+    sizing = uniform(gm.fit(gm.surfaces.surface(name), (16, 16)), None, None)
     cover = Cover(sizing, None)
     cover.to_radius(0.1 * np.sqrt(sizing.area))
     before = cover.count

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from gaussmap.runtime.density.cover import Cover
 from gaussmap.runtime.density.errors_of import Errors, places_on
-from gaussmap.runtime.density.sizing import SizingFunction, TargetDensity
-from gaussmap.runtime.place.on_spline import OnSpline
+from gaussmap.runtime.density.sizing import uniform
 from scipy.spatial import KDTree
 
 
@@ -16,7 +15,7 @@ from scipy.spatial import KDTree
 @pytest.mark.parametrize("name", ["torus", "monkey_saddle", "cylinder"])
 def test_errors_are_those_of_the_nearest_samples(name):
     spline = gm.fit(gm.surfaces.surface(name), (16, 16))
-    sizing = SizingFunction(OnSpline(spline), TargetDensity(floor=1.0))
+    sizing = uniform(spline, None, None)
     cover = Cover(sizing, None)
     cover.to_count(300)
     places, rows = places_on(sizing)

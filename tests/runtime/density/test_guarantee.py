@@ -5,7 +5,6 @@ import math
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.symbolic.surfaces import CATALOGUE
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
@@ -51,7 +50,7 @@ def even(name: str, cells: tuple[int, int]) -> tuple[int, int]:
 
 
 @pytest.mark.parametrize("cells", [(3, 3), (24, 20)])
-@pytest.mark.parametrize("name", CATALOGUE)
+@pytest.mark.parametrize("name", gm.surfaces.names())
 def test_coverage_is_kept_and_reported(name, cells):
     spline = gm.fit(gm.surfaces.surface(name), even(name, cells))
     points, _ = places(spline)
@@ -65,7 +64,7 @@ def test_coverage_is_kept_and_reported(name, cells):
 
 
 @pytest.mark.parametrize("density", ["balanced", "uniform", 0.5, 2.0])
-@pytest.mark.parametrize("name", CATALOGUE)
+@pytest.mark.parametrize("name", gm.surfaces.names())
 @pytest.mark.quick_for("torus")
 def test_the_coverage_of_samples_is_10_percent_off_at_most(name, density):
     """The places are a grid: a point may be half its diagonal farther than they are."""
@@ -160,7 +159,7 @@ def diagonal(spline: gm.Spline) -> float:
 
 
 @pytest.mark.parametrize("angle", [2.5, 10.0])
-@pytest.mark.parametrize("name", CATALOGUE)
+@pytest.mark.parametrize("name", gm.surfaces.names())
 @pytest.mark.quick_for("torus", "ellipsoid", "plane", "monkey_saddle")
 def test_angle_is_kept_everywhere(name, angle):
     """Border and poles included: there, no normals of the sphere need to lie inside the image."""

@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 from gaussmap.runtime.density.law import allotted
 from gaussmap.runtime.density.on_pieces import cells_of_piece
-from gaussmap.runtime.sample import sample_and_normals
-from gaussmap.runtime.samples.request import checked_request
 from gaussmap.tools.pictures.to_file import plot_to_file
 
 CELLS = (24, 24)

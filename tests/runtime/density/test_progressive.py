@@ -3,7 +3,7 @@ from __future__ import annotations
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.density.progressive import STEP, progressive_order
+from gaussmap.runtime.density.progressive import progressive_order
 from scipy.spatial import KDTree
 
 
@@ -25,7 +25,7 @@ def gaps(points: np.ndarray, beside: np.ndarray, first: np.ndarray) -> np.ndarra
 @pytest.mark.parametrize("density", ["gauss", "balanced", "uniform"])
 def test_every_beginning_is_spread_as_the_whole(waves: gm.Spline, density: str) -> None:
     # All normals of a graph are on one side, so that only distances count. Those chosen within a
-    # radius r are farther apart than r, all others nearer; the next radius is STEP r. (The first
+    # radius r are farther apart than r, all others nearer; the next radius is r/√2. (The first
     # few are so far apart that their spacings differ by more than the grids bridge.)
     samples = gm.sample(waves, count=2_000, density=density)
     ordered = samples.progressive()
@@ -36,7 +36,7 @@ def test_every_beginning_is_spread_as_the_whole(waves: gm.Spline, density: str) 
     ]
     for count in (50, 100, 500, 1_000):
         left = gaps(points[count:], beside[count:], points[:count]).max()
-        assert left <= min(nearest[: count - 1]) / STEP * (1.0 + 1e-12)
+        assert left <= min(nearest[: count - 1]) * np.sqrt(2.0) * (1.0 + 1e-12)
 
 
 @pytest.mark.compiled

@@ -1,18 +1,19 @@
 """Triangles make up their patches, and lie within their radii."""
 
+from dataclasses import replace
+
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.density.sizing import SizingFunction, TargetDensity
+from gaussmap.runtime.density.sizing import SizingFunction, TargetDensity, uniform
 from gaussmap.runtime.density.triangles import Triangles, cut_patches
-from gaussmap.runtime.place.on_spline import OnSpline
 
 RADII = pytest.mark.parametrize("radius", [0.5, pytest.param(0.06, marks=pytest.mark.compiled)])
 
 
 def sizing_of(name: str, cells: tuple[int, int]) -> SizingFunction:
     target = TargetDensity(floor=1.0, curvature_weight=1.0)
-    return SizingFunction(OnSpline(gm.fit(gm.surfaces.surface(name), cells)), target)
+    return replace(uniform(gm.fit(gm.surfaces.surface(name), cells), None, None), target=target)
 
 
 def sizes(triangles: Triangles) -> np.ndarray:
@@ -78,7 +79,7 @@ def test_narrow_patches_are_bisected(width):
     plane = gm.Surface.from_callable(
         lambda u, v: np.stack([u, width * v, 0.0 * u], axis=-1), ((0.0, 1.0), (0.0, 1.0))
     )
-    sizing = SizingFunction(OnSpline(gm.fit(plane, (4, 4))), TargetDensity(floor=1.0))
+    sizing = uniform(gm.fit(plane, (4, 4)), None, None)
     for radius in (0.05 * sizing.unit, 0.5 * width * sizing.unit):
         triangles = cut_patches(sizing, radius)
         areas = sizing.areas[triangles.patches] * sizes(triangles)

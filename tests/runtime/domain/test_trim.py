@@ -6,10 +6,10 @@ import gaussmap as gm
 import numpy as np
 import pytest
 import shapely
-from gaussmap.runtime.base.trees import tree_of
 from gaussmap.runtime.domain.domain import Boundary
 from gaussmap.runtime.domain.loops import checked_loops
 from gaussmap.runtime.domain.trim import Trim
+from scipy.spatial import KDTree
 
 UNIT = ((0.0, 1.0), (0.0, 1.0))
 OPEN: Boundary = (("open", "open"), ("open", "open"))
@@ -251,16 +251,16 @@ class TestSampling:
         assert trim_of(spline).contains(samples.uv).all()
         promised = samples.report.coverage
         assert promised is not None
-        assert tree_of(samples.points).query(points)[0].max() <= promised <= size
+        assert KDTree(samples.points).query(points)[0].max() <= promised <= size
         found = samples.coverage()
-        assert tree_of(samples.points).query(points)[0].max() <= found
+        assert KDTree(samples.points).query(points)[0].max() <= found
 
     @pytest.mark.parametrize("name", PARTS)
     def test_angle_holds_on_the_part(self, name):
         spline, _, normals = inner_points(PARTS[name], (12, 12), 10_000)
         samples = gm.sample(spline, angle=8.0)
         assert trim_of(spline).contains(samples.uv).all()
-        chords = tree_of(samples.normals).query(normals)[0].max()
+        chords = KDTree(samples.normals).query(normals)[0].max()
         promised = samples.report.angle
         assert promised is not None
         assert np.degrees(2 * np.arcsin(chords / 2)) <= promised <= 8.0
@@ -283,7 +283,7 @@ class TestSampling:
         assert np.abs(surface.evaluate(*samples.uv.T) - samples.points).max() < 1e-14
         uv = np.random.default_rng(3).uniform(1.0, 5.0, (20_000, 2))
         points = surface.evaluate(*uv[trim_of(surface).contains(uv)].T)
-        assert tree_of(samples.points).query(points)[0].max() <= 0.2
+        assert KDTree(samples.points).query(points)[0].max() <= 0.2
 
     def test_relaxed_samples_stay_inside(self):
         spline = gm.fit(PARTS["annulus"], (12, 12))

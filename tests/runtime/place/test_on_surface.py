@@ -6,11 +6,15 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.base.tolerances import NORMAL_ERROR
-from gaussmap.runtime.samples.fields import ARRAY_NAMES, ARRAY_NAMES_ON_SURFACE
 from scipy.spatial import KDTree
 
 CELLS = (12, 12)
+NORMAL_ERROR = 1e-12  # radians
+FIELDS_ON_SPLINE = (
+    "points", "normals", "uv", "support", "gaussian_curvature", "mean_curvature", "normal_index",
+    "patch_index",
+)  # fmt: skip
+FIELDS_ON_SURFACE = (*FIELDS_ON_SPLINE, "on_surface")
 
 
 def egg_at(u: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -85,7 +89,7 @@ def test_samples_of_the_spline_are_those_of_the_spline_itself():
     assert samples.report == others.report
     assert samples.report.on == "spline"
     assert samples.report.unrefined is samples.on_surface is samples.surface is None
-    assert samples.fields == ARRAY_NAMES
+    assert samples.fields == FIELDS_ON_SPLINE
     for name, array in samples.arrays().items():
         np.testing.assert_array_equal(array, getattr(others, name))
 
@@ -108,7 +112,7 @@ def test_chosen_fields_are_those_of_all(fields, dtype):
     for request_ in MIXED:
         every = gm.sample("torus", **request_, cells=CELLS, on="surface")
         some = gm.sample("torus", **request_, cells=CELLS, fields=fields, dtype=dtype, on="surface")
-        assert every.fields == ARRAY_NAMES_ON_SURFACE
+        assert every.fields == FIELDS_ON_SURFACE
         assert some.fields == fields
         assert some.dtype == dtype or fields == ("on_surface",)
         assert some.report.unrefined == every.report.unrefined
@@ -191,7 +195,7 @@ class TestStream:
         joined = gm.Samples.concatenate(chunks)
         assert joined.report.on == "surface"
         assert joined.report.unrefined == whole.report.unrefined
-        for name in ARRAY_NAMES_ON_SURFACE:
+        for name in FIELDS_ON_SURFACE:
             np.testing.assert_array_equal(getattr(joined, name), getattr(whole, name))
 
     def test_samples_next_to_poles_come_last_and_once(self):

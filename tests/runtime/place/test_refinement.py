@@ -7,13 +7,12 @@ from collections.abc import Callable
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.base.tolerances import NORMAL_ERROR
-from gaussmap.runtime.kernels.refine import CONTRARY, FOUND, Target
-from gaussmap.runtime.place.newton import evaluate_on_surface, refine
+from gaussmap.runtime.place.newton import CONTRARY, FOUND, Target, evaluate_on_surface, refine
 from gaussmap.runtime.place.repeats import kept_once
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+NORMAL_ERROR = 1e-12  # radians
 FULL = (0.0, 2.0 * np.pi)
 LATITUDES = (-np.pi / 2, np.pi / 2)
 MOTIONS = [(0.0, 1.0), (1e6, 1.0), (0.0, 1e9), (0.0, 1e-9)]

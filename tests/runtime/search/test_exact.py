@@ -1,22 +1,20 @@
 """Exact decisions: splines and normals full of exact ties, against what topology demands."""
 
+import math
 from fractions import Fraction
 from itertools import product
+from typing import Any
 
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.generated.spline import NEIGHBOURS, TRIANGLE_NEIGHBOURS, triangle
-from gaussmap.runtime.base.formula_calls import python_function, vector
-from gaussmap.runtime.base.integers import integers_by_row, sign
-from gaussmap.runtime.domain.domain import Boundary
 from gaussmap.runtime.search import exact, long_integers
 from hypothesis import given
 from hypothesis import strategies as st
 
 ALIGNED = np.array([n for n in product((-1.0, 0.0, 1.0), repeat=3) if any(n)])
-PERIODIC: Boundary = (("periodic", "periodic"), ("periodic", "periodic"))
-OPEN: Boundary = (("open", "open"), ("open", "open"))
+PERIODIC: Any = (("periodic", "periodic"), ("periodic", "periodic"))
+OPEN: Any = (("open", "open"), ("open", "open"))
 
 
 def torus_of_integers(m: int, n: int, size: int, noise: np.ndarray) -> gm.Spline:
@@ -53,22 +51,50 @@ def test_dented_integer_torus(seed: int, height: int) -> None:
     assert (sign_sums(spline, normals) == 0).all()
 
 
+def control_net(spline: gm.Spline, i: int, j: int, turn: int) -> np.ndarray:
+    """Return b200, b020, b002, b110, b101, b011 of a triangle of a cell, in fractions."""
+
+    def coefficient(x: int, y: int) -> np.ndarray:
+        for _ in range(turn):  # by quarter turns, from the south triangle
+            x, y = -y, x
+        return np.array([Fraction(float(z)) for z in spline.coefficients[i + x, j + y]])
+
+    c, n, s = coefficient(0, 0), coefficient(0, 1), coefficient(0, -1)
+    w, e, sw, se = (coefficient(*place) for place in ((-1, 0), (1, 0), (-1, -1), (1, -1)))
+    return np.array([
+        (c + s + sw + w) / 4, (c + s + se + e) / 4, c / 2 + (n + s + w + e) / 8,
+        (c + s) / 2, c / 2 + (s + w) / 4, c / 2 + (s + e) / 4,
+    ])  # fmt: skip
+
+
+def power_form(net: np.ndarray) -> np.ndarray:
+    """Return a, b, c, d, e (5, 3) of the patch ½ a u² + b uv + ½ c v² + d u + e v + p."""
+    b200, b020, b002, b110, b101, b011 = net
+    return np.array([
+        2 * (b200 - 2 * b101 + b002), 2 * (b110 - b101 - b011 + b002),
+        2 * (b020 - 2 * b011 + b002), 2 * (b101 - b002), 2 * (b011 - b002),
+    ])  # fmt: skip
+
+
+def integers_of(vectors: np.ndarray) -> np.ndarray:
+    """Return each vector (k, 3) times a power of two that makes it integers (3, k)."""
+    rows = [[Fraction(x) for x in vector] for vector in vectors.tolist()]
+    units = [math.lcm(*(x.denominator for x in row)) for row in rows]
+    scaled = [[int(x * unit) for x in row] for row, unit in zip(rows, units, strict=True)]
+    return np.array(scaled, dtype=object).T
+
+
 def test_forms_on_integers_are_those_of_fractions() -> None:
     spline = torus_of_integers(6, 5, 50, np.zeros((6, 5, 3)))
     spline.coefficients[...] *= 0.3  # no integers any more, and a common exponent to find
     patches = np.arange(spline.patches)
-    vectors, exponent = long_integers._patch_vectors(spline, patches)
+    vectors, exponent = long_integers.patch_vectors(spline, patches)
     unit = Fraction(2) ** exponent / Fraction(spline.scale)
     for patch in patches[::7]:
         cell, turn = divmod(int(patch), 4)
         i, j = divmod(cell, spline.cells[1])
-        around = [
-            [Fraction(float(x)) for x in spline.coefficients[i + 1 + di, j + 1 + dj]]
-            for di, dj in NEIGHBOURS[turn]
-        ]
-        read = np.array([around[k] for k in TRIANGLE_NEIGHBOURS]) - np.array(around[4])
-        expected = python_function(triangle)(*map(vector, read))[:5]
-        assert (vectors[..., patch] * unit == np.array(expected)).all()
+        net = control_net(spline, i + 1, j + 1, turn)
+        assert (vectors[..., patch] * unit == 8 * power_form(net)).all()
 
 
 def test_infinitesimal_displacement_agrees_with_a_small_one() -> None:
@@ -78,12 +104,12 @@ def test_infinitesimal_displacement_agrees_with_a_small_one() -> None:
     vectors = np.array(
         [[int(x) for x in row] for row in rng.integers(-3, 4, (15, 400))], dtype=object
     ).reshape(5, 3, 400)
-    _, signs = long_integers._displaced_forms(vectors, n)
+    _, signs = long_integers.displaced_forms(vectors, n)
     # In bits: n 64 · 20, ε 16 · 20, 4 · 20 and 20, so that also n ε₃ ≫ ε₁² and ε₁ ε₃ ≫ ε₂².
     shifts = (1 << 320, 1 << 80, 1 << 20)
     moved = np.array([(x << 1280) + e for x, e in zip(n, shifts, strict=True)], dtype=object)
-    assert (signs == sign(long_integers._forms(vectors, moved)[1:])).all()
-    assert (sign(long_integers._forms(vectors, n)[1:]) == 0).any()
+    assert (signs == np.sign(long_integers.exact_forms(vectors, moved)[1:])).all()
+    assert (np.sign(long_integers.exact_forms(vectors, n)[1:]) == 0).any()
 
 
 def every_pair(spline: gm.Spline, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -93,12 +119,12 @@ def every_pair(spline: gm.Spline, normals: np.ndarray) -> tuple[np.ndarray, np.n
 
 def check_forms(spline: gm.Spline, patches: np.ndarray, normals: np.ndarray) -> np.ndarray:
     """Compare the decisions on pairs with those of Python's integers; return the signs."""
-    local, size, signs = exact._forms(spline, patches, normals, None)
+    local, size, signs = exact.decided_forms(spline, patches, normals, None)
     expected_local, expected_size, expected = long_integers.forms_of_pairs(spline, patches, normals)
     np.testing.assert_array_equal(signs, expected)
     inside = (signs == signs[:, :1]).all(axis=1) & (signs != 0).all(axis=1)
-    vectors, _ = long_integers._patch_vectors(spline, patches)
-    regular = inside & (long_integers._forms(vectors, integers_by_row(normals)[0])[0] != 0)
+    vectors, _ = long_integers.patch_vectors(spline, patches)
+    regular = inside & (long_integers.exact_forms(vectors, integers_of(normals))[0] != 0)
     np.testing.assert_array_equal(size[regular], expected_size[regular])
     # U and D are rounded once, and their quotient; the integers round it once.
     np.testing.assert_allclose(local[inside], expected_local[inside], rtol=2**-51, atol=0.0)
@@ -145,9 +171,9 @@ def test_symmetric_pairs_are_decided_as_on_long_integers(count: int) -> None:
     normals = rng.integers(-2, 3, (count, 3)).astype(np.float64)
     normals[~normals.any(axis=1)] = 1.0
     check_forms(spline, patches, normals)
-    vectors, _ = long_integers._patch_vectors(spline, patches[:2_000])
-    n, _ = integers_by_row(normals[:2_000])
-    nonzero = np.asarray(long_integers._monomials(vectors, n) != 0, dtype=bool)
+    vectors, _ = long_integers.patch_vectors(spline, patches[:2_000])
+    n = integers_of(normals[:2_000])
+    nonzero = np.asarray(long_integers.monomials_of_forms(vectors, n) != 0, dtype=bool)
     first = np.where(nonzero.any(axis=0), np.argmax(nonzero, axis=0), -1)
     tied = ~nonzero[0, 1:].all(axis=0)
     assert set(first[1:, tied].ravel().tolist()) >= set(range(10))

@@ -5,10 +5,6 @@ import math
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.generated import patch as formulas
-from gaussmap.generated.vectors import Patch, Vector
-from gaussmap.runtime.base.formula_calls import python_function, vector
-from gaussmap.runtime.density.lattice import Lattice
 from gaussmap.runtime.search.bins import NormalBins
 from gaussmap.runtime.search.search import find
 from hypothesis import given
@@ -269,8 +265,7 @@ def test_plain_sign_test_fails_where_this_one_does_not() -> None:
     spline = gm.fit(TORUS, (16, 16))
     claims = np.zeros(len(normals), dtype=int)
     for index in range(spline.patches):
-        patch = vectors_of(spline, index)
-        _, U, V, W = python_function(formulas.forms)(patch, vector(normals))
+        _, U, V, W, _ = forms(spline.control_nets[index], normals)
         claims += (np.minimum(np.minimum(U, V), W) > 0) | (np.maximum(np.maximum(U, V), W) < 0)
     exact = np.bincount(gm.sample(spline, normals=normals).normal_index, minlength=len(normals))
     exact += np.bincount(gm.sample(spline, normals=-normals).normal_index, minlength=len(normals))
@@ -278,9 +273,28 @@ def test_plain_sign_test_fails_where_this_one_does_not() -> None:
     assert (claims != 4).any()
 
 
-def vectors_of(spline: gm.Spline, index: int) -> Patch:
-    net = spline.control_nets[index]
-    return python_function(formulas.power_form)(*(Vector(*point) for point in net))
+def forms(net: Array, normals: Array) -> tuple[Array, ...]:
+    """Return D, U, V, W of the normals: at u, v, w = U/D, V/D, W/D the patch has N ∥ n; and D² N·n.
+
+    The patch is ½ a u² + b uv + ½ c v² + d u + e v + p.
+    """
+    b200, b020, b002, b110, b101, b011 = net
+    a, b, c = b200 - 2 * b101 + b002, b110 - b101 - b011 + b002, b020 - 2 * b011 + b002
+    d, e = b101 - b002, b011 - b002
+    A, B, C, P, Q = (normals @ x for x in (a, b, c, d, e))
+    D, U, V = A * C - B * B, B * Q - C * P, B * P - A * Q
+    p_u, p_v = np.outer(U, a) + np.outer(V, b), np.outer(U, b) + np.outer(V, c)
+    field = np.cross(p_u + np.outer(D, d), p_v + np.outer(D, e))
+    return D, U, V, D - U - V, np.einsum("kx,kx->k", field, normals)
+
+
+def spiral(axis: Array, angle: float, count: int) -> Array:
+    """Return normals at the golden angle from each other, up to an angle in degrees to the axis."""
+    height = 1.0 - (1.0 - math.cos(math.radians(angle))) * (np.arange(count) + 0.5) / count
+    turn = math.pi * (3.0 - math.sqrt(5.0)) * np.arange(count)
+    across = np.linalg.svd(axis[None])[2][1:]
+    ring = np.outer(np.cos(turn), across[0]) + np.outer(np.sin(turn), across[1])
+    return np.outer(height, axis) + np.sqrt(1.0 - height**2)[:, None] * ring
 
 
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band", "enneper", "helicoid"])
@@ -292,15 +306,12 @@ def test_search_by_bins_finds_what_brute_force_finds(
     """Generic normals lie on no boundary: there the signs of U, V, W and of N·n decide alone."""
     spline = gm.fit(gm.surfaces.surface(name), cells)
     axis = spline.normals(*np.mean(spline.domain, axis=1) + 0.1)
-    lattice = Lattice(axis, math.cos(math.radians(cap - 1e-3)))
-    normals = lattice.normals(lattice.density_of(4000))
+    normals = spiral(axis, cap - 1e-3, 4000)
     found = set()
     for index in range(spline.patches):
-        patch = vectors_of(spline, index)
-        D, U, V, W = python_function(formulas.forms)(patch, vector(normals))
-        c3 = python_function(formulas.orientation)(patch, vector(normals))
+        D, U, V, W, towards = forms(spline.control_nets[index], normals)
         inside = (np.minimum(np.minimum(U, V), W) > 0) | (np.maximum(np.maximum(U, V), W) < 0)
-        found |= {(index, int(k)) for k in np.flatnonzero(inside & (c3 > 0) & (D != 0))}
+        found |= {(index, int(k)) for k in np.flatnonzero(inside & (towards > 0) & (D != 0))}
     samples = gm.sample(spline, normals=normals)
     pairs = list(zip(samples.patch_index.tolist(), samples.normal_index.tolist(), strict=True))
     assert pairs == sorted(found)

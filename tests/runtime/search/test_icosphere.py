@@ -3,13 +3,12 @@
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.directions.unit import as_normals
-from gaussmap.runtime.samples.fields import INDEX_NAMES
 from gaussmap.runtime.search.bins import NormalBins
 from gaussmap.runtime.search.search import fill, find
 from hypothesis import given
 from hypothesis import strategies as st
 
+INDEX_NAMES = "normal_index", "patch_index"
 SURFACES = [x for x in gm.surfaces.names() if x not in ("plane", "cylinder", "cone")]
 
 
@@ -97,10 +96,3 @@ def test_hits_can_be_cut_anywhere(size: int) -> None:
         np.testing.assert_array_equal(np.concatenate([x[name] for x in parts]), values)
 
 
-@pytest.mark.compiled
-@pytest.mark.parametrize("frequency", [1, 2, 3, 7, 64, pytest.param(200, marks=pytest.mark.slow)])
-def test_points_stay_as_they_are(frequency: int) -> None:
-    """`sample` takes them for unit vectors, and so sees that they are those of an icosahedron."""
-    normals = gm.icosphere(frequency)
-    assert as_normals(normals).tobytes() == normals.tobytes()
-    assert len(np.unique(normals, axis=0)) == 10 * frequency**2 + 2
