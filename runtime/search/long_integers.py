@@ -92,7 +92,9 @@ def monomials_of_forms(vectors: Integers, n: Integers) -> Integers:
     ]
     alone = [exact_forms(vectors, x + 0 * n) for x in axes]
     monomials = [
-        alone[i] if i == j else exact_forms(vectors, axes[i] + axes[j] + 0 * n) - alone[i] - alone[j]
+        alone[i]
+        if i == j
+        else exact_forms(vectors, axes[i] + axes[j] + 0 * n) - alone[i] - alone[j]
         for i in range(4)
         for j in range(i, 4)
     ]

@@ -1,20 +1,13 @@
 """Streams: what `sample` returns, in chunks, in bounded memory, whatever ends them."""
 
-import gc
 import subprocess
 import sys
 import threading
-from typing import Any
 
 import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime import stream
-from gaussmap.runtime.density import chosen_normals as choice
-from gaussmap.runtime.directions.unit import as_normals
-from gaussmap.runtime.search import search
-from gaussmap.runtime.search.bins import NormalBins
-from gaussmap.runtime.search.search import Search, find
 
 TORUS = gm.fit(gm.surfaces.torus(), (12, 8))
 
@@ -39,27 +32,6 @@ def same(one, other):
 # --- the same samples in the same order -----------------------------------------------------------
 
 
-@pytest.mark.compiled
-@pytest.mark.parametrize("threads", [1, 2, 3, 7])
-@pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band", "sphere"])
-@pytest.mark.quick_for("torus", "sphere")
-def test_chunks_make_the_whole(name, threads, monkeypatch):
-    monkeypatch.setattr(search, "MOST_PATCHES", 64)
-    spline = gm.fit(name, (20, 16))
-    questions: list[dict[str, Any]] = [{"normals": gm.icosphere(12)}, {"count": 900}]
-    for asked in questions:
-        whole = gm.sample(spline, density="gauss", threads=1, **asked)
-        for size in (7, 100, len(whole), 10**9):
-            chunks = list(gm.sample_stream(spline, chunk=size, threads=threads, **asked))
-            assert [len(x) for x in chunks[:-1]] == [size] * (len(chunks) - 1)
-            assert 0 < len(chunks[-1]) <= size
-            joined = gm.Samples.concatenate(chunks)
-            same(joined, whole)
-            assert joined.report.developable_share == whole.report.developable_share
-            assert joined.report.normals == whole.report.normals
-            assert joined.report.samples == whole.report.samples
-
-
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 @pytest.mark.parametrize("fields", [("points",), ("normal_index",), ("uv", "patch_index")])
 def test_fields_and_types(fields, dtype):
@@ -78,29 +50,6 @@ def test_one_patch_with_more_samples_than_a_chunk():
     same(gm.Samples.concatenate(chunks), whole)
 
 
-@pytest.mark.parametrize("name", ["wavy_graph", "monkey_saddle"])
-def test_a_sample_of_two_ranges_comes_once(name, monkeypatch):
-    """At an open border two patches may claim one normal, and one is chosen: across ranges too."""
-    spline = gm.fit(gm.surfaces.surface(name), (12, 8))
-    (u0, u1), (v0, v1) = spline.domain
-    u, v = np.linspace(u0, u1, 13), np.linspace(v0, v1, 9)
-    ends = [spline.normals(u, x) for x in (v0, v1)] + [spline.normals(x, v) for x in (u0, u1)]
-    normals = as_normals(np.concatenate(ends))  # those at the corners of border cells
-    whole = gm.sample(spline, normals=normals)
-    monkeypatch.setattr(search, "FEWEST_PATCHES", 1)
-    monkeypatch.setattr(search, "MOST_PATCHES", 1)
-    for threads in (1, 2):
-        same(
-            gm.Samples.concatenate(gm.sample_stream(spline, normals=normals, threads=threads)),
-            whole,
-        )
-    alone, apart = Search(spline, NormalBins(normals)), 0
-    for patch in range(spline.patches):
-        for found in alone.results(patch, patch + 1):
-            apart += len(found.certain) + len(alone.decided(found.undecided, found.bounds, 1)[0])
-    assert apart > len(whole)  # patch by patch, some would come twice
-
-
 @pytest.mark.parametrize("size", [10, 64, 333])
 @pytest.mark.parametrize("asked", [{"normals": gm.icosphere(6)}, {"count": 700}])
 def test_blocks_of_normals(size, asked, monkeypatch):
@@ -113,24 +62,6 @@ def test_blocks_of_normals(size, asked, monkeypatch):
     order = np.lexsort((whole.normal_index, whole.patch_index, whole.normal_index // size))
     same(joined, whole[order])
     assert joined.report.normals == whole.report.normals
-
-
-@pytest.mark.compiled
-@pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band"])
-def test_a_count_is_concluded_from_a_smaller_one(name, monkeypatch):
-    spline = gm.fit(gm.surfaces.surface(name))
-    monkeypatch.setattr(choice, "PILOT", 2000)
-    tried = []
-
-    def recorded(spline, bins, *rest):
-        tried.append(len(bins.normals))
-        return find(spline, bins, *rest)
-
-    monkeypatch.setattr(choice, "find", recorded)
-    samples = gm.sample(spline, count=50_000, density="gauss")
-    assert abs(len(samples) - 50_000) <= 2500
-    assert 10 * max(tried) < (samples.report.normals or 0)
-    same(gm.Samples.concatenate(gm.sample_stream(spline, count=50_000, chunk=9999)), samples)
 
 
 # --- what there is to say -------------------------------------------------------------------------
@@ -194,52 +125,7 @@ def test_errors_come_at_once(arguments, error):
         gm.sample_stream(**{"surface": TORUS, **arguments})
 
 
-# --- the end --------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("threads", [1, 2])
-def test_closing_ends_the_work(threads, monkeypatch):
-    monkeypatch.setattr(search, "FEWEST_PATCHES", 1)
-    monkeypatch.setattr(search, "MOST_PATCHES", 1)
-    searched = []
-    results = Search.results
-
-    def recorded(self, first, last):
-        searched.append(first)
-        return results(self, first, last)
-
-    monkeypatch.setattr(Search, "results", recorded)
-    before = threading.active_count()
-    chunks = gm.sample_stream(TORUS, normals=gm.icosphere(8), chunk=5, threads=threads)
-    next(chunks)
-    chunks.close()
-    assert len(searched) < TORUS.patches / 4
-    assert threading.active_count() == before
-    # and without a word of farewell
-    chunks = gm.sample_stream(TORUS, normals=gm.icosphere(8), chunk=5, threads=threads)
-    next(chunks)
-    del chunks
-    gc.collect()
-    assert threading.active_count() == before
-
-
-@pytest.mark.parametrize("threads", [1, 2])
-@pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt, MemoryError])
-def test_an_error_ends_the_work(threads, error, monkeypatch):
-    monkeypatch.setattr(search, "FEWEST_PATCHES", 1)
-    monkeypatch.setattr(search, "MOST_PATCHES", 4)
-    results = Search.results
-
-    def failing(self, first, last):
-        if first == 100:
-            raise error("one hundred")
-        return results(self, first, last)
-
-    monkeypatch.setattr(Search, "results", failing)
-    before = threading.active_count()
-    with pytest.raises(error, match="one hundred"):
-        list(gm.sample_stream(TORUS, normals=gm.icosphere(8), chunk=5, threads=threads))
-    assert threading.active_count() == before
+# --- at once --------------------------------------------------------------------------------------
 
 
 @pytest.mark.compiled
@@ -304,6 +190,6 @@ def test_memory_is_bounded():
     )
     came, grown = map(int, done.stdout.split())
     assert abs(came - 20_000_000) <= 1_000_000
-    # A block of normals, sorted: 24 + 24 + 8 + 4 bytes each, and bins; what two sheets of it have:
-    # 24 bytes a sample, twice while ranges are joined. A chunk: 104 bytes a sample, twice.
-    assert grown < stream.NORMALS_AT_A_TIME * (64 + 2 * 2 * 24) + 100_000 * 2 * 104 + 200e6
+    # A block of 2²⁰ normals, sorted: 24 + 24 + 8 + 4 bytes each, and bins; what two sheets of it
+    # have: 24 bytes a sample, twice while ranges are joined. A chunk: 104 bytes a sample, twice.
+    assert grown < 2**20 * (64 + 2 * 2 * 24) + 100_000 * 2 * 104 + 200e6

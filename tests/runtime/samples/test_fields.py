@@ -11,9 +11,6 @@ import pytest
 from gaussmap.runtime.samples import fields as names
 from gaussmap.runtime.samples.fields import ARRAY_NAMES, FLOAT_NAMES
 from gaussmap.runtime.samples.samples import Samples
-from gaussmap.runtime.search.bins import NormalBins
-from gaussmap.runtime.search.search import fill, find
-from gaussmap.tools.pictures.to_file import write_plot
 
 # The vertices of the icosphere lie in planes of symmetry: some samples are decided exactly.
 NORMALS = gm.icosphere(6)
@@ -34,10 +31,6 @@ def narrow(fields: Any = ("points",), **options: Any) -> Samples:
 # --- what is stored -------------------------------------------------------------------------------
 
 
-def test_some_samples_are_decided_exactly():
-    assert 0 < len(find(SPLINE, NormalBins(NORMALS)).exact) < len(FULL)
-
-
 @pytest.mark.parametrize("fields", SUBSETS, ids="-".join)
 def test_fields_are_those_of_a_full_sampling(fields):
     samples = narrow(fields)
@@ -49,18 +42,6 @@ def test_fields_are_those_of_a_full_sampling(fields):
         assert hasattr(samples, name) == (name in fields)
     for name in fields:
         assert getattr(samples, name).tobytes() == getattr(FULL, name).tobytes()
-
-
-def test_nothing_is_filled_that_is_not_wanted(monkeypatch):
-    bins = NormalBins(NORMALS)
-    hits = find(SPLINE, bins)
-    assert set(fill(SPLINE, bins, hits, fields=("uv", "patch_index"))) == {"uv", "patch_index"}
-
-    def filled(*arguments):
-        raise AssertionError("what was decided exactly has its indices already")
-
-    monkeypatch.setattr("gaussmap.runtime.search.search.fill_known", filled)
-    assert narrow(("patch_index",)).fields == ("patch_index",)
 
 
 @pytest.mark.parametrize("dtype", [np.float32, "float32", np.dtype(np.float32), "f4"])
@@ -108,12 +89,6 @@ def test_a_missing_field_is_said_to_be():
     with pytest.raises(AttributeError, match="has no attribute 'curvature'") as caught:
         _ = samples.curvature  # pyright: ignore[reportAttributeAccessIssue]
     assert not isinstance(caught.value, gm.GaussmapError)
-
-
-def test_pictures_say_what_they_need(tmp_path):
-    with pytest.raises(gm.errors.MissingFieldError, match="add 'normal_index' to fields"):
-        write_plot(narrow(), SPLINE, NORMALS, tmp_path / "a.png")
-    assert not any(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize(

@@ -94,5 +94,3 @@ def test_hits_can_be_cut_anywhere(size: int) -> None:
     parts = [fill(spline, bins, hits[start : start + size]) for start in starts]
     for name, values in whole.items():
         np.testing.assert_array_equal(np.concatenate([x[name] for x in parts]), values)
-
-

@@ -193,6 +193,26 @@ def test_samples_that_no_normal_gave(name: str, tmp_path: Path) -> None:
     assert picture(tmp_path / "a.png").shape == SIZE
 
 
+def test_fields_that_pictures_need(tmp_path: Path) -> None:
+    spline, normals = gm.fit(gm.surfaces.torus(), (12, 8)), gm.icosphere(6)
+    samples = gm.sample(spline, normals=normals, fields=("points",))
+    with pytest.raises(gm.errors.MissingFieldError, match="add 'normal_index' to fields"):
+        to_file.write_plot(samples, spline, normals, tmp_path / "a.png")
+    assert not any(tmp_path.iterdir())
+
+
+def test_surfaces_of_several_pieces(tmp_path: Path) -> None:
+    x, y = np.meshgrid(np.arange(3.0), np.arange(5.0), indexing="ij")
+    points = np.stack([x, y, (x == 1.0) + 1.0 * (y % 2.0)], axis=2)
+    knots = [0, 0, 0, 1, 1, 1], [0, 0, 0, 1, 1, 2, 2, 2]
+    surface = gm.Surface.from_nurbs((2, 2), knots, points)
+    assert len(surface.pieces()) == 2
+    path = tmp_path / "a.png"
+    samples = to_file.plot_to_file(surface, path, count=100, cells=(24, 24))
+    assert len(samples) == 100
+    assert path.stat().st_size > 10_000
+
+
 def test_bad_targets(torus: gm.Spline, tmp_path: Path) -> None:
     with pytest.raises(gm.errors.UnknownNameError, match=r"use one of \.png, \.pdf, \.svg"):
         to_file.plot_to_file(torus, tmp_path / "a.jpg", count=50)

@@ -1,0 +1,169 @@
+"""Ranges of patches, on several threads, whole or in chunks: they do not show in the samples."""
+
+import gc
+import threading
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.runtime.search import search
+from gaussmap.runtime.search.bins import NormalBins
+from gaussmap.runtime.search.search import Search, fill, find
+
+# The vertices of the icosphere lie in planes of symmetry: some samples are decided exactly.
+SPLINE, NORMALS = gm.fit(gm.surfaces.torus(), (12, 8)), gm.icosphere(6)
+
+
+def same(one, other):
+    assert one.fields == other.fields
+    for name in one.fields:
+        assert getattr(one, name).dtype == getattr(other, name).dtype
+        assert getattr(one, name).tobytes() == getattr(other, name).tobytes()
+
+
+# --- what is stored -------------------------------------------------------------------------------
+
+
+def test_some_samples_are_decided_exactly():
+    assert (
+        0 < len(find(SPLINE, NormalBins(NORMALS)).exact) < len(gm.sample(SPLINE, normals=NORMALS))
+    )
+
+
+def test_nothing_is_filled_that_is_not_wanted(monkeypatch):
+    bins = NormalBins(NORMALS)
+    hits = find(SPLINE, bins)
+    assert set(fill(SPLINE, bins, hits, fields=("uv", "patch_index"))) == {"uv", "patch_index"}
+
+    def filled(*arguments):
+        raise AssertionError("what was decided exactly has its indices already")
+
+    monkeypatch.setattr(search, "fill_known", filled)
+    samples = gm.sample(SPLINE, normals=NORMALS, fields=("patch_index",))
+    assert samples.fields == ("patch_index",)
+
+
+# --- the same samples in the same order -----------------------------------------------------------
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("name", ["torus", "sphere", "moebius_band", "wavy_graph"])
+def test_any_number_of_threads_gives_the_same_bits(name, monkeypatch):
+    """More patches and samples than go into one range; normals on symmetry planes among them."""
+    monkeypatch.setattr(search, "MOST_PATCHES", 500)
+    monkeypatch.setattr(search, "SAMPLES_AT_A_TIME", 333)
+    surface = gm.surfaces.surface(name)
+    asked: dict[str, Any]
+    for asked in ({"normals": gm.icosphere(24)}, {"count": 2000}):
+        first, *others = (
+            gm.sample(surface, cells=(40, 30), threads=threads, **asked) for threads in (1, 2, 3, 7)
+        )
+        assert len(first) > 600
+        for other in others:
+            assert other.report == first.report
+            for array in first.fields:
+                assert getattr(other, array).tobytes() == getattr(first, array).tobytes()
+
+
+@pytest.mark.compiled
+def test_ranges_do_not_show_in_the_result(monkeypatch):
+    whole = gm.sample(gm.surfaces.torus(), normals=gm.icosphere(16), cells=(24, 24), threads=1)
+    monkeypatch.setattr(search, "MOST_PATCHES", 7)
+    monkeypatch.setattr(search, "ROOM", 1)
+    monkeypatch.setattr(search, "SAMPLES_AT_A_TIME", 11)
+    pieces = gm.sample(gm.surfaces.torus(), normals=gm.icosphere(16), cells=(24, 24), threads=2)
+    for array in whole.fields:
+        assert getattr(whole, array).tobytes() == getattr(pieces, array).tobytes()
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("threads", [1, 2, 3, 7])
+@pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band", "sphere"])
+@pytest.mark.quick_for("torus", "sphere")
+def test_chunks_make_the_whole(name, threads, monkeypatch):
+    monkeypatch.setattr(search, "MOST_PATCHES", 64)
+    spline = gm.fit(name, (20, 16))
+    questions: list[dict[str, Any]] = [{"normals": gm.icosphere(12)}, {"count": 900}]
+    for asked in questions:
+        whole = gm.sample(spline, density="gauss", threads=1, **asked)
+        for size in (7, 100, len(whole), 10**9):
+            chunks = list(gm.sample_stream(spline, chunk=size, threads=threads, **asked))
+            assert [len(x) for x in chunks[:-1]] == [size] * (len(chunks) - 1)
+            assert 0 < len(chunks[-1]) <= size
+            joined = gm.Samples.concatenate(chunks)
+            same(joined, whole)
+            assert joined.report.developable_share == whole.report.developable_share
+            assert joined.report.normals == whole.report.normals
+            assert joined.report.samples == whole.report.samples
+
+
+@pytest.mark.parametrize("name", ["wavy_graph", "monkey_saddle"])
+def test_a_sample_of_two_ranges_comes_once(name, monkeypatch):
+    """At an open border two patches may claim one normal, and one is chosen: across ranges too."""
+    spline = gm.fit(gm.surfaces.surface(name), (12, 8))
+    (u0, u1), (v0, v1) = spline.domain
+    u, v = np.linspace(u0, u1, 13), np.linspace(v0, v1, 9)
+    ends = [spline.normals(u, x) for x in (v0, v1)] + [spline.normals(x, v) for x in (u0, u1)]
+    normals = np.concatenate(ends)  # those at the corners of border cells
+    whole = gm.sample(spline, normals=normals)
+    monkeypatch.setattr(search, "FEWEST_PATCHES", 1)
+    monkeypatch.setattr(search, "MOST_PATCHES", 1)
+    for threads in (1, 2):
+        same(
+            gm.Samples.concatenate(gm.sample_stream(spline, normals=normals, threads=threads)),
+            whole,
+        )
+    alone, apart = Search(spline, NormalBins(normals)), 0
+    for patch in range(spline.patches):
+        for found in alone.results(patch, patch + 1):
+            apart += len(found.certain) + len(alone.decided(found.undecided, found.bounds, 1)[0])
+    assert apart > len(whole)  # patch by patch, some would come twice
+
+
+# --- the end --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_closing_ends_the_work(threads, monkeypatch):
+    monkeypatch.setattr(search, "FEWEST_PATCHES", 1)
+    monkeypatch.setattr(search, "MOST_PATCHES", 1)
+    searched = []
+    results = Search.results
+
+    def recorded(self, first, last):
+        searched.append(first)
+        return results(self, first, last)
+
+    monkeypatch.setattr(Search, "results", recorded)
+    before = threading.active_count()
+    chunks = gm.sample_stream(SPLINE, normals=gm.icosphere(8), chunk=5, threads=threads)
+    next(chunks)
+    chunks.close()
+    assert len(searched) < SPLINE.patches / 4
+    assert threading.active_count() == before
+    # and without a word of farewell
+    chunks = gm.sample_stream(SPLINE, normals=gm.icosphere(8), chunk=5, threads=threads)
+    next(chunks)
+    del chunks
+    gc.collect()
+    assert threading.active_count() == before
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+@pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt, MemoryError])
+def test_an_error_ends_the_work(threads, error, monkeypatch):
+    monkeypatch.setattr(search, "FEWEST_PATCHES", 1)
+    monkeypatch.setattr(search, "MOST_PATCHES", 4)
+    results = Search.results
+
+    def failing(self, first, last):
+        if first == 100:
+            raise error("one hundred")
+        return results(self, first, last)
+
+    monkeypatch.setattr(Search, "results", failing)
+    before = threading.active_count()
+    with pytest.raises(error, match="one hundred"):
+        list(gm.sample_stream(SPLINE, normals=gm.icosphere(8), chunk=5, threads=threads))
+    assert threading.active_count() == before
