@@ -25,7 +25,7 @@ from .support import (
     x,
 )
 
-__all__ = ["is_homogeneous", "kernel_source"]
+__all__ = ["NORMAL", "is_homogeneous", "kernel_source"]
 
 NORMAL = n.components
 # Longer expressions are not proved to be homogeneous; the general formula serves them too.

@@ -22,6 +22,7 @@ OF_KERNELS = (
     "runtime/density",
     "tools/gauss_map",
     "runtime/kernels",
+    "tools/kernels",
     "tools/meshes",
     "tools/support",
     "runtime/search/test_exact.py",
@@ -30,7 +31,6 @@ OF_KERNELS = (
     "runtime/spline/test_spline.py",
 )
 SOME = (
-    "runtime/surface/test_derivatives.py",
     "runtime/domain/test_trim.py",
     "runtime/spline/test_developable.py",
     "tools/support/test_offset.py",

@@ -12,13 +12,8 @@ from typing import Any
 
 import gaussmap as gm
 import pytest
-from gaussmap.runtime.base.later import Later
 from gaussmap.runtime.samples.report import SamplingReport
 from gaussmap.runtime.spline.misfit import Misfit
-from gaussmap.tools.batch.layout import Settings, create
-from gaussmap.tools.batch.manifest import ManifestRow
-from gaussmap.tools.batch.shards import Shard
-from gaussmap.tools.batch.tables import points_table
 from gaussmap.tools.support.branches import Branches
 from gaussmap.tools.support.convolution import Convolution
 from numpydoc.docscrape import NumpyDocString
@@ -64,11 +59,9 @@ def members(cls: type) -> dict[str, Any]:
     for base in reversed(cls.__mro__):
         if base.__module__.startswith("gaussmap"):
             names = [x for x in vars(base) if x not in found]
-            # Some methods are loaded when they are first asked for.
-            found |= {
-                x: getattr(cls, x) if isinstance(vars(base)[x], Later) else vars(base)[x]
-                for x in names
-            }
+            for x in names:
+                getattr(cls, x)  # some methods are put into the class when first asked for
+            found |= {x: vars(base)[x] for x in names}
     return {name: x for name, x in found.items() if not name.startswith("_")}
 
 
@@ -135,16 +128,10 @@ def test_attributes_are_documented_and_used_in_an_example(name: str) -> None:
 
 @pytest.fixture(scope="module")
 def dataset(tmp_path_factory) -> Path:
-    """Return the folder of a data set, as `sample_many` would write it in other processes."""
+    """Return the folder of a data set."""
     path = tmp_path_factory.mktemp("data") / "dataset"
-    samples = list(gm.sample_many(["torus", "sphere", "ellipsoid"], 500, cells=(16, 16)))
-    settings = Settings.of_this_version(asked={}, fields=samples[0].fields, parts_per_shard=1)
-    create(path, settings)
-    for k, part in enumerate(samples):
-        with Shard(path, k, settings) as shard:
-            row = ManifestRow(k, part.report.surface, "catalogue", "0", samples=len(part))
-            shard.add(row, points_table(part, k, shard.schema))
-            shard.commit([k])
+    surfaces = ["torus", "sphere", "ellipsoid"]
+    gm.sample_many(surfaces, 500, cells=(16, 16), out=path, workers=1, progress=False)
     return path
 
 

@@ -1,4 +1,4 @@
-"""Every example of the README runs, and its figures are those of the pages in docs/."""
+"""Every example of the README runs."""
 
 import re
 import shlex
@@ -7,15 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from gaussmap.benchmarks.peers.forms import FORMS
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-MESH_OF = {
-    "**balanced**": '**balanced**, prefer="normals"',
-    "**isotropic**": '**isotropic**, prefer="normals"',
-    "NumPy, (u,v) grid, closed form": "grid of parameters",
-}
 
 
 def blocks(language: str) -> list[str]:
@@ -56,51 +50,3 @@ def test_the_two_commands_are_targets() -> None:
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
     for line in blocks("console")[0].splitlines():
         assert re.search(rf"^{line.removeprefix('make ')}:", makefile, re.MULTILINE)
-
-
-def tables(page: str) -> list[dict[str, list[list[str]]]]:
-    """Return the rows of each table of a page, the cells after the first by the first one."""
-    found = []
-    for block in re.findall(r"(?:^\|.*\n)+", page, re.MULTILINE):
-        table: dict[str, list[list[str]]] = {}
-        for line in block.splitlines():
-            first, *cells = (x.strip() for x in line.strip("|").split(" | "))
-            table.setdefault(first.strip(), []).append(cells)
-        found.append(table)
-    return found
-
-
-def of_quality(surface: int) -> list[dict[str, dict[str, str]]]:
-    """Return the tables of a surface in docs/quality.md: cells by title and column."""
-    page = (ROOT / "docs" / "quality.md").read_text(encoding="utf-8")
-    section = page.split(f"## {FORMS[surface].label}\n")[1].split("\n## ")[0]
-    found = []
-    for table in re.findall(r"(?:^\|.*\n)+", section, re.MULTILINE):
-        header, *rows = (
-            [x.strip() for x in line.strip("|").split(" | ")] for line in table.splitlines()
-        )
-        found.append({title: dict(zip(header[1:], cells, strict=True)) for title, *cells in rows})
-    return found
-
-
-def figures(title: str, surface: int) -> tuple[str, str, str, str]:
-    """Return E, G, mean angle of the mesh and points/s of a row, from the pages in docs/."""
-    points, meshes = of_quality(surface)
-    mesh = meshes.get(MESH_OF.get(title, title), {"mean angle": "–"})["mean angle"]
-    if title in points:
-        E, G, rate = (points[title][x] for x in ("E", "G", "points/s"))
-    else:
-        page = (ROOT / "docs" / "performance.md").read_text(encoding="utf-8")
-        compared = tables(page.split("## Compared with other packages")[1])
-        (rate, E, G) = (compared[surface][title][0][k] for k in (2, -2, -1))
-    return E, G, mesh, rate
-
-
-def test_figures_are_those_of_the_pages() -> None:
-    (table,) = (x for x in tables(README) if "E / G / M" in x)
-    rows = {title: cells for title, (cells,) in table.items() if not title.startswith((":", "E /"))}
-    assert len(rows) == 9
-    for title, (*surfaces, speed) in rows.items():
-        for k, cell in enumerate(surfaces):
-            assert tuple(cell.replace("*", "").split(" / ")) == figures(title, k)[:3], (title, k)
-        assert speed.replace("*", "") == figures(title, 0)[3], title

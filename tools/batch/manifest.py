@@ -8,7 +8,16 @@ from typing import Any
 
 from ...runtime.base.extras import from_extra
 
-__all__ = ["FAILED", "OK", "ManifestRow", "as_text", "manifest_schema", "manifest_table", "rows_of"]
+__all__ = [
+    "COLUMNS",
+    "FAILED",
+    "OK",
+    "ManifestRow",
+    "as_text",
+    "manifest_schema",
+    "manifest_table",
+    "rows_of",
+]
 
 OK, FAILED = "ok", "failed"
 # The columns: the type of Arrow, whether it may be null, the unit, and what it is.

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from .space import Space
 
-__all__ = ["Cells", "by_piece", "halved", "into_parts", "new_cells"]
+__all__ = ["BEND_U", "Cells", "by_piece", "halved", "into_parts", "new_cells"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]

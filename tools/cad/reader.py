@@ -170,7 +170,7 @@ def _run(request: dict[str, object], seconds: float) -> int | None:
     """Run the process; return how it ended, or None if it was at the limit."""
     try:
         process = subprocess.Popen(
-            _command(request),
+            command_of_reader(request),
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
@@ -189,7 +189,7 @@ def _run(request: dict[str, object], seconds: float) -> int | None:
         _end(process)
 
 
-def _command(request: dict[str, object]) -> list[str]:
+def command_of_reader(request: dict[str, object]) -> list[str]:
     return [sys.executable, "-P", "-m", MODULE, json.dumps(request)]
 
 

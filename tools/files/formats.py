@@ -43,7 +43,7 @@ __all__ = [
     "write_samples",
 ]
 
-_WRITERS: dict[str, Callable[[Samples, Path], None]] = {
+WRITERS: dict[str, Callable[[Samples, Path], None]] = {
     ".npz": write_npz,
     ".ply": write_ply,
     ".csv": write_csv,
@@ -55,8 +55,8 @@ _WRITERS: dict[str, Callable[[Samples, Path], None]] = {
     ".las": write_las,
     ".laz": write_las,
 }
-_READERS: dict[str, Callable[[BufferedReader], Samples]] = {".npz": read_npz, ".ply": read_ply}
-_MESH_WRITERS: dict[str, Callable[[Mesh, Path], None]] = {
+READERS: dict[str, Callable[[BufferedReader], Samples]] = {".npz": read_npz, ".ply": read_ply}
+MESH_WRITERS: dict[str, Callable[[Mesh, Path], None]] = {
     ".ply": write_mesh_ply,
     ".obj": write_obj,
     ".stl": write_stl,
@@ -65,8 +65,8 @@ _MESH_WRITERS: dict[str, Callable[[Mesh, Path], None]] = {
     ".vtp": write_mesh_vtp,
     ".glb": write_glb,
 }
-SUFFIXES, READABLE_SUFFIXES = tuple(_WRITERS), tuple(_READERS)
-MESH_SUFFIXES = tuple(_MESH_WRITERS)
+SUFFIXES, READABLE_SUFFIXES = tuple(WRITERS), tuple(READERS)
+MESH_SUFFIXES = tuple(MESH_WRITERS)
 
 # The library that writes a format, and the extra that brings it.
 _EXTRAS = {
@@ -91,7 +91,7 @@ def write_samples(samples: Samples, path: PathLike) -> None:
     suffix = _suffix_of_samples(path)
     check_fields(path, samples.fields)
     with atomic_path(path) as temporary:
-        _WRITERS[suffix](samples, temporary)
+        WRITERS[suffix](samples, temporary)
 
 
 def write_mesh(mesh: Mesh, path: PathLike) -> None:
@@ -102,7 +102,7 @@ def write_mesh(mesh: Mesh, path: PathLike) -> None:
     if suffix in _SINGLE:
         warn_of_rounding(mesh.vertices, 4)
     with atomic_path(path) as temporary:
-        _MESH_WRITERS[suffix](mesh, temporary)
+        MESH_WRITERS[suffix](mesh, temporary)
 
 
 def check_samples_target(path: PathLike) -> None:
@@ -181,4 +181,4 @@ def read_samples(path: PathLike) -> Samples:
     path = checked_path(path)
     suffix = known_suffix(path, READABLE_SUFFIXES)
     with opened(path, f"{suffix} file of gaussmap", "samples") as file:
-        return _READERS[suffix](file)
+        return READERS[suffix](file)

@@ -17,7 +17,7 @@ __all__ = ["append_rows", "kept"]
 # Rows that are packed at once: they fit into a cache.
 _ROWS = 4096
 # Rows for which a thread of its own is worth while. More than four threads wait for the disk.
-_FOR_A_THREAD, _THREADS = 1 << 16, 4
+FOR_A_THREAD, THREADS = 1 << 16, 4
 
 
 def kept(array: NDArray[Any]) -> str:
@@ -32,7 +32,7 @@ def append_rows(path: Path, arrays: Mapping[str, NDArray[Any]]) -> None:
     """
     count, offset = len(next(iter(arrays.values()))), path.stat().st_size
     blocks = {name: _as_blocks(array) for name, array in arrays.items()}
-    workers = min(thread_count(None), _THREADS, 1 + count // _FOR_A_THREAD)
+    workers = min(thread_count(None), THREADS, 1 + count // FOR_A_THREAD)
     work = partial(_write_part, path, offset, blocks)
     for _ in over_ranges(work, count, max(1, -(-count // workers)), workers):
         pass

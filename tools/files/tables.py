@@ -21,7 +21,7 @@ __all__ = ["write_csv", "write_rows", "write_xyz"]
 _DIGITS = {"i8": "%d", "u1": "%d", "f4": "%.9g", "f8": "%.17g"}
 _ROWS = 4096
 # Fewer rows are written before Polars is imported; more at once take memory and save no time.
-_WORTH_AN_IMPORT, _ROWS_OF_POLARS = 20_000, 1 << 18
+WORTH_AN_IMPORT, ROWS_OF_POLARS = 20_000, 1 << 18
 
 
 def write_csv(samples: Samples, path: Path) -> None:
@@ -45,14 +45,14 @@ def write_rows(file: BinaryIO, line: str, columns: Sequence[NDArray[Any]]) -> No
     in as few digits as it takes to read the same numbers again, if it is installed.
     """
     columns = [column.view(np.uint8) if column.dtype == np.bool_ else column for column in columns]
-    polars = if_installed("polars") if len(columns[0]) >= _WORTH_AN_IMPORT else None
+    polars = if_installed("polars") if len(columns[0]) >= WORTH_AN_IMPORT else None
     if polars is None:
         file.writelines(_formatted(line, columns))
         return
     separator = "," if "," in line else " "
     words = line.rstrip("\n").split(separator)
-    for start in range(0, len(columns[0]), _ROWS_OF_POLARS):
-        block = [column[start : start + _ROWS_OF_POLARS] for column in columns]
+    for start in range(0, len(columns[0]), ROWS_OF_POLARS):
+        block = [column[start : start + ROWS_OF_POLARS] for column in columns]
         table = _table(polars, words, block)
         table.write_csv(file, include_header=False, separator=separator, quote_style="never")
 

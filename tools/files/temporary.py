@@ -38,7 +38,7 @@ def remove_left(folder: Path) -> None:
 
 @cache
 def _remove_once(folder: str, process: int) -> None:
-    if not _machine():
+    if not this_machine():
         return
     with os.scandir(folder) as entries:
         left = [entry for entry in entries if _is_left(entry.name) and _is_own(entry)]
@@ -56,9 +56,9 @@ def _is_left(name: str) -> bool:
     if not name.startswith(PREFIX) or len(parts) != 4:
         return False
     machine, process, began, _ = parts
-    if machine != _machine() or not (process.isdecimal() and began.isdecimal()):
+    if machine != this_machine() or not (process.isdecimal() and began.isdecimal()):
         return False
-    return _began(int(process)) != began
+    return began_at(int(process)) != began
 
 
 def _is_own(entry: os.DirEntry[str]) -> bool:
@@ -67,10 +67,10 @@ def _is_own(entry: os.DirEntry[str]) -> bool:
 
 
 def _owner(process: int) -> str:
-    return f"{_machine() or 'x'}-{process}-{_began(process) or 'x'}"
+    return f"{this_machine() or 'x'}-{process}-{began_at(process) or 'x'}"
 
 
-def _began(process: int) -> str:
+def began_at(process: int) -> str:
     """Return when a process began, in ticks since the machine did; "" if there is no such one."""
     try:
         text = (PROCESSES / str(process) / "stat").read_text(errors="replace")
@@ -80,7 +80,7 @@ def _began(process: int) -> str:
 
 
 @cache
-def _machine() -> str:
+def this_machine() -> str:
     """Return a text for this machine, and for the container; "" if processes cannot be seen."""
     try:
         space = os.readlink(PROCESSES / "self" / "ns" / "pid")

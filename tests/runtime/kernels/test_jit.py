@@ -12,14 +12,14 @@ from typing import Any
 import numba
 import pytest
 from gaussmap.runtime.kernels import jit
-from numba.core import event
+from numba.core import config, event
 
 PACKAGE = Path(__file__).parents[3]
 # Prints the normal at the centre of a patch of a plane, and how many functions were compiled.
 NORMAL = """
 import numpy as np
 from gaussmap.runtime.kernels.patch import normals_at
-from numba.core import event
+from numba.core import config, event
 
 mu = np.stack(np.meshgrid(np.arange(3.0), np.arange(3.0), [0.0], indexing="ij"), axis=-1)[:, :, 0]
 normals = np.empty((1, 3))
@@ -205,3 +205,17 @@ def test_without_compilation_kernels_are_functions() -> None:
         assert jit.jit(triple) is triple
     else:
         assert jit.jit(triple).py_func is triple  # pyright: ignore
+
+
+@pytest.mark.compiled
+def test_a_cache_that_cannot_be_written(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Kernels are compiled all the same, and not kept."""
+    nowhere = Path(os.devnull) / "cache"
+    monkeypatch.setattr(jit, "PACKAGE", nowhere)
+    monkeypatch.setattr(config, "CACHE_DIR", "")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(nowhere))
+    monkeypatch.setattr(jit, "cache_folder", jit.cache_folder.__wrapped__)
+    monkeypatch.setattr(jit, "digest", lambda: "0")
+
+    assert jit.cache_folder() is None
+    assert jit.jit(triple)(2.0) == 6.0

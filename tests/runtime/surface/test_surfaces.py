@@ -9,7 +9,6 @@ import gaussmap as gm
 import numpy as np
 import pytest
 import sympy as sp
-from gaussmap import generated
 from gaussmap.symbolic.surfaces import CATALOGUE
 
 NAMES = list(CATALOGUE)
@@ -130,9 +129,8 @@ def test_signatures_are_those_of_the_catalogue(name):
     found = inspect.signature(maker).parameters
     assert {x: p.default for x, p in found.items()} == expected
     assert {p.kind for p in found.values()} == {inspect.Parameter.POSITIONAL_OR_KEYWORD}
-    stub = ast.parse(
-        (Path(generated.__file__).parent / "surfaces_signatures.pyi").read_text("utf-8")
-    )
+    path = Path(str(gm.__file__)).parent / "generated" / "surfaces_signatures.pyi"
+    stub = ast.parse(path.read_text("utf-8"))
     (function,) = (x for x in ast.walk(stub) if isinstance(x, ast.FunctionDef) and x.name == name)
     assert [x.arg for x in function.args.args] == list(expected)
     assert [ast.literal_eval(x) for x in function.args.defaults] == list(expected.values())

@@ -7,7 +7,6 @@ from pathlib import Path
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.samples.fields import columns_of
 from gaussmap.tools.batch.layout import MANIFEST, POINTS, shard_path
 from gaussmap.tools.batch.manifest import COLUMNS as MANIFEST_COLUMNS
 
@@ -15,6 +14,13 @@ from . import made
 
 pytest.importorskip("pyarrow")
 PARTS, SAMPLES = len(made.COUNTS), sum(made.COUNTS)
+
+
+def columns_of(samples: gm.Samples) -> dict[str, np.ndarray]:
+    """Return the columns of all fields that each part has."""
+    vectors = (samples.points, ("x", "y", "z")), (samples.normals, ("nx", "ny", "nz"))
+    columns = {name: x for array, names in vectors for name, x in zip(names, array.T, strict=True)}
+    return columns | {x: getattr(samples, x) for x in ("gaussian_curvature", "normal_index")}
 
 
 @pytest.fixture(scope="module")
@@ -132,9 +138,8 @@ class TestOtherReaders:
 
     def expected(self) -> dict[str, np.ndarray]:
         held = [made.samples_of(k, count) for k, count in enumerate(made.COUNTS) if count]
-        arrays = [columns_of(x.arrays()) for x in held]
-        return {name: np.concatenate([x[name] for x in arrays]) for name in arrays[0]
-                if name not in ("on_surface", "face_index")}  # fmt: skip
+        arrays = [columns_of(x) for x in held]
+        return {name: np.concatenate([x[name] for x in arrays]) for name in arrays[0]}
 
     def faces(self) -> int:
         return sum(count for part, count in enumerate(made.COUNTS) if part % 3 == 2)

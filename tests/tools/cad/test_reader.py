@@ -75,7 +75,7 @@ def test_a_process_that_hangs_is_gone_after_the_limit(tmp_path, installed, monke
     # A process with a child of its own, which both would write to a file in a while.
     write = f"import time; time.sleep(1.5); open({str(alive)!r}, 'w')"
     code = f"import os, sys; os.fork(); {write}"
-    monkeypatch.setattr(reader, "_command", lambda request: sleeping(code))
+    monkeypatch.setattr(reader, "command_of_reader", lambda request: sleeping(code))
     start = time.perf_counter()
     with pytest.raises(gm.errors.FileError, match=r"was not read within 0\.5 s"):
         gm.read_cad(path, time_limit=0.5)
@@ -88,7 +88,7 @@ def test_a_process_that_crashes_is_an_error(tmp_path, installed, monkeypatch):
     path = tmp_path / "part.step"
     path.write_bytes(b"ISO-10303-21;")
     code = "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
-    monkeypatch.setattr(reader, "_command", lambda request: sleeping(code))
+    monkeypatch.setattr(reader, "command_of_reader", lambda request: sleeping(code))
     with pytest.raises(gm.errors.FileError, match=r"crash \(SIGSEGV\)"):
         gm.read_cad(path)
 
@@ -99,7 +99,7 @@ def test_an_interruption_leaves_nothing_behind(tmp_path, installed, monkeypatch)
     folder.mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(folder))
     code = f"import time; time.sleep(1.0); open({str(alive)!r}, 'w')"
-    monkeypatch.setattr(reader, "_command", lambda request: sleeping(code))
+    monkeypatch.setattr(reader, "command_of_reader", lambda request: sleeping(code))
     threading.Timer(0.3, _thread.interrupt_main).start()
     with pytest.raises(KeyboardInterrupt):
         gm.read_cad(path)

@@ -8,7 +8,6 @@ import pickle
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.density.angles import choose_apart
 from gaussmap.tools.cad.cells import BEND_U
 from gaussmap.tools.cad.part import Part
 from gaussmap.tools.cad.records import FaceRecord, Geometry
@@ -252,13 +251,3 @@ def test_candidates_for_normals_are_no_more_than_asked(plates):
         assert len(cells) <= most + len(space.first)
     whole = space.cut_by_normals(0.2, np.inf)  # few are enough: the chord is the one asked for
     assert whole.numbers[:, BEND_U].max() <= 0.5
-
-
-def test_normals_are_chosen_far_from_known_ones():
-    known, normals = gm.icosphere(3), gm.fibonacci(2000)
-    near, widest = 0.1, 1.0
-    chosen = choose_apart(np.concatenate([normals, np.zeros((1, 3))]), near, 1, widest, None, known)
-    every = np.concatenate([known, normals[chosen]])
-    distances, _ = cKDTree(every).query(normals, k=2)
-    assert distances[:, 0].max() <= near
-    assert distances[chosen, 1].min() > near * 0.98

@@ -16,7 +16,6 @@ import numpy as np
 import pytest
 from gaussmap.tools.commands import sample as sampling
 from gaussmap.tools.commands.cli import main
-from gaussmap.tools.files import formats
 
 FEW = ["--count", "60", "--cells", "8", "8"]
 
@@ -313,8 +312,9 @@ def test_surfaces(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_formulas(capsys: pytest.CaptureFixture[str]) -> None:
-    from gaussmap.symbolic import formulas
     from gaussmap.tools.commands.completion import formula_names
+
+    formulas = gm.formulas
 
     anything: Any = None
     assert formula_names(anything, anything, "") == [*formulas]
@@ -570,20 +570,6 @@ def test_a_bug_keeps_its_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sampling, "sample", sample)
     with pytest.raises(ZeroDivisionError):
         main(["sample", "torus", *TO])
-
-
-def test_interrupted_while_writing(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def half(samples: gm.Samples, path: Path) -> None:
-        path.write_text("half")
-        raise KeyboardInterrupt
-
-    monkeypatch.setitem(formats._WRITERS, ".npz", half)
-    Path("a.npz").write_text("old")
-    assert main(["sample", "torus", *FEW, "-o", "a.npz"]) == 130
-    assert capsys.readouterr() == ("", "gaussmap: interrupted\n")
-    assert [path.read_text() for path in Path().iterdir()] == ["old"]
 
 
 def test_interrupted_in_a_callback(

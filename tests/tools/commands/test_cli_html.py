@@ -10,7 +10,7 @@ from pathlib import Path
 
 import gaussmap as gm
 import pytest
-from gaussmap.symbolic import formulas, html
+from gaussmap.symbolic import html
 from gaussmap.tools.commands.cli import main
 
 pytest.importorskip("math_core")
@@ -39,7 +39,7 @@ def test_the_page_is_written(
     assert main(["formulas", "--html", "formulas.html"]) == 0
     out, err = capsys.readouterr()
     count = len(gm.surfaces.names())
-    assert out == f"formulas.html: {len(formulas)} formulas and {count} surfaces\n"
+    assert out == f"formulas.html: {len(gm.formulas)} formulas and {count} surfaces\n"
     assert err == ""
     assert Path("formulas.html").read_bytes() == html.page().encode()
     assert names() == ["formulas.html"]

@@ -1,19 +1,12 @@
-"""The first half second: Ctrl-C, compilation that is shown, caches that cannot be written."""
+"""The first half second: Ctrl-C, and who tells that kernels are compiled."""
 
-import io
 import os
-import re
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
 
 import gaussmap as gm
-import numba
 import pytest
-from gaussmap.runtime.base import compiling
-from gaussmap.runtime.kernels import jit
-from numba.core import config
 
 posix = pytest.mark.skipif(os.name != "posix", reason="needs signals")
 
@@ -84,62 +77,6 @@ def test_interrupted_when_all_is_done() -> None:
     assert out.startswith("torus")
 
 
-class Terminal(io.StringIO):
-    def isatty(self) -> bool:
-        return True
-
-
-def compiled_now(module: str = "gaussmap.kernels") -> Any:
-    """Return a function that calls another; both have still to be compiled."""
-
-    @numba.njit
-    def inner(x):
-        return x + 1
-
-    def outer(x):
-        return inner(x) + 1
-
-    outer.__module__ = module
-    return numba.njit(outer)
-
-
-@pytest.mark.compiled
-def test_compilation_is_shown_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    terminal = Terminal()
-    monkeypatch.setattr(sys, "stderr", terminal)
-    monkeypatch.setattr(compiling, "PATIENCE", 0.0)
-    outer = compiled_now()
-    assert outer(1) == 3
-    assert outer(2) == 4
-    first, *lines, last = terminal.getvalue().split(compiling.ERASE)
-    assert (first, last) == ("", "")
-    pattern = r"gaussmap: compiling kernels, only once here \(\d+ s\): outer"
-    assert lines
-    assert all(re.fullmatch(pattern, line) for line in lines)
-    assert outer(1.5) == 3.5
-    assert terminal.getvalue().count("outer") > len(lines)
-    assert terminal.getvalue().endswith(compiling.ERASE)
-
-
-@pytest.mark.compiled
-def test_compilation_is_not_shown(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Not in files, not if it is quick, not if it is of others, and not to who wants quiet."""
-    monkeypatch.setattr(compiling, "PATIENCE", 0.0)
-    for stream in (io.StringIO(), None):
-        monkeypatch.setattr(sys, "stderr", stream)
-        assert compiled_now()(1) == 3
-        assert stream is None or stream.getvalue() == ""
-    terminal = Terminal()
-    monkeypatch.setattr(sys, "stderr", terminal)
-    assert compiled_now(module="somebody.else")(1) == 3
-    with monkeypatch.context() as patch:
-        patch.setattr(compiling.NOTICE, "quiet", True)
-        assert compiled_now()(1) == 3
-    monkeypatch.setattr(compiling, "PATIENCE", 1e9)
-    assert compiled_now()(1) == 3
-    assert terminal.getvalue() == ""
-
-
 # One public name of each module.
 PUBLIC = {
     getattr(getattr(gm, name), "__module__", name): name for name in dir(gm) if name != "symbolic"
@@ -171,20 +108,3 @@ def test_who_compiles_tells(tmp_path: Path) -> None:
     assert {row[0] for row in rows} == {*PUBLIC}
     assert [row for row in rows if row[1] != "0" and row[2] != "True"] == []
     assert sum(row[1] != "0" for row in rows) > 10
-
-
-@pytest.mark.compiled
-def test_a_cache_that_cannot_be_written(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Kernels are compiled all the same, and not kept."""
-    nowhere = Path(os.devnull) / "cache"
-    monkeypatch.setattr(jit, "PACKAGE", nowhere)
-    monkeypatch.setattr(config, "CACHE_DIR", "")
-    monkeypatch.setenv("XDG_CACHE_HOME", str(nowhere))
-    monkeypatch.setattr(jit, "cache_folder", jit.cache_folder.__wrapped__)
-    monkeypatch.setattr(jit, "digest", lambda: "0")
-
-    def triple(x: float) -> float:
-        return 3 * x
-
-    assert jit.cache_folder() is None
-    assert jit.jit(triple)(2.0) == 6.0

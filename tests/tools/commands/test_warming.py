@@ -4,11 +4,10 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
-from gaussmap.runtime.kernels import jit
-from gaussmap.tools.cad.examples import all_kinds
 from gaussmap.tools.commands import warming
 from gaussmap.tools.commands.cli import main
 
@@ -54,9 +53,9 @@ def watched(*arguments: str, folder: Path) -> list[str]:
 
 @pytest.mark.slow
 @pytest.mark.compiled
-def test_nothing_is_left_to_compile(tmp_path: Path) -> None:
+def test_nothing_is_left_to_compile(tmp_path: Path, parts: ModuleType) -> None:
     np.save(tmp_path / "heights.npy", np.hypot(*np.mgrid[-1:1:20j, -1:1:30j]) ** 3)
-    all_kinds().save(tmp_path / "part.npz")
+    parts.all_kinds().save(tmp_path / "part.npz")
     *compiled, line = watched("warm", folder=tmp_path)
     assert len(compiled) > 30
     assert line.startswith(f"kernels in {tmp_path / 'cache' / 'kernels-'}")
@@ -99,7 +98,7 @@ def test_a_terminal_sees_what_is_done(
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     assert main(["warm"]) == 0
     out, err = capsys.readouterr()
-    assert out == f"kernels in {jit.cache_folder()}: all were compiled already\n"
+    assert out == f"kernels in {warming.cache_folder()}: all were compiled already\n"
     assert "some_work" in err
     assert not warming.NOTICE.quiet
     assert main(["warm", "--quiet"]) == 0

@@ -8,7 +8,6 @@ from itertools import pairwise
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.directions.unit import as_normals
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -168,9 +167,12 @@ def test_hits_are_those_of_exact_arithmetic(name: str) -> None:
 
 def samples_normals(samples: gm.curves.CurveSamples, normals: Array) -> Array:
     """Return the normals as they were taken; the samples hold them bit for bit."""
-    unit = as_normals(normals, 2)
-    assert (samples.normals == unit[samples.normal_index]).all()
-    return unit
+    assert (samples.normals == unit(normals)[samples.normal_index]).all()
+    return unit(normals)
+
+
+def unit(vectors: Array) -> Array:
+    return vectors / np.hypot(*vectors.T)[:, None]
 
 
 points = st.lists(st.tuples(st.integers(-3, 3), st.integers(-3, 3)), min_size=3, max_size=12)
@@ -186,7 +188,7 @@ def test_any_small_integers(polygon: list[tuple[int, int]], is_closed: bool) -> 
     aligned = np.unique(spline.joint_normals, axis=0)
     aligned = aligned[aligned.any(axis=1)]
     generic = gm.directions.circle(13) @ rotation(0.1).T
-    normals = as_normals(np.concatenate([aligned, -aligned, generic]), 2)
+    normals = unit(np.concatenate([aligned, -aligned, generic]))
     samples = sampled(spline, normals)
     is_sane(samples)
     chosen = samples.normal_index >= 2 * len(aligned)

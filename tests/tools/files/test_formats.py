@@ -21,8 +21,8 @@ import gaussmap as gm
 import numpy as np
 import pyarrow
 import pytest
-from gaussmap.runtime.samples.fields import ARRAY_NAMES
 from gaussmap.runtime.samples.report import SamplingReport
+from gaussmap.tools.files import formats
 from gaussmap.tools.files.formats import (
     READABLE_SUFFIXES,
     SUFFIXES,
@@ -38,6 +38,11 @@ COLUMNS = [
 
 # Labels that a careless format would break: line ends, quotes, other alphabets, trailing spaces.
 LABEL = ' x²\r\n"y" <&> \\ \u2028 \U0001f369 ' + 300 * " " + "end_header\ncomment "
+
+FIELDS = (
+    "points", "normals", "uv", "support", "gaussian_curvature", "mean_curvature", "normal_index",
+    "patch_index",
+)  # fmt: skip
 
 every_suffix = pytest.mark.parametrize("suffix", SUFFIXES)
 every_readable = pytest.mark.parametrize("suffix", READABLE_SUFFIXES)
@@ -73,7 +78,7 @@ def columns_of(samples: gm.Samples) -> dict[str, np.ndarray]:
 def assert_same(samples: gm.Samples, other: gm.Samples) -> None:
     """Equal bit for bit, report included."""
     assert other.report == samples.report
-    for name in ARRAY_NAMES:
+    for name in FIELDS:
         mine, yours = getattr(samples, name), getattr(other, name)
         assert (yours.dtype, yours.shape) == (mine.dtype, mine.shape)
         assert yours.tobytes() == mine.tobytes(), name
@@ -201,7 +206,7 @@ class TestRoundTrip:
     @every_suffix
     def test_read_only_arrays(self, tmp_path, suffix):
         samples = make()
-        for name in ARRAY_NAMES:
+        for name in FIELDS:
             getattr(samples, name).setflags(write=False)
         write_samples(samples, tmp_path / f"file{suffix}")
         assert (tmp_path / f"file{suffix}").stat().st_size > 500
@@ -243,10 +248,10 @@ class TestOtherReaders:
         samples = make()
         write_samples(samples, tmp_path / "file.npz")
         with np.load(tmp_path / "file.npz", allow_pickle=False) as archive:
-            assert set(archive) == {*ARRAY_NAMES, "report", "format_version"}
+            assert set(archive) == {*FIELDS, "report", "format_version"}
             assert archive["format_version"] == 1
             assert json.loads(str(archive["report"])) == asdict(samples.report)
-            for name in ARRAY_NAMES:
+            for name in FIELDS:
                 assert_bits(archive[name], getattr(samples, name))
 
     @pytest.mark.parametrize("count", [1, 12])
@@ -298,8 +303,8 @@ class TestOtherReaders:
         assert (cloud.n_points, cloud.n_verts) == (count, count)
         assert cloud.point_data.active_normals_name == "normals"
         assert_bits(np.asarray(cloud.points).reshape(-1, 3), samples.points)
-        assert set(cloud.point_data.keys()) == set(ARRAY_NAMES) - {"points"}
-        for name in set(ARRAY_NAMES) - {"points"}:
+        assert set(cloud.point_data.keys()) == set(FIELDS) - {"points"}
+        for name in set(FIELDS) - {"points"}:
             array = np.asarray(cloud.point_data[name])
             assert array.dtype == getattr(samples, name).dtype
             assert_bits(array, getattr(samples, name))
@@ -584,7 +589,7 @@ class TestNpzContent:
     def rewrite(self, path: Path, **changes: Any) -> None:
         """Write an .npz with some entries changed, and those that are None left out."""
         samples = make()
-        entries: dict[str, Any] = {name: getattr(samples, name) for name in ARRAY_NAMES}
+        entries: dict[str, Any] = {name: getattr(samples, name) for name in FIELDS}
         entries |= {"report": json.dumps(asdict(samples.report)), "format_version": 1} | changes
         np.savez(path, **{name: e for name, e in entries.items() if e is not None})
 
@@ -592,7 +597,7 @@ class TestNpzContent:
         self.rewrite(tmp_path / "file.npz")
         assert_same(make(), read_samples(tmp_path / "file.npz"))
 
-    @pytest.mark.parametrize("gone", [*ARRAY_NAMES, "report", "format_version"])
+    @pytest.mark.parametrize("gone", [*FIELDS, "report", "format_version"])
     def test_missing_arrays_are_named(self, tmp_path, gone):
         self.rewrite(tmp_path / "file.npz", **{gone: None})
         with pytest.raises(gm.errors.FileError, match=rf"file\.npz' lacks the arrays {gone};"):
@@ -612,7 +617,7 @@ class TestNpzContent:
         ):
             read_samples(tmp_path / "file.npz")
 
-    @pytest.mark.parametrize("name", ARRAY_NAMES)
+    @pytest.mark.parametrize("name", FIELDS)
     def test_pickles_are_never_read(self, tmp_path, name):
         bomb = np.empty(12, object)
         bomb[:] = Bomb()
@@ -653,7 +658,7 @@ class TestNpzContent:
         samples = make()
         swapped = {
             name: (array := getattr(samples, name)).astype(array.dtype.newbyteorder())
-            for name in ARRAY_NAMES
+            for name in FIELDS
         }
         self.rewrite(tmp_path / "file.npz", **swapped)
         assert_same(samples, read_samples(tmp_path / "file.npz"))
@@ -998,6 +1003,19 @@ class TestExtras:
         )
         run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
         assert (run.stdout, run.stderr) == ("[]\n", "")
+
+
+def test_an_interruption_leaves_the_older_file(tmp_path, monkeypatch, capsys, main):
+    def half(samples: gm.Samples, path: Path) -> None:
+        path.write_text("half")
+        raise KeyboardInterrupt
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setitem(formats.WRITERS, ".npz", half)
+    Path("a.npz").write_text("old")
+    assert main(["sample", "torus", "--count", "60", "--cells", "8", "8", "-o", "a.npz"]) == 130
+    assert capsys.readouterr() == ("", "gaussmap: interrupted\n")
+    assert [path.read_text() for path in Path().iterdir()] == ["old"]
 
 
 def test_every_error_is_a_gaussmap_error():

@@ -9,13 +9,16 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.samples.fields import ARRAY_NAMES
 from gaussmap.runtime.samples.report import SamplingReport
 
+FIELDS = (
+    "points", "normals", "uv", "support", "gaussian_curvature", "mean_curvature", "normal_index",
+    "patch_index",
+)  # fmt: skip
 DTYPES = pytest.mark.parametrize("dtype", [np.float64, np.float32])
 
 
-def samples(count: int = 5, dtype: Any = np.float64, fields: Any = ARRAY_NAMES) -> gm.Samples:
+def samples(count: int = 5, dtype: Any = np.float64, fields: Any = FIELDS) -> gm.Samples:
     """Numbers that are not on any surface: conversions only carry them."""
     rng = np.random.default_rng(1)
     arrays = {
@@ -77,9 +80,9 @@ class TestPyvista:
         assert cloud.n_points == count
         np.testing.assert_array_equal(cloud.points, found.points)
         data = cloud.GetPointData()
-        assert data.GetNumberOfArrays() == len(ARRAY_NAMES) - 1
+        assert data.GetNumberOfArrays() == len(FIELDS) - 1
         if count:
-            for name in ARRAY_NAMES[1:]:
+            for name in FIELDS[1:]:
                 np.testing.assert_array_equal(cloud.point_data[name], getattr(found, name))
             assert data.GetNormals().GetName() == "normals"
 
@@ -108,7 +111,7 @@ class TestTrimesh:
         found = samples(dtype=dtype)
         cloud = found.to_trimesh()
         np.testing.assert_array_equal(cloud.vertices, found.points)
-        for name in ARRAY_NAMES[1:]:
+        for name in FIELDS[1:]:
             np.testing.assert_array_equal(cloud.metadata[name], getattr(found, name))
 
     def test_mesh(self):

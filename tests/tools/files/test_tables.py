@@ -10,8 +10,6 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.base import extras
-from gaussmap.runtime.samples.fields import columns_of
 from gaussmap.runtime.samples.report import SamplingReport
 from gaussmap.tools.files import packed, tables
 from gaussmap.tools.files.formats import check_samples_target
@@ -37,6 +35,20 @@ def noise(count: int, dtype: Any = np.float64) -> gm.Samples:
     )
 
 
+NAMES = {"points": "x y z", "normals": "nx ny nz", "uv": "u v"}
+
+
+def columns_of(samples: gm.Samples) -> dict[str, np.ndarray]:
+    """Return the columns by their names."""
+    return {
+        name: column
+        for field, array in samples.arrays().items()
+        for name, column in zip(
+            NAMES.get(field, field).split(), array.reshape(len(array), -1).T, strict=True
+        )
+    }
+
+
 def assert_equal(column: Any, wanted: np.ndarray) -> None:
     found = np.asarray(column)
     assert found.dtype == wanted.dtype
@@ -52,7 +64,7 @@ def test_arrow_keeps_every_bit_types_units_and_the_report(tmp_path, suffix, dtyp
     read = (
         parquet.read_table(path) if suffix == ".parquet" else arrow.ipc.open_file(path).read_all()
     )
-    columns = columns_of(samples.arrays())
+    columns = columns_of(samples)
     assert read.column_names == list(columns)
     for name, column in columns.items():
         assert_equal(read[name].to_numpy(), column)
@@ -90,8 +102,8 @@ def test_without_pyarrow_the_extra_is_named_before_sampling(
 
 def written(samples: gm.Samples, monkeypatch: pytest.MonkeyPatch, least: int) -> list[str]:
     """Return the lines of a .csv file; Polars writes `least` samples and more."""
-    monkeypatch.setattr(tables, "_WORTH_AN_IMPORT", least)
-    columns, file = columns_of(samples.arrays()), io.BytesIO()
+    monkeypatch.setattr(tables, "WORTH_AN_IMPORT", least)
+    columns, file = columns_of(samples), io.BytesIO()
     tables.write_rows(file, ",".join(["{}"] * len(columns)) + "\n", list(columns.values()))
     return file.getvalue().decode("ascii").splitlines()
 
@@ -99,13 +111,13 @@ def written(samples: gm.Samples, monkeypatch: pytest.MonkeyPatch, least: int) ->
 @pytest.mark.parametrize("dtype", [np.float64, np.float32])
 def test_polars_writes_the_same_numbers(monkeypatch, dtype):
     pytest.importorskip("polars")
-    monkeypatch.setattr(tables, "_ROWS_OF_POLARS", 400)
+    monkeypatch.setattr(tables, "ROWS_OF_POLARS", 400)
     samples = noise(1000, dtype)
     texts = written(samples, monkeypatch, 0), written(samples, monkeypatch, 1001)
     assert texts[0] != texts[1]  # Polars writes fewer digits
     for text in texts:
         rows = [line.split(",") for line in text]
-        for k, column in enumerate(columns_of(samples.arrays()).values()):
+        for k, column in enumerate(columns_of(samples).values()):
             kind = int if column.dtype.kind in "ib" else float
             numbers = np.array([kind(row[k]) for row in rows])
             assert_equal(numbers.astype(column.dtype), column)
@@ -118,7 +130,7 @@ def test_polars_writes_meshes(tmp_path, monkeypatch):
     mesh = gm.Mesh(vertices, normals, np.zeros((5, 2)), triangles, np.arange(5))
     texts = []
     for least in 0, 100:
-        monkeypatch.setattr(tables, "_WORTH_AN_IMPORT", least)
+        monkeypatch.setattr(tables, "WORTH_AN_IMPORT", least)
         mesh.write(tmp_path / "a.obj")
         texts.append((tmp_path / "a.obj").read_text().splitlines())
     one, other = texts
@@ -133,7 +145,6 @@ def test_text_without_polars(monkeypatch):
     samples = noise(20)
     monkeypatch.setattr(tables, "if_installed", lambda _: None)
     assert len(written(samples, monkeypatch, 0)) == 20
-    assert extras.if_installed("no_such_module") is None
 
 
 def test_ply_by_several_threads(tmp_path, monkeypatch):
@@ -144,7 +155,7 @@ def test_ply_by_several_threads(tmp_path, monkeypatch):
         report=SamplingReport("noise", 0, 10_007, 1, 0.0, 0),
     )
     samples.write(tmp_path / "one.ply")
-    monkeypatch.setattr(packed, "_FOR_A_THREAD", 1000)
+    monkeypatch.setattr(packed, "FOR_A_THREAD", 1000)
     monkeypatch.setattr(packed, "thread_count", lambda _: 3)
     samples.write(tmp_path / "three.ply")
     assert (tmp_path / "one.ply").read_bytes() == (tmp_path / "three.ply").read_bytes()

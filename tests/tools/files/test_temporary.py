@@ -48,8 +48,8 @@ def test_of_the_dead_and_of_the_living(tmp_path):
 
 
 def test_what_is_left_alone(tmp_path):
-    machine = temporary._machine()
-    parent, began = os.getppid(), temporary._began(os.getppid())
+    machine = temporary.this_machine()
+    parent, began = os.getppid(), temporary.began_at(os.getppid())
     kept = [
         "gaussmap-notes", ".gaussmap-0123456789abcdef.json", f".gaussmap-{machine}-x-1-0.ply",
         ".gaussmap-0123456789ab-1-1-00.ply", f".gaussmap-{machine}-{parent}-{began}-00.ply",
@@ -69,11 +69,11 @@ def test_what_is_left_alone(tmp_path):
 def test_without_knowledge_of_processes(tmp_path, monkeypatch):
     name = f".{temporary.new_name()}.ply"
     monkeypatch.setattr(temporary, "PROCESSES", tmp_path / "none")
-    temporary._machine.cache_clear()
+    temporary.this_machine.cache_clear()
     try:
         (tmp_path / name).touch()
         temporary.remove_left(tmp_path)
         assert (tmp_path / name).exists()
         assert temporary.new_name().startswith("gaussmap-x-")
     finally:
-        temporary._machine.cache_clear()
+        temporary.this_machine.cache_clear()

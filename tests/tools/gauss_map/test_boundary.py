@@ -3,10 +3,9 @@
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.generated import patch as formulas
-from gaussmap.runtime.base.formula_calls import patch, python_function, vector
-from gaussmap.tools.gauss_map.patches import Patches
 from numpy.typing import NDArray
+
+from .nets import normals_at, vectors_of
 
 Array = NDArray[np.float64]
 
@@ -49,8 +48,7 @@ ON_EDGES = (lambda t: (0 * t, 1 - t), lambda t: (t, 0 * t), lambda t: (1 - t, t)
 
 def field(net: Array, u: Array, v: Array) -> Array:
     """Return the unit normals (k, 3) at places u, v (k,)."""
-    vectors = patch(Patches.of_control_points(net[None]).vectors[0])
-    N = np.array(np.broadcast_arrays(*python_function(formulas.tangents)(vectors, u, v)[2])).T
+    N = normals_at(vectors_of(net), u, v)
     return N / np.linalg.norm(N, axis=1, keepdims=True)
 
 
@@ -146,10 +144,7 @@ def test_integer_normals_of_a_cut_edge_are_members() -> None:
     """Exact normals of the edge v = 0 at u = 1/8, …, 7/8; at 1/2 it has none."""
     net = np.array(CASES["generic"][0], dtype=float)
     image = gm.gauss_map.GaussianImage.of_patch(net)
-    vectors = python_function(formulas.power_form)(*map(vector, net))
-    u = np.array([1, 2, 3, 5, 6, 7]) / 8
-    N = python_function(formulas.tangents)(vectors, u, 0.0)[2]
-    normals = np.array(np.broadcast_arrays(*N)).T
+    normals = normals_at(vectors_of(net), np.array([1, 2, 3, 5, 6, 7]) / 8, 0.0)
     assert image.contains(normals).all()
     assert not image.contains(-normals).any()
 

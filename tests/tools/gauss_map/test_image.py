@@ -6,13 +6,11 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.generated import patch as formulas
-from gaussmap.generated.vectors import Vector
-from gaussmap.runtime.base.formula_calls import patch, python_function, vector
-from gaussmap.tools.gauss_map.patches import Patches
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+
+from .nets import normals_at, quadratic_forms, vectors_of
 
 Array = NDArray[np.float64]
 
@@ -53,8 +51,8 @@ def measured(net: Array, corners: Array, order: int = 60) -> float:
     barycentric = np.stack([x * (1.0 - y), y, (1.0 - x) * (1.0 - y)])
     u, v = (corners.T @ barycentric)[:2]
     area = abs(np.linalg.det(np.column_stack([corners, np.ones(3)])))
-    vectors = Patches.of_control_points(net[None]).vectors[0]
-    N = np.array(np.broadcast_arrays(*python_function(formulas.tangents)(patch(vectors), u, v)[2]))
+    vectors = vectors_of(net)
+    N = normals_at(vectors, u, v).T
     A, B, C = (vectors[k] @ N for k in range(3))
     return float((weight * (A * C - B * B) / np.linalg.norm(N, axis=0) ** 3).sum() * area)
 
@@ -83,11 +81,11 @@ def test_arcs_are_the_normals_of_the_edges_and_lie_on_the_cones() -> None:
     for seed in range(20):
         net = random_patch(seed, 3.0)
         image = gm.gauss_map.GaussianImage.of_patch(net)
-        vectors = patch(Patches.of_control_points(net[None]).vectors[0])
+        vectors = vectors_of(net)
         share = np.linspace(0.0, 1.0, 9)
         edges = [(0 * share, 1 - share), (share, 0 * share), (1 - share, share)]
         for arc, cone, (u, v) in zip(image.arcs, image.cones, edges, strict=True):
-            normals = np.array(python_function(formulas.tangents)(vectors, u, v)[2]).T
+            normals = normals_at(vectors, u, v)
             normals /= np.linalg.norm(normals, axis=1)[:, None]
             points = arc.points(9)
             np.testing.assert_allclose(points, normals, rtol=0, atol=1e-13)
@@ -170,14 +168,11 @@ def test_solid_angle_is_additive_where_singular_points_are_inside() -> None:
 
 def by_definition(net: Array, n: list[int]) -> bool:
     """Solve n·p_u = n·p_v = 0 in fractions; D must not vanish."""
-    integers = net.astype(int).astype(object) * Fraction(1)
-    vectors = python_function(formulas.power_form)(*map(vector, integers))
-    a, b, c, d, e, _ = vectors
-    A, B, C, P, Q = (sum(x * y for x, y in zip(n, z, strict=True)) for z in (a, b, c, d, e))
+    vectors = vectors_of(net.astype(int).astype(object) * Fraction(1))
+    A, B, C, P, Q = quadratic_forms(vectors, n)
     determinant = A * C - B * B
     u, v = (B * Q - C * P) / Fraction(determinant), (B * P - A * Q) / Fraction(determinant)
-    field = python_function(formulas.tangents)(vectors, u, v)[2]
-    towards = sum(x * y for x, y in zip(field, n, strict=True))
+    towards = sum(x * y for x, y in zip(normals_at(vectors, u, v), n, strict=True))
     return bool(u >= 0 and v >= 0 and u + v <= 1 and towards > 0)
 
 
@@ -187,9 +182,8 @@ def by_definition(net: Array, n: list[int]) -> bool:
 )
 def test_membership_is_that_of_the_definition(seed: int, normals: list) -> None:
     net = np.random.default_rng(seed).integers(-3, 4, (6, 3)).astype(float)
-    vectors = python_function(formulas.power_form)(*map(vector, net))
-    D = [python_function(formulas.forms)(vectors, Vector(*n))[0] for n in normals]
-    asked = [n for n, value in zip(normals, D, strict=True) if value != 0]
+    forms = [quadratic_forms(vectors_of(net), n) for n in normals]
+    asked = [n for n, (A, B, C, *_) in zip(normals, forms, strict=True) if A * C != B * B]
     if asked:
         found = gm.gauss_map.GaussianImage.of_patch(net).contains(asked)
         assert found.tolist() == [by_definition(net, list(n)) for n in asked]
@@ -198,9 +192,7 @@ def test_membership_is_that_of_the_definition(seed: int, normals: list) -> None:
 def test_border_belongs_to_the_image_and_what_lies_beyond_does_not() -> None:
     """Normals on an edge of an integer patch, moved by one part in 2⁵⁰ along the gradient of V."""
     image = gm.gauss_map.GaussianImage.of_patch(2 * BIANGLE)
-    vectors = python_function(formulas.power_form)(*map(vector, 2 * BIANGLE))
-    u = np.array([0.25, 0.5, 0.75])
-    normals = np.array(python_function(formulas.tangents)(vectors, u, 0.0)[2]).T
+    normals = normals_at(vectors_of(2 * BIANGLE), np.array([0.25, 0.5, 0.75]), 0.0)
     assert image.contains(normals).all()
     away = normals @ image.cones[1]
     away /= np.abs(away).max(axis=1, keepdims=True)

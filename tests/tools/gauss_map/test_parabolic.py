@@ -7,12 +7,12 @@ import gaussmap as gm
 import numpy as np
 import pytest
 import sympy as sp
-from gaussmap.generated import patch as formulas
-from gaussmap.runtime.base.formula_calls import patch, python_function
 from gaussmap.tools.gauss_map.chains import joined
 from gaussmap.tools.gauss_map.curvature_field import CurvatureField
 from gaussmap.tools.gauss_map.patches import Patches
 from numpy.typing import NDArray
+
+from .nets import normals_at, vectors_of
 
 Array = NDArray[np.float64]
 PatchClass = gm.gauss_map.PatchClass
@@ -44,7 +44,7 @@ def distances(points: Array, polylines: list[Array]) -> Array:
 def test_lines_hold_parabolic_points_with_one_normal() -> None:
     for seed in range(40):
         net = np.random.default_rng(seed).integers(-9, 10, (6, 3)).astype(float)
-        vectors = patch(Patches.of_control_points(net[None]).vectors[0])
+        vectors = vectors_of(net / 16.0)  # of about the size 1
         lines = gm.gauss_map.parabolic_lines(net)
         assert len(lines) in (1, 3)
         for line in lines:
@@ -52,9 +52,9 @@ def test_lines_hold_parabolic_points_with_one_normal() -> None:
             along = np.linspace(-2.0, 2.0, 7)
             u = -line.rho * line.s - along * line.t
             v = -line.rho * line.t + along * line.s
-            N = np.array(python_function(formulas.tangents)(vectors, u, v)[2])
+            N = normals_at(vectors, u, v)
             size = 1.0 + np.abs(N).max()
-            assert np.abs(np.cross(N.T, line.normal)).max() <= 1e-11 * size
+            assert np.abs(np.cross(N, line.normal)).max() <= 1e-11 * size
             if line.segment is not None:
                 weights = np.column_stack([line.segment, 1.0 - line.segment.sum(axis=1)])
                 assert weights.min() >= -1e-12
@@ -87,7 +87,7 @@ def test_pieces_make_up_the_triangle_and_have_one_sign() -> None:
         net = generator.integers(-9, 10, (6, 3)).astype(float)
         pieces = gm.gauss_map.split_patch(net)
         numbers.append(len(pieces))
-        vectors = Patches.of_control_points(net[None]).vectors[0]
+        vectors = vectors_of(net)
         total = 0.0
         for piece in pieces:
             x, y = piece.corners.T
@@ -96,7 +96,7 @@ def test_pieces_make_up_the_triangle_and_have_one_sign() -> None:
             total += area
             weights = generator.dirichlet(np.ones(len(x)), 20)
             u, v = (weights @ piece.corners).T
-            N = np.array(python_function(formulas.tangents)(patch(vectors), u, v)[2])
+            N = normals_at(vectors, u, v).T
             A, B, C = (vectors[k] @ N for k in range(3))
             assert (np.sign(A * C - B * B) == piece.sign).all()
         assert total == pytest.approx(0.5, abs=1e-13)
@@ -268,7 +268,7 @@ def signs_at(spline: gm.Spline, patches: Patches, places: Array) -> Array:
         s, t = np.where(turn >= k, t, s), np.where(turn >= k, -s, t)
     vectors = patches.vectors[4 * (cell[:, 0] * spline.cells[1] + cell[:, 1]) + turn]
     u, v = -t - s, -t + s
-    N = np.stack(python_function(formulas.tangents)(patch(vectors), u, v)[2], axis=1)
+    N = normals_at(vectors, u, v)
     A, B, C = (np.einsum("kx,kx->k", N, vectors[:, k]) for k in range(3))
     return np.sign(A * C - B * B)
 

@@ -8,14 +8,13 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.base.tolerances import NO_AREA
 from gaussmap.runtime.samples.report import SamplingReport
 from gaussmap.tools.meshes import triangulation
 from gaussmap.tools.meshes.lattice import Lattice
 from gaussmap.tools.meshes.meshing import triangulated_on_lattice
 from gaussmap.tools.meshes.triangulation import neighbours
 
-from .test_meshing import PREFER, TURN, components, is_one_fan_at_each_vertex, latitude
+from .test_meshing import NO_AREA, PREFER, TURN, components, is_one_fan_at_each_vertex, latitude
 
 pytestmark = pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
 compiled = pytest.mark.compiled
@@ -100,7 +99,7 @@ def check(name: str, mesh: gm.Mesh) -> None:
     assert mesh.euler_characteristic == characteristic
     assert (components(mesh.boundary_edges) if borders else 0) == borders
     assert is_one_fan_at_each_vertex(mesh)
-    assert mesh.smallest_angles.min() > np.degrees(NO_AREA)
+    assert mesh.smallest_angles.min() > NO_AREA
     assert mesh.angles.max() < 90.0
     directed = mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
     assert len(np.unique(directed, axis=0)) == len(directed)

@@ -6,11 +6,11 @@ import importlib.util
 from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
+from types import ModuleType
 
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.cad.examples import all_kinds, box
 from gaussmap.tools.pictures.part_scene import part_scene
 from gaussmap.tools.pictures.scene import view
 from gaussmap.tools.pictures.to_file import write_plot
@@ -122,8 +122,8 @@ def test_by_default_samples_are_made() -> None:
     assert any(x.startswith("2,000 samples") for x in texts(figure))
 
 
-def test_samples_of_parts() -> None:
-    part = box()
+def test_samples_of_parts(parts: ModuleType) -> None:
+    part = parts.box()
     found = gm.sample(part, 60, edges=True)
     figure = found.plot(color="face_index")
     assert {*np.unique(drawn(figure))} < {*range(6)}  # three of six sides are visible
@@ -132,10 +132,10 @@ def test_samples_of_parts() -> None:
 
 
 @pytest.mark.slow
-def test_faces_of_all_kinds_and_their_trims() -> None:
-    scene = part_scene(all_kinds())
+def test_faces_of_all_kinds_and_their_trims(parts: ModuleType) -> None:
+    scene = part_scene(parts.all_kinds())
     assert np.isfinite(scene.quadrangles).all()
-    a, b, c, _ = np.moveaxis(part_scene(box()).quadrangles, 1, 0)
+    a, b, c, _ = np.moveaxis(part_scene(parts.box()).quadrangles, 1, 0)
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
     assert areas.sum() == pytest.approx(22.0)
 
@@ -160,8 +160,10 @@ def test_errors(samples: gm.Samples, tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 
 @pytest.mark.slow
-def test_the_command_draws_parts(tmp_path: Path, main: Callable[..., int]) -> None:
-    box().save(tmp_path / "box.npz")
+def test_the_command_draws_parts(
+    tmp_path: Path, main: Callable[..., int], parts: ModuleType
+) -> None:
+    parts.box().save(tmp_path / "box.npz")
     path = tmp_path / "box.png"
     assert main(["plot", str(tmp_path / "box.npz"), "--count", "40", "-o", str(path)]) == 0
     assert image.imread(path).shape == (980, 1800, 4)

@@ -4,11 +4,11 @@ import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.cad.examples import box
 from gaussmap.tools.viewer import view as module
 
 pytest.importorskip("plotly")
@@ -39,10 +39,10 @@ def test_text_of_users_is_text(samples: gm.Samples) -> None:
 
 
 def test_the_command(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], main: Callable[..., int]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], main: Callable[..., int], parts: ModuleType
 ) -> None:
     path = tmp_path / "part.html"
-    box().save(tmp_path / "part.npz")
+    parts.box().save(tmp_path / "part.npz")
     assert main(["view", str(tmp_path / "part.npz"), "--count", "60", "-o", str(path)]) == 0
     assert path.stat().st_size > 4_000_000
     assert "60 samples" in capsys.readouterr().out

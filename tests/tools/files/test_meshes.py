@@ -1,0 +1,150 @@
+"""The mesh as a file, read back by other libraries."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.tools.files.formats import MESH_SUFFIXES
+
+EACH = pytest.mark.parametrize("suffix", MESH_SUFFIXES)
+OWN = [x for x in MESH_SUFFIXES if x != ".glb"]  # without further libraries
+CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+
+
+def square(**changes: Any) -> gm.Mesh:
+    """Two triangles of the unit square, the normals 0, 30, 45 and 60 degrees from its own."""
+    angles = np.radians([0, 30, 45, 60])
+    arrays: dict[str, Any] = {
+        "vertices": CORNERS,
+        "normals": np.stack([np.sin(angles), np.zeros(4), np.cos(angles)], axis=1),
+        "uv": CORNERS[:, :2] / 3,
+        "triangles": np.array([[0, 1, 2], [0, 2, 3]]),
+        "sample_index": np.array([5, 6, 7, -1]),
+    }
+    return gm.Mesh(**(arrays | changes))
+
+
+def numbers(mesh: gm.Mesh) -> dict[str, np.ndarray]:
+    return {
+        "normals": mesh.normals,
+        "u": mesh.uv[:, 0],
+        "v": mesh.uv[:, 1],
+        "sample_index": mesh.sample_index,
+    }
+
+
+class TestFiles:
+    @pytest.mark.parametrize("suffix", OWN)
+    def test_pyvista_reads_triangles(self, tmp_path, suffix):
+        pv = pytest.importorskip("pyvista")
+        mesh, path = square(), tmp_path / f"square{suffix}"
+        mesh.write(path)
+        again = pv.read(path)
+        corners = np.array([cell.points for cell in again.cell])
+        np.testing.assert_array_equal(corners, mesh.vertices[mesh.triangles])
+        assert all(cell.type == pv.CellType.TRIANGLE for cell in again.cell)
+        if suffix in (".vtk", ".vtu"):
+            for name, values in numbers(mesh).items():
+                np.testing.assert_array_equal(again.point_data[name], values)
+
+    @pytest.mark.parametrize("suffix", [".ply", ".obj", ".stl"])
+    def test_trimesh_reads_it_back(self, tmp_path, suffix):
+        trimesh = pytest.importorskip("trimesh")
+        mesh, path = square(), tmp_path / f"square{suffix}"
+        mesh.write(path)
+        again = trimesh.load_mesh(path, process=False)
+        np.testing.assert_array_equal(again.triangles, mesh.vertices[mesh.triangles])
+
+    @pytest.mark.parametrize("suffix", [".ply", ".obj"])
+    def test_pyvista_reads_normals(self, tmp_path, suffix):
+        pv = pytest.importorskip("pyvista")
+        mesh, path = square(), tmp_path / f"square{suffix}"
+        mesh.write(path)
+        again = pv.read(path)
+        np.testing.assert_array_equal(again.regular_faces, mesh.triangles)
+        normals = again.point_data["Normals"]
+        np.testing.assert_allclose(normals, mesh.normals, atol=float(np.finfo(np.float32).eps))
+
+    def test_pyvista_reads_it_back(self, tmp_path):
+        pv = pytest.importorskip("pyvista")
+        mesh, path = square(), tmp_path / "square.vtp"
+        mesh.write(path)
+        again = pv.read(path)
+        np.testing.assert_array_equal(again.regular_faces, mesh.triangles)
+        np.testing.assert_array_equal(again.points, mesh.vertices)
+        for name in ("normals", "uv", "sample_index"):
+            np.testing.assert_array_equal(again.point_data[name], getattr(mesh, name))
+
+    @EACH
+    def test_the_same_mesh_gives_the_same_bytes(self, tmp_path, suffix, capfd):
+        for name in ("one", "other"):
+            square().write(tmp_path / f"{name}{suffix}")
+        one, other = ((tmp_path / f"{x}{suffix}").read_bytes() for x in ("one", "other"))
+        assert one == other
+        assert capfd.readouterr() == ("", "")
+
+    @EACH
+    def test_what_fails_leaves_the_older_file(self, tmp_path, suffix, monkeypatch):
+        path = tmp_path / f"square{suffix}"
+        path.write_text("older")
+
+        def fail(*_: object) -> None:
+            raise OSError(28, "No space left on device")
+
+        monkeypatch.setattr(os, "replace", fail)
+        with pytest.raises(gm.errors.FileError, match="cannot be written: No space left"):
+            square().write(path)
+        assert path.read_text() == "older"
+        assert os.listdir(tmp_path) == [path.name]
+
+    def test_upper_case_and_paths(self, tmp_path):
+        square().write(str(tmp_path / "A.STL"))
+        assert (tmp_path / "A.STL").stat().st_size == 84 + 2 * 50
+
+    @pytest.mark.parametrize("name", ["square", "square.npz", "square.xyz"])
+    def test_unknown_suffixes(self, tmp_path, name):
+        with pytest.raises(gm.errors.UnknownNameError, match=r"use one of \.ply, \.obj, \.stl"):
+            square().write(tmp_path / name)
+
+    def test_a_folder_that_is_not_there(self, tmp_path):
+        with pytest.raises(gm.errors.FileError, match="create the folder first"):
+            square().write(tmp_path / "no" / "square.ply")
+
+    def test_no_triangles(self, tmp_path):
+        empty = square(triangles=np.empty((0, 3), dtype=np.int64))
+        with pytest.raises(gm.errors.InputError, match="has no triangles"):
+            empty.write(tmp_path / "square.ply")
+        assert not list(Path(tmp_path).iterdir())
+
+    @pytest.mark.compiled
+    def test_trimesh_reads_gltf_with_normals(self, tmp_path):
+        trimesh = pytest.importorskip("trimesh")
+        mesh = gm.sample("torus", 200, cells=(16, 16)).mesh()
+        mesh.write(tmp_path / "torus.glb")
+        (again,) = trimesh.load_scene(tmp_path / "torus.glb", process=False).geometry.values()
+        np.testing.assert_array_equal(again.faces, mesh.triangles)
+        np.testing.assert_array_equal(again.vertices, mesh.vertices.astype(np.float32))
+        np.testing.assert_allclose(again.vertex_normals, mesh.normals, atol=2e-7)
+        assert again.is_watertight
+
+    def test_gltf_needs_trimesh_and_single_precision(self, tmp_path, monkeypatch):
+        huge = square(vertices=CORNERS * 1e39)
+        with pytest.raises(gm.errors.InputError, match="single precision, for which"):
+            huge.write(tmp_path / "a.glb")
+        monkeypatch.setitem(sys.modules, "trimesh", None)
+        with pytest.raises(gm.errors.MissingExtraError, match=r"gaussmap\[trimesh\]"):
+            square().write(tmp_path / "a.glb")
+        assert not list(Path(tmp_path).iterdir())
+
+    @pytest.mark.parametrize("suffix", OWN)
+    def test_no_other_format_needs_another_library(self, tmp_path, suffix, monkeypatch):
+        for library in ("pyvista", "vtkmodules", "trimesh", "meshio"):
+            monkeypatch.setitem(sys.modules, library, None)
+        square().write(tmp_path / f"square{suffix}")
+        assert (tmp_path / f"square{suffix}").stat().st_size > 84
