@@ -146,7 +146,7 @@ def test_directions_and_the_rest(value: Any, samples: gm.Samples) -> None:
     answered(gm.convolve, samples.spline, value, normals=gm.icosphere(1))
     answered(gm.curves.polygon_distance, value, np.eye(3)[:, :2])
     with suppress(OSError, ValueError):  # of what cannot be printed
-        answered(gm.read_samples, f"{repr(value)[:60]}.ply")
+        answered(gm.read_samples, f"{' '.join(repr(value).split())[:60]}.ply")
 
 
 def test_a_patch_is_picked_by_a_number(samples: gm.Samples) -> None:

@@ -158,17 +158,12 @@ def exact_hits(spline: gm.curves.CurveSpline, normals: Array) -> set[tuple[int, 
 @pytest.mark.parametrize("name", CLOSED)
 def test_hits_are_those_of_exact_arithmetic(name: str) -> None:
     spline = gm.curves.fit(closed(name), 40)
-    normals = gm.directions.circle(97) @ rotation(0.123).T
+    normals = unit(gm.directions.circle(97) @ rotation(0.123).T)
     samples = sampled(spline, normals)
+    assert (samples.normals == normals[samples.normal_index]).all()
     pairs = list(zip(samples.piece_index.tolist(), samples.normal_index.tolist(), strict=True))
-    assert set(pairs) == exact_hits(spline, samples_normals(samples, normals))
+    assert set(pairs) == exact_hits(spline, normals)
     assert len(set(pairs)) == len(pairs) > 0
-
-
-def samples_normals(samples: gm.curves.CurveSamples, normals: Array) -> Array:
-    """Return the normals as they were taken; the samples hold them bit for bit."""
-    assert (samples.normals == unit(normals)[samples.normal_index]).all()
-    return unit(normals)
 
 
 def unit(vectors: Array) -> Array:
