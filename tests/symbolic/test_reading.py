@@ -4,7 +4,7 @@ from typing import Any, cast
 
 import pytest
 import sympy as sp
-from gaussmap.symbolic.expression import kernel_source
+from gaussmap.symbolic.expression import NORMAL, kernel_source
 from gaussmap.symbolic.reading import MOST_TERMS, ReadingError, read
 
 

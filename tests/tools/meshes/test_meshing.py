@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from gaussmap.runtime.samples.report import SamplingReport
 from gaussmap.tools.meshes.improvement import flip_edges
-from gaussmap.tools.meshes.meshing import Triangulated
+from gaussmap.tools.meshes.triangulated import Triangulated
 from gaussmap.tools.meshes.triangulation import neighbours
 
 pytestmark = pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
