@@ -83,7 +83,8 @@ def imported(node: ast.AST) -> Iterator[tuple[str, str]]:
     if isinstance(node, ast.ImportFrom) and not node.level:
         yield from ((str(node.module), x.name) for x in node.names)
     if isinstance(node, ast.Import):
-        yield from (tuple(x.name.rsplit(".", 1)) for x in node.names if "." in x.name)  # pyright: ignore
+        parts = (x.name.rpartition(".") for x in node.names)
+        yield from ((module, name) for module, _, name in parts)
 
 
 def modules_of(tree: ast.AST) -> dict[str, str]:
