@@ -19,7 +19,7 @@ FIELDS = tuple(name for name in COLUMNS if name not in EDGE_NAMES)
 
 
 def test_the_columns_of_points():
-    schema = points_schema(Settings({}, FIELDS))
+    schema = points_schema(Settings.of_this_version({}, FIELDS))
     lines = ["| part | | int64 | | never |"]
     for name in FIELDS:
         field = schema.field(COLUMNS[name][0])

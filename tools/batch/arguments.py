@@ -14,13 +14,14 @@ from ...runtime.base.threads import thread_count
 from ...runtime.samples.fields import FLOAT_NAMES, PART_NAMES, checked_dtype, checked_fields
 from ...runtime.samples.request import Request
 from ..files.formats import SUFFIXES
+from ..sources.named import Named
 from .asked import Asked
 from .child import Limits
+from .layout import CODECS
 
 __all__ = ["CODEC", "SECONDS", "Where", "asked_of", "stored", "where"]
 
 CODEC, SECONDS = "zstd", 600.0
-CODECS = ("zstd", "snappy", "gzip", "lz4", "none")
 GIB = 2.0**30
 # The part of this machine's memory that all workers may use.
 SHARE = 0.9
@@ -36,9 +37,13 @@ class Where:
 
 
 def asked_of(
-    request: Request, cells: Sequence[int] | None, on: str | None, measured: bool
+    request: Request,
+    cells: Sequence[int] | None,
+    on: str | None,
+    measured: bool,
+    named: Named | None = None,
 ) -> Asked:
-    """Return what is asked of each part."""
+    """Return what is asked of each part; `named` has the options with which files are read."""
     arguments = {
         "count": request.count,
         "angle": request.angle,
@@ -48,7 +53,7 @@ def asked_of(
         "cells": None if cells is None else list(pair_of_cells(cells)),
         "on": on,
     }
-    return Asked(arguments, request.normals, measured)
+    return Asked(arguments, request.normals, named or Named(), measured)
 
 
 def stored(

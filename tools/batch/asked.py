@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..files.paths import atomic_path
+from ..sources.named import Named
 from .layout import NORMALS
 
 __all__ = ["Asked", "normals_in"]
@@ -27,6 +28,8 @@ class Asked:
         Numbers and names: count, angle, coverage, density, relax, cells, on.
     normals : (S, 3) float64 array, str or None
         Directions, or the file that holds them.
+    named : Named
+        The options with which files become surfaces.
     measured : bool
         Whether coverage and normal deviation are measured where they were not asked for.
 
@@ -34,11 +37,13 @@ class Asked:
 
     arguments: dict[str, Any]
     normals: NDArray[np.float64] | str | None = None
+    named: Named = field(default_factory=Named)
     measured: bool = False
 
     def to_json(self) -> dict[str, Any]:
         """Return what the settings of the data set keep."""
         known = {name: value for name, value in self.arguments.items() if value is not None}
+        known |= self.named.given()
         if isinstance(self.normals, np.ndarray):
             data = np.ascontiguousarray(self.normals)
             known["normals"] = f"{len(data)}, SHA-256 {hashlib.sha256(data.data).hexdigest()}"

@@ -110,7 +110,7 @@ class Dataset:
         return {name: UNITS[name] for name in self.fields if name in UNITS}
 
     def __len__(self) -> int:
-        return count_parts(self.folder)
+        return count_parts(self)
 
     def __repr__(self) -> str:
         return f"Dataset({str(self.folder)!r})"
@@ -167,7 +167,7 @@ class Dataset:
         {'part': 1, 'name': 'sphere', 'status': 'ok', 'samples': 500}
 
         """
-        return manifest_of(self.folder, _checked_names(columns, MANIFEST_COLUMNS, "column"))
+        return manifest_of(self, _checked_names(columns, MANIFEST_COLUMNS, "column"))
 
     def samples(self, part: SupportsIndex) -> Samples:
         """Return the samples of a part.
@@ -199,13 +199,12 @@ class Dataset:
 
         """
         number = whole_number(part, "part", least=0)
-        shard = number // self.settings.parts_per_shard
-        row = row_of(self.folder, shard, number)
+        row = row_of(self, number)
         if row is None:
             raise UnknownNameError(f"there is no part {number} in '{self.folder}'.")
         if row.status == FAILED:
             raise UnknownNameError(f"part {number} ('{row.name}') has failed: {row.error}")
-        table = rows_of_part(self.folder, shard, row)
+        table = rows_of_part(self, row)
         held = [name for name in self.fields if table[COLUMNS[name][0]].null_count < len(table)]
         wanted = held or self.fields  # a part without samples has empty arrays
         arrays = {name: stacked(x, name) for name, x in arrays_in(table, wanted).items()}
@@ -291,7 +290,7 @@ class Dataset:
         """
         known, label_type = checked_labels(labels, self.manifest)
         return Loader(
-            folder=self.folder,
+            data=self,
             points=whole_number(points, "points"),
             parts=whole_number(parts, "parts"),
             types=self._types(fields, dtype),

@@ -12,19 +12,17 @@ from typing import Any
 
 import numpy as np
 
-from ...runtime.base.advice import CAD_SUFFIXES
 from ...runtime.base.errors import FileError, InputError, shown
 from ...runtime.base.extras import from_extra
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import CATALOGUE, named
-from ..cad.part import Part, read_part
-from ..cad.part_files import is_part_file
-from ..files.arrays import is_array_file, read_array
+from ..cad.part import Part
+from ..files.arrays import array_file
 from ..files.paths import checked_path, reason_of
 from .manifest import as_text
 
-__all__ = ["Input", "Source", "content_of", "in_shards", "inputs_of", "read_source"]
+__all__ = ["Input", "Source", "content_of", "in_shards", "inputs_of"]
 
 Source = Surface | Spline | Part | str | os.PathLike[str]
 # Surfaces are known again by their points at so many parameters along u and v: more than a cell, so
@@ -37,7 +35,7 @@ CHUNK = 1 << 20
 class Input:
     """A part: its number in the list, its name, where it comes from, and what a worker gets.
 
-    That is the path of a file, or a pickled surface. Only the worker unpickles it.
+    That is a path, or FILE.npz:NAME, or a pickled surface, which only the worker unpickles.
     """
 
     part: int
@@ -55,13 +53,14 @@ def inputs_of(sources: Iterable[Source]) -> Iterator[Input]:
     """
     for part, source in enumerate(sources):
         if isinstance(source, str) and source in CATALOGUE:
-            yield _of_surface(part, named(source), source)
+            yield _of_surface(part, named(source))
         elif isinstance(source, str | os.PathLike):
             path = checked_path(source)
-            name, source_path = as_text(path.stem), as_text(str(path))
-            yield Input(part, name, source_path, os.path.abspath(path))
+            file = array_file(str(path))
+            name = file.stem + str(path)[len(str(file)) :]  # with the name of an array in the file
+            yield Input(part, as_text(name), as_text(str(path)), os.path.abspath(path))
         elif isinstance(source, Surface | Spline | Part):
-            yield _of_surface(part, source, type(source).__name__)
+            yield _of_surface(part, source)
         else:
             raise InputError(
                 f"part {part} must be a Surface, Spline or Part, the name of a surface, or a path, "
@@ -69,12 +68,12 @@ def inputs_of(sources: Iterable[Source]) -> Iterator[Input]:
             )
 
 
-def _of_surface(part: int, surface: Surface | Spline | Part, source: str) -> Input:
+def _of_surface(part: int, surface: Surface | Spline | Part) -> Input:
     # Functions of the program itself, and of notebooks, can be unpickled nowhere else.
     pickle = from_extra("cloudpickle", "batch", "a data set of surfaces")
     try:
         name = as_text(str(surface.name or "surface"))
-        return Input(part, name, source, None, pickle.dumps(surface))
+        return Input(part, name, type(surface).__name__, None, pickle.dumps(surface))
     except Exception as error:  # of what users' functions hold
         raise InputError(
             f"part {part} ({surface.name}) cannot be sent to another process: its function cannot "
@@ -141,24 +140,3 @@ def _add_file(digest: Any, path: Path) -> None:  # noqa: ANN401
         raise FileError(f"'{path}' does not exist.") from None
     except OSError as error:
         raise FileError(f"'{path}' cannot be read: {reason_of(error)}.") from error
-
-
-def read_source(path: Path, seconds: float, memory: float) -> Surface | Part:
-    """Return the part or the surface in a file. Raises what the functions for each format raise."""
-    name = str(path)
-    if path.suffix.lower() in CAD_SUFFIXES:
-        from ..cad.reader import read_cad
-
-        return read_cad(path, time_limit=seconds, memory_limit=memory)
-    if is_part_file(name):
-        return read_part(path)
-    if not is_array_file(name):
-        raise InputError(
-            f"'{name}' is neither a CAD file ({', '.join(CAD_SUFFIXES)}) nor a .npz or .npy file."
-        )
-    points = read_array(name)
-    if points.ndim != 3:
-        raise InputError(
-            f"'{name}' has the shape {points.shape}; a part in an array is points (m, n, 3)."
-        )
-    return Surface.from_grid(points, name=path.stem)

@@ -14,19 +14,26 @@ million parts has nothing that all its processes write to.
 from __future__ import annotations
 
 import json
+import os
+import re
 import secrets
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Annotated, Any, TypedDict
 
 from ... import __version__
 from ...runtime.base.errors import FileError, GaussmapError, InputError
+from ...runtime.base.limits import MOST, MOST_STEPS
+from ...runtime.samples.fields import COLUMNS, EDGE_NAMES
+from ..files.declared import POSITIVE, Entries, check_entries, names_among, one_of, within
 from ..files.paths import PathLike, atomic_path, checked_path, reason_of
+from ..sources.named import Named
 
 __all__ = [
+    "CODECS",
     "FILES",
     "LOCK",
     "MANIFEST",
@@ -55,6 +62,25 @@ TEMPORARY = ".tmp"
 MOST_PARTS, MOST_SAMPLES, LEAST_SHARDS = 256, 1 << 22, 64
 # If nobody knows how many parts there will be.
 PARTS_OF_A_STREAM = 64
+CODECS = ("zstd", "snappy", "gzip", "lz4", "none")
+FIELDS = tuple(name for name in COLUMNS if name not in EDGE_NAMES)
+SHARD = re.compile(r"shard-([0-9]{6,})(\.[0-9]+)?\.(parquet|arrow)")
+
+Count = Annotated[int, within(1, MOST)]
+
+
+class AskedFor(TypedDict, total=False):
+    """What was asked for of each part, beside the options with which files are read."""
+
+    count: Count
+    angle: Annotated[float, POSITIVE, within(0, 90)]
+    coverage: Annotated[float, POSITIVE]
+    density: str | Annotated[float, POSITIVE]
+    relax: Annotated[int, within(0, MOST_STEPS)]
+    cells: tuple[Count, Count]
+    on: Annotated[str, one_of(("surface", "spline"))]
+    normals: str
+    measured: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +90,8 @@ class Settings:
     Attributes
     ----------
     asked : dict
-        What was asked for of each part, as `sample` takes it: count, density, cells …
+        What was asked for of each part, as `sample` takes it: count, density, cells …; and the
+        options with which `gaussmap batch` reads files: spacing, crs, unit …
     fields : tuple of str
         The fields of the samples.
     dtype : {"float64", "float32"}
@@ -82,23 +109,32 @@ class Settings:
 
     """
 
-    asked: dict[str, Any]
-    fields: tuple[str, ...]
-    dtype: str = "float64"
-    compression: str = "zstd"
-    parts_per_shard: int = PARTS_OF_A_STREAM
-    files: str | None = None
-    gaussmap: str = __version__
-    formulas: str = ""
-    format: int = FORMAT
+    asked: Annotated[dict[str, Any], Entries((Named, AskedFor))]
+    fields: Annotated[tuple[str, ...], names_among(FIELDS)]
+    dtype: Annotated[str, one_of(("float64", "float32"))]
+    compression: Annotated[str, one_of(CODECS)]
+    parts_per_shard: Annotated[int, within(1, MOST_PARTS)]
+    files: str | None
+    gaussmap: str
+    formulas: str
+    format: int
 
     @classmethod
-    def of_this_version(cls, **known: Any) -> Settings:  # noqa: ANN401
+    def of_this_version(
+        cls,
+        asked: dict[str, Any],
+        fields: tuple[str, ...],
+        dtype: str = "float64",
+        compression: str = "zstd",
+        parts_per_shard: int = PARTS_OF_A_STREAM,
+        files: str | None = None,
+    ) -> Settings:
         """Return settings for samples that this version of the package computes."""
         from ...runtime.kernels.jit import digest  # Numba, which reading a data set does without
 
+        how = fields, dtype, compression, parts_per_shard, files
         # As they are read again: tuples become lists.
-        return cls.from_json(cls(**known, formulas=digest()).to_json())
+        return cls.from_json(cls(asked, *how, __version__, digest(), FORMAT).to_json())
 
     def to_json(self) -> str:
         """Return the text of `dataset.json`."""
@@ -108,12 +144,9 @@ class Settings:
     def from_json(cls, text: str) -> Settings:
         """Return the settings that `to_json` has written; ValueError if the text has none."""
         known = json.loads(text)
-        if not isinstance(known, dict) or known.get("format") != FORMAT:
+        if isinstance(known, dict) and known.get("format", FORMAT) != FORMAT:
             raise ValueError("it is of another version of gaussmap")
-        if set(known) != {field.name for field in fields(cls)} or not isinstance(
-            known["asked"], dict
-        ):
-            raise ValueError("it lacks entries, or has unknown ones")
+        check_entries(known, cls)
         settings = cls(**known)
         return replace(settings, fields=tuple(settings.fields))
 
@@ -143,22 +176,26 @@ def temporary_path(folder: Path) -> Path:
 
 def shards_in(folder: Path) -> list[int]:
     """Return the numbers of the finished shards, in order."""
-    return sorted(
-        int(path.stem.removeprefix("shard-"))
-        for path in (folder / MANIFEST).glob("shard-" + 6 * "[0-9]" + "*.parquet")
-    )
+    return sorted(number for number, _ in _files_of_shards(folder / MANIFEST))
+
+
+def _files_of_shards(folder: Path) -> Iterator[tuple[int, Path]]:
+    """Yield the files of shards in a folder, with the numbers of these."""
+    for path in folder.glob("shard-*"):
+        if found := SHARD.fullmatch(path.name):
+            yield int(found[1]), path
 
 
 def read_settings(folder: PathLike) -> Settings:
     """Return the settings of a data set; FileError if the folder has none that can be read."""
     path = checked_path(folder) / SETTINGS
+    if not os.path.isfile(path):
+        raise FileError(f"'{folder}' is no data set: it has no {SETTINGS}.")
     try:
         return Settings.from_json(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise FileError(f"'{folder}' is no data set: it has no {SETTINGS}.") from None
     except OSError as error:
         raise FileError(f"'{path}' cannot be read: {reason_of(error)}.") from error
-    except (ValueError, TypeError) as error:
+    except (ValueError, RecursionError) as error:
         raise FileError(f"'{path}' cannot be used: {error}.") from error
 
 
@@ -208,8 +245,9 @@ def create(folder: PathLike, settings: Settings, overwrite: bool = False) -> Set
 
 
 def _usable(path: Path) -> None:
-    """Make a folder; FileError if that fails, or if something else is in it."""
+    """Make a folder; FileError if that fails, or if something else or a link is in it."""
     with _writing(path):
+        _refuse_links(path)
         path.mkdir(parents=True, exist_ok=True)
         if not (path / SETTINGS).exists() and any(
             # Of a run that was killed while it wrote the settings.
@@ -219,6 +257,20 @@ def _usable(path: Path) -> None:
             raise FileError(
                 f"'{path}' holds other files and no {SETTINGS}; name a new or empty folder."
             )
+
+
+def _refuse_links(path: Path) -> None:
+    """Raise FileError for symbolic links: what is written to them would lie elsewhere."""
+    for folder in (path, *(path / name for name in (POINTS, MANIFEST, PARTIAL, FILES))):
+        if not folder.is_dir():
+            continue
+        with os.scandir(folder) as entries:
+            for entry in entries:
+                if entry.is_symlink():
+                    raise FileError(
+                        f"'{entry.path}' is a symbolic link; a data set is written to a folder "
+                        "without any: remove it, or name another folder."
+                    )
 
 
 @contextmanager
@@ -237,8 +289,8 @@ def remove_shards(folder: Path, first: int) -> None:
     """Remove the shards from a number on: they are of a list that was longer."""
     with _writing(folder):
         for kind in (MANIFEST, POINTS, PARTIAL):  # without its manifest a shard is not there
-            for path in (folder / kind).glob("shard-" + 6 * "[0-9]" + "*"):
-                if int(path.name.partition(".")[0].removeprefix("shard-")) >= first:
+            for number, path in _files_of_shards(folder / kind):
+                if number >= first:
                     path.unlink()
 
 
@@ -253,28 +305,22 @@ def remove_files(folder: Path, first: int) -> None:
 
 def _same(old: Settings, new: Settings, path: Path) -> Settings:
     """Return the settings of an existing data set; InputError where the new ones differ."""
-    new = Settings.from_json(new.to_json())
-    for field in fields(Settings):
-        had, wanted = getattr(old, field.name), getattr(new, field.name)
-        if field.name == "parts_per_shard" or had == wanted:
-            continue
-        if field.name in ("gaussmap", "formulas"):
-            what = f"was made by another version of gaussmap ({old.gaussmap})"
-        elif field.name == "asked":
-            what = f"was made with {_differing(old.asked, new.asked)}"
-        else:
-            what = f"was made with {field.name}={_text(had)}, not {_text(wanted)}"
-        raise InputError(f"the data set '{path}' {what}; name another folder, or overwrite it.")
+    had, wanted = (json.loads(x.to_json()) for x in (old, new))
+    asked = had.pop("asked"), wanted.pop("asked")
+    for then, now in ((had, wanted), asked):
+        for name in sorted({*then, *now} - {"parts_per_shard"}):
+            # As texts: NaN is not equal to itself.
+            before, after = (json.dumps(x.get(name)) for x in (then, now))
+            if before == after:
+                continue
+            what = f"was made with {name}={_short(before)}, not {_short(after)}"
+            if name in ("gaussmap", "formulas"):
+                what = f"was made by another version of gaussmap ({old.gaussmap})"
+            raise InputError(f"the data set '{path}' {what}; name another folder, or overwrite it.")
     return old
 
 
-def _differing(old: Mapping[str, Any], new: Mapping[str, Any]) -> str:
-    name = next(x for x in sorted({*old, *new}) if old.get(x) != new.get(x))
-    return f"{name}={_text(old.get(name))}, not {_text(new.get(name))}"
-
-
-def _text(value: object) -> str:
-    text = json.dumps(value)
+def _short(text: str) -> str:
     return text if len(text) <= 60 else text[:57] + "…"
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,8 +12,8 @@ from numpy.typing import NDArray
 
 from ...runtime.base.errors import InputError
 from ...runtime.samples.fields import COLUMNS, row_shape
-from .layout import POINTS, shard_path, shards_in
-from .reading import arrays_in, opened
+from .layout import POINTS, shards_in
+from .reading import Opened, arrays_in, opened
 
 __all__ = ["Batch", "Loader"]
 
@@ -30,7 +29,7 @@ class Loader:
     `types` has the type of each field that is wanted, and `seed` is None for the order of the list.
     """
 
-    folder: Path
+    data: Opened
     points: int
     parts: int
     types: Mapping[str, np.dtype[Any]]
@@ -111,33 +110,32 @@ class Loader:
 
     def _row_groups(self) -> Iterator[Any]:
         """Yield row groups as tables: those of a few files in turn, if parts are shuffled."""
-        paths = [shard_path(self.folder, POINTS, number) for number in self._numbers()]
-        paths.reverse()
+        shards = self._numbers()[::-1]
         rng = self._generator(3, *self.shard)
         names = ["part", *(column for name in self.types for column in COLUMNS[name])]
-        waiting: list[tuple[Path, list[int]]] = []
-        while paths or waiting:
-            while paths and len(waiting) < (1 if self.seed is None else FILES_AT_ONCE):
-                path = paths.pop()
-                waiting.append((path, self._groups_of(path, rng)))
+        waiting: list[tuple[int, list[int]]] = []
+        while shards or waiting:
+            while shards and len(waiting) < (1 if self.seed is None else FILES_AT_ONCE):
+                shard = shards.pop()
+                waiting.append((shard, self._groups_of(shard, rng)))
             k = int(rng.integers(len(waiting)))
-            path, groups = waiting[k]
+            shard, groups = waiting[k]
             if not groups:
                 del waiting[k]
                 continue
-            with opened(path) as file:
+            with opened(self.data, POINTS, shard) as file:
                 table = file.read_row_group(groups.pop(), columns=names, use_threads=False)
             yield table
 
-    def _groups_of(self, path: Path, rng: np.random.Generator) -> list[int]:
-        """Return the row groups of a file, the first one last."""
-        with opened(path) as file:
+    def _groups_of(self, shard: int, rng: np.random.Generator) -> list[int]:
+        """Return the row groups of a shard, the first one last."""
+        with opened(self.data, POINTS, shard) as file:
             count = file.metadata.num_row_groups
         return list(range(count))[::-1] if self.seed is None else rng.permutation(count).tolist()
 
     def _numbers(self) -> list[int]:
         """Return the shards of this worker. All workers shuffle the same list."""
-        numbers = shards_in(self.folder)
+        numbers = shards_in(self.data.folder)
         if self.seed is not None:
             numbers = [numbers[k] for k in self._generator(1).permutation(len(numbers))]
         index, count = self.shard

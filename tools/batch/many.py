@@ -159,7 +159,8 @@ def sample_many(
     ----------
     surfaces : iterable of Surface, Spline or str
         The surfaces; they may be made one by one. With `out` also CAD parts and paths: CAD files,
-        parts that were saved, and points (m, n, 3) in .npz and .npy files.
+        parts that were saved, GeoTIFFs, and points (m, n, 3) in .npy and .npz files (FILE.npz:NAME
+        if that holds several arrays).
     count, normals, angle, coverage, density, relax, cells, on, fields, dtype, threads : optional
         As in `sample`. With `out`, the fields are those without indices by default, and each
         process has one thread.

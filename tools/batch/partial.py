@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from ...runtime.base.extras import from_extra
+from ..files.declared import check_entries
 from .manifest import ManifestRow
 
 __all__ = ["PartialFile", "batches_in", "files_of"]
@@ -58,9 +59,12 @@ def _whole_batches(arrow: Any, file: Any, schema: Any) -> Iterator[tuple[Manifes
         reader = arrow.ipc.open_stream(file)
         while reader.schema.equals(schema, check_metadata=True):
             batch, metadata = reader.read_next_batch_with_custom_metadata()
-            yield ManifestRow(**json.loads(metadata[ROW])), batch
-    except (StopIteration, OSError, KeyError, TypeError, ValueError):
-        return  # ArrowInvalid is a ValueError
+            batch.validate(full=True)
+            row = json.loads(metadata[ROW])
+            check_entries(row, ManifestRow)
+            yield ManifestRow(**row), batch
+    except Exception:  # Arrow raises a dozen kinds on bad bytes, and StopIteration at the end
+        return
 
 
 class PartialFile:

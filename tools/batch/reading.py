@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,67 +13,99 @@ from numpy.typing import NDArray
 from ...runtime.base.errors import FileError
 from ...runtime.base.extras import from_extra
 from ...runtime.samples.fields import COLUMNS, row_shape
-from .layout import MANIFEST, POINTS, shard_path, shards_in
+from .layout import MANIFEST, POINTS, Settings, shard_path, shards_in
 from .manifest import ManifestRow, manifest_schema, rows_of
+from .tables import points_schema
 
 __all__ = [
+    "Opened",
     "arrays_in",
     "count_parts",
     "manifest_of",
     "opened",
     "row_of",
     "rows_of_part",
+    "rows_of_parts",
     "stacked",
 ]
 
+LONGEST_REASON = 100
+REMEDY = "remove it, and run the same sampling again"
 
-def manifest_of(folder: Path, columns: Sequence[str] | None) -> Any:  # noqa: ANN401
+
+class Opened(Protocol):
+    """A data set of which files are read: a `Dataset`, or a `Shard` of one."""
+
+    @property
+    def folder(self) -> Path:
+        """Where it is."""
+        ...
+
+    @property
+    def settings(self) -> Settings:
+        """What all its parts have in common."""
+        ...
+
+
+def manifest_of(data: Opened, columns: Sequence[str] | None) -> Any:  # noqa: ANN401
     """Return the rows of all finished shards as a table of Arrow, in order."""
     arrow = from_extra("pyarrow", "batch", "a data set")
     schema = manifest_schema()
     if columns is not None:
         schema = arrow.schema([schema.field(name) for name in columns])
     tables = [schema.empty_table()]
-    for number in shards_in(folder):
-        with opened(shard_path(folder, MANIFEST, number)) as file:
+    for number in shards_in(data.folder):
+        with opened(data, MANIFEST, number) as file:
             tables.append(file.read(columns=schema.names, use_threads=False).cast(schema))
     return arrow.concat_tables(tables).combine_chunks()
 
 
-def count_parts(folder: Path) -> int:
+def count_parts(data: Opened) -> int:
     """Return the number of parts of all finished shards."""
     count = 0
-    for number in shards_in(folder):
-        with opened(shard_path(folder, MANIFEST, number)) as file:
+    for number in shards_in(data.folder):
+        with opened(data, MANIFEST, number) as file:
             count += file.metadata.num_rows
     return count
 
 
-def row_of(folder: Path, number: int, part: int) -> ManifestRow | None:
-    """Return the row of a part in a shard; None if there is none."""
-    path = shard_path(folder, MANIFEST, number)
-    if not path.exists():
+def row_of(data: Opened, part: int) -> ManifestRow | None:
+    """Return the row of a part; None if there is none."""
+    number = part // data.settings.parts_per_shard
+    if not shard_path(data.folder, MANIFEST, number).exists():
         return None
-    with opened(path) as file:
+    with opened(data, MANIFEST, number) as file:
         rows = rows_of(file.read(use_threads=False))
     return next((row for row in rows if row.part == part), None)
 
 
-def rows_of_part(folder: Path, number: int, row: ManifestRow) -> Any:  # noqa: ANN401
+def rows_of_part(data: Opened, row: ManifestRow) -> Any:  # noqa: ANN401
     """Return the table of the samples of a part; FileError unless all of them are there."""
-    path = shard_path(folder, POINTS, number)
-    with opened(path) as file:
-        groups = [k for k in range(file.metadata.num_row_groups) if _may_hold(file, k, row.part)]
-        table = file.read_row_groups(groups, use_threads=False)
-    table = table.filter(np.asarray(table["part"]) == row.part)
+    number = row.part // data.settings.parts_per_shard
+    with opened(data, POINTS, number) as file:
+        table = rows_of_parts(file, [row.part])
     if len(table) != row.samples:
-        raise FileError(f"'{path}' does not belong to its manifest; run the same sampling again.")
+        path = shard_path(data.folder, POINTS, number)
+        raise FileError(f"'{path}' does not belong to its manifest; {REMEDY}.")
     return table
 
 
-def _may_hold(file: Any, group: int, part: int) -> bool:  # noqa: ANN401
+def rows_of_parts(file: Any, parts: Sequence[int]) -> Any:  # noqa: ANN401
+    """Return the table of the samples of parts, which lie between the first and the last one."""
+    groups = [
+        group
+        for group in range(file.metadata.num_row_groups)
+        if (known := _range_of(file, group)) is None
+        or (known[0] <= max(parts) and min(parts) <= known[1])
+    ]
+    table = file.read_row_groups(groups, use_threads=False)
+    return table.filter(np.isin(table["part"], parts))
+
+
+def _range_of(file: Any, group: int) -> tuple[int, int] | None:  # noqa: ANN401
+    """Return the first and the last part of a row group; None if unknown, or if it is empty."""
     known = file.metadata.row_group(group).column(0).statistics
-    return known is None or not known.has_min_max or known.min <= part <= known.max
+    return (known.min, known.max) if known is not None and known.has_min_max else None
 
 
 def arrays_in(table: Any, names: Sequence[str]) -> dict[str, list[NDArray[Any]]]:  # noqa: ANN401
@@ -103,16 +135,28 @@ def stacked(columns: Sequence[NDArray[Any]], name: str) -> NDArray[Any]:
 
 
 @contextmanager
-def opened(path: Path) -> Iterator[Any]:
-    """Yield an open Parquet file; FileError if it cannot be read."""
+def opened(data: Opened, kind: str, number: int) -> Iterator[Any]:
+    """Yield the open Parquet file of a shard; FileError if it cannot be read, or is another one."""
     parquet = from_extra("pyarrow.parquet", "batch", "a data set")
+    path = shard_path(data.folder, kind, number)
     try:
         with parquet.ParquetFile(path) as file:
+            _check(file, data.settings, kind, number)
             yield file
-    except FileError:
+    except (FileError, MemoryError):
         raise
-    except (OSError, ValueError) as error:  # ArrowInvalid is a ValueError
-        reason = " ".join(str(error).split()) or type(error).__name__
-        raise FileError(
-            f"'{path}' cannot be read: {reason}; run the same sampling again, which replaces it."
-        ) from error
+    except Exception as error:  # Arrow raises a dozen kinds on bad bytes
+        reason = " ".join(str(error).split())[:LONGEST_REASON] or type(error).__name__
+        raise FileError(f"'{path}' cannot be read: {reason}; {REMEDY}.") from error
+
+
+def _check(file: Any, settings: Settings, kind: str, number: int) -> None:  # noqa: ANN401
+    """Raise ValueError unless a file has the columns of its kind, and the parts of its shard."""
+    schema = manifest_schema() if kind == MANIFEST else points_schema(settings)
+    if not file.schema_arrow.equals(schema):
+        raise ValueError(f"it does not have the columns of {kind}")
+    first = number * settings.parts_per_shard
+    for group in range(file.metadata.num_row_groups):
+        least, most = _range_of(file, group) or (first, first)
+        if least < first or most >= first + settings.parts_per_shard:
+            raise ValueError(f"it has parts of another shard, {least} to {most}")

@@ -12,8 +12,7 @@ import signal
 import time
 import warnings
 from contextlib import suppress
-from dataclasses import dataclass
-from pathlib import Path
+from dataclasses import dataclass, replace
 from typing import IO, Any
 
 __all__ = ["Task", "main"]
@@ -111,33 +110,42 @@ def _answers(task: Task) -> Any:  # noqa: ANN401
 
 def _source(task: Task) -> tuple[Any, str]:
     """Return the part, and what it is known by."""
-    from .inputs import content_of, read_source
+    from ..cad.part_files import is_part_file
+    from ..files.arrays import array_file
+    from ..sources.surface_of import surface_of
+    from .inputs import content_of
 
-    if task.input.path is None:
+    path = task.input.path
+    if path is None:
         surface = pickle.loads(task.input.pickled)
         return surface, content_of(surface)
-    path = Path(task.input.path)
-    content = content_of(path)
+    content = content_of(array_file(path))
     if content == task.known:
         return None, content
-    limits = task.limits
-    return read_source(path, limits.seconds, limits.memory), content
+    named = replace(task.asked.named, surface=path, quiet=True)
+    if is_part_file(path):  # neither of which has cells
+        limits = {"time_limit": task.limits.seconds, "memory_limit": task.limits.memory}
+        named = replace(named, tolerance=None, **limits)
+    return surface_of(named), content
 
 
-def _sampled(surface: Any, task: Task) -> tuple[dict[str, Any], Any]:  # noqa: ANN401
+def _sampled(source: Any, task: Task) -> tuple[dict[str, Any], Any]:  # noqa: ANN401
     """Return numbers of the manifest, and the table of samples; write the file of the part."""
     from ...runtime.place.on_surface import place_of_samples
     from ...runtime.sample import sample
     from ...runtime.samples.fields import checked_fields
     from ...runtime.samples.request import ON_GRIDS
     from ..cad.part import Part
+    from ..sources.surface_of import with_tolerance
     from .asked import normals_in
     from .tables import points_schema, points_table
 
     arguments = dict(task.asked.arguments)
-    part = isinstance(surface, Part)
-    if part:
-        arguments["cells"] = None
+    part = isinstance(source, Part)
+    surface, arguments["cells"] = source, None
+    if not part:
+        named = replace(task.asked.named, cells=task.asked.arguments["cells"], quiet=True)
+        surface, arguments["cells"] = with_tolerance(source, named)
     on = "surface" if part else place_of_samples(surface, arguments.get("on"))
     grid = arguments.get("density") in ON_GRIDS
     known = checked_fields(None, on == "surface", grid=grid and not part, part=part)

@@ -18,6 +18,7 @@ from ..files.paths import reason_of
 from .layout import MANIFEST, PARTIAL, POINTS, Settings, shard_path, temporary_path
 from .manifest import ManifestRow, manifest_table, rows_of
 from .partial import PartialFile, batches_in, files_of
+from .reading import opened, rows_of_parts
 from .tables import points_schema
 
 __all__ = ["Shard"]
@@ -33,6 +34,10 @@ class Shard:
     ----------
     rows : dict of int to ManifestRow
         What is done, by the number of the part.
+    folder : Path
+        That of the data set.
+    settings : Settings
+        Those of the data set.
     schema : pyarrow.Schema
         That of the tables of points.
 
@@ -45,11 +50,11 @@ class Shard:
 
     def __init__(self, folder: Path, number: int, settings: Settings) -> None:
         self.schema = points_schema(settings)
-        self._folder = folder
+        self.folder, self.settings = folder, settings
+        self._number = number
         self._points = shard_path(folder, POINTS, number)
         self._manifest = shard_path(folder, MANIFEST, number)
         self._partial = shard_path(folder, PARTIAL, number)
-        self._codec = settings.compression
         self._file: PartialFile | None = None
         finished = self._finished()
         partial = files_of(self._partial)
@@ -88,7 +93,7 @@ class Shard:
             self._write_points(temporary, rows)
         with self._replaced(self._manifest) as temporary:
             _parquet().write_table(
-                manifest_table(rows.values()), temporary, compression=self._codec
+                manifest_table(rows.values()), temporary, compression=self.settings.compression
             )
         with self._writing():
             for path in files_of(self._partial):
@@ -98,11 +103,12 @@ class Shard:
     def _finished(self) -> dict[int, ManifestRow]:
         """Return the rows of the manifest; none if a file is missing or damaged."""
         try:
-            rows = rows_of(_parquet().read_table(self._manifest))
-            with _parquet().ParquetFile(self._points) as points:
+            with opened(self, MANIFEST, self._number) as manifest:
+                rows = rows_of(manifest.read(use_threads=False))
+            with opened(self, POINTS, self._number) as points:
                 same = points.schema_arrow.equals(self.schema, check_metadata=True)
                 whole = points.metadata.num_rows == sum(row.samples for row in rows)
-        except (OSError, TypeError, ValueError):
+        except FileError:
             return {}
         return {row.part: row for row in rows} if same and whole else {}
 
@@ -111,7 +117,7 @@ class Shard:
         with (
             batches_in(files_of(self._partial), self.schema) as added,
             _parquet().ParquetWriter(
-                path, self.schema, compression=self._codec, use_dictionary=["part"]
+                path, self.schema, compression=self.settings.compression, use_dictionary=["part"]
             ) as file,
         ):
             for group in _row_groups(rows):
@@ -125,9 +131,9 @@ class Shard:
         """Return the batches of parts of the finished shard."""
         if not parts:
             return {}
+        with opened(self, POINTS, self._number) as file:
+            table = rows_of_parts(file, parts).cast(self.schema)
         field = from_extra("pyarrow.compute", "batch", "a data set").field("part")
-        table = _parquet().read_table(self._points, filters=field.isin(list(parts)))
-        table = table.cast(self.schema)
         return {part: table.filter(field == part).to_batches() for part in parts}
 
     def _close(self) -> None:
@@ -138,7 +144,7 @@ class Shard:
     @contextmanager
     def _replaced(self, path: Path) -> Iterator[Path]:
         """Yield a path to write to; the file takes the place of `path` when it is complete."""
-        temporary = temporary_path(self._folder)
+        temporary = temporary_path(self.folder)
         try:
             with self._writing(path):
                 yield temporary

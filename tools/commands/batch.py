@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import time
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,11 +12,16 @@ import click
 import numpy as np
 
 from ...runtime.base.compiling import NOTICE
+from ...runtime.base.errors import InputError
 from ...runtime.samples.request import checked_request
+from ...runtime.surface.surfaces import CATALOGUE
 from ..batch.arguments import SECONDS, asked_of, stored, where
+from ..batch.inputs import Source
 from ..batch.making import Unwatched, make
 from ..batch.running import Tally
 from ..batch.watching import progress
+from ..sources.named import Named
+from ..sources.surface_of import surface_of
 from .console import say, table
 from .inputs import named_normals
 from .part_lists import listed
@@ -29,7 +35,8 @@ SOME_FAILED, COUNT = 3, 2048
 def run(options: SimpleNamespace) -> None:
     """Sample many parts into a data set."""
     NOTICE.quiet = options.quiet
-    parts, normals = listed(options.parts, options.list), named_normals(options)
+    parts, named = _parts_of(options)
+    normals = named_normals(options)
     amount = options.count, options.angle, options.coverage
     count = COUNT if normals is None and amount == (None, None, None) else options.count
     request = checked_request(
@@ -40,7 +47,7 @@ def run(options: SimpleNamespace) -> None:
     tally = make(
         parts,
         options.output,
-        asked_of(request, options.cells, options.on, options.measure),
+        asked_of(request, options.cells, options.on, options.measure, named),
         stored(
             fields,
             np.float32 if options.float32 else np.float64,
@@ -60,6 +67,27 @@ def run(options: SimpleNamespace) -> None:
     _report(options, tally, time.monotonic() - start)
     if tally.failed:
         raise click.exceptions.Exit(SOME_FAILED)
+
+
+def _parts_of(options: SimpleNamespace) -> tuple[list[Source], Named]:
+    """Return the parts, files by their names, and the options with which workers read these."""
+    own = {"formula": None, "domain": None, "time_limit": None, "memory_limit": None}
+    named = Named.of(SimpleNamespace(**vars(options) | own))
+    of_formulas = [
+        surface_of(replace(named, formula=formula, domain=options.domain))
+        for formula in options.formula
+    ]
+    if not of_formulas:
+        replace(named, domain=options.domain)  # which refuses one
+    parts: list[Source] = [
+        surface_of(replace(named, surface=text)) if text in CATALOGUE else text
+        for text in listed(options.parts, options.list)
+    ]
+    if not parts + of_formulas:
+        raise InputError(
+            "there are no parts: name surfaces, files or folders, or give --list or --formula."
+        )
+    return parts + of_formulas, replace(named, cells=None)
 
 
 def _report(options: SimpleNamespace, tally: Tally, seconds: float) -> None:

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 from ..cad.part import Face
+from ..sources.named import Named
+from ..sources.parts import read_part_file
 from .console import say
-from .parts import read_part_file
 
 __all__ = ["run"]
 
 
 def run(options: SimpleNamespace) -> None:
     """Print a line for each face of a part."""
-    part = read_part_file(options.part, options)
+    part = read_part_file(replace(Named.of(options), surface=options.part))
     kinds = max([len(x.kind) for x in part.faces], default=0)
     digits = len(str(len(part)))
     for face in part.faces:

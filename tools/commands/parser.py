@@ -29,7 +29,7 @@ from .options import (
     number,
     whole,
 )  # fmt: skip
-from .surface_options import cad_options, spline_options, surface_argument, surface_options
+from .surface_options import cad_options, made_options, surface_argument, surface_options
 
 __all__ = ["TO_TRY", "parser"]
 
@@ -131,6 +131,9 @@ BATCH_EXAMPLES = """\
 examples:
   gaussmap batch parts/ -o dataset
   gaussmap batch parts/*.step torus --count 2048 --float32 -o dataset
+  gaussmap batch tiles/*.tif --crs EPSG:32617 --count 2048 -o dataset
+  gaussmap batch 'heights/*.npy' --spacing 30 30 --count 2048 -o dataset
+  gaussmap batch --formula u v u*v --formula u v u**2-v**2 --domain -1 1 -1 1 -o dataset
   gaussmap batch --list parts.txt --workers 8 --time-limit 60 -o dataset
   gaussmap batch parts/ --scheduler tcp://10.0.0.1:8786 -o /shared/dataset
 """
@@ -263,12 +266,13 @@ def _batch() -> Command:
         "Sample many parts, by several processes, into a folder of Parquet files: points with "
         "normals and curvatures, and a manifest that says of each part how it went. A part that "
         "fails does not end the run. If the run is stopped, the same command goes on with what is "
-        "missing. PARTS are names of surfaces, files (STEP, IGES, BREP, .npz and .npy), patterns "
-        "and folders. The exit code is 3 if parts failed. Needs pip install 'gaussmap[batch]'.",
+        "missing. PARTS are surfaces and files as `gaussmap sample` takes them, patterns and "
+        "folders; the options hold for all of them. The exit code is 3 if parts failed. Needs pip "
+        "install 'gaussmap[batch]'.",
         click.Argument(["parts"], nargs=-1, required=False, shell_complete=surfaces_and_files),
         *_amount(2048),
         *_distribution(),
-        *spline_options(),
+        *made_options(several=True),
         Option("-o --output FOLDER", "The folder of the data set.", FOLDER, required=True),
         Option("--list FILE", parts, FILE),
         Option("--fields NAME,NAME", names, group=data),

@@ -11,11 +11,12 @@ from ...runtime.base.advice import CAD_SUFFIXES
 from ...runtime.base.errors import FileError, InputError
 from ...runtime.surface.surfaces import CATALOGUE
 from ..files.paths import reason_of
+from ..sources.elevations import RASTER_SUFFIXES
 
 __all__ = ["listed"]
 
 # What is taken out of folders.
-SUFFIXES = (*CAD_SUFFIXES, ".npz", ".npy")
+SUFFIXES = (*CAD_SUFFIXES, ".npz", ".npy", *RASTER_SUFFIXES)
 
 
 def listed(named: Iterable[str], list_file: str | None) -> list[str]:
@@ -24,12 +25,9 @@ def listed(named: Iterable[str], list_file: str | None) -> list[str]:
     A folder stands for the files of known suffixes in it and in its folders, a pattern for all that
     it matches, each in the order of names.
 
-    Raises InputError if there are none, FileError if a list cannot be read.
+    Raises InputError for one that stands for nothing, FileError if a list cannot be read.
     """
-    parts = [part for text in [*named, *_lines(list_file)] for part in _expanded(text)]
-    if not parts:
-        raise InputError("there are no parts: name surfaces, files or folders, or give --list.")
-    return parts
+    return [part for text in [*named, *_lines(list_file)] for part in _expanded(text)]
 
 
 def _lines(list_file: str | None) -> Iterator[str]:

@@ -8,9 +8,9 @@ from ...runtime.base.limits import MOST
 from .completion import settings, surfaces_and_files
 from .options import Option, number, setting, whole
 
-__all__ = ["cad_options", "spline_options", "surface_argument", "surface_options"]
+__all__ = ["cad_options", "made_options", "surface_argument", "surface_options"]
 
-GROUP = "the surface"
+GROUP, FILES = "the surface", "reading CAD files"
 
 
 def surface_argument() -> click.Argument:
@@ -32,22 +32,28 @@ def _checked_source(ctx: click.Context, _: click.Parameter, surface: str | None)
 
 def surface_options() -> list[Option]:
     """Return the options of everything that takes a surface."""
+    return [*made_options(), *_limits()]
+
+
+def made_options(several: bool = False) -> list[Option]:
+    """Return the options that say how a surface is made, or several ones."""
     tolerance = "Instead of --cells: the largest distance of the spline from the surface or data."
     return [
-        *_formula_options(),
+        *_formula_options(several),
         *_grid_options(),
-        *spline_options(),
+        *_spline_options(),
         Option("--tolerance LENGTH", tolerance, number, group=GROUP),
         *_terrain_options(),
-        *cad_options(),
+        _unit(),
     ]
 
 
-def _formula_options() -> list[Option]:
+def _formula_options(several: bool) -> list[Option]:
     parameter = "A parameter of a surface of the catalogue; may be repeated."
+    place = "A further surface; may be repeated" if several else "In place of SURFACE"
     formula = (
-        'In place of SURFACE: its coordinates, three texts such as "cos(u)" in u and v. They are '
-        "read as mathematics, and never run."
+        f'{place}: its coordinates, three texts such as "cos(u)" in u and v. They are read as '
+        "mathematics, and never run."
     )
     domain = 'The ranges of u and v for --formula; numbers, or texts such as "2*pi".'
     return [
@@ -59,7 +65,7 @@ def _formula_options() -> list[Option]:
             multiple=True,
             shell_complete=settings,
         ),
-        Option("--formula X Y Z", formula, group=GROUP),
+        Option("--formula X Y Z", formula, group=GROUP, multiple=several),
         Option("--domain U0 U1 V0 V1", domain, group=GROUP),
     ]
 
@@ -79,8 +85,7 @@ def _grid_options() -> list[Option]:
     ]
 
 
-def spline_options() -> list[Option]:
-    """Return the options of everything that takes surfaces of which it makes splines."""
+def _spline_options() -> list[Option]:
     cells = "The cells of the spline along u and v (default: 64 64 or more, or those of the grid)."
     on = (
         "Where samples lie: on the surface itself (default) or on the spline that approximates it. "
@@ -117,12 +122,18 @@ def _terrain_options() -> list[Option]:
 
 def cad_options() -> list[Option]:
     """Return the options of commands that read STEP, IGES and BREP files."""
-    unit = "The unit of lengths: mm, cm, m, in, ft ... (default: that of the file)."
+    return [_unit(), *_limits()]
+
+
+def _unit() -> Option:
+    text = "The unit of lengths: mm, cm, m, in, ft ... (default: that of the file)."
+    return Option("--unit UNIT", text, group=FILES)
+
+
+def _limits() -> list[Option]:
     seconds = "The longest time for reading, in seconds (default: 120)."
     memory = "The most memory for reading, in GiB (default: 4)."
-    group = "reading CAD files"
     return [
-        Option("--unit UNIT", unit, group=group),
-        Option("--time-limit SECONDS", seconds, number, group=group),
-        Option("--memory-limit GIB", memory, number, group=group),
+        Option("--time-limit SECONDS", seconds, number, group=FILES),
+        Option("--memory-limit GIB", memory, number, group=FILES),
     ]

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from types import SimpleNamespace
 
 from ...runtime.base.advice import CAD_SUFFIXES
 from ...runtime.base.errors import InputError
 from ..cad.part import Part, read_part
 from ..cad.part_files import is_part_file
+from .named import Named
 
 __all__ = ["LIMITS", "read_part_file", "refuse"]
 
@@ -17,12 +17,11 @@ __all__ = ["LIMITS", "read_part_file", "refuse"]
 LIMITS = ("unit", "time_limit", "memory_limit")
 
 
-def read_part_file(source: str, options: SimpleNamespace) -> Part:
+def read_part_file(named: Named) -> Part:
     """Read a part. Raises what `read_cad` and `read_part` raise, InputError for other files."""
-    limits = {name: getattr(options, name) for name in LIMITS}
-    given = {name: value for name, value in limits.items() if value is not None}
+    source = named.surface or ""
     if Path(source).suffix.lower() == ".npz":
-        refuse(given, "is for STEP, IGES and BREP files", source)
+        refuse(named, LIMITS, "is for STEP, IGES and BREP files")
         return read_part(source)
     if not is_part_file(source):
         raise InputError(
@@ -31,10 +30,13 @@ def read_part_file(source: str, options: SimpleNamespace) -> Part:
         )
     from ..cad.reader import read_cad
 
-    return read_cad(source, **given, progress=not getattr(options, "quiet", False))
+    given = {name: value for name, value in named.given().items() if name in LIMITS}
+    return read_cad(source, **given, progress=not named.quiet)
 
 
-def refuse(given: Iterable[str], purpose: str, source: str) -> None:
-    """Raise InputError for the first of the options that were given, and are not for a source."""
-    for name in given:
-        raise InputError(f"--{name.replace('_', '-')} {purpose}, and '{source}' is none.")
+def refuse(named: Named, names: Iterable[str], purpose: str) -> None:
+    """Raise InputError for the first of some options that was given, and is not for this source."""
+    for name in names:
+        if name in named.given():
+            source = named.surface or "a formula"
+            raise InputError(f"--{name.replace('_', '-')} {purpose}, and '{source}' is none.")

@@ -1,0 +1,1 @@
+"""What texts name: surfaces of the catalogue, formulas, grids, elevations and CAD parts."""

@@ -1,0 +1,60 @@
+"""`Named`: the name or the formula of a surface, and the options with which it is made."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from types import SimpleNamespace
+from typing import Any, Self
+
+from ...runtime.base.errors import InputError
+
+__all__ = ["Named"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Named:
+    """What is named, and its options: those of `gaussmap sample`, None where they are not given.
+
+    Raises
+    ------
+    InputError
+        For options that do not go together.
+
+    """
+
+    surface: str | None = None
+    formula: tuple[str, str, str] | None = None
+    domain: tuple[str, str, str, str] | None = None
+    set: tuple[tuple[str, float], ...] = ()
+    spacing: tuple[float, float] | None = None
+    periodic: str | None = None
+    nodata: float | None = None
+    cells: tuple[int, int] | None = None
+    tolerance: float | None = None
+    band: int | None = None
+    x: str | None = None
+    y: str | None = None
+    crs: str | None = None
+    source_crs: str | None = None
+    origin: tuple[float, float] | None = None
+    unit: str | None = None
+    time_limit: float | None = None
+    memory_limit: float | None = None
+    quiet: bool = False
+
+    def __post_init__(self) -> None:
+        if self.domain is not None and self.formula is None:
+            raise InputError("--domain is for --formula, which is not there.")
+        if self.tolerance is not None and self.cells is not None:
+            raise InputError("--tolerance and --cells do not go together; give one of them.")
+
+    @classmethod
+    def of(cls, options: SimpleNamespace) -> Self:
+        """Return the options of a command that it has."""
+        known = vars(options)
+        return cls(**{x.name: known[x.name] for x in fields(cls) if x.name in known})
+
+    def given(self) -> dict[str, Any]:
+        """Return the options that were given, by their names."""
+        values = {x.name: (getattr(self, x.name), x.default) for x in fields(self)}
+        return {name: value for name, (value, default) in values.items() if value != default}

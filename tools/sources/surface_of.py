@@ -1,0 +1,133 @@
+"""`surface_of`: the surface or the CAD part that a text names."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ...runtime.base.advice import NO_CLOUDS, NO_MESHES, is_mesh_file
+from ...runtime.base.checks import known_name
+from ...runtime.base.errors import FileError, InputError
+from ...runtime.fitting.fit import fit
+from ...runtime.spline.spline import Spline
+from ...runtime.surface.surface import Surface
+from ...runtime.surface.surfaces import CATALOGUE, names, surface
+from ..cad.part import Part
+from ..cad.part_files import is_part_file
+from ..files.arrays import array_file, is_array_file, read_array
+from .elevations import OF_TERRAIN, has_place, is_raster_file, read_raster_file, terrain_of_array
+from .named import Named
+from .parts import LIMITS, read_part_file, refuse
+
+__all__ = ["surface_of", "with_tolerance"]
+
+NOT_OF_FORMULAS = ("set", "spacing", "nodata")
+NOT_OF_PARTS = ("set", "domain", "spacing", "periodic", "nodata", "cells", "tolerance", *OF_TERRAIN)
+PERIODIC = {"none": (False, False), "u": (True, False), "v": (False, True), "uv": (True, True)}
+
+
+def surface_of(named: Named) -> Surface | Part:
+    """Return the surface, or the CAD part, that is named.
+
+    Raises InputError for options that are not for it, and what the functions for each kind raise.
+    """
+    if is_part_file(named.surface):
+        for name in NOT_OF_PARTS:
+            if name in named.given():
+                option = name.replace("_", "-")
+                raise InputError(
+                    f"--{option} is for surfaces, and '{named.surface}' is a CAD part."
+                )
+        return read_part_file(named)
+    refuse(named, LIMITS, "is for CAD files")
+    if named.surface is None:
+        refuse(named, OF_TERRAIN, "is for elevations")
+        return _of_formula(named)
+    if is_array_file(named.surface) or is_raster_file(named.surface):
+        return _grid(named, named.surface)
+    _refuse_file(named.surface)
+    refuse(named, OF_TERRAIN, "is for elevations")
+    return _of_catalogue(named, named.surface)
+
+
+def _of_catalogue(named: Named, source: str) -> Surface:
+    name = known_name(source, names(), "surface", "gaussmap surfaces")
+    if named.spacing is not None:
+        raise InputError(f"--spacing is for elevations in a file, and {name} is a surface by name.")
+    if named.periodic is not None:
+        raise InputError(f"--periodic is for grids in a file; {name} knows where it closes.")
+    if named.nodata is not None:
+        raise InputError(f"--nodata is for grids in a file; {name} has no missing points.")
+    parameters = dict(named.set)
+    if len(parameters) < len(named.set):
+        raise InputError("--set gives the same parameter twice; give each once.")
+    for parameter in parameters:
+        known_name(parameter, tuple(CATALOGUE[name]["parameters"]), f"{name} parameter")
+    return surface(name, **parameters)
+
+
+def _refuse_file(source: str) -> None:
+    """Raise an error if SURFACE is a file of another kind, or the name of one that is missing."""
+    if is_mesh_file(source):
+        raise InputError(f"'{source}' is a mesh; {NO_MESHES}.")
+    if Path(source).is_file():
+        raise InputError(
+            f"'{source}' is neither a .npy, .npz nor .tif file, nor a CAD part; write points (m, "
+            "n, 3) or elevations (m, n) by numpy.save."
+        )
+    if Path(source).suffix:
+        raise FileError(f"'{source}' does not exist; look at its name and folder.")
+
+
+def _of_formula(named: Named) -> Surface:
+    for name in NOT_OF_FORMULAS:
+        if name in named.given():
+            raise InputError(f"--{name} does not go together with --formula; leave it out.")
+    if named.formula is None or named.domain is None:
+        raise InputError("--formula needs the ranges of u and v: add --domain U0 U1 V0 V1.")
+    u0, u1, v0, v1 = named.domain
+    return Surface.from_sympy(
+        named.formula,
+        ("u", "v"),
+        ((u0, u1), (v0, v1)),
+        PERIODIC[named.periodic or "none"],
+        name=f"({', '.join(named.formula)})",
+    )
+
+
+def _grid(named: Named, source: str) -> Surface:
+    if named.set:
+        raise InputError("--set is for surfaces by name; a grid in a file has no parameters.")
+    if is_raster_file(source):
+        return read_raster_file(named, source)
+    points = read_array(source)
+    if points.ndim == 2 and points.shape[1] == 3 and named.x is None:
+        raise InputError(f"'{source}' has the shape {points.shape}: {NO_CLOUDS}.")
+    if points.ndim == 2 and named.spacing is None and named.x is None:
+        raise InputError(
+            f"'{source}' holds elevations {points.shape}, which need their distances: "
+            "add --spacing DX DY, or --x and --y, the names of arrays of coordinates (in Python: "
+            "Surface.from_grid(…, spacing=…))."
+        )
+    if has_place(named):
+        return terrain_of_array(points, named, source)
+    if points.ndim == 3 and named.spacing is not None:
+        raise InputError(
+            f"--spacing is for elevations, and '{source}' has the shape {points.shape}."
+        )
+    return Surface.from_grid(
+        points,
+        spacing=named.spacing,
+        periodic=PERIODIC[named.periodic or "none"],
+        nodata=named.nodata,
+        name=array_file(source).name,
+    )
+
+
+def with_tolerance(
+    surface_: Surface | Spline, named: Named
+) -> tuple[Surface | Spline, tuple[int, int] | None]:
+    """Return the surface, and the cells that --cells or --tolerance choose; of data the spline."""
+    if named.tolerance is None or isinstance(surface_, Spline):
+        return surface_, named.cells
+    spline = fit(surface_, tolerance=named.tolerance, progress=not named.quiet)
+    return (spline, None) if surface_.grid is not None else (surface_, spline.cells)
