@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, SupportsIndex
 
 import numpy as np
-from numpy.typing import DTypeLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from ...runtime.base.checks import known_name, whole_number, yes_or_no
 from ...runtime.base.errors import InputError, UnknownNameError, shown
@@ -218,7 +218,7 @@ class Dataset:
         fields: Sequence[str] = ("points", "normals"),
         shuffle: int | Sequence[int] | None = None,
         dtype: DTypeLike | None = None,
-        labels: str | Mapping[int, float] | Mapping[str, float] | None = None,
+        labels: str | Mapping[int, float] | Mapping[str, float] | ArrayLike | None = None,
         shard: tuple[int, int] = (0, 1),
         drop_last: bool = False,
         buffer: int = 512,
@@ -228,7 +228,8 @@ class Dataset:
         Parameters
         ----------
         points : int, default 2048
-            How many points of each part. Of a part with fewer all are taken, and some again.
+            How many points of each part. A part with fewer samples is repeated until there are
+            enough: each of its points comes about equally often, and a warning says so once.
         parts : int, default 16
             How many parts are in a batch; parts without samples are left out.
         fields : sequence of str, default ("points", "normals")
@@ -240,9 +241,10 @@ class Dataset:
             points.
         dtype : {float32, float64}, optional
             The type of the numbers; that of the data set by default.
-        labels : str or mapping, optional
-            A number for each part: the name of a column of the manifest, or a mapping from the
-            numbers of parts, or from their names.
+        labels : str, mapping or (P,) array_like, optional
+            A number for each part: the name of a column of the manifest; an array with one for each
+            of the P parts of the data set; or a mapping from the numbers of parts, or from their
+            names, if no two parts of one name are meant.
         shard : (int, int), default (0, 1)
             ``(i, n)`` is for worker `i` of `n`, from 0 on: each part is in the batches of one of
             them. Whole files are divided among them.
@@ -262,11 +264,17 @@ class Dataset:
         Raises
         ------
         InputError
-            If an argument is out of range, or a part has no label.
+            If an argument is out of range, a part has no label, or a name of `labels` is that of
+            several parts.
         UnknownNameError
             If the data set has no such field, or the manifest no such column.
         FileError
             If a file cannot be read.
+
+        Warns
+        -----
+        GaussmapWarning
+            Once for all batches, if a part has fewer samples than `points`.
 
         Notes
         -----

@@ -6,8 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from ...runtime.base.checks import known_name
+from ...runtime.base.checks import known_name, real_values
 from ...runtime.base.errors import InputError, shown
 from .manifest import COLUMNS
 
@@ -17,7 +18,7 @@ NUMBERS = tuple(name for name, (kind, *_) in COLUMNS.items() if kind != "string"
 
 
 def checked_labels(
-    labels: str | Mapping[Any, float] | None, manifest: Callable[[Sequence[str]], Any]
+    labels: str | Mapping[Any, float] | ArrayLike | None, manifest: Callable[[Sequence[str]], Any]
 ) -> tuple[dict[int, Any] | None, np.dtype[Any] | None]:
     """Return the labels by the numbers of the parts, and their type: int64 or float64.
 
@@ -31,13 +32,37 @@ def checked_labels(
         known = dict(zip(table["part"].to_pylist(), table[labels].to_pylist(), strict=True))
     elif isinstance(labels, Mapping):
         known = dict(labels)
+        if any(isinstance(key, str) for key in known):
+            known = _by_part(known, manifest(("part", "name")))
     else:
-        raise InputError(f"labels must be a mapping or the name of a column, not {shown(labels)}.")
-    if any(isinstance(key, str) for key in known):
-        table = manifest(("part", "name"))
-        named = zip(table["part"].to_pylist(), table["name"].to_pylist(), strict=True)
-        known = {part: known[name] for part, name in named if name in known}
+        known = _of_array(labels, manifest(("part",))["part"].to_pylist())
     return known, _type_of(known)
+
+
+def _by_part(labels: Mapping[Any, Any], table: Any) -> dict[int, Any]:  # noqa: ANN401
+    """Return labels by the numbers of the parts; InputError for names of several parts."""
+    if not all(isinstance(key, str) for key in labels):
+        raise InputError("labels are by the names of parts, or by their numbers, not by both.")
+    known: dict[str, int] = {}
+    for part, name in zip(table["part"].to_pylist(), table["name"].to_pylist(), strict=True):
+        if name in labels and known.setdefault(name, part) != part:
+            raise InputError(
+                f"parts {known[name]} and {part} have the same name {shown(name)}, so that labels "
+                "by name are ambiguous; give an array with one for each part, or label numbers."
+            )
+    return {part: labels[name] for name, part in known.items()}
+
+
+def _of_array(labels: ArrayLike, parts: Sequence[int]) -> dict[int, Any]:
+    """Return the entries of an array by the numbers of the parts, one for each."""
+    values = real_values(labels, "labels")
+    count = max(parts, default=-1) + 1
+    if values.shape != (count,):
+        raise InputError(
+            f"labels must be an array with one number for each of {count:,} parts, of the shape "
+            f"({count},), not {values.shape}; or a mapping, or the name of a column."
+        )
+    return dict(enumerate(values.tolist()))
 
 
 def _type_of(labels: Mapping[int, Any]) -> np.dtype[Any]:

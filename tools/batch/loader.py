@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -10,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...runtime.base.errors import InputError
+from ...runtime.base.errors import GaussmapWarning, InputError
 from ...runtime.samples.fields import COLUMNS, row_shape
 from .layout import POINTS, shards_in
 from .reading import Opened, arrays_in, opened
@@ -81,6 +82,7 @@ class Loader:
 
     def _read(self) -> Iterator[tuple[int, Batch]]:
         """Yield the chosen points of each part, as the files are read."""
+        warned = False
         for table in self._row_groups():
             numbers = table["part"].to_numpy()
             columns = arrays_in(table, tuple(self.types))
@@ -88,8 +90,19 @@ class Loader:
             for start, stop in pairwise(edges):
                 if start < stop:
                     part = int(numbers[start])
+                    if stop - start < self.points and not warned:
+                        warned = True
+                        self._warn(part, stop - start)
                     rows = start + self._rows(part, stop - start)
                     yield part, tuple(self._taken(x, rows, name) for name, x in columns.items())
+
+    def _warn(self, part: int, count: int) -> None:
+        warnings.warn(
+            f"part {part} has {count:,} samples, fewer than points={self.points}: some of them are "
+            "repeated in its batch, as are those of other parts with fewer.",
+            GaussmapWarning,
+            stacklevel=5,  # where the batches are asked for
+        )
 
     def _taken(self, columns: list[NDArray[Any]], rows: NDArray[Any], name: str) -> NDArray[Any]:
         taken = np.empty((self.points, *row_shape(name)), dtype=self.types[name])

@@ -14,6 +14,7 @@ from gaussmap.tools.batch.shards import Shard
 from . import made
 
 pytest.importorskip("pyarrow")
+pytestmark = pytest.mark.filterwarnings("ignore:part [0-9]+ has")
 
 ASKED = {
     "count": 40, "angle": 3.0, "coverage": 0.5, "density": "uniform", "relax": 2, "cells": [8, 9],

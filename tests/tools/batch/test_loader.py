@@ -1,7 +1,10 @@
 """Batches for training: every part once, reproducible, divided among workers, in own memory."""
 
+import re
 import tracemalloc
+import warnings
 from collections import Counter
+from dataclasses import replace
 
 import gaussmap as gm
 import numpy as np
@@ -10,7 +13,7 @@ import pytest
 from . import made
 
 pytest.importorskip("pyarrow")
-HELD = [part for part, count in enumerate(made.COUNTS) if count]
+pytestmark = pytest.mark.filterwarnings("ignore:part [0-9]+ has")
 # The first columns of points are the number of the part and the row.
 PART, ROW = 0, 1
 
@@ -32,7 +35,7 @@ def points_by_part(batches) -> dict[int, np.ndarray]:
 
 def test_in_the_order_of_the_list(dataset):
     batches = list(dataset.batches(40, 4))
-    assert [x[2].tolist() for x in batches] == [HELD[k : k + 4] for k in range(0, 12, 4)]
+    assert [x[2].tolist() for x in batches] == [made.HELD[k : k + 4] for k in range(0, 12, 4)]
     for points, normals, numbers in batches:
         assert points.shape == normals.shape == (len(numbers), 40, 3)
         for cloud, n, part in zip(points, normals, numbers.tolist(), strict=True):
@@ -47,8 +50,8 @@ def test_shuffled_every_part_comes_once(dataset, buffer):
     batches = list(dataset.batches(45, 4, shuffle=3, buffer=buffer))
     assert [len(x[2]) for x in batches] == [4, 4, 3]
     found = points_by_part(batches)
-    assert sorted(found) == HELD
-    assert list(found) != HELD
+    assert sorted(found) == made.HELD
+    assert list(found) != made.HELD
     for part, cloud in found.items():
         rows = Counter(cloud[:, ROW].astype(int).tolist())
         least, rest = divmod(45, made.COUNTS[part])
@@ -81,7 +84,7 @@ def test_workers_divide_the_parts_and_draw_the_same_points(dataset, workers):
         part = points_by_part(dataset.batches(30, 4, shuffle=7, shard=(k, workers)))
         assert not part.keys() & found.keys()
         found |= part
-    assert sorted(found) == HELD
+    assert sorted(found) == made.HELD
     for part, cloud in found.items():
         np.testing.assert_array_equal(cloud, alone[part])
 
@@ -93,7 +96,7 @@ def test_all_orders_come(dataset):
         for seed in range(110)
     )
     # Binomial with mean 10 and deviation 3; the seeds are fixed.
-    assert sorted(firsts) == HELD
+    assert sorted(firsts) == made.HELD
     assert max(firsts.values()) <= 22
 
 
@@ -120,7 +123,7 @@ def test_labels(dataset):
     for *_, numbers, labels in dataset.batches(8, 4, shuffle=0, labels=by_part):
         assert labels.dtype == np.int64
         np.testing.assert_array_equal(labels, numbers % 4)
-    by_name = {f"part {part}": part / 2 for part in HELD}
+    by_name = {f"part {part}": part / 2 for part in made.HELD}
     for *_, numbers, labels in dataset.batches(8, 4, labels=by_name):
         np.testing.assert_array_equal(labels, numbers / 2, strict=True)
     for *_, numbers, labels in dataset.batches(8, 4, labels="samples"):
@@ -128,6 +131,49 @@ def test_labels(dataset):
     assert next(dataset.batches(8, labels="misfit"))[-1].tolist() == [0.25] * 11
     with pytest.raises(gm.errors.InputError, match="part 2 has no label"):
         list(dataset.batches(8, labels={0: 1}))
+
+
+def test_labels_in_an_array(dataset):
+    for array in (np.arange(13) % 4, (np.arange(13) % 4).tolist()):
+        for *_, numbers, labels in dataset.batches(8, 4, shuffle=0, labels=array):
+            np.testing.assert_array_equal(labels, numbers % 4, strict=True)
+    *_, numbers, labels = next(dataset.batches(3, 4, labels=np.arange(13, dtype="float32")))
+    np.testing.assert_array_equal(labels, numbers.astype(np.float64), strict=True)
+
+
+def test_labels_by_names_of_several_parts(tmp_path, monkeypatch):
+    names = {3: "part 7", 9: "part 8", 12: "part 8"}
+    before = made.row_of
+    monkeypatch.setattr(
+        made,
+        "row_of",
+        lambda part, count: replace(x := before(part, count), name=names.get(part, x.name)),
+    )
+    dataset = made.write(tmp_path)
+    with pytest.raises(gm.errors.InputError, match="parts 3 and 7 have the same name 'part 7'"):
+        dataset.batches(8, labels={f"part {part}": 1 for part in range(8)})
+    # Nothing is ambiguous about others.
+    *_, numbers, labels = next(dataset.batches(8, 2, labels={"part 0": 5, "part 2": 6}))
+    assert (numbers.tolist(), labels.tolist()) == ([0, 2], [5, 6])
+    (*_, labels), *_ = dataset.batches(8, 11, labels=range(13))
+    assert labels.tolist() == made.HELD
+
+
+def test_parts_with_fewer_samples_are_repeated_with_one_warning(dataset):
+    for seed in (None, 0):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            batches = list(dataset.batches(52, 4, shuffle=seed))
+        (warning,) = caught
+        assert warning.filename == __file__
+        assert warning.category is gm.errors.GaussmapWarning
+        text = str(warning.message)
+        part, count = (int(x) for x in re.findall(r"part (\d+) has (\d+) samples", text)[0])
+        assert made.COUNTS[part] == count < 52
+        assert {len(x[0][0]) for x in batches} == {52}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert list(dataset.batches(3, 4))
 
 
 def test_arrays_are_taken_by_pytorch_without_a_copy(dataset):
@@ -161,7 +207,7 @@ def test_pytorch(dataset):
 
     for workers in (0, 2):
         batches = list(torch.utils.data.DataLoader(Clouds(), batch_size=None, num_workers=workers))
-        assert sorted(x for *_, part in batches for x in part.tolist()) == HELD
+        assert sorted(x for *_, part in batches for x in part.tolist()) == made.HELD
 
 
 @pytest.mark.parametrize(
@@ -183,7 +229,11 @@ def test_pytorch(dataset):
         ({"fields": ("part",)}, gm.errors.UnknownNameError, "no field"),
         ({"dtype": "int32"}, gm.errors.InputError, "dtype"),
         ({"labels": "name"}, gm.errors.UnknownNameError, "column of numbers"),
-        ({"labels": [1, 2]}, gm.errors.InputError, "mapping"),
+        ({"labels": [1, 2]}, gm.errors.InputError, "one number for each of 13 parts"),
+        ({"labels": np.ones((13, 2))}, gm.errors.InputError, "one number for each of 13 parts"),
+        ({"labels": 3}, gm.errors.InputError, "one number for each of 13 parts"),
+        ({"labels": 13 * ["chair"]}, gm.errors.InputError, "real numbers"),
+        ({"labels": {0: 1, "part 2": 1}}, gm.errors.InputError, "not by both"),
         ({"labels": {0: "chair"}}, gm.errors.InputError, "must be a number, not 'chair'"),
         ({"buffer": 0}, gm.errors.InputError, "buffer"),
         ({"drop_last": np.zeros(2)}, gm.errors.InputError, "drop_last"),
