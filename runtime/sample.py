@@ -278,7 +278,7 @@ def _of_whole(
         raise InputError("cells=... are for splines; the faces of a part need none.")
     if checked_place(on) == "spline":
         raise InputError('on="spline" is for surfaces; samples of a part lie on its faces.')
-    samples, searched = part.sampled(request, wanted, number, threads, progress, edges)
+    samples, searched = part._sampled(request, wanted, number, threads, progress, edges)
     filled = request.density != "gauss"
     warn_of(samples.report, request.count, 6, coverage=request.coverage, filled=filled)
     return samples, searched

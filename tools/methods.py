@@ -220,7 +220,7 @@ def weights(
 
     with busy("computing weights", progress):
         if isinstance(self.surface, Whole):
-            return self.surface.weights_of(self)
+            return self.surface._weights_of(self)
         return area_weights(self, angle)
 
 

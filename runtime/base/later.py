@@ -10,19 +10,19 @@ __all__ = ["Later"]
 
 
 class Later:
-    """A function of another module, of the same name, as a method of the class that has this.
+    """A function of another module as a method of the class that has this.
 
     So a class has methods of rooms that stand on it, and does not import them. The first use puts
-    the function itself into the class.
+    the function itself into the class. It has the name of the method, unless another one is given.
     """
 
-    def __init__(self, module: str) -> None:
-        self.module = module
+    def __init__(self, module: str, function: str = "") -> None:
+        self.module, self.function = module, function
 
     def __set_name__(self, owner: type, name: str) -> None:
         self.owner, self.name = owner, name
 
     def __get__(self, instance: object | None, owner: type | None = None) -> Callable[..., Any]:
-        function = getattr(import_module(self.module), self.name)
+        function = getattr(import_module(self.module), self.function or self.name)
         setattr(self.owner, self.name, function)
         return function if instance is None else function.__get__(instance, owner)

@@ -91,7 +91,7 @@ def coverage(
     """
     with busy("measuring the coverage", progress):
         if isinstance(self.surface, Whole):
-            return self.surface.coverage_of(self.points, threads)
+            return self.surface._coverage_of(self.points, threads)
         return coverage_of(self.points, spline_if_one(self, spline), self.surface, threads)
 
 
@@ -140,6 +140,6 @@ def normal_deviation(
     """
     with busy("comparing normals", progress):
         if isinstance(self.surface, Whole):
-            return self.surface.deviation_of(self.points, self.normals, threads)
+            return self.surface._deviation_of(self.points, self.normals, threads)
         one = spline_if_one(self, spline)
         return deviation_of(self.points, self.normals, one, self.surface, threads)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
 
@@ -41,11 +40,10 @@ class NormalDeviation(NamedTuple):
     space: float
 
 
-class Whole(ABC, Generic[Samples]):
-    """A CAD part, for example."""
+class Whole(Generic[Samples]):
+    """A surface that is no `Surface`: a CAD part, which defines these methods."""
 
-    @abstractmethod
-    def sampled(
+    def _sampled(
         self,
         request: Request,
         fields: Sequence[str],
@@ -55,17 +53,18 @@ class Whole(ABC, Generic[Samples]):
         edges: bool,
     ) -> tuple[Samples, NDArray[np.float64]]:
         """Return what `sample` returns, and the unit normals that were asked."""
+        raise NotImplementedError
 
-    @abstractmethod
-    def coverage_of(self, points: NDArray[np.floating], threads: int | None) -> float:
+    def _coverage_of(self, points: NDArray[np.floating], threads: int | None) -> float:
         """Return what `Samples.coverage` returns, for points (N, 3)."""
+        raise NotImplementedError
 
-    @abstractmethod
-    def deviation_of(
+    def _deviation_of(
         self, points: NDArray[np.floating], normals: NDArray[np.floating], threads: int | None
     ) -> NormalDeviation:
         """Return what `Samples.normal_deviation` returns, for points and normals (N, 3)."""
+        raise NotImplementedError
 
-    @abstractmethod
-    def weights_of(self, samples: Samples) -> NDArray[np.float64]:
+    def _weights_of(self, samples: Samples) -> NDArray[np.float64]:
         """Return what `Samples.weights` returns."""
+        raise NotImplementedError

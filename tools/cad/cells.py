@@ -9,15 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from .space import Space
+from .face_pieces import FacePiece
 
-__all__ = ["BEND_U", "Cells", "by_piece", "halved", "into_parts", "new_cells"]
+__all__ = ["BEND_U", "Cells", "Evaluator", "by_piece", "halved", "into_parts", "new_cells"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -29,6 +29,24 @@ RADIUS, CHORD, ALONG_U, ALONG_V, BEND_U, BEND_V, AREA, LIMIT = range(8)
 DEEPEST = 2.0**-20
 
 
+class Evaluator(Protocol):
+    """What cells need of their space."""
+
+    @property
+    def pieces(self) -> tuple[FacePiece, ...]:
+        """The pieces (P,) of the part."""
+        ...
+
+    @cached_property
+    def sizes(self) -> Array:
+        """The lengths (P, 2) of the domains of the pieces."""
+        ...
+
+    def evaluated(self, cells: Cells) -> Cells:
+        """Return those of cells that have a place inside the trim, with their rows and numbers."""
+        ...
+
+
 @dataclass(frozen=True, eq=False)
 class Cells:
     """M cells of the pieces (M,) of a space: boxes (M, 4), u0, v0, u1, v1, and places (M, 2).
@@ -37,7 +55,7 @@ class Cells:
     kernels/cells.py, lengths and curvatures scaled as in `Space`.
     """
 
-    space: Space
+    space: Evaluator
     pieces: Indices
     boxes: Array
     places: Array
@@ -164,7 +182,7 @@ def by_piece(cells: Cells) -> Iterator[tuple[int, slice]]:
         first = last
 
 
-def new_cells(space: Space, pieces: Indices, boxes: Array, whole: bool = False) -> Cells:
+def new_cells(space: Evaluator, pieces: Indices, boxes: Array, whole: bool = False) -> Cells:
     """Return cells of pieces (M,) that are not evaluated."""
     count = len(pieces)
     places = (boxes[:, :2] + boxes[:, 2:]) / 2.0

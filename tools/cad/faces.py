@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,10 +27,7 @@ from .offset import Offset
 from .records import Geometry
 from .turned import Curve, Line, Turned
 
-if TYPE_CHECKING:
-    from .part import Face
-
-__all__ = ["face_surface", "own_parameters", "surface_of"]
+__all__ = ["face_surface", "own_parameters"]
 
 Array = NDArray[np.float64]
 
@@ -56,17 +53,6 @@ class Shape:
     collapses: bool = False
 
 
-def surface_of(face: Face) -> Surface:
-    """Return the surface of a face with its trim, and normals on its outer side.
-
-    If the face is reversed, u is, too: `own_parameters` gives those of the file. Raises InputError
-    for numbers that define no surface.
-    """
-    return face_surface(
-        face.geometry, face.domain, face.loops, is_reversed=face.reversed, name=face.label
-    )
-
-
 def face_surface(
     geometry: Geometry,
     domain: Sequence[Sequence[float]],
@@ -75,7 +61,11 @@ def face_surface(
     is_reversed: bool = False,
     name: str = "face",
 ) -> Surface:
-    """Return the surface of a geometry over the bounds of the loops, with its trim."""
+    """Return the surface of a geometry over the bounds of the loops, with its trim.
+
+    If `is_reversed`, its normals are opposite to x_u × x_v of the geometry, and u is reversed:
+    `own_parameters` gives those of the file. Raises InputError for numbers that define no surface.
+    """
     shape = _shape(geometry, checked_domain(domain))
     assumed = (shape.collapses, shape.collapses)
     surface = Surface(name, shape.function, shape.domain, shape.boundary, assumed_open=assumed)

@@ -2,25 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import DTypeLike, NDArray
+from numpy.typing import NDArray
 
 from ...runtime.base.errors import SurfaceError
 from ...runtime.samples.whole import Whole
 from ..files.paths import PathLike
 from .layout import geometry_of, packed
+from .methods import Methods
 from .records import Geometry, PartRecord
 from .saving import read_arrays, write_arrays
 
 if TYPE_CHECKING:
-    from ...runtime.samples.request import Request
-    from ...runtime.samples.samples import Samples
-    from ...runtime.samples.whole import NormalDeviation
     from ...runtime.surface.surface import Surface
 
 __all__ = ["Face", "Part", "Solid", "part_of", "read_part"]
@@ -29,7 +26,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Part(Whole["Samples"]):
+class Part(Methods, Whole[Any]):
     """A CAD part, as `read_cad` and `read_part` return it.
 
     It holds arrays only: it can be pickled and saved, and needs no CAD library. Lengths are in the
@@ -132,42 +129,6 @@ class Part(Whole["Samples"]):
         """
         write_arrays(self.arrays, path)
 
-    def sampled(
-        self,
-        request: Request,
-        fields: Sequence[str],
-        dtype: DTypeLike,
-        threads: int | None,
-        progress: bool,
-        edges: bool,
-    ) -> tuple[Samples, Array]:
-        """Return what `sample` returns, and the unit normals that were asked."""
-        from .sampling import sample_part
-
-        return sample_part(self, request, fields, dtype, threads, progress, edges)
-
-    def coverage_of(self, points: NDArray[np.floating], threads: int | None) -> float:
-        """Return what `Samples.coverage` returns, for points (N, 3)."""
-        from .results import reached_coverage, space_of
-
-        space = space_of(self, threads)
-        return reached_coverage(space, space.scaled_points(points)) / space.unit
-
-    def deviation_of(
-        self, points: NDArray[np.floating], normals: NDArray[np.floating], threads: int | None
-    ) -> NormalDeviation:
-        """Return what `Samples.normal_deviation` returns, for points and normals (N, 3)."""
-        from .results import deviation, space_of
-
-        space = space_of(self, threads)
-        return deviation(space, space.scaled_points(points), normals.astype(np.float64))
-
-    def weights_of(self, samples: Samples) -> Array:
-        """Return what `Samples.weights` returns: areas that add up to those of the faces."""
-        from .results import space_of, weights
-
-        return weights(space_of(self, None), samples)
-
     def __getstate__(self) -> dict[str, object]:
         """Return what is pickled: the fields, without what is made of them."""
         return {"arrays": self.arrays, "about": self.about}
@@ -266,9 +227,11 @@ class Face:
         """
         if self.reason:
             raise SurfaceError(f"{self.label} cannot be used: {self.reason}.")
-        from .faces import surface_of
+        from .faces import face_surface
 
-        return surface_of(self)
+        return face_surface(
+            self.geometry, self.domain, self.loops, is_reversed=self.reversed, name=self.label
+        )
 
     @property
     def label(self) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
@@ -17,16 +17,21 @@ from ...runtime.density.deviation import FEWEST, PLACES, NormalDeviation
 from ...runtime.kernels.refine import evaluate_jets
 from ...runtime.kernels.sizing import TargetDensity
 from ...runtime.samples.fields import dtype_of
+from ...runtime.samples.samples import Samples
+from .at_normals import Given
 from .cells import AREA, Cells, by_piece
 from .face_pieces import pieces_of
+from .part import Part
 from .space import Space
 
-if TYPE_CHECKING:
-    from ...runtime.samples.samples import Samples
-    from .at_normals import Given
-    from .part import Part
-
-__all__ = ["arrays_of", "deviation", "reached_coverage", "space_of", "weights"]
+__all__ = [
+    "arrays_of",
+    "coverage_of",
+    "deviation_of",
+    "reached_coverage",
+    "space_of",
+    "weights_of",
+]
 
 Array = NDArray[np.float64]
 
@@ -81,6 +86,12 @@ def _evaluated(space: Space, cells: Cells) -> dict[str, NDArray[Any]]:
     }
 
 
+def coverage_of(part: Part, points: NDArray[np.floating], threads: int | None) -> float:
+    """Return what `Samples.coverage` returns, for points (N, 3)."""
+    space = space_of(part, threads)
+    return reached_coverage(space, space.scaled_points(points)) / space.unit
+
+
 def reached_coverage(space: Space, points: Array, asked: float = math.inf) -> float:
     """Return a bound of the distance from the part to the nearest of scaled points (N, 3)."""
     if len(points) == 0:
@@ -91,10 +102,14 @@ def reached_coverage(space: Space, points: Array, asked: float = math.inf) -> fl
     return coverage_by(cells, space.area, points, asked, TIGHT)
 
 
-def deviation(space: Space, points: Array, normals: Array) -> NormalDeviation:
-    """Return the largest angles from normals of the part to those of samples, in degrees."""
+def deviation_of(
+    part: Part, points: NDArray[np.floating], normals: NDArray[np.floating], threads: int | None
+) -> NormalDeviation:
+    """Return what `Samples.normal_deviation` returns, for points and normals (N, 3)."""
     if len(points) == 0:
         return NormalDeviation(180.0, 180.0)
+    space = space_of(part, threads)
+    points, normals = space.scaled_points(points), normals.astype(np.float64)
     number = max(PLACES * len(points), FEWEST)
     rows = space.uniform.cut(math.sqrt(space.area / number)).rows
     rows = rows[rows[:, 3:6].any(axis=1)]
@@ -107,8 +122,8 @@ def deviation(space: Space, points: Array, normals: Array) -> NormalDeviation:
     return NormalDeviation(a, b)
 
 
-def weights(space: Space, samples: Samples) -> Array:
-    """Return the areas (N,) that are nearest to each sample on its own face.
+def weights_of(part: Part, samples: Samples) -> Array:
+    """Return what `Samples.weights` returns: the areas (N,) nearest to each on its own face.
 
     They add up to the area of the face. Of faces without samples, the area is left out; samples on
     edges have none.
@@ -117,6 +132,7 @@ def weights(space: Space, samples: Samples) -> Array:
     assert faces is not None
     on_edge = samples.other_face_index
     inner = np.ones(len(samples), np.bool_) if on_edge is None else on_edge < 0
+    space = space_of(part, None)
     points = space.scaled_points(samples.points)
     cells = space.uniform.cut(math.sqrt(space.area / (CELLS_A_SAMPLE * max(len(samples), 1))))
     for k, rows in by_piece(cells):

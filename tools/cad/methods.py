@@ -1,0 +1,21 @@
+"""The methods of `Part` that modules above it define: `methods.pyi` says what they are.
+
+Each is loaded when it is first asked for. Nothing here imports what stands on parts.
+"""
+
+from __future__ import annotations
+
+from ...runtime.base.later import Later
+
+__all__ = ["Methods"]
+
+RESULTS, SAMPLING = "gaussmap.tools.cad.results", "gaussmap.tools.cad.sampling"
+
+
+class Methods:
+    """What `Whole` asks of a part."""
+
+    _coverage_of = Later(RESULTS, "coverage_of")
+    _deviation_of = Later(RESULTS, "deviation_of")
+    _sampled = Later(SAMPLING, "sample_part")
+    _weights_of = Later(RESULTS, "weights_of")

@@ -1,0 +1,7 @@
+"""The methods of `Part` that modules above it define; `methods.py` loads them."""
+
+class Methods:
+    from .results import coverage_of as _coverage_of
+    from .results import deviation_of as _deviation_of
+    from .results import weights_of as _weights_of
+    from .sampling import sample_part as _sampled
