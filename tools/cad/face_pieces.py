@@ -64,6 +64,18 @@ class FacePiece:
         high = np.stack(np.meshgrid(*(x[1:] for x in lines), indexing="ij"), axis=-1)
         return np.concatenate([low, high], axis=-1).reshape(-1, 4)
 
+    @property
+    def polygons(self) -> list[Array]:
+        """The closed polygons (k, 2) around it, the first point of which is not repeated.
+
+        Loops of files leave the domain by rounding, or by the tolerance of the file: these do not.
+        """
+        (u0, v0), (u1, v1) = low, high = np.array(self.surface.domain).T
+        if self.surface.trim is None:
+            return [np.array([(u0, v0), (u1, v0), (u1, v1), (u0, v1)])]
+        loops = [x for x in self.surface.trim.parts if isinstance(x, Loops)]
+        return [np.clip(x, low, high) for loop in loops for x in loop.polygons]
+
     def border(self, n: int) -> Border | None:
         """Return the border on a raster of n × n pixels, None if there is none."""
         trim = self.surface.trim
@@ -81,9 +93,7 @@ class FacePiece:
 
     def beside_border(self, n: int) -> Array:
         """Return places (k, 2) inside, next to the border, 1/n of the domain apart at most."""
-        trim = self.surface.trim
-        loops = [x for x in trim.parts if isinstance(x, Loops)] if trim is not None else []
-        found = [_beside(x, self.sizes, n) for loop in loops for x in loop.polygons]
+        found = [_beside(x, self.sizes, n) for x in self.polygons]
         places = np.concatenate([np.empty((0, 2)), *found])
         low, high = np.array(self.surface.domain).T
         places = places[((places > low) & (places < high)).all(axis=1)]

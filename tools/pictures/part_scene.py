@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.base.errors import SurfaceError
-from ..cad.faces import face_surface
-from ..cad.part import Face, Part
+from ..cad.face_pieces import FacePiece, pieces_of
+from ..cad.part import Part
 from .scene import Scene
 
 __all__ = ["part_scene"]
@@ -24,23 +24,24 @@ def part_scene(part: Part, seen_from: NDArray[np.float64] | None = None) -> Scen
     Raises SurfaceError if no face can be used.
     """
     fine = SMALL if len(part) > MANY else CURVED
-    drawn = [_drawn(face, fine) for face in part.faces if not face.reason]
-    if not drawn:
+    pieces, _ = pieces_of(part.faces)
+    if not pieces:
         raise SurfaceError(f"{part.name!r} has no face that can be drawn.")
+    drawn = [_drawn(piece, fine) for piece in pieces]
     triangles = np.concatenate([triangles for triangles, _ in drawn])
     lines = tuple(line for _, lines in drawn for line in lines)
     return Scene.made(triangles[:, [0, 1, 2, 2]], lines, seen_from)
 
 
-def _drawn(face: Face, fine: int) -> tuple[NDArray[np.float64], list[NDArray[np.float64]]]:
-    """Return triangles (k, 3, 3) of a face, and its loops as lines."""
+def _drawn(piece: FacePiece, fine: int) -> tuple[NDArray[np.float64], list[NDArray[np.float64]]]:
+    """Return triangles (k, 3, 3) of a face, and its border as lines."""
     from scipy.spatial import Delaunay
 
-    surface = face_surface(face.geometry, face.domain, face.loops)
+    surface = piece.surface
     low, high = np.array(surface.domain).T
     size = high - low
-    loops = [low + size * _divided((loop - low) / size) for loop in face.loops]
-    across = FLAT if face.kind == "plane" else fine
+    loops = [np.clip(low + size * _divided((x - low) / size), low, high) for x in piece.polygons]
+    across = FLAT if piece.face.kind == "plane" else fine
     grid = np.stack(np.meshgrid(*np.linspace(low, high, across + 1).T, indexing="ij"), axis=2)
     if surface.trim is None:
         places = grid.reshape(-1, 2)

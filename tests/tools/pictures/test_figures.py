@@ -140,6 +140,18 @@ def test_faces_of_all_kinds_and_their_trims(parts: ModuleType) -> None:
     assert areas.sum() == pytest.approx(22.0)
 
 
+@pytest.mark.parametrize("is_reversed", [False, True])
+@pytest.mark.parametrize("beyond", [6e-5, 1e-2])
+def test_loops_that_leave_the_surface(beyond: float, is_reversed: bool, parts: ModuleType) -> None:
+    """Open CASCADE's trims leave the domains of their NURBS by its tolerance."""
+    scene = part_scene(parts.overrun(beyond, is_reversed=is_reversed))
+    corners = scene.quadrangles.reshape(-1, 3)
+    for found in (corners, *scene.lines):
+        np.testing.assert_allclose(found[:, 2], found[:, 0] * found[:, 1], atol=1e-12)
+        np.testing.assert_allclose(found.min(axis=0)[:2], 0.0, atol=1e-12)
+        np.testing.assert_allclose(found.max(axis=0)[:2], 1.0, atol=1e-12)
+
+
 def test_errors(samples: gm.Samples, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(
         gm.errors.UnknownNameError, match="no column 'suport'; did you mean support"
