@@ -42,7 +42,7 @@ class Evaluator(Protocol):
         """The lengths (P, 2) of the domains of the pieces."""
         ...
 
-    def evaluated(self, cells: Cells) -> Cells:
+    def evaluated(self, cells: Cells, *, with_border: bool = False) -> Cells:
         """Return those of cells that have a place inside the trim, with their rows and numbers."""
         ...
 
@@ -104,7 +104,7 @@ class Cells:
     @property
     def quarters(self) -> Cells:
         """The cells bisected twice."""
-        return self.space.evaluated(self._halved()._halved())
+        return self.space.evaluated(self._halved()._halved(), with_border=True)
 
     @property
     def deepest(self) -> Flags:

@@ -53,7 +53,9 @@ class PartCover(Cover):
 
     def whole(self) -> Any:  # noqa: ANN401 - cells, as triangles
         """Return few cells, which make up the part."""
-        return self.sizing.evaluated(replace(self.sizing.first, space=self.sizing))
+        return self.sizing.evaluated(
+            replace(self.sizing.first, space=self.sizing), with_border=True
+        )
 
     def missing(self) -> Cells:
         """Return a cell near the middle of each piece that has no sample, if it has a cell."""

@@ -28,6 +28,7 @@ __all__ = [
     "arrays_of",
     "coverage_of",
     "deviation_of",
+    "reached_angle",
     "reached_coverage",
     "space_of",
     "weights_of",
@@ -109,17 +110,32 @@ def deviation_of(
     if len(points) == 0:
         return NormalDeviation(180.0, 180.0)
     space = space_of(part, threads)
-    points, normals = space.scaled_points(points), normals.astype(np.float64)
-    number = max(PLACES * len(points), FEWEST)
+    rows, workers = _places(space, len(points)), thread_count(threads)
+    nearest = tree_of(space.scaled_points(points)).query(rows[:, :3], workers=workers)[1]
+    chords = np.linalg.norm(rows[:, 3:6] - normals.astype(np.float64)[nearest], axis=1)
+    return NormalDeviation(_to_nearest(space, normals, rows), _degrees(chords))
+
+
+def reached_angle(space: Space, normals: Array) -> float:
+    """Return the largest angle that is found from a normal of the part to the nearest of (N, 3)."""
+    return _to_nearest(space, normals, _places(space, len(normals))) if len(normals) else 180.0
+
+
+def _places(space: Space, samples: int) -> Array:
+    """Return rows of the places at which normals are compared with those of samples."""
+    number = max(PLACES * samples, FEWEST)
     rows = space.uniform.cut(math.sqrt(space.area / number)).rows
-    rows = rows[rows[:, 3:6].any(axis=1)]
-    workers = thread_count(space.threads)
-    in_normals = tree_of(np.unique(normals.round(9), axis=0)).query(rows[:, 3:6], workers=workers)
-    nearest = tree_of(points).query(rows[:, :3], workers=workers)[1]
-    in_space = np.linalg.norm(rows[:, 3:6] - normals[nearest], axis=1)
-    largest = float(in_normals[0].max(initial=0.0)), float(in_space.max(initial=0.0))
-    a, b = (math.degrees(2.0 * math.asin(min(x, 2.0) / 2.0)) for x in largest)
-    return NormalDeviation(a, b)
+    return rows[rows[:, 3:6].any(axis=1)]
+
+
+def _to_nearest(space: Space, normals: NDArray[np.floating], rows: Array) -> float:
+    distinct = np.unique(normals.astype(np.float64).round(9), axis=0)
+    return _degrees(tree_of(distinct).query(rows[:, 3:6], workers=thread_count(space.threads))[0])
+
+
+def _degrees(chords: Array) -> float:
+    """Return the angle, in degrees, of the largest of chords."""
+    return math.degrees(2.0 * math.asin(min(float(chords.max(initial=0.0)), 2.0) / 2.0))
 
 
 def weights_of(part: Part, samples: Samples) -> Array:

@@ -27,7 +27,7 @@ from .at_normals import Given, given_at_normals
 from .cover import PartCover
 from .edge_sampling import with_edges
 from .part import Part
-from .results import arrays_of, reached_coverage, space_of
+from .results import arrays_of, reached_angle, reached_coverage, space_of
 from .space import Space
 
 __all__ = ["sample_part"]
@@ -71,6 +71,8 @@ def sample_part(
         cover = filling.cover()
         if request.angle is not None:
             angle = cover_normals(cover, request.angle)
+            # Tips of faces may be too narrow for its cells.
+            angle = max(angle, reached_angle(space, cover.points[:, 3:6]))
     on_faces = [x for x in fields if x not in EDGE_NAMES]
     arrays: dict[str, Any] = arrays_of(space, cover.added, given, on_faces, dtype)
     if edges:
@@ -84,7 +86,7 @@ def sample_part(
         total = len(next(iter(arrays.values())))
         report = replace(report, samples=total, edge_samples=total - cover.count)
     normals = np.empty((0, 3)) if request.normals is None else request.normals
-    _warn(part, report, len(space.failed))
+    _warn(part, report, len(space.failed), request.angle)
     return Samples(**arrays, report=report, surface=part), normals
 
 
@@ -260,12 +262,18 @@ def _report(
     )
 
 
-def _warn(part: Part, report: SamplingReport, failed: int) -> None:
-    """Warn of faces that failed."""
+def _warn(part: Part, report: SamplingReport, failed: int, angle: float | None) -> None:
+    """Warn of faces that failed, and of an angle that was not reached."""
+    reasons = []
     if failed:
-        warnings.warn(
-            f"part {part.name!r}: {failed} of {len(part):,} faces cannot be sampled, and got no "
-            "samples (see part.failed).",
-            GaussmapWarning,
-            stacklevel=6,
+        reasons.append(
+            f"{failed} of {len(part):,} faces cannot be sampled, and got no samples (see "
+            "part.failed)"
         )
+    if angle is not None and report.angle is not None and report.angle > angle:
+        reasons.append(
+            f"some normals in narrow tips of faces are {report.angle:.3g}° from those of all "
+            f"samples instead of the requested {angle:g}°; ask for a smaller angle"
+        )
+    for reason in reasons:
+        warnings.warn(f"part {part.name!r}: {reason}.", GaussmapWarning, stacklevel=6)

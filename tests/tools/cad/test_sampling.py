@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from gaussmap.tools.cad.cells import BEND_U
 from gaussmap.tools.cad.part import Part
-from gaussmap.tools.cad.records import FaceRecord, Geometry
+from gaussmap.tools.cad.records import FaceRecord, Geometry, Net
 from gaussmap.tools.cad.results import space_of
 from scipy.spatial import cKDTree
 
@@ -134,6 +134,34 @@ def test_angle_holds_for_the_part(plates):
     chords = cKDTree(samples.normals).query(normals)[0]
     assert np.degrees(2 * np.arcsin(chords.max() / 2)) <= 15.0
     assert samples.normal_deviation().normal_space <= 15.0
+
+
+def tips(made, width: float, power: int, lean: float, count: int) -> Part:
+    """Return half a cone of NURBS that is trimmed to a strip with two thin tips, and a plane."""
+    half, knots = np.sqrt(0.5), (np.array([0, 0, 0, 0.5, 0.5, 1, 1, 1.0]), np.array([0, 0, 1, 1.0]))
+    arc = 0.1 * np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0)])
+    rings = [np.column_stack([r * arc, np.full(5, z)]) for r, z in ((1.0, 0.0), (0.8, 0.03))]
+    weights = np.repeat([[1.0], [half], [1.0], [half], [1.0]], 2, axis=1)
+    net = Net((2, 1), knots, np.stack(rings, axis=1), weights)
+    u = np.linspace(0.0, 1.0, count)
+    middle, wide = 0.5 + lean * (u - 0.5), width * (4.0 * u * (1.0 - u)) ** power
+    sides = np.stack([u, middle - wide], axis=1), np.stack([u, middle + wide], axis=1)[::-1]
+    loop = np.concatenate([sides[0], sides[1][1:-1]])
+    ends = tuple(zip(loop.min(axis=0).tolist(), loop.max(axis=0).tolist(), strict=True))
+    strip = FaceRecord(Geometry("nurbs", net=net), ends, loops=[loop], area=0.003)
+    plane = made.face("plane", made.placement((0, 0, -1.0)), (0.0, 1.0), (0.0, 1.0), 1.0)
+    return made.part([plane, strip])
+
+
+def test_angle_holds_in_narrow_tips(made):
+    samples = gm.sample(tips(made, 0.03, 3, 0.0, 40), angle=8.0)
+    assert samples.normal_deviation().normal_space <= samples.report.angle <= 8.0
+
+
+def test_an_angle_that_is_not_reached_is_reported(made):
+    with pytest.warns(gm.GaussmapWarning, match=r"narrow tips of faces are 3\.15° .* requested 3°"):
+        samples = gm.sample(tips(made, 0.01, 2, 0.3, 10), angle=3.0)
+    assert 3.0 < samples.normal_deviation().normal_space <= samples.report.angle
 
 
 def test_prescribed_normals(plates):
