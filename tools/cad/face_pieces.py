@@ -10,9 +10,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ...runtime.domain.loops import Loops
 from ...runtime.surface.surface import Surface
 from .borders import Border
+from .faces import own_parameters
 from .part import Face
 from .records import Geometry
 
@@ -73,8 +73,9 @@ class FacePiece:
         (u0, v0), (u1, v1) = low, high = np.array(self.surface.domain).T
         if self.surface.trim is None:
             return [np.array([(u0, v0), (u1, v0), (u1, v1), (u0, v1)])]
-        loops = [x for x in self.surface.trim.parts if isinstance(x, Loops)]
-        return [np.clip(x, low, high) for loop in loops for x in loop.polygons]
+        is_reversed = self.face.reversed
+        loops = [own_parameters(self.surface, x, is_reversed=is_reversed) for x in self.face.loops]
+        return [np.clip(x, low, high) for x in loops]
 
     def border(self, n: int) -> Border | None:
         """Return the border on a raster of n × n pixels, None if there is none."""

@@ -23,6 +23,7 @@ from .cells import (
     BEND_V,
     CHORD,
     LIMIT,
+    RADIUS,
     Array,
     Cells,
     Indices,
@@ -93,8 +94,10 @@ class Space:
 
     @property
     def size(self) -> float:
-        """The diagonal of the box around the places of the first cells."""
-        return float(np.linalg.norm(np.ptp(self.first.rows[:, :3], axis=0)))
+        """The diagonal of a box around the first cells."""
+        points, radii = self.first.rows[:, :3], self.first.numbers[:, [RADIUS]]
+        low, high = (points - radii).min(axis=0), (points + radii).max(axis=0)
+        return float(np.linalg.norm(high - low))
 
     @property
     def area(self) -> float:

@@ -146,6 +146,7 @@ def test_loops_that_leave_the_surface(beyond: float, is_reversed: bool, parts: M
     """Open CASCADE's trims leave the domains of their NURBS by its tolerance."""
     scene = part_scene(parts.overrun(beyond, is_reversed=is_reversed))
     corners = scene.quadrangles.reshape(-1, 3)
+    assert len(scene.lines) == 1
     for found in (corners, *scene.lines):
         np.testing.assert_allclose(found[:, 2], found[:, 0] * found[:, 1], atol=1e-12)
         np.testing.assert_allclose(found.min(axis=0)[:2], 0.0, atol=1e-12)
