@@ -14,6 +14,7 @@ import gaussmap as gm
 import pytest
 from gaussmap.runtime.samples.report import SamplingReport
 from gaussmap.runtime.spline.misfit import Misfit
+from gaussmap.tools.cad.part import Part
 from gaussmap.tools.support.branches import Branches
 from gaussmap.tools.support.convolution import Convolution
 from numpydoc.docscrape import NumpyDocString
@@ -30,6 +31,7 @@ RETURNED = {
     "Branches": Branches,
     "Convolution": Convolution,
     "Misfit": Misfit,
+    "Part": Part,
     "SamplingReport": SamplingReport,
 }
 

@@ -9,11 +9,17 @@ from ...runtime.base.later import Later
 
 __all__ = ["Methods"]
 
+MEASURES, PLOT = "gaussmap.tools.cad.measures", "gaussmap.tools.pictures.plot"
 RESULTS, SAMPLING = "gaussmap.tools.cad.results", "gaussmap.tools.cad.sampling"
 
 
 class Methods:
-    """What `Whole` asks of a part."""
+    """What `Whole` asks of a part, and what is made of parts."""
+
+    plot = Later(PLOT, "plot_part")
+
+    _bounds_of = Later(MEASURES, "bounds_of")
+    _volume_of = Later(MEASURES, "volume_of")
 
     _coverage_of = Later(RESULTS, "coverage_of")
     _deviation_of = Later(RESULTS, "deviation_of")

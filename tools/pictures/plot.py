@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["COUNT", "checked_normals", "draw", "plot", "plot_samples", "scene_of"]
+__all__ = ["COUNT", "checked_normals", "draw", "plot", "plot_part", "plot_samples", "scene_of"]
 
 COUNT = 2_000  # samples, if no number is given
 DOTS_PER_INCH = 200
@@ -129,6 +129,44 @@ def plot(
     checked_values(samples, color)
     scene = scene_of(surface, rows_of_view(*seen_from))
     return draw(samples, scene, directions, color=color, view=seen_from, axes=panels)
+
+
+def plot_part(
+    self: Part,
+    samples: Samples | None = None,
+    *,
+    color: str | ArrayLike = CURVATURE,
+    view: Sequence[float] = VIEW,
+    axes: Axes | Sequence[Axes] | None = None,
+    normals: ArrayLike | None = None,
+) -> Figure:
+    """Draw the part with samples, and the unit sphere with their normals: `Part.plot`.
+
+    Parameters
+    ----------
+    samples : Samples, optional
+        Samples of the part; by default 2,000 are made.
+    color, view, axes, normals : optional
+        As in `plot`: what the colours show, elevation and azimuth in degrees, axes of your own,
+        the prescribed normals.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure, see `plot`.
+
+    Raises
+    ------
+    MissingExtraError, MissingFieldError, UnknownNameError, InputError, SurfaceError
+        As `plot`.
+
+    Examples
+    --------
+    >>> from gaussmap.tools.cad.examples import box
+    >>> box().plot(color="face_index", view=(60, 0)).savefig("box.png")
+
+    """
+    return plot(self, samples, color=color, view=view, axes=axes, normals=normals)
 
 
 def plot_samples(

@@ -1,0 +1,179 @@
+"""The box around a part, and the volume of its solids."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+
+from ...runtime.base.errors import SurfaceError
+from .cells import RADIUS, Array, by_piece
+from .face_pieces import FacePiece
+from .part import Part
+from .results import space_of
+
+__all__ = ["bounds_of", "volume_of"]
+
+# Nodes and weights of Gauss's rule on [0, 1], for each span of a surface and each part of a border.
+NODES, WEIGHTS = (x / 2.0 for x in np.polynomial.legendre.leggauss(5))
+NODES = NODES + 0.5
+# Newton's method takes so many steps.
+STEPS = 8
+# A part of a border is within this multiple of its chord of where it starts.
+BEYOND_CHORD = 1.5
+# A place this far left of a border, relative to the domain, tells on which side of it the face is.
+BESIDE = 1e-6
+
+
+# --- volume ---------------------------------------------------------------------------------------
+
+
+def volume_of(part: Part) -> float:
+    """Return the volume, in L³; SurfaceError if the faces are not known to enclose solids."""
+    if not part.oriented or part.failed:
+        lack = "some of its faces cannot be used" if part.failed else "its faces enclose no solids"
+        raise SurfaceError(f"part {part.name!r} has no volume that is known: {lack}.")
+    space = space_of(part, None)
+    if space.failed:
+        raise SurfaceError(next(iter(space.failed.values())))
+    centre = space.centre
+    return sum(x.face.area * _mean_height(x, centre) for x in space.pieces) / 3.0
+
+
+def _mean_height(piece: FacePiece, centre: Array) -> float:
+    """Return the mean of (x − c)·n over a face.
+
+    By Green's theorem: ∫∫ g du dv over the face is ∮ G dv around it, G the integral of g along u.
+    The area is the CAD library's, so that of the polygons of the border need not be exact.
+    """
+    lines = _lines(piece, 0), _lines(piece, 1)
+    total = np.zeros(2)
+    for polygon, sign in zip(piece.polygons, _signs(piece), strict=True):
+        places, steps = _divided(polygon, lines)
+        # Parts of the border along u have no dv.
+        places, steps = (x[steps[:, 1] != 0.0] for x in (places, steps))
+        ends = (places[:, None] + NODES[:, None] * steps[:, None]).reshape(-1, 2)
+        weights = sign * (WEIGHTS * steps[:, 1:]).ravel()
+        total += weights @ _along_u(piece, ends, lines[0], centre)
+    return float(total[0] / total[1])
+
+
+def _along_u(piece: FacePiece, ends: Array, lines: Array, centre: Array) -> Array:
+    """Return the integrals (k, 2) of (x − c)·N and |N| along u, from the first line to places."""
+    found = np.zeros((len(ends), 2))
+    for low, high in itertools.pairwise(lines):
+        rows = np.flatnonzero(ends[:, 0] > low)
+        widths = np.minimum(ends[rows, 0], high) - low
+        u = (low + NODES * widths[:, None]).ravel()
+        jets = piece.surface.jets(u, np.repeat(ends[rows, 1], len(NODES)))
+        N = np.cross(jets[:, 1], jets[:, 2])
+        values = np.stack(
+            [np.einsum("ij,ij->i", jets[:, 0] - centre, N), np.linalg.norm(N, axis=1)], axis=1
+        ).reshape(len(rows), len(NODES), 2)
+        found[rows] += widths[:, None] * np.einsum("k,ikj->ij", WEIGHTS, values)
+    return found
+
+
+def _signs(piece: FacePiece) -> Array:
+    """Return for each polygon 1 if the face lies left of it, else −1."""
+    places = []
+    for x in piece.polygons:
+        steps = (np.roll(x, -1, axis=0) - x) / piece.sizes
+        k = int(np.hypot(*steps.T).argmax())
+        left = np.array([-steps[k, 1], steps[k, 0]]) / np.hypot(*steps[k])
+        middle = (x[k] + x[(k + 1) % len(x)]) / 2.0
+        places.append(middle + BESIDE * left * piece.sizes)
+    low, high = np.array(piece.surface.domain).T
+    found = np.array(places)
+    in_domain = ((found > low) & (found < high)).all(axis=1)
+    return np.where(in_domain & piece.contains(np.clip(found, low, high)), 1.0, -1.0)
+
+
+def _lines(piece: FacePiece, axis: int) -> Array:
+    """Return the values of u (axis 0) or v between which the surface is smooth."""
+    return np.unique(piece.boxes[:, [axis, axis + 2]])
+
+
+def _divided(polygon: Array, lines: tuple[Array, Array]) -> tuple[Array, Array]:
+    """Return places (k, 2) on a polygon and the steps (k, 2) to the next, no line between them."""
+    steps = np.roll(polygon, -1, axis=0) - polygon
+    owners, shares = [np.arange(len(polygon))], [np.zeros(len(polygon))]
+    for axis in (0, 1):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            crossed = (lines[axis] - polygon[:, [axis]]) / steps[:, [axis]]
+        owner, k = np.nonzero((crossed > 0.0) & (crossed < 1.0))
+        owners.append(owner)
+        shares.append(crossed[owner, k])
+    owner, share = np.concatenate(owners), np.concatenate(shares)
+    order = np.lexsort((share, owner))
+    owner, share = owner[order], share[order]
+    following = np.where(np.diff(owner, append=-1) == 0, np.roll(share, -1), 1.0)
+    return polygon[owner] + share[:, None] * steps[owner], (following - share)[:, None] * steps[
+        owner
+    ]
+
+
+# --- bounds ---------------------------------------------------------------------------------------
+
+
+def bounds_of(part: Part) -> Array:
+    """Return the smallest and the largest coordinates (2, 3); SurfaceError if no face is usable.
+
+    A coordinate is largest on a border, or where its derivatives are 0: Newton's method finds it
+    from all cells, and from all parts of borders, that reach farther than the points known so far.
+    """
+    space, found = space_of(part, None), []
+    for k, rows in by_piece(space.first):
+        piece, places = space.pieces[k], space.first.places[rows]
+        points = _points(piece, places)
+        found.append((piece, places, None, points, space.first.numbers[rows, RADIUS] / space.unit))
+        lines = _lines(piece, 0), _lines(piece, 1)
+        for polygon in piece.polygons:
+            starts, steps = _divided(polygon, lines)
+            points, ends = _points(piece, starts), _points(piece, starts + steps)
+            reach = BEYOND_CHORD * np.linalg.norm(ends - points, axis=1)
+            found.append((piece, starts, steps, points, reach))
+    directions = np.concatenate([-np.eye(3), np.eye(3)])
+    best = np.max([(x[3] @ directions.T).max(axis=0) for x in found], axis=0)
+    for piece, places, steps, points, reach in found:
+        for k, direction in enumerate(directions):
+            far = points @ direction + reach > best[k]
+            if far.any():
+                if steps is None:
+                    highest = _highest_inside(piece, places[far], direction)
+                else:
+                    highest = _highest_on_border(piece, places[far], steps[far], direction)
+                values = _points(piece, highest) @ direction
+                best[k] = max(best[k], float(values.max(initial=-np.inf)))
+    return best.reshape(2, 3) * [[-1.0], [1.0]] + 0.0
+
+
+def _points(piece: FacePiece, places: Array) -> Array:
+    return piece.surface.jets(*places.T.copy())[:, 0]
+
+
+def _highest_inside(piece: FacePiece, places: Array, direction: Array) -> Array:
+    """Return places (m, 2) of the face where a coordinate may be largest, from others (k, 2)."""
+    low, high = np.array(piece.surface.domain).T
+    for _ in range(STEPS):
+        jets = piece.surface.jets(*places.T.copy()) @ direction
+        _, fu, fv, fuu, fuv, fvv = jets.T
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            moved = np.stack([fuv * fv - fvv * fu, fuv * fu - fuu * fv], axis=1)
+            moved /= (fuu * fvv - fuv**2)[:, None]
+        places = np.clip(places + np.where(np.isfinite(moved), moved, 0.0), low, high)
+    return places[piece.contains(places)]
+
+
+def _highest_on_border(piece: FacePiece, starts: Array, steps: Array, direction: Array) -> Array:
+    """Return the places (k, 2) on parts of a border where a coordinate is largest."""
+    share = np.full((len(starts), 1), 0.5)
+    for _ in range(STEPS):
+        jets = piece.surface.jets(*(starts + share * steps).T.copy()) @ direction
+        slope = np.einsum("ij,ij->i", jets[:, 1:3], steps)
+        squares = np.stack([steps[:, 0] ** 2, 2.0 * steps[:, 0] * steps[:, 1], steps[:, 1] ** 2])
+        bend = np.einsum("ij,ji->i", jets[:, 3:], squares)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            moved = np.where(bend < 0.0, -slope / bend, np.sign(slope))
+        share = np.clip(share + moved[:, None], 0.0, 1.0)
+    return starts + share * steps
