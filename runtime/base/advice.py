@@ -6,7 +6,7 @@ from pathlib import Path
 
 __all__ = ["CAD_SUFFIXES", "NO_CLOUDS", "NO_MESHES", "about_value", "file_advice", "is_mesh_file"]
 
-CAD_SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
+CAD_SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp", ".rle")
 _MESH_SUFFIXES = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf", ".3mf", ".vtk", ".vtu", ".vtp")
 NO_MESHES = (
     "meshes are not taken, because triangles have no curvature; give the CAD file that it was made "

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 
-__all__ = ["NOT_FINITE", "TEXTS", "BadFileError", "checked_format"]
+__all__ = ["HEAD", "NOT_FINITE", "TEXTS", "BadFileError", "checked_format", "format_of"]
 
 HEAD = 4096
 START_OF_STEP = re.compile(rb"(?<!END-)ISO-10303-21\s*;")
@@ -40,7 +40,7 @@ def checked_format(content: bytes) -> tuple[str, bool]:
     """
     if not content.strip():
         raise BadFileError("is empty.")
-    form = _format(content)
+    form = format_of(content[:HEAD])
     if form is None:
         raise BadFileError("is not a STEP, IGES or BREP file.")
     if form == "STEP" and END_OF_STEP not in content[-HEAD:]:
@@ -63,8 +63,8 @@ def _is_finite(content: bytes, form: str) -> bool:
     return form == "STEP" and not NOT_FINITE[form].search(TEXTS.sub(b"''", content))
 
 
-def _format(content: bytes) -> str | None:
-    head = content[:HEAD]
+def format_of(head: bytes) -> str | None:
+    """Return STEP, IGES or BREP, of which a file is by its first bytes; None if of no such."""
     if START_OF_STEP.search(head):
         return "STEP"
     if any(x in head for x in BREP):

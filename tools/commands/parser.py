@@ -71,8 +71,8 @@ A GeoTIFF, .tif or .tiff, holds elevations with their coordinates, read with pip
 
 In place of SURFACE, --formula gives x, y and z in terms of u and v.
 
-A STEP, IGES or BREP file is a CAD part, of which all faces are sampled: .step, .stp, .iges, .igs,
-.brep or .brp, read with pip install 'gaussmap[cad]'; or an .npz file of part.save.
+A STEP, IGES or BREP file is a CAD part, of which all faces are sampled, read with pip install
+'gaussmap[cad]'; or an .npz file of part.save.
 
 \b
 examples:

@@ -25,8 +25,8 @@ def read_part_file(named: Named) -> Part:
         return read_part(source)
     if not is_part_file(source):
         raise InputError(
-            f"'{source}' is no CAD part by its suffix; use one of {', '.join(CAD_SUFFIXES)}, or an "
-            ".npz file of part.save."
+            f"'{source}' is no STEP, IGES or BREP file ({', '.join(CAD_SUFFIXES)}), and no .npz "
+            "file of part.save."
         )
     from ..cad.reader import read_cad
 

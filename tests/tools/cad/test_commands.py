@@ -51,7 +51,7 @@ def test_sample(saved, capsys, main):
         (["sample", "part.npz", "-o", "part.npz"], "'part.npz' is read"),
         (["mesh", "part.npz", "-o", "o.ply"], "these are of a CAD part"),
         (["faces", "none.npz"], "'none.npz' cannot be read"),
-        (["faces", "part.txt"], "is no CAD part by its suffix"),
+        (["faces", "part.txt"], "is no STEP, IGES or BREP file"),
     ],
 )
 @pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
@@ -62,10 +62,19 @@ def test_errors(saved, capsys, arguments, message, main):
     assert message in error
 
 
-def test_without_open_cascade(tmp_path, capsys, monkeypatch, main):
-    """Without the extra, the error says how to install it; nothing else is needed for that."""
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("part.step", "ISO-10303-21;"),
+        ("part.RLE", ""),
+        ("part.txt", "DBRep_DrawableShape\n\nCASCADE Topology V1, (c) Matra-Datavision\n"),
+        ("part", "ISO-10303-21;"),
+    ],
+)
+def test_without_open_cascade(tmp_path, capsys, monkeypatch, main, name, content):
+    """Files of all suffixes are known; without the extra, the error says how to install it."""
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "part.step").write_text("ISO-10303-21;")
+    (tmp_path / name).write_text(content)
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
-    assert main(["sample", "part.step", "--count", "10", "-o", "out.ply"]) == 2
+    assert main(["sample", name, "--count", "10", "-o", "out.ply"]) == 2
     assert 'pip install "gaussmap[cad]"' in capsys.readouterr().err
