@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from ...runtime.base.errors import SurfaceError
+from ...runtime.base.checks import finite_array
+from ...runtime.base.errors import MissingFieldError, SurfaceError
 from ...runtime.base.threads import thread_count
 from ...runtime.base.trees import tree_of
 from ...runtime.density.coverage import coverage_by
@@ -109,10 +110,11 @@ def deviation_of(
     """Return what `Samples.normal_deviation` returns, for points and normals (N, 3)."""
     if len(points) == 0:
         return NormalDeviation(180.0, 180.0)
-    space = space_of(part, threads)
-    rows, workers = _places(space, len(points)), thread_count(threads)
-    nearest = tree_of(space.scaled_points(points)).query(rows[:, :3], workers=workers)[1]
-    chords = np.linalg.norm(rows[:, 3:6] - normals.astype(np.float64)[nearest], axis=1)
+    normals, space = finite_array(normals, (len(points), 3), "normals"), space_of(part, threads)
+    tree, workers = tree_of(space.scaled_points(points)), thread_count(threads)
+    rows = _places(space, len(points))
+    nearest = tree.query(rows[:, :3], workers=workers)[1]
+    chords = np.linalg.norm(rows[:, 3:6] - normals[nearest], axis=1)
     return NormalDeviation(_to_nearest(space, normals, rows), _degrees(chords))
 
 
@@ -128,8 +130,8 @@ def _places(space: Space, samples: int) -> Array:
     return rows[rows[:, 3:6].any(axis=1)]
 
 
-def _to_nearest(space: Space, normals: NDArray[np.floating], rows: Array) -> float:
-    distinct = np.unique(normals.astype(np.float64).round(9), axis=0)
+def _to_nearest(space: Space, normals: Array, rows: Array) -> float:
+    distinct = np.unique(normals.round(9), axis=0)
     return _degrees(tree_of(distinct).query(rows[:, 3:6], workers=thread_count(space.threads))[0])
 
 
@@ -145,7 +147,11 @@ def weights_of(part: Part, samples: Samples) -> Array:
     edges have none.
     """
     found, faces = np.zeros(len(samples)), samples.face_index
-    assert faces is not None
+    if faces is None:
+        raise MissingFieldError(
+            "weights of a part need the field 'face_index', and these samples hold "
+            f"{', '.join(samples.fields)} only."
+        )
     on_edge = samples.other_face_index
     inner = np.ones(len(samples), np.bool_) if on_edge is None else on_edge < 0
     space = space_of(part, None)

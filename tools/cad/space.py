@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ...runtime.base.checks import finite_array
 from ...runtime.base.errors import InputError
 from ...runtime.base.scales import scale_to_one
 from ...runtime.base.threads import over_ranges
@@ -161,8 +162,8 @@ class Space:
         return {x: getattr(self, x) for x in ("areas", "unit", "centre", "sizes")}
 
     def scaled_points(self, points: NDArray[np.floating]) -> Array:
-        """Return scaled points (N, 3)."""
-        return (points.astype(np.float64) - self.centre) * self.unit
+        """Return scaled points (N, 3); InputError unless they are finite."""
+        return (finite_array(points, (len(points), 3), "points") - self.centre) * self.unit
 
     # --- cells ------------------------------------------------------------------------------------
 

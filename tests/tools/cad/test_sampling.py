@@ -258,6 +258,21 @@ def test_unusable_arguments(cylinder, arguments, match):
         gm.sample(cylinder, **arguments)
 
 
+def test_samples_that_lack_what_is_needed(cylinder):
+    few = gm.sample(cylinder, 20, fields=("points", "normals"))
+    with pytest.raises(gm.errors.MissingFieldError, match="weights of a part need"):
+        few.weights()
+    arrays = {"points": few.points, "normals": few.normals}
+    for name in arrays:
+        unknown = {**arrays, name: np.where(np.arange(20)[:, None] == 7, np.nan, arrays[name])}
+        bad = gm.Samples(**unknown, report=few.report, surface=cylinder)
+        with pytest.raises(gm.errors.InputError, match=f"{name} holds NaN"):
+            bad.normal_deviation()
+        if name == "points":
+            with pytest.raises(gm.errors.InputError, match="points holds NaN"):
+                bad.coverage()
+
+
 def test_parts_without_faces(made):
     with pytest.raises(gm.errors.SurfaceError, match="has no face that can be sampled"):
         gm.sample(made.part([]), 10)
