@@ -73,7 +73,8 @@ for request in ({"count": 200}, {"coverage": 0.5}, {"angle": 30.0}, {"normals": 
     samples = gm.sample(torus, cells=(16, 16), **request)
 for density in ("gauss", "aligned", "isotropic", "uniform"):
     samples = gm.sample(torus, 200, cells=(16, 16), density=density)
-print(len(list(gm.sample_stream(torus, 200, cells=(16, 16)))), samples.summary(), samples.coverage())
+chunks = list(gm.sample_stream(torus, 200, cells=(16, 16)))
+print(len(chunks), samples.summary(), samples.coverage())
 tools = lambda: [x for x in sys.modules if x.startswith("gaussmap.tools")]
 print(tools())
 samples.weights()
