@@ -1,88 +1,142 @@
 """Mathematical text of users as SymPy expressions: nothing in a text is ever run as Python.
 
-The text is parsed by `ast`, and the expression built from the tree: numbers, arithmetic, the
-declared symbols, and the functions and constants that stand here. Numbers are bounded before they
-are computed, so that a short text cannot ask for a long computation.
+The text is parsed by `ast`, and the expression built from the tree: literals, arithmetic, the
+declared symbols, and the constants and functions that stand here. A value is a number or a truth
+value, and each function says which it takes. What SymPy may compute is bounded beforehand:
+constants that are not short are floating-point numbers, and steps and questions are counted.
 """
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterator, Mapping
-from typing import Any, NoReturn, cast
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from decimal import Decimal
+from itertools import islice
+from typing import Any, NamedTuple, NoReturn
 
 import sympy as sp
 from sympy.core.relational import Relational
 from sympy.functions.elementary.piecewise import ExprCondPair
 from sympy.logic.boolalg import Boolean, BooleanAtom, BooleanFunction
 
-__all__ = ["ReadingError", "depth", "read", "refuse_unusable"]
+__all__ = [
+    "FUNCTIONS",
+    "MOST_BITS",
+    "MOST_DERIVED",
+    "MOST_EXACT",
+    "MOST_STEPS",
+    "ReadingError",
+    "is_differentiable",
+    "read",
+    "refuse_unusable",
+]
 
 LONGEST_TEXT = 20_000  # characters
-DEEPEST_BRACKETS = 90  # Python's own parser takes 200
 DEEPEST_TREE = 200
-MOST_STEPS = 10_000  # operations and calls, those of sums counted for each term
+MOST_STEPS = 10_000  # literals, names, operations and calls, those of sums counted for each term
 MOST_BITS = 2048  # twice what a float64 can hold
-MOST_TERMS = 1000  # of a Sum or a Product
-MOST_COMPARED = 12  # values in Min and Max, which SymPy compares in pairs, at 5 ms each
-LARGEST_ARGUMENT = 100  # of functions that SymPy computes exactly, such as factorial
+MOST_PLAIN_BITS = 32  # of numbers whose roots and functions SymPy may look for exactly
+MOST_EXACT = 30  # numbers and operations in a constant that is not a float
 
-CONSTANTS = {
-    name: getattr(sp, name)
-    for name in (
-        "pi", "E", "I", "oo", "zoo", "nan", "GoldenRatio", "TribonacciConstant", "EulerGamma",
-        "Catalan", "true", "false",
-    )
-}  # fmt: skip
-
-FUNCTIONS = {
-    name: getattr(sp, name)
-    for name in (
-        "Abs", "Heaviside", "Max", "Min", "acos", "acosh", "acot", "acoth", "acsc", "acsch", "arg",
-        "asec", "asech", "asin", "asinh", "atan", "atan2", "atanh", "ceiling", "conjugate", "cos",
-        "cosh", "cot", "coth", "csc", "csch", "erf", "erfc", "floor", "frac", "im", "log", "re",
-        "sec", "sech", "sign", "sin", "sinc", "sinh", "tan", "tanh", "Mod", "Add", "Mul",
-        "And", "Or", "Not", "Xor", "ITE", "Eq", "Ne", "Lt", "Le", "Gt", "Ge",
-        "Integer", "Rational",
-    )
-} | {"abs": sp.Abs, "ln": sp.log}  # fmt: skip
-
-# SymPy computes these exactly where their arguments are numbers; some are polynomials then.
-EXACT = {
-    name: getattr(sp, name)
-    for name in (
-        "factorial", "factorial2", "binomial", "gamma", "RisingFactorial", "FallingFactorial",
-        "fibonacci", "lucas", "bernoulli", "harmonic", "catalan", "zeta", "KroneckerDelta",
-        "legendre", "assoc_legendre", "chebyshevt", "chebyshevu", "hermite", "laguerre",
-    )
-}  # fmt: skip
-
-# What may be left in an expression: whether its own kernel has it, each compiler says itself.
-USABLE = (
-    sp.Symbol, sp.Number, sp.NumberSymbol, type(sp.I), type(sp.zoo), sp.Add, sp.Mul, sp.Pow,
-    sp.exp, sp.Piecewise, ExprCondPair, sp.Tuple, sp.UnevaluatedExpr, sp.Sum, sp.Product,
-    Relational, BooleanAtom, BooleanFunction, sp.MatrixBase,
-    *(x for x in FUNCTIONS.values() if isinstance(x, type)),
-)  # fmt: skip
-
-COMPARISONS = {
-    ast.Lt: sp.Lt, ast.LtE: sp.Le, ast.Gt: sp.Gt, ast.GtE: sp.Ge, ast.Eq: sp.Eq, ast.NotEq: sp.Ne,
-}  # fmt: skip
+# A function costs SymPy about a microsecond times the square of the steps of its arguments. Where
+# SymPy asks for their signs it takes as long as for ASKING steps more.
+MOST_WORK = 1_000_000
+ASKING = 80
+MOST_DERIVED = 100_000  # numbers and operations in second derivatives
 
 
 class ReadingError(ValueError):
     """A text or an expression cannot be used; the message is the reason, without a full stop."""
 
 
+# --- what may stand in a text ---------------------------------------------------------------------
+
+
+class Function(NamedTuple):
+    """What SymPy calls it, what it takes (numbers or truth values), and how many of them."""
+
+    of: Callable[..., Any]
+    takes: type
+    counts: range
+    asks: bool
+
+
+def _functions(
+    names: str, takes: type = sp.Expr, counts: range = range(1, 2), asks: bool = False
+) -> dict[str, Function]:
+    return {name: Function(getattr(sp, name), takes, counts, asks) for name in names.split()}
+
+
+def _power(base: Any, exponent: Any) -> Any:  # noqa: ANN401 - SymPy has no types
+    """Return a power, if its numbers cannot become too large: SymPy computes 2**(10**9) + 1."""
+    bits = max((_bits(x) for x in base.atoms(sp.Number)), default=1)
+    for term in sp.Add.make_args(exponent):
+        if term.is_number and abs(_float(term)) * max(bits, 1) > MOST_BITS:
+            _refuse_size()
+    return sp.Pow(base, exponent)
+
+
+ONE, TWO, SOME = range(1, 2), range(2, 3), range(1, MOST_STEPS)
+
+FUNCTIONS = {
+    **_functions("sin cos tan cot sec csc asin acos atan acot asec acsc"),
+    **_functions("sinh cosh tanh coth sech csch asinh acosh atanh acoth asech acsch"),
+    **_functions("erf erfc sinc"),
+    **_functions("log", counts=range(1, 3)),
+    **_functions("Abs sign floor ceiling", asks=True),
+    **_functions("atan2 Lt Le Gt Ge Eq Ne", counts=TWO, asks=True),
+    **_functions("Min Max", counts=SOME, asks=True),
+    **_functions("And Or Xor", takes=Boolean, counts=SOME),
+    **_functions("Not", takes=Boolean),
+    **_functions("ITE", takes=Boolean, counts=range(3, 4)),
+    "exp": Function(lambda x: _power(sp.E, x), sp.Expr, ONE, False),
+    "sqrt": Function(lambda x: _power(x, sp.S.Half), sp.Expr, ONE, True),
+    "cbrt": Function(lambda x: _power(x, sp.Rational(1, 3)), sp.Expr, ONE, True),
+    "root": Function(lambda x, n: _power(x, _power(n, sp.S.NegativeOne)), sp.Expr, TWO, True),
+    "Pow": Function(_power, sp.Expr, TWO, True),
+    "Heaviside": Function(lambda x: (1 + sp.sign(x)) / 2, sp.Expr, ONE, True),
+}
+FUNCTIONS |= {"abs": FUNCTIONS["Abs"], "ln": FUNCTIONS["log"]}
+PARTED = ("Piecewise", "Sum", "Product")  # their arguments are no values
+
+CONSTANTS = {
+    name: getattr(sp, name)
+    for name in (
+        "pi", "E", "GoldenRatio", "TribonacciConstant", "EulerGamma", "Catalan", "true", "false",
+    )
+}  # fmt: skip
+
+UNREAL = ("I", "oo", "zoo", "nan")  # names of SymPy
+
+OPERATORS = {
+    ast.Lt: "Lt", ast.LtE: "Le", ast.Gt: "Gt", ast.GtE: "Ge", ast.Eq: "Eq", ast.NotEq: "Ne",
+    ast.BitAnd: "And", ast.BitOr: "Or", ast.Invert: "Not", ast.Not: "Not", ast.Pow: "Pow",
+}  # fmt: skip
+
+# What may be left in an expression: whether its own kernel has it, each compiler says itself.
+USABLE = (
+    sp.Symbol, sp.Number, sp.NumberSymbol, type(sp.I), sp.Add, sp.Mul, sp.Pow, sp.exp,
+    sp.Piecewise, ExprCondPair, sp.Tuple, sp.UnevaluatedExpr, sp.Sum, sp.Product,
+    Relational, BooleanAtom, BooleanFunction, sp.MatrixBase,
+    sp.Mod, sp.frac, sp.Heaviside, sp.re, sp.im, sp.arg, sp.conjugate,
+    *(x.of for x in FUNCTIONS.values() if isinstance(x.of, type)),
+)  # fmt: skip
+
+
+# --- checks ---------------------------------------------------------------------------------------
+
+
 def read(text: str, symbols: Mapping[str, Any] | None = None, exact: bool = False) -> sp.Basic:
     """Return the expression or condition that a text stands for.
 
     Names are first looked up in `symbols`; those that are unknown become symbols. `^` is a power.
-    With `exact`, decimal numbers are fractions. Raises ReadingError, with the reason, for anything
-    but mathematics, for functions that kernels do not have, and for what is too large.
+    With `exact`, decimal numbers are fractions, and no number is rounded. Raises ReadingError, with
+    the reason, for anything but real mathematics, for functions that are not in `FUNCTIONS`, and
+    for what is too large.
     """
     try:
-        expression = _Reader(_source(text), symbols or {}, exact).read()
+        expression = _Reader(text, symbols or {}, exact).read()
     except ReadingError:
         raise
     except (RecursionError, MemoryError):
@@ -95,22 +149,44 @@ def read(text: str, symbols: Mapping[str, Any] | None = None, exact: bool = Fals
 
 def refuse_unusable(expression: sp.Basic) -> None:
     """Raise ReadingError if an expression has parts that no kernel can have, or huge numbers."""
-    if depth(expression) > DEEPEST_TREE:
+    if _depth(expression) > DEEPEST_TREE:
         raise ReadingError("it is nested too deeply")
     for part in _parts(expression):
+        if part in (sp.nan, sp.zoo, sp.oo, -sp.oo):
+            raise ReadingError("it is not finite")
         if not isinstance(part, USABLE):
             _refuse_function(part.func.__name__)
-        if isinstance(part, sp.Number) and _bits(part) > MOST_BITS:
-            _refuse_size()
-        if (
-            isinstance(part, sp.Pow)
-            and part.exp.is_Rational
-            and abs(cast(Any, part.exp).p) > MOST_BITS
-        ):
+        exponent = part.exp if isinstance(part, sp.Pow) else sp.S.Zero
+        if _bits(part) > MOST_BITS or (exponent.is_Rational and abs(exponent) > MOST_BITS):
             _refuse_size()
 
 
-def depth(expression: sp.Basic) -> int:
+def is_differentiable(expressions: Iterable[sp.Basic]) -> bool:
+    """Say whether SymPy writes the second derivatives of expressions within some seconds."""
+    known: dict[sp.Basic, tuple[int, int, int]] = {}
+    return sum(_sizes(x, known)[2] for x in expressions) <= MOST_DERIVED
+
+
+def _sizes(x: sp.Basic, known: dict[sp.Basic, tuple[int, int, int]]) -> tuple[int, int, int]:
+    """Return about the sizes of an expression, of its first and of its second derivative."""
+    if x not in known:
+        parts = [_sizes(y, known) for y in x.args if isinstance(y, sp.Basic)]
+        size, first, second = (sum(y[k] for y in parts) for k in range(3))
+        size += 1
+        if isinstance(x, sp.Symbol):
+            first = 1
+        elif isinstance(x, Boolean):  # conditions are not differentiated
+            first = second = 0
+        elif not isinstance(x, sp.Add | sp.Piecewise | ExprCondPair):  # rules of product and chain
+            count = sum(y[1] > 0 for y in parts)
+            if isinstance(x, sp.Min | sp.Max):  # each is compared with all others
+                count **= 2
+            first, second = first + count * size, second + 2 * count * first + count**2 * size
+        known[x] = size, first, second
+    return known[x]
+
+
+def _depth(expression: sp.Basic) -> int:
     """Return how many operations and functions stand in one another, at most."""
     levels, part = -1, {expression}
     while part and levels <= DEEPEST_TREE:
@@ -142,29 +218,18 @@ def _refuse_syntax() -> NoReturn:
     raise ReadingError("it is not arithmetic with functions, as in 'sin(2*u)**2 + 1/3'")
 
 
-def _source(text: str) -> str:
-    """Return a text as `ast` reads it; ReadingError if it is too long or too deep for that."""
-    if len(text) > LONGEST_TEXT:
-        raise ReadingError(f"it is longer than {LONGEST_TEXT:,} characters")
-    depth = 0
-    for character in text:
-        depth += (character in "([{") - (character in ")]}")
-        if depth > DEEPEST_BRACKETS:
-            raise ReadingError("it is nested too deeply")
-    try:
-        return text.encode().decode().strip().replace("^", "**")
-    except UnicodeEncodeError:  # of lone surrogates
-        _refuse_syntax()
+# --- the reader -----------------------------------------------------------------------------------
 
 
 class _Reader:
     """Builds one expression from the syntax tree of a text."""
 
-    def __init__(self, source: str, symbols: Mapping[str, Any], exact: bool) -> None:
-        self.source, self.symbols, self.exact = source, dict(symbols), exact
-        self.depth = self.steps = self.pairs = 0
-        self.operations: dict[type, Callable[[Any], Any]] = {
-            ast.Constant: self._number,
+    def __init__(self, text: str, symbols: Mapping[str, Any], exact: bool) -> None:
+        self.source = text.strip().replace("^", "**")
+        self.symbols, self.exact = dict(symbols), exact
+        self.depth = self.steps = self.work = 0
+        self.readers: dict[type, Callable[[Any], Any]] = {
+            ast.Constant: self._literal,
             ast.Name: self._name,
             ast.BinOp: self._operation,
             ast.UnaryOp: self._signed,
@@ -173,192 +238,215 @@ class _Reader:
         }
 
     def read(self) -> sp.Basic:
+        if len(self.source) > LONGEST_TEXT:
+            raise ReadingError(f"it is longer than {LONGEST_TEXT:,} characters")
         try:
-            tree = ast.parse(self.source, mode="eval")
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # those of Python's parser, about '1or 2'
+                tree = ast.parse(self.source, mode="eval")
         except (SyntaxError, ValueError):
             _refuse_syntax()
         return self._of(tree.body)
 
-    def _of(self, node: ast.AST) -> Any:  # noqa: ANN401 - SymPy has no types
-        self.steps += 1
+    def _of(self, node: ast.AST, takes: type = sp.Basic) -> Any:  # noqa: ANN401
+        """Return the value of a node: a number (Expr) or a truth value (Boolean), as is taken."""
+        self._count(1)
         if self.depth > DEEPEST_TREE:
             raise ReadingError("it is nested too deeply")
-        if self.steps > MOST_STEPS:
-            raise ReadingError(f"it has more than {MOST_STEPS:,} operations")
-        operation = self.operations.get(type(node))
-        if operation is None:
+        reader = self.readers.get(type(node))
+        if reader is None:
             _refuse_syntax()
         self.depth += 1
-        value = operation(node)
+        value = self._bounded(reader(node))
         self.depth -= 1
-        return _bounded(value)
+        if takes is sp.Expr and not isinstance(value, sp.Expr):
+            raise ReadingError("it has a truth value where a number belongs")
+        if takes is Boolean and isinstance(value, sp.Expr):
+            raise ReadingError("it has a number where a truth value belongs")
+        return value
 
-    def _number(self, node: ast.Constant) -> Any:  # noqa: ANN401
+    def _number(self, node: ast.AST) -> Any:  # noqa: ANN401
+        return self._of(node, sp.Expr)
+
+    def _count(self, steps: int) -> None:
+        self.steps += steps
+        if self.steps > MOST_STEPS:
+            raise ReadingError(f"it has more than {MOST_STEPS:,} operations")
+
+    def _spend(self, size: int, times: int = 1) -> None:
+        self.work += times * size**2
+        if self.work > MOST_WORK:
+            raise ReadingError("its functions have more or longer arguments than SymPy can examine")
+
+    def _literal(self, node: ast.Constant) -> Any:  # noqa: ANN401
         value = node.value
         if isinstance(value, bool):
             return sp.true if value else sp.false
-        if isinstance(value, complex):
-            return sp.Float(value.imag) * sp.I
         if isinstance(value, int):
             return sp.Integer(value)
         if not isinstance(value, float):
             _refuse_syntax()
-        text = ast.get_source_segment(self.source, node) or ""
-        if not abs(value) < float("inf") or (
-            value == 0.0 and text.lower().split("e")[0].strip("0._")
-        ):
+        if not self.exact:
+            return sp.Float(value)
+        text = (ast.get_source_segment(self.source, node) or "").replace("_", "")
+        if abs(Decimal(text).adjusted()) > MOST_BITS:
             _refuse_size()
-        return sp.Rational(text.replace("_", "")) if self.exact else sp.Float(value)
+        return sp.Rational(text)
 
     def _name(self, node: ast.Name) -> Any:  # noqa: ANN401
         if node.id in self.symbols:
             return self.symbols[node.id]
-        if node.id in CONSTANTS:
-            return CONSTANTS[node.id]
-        if node.id in FUNCTIONS | EXACT | SPECIAL:
+        if node.id in FUNCTIONS or node.id in PARTED:
             raise ReadingError(f"it uses the function {node.id} without arguments")
-        return sp.Symbol(node.id)
+        if node.id in UNREAL:
+            raise ReadingError(f"it uses {node.id}, which is not a real number")
+        return CONSTANTS[node.id] if node.id in CONSTANTS else sp.Symbol(node.id)
 
     def _operation(self, node: ast.BinOp) -> Any:  # noqa: ANN401
-        if isinstance(node.op, ast.Add | ast.Sub):
-            first, rest = _chain(node, (ast.Add, ast.Sub))
-            terms = [self._of(first)]
-            for operator, operand in rest:
-                term = self._of(operand)
-                terms.append(-term if isinstance(operator, ast.Sub) else term)
-            return sp.Add(*terms)
-        if isinstance(node.op, ast.Mult | ast.Div | ast.Mod | ast.FloorDiv):
-            return self._product(node)
-        left, right = self._of(node.left), self._of(node.right)
+        start = self.steps
+        for kinds, joined in ((ast.Add | ast.Sub, sp.Add), (ast.Mult | ast.Div, sp.Mul)):
+            if isinstance(node.op, kinds):
+                return joined(*self._chain(node, kinds))
+        if not isinstance(node.op, ast.Pow | ast.Mod | ast.FloorDiv):
+            return self._function(OPERATORS.get(type(node.op), ""), [node.left, node.right])
+        left, right = self._number(node.left), self._number(node.right)
+        size = self.steps - start
         if isinstance(node.op, ast.Pow):
-            return _power(left, right)
-        if isinstance(node.op, ast.BitAnd):
-            return sp.And(left, right)
-        if isinstance(node.op, ast.BitOr):
-            return sp.Or(left, right)
-        _refuse_syntax()
+            whole = right.is_Integer
+            return _power(left, right) if whole else self._value("Pow", [left, right], size)
+        quotient = self._bounded(left * _power(right, sp.S.NegativeOne))
+        floor = self._value("floor", [quotient], size)
+        if isinstance(node.op, ast.FloorDiv):
+            return floor
+        self._count(size)  # of what is written twice
+        return left - right * floor
 
-    def _product(self, node: ast.BinOp) -> Any:  # noqa: ANN401
-        first, rest = _chain(node, (ast.Mult, ast.Div, ast.Mod, ast.FloorDiv))
-        factors = [self._of(first)]
-        for operator, operand in rest:
-            factor = self._of(operand)
-            if isinstance(operator, ast.Mult):
-                factors.append(factor)
+    def _chain(self, node: Any, kinds: Any) -> list[Any]:  # noqa: ANN401
+        """Return the terms of a - b + c, or the factors of a / b * c, however many they are."""
+        operands = []
+        while isinstance(node, ast.BinOp) and isinstance(node.op, kinds):
+            operands.append((node.op, node.right))
+            node = node.left
+        values = [self._number(node)]
+        for operator, operand in reversed(operands):
+            value = self._number(operand)
+            if isinstance(operator, ast.Sub):
+                value = -value
             elif isinstance(operator, ast.Div):
-                factors.append(_power(factor, sp.S.NegativeOne))
-            elif isinstance(operator, ast.Mod):
-                factors = [sp.Mod(_bounded(sp.Mul(*factors)), factor)]
-            else:
-                factors = [sp.floor(_bounded(sp.Mul(*factors)) / factor)]
-        return sp.Mul(*factors)
+                value = _power(value, sp.S.NegativeOne)
+            values.append(value)
+        return values
 
     def _signed(self, node: ast.UnaryOp) -> Any:  # noqa: ANN401
-        value = self._of(node.operand)
-        if isinstance(node.op, ast.USub):
-            return -value
-        return sp.Not(value) if isinstance(node.op, ast.Invert | ast.Not) else value
+        if isinstance(node.op, ast.Invert | ast.Not):
+            return self._function("Not", [node.operand])
+        value = self._number(node.operand)
+        return -value if isinstance(node.op, ast.USub) else value
 
     def _comparison(self, node: ast.Compare) -> Any:  # noqa: ANN401
-        relation = COMPARISONS.get(type(node.ops[0]))
-        if relation is None or len(node.ops) > 1:
+        if len(node.ops) > 1:
             _refuse_syntax()
-        return cast(Any, relation)(self._of(node.left), self._of(node.comparators[0]))
+        return self._function(OPERATORS.get(type(node.ops[0]), ""), [node.left, *node.comparators])
 
     def _call(self, node: ast.Call) -> Any:  # noqa: ANN401
         name = node.func.id if isinstance(node.func, ast.Name) else ""
         if not name or node.keywords:
             _refuse_syntax()
-        if name == "Piecewise":
-            return sp.Piecewise(*(self._pair(x) for x in node.args))
-        if name in ("Sum", "Product"):
-            return self._finite(node, sp.Add if name == "Sum" else sp.Mul)
-        if name not in FUNCTIONS | EXACT | SPECIAL:
+        if name in PARTED:
+            return self._piecewise(node) if name == "Piecewise" else self._finite(node, name)
+        if name not in FUNCTIONS:
             _refuse_function(name)
-        arguments = [self._of(x) for x in node.args]
-        if name in ("Min", "Max"):
-            self._count_compared(arguments)
-        if name in EXACT and any(
-            x.is_number and not abs(_value(x)) <= LARGEST_ARGUMENT for x in arguments
-        ):
-            _refuse_size()
-        return (FUNCTIONS | EXACT | SPECIAL)[name](*arguments)
+        return self._function(name, node.args)
 
-    def _count_compared(self, arguments: list[Any]) -> None:
-        """Refuse more pairs in all Min and Max than there are of MOST_COMPARED values."""
-        values = sum(len(x.args) if isinstance(x, sp.Min | sp.Max) else 1 for x in arguments)
-        self.pairs += values * values
-        if self.pairs > MOST_COMPARED**2:
-            raise ReadingError(f"its Min and Max compare more than {MOST_COMPARED} values")
-
-    def _pair(self, node: ast.AST) -> tuple[Any, Any]:
-        """Return a value and its condition, in Piecewise."""
-        if not isinstance(node, ast.Tuple) or len(node.elts) != 2:
+    def _function(self, name: str, nodes: list[ast.expr]) -> Any:  # noqa: ANN401
+        """Return a function of its arguments, whose count and types are checked."""
+        if name not in FUNCTIONS:
             _refuse_syntax()
-        return self._of(node.elts[0]), self._of(node.elts[1])
+        function, start = FUNCTIONS[name], self.steps
+        if len(nodes) not in function.counts:
+            raise ReadingError(f"it uses {name} with {len(nodes)} arguments")
+        values = [self._of(x, function.takes) for x in nodes]
+        return self._value(name, values, self.steps - start)
 
-    def _finite(self, node: ast.Call, joined: Callable[..., Any]) -> Any:  # noqa: ANN401
+    def _value(self, name: str, values: list[Any], size: int) -> Any:  # noqa: ANN401
+        """Return a function of values that were made in so many steps."""
+        function = FUNCTIONS[name]
+        if not self.exact and all(x.is_number for x in values):
+            plain = all(map(_is_plain, values))
+            return function.of(*(values if plain else map(_float, values)))
+        compared = sum(len(x.args) if isinstance(x, sp.Min | sp.Max) else 1 for x in values)
+        if function.asks:  # of each pair
+            pairs = max(compared * (compared - 1) // 2, 1)
+            self._spend(ASKING + min(size, 2 * size // compared), pairs)
+        else:
+            self._spend(size)
+        return function.of(*values)
+
+    def _piecewise(self, node: ast.Call) -> Any:  # noqa: ANN401
+        pairs = []
+        for pair in node.args:
+            start = self.steps
+            if not isinstance(pair, ast.Tuple) or len(pair.elts) != 2:
+                _refuse_syntax()
+            pairs.append((self._number(pair.elts[0]), self._of(pair.elts[1], Boolean)))
+            self._spend(self.steps - start + ASKING)
+        return sp.Piecewise(*pairs)
+
+    def _finite(self, node: ast.Call, name: str) -> Any:  # noqa: ANN401
         """Return a sum or product over whole numbers, as in Sum(u**k, (k, 0, 3)), term by term."""
         if len(node.args) != 2 or not isinstance(limits := node.args[1], ast.Tuple):
             _refuse_syntax()
         if len(limits.elts) != 3 or not isinstance(index := limits.elts[0], ast.Name):
             _refuse_syntax()
-        low, high = (self._of(x) for x in limits.elts[1:])
-        if not (low.is_Integer and high.is_Integer and high - low < MOST_TERMS):
-            raise ReadingError(f"a sum or product has no whole limits at most {MOST_TERMS} apart")
+        low, high = (self._number(x) for x in limits.elts[1:])
+        if not (low.is_Integer and high.is_Integer):
+            raise ReadingError(f"the limits of its {name} are not whole numbers")
         outside, terms = self.symbols, []
         for k in range(int(low), int(high) + 1):
             self.symbols = {**outside, index.id: sp.Integer(k)}
-            terms.append(self._of(node.args[0]))
+            terms.append(self._number(node.args[0]))
         self.symbols = outside
-        return joined(*terms)
+        return (sp.Add if name == "Sum" else sp.Mul)(*terms)
 
-
-def _chain(node: ast.AST, kinds: tuple[type, ...]) -> tuple[ast.AST, list[tuple[ast.AST, ast.AST]]]:
-    """Return the first operand of a - b + c, and the others with the operators before them."""
-    rest: list[tuple[ast.AST, ast.AST]] = []
-    while isinstance(node, ast.BinOp) and isinstance(node.op, kinds):
-        rest.append((node.op, node.right))
-        node = node.left
-    return node, rest[::-1]
-
-
-def _power(base: Any, exponent: Any) -> Any:  # noqa: ANN401
-    """Return a power, if its numbers cannot become too large: SymPy computes 2**(10**9) + 1."""
-    bits = max((_bits(x) for x in base.atoms(sp.Number)), default=1)
-    for term in sp.Add.make_args(exponent):
-        if term.is_number and abs(_value(term)) * max(bits, 1) > MOST_BITS:
+    def _bounded(self, value: Any) -> Any:  # noqa: ANN401
+        """Return a value, constants that are long as floats; ReadingError for what is no number."""
+        if isinstance(value, Boolean) or not value.is_number:
+            return value
+        rounded = _float(value)
+        if not (rounded.is_Number and rounded.is_finite):
+            raise ReadingError("it holds a number that is not real or not finite")
+        if _bits(rounded) > MOST_BITS or _bits(value) > MOST_BITS:
             _refuse_size()
-    return sp.Pow(base, exponent)
-
-
-def _root(base: Any, degree: Any) -> Any:  # noqa: ANN401
-    return _power(base, _power(degree, sp.S.NegativeOne))
-
-
-# Powers under other names.
-SPECIAL: dict[str, Callable[..., Any]] = {
-    "Pow": _power,
-    "exp": lambda x: _power(sp.E, x),
-    "sqrt": lambda x: _power(x, sp.S.Half),
-    "cbrt": lambda x: _root(x, sp.Integer(3)),
-    "root": _root,
-    "Float": lambda x: sp.Float(x),  # without its other argument, a number of digits
-}
-
-
-def _bounded(value: Any) -> Any:  # noqa: ANN401
-    """Return a value; ReadingError if it is a constant far outside the range of float64."""
-    if (
-        isinstance(value, Boolean)
-        or not value.is_number
-        or value.has(sp.oo, -sp.oo, sp.zoo, sp.nan)
-    ):
+        parts = list(islice(sp.preorder_traversal(value), MOST_EXACT + 1))
+        if self.exact and len(parts) > MOST_EXACT:
+            raise ReadingError("it holds a number that is too long to be exact")
+        if len(parts) > MOST_EXACT or not (self.exact or all(map(_is_arithmetic, parts))):
+            return rounded
         return value
-    parts = [value] if value.is_Number else value.evalf(8, maxn=60).as_real_imag()
-    if any(x.is_Number and _bits(x) > MOST_BITS for x in parts):
-        _refuse_size()
-    return value
+
+
+# --- numbers --------------------------------------------------------------------------------------
+
+
+def _is_arithmetic(part: sp.Basic) -> bool:
+    return isinstance(part, sp.Number | sp.NumberSymbol | sp.Add | sp.Mul | sp.Pow | sp.exp)
+
+
+def _is_plain(constant: Any) -> bool:  # noqa: ANN401
+    """Say whether SymPy knows at once where a function of this constant has an exact value."""
+    factor, rest = constant.as_coeff_Mul()
+    return _bits(factor) <= MOST_PLAIN_BITS and (rest is sp.S.One or rest.is_NumberSymbol)
+
+
+def _float(constant: Any) -> Any:  # noqa: ANN401
+    """Return a constant computed in float64: SymPy's `evalf` takes exponential time if nested."""
+    if constant.is_Rational:
+        return sp.Float(constant) if constant.is_finite else constant
+    if not constant.args:
+        return constant.evalf()
+    if constant.is_Pow and constant.exp.is_Rational:
+        return sp.Pow(_float(constant.base), constant.exp)
+    return constant.func(*map(_float, constant.args))
 
 
 def _bits(number: Any) -> int:  # noqa: ANN401
@@ -369,11 +457,3 @@ def _bits(number: Any) -> int:  # noqa: ANN401
         _, mantissa, exponent, length = number._mpf_
         return abs(exponent + length) if mantissa else 0
     return 0
-
-
-def _value(constant: Any) -> complex:  # noqa: ANN401
-    """Return about what a constant is; infinity if that is not known."""
-    try:
-        return complex(constant.evalf(8, maxn=60))
-    except (TypeError, ValueError, OverflowError):
-        return complex("inf")

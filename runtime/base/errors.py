@@ -163,6 +163,11 @@ def shown(value: object) -> str:
         text = " ".join(repr(value).split())
     except Exception:  # long integers, and exceptions of users' objects
         text = f"something of type {type(value).__name__}"
+    return clipped(text)
+
+
+def clipped(text: str) -> str:
+    """Return a text for a message, the beginning of a long one."""
     text = text.encode("utf-8", "backslashreplace").decode()
     return text if len(text) <= LONGEST_SHOWN else f"{text[: LONGEST_SHOWN - 1]}…"
 

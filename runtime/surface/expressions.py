@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base import bridge
-from ..base.errors import InputError, shown
+from ..base.errors import InputError, clipped, shown
 
 if TYPE_CHECKING:
     import sympy
@@ -29,20 +29,19 @@ __all__ = [
 
 
 def as_position(position: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> tuple[Any, ...]:
-    """Return three expressions in two symbols, or two in one; InputError if they are not."""
-    import sympy as sp
+    """Return three expressions in two symbols, or two in one; InputError if they are not.
 
+    They are in these symbols whatever is assumed about those of the same name in an expression.
+    """
     by_name = {symbol.name: symbol for symbol in symbols}
     expressions = [as_expression(entry, by_name) for entry in _coordinates(position, len(symbols))]
-    if any(e.has(sp.nan, sp.zoo) for e in expressions):
-        raise InputError(f"position is not finite: {shown(position)}.")
     expressions = [
-        e.subs({s: by_name[s.name] for s in e.free_symbols if s.name in by_name})
+        e.xreplace({s: by_name[s.name] for s in e.free_symbols if s.name in by_name})
         for e in expressions
     ]
     unknown = set().union(*(e.free_symbols for e in expressions)) - set(symbols)
     if unknown:
-        names = ", ".join(sorted(map(str, unknown)))
+        names = clipped(", ".join(sorted(map(str, unknown))))
         raise InputError(f"position holds symbols that are neither parameter nor number: {names}.")
     return tuple(expressions)
 
@@ -81,7 +80,7 @@ def _coordinates(position: Sequence[Any], parameters: int) -> tuple[Any, ...]:
 
 
 def two_symbols(parameters: Sequence[Any]) -> list[sympy.Symbol]:
-    """Return the parameters of a surface, symbols or their names; InputError if they are not."""
+    """Return real symbols for the parameters of a surface, symbols or names; InputError if not."""
     try:
         u, v = (_symbol(x) for x in parameters)
     except (TypeError, ValueError):
@@ -92,7 +91,7 @@ def two_symbols(parameters: Sequence[Any]) -> list[sympy.Symbol]:
 
 
 def one_symbol(parameter: sympy.Symbol | str) -> list[sympy.Symbol]:
-    """Return the parameter of a curve, a symbol or its name; InputError if it is not."""
+    """Return a real symbol for the parameter of a curve, a symbol or a name; InputError if not."""
     symbol = _symbol(parameter)
     if symbol is None:
         raise InputError(f"the parameter must be a SymPy symbol such as t, not {shown(parameter)}.")
@@ -102,9 +101,11 @@ def one_symbol(parameter: sympy.Symbol | str) -> list[sympy.Symbol]:
 def _symbol(entry: object) -> sympy.Symbol | None:
     import sympy as sp
 
-    if isinstance(entry, str) and entry.isidentifier():
-        return sp.Symbol(entry)
-    return entry if isinstance(entry, sp.Symbol) else None
+    if isinstance(entry, sp.Symbol):
+        entry = entry.name
+    elif not isinstance(entry, str) or not entry.isidentifier():
+        return None
+    return sp.Symbol(entry, real=True)
 
 
 def as_expression(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401 - SymPy has no types
@@ -115,7 +116,7 @@ def as_expression(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401 -
     import sympy as sp
 
     expression = _read(entry, symbols)
-    if not isinstance(expression, sp.Expr | sp.MatrixBase):
+    if not isinstance(expression, sp.Expr) or expression.is_Matrix:
         raise InputError(f"{shown(entry)} is not a SymPy expression.")
     return expression
 

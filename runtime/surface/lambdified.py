@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base import bridge
 from ..base.errors import InputError
 from .derivatives import NAMES, Differentiable
 from .expressions import as_position
@@ -19,8 +20,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Expressions", "compiled"]
 
-# Expressions with more operations are not differentiated: derivatives would take minutes.
-MOST_OPERATIONS = 2000
 PROBES = np.array([0.25, 0.75])  # for which derivatives are tried, whatever they are there
 
 
@@ -93,12 +92,11 @@ def _jet(expressions: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> list[An
     """Return positions and derivatives, one after the other; None where SymPy has none."""
     import sympy as sp
 
-    if sum(x.count_ops() for x in expressions) > MOST_OPERATIONS:
+    if not bridge.reading().is_differentiable(expressions):
         return None
-    real = {x: sp.Dummy(x.name, real=True) for x in symbols}  # |u| has no derivative if u is not
-    u, v = real.values()
+    u, v = symbols
     try:
-        x = [_with_floor(e.xreplace(real)) for e in expressions]
+        x = [_with_floor(e) for e in expressions]
         x_u, x_v = ([_derivative(e, by) for e in x] for by in (u, v))
         x_uu, x_uv = ([_derivative(e, by) for e in x_u] for by in (u, v))
         x_vv = [_derivative(e, v) for e in x_v]
@@ -107,7 +105,7 @@ def _jet(expressions: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> list[An
     jet = [*x, *x_u, *x_v, *x_uu, *x_uv, *x_vv]
     if any(e.has(sp.Derivative, sp.Subs, sp.zoo, sp.nan) for e in jet):
         return None
-    return [e.xreplace({y: x for x, y in real.items()}) for e in jet]
+    return jet
 
 
 def _with_floor(expression: Any) -> Any:  # noqa: ANN401 - SymPy has no types
@@ -138,13 +136,15 @@ def _differentiated(expression: Any) -> Any:  # noqa: ANN401
 
 
 def _lambdified(symbols: Sequence[sympy.Symbol], expressions: Sequence[Any]) -> Callable[..., Any]:
-    """Return a NumPy function of expressions; InputError if NumPy lacks one of their functions."""
+    """Return a NumPy function of expressions; InputError if they are nested too deeply."""
     import sympy as sp
 
-    if lacking := set().union(*(e.atoms(sp.erf, sp.erfc) for e in expressions)):
-        name = min(x.func.__name__ for x in lacking)
-        raise InputError(f"position uses {name}, which NumPy does not have.")
+    modules: list[Any] = ["numpy"]
+    if any(e.has(sp.erf, sp.erfc) for e in expressions):  # which NumPy does not have
+        from scipy.special import erf, erfc
+
+        modules.insert(0, {"erf": erf, "erfc": erfc})
     try:
-        return sp.lambdify(symbols, list(expressions), modules="numpy", cse=True, dummify=True)
+        return sp.lambdify(symbols, list(expressions), modules=modules, cse=True, dummify=True)
     except (RecursionError, MemoryError, SyntaxError):  # SyntaxError: too many brackets
         raise InputError("position is nested too deeply to be compiled.") from None

@@ -165,9 +165,10 @@ class Surface(SurfaceValues):
     ) -> Surface:
         """Make a surface of three SymPy expressions, or texts, in two parameters.
 
-        Texts are arithmetic with `+ - * / ** ^ // %`, SymPy's elementary functions, `Piecewise`,
-        `Max`, `Sum(f, (k, 0, 9))`, and what SymPy computes exactly, such as `legendre(4, u)` or
-        `factorial(5)`. They are never run as Python.
+        Texts are real arithmetic with `+ - * / ** ^ // %`, the elementary functions by their names
+        in SymPy, `erf`, `erfc`, `sinc`, `Abs`, `sign`, `floor`, `ceiling`, `Heaviside`, `Min`,
+        `Max`, `Piecewise((u, u < v), (v, True))`, and `Sum(u**k, (k, 0, 9))` or `Product`, whose
+        terms are written out. They are never run as Python.
 
         Parameters
         ----------
@@ -191,8 +192,9 @@ class Surface(SurfaceValues):
         ------
         InputError
             Unless there are three expressions without further symbols, and if one uses another
-            function, is longer than 20,000 characters, nested too deeply, or holds numbers such as
-            9**9**9; for domain and boundary conditions as `from_callable`.
+            function or a truth value as a number, holds complex numbers or such as 9**9**9, or is
+            too long or nested too deeply for SymPy; for domain and boundary conditions as
+            `from_callable`.
 
         Examples
         --------

@@ -1,47 +1,260 @@
-"""Texts of users, read as mathematics."""
+"""Texts of users: what they mean, their two types, and what SymPy may compute for them."""
 
 from typing import Any, cast
 
 import pytest
 import sympy as sp
 from gaussmap.symbolic.expression import NORMAL, kernel_source
-from gaussmap.symbolic.reading import MOST_TERMS, ReadingError, read
+from gaussmap.symbolic.reading import (
+    FUNCTIONS,
+    MOST_BITS,
+    MOST_DERIVED,
+    MOST_EXACT,
+    MOST_STEPS,
+    ReadingError,
+    is_differentiable,
+    read,
+)
+from hypothesis import given
+from hypothesis import strategies as st
+from sympy.logic.boolalg import Boolean
+
+SYMBOLS = {name: sp.Symbol(name, real=True) for name in ("u", "v")}
+u, v = SYMBOLS.values()
+LONG = "+".join(f"{k}*u**{k}*v" for k in range(1, 161))  # 961 steps
+
+
+def refused(text: str, reason: str, **named: Any) -> None:
+    with pytest.raises(ReadingError, match=reason):
+        read(text, SYMBOLS, **named)
+
+
+def size(expression: sp.Basic) -> int:
+    return sum(1 for _ in sp.preorder_traversal(expression))
+
+
+# --- what texts mean ------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
     ("text", "expression"),
     [
         ("u^2 + 1/3", "u**2 + 1/3"),
-        ("-2*u % 3", "Mod(-2*u, 3)"),
+        ("1 - u - v + 2*u/v/3", "1 - u - v + 2*u/(3*v)"),
+        ("-2*u % 3", "-2*u - 3*floor(-2*u/3)"),
         ("7*u // 2", "floor(7*u/2)"),
         ("root(u, 3) + cbrt(u) + sqrt(u)", "sqrt(u) + 2*u**Rational(1, 3)"),
         ("Sum(cos(k*u)/k, (k, 1, 3))", "cos(u) + cos(2*u)/2 + cos(3*u)/3"),
         ("Product(u + k, (k, 0, 1))", "u*(u + 1)"),
+        ("Sum(Product(u + k, (u, 1, k)), (k, 2, 3)) + u", "132 + u"),
         ("Piecewise((u, u < 1/2), (1, True))", "Piecewise((u, u < 1/2), (1, True))"),
         ("(u > 0) & ~(u > 1) | (u == 3)", "Eq(u, 3) | ((u > 0) & (u <= 1))"),
-        ("legendre(2, u)", "3*u**2/2 - 1/2"),
-        ("factorial(5)*binomial(4, 2)", "720"),
+        ("ITE(u > 1, v > 0, sqrt(2) < 3/2)", "ITE(u > 1, v > 0, True)"),
         ("exp(-3)*E**3*pi", "pi"),
         ("abs(u) - Abs(u) + ln(u)/log(u)", "1"),
-        ("re(2 + 3j)", "2"),
+        ("log(8, 2) + cos(pi/3) + atan(1)", "3 + 1/2 + pi/4"),
+        ("2*Heaviside(u) - sign(u)", "1"),
+        ("sqrt(8) + sqrt(u**2)", "2*sqrt(2) + Abs(u)"),
     ],
 )
 def test_mathematics_is_read(text: str, expression: str) -> None:
-    symbols = {"u": sp.Symbol("u", real=True)}
-    assert read(text, symbols) == cast(Any, sp.sympify)(expression, locals=symbols)
+    assert read(text, SYMBOLS) == cast(Any, sp.sympify)(expression, locals=SYMBOLS)
 
 
-def test_sums_are_bounded() -> None:
-    assert read(f"Sum(k, (k, 1, {MOST_TERMS}))") == MOST_TERMS * (MOST_TERMS + 1) // 2
-    with pytest.raises(ReadingError, match="whole limits"):
-        read(f"Sum(k, (k, 0, {MOST_TERMS}))")
+def test_constants_are_floats_unless_they_are_short() -> None:
+    assert read("sin(1)*u", SYMBOLS) == sp.Float(0.8414709848078965) * u
+    many = read("+".join(f"sqrt({k})" for k in range(MOST_EXACT)))
+    assert many.is_Float
+    assert float(cast(Any, many)) == pytest.approx(
+        sum(k**0.5 for k in range(MOST_EXACT)), rel=1e-15
+    )
 
 
-def test_decimals_are_exact_where_asked() -> None:
+def test_exact_numbers_are_not_rounded() -> None:
     assert read("0.1 + 2.5e-3", exact=True) == sp.Rational(41, 400)
+    assert read("sqrt(1 + sqrt(2))*sin(1)", exact=True) == sp.sqrt(1 + sp.sqrt(2)) * sp.sin(1)
+    refused("+".join(f"sqrt({k})" for k in range(MOST_EXACT)), "too long to be exact", exact=True)
+    refused("1e-99999", "too large", exact=True)
 
 
 def test_high_powers_are_compiled() -> None:
     """A power is no product of a thousand factors."""
     power: Any = read("n_x**1000 + 1", {str(x): x for x in NORMAL})
     assert "math.pow(n_x, 1000)" in kernel_source(power)
+
+
+# --- numbers and truth values ---------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "sech(Pow(pi*2, 2 >= 1))",
+        "acsch(2 < 3)",
+        "atan2(E, 10**50) + (3 < 3)",
+        "atan(Eq(atan2(10**50, tan(tan(1))), 99))",
+        "u + True",
+        "-(u > 0)",
+        "2*(u > 0)",
+        "u**(u > 0)",
+        "(u > 0) % 2",
+        "(u > 0) < 1",
+        "Max(u, True)",
+        "Piecewise((u > 0, u > 0), (1, True))",
+        "Sum(u > k, (k, 0, 2))",
+        "Sum(u, (k, 0, True))",
+    ],
+)
+def test_a_truth_value_is_no_number(text: str) -> None:
+    refused(text, "truth value where a number belongs")
+
+
+@pytest.mark.parametrize(
+    "text", ["u & v", "(u > 0) | 1", "~u", "not 1", "And(u, u > 0)", "Piecewise((u, u), (1, True))"]
+)
+def test_a_number_is_no_truth_value(text: str) -> None:
+    refused(text, "number where a truth value belongs")
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("sqrt(-1)*u", "not real or not finite"),
+        ("asin(2)", "not real or not finite"),
+        ("log(0)", "not real or not finite"),
+        ("0**-1", "not real or not finite"),
+        ("Piecewise((1, False))", "not real or not finite"),
+        ("u/0", "not finite"),
+        ("1e999", "not real or not finite"),
+        ("I*u", "uses I, which is not a real number"),
+        ("2 >= oo", "uses oo, which is not a real number"),
+        ("sin(u, v)", "uses sin with 2 arguments"),
+        ("Max()", "uses Max with 0 arguments"),
+        ("u + cos", "uses the function cos without arguments"),
+        ("Sum", "uses the function Sum without arguments"),
+        ("Sum(u, (k, 0, v))", "limits of its Sum are not whole"),
+        ("0 < u < 1", "not arithmetic"),
+        ("3j", "not arithmetic"),
+        ("1or 2", "not arithmetic"),
+    ],
+)
+def test_what_is_no_real_number(text: str, reason: str) -> None:
+    refused(text, reason)
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["factorial2", "harmonic", "hermite", "FallingFactorial", "Mod", "gamma", "legendre", "re"],
+)
+def test_functions_that_are_not_listed(name: str) -> None:
+    refused(f"u + {name}(3, u)", f"uses {name}, which kernels cannot compute")
+
+
+# --- what SymPy may compute -----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"Sum(u, (k, 0, {MOST_STEPS}))",
+        "Sum(u, (k, 1, 10**9))",
+        "Sum(Sum(Sum(u*k*j*i, (k, 1, 999)), (j, 1, 999)), (i, 1, 999))",
+        "+".join("u" * (MOST_STEPS // 2)) + "-u*v" * 2,
+    ],
+)
+def test_steps_are_counted(text: str) -> None:
+    refused(text, r"more than 10,000 operations|nested too deeply")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"Abs({LONG})",
+        f"Max({LONG}, u, v)",
+        f"{LONG} < 1",
+        f"Piecewise((u, {LONG} < 1), (v, True))",
+        f"sin({LONG}) + cos({LONG})",
+        f"({LONG})**(1/3)",
+        f"v**({LONG})",
+        f"({LONG}) % 1",
+        "(" * 12 + "u" + "%3 + v)" * 12,
+        "sqrt(1 + " * 60 + "u" + ")" * 60,
+        f"Max({', '.join(f'sin({k}*u)' for k in range(24))})",
+        f"Min({', '.join(f'Max(u, cos({k}*u))' for k in range(9))})",
+        "Sum(Abs(u - k), (k, 1, 200))",
+        "Piecewise(" + ",".join(f"({k}, u < {k})" for k in range(200)) + ")",
+    ],
+)
+def test_questions_to_sympy_are_counted(text: str) -> None:
+    refused(text, "than SymPy can examine")
+
+
+def test_constants_cost_nothing_however_many_they_are() -> None:
+    total = read("Sum(floor(sqrt(2)*k) + Max(sin(k), cos(k)), (k, 1, 120))")
+    assert total.is_Float
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "sin(" * 90 + "u*v" + ")" * 90,
+        "Product(u + k*v, (k, 1, 60))",
+        "(1 + " * 40 + "u*v" + ")**2*v" * 40,
+        "Piecewise((Product(u + k*v, (k, 1, 60)), u > v), (1, True))",
+    ],
+)
+def test_derivatives_that_are_not_written(text: str) -> None:
+    assert not is_differentiable([read(text, SYMBOLS)])
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "(2 + cos(v))*cos(u)",
+        "sin(" * 15 + "u*v" + ")" * 15,
+        "Product(u + k*v, (k, 1, 9))",
+        "+".join(f"u**{j}*v**{k}" for j in range(9) for k in range(9)),
+        "exp(-u**2 - v**2)*(u + v)**3/(1 + u*v)",
+    ],
+)
+def test_derivatives_are_as_large_as_estimated(text: str) -> None:
+    """SymPy shares and drops terms; what it writes is never larger by more than constants."""
+    expression = cast(sp.Expr, read(text, SYMBOLS))
+    assert is_differentiable([expression])
+    count = 1
+    while is_differentiable([expression] * count):
+        count *= 2
+    estimate = MOST_DERIVED / count  # to a factor of two
+    largest = max(size(sp.diff(expression, x, y)) for x in (u, v) for y in (u, v))
+    assert largest < 4 * estimate
+
+
+NUMBERS = st.sampled_from(["0", "1", "2", "-1", "0.5", "1/3", "pi", "E", "10**50", "1e300", "99"])
+ATOMS = NUMBERS | st.sampled_from(["u", "v", "u", "v", "True", "u > v"])
+NAMES = st.sampled_from(sorted(FUNCTIONS))
+SIGNS = st.sampled_from(["+", "-", "*", "/", "**", "%", "//", "<", ">=", "==", "&", "|"])
+
+
+def _larger(texts: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
+    calls = st.builds(lambda f, x: f"{f}({', '.join(x)})", NAMES, st.lists(texts, max_size=3))
+    operations = st.builds(lambda a, sign, b: f"({a}) {sign} ({b})", texts, SIGNS, texts)
+    pieces = st.builds(lambda a, b, c: f"Piecewise(({a}, {b}), ({c}, True))", texts, texts, texts)
+    sums = st.builds(lambda a, n: f"Sum({a}*k, (k, 1, {n}))", texts, st.integers(0, 10**9))
+    return calls | operations | operations | pieces | sums
+
+
+TEXTS = st.recursive(ATOMS, _larger, max_leaves=25)
+
+
+@given(text=TEXTS)
+def test_any_text_is_read_or_refused(text: str) -> None:
+    """No other error and no warning; and what is read is real, typed and bounded."""
+    try:
+        value = read(text, SYMBOLS)
+    except ReadingError:
+        return
+    assert isinstance(value, sp.Expr | Boolean)
+    assert value.free_symbols <= {u, v}
+    assert size(value) <= 2 * MOST_STEPS
+    assert not value.has(sp.nan, sp.zoo, sp.oo, sp.I)
+    assert all(abs(x.p) < 2**MOST_BITS > x.q for x in cast(Any, value.atoms(sp.Rational)))

@@ -14,7 +14,7 @@ from numba.core.errors import NumbaError
 from numpy.typing import NDArray
 
 from ...runtime.base import bridge
-from ...runtime.base.errors import InputError, shown
+from ...runtime.base.errors import InputError, clipped, shown
 from ...runtime.surface.expressions import as_condition, as_expression
 from .branches import Sheets, curvatures
 
@@ -22,9 +22,6 @@ if TYPE_CHECKING:
     import sympy
 
 __all__ = ["ExpressionSource"]
-
-LONGEST_TEXT = 60
-DEEPEST = 40  # second derivatives of deeper expressions take minutes
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,13 +38,12 @@ class ExpressionSource:
     @classmethod
     def checked(cls, h: object, normal: Sequence[Any], domain: object) -> ExpressionSource:
         """Make one from what a user gives; InputError if it cannot be used."""
-        depth = bridge.reading().depth
         names = _names(normal)
         expression = _in_normal(as_expression(h, _symbols(names)), names, "h")
         condition = _condition(domain, names)
-        if max(depth(expression), depth(condition)) > DEEPEST:
+        if not bridge.reading().is_differentiable([expression]):
             raise InputError(
-                f"h = {_short(expression)} is nested too deeply to be differentiated; expand it."
+                f"h = {_short(expression)} is too long, or nested too deeply, to be differentiated."
             )
         try:
             source = bridge.kernel_source(expression, condition)
@@ -129,14 +125,11 @@ def _in_normal(expression: Any, names: Sequence[str], what: str) -> Any:  # noqa
     """Write an expression in the real symbols n_x, n_y, n_z; InputError if there are others."""
     import sympy as sp
 
-    if expression.is_Matrix:
-        raise InputError(f"{what} must be a number for each normal, not a matrix.")
     if unknown := sorted({x.name for x in expression.free_symbols} - set(names)):
         raise InputError(
-            f"{what} holds symbols that are no component of the normal: {', '.join(unknown)}."
+            f"{what} holds symbols that are no component of the normal: "
+            f"{clipped(', '.join(unknown))}."
         )
-    if expression.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
-        raise InputError(f"{what} is not finite: {_short(expression)}.")
     if expression.has(sp.I):
         raise InputError(f"{what} is not real: {_short(expression)}.")
     components = dict(zip(names, bridge.normal_components(), strict=True))
@@ -176,7 +169,6 @@ def _culprits(*expressions: Any) -> str:  # noqa: ANN401 - SymPy has no types
 
 def _short(expression: object) -> str:
     try:
-        text = str(expression)
+        return clipped(str(expression))
     except RecursionError:
         return "…"
-    return text if len(text) <= LONGEST_TEXT else f"{text[: LONGEST_TEXT - 1]}…"

@@ -58,7 +58,7 @@ def test_constant_expressions_and_scalars():
     ("position", "complaint"),
     [(("t",), "two SymPy expressions"), (("t", "t", "t"), "two SymPy expressions"),
      ("tt", "two SymPy expressions"), (None, "two SymPy expressions"), (("t", "s"), "symbols .*s"),
-     (("t", "("), "not a SymPy expression"), (("t", "zoo"), "not finite")],
+     (("t", "("), "not a SymPy expression"), (("t", "zoo"), "not a real number")],
 )  # fmt: skip
 def test_unusable_expressions(position, complaint):
     refused(gm.errors.InputError, complaint, gm.curves.Curve.from_sympy, position, "t", (0, 1))
