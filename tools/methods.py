@@ -127,9 +127,9 @@ def mesh(
     prefer : {"shape", "normals"}, default "shape"
         - "shape": triangles are Delaunay on the surface, and have angles as large as the
           samples allow. A sample so close to others that a smallest angle stays below 5° is
-          left out, and further ones until 95 % of the smallest angles are 25° at least. A grid
-          keeps its samples, in long cells, too; for well-shaped triangles sample with
-          ``density="isotropic"``.
+          left out, and further ones until 95 % of the smallest angles are 25° at least
+          (`Mesh.left_out` counts them). A grid, or a part of one, keeps its samples, in long
+          cells, too; for well-shaped triangles sample with ``density="isotropic"``.
         - "normals": triangles deviate from the normals at their corners as little as the
           samples allow. They are long and thin where the surface is curved in one direction
           only, and one sample is left out where a triangle would have no area.
@@ -144,7 +144,8 @@ def mesh(
     Raises
     ------
     MissingFieldError
-        Unless the samples have the fields points, normals and uv.
+        Unless the samples have the fields points, normals and uv; those on a grid (`density` of
+        the report) need row and column, too.
     InputError
         Without samples or spline, if a sample lies outside its domain, if `angle` leaves no
         triangle, and, without it, if there are too few samples for a mesh that closes.

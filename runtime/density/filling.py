@@ -170,7 +170,8 @@ class Filling:
         reached = None if asked is None else self._coverage(cover, asked)
         density = None
         if self.request.density in BY_CURVATURE:
-            density = "isotropic" if cover.grid is None else "aligned"
+            is_on_grid = cover.grid is not None and (cover.grid.rows >= 0).any()
+            density = "aligned" if is_on_grid else "isotropic"
         report = replace(report, coverage=reached, angle=angle, density=density)
         return self.geometry.samples(arrays, report, unrefined)
 

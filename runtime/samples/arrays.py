@@ -12,11 +12,19 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..base.checks import checked_array, checked_rows
-from ..base.errors import InputError, MissingFieldError
+from ..base.errors import InputError
 from ..base.tolerances import DERIVATIVE_ERROR, PATCH_ERROR
 from ..spline.spline import Spline
 from ..surface.surface import Surface
-from .fields import COLUMNS, DERIVED, OPTIONAL_NAMES, REAL_NAMES, dtype_of, row_shape
+from .fields import (
+    COLUMNS,
+    DERIVED,
+    OPTIONAL_NAMES,
+    REAL_NAMES,
+    dtype_of,
+    missing_fields,
+    row_shape,
+)
 from .offset_of import OffsetOf
 from .report import SamplingReport, common_report
 from .whole import Whole
@@ -79,11 +87,7 @@ class SampleArrays:
     def __getattr__(self, name: str) -> Any:  # noqa: ANN401
         if name in COLUMNS or name in DERIVED:
             needed = [x for x in DERIVED.get(name, (name,)) if x not in self.fields]
-            subject = "" if name in COLUMNS else f"{name} needs {' and '.join(needed)}, but "
-            raise MissingFieldError(
-                f"{subject}these samples hold {', '.join(self.fields)} only; "
-                f"add {' and '.join(repr(x) for x in needed)} to fields=... when sampling."
-            )
+            raise missing_fields(self.fields, needed, "" if name in COLUMNS else name)
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 from warnings import catch_warnings, simplefilter
 
-from ..base.errors import InputError, shown
+from ..base.errors import InputError, MissingFieldError, shown
 
 if TYPE_CHECKING:  # names of fields stand in the help of commands, which is quick without NumPy
     import numpy as np
@@ -34,6 +34,7 @@ __all__ = [
     "checked_fields",
     "columns_of",
     "dtype_of",
+    "missing_fields",
     "new_field",
     "row_shape",
 ]
@@ -194,6 +195,22 @@ def checked_fields(
             raise InputError(f'{name} is a field of samples on a grid only; see density="aligned".')
         known_name(name, known, "field")
     return tuple(name for name in known if name in names)
+
+
+def missing_fields(
+    held: Sequence[str], lacking: Sequence[str], subject: str = ""
+) -> MissingFieldError:
+    """Return the error for samples that hold some fields and lack those that a subject needs."""
+    needs = f"{subject} needs {_listed(lacking)}, but " if subject else ""
+    return MissingFieldError(
+        f"{needs}these samples hold {', '.join(held)} only; "
+        f"add {_listed([repr(name) for name in lacking])} to fields=... when sampling."
+    )
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Return "a", "a and b" or "a, b and c"."""
+    return " and ".join([", ".join(names[:-1]), names[-1]] if names[1:] else names)
 
 
 def checked_dtype(dtype: DTypeLike) -> np.dtype[np.floating]:

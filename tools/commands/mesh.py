@@ -15,8 +15,7 @@ __all__ = ["run"]
 def run(options: SimpleNamespace) -> None:
     """Sample a surface and write a mesh of the samples to a file."""
     check_mesh_target(options.output)
-    fields = ("points", "normals", "uv")
-    samples = sample(**arguments(options, default_count=10_000), fields=fields)
+    samples = sample(**arguments(options, default_count=10_000))
     mesh = samples.mesh(angle=options.deviation, prefer=options.prefer, progress=not options.quiet)
     mesh.write(options.output)
     summarize(mesh, options)

@@ -28,10 +28,8 @@ MOST_IN_CELL = 64
 APART = 1.0 / 64.0
 
 
-def lattice_triangles(
-    samples: Samples, spline: Spline
-) -> tuple[Vertices, Indices, Indices, NDArray[np.bool_]] | None:
-    """Return vertices, triangles (k, 3), their neighbours, and which vertices are on the grid.
+def lattice_triangles(samples: Samples, spline: Spline) -> tuple[Vertices, Indices, Indices] | None:
+    """Return vertices, triangles (k, 3) and their neighbours.
 
     None if the samples are on no `Lattice`, or too many of them between its lines.
     """
@@ -46,7 +44,7 @@ def lattice_triangles(
     if lattice.is_swapped:
         triangles, adjacent = (np.ascontiguousarray(x[:, [0, 2, 1]]) for x in (triangles, adjacent))
     vertices = replace(lattice.vertices, positions=lattice.uv(lattice.vertices.positions))
-    return vertices, triangles, adjacent, lattice.is_node
+    return vertices, triangles, adjacent
 
 
 def _with_samples_at_poles(lattice: Lattice) -> Lattice:

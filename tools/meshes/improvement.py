@@ -42,9 +42,9 @@ def checked_prefer(prefer: object) -> Prefer:
 def improved(mesh: Triangulated, prefer: Prefer, angle: float) -> Triangulated:
     """Return a mesh with better triangles, by flips and, where these do not suffice, collapses.
 
-    For "normals" edges are collapsed at triangles without area only. So are those between samples
-    on a graded grid, whose cells may be long: of the others, those in angles below the smallest
-    bound are left out. No flip makes a triangle deviate from normals by more than `angle` degrees.
+    For "normals" edges are collapsed at triangles without area only. So are those at samples on a
+    graded grid, whose cells may be long: of the others, those in angles below the smallest bound
+    are left out. No flip makes a triangle deviate from normals by more than `angle` degrees.
     """
     least = math.cos(math.radians(min(angle, LARGEST_DEVIATION)))
     flip_edges(mesh, prefer, least)

@@ -159,13 +159,6 @@ class Lattice:
         between = np.setdiff1d(np.arange(count), numbers)
         return cls(x, y, nodes, vertices, places, between, is_swapped)
 
-    @property
-    def is_node(self) -> Flags:
-        """Which vertices (k,) are nodes."""
-        is_node = np.zeros(len(self.places), dtype=bool)
-        is_node[self.nodes] = True
-        return is_node
-
     def along(self, axis: int) -> Lines:
         """Return the lines of x (axis 0) or y (axis 1)."""
         return self.y if axis else self.x

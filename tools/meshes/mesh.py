@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...runtime.base.checks import checked_array
+from ...runtime.base.checks import checked_array, whole_number
 from ...runtime.base.errors import InputError
 from ...runtime.base.scales import scale_to_one
 from ...runtime.spline.spline import short_label
@@ -49,6 +49,9 @@ class Mesh(Methods):
     sides : (T, 3) int64 array
         1, or −1 where the normal at a corner points to the other side than that at the first
         corner: on a one-sided surface normals change sides somewhere. By default 1.
+    left_out : int
+        The number of samples that are no vertex: too close to others or, with an `angle`, in no
+        triangle that is left.
 
     Raises
     ------
@@ -67,6 +70,8 @@ class Mesh(Methods):
     (True, True, 'torus')
     >>> len(mesh.edges), len(mesh.boundary_edges), mesh.euler_characteristic
     (600, 0, 0)
+    >>> mesh.left_out
+    0
     >>> bool(mesh.angles.mean() < 30), bool(mesh.smallest_angles.min() > 5)
     (True, True)
 
@@ -79,6 +84,7 @@ class Mesh(Methods):
     sample_index: NDArray[np.int64]
     name: str = "surface"
     sides: NDArray[np.int64] = _ALL_ALIKE
+    left_out: int = 0
 
     def __post_init__(self) -> None:
         count = len(self.vertices) if isinstance(self.vertices, np.ndarray) else 0
@@ -99,6 +105,7 @@ class Mesh(Methods):
             object.__setattr__(self, name, array)
         if faces and not 0 <= self.triangles.min() <= self.triangles.max() < count:
             raise InputError(f"triangles have vertices that are not there: there are {count}.")
+        object.__setattr__(self, "left_out", whole_number(self.left_out, "left_out", 0))
 
     def __repr__(self) -> str:
         return (
@@ -151,7 +158,7 @@ class Mesh(Methods):
         return np.degrees(np.arctan(tangents))
 
     def summary(self) -> str:
-        """Return one line: vertices, triangles, whether it is closed, the quality of triangles.
+        """Return one line: vertices, samples left out, triangles, and their quality.
 
         Returns
         -------
@@ -168,6 +175,7 @@ class Mesh(Methods):
         added = int(np.count_nonzero(self.sample_index < 0))
         line = f"{len(self.vertices):,} vertices"
         line += f" ({added:,} of them added)" if added else ""
+        line += f", {self.left_out:,} of the samples left out" if self.left_out else ""
         line += f", {len(self.triangles):,} triangles"
         if not len(self.triangles):
             return line

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,7 +18,7 @@ from .mesh import Mesh
 from .triangulated import Triangulated, too_few
 from .triangulation import neighbours, triangulations
 from .trimming import trimmed_triangles
-from .vertices import Vertices, before_offset, boundary_of
+from .vertices import Vertices, before_offset, boundary_of, check_fields
 
 if TYPE_CHECKING:
     from ...runtime.samples.samples import Samples
@@ -38,6 +37,7 @@ def mesh_of(samples: Samples, spline: Spline, angle: float | None, prefer: str) 
     largest = WHOLE if angle is None else _checked_angle(angle)
     if not len(samples):
         raise InputError("there are no samples, and so there is nothing to make a mesh of.")
+    check_fields(samples)
     mesh = triangulated_on_lattice(samples, spline)
     if mesh is None:
         mesh = triangulated(samples, spline, must_be_whole=angle is None)
@@ -45,7 +45,9 @@ def mesh_of(samples: Samples, spline: Spline, angle: float | None, prefer: str) 
         flip_edges(mesh, "normals")
         mesh = mesh.within(largest)
     mesh = improved(mesh, preferred, largest)
-    return (mesh.within(largest) if largest < WHOLE else mesh).mesh()
+    if largest < WHOLE:
+        mesh = mesh.within(largest)
+    return mesh.mesh(len(samples))
 
 
 def _checked_angle(angle: object) -> float:
@@ -81,12 +83,11 @@ def triangulated_on_lattice(samples: Samples, spline: Spline) -> Triangulated | 
     found = lattice_triangles(samples, spline)
     if found is None:
         return None
-    vertices, triangles, adjacent, is_node = found
+    vertices, triangles, adjacent = found
     sides = np.ones_like(triangles)
     mesh = _through(samples, spline, vertices, triangles, sides, adjacent)
     flip_edges(mesh, "normals")
-    is_folded = mesh.cosines().min() < 0.0
-    return None if is_folded else replace(mesh, is_node=is_node)
+    return None if mesh.cosines().min() < 0.0 else mesh
 
 
 def _through(
@@ -100,7 +101,7 @@ def _through(
         points = _moved(vertices, points, normals, samples)
     return Triangulated(
         spline.name, uv, vertices.sample, vertices.is_free,
-        points, normals, triangles, sides, adjacent, np.zeros_like(vertices.is_free),
+        points, normals, triangles, sides, adjacent, vertices.is_node(samples),
     )  # fmt: skip
 
 

@@ -24,8 +24,8 @@ class Triangulated:
     """Samples and added vertices in a triangulation of the parameter domain.
 
     `sample` and `is_free` are those of `Vertices`; `triangles`, `sides` and `neighbours` (k, 3)
-    those of `kernels.flips`, which changes them in place; `is_node` says which vertices are on a
-    graded grid.
+    those of `kernels.flips`, which changes them in place; `is_node` says which vertices are samples
+    on a graded grid.
     """
 
     name: str
@@ -71,8 +71,8 @@ class Triangulated:
             self, triangles=self.triangles[which], sides=self.sides[which], neighbours=adjacent
         )
 
-    def mesh(self) -> Mesh:
-        """Return the mesh."""
+    def mesh(self, samples: int) -> Mesh:
+        """Return the mesh of a number of samples."""
         triangles, sides = self.triangles, self.sides
         reverse = sides[:, :1] < 0
         triangles, sides = (
@@ -89,6 +89,7 @@ class Triangulated:
             self.sample[used],
             name=self.name,
             sides=sides,
+            left_out=samples - int(np.count_nonzero(self.sample[used] >= 0)),
         )
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ...runtime.base.trees import tree_of
 from ...runtime.domain.domain import Boundary, BoundaryPair
+from ...runtime.samples.fields import GRID_NAMES, missing_fields
 from ...runtime.spline.spline import Spline
 from ..kernels.spacing import border_spacings
 
@@ -20,7 +21,15 @@ if TYPE_CHECKING:
 
     from ...runtime.samples.samples import Samples
 
-__all__ = ["CLOSE", "Vertices", "before_offset", "boundary_of", "points_at", "spacings_at"]
+__all__ = [
+    "CLOSE",
+    "Vertices",
+    "before_offset",
+    "boundary_of",
+    "check_fields",
+    "points_at",
+    "spacings_at",
+]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -40,6 +49,9 @@ ON_BORDER = 1e-9
 # Of samples that are closer than this part of their mean distance in the domain, only the first one
 # is a vertex: triangulations displace points by a tenth of it.
 NEARLY_EQUAL = 1e-5
+NEEDED = ("points", "normals", "uv")
+# The choices of a density by which samples are on a graded grid, on all pieces or on some.
+ON_A_GRID = ("aligned", "mixed")
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,10 +114,27 @@ class Vertices:
         kept[later[self.is_free[later]]] = False
         return Vertices(self.positions[kept], self.sample[kept], self.is_free[kept])
 
+    def is_node(self, samples: Samples) -> NDArray[np.bool_]:
+        """Say which vertices (k,) are samples on a graded grid, whole or not."""
+        if samples.row is None:
+            return np.zeros(len(self.sample), dtype=bool)
+        return (self.sample >= 0) & (samples.row[self.sample] >= 0)
+
     def uv(self, spline: Spline) -> Array:
         """Return the parameters (k, 2) of the vertices."""
         low, high = np.array(spline.domain).T
         return np.where(self.positions == 1.0, high, low + self.positions * (high - low))
+
+
+def check_fields(samples: Samples) -> None:
+    """Raise MissingFieldError unless samples have the fields that a mesh needs.
+
+    Those on a graded grid need its lines: its cells may be long, and samples that are close to
+    others in one direction are not superfluous.
+    """
+    needed = NEEDED + (GRID_NAMES if samples.report.density in ON_A_GRID else ())
+    if lacking := [name for name in needed if name not in samples.fields]:
+        raise missing_fields(samples.fields, lacking, "a mesh")
 
 
 def before_offset(samples: Samples) -> Array:

@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.base.checks import finite_number
-from ...runtime.base.errors import GaussmapWarning, InputError, MissingFieldError
+from ...runtime.base.errors import GaussmapWarning, InputError
 from ...runtime.base.tolerances import CURVATURE_ERROR
+from ...runtime.samples.fields import missing_fields
 from ...runtime.samples.offset_of import OffsetOf
 from ...runtime.samples.report import count_infinite, have_large_squares
 from ...runtime.samples.samples import Samples
@@ -87,10 +88,7 @@ def _check_fields(samples: Samples) -> None:
     for name, needed in NEEDED.items():
         missing = [x for x in needed if x not in samples.fields]
         if name in samples.fields and missing:
-            raise MissingFieldError(
-                f"the offset of {name} needs {missing[0]}, but these samples hold "
-                f"{', '.join(samples.fields)} only; add {missing[0]!r} to fields=... when sampling."
-            )
+            raise missing_fields(samples.fields, missing, f"the offset of {name}")
 
 
 def _warn(samples: Samples, d: float, folded: NDArray[np.bool_]) -> None:

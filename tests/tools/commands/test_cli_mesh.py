@@ -31,6 +31,28 @@ def test_a_mesh_is_written(suffix: str, capsys: pytest.CaptureFixture[str]) -> N
     assert mesh.n_cells == int(found[2]) == 2 * int(found[1])
 
 
+@pytest.mark.compiled
+@pytest.mark.parametrize("density", ["balanced", "aligned", "isotropic"])
+@pytest.mark.parametrize("name", ["torus", "ellipsoid_patch", "wavy_graph", "sphere", "catenoid"])
+def test_the_command_and_python_make_the_same_mesh(name: str, density: str) -> None:
+    mesh = gm.sample(name, 300, density=density, cells=(16, 16)).mesh()
+    mesh.write("python.ply")
+    asked = ["--count", "300", "--cells", "16", "16", "--density", density]
+    assert main(["mesh", name, *asked, "-o", "command.ply"]) == 0
+    assert Path("command.ply").read_bytes() == Path("python.ply").read_bytes()
+
+
+@pytest.mark.compiled
+def test_samples_that_are_left_out_are_counted(capsys: pytest.CaptureFixture[str]) -> None:
+    mesh = gm.sample("wavy_graph", 300, density="isotropic", cells=(16, 16)).mesh()
+    own = mesh.sample_index[mesh.sample_index >= 0]
+    assert len(np.unique(own)) + mesh.left_out == 300
+    assert mesh.left_out > 0
+    few = ["--count", "300", "--cells", "16", "16", *ISOTROPIC]
+    assert main(["mesh", "wavy_graph", *few, "-o", "graph.ply"]) == 0
+    assert f", {mesh.left_out} of the samples left out, " in capsys.readouterr().out
+
+
 def test_a_missing_library_is_told_at_once(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -250,6 +250,14 @@ class TestOtherSamples:
             check("torus", again.mesh(samples.spline))
 
 
+def check_nodes(samples):
+    """Each sample on a line of a grid is a vertex, and those that are none are counted."""
+    mesh = samples.mesh()
+    own = mesh.sample_index[mesh.sample_index >= 0]
+    assert np.isin(np.flatnonzero(samples.row >= 0), own).all()
+    assert len(own) + mesh.left_out == len(samples)
+
+
 @compiled
 class TestAligned:
     @pytest.mark.parametrize("prefer", PREFER)
@@ -259,6 +267,60 @@ class TestAligned:
         assert samples.spline is not None
         assert triangulated_on_lattice(samples, samples.spline) is not None
         check(name, samples.mesh(prefer=prefer))
+
+    @pytest.mark.parametrize(
+        ("name", "fields"),
+        [
+            ("torus", ("points", "normals", "uv")),
+            ("ellipsoid_patch", ("points", "normals", "uv", "row")),
+            ("moebius_band", ("points", "uv", "column")),
+        ],
+    )
+    def test_the_lines_of_a_grid_are_needed(self, name, fields):
+        samples = gm.sample(name, 300, density="aligned", cells=(16, 16), fields=fields)
+        lacking = [x for x in ("points", "normals", "uv", "row", "column") if x not in fields]
+        for made in (samples.mesh, samples.weights):
+            with pytest.raises(gm.errors.MissingFieldError) as error:
+                made()
+            assert f"a mesh needs {' and '.join(lacking)}, but" in str(error.value)
+
+    @pytest.mark.parametrize("name", ["ellipsoid_patch", "sphere", "wavy_graph"])
+    def test_no_other_field_matters(self, name):
+        """Each sample of a grid is a vertex, whether it knows more than a mesh needs or not."""
+        fields = ("points", "normals", "uv", "row", "column")
+        whole, few = (
+            gm.sample(name, 300, density="aligned", cells=(16, 16), fields=x)
+            for x in (None, fields)
+        )
+        np.testing.assert_array_equal(whole.mesh().triangles, few.mesh().triangles)
+        check_nodes(whole)
+
+    @pytest.mark.parametrize("name", ["trimmed", "one-sided", "part of a grid"])
+    def test_grids_that_are_not_whole_keep_their_samples(self, name):
+        surface = gm.surfaces.moebius_band()
+        if name != "one-sided":
+            surface = gm.surfaces.ellipsoid_patch()
+        if name == "trimmed":
+            surface = surface.trimmed(within=lambda u, v: u + v < 5.0)
+        samples = gm.sample(surface, 400, density="aligned", cells=(16, 16))
+        if name == "part of a grid":
+            assert samples.column is not None
+            samples = samples[samples.column % 5 != 3]
+        assert Lattice.of(samples, samples.spline) is None
+        check_nodes(samples)
+
+    def test_too_small_for_a_grid(self):
+        """No line meets the part that is left: then the samples are on no grid, and say so."""
+        plane = gm.Surface.from_callable(
+            lambda u, v: np.stack([u, v, 0.0 * u], axis=-1), ((0.0, 1.0), (0.0, 1.0))
+        )
+        spot = plane.trimmed(
+            within=lambda u, v: np.maximum(abs(u - 0.4137), abs(v - 0.4137)) < 0.013
+        )
+        samples = gm.sample(spot, 2, density="aligned")
+        assert samples.row is None
+        assert samples.report.density == "isotropic"
+        assert samples.mesh().euler_characteristic == 1
 
     def test_they_are_better_than_isotropic_ones(self):
         meshes = [

@@ -67,6 +67,8 @@ class TestMesh:
             sample_index=np.arange(4),
         )
         assert closed.summary().startswith("4 vertices, 4 triangles, closed; 95 % have")
+        some = square(left_out=1200).summary()
+        assert some.startswith("4 vertices (1 of them added), 1,200 of the samples left out, 2")
         assert repr(square(name="hill")) == "Mesh(4 vertices, 2 triangles on hill)"
 
     def test_an_empty_mesh(self):
@@ -92,6 +94,7 @@ class TestMesh:
             ({"triangles": np.array([[0, 1, -1]])}, "triangles have vertices that are not there"),
             ({"sample_index": np.arange(3)}, r"sample_index must be a int64 array of shape \(4,\)"),
             ({"sides": np.ones((1, 3), dtype=int)}, r"sides must be a int64 array of shape"),
+            ({"left_out": -1}, "left_out must be a whole number of at least 0, not -1"),
         ],
     )
     def test_unusable_arrays(self, changes, message):

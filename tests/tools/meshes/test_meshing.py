@@ -278,7 +278,7 @@ class TestFlips:
         state = Triangulated.of(samples, samples.spline)
         assert flip_edges(state, "normals") > 0
         assert flip_edges(state, "normals") == 0
-        joined = {tuple(x) for x in np.sort(state.mesh().edges, axis=1).tolist()}
+        joined = {tuple(x) for x in np.sort(state.mesh(len(samples)).edges, axis=1).tolist()}
         for t, k in np.ndindex(len(state.triangles), 3):
             if state.neighbours[t, k] >= 0:
                 before, after, edge = flipped(state, t, k, int(state.neighbours[t, k]))
@@ -313,9 +313,9 @@ class TestFlips:
         samples = gm.sample(gm.surfaces.torus(), count=2000, density="isotropic")
         assert samples.spline is not None
         state = Triangulated.of(samples, samples.spline)
-        before = state.mesh().angles
+        before = state.mesh(len(samples)).angles
         flip_edges(state, "normals")
-        after = state.mesh().angles
+        after = state.mesh(len(samples)).angles
         assert after.max() < before.max()
         assert after.mean() < before.mean()
 
@@ -629,7 +629,8 @@ class TestOffsets:
     @pytest.mark.parametrize("name", ["torus", "sphere", "graph", "moebius", "dome"])
     def test_an_offset_has_the_topology_of_the_surface(self, name, prefer):
         _, characteristic, borders = surfaces[name]
-        samples = samples_on(surfaces[name][0](), count=400, fields=("points", "normals", "uv"))
+        fields = ("points", "normals", "uv", "row", "column")
+        samples = samples_on(surfaces[name][0](), count=400, fields=fields)
         mesh = samples.offset(0.05).offset(0.05).mesh(prefer=prefer)
         assert mesh.euler_characteristic == characteristic
         assert (components(mesh.boundary_edges) if borders else 0) == borders
