@@ -105,8 +105,7 @@ def forms_at_jet(patch):
 def newton(patch, n):
     """The step u, v of Newton's method for P = Q = 0, the preimage of the unit normal n on the
     patch that osculates the surface; the squared sine s of the angle between n and the normal N
-    of the surface, with n × N = q, and m with the sign of its cosine; and the curvatures of the
-    surface if this angle is 0.
+    of the surface, with n × N = q, and m with the sign of its cosine.
 
         A = n·a
         B = n·b
@@ -117,18 +116,12 @@ def newton(patch, n):
         r = 1/D
         q = Q*d - P*e
         N = d × e
-        g = 1/|N|**2
-        E = |d|**2
-        F = d·e
-        G = |e|**2
         u = r*(B*Q - C*P)
         v = r*(B*P - A*Q)
-        s = g*|q|**2
+        s = |q|**2/|N|**2
         m = n·N
-        K = D*g
-        H = g*(2*B*F - A*G - C*E)/2
 
-    Source: beyond the paper; 96 operations as written, 96 here.
+    Source: beyond the paper; 71 operations as written, 71 here.
     """
     a_x, a_y, a_z = patch.a
     b_x, b_y, b_z = patch.b
@@ -149,17 +142,11 @@ def newton(patch, n):
     N_x = d_y * e_z - d_z * e_y
     N_y = d_z * e_x - d_x * e_z
     N_z = d_x * e_y - d_y * e_x
-    g = 1.0 / (N_x * N_x + N_y * N_y + N_z * N_z)
-    E = d_x * d_x + d_y * d_y + d_z * d_z
-    F = d_x * e_x + d_y * e_y + d_z * e_z
-    G = e_x * e_x + e_y * e_y + e_z * e_z
     u = r * (B * Q - C * P)
     v = r * (B * P - A * Q)
-    s = g * (q_x * q_x + q_y * q_y + q_z * q_z)
+    s = (q_x * q_x + q_y * q_y + q_z * q_z) / (N_x * N_x + N_y * N_y + N_z * N_z)
     m = N_x * n_x + N_y * n_y + N_z * n_z
-    K = D * g
-    H = 0.5 * g * (2 * B * F - A * G - C * E)
-    return u, v, s, m, K, H
+    return u, v, s, m
 
 
 @inline

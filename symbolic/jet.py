@@ -21,7 +21,7 @@ from .patch import FORM_TERMS, SOLUTION, VECTORS, A, B, C, D, P, Q, a, b, c, d, 
 __all__ = ["AT_JET", "FORMULAS"]
 
 N = vectors("N")[0]
-E, F, G, L, g = (scalar(x) for x in "EFGLg")
+E, F, G, L = (scalar(x) for x in "EFGL")
 
 FIRST_FORM = [("E", Dot(d, d)), ("F", Dot(d, e)), ("G", Dot(e, e))]
 # The normal N, and the second fundamental form times its length.
@@ -70,8 +70,7 @@ NEWTON = Formula.build(
     "newton",
     "The step $u$, $v$ of Newton's method for $P = Q = 0$, the preimage of the unit normal $n$ on "
     "the patch that osculates the surface; the squared sine $s$ of the angle between $n$ and the "
-    "normal $N$ of the surface, with $n × N = q$, and $m$ with the sign of its cosine; and the "
-    "curvatures of the surface if this angle is 0.",
+    "normal $N$ of the surface, with $n × N = q$, and $m$ with the sign of its cosine.",
     inputs=[*VECTORS, n],
     terms=[
         *FORM_TERMS,
@@ -79,16 +78,12 @@ NEWTON = Formula.build(
         ("r", 1 / D),
         ("q", Q * d - P * e),
         ("N", Cross(d, e)),
-        ("g", 1 / Dot(N, N)),
-        *FIRST_FORM,
     ],
     outputs=[
         ("u", SOLUTION.U * r),
         ("v", SOLUTION.V * r),
-        ("s", Dot(q, q) * g),
+        ("s", Dot(q, q) / Dot(N, N)),
         ("m", Dot(n, N)),
-        ("K", D * g),
-        ("H", -(E * C - 2 * F * B + G * A) * g / 2),
     ],
 )
 

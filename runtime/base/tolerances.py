@@ -108,9 +108,9 @@ SAME_PARAMETER = 1e-12
 TRIPLE_PRODUCT_ERROR = 2.0**-50
 # Of the normal of a sample on a surface, as an angle (radians).
 NORMAL_ERROR = 1e-12
-# Of the same where Newton's method does not get farther, because of the rounding of derivatives or
-# of the error of differences.
-NORMAL_NOISE = 1e-8
+# Of the same where Newton's method does not get farther, because of the rounding of parameters and
+# derivatives, or of the error of differences: a sample with a larger one is not on the surface.
+NORMAL_NOISE = 1e-9
 # Of points of a surface at which samples of one normal meet, relative to a cell of the spline: the
 # error of those to which numerical derivatives lead, far from the origin.
 MEETING = 2.0**-13

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ...generated.jet import at_jet, at_pole, polar_chart
 from ...generated.jet import newton as newton_of_jet
-from ...generated.patch import envelope, tangents
+from ...generated.patch import tangents
 from ...generated.vectors import Patch, Vector
 from ..base.tolerances import VANISHING
 from .jit import inline, jit
@@ -44,10 +44,6 @@ NOT_FOUND, FOUND, CONTRARY = 0, 1, 2
 # In cells of the spline: the length of a step, and of all steps together. What is farther away
 # belongs to another sample.
 LONGEST_STEP, FARTHEST = 1.0, 3.0
-# A step of at most this length (in cells) after which the angle will be small enough, because
-# convergence is quadratic, is the last one: the error of a point is the third power of it. The
-# angle is at most 1e-8 then, which is the error of curvatures, relative to their change per radian.
-LAST_STEP, CLOSE, SAFETY = 1e-5, 1e-16, 1e-2
 # The part of a step that is taken back if the angle does not get smaller by it.
 TAKEN_BACK = 0.5
 # A squared sine that does not get smaller than this part of the last one does not converge.
@@ -130,22 +126,6 @@ def inside(value, low, high, kind):
     return value if kind == FREE else min(max(value, low), high)
 
 
-@inline
-def within(value, low, high, kind):
-    """Say whether a parameter does not cross an end."""
-    return kind != CLAMPED or low <= value <= high
-
-
-@inline
-def is_last(s, t, sine, least, tolerance):
-    """Say whether a step is the last one, because convergence is quadratic.
-
-    After it the squared sine will be about sine³/least², as it was sine after least.
-    """
-    converges = sine * sine * sine <= SAFETY * tolerance * least * least
-    return sine <= CLOSE and converges and s * s + t * t <= LAST_STEP * LAST_STEP
-
-
 @jit
 def begin(uv, count, rows, box):
     """Write the parameters and the state of the first `count` rows before their first step."""
@@ -161,16 +141,23 @@ def begin(uv, count, rows, box):
 
 
 @inline
-def store(target, row, patch, s, t, u, v, K, H, size):
-    """Write the sample at (u, v), s and t away, unless K is not finite or has the wrong sign."""
+def is_regular(patch, L, K):
+    """Say whether a patch, whose normal has the length L, determines its direction and K."""
+    largest = max(dot(patch.d, patch.d), dot(patch.e, patch.e))
+    return VANISHING * largest < L and abs(K) < math.inf
+
+
+@inline
+def store(target, row, patch, u, v, size):
+    """Write the sample at (u, v) away, unless it is singular or K has the wrong sign."""
+    L, _, K, H = at_jet(patch)
     if target.signs[row] * K < 0.0:
         target.state[row] = CONTRARY
-    elif abs(K) < math.inf:
-        x = envelope(patch, s, t)
+    elif is_regular(patch, L, K):
         unit = 1.0 / size
         target.uv[row, 0] = u
         target.uv[row, 1] = v
-        set_row(target.points, row, Vector(x.x * unit, x.y * unit, x.z * unit))
+        set_row(target.points, row, Vector(patch.p.x * unit, patch.p.y * unit, patch.p.z * unit))
         target.gaussian[row] = K * size * size
         target.mean[row] = H * size
         target.state[row] = FOUND
@@ -195,40 +182,23 @@ def newton(jets, count, rows, target, box, size, tolerance, noise):
     """Finish the first `count` rows or move them by a step; return how many are left.
 
     A row is finished where the squared sine of the angle between its normal and that of the surface
-    is at most `tolerance`, or where it is below `noise` and does not get smaller. `size`, a power
-    of two, times the surface has cells of about the size 1.
+    is at most `tolerance`, or where it is at most `noise` and does not get smaller. What is written
+    are the point and the curvatures there. `size`, a power of two, times the surface has cells of
+    about the size 1.
     """
     u0, u1, v0, v1 = box.ends
     du, dv = box.cell
-    # Of the parameters, in cells: shorter steps change nothing.
-    rounding_u = 2.0**-51 * max(abs(u0), abs(u1)) / du
-    rounding_v = 2.0**-51 * max(abs(v0), abs(v1)) / dv
     left = 0
     for at in range(count):
         k = np.uint64(at)
         row = np.uint64(rows.numbers[k])
         u, v, least = rows.place[0, k], rows.place[1, k], rows.least[k]
         patch = patch_of_jet(jets, k, size, du, dv)
-        s, t, sine, cosine, K, H = newton_of_jet(patch, row_vector(target.normals, row))
+        s, t, sine, cosine = newton_of_jet(patch, row_vector(target.normals, row))
         if not cosine > 0.0:
             sine = OPPOSITE
-        new_u, new_v = u + s * du, v + t * dv
-        finished = (
-            is_last(s, t, sine, least, tolerance)
-            and within(new_u, u0, u1, box.kinds[0])
-            and within(new_v, v0, v1, box.kinds[1])
-        )
-        if not finished and (
-            sine <= tolerance
-            or (sine <= noise and sine > SLOW * least)
-            or (abs(s) <= rounding_u and abs(t) <= rounding_v and cosine > 0.0)
-        ):
-            finished, s, t = True, 0.0, 0.0
-            new_u, new_v = u, v
-        if finished:
-            new_u = inside(new_u, u0, u1, box.kinds[0])
-            new_v = inside(new_v, v0, v1, box.kinds[1])
-            store(target, row, patch, s, t, new_u, new_v, K, H, size)
+        if sine <= tolerance or (sine <= noise and sine > SLOW * least):
+            store(target, row, patch, u, v, size)
             continue
         if sine < least:
             least = sine
@@ -246,6 +216,8 @@ def newton(jets, count, rows, target, box, size, tolerance, noise):
         if near and (new_u != u or new_v != v):
             keep(rows, left, row, new_u, new_v, s, t, gone_u, gone_v, least)
             left += 1
+        elif near and sine <= noise:
+            store(target, row, patch, u, v, size)
     return left
 
 
@@ -259,8 +231,7 @@ def evaluate_jets(jets, scales, normals, gaussian, mean):
     for k in range(jets.shape[0]):
         patch = patch_of_jet(jets, k, size, du, dv)
         L, n, K, H = at_jet(patch)
-        scale = math.sqrt(dot(patch.d, patch.d) * dot(patch.e, patch.e))
-        regular = VANISHING * scale < L and abs(K) < math.inf
+        regular = is_regular(patch, L, K)
         set_row(normals, k, n if regular else Vector(0.0, 0.0, 0.0))
         gaussian[k] = K * size * size if regular else 0.0
         mean[k] = H * size if regular else 0.0

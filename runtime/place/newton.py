@@ -104,7 +104,7 @@ def refine(surface: Surface, spline: Spline, target: Target, threads: int | None
     charts = pole_charts(surface, spline)
     next_to_poles = _refine_away(surface, spline, charts, target, threads)
     for chart, rows in zip(charts, next_to_poles, strict=True):
-        _refine_at_pole(chart, Parameters.of_chart(chart, spline), target, rows, threads)
+        _refine_at_pole(chart, spline, target, rows, threads)
 
 
 def _refine_away(
@@ -147,9 +147,10 @@ def _finish(parameters: Parameters, target: Target, numbers: Numbers, threads: i
 
 
 def _refine_at_pole(
-    chart: PoleChart, parameters: Parameters, target: Target, numbers: Numbers, threads: int | None
+    chart: PoleChart, spline: Spline, target: Target, numbers: Numbers, threads: int | None
 ) -> None:
     """Move rows next to a pole in its chart, whatever the sign of K."""
+    parameters = Parameters.of_chart(chart, spline)
 
     def work(first: int, last: int) -> None:
         rows = numbers[first:last]
@@ -159,7 +160,12 @@ def _refine_at_pole(
         part.uv[:] = chart.places(part.uv)
         parameters.solve(part, np.arange(len(rows)), 0)
         part.uv[:] = chart.parameters(part.uv)
-        part.mean[:] *= chart.orientation
+        # Not those in the chart: the differences that it consists of are rounded.
+        found = part.state == FOUND
+        points, _, gaussian, mean = evaluate_on_surface(
+            chart.surface, spline, part.uv[found], threads=1
+        )
+        part.points[found], part.gaussian[found], part.mean[found] = points, gaussian, mean
         _put(target, rows, part)
 
     for _ in over_ranges(work, len(numbers), ROWS_AT_A_TIME, threads):
