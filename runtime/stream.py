@@ -62,8 +62,8 @@ def sample_stream(
     -------
     generator of Samples
         The chunks; there is at least one, and all but the last of each block are full, unless the
-        surface is trimmed or has poles. The report of a chunk counts its samples, and no degenerate
-        patches.
+        surface is trimmed, or several samples of the spline are one of the surface. The report of a
+        chunk counts its samples, and no degenerate patches.
 
     Raises
     ------
@@ -80,10 +80,8 @@ def sample_stream(
     -----
     ``Samples.concatenate(sample_stream(…))`` is ``sample(…, density="gauss")``, bit for bit and in
     the same order, for up to 1,048,576 normals. More of them are searched in blocks of this size:
-    the samples are the same, but ordered by block, then by patch, then by normal. On a surface with
-    poles, ``on="surface"`` holds back the samples within six cells of a pole, since several of the
-    spline may be one of the surface: they come last in each block, and other chunks are not full.
-    Closing the generator ends the work.
+    the samples are the same, but ordered by block, then by patch, then by normal. Closing the
+    generator ends the work.
 
     Examples
     --------
@@ -131,15 +129,15 @@ class _Stream:
             bins = NormalBins(chosen.part(first, last, threads), threads)
             found = find_in_turn(geometry.spline, bins, threads, self.progress and alone)
             flat.patches = 0  # the same in every block
-            groups = flat.counted(grouped(found, self.size))
-            for part in geometry.at_hits_in_turn(bins, groups, self.fields, self.dtype, self.size):
+            parts = flat.counted(found)
+            for part in geometry.at_hits_in_turn(bins, parts, self.fields, self.dtype, self.size):
                 samples = self._samples(part, first, report)
                 came, unrefined = came + part.number, unrefined + (part.unrefined or 0)
                 if part.number:
                     yield samples
                 else:
                     nothing = samples
-            del bins, found, groups  # before the next ones are made
+            del bins, found, parts  # before the next ones are made
         if came == 0 and nothing is not None:
             yield nothing
         report = replace(report, samples=came, developable_patches=flat.patches)
@@ -165,21 +163,6 @@ class Flat:
         for hits in parts:
             self.patches += hits.developable
             yield hits
-
-
-def grouped(parts: Iterator[Hits], size: int) -> Iterator[Hits]:
-    """Yield consecutive hits in groups of `size`, and a last group with the remaining ones."""
-    group: list[Hits] = []
-    room = size
-    for hits in parts:
-        start = 0
-        while len(hits) - start >= room:
-            yield Hits.joined([*group, hits[start : start + room]])
-            start += room
-            group, room = [], size
-        group.append(hits[start:])
-        room -= len(group[-1])
-    yield Hits.joined(group)
 
 
 def find_in_turn(

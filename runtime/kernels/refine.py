@@ -22,7 +22,6 @@ from .vectors import dot, row_vector, set_jet, set_row
 
 __all__ = [
     "CLAMPED",
-    "CONTRARY",
     "FOUND",
     "FREE",
     "NOT_FOUND",
@@ -40,7 +39,7 @@ __all__ = [
 # What a parameter does at the ends of its interval: there are none, it stops there, or it goes on
 # at the other end.
 FREE, CLAMPED, PERIODIC = 0, 1, 2
-NOT_FOUND, FOUND, CONTRARY = 0, 1, 2
+NOT_FOUND, FOUND = 0, 1
 # In cells of the spline: the length of a step, and of all steps together. What is farther away
 # belongs to another sample.
 LONGEST_STEP, FARTHEST = 1.0, 3.0
@@ -73,8 +72,7 @@ class Rows(NamedTuple):
 class Target(NamedTuple):
     """By the numbers of rows: the normals, the signs that K is to have, or 0, and what is found.
 
-    `state` (n,) is NOT_FOUND, FOUND or CONTRARY: what was found has the other sign of K, and only
-    samples that are FOUND are overwritten.
+    `state` (n,) is NOT_FOUND or FOUND; only samples that are FOUND are overwritten.
     """
 
     normals: NDArray[np.float64]
@@ -151,9 +149,7 @@ def is_regular(patch, L, K):
 def store(target, row, patch, u, v, size):
     """Write the sample at (u, v) away, unless it is singular or K has the wrong sign."""
     L, _, K, H = at_jet(patch)
-    if target.signs[row] * K < 0.0:
-        target.state[row] = CONTRARY
-    elif is_regular(patch, L, K):
+    if target.signs[row] * K >= 0.0 and is_regular(patch, L, K):
         unit = 1.0 / size
         target.uv[row, 0] = u
         target.uv[row, 1] = v

@@ -22,6 +22,7 @@ __all__ = [
     "evaluate",
     "fit_centres_and_vertices",
     "fit_vertices",
+    "mark_left",
     "measure_patches",
 ]
 
@@ -108,9 +109,16 @@ def locate(s, t):
         turn = 1 if s > 0.0 else 3
     elif t > 0.0:
         turn = 2
+    u, v = in_triangle(s, t, turn)
+    return turn, u, v
+
+
+@inline
+def in_triangle(s, t, turn):
+    """Return u, v in a triangle of a cell; s, t are relative to the centre of it, in cells."""
     for _ in range(turn):
         s, t = t, -s
-    return turn, -t - s, -t + s
+    return -t - s, -t + s
 
 
 @jit
@@ -127,6 +135,19 @@ def evaluate(mu, scale, cells, points, normals):
         points[k, 1] = mu[i + 1, j + 1, 1] + x.y / size
         points[k, 2] = mu[i + 1, j + 1, 2] + x.z / size
         set_row(normals, k, normal_of_patch(patch, u, v))
+
+
+@jit
+def mark_left(uv, patches, frame, columns, near, left):
+    """Write which parameters (k, 2) are not in their patches (k,), or `near` the sides, in cells.
+
+    A step of one cell along both axes changes u and v in a triangle by two.
+    """
+    u0, v0, du, dv = frame
+    for k in range(patches.size):
+        i, j, turn = place_of(patches[k], columns)
+        u, v = in_triangle((uv[k, 0] - u0) / du - i - 0.5, (uv[k, 1] - v0) / dv - j - 0.5, turn)
+        left[k] = min(u, v, 1.0 - u - v) < 2.0 * near
 
 
 @jit

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from ..kernels.refine import CONTRARY as OTHER_SIGN
 from ..kernels.refine import FOUND, Target
 from ..samples.fields import FLAG_NAMES, dtype_of
 from ..search.bins import NormalBins
@@ -17,9 +16,8 @@ from ..surface.surface import Surface
 from .newton import refine
 from .on_spline import Fields, FieldsOfSamples
 
-__all__ = ["CONTRARY", "as_fields", "moved_samples", "part_of"]
+__all__ = ["as_fields", "moved_samples", "part_of"]
 
-CONTRARY = "contrary"
 # The fields of samples that are moved; others follow from them.
 NEEDED = (
     *("points", "normals", "uv", "gaussian_curvature", "mean_curvature"),
@@ -32,8 +30,7 @@ def moved_samples(
 ) -> Fields:
     """Return the samples at hits, on the surface where they could be moved to it.
 
-    They have all fields but the support, in float64, and CONTRARY says where Newton's method led to
-    a place with the other sign of K.
+    They have all fields but the support, in float64.
     """
     arrays = fill(spline, bins, hits, threads, NEEDED, np.float64)
     signs = np.copysign(1.0, arrays["gaussian_curvature"])
@@ -43,7 +40,7 @@ def moved_samples(
         arrays["gaussian_curvature"], arrays["mean_curvature"], states,
     )  # fmt: skip
     refine(surface, spline, target, threads)
-    return arrays | {FLAG_NAMES[0]: states == FOUND, CONTRARY: states == OTHER_SIGN}
+    return arrays | {FLAG_NAMES[0]: states == FOUND}
 
 
 def part_of(arrays: Fields, kept: NDArray[np.bool_]) -> Fields:

@@ -16,7 +16,6 @@ from ..base.threads import over_ranges
 from ..base.tolerances import NORMAL_ERROR, NORMAL_NOISE
 from ..kernels.refine import (
     CLAMPED,
-    CONTRARY,
     FOUND,
     FREE,
     NOT_FOUND,
@@ -32,7 +31,7 @@ from ..spline.spline import Spline
 from ..surface.surface import Surface
 from .pole_charts import PoleChart, pole_charts
 
-__all__ = ["CONTRARY", "FOUND", "Target", "evaluate_on_surface", "refine"]
+__all__ = ["FOUND", "Target", "evaluate_on_surface", "refine"]
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]

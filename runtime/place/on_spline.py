@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from ..spline.misfit import Misfit
     from .triangles import Triangles
 
-__all__ = ["Fields", "FieldsOfSamples", "OnSpline"]
+__all__ = ["Fields", "FieldsOfSamples", "OnSpline", "grouped"]
 
 Array = NDArray[np.float64]
 Fields = dict[str, NDArray[Any]]
@@ -127,13 +127,13 @@ class OnSpline:
     def at_hits_in_turn(
         self,
         bins: NormalBins,
-        groups: Iterator[Hits],
+        parts: Iterator[Hits],
         fields: Sequence[str],
         dtype: DTypeLike,
         size: int,
     ) -> Iterator[FieldsOfSamples]:
-        """Yield the samples at groups of at most `size` hits, which are all of these normals."""
-        for hits in groups:
+        """Yield at most `size` samples at a time, those at `parts` of all hits of these normals."""
+        for hits in grouped(parts, size):
             yield self.at_hits(bins, hits, fields, dtype)
 
     def samples(self, fields: Fields, report: SamplingReport, unrefined: int | None) -> Samples:
@@ -201,3 +201,18 @@ class OnSpline:
         )  # fmt: skip
         indices = {"normal_index": np.full(count, -1), "patch_index": patch_index}
         return FieldsOfSamples(filled | {x: y for x, y in indices.items() if x in fields})
+
+
+def grouped(parts: Iterator[Hits], size: int) -> Iterator[Hits]:
+    """Yield consecutive hits in groups of `size`, and a last group with the remaining ones."""
+    group: list[Hits] = []
+    room = size
+    for hits in parts:
+        start = 0
+        while len(hits) - start >= room:
+            yield Hits.joined([*group, hits[start : start + room]])
+            start += room
+            group, room = [], size
+        group.append(hits[start:])
+        room -= len(group[-1])
+    yield Hits.joined(group)

@@ -23,18 +23,18 @@ from ..kernels.sizing import TargetDensity
 from ..samples.fields import FLAG_NAMES
 from ..samples.report import PLACES
 from ..search.bins import NormalBins
-from ..search.search import Hits
+from ..search.search import Hits, find
 from ..spline.developable import CellMeasure
 from ..spline.inside import count_of, parameters_of, samples_inside
 from ..spline.spline import Spline
 from ..surface.derivatives import Differentiable
 from ..surface.surface import Surface
 from ..surface.surfaces import named
-from .moved_samples import CONTRARY, as_fields, moved_samples, part_of
+from .moved_samples import as_fields, moved_samples, part_of
 from .newton import evaluate_on_surface
-from .on_spline import Array, Fields, FieldsOfSamples, OnSpline
+from .on_spline import Array, Fields, FieldsOfSamples, OnSpline, grouped
 from .pole_charts import PoleChart, pole_charts
-from .repeats import kept_once
+from .repeats import kept_once, left_patch
 
 if TYPE_CHECKING:
     from .triangles import Triangles
@@ -42,6 +42,8 @@ if TYPE_CHECKING:
 __all__ = ["OnSurface", "checked_place", "geometry_of", "place_of_samples"]
 
 AT_A_TIME, POINTS_AT_A_TIME = 1 << 12, 1 << 16
+# Samples in turn are looked at in groups of at least this number, whether they repeat others.
+TOGETHER = 1 << 17
 # The places of the nodes of a patch at which target densities are integrated, see `sizing`.
 NODES = np.array([
     [1.0 - 2.0 * NODE, NODE], [NODE, 1.0 - 2.0 * NODE], [NODE, NODE], [1.0 / 3.0, 1.0 / 3.0],
@@ -168,30 +170,35 @@ class OnSurface(OnSpline):
     def at_hits_in_turn(
         self,
         bins: NormalBins,
-        groups: Iterator[Hits],
+        parts: Iterator[Hits],
         fields: Sequence[str],
         dtype: DTypeLike,
         size: int,
     ) -> Iterator[FieldsOfSamples]:
-        """Yield the samples at groups of at most `size` hits, which are all of these normals.
+        """Yield at most `size` samples at a time, those at `parts` of all hits of these normals.
 
-        Those next to poles come last: several of them, in different groups, may be one. Those that
-        meet elsewhere, which happens on coarse splines only, are not looked for.
+        Samples that meet may be far apart in them. So all samples of the normals of those that may
+        be left out are searched again; that is quick for many of them together.
         """
-        held: list[Fields] = []
-        for hits in groups:
+        for hits in grouped(parts, -(-TOGETHER // size) * size):
             arrays = self._moved(bins, hits)
-            at_poles = self._at_poles(arrays)
-            if at_poles.any():
-                held.append(part_of(arrays, at_poles))
-                arrays = part_of(arrays, ~at_poles)
-            yield as_fields(arrays, fields, dtype)
-        if held:
-            arrays = {x: np.concatenate([part[x] for part in held]) for x in held[0]}
-            arrays = part_of(arrays, self._kept_once(arrays))
-            for first in range(0, count_of(arrays), size):
+            arrays = part_of(arrays, ~self._left_out(bins, arrays))
+            for first in range(0, max(count_of(arrays), 1), size):
                 part = {name: x[first : first + size] for name, x in arrays.items()}
                 yield as_fields(part, fields, dtype)
+
+    def _left_out(self, bins: NormalBins, arrays: Fields) -> NDArray[np.bool_]:
+        """Return which samples `_kept_once` leaves out of all samples of these normals."""
+        may_be = self._at_poles(arrays) | left_patch(self.spline, arrays) | ~arrays[FLAG_NAMES[0]]
+        numbers, normal = np.unique(arrays["normal_index"][may_be], return_inverse=True)
+        if len(numbers) == 0:
+            return may_be
+        again = NormalBins(bins.normals[numbers], self.threads)
+        whole = self._moved(again, find(self.spline, again, self.threads))
+        whole = part_of(whole, ~self._kept_once(whole))
+        left_out = whole["normal_index"] * self.patches + whole["patch_index"]
+        may_be[may_be] = np.isin(normal * self.patches + arrays["patch_index"][may_be], left_out)
+        return may_be
 
     def _moved(self, bins: NormalBins, hits: Hits) -> Fields:
         """Return all fields but the support of the samples at hits, those inside the trim."""
@@ -206,11 +213,7 @@ class OnSurface(OnSpline):
 
     def _kept_once(self, arrays: Fields) -> NDArray[np.bool_]:
         """Return which samples do not repeat another one."""
-        return kept_once(
-            arrays["points"], arrays["gaussian_curvature"], arrays["normal_index"],
-            arrays[FLAG_NAMES[0]], arrays[CONTRARY], self._at_poles(arrays),
-            1.0 / self.spline.scale,
-        )  # fmt: skip
+        return kept_once(self.spline, arrays, self._at_poles(arrays))
 
     @cached_property
     def _charts(self) -> list[PoleChart]:
