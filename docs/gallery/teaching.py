@@ -75,7 +75,7 @@ for surface, euler in (
 # %%
 normals = gm.fibonacci(1000)
 found = gm.sample(torus, normals=normals)
-signs = np.bincount(found.normal_index, np.sign(found.gaussian_curvature), len(normals))
+signs = np.bincount(found.normal_index, np.copysign(1, found.gaussian_curvature), len(normals))
 assert (signs == 0).all()
 print("0 for each of the", len(normals), "normals")
 

@@ -154,7 +154,9 @@ def store(target, row, patch, u, v, size):
         target.uv[row, 0] = u
         target.uv[row, 1] = v
         set_row(target.points, row, Vector(patch.p.x * unit, patch.p.y * unit, patch.p.z * unit))
-        target.gaussian[row] = K * size * size
+        # K may be 0, of any sign.
+        sign = target.signs[row] if target.signs[row] != 0.0 else K
+        target.gaussian[row] = math.copysign(K * size * size, sign)
         target.mean[row] = H * size
         target.state[row] = FOUND
 

@@ -86,8 +86,9 @@ class SamplingReport:
     on : {"surface", "spline"} or None
         Where the samples lie: on the surface, or on the spline that approximates it.
     unrefined : int or None
-        With ``on="surface"``, the number of samples at prescribed normals that could not be moved
-        from the spline to the point of the surface that has the normal; see `Samples.on_surface`.
+        With ``on="surface"``, the number of samples that are not on it (`Samples.on_surface` is
+        False): those at prescribed normals that could not be moved from the spline to the point of
+        the surface that has the normal, and others at singular points.
     fit_distance, fit_rms : float or None
         The largest distance of the spline from the surface, or from the data, that it approximates,
         and the root mean square of the distance; see `Spline.misfit`.

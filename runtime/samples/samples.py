@@ -52,10 +52,12 @@ class Samples(SampleArrays, Methods):
     patch_index : (N,) int64 array
         Patches of the spline in which the samples were found.
     on_surface : (N,) bool array or None
-        Whether the sample is on the surface. False for one at a prescribed normal that could not be
-        moved there from the spline: next to parabolic and singular points, and next to open borders
-        where the surface has that normal outside of its domain only. None with ``on="spline"``, or
-        if it was not requested.
+        Whether the sample is on the surface, and its normal that of the surface up to 1e-9. False
+        for one at a prescribed normal that could not be moved there from the spline: next to
+        parabolic and singular points, and next to open borders where the surface has that normal
+        outside of its domain only. Its normal, K and H, with the sign of K, are then those of the
+        spline, and not those of the surface at its `uv`, which may differ in everything. None with
+        ``on="spline"``, or if it was not requested.
     row, column : (N,) int64 array or None
         For samples on a grid (see ``density="aligned"`` of `sample`): the numbers of the lines
         v = const and u = const on which a sample is, from 0 upwards; −1 for one that is on no grid.

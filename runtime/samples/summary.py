@@ -42,7 +42,8 @@ def summary_of(samples: SampleArrays) -> str:
     if report.edge_samples is not None:
         line += f"; {report.edge_samples:,} of the samples are on sharp edges"
     if report.unrefined:
-        line += f"; {report.unrefined:,} samples could not be moved to the surface from its spline"
+        line += f"; {_number(report.unrefined, 'sample')} could not be moved to the surface: there "
+        line += "normals and curvatures are those of its spline"
     if report.apexes:
         tips = "a sharp tip" if report.apexes == 1 else f"{report.apexes} sharp tips"
         line += f"; the surface ends in {tips}"

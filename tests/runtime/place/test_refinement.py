@@ -195,6 +195,35 @@ def test_flat_points_are_reached_as_far_as_normals_tell() -> None:
     assert np.abs(samples.uv).max() < 0.2
 
 
+def test_a_curvature_of_zero_keeps_its_sign() -> None:
+    """At the flat point of a monkey saddle, where two samples may begin."""
+    surface = gm.surfaces.monkey_saddle()
+    signs, none = np.array([1.0, -1.0]), np.zeros((2, 3))
+    upwards = none + np.array([0.0, 0.0, 1.0])
+    target = Target(
+        upwards, signs, np.zeros((2, 2)), none.copy(), np.ones(2), np.ones(2),
+        np.empty(2, np.int8),
+    )  # fmt: skip
+    refine(surface, gm.fit(surface, (9, 9)), target, 1)
+    assert (target.state == FOUND).all()
+    assert (target.gaussian == 0.0).all()
+    np.testing.assert_array_equal(np.signbit(target.gaussian), [False, True])
+
+
+@pytest.mark.compiled
+@pytest.mark.filterwarnings("ignore:.*could not be moved")
+@pytest.mark.parametrize("on", ["spline", "surface"])
+def test_aligned_normals_have_the_sum_of_signs_by_the_sign_bit(on: str) -> None:
+    """Along the axis of a torus whole circles are parabolic: K = −0.0 is among the samples."""
+    normals = np.stack(np.meshgrid(*[[-1.0, 0.0, 1.0]] * 3), axis=-1).reshape(-1, 3)
+    normals = normals[normals.any(axis=1)]
+    samples = gm.sample("torus", normals=normals, cells=(16, 16), on=on)
+    K = samples.gaussian_curvature
+    assert (np.signbit(K) & (K == 0.0)).any()
+    assert (np.bincount(samples.normal_index, np.copysign(1, K), len(normals)) == 0).all()
+    assert np.sign(K).sum() != 0
+
+
 @pytest.mark.compiled
 def test_the_seam_of_a_moebius_band_is_no_way_through() -> None:
     band = gm.surfaces.moebius_band()
@@ -268,6 +297,7 @@ def test_a_point_that_is_covered_twice_is_two_samples() -> None:
 
 def repeated(samples: gm.Samples, periodic: tuple[bool, bool]) -> int:
     """Return how many samples on the surface have the normal and parameters of another one."""
+    assert samples.on_surface is not None
     there = np.flatnonzero(samples.on_surface)
     there = there[np.argsort(samples.normal_index[there], kind="stable")]
     number, count = samples.normal_index[there], 0
@@ -311,11 +341,11 @@ def test_no_sample_of_a_normal_is_repeated(name: str, cells: tuple[int, int] | N
         gm.sample(surface, normals=normals, cells=cells, on=x) for x in ("spline", "surface")
     )
     assert repeated(on_surface, periodic) == 0
-    sums = [
+    before, after = (
         np.bincount(x.normal_index, np.copysign(1.0, x.gaussian_curvature), len(normals))
         for x in (on_spline, on_surface)
-    ]
-    np.testing.assert_array_equal(*sums)
+    )
+    np.testing.assert_array_equal(before, after)
     stream = gm.sample_stream(surface, normals=normals, cells=cells, chunk=500)
     joined = gm.Samples.concatenate(stream)
     for field in on_surface.fields:

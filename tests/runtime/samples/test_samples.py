@@ -425,7 +425,8 @@ class TestText:
             replace(self.samples(), report=report)
             .summary()
             .endswith(
-                "saddle-shaped); 1,234 samples could not be moved to the surface from its spline"
+                "saddle-shaped); 1,234 samples could not be moved to the surface: there normals "
+                "and curvatures are those of its spline"
             )
         )
 

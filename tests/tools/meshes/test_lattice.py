@@ -306,6 +306,7 @@ class TestAligned:
         if name == "part of a grid":
             assert samples.column is not None
             samples = samples[samples.column % 5 != 3]
+        assert samples.spline is not None
         assert Lattice.of(samples, samples.spline) is None
         check_nodes(samples)
 
