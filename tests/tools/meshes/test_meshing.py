@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from gaussmap.runtime.samples.report import SamplingReport
 from gaussmap.tools.meshes.improvement import flip_edges
+from gaussmap.tools.meshes.meshing import triangulated
 from gaussmap.tools.meshes.triangulated import Triangulated
 from gaussmap.tools.meshes.triangulation import neighbours
 
@@ -275,7 +276,7 @@ class TestFlips:
         """Each pair of triangles is compared with the other one, in NumPy."""
         samples = gm.sample(surfaces[name][0](), count=300, density="isotropic")
         assert samples.spline is not None
-        state = Triangulated.of(samples, samples.spline)
+        state = triangulated(samples, samples.spline)
         assert flip_edges(state, "normals") > 0
         assert flip_edges(state, "normals") == 0
         joined = {tuple(x) for x in np.sort(state.mesh(len(samples)).edges, axis=1).tolist()}
@@ -288,7 +289,7 @@ class TestFlips:
     def test_neighbours_stay_those_of_the_triangles(self, name):
         samples = gm.sample(surfaces[name][0](), count=300, density="isotropic")
         assert samples.spline is not None
-        state = Triangulated.of(samples, samples.spline)
+        state = triangulated(samples, samples.spline)
         flip_edges(state, "normals")
         anywhere = np.ones(len(state.points), dtype=bool)
         fresh, is_whole = neighbours(state.triangles, anywhere)
@@ -312,7 +313,7 @@ class TestFlips:
     def test_they_make_the_worst_angle_smaller_and_never_larger(self):
         samples = gm.sample(gm.surfaces.torus(), count=2000, density="isotropic")
         assert samples.spline is not None
-        state = Triangulated.of(samples, samples.spline)
+        state = triangulated(samples, samples.spline)
         before = state.mesh(len(samples)).angles
         flip_edges(state, "normals")
         after = state.mesh(len(samples)).angles
