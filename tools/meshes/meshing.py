@@ -23,7 +23,7 @@ from .vertices import Vertices, before_offset, boundary_of, check_fields
 if TYPE_CHECKING:
     from ...runtime.samples.samples import Samples
 
-__all__ = ["mesh_of", "triangulated_on_lattice"]
+__all__ = ["mesh_of", "triangulated", "triangulated_on_lattice"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
