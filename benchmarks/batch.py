@@ -136,7 +136,9 @@ def _seconds(call: Callable[[], object]) -> float:
 def _of_a_shard(known: Path, folder: Path) -> dict[str, float]:
     """Return what a full shard costs, of the parts of another data set."""
     dataset = gm.open_dataset(known)
-    settings = Settings({}, dataset.fields, dtype="float32", parts_per_shard=OF_A_SHARD)
+    settings = Settings.of_this_version(
+        {}, dataset.fields, dtype="float32", parts_per_shard=OF_A_SHARD
+    )
     create(folder, settings)
     schema = points_schema(settings)
     with Shard(folder, 0, settings) as shard:

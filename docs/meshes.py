@@ -24,7 +24,7 @@ from gaussmap.benchmarks.peers.triangles import (
 from gaussmap.benchmarks.peers.untuned import Boss
 from gaussmap.docs.orders import code, listed, markdown, number, wrapped
 from gaussmap.tools.meshes.improvement import Prefer
-from gaussmap.tools.meshes.meshing import Triangulated
+from gaussmap.tools.meshes.meshing import triangulated
 from matplotlib.cbook import get_sample_data
 
 COUNTS = (2_000, 10_000)
@@ -79,7 +79,7 @@ def without_flips(form: ClosedForm, count: int) -> Triangles:
     """Return the triangulation from which the flips of gaussmap start."""
     samples = samples_for(form, count, "normals")
     assert samples.spline is not None
-    mesh = Triangulated.of(samples, samples.spline).mesh()
+    mesh = triangulated(samples, samples.spline).mesh(samples)
     return mesh.vertices, mesh.triangles
 
 
