@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from functools import cached_property
 from itertools import combinations_with_replacement
+from reprlib import repr as shown
 from typing import Any, cast
 
 import sympy as sp
@@ -49,11 +50,11 @@ class BezierTriangle:
         control_points: Iterable[Iterable[object]],
         normal: Sequence[sp.Symbol] = PAPER_NORMAL,
     ) -> None:
-        """Raise ValueError unless there are six points of three real coordinates.
+        """Raise ValueError unless there are six points of three real coordinates, three symbols.
 
         Texts are read by `reading.read`, which runs nothing.
         """
-        self.normal = tuple(normal)
+        self.normal = _three_symbols(normal)
         reserved = {*normal, u, v}
         rows = [[_exact(x, reserved) for x in point] for point in _six_points(control_points)]
         self.control_points = tuple(sp.ImmutableMatrix(row) for row in rows)
@@ -231,6 +232,15 @@ def _times(factor: sp.Expr, expression: sp.Expr) -> sp.Expr:
     return sp.Mul(factor, expression, evaluate=False)
 
 
+def _three_symbols(normal: Sequence[sp.Symbol]) -> tuple[sp.Symbol, ...]:
+    """Return the components of the normal; ValueError unless they are three different symbols."""
+    components = tuple(normal) if isinstance(normal, Iterable) else ()
+    symbols = [x for x in components if isinstance(x, sp.Symbol)]
+    if len(components) != 3 or len(set(symbols)) != 3:
+        raise ValueError(f"normal must be three different SymPy symbols, not {shown(normal)}")
+    return components
+
+
 def _six_points(control_points: Iterable[Iterable[object]]) -> list[list[object]]:
     """Return the coordinates of six points; ValueError unless they are six times three."""
     try:
@@ -262,10 +272,10 @@ def _exact(value: object, reserved: set[sp.Symbol]) -> sp.Expr:
     except (ReadingError, sp.SympifyError, ValueError, TypeError):
         expression = None
     if not isinstance(expression, sp.Expr) or expression.is_Matrix:
-        raise ValueError(f"{value!r} is not a coordinate")
+        raise ValueError(f"{shown(value)} is not a coordinate")
     expression = substitute(expression, {x: sp.Rational(x) for x in expression.atoms(sp.Float)})
     if expression.is_real is False or expression.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
-        raise ValueError(f"the coordinate {value!r} is not a real number")
+        raise ValueError(f"the coordinate {shown(value)} is not a real number")
     if used := expression.free_symbols & reserved:
-        raise ValueError(f"the coordinate {value!r} uses {sorted(map(str, used))}")
+        raise ValueError(f"the coordinate {shown(value)} uses {shown(sorted(map(str, used)))}")
     return expression

@@ -445,3 +445,18 @@ def test_a_folded_plane_has_no_curvature():
 def test_a_text_that_is_no_expression_is_refused_in_one_sentence() -> None:
     with pytest.raises(ValueError, match=r"^'q\+' is not a coordinate$"):
         BezierTriangle([["q+"] * 3] * 6)
+
+
+@pytest.mark.parametrize(
+    "normal", [5, None, "xyz", (1, 2, 3), sp.symbols("x x y"), sp.symbols("x y"), [[1], [2], [3]]]
+)
+def test_a_normal_that_is_not_three_symbols_is_refused(normal: Any) -> None:
+    with pytest.raises(ValueError, match="normal must be three different SymPy symbols"):
+        BezierTriangle(POINTS_12, normal)
+
+
+@pytest.mark.parametrize("value", ["x" * 15_000 + "+", sp.Symbol("x" * 900) * sp.I * sp.oo])
+def test_what_is_said_of_a_long_coordinate_is_short(value: Any) -> None:
+    with pytest.raises(ValueError, match="coordinate") as caught:
+        BezierTriangle([[value] * 3] * 6)
+    assert len(str(caught.value)) <= 100
