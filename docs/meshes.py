@@ -79,7 +79,7 @@ def without_flips(form: ClosedForm, count: int) -> Triangles:
     """Return the triangulation from which the flips of gaussmap start."""
     samples = samples_for(form, count, "normals")
     assert samples.spline is not None
-    mesh = triangulated(samples, samples.spline).mesh(samples)
+    mesh = triangulated(samples, samples.spline).mesh(len(samples))
     return mesh.vertices, mesh.triangles
 
 
