@@ -1,6 +1,7 @@
 """How Sphinx builds the site: `make docs`. Words are in the pages, code is in _sphinx/."""
 
 import re
+import shutil
 import sys
 from pathlib import Path
 from typing import Any
@@ -8,8 +9,16 @@ from typing import Any
 import gaussmap
 from numpydoc.xref import DEFAULT_LINKS
 from sphinx.application import Sphinx
+from sphinx.errors import ConfigError
 
 HERE = Path(__file__).parent
+# Cells of pages call these; without one, a cell would wait for what never comes.
+for command in ("dask", "gaussmap"):
+    if shutil.which(command) is None:
+        raise ConfigError(
+            f"the command {command} is not on PATH, and pages call it: pip install '.[docs]', in an "
+            "environment that is activated, or run `make docs`."
+        )
 sys.path.append(str(HERE / "_sphinx"))
 
 # Where the classes are that types in docstrings name; those below are not public, but returned.

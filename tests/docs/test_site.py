@@ -1,10 +1,12 @@
 """Pages of the site that are written by hand have all of what they list."""
 
 import re
+import runpy
 from pathlib import Path
 
 import pytest
 from gaussmap.tools.commands.parser import parser
+from sphinx.errors import ConfigError
 
 ROOT = Path(__file__).parents[2]
 
@@ -33,3 +35,11 @@ def test_every_page_of_docs_is_in_the_site() -> None:
         for name in names:
             path = docs / Path(page).parent / name
             assert any(path.with_suffix(x).exists() for x in (".md", ".ipynb")), path
+
+
+def test_a_command_that_pages_call_is_missed_at_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(ConfigError, match="the command dask is not on PATH"):
+        runpy.run_path(str(ROOT / "docs" / "conf.py"))
