@@ -396,10 +396,3 @@ def test_total_curvature_counts_samples():
     for name, solid_angle in (("catenoid", 4 * math.pi * math.tanh(1)), ("torus", 8 * math.pi)):
         samples = gm.sample(gm.surfaces.surface(name), normals=normals)
         assert len(samples) == pytest.approx(50_000 * solid_angle / (4 * math.pi), rel=2e-3)
-
-
-@pytest.mark.compiled
-def test_progress_stays_on_standard_error(capsys):
-    gm.sample(TORUS, count=100, cells=(8, 8), progress=True)
-    list(gm.sample_many([TORUS], count=100, cells=(8, 8), progress=True))
-    assert capsys.readouterr().out == ""

@@ -65,6 +65,26 @@ def test_an_error_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
     assert terminal.getvalue().endswith("\r")
 
 
+def test_progress_stays_on_standard_error(
+    capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pty, termios = pytest.importorskip("pty"), pytest.importorskip("termios")
+    reader, writer = pty.openpty()
+    termios.tcsetwinsize(writer, (24, 80))
+    with open(writer, "w") as terminal, open(reader, "rb", buffering=0) as screen:
+        monkeypatch.setattr(sys, "stderr", terminal)
+        monkeypatch.setattr(progress, "PATIENCE", 0.0)
+        gm.sample("torus", count=100, cells=(8, 8), progress=True)
+        terminal.write("then ")
+        list(gm.sample_many(["torus"], count=100, cells=(8, 8), progress=True))
+        terminal.flush()
+        one, _, many = screen.read(1 << 16).decode().partition("then ")
+        monkeypatch.undo()
+    assert "sampling: 00:00" in one
+    assert "1/1" in many
+    assert capfd.readouterr() == ("", "")
+
+
 CALLS = [gm.sample, gm.fit, gm.read_cad, gm.sample_many, gm.sample_stream, gm.silhouette]
 METHODS = ["mesh", "coverage", "normal_deviation", "weights", "progressive", "write"]
 
