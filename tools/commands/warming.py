@@ -140,6 +140,7 @@ def _meshes() -> None:
         samples.mesh().summary()
         samples.mesh(prefer="normals")
         samples.weights()
+    sample(_torus(), count=500).mesh()  # on a grid, with samples between its lines
 
 
 def _silhouettes() -> None:

@@ -1,4 +1,4 @@
-"""`gaussmap warm`: afterwards nothing that people do every day compiles anything."""
+"""`gaussmap warm`: afterwards neither what people do every day nor the README compiles anything."""
 
 import os
 import subprocess
@@ -11,23 +11,7 @@ import pytest
 from gaussmap.tools.commands import warming
 from gaussmap.tools.commands.cli import main
 
-# Runs the command line, and prints the names of the kernels that were compiled.
-WATCHED = """
-import sys
-from numba.core import event
-
-class Watcher(event.Listener):
-    def on_start(self, event):
-        print("compiled", event.data["dispatcher"].py_func.__name__)
-
-    def on_end(self, event):
-        pass
-
-event.register("numba:compile", Watcher())
-from gaussmap.tools.commands.cli import main
-sys.exit(main())
-"""
-
+README_TESTS = Path(__file__).parents[2] / "test_readme.py"
 EVERY_DAY = [
     ["sample", "torus", "--count", "1000", "-o", "a.ply"],
     ["sample", "torus", "--count", "1000", "--float32", "-o", "a.csv"],
@@ -41,14 +25,20 @@ EVERY_DAY = [
 ]
 
 
-def watched(*arguments: str, folder: Path) -> list[str]:
+def ran(module: str, *arguments: str, folder: Path) -> str:
+    """Run a module in a folder, with the kernels that are compiled there; return what it prints."""
     done = subprocess.run(
-        [sys.executable, "-c", WATCHED, *arguments],
+        [sys.executable, "-m", module, *arguments],
         cwd=folder, capture_output=True, text=True, check=False,
         env={**os.environ, "NUMBA_CACHE_DIR": str(folder / "cache")},
     )  # fmt: skip
-    assert (done.returncode, done.stderr) == (0, "")
-    return done.stdout.splitlines()
+    assert (done.returncode, done.stderr) == (0, ""), done.stdout
+    return done.stdout
+
+
+def compiled(folder: Path) -> set[str]:
+    """Return what has been compiled: a file for each kernel and the types of its arguments."""
+    return {path.name for path in (folder / "cache").glob("kernels-*/**/*.nbc")}
 
 
 @pytest.mark.slow
@@ -56,16 +46,17 @@ def watched(*arguments: str, folder: Path) -> list[str]:
 def test_nothing_is_left_to_compile(tmp_path: Path, parts: ModuleType) -> None:
     np.save(tmp_path / "heights.npy", np.hypot(*np.mgrid[-1:1:20j, -1:1:30j]) ** 3)
     parts.all_kinds().save(tmp_path / "part.npz")
-    *compiled, line = watched("warm", folder=tmp_path)
-    assert len(compiled) > 30
+    line = ran("gaussmap", "warm", folder=tmp_path)
     assert line.startswith(f"kernels in {tmp_path / 'cache' / 'kernels-'}")
     assert " compiled in " in line
-    (line,) = watched("warm", folder=tmp_path)
-    assert line.endswith(": all were compiled already")
-    assert watched("warm", "--quiet", folder=tmp_path) == []
+    warm = compiled(tmp_path)
+    assert len(warm) > 30
+    assert ran("gaussmap", "warm", folder=tmp_path).endswith(": all were compiled already\n")
+    assert ran("gaussmap", "warm", "--quiet", folder=tmp_path) == ""
     for command in EVERY_DAY:
-        (line,) = watched(*command, folder=tmp_path)
-        assert line.startswith("a.")
+        assert ran("gaussmap", *command, folder=tmp_path).startswith("a.")
+    ran("pytest", "-q", "-k", "python or command_line", str(README_TESTS), folder=tmp_path)
+    assert compiled(tmp_path) == warm
 
 
 def test_nothing_can_be_compiled(
