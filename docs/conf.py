@@ -16,8 +16,8 @@ HERE = Path(__file__).parent
 for command in ("dask", "gaussmap"):
     if shutil.which(command) is None:
         raise ConfigError(
-            f"the command {command} is not on PATH, and pages call it: pip install '.[docs]', in an "
-            "environment that is activated, or run `make docs`."
+            f"the command {command} is not on PATH, and pages call it: run `make docs`, or install "
+            "'.[docs]' in an environment that is activated."
         )
 sys.path.append(str(HERE / "_sphinx"))
 

@@ -19,7 +19,7 @@ from .density.law import Law
 from .density.on_pieces import cells_of_piece, pieces_to_sample, sample_pieces
 from .place.on_spline import OnSpline
 from .place.on_surface import checked_place, geometry_of, place_of_samples
-from .samples.fields import COLUMNS, checked_dtype, checked_fields, dtype_of
+from .samples.fields import bytes_of, checked_dtype, checked_fields
 from .samples.report import sampling_report, warn_of
 from .samples.request import ON_GRIDS, Request, checked_request
 from .samples.samples import Samples
@@ -90,8 +90,8 @@ def sample(
         the error of the spline.
     relax : int, default 0
         Steps, at most 10, that move the samples that fill gaps to better places. Two or three are
-        enough; they take 20 to 40 times as long as the sampling and 30 kB of memory for each sample
-        instead of 2 kB.
+        enough; they take 20 to 40 times as long as the sampling and 20 kB of memory for each sample
+        instead of 1 or 2 kB.
     cells : (int, int), optional
         The numbers of cells of the spline along u and v, see `fit`. Pieces of a surface share them,
         in proportion to their parameters.
@@ -236,8 +236,7 @@ def sample_and_normals(
     filled = request.density != "gauss"
     memory = {} if out is None else out.arrays()
     if request.count is not None:
-        row = sum(len(COLUMNS[name]) * dtype_of(name, number).itemsize for name in wanted)
-        check_memory(request.count * row, f"{request.count:,} samples")
+        check_memory(request.cost, request.count, bytes_of(wanted, number))
 
     def sampled(
         geometry: OnSpline, request: Request, floor: float | None = None

@@ -4,6 +4,7 @@ import gc
 import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 from hypothesis import settings
@@ -91,3 +92,11 @@ def main() -> Callable[..., int]:
     from gaussmap.tools.commands.cli import main
 
     return main
+
+
+@pytest.fixture(scope="session")
+def parts() -> ModuleType:
+    """Functions that return CAD parts made of numbers: no public one does without a file."""
+    from gaussmap.tools.cad import examples
+
+    return examples

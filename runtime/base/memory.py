@@ -1,46 +1,161 @@
-"""The check of requests against the memory of this machine, before anything is allocated.
+"""The check of requests against the memory that is free, before anything is allocated.
 
 A system that overcommits memory kills the process when the memory is used; then there is no
-MemoryError to catch.
+MemoryError to catch. `COSTS` says what each kind of request takes.
 """
 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
+from typing import NamedTuple
 
 from .errors import InputError
 
-__all__ = ["check_memory", "memory_limit"]
+__all__ = ["COSTS", "GIB", "Cost", "check_memory", "estimate", "free_memory", "memory_limit"]
 
 GIB = 2.0**30
-# The memory limit of a Linux container.
-CONTAINER = Path("/sys/fs/cgroup/memory.max")
+# Less is not checked: to look up what is free takes as long as a small sampling.
+UNCHECKED = 2.0**24
+PROC, CONTROL_GROUPS = Path("/proc"), Path("/sys/fs/cgroup")
+# Where control groups of both versions are, and their files: limit, use, and the line of
+# memory.stat with files that are kept in memory and can be dropped.
+VERSION_1 = ("memory", "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file")
+VERSION_2 = ("", "memory.max", "memory.current", "inactive_file")
+
+
+class Cost(NamedTuple):
+    """What a request takes at its peak: bytes for each thing, and copies of what is stored of it.
+
+    The last column says what to do instead.
+    """
+
+    things: str
+    each: float
+    rows: float
+    instead: str
+
+
+FEWER = "use fewer, or gm.sample_stream with a count, for samples at normals in chunks"
+LARGER = "ask for fewer samples, or a larger angle or coverage"
+# Measured; tests/runtime/base/test_memory.py measures again.
+COSTS: dict[str, Cost] = {
+    "icosphere": Cost("normals", 24.0, 0.0, FEWER),
+    "normals": Cost("normals", 24.0, 0.0, FEWER),
+    "random": Cost("normals", 48.0, 0.0, FEWER),
+    "healpix": Cost("normals", 48.0, 0.0, FEWER),
+    "circle": Cost("normals", 137.0, 0.0, "use fewer"),
+    "cap": Cost("normals", 96.0, 0.0, "use fewer"),
+    "polygon": Cost("normals", 24.0, 1.0, "use fewer"),
+    # Normals in bins, and one sample for each.
+    "search": Cost("normals", 52.0, 0.0, FEWER),
+    "stored": Cost("samples", 0.0, 1.0, 'use fewer normals, fewer fields or dtype="float32"'),
+    "gauss": Cost("samples", 76.0, 1.0, "use fewer, fewer fields, float32, or gm.sample_stream"),
+    # The others have some candidates for each sample.
+    "balanced": Cost("samples", 1700.0, 0.0, FEWER),
+    "isotropic": Cost("samples", 1300.0, 0.0, FEWER),
+    "uniform": Cost("samples", 1300.0, 0.0, FEWER),
+    "aligned": Cost("samples", 430.0, 0.0, FEWER),
+    "relaxed": Cost("samples", 19e3, 0.0, "use fewer, or relax=0, which takes a tenth"),
+    "candidates": Cost("candidates for samples", 190.0, 0.0, LARGER),
+    "part": Cost("samples", 8e3, 0.0, "use fewer"),
+    "relaxed part": Cost("samples", 29e3, 0.0, "use fewer, or relax=0, which takes a fourth"),
+    "candidates on a part": Cost("candidates for samples", 700.0, 0.0, LARGER),
+    "curve": Cost("samples", 134.0, 0.0, "use fewer"),
+    # 450 in arrays, and what Qhull takes.
+    "mesh": Cost("vertices of a mesh", 600.0, 0.0, "use fewer samples"),
+    "cells": Cost("cells", 120.0, 0.0, "use fewer, or tolerance=..., which chooses them"),
+    "heights": Cost(
+        "heights", 250.0, 0.0,
+        "crop the file, or coarsen it, as with gdal_translate -outsize 25% 25% -r average",
+    ),
+}  # fmt: skip
+
+
+def estimate(request: str, number: float, row: float = 0.0) -> float:
+    """Return how many bytes a number of things take; `row` are the bytes that are stored of one."""
+    cost = COSTS[request]
+    return number * (cost.each + cost.rows * row)
+
+
+def check_memory(request: str, number: float, row: float = 0.0) -> None:
+    """Raise InputError if a request needs more memory than is free; see `estimate`."""
+    needed = estimate(request, number, row)
+    if needed <= UNCHECKED or needed <= (free := free_memory()):
+        return
+    things, *_, instead = COSTS[request]
+    raise InputError(
+        f"{number:,.0f} {things} need about {needed / GIB:,.1f} GiB of memory, and "
+        f"{max(free, 0.0) / GIB:,.1f} GiB are free; {instead}."
+    )
 
 
 def memory_limit() -> float:
     """Return the most memory of this process in bytes; infinity if it is unknown."""
-    limits = [float("inf")]
+    return min(limit for limit, _ in _limits())
+
+
+def free_memory() -> float:
+    """Return how much more memory this process can have in bytes; infinity if it is unknown."""
+    return min(limit - used for limit, used in _limits())
+
+
+def _limits() -> Iterator[tuple[float, float]]:
+    """Yield limits of memory in bytes, and how much of each is used."""
+    yield float("inf"), 0.0
     with suppress(AttributeError, OSError, ValueError):  # Windows has no sysconf
-        limits.append(float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")))
+        page = float(os.sysconf("SC_PAGE_SIZE"))
+        total = os.sysconf("SC_PHYS_PAGES") * page
+        yield total, total - _line(PROC / "meminfo", "MemAvailable:", total / 1024.0) * 1024.0
+        yield from _limits_of_process(page)
+    with suppress(OSError):  # a system without control groups
+        for line in (PROC / "self" / "cgroup").read_text(encoding="utf-8").splitlines():
+            _, controllers, path = line.split(":", 2)
+            if controllers == "" or "memory" in controllers.split(","):
+                yield from _limits_of_group(path, VERSION_1 if controllers else VERSION_2)
+
+
+def _limits_of_process(page: float) -> Iterator[tuple[float, float]]:
+    """Yield the limits that are set by ulimit."""
     with suppress(ImportError, OSError, ValueError):
         import resource
 
-        for kind in (resource.RLIMIT_AS, resource.RLIMIT_DATA):
+        # The columns of statm: address space and data, in pages.
+        for kind, column in ((resource.RLIMIT_AS, 0), (resource.RLIMIT_DATA, 5)):
             soft, _ = resource.getrlimit(kind)
             if soft != resource.RLIM_INFINITY:
-                limits.append(float(soft))
-    with suppress(OSError, ValueError):  # "max", or a system without control groups
-        limits.append(float(int(CONTAINER.read_text(encoding="ascii"))))
-    return min(x for x in limits if x > 0.0)
+                used = 0.0
+                with suppress(OSError):
+                    pages = (PROC / "self" / "statm").read_text(encoding="ascii").split()
+                    used = page * float(pages[column])
+                yield float(soft), used
 
 
-def check_memory(bytes_needed: float, what: str) -> None:
-    """Raise InputError if `bytes_needed` exceed the memory limit; `what` needs them."""
-    limit = memory_limit()
-    if bytes_needed > limit:
-        raise InputError(
-            f"{what} need at least {bytes_needed / GIB:,.0f} GiB of memory, and there are "
-            f"{limit / GIB:,.1f} GiB; use fewer."
-        )
+def _limits_of_group(
+    path: str, version: tuple[str, str, str, str]
+) -> Iterator[tuple[float, float]]:
+    """Yield the limits of a control group and of those that hold it.
+
+    In a container the path is that outside of it, perhaps; its own group is the root then.
+    """
+    folder, limit, use, droppable = version
+    root = CONTROL_GROUPS / folder
+    group = root / path.lstrip("/")
+    for each in (group, *group.parents):
+        with suppress(OSError, ValueError):  # "max", or no such group
+            most = float(int((each / limit).read_text(encoding="ascii")))
+            used = float(int((each / use).read_text(encoding="ascii")))
+            yield most, used - _line(each / "memory.stat", droppable, 0.0)
+        if each == root:
+            return
+
+
+def _line(path: Path, name: str, default: float) -> float:
+    """Return the number after a name in a file with a line for each; the default without one."""
+    with suppress(OSError):
+        for line in path.read_text(encoding="ascii").splitlines():
+            if line.startswith(f"{name} "):
+                return float(line.split()[1])
+    return default

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.errors import InputError
+from ..base.memory import check_memory
 from ..base.threads import over_ranges
 from ..kernels import triangles as kernels
 from ..spline.inside import FINEST, Inside, parameters_of, subcentroids
@@ -110,6 +111,7 @@ class Triangles:
     @property
     def uncut_quarters(self) -> Triangles:
         """The triangles cut into four similar ones each (4 M), which follow one another."""
+        check_memory("candidates", 4 * len(self))
         midpoints = (self.corners + np.roll(self.corners, 1, axis=1)) / 2.0
         points = np.concatenate([self.corners, midpoints], axis=1)
         corners = points[:, [[0, 4, 3], [4, 1, 5], [3, 5, 2], [5, 3, 4]]].reshape(-1, 3, 2)
@@ -121,6 +123,7 @@ class Triangles:
 
         Without those outside the trim.
         """
+        check_memory("candidates", 2 * len(self))
         corners = self._written_by(kernels.bisect, self.corners, np.empty((2 * len(self), 3, 2)))
         return _inside_trim(Triangles(self.sizing, np.repeat(self.patches, 2), corners))
 
@@ -227,6 +230,7 @@ def subdivisions(sizing: SizingFunction, radius: float) -> tuple[Indices, NDArra
             parts[~sizing.spline.inside.reached] = 1.0
         total = float((parts * parts).sum())
     refuse_more(sizing, total, MOST)
+    check_memory("candidates", total)
     narrow = sizing.areas < NARROW * sizing.radii**2
     return np.where(narrow, 1, parts.astype(np.int64)), narrow
 

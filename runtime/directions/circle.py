@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.checks import whole_number
+from ..base.memory import check_memory
 
 __all__ = ["arc_of_normals", "circle"]
 
@@ -38,6 +39,7 @@ def circle(count: int) -> NDArray[np.float64]:
 
     """
     total = whole_number(count, "count")
+    check_memory("circle", total)
     # Angles in 8 count parts of a turn: a quarter has 2 count of them, and half of it is mirrored.
     quarter, place = np.divmod(4 * (2 * np.arange(total) + 1), 2 * total)
     beyond = place > total

@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..base.checks import finite_number
 from ..base.errors import InputError
+from ..base.memory import check_memory
 from ..base.tolerances import TRIPLE_PRODUCT_ERROR
 from .unit import as_normals, unit_vector
 
@@ -57,6 +58,7 @@ def cap(normals: ArrayLike, axis: ArrayLike, angle: float) -> NDArray[np.float64
     degrees = finite_number(angle, "angle")
     if not 0.0 <= degrees <= 180.0:
         raise InputError(f"angle must lie between 0 and 180 degrees, and is {degrees:g}.")
+    check_memory("cap", len(directions))
     return directions[angles_between(directions, middle) <= degrees]
 
 
@@ -109,6 +111,7 @@ def polygon(normals: ArrayLike, corners: ArrayLike) -> NDArray[np.float64]:
         raise InputError(
             "the corners must go round a convex polygon anticlockwise, as seen from outside."
         )
+    check_memory("polygon", len(directions), 9.0 * len(around))  # a number and a truth value each
     return directions[(directions @ inwards.T >= -TRIPLE_PRODUCT_ERROR).all(axis=1)]
 
 

@@ -12,6 +12,7 @@ from ..base import compiling  # noqa: F401 - announces compilation on terminals
 from ..base.checks import whole_number
 from ..base.errors import InputError, in_memory
 from ..base.extras import from_extra
+from ..base.memory import check_memory
 from ..base.threads import over_ranges
 from ..kernels.icosphere import new_line, write_points
 from .unit import PIECE, as_normals, in_pieces, normalized
@@ -68,12 +69,14 @@ def icosphere(frequency: int) -> NDArray[np.float64]:
 
     """
     nu = _refinement(frequency, "frequency")
-    normals = np.empty((10 * nu**2 + 2, 3))
+    count = 10 * nu**2 + 2
+    check_memory("icosphere", count)
+    normals = np.empty((count, 3))
 
     def work(first: int, last: int) -> None:
         write_points(nu, first, last, normals, *new_line())
 
-    list(over_ranges(work, PARTS, PARTS_AT_A_TIME, 1 if len(normals) < PIECE else None))
+    list(over_ranges(work, PARTS, PARTS_AT_A_TIME, 1 if count < PIECE else None))
     return normals
 
 
@@ -125,6 +128,7 @@ def fibonacci(count: int) -> NDArray[np.float64]:
     return part_of_fibonacci(total, 0, total)
 
 
+@in_memory
 def healpix(nside: int) -> NDArray[np.float64]:
     """Return the centres of the pixels of HEALPix, ring by ring from +z to −z.
 
@@ -159,6 +163,7 @@ def healpix(nside: int) -> NDArray[np.float64]:
     if size & (size - 1):
         raise InputError(f"nside must be a power of 2, not {size}.")
     library = from_extra("astropy_healpix", "spheres", "HEALPix")
+    check_memory("healpix", 12 * size**2)
     xyz = library.healpix_to_xyz(np.arange(12 * size**2), size, order="ring")
     return as_normals(np.stack(xyz, axis=1))
 
@@ -199,6 +204,7 @@ def random(count: int, *, seed: int = 0) -> NDArray[np.float64]:
 
     """
     total, start = whole_number(count, "count"), whole_number(seed, "seed", least=0)
+    check_memory("random", total)
     return as_normals(np.random.default_rng(start).standard_normal((total, 3)))
 
 

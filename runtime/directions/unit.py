@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..base.checks import finite_array, real_values
 from ..base.errors import InputError
+from ..base.memory import check_memory
 from ..base.threads import over_ranges
 from ..kernels.unit import are_unit
 
@@ -69,6 +70,7 @@ def in_pieces(
     width: int = 3,
 ) -> NDArray[np.float64]:
     """Return rows(first, last) (…, width), computed on threads in pieces of the size PIECE."""
+    check_memory("normals", last - first)
     result = np.empty((last - first, width))
 
     def work(begin: int, end: int) -> None:

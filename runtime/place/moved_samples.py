@@ -7,8 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from ..base.memory import check_memory
 from ..kernels.refine import FOUND, Target
-from ..samples.fields import FLAG_NAMES, dtype_of
+from ..samples.fields import FLAG_NAMES, bytes_of, dtype_of
 from ..search.bins import NormalBins
 from ..search.search import Hits, fill
 from ..spline.spline import Spline
@@ -32,6 +33,7 @@ def moved_samples(
 
     They have all fields but the support, in float64.
     """
+    check_memory("stored", len(hits), bytes_of(NEEDED, np.float64))
     arrays = fill(spline, bins, hits, threads, NEEDED, np.float64)
     signs = np.copysign(1.0, arrays["gaussian_curvature"])
     states = np.empty(len(signs), dtype=np.int8)

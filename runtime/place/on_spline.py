@@ -16,10 +16,11 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from ..base.georeference import Georeference
+from ..base.memory import check_memory
 from ..kernels.forms import forms_on_spline
 from ..kernels.sizing import TargetDensity
 from ..kernels.tile import fill_known
-from ..samples.fields import FLOAT_NAMES, new_field
+from ..samples.fields import FLOAT_NAMES, bytes_of, new_field
 from ..samples.report import SamplingReport
 from ..samples.samples import Samples
 from ..search.bins import NormalBins
@@ -121,6 +122,7 @@ class OnSpline:
     ) -> FieldsOfSamples:
         """Return the samples at hits, with the fields that are requested."""
         wanted = with_uv(self.spline, fields)
+        check_memory("stored", len(hits), bytes_of(set(wanted) - set(self.memory), dtype))
         arrays = fill(self.spline, bins, hits, self.threads, wanted, dtype, self.memory)
         return FieldsOfSamples(samples_inside(self.spline, arrays, fields))
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -30,6 +30,7 @@ __all__ = [
     "PART_NAMES",
     "REAL_NAMES",
     "UNITS",
+    "bytes_of",
     "checked_dtype",
     "checked_fields",
     "columns_of",
@@ -114,6 +115,11 @@ def dtype_of(name: str, floating: DTypeLike) -> np.dtype[Any]:
     if name in FLAG_NAMES:
         return np.dtype(np.bool_)
     return np.dtype(np.int64 if name in INTEGER_NAMES else floating)
+
+
+def bytes_of(fields: Iterable[str], floating: DTypeLike) -> int:
+    """Return how many bytes the fields of one sample take."""
+    return sum(len(COLUMNS[x]) * dtype_of(x, floating).itemsize for x in fields)
 
 
 def new_field(

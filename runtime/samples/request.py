@@ -49,6 +49,13 @@ class Request:
         return self.directions if self.count is None else self.count
 
     @property
+    def cost(self) -> str:
+        """The entry of `memory.COSTS` for the samples."""
+        if self.relax:
+            return "relaxed"
+        return self.density if isinstance(self.density, str) else "uniform"
+
+    @property
     def directions(self) -> NDArray[np.float64]:
         """The normals, or those of an icosphere that is fine enough for the angle."""
         if self.normals is not None:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated.icosahedron import FRAMES, STRETCHES
+from ..base.memory import check_memory
 from ..base.threads import over_ranges, thread_count
 from ..directions.sets import PARTS, PARTS_AT_A_TIME
 from ..directions.unit import perpendicular
@@ -117,6 +118,7 @@ class NormalBins:
     def sorted(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         """The starts of bins (B + 1,); normals and their numbers (S, 4), in the order of bins."""
         total, count = len(self.normals), 6 * self.grid**2
+        check_memory("search", total)
         size = max(FEWEST_NORMALS, -(-total // min(thread_count(self.threads), MOST_COUNTS)))
         bins = np.empty(total, dtype=np.int32)
         counts = np.empty((-(-total // size), count), dtype=np.int64)

@@ -22,8 +22,6 @@ __all__ = ["apart", "checked_cells", "fit_grid", "fit_values", "not_too_large"]
 MOST_CELLS = 10**9
 # What is said to be one point may be this far apart, relative to the size of the surface.
 SAME_POINT = 1e-6
-# The values at centres and vertices, and the coefficients of a cell, of three numbers each.
-BYTES_A_CELL = 72
 
 
 def fit_values(
@@ -97,5 +95,5 @@ def checked_cells(cells: Sequence[int]) -> tuple[int, int]:
         raise InputError(f"at least 3 x 3 cells are needed, not {m} x {n}.")
     if m * n > MOST_CELLS:
         raise InputError(f"at most {MOST_CELLS:,} cells are possible, not {m:,} x {n:,}.")
-    check_memory(BYTES_A_CELL * m * n, f"{m:,} x {n:,} cells")
+    check_memory("cells", m * n)
     return m, n

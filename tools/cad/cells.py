@@ -15,6 +15,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from ...runtime.base.memory import check_memory
 from .face_pieces import FacePiece
 
 __all__ = ["BEND_U", "Cells", "Evaluator", "by_piece", "halved", "into_parts", "new_cells"]
@@ -131,6 +132,7 @@ class Cells:
 
 def halved(cells: Cells, along_u: Flags) -> Cells:
     """Return the halves (2 M) of cells, along u or along v; they are not evaluated."""
+    check_memory("candidates on a part", 2 * len(cells))
     middle = (cells.boxes[:, :2] + cells.boxes[:, 2:]) / 2.0
     lower, upper = cells.boxes.copy(), cells.boxes.copy()
     lower[:, 2] = np.where(along_u, middle[:, 0], lower[:, 2])
@@ -148,6 +150,7 @@ def halved(cells: Cells, along_u: Flags) -> Cells:
 def into_parts(cells: Cells, parts: Indices) -> Cells:
     """Return cells cut into parts (M, 2) along u and v; they are not evaluated."""
     total = parts.prod(axis=1)
+    check_memory("candidates on a part", total.sum())
     owner = np.repeat(np.arange(len(cells)), total)
     number = np.arange(len(owner)) - np.repeat(np.cumsum(total) - total, total)
     place = np.stack(np.divmod(number, parts[owner, 1]), axis=1)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from ...runtime.base.errors import GaussmapWarning, InputError
+from ...runtime.base.memory import check_memory
 from ...runtime.base.threads import counted
 from ...runtime.base.tolerances import FLAT_SURFACE, LENGTH_ERROR
 from ...runtime.density.angles import choose_apart, cover_normals
@@ -63,6 +64,8 @@ def sample_part(
 ) -> tuple[Samples, Array]:
     """Return samples of a part, and the normals that were asked. Raises what `sample` raises."""
     _check(request)
+    if request.count is not None:
+        check_memory("relaxed part" if request.relax else "part", request.count)
     space = space_of(part, threads, _target(request))
     given = given_at_normals(space, request.normals, progress)
     angle = None

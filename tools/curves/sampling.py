@@ -22,6 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...runtime.base.checks import checked_count
 from ...runtime.base.errors import GaussmapWarning, InputError, in_memory
+from ...runtime.base.memory import check_memory
 from ...runtime.directions.circle import arc_of_normals, circle
 from ...runtime.directions.unit import as_normals
 from ..kernels import curve as kernels
@@ -105,6 +106,7 @@ def sample(
     if (normals is None) == (count is None):
         raise InputError("give either normals=... or count=..., and not both.")
     asked = None if count is None else checked_count(count)
+    check_memory("curve", asked or 0)
     directions = None if normals is None else as_normals(normals, 2)
     if isinstance(curve, CurveSpline) and pieces is not None:
         raise InputError("pieces=... is for curves; this spline already has its pieces.")

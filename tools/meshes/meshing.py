@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.base.errors import InputError, shown
+from ...runtime.base.memory import check_memory
 from ...runtime.domain.domain import Boundary
 from ...runtime.place.newton import evaluate_on_surface
 from ...runtime.spline.spline import Spline
@@ -38,6 +39,7 @@ def mesh_of(samples: Samples, spline: Spline, angle: float | None, prefer: str) 
     if not len(samples):
         raise InputError("there are no samples, and so there is nothing to make a mesh of.")
     check_fields(samples)
+    check_memory("mesh", len(samples))
     mesh = triangulated_on_lattice(samples, spline)
     if mesh is None:
         mesh = triangulated(samples, spline, must_be_whole=angle is None)

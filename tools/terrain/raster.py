@@ -11,13 +11,10 @@ from numpy.typing import NDArray
 
 from ...runtime.base.errors import InputError
 from ...runtime.base.extras import from_extra
-from ...runtime.base.memory import GIB, memory_limit
+from ...runtime.base.memory import check_memory
 from ..files.reading import UnusableError, opened
 
-__all__ = ["BYTES_A_HEIGHT", "Raster", "read_raster"]
-
-# Of the heights, their points, and the spline with one cell between any four of them.
-BYTES_A_HEIGHT = 250
+__all__ = ["Raster", "read_raster"]
 
 Array = NDArray[np.float64]
 
@@ -49,7 +46,7 @@ def read_raster(path: Path, band: int, nodata: float | None) -> Raster:
         with rasterio.open(path, driver="GTiff") as dataset:
             bands = dataset.count
             if band <= bands:
-                _check_memory(dataset.height, dataset.width)
+                check_memory("heights", dataset.height * dataset.width)
                 heights = _heights(dataset, band, nodata)
                 return Raster(
                     heights, _transform(dataset), dataset.crs, dataset.units[band - 1] or ""
@@ -82,13 +79,3 @@ def _transform(dataset: Any) -> tuple[float, ...] | None:  # noqa: ANN401
             "is placed by ground control points or a camera model; rectify it first, with gdalwarp."
         )
     return None
-
-
-def _check_memory(rows: int, columns: int) -> None:
-    needed, limit = float(rows) * columns * BYTES_A_HEIGHT, memory_limit()
-    if needed > limit:
-        raise UnusableError(
-            f"has {rows:,} x {columns:,} heights, which need at least {needed / GIB:,.0f} GiB of "
-            f"memory, and there are {limit / GIB:,.1f} GiB; crop it, or coarsen it, as with "
-            "gdal_translate -outsize 25% 25% -r average."
-        )
