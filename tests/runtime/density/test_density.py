@@ -313,3 +313,12 @@ def test_nothing_warns_of_what_is_covered():
     for name in ("plane", "cylinder", "cone"):
         samples = gm.sample(gm.surfaces.surface(name), count=60, cells=(12, 12))
         assert samples.report.developable_share == pytest.approx(1.0)
+
+
+@pytest.mark.compiled
+def test_a_count_is_divided_well():
+    """With fewer samples at normals, angles are wider; with more, gaps are."""
+    samples = gm.sample("catenoid", 1000, density="isotropic", cells=(32, 32))
+    deviation = samples.normal_deviation()
+    assert deviation.space < 4.53
+    assert deviation.normal_space < 4.4

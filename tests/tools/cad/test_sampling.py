@@ -8,6 +8,7 @@ import pickle
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.tools.cad import sampling
 from gaussmap.tools.cad.cells import BEND_U
 from gaussmap.tools.cad.part import Part
 from gaussmap.tools.cad.records import FaceRecord, Geometry, Net
@@ -307,3 +308,16 @@ def test_candidates_for_normals_are_no_more_than_asked(plates):
         assert len(cells) <= most + len(space.first)
     whole = space.cut_by_normals(0.2, np.inf)  # few are enough: the chord is the one asked for
     assert whole.numbers[:, BEND_U].max() <= 0.5
+
+
+def test_five_percent_of_a_count_go_where_normals_are_missing(parts, monkeypatch):
+    numbers, choose = [], sampling.choose_apart
+
+    def recorded(normals, near, threads, widest, number, known):
+        numbers.append(number)
+        return choose(normals, near, threads, widest, number, known)
+
+    monkeypatch.setattr(sampling, "choose_apart", recorded)
+    samples = gm.sample(parts.all_kinds(), 300)
+    assert numbers == [15]
+    assert samples.normal_deviation().normal_space < 6.5
