@@ -321,3 +321,12 @@ def test_five_percent_of_a_count_go_where_normals_are_missing(parts, monkeypatch
     samples = gm.sample(parts.all_kinds(), 300)
     assert numbers == [15]
     assert samples.normal_deviation().normal_space < 6.5
+
+
+def test_flat_faces_get_their_share(parts):
+    """The target density is three times the mean of κ² at least: a torus has more, a plane not."""
+    part = parts.all_kinds()
+    counts = np.bincount(gm.sample(part, 1000).face_index, minlength=len(part.faces))
+    kinds = [face.kind for face in part.faces]
+    ratio = counts[kinds.index("torus")] / counts[kinds.index("plane")]
+    assert ratio == pytest.approx(1.9, rel=0.2)
