@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from .base.checks import whole_number
+from .base.checks import whole_number, yes_or_no
 from .base.errors import InputError
 from .base.threads import over_ranges, shown
 from .density.chosen_normals import choose
@@ -103,7 +103,8 @@ def sample_stream(
     if request.normals is not None:  # the caller may change them before the last chunk
         request = replace(request, normals=request.normals.copy())
     geometry = geometry_of(surface, cells, number, on, threads)
-    return _Stream(geometry, request, size, wanted, number, progress).chunks()
+    shows = yes_or_no(progress, "progress")
+    return _Stream(geometry, request, size, wanted, number, shows).chunks()
 
 
 @dataclass(frozen=True, eq=False)

@@ -87,6 +87,17 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 @pytest.fixture(scope="session")
+def dataset(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a data set of three surfaces."""
+    import gaussmap as gm
+
+    path = tmp_path_factory.mktemp("data") / "dataset"
+    surfaces = ["torus", "sphere", "ellipsoid"]
+    gm.sample_many(surfaces, 500, cells=(16, 16), out=path, workers=1, progress=False)
+    return path
+
+
+@pytest.fixture(scope="session")
 def main() -> Callable[..., int]:
     """The command line in this process: it takes the arguments, and returns the exit code."""
     from gaussmap.tools.commands.cli import main

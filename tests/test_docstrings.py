@@ -3,82 +3,22 @@
 import doctest
 import inspect
 import re
-from collections.abc import Callable
 from enum import Enum
 from functools import cached_property
-from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import gaussmap as gm
 import pytest
-from gaussmap.runtime.samples.report import SamplingReport
-from gaussmap.runtime.spline.misfit import Misfit
-from gaussmap.tools.cad.part import Part
-from gaussmap.tools.support.branches import Branches
-from gaussmap.tools.support.convolution import Convolution
 from numpydoc.docscrape import NumpyDocString
 from numpydoc.validate import validate
+
+from .interface import CALLABLES, CLASSES, FUNCTIONS, METHODS, members, methods_of
 
 # Parameters that are missing, unknown or untyped; no section of what is returned or yielded; no
 # summary; no example.
 SERIOUS = {"GL08", "PR01", "PR02", "PR04", "RT01", "YD01", "SS01", "EX01"}
 # Of classes: their attributes are the parameters, and are checked below.
 OF_CLASSES = SERIOUS - {"PR01", "PR02", "PR04"}
-NAMESPACES = {"curves", "directions", "errors", "gauss_map", "surfaces"}
-# Classes that the functions return, beside those that have public names.
-RETURNED = {
-    "Branches": Branches,
-    "Convolution": Convolution,
-    "Misfit": Misfit,
-    "Part": Part,
-    "SamplingReport": SamplingReport,
-}
-
-
-def public() -> dict[str, Any]:
-    """Return all public objects by their names; `symbolic` documents its formulas itself."""
-    spaces = {name: getattr(gm, name) for name in sorted(NAMESPACES)}
-    top = [name for name in dir(gm) if not name.startswith("_")]
-    modules = {name for name in top if isinstance(getattr(gm, name), ModuleType)}
-    assert modules == NAMESPACES | {"symbolic"}
-    found = {name: getattr(gm, name) for name in top if name not in modules}
-    for space, module in spaces.items():
-        found |= {f"{space}.{name}": getattr(module, name) for name in module.__all__}
-    found |= {f"surfaces.{name}": getattr(gm.surfaces, name) for name in gm.surfaces.names()}
-    return found | RETURNED
-
-
-PUBLIC = public()
-CLASSES = {name: x for name, x in PUBLIC.items() if inspect.isclass(x)}
-OBJECTS = {"formulas": gm.formulas}  # an instance, whose class is not public
-FUNCTIONS = {name: x for name, x in PUBLIC.items() if name not in {*CLASSES, *OBJECTS}}
-
-
-def members(cls: type) -> dict[str, Any]:
-    """Return the public members of a class that gaussmap defines, and the names of its fields."""
-    found: dict[str, Any] = dict.fromkeys(getattr(cls, "__dataclass_fields__", ()))
-    for base in reversed(cls.__mro__):
-        if base.__module__.startswith("gaussmap"):
-            names = [x for x in vars(base) if x not in found]
-            for x in names:
-                getattr(cls, x)  # some methods are put into the class when first asked for
-            found |= {x: vars(base)[x] for x in names}
-    return {name: x for name, x in found.items() if not name.startswith("_")}
-
-
-def methods_of(cls: type) -> dict[str, Callable[..., Any]]:
-    """Return the public methods, class methods included, by their names."""
-    kinds = (classmethod, staticmethod)
-    return {
-        name: getattr(cls, name)
-        for name, x in members(cls).items()
-        if inspect.isfunction(x) or isinstance(x, kinds)
-    }
-
-
-METHODS = {f"{x}.{name}": f for x, cls in CLASSES.items() for name, f in methods_of(cls).items()}
-CALLABLES = FUNCTIONS | METHODS
 DOCUMENTED = CALLABLES | CLASSES
 
 
@@ -126,15 +66,6 @@ def test_attributes_are_documented_and_used_in_an_example(name: str) -> None:
     examples = [x for y in documented for x in examples_of(name, y)]
     source = "".join(example.source for x in examples for example in x.examples)
     assert [x for x in attributes if not re.search(rf"\.{x}\b", source)] == []
-
-
-@pytest.fixture(scope="module")
-def dataset(tmp_path_factory) -> Path:
-    """Return the folder of a data set."""
-    path = tmp_path_factory.mktemp("data") / "dataset"
-    surfaces = ["torus", "sphere", "ellipsoid"]
-    gm.sample_many(surfaces, 500, cells=(16, 16), out=path, workers=1, progress=False)
-    return path
 
 
 @pytest.mark.compiled

@@ -11,7 +11,7 @@ from numbers import Rational
 from typing import Any, SupportsFloat
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from .errors import InputError, UnknownNameError, shown
 from .limits import MOST
@@ -24,12 +24,15 @@ __all__ = [
     "finite_array",
     "finite_number",
     "known_name",
+    "listed",
     "pair_of_cells",
     "parameter_arrays",
     "positive_number",
     "real_array",
     "real_values",
+    "text",
     "whole_number",
+    "with_gaps",
     "yes_or_no",
 ]
 
@@ -78,7 +81,8 @@ def pair_of_cells(cells: Sequence[int]) -> tuple[int, int]:
 
 def checked_count(value: object) -> int:
     """Return a number of samples; InputError otherwise, for normals with a hint of its own."""
-    if isinstance(value, list | tuple) or getattr(value, "ndim", 0) > 0:
+    shape = getattr(value, "shape", None)
+    if isinstance(value, list | tuple) or (isinstance(shape, tuple) and shape):
         raise InputError(
             f"count must be a whole number of at least 1, not {shown(value)}; normals go by "
             "keyword: normals=…"
@@ -87,12 +91,32 @@ def checked_count(value: object) -> int:
 
 
 def as_float(value: SupportsFloat | str) -> float:
-    """Return float(value); TypeError for complex and masked numbers of NumPy."""
+    """Return float(value); TypeError if that fails, and for complex or masked numbers of NumPy."""
     if isinstance(value, np.ndarray | np.generic) and (
         value.dtype.kind == "c" or np.ma.is_masked(value)
     ):
         raise TypeError("neither complex nor masked arrays are real numbers")
-    return float(value)
+    try:
+        return float(value)
+    except Exception as error:  # objects raise anything
+        raise TypeError(str(error)) from error
+
+
+def listed(values: object) -> list[Any] | None:
+    """Return the elements as a list; None for texts, and for what has no elements."""
+    if isinstance(values, str | bytes | dict):
+        return None
+    try:
+        return list(values)  # pyright: ignore[reportArgumentType]
+    except TypeError:  # of arrays without dimension, too
+        return None
+
+
+def text(value: object, name: str) -> str:
+    """Return a text; InputError with its name for anything else."""
+    if not isinstance(value, str):
+        raise InputError(f"{name} must be a text, not {shown(value)}.")
+    return value
 
 
 def yes_or_no(value: object, name: str) -> bool:
@@ -107,7 +131,7 @@ def finite_number(value: SupportsFloat, name: str) -> float:
     """Return a finite number as a float; InputError with its name otherwise."""
     try:
         number = math.nan if isinstance(value, str) else as_float(value)
-    except (TypeError, ValueError, OverflowError):
+    except TypeError:
         number = math.nan
     if not math.isfinite(number):
         raise InputError(f"{name} must be a finite number, not {shown(value)}.")
@@ -146,13 +170,22 @@ def real_array(values: ArrayLike, name: str) -> NDArray[np.float64]:
         return array.astype(np.float64, order="C")
 
 
+def with_gaps(values: ArrayLike, name: str) -> NDArray[np.float64]:
+    """Return what `real_array` returns, with NaN in place of masked entries."""
+    if not isinstance(values, np.ma.MaskedArray):
+        return real_array(values, name)
+    array = real_array(values.data, name)
+    array[np.ma.getmaskarray(values)] = np.nan
+    return array
+
+
 def real_values(values: ArrayLike, name: str) -> NDArray[Any]:
     """Return real numbers as an array, without a copy where possible; see `real_array`."""
     if np.ma.is_masked(values):
         raise InputError(f"{name} has masked entries; fill them or leave them out.")
     try:
         array = np.asarray(values)
-    except (TypeError, ValueError, OverflowError, RecursionError):
+    except Exception:  # objects raise anything: tensors that require gradients RuntimeError
         raise InputError(f"{name} must be an array of real numbers, with equal rows.") from None
     if _are_fractions(array):
         return array.astype(np.float64)
@@ -183,29 +216,42 @@ def parameter_arrays(u: ArrayLike, v: ArrayLike) -> tuple[NDArray[np.float64], N
 
 
 def checked_array(
-    name: str, array: object, shape: tuple[int, ...], dtype: np.dtype[Any]
+    name: str, array: object, shape: tuple[int | str, ...], dtype: DTypeLike
 ) -> NDArray[Any]:
-    """Return a C-contiguous array; InputError unless it has the given shape and type."""
+    """Return a C-contiguous array; InputError unless it has the given shape and type.
+
+    In the shape a letter stands for any number.
+    """
     if not isinstance(array, np.ndarray):
         raise InputError(f"{name} must be a NumPy array, not {type(array).__name__}.")
-    if array.dtype != dtype or array.shape != shape:
+    pairs = zip(shape, array.shape, strict=False)
+    fits = len(shape) == array.ndim and all(isinstance(x, str) or x == y for x, y in pairs)
+    if array.dtype != np.dtype(dtype) or not fits:
+        wanted = str(shape).replace("'", "")
         raise InputError(
-            f"{name} must be a {dtype} array of shape {shape}, "
+            f"{name} must be a {np.dtype(dtype)} array of shape {wanted}, "
             f"not a {array.dtype} array of shape {array.shape}."
         )
     return np.ascontiguousarray(array)
 
 
 def checked_rows(key: ArrayLike, count: int) -> NDArray[Any]:
-    """Return a mask (count,) or valid row numbers (M,) of samples; InputError otherwise."""
+    """Return a mask (count,) or valid row numbers (M,) of samples; InputError otherwise.
+
+    One number stands for an array of it.
+    """
     try:
         rows = np.asarray(key)
-    except (TypeError, ValueError, RecursionError):  # of ragged lists
+    except Exception:  # of ragged lists, and of objects that raise anything
         rows = np.empty(())
+    if rows.ndim == 0 and rows.dtype.kind in "iu":
+        rows = rows[None]
     if rows.shape == (0,) and rows.dtype.kind == "f":
         rows = rows.astype(np.intp)  # NumPy takes an empty list for floats
     if rows.ndim != 1 or rows.dtype.kind not in "biu":
-        raise InputError("samples are picked by a slice, a boolean mask or a 1-D index array.")
+        raise InputError(
+            "samples are picked by a number, a slice, a boolean mask or a 1-D index array."
+        )
     if rows.dtype.kind == "b" and len(rows) != count:
         raise InputError(f"the mask has {len(rows)} entries, but there are {count} samples.")
     if rows.dtype.kind != "b" and len(rows) and not -count <= rows.min() <= rows.max() < count:

@@ -36,6 +36,9 @@ class GaussmapError(Exception):
 
     """
 
+    def __init__(self, message: str = "") -> None:
+        super().__init__(_cut(message))
+
 
 class InputError(GaussmapError, ValueError):
     """An argument has the wrong shape, type, sign or range, or holds NaN or infinity.
@@ -155,6 +158,15 @@ class GaussmapWarning(UserWarning):
 
 
 LONGEST_SHOWN = 60
+LONGEST_MESSAGE = 300
+
+
+def _cut(message: str) -> str:
+    """Return a message; of a long one, as of a long path, the beginning and the end."""
+    if len(message) <= LONGEST_MESSAGE:
+        return message
+    half = LONGEST_MESSAGE // 2
+    return f"{message[: half - 1]}…{message[-half:]}"
 
 
 def shown(value: object) -> str:

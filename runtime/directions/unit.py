@@ -32,6 +32,10 @@ def as_normals(
     vectors is returned itself, not a copy. Raises InputError for another shape, an empty array,
     NaN, infinity, or a vector of length 0, and names its row.
     """
+    if hasattr(normals, "normals"):  # samples: as an array they are points
+        raise InputError(
+            f"normals are directions, not {type(normals).__name__}; give its .normals, perhaps."
+        )
     array = real_values(normals, "normals")
     if array.ndim != 2 or array.shape[1] != dimension or array.shape[0] == 0:
         raise InputError(

@@ -17,10 +17,12 @@ __all__ = [
     "BoundaryPair",
     "Domain",
     "Interval",
+    "Periodic",
     "Periodicity",
-    "assumed_ends",
     "checked_boundary",
     "checked_domain",
+    "checked_interval",
+    "domain_text",
 ]
 
 # The boundary condition of a side: open, periodic, mirrored (periodic, with the other parameter
@@ -31,14 +33,15 @@ Boundary = tuple[BoundaryPair, BoundaryPair]  # for u and for v
 Assumed = tuple[bool, bool]  # for u and for v, whether open ends were assumed, not declared
 Interval = tuple[float, float]
 Domain = tuple[Interval, Interval]
-Periodicity = bool | BoundaryCondition | BoundaryPair
+Periodicity = bool | BoundaryCondition | BoundaryPair  # of one parameter
+Periodic = bool | Sequence[Periodicity]  # of both, or of u and of v
 
 
 def checked_domain(domain: Sequence[Sequence[float]]) -> Domain:
     """Return a domain as floats; InputError unless it is a bounded rectangle with an inside."""
     try:
         (u0, u1), (v0, v1) = ((as_float(low), as_float(high)) for low, high in domain)
-    except (TypeError, ValueError, OverflowError):
+    except (TypeError, ValueError):
         raise InputError(f"domain must be ((u0, u1), (v0, v1)), not {shown(domain)}.") from None
     for name, low, high in (("u", u0, u1), ("v", v0, v1)):
         if not 0.0 < high - low < np.inf:
@@ -46,25 +49,43 @@ def checked_domain(domain: Sequence[Sequence[float]]) -> Domain:
     return (u0, u1), (v0, v1)
 
 
-def checked_boundary(periodic: Sequence[Periodicity]) -> Boundary:
-    """Return the boundary conditions from their short forms; InputError on a clash."""
+def checked_interval(domain: Sequence[float]) -> Interval:
+    """Return the domain of a curve as floats; InputError unless it is bounded, with an inside."""
+    try:
+        low, high = (as_float(x) for x in domain)
+    except (TypeError, ValueError):
+        raise InputError(f"domain must be (t0, t1), not {shown(domain)}.") from None
+    if not 0.0 < high - low < np.inf:
+        raise InputError(f"the domain of t is empty or infinite: ({low}, {high}).")
+    return low, high
+
+
+def checked_boundary(periodic: Periodic) -> tuple[Boundary, Assumed]:
+    """Return the boundary conditions from their short forms; InputError on a clash.
+
+    And for u and v whether open ends were assumed: `periodic` has False, and not "open".
+    """
+    if isinstance(periodic, bool | np.bool_):
+        periodic = bool(periodic), bool(periodic)
     try:
         along_u, along_v = periodic
     except (TypeError, ValueError):
         raise InputError(
-            f"periodic must be a pair, one entry for u and one for v, not {shown(periodic)}."
+            "periodic must be a pair, one entry for u and one for v, or True or False for both, "
+            f"not {shown(periodic)}."
         ) from None
     boundary = _pair(along_u, "u"), _pair(along_v, "v")
     for name, other, ends, around in (("u", "v", *boundary), ("v", "u", *boundary[::-1])):
         if "pole" in ends and around != ("periodic", "periodic"):
             raise InputError(f'a "pole" of {name} needs {other} to be periodic ("periodic").')
-    return boundary
+    assumed_u, assumed_v = (isinstance(x, bool | np.bool_) and not x for x in (along_u, along_v))
+    return boundary, (assumed_u, assumed_v)
 
 
-def assumed_ends(periodic: Sequence[Periodicity]) -> Assumed:
-    """Return for u and v whether `periodic`, which was checked, has False and not "open"."""
-    along_u, along_v = (isinstance(x, bool | np.bool_) and not x for x in periodic)
-    return along_u, along_v
+def domain_text(domain: Domain, boundary: Boundary) -> str:
+    """Return a domain and its boundary conditions in words: "u 0 to 1 open, v 0 to 6.28319 …"."""
+    sides = zip("uv", domain, boundary, strict=True)
+    return ", ".join(f"{x} {a:g} to {b:g} {'/'.join(dict.fromkeys(y))}" for x, (a, b), y in sides)
 
 
 def _pair(entry: Periodicity, name: str) -> BoundaryPair:

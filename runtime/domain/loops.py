@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.checks import real_array
+from ..base.checks import listed, real_array
 from ..base.errors import InputError, shown
 from ..base.scales import scale_to_one
 from ..base.threads import over_ranges
@@ -184,7 +184,8 @@ def _rings(loops: Any) -> list[Any]:  # noqa: ANN401
     """Return the closed polygons of what may be a geometry, one of them, or a sequence of both."""
     if hasattr(loops, "__geo_interface__"):
         return _rings_of_geometry(loops.__geo_interface__)
-    if isinstance(loops, str | bytes | dict) or not isinstance(loops, Iterable):
+    items = listed(loops)
+    if items is None:
         raise InputError(
             "loops must be a sequence of closed polygons, arrays (k, 2) of points u, v, or a "
             f"Polygon of Shapely, not {shown(loops)}."
@@ -192,7 +193,7 @@ def _rings(loops: Any) -> list[Any]:  # noqa: ANN401
     if isinstance(loops, np.ndarray) and loops.ndim == 2:
         return [loops]
     rings: list[Any] = []
-    for item in loops:
+    for item in items:
         geometry = hasattr(item, "__geo_interface__")
         rings.extend(_rings_of_geometry(item.__geo_interface__) if geometry else [item])
     return rings

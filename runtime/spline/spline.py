@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..base.checks import parameter_arrays
+from ..base.checks import checked_array, parameter_arrays, text
 from ..base.errors import InputError
 from ..base.georeference import Georeference
 from ..base.scales import scale_to_one
 from ..base.threads import over_ranges
 from ..base.tolerances import DATA_ERROR, SAME_PARAMETER
-from ..domain.domain import Boundary, Domain
+from ..domain.domain import Boundary, Domain, checked_boundary, checked_domain
 from ..kernels import spline as kernels
 from .developable import CellMeasure
 from .inside import Inside
@@ -100,6 +100,12 @@ class Spline:
     trim: Trim | None = None
     apexes: int = 0
     georeference: Georeference | None = None
+
+    def __post_init__(self) -> None:
+        text(self.name, "name")
+        object.__setattr__(self, "domain", checked_domain(self.domain))
+        object.__setattr__(self, "boundary", checked_boundary(self.boundary)[0])
+        checked_array("coefficients", self.coefficients, ("m + 2", "n + 2", 3), np.float64)
 
     def __repr__(self) -> str:
         return f"Spline({self.cells[0]} × {self.cells[1]} cells of {short_label(self.name)})"
@@ -258,6 +264,11 @@ class Spline:
         (k, 3) float64 array
             The normals p_u × p_v, up to a common positive factor; 0 at poles.
 
+        Raises
+        ------
+        InputError
+            For anything but an array of this shape and type.
+
         Examples
         --------
         >>> import gaussmap as gm
@@ -266,7 +277,7 @@ class Spline:
         np.True_
 
         """
-        return self._evaluated(cells)[1]
+        return self._evaluated(checked_array("cells", cells, ("k", 2), np.float64))[1]
 
     def _evaluated(
         self, cells: NDArray[np.float64]
@@ -305,6 +316,7 @@ class Spline:
         array([[8., 0.]])
 
         """
+        places = checked_array("places", places, ("k", 2), np.float64)
         return self._wrapped((places - self.frame[:2]) / self.frame[2:], places)
 
     def _wrapped(

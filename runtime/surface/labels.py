@@ -5,6 +5,8 @@ from __future__ import annotations
 import threading
 from collections import Counter
 
+from ..base.checks import text
+
 __all__ = ["label"]
 
 _used: Counter[str] = Counter()
@@ -14,10 +16,10 @@ _lock = threading.Lock()
 def label(name: str | None, kind: str, function: object = None) -> str:
     """Return a name that was given, or else that of a function or a kind of surface.
 
-    In one process these are distinct: "waves", then "waves 2".
+    In one process these are distinct: "waves", then "waves 2". InputError unless a name is a text.
     """
     if name is not None:
-        return name
+        return text(name, "name")
     own = getattr(function, "__name__", "")
     base = own if isinstance(own, str) and own.isidentifier() else kind  # "<lambda>" is none
     with _lock:

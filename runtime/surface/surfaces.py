@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ...generated.surfaces import CATALOGUE as _GENERATED
 from ..base import compiling  # noqa: F401 - announces compilation on terminals
 from ..base.advice import file_advice
-from ..base.checks import known_name
+from ..base.checks import as_float, known_name
 from ..base.errors import InputError, UnknownNameError, shown
 from ..domain.domain import Boundary, Domain
 from ..kernels.surfaces import jets, positions
@@ -222,8 +222,8 @@ def _entry(name: str) -> dict[str, Any]:
 
 def _checked(name: str, parameter: str, value: object, positive: bool) -> float:
     try:
-        number = float(cast(float, value))
-    except (TypeError, ValueError, OverflowError):
+        number = as_float(cast(float, value))
+    except TypeError:
         raise InputError(f"{parameter} of {name} must be a number, not {shown(value)}.") from None
     if not math.isfinite(number) or (positive and number <= 0.0):
         wanted = "a positive number" if positive else "a finite number"

@@ -8,9 +8,16 @@ from typing import Any
 
 from numpy.typing import DTypeLike
 
-from ...runtime.base.checks import known_name, pair_of_cells, positive_number, whole_number
+from ...runtime.base.checks import (
+    known_name,
+    listed,
+    pair_of_cells,
+    positive_number,
+    whole_number,
+)
 from ...runtime.base.memory import memory_limit as most_memory
 from ...runtime.base.threads import thread_count
+from ...runtime.place.on_surface import checked_place
 from ...runtime.samples.fields import FLOAT_NAMES, PART_NAMES, checked_dtype, checked_fields
 from ...runtime.samples.request import Request
 from ..files.formats import SUFFIXES
@@ -51,7 +58,7 @@ def asked_of(
         "density": request.density,
         "relax": request.relax,
         "cells": None if cells is None else list(pair_of_cells(cells)),
-        "on": on,
+        "on": checked_place(on),
     }
     return Asked(arguments, request.normals, named or Named(), measured)
 
@@ -72,10 +79,12 @@ def stored(
 
 def _known_fields(fields: Sequence[str]) -> tuple[str, ...]:
     """Return fields of which some parts may have none: those of CAD parts, and of grids."""
-    if isinstance(fields, str):
+    names = listed(fields)
+    if names is None:
         return checked_fields(fields)  # which raises
-    others = checked_fields([name for name in fields if name not in PART_NAMES], True, grid=True)
-    return others + tuple(name for name in PART_NAMES if name in fields)
+    others = [name for name in names if not isinstance(name, str) or name not in PART_NAMES]
+    wanted = checked_fields(others, True, grid=True)
+    return wanted + tuple(name for name in PART_NAMES if name in names)
 
 
 def where(

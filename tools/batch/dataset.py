@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from ...runtime.base.checks import known_name, whole_number, yes_or_no
+from ...runtime.base.checks import known_name, listed, whole_number, yes_or_no
 from ...runtime.base.errors import InputError, UnknownNameError, shown
 from ...runtime.base.extras import check_extra
 from ...runtime.samples.fields import COLUMNS, UNITS, checked_dtype, dtype_of
@@ -338,13 +338,13 @@ def _checked_names(
         return None
     if isinstance(names, str):
         raise InputError(f"{kind}s must be a tuple of names, such as ({shown(names)},).")
-    try:
-        wanted = tuple(names)
-    except TypeError:
-        raise InputError(f"{kind}s must be a tuple of names, not {shown(names)}.") from None
+    items = listed(names)
+    if items is None:
+        raise InputError(f"{kind}s must be a tuple of names, not {shown(names)}.")
+    wanted = tuple(known_name(name, tuple(known), kind) for name in items)
     if not wanted or len(set(wanted)) < len(wanted):
         raise InputError(f"{kind}s must name at least one {kind}, and none twice.")
-    return tuple(known_name(name, tuple(known), kind) for name in wanted)
+    return wanted
 
 
 def _checked_seed(seed: int | Sequence[int] | None) -> tuple[int, ...] | None:

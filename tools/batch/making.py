@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Generator, Iterable, Iterator, Sized
 from contextlib import closing, contextmanager
 from functools import partial
-from pathlib import Path
 from typing import Any, Protocol
 
 from ...runtime.base.extras import check_extra
-from ..files.paths import PathLike
+from ..files.paths import PathLike, checked_path
 from .arguments import Where
 from .asked import Asked
 from .inputs import Source, in_shards, inputs_of
@@ -70,7 +69,7 @@ def make(
         parts_per_shard=parts_per_shard(parts, asked.arguments.get("count")),
         **settings,
     )
-    path = Path(folder).absolute()
+    path = checked_path(folder).absolute()
     with _runner(where) as (run, dashboard), opened(folder, wanted, overwrite) as known:
         if known.files is not None:
             (path / FILES).mkdir(exist_ok=True)

@@ -247,8 +247,7 @@ def sample_many(
     """
     request = checked_request(normals, count, angle, coverage, density, relax, threads)
     shows = yes_or_no(progress, "progress")
-    flat = isinstance(surfaces, np.ndarray) and surfaces.ndim == 0
-    if isinstance(surfaces, str | bytes) or flat or not isinstance(surfaces, Iterable):
+    if isinstance(surfaces, str | bytes) or not _iterates(surfaces):
         raise InputError(f"sample_many takes surfaces to go through, not {shown(surfaces)}.")
     of_data_sets = {
         "workers": workers, "scheduler": scheduler, "memory_limit": memory_limit, "files": files
@@ -258,7 +257,9 @@ def sample_many(
             if value is not None:
                 raise InputError(f"{name}=… is for data sets; name the folder of one by out=….")
         checked_fields(fields, checked_place(on) != "spline")
-        action = known_name(on_error or "raise", ON_ERROR, "value of on_error")
+        action = known_name(
+            "raise" if on_error is None else on_error, ON_ERROR, "value of on_error"
+        )
         how = {"cells": cells, "on": on, "fields": fields, "threads": threads}
         return _each(surfaces, request, how | {"dtype": checked_dtype(dtype)}, action, shows)
     if on_error is not None or threads is not None:
@@ -275,6 +276,15 @@ def sample_many(
         again=yes_or_no(retry_failed, "retry_failed"),
     )
     return open_dataset(out)
+
+
+def _iterates(surfaces: Iterable[Source]) -> bool:
+    """Say whether there is anything to go through: there is not in arrays without dimension."""
+    try:
+        iter(surfaces)
+    except TypeError:
+        return False
+    return True
 
 
 def _each(

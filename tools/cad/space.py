@@ -195,9 +195,9 @@ class Space:
     def cut(self, radius: float) -> Cells:
         """Return cells that lie within radius/√w of their places, w the target density there."""
         first = self.first
-        rates = np.sqrt(np.maximum(first.rows[:, 6], self.floor)) / (math.sqrt(2.0) * radius)
         lengths = first.numbers[:, [ALONG_U, ALONG_V]]
-        with np.errstate(invalid="ignore", over="ignore"):
+        with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
+            rates = np.sqrt(np.maximum(first.rows[:, 6], self.floor)) / (math.sqrt(2.0) * radius)
             parts = np.fmax(np.ceil(np.fmin(lengths * rates[:, None], MOST_CELLS)), 1.0)
         if parts.prod(axis=1).sum() > MOST_CELLS:
             raise InputError(

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...runtime.base.checks import as_float, real_array
+from ...runtime.base.checks import real_array, text
 from ...runtime.base.errors import InputError, shown
 from ...runtime.base.evaluation import evaluated
-from ...runtime.domain.domain import Interval
+from ...runtime.domain.domain import Interval, checked_interval
+from ...runtime.spline.spline import short_label
 
 if TYPE_CHECKING:
     import sympy
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["Curve"]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Curve:
     """A planar parametric curve x(t).
 
@@ -44,6 +45,8 @@ class Curve:
     --------
     >>> import gaussmap as gm
     >>> corner = gm.curves.Curve.from_points([(0, 0), (1, 0), (2, 1), (2, 2)], name="corner")
+    >>> corner
+    Curve(corner: t 0 to 3, open)
     >>> corner.name, corner.domain, corner.periodic, corner.points.shape
     ('corner', (0.0, 3.0), False, (4, 2))
     >>> corner.function([0.0, 3.0]).shape
@@ -56,6 +59,21 @@ class Curve:
     domain: Interval
     periodic: bool
     points: NDArray[np.float64] | None = None
+
+    def __post_init__(self) -> None:
+        text(self.name, "name")
+        if not callable(self.function):
+            raise InputError(
+                "the function of a curve must be callable as f(t), and "
+                f"{type(self.function).__name__} is not."
+            )
+        object.__setattr__(self, "domain", checked_interval(self.domain))
+        _yes_or_no(self.periodic, "periodic")
+
+    def __repr__(self) -> str:
+        low, high = self.domain
+        kind = "closed" if self.periodic else "open"
+        return f"Curve({short_label(self.name)}: t {low:g} to {high:g}, {kind})"
 
     @classmethod
     def from_callable(
@@ -100,9 +118,7 @@ class Curve:
         CurveSpline(8 pieces of parabola)
 
         """
-        if not callable(f):
-            raise InputError(f"f must be callable as f(t), and {type(f).__name__} is not.")
-        return cls(name, f, _checked_interval(domain), _yes_or_no(periodic, "periodic"))
+        return cls(name, f, domain, periodic)  # pyright: ignore[reportArgumentType]
 
     @classmethod
     def from_sympy(
@@ -193,6 +209,7 @@ class Curve:
         """
         from .quasi_interpolant import checked_points, spline_of_points
 
+        text(name, "name")
         is_closed = _yes_or_no(closed, "closed")
         array = checked_points(real_array(points, "points of a curve"), is_closed, name)
         domain = 0.0, float(len(array) if is_closed else len(array) - 1)
@@ -232,16 +249,6 @@ class Curve:
         """
         parameters = {"t": real_array(t, "t")}
         return evaluated(self.function, parameters, 2, f"curve {self.name!r}")
-
-
-def _checked_interval(domain: Sequence[float]) -> Interval:
-    try:
-        low, high = (as_float(x) for x in domain)
-    except (TypeError, ValueError, OverflowError):
-        raise InputError(f"domain must be (t0, t1), not {shown(domain)}.") from None
-    if not 0.0 < high - low < np.inf:
-        raise InputError(f"the domain of t is empty or infinite: ({low}, {high}).")
-    return low, high
 
 
 def _yes_or_no(value: object, name: str) -> bool:

@@ -10,12 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...generated import curve as formulas
 from ...generated.vectors import Arc, PlaneVector
-from ...runtime.base.checks import real_array
+from ...runtime.base.checks import checked_array, real_array, text
 from ...runtime.base.errors import InputError
 from ...runtime.base.formula_calls import plane_vector, python_function
 from ...runtime.base.scales import scale_to_one
 from ...runtime.base.tolerances import DIFFERENCE_ERROR
-from ...runtime.domain.domain import Interval
+from ...runtime.domain.domain import Interval, checked_interval
 from ...runtime.spline.spline import short_label
 from ..kernels import curve as kernels
 
@@ -71,6 +71,11 @@ class CurveSpline:
     domain: Interval
     periodic: bool
     name: str
+
+    def __post_init__(self) -> None:
+        text(self.name, "name")
+        object.__setattr__(self, "domain", checked_interval(self.domain))
+        checked_array("coefficients", self.coefficients, ("P + 2", 2), np.float64)
 
     def __repr__(self) -> str:
         return f"CurveSpline({self.pieces:,} pieces of {short_label(self.name)})"

@@ -69,6 +69,10 @@ class GaussianImage:
 
     control_points: Array
 
+    def __post_init__(self) -> None:
+        points = checked_control_points(self.control_points)
+        object.__setattr__(self, "control_points", points)
+
     def __repr__(self) -> str:
         return f"GaussianImage({self.kind})"
 
@@ -99,7 +103,7 @@ class GaussianImage:
         GaussianImage(triangle)
 
         """
-        return cls(checked_control_points(control_points))
+        return cls(control_points)  # pyright: ignore[reportArgumentType]
 
     @cached_property
     def kind(self) -> str:
@@ -243,6 +247,13 @@ class GaussianImages:
     """
 
     spline: Spline
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.spline, Spline):
+            raise InputError(
+                f"GaussianImages takes a Spline, not {type(self.spline).__name__}; for a surface "
+                "there is GaussianImages.of_spline, and for one patch GaussianImage.of_patch."
+            )
 
     def __repr__(self) -> str:
         return f"GaussianImages({len(self):,} patches)"

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...runtime.base.checks import pair_of_cells
+from ...runtime.base.checks import as_float, pair_of_cells
 from ...runtime.base.errors import GaussmapWarning, InputError, shown
 from ...runtime.base.scales import scale_to_one
 from ...runtime.fitting.fit import fit, spline_of
@@ -94,7 +94,7 @@ class ParabolicPoint:
 
     uv: Array
     point: Array
-    box: Array
+    box: Array = field(repr=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -304,8 +304,8 @@ def _size(points: Array) -> float:
 
 def _tolerance(tolerance: float) -> float:
     try:
-        value = float(tolerance)
-    except (TypeError, ValueError):
+        value = as_float(tolerance)
+    except TypeError:
         raise InputError(f"tolerance must be a number, not {shown(tolerance)}.") from None
     if not 1e-7 <= value <= 0.1:
         raise InputError(f"tolerance must lie between 1e-7 and 0.1, and is {shown(tolerance)}.")

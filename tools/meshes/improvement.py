@@ -34,7 +34,7 @@ ROUNDS = 4
 
 def checked_prefer(prefer: object) -> Prefer:
     """Return what a mesh is to prefer; InputError if that is unknown."""
-    if prefer not in KINDS:
+    if not isinstance(prefer, str) or prefer not in KINDS:
         raise InputError(f"prefer must be 'shape' or 'normals', not {shown(prefer)}.")
     return prefer  # pyright: ignore[reportReturnType]
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...runtime.base.checks import finite_array
+from ...runtime.base.checks import finite_array, listed, real_values
 from ...runtime.base.errors import InputError
 from ...runtime.base.extras import check_extra
 from ...runtime.directions.unit import as_normals
@@ -226,9 +226,10 @@ def checked_normals(samples: Samples, normals: ArrayLike) -> NDArray[np.float64]
     """
     if not isinstance(samples, Samples):
         raise InputError(f"samples must be Samples, not {type(samples).__name__}.")
-    if np.size(normals) == 0 and len(samples):
+    none = real_values(normals, "normals").size == 0
+    if none and len(samples):
         return np.empty((0, 3))
-    if np.size(normals) == 0:
+    if none:
         raise InputError("there are no samples to draw; give the normals that they were to have.")
     directions = as_normals(normals)
     if len(samples) and int(samples.normal_index.max()) >= len(directions):
@@ -248,14 +249,14 @@ def _checked_axes(axes: Axes | Sequence[Axes] | None) -> tuple[Any, ...]:
     from matplotlib.axes import Axes as AnyAxes
     from mpl_toolkits.mplot3d import Axes3D
 
-    panels: tuple[Any, ...] = (axes,) if isinstance(axes, AnyAxes) else tuple(axes)
+    panels = [axes] if isinstance(axes, AnyAxes) else listed(axes) or []
     flat = all(isinstance(x, AnyAxes) and not isinstance(x, Axes3D) for x in panels[1:])
     if len(panels) not in (1, 2) or not isinstance(panels[0], Axes3D) or not flat:
         raise InputError(
             'axes must be three-dimensional axes, made with projection="3d", or a pair of these '
             "and of ordinary ones for the sphere."
         )
-    return panels
+    return tuple(panels)
 
 
 def draw(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...runtime.base.errors import InputError
+from ...runtime.base.errors import InputError, shown
 from ...runtime.directions.unit import as_normals
 from .branches import Branches, Sheets
 from .sources import Source
@@ -20,6 +20,13 @@ class SupportValues:
     """What `SupportFunction` evaluates: the values of its source at normals."""
 
     _source: Source
+
+    def __post_init__(self) -> None:
+        if not hasattr(self._source, "sheets"):
+            raise InputError(
+                "make a SupportFunction by of_spline, of_patch or from_sympy, not of "
+                f"{shown(self._source)}."
+            )
 
     def branches(self, normals: ArrayLike) -> Branches:
         """Return all branches at normals.

@@ -1,0 +1,424 @@
+"""Whatever a public callable is given, it answers, or says in one sentence why it does not.
+
+Functions, methods and classes are found, and not listed: each needs usable arguments only, below.
+One of them at a time, or the first entry of a pair, is replaced by whatever users may hand over.
+"""
+
+import inspect
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from fractions import Fraction
+from functools import cached_property, reduce
+from itertools import islice
+from pathlib import Path
+from typing import Any
+from zlib import crc32
+
+import gaussmap as gm
+import numpy as np
+import pytest
+import sympy
+
+from .interface import CALLABLES, CLASSES
+
+LONGEST_MESSAGE = 300
+# Quick tests try one of so many values, other ones for each parameter.
+STEP = 13
+
+# Warnings are answers, too.
+pytestmark = [
+    pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning"),
+    pytest.mark.compiled,
+]
+
+
+# --- what users may hand over ---------------------------------------------------------------------
+
+
+def deep_list() -> list[Any]:
+    """Return a list that recursion does not get to the end of."""
+    deep: list[Any] = []
+    for _ in range(2000):
+        deep = [deep]
+    return deep
+
+
+class Odd:
+    """An object some of whose methods raise an error."""
+
+
+def odd(error: type[Exception], *methods: str) -> Odd:
+    """Return an object whose methods of these names raise an error."""
+
+    def fail(*_: object, **__: object) -> None:
+        raise error("odd")
+
+    return type("Odd", (Odd,), dict.fromkeys(methods, fail))()
+
+
+class ArrayLike:
+    """An object that says that it is an array, and becomes another one."""
+
+    shape, ndim, dtype = (3,), 1, np.dtype(np.float64)
+
+    def __init__(self, value: object) -> None:
+        self.value = value
+
+    def __array__(self, *_: object, **__: object) -> Any:
+        return self.value
+
+
+HOSTILE: tuple[Any, ...] = (
+    None, True, False, 0, -1, 1, 3.0, float("nan"), float("inf"), -float("inf"), 1e300, 1e-320,
+    10**12, 10**5000, -(10**5000), 1j, "a", "", " ", "\0", "\udc80", "x" * 5000, b"x",
+    Fraction(1, 3), sympy.Symbol("x"), sympy.zoo, Path("nowhere/x"),
+    [], [[]], (), {}, set(), {"a": 1}, {1, 2}, [1], [None], ["a"], [1, "a"], (0, 1), [1, 0],
+    [1, 2, 3], [[1, 2], [3]], [[1], [2, [3]]], [[1, 2, 3]], [[0, 0, 0]], [[float("nan")] * 3],
+    [[float("inf")] * 3], [[1e300] * 3] * 6, [[1e-320] * 3] * 6, [[10**400] * 3],
+    np.array([1, None], object), np.array([[1, 2, 3]], object), np.array([1j]), np.array(3),
+    np.zeros((0, 3)), np.zeros((3, 3, 3)), np.zeros((6, 3)), np.array(["a"]), np.array([True]),
+    np.float32(2.0), np.int8(-1), np.str_("a"), np.datetime64("2020-01-01"), np.datetime64("NaT"),
+    np.zeros(2, dtype=[("a", "f8")]), np.zeros((1,) * 30), np.ma.masked_equal([1, 2, 3], 2),
+    np.ma.masked, object(), len, int, np, slice(0, 2), range(3), Ellipsis, iter([1, 2]),
+    deep_list(), gm.surfaces.torus(),
+    odd(OSError, "__repr__"),
+    odd(RuntimeError, "__array__"),  # as tensors that require gradients
+    odd(RuntimeError, "__float__", "__int__", "__index__"),
+    odd(TypeError, "__iter__", "__len__"),  # as arrays without dimension
+    odd(ValueError, "__bool__", "__eq__"),  # as arrays
+    odd(TypeError, "__hash__"),
+    ArrayLike("text"),
+    ArrayLike(np.array([None, "a"], object)),
+)  # fmt: skip
+
+
+# --- usable arguments -----------------------------------------------------------------------------
+
+
+class Usable:
+    """Things of all kinds that are as they should be, made when they are first needed."""
+
+    @cached_property
+    def torus(self) -> gm.Surface:
+        return gm.surfaces.torus()
+
+    @cached_property
+    def spline(self) -> gm.Spline:
+        return gm.fit(self.torus, (8, 8))
+
+    @cached_property
+    def samples(self) -> gm.Samples:
+        return gm.sample(self.torus, count=60, cells=(8, 8))
+
+    @cached_property
+    def mesh(self) -> gm.Mesh:
+        return self.samples.mesh()
+
+    @cached_property
+    def circle(self) -> gm.curves.Curve:
+        return gm.curves.Curve.from_sympy(("cos(t)", "sin(t)"), "t", (0, "2*pi"), True)
+
+    @cached_property
+    def curve_spline(self) -> gm.curves.CurveSpline:
+        return gm.curves.fit(self.circle, 16)
+
+    @cached_property
+    def curve_samples(self) -> gm.curves.CurveSamples:
+        return gm.curves.sample(self.curve_spline, 10)
+
+    @cached_property
+    def curve_support(self) -> gm.curves.SupportFunction:
+        return gm.curves.SupportFunction.of_spline(self.curve_spline)
+
+    @cached_property
+    def support(self) -> gm.SupportFunction:
+        return gm.SupportFunction.from_sympy("1")
+
+    @cached_property
+    def image(self) -> gm.gauss_map.GaussianImage:
+        return gm.gauss_map.GaussianImage.of_patch(PATCH)
+
+    @cached_property
+    def images(self) -> gm.gauss_map.GaussianImages:
+        return gm.gauss_map.GaussianImages(self.spline)
+
+    @cached_property
+    def arc(self) -> gm.gauss_map.BoundaryArc:
+        return self.image.arcs[0]
+
+    @cached_property
+    def dataset(self) -> gm.Dataset:
+        return gm.open_dataset("dataset")
+
+
+USABLE = Usable()
+
+
+class Of:
+    """One of the usable things, or an attribute of it, once it is needed."""
+
+    def __init__(self, *names: str) -> None:
+        self.names = names
+
+    def __call__(self) -> Any:
+        return reduce(getattr, self.names, USABLE)
+
+
+class Listed(Of):
+    """A list of it."""
+
+    def __call__(self) -> Any:
+        return [super().__call__()]
+
+
+def saddle(u: Any, v: Any) -> Any:
+    """Return points of a surface."""
+    return np.stack([u, v, u * v], axis=-1)
+
+
+def parabola(t: Any) -> Any:
+    """Return points of a curve."""
+    return np.stack([t, t**2], axis=-1)
+
+
+SQUARE = ((0.0, 1.0), (0.0, 1.0))
+PATCH = ((3, 0, 0), (0, 3, 0), (0, 0, 3), (2, 2, 1), (2, 1, 2), (1, 2, 2))
+NORMALS, PLANE_NORMALS = gm.icosphere(1)[:7], gm.directions.circle(5)
+HEIGHTS = np.hypot(*np.meshgrid(np.arange(6.0), np.arange(5.0)))
+KNOTS = ((0.0, 0.0, 1.0, 1.0), (0.0, 0.0, 1.0, 1.0))
+FLAT = np.array([[[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0], [1.0, 1.0, 0.5]]])
+# What `self` is, by the class.
+SELF = {
+    "Dataset": Of("dataset"),
+    "Mesh": Of("mesh"),
+    "Samples": Of("samples"),
+    "Spline": Of("spline"),
+    "SupportFunction": Of("support"),
+    "Surface": Of("torus"),
+    "curves.Curve": Of("circle"),
+    "curves.CurveSamples": Of("curve_samples"),
+    "curves.CurveSpline": Of("curve_spline"),
+    "curves.SupportFunction": Of("curve_support"),
+    "gauss_map.BoundaryArc": Of("arc"),
+    "gauss_map.GaussianImage": Of("image"),
+    "gauss_map.GaussianImages": Of("images"),
+}
+# Usable arguments by the name of the parameter, where callables mean the same by it.
+COMMON: dict[str, Any] = {
+    "surface": Of("spline"), "first": Of("spline"), "second": Of("support"), "spline": Of("spline"),
+    "surfaces": Listed("spline"), "parts": Listed("samples"), "curve": Of("circle"),
+    "normals": NORMALS, "count": 10, "frequency": 2, "nside": 2, "angle": 10.0,
+    "direction": (0.0, 0.0, 1.0), "axis": (0.0, 0.0, 1.0), "corners": np.eye(3),
+    "control_points": PATCH, "path": "nothing.npz", "part": 0, "distance": 0.1,
+    "shift": (1.0, 2.0, 3.0), "factor": 2.0,
+    "rotation": np.eye(3), "matrix": np.eye(3), "u": 0.5, "v": 0.5, "t": 0.5, "h": "1 + n_x",
+    "domain": SQUARE, "f": saddle, "name": "torus", "source": HEIGHTS,
+}  # fmt: skip
+# Further arguments, and others, by the callable: several of them where one set does not reach all.
+SPECIAL: dict[str, list[dict[str, Any]]] = {
+    "Mesh": [
+        {
+            x: Of("mesh", x)
+            for x in ("vertices", "normals", "uv", "triangles", "sample_index", "name", "sides")
+        }
+    ],
+    "Mesh.write": [{"path": "new.ply"}],
+    "Samples": [
+        {x: Of("samples", x) for x in ("points", "normals", "report", "spline", "surface")}
+    ],
+    "Samples.view": [{"path": "new.html"}],
+    "Samples.write": [{"path": "new.npz"}],
+    "Samples[…]": [{"key": 0}],
+    "Spline": [{x: Of("spline", x) for x in ("coefficients", "domain", "boundary", "name")}],
+    "Spline.in_cells": [{"places": np.array([[0.5, 0.5]])}],
+    "Spline.normals_in_cells": [{"cells": np.array([[0.5, 0.5]])}],
+    "SupportFunction": [{"_source": Of("support", "_source")}],
+    "SupportFunction.of_spline": [{"surface": Of("torus"), "cells": (8, 8)}],
+    "Surface": [{x: Of("torus", x) for x in ("name", "function", "domain", "boundary")}],
+    "Surface.from_grid": [
+        {"points": HEIGHTS, "spacing": (1.0, 1.0)},
+        {"points": saddle(*np.mgrid[:5.0, :5.0]), "periodic": (False, False)},
+    ],
+    "Surface.from_nurbs": [{"degrees": (1, 1), "knots": KNOTS, "control_points": FLAT}],
+    "Surface.from_sympy": [{"position": ("u", "v", "u*v"), "parameters": ("u", "v")}],
+    "Surface.jets": [{"u": np.zeros(3), "v": np.zeros(3)}],
+    "Surface.trimmed": [{"loops": [[(1, 1), (2, 1), (1, 2)]]}],
+    "convolve": [{}, {"first": Of("torus"), "cells": (8, 8)}],
+    "curves.Curve": [{"name": "c", "function": parabola, "domain": (0.0, 1.0), "periodic": False}],
+    "curves.Curve.from_callable": [{"f": parabola, "domain": (0.0, 1.0)}],
+    "curves.Curve.from_points": [{"points": parabola(np.arange(6.0))}],
+    "curves.Curve.from_sympy": [
+        {"position": ("t", "t**2"), "parameter": "t", "domain": (0.0, 1.0)}
+    ],
+    "curves.CurveSpline": [
+        {x: Of("curve_spline", x) for x in ("coefficients", "domain", "periodic", "name")}
+    ],
+    "curves.SupportFunction.branches": [{"normals": PLANE_NORMALS}],
+    "curves.SupportFunction.translated": [{"shift": (1.0, 2.0)}],
+    "curves.fit": [{"pieces": 16}],
+    "curves.polygon_distance": [{"points": np.eye(2), "polygon": parabola(np.arange(6.0))}],
+    "curves.sample": [{"count": 10, "pieces": 16}, {"normals": PLANE_NORMALS, "count": None}],
+    "fit": [{"surface": Of("torus"), "cells": (8, 8)}],
+    "formulas[…]": [{"name": "envelope"}],
+    "gauss_map.GaussianImages.of_spline": [{}, {"spline": Of("torus"), "cells": (8, 8)}],
+    "gauss_map.classify_patches": [{"patches": np.zeros((1, 6, 3))}, {"patches": Of("spline")}],
+    "gauss_map.parabolic_points": [{"tolerance": 1e-2}],
+    "open_dataset": [{"folder": "dataset"}],
+    "plot": [{"samples": Of("samples")}],
+    "points of f(u, v)": [{"returned": [[1.0, 2.0, 3.0]]}],
+    "read_cad": [{"path": "nothing.step"}],
+    "read_samples": [{"path": "samples.npz"}],
+    "sample": [
+        {"count": 10},
+        {"surface": Of("torus"), "count": 20, "cells": (8, 8)},
+        {"surface": Of("torus"), "normals": NORMALS, "cells": (8, 8)},
+    ],
+    "sample_many": [
+        {"count": 10, "progress": False},
+        {"count": 10, "progress": False, "out": "taken"},
+    ],
+    "sample_stream": [
+        {"count": 10},
+        {"surface": Of("torus"), "normals": NORMALS, "cells": (8, 8)},
+    ],
+    "terrain": [
+        {"spacing": (1.0, 1.0)},
+        {"x": np.arange(6.0), "y": np.arange(5.0), "origin": (0.0, 0.0)},
+    ],
+}
+# What is called by brackets and by calls of objects, and what a user's function returns.
+UNNAMED: dict[str, Callable[..., Any]] = {
+    "Samples[…]": lambda key: USABLE.samples[key],
+    "SupportFunction(…)": lambda normals: USABLE.support(normals),
+    "formulas[…]": lambda name: gm.formulas[name],
+    "points of f(u, v)": lambda returned: gm.Surface.from_callable(
+        lambda u, v: returned, SQUARE
+    ).evaluate(0.5, 0.5),
+}
+# What is tried on files that cannot be used: others need a library for CAD, or several processes.
+UNUSABLE_FILES = {"read_cad", "read_part", "sample_many"}
+# What would start processes for a new data set, or load Dask.
+UNTRIED = {("sample_many", "out"): str | Path, ("sample_many", "scheduler"): object}
+# The classes whose objects users may make by themselves.
+MADE = (
+    "Mesh", "Samples", "Spline", "SupportFunction", "Surface", "curves.Curve", "curves.CurveSpline",
+    "gauss_map.GaussianImage", "gauss_map.GaussianImages",
+)  # fmt: skip
+ALL = {
+    name: x
+    for name, x in (CALLABLES | UNNAMED | {name: CLASSES[name] for name in MADE}).items()
+    if {*inspect.signature(x).parameters} - {"self"}
+}
+
+
+def bound(name: str) -> Callable[..., Any]:
+    """Return a callable, of a method one that needs no `self`."""
+    cls, _, method = name.rpartition(".")
+    return getattr(SELF[cls](), method) if cls in SELF else ALL[name]
+
+
+def usable_arguments(name: str) -> Iterator[dict[str, Any]]:
+    """Yield usable arguments of a callable, by their names."""
+    needed = [
+        x.name
+        for x in inspect.signature(bound(name)).parameters.values()
+        if x.default is x.empty and x.kind is not x.VAR_KEYWORD
+    ]
+    for more in SPECIAL.get(name, [{}]):
+        found = {x: COMMON[x] for x in needed if x not in more} | more
+        yield {x: y() if isinstance(y, Of) else y for x, y in found.items()}
+
+
+# --- calls ----------------------------------------------------------------------------------------
+
+
+def call(name: str, arguments: dict[str, Any]) -> None:
+    """Call something, and go through what it returns."""
+    function = bound(name)
+    kinds = inspect.signature(function).parameters
+    first = [arguments[x] for x, y in kinds.items() if y.kind is y.POSITIONAL_ONLY]
+    rest = {x: y for x, y in arguments.items() if kinds[x].kind is not kinds[x].POSITIONAL_ONLY}
+    found = function(*first, **rest)
+    if isinstance(found, Iterator):
+        for _ in islice(found, 3):
+            pass
+    repr(found)
+
+
+def answer(name: str, arguments: dict[str, Any]) -> None:
+    """Check that a call returns, or raises a GaussmapError of one line that is not too long."""
+    try:
+        call(name, arguments)
+    except gm.GaussmapError as error:
+        message = str(error)
+        assert "\n" not in message
+        assert 10 < len(message) <= LONGEST_MESSAGE
+
+
+def try_values(name: str, step: int) -> None:
+    for arguments in usable_arguments(name):
+        for parameter in inspect.signature(bound(name)).parameters.values():
+            if parameter.kind is parameter.VAR_KEYWORD:
+                continue
+            usual = arguments.get(parameter.name, parameter.default)
+            first = crc32(f"{name} {parameter.name}".encode()) % step
+            for value in HOSTILE[first::step]:
+                if isinstance(value, UNTRIED.get((name, parameter.name), ())):
+                    continue
+                answer(name, arguments | {parameter.name: value})
+                if isinstance(usual, tuple | list) and usual:
+                    inner = type(usual)([value, *usual[1:]])
+                    answer(name, arguments | {parameter.name: inner})
+
+
+@pytest.fixture(scope="module", autouse=True)
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """Run in a folder of its own."""
+    path = tmp_path_factory.mktemp("any")
+    (path / "taken").touch()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(path)
+        USABLE.samples.write("samples.npz")
+        yield path
+
+
+@pytest.fixture
+def name(request: pytest.FixtureRequest, folder: Path) -> str:
+    """The name of a callable, with the data set that it needs."""
+    if "ataset" in request.param and not (folder / "dataset").exists():
+        (folder / "dataset").symlink_to(request.getfixturevalue("dataset"))
+    return request.param
+
+
+@pytest.fixture(autouse=True)
+def no_figures() -> Iterator[None]:
+    yield
+    import matplotlib.pyplot as plt
+
+    plt.close("all")
+
+
+@pytest.mark.parametrize("name", ALL, indirect=True)
+def test_usable_arguments_are_usable(name: str) -> None:
+    """Otherwise what is tried beside them is not reached."""
+    for arguments in usable_arguments(name):
+        with suppress(*[gm.errors.FileError] * (name in UNUSABLE_FILES)):
+            call(name, arguments)
+
+
+@pytest.mark.parametrize("name", ALL, indirect=True)
+def test_some_other_arguments(name: str) -> None:
+    try_values(name, STEP)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ALL, indirect=True)
+def test_any_other_arguments(name: str) -> None:
+    try_values(name, 1)
+
+
+@pytest.mark.parametrize("name", SELF, indirect=True)
+def test_objects_are_shown_on_one_line(name: str) -> None:
+    shown = repr(SELF[name]())
+    assert "\n" not in shown
+    assert len(shown) < 120
