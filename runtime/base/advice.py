@@ -2,11 +2,23 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
-__all__ = ["CAD_SUFFIXES", "NO_CLOUDS", "NO_MESHES", "about_value", "file_advice", "is_mesh_file"]
+__all__ = [
+    "CAD_SUFFIXES",
+    "NO_CLOUDS",
+    "NO_MESHES",
+    "about_value",
+    "file_advice",
+    "is_mesh_file",
+    "is_of_geomdl",
+    "is_of_splipy",
+    "is_raster",
+]
 
 CAD_SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp", ".rle")
+_RASTER_SUFFIXES = (".tif", ".tiff")
 _MESH_SUFFIXES = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf", ".3mf", ".vtk", ".vtu", ".vtp")
 NO_MESHES = (
     "meshes are not taken, because triangles have no curvature; give the CAD file that it was made "
@@ -30,11 +42,41 @@ def file_advice(name: str) -> str | None:
         return f"read the CAD file first: gm.sample(gm.read_cad({name!r}), ...)"
     if suffix in (".npy", ".npz"):
         return f"read the points first: gm.sample(gm.Surface.from_grid(numpy.load({name!r})), ...)"
+    if suffix in _RASTER_SUFFIXES:
+        return f"read the elevations first: gm.sample(gm.terrain({name!r}), ...)"
     return NO_MESHES if suffix in _MESH_SUFFIXES else None
+
+
+def is_of_geomdl(value: object) -> bool:
+    """Say whether a value is a NURBS surface of geomdl, by its attributes."""
+    return _has(value, "degree_u", "degree_v", "knotvector_u", "knotvector_v", "ctrlpts")
+
+
+def is_of_splipy(value: object) -> bool:
+    """Say whether a value is a spline of Splipy, by its attributes."""
+    return _has(value, "bases", "controlpoints", "rational")
+
+
+def is_raster(value: object) -> bool:
+    """Say whether a value is an open dataset of rasterio, by its attributes."""
+    return _has(value, "read", "transform", "crs", "nodatavals")
+
+
+def _has(value: object, *names: str) -> bool:
+    return all(hasattr(value, name) for name in names)
 
 
 def about_value(value: object) -> str:
     """Return what to call for a value that was given in place of a surface."""
+    if is_of_geomdl(value) or is_of_splipy(value):
+        return "make one by gm.Surface.from_nurbs(surface)"
+    if is_raster(value):
+        return "make one by gm.terrain(dataset)"
+    if isinstance(value, os.PathLike) and (advice := file_advice(str(value))):
+        return advice
+    items = value if isinstance(value, list | tuple) else ()
+    if any(isinstance(x, str) or _has(x, "name") for x in items):
+        return "several are sampled by gm.sample_many(surfaces, ...)"
     shape = getattr(value, "shape", None)
     if isinstance(shape, tuple):
         if len(shape) == 2 and shape[1] == 3:

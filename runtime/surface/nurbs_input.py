@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..base.advice import is_of_geomdl, is_of_splipy
 from ..base.checks import real_array, whole_number
 from ..base.errors import InputError, shown
 from .nurbs import Nurbs
@@ -162,18 +163,14 @@ def _definition_of(value: object) -> Definition:
 
     Raises InputError for other objects, and for what cannot be taken over.
     """
-    if _has(value, "degree_u", "degree_v", "knotvector_u", "knotvector_v", "ctrlpts"):
+    if is_of_geomdl(value):
         return _of_geomdl(value)
-    if _has(value, "bases", "controlpoints", "rational"):
+    if is_of_splipy(value):
         return _of_splipy(value)
     raise InputError(
         f"from_nurbs takes degrees, knots and control_points, or one surface of geomdl or "
         f"Splipy, not {shown(value)}."
     )
-
-
-def _has(value: object, *names: str) -> bool:
-    return all(hasattr(value, name) for name in names)
 
 
 def _of_geomdl(value: Any) -> Definition:  # noqa: ANN401 - it is not imported

@@ -10,7 +10,7 @@ from pathlib import Path
 from ...runtime.base.errors import FileError, InputError
 from .paths import reason_of
 
-__all__ = ["UnusableError", "opened"]
+__all__ = ["UnusableError", "opened", "readable"]
 
 
 class UnusableError(Exception):
@@ -27,15 +27,21 @@ def opened(path: Path, kind: str, content: str) -> Iterator[BufferedReader]:
         file = open(path, "rb")  # noqa: SIM115 - an error here differs from one in the content
     except OSError as error:
         raise FileError(f"'{path}' cannot be read: {reason_of(error)}.") from error
-    with file:
-        try:
-            yield file
-        except UnusableError as error:
-            raise FileError(f"'{path}' {error}") from error
-        except InputError as error:
-            raise FileError(f"'{path}' holds unusable {content}: {error}") from error
-        except Exception as error:  # NumPy, zipfile and json raise a dozen kinds on bad bytes
-            reason = " ".join(f"{type(error).__name__}: {error}".split())
-            raise FileError(
-                f"'{path}' is damaged or is no {kind} ({reason}); write it again."
-            ) from error
+    with file, readable(path, kind, content):
+        yield file
+
+
+@contextmanager
+def readable(path: Path | str, kind: str, content: str) -> Iterator[None]:
+    """Make a FileError of whatever reading raises; see `opened`."""
+    try:
+        yield
+    except UnusableError as error:
+        raise FileError(f"'{path}' {error}") from error
+    except InputError as error:
+        raise FileError(f"'{path}' holds unusable {content}: {error}") from error
+    except Exception as error:  # NumPy, zipfile and json raise a dozen kinds on bad bytes
+        reason = " ".join(f"{type(error).__name__}: {error}".split())
+        raise FileError(
+            f"'{path}' is damaged or is no {kind} ({reason}); write it again."
+        ) from error

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from ...runtime.base.errors import InputError
 from ...runtime.base.extras import from_extra
 from ...runtime.base.memory import check_memory
-from ..files.reading import UnusableError, opened
+from ..files.reading import UnusableError, opened, readable
 
-__all__ = ["Raster", "read_raster"]
+__all__ = ["Raster", "raster_of", "read_raster"]
 
 Array = NDArray[np.float64]
 
@@ -46,12 +46,28 @@ def read_raster(path: Path, band: int, nodata: float | None) -> Raster:
         with rasterio.open(path, driver="GTiff") as dataset:
             bands = dataset.count
             if band <= bands:
-                check_memory("heights", dataset.height * dataset.width)
-                heights = _heights(dataset, band, nodata)
-                return Raster(
-                    heights, _transform(dataset), dataset.crs, dataset.units[band - 1] or ""
-                )
-    raise InputError(f"'{path}' has {bands} band{'s' * (bands > 1)}, and no band {band}.")
+                return _raster(dataset, band, nodata)
+    raise _no_band(path, bands, band)
+
+
+def raster_of(dataset: Any, band: int, nodata: float | None) -> Raster:  # noqa: ANN401
+    """Return a band of an open dataset of rasterio, and raise what `read_raster` does."""
+    if dataset.closed:
+        raise InputError(f"the dataset '{dataset.name}' is closed; open it, or name its file.")
+    if band > dataset.count:
+        raise _no_band(dataset.name, dataset.count, band)
+    with readable(dataset.name, "raster", "elevations"):
+        return _raster(dataset, band, nodata)
+
+
+def _no_band(name: Path | str, bands: int, band: int) -> InputError:
+    return InputError(f"'{name}' has {bands} band{'s' * (bands > 1)}, and no band {band}.")
+
+
+def _raster(dataset: Any, band: int, nodata: float | None) -> Raster:  # noqa: ANN401
+    check_memory("heights", dataset.height * dataset.width)
+    heights = _heights(dataset, band, nodata)
+    return Raster(heights, _transform(dataset), dataset.crs, dataset.units[band - 1] or "")
 
 
 def _heights(dataset: Any, band: int, nodata: float | None) -> Array:  # noqa: ANN401

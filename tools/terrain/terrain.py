@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...runtime.base.checks import as_float, real_array, whole_number
+from ...runtime.base.advice import is_raster
+from ...runtime.base.checks import as_float, text, whole_number, with_gaps
 from ...runtime.base.errors import InputError, in_memory, shown
 from ...runtime.base.georeference import Georeference, Origin, checked_origin
 from ...runtime.domain.domain import Boundary, Domain
@@ -20,7 +21,10 @@ from ...runtime.surface.surface import Surface
 from ..files.paths import checked_path
 from ..files.reference_systems import checked_crs, crs_text, projected, target_crs
 from .coordinates import check_degrees, grid_of, is_even, of_arrays, of_spacing, of_transform
-from .raster import Raster, read_raster
+from .raster import Raster, raster_of, read_raster
+
+if TYPE_CHECKING:
+    import rasterio
 
 __all__ = ["terrain"]
 
@@ -40,7 +44,7 @@ SAME_UNIT = 1e-5
 
 @in_memory
 def terrain(
-    source: str | os.PathLike[str] | ArrayLike,
+    source: str | os.PathLike[str] | ArrayLike | rasterio.DatasetReader,
     *,
     x: ArrayLike | None = None,
     y: ArrayLike | None = None,
@@ -52,7 +56,7 @@ def terrain(
     origin: Sequence[float] | None = None,
     name: str | None = None,
 ) -> Surface:
-    """Make a surface of elevations in a GeoTIFF, or in an array, in world coordinates.
+    """Make a surface of elevations, in a raster or in an array, in world coordinates.
 
     Heights are at the centres of pixels. Degrees are projected, and the heights stay as they are:
     the grid of points is what it was, and nothing is resampled. Samples, and files of them, know
@@ -60,17 +64,18 @@ def terrain(
 
     Parameters
     ----------
-    source : str, os.PathLike or (m, n) array_like
-        Name of a GeoTIFF, whose transform, CRS, nodata, mask, scale and offset are respected; or
-        elevations, with rows along y and columns along x. Both are in the unit of x and y.
+    source : str, os.PathLike, rasterio.DatasetReader or (m, n) array_like
+        Name of a GeoTIFF, or an open dataset of rasterio in any format, whose transform, CRS,
+        nodata, mask, scale and offset are respected; or elevations, with rows along y and columns
+        along x. All are in the unit of x and y.
     x, y : (n,) and (m,), or (m, n) array_like, optional
         The coordinates of an array: one for each column and one for each row, or for each height.
         Distances need not be equal.
     spacing : (float, float), optional
-        Instead: the distances dx and dy of an array, or of a GeoTIFF that says none, from (0, 0)
+        Instead: the distances dx and dy of an array, or of a raster that says none, from (0, 0)
         on. A negative dy means that rows run from north to south.
     band : int, default 1
-        The band of a GeoTIFF.
+        The band of a raster.
     nodata : float, optional
         The number that stands for missing heights, in place of that of the file, before scale and
         offset. NaN and masked entries do so anyway. What depends on missing heights is left out,
@@ -128,16 +133,20 @@ def terrain(
     start, asked, given = checked_origin(origin), checked_crs(crs, "crs"), None
     if source_crs is not None:
         given = checked_crs(source_crs, "source_crs")
-    if isinstance(source, str | os.PathLike):
+    said = "terrain" if name is None else text(name, "name")
+    if isinstance(source, str | os.PathLike) or is_raster(source):
         if x is not None or y is not None:
-            raise InputError("x and y are for arrays; a GeoTIFF has its own coordinates.")
-        path = checked_path(source)
-        said = path.name if name is None else name
-        raster = read_raster(path, whole_number(band, "band"), _nodata(nodata))
+            raise InputError("x and y are for arrays; a raster has its own coordinates.")
+        wanted = whole_number(band, "band"), _nodata(nodata)
+        if isinstance(source, str | os.PathLike):
+            path = checked_path(source)
+            raster = read_raster(path, *wanted)
+        else:
+            raster, path = raster_of(source, *wanted), Path(source.name)  # pyright: ignore
+        said = path.name if name is None else said
         raster = raster._replace(heights=without_nodata(raster.heights, None, repr(said)))
         at_x, at_y = _of_raster(raster, spacing, path)
     else:
-        said = "terrain" if name is None else name
         raster = Raster(_elevations(source, nodata, said), None, None, "")
         at_x, at_y = _of_array(raster.heights, x, y, spacing)
     system = given if given is not None else raster.crs if raster.crs is not None else asked
@@ -149,17 +158,14 @@ def _nodata(nodata: float | None) -> float | None:
         return None
     try:
         return as_float(nodata)
-    except (TypeError, ValueError, OverflowError):
+    except TypeError:
         raise InputError(f"nodata must be a number, not {shown(nodata)}.") from None
 
 
 def _elevations(source: ArrayLike, nodata: float | None, name: str) -> Array:
-    missing = np.ma.getmaskarray(np.ma.asarray(source)) if np.ma.is_masked(source) else None
-    heights = np.array(real_array(np.ma.getdata(source), "elevations"))
+    heights = with_gaps(source, "elevations")
     if heights.ndim != 2:
         raise InputError(f"elevations must have the shape (m, n), not {heights.shape}.")
-    if missing is not None:
-        heights[missing] = np.nan
     return without_nodata(heights, nodata, name)
 
 
@@ -197,7 +203,7 @@ def _shape(heights: Array) -> tuple[int, int]:
 def _spacing(spacing: Sequence[float]) -> tuple[float, float]:
     try:
         dx, dy = (as_float(x) for x in spacing)
-    except (TypeError, ValueError, OverflowError):
+    except (TypeError, ValueError):
         raise InputError(f"spacing must be two numbers, not {shown(spacing)}.") from None
     if not (np.isfinite([dx, dy]).all() and dx > 0.0 and dy != 0.0):
         raise InputError(f"spacing must be finite, dx > 0 and dy not 0, not ({dx}, {dy}).")

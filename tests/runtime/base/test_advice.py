@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import gaussmap as gm
+import geomdl.NURBS
 import numpy as np
 import pytest
+from splipy import surface_factory
 
 SQUARE = ((0, 1), (0, 1))
 
@@ -31,6 +34,13 @@ MESH = SimpleNamespace(vertices=np.zeros((3, 3)), faces=np.zeros((1, 3), int))
         ),
         ("a.npy", r"gm\.Surface\.from_grid\(numpy\.load\('a\.npy'\)\)"),
         ("a.STL", "meshes are not taken, because triangles have no curvature; give the CAD file"),
+        ("dem.tif", r"read the elevations first: gm\.sample\(gm\.terrain\('dem\.tif'\), \.\.\.\)"),
+        (Path("a.step"), r"gm\.sample\(gm\.read_cad\('a\.step'\), \.\.\.\)"),
+        (surface_factory.sphere(), r"make one by gm\.Surface\.from_nurbs\(surface\)\."),
+        (geomdl.NURBS.Surface(), r"make one by gm\.Surface\.from_nurbs\(surface\)\."),
+        (["torus", "sphere"], r"not list; several are sampled by gm\.sample_many\(surfaces, "),
+        ((gm.surfaces.torus(),), r"not tuple; several are sampled by gm\.sample_many"),
+        ([[1.0, 2.0, 3.0]], r"not list; make one by gm\.Surface\.from_callable"),
         (MESH, "not SimpleNamespace; meshes are not taken"),
         (np.zeros((9, 3)), r"points \(N, 3\) in no order are not taken, .* grid \(m, n, 3\)"),
         (np.zeros((9, 9, 3)), r"not ndarray; make one by gm\.Surface\.from_grid\(points\)\."),

@@ -162,6 +162,25 @@ def test_bands_masks_and_units(tmp_path: Path) -> None:
         gm.terrain(path, band=3)
 
 
+def test_open_datasets_are_taken(tmp_path: Path) -> None:
+    path = write(tmp_path / "dem.tif", np.stack([HEIGHTS, HEIGHTS + 1.0]), **PLACED)
+    for band in 1, 2:
+        expected = gm.terrain(path, band=band)
+        with rasterio.open(path) as dataset:
+            found = gm.terrain(dataset, band=band)
+            with pytest.raises(gm.errors.InputError, match="has 2 bands, and no band 3"):
+                gm.terrain(dataset, band=3)
+            with pytest.raises(gm.errors.InputError, match=r"make one by gm\.terrain"):
+                gm.sample(dataset, 10)
+        assert expected.grid is not None
+        np.testing.assert_array_equal(found.grid, expected.grid)
+        assert (found.name, found.georeference) == ("dem.tif", expected.georeference)
+    with pytest.raises(gm.errors.InputError, match=r"dem\.tif' is closed; open it"):
+        gm.terrain(dataset)
+    with rasterio.MemoryFile(path.read_bytes()) as file, file.open() as dataset:
+        np.testing.assert_array_equal(gm.terrain(dataset, band=2).grid, found.grid)
+
+
 def test_what_has_no_place_is_refused(tmp_path: Path) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
