@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..runtime.base.checks import known_name, listed
+from ..runtime.base.errors import InputError, shown
 from ..runtime.base.progress import busy
 from ..runtime.samples.samples import spline_or
 from ..runtime.samples.whole import Whole
@@ -44,11 +46,17 @@ __all__ = [
 ]
 
 
-def write(self: Samples, path: str | os.PathLike[str], *, progress: bool = False) -> None:
+def write(
+    self: Samples,
+    path: str | os.PathLike[str],
+    *,
+    fields: Sequence[str] | None = None,
+    progress: bool = False,
+) -> None:
     """Write the samples to a file; its suffix, in any case, chooses the format.
 
     An existing file is replaced once the new one is complete; if anything fails, it stays as it
-    was. Files hold the fields that the samples hold, float32 as float32.
+    was. Numbers in float32 are written as float32.
 
     Parameters
     ----------
@@ -69,13 +77,16 @@ def write(self: Samples, path: str | os.PathLike[str], *, progress: bool = False
         - `.las`, `.laz`: points, with all other columns as extra dimensions, and the CRS of a
           `terrain`, whose `origin` is added again; coordinates are rounded to 1e-8 of the
           extent. Need `points`, and the extra "gis" (laspy).
+    fields : sequence of str, optional
+        The fields that are written, such as ``("points", "normals")``; by default all that the
+        samples hold.
     progress : bool, default False
         Show on a terminal what is done, from a second on.
 
     Raises
     ------
     UnknownNameError
-        If the suffix is none of these.
+        If the suffix is none of these, or the samples do not hold a field.
     FileError
         If the file cannot be written.
     InputError
@@ -86,15 +97,29 @@ def write(self: Samples, path: str | os.PathLike[str], *, progress: bool = False
     Examples
     --------
     >>> import gaussmap as gm
-    >>> gm.sample("torus", 200, cells=(16, 16)).write("torus.ply")
+    >>> samples = gm.sample("torus", 200, cells=(16, 16))
+    >>> samples.write("torus.ply")
     >>> len(gm.read_samples("torus.ply"))
     200
+    >>> samples.write("points.npz", fields=("points",))
+    >>> gm.read_samples("points.npz").fields
+    ('points',)
 
     """
     from .files.formats import write_samples
 
     with busy("writing", progress):
-        write_samples(self, path)
+        write_samples(self if fields is None else _only(self, fields), path)
+
+
+def _only(samples: Samples, fields: Sequence[str]) -> Samples:
+    """Return samples with some of their fields."""
+    names, held = listed(fields), samples.arrays()
+    if names is None:
+        raise InputError(f"fields must be a tuple of names, not {shown(fields)}.")
+    arrays = {x: held[known_name(x, samples.fields, "field of these samples")] for x in names}
+    known = {x: getattr(samples, x) for x in ("report", "spline", "surface", "offset_of")}
+    return type(samples)(**arrays, **known)
 
 
 def mesh(

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..base.errors import InputError, SurfaceError, shown
 from ..base.evaluation import called
-from .domain import Boundary, Domain
+from .domain import Boundary, Domain, domain_text
 from .loops import Loops, checked_loops
 
 __all__ = ["Predicate", "Trim", "TrimPart", "trimmed_by"]
@@ -33,7 +33,7 @@ class TrimPart(Protocol):
         ...
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Trim:
     """The part of a domain that belongs to a surface: where all conditions hold.
 
@@ -60,6 +60,10 @@ class Trim:
     domain: Domain
     boundary: Boundary
     parts: tuple[TrimPart, ...]
+
+    def __repr__(self) -> str:
+        kinds = ", ".join(type(part).__name__ for part in self.parts)
+        return f"Trim({kinds} in {domain_text(self.domain, self.boundary)})"
 
     def contains(self, uv: Array, threads: int | None = None) -> NDArray[np.bool_]:
         """Return whether points belong to the surface.

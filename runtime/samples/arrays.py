@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import math
 import pickle
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from ..base.checks import checked_array, checked_rows
+from ..base.checks import checked_array, checked_rows, listed
 from ..base.errors import InputError
 from ..base.tolerances import DERIVATIVE_ERROR, PATCH_ERROR
 from ..spline.spline import Spline
@@ -65,7 +66,8 @@ class SampleArrays:
         arrays = {name: array for name, array in arrays.items() if array is not None}
         if not arrays:
             raise InputError("samples need at least one array, such as points.")
-        count = (np.shape(next(iter(arrays.values()))) or (0,))[0]
+        first = next(iter(arrays.values()))
+        count = len(first) if isinstance(first, np.ndarray) and first.ndim else 0
         floating = _common_dtype(arrays)
         for name in COLUMNS:
             if name in arrays:
@@ -129,10 +131,7 @@ class SampleArrays:
         200
 
         """
-        try:
-            pieces = list(parts)
-        except TypeError:
-            pieces = []
+        pieces = listed(parts) or []
         if not all(isinstance(part, cls) for part in pieces) or not pieces:
             raise InputError("concatenate takes Samples, at least one.")
         kinds = {(part.fields, part.dtype) for part in pieces}
@@ -251,7 +250,18 @@ class SampleArrays:
     def __len__(self) -> int:
         return len(next(iter(self.arrays().values())))
 
+    def __array__(
+        self, dtype: DTypeLike | None = None, copy: bool | None = None
+    ) -> NDArray[np.floating]:
+        """Return the points: what NumPy makes of samples."""
+        return np.array(self.points, dtype=dtype, copy=copy)
+
+    def __iter__(self) -> Iterator[Self]:
+        """Yield the samples one by one, as Samples of length 1."""
+        return (self[k : k + 1] for k in range(len(self)))
+
     def __getitem__(self, key: ArrayLike | slice) -> Self:
+        """Return rows: those of a slice, a mask or an index array, or the one of a number."""
         rows = key if isinstance(key, slice) else checked_rows(key, len(self))
         arrays = {name: array[rows] for name, array in self.arrays().items()}
         return type(self)(
@@ -320,6 +330,6 @@ def _size_and_error(samples: SampleArrays) -> tuple[float, float]:
         points, cells = samples.points.astype(np.float64), 0
     else:
         return 0.0, 0.0
-    diagonal = float(np.linalg.norm(np.ptp(points, axis=0)))
+    diagonal = math.hypot(*np.ptp(points, axis=0))  # of coordinates whose squares overflow, too
     rounding = float(np.spacing(np.abs(points).max())) / (diagonal or 1.0)
     return diagonal, rounding * max(DERIVATIVE_ERROR, PATCH_ERROR * cells**2)

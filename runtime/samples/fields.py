@@ -163,7 +163,7 @@ def checked_fields(
     UnknownNameError for an unknown name, InputError for what is no tuple of names, for no names,
     for a name that comes twice, and for one that is computed from fields.
     """
-    from ..base.checks import known_name
+    from ..base.checks import known_name, listed
 
     known = ARRAY_NAMES_ON_SURFACE if surface else ARRAY_NAMES
     known += GRID_NAMES if grid else ()
@@ -175,10 +175,9 @@ def checked_fields(
         raise InputError(
             f"fields must be a tuple of names, such as ({shown(fields)},), not a string."
         )
-    try:
-        names = list(fields)
-    except TypeError:
-        raise InputError(f"fields must be a tuple of names, not {shown(fields)}.") from None
+    names = listed(fields)
+    if names is None:
+        raise InputError(f"fields must be a tuple of names, not {shown(fields)}.")
     if not names:
         raise InputError("fields is empty; name at least one field, such as ('points',).")
     for k, name in enumerate(names):

@@ -18,9 +18,10 @@ __all__ = ["Samples", "spline_if_one", "spline_or"]
 class Samples(SampleArrays, Methods):
     """N samples of a surface, one row each; lengths in the unit L of the surface.
 
-    `sample` and the other samplers make them. A boolean mask (N,), an index array or a slice
-    picks rows, with the same report and spline: ``samples[samples.elliptic]``;
-    `Samples.concatenate` joins several.
+    `sample` and the other samplers make them. A boolean mask (N,), an index array, a slice or a
+    number picks rows, with the same report and spline: ``samples[samples.elliptic]``. The result is
+    always Samples, those of ``samples[0]`` and of the steps of a loop have length 1.
+    `Samples.concatenate` joins several. ``numpy.asarray(samples)`` is their points.
 
     With ``dtype=numpy.float32``, all numbers except the indices are float32. Fields that were not
     requested (`fields` of `sample`) are missing: reading them raises MissingFieldError, an
@@ -93,11 +94,16 @@ class Samples(SampleArrays, Methods):
     Examples
     --------
     >>> import gaussmap as gm
+    >>> import numpy as np
     >>> samples = gm.sample("torus", 200, cells=(16, 16))
     >>> samples
     Samples(200 points on torus: 125 dome-shaped, 75 saddle-shaped)
     >>> samples[samples.elliptic][:10]
     Samples(10 points on torus: 10 dome-shaped)
+    >>> samples[0], [len(one) for one in samples[:3]]
+    (Samples(1 point on torus: 1 dome-shaped), [1, 1, 1])
+    >>> np.asarray(samples) is samples.points
+    True
     >>> samples.points.shape, samples.normals.shape, samples.uv.shape
     ((200, 3), (200, 3), (200, 2))
     >>> K, H = samples.gaussian_curvature, samples.mean_curvature
@@ -147,7 +153,8 @@ class Samples(SampleArrays, Methods):
 
     def __repr__(self) -> str:
         label = short_label(self.report.surface)
-        return f"Samples({len(self):,} points on {label}{kinds_of_points(self)})"
+        points = f"{len(self):,} point{'s' * (len(self) != 1)}"
+        return f"Samples({points} on {label}{kinds_of_points(self)})"
 
 
 def spline_if_one(samples: Samples, spline: Spline | None) -> Spline | None:

@@ -9,15 +9,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..base.checks import real_array
+from ..base.checks import text, with_gaps
 from ..base.errors import InputError
 from ..base.georeference import Georeference
 from ..domain.domain import (
     Assumed,
     Boundary,
     Domain,
-    Periodicity,
-    assumed_ends,
+    Periodic,
     checked_boundary,
     checked_domain,
 )
@@ -33,12 +32,13 @@ if TYPE_CHECKING:
 __all__ = ["Surface"]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Surface(SurfaceValues):
     """A parametric surface x(u,v).
 
     Make one with `from_callable`, `from_sympy`, `from_nurbs` or `from_grid`, or take one of
-    `gaussmap.surfaces`. Normals point along x_u × x_v.
+    `gaussmap.surfaces`. Normals point along x_u × x_v. A surface pickles if its callables do;
+    those of the library do.
 
     Attributes
     ----------
@@ -73,6 +73,8 @@ class Surface(SurfaceValues):
     --------
     >>> import gaussmap as gm
     >>> torus = gm.surfaces.torus(major=1.0, minor=0.35)
+    >>> torus
+    Surface(torus: u 0 to 6.28319 periodic, v 0 to 6.28319 periodic)
     >>> torus.name, torus.boundary, torus.grid, torus.derivative_function, torus.trim
     ('torus', (('periodic', 'periodic'), ('periodic', 'periodic')), None, None, None)
     >>> torus.georeference is None
@@ -95,7 +97,7 @@ class Surface(SurfaceValues):
         cls,
         f: Evaluation,
         domain: Sequence[Sequence[float]],
-        periodic: Sequence[Periodicity] = (False, False),
+        periodic: Periodic = False,
         *,
         derivatives: Evaluation | None = None,
         name: str | None = None,
@@ -109,10 +111,11 @@ class Surface(SurfaceValues):
             first called when the surface is fitted or evaluated (see `evaluate`).
         domain : ((u0, u1), (v0, v1)) of float
             The rectangle of the parameters.
-        periodic : pair, default (False, False)
-            The boundary conditions for u and for v: True (periodic), False (open, and poles are
-            found, see `assumed_open`), one of "open", "periodic", "mirrored", "pole" for both ends,
-            or a pair of these (low end, high end).
+        periodic : bool or pair, default False
+            The boundary conditions of both parameters, or a pair of those of u and of v: True
+            (periodic), False (open, and poles are found, see `assumed_open`); in a pair also one of
+            "open", "periodic", "mirrored", "pole" for both ends, or a pair of these (low end, high
+            end).
         derivatives : callable, optional
             ``derivatives(u, v)`` returns (..., 6, 3): x, x_u, x_v, x_uu, x_uv, x_vv. They are
             compared with numerical ones when they are first used. By default derivatives are
@@ -142,15 +145,9 @@ class Surface(SurfaceValues):
         Spline(16 × 16 cells of waves)
 
         """
-        if not callable(f):
-            raise InputError(f"f must be callable as f(u, v), and {type(f).__name__} is not.")
-        if derivatives is not None and not callable(derivatives):
-            raise InputError(
-                "derivatives must be callable as derivatives(u, v), and "
-                f"{type(derivatives).__name__} is not."
-            )
-        ends, assumed = (checked_domain(domain), checked_boundary(periodic)), assumed_ends(periodic)
+        rectangle, (boundary, assumed) = checked_domain(domain), checked_boundary(periodic)
         name = label(name, "surface", f)
+        ends = rectangle, boundary
         return cls(name, f, *ends, derivative_function=derivatives, assumed_open=assumed)
 
     @classmethod
@@ -159,7 +156,7 @@ class Surface(SurfaceValues):
         position: Sequence[sympy.Expr | str | float],
         parameters: Sequence[sympy.Symbol | str],
         domain: Sequence[Sequence[float | str | sympy.Expr]],
-        periodic: Sequence[Periodicity] = (False, False),
+        periodic: Periodic = False,
         *,
         name: str | None = None,
     ) -> Surface:
@@ -178,7 +175,7 @@ class Surface(SurfaceValues):
             The parameters u and v.
         domain : ((u0, u1), (v0, v1))
             The rectangle of the parameters: numbers, SymPy numbers, or texts such as "2*pi".
-        periodic : pair, default (False, False)
+        periodic : bool or pair, default False
             As in `from_callable`.
         name : str, optional
             Label of the surface. By default "surface", then "surface 2", and so on.
@@ -211,16 +208,16 @@ class Surface(SurfaceValues):
         from .lambdified import compiled
 
         f = compiled(position, two_symbols(parameters))
-        rectangle, boundary = checked_domain(numbers(domain)), checked_boundary(periodic)
+        rectangle, (boundary, assumed) = checked_domain(numbers(domain)), checked_boundary(periodic)
         name = label(name, "surface")
-        return cls(name, f, rectangle, boundary, assumed_open=assumed_ends(periodic))
+        return cls(name, f, rectangle, boundary, assumed_open=assumed)
 
     @classmethod
     def from_grid(
         cls,
         points: ArrayLike,
         spacing: Sequence[float] | None = None,
-        periodic: Sequence[Periodicity] = (False, False),
+        periodic: Periodic = False,
         *,
         nodata: float | None = None,
         name: str | None = None,
@@ -240,7 +237,7 @@ class Surface(SurfaceValues):
         spacing : (float, float), optional
             The distances dx, dy of elevations. A negative dy means that rows run from north to
             south.
-        periodic : pair, default (False, False)
+        periodic : bool or pair, default False
             As in `from_callable`; for points only.
         nodata : float, optional
             The number that stands for missing data, such as −9999; NaN and masked entries do so
@@ -279,9 +276,9 @@ class Surface(SurfaceValues):
         from ..spline.grid import points_of_elevations
         from ..spline.missing import without_nodata
 
-        checked, assumed = "grid" if name is None else name, assumed_ends(periodic)
+        checked, domain = "grid" if name is None else text(name, "name"), None
+        boundary, assumed = checked_boundary(periodic)
         array = without_nodata(_grid(points), nodata, checked)
-        boundary, domain = checked_boundary(periodic), None
         if array.ndim == 2:
             array, domain = points_of_elevations(array, spacing, boundary, checked)
             assumed = False, False
@@ -331,7 +328,7 @@ class Surface(SurfaceValues):
         control_points: ArrayLike | None = None,
         weights: ArrayLike | None = None,
         *,
-        periodic: Sequence[Periodicity] | None = None,
+        periodic: Periodic | None = None,
         name: str | None = None,
     ) -> Surface:
         """Make a surface of a NURBS: of its numbers, or of a surface of geomdl or Splipy.
@@ -352,7 +349,7 @@ class Surface(SurfaceValues):
             The control points, in L, not multiplied by their weights.
         weights : (m, n) array_like, optional
             The positive weights; by default all are 1, and the surface is a B-spline.
-        periodic : pair, optional
+        periodic : bool or pair, optional
             As in `from_callable`; by default it is found as described.
         name : str, optional
             Label of the surface. By default "surface", then "surface 2", and so on.
@@ -390,11 +387,11 @@ class Surface(SurfaceValues):
         nurbs = nurbs_of(degrees, knots, control_points, weights)
         if periodic is None:
             periodic = smoothly_closed(nurbs, 0), smoothly_closed(nurbs, 1)
-        boundary = checked_boundary(periodic)
+        boundary, assumed = checked_boundary(periodic)
         u, v = (ends == ("periodic", "periodic") for ends in boundary)
         nurbs = replace(nurbs, periodic=(u, v), creases=creases(nurbs))
-        ends, assumed = (nurbs.domain, boundary), assumed_ends(periodic)
-        return cls(label(name, "surface"), nurbs, *ends, assumed_open=assumed)
+        name = label(name, "surface")
+        return cls(name, nurbs, nurbs.domain, boundary, assumed_open=assumed)
 
     def pieces(self) -> tuple[Surface, ...]:
         """Return the smooth pieces of the surface: rectangles of its parameters.
@@ -546,10 +543,7 @@ class Surface(SurfaceValues):
 
 def _grid(points: ArrayLike) -> NDArray[np.float64]:
     """Return points or elevations with NaN in place of masked entries."""
-    masked = np.ma.getmaskarray(np.ma.asarray(points)) if np.ma.is_masked(points) else None
-    array = real_array(np.ma.getdata(points) if masked is not None else points, "a grid")
-    if masked is not None:
-        array[masked] = np.nan
+    array = with_gaps(points, "a grid")
     if array.ndim not in (2, 3) or (array.ndim == 3 and array.shape[2] != 3):
         raise InputError(
             f"a grid must have the shape (m, n, 3), or (m, n) for elevations, not {array.shape}."

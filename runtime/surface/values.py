@@ -9,12 +9,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..base.checks import parameter_arrays
-from ..base.errors import InputError, SurfaceError
+from ..base.checks import checked_array, parameter_arrays, text
+from ..base.errors import InputError, SurfaceError, shown
 from ..base.evaluation import evaluated
 from ..base.georeference import Georeference
-from ..domain.domain import Assumed, Boundary, Domain
+from ..base.scales import scale_to_one
+from ..domain.domain import Assumed, Boundary, Domain, checked_boundary, checked_domain, domain_text
 from ..domain.trim import Trim
+from ..spline.spline import short_label
 from .derivatives import NAMES, Differences, Differentiable, Function
 from .jet_functions import jet_function
 
@@ -23,7 +25,7 @@ __all__ = ["Evaluation", "SurfaceValues"]
 Evaluation = Callable[[NDArray[np.float64], NDArray[np.float64]], ArrayLike]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SurfaceValues:
     """What `Surface` is made of, and evaluates."""
 
@@ -36,6 +38,30 @@ class SurfaceValues:
     trim: Trim | None = None
     assumed_open: Assumed = (False, False)
     georeference: Georeference | None = None
+
+    def __post_init__(self) -> None:
+        text(self.name, "name")
+        functions = {"function": self.function, "derivatives": self.derivative_function}
+        for name, value in functions.items():
+            if not callable(value) and (value is not None or name == "function"):
+                raise InputError(
+                    f"the {name} of a surface must be callable as f(u, v), and "
+                    f"{type(value).__name__} is not."
+                )
+        for name, kind in (("trim", Trim), ("georeference", Georeference)):
+            value = getattr(self, name)
+            if value is not None and not isinstance(value, kind):
+                raise InputError(f"{name} must be a {kind.__name__} or None, not {shown(value)}.")
+        if self.grid is not None:
+            checked_array("grid", self.grid, ("m", "n", 3), np.float64)
+        object.__setattr__(self, "domain", checked_domain(self.domain))
+        object.__setattr__(self, "boundary", checked_boundary(self.boundary)[0])
+
+    def __repr__(self) -> str:
+        grid = "" if self.grid is None else "{} × {} points, ".format(*self.grid.shape)
+        trim = "" if self.trim is None else ", trimmed"
+        where = domain_text(self.domain, self.boundary)
+        return f"Surface({short_label(self.name)}: {grid}{where}{trim})"
 
     def evaluate(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
         """Return the points x(u, v).
@@ -144,6 +170,44 @@ class SurfaceValues:
             )
         return jets
 
+    def normals(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
+        """Return the unit normals, along x_u × x_v, from `derivatives`.
+
+        Parameters
+        ----------
+        u, v : array_like
+            Parameters that broadcast together.
+
+        Returns
+        -------
+        (..., 3) float64 array
+            The normals; NaN at singular points, where x_u × x_v vanishes, such as poles.
+
+        Raises
+        ------
+        SurfaceError, InputError
+            As `derivatives`.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.surfaces.torus().normals(0.0, [0.0, 0.5]).round(3) + 0.0
+        array([[1.   , 0.   , 0.   ],
+               [0.878, 0.   , 0.479]])
+
+        """
+        from ..kernels.refine import evaluate_jets
+
+        jets = self.derivatives(u, v)
+        rows = jets.reshape(-1, len(NAMES), 3)
+        (u0, u1), (v0, v1) = self.domain
+        steps = np.array([u1 - u0, v1 - v0])
+        size = scale_to_one(float(np.abs(rows[:, 1:3] * steps[:, None]).max(initial=0.0)))
+        normals, gaussian, mean = np.empty((len(rows), 3)), np.empty(len(rows)), np.empty(len(rows))
+        evaluate_jets(rows, np.array([size, *steps]), normals, gaussian, mean)
+        normals[~normals.any(axis=1)] = np.nan
+        return normals.reshape(*jets.shape[:-2], 3)
+
     def jets(self, u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return what `derivatives` does, fast: for flat arrays, without checks of numbers.
 
@@ -164,6 +228,8 @@ class SurfaceValues:
         SurfaceError
             If a user's callable raises, returns another shape or anything but real numbers, and if
             given derivatives differ from numerical ones.
+        InputError
+            For anything but two arrays of one shape (k,).
 
         Examples
         --------
@@ -173,7 +239,9 @@ class SurfaceValues:
         (5, 6, 3)
 
         """
-        return self._jets(u, v)
+        u_array = checked_array("u", u, ("k",), np.float64)
+        v_array = checked_array("v", v, u_array.shape, np.float64)
+        return self._jets(u_array, v_array)
 
     @property
     def differences(self) -> Differences | None:

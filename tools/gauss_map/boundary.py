@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise, product
 
@@ -44,7 +44,7 @@ class BoundaryArc:
 
     """
 
-    control_normals: Array
+    control_normals: Array = field(repr=False)
     noise: float
 
     def points(self, count: int) -> Array:

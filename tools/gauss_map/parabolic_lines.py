@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import combinations
 
 import numpy as np
@@ -64,7 +64,7 @@ class ParabolicLine:
     rho: float
     normal: Array
     multiplicity: int
-    segment: Array | None
+    segment: Array | None = field(repr=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +87,7 @@ class Piece:
 
     """
 
-    corners: Array
+    corners: Array = field(repr=False)
     sign: int
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...runtime.base.checks import checked_array, whole_number
+from ...runtime.base.checks import checked_array, text, whole_number
 from ...runtime.base.errors import InputError
 from ...runtime.base.scales import scale_to_one
 from ...runtime.spline.spline import short_label
@@ -68,6 +68,8 @@ class Mesh(Methods):
     ((200, 3), (200, 3), (200, 2), (400, 3))
     >>> bool((mesh.sample_index >= 0).all()), bool((mesh.sides == 1).all()), mesh.name
     (True, True, 'torus')
+    >>> mesh.faces is mesh.triangles
+    True
     >>> len(mesh.edges), len(mesh.boundary_edges), mesh.euler_characteristic
     (600, 0, 0)
     >>> mesh.left_out
@@ -87,11 +89,12 @@ class Mesh(Methods):
     left_out: int = 0
 
     def __post_init__(self) -> None:
-        count = len(self.vertices) if isinstance(self.vertices, np.ndarray) else 0
-        faces = len(self.triangles) if isinstance(self.triangles, np.ndarray) else 0
+        text(self.name, "name")
+        floating, whole = np.dtype(np.float64), np.dtype(np.int64)
+        count = len(checked_array("vertices", self.vertices, ("M", 3), floating))
+        faces = len(checked_array("triangles", self.triangles, ("T", 3), whole))
         if self.sides is None:
             object.__setattr__(self, "sides", np.ones((faces, 3), dtype=np.int64))
-        floating, whole = np.dtype(np.float64), np.dtype(np.int64)
         wanted: dict[str, tuple[np.dtype[Any], tuple[int, ...]]] = {
             "vertices": (floating, (count, 3)),
             "normals": (floating, (count, 3)),
@@ -112,6 +115,11 @@ class Mesh(Methods):
             f"Mesh({len(self.vertices):,} vertices, {len(self.triangles):,} triangles on "
             f"{short_label(self.name)})"
         )
+
+    @property
+    def faces(self) -> NDArray[np.int64]:
+        """(T, 3) int64 array: `triangles`, by the name that trimesh gives them."""
+        return self.triangles
 
     @cached_property
     def _edges(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

@@ -323,8 +323,8 @@ class TestIndexing:
     @pytest.mark.parametrize(
         ("key", "message"),
         [
-            (3, "picked by"),
-            (np.int64(3), "picked by"),
+            (12, "out of range: there are 12 samples"),
+            (True, "picked by"),
             ([0.5], "picked by"),
             ("support", "picked by"),
             ([[0, 1]], "picked by"),
@@ -467,3 +467,34 @@ class TestText:
 def test_write(tmp_path):
     torus().write(tmp_path / "torus.xyz")
     assert np.loadtxt(tmp_path / "torus.xyz").shape == (12, 6)
+
+
+class TestAsASequence:
+    def test_a_number_picks_one_sample(self) -> None:
+        samples = torus(12)
+        for key, row in ((0, 0), (np.int64(5), 5), (-1, 11)):
+            one = samples[key]
+            assert isinstance(one, Samples)
+            assert len(one) == 1
+            for name, array in one.arrays().items():
+                np.testing.assert_array_equal(array, samples.arrays()[name][row : row + 1 or None])
+        for key in (12, -13, True, 1.0, "0"):
+            with pytest.raises(gm.errors.InputError):
+                samples[key]
+
+    def test_a_loop_goes_through_the_samples(self) -> None:
+        samples = torus(12)
+        ones = list(samples)
+        assert [len(x) for x in ones] == [1] * 12
+        np.testing.assert_array_equal(Samples.concatenate(ones).points, samples.points)
+        assert list(samples[:0]) == []
+
+    def test_as_an_array_they_are_points(self) -> None:
+        samples = torus(12)
+        assert np.asarray(samples) is samples.points
+        assert np.array(samples) is not samples.points
+        assert np.asarray(samples, dtype=np.float32).dtype == np.float32
+        assert np.linalg.norm(samples, axis=1).shape == (12,)
+        others = Samples(normals=samples.normals, report=REPORT)
+        with pytest.raises(gm.errors.MissingFieldError, match="add 'points' to fields"):
+            np.asarray(others)

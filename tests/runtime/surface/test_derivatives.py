@@ -236,7 +236,7 @@ def test_derivatives_that_do_not_exist():
     ):
         surface.derivatives([0.4, 0.6], 0.5)
     assert np.isnan(surface.jets(np.array([0.6]), np.array([0.5]))).any()
-    with pytest.raises(gm.errors.InputError, match="derivatives must be callable"):
+    with pytest.raises(gm.errors.InputError, match="derivatives of a surface must be callable"):
         gm.Surface.from_callable(saddle, SQUARE, derivatives=saddle(0.0, 0.0))  # pyright: ignore
     grid = gm.Surface.from_grid(saddle(*np.indices((5, 6)) * 1.0))
     assert not grid.evaluable

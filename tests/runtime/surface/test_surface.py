@@ -85,6 +85,8 @@ def test_domains_that_are_none(domain, complaint):
     ("periodic", "ends"),
     [
         ((False, False), (("open", "open"), ("open", "open"))),
+        (True, (("periodic", "periodic"), ("periodic", "periodic"))),
+        (np.False_, (("open", "open"), ("open", "open"))),
         ((True, False), (("periodic", "periodic"), ("open", "open"))),
         ((np.True_, "open"), (("periodic", "periodic"), ("open", "open"))),
         ([False, "mirrored"], (("open", "open"), ("mirrored", "mirrored"))),
@@ -101,7 +103,6 @@ def test_ends(periodic, ends):
 @pytest.mark.parametrize(
     ("periodic", "complaint"),
     [
-        (True, "must be a pair"),
         (None, "must be a pair"),
         ("periodic", "must be a pair"),
         ((True,), "must be a pair"),
@@ -124,7 +125,8 @@ def test_ends_that_do_not_match(periodic, complaint):
 
 @pytest.mark.parametrize("f", [None, 5, "saddle", np.zeros((5, 5, 3))], ids=lambda f: str(type(f)))
 def test_what_is_not_callable(f):
-    refused(gm.errors.InputError, "f must be callable", gm.Surface.from_callable, f, SQUARE)
+    complaint = "the function of a surface must be callable"
+    refused(gm.errors.InputError, complaint, gm.Surface.from_callable, f, SQUARE)
 
 
 # --- callables ------------------------------------------------------------------------------------
@@ -505,3 +507,50 @@ def test_surfaces_without_a_name_have_distinct_ones():
     assert all(x.startswith("surface") for x in names[:3])
     assert all(x.startswith("grid") for x in names[3:])
     assert gm.Surface.from_callable(hills, SQUARE, name="hills").name == "hills"
+
+
+def test_periodic_is_for_both_parameters() -> None:
+    """As `True` is understood at first; grids said that a truth value is not iterable."""
+    u, v = np.mgrid[:6.0, :5.0]
+    points = gm.surfaces.torus().evaluate(u * 2 * np.pi / 6, v * 2 * np.pi / 5)
+    torus = gm.Surface.from_grid(points, periodic=True)
+    assert torus.boundary == gm.surfaces.torus().boundary
+    assert torus.assumed_open == (False, False)
+    assert gm.Surface.from_callable(tube, TURN, False).assumed_open == (True, True)
+
+
+def test_normals_are_exact() -> None:
+    u, v = np.random.default_rng(0).uniform(0.1, 6.0, (2, 4, 50))
+    exact = np.stack([np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)], axis=-1)
+    for size in 1e-150, 1.0, 1e200:
+        normals = gm.surfaces.torus(size, 0.35 * size).normals(u, v)
+        assert np.abs(normals - exact).max() < 1e-15
+    torus = gm.surfaces.torus()
+    turned = torus.flipped().normals(2.0 * np.pi - u, v)
+    assert np.abs(turned + exact).max() < 1e-14
+    assert torus.normals(0.0, 0.0).shape == (3,)
+    assert torus.normals([], 0.0).shape == (0, 3)
+
+
+def test_singular_points_have_no_normal() -> None:
+    cone = gm.Surface.from_sympy(("u*cos(v)", "u*sin(v)", "u"), "uv", ((0, 1), (0, "2*pi")), True)
+    normals = cone.normals([0.0, 1e-9], 0.5)
+    assert np.isnan(normals[0]).all()
+    assert np.abs(normals[1] * np.sqrt(2) - [-np.cos(0.5), -np.sin(0.5), 1.0]).max() < 1e-14
+    with pytest.raises(gm.errors.InputError, match="was given by points and has no derivatives"):
+        gm.Surface.from_grid(np.ones((4, 4, 3))).normals(0.0, 0.0)
+
+
+def test_surfaces_are_shown_on_one_line() -> None:
+    """A trimmed one had all of its polygons, and one of points all of these."""
+    loop = np.random.default_rng(0).uniform(1.0, 3.0, (500, 2))
+    trimmed = gm.surfaces.torus().trimmed([loop])
+    turn = "u 0 to 6.28319 periodic, v 0 to 6.28319 periodic"
+    assert repr(trimmed) == f"Surface(torus: {turn}, trimmed)"
+    assert repr(trimmed.trim) == f"Trim(Loops in {turn})"
+    heights, name = np.arange(4e4).reshape(200, 200), "hills\nand more"
+    hills = gm.Surface.from_grid(heights, spacing=(1.0, 2.0), name=name)
+    assert str(hills) == (
+        "Surface(hills and more: 200 × 200 points, u 0 to 199 open, v 0 to 398 open)"
+    )
+    assert "v -1.5708 to 1.5708 pole" in repr(gm.surfaces.sphere())

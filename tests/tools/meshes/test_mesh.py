@@ -85,10 +85,10 @@ class TestMesh:
         ("changes", "message"),
         [
             ({"vertices": CORNERS.tolist()}, "vertices must be a NumPy array, not list"),
-            ({"vertices": CORNERS[:, :2]}, r"vertices must be a float64 array of shape \(4, 3\)"),
+            ({"vertices": CORNERS[:, :2]}, r"vertices must be a float64 array of shape \(M, 3\)"),
             ({"normals": CORNERS[:3]}, r"normals must be a float64 array of shape \(4, 3\)"),
             ({"uv": CORNERS}, r"uv must be a float64 array of shape \(4, 2\)"),
-            ({"triangles": np.zeros((2, 4), dtype=int)}, r"triangles must be .* shape \(2, 3\)"),
+            ({"triangles": np.zeros((2, 4), dtype=int)}, r"triangles must be .* shape \(T, 3\)"),
             ({"triangles": np.zeros((2, 3))}, "triangles must be a int64 array"),
             ({"triangles": np.array([[0, 1, 4]])}, "triangles have vertices that are not there"),
             ({"triangles": np.array([[0, 1, -1]])}, "triangles have vertices that are not there"),
@@ -100,3 +100,9 @@ class TestMesh:
     def test_unusable_arrays(self, changes, message):
         with pytest.raises(gm.errors.InputError, match=message):
             square(**changes)
+
+
+def test_faces_are_the_triangles():
+    """By the name of trimesh; the field is one, so that both stay the same."""
+    mesh = gm.sample("torus", 60, cells=(8, 8)).mesh()
+    assert mesh.faces is mesh.triangles
