@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import gaussmap as gm
 import pytest
@@ -21,16 +22,17 @@ def test_a_patch_is_picked_by_a_number(samples: gm.Samples) -> None:
             images[value]  # pyright: ignore
 
 
-def test_what_was_made_of_the_wrong_thing_is_refused_at_once(samples: gm.Samples) -> None:
+def test_what_was_made_of_the_wrong_thing_is_refused_at_once() -> None:
     """It was taken, and failed by an AttributeError when it was used."""
-    net = gm.fit(TORUS, (8, 8)).control_nets
+    spline = gm.fit(TORUS, (8, 8))
+    net: Any = spline.control_nets
     for make, message in (
         (lambda: gm.SupportFunction(net), "make a SupportFunction by of_spline, of_patch or"),
         (lambda: gm.gauss_map.GaussianImages(net), "takes a Spline, not ndarray; .*of_spline"),
         (lambda: gm.gauss_map.GaussianImage(net), "control_points must be six points"),
         (lambda: replace(TORUS, name=3), "name must be a text, not 3"),
         (lambda: replace(TORUS, trim=[]), "trim must be a Trim or None"),
-        (lambda: replace(samples.spline, coefficients=net[0]), r"shape \(m \+ 2, n \+ 2, 3\)"),
+        (lambda: replace(spline, coefficients=net[0]), r"shape \(m \+ 2, n \+ 2, 3\)"),
     ):
         with pytest.raises(gm.errors.InputError, match=message):
             make()

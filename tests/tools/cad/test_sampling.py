@@ -330,3 +330,9 @@ def test_flat_faces_get_their_share(parts):
     kinds = [face.kind for face in part.faces]
     ratio = counts[kinds.index("torus")] / counts[kinds.index("plane")]
     assert ratio == pytest.approx(1.9, rel=0.2)
+
+
+def test_a_coverage_that_no_number_of_samples_has(parts) -> None:
+    """Its inverse overflows."""
+    with pytest.raises(gm.errors.InputError, match="would have to be searched in more than"):
+        gm.sample(parts.box(), coverage=1e-320)
