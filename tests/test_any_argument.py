@@ -18,6 +18,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 import sympy
+from gaussmap.tools.cad.examples import box
 
 from .interface import CALLABLES, CLASSES
 
@@ -147,6 +148,14 @@ class Usable:
         return self.image.arcs[0]
 
     @cached_property
+    def part(self) -> Any:
+        return box()
+
+    @cached_property
+    def part_samples(self) -> gm.Samples:
+        return gm.sample(self.part, 20)
+
+    @cached_property
     def dataset(self) -> gm.Dataset:
         return gm.open_dataset("dataset")
 
@@ -191,6 +200,7 @@ FLAT = np.array([[[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0], [1.0, 1.0
 SELF = {
     "Dataset": Of("dataset"),
     "Mesh": Of("mesh"),
+    "Part": Of("part"),
     "Samples": Of("samples"),
     "Spline": Of("spline"),
     "SupportFunction": Of("support"),
@@ -223,6 +233,8 @@ SPECIAL: dict[str, list[dict[str, Any]]] = {
         }
     ],
     "Mesh.write": [{"path": "new.ply"}],
+    "Part.plot": [{"samples": Of("part_samples")}],
+    "Part.save": [{"path": "new part.npz"}],
     "Samples": [
         {x: Of("samples", x) for x in ("points", "normals", "report", "spline", "surface")}
     ],
@@ -272,6 +284,7 @@ SPECIAL: dict[str, list[dict[str, Any]]] = {
         {"count": 10},
         {"surface": Of("torus"), "count": 20, "cells": (8, 8)},
         {"surface": Of("torus"), "normals": NORMALS, "cells": (8, 8)},
+        {"surface": Of("part"), "count": 20, "edges": True},
     ],
     "sample_many": [
         {"count": 10, "progress": False},
