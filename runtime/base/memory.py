@@ -61,7 +61,7 @@ COSTS: dict[str, Cost] = {
     "relaxed": Cost("samples", 19e3, 0.0, "use fewer, or relax=0, which takes a tenth"),
     "candidates": Cost("candidates for samples", 190.0, 0.0, LARGER),
     "part": Cost("samples", 8e3, 0.0, "use fewer"),
-    "relaxed part": Cost("samples", 29e3, 0.0, "use fewer, or relax=0, which takes a fourth"),
+    "relaxed part": Cost("samples", 25e3, 0.0, "use fewer, or relax=0, which takes a third"),
     "candidates on a part": Cost("candidates for samples", 700.0, 0.0, LARGER),
     "curve": Cost("samples", 134.0, 0.0, "use fewer"),
     # 450 in arrays, and what Qhull takes.
