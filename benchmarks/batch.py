@@ -17,11 +17,11 @@ from typing import Any
 
 import gaussmap as gm
 import numpy as np
+from gaussmap.tools.batch.arrow_tables import points_schema, points_table
+from gaussmap.tools.batch.folder import MANIFEST, POINTS, Settings, create, parts_per_shard
 from gaussmap.tools.batch.inputs import in_shards, inputs_of
-from gaussmap.tools.batch.layout import MANIFEST, POINTS, Settings, create, parts_per_shard
 from gaussmap.tools.batch.manifest import ManifestRow
 from gaussmap.tools.batch.shards import Shard
-from gaussmap.tools.batch.tables import points_schema, points_table
 from llvmlite.binding import get_host_cpu_name
 
 __all__ = ["main", "measured", "page"]

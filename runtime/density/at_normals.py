@@ -16,7 +16,7 @@ from ..search.bins import NormalBins
 from ..search.search import find
 from ..spline.developable import curved_solid_angle
 from .chosen_normals import NORMALS_PER_SAMPLE
-from .lattice import Lattice
+from .fibonacci_lattice import Lattice
 
 __all__ = [
     "SamplesAtNormals",

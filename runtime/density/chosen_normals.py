@@ -14,7 +14,7 @@ from ..search.bins import NormalBins
 from ..search.search import Hits, fill, find
 from ..spline.developable import curved_solid_angle
 from ..spline.inside import count_of, samples_inside
-from .lattice import Lattice
+from .fibonacci_lattice import Lattice
 
 __all__ = ["Chosen", "choose"]
 

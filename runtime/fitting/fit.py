@@ -22,9 +22,9 @@ from ..spline.spline import Spline, short_label
 from ..surface.collapsed import found_sides
 from ..surface.surface import Surface
 from ..surface.surfaces import named
-from .cells import FAR_OFF, Bounds, Tolerance, checked_tolerance, refined
-from .misfit import Comparison, compare_with_data
+from .comparison import Comparison, compare_with_data
 from .probe import probe_of, variation
+from .tolerance import FAR_OFF, Bounds, Tolerance, checked_tolerance, refined
 
 __all__ = ["DEFAULT_CELLS", "fit", "spline_of"]
 

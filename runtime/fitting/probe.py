@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..domain.domain import Domain
 from ..spline.spline import Spline
 from ..surface.surface import Surface
-from .misfit import Comparison, Misfit, angles_between, evaluated, squared_lengths
+from .comparison import Comparison, Misfit, angles_between, evaluated, squared_lengths
 
 __all__ = ["Probe", "probe_of", "variation"]
 

@@ -21,7 +21,7 @@ from ..base.errors import SurfaceError
 from ..base.formula_calls import python_function
 from ..domain.domain import Assumed, Boundary
 from ..spline.quasi_interpolant import SAME_POINT
-from .values import SurfaceValues
+from .surface_values import SurfaceValues
 
 __all__ = ["FoundSides", "closed_grid", "found_sides"]
 

@@ -9,7 +9,7 @@ from typing import Protocol, TypeVar, runtime_checkable
 from ..domain.domain import Boundary, BoundaryPair, Domain, Interval
 from .derivatives import Differentiable
 from .moved import Moved
-from .values import SurfaceValues
+from .surface_values import SurfaceValues
 
 __all__ = ["Creased", "pieces_of"]
 

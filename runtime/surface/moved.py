@@ -13,7 +13,7 @@ from ..base.evaluation import returned
 from ..domain.domain import Boundary, Domain, Interval
 from ..domain.trim import Trim, TrimPart
 from .derivatives import Differences, Differentiable
-from .values import SurfaceValues
+from .surface_values import SurfaceValues
 
 __all__ = ["IDENTITY", "AffineMap", "Moved", "affine_map", "moved_grid", "turned_trim"]
 

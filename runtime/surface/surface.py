@@ -22,9 +22,9 @@ from ..domain.domain import (
 )
 from ..domain.trim import Trim, trimmed_by
 from ..spline.quasi_interpolant import fit_grid
-from .labels import label
 from .moved import IDENTITY, AffineMap, Moved, affine_map, moved_grid, turned_trim
-from .values import Evaluation, SurfaceValues
+from .names import label
+from .surface_values import Evaluation, SurfaceValues
 
 if TYPE_CHECKING:
     import sympy
@@ -273,8 +273,8 @@ class Surface(SurfaceValues):
         ((6, 4, 3), ((0.0, 150.0), (0.0, 90.0)))
 
         """
-        from ..spline.grid import points_of_elevations
         from ..spline.missing import without_nodata
+        from ..spline.point_grid import points_of_elevations
 
         checked, domain = "grid" if name is None else text(name, "name"), None
         boundary, assumed = checked_boundary(periodic)
@@ -300,8 +300,8 @@ class Surface(SurfaceValues):
         georeference: Georeference | None = None,
     ) -> Surface:
         """Return the surface of points (m, n, 3), with NaN for missing ones."""
-        from ..spline.grid import spline_of_points
         from ..spline.missing import known_of_grid
+        from ..spline.point_grid import spline_of_points
         from .collapsed import closed_grid
 
         points, boundary = closed_grid(points, boundary, assumed)

@@ -6,11 +6,11 @@ from pathlib import Path
 import gaussmap as gm
 import pytest
 from gaussmap.runtime.samples.fields import COLUMNS, EDGE_NAMES, FLOAT_NAMES, UNITS
-from gaussmap.tools.batch.layout import Settings, create, parts_per_shard
+from gaussmap.tools.batch.arrow_tables import points_schema, points_table
+from gaussmap.tools.batch.folder import Settings, create, parts_per_shard
 from gaussmap.tools.batch.manifest import COLUMNS as MANIFEST
 from gaussmap.tools.batch.manifest import ManifestRow, manifest_schema
 from gaussmap.tools.batch.shards import Shard
-from gaussmap.tools.batch.tables import points_schema, points_table
 
 pytest.importorskip("pyarrow")
 PAGE = (Path(__file__).parents[2] / "docs" / "datasets.md").read_text(encoding="utf-8")

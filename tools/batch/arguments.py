@@ -24,7 +24,7 @@ from ..files.formats import SUFFIXES
 from ..sources.named import Named
 from .asked import Asked
 from .child import Limits
-from .layout import CODECS
+from .folder import CODECS
 
 __all__ = ["CODEC", "SECONDS", "Where", "asked_of", "stored", "where"]
 

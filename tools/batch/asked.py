@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ..files.paths import atomic_path
 from ..sources.named import Named
-from .layout import NORMALS
+from .folder import NORMALS
 
 __all__ = ["Asked", "normals_in"]
 

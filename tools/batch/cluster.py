@@ -22,8 +22,8 @@ from ...runtime.base.errors import FileError, InputError, shown
 from ...runtime.base.extras import from_extra
 from ...runtime.kernels.jit import digest
 from .child import Child, Limits
+from .folder import SETTINGS
 from .inputs import Input
-from .layout import SETTINGS
 from .running import Plan, Tally, run_shard
 
 __all__ = ["connected", "run_on_cluster"]

@@ -15,12 +15,12 @@ from ...runtime.base.errors import InputError, UnknownNameError, shown
 from ...runtime.base.extras import check_extra
 from ...runtime.samples.fields import COLUMNS, UNITS, checked_dtype, dtype_of
 from ..files.paths import PathLike, checked_path
-from .labels import checked_labels
-from .layout import Settings, read_settings
+from .data_files import arrays_in, count_parts, manifest_of, row_of, rows_of_part, stacked
+from .folder import Settings, read_settings
 from .loader import Loader
 from .manifest import COLUMNS as MANIFEST_COLUMNS
 from .manifest import FAILED, ManifestRow
-from .reading import arrays_in, count_parts, manifest_of, row_of, rows_of_part, stacked
+from .part_labels import checked_labels
 
 if TYPE_CHECKING:
     import pyarrow

@@ -18,7 +18,7 @@ from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import CATALOGUE, named
 from ..cad.part import Part
-from ..files.arrays import array_file
+from ..files.numpy_files import array_file
 from ..files.paths import checked_path, reason_of
 from .manifest import as_text
 

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from ...runtime.base.errors import GaussmapWarning, InputError
 from ...runtime.samples.fields import COLUMNS, row_shape
-from .layout import POINTS, shards_in
-from .reading import Opened, arrays_in, opened
+from .data_files import Opened, arrays_in, opened
+from .folder import POINTS, shards_in
 
 __all__ = ["Batch", "Loader"]
 

@@ -11,8 +11,8 @@ from ...runtime.base.extras import check_extra
 from ..files.paths import PathLike, checked_path
 from .arguments import Where
 from .asked import Asked
+from .folder import FILES, Settings, opened, parts_per_shard, remove_files, remove_shards
 from .inputs import Source, in_shards, inputs_of
-from .layout import FILES, Settings, opened, parts_per_shard, remove_files, remove_shards
 from .local import run_locally
 from .running import Plan, Tally
 

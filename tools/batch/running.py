@@ -12,8 +12,8 @@ from typing import Self
 from ...runtime.base.errors import FileError
 from .asked import Asked
 from .child import Answer, Child, Limits
+from .folder import FILES, Settings, read_settings
 from .inputs import Input
-from .layout import FILES, Settings, read_settings
 from .manifest import FAILED, OK, ManifestRow
 from .serving import Task
 from .shards import Shard

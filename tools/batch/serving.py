@@ -111,7 +111,7 @@ def _answers(task: Task) -> Any:  # noqa: ANN401
 def _source(task: Task) -> tuple[Any, str]:
     """Return the part, and what it is known by."""
     from ..cad.part_files import is_part_file
-    from ..files.arrays import array_file
+    from ..files.numpy_files import array_file
     from ..sources.surface_of import surface_of
     from .inputs import content_of
 
@@ -137,8 +137,8 @@ def _sampled(source: Any, task: Task) -> tuple[dict[str, Any], Any]:  # noqa: AN
     from ...runtime.samples.request import ON_GRIDS
     from ..cad.part import Part
     from ..sources.surface_of import with_tolerance
+    from .arrow_tables import points_schema, points_table
     from .asked import normals_in
-    from .tables import points_schema, points_table
 
     arguments = dict(task.asked.arguments)
     part = isinstance(source, Part)

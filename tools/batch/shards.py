@@ -15,11 +15,11 @@ from typing import Any, Self
 from ...runtime.base.errors import FileError
 from ...runtime.base.extras import from_extra
 from ..files.paths import reason_of
-from .layout import MANIFEST, PARTIAL, POINTS, Settings, shard_path, temporary_path
+from .arrow_tables import points_schema
+from .data_files import opened, rows_of_parts
+from .folder import MANIFEST, PARTIAL, POINTS, Settings, shard_path, temporary_path
 from .manifest import ManifestRow, manifest_table, rows_of
 from .partial import PartialFile, batches_in, files_of
-from .reading import opened, rows_of_parts
-from .tables import points_schema
 
 __all__ = ["Shard"]
 

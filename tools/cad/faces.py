@@ -23,9 +23,9 @@ from ...runtime.surface.nurbs import Nurbs
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import CatalogueFunction
 from .nets import SAME_END, curve_of_net, nurbs_of_curve, nurbs_of_net, nurbs_over
-from .offset import Offset
+from .offset_surface import OffsetSurface
 from .records import Geometry
-from .turned import Curve, Line, Turned
+from .turned import Line, ProfileCurve, Turned
 
 __all__ = ["face_surface", "own_parameters"]
 
@@ -195,7 +195,9 @@ def _revolution(geometry: Geometry, domain: Domain) -> Shape:
     curve = nurbs_over(curve_of_net(net), (domain[1], (0.0, 1.0)))
     across = PERIODIC if curve.periodic[0] else OPEN
     placement = AffineMap(frame, origin)
-    return Shape(Turned(Curve(curve)), (around, curve.domain[0]), (ends, across), placement, True)
+    return Shape(
+        Turned(ProfileCurve(curve)), (around, curve.domain[0]), (ends, across), placement, True
+    )
 
 
 def _frame(axis: Array) -> Array:
@@ -227,7 +229,9 @@ def _offset(geometry: Geometry, domain: Domain) -> Shape:
     shape = _shape(basis, domain)
     if shape.placement is not None and shape.placement.reflects:
         distance = -distance
-    return replace(shape, function=Offset(shape.function, distance, shape.domain), collapses=True)
+    return replace(
+        shape, function=OffsetSurface(shape.function, distance, shape.domain), collapses=True
+    )
 
 
 def _moved_numbers(basis: Geometry, distance: float, domain: Domain) -> Array | None:

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from ...runtime.base.errors import SurfaceError
 from ...runtime.samples.whole import Whole
 from ..files.paths import PathLike
-from .layout import geometry_of, packed
 from .methods import Methods
+from .part_arrays import geometry_of, packed
 from .records import Geometry, PartRecord
 from .saving import read_arrays, write_arrays
 
@@ -341,7 +341,7 @@ class Solid:
 
 def part_of(record: PartRecord) -> Part:
     """Return the part of records in memory, without checks."""
-    from .checks import about_of
+    from .checked_arrays import about_of
 
     arrays = packed(record)
     return Part(arrays, about_of(arrays))

@@ -6,7 +6,7 @@ import zipfile
 from pathlib import Path
 
 from ...runtime.base.advice import CAD_SUFFIXES
-from ..files.arrays import array_file
+from ..files.numpy_files import array_file
 from .inspection import HEAD, format_of
 
 __all__ = ["is_part_file"]

@@ -57,8 +57,8 @@ from numpy.typing import NDArray
 from ..files.archives import archive_of
 from ..files.paths import PathLike, atomic_path, checked_path, known_suffix
 from ..files.reading import UnusableError, opened
-from .checks import checked_arrays, dtypes
-from .layout import packed
+from .checked_arrays import checked_arrays, dtypes
+from .part_arrays import packed
 from .records import PartRecord
 
 __all__ = ["read_arrays", "write_arrays", "write_record"]

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ...runtime.surface.derivatives import Differentiable
 from ...runtime.surface.surface import Surface
-from .offset import knots_of
+from .offset_surface import knots_of
 
 __all__ = ["search_cells", "spline_cells"]
 

@@ -14,7 +14,7 @@ from ...runtime.surface.derivatives import Differentiable
 from ...runtime.surface.nurbs import Nurbs
 from ..kernels import faces as kernels
 
-__all__ = ["Curve", "Line", "Profile", "Turned"]
+__all__ = ["Line", "Profile", "ProfileCurve", "Turned"]
 
 Array = NDArray[np.float64]
 
@@ -58,7 +58,7 @@ class Line:
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
+class ProfileCurve:
     """A NURBS curve: the line v = 0 of a surface whose u is the parameter of the curve."""
 
     surface: Nurbs
@@ -72,9 +72,9 @@ class Curve:
         """Return its points and its first and second derivatives (k, 3, 3)."""
         return self.surface.jets(v, np.zeros(len(v)))[:, [0, 1, 3]]
 
-    def restricted(self, interval: Interval) -> Curve:
+    def restricted(self, interval: Interval) -> ProfileCurve:
         """Return a part of it."""
-        return Curve(self.surface.restricted((interval, self.surface.domain[1])))
+        return ProfileCurve(self.surface.restricted((interval, self.surface.domain[1])))
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,7 @@ from ...runtime import directions
 from ...runtime.base.compiling import NOTICE
 from ...runtime.base.errors import InputError
 from ..cad.part import Part
-from ..files.arrays import array_file, is_array_file, read_array
+from ..files.numpy_files import array_file, is_array_file, read_array
 from ..sources.elevations import is_raster_file
 from ..sources.named import Named
 from ..sources.surface_of import surface_of, with_tolerance

@@ -1,12 +1,12 @@
 """Planar curves (paper, Sect. 4.1): fitting, sampling by normals, polygons, support functions."""
 
 from .curve import Curve
+from .curve_samples import CurveReport, CurveSamples
+from .curve_sampling import sample
+from .curve_spline import CurveSpline
+from .curve_support import CurveBranches, SupportFunction
 from .fitting import fit
 from .polygon import polygon_distance
-from .samples import CurveReport, CurveSamples
-from .sampling import sample
-from .spline import CurveSpline
-from .support import CurveBranches, SupportFunction
 
 __all__ = [
     "Curve",

@@ -207,7 +207,7 @@ class Curve:
         (True, (0.0, 4.0))
 
         """
-        from .quasi_interpolant import checked_points, spline_of_points
+        from .curve_quasi_interpolant import checked_points, spline_of_points
 
         text(name, "name")
         is_closed = _yes_or_no(closed, "closed")

@@ -25,7 +25,7 @@ from .paths import (
 from .ply import read_ply, write_mesh_ply, write_ply
 from .reading import opened
 from .tables import write_csv, write_xyz
-from .triangles import write_obj, write_stl
+from .triangle_files import write_obj, write_stl
 from .vtk import write_mesh_vtp, write_vtk, write_vtp, write_vtu
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from ...runtime.domain.domain import Boundary
 from ...runtime.place.newton import evaluate_on_surface
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
-from .filled_lattice import lattice_triangles
+from .filled_grid import grid_triangles
 from .improvement import checked_prefer, flip_edges, improved
 from .mesh import Mesh
 from .triangulated import Triangulated, too_few
@@ -24,7 +24,7 @@ from .vertices import Vertices, before_offset, boundary_of, check_fields
 if TYPE_CHECKING:
     from ...runtime.samples.samples import Samples
 
-__all__ = ["mesh_of", "triangulated", "triangulated_on_lattice"]
+__all__ = ["mesh_of", "triangulated", "triangulated_on_grid"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -40,7 +40,7 @@ def mesh_of(samples: Samples, spline: Spline, angle: float | None, prefer: str) 
         raise InputError("there are no samples, and so there is nothing to make a mesh of.")
     check_fields(samples)
     check_memory("mesh", len(samples))
-    mesh = triangulated_on_lattice(samples, spline)
+    mesh = triangulated_on_grid(samples, spline)
     if mesh is None:
         mesh = triangulated(samples, spline, must_be_whole=angle is None)
     if largest < WHOLE:
@@ -76,13 +76,13 @@ def triangulated(samples: Samples, spline: Spline, must_be_whole: bool = True) -
     return _through(samples, spline, vertices, triangles, sides, adjacent)
 
 
-def triangulated_on_lattice(samples: Samples, spline: Spline) -> Triangulated | None:
+def triangulated_on_grid(samples: Samples, spline: Spline) -> Triangulated | None:
     """Triangulate samples on a graded grid, and flip edges towards the normals.
 
     None if they are on no complete grid, or if some triangles remain folded: too many samples
     are between its lines, or all are too far apart.
     """
-    found = lattice_triangles(samples, spline)
+    found = grid_triangles(samples, spline)
     if found is None:
         return None
     vertices, triangles, adjacent = found

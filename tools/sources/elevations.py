@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ...runtime.base.errors import InputError
 from ...runtime.base.extras import check_extra
 from ...runtime.surface.surface import Surface
-from ..files.arrays import array_file, read_array
+from ..files.numpy_files import array_file, read_array
 from ..terrain.terrain import terrain
 from .named import Named
 

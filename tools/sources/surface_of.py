@@ -13,7 +13,7 @@ from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import CATALOGUE, names, surface
 from ..cad.part import Part
 from ..cad.part_files import is_part_file
-from ..files.arrays import array_file, is_array_file, read_array
+from ..files.numpy_files import array_file, is_array_file, read_array
 from .elevations import OF_TERRAIN, has_place, is_raster_file, read_raster_file, terrain_of_array
 from .named import Named
 from .parts import LIMITS, read_part_file, refuse

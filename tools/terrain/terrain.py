@@ -16,7 +16,7 @@ from ...runtime.base.errors import InputError, in_memory, shown
 from ...runtime.base.georeference import Georeference, Origin, checked_origin
 from ...runtime.domain.domain import Boundary, Domain
 from ...runtime.spline.missing import without_nodata
-from ...runtime.surface.labels import label
+from ...runtime.surface.names import label
 from ...runtime.surface.surface import Surface
 from ..files.paths import checked_path
 from ..files.reference_systems import checked_crs, crs_text, projected, target_crs

@@ -5,10 +5,10 @@ from pathlib import Path
 import gaussmap as gm
 import numpy as np
 from gaussmap.runtime.samples.report import SamplingReport
-from gaussmap.tools.batch.layout import Settings, create
+from gaussmap.tools.batch.arrow_tables import points_table
+from gaussmap.tools.batch.folder import Settings, create
 from gaussmap.tools.batch.manifest import FAILED, ManifestRow
 from gaussmap.tools.batch.shards import Shard
-from gaussmap.tools.batch.tables import points_table
 
 FIELDS = ("points", "normals", "gaussian_curvature", "normal_index", "on_surface", "face_index")
 # Of 13 parts two have no samples, and one has fewer than a batch takes.

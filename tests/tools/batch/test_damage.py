@@ -8,7 +8,7 @@ from typing import Any
 
 import gaussmap as gm
 import pytest
-from gaussmap.tools.batch.layout import MANIFEST, POINTS, Settings, opened, shard_path
+from gaussmap.tools.batch.folder import MANIFEST, POINTS, Settings, opened, shard_path
 from gaussmap.tools.batch.shards import Shard
 
 from . import made

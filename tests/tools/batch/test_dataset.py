@@ -7,7 +7,7 @@ from pathlib import Path
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.batch.layout import MANIFEST, POINTS, shard_path
+from gaussmap.tools.batch.folder import MANIFEST, POINTS, shard_path
 from gaussmap.tools.batch.manifest import COLUMNS as MANIFEST_COLUMNS
 
 from . import made

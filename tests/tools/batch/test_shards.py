@@ -11,7 +11,8 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.samples.report import SamplingReport
-from gaussmap.tools.batch.layout import (
+from gaussmap.tools.batch.arrow_tables import points_table
+from gaussmap.tools.batch.folder import (
     MANIFEST,
     PARTIAL,
     POINTS,
@@ -27,7 +28,6 @@ from gaussmap.tools.batch.layout import (
 from gaussmap.tools.batch.manifest import FAILED, ManifestRow, manifest_table, rows_of
 from gaussmap.tools.batch.partial import batches_in
 from gaussmap.tools.batch.shards import Shard
-from gaussmap.tools.batch.tables import points_table
 
 pytest.importorskip("pyarrow")
 FIELDS = ("points", "normals", "on_surface", "face_index")

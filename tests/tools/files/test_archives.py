@@ -9,7 +9,7 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.files.arrays import read_array
+from gaussmap.tools.files.numpy_files import read_array
 
 
 def npy(array: Any) -> bytes:

@@ -19,7 +19,7 @@ from OCP.TopoDS import TopoDS
 
 from ..records import SHARP, EdgeRecord, FaceRecord
 from ..units import scaled_parameters
-from .p_curves import Curve, curve_of
+from .p_curves import PCurve, curve_of
 from .shapes import Table, parts_of
 from .solids import PlacedFace
 
@@ -92,7 +92,7 @@ class _Side:
 
     def __init__(self, edge: Any, face: Any) -> None:  # noqa: ANN401
         whole = TopoDS.Face(face.Oriented(FORWARD))
-        self.curve: Curve = curve_of(edge, whole)
+        self.curve: PCurve = curve_of(edge, whole)
         self.surface = BRepAdaptor_Surface(whole, False)
         # The normal of a plane is the same everywhere.
         self.is_plane = self.surface.GetType() == PLANE

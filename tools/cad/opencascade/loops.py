@@ -13,7 +13,7 @@ from OCP.TopAbs import TopAbs_Orientation, TopAbs_ShapeEnum
 from OCP.TopoDS import TopoDS
 
 from .curves import UnusableError
-from .p_curves import Curve, curve_of
+from .p_curves import PCurve, curve_of
 from .shapes import parts_of
 
 __all__ = ["loops_of"]
@@ -58,7 +58,7 @@ def loops_of(face: Any) -> list[Array]:  # noqa: ANN401
     return loops
 
 
-def _polygons(wires: list[list[Curve]], size: Array, tolerance: float) -> list[Array]:
+def _polygons(wires: list[list[PCurve]], size: Array, tolerance: float) -> list[Array]:
     polygons = []
     for curves in wires:
         lines = [x.polyline(tolerance * size) for x in curves]
@@ -84,7 +84,7 @@ def _mean_width(loops: list[Array], size: Array) -> float:
     return abs(area) / length if length else 0.0
 
 
-def _curves_of(wire: Any, face: Any) -> list[Curve]:  # noqa: ANN401
+def _curves_of(wire: Any, face: Any) -> list[PCurve]:  # noqa: ANN401
     """Return the p-curves of a wire, one after another."""
     explorer, edges = BRepTools_WireExplorer(wire, face), []
     while explorer.More():
@@ -97,7 +97,7 @@ def _curves_of(wire: Any, face: Any) -> list[Curve]:  # noqa: ANN401
     return _chained([curve_of(TopoDS.Edge(x), face) for x in every])
 
 
-def _chained(curves: list[Curve]) -> list[Curve]:
+def _chained(curves: list[PCurve]) -> list[PCurve]:
     """Return curves in an order in which each begins close to where the one before ends."""
     ends = [x.evaluate(np.array(x.ends))[:, :2] for x in curves]
     ends = [x[::-1] if curve.reversed else x for x, curve in zip(ends, curves, strict=True)]

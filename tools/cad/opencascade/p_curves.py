@@ -20,7 +20,7 @@ from OCP.TopAbs import TopAbs_Orientation
 
 from .polylines import one_sided
 
-__all__ = ["Curve", "curve_of"]
+__all__ = ["PCurve", "curve_of"]
 
 Array = NDArray[np.float64]
 
@@ -30,7 +30,7 @@ FIRST_PIECES, PIECES_A_SPAN, MOST_PIECES = 4, 2, 256
 
 
 @dataclass(frozen=True)
-class Curve:
+class PCurve:
     """A p-curve: points and derivatives (k, 4) at parameters, and its direction in the wire.
 
     `ends` are its ends and the parameters between them where it may have corners; `pieces` is the
@@ -65,22 +65,22 @@ class Curve:
         return int(min(max((self.ends[-1] - self.ends[0]) / angle + 1.0, self.pieces), MOST_PIECES))
 
 
-def curve_of(edge: Any, face: Any) -> Curve:  # noqa: ANN401
+def curve_of(edge: Any, face: Any) -> PCurve:  # noqa: ANN401
     """Return the curve of an oriented edge on a face that is forward."""
     curve = _adaptor(edge, face)
     backwards = edge.Orientation() == TopAbs_Orientation.TopAbs_REVERSED
     ends = float(curve.FirstParameter()), float(curve.LastParameter())
     kind = curve.GetType()
     if kind == Kinds.GeomAbs_Line:
-        return Curve(_any(curve), ends, 0, backwards)
+        return PCurve(_any(curve), ends, 0, backwards)
     if kind == Kinds.GeomAbs_Circle:
         circle = curve.Circle()
-        return Curve(_circle(circle), ends, FIRST_PIECES, backwards, float(circle.Radius()))
+        return PCurve(_circle(circle), ends, FIRST_PIECES, backwards, float(circle.Radius()))
     if kind == Kinds.GeomAbs_BSplineCurve:
         corners, spans = _corners(curve.BSpline(), ends)
         pieces = max(FIRST_PIECES, PIECES_A_SPAN * spans // (len(corners) - 1))
-        return Curve(_any(curve), corners, pieces, backwards)
-    return Curve(_any(curve), ends, FIRST_PIECES, backwards)
+        return PCurve(_any(curve), corners, pieces, backwards)
+    return PCurve(_any(curve), ends, FIRST_PIECES, backwards)
 
 
 def _adaptor(edge: Any, face: Any) -> Any:  # noqa: ANN401

@@ -10,7 +10,7 @@ from ..base.checks import positive_number
 from ..base.errors import InputError
 from ..base.tolerances import DATA_ERROR
 from ..spline.spline import Spline
-from .misfit import Comparison, Misfit
+from .comparison import Comparison, Misfit
 
 __all__ = ["FAR_OFF", "Bounds", "Goal", "Tolerance", "checked_tolerance", "refined"]
 

@@ -14,9 +14,9 @@ from ...runtime.base.errors import InputError
 from ...runtime.directions.unit import as_normals
 from ..support.operations import pairs
 from .curve import Curve
+from .curve_sampling import filled, find
+from .curve_spline import CurveSpline
 from .fitting import fit
-from .sampling import filled, find
-from .spline import CurveSpline
 
 __all__ = ["CurveBranches", "SupportFunction"]
 
@@ -203,7 +203,7 @@ class SupportFunction(ABC):
         array([[0.  , 0.75]])
 
         """
-        return Offset(self, finite_number(distance, "distance"))
+        return OffsetCurve(self, finite_number(distance, "distance"))
 
     def translated(self, shift: ArrayLike) -> SupportFunction:
         """Return h + n·t: the curve of the points x + t.
@@ -351,7 +351,7 @@ class Sum(SupportFunction):
 
 
 @dataclass(frozen=True, eq=False)
-class Offset(SupportFunction):
+class OffsetCurve(SupportFunction):
     """h + d, the convolution with a circle of the radius d round the origin."""
 
     of: SupportFunction

@@ -18,7 +18,7 @@ from ...runtime.samples.fields import (
 
 if TYPE_CHECKING:  # which bring Numba; reading a data set does without
     from ...runtime.samples.samples import Samples
-    from .layout import Settings
+    from .folder import Settings
 
 __all__ = ["ALWAYS", "points_schema", "points_table"]
 

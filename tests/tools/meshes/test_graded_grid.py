@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from gaussmap.runtime.samples.report import SamplingReport
 from gaussmap.tools.meshes import triangulation
-from gaussmap.tools.meshes.lattice import Lattice
-from gaussmap.tools.meshes.meshing import triangulated_on_lattice
+from gaussmap.tools.meshes.graded_grid import GradedGrid
+from gaussmap.tools.meshes.meshing import triangulated_on_grid
 from gaussmap.tools.meshes.triangulation import neighbours
 
 from .test_meshing import NO_AREA, PREFER, TURN, components, is_one_fan_at_each_vertex, latitude
@@ -111,7 +111,7 @@ class TestTopology:
     def test_a_grid_makes_the_whole_surface(self, name, prefer, monkeypatch):
         monkeypatch.setattr(triangulation, "triangulations", no_qhull)
         samples = on_grid(name, (14, 11))
-        assert Lattice.of(samples, samples.spline) is not None
+        assert GradedGrid.of(samples, samples.spline) is not None
         mesh = samples.mesh(prefer=prefer)
         check(name, mesh)
         used = mesh.sample_index[mesh.sample_index >= 0]
@@ -134,7 +134,7 @@ class TestTopology:
         samples = on_grid(name, (14, 11), between)
         mesh = samples.mesh(prefer=prefer)
         check(name, mesh)
-        assert triangulated_on_lattice(samples, samples.spline) is not None
+        assert triangulated_on_grid(samples, samples.spline) is not None
         used = set(mesh.sample_index.tolist()) - {-1}
         # Of three in a line, as on a cone, one may be left out.
         assert len(set(range(len(grid))) - used - {40, 41}) <= (name == "cone")
@@ -143,7 +143,7 @@ class TestTopology:
     def test_it_covers_the_parameters_once(self):
         rng = np.random.default_rng(5)
         samples = on_grid("graph", (12, 15), rng.uniform(0.0, 1.0, (40, 2)))
-        start = triangulated_on_lattice(samples, samples.spline)
+        start = triangulated_on_grid(samples, samples.spline)
         assert start is not None
         a, b, c = np.moveaxis(start.uv[start.triangles], 1, 0)
         areas = np.linalg.det(np.stack([b - a, c - a], axis=1)) / 2
@@ -154,7 +154,7 @@ class TestTopology:
     def test_neighbours_are_those_of_the_triangles(self, name):
         rng = np.random.default_rng(6)
         samples = on_grid(name, (24, 20), rng.uniform(0.0, 1.0, (40, 2)))
-        start = triangulated_on_lattice(samples, samples.spline)
+        start = triangulated_on_grid(samples, samples.spline)
         assert start is not None
         fresh, is_whole = neighbours(start.triangles, np.ones(len(start.points), dtype=bool))
         assert is_whole
@@ -175,12 +175,12 @@ class TestTopology:
     def test_too_few_lines_are_no_lattice(self):
         for lines in ((2, 9), (9, 2)):
             samples = on_grid("torus", lines)
-            assert Lattice.of(samples, samples.spline) is None
+            assert GradedGrid.of(samples, samples.spline) is None
 
     def test_grids_of_one_line(self):
         for name, lines in (("ellipsoid", (5, 1)), ("graph", (1, 1)), ("graph", (1, 6))):
             samples = on_grid(name, lines)
-            assert Lattice.of(samples, samples.spline) is not None
+            assert GradedGrid.of(samples, samples.spline) is not None
             mesh = samples.mesh()
             assert mesh.euler_characteristic == surfaces[name][1]
 
@@ -190,7 +190,7 @@ class TestOtherSamples:
         samples = on_grid("graph", (12, 9))
         order = np.random.default_rng(1).permutation(len(samples))
         first, second = samples.mesh(), samples[order].mesh()
-        assert Lattice.of(samples[order], samples.spline) is not None
+        assert GradedGrid.of(samples[order], samples.spline) is not None
         at = [
             {tuple(sorted(map(tuple, x))) for x in mesh.vertices[mesh.triangles].tolist()}
             for mesh in (first, second)
@@ -212,7 +212,7 @@ class TestOtherSamples:
             gm.Samples.concatenate([samples, samples]), changed(samples, row=None),
         ]  # fmt: skip
         for other in others:
-            assert Lattice.of(other, samples.spline) is None
+            assert GradedGrid.of(other, samples.spline) is None
         for other in others[1:3]:
             assert other.mesh().euler_characteristic == surfaces[name][1]
 
@@ -221,22 +221,22 @@ class TestOtherSamples:
         """A few samples at random between few lines: then Qhull triangulates them."""
         rng = np.random.default_rng(6)
         samples = on_grid("torus", (12, 15), rng.uniform(0.0, 1.0, (40, 2)))
-        assert Lattice.of(samples, samples.spline) is not None
-        assert triangulated_on_lattice(samples, samples.spline) is None
+        assert GradedGrid.of(samples, samples.spline) is not None
+        assert triangulated_on_grid(samples, samples.spline) is None
         check("torus", samples.mesh())
 
     @compiled
     def test_too_many_between_the_lines(self):
         rng = np.random.default_rng(2)
         samples = on_grid("graph", (6, 6), rng.uniform(0.0, 1.0, (40, 2)))
-        assert Lattice.of(samples, samples.spline) is None
+        assert GradedGrid.of(samples, samples.spline) is None
         assert samples.mesh().euler_characteristic == 1
 
     def test_one_sided_and_trimmed_surfaces_are_no_lattice(self):
         band = gm.surfaces.moebius_band()
         spline = gm.fit(band, cells=(16, 16))
         samples = on_grid("graph", (12, 9))
-        assert Lattice.of(changed(samples, uv=spline.frame[:2] + samples.uv**2), spline) is None
+        assert GradedGrid.of(changed(samples, uv=spline.frame[:2] + samples.uv**2), spline) is None
 
     def test_float32_and_files(self, tmp_path):
         samples = on_grid("torus", (12, 9))
@@ -246,7 +246,7 @@ class TestOtherSamples:
         for kind in (np.float64, np.float32):
             typed = {x: y.astype(kind) if y.dtype.kind == "f" else y for x, y in arrays.items()}
             again = gm.Samples(**typed, report=samples.report)
-            assert Lattice.of(again, samples.spline) is not None
+            assert GradedGrid.of(again, samples.spline) is not None
             check("torus", again.mesh(samples.spline))
 
 
@@ -265,7 +265,7 @@ class TestAligned:
     def test_samples_of_that_density(self, name, prefer):
         samples = gm.sample(surfaces[name][0](), count=700, density="aligned", cells=(16, 16))
         assert samples.spline is not None
-        assert triangulated_on_lattice(samples, samples.spline) is not None
+        assert triangulated_on_grid(samples, samples.spline) is not None
         check(name, samples.mesh(prefer=prefer))
 
     @pytest.mark.parametrize(
@@ -307,7 +307,7 @@ class TestAligned:
             assert samples.column is not None
             samples = samples[samples.column % 5 != 3]
         assert samples.spline is not None
-        assert Lattice.of(samples, samples.spline) is None
+        assert GradedGrid.of(samples, samples.spline) is None
         check_nodes(samples)
 
     def test_too_small_for_a_grid(self):

@@ -1,4 +1,4 @@
-"""Offset surfaces: the points at a distance from another surface, along its normals.
+"""OffsetSurface surfaces: the points at a distance from another surface, along its normals.
 
 Points and first derivatives follow from the 2-jet of the other surface. Second derivatives need
 its third ones, too. These are numerical: differences of its second derivatives at nine places of
@@ -21,9 +21,9 @@ from ...runtime.surface.derivatives import Differentiable, nodes_between, shifts
 from ...runtime.surface.moved import Moved
 from ...runtime.surface.nurbs import Nurbs
 from ..kernels import faces as kernels
-from .turned import Curve, Turned
+from .turned import ProfileCurve, Turned
 
-__all__ = ["Offset", "knots_of"]
+__all__ = ["OffsetSurface", "knots_of"]
 
 Array = NDArray[np.float64]
 
@@ -36,7 +36,7 @@ BESIDE = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
-class Offset(Differentiable):
+class OffsetSurface(Differentiable):
     """The points x + distance n of a surface x(u,v) with unit normals n along x_u × x_v."""
 
     basis: Differentiable
@@ -64,7 +64,7 @@ class Offset(Differentiable):
         """The values of u, and those of v, where the other surface is not smooth."""
         return self.basis.creases if isinstance(self.basis, Creased) else ((), ())
 
-    def restricted(self, domain: Domain) -> Offset:
+    def restricted(self, domain: Domain) -> OffsetSurface:
         """Return a part of the surface, evaluated from inside where it is not smooth."""
         part = self.basis.restricted(domain) if isinstance(self.basis, Creased) else self.basis
         return replace(self, basis=part, domain=domain)
@@ -115,6 +115,6 @@ def knots_of(function: Differentiable, axis: int) -> Array:
         function = cast(Differentiable, function.surface.function)
     if isinstance(function, Nurbs):
         return function.knots[axis]
-    if isinstance(function, Turned) and isinstance(function.profile, Curve) and axis == 1:
+    if isinstance(function, Turned) and isinstance(function.profile, ProfileCurve) and axis == 1:
         return function.profile.surface.knots[0]
-    return knots_of(function.basis, axis) if isinstance(function, Offset) else np.empty(0)
+    return knots_of(function.basis, axis) if isinstance(function, OffsetSurface) else np.empty(0)

@@ -11,7 +11,7 @@ from ...runtime.base.errors import InputError
 from ...runtime.base.formula_calls import python_function
 from ...runtime.domain.domain import Interval
 from ...runtime.spline.quasi_interpolant import not_too_large
-from .spline import CurveSpline
+from .curve_spline import CurveSpline
 
 __all__ = ["checked_points", "spline_of_points", "spline_of_values"]
 

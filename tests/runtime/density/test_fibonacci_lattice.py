@@ -3,7 +3,7 @@
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.density.lattice import Lattice
+from gaussmap.runtime.density.fibonacci_lattice import Lattice
 
 ULP = 2.0**-52
 OPEN_NAMES = ["elliptic_paraboloid", "wavy_graph", "monkey_saddle", "hyperbolic_paraboloid"]

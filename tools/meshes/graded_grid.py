@@ -19,7 +19,7 @@ from .vertices import ON_BORDER, Vertices, boundary_of
 if TYPE_CHECKING:
     from ...runtime.samples.samples import Samples
 
-__all__ = ["Lattice", "Lines"]
+__all__ = ["GradedGrid", "Lines"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -96,7 +96,7 @@ class Lines:
 
 
 @dataclass(frozen=True, eq=False)
-class Lattice:
+class GradedGrid:
     """Samples at the nodes of lines of x and y, and nodes that are added at ends.
 
     `nodes` (lines of y, lines of x) are numbers of vertices: the first ones are the samples.
@@ -113,7 +113,7 @@ class Lattice:
     is_swapped: bool
 
     @classmethod
-    def of(cls, samples: Samples, spline: Spline) -> Lattice | None:
+    def of(cls, samples: Samples, spline: Spline) -> GradedGrid | None:
         """Return the lattice of samples.
 
         None unless they are on a complete grid, but for some in between, and the surface is neither
@@ -139,7 +139,7 @@ class Lattice:
     @classmethod
     def _between(
         cls, x: Lines, y: Lines, numbers: Indices, positions: Array, is_swapped: bool
-    ) -> Lattice:
+    ) -> GradedGrid:
         """Add the nodes at ends."""
         count = len(positions)
         nodes = np.pad(numbers, (y.added, x.added), constant_values=-1)

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from ...runtime.base.errors import FileError
 from ...runtime.base.extras import from_extra
 from ...runtime.samples.fields import COLUMNS, row_shape
-from .layout import MANIFEST, POINTS, Settings, shard_path, shards_in
+from .arrow_tables import points_schema
+from .folder import MANIFEST, POINTS, Settings, shard_path, shards_in
 from .manifest import ManifestRow, manifest_schema, rows_of
-from .tables import points_schema
 
 __all__ = [
     "Opened",

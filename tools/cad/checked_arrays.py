@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..files.reading import UnusableError
-from .layout import FORMAT, VERSION
+from .part_arrays import FORMAT, VERSION
 from .records import KINDS
 
 __all__ = ["about_of", "checked_arrays", "dtypes"]

@@ -27,9 +27,9 @@ from ...runtime.directions.circle import arc_of_normals, circle
 from ...runtime.directions.unit import as_normals
 from ..kernels import curve as kernels
 from .curve import Curve
+from .curve_samples import CurveReport, CurveSamples
+from .curve_spline import CurveSpline, angles_of
 from .fitting import fit
-from .samples import CurveReport, CurveSamples
-from .spline import CurveSpline, angles_of
 
 __all__ = ["filled", "find", "sample"]
 
