@@ -16,7 +16,7 @@ from ...generated.jet import at_jet, at_pole, polar_chart
 from ...generated.jet import newton as newton_of_jet
 from ...generated.patch import tangents
 from ...generated.vectors import Patch, Vector
-from ..base.tolerances import VANISHING
+from ..base.tolerances import NORMAL_ERROR, VANISHING
 from .jit import inline, jit
 from .vectors import dot, row_vector, set_jet, set_row
 
@@ -147,9 +147,12 @@ def is_regular(patch, L, K):
 
 @inline
 def store(target, row, patch, u, v, size):
-    """Write the sample at (u, v) away, unless it is singular or K has the wrong sign."""
+    """Write the sample at (u, v) away, unless it is singular or K has the wrong sign.
+
+    At parabolic points K is as small as the error of the normal makes it, and has any sign.
+    """
     L, _, K, H = at_jet(patch)
-    if target.signs[row] * K >= 0.0 and is_regular(patch, L, K):
+    if target.signs[row] * K >= -NORMAL_ERROR * 4.0 * H * H and is_regular(patch, L, K):
         unit = 1.0 / size
         target.uv[row, 0] = u
         target.uv[row, 1] = v

