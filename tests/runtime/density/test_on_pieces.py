@@ -45,6 +45,16 @@ def roof(factor=1.0):
     return gm.Surface.from_nurbs((1, 1), ([0, 0, 1, 1], [0, 0, 1, 3, 3]), points, name="roof")
 
 
+def arcs(small, large, height):
+    """Two quarters of cylinders, parallel to z, that meet at a right angle."""
+    quarter = np.array([(0.0, 1.0), (1.0, 1.0), (1.0, 0.0)])
+    profile = np.concatenate([small * quarter, [small, 0.0] + large * quarter[1:] - [0.0, large]])
+    points = np.array([[(*x, z) for x in profile] for z in (0.0, height)])
+    weights = [[1.0, ROOT, 1.0, ROOT, 1.0]] * 2
+    knots = [0, 0, 1, 1], [0, 0, 0, 1, 1, 2, 2, 2]
+    return gm.Surface.from_nurbs((1, 2), knots, points, weights, name="arcs")
+
+
 def report_of(samples) -> Any:
     return samples.report
 
@@ -103,6 +113,27 @@ def test_flat_pieces_share_a_count_by_their_areas(factor):
     for density in ("balanced", "uniform", 2.0):
         samples = gm.sample(roof(factor), 300, density=density, cells=CELLS)
         assert piece_of(samples, 1.0).sum() == 200
+
+
+@pytest.mark.parametrize("factor", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("density", ["uniform", "balanced", 1.5])
+def test_pieces_of_other_sizes_share_a_count_by_the_target_density(density, factor):
+    """Cylinders of radius r: the areas go as r, and the integrals of κ² as 1/r.
+
+    λ is half the mean of κ², and more than 1/r² on the large one.
+    """
+    small, large = 0.1, 4.0
+    surface = arcs(factor * small, factor * large, factor * 0.2)
+    assert len(surface.pieces()) == 2
+    scales = [gm.fit(x, (4, 12)).scale for x in surface.pieces()]
+    assert scales[0] > 4.0 * scales[1]
+    samples = gm.sample(surface, 600, density=density, cells=CELLS)
+    needs = np.array([small, large])
+    if density == "balanced":
+        floor = 0.5 * (1.0 / small + 1.0 / large) / (small + large)
+        needs = np.array([1.0 / small, floor * large])
+    counts = np.bincount(piece_of(samples, 1.0), minlength=2)
+    assert np.abs(counts - 600 * needs / needs.sum()).max() <= 2
 
 
 def test_an_angle_holds_on_all_pieces():
