@@ -15,8 +15,6 @@ __all__ = ["coverage", "coverage_by"]
 
 # The search ends when the bound is within this factor of the largest distance found.
 TIGHT = 1.1
-# Samples are searched within this multiple of their mean spacing first.
-SPACINGS = 2.0
 MOST_CUTS = 40
 
 
@@ -39,7 +37,7 @@ def coverage_by(
     if len(points) == 0:
         return math.inf
     samples = np.column_stack([points, np.zeros_like(points)])
-    radius = SPACINGS * math.sqrt(area / len(points)) or 1.0
+    radius = math.sqrt(area / len(points)) or 1.0  # within which samples are searched first
     largest = found = 0.0
     for _ in range(MOST_CUTS):
         distances = _distances(triangles, samples, radius)

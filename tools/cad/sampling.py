@@ -41,8 +41,8 @@ FLOOR = 3.0
 # The part of a count that goes where normals are farthest from those of all samples.
 FOR_NORMALS = 0.05
 # The chord between the normals of candidates for these samples, relative to that which their number
-# leaves on a sphere; they are searched from the widest angle on.
-NORMALS_APART, WIDEST_ANGLE = 0.2, 60.0
+# leaves on a sphere.
+NORMALS_APART = 0.2
 # About the number of candidates for them, at most, beside as many as there are samples.
 CANDIDATES = 200_000
 # Decimal places to which normals of samples differ.
@@ -233,9 +233,9 @@ def _fill_normals(cover: PartCover, number: int) -> None:
     chord = NORMALS_APART * spacing(max(cover.count + number, 1) / (4 * math.pi))
     most = CANDIDATES + cover.count
     cells = cover.sizing.cut_by_normals(max(chord, math.radians(0.5)), most)
-    widest = 2.0 * math.sin(math.radians(WIDEST_ANGLE) / 2.0)
     known = np.unique(cover.points[:, 3:].round(DIGITS), axis=0)
-    chosen = choose_apart(cells.rows[:, 3:6], chord, cover.sizing.threads, widest, number, known)
+    opposite = 2.0  # the largest chord between normals
+    chosen = choose_apart(cells.rows[:, 3:6], chord, cover.sizing.threads, opposite, number, known)
     cover.put(cells[chosen])
 
 

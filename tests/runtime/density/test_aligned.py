@@ -123,6 +123,31 @@ def test_angles_and_coverages_are_kept(asked: dict[str, Any]):
 
 
 @pytest.mark.compiled
+def test_gaps_for_an_angle_are_as_wide_as_documented():
+    """On a cylinder no point is farther from a sample than r/κ, where r is twice the angle.
+
+    Lines are whole numbers of steps, two of ten along v: gaps are narrower by 20 % at most.
+    """
+    cylinder = gm.surfaces.cylinder(radius=0.5, height=2.0)
+    samples = gm.sample(cylinder, angle=12.0, density="aligned", cells=CELLS)
+    assert samples.row is not None
+    farthest = 0.5 * 2.0 * np.radians(12.0)
+    assert 0.8 * farthest < samples.coverage() <= farthest
+
+
+@pytest.mark.compiled
+def test_gaps_for_a_count_are_as_wide_as_those_of_usual_samples():
+    """On a cylinder, n of these are no closer than √(area / n), and nothing is farther.
+
+    Where the grid has 13 lines, half a step more or less are 4 %; it has no samples at the ends.
+    """
+    cylinder = gm.surfaces.cylinder(radius=0.5, height=2.0)
+    samples = gm.sample(cylinder, 1000, density="aligned", cells=CELLS)
+    assert samples.row is not None
+    assert 0.9 < samples.coverage() / np.sqrt(2.0 * np.pi / 1000) < 1.25
+
+
+@pytest.mark.compiled
 def test_a_count_beside_a_coverage():
     samples = gm.sample("torus", 900, coverage=0.15, density="aligned", cells=CELLS)
     assert len(samples) == 900

@@ -3,6 +3,7 @@
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.runtime.density import cover
 from gaussmap.runtime.density.cover import Cover
 from gaussmap.runtime.density.sizing import uniform
 
@@ -21,3 +22,19 @@ def test_what_is_filled_up_is_far_from_all_samples(name):
     for k in range(before, cover.count):
         same = normals[:k] @ normals[k] >= 0.0
         assert np.linalg.norm(points[:k][same] - points[k], axis=1).min() > cover.radius
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("density", ["uniform", "isotropic"])
+@pytest.mark.parametrize("name", ["torus", "catenoid", "wavy_graph"])
+def test_candidates_for_a_count_are_evaluated_once(name, density, monkeypatch):
+    """The radius that a count leaves is known well enough before."""
+    taken, cut = [], cover.cut_patches
+
+    def recorded(*arguments):
+        taken.append(cut(*arguments))
+        return taken[-1]
+
+    monkeypatch.setattr(cover, "cut_patches", recorded)
+    gm.sample(gm.fit(name, (32, 32)), 600, density=density)
+    assert len(taken) == 1

@@ -240,6 +240,18 @@ def test_more_than_the_size_of_a_surface_asks_for_a_few_samples(coverage):
     assert len(gm.sample(spline, count=50, coverage=coverage)) == 50
 
 
+@pytest.mark.compiled
+@pytest.mark.parametrize(("name", "area"), [("sphere", 4.0 * math.pi), ("torus", 1.4 * math.pi**2)])
+def test_a_coverage_takes_few_samples(name, area):
+    """1.9 times as many as a hexagonal lattice with this covering radius has.
+
+    It is 2.2 times if the smallest triangles around uncovered points are twice as large.
+    """
+    samples = gm.sample(gm.fit(name, (16, 16)), coverage=0.05, density="uniform")
+    lattice = 2.0 * area / (3.0 * math.sqrt(3.0) * 0.05**2)
+    assert len(samples) < 2.05 * lattice
+
+
 # --- relaxing -------------------------------------------------------------------------------------
 
 

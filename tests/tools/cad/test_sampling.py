@@ -13,6 +13,7 @@ from gaussmap.tools.cad.cells import BEND_U
 from gaussmap.tools.cad.part import Part
 from gaussmap.tools.cad.records import FaceRecord, Geometry, Net
 from gaussmap.tools.cad.results import space_of
+from gaussmap.tools.cad.space import Space
 from scipy.spatial import cKDTree
 
 
@@ -321,6 +322,34 @@ def test_five_percent_of_a_count_go_where_normals_are_missing(parts, monkeypatch
     samples = gm.sample(parts.all_kinds(), 300)
     assert numbers == [15]
     assert samples.normal_deviation().normal_space < 6.5
+
+
+def test_every_face_has_a_sample_if_there_are_twice_as_many(made):
+    """Nine faces of one square, between lines of which two are close together."""
+    ends = (0.0, 1.0), (1.0, 1.001), (1.001, 2.0)
+    faces = [
+        made.face("plane", made.placement(), u, v, (u[1] - u[0]) * (v[1] - v[0]))
+        for u in ends
+        for v in ends
+    ]
+    part = made.part(faces, "nine")
+    assert gm.sample(part, 17).report.empty_faces > 0
+    assert gm.sample(part, 18).report.empty_faces == 0
+
+
+def test_candidates_for_missing_normals_are_dense_and_few(parts, monkeypatch):
+    """With normals twice as far apart, 2.5° are left; twice as near, there are 7 a sample."""
+    part, numbers, cut = parts.all_kinds(), [], Space.cut_by_normals
+
+    def recorded(*arguments):
+        cells = cut(*arguments)
+        numbers.append(len(cells))
+        return cells
+
+    monkeypatch.setattr(Space, "cut_by_normals", recorded)
+    gm.sample(part, 300)
+    assert numbers.pop() < 4 * 300
+    assert gm.sample(part, 3000).normal_deviation().normal_space < 2.25
 
 
 def test_flat_faces_get_their_share(parts):
