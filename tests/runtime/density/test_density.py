@@ -309,6 +309,26 @@ def test_a_surface_without_curvature_is_covered_evenly_by_any_power():
 
 
 @pytest.mark.compiled
+@pytest.mark.parametrize("alpha", [0.5, 1.0, 4.0])
+def test_gaps_of_a_power_are_bounded_where_the_surface_is_flat(alpha):
+    """A dent in a strip that is 120,000 times as long as it is wide.
+
+    On average, n samples in an area A cover it within r = √(0.6 A/n). In the strip neighbours are
+    between 1 and 2 times 1,000 r apart: 7 to 14 samples.
+    """
+    length, count = 0.2 * math.sinh(14.0), 1000
+
+    def dented(u, v):
+        x = 0.1 * np.sinh(14.0 * u)
+        return np.stack([x, v + 0.0 * x, 0.3 * np.exp(-4.0 * (x * x + v * v))], axis=-1)
+
+    surface = gm.Surface.from_callable(dented, ((-1.0, 1.0), (-0.5, 0.5)))
+    samples = gm.sample(surface, count, density=alpha, cells=(160, 16))
+    most = length / (1000.0 * math.sqrt(0.6 * length / count))
+    assert most / 2.0 < (np.abs(samples.points[:, 0]) > 5.0).sum() < most
+
+
+@pytest.mark.compiled
 def test_nothing_warns_of_what_is_covered():
     for name in ("plane", "cylinder", "cone"):
         samples = gm.sample(gm.surfaces.surface(name), count=60, cells=(12, 12))
