@@ -11,10 +11,9 @@ from numpy.typing import DTypeLike, NDArray
 
 from ...runtime.base.checks import finite_array
 from ...runtime.base.errors import MissingFieldError, SurfaceError
-from ...runtime.base.threads import thread_count
 from ...runtime.base.trees import tree_of
 from ...runtime.density.coverage import coverage_by
-from ...runtime.density.deviation import FEWEST, PLACES, NormalDeviation
+from ...runtime.density.deviation import NormalDeviation, angle_by, deviation_by, places_for
 from ...runtime.kernels.refine import evaluate_jets
 from ...runtime.kernels.sizing import TargetDensity
 from ...runtime.samples.fields import dtype_of
@@ -108,36 +107,20 @@ def deviation_of(
     part: Part, points: NDArray[np.floating], normals: NDArray[np.floating], threads: int | None
 ) -> NormalDeviation:
     """Return what `Samples.normal_deviation` returns, for points and normals (N, 3)."""
-    if len(points) == 0:
-        return NormalDeviation(180.0, 180.0)
     normals, space = finite_array(normals, (len(points), 3), "normals"), space_of(part, threads)
-    tree, workers = tree_of(space.scaled_points(points)), thread_count(threads)
-    rows = _places(space, len(points))
-    nearest = tree.query(rows[:, :3], workers=workers)[1]
-    chords = np.linalg.norm(rows[:, 3:6] - normals[nearest], axis=1)
-    return NormalDeviation(_to_nearest(space, normals, rows), _degrees(chords))
+    return deviation_by(_places(space, len(points)), space.scaled_points(points), normals, threads)
 
 
 def reached_angle(space: Space, normals: Array) -> float:
     """Return the largest angle that is found from a normal of the part to the nearest of (N, 3)."""
-    return _to_nearest(space, normals, _places(space, len(normals))) if len(normals) else 180.0
+    if len(normals) == 0:
+        return 180.0
+    return angle_by(_places(space, len(normals)), normals, space.threads)
 
 
-def _places(space: Space, samples: int) -> Array:
-    """Return rows of the places at which normals are compared with those of samples."""
-    number = max(PLACES * samples, FEWEST)
-    rows = space.uniform.cut(math.sqrt(space.area / number)).rows
-    return rows[rows[:, 3:6].any(axis=1)]
-
-
-def _to_nearest(space: Space, normals: Array, rows: Array) -> float:
-    distinct = np.unique(normals.round(9), axis=0)
-    return _degrees(tree_of(distinct).query(rows[:, 3:6], workers=thread_count(space.threads))[0])
-
-
-def _degrees(chords: Array) -> float:
-    """Return the angle, in degrees, of the largest of chords."""
-    return math.degrees(2.0 * math.asin(min(float(chords.max(initial=0.0)), 2.0) / 2.0))
+def _places(space: Space, samples: int) -> Any:  # noqa: ANN401 - cells, as triangles
+    """Return cells at whose places normals are compared with those of samples first."""
+    return space.uniform.cut(math.sqrt(space.area / places_for(samples)))
 
 
 def weights_of(part: Part, samples: Samples) -> Array:

@@ -14,7 +14,7 @@ from gaussmap.tools.cad.part import Part
 from gaussmap.tools.cad.records import FaceRecord, Geometry, Net
 from gaussmap.tools.cad.results import space_of
 from gaussmap.tools.cad.space import Space
-from scipy.spatial import cKDTree
+from scipy.spatial import ConvexHull, cKDTree
 
 
 @pytest.fixture(scope="module")
@@ -338,7 +338,7 @@ def test_every_face_has_a_sample_if_there_are_twice_as_many(made):
 
 
 def test_candidates_for_missing_normals_are_dense_and_few(parts, monkeypatch):
-    """With normals twice as far apart, 2.5° are left; twice as near, there are 7 a sample."""
+    """With normals twice as far apart, 2.6° are left; twice as near, there are 7 a sample."""
     part, numbers, cut = parts.all_kinds(), [], Space.cut_by_normals
 
     def recorded(*arguments):
@@ -349,7 +349,18 @@ def test_candidates_for_missing_normals_are_dense_and_few(parts, monkeypatch):
     monkeypatch.setattr(Space, "cut_by_normals", recorded)
     gm.sample(part, 300)
     assert numbers.pop() < 4 * 300
-    assert gm.sample(part, 3000).normal_deviation().normal_space < 2.25
+    assert gm.sample(part, 3000).normal_deviation().normal_space < 2.3
+
+
+@pytest.mark.parametrize("count", [300, 1000])
+def test_the_widest_angle_on_a_sphere_is_found(made, count):
+    """It is that of the largest empty circle: around a face of the convex hull of the samples."""
+    ends = (0.0, made.TURN), (-np.pi / 2, np.pi / 2)
+    ball = made.face("sphere", [*made.placement(), 1.0], *ends, 4 * np.pi, (made.TURN, 0.0))
+    samples = gm.sample(made.part([ball]), count, density="uniform")
+    expected = np.degrees(np.arccos(-ConvexHull(samples.points).equations[:, 3].max()))
+    for found in samples.normal_deviation():
+        assert 0.99 * expected < found < 1.0001 * expected
 
 
 def test_flat_faces_get_their_share(parts):
