@@ -352,6 +352,23 @@ def test_candidates_for_missing_normals_are_dense_and_few(parts, monkeypatch):
     assert gm.sample(part, 3000).normal_deviation().normal_space < 2.3
 
 
+def test_a_part_has_some_candidates_for_each_sample(cylinder, monkeypatch):
+    """Squares of circumradius 0.4 r have an area of 0.32 r², a sample has r²/0.6: five, or more.
+
+    With a quarter of them gaps are wider; four times as many take as much more time and memory.
+    """
+    numbers, cut = [], Space.cut
+
+    def recorded(*arguments):
+        cells = cut(*arguments)
+        numbers.append(len(cells))
+        return cells
+
+    monkeypatch.setattr(Space, "cut", recorded)
+    gm.sample(cylinder, 1000, density="uniform")
+    assert 4.0 < max(numbers) / 1000 < 10.0
+
+
 @pytest.mark.parametrize("count", [300, 1000])
 def test_the_widest_angle_on_a_sphere_is_found(made, count):
     """It is that of the largest empty circle: around a face of the convex hull of the samples."""
