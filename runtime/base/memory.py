@@ -19,6 +19,9 @@ __all__ = ["COSTS", "GIB", "Cost", "check_memory", "estimate", "free_memory", "m
 GIB = 2.0**30
 # Less is not checked: to look up what is free takes as long as a small sampling.
 UNCHECKED = 2.0**24
+# A request may take this part of what is free: other programs need memory meanwhile, and estimates
+# are not exact.
+SHARE = 0.75
 PROC, CONTROL_GROUPS = Path("/proc"), Path("/sys/fs/cgroup")
 # Where control groups of both versions are, and their files: limit, use, and the line of
 # memory.stat with files that are kept in memory and can be dropped.
@@ -81,14 +84,14 @@ def estimate(request: str, number: float, row: float = 0.0) -> float:
 
 
 def check_memory(request: str, number: float, row: float = 0.0) -> None:
-    """Raise InputError if a request needs more memory than is free; see `estimate`."""
+    """Raise InputError if a request needs more than `SHARE` of the free memory; see `estimate`."""
     needed = estimate(request, number, row)
-    if needed <= UNCHECKED or needed <= (free := free_memory()):
+    if needed <= UNCHECKED or needed <= SHARE * (free := free_memory()):
         return
     things, *_, instead = COSTS[request]
     raise InputError(
         f"{number:,.0f} {things} need about {needed / GIB:,.1f} GiB of memory, and "
-        f"{max(free, 0.0) / GIB:,.1f} GiB are free; {instead}."
+        f"{max(free, 0.0) / GIB:,.1f} GiB are free, a quarter of it for other programs; {instead}."
     )
 
 

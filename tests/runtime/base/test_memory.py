@@ -136,7 +136,18 @@ def test_bounds_on_parts(
 
 # --- what is refused ------------------------------------------------------------------------------
 
-REFUSED = r"^[\d,]+ \w[\w ]* need about [\d,]+\.\d GiB of memory, and 1\.0 GiB are free; .*\.$"
+REFUSED = (
+    r"^[\d,]+ \w[\w ]* need about [\d,]+\.\d GiB of memory, and 1\.0 GiB are free, "
+    r"a quarter of it for other programs; .*\.$"
+)
+
+
+def test_a_quarter_of_what_is_free_stays_free(one_gib: None) -> None:
+    """Other programs need it meanwhile, and the system ends those that use up the memory."""
+    each = memory.estimate("normals", 1)
+    memory.check_memory("normals", 0.74 * memory.GIB / each)
+    with pytest.raises(gm.errors.InputError, match=REFUSED):
+        memory.check_memory("normals", 0.76 * memory.GIB / each)
 
 
 @pytest.fixture
@@ -214,7 +225,7 @@ def test_what_is_found_or_given_counts(monkeypatch: pytest.MonkeyPatch) -> None:
     few, many, samples = gm.icosphere(50), gm.icosphere(120), gm.sample(TORUS, 2000, cells=(8, 8))
     spline = gm.fit(TORUS, (8, 8))
     monkeypatch.setattr(memory, "UNCHECKED", 0.0)
-    monkeypatch.setattr(memory, "free_memory", lambda: 8.0e6)
+    monkeypatch.setattr(memory, "free_memory", lambda: 11.0e6)
     assert len(gm.sample(spline, normals=few)) > len(few)
     fields = ("points",)
     assert len(gm.sample(spline, normals=many, fields=fields, dtype="f4")) > len(many)
