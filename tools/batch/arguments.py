@@ -15,6 +15,7 @@ from ...runtime.base.checks import (
     positive_number,
     whole_number,
 )
+from ...runtime.base.memory import GIB
 from ...runtime.base.memory import memory_limit as most_memory
 from ...runtime.base.threads import thread_count
 from ...runtime.place.on_surface import checked_place
@@ -29,7 +30,6 @@ from .folder import CODECS
 __all__ = ["CODEC", "SECONDS", "Where", "asked_of", "stored", "where"]
 
 CODEC, SECONDS = "zstd", 600.0
-GIB = 2.0**30
 # The part of this machine's memory that all workers may use.
 SHARE = 0.9
 

@@ -18,6 +18,7 @@ from pathlib import Path
 from ...runtime.base.checks import positive_number
 from ...runtime.base.errors import FileError, GaussmapWarning, InputError, shown
 from ...runtime.base.extras import check_extra
+from ...runtime.base.memory import GIB
 from ...runtime.base.progress import busy
 from ..files.paths import PathLike, checked_path, reason_of
 from ..files.temporary import new_name, remove_left
@@ -27,7 +28,6 @@ from .worker import ERROR, PART
 
 __all__ = ["read_cad"]
 
-GIB = 2.0**30
 # Open CASCADE itself takes about a quarter of this, in GiB.
 LEAST_MEMORY = 1.0
 MOST_SECONDS = 1e6
