@@ -9,7 +9,7 @@ samples.write("torus.ply")
 
 import lazy_loader
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 # The names are in __init__.pyi, each loaded when it is asked for: SymPy and Numba take their time.
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -21,7 +21,7 @@ from .place.on_spline import OnSpline
 from .place.on_surface import checked_place, geometry_of, place_of_samples
 from .samples.fields import bytes_of, checked_dtype, checked_fields
 from .samples.report import sampling_report, warn_of
-from .samples.request import ON_GRIDS, Request, checked_request
+from .samples.request import Request, checked_request
 from .samples.samples import Samples
 from .samples.whole import Whole
 from .search.bins import NormalBins
@@ -77,15 +77,14 @@ def sample(
     coverage : float, optional
         The largest distance, in the unit L of the surface, from any point of it to the nearest
         sample. Alone, or beside one of the others.
-    density : {"gauss", "balanced", "isotropic", "aligned", "uniform"} or float, optional
+    density : {"gauss", "balanced", "aligned", "uniform"} or float, optional
         The target density. "gauss", the default with `normals` alone: |K|, from normals alone
         (paper, Sect. 4.2); developable regions get no samples. "balanced", the default otherwise:
         the same from fewer normals, and samples that fill the gaps, so that no point is farther
-        from a sample than r/κ, nor than r/√λ (see Notes); or "aligned", if it is clearly better at
-        20,000 places; the report says which. "isotropic": "balanced" that is never aligned.
-        "aligned": on a grid of lines u = const and v = const, spaced by how fast the normal turns
-        along them, for `count`, `angle` and `coverage`: fewer samples for the same angles where
-        parameters run along lines of curvature. "uniform": the same everywhere, for `count` or
+        from a sample than r/κ, nor than r/√λ (see Notes). "aligned": on a grid of lines u = const
+        and v = const, spaced by how fast the normal turns along them, for `count`, `angle` and
+        `coverage`: fewer samples for the same angles where parameters run along lines of curvature,
+        and more where they do not. "uniform": the same everywhere, for `count` or
         `coverage`. A number α, 0 < α ≤ 8: |K|^α, for `count`; uniform where the curvature is below
         the error of the spline.
     relax : int, default 0
@@ -231,7 +230,7 @@ def sample_and_normals(
         raise InputError("edges=True is for CAD parts; other surfaces have no sharp edges.")
     surface, number = named(surface), checked_dtype(dtype)
     wanted = checked_fields(
-        fields, place_of_samples(surface, on) == "surface", grid=request.density in ON_GRIDS
+        fields, place_of_samples(surface, on) == "surface", grid=request.density == "aligned"
     )
     filled = request.density != "gauss"
     memory = {} if out is None else out.arrays()

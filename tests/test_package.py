@@ -71,7 +71,7 @@ import gaussmap as gm
 torus = gm.surfaces.torus()
 for request in ({"count": 200}, {"coverage": 0.5}, {"angle": 30.0}, {"normals": [[0, 0, 1]]}):
     samples = gm.sample(torus, cells=(16, 16), **request)
-for density in ("gauss", "aligned", "isotropic", "uniform"):
+for density in ("gauss", "aligned", "balanced", "uniform"):
     samples = gm.sample(torus, 200, cells=(16, 16), density=density)
 chunks = list(gm.sample_stream(torus, 200, cells=(16, 16)))
 print(len(chunks), samples.summary(), samples.coverage())

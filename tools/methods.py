@@ -154,7 +154,7 @@ def mesh(
           samples allow. A sample so close to others that a smallest angle stays below 5° is
           left out, and further ones until 95 % of the smallest angles are 25° at least
           (`Mesh.left_out` counts them). A grid, or a part of one, keeps its samples, in long
-          cells, too; for well-shaped triangles sample with ``density="isotropic"``.
+          cells, too; samples of ``density="balanced"`` have well-shaped triangles.
         - "normals": triangles deviate from the normals at their corners as little as the
           samples allow. They are long and thin where the surface is curved in one direction
           only, and one sample is left out where a triangle would have no area.

@@ -57,8 +57,7 @@ COSTS: dict[str, Cost] = {
     "stored": Cost("samples", 0.0, 1.0, 'use fewer normals, fewer fields or dtype="float32"'),
     "gauss": Cost("samples", 76.0, 1.0, "use fewer, fewer fields, float32, or gm.sample_stream"),
     # The others have some candidates for each sample.
-    "balanced": Cost("samples", 1700.0, 0.0, FEWER),
-    "isotropic": Cost("samples", 1300.0, 0.0, FEWER),
+    "balanced": Cost("samples", 1300.0, 0.0, FEWER),
     "uniform": Cost("samples", 1300.0, 0.0, FEWER),
     "aligned": Cost("samples", 430.0, 0.0, FEWER),
     "relaxed": Cost("samples", 19e3, 0.0, "use fewer, or relax=0, which takes a tenth"),

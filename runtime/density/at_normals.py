@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,13 +18,7 @@ from ..spline.developable import curved_solid_angle
 from .chosen_normals import NORMALS_PER_SAMPLE
 from .fibonacci_lattice import Lattice
 
-__all__ = [
-    "SamplesAtNormals",
-    "no_samples",
-    "sample_at_lattice",
-    "sample_at_normals",
-    "without_samples",
-]
+__all__ = ["SamplesAtNormals", "no_samples", "sample_at_lattice", "sample_at_normals"]
 
 # A lattice that gives too many samples is replaced by one with this part of the normals that would
 # give as many as allowed.
@@ -47,15 +41,6 @@ class SamplesAtNormals:
             return self.density
         image = curved_solid_angle(self.geometry, self.density)
         return len(self.samples) / image if len(self.samples) and image > 0.0 else self.density
-
-
-def without_samples(found: SamplesAtNormals) -> SamplesAtNormals:
-    """Return what is known of samples at normals, without these."""
-    samples = found.samples
-    if samples is None:
-        return found
-    samples = replace(samples[:0], report=replace(samples.report, unrefined=0))
-    return replace(found, normals=found.normals[:0], samples=samples)
 
 
 def no_samples() -> SamplesAtNormals:

@@ -19,17 +19,10 @@ from ..samples.request import BY_CURVATURE, Request
 from ..samples.samples import Samples
 from ..spline.developable import curved_solid_angle
 from .angles import cover_normals
-from .at_normals import (
-    SamplesAtNormals,
-    no_samples,
-    sample_at_lattice,
-    sample_at_normals,
-    without_samples,
-)
+from .at_normals import SamplesAtNormals, no_samples, sample_at_lattice, sample_at_normals
 from .cover import Cover
 from .coverage import coverage
 from .grid import lines_of
-from .grid_or_round import GREEDY, better_on_grid, fewer_on_grid
 from .on_grid import cover_on_grid
 from .relaxation import relax
 from .sizing import SizingFunction, TargetDensity
@@ -39,6 +32,9 @@ __all__ = ["filled_samples"]
 
 # Twice the area of a hexagon of circumradius 1.
 HEXAGON = 3.0 * math.sqrt(3.0)
+# For n samples with round cells that cover the surface within a radius r, relative to the sizing
+# function, the integral of the target density is n r² times this.
+GREEDY = 1.85
 # Balanced: the covering radius of the added samples, relative to that of the normals.
 WIDER = 2.0
 # Balanced: the floor of the target density, relative to the mean of κ².
@@ -72,8 +68,6 @@ def filled_samples(
         cover = filling.relaxed(cover)
         if request.angle is not None:
             angle = cover_normals(cover, request.angle)
-        if request.density == "balanced" and request.normals is None:
-            cover, at_normals, angle = filling.better(cover, at_normals, angle)
         return filling.samples(cover, at_normals, fields, dtype, angle), at_normals.normals
 
 
@@ -168,10 +162,8 @@ class Filling:
         )  # fmt: skip
         asked = self.request.coverage
         reached = None if asked is None else self._coverage(cover, asked)
-        density = None
-        if self.request.density in BY_CURVATURE:
-            is_on_grid = cover.grid is not None and (cover.grid.rows >= 0).any()
-            density = "aligned" if is_on_grid else "isotropic"
+        is_on_grid = cover.grid is not None and (cover.grid.rows >= 0).any()
+        density = "aligned" if is_on_grid else None
         report = replace(report, coverage=reached, angle=angle, density=density)
         return self.geometry.samples(arrays, report, unrefined)
 
@@ -209,43 +201,9 @@ class Filling:
 
     def _aligned(self, sizing: SizingFunction) -> Cover:
         """Sample on a graded grid, and fill the gaps that it leaves."""
-        distance = self._distance_asked(sizing)
+        asked = self.request.coverage
+        distance = None if asked is None else self._distance(sizing, asked)
         return cover_on_grid(sizing, self.request, distance, self.show_count)
-
-    def better(
-        self, usual: Cover, at_normals: SamplesAtNormals, angle: float | None
-    ) -> tuple[Cover, SamplesAtNormals, float | None]:
-        """Return what `filled_samples` has, or the same on a grid if that is better.
-
-        Without a count that is the one with fewer samples.
-        """
-        count, asked, result = self.request.count, self.request.coverage, (usual, at_normals, angle)
-        distance = self._distance_asked(usual.sizing)
-        if count is None:
-            grid = fewer_on_grid(usual, self.request.angle, distance)
-        else:
-            grid = self._if_covering(better_on_grid(usual, count, None))
-            if grid is None and asked is not None:
-                grid = self._if_covering(better_on_grid(usual, count, distance))
-        if grid is None:
-            return result
-        if self.request.angle is not None:
-            angle = cover_normals(grid, self.request.angle)
-        if count is None and grid.count >= usual.count:
-            return result
-        return grid, without_samples(at_normals), angle
-
-    def _if_covering(self, cover: Cover | None) -> Cover | None:
-        """Return a cover if it keeps the coverage that is asked for."""
-        asked = self.request.coverage
-        if cover is None or asked is None or self._coverage(cover, asked) <= asked:
-            return cover
-        return None
-
-    def _distance_asked(self, sizing: SizingFunction) -> float | None:
-        """Return the coverage that is asked for as a scaled length."""
-        asked = self.request.coverage
-        return None if asked is None else self._distance(sizing, asked)
 
     def _by_radius(self, sizing: SizingFunction, floor: float) -> tuple[Cover, SamplesAtNormals]:
         """Sample at the normals asked for, or at as many as fit a coverage, and fill the gaps."""

@@ -12,14 +12,7 @@ from .sizing import SizingFunction, TargetDensity
 from .steps import Steps
 from .triangles import subdivisions
 
-__all__ = [
-    "cover_by_count",
-    "cover_by_count_and_distance",
-    "cover_by_errors",
-    "cover_on_grid",
-    "steps_by_errors",
-    "usual_distance",
-]
+__all__ = ["cover_on_grid"]
 
 # The largest distance of a point from the nearest sample if round cells follow the curvature: that
 # of a sizing function, times this.

@@ -137,12 +137,6 @@ def _renumbered(
     return found
 
 
-def _density(reports: Sequence[SamplingReport]) -> str | None:
-    """Return which density the pieces have, if they have chosen one."""
-    found = {x.density for x in reports}
-    return next(iter(found)) if len(found) == 1 else "mixed"
-
-
 def _joined(parts: Iterable[dict[str, NDArray[Any]]]) -> dict[str, NDArray[Any]]:
     rows = list(parts)
     return {name: np.concatenate([x[name] for x in rows]) for name in rows[0]}
@@ -170,7 +164,7 @@ def _report(
     return replace(
         reports[0],
         surface=name,
-        density=_density(reports),
+        density="aligned" if "aligned" in values("density") else None,
         normals=normals,
         samples=len(next(iter(arrays.values()))),
         developable_share=mean("developable_share", 1.0),

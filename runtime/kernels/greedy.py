@@ -15,7 +15,7 @@ from .hash_grids import CELL, DENSITY, NORMAL, SQUARE, bucket_of
 from .jit import inline, jit, loop
 from .vectors import dot, row_vector
 
-__all__ = ["NO_NUMBER", "choose_far", "distance_to_cells", "normal_of", "update_distances"]
+__all__ = ["choose_far", "update_distances"]
 
 # The number of a sample without one; typed, so that Numba compiles one function for all numbers.
 NO_NUMBER = np.int64(-1)

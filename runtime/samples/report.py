@@ -41,8 +41,6 @@ COUNT_TOLERANCE, FEW = 0.02, 5
 SHARE_ROUNDING = 1e-9
 # Where samples lie.
 PLACES = ("surface", "spline")
-# What density="balanced" chooses between; for several pieces it may be both.
-CHOICES = ("aligned", "isotropic", "mixed")
 COUNTS = (
     "normals", "patches", "developable_patches", "infinite_curvatures", "unrefined", "apexes",
     "index", "faces", "empty_faces", "edge_samples",
@@ -99,9 +97,8 @@ class SamplingReport:
         on smoothly; see `Spline.apexes`.
     index : int or None
         The number of the surface among those of `sample_many`.
-    density : {"aligned", "isotropic", "mixed"} or None
-        Which of the two ``density="balanced"`` has chosen; "mixed" if pieces of the surface have
-        different ones. None for other densities.
+    density : {"aligned"} or None
+        "aligned" if samples are on a grid, whether or not they have the fields row and column.
     faces, empty_faces : int or None
         Of a CAD part: the number of its faces, and how many of them have no sample.
     oriented : bool or None
@@ -129,11 +126,9 @@ class SamplingReport:
     (True, True, True)
     >>> report.on, report.unrefined
     ('surface', 0)
-    >>> report.density
-    'aligned'
     >>> report.faces, report.empty_faces, report.oriented  # not of a CAD part
     (None, None, None)
-    >>> report.edge_samples is report.crs is report.origin is None
+    >>> report.density is report.edge_samples is report.crs is report.origin is None
     True
     >>> report.developable_share, report.apexes, report.index
     (0.0, 0, None)
@@ -172,7 +167,7 @@ class SamplingReport:
         if self.on is not None:
             known_name(self.on, PLACES, "place of samples")
         if self.density is not None:
-            known_name(self.density, CHOICES, "choice of a density")
+            known_name(self.density, ("aligned",), "density on a grid")
         if self.crs is not None and not isinstance(self.crs, str):
             raise InputError(f"crs must be a string, not {type(self.crs).__name__}.")
         if self.origin is not None:

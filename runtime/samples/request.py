@@ -8,19 +8,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..base.checks import checked_count, known_name, positive_number, whole_number
-from ..base.errors import InputError
+from ..base.errors import InputError, UnknownNameError
 from ..base.limits import MOST_STEPS
 from ..base.threads import thread_count
 from ..directions.sets import frequency_within, icosphere
 from ..directions.unit import as_normals
 
-__all__ = ["BY_CURVATURE", "DENSITIES", "ON_GRIDS", "Request", "checked_request"]
+__all__ = ["BY_CURVATURE", "DENSITIES", "Request", "checked_request"]
 
 # Those that follow the larger principal curvature.
-BY_CURVATURE = ("balanced", "isotropic", "aligned")
-# Of these, those that may take a grid.
-ON_GRIDS = ("balanced", "aligned")
-DENSITIES = ("gauss", "balanced", "isotropic", "aligned", "uniform")
+BY_CURVATURE = ("balanced", "aligned")
+DENSITIES = ("gauss", "balanced", "aligned", "uniform")
 BALANCED = [[x] for x in ("normals", "count", "angle", "coverage")] + [
     [x, "coverage"] for x in ("normals", "count", "angle")
 ]
@@ -106,6 +104,10 @@ def _density(density: str | float | None, default: str) -> str | float:
     if density is None:
         return default
     if isinstance(density, str):
+        if density == "isotropic":  # of version 0.1
+            raise UnknownNameError(
+                'density="isotropic" has another name: write density="balanced".'
+            )
         return known_name(density, DENSITIES, "density")
     return positive_number(density, "density, as the power of |K|,", most=LARGEST_POWER)
 
@@ -116,7 +118,6 @@ def _check_that_they_fit(density: str | float, given: list[str]) -> None:
         # No angle: next to open borders normals alone leave more than they are apart.
         "gauss": [["normals"], ["count"]],
         "balanced": BALANCED,
-        "isotropic": BALANCED,
         "aligned": [x for x in BALANCED if "normals" not in x],
         "uniform": [["count"], ["coverage"]],
     }.get(str(density), [["count"]])

@@ -134,7 +134,6 @@ def _sampled(source: Any, task: Task) -> tuple[dict[str, Any], Any]:  # noqa: AN
     from ...runtime.place.on_surface import place_of_samples
     from ...runtime.sample import sample
     from ...runtime.samples.fields import checked_fields
-    from ...runtime.samples.request import ON_GRIDS
     from ..cad.part import Part
     from ..sources.surface_of import with_tolerance
     from .arrow_tables import points_schema, points_table
@@ -147,7 +146,7 @@ def _sampled(source: Any, task: Task) -> tuple[dict[str, Any], Any]:  # noqa: AN
         named = replace(task.asked.named, cells=task.asked.arguments["cells"], quiet=True)
         surface, arguments["cells"] = with_tolerance(source, named)
     on = "surface" if part else place_of_samples(surface, arguments.get("on"))
-    grid = arguments.get("density") in ON_GRIDS
+    grid = arguments.get("density") == "aligned"
     known = checked_fields(None, on == "surface", grid=grid and not part, part=part)
     samples = sample(
         surface,

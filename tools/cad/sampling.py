@@ -49,7 +49,7 @@ CANDIDATES = 200_000
 DIGITS = 6
 # Each face gets a sample if there are at least this many samples for each face.
 SAMPLES_A_FACE = 2
-DENSITIES = ("gauss", "balanced", "isotropic", "uniform")
+DENSITIES = ("gauss", "balanced", "uniform")
 BISECTIONS, NEAR_ENOUGH, WIDEST_RADIUS = 8, 0.97, 10.0
 
 

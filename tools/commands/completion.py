@@ -52,7 +52,7 @@ def completed(program: click.Command) -> int | None:
 
 def densities(_: click.Context, __: click.Parameter, begun: str) -> list[str]:
     """Complete the name of a density."""
-    return _begun(("aligned", "balanced", "gauss", "isotropic", "uniform"), begun)
+    return _begun(("aligned", "balanced", "gauss", "uniform"), begun)
 
 
 def surface_names(_: click.Context, __: click.Parameter, begun: str) -> list[CompletionItem]:

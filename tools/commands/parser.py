@@ -415,9 +415,9 @@ def _distribution() -> list[Option]:
         Option(
             "--density HOW",
             "gauss: proportional to |K|, prescribed normals only. balanced (default): that, with "
-            "samples that fill the gaps, or aligned if that is better. isotropic: never aligned. "
-            "aligned: on a grid of lines u = const and v = const, spaced by how fast the normal "
-            "turns. uniform: the same everywhere. A number A: proportional to |K|^A.",
+            "samples that fill the gaps. aligned: on a grid of lines u = const and v = const, "
+            "spaced by how fast the normal turns. uniform: the same everywhere. A number A: "
+            "proportional to |K|^A.",
             density,
             group="how dense",
             default="balanced",

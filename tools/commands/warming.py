@@ -110,7 +110,7 @@ def _fields() -> None:
 
 
 def _densities() -> None:
-    for density in ("balanced", "uniform", 0.5):
+    for density in ("balanced", "aligned", "uniform", 0.5):
         sample(_torus(), count=FEW, density=density, cells=CELLS, relax=1)
     sample(_torus(), angle=20.0, cells=CELLS)
     sample(_torus(), coverage=0.3, cells=CELLS)
@@ -140,7 +140,7 @@ def _meshes() -> None:
         samples.mesh().summary()
         samples.mesh(prefer="normals")
         samples.weights()
-    sample(_torus(), count=500).mesh()  # on a grid, with samples between its lines
+    sample(_torus(), count=500, density="aligned").mesh()  # with samples between its lines
 
 
 def _silhouettes() -> None:

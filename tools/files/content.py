@@ -12,6 +12,10 @@ from .reading import UnusableError
 
 __all__ = ["known_fields", "lacks", "report_from_json", "report_to_json"]
 
+# The entries `density` that version 0.1 wrote beside "aligned", and what they are now: none, or
+# some of the pieces of a surface, on a grid.
+OF_0_1 = {"isotropic": None, "mixed": "aligned"}
+
 
 def report_to_json(report: SamplingReport) -> str:
     """Return a report as a line of ASCII."""
@@ -20,7 +24,10 @@ def report_to_json(report: SamplingReport) -> str:
 
 def report_from_json(text: str) -> SamplingReport:
     """Return the report that `report_to_json` was given."""
-    return SamplingReport(**json.loads(text))
+    found = json.loads(text)
+    if found.get("density") in OF_0_1:
+        found["density"] = OF_0_1[found["density"]]
+    return SamplingReport(**found)
 
 
 def known_fields(names: Iterable[str]) -> tuple[str, ...]:

@@ -50,8 +50,6 @@ ON_BORDER = 1e-9
 # is a vertex: triangulations displace points by a tenth of it.
 NEARLY_EQUAL = 1e-5
 NEEDED = ("points", "normals", "uv")
-# The choices of a density by which samples are on a graded grid, on all pieces or on some.
-ON_A_GRID = ("aligned", "mixed")
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +130,7 @@ def check_fields(samples: Samples) -> None:
     Those on a graded grid need its lines: its cells may be long, and samples that are close to
     others in one direction are not superfluous.
     """
-    needed = NEEDED + (GRID_NAMES if samples.report.density in ON_A_GRID else ())
+    needed = NEEDED + (GRID_NAMES if samples.report.density == "aligned" else ())
     if lacking := [name for name in needed if name not in samples.fields]:
         raise missing_fields(samples.fields, lacking, "a mesh")
 

@@ -44,7 +44,6 @@ KNOWN: dict[str, Callable[[], Any]] = {
     ),
     "balanced": lambda: sample("torus", 20_000),
     "balanced, open": lambda: sample("wavy_graph", 20_000),
-    "isotropic": lambda: sample("torus", 20_000, density="isotropic"),
     "uniform": lambda: sample("torus", 20_000, density="uniform"),
     "power": lambda: sample("torus", 20_000, density=0.5),
     "aligned": lambda: sample("torus", 50_000, density="aligned"),
@@ -62,7 +61,7 @@ LATER: dict[str, Callable[[], Any]] = {
     "icosphere": lambda: gm.sample("torus", normals=gm.icosphere(150), on="spline"),
     "angle": lambda: sample("torus", None, angle=2.0),
     "coverage": lambda: sample("torus", None, coverage=0.02, density="uniform"),
-    "mesh": lambda: samples_of("isotropic").mesh(),
+    "mesh": lambda: samples_of("balanced").mesh(),
     "mesh of a grid": lambda: samples_of("aligned").mesh(),
 }
 QUICK = pytest.mark.quick_for("fibonacci", "random", "circle", "uniform", "aligned", "curve", "cap")

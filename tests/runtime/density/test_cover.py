@@ -25,7 +25,7 @@ def test_what_is_filled_up_is_far_from_all_samples(name):
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("density", ["uniform", "isotropic"])
+@pytest.mark.parametrize("density", ["uniform", "balanced"])
 @pytest.mark.parametrize("name", ["torus", "catenoid", "wavy_graph"])
 def test_candidates_for_a_count_are_evaluated_once(name, density, monkeypatch):
     """The radius that a count leaves is known well enough before."""

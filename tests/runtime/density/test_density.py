@@ -292,7 +292,7 @@ def test_balanced_is_dense_where_it_bends_and_not_blind_where_it_is_flat():
         return np.stack([x, v, z], axis=-1)
 
     surface = gm.Surface.from_callable(profile, ((-flat, math.pi * radius), (0.0, 3.0)))
-    samples = gm.sample(surface, count=4000, cells=(256, 16), density="isotropic")
+    samples = gm.sample(surface, count=4000, cells=(256, 16))
     length, k = math.pi * radius, 1.0 / radius**2
     floor = 0.5 * k * length / (length + flat)
     bent = samples.uv[:, 0] > 0.0
@@ -338,7 +338,7 @@ def test_nothing_warns_of_what_is_covered():
 @pytest.mark.compiled
 def test_a_count_is_divided_well():
     """With fewer samples at normals, angles are wider; with more, gaps are."""
-    samples = gm.sample("catenoid", 1000, density="isotropic", cells=(32, 32))
+    samples = gm.sample("catenoid", 1000, cells=(32, 32))
     deviation = samples.normal_deviation()
     assert deviation.space < 4.53
     assert deviation.normal_space < 4.4

@@ -274,7 +274,7 @@ def test_relaxing_keeps_what_was_asked(name):
     points, normals = places(spline)
     by_coverage = gm.sample(spline, coverage=0.15, relax=2)
     assert farthest(by_coverage, points) <= (by_coverage.report.coverage or 0.0) <= 0.15
-    assert len(by_coverage) <= len(gm.sample(spline, coverage=0.15))
+    assert len(by_coverage) <= 1.05 * len(gm.sample(spline, coverage=0.15))
     by_angle = gm.sample(spline, angle=12.0, relax=2)
     assert widest_angle(by_angle, normals) <= (by_angle.report.angle or 0.0) <= 12.0
     both = gm.sample(spline, count=1500, coverage=0.15, relax=2)

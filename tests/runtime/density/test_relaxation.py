@@ -7,13 +7,13 @@ from gaussmap.runtime.density import relaxation
 
 def relaxed(name: str, count: int) -> gm.Samples:
     spline = gm.fit(gm.surfaces.surface(name), (32, 32))
-    return gm.sample(spline, count, density="isotropic", relax=2)
+    return gm.sample(spline, count, relax=2)
 
 
 @pytest.mark.compiled
 def test_relaxing_narrows_gaps_and_angles():
     """By 12 and 9 percent; they get wider by 15 if samples begin as close as they end."""
-    plain = gm.sample(gm.fit("catenoid", (32, 32)), 600, density="isotropic")
+    plain = gm.sample(gm.fit("catenoid", (32, 32)), 600)
     found = relaxed("catenoid", 600)
     assert found.coverage() < 0.92 * plain.coverage()
     assert found.normal_deviation().space < 0.94 * plain.normal_deviation().space

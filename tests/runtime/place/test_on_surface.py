@@ -143,7 +143,7 @@ def test_a_coverage_below_the_misfit_is_reached_as_far_as_possible():
     with pytest.warns(
         gm.GaussmapWarning, match=r"coverage is 0\.\d+ instead of the requested 0\.05"
     ):
-        samples = gm.sample(torus, coverage=0.05, density="isotropic", cells=(6, 6))
+        samples = gm.sample(torus, coverage=0.05, cells=(6, 6))
     report = samples.report
     assert report.coverage is not None
     assert report.fit_distance is not None

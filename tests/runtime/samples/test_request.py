@@ -43,6 +43,11 @@ def test_densities_that_are_unknown():
     refused("no density ''", gm.errors.UnknownNameError, count=5, density="")
 
 
+def test_the_name_of_an_earlier_version():
+    said = '^density="isotropic" has another name: write density="balanced".$'
+    refused(said, gm.errors.UnknownNameError, count=5, density="isotropic")
+
+
 @pytest.mark.parametrize(
     ("asked", "use"),
     [

@@ -77,8 +77,8 @@ def test_sample_a_surface_by_name() -> None:
     done = gaussmap("sample", "torus", "--count", "10000", "-o", "torus.ply")
     assert (done.returncode, done.stderr) == (0, "")
     assert re.fullmatch(
-        r"torus\.ply: 10,000 samples: [\d,]+ on a grid that follows the curvature, [\d,]+ in its "
-        r"gaps \([\d,]+ dome-shaped, [\d,]+ saddle-shaped\)\n",
+        r"torus\.ply: 10,000 samples: [\d,]+ found by [\d,]+ normals, [\d,]+ in the gaps between "
+        r"these \([\d,]+ dome-shaped, [\d,]+ saddle-shaped\)\n",
         done.stdout,
     )
     samples = gm.read_samples("torus.ply")
@@ -412,6 +412,7 @@ SQUARE = ["--domain", "-1", "1", "-1", "1"]
         (["sample", "torus", "--angle", "x", *TO], "--angle: it must be a number, not 'x'"),
         (["sample", "torus", "--coverage", "-1", *TO], "coverage must be a positive number, not"),
         (["sample", "torus", "--density", "flat", *TO], "there is no density"),
+        (["sample", "torus", "--density", "isotropic", *TO], 'write density="balanced"'),
         (["sample", "torus", "--density", "-2", *TO], "a positive number of at most 8, not"),
         (["sample", "torus", *GAUSS, "--coverage", "1", *TO], "cannot be asked for by coverage="),
         (["sample", "torus", *GAUSS, "--relax", "1", *TO], 'density="gauss" has none'),

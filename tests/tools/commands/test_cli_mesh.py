@@ -11,7 +11,6 @@ import pytest
 from gaussmap.tools.commands.cli import main
 
 FEW = ["--count", "100", "--cells", "8", "8"]
-ISOTROPIC = ["--density", "isotropic"]
 
 
 @pytest.fixture(autouse=True)
@@ -32,7 +31,7 @@ def test_a_mesh_is_written(suffix: str, capsys: pytest.CaptureFixture[str]) -> N
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("density", ["balanced", "aligned", "isotropic"])
+@pytest.mark.parametrize("density", ["balanced", "aligned"])
 @pytest.mark.parametrize("name", ["torus", "ellipsoid_patch", "wavy_graph", "sphere", "catenoid"])
 def test_the_command_and_python_make_the_same_mesh(name: str, density: str) -> None:
     mesh = gm.sample(name, 300, density=density, cells=(16, 16)).mesh()
@@ -44,11 +43,11 @@ def test_the_command_and_python_make_the_same_mesh(name: str, density: str) -> N
 
 @pytest.mark.compiled
 def test_samples_that_are_left_out_are_counted(capsys: pytest.CaptureFixture[str]) -> None:
-    mesh = gm.sample("wavy_graph", 300, density="isotropic", cells=(16, 16)).mesh()
+    mesh = gm.sample("wavy_graph", 300, cells=(16, 16)).mesh()
     own = mesh.sample_index[mesh.sample_index >= 0]
     assert len(np.unique(own)) + mesh.left_out == 300
     assert mesh.left_out > 0
-    few = ["--count", "300", "--cells", "16", "16", *ISOTROPIC]
+    few = ["--count", "300", "--cells", "16", "16"]
     assert main(["mesh", "wavy_graph", *few, "-o", "graph.ply"]) == 0
     assert f", {mesh.left_out} of the samples left out, " in capsys.readouterr().out
 
@@ -74,7 +73,7 @@ def test_normals_of_a_part(capsys: pytest.CaptureFixture[str]) -> None:
 
 @pytest.mark.parametrize("prefer", ["shape", "normals"])
 def test_what_triangles_are_preferred(prefer: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["mesh", "torus", *FEW, *ISOTROPIC, "--prefer", prefer, "-o", "torus.ply"]) == 0
+    assert main(["mesh", "torus", *FEW, "--prefer", prefer, "-o", "torus.ply"]) == 0
     small = float(re.findall(r"angles of at least ([\d.]+)°", capsys.readouterr().out)[0])
     assert (small > 25.0) == (prefer == "shape")
 

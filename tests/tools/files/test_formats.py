@@ -139,6 +139,21 @@ def read_only_folder() -> Iterator[Path]:
     assert left == []
 
 
+class TestEarlierVersions:
+    @pytest.mark.parametrize(
+        ("old", "new"), [("isotropic", None), ("mixed", "aligned"), ("aligned", "aligned")]
+    )
+    def test_the_density_of_version_0_1(self, tmp_path, old, new):
+        path = tmp_path / "file.npz"
+        make().write(path)
+        with np.load(path) as archive:
+            arrays = dict(archive)
+        text = str(arrays["report"]).replace('"density": null', f'"density": "{old}"')
+        assert old in text
+        np.savez(path, **(arrays | {"report": np.array(text)}))
+        assert read_samples(path).report.density == new
+
+
 class TestRoundTrip:
     @every_readable
     @pytest.mark.parametrize("count", [0, 1, 2, 12, 5000])

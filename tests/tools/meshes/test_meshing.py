@@ -274,7 +274,7 @@ class TestFlips:
     @pytest.mark.parametrize("name", ["torus", "graph", "moebius"])
     def test_no_flip_is_left_that_helps(self, name):
         """Each pair of triangles is compared with the other one, in NumPy."""
-        samples = gm.sample(surfaces[name][0](), count=300, density="isotropic")
+        samples = gm.sample(surfaces[name][0](), count=300)
         assert samples.spline is not None
         state = triangulated(samples, samples.spline)
         assert flip_edges(state, "normals") > 0
@@ -287,7 +287,7 @@ class TestFlips:
 
     @pytest.mark.parametrize("name", ["torus", "graph", "klein"])
     def test_neighbours_stay_those_of_the_triangles(self, name):
-        samples = gm.sample(surfaces[name][0](), count=300, density="isotropic")
+        samples = gm.sample(surfaces[name][0](), count=300)
         assert samples.spline is not None
         state = triangulated(samples, samples.spline)
         flip_edges(state, "normals")
@@ -311,7 +311,7 @@ class TestFlips:
         )
 
     def test_they_make_the_worst_angle_smaller_and_never_larger(self):
-        samples = gm.sample(gm.surfaces.torus(), count=2000, density="isotropic")
+        samples = gm.sample(gm.surfaces.torus(), count=2000)
         assert samples.spline is not None
         state = triangulated(samples, samples.spline)
         before = state.mesh(len(samples)).angles
@@ -389,7 +389,7 @@ class TestShape:
         assert mesh.smallest_angles.min() > NO_AREA
 
     def test_triangles_across_gaps_cost_no_samples(self):
-        samples = gm.sample(gm.surfaces.torus(), count=2000, density="isotropic")
+        samples = gm.sample(gm.surfaces.torus(), count=2000)
         part = samples[samples.points[:, 0] > 0.3]
         mesh = part.mesh(angle=25.0)
         assert len(mesh.vertices) > 0.98 * len(part)
@@ -423,18 +423,16 @@ def boss() -> gm.Surface:
 def samples_of(name: str) -> gm.Samples:
     """Return 3,000 samples of a surface on which thin triangles are likely."""
     if name == "boss":
-        return gm.sample(boss(), count=3000, density="isotropic")
+        return gm.sample(boss(), count=3000)
     if name != "terrain":
-        return gm.sample(name, count=3000, density="isotropic")
+        return gm.sample(name, count=3000)
     x, y = np.meshgrid(np.linspace(-3, 3, 60), np.linspace(-3, 3, 50))
     phases = np.random.default_rng(5).uniform(0, 2 * np.pi, 12)
     heights = sum(
         np.sin(k * (x * np.cos(p) + y * np.sin(p)) + 7 * p) / k**1.5
         for k, p in enumerate(phases, start=1)
     )
-    return gm.sample(
-        gm.Surface.from_grid(heights, spacing=(0.1, 0.12)), count=3000, density="isotropic"
-    )
+    return gm.sample(gm.Surface.from_grid(heights, spacing=(0.1, 0.12)), count=3000)
 
 
 def lengths(vectors: np.ndarray) -> np.ndarray:

@@ -30,7 +30,7 @@ def errors(surface: gm.Surface, count: int, density: str, volume: float) -> np.n
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("density", ["isotropic", "uniform"])
+@pytest.mark.parametrize("density", ["balanced", "uniform"])
 @pytest.mark.parametrize(
     ("surface", "volume"),
     [
@@ -75,7 +75,7 @@ def test_all_kinds_of_surfaces(name: str) -> None:
 
 @pytest.mark.compiled
 def test_samples_at_one_place_share_a_weight() -> None:
-    samples = gm.sample(TORUS, count=500, density="isotropic")
+    samples = gm.sample(TORUS, count=500)
     twice = gm.Samples.concatenate([samples, samples])
     weights = twice.weights()
     np.testing.assert_allclose(weights[:500] + weights[500:], samples.weights(), rtol=1e-12)

@@ -26,7 +26,7 @@ pytestmark = pytest.mark.compiled  # every picture evaluates a fine mesh
 
 @pytest.fixture(scope="module")
 def samples() -> gm.Samples:
-    return gm.sample(gm.fit(gm.surfaces.torus(), cells=(16, 16)), 300, density="isotropic")
+    return gm.sample(gm.fit(gm.surfaces.torus(), cells=(16, 16)), 300)
 
 
 def texts(figure: Figure) -> set[str]:

@@ -40,7 +40,7 @@ def share(pixels: np.ndarray, colour: str) -> float:
 
 def test_png(torus: gm.Spline, tmp_path: Path) -> None:
     path = tmp_path / "torus.png"
-    samples = to_file.plot_to_file(torus, path, count=600, density="isotropic")
+    samples = to_file.plot_to_file(torus, path, count=600)
     assert abs(len(samples) - 600) < 30
     pixels = picture(path)
     assert pixels.shape == SIZE
@@ -111,7 +111,7 @@ def texts_of(surface: gm.Surface, path: Path, monkeypatch: pytest.MonkeyPatch) -
         save(figure, *arguments, **options)  # pyright: ignore[reportArgumentType]
 
     monkeypatch.setattr(Figure, "savefig", spy)
-    to_file.plot_to_file(surface, path, count=100, density="isotropic")
+    to_file.plot_to_file(surface, path, count=100)
     return {
         text.get_text()
         for text in figures[0].findobj(Text)
