@@ -37,9 +37,9 @@ WHOLE = {
 }
 DENSITIES = {
     "balanced-10k": {"count": 10_000},
-    "isotropic-10k": {"count": 10_000, "density": "isotropic"},
+    "aligned-10k": {"count": 10_000, "density": "aligned"},
     "balanced-1M": {"count": 1_000_000},
-    "isotropic-1M": {"count": 1_000_000, "density": "isotropic"},
+    "aligned-1M": {"count": 1_000_000, "density": "aligned"},
     "relaxed-10k": {"count": 10_000, "relax": 2},
     "angle-2-degrees": {"angle": 2.0},
 }
@@ -119,7 +119,7 @@ def test_density(compare, arguments):
     )
 
 
-@pytest.mark.parametrize("density", ["balanced", "isotropic"])
+@pytest.mark.parametrize("density", ["balanced", "aligned"])
 def test_mesh(compare, density):
     samples = gm.sample(TORUS, 100_000, density=density)
     compare(

@@ -110,7 +110,7 @@ COUNTS = """\
 ## The same accuracy, and how many vertices
 
 Meshes by `samples.mesh(prefer="normals")`: the worst angle between normals of the surface and of
-the mesh of {count:,} samples with `density="isotropic"`, the number of samples with
+the mesh of {count:,} samples with `density="balanced"`, the number of samples with
 `density="aligned"` whose mesh has about the same worst angle, and the Hausdorff distances of
 both.
 """
@@ -123,7 +123,7 @@ both.
 class Promise:
     """What the constants promise for COUNT samples, in degrees."""
 
-    isotropic: float
+    balanced: float
     aligned: float
     graded: float
     bound: float
@@ -199,28 +199,28 @@ class Measurement:
     @cached_property
     def meshes(self) -> tuple[Quality, Quality]:
         """Two meshes of the same worst angle: of COUNT samples, and aligned ones."""
-        isotropic = self.mesh("isotropic", COUNT)
+        balanced = self.mesh("balanced", COUNT)
         count, tried = float(COUNT), []
         for _ in range(TRIES):
             tried.append(self.mesh("aligned", round(count)))
-            count = tried[-1].vertices * (tried[-1].worst / isotropic.worst) ** 2
-            if abs(tried[-1].worst / isotropic.worst - 1.0) < NEAR:
+            count = tried[-1].vertices * (tried[-1].worst / balanced.worst) ** 2
+            if abs(tried[-1].worst / balanced.worst - 1.0) < NEAR:
                 break
-        return isotropic, min(tried, key=lambda x: abs(math.log(x.worst / isotropic.worst)))
+        return balanced, min(tried, key=lambda x: abs(math.log(x.worst / balanced.worst)))
 
 
 def promises(measured: Sequence[Measurement]) -> str:
     """Return the table of promises and of what comes."""
-    header = ["", "isotropic", "measured", "aligned", "graded grid", "measured", "bound", "G"]
+    header = ["", "balanced", "measured", "aligned", "graded grid", "measured", "bound", "G"]
     rows = []
     for x in measured:
         promise, round_cells, rows_of = (
             Promise.of(x.form),
-            x.errors("isotropic"),
+            x.errors("balanced"),
             x.errors("aligned"),
         )
         values = (
-            promise.isotropic, round_cells.E, promise.aligned, promise.graded, rows_of.E,
+            promise.balanced, round_cells.E, promise.aligned, promise.graded, rows_of.E,
             promise.bound, rows_of.G,
         )  # fmt: skip
         rows.append([x.form.name, *(f"{value:.2f}" for value in values)])

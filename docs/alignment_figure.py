@@ -20,7 +20,7 @@ from gaussmap.tools.pictures.scene import Scene, quadrangles, view
 __all__ = ["NAME", "draw", "pair"]
 
 NAME = "alignment.png"
-COUNT = 3_000  # isotropic samples
+COUNT = 3_000  # balanced samples
 PLACES = 50_000
 TRIES, NEAR = 6, 0.03
 
@@ -35,17 +35,17 @@ def made(form: SmallFillets, places: Places, density: str, count: int) -> Made:
 
 
 def pair(form: SmallFillets, count: int = COUNT) -> tuple[Made, Made]:
-    """Return two meshes of the same worst angle, isotropic and aligned."""
+    """Return two meshes of the same worst angle, balanced and aligned."""
     places = Places.of(form, PLACES)
-    isotropic = made(form, places, "isotropic", count)
+    balanced = made(form, places, "balanced", count)
     wanted, tried = float(count), []
     for _ in range(TRIES):
         tried.append(made(form, places, "aligned", round(wanted)))
-        worst = tried[-1][1].worst / isotropic[1].worst
+        worst = tried[-1][1].worst / balanced[1].worst
         wanted = tried[-1][1].vertices * worst**2
         if abs(worst - 1.0) < NEAR:
             break
-    return isotropic, min(tried, key=lambda x: abs(math.log(x[1].worst / isotropic[1].worst)))
+    return balanced, min(tried, key=lambda x: abs(math.log(x[1].worst / balanced[1].worst)))
 
 
 def draw() -> str:
@@ -59,7 +59,7 @@ def draw() -> str:
         scene = Scene(
             quadrangles(gm.fit(form.surface).evaluate(*lattice(form))), view=view(38.0, -55.0)
         )
-        titles = ("isotropic", "aligned")
+        titles = ("balanced", "aligned")
         for k, (mesh, quality) in enumerate(found):
             title = f"{titles[k]}: {quality.vertices:,} vertices, worst angle {quality.worst:.1f}°"
             picture = Picture(axes[0, k], scene, title, shape=0.75)
@@ -82,12 +82,12 @@ def lattice(form: SmallFillets) -> tuple[np.ndarray, np.ndarray]:
     return u[:, None], np.concatenate([*parts, ends[-1:]])[None]
 
 
-def caption(isotropic: Quality, aligned: Quality) -> str:
+def caption(balanced: Quality, aligned: Quality) -> str:
     """Return the caption."""
     return (
         f"The boss with small fillets of [the quality page](quality.md), meshed with the same "
-        f'worst angle between normals of surface and mesh. Left: `density="isotropic"`, '
-        f"{isotropic.vertices:,} vertices, worst angle {isotropic.worst:.2f}°, Hausdorff distance "
-        f'{isotropic.hausdorff:.1e}. Right: `density="aligned"`, {aligned.vertices:,} vertices, '
+        f'worst angle between normals of surface and mesh. Left: `density="balanced"`, '
+        f"{balanced.vertices:,} vertices, worst angle {balanced.worst:.2f}°, Hausdorff distance "
+        f'{balanced.hausdorff:.1e}. Right: `density="aligned"`, {aligned.vertices:,} vertices, '
         f"{aligned.worst:.2f}°, {aligned.hausdorff:.1e}."
     )

@@ -39,7 +39,7 @@ NORMALS = '**`samples.mesh(prefer="normals")`**'
 GMSH = "Gmsh, curvature size"
 DELAUNAY = "the same samples, Delaunay over (u, v)"
 # Samples of these densities; the second ones are on graded grids.
-ISOTROPIC, ALIGNED = "isotropic", "aligned"
+BALANCED, ALIGNED = "balanced", "aligned"
 GRID = '**the same with `density="aligned"`**'
 
 
@@ -47,7 +47,7 @@ GRID = '**the same with `density="aligned"`**'
 
 
 def samples_for(
-    form: ClosedForm, count: int, prefer: Prefer, density: str = ISOTROPIC
+    form: ClosedForm, count: int, prefer: Prefer, density: str = BALANCED
 ) -> gm.Samples:
     """Return samples whose mesh has about `count` vertices, those of the border among them."""
     with warnings.catch_warnings():
@@ -102,9 +102,9 @@ HEAD = """\
 Written by `make meshes`: do not edit.
 
 Triangle meshes of three surfaces with M vertices, about {counts}. The vertices of `samples.mesh()`
-are the samples of `gm.sample(count=…, density="isotropic")` (see the [glossary](glossary.md)) and
-points on open borders, M in all. Those of `density="aligned"` are on a graded grid, whose cells are
-cut along a diagonal; edges are flipped as for `prefer="normals"`.
+are the samples of `gm.sample(count=…)` and points on open borders, M in all. Those of
+`density="aligned"` are on a graded grid, whose cells are cut along a diagonal; edges are flipped as
+for `prefer="normals"`.
 By default edges are flipped until triangles are Delaunay on the surface,
 and samples too close to others are left out; with `prefer="normals"` until no flip reduces the
 angles between two triangles and the normals at their corners. The row below both is the
@@ -133,7 +133,7 @@ default has better-shaped triangles than that, and mean angles larger by {cost}.
 SHAPES = """\
 ## Shapes of triangles
 
-Meshes of {count:,} samples ("isotropic")
+Meshes of {count:,} samples
 of surfaces that make thin triangles likely: where they are
 developable, where regions of different density meet, and where folds of a terrain bring samples of
 several patches together. The terrain is that of `make demo`, the boss a solid of CAD with a plate,
@@ -147,7 +147,7 @@ TIME = """\
 ## Time
 
 Seconds for `samples.mesh(prefer="normals")` of N samples, the median of {rounds} runs. For those of
-`density="isotropic"` most of the time is Qhull's triangulation, which grids do not need:
+the default density most of the time is Qhull's triangulation, which grids do not need:
 """
 
 
@@ -235,7 +235,7 @@ def shapes() -> str:
     for name, surface, cells in difficult():
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", gm.GaussmapWarning)
-            samples = gm.sample(surface, count=SHAPED, cells=cells, density=ISOTROPIC)
+            samples = gm.sample(surface, count=SHAPED, cells=cells)
         for prefer in KINDS:
             rows.append([name, prefer, *shape_of(samples, samples.mesh(prefer=prefer))])
     return markdown(header, rows)
@@ -267,7 +267,7 @@ def times() -> str:
     rows = [
         [title, *(number(seconds(form, count, density)) for count in TIMED)]
         for form in FORMS
-        for density, title in ((ISOTROPIC, form.name), (ALIGNED, f"{form.name}, aligned"))
+        for density, title in ((BALANCED, form.name), (ALIGNED, f"{form.name}, aligned"))
     ]
     return markdown(header, rows)
 

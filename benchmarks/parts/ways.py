@@ -154,7 +154,6 @@ GMSH = Way("Gmsh, curvature size", meshed)
 FARTHEST = Way("Open3D, farthest point", farthest)
 WAYS = (
     BALANCED,
-    Way("**isotropic**", sampled("isotropic")),
     Way("**uniform**", sampled("uniform")),
     GMSH,
     FARTHEST,

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from ..peers.mesh_metrics import Quality
 from ..peers.peer import Peer
 from .measure import COUNTS, LAST, OnSurface
-from .meshers import GMSH_MESH, THROUGH_BALANCED
-from .ways import BALANCED, GAUSS, GMSH, ISOTROPIC, PERFECT, POISSON, RELAXED
+from .meshers import GMSH_MESH, THROUGH_ALIGNED, THROUGH_BALANCED, Mesher
+from .ways import ALIGNED, BALANCED, GAUSS, GMSH, PERFECT, POISSON, RELAXED
 
 __all__ = ["CRITERIA", "Criterion", "Verdict", "verdicts", "worst"]
 
@@ -87,12 +87,11 @@ def errors_over(own: Peer, other: Peer, quantity: str) -> Value:
     return ratio(error(own, quantity), error(other, quantity))
 
 
-def meshes_over(quantity: Callable[[Quality], float]) -> Value:
-    """Return the ratio of an error of two meshes: that through "balanced", and that of Gmsh."""
+def over_gmsh(mesher: Mesher, quantity: Callable[[Quality], float]) -> Value:
+    """Return the ratio of an error of two meshes: the given one, and that of Gmsh."""
 
     def value(on: OnSurface, count: int) -> float | None:
-        found = [on.meshes.get(x) for x in (THROUGH_BALANCED, GMSH_MESH)]
-        own, other = found
+        own, other = on.meshes.get(mesher), on.meshes.get(GMSH_MESH)
         return None if own is None or other is None else quantity(own) / quantity(other)
 
     return value
@@ -112,22 +111,27 @@ def _aligned() -> Iterator[Criterion]:
     at_last = (LAST,)
     for surface, limit in (("torus", 2.6), ("boss", 2.0), ("ellipsoid_patch", 2.4),
                            ("boss0.3", 3.0)):  # fmt: skip
-        yield Criterion("balanced, E", error(BALANCED, "E"), limit, (surface,), at_last)
-    yield Criterion("balanced, G", error(BALANCED, "G"), 1.3, ("ellipsoid_patch",), at_last)
-    for title, value in (
-        ("worst angle", meshes_over(lambda x: x.worst)),
-        ("Hausdorff distance", meshes_over(lambda x: x.hausdorff)),
-    ):
-        yield Criterion(f"mesh : Gmsh, {title}", value, 0.6, CURVED, at_last)
-        others = ("wavy_graph", "monkey_saddle")
-        yield Criterion(f"mesh : Gmsh, {title}", value, 1.05, others, at_last)
-    for quantity in ("E", "G", "gap"):
-        value = errors_over(BALANCED, ISOTROPIC, quantity)
-        yield Criterion(f"balanced : isotropic, {quantity}", value, 1.05)
+        yield Criterion("aligned, E", error(ALIGNED, "E"), limit, (surface,), at_last)
+    yield Criterion("aligned, G", error(ALIGNED, "G"), 1.3, ("ellipsoid_patch",), at_last)
+
+
+def _meshes() -> Iterator[Criterion]:
+    quantities: tuple[tuple[str, Callable[[Quality], float]], ...] = (
+        ("worst angle", lambda x: x.worst),
+        ("Hausdorff distance", lambda x: x.hausdorff),
+    )
+    for title, quantity in quantities:
+        for name, mesher, limit, surfaces in (
+            ("aligned", THROUGH_ALIGNED, 0.6, CURVED),
+            ("balanced", THROUGH_BALANCED, 1.05, ("wavy_graph", "monkey_saddle")),
+        ):
+            value = over_gmsh(mesher, quantity)
+            yield Criterion(f"mesh, {name} : Gmsh, {title}", value, limit, surfaces, (LAST,))
 
 
 def _criteria() -> Iterator[Criterion]:
     yield from _aligned()
+    yield from _meshes()
     yield Criterion("gauss : exact, G", errors_over(GAUSS, PERFECT, "G"), 1.05)
     yield Criterion("relaxed : Gmsh, G", errors_over(RELAXED, GMSH, "G"), 1.0, strict=True)
     yield Criterion("relaxed : Gmsh, E", errors_over(RELAXED, GMSH, "E"), 1.15)

@@ -7,8 +7,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import astuple, dataclass, field
 from statistics import median
 
-import gaussmap as gm
-
 from ..peers.forms import ClosedForm
 from ..peers.measure import nearest_by_tree
 from ..peers.mesh_metrics import Quality, quality
@@ -41,14 +39,13 @@ class Found:
 class OnSurface:
     """All that was found on a surface.
 
-    `found` by way and count, `meshes` by mesher, `chosen` is the density that "balanced" took for
-    a count, `missing` says why a way or a mesher could not be tried.
+    `found` by way and count, `meshes` by mesher, `missing` says why a way or a mesher could not be
+    tried.
     """
 
     form: ClosedForm
     found: dict[tuple[Peer, int], Found] = field(default_factory=dict)
     meshes: dict[Mesher, Quality] = field(default_factory=dict)
-    chosen: dict[int, str] = field(default_factory=dict)
     missing: dict[Peer | Mesher, str] = field(default_factory=dict)
 
 
@@ -60,8 +57,6 @@ def measured(
 ) -> OnSurface:
     """Judge and time all ways, and judge all meshes; `done` is told each of them."""
     result, places = OnSurface(form), Places.of(form)
-    for count in COUNTS:
-        result.chosen[count] = str(gm.sample(form.surface, count=count).report.density)
     for way in ways:
         done(f"{form.name}: {way.title}")
         if not (missing := way.missing):

@@ -13,7 +13,15 @@ from ..peers.peer import Peer
 from ..peers.triangles import Triangles, by_grid, gmsh_triangles, opencascade_triangles
 from .ways import GMSH, OPENCASCADE, PERFECT
 
-__all__ = ["GMSH_MESH", "MESHERS", "OTHER_MESHERS", "OWN_MESHERS", "THROUGH_BALANCED", "Mesher"]
+__all__ = [
+    "GMSH_MESH",
+    "MESHERS",
+    "OTHER_MESHERS",
+    "OWN_MESHERS",
+    "THROUGH_ALIGNED",
+    "THROUGH_BALANCED",
+    "Mesher",
+]
 
 Prefer = Literal["shape", "normals"]
 
@@ -51,10 +59,8 @@ def own(density: str, prefer: Prefer) -> Mesher:
 
 
 THROUGH_BALANCED = own("balanced", "normals")
-OWN_MESHERS = (
-    own("balanced", "shape"), THROUGH_BALANCED, own("aligned", "normals"),
-    own("isotropic", "normals"),
-)  # fmt: skip
+THROUGH_ALIGNED = own("aligned", "normals")
+OWN_MESHERS = (own("balanced", "shape"), THROUGH_BALANCED, THROUGH_ALIGNED)
 GMSH_MESH = Mesher(GMSH.title, GMSH, gmsh_triangles)
 OTHER_MESHERS = (
     Mesher("grid of parameters", PERFECT, by_grid),

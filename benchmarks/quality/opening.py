@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from gaussmap.docs.orders import listed, markdown, wrapped
 
 from ..peers.opening import TITLE, tables
@@ -21,22 +23,24 @@ OF_MESHES = {
     "mean angle": "mesh: the same on average",
     "Hausdorff distance": "mesh: the largest distance",
 }
-BALANCED = "**balanced**"
-MESH = '**balanced**, prefer="normals"'
+OWN = ("**balanced**", "**aligned**")
+OF_MESH = ', prefer="normals"'
 OTHERS = ("Open3D", "PyMeshLab", "Gmsh", "Open CASCADE", "grid of parameters")
 SMALL = 1e-300  # instead of 0, in quotients
 
 WORDS = """\
-On each of {surfaces} surfaces, the default density of gaussmap is compared with the best of all
-other tools, at about 10,000 points. A quotient is the error of the default relative to the smallest
-one of the others: below 1, gaussmap is better.
+On each of {surfaces} surfaces, two densities of gaussmap are compared with the best of all other
+tools, at about 10,000 points: **balanced**, the default, and **aligned**, which is for parameters
+along lines of curvature. A quotient is their error relative to the smallest one of the others:
+below 1, gaussmap is better.
 
-- **Take gaussmap where normals count**: for E, G and the worst angle of meshes it is better than
-  all others in {normals} comparisons. Where it is not, the others are those of the last column.
-- **Take another tool where distances count**: for the largest gap in space gaussmap is best in
-  {gaps} comparisons. Farthest points and Poisson disks are more even, triangles of Gmsh have a
-  better shape, and Open CASCADE meshes solids made of planes, cylinders and tori with a row of
-  triangles for each angle.
+- **Take gaussmap where normals count**: for E, G and the worst angle of meshes **balanced** is
+  better than all others in {balanced} comparisons, **aligned** in {aligned}. Where neither is, the
+  others are those of the last column.
+- **Take another tool where distances count**: for the largest gap in space **balanced** is best in
+  {gaps} comparisons, **aligned** in {gaps_aligned}. Farthest points and Poisson disks are more
+  even, triangles of Gmsh have a better shape, and Open CASCADE meshes solids made of planes,
+  cylinders and tori with a row of triangles for each angle.
 - **Take another tool where time counts**: **balanced** is {slow} as fast as Poisson disks, and
   faster in {fast} of {timed} comparisons.
 """
@@ -55,32 +59,36 @@ def opening(text: str) -> str:
         if "Poisson disk" in x[""] and x["balanced"].endswith("×")
     ]
     ends = [f"{x:.2g}" for x in (min(speeds), max(speeds))] if speeds else ["?"]
-    rows = [_row(name, points, BALANCED, what) for name, what in OF_POINTS.items()]
-    rows += [_row(name, meshes, MESH, what) for name, what in OF_MESHES.items()]
+    rows = [_row(name, points, "", what) for name, what in OF_POINTS.items()]
+    rows += [_row(name, meshes, OF_MESH, what) for name, what in OF_MESHES.items()]
     words = WORDS.format(
         surfaces=len(points),
-        normals=_wins(rows, "E", "G", "worst angle"),
-        gaps=_wins(rows, "gap"),
+        balanced=_wins(rows, 2, "E", "G", "worst angle"),
+        aligned=_wins(rows, 4, "E", "G", "worst angle"),
+        gaps=_wins(rows, 2, "gap"),
+        gaps_aligned=_wins(rows, 4, "gap"),
         slow=f"{' to '.join(dict.fromkeys(ends))} times",
         fast=sum(x > 1 for x in speeds),
         timed=len(speeds),
     )
-    header = ["what is to be small", "", "gaussmap is best on", "quotient", "best of the others"]
+    header = ["what is to be small", ""]
+    header += [x for own in OWN for x in (f"{own} is best on", "quotient")]
+    header += ["best where neither is"]
     return f"{TITLE}\n\n{wrapped(words)}\n{markdown(header, rows)}"
 
 
-def _wins(rows: list[list[str]], *names: str) -> str:
-    """Return in how many comparisons gaussmap is best, of how many."""
-    pairs = [x[2].split(" of ") for x in rows if x[1] in names]
+def _wins(rows: list[list[str]], column: int, *names: str) -> str:
+    """Return in how many comparisons a density is best, of how many."""
+    pairs = [x[column].split(" of ") for x in rows if x[1] in names]
     wins, all_of_them = (sum(map(int, x)) for x in zip(*pairs, strict=True))
     return f"{wins} of {all_of_them}"
 
 
-def _row(name: str, surfaces: list[Table], own: str, what: str) -> list[str]:
-    """Return one line: how often gaussmap is best, the quotients, and who is best elsewhere."""
-    quotients, better = [], {}
+def _row(name: str, surfaces: list[Table], which: str, what: str) -> list[str]:
+    """Return one line: how often each density is best, its quotients, and who is best elsewhere."""
+    quotients: list[list[float]] = []
+    better: dict[str, int] = {}
     for rows in surfaces:
-        mine = next(float(x[name]) for x in rows if x[""] == own)
         errors = {
             x[""]: float(x[name])
             for x in rows
@@ -89,10 +97,16 @@ def _row(name: str, surfaces: list[Table], own: str, what: str) -> list[str]:
         if not errors:
             continue
         best = min(errors, key=lambda x: errors[x])
-        quotients.append((mine + SMALL) / (errors[best] + SMALL))
-        if quotients[-1] > 1:
+        mine = [float(x[name]) for own in OWN for x in rows if x[""] == own + which]
+        quotients.append([(x + SMALL) / (errors[best] + SMALL) for x in mine])
+        if min(quotients[-1]) > 1:
             better[best] = better.get(best, 0) + 1
-    wins = sum(x < 1 for x in quotients)
+    cells = [x for column in zip(*quotients, strict=True) for x in _wins_and_ends(column)]
     who = [f"{title} ({count})" for title, count in sorted(better.items(), key=lambda x: -x[1])]
-    ends = f"{min(quotients):.2f} to {max(quotients):.2f}" if quotients else "–"
-    return [what, name, f"{wins} of {len(quotients)}", ends, listed(who) if who else "–"]
+    return [what, name, *(cells or ["0 of 0", "–"] * len(OWN)), listed(who) if who else "–"]
+
+
+def _wins_and_ends(quotients: Sequence[float]) -> tuple[str, str]:
+    """Return how many quotients are below 1, of how many, and their range."""
+    wins = sum(x < 1 for x in quotients)
+    return f"{wins} of {len(quotients)}", f"{min(quotients):.2f} to {max(quotients):.2f}"

@@ -33,11 +33,12 @@ Written by `make quality`: do not edit. Points **with normals**, and meshes thro
 TASKS = """\
 ## Which density for which task
 
-The numbers below the densities are errors at {last:,} points relative to **isotropic**, the
+The numbers below the densities are errors at {last:,} points relative to **balanced**, the
 geometric mean over all surfaces of this page: smaller is better. The density to take is the best
 one over all that counts for the task, and the default where it is about as good. The last column
 says who has a smaller error than it, on which surfaces, and their error relative to it where that
-is smallest.
+is smallest. On half of these surfaces parameters run along lines of curvature, which **aligned** is
+for: the tables of the others say what it does there.
 """
 
 COLUMNS = """\
@@ -51,11 +52,10 @@ COLUMNS = """\
   and near (gap).
 - **no normal may be far off**: E and the other measures are explained below.
 
-**balanced**, the default, measures whether **aligned** or **isotropic** suits a surface, and takes
-it: **aligned** puts samples in rows along parameter lines, which is best where these are lines of
-curvature ([why](alignment.md)); **isotropic** makes distances the same in all directions. **gauss**
-has the samples at given normals only, and nothing in planes and cylinders; **uniform** ignores
-curvature.
+**balanced**, the default, makes distances the same in all directions; **aligned** puts samples in
+rows along parameter lines, which is best where these are lines of curvature
+([why](alignment.md)). **gauss** has the samples at given normals only, and nothing in planes and
+cylinders; **uniform** ignores curvature.
 
 ## What is measured
 
@@ -87,9 +87,9 @@ TARGETS = """\
 ## Targets
 
 Values and ratios at {counts} points, unless a count is given; *relaxed* is `relax={steps}`, *mesh*
-is that through **balanced** with `prefer="normals"`. The goal is to be approached, not met. With
-the same normals, G of **gauss** can differ from the exact one only by points that appear or vanish,
-or change the sign of K, because of the spline.
+is that through the density named, with `prefer="normals"`. The goal is to be approached, not met.
+With the same normals, G of **gauss** can differ from the exact one only by points that appear or
+vanish, or change the sign of K, because of the spline.
 """
 
 
@@ -103,17 +103,12 @@ def page(surfaces: Sequence[OnSurface], load: float | None = None) -> str:
         wrapped(columns),
     ]
     for on in surfaces:
-        parts += [f"## {on.form.label}\n", wrapped(chosen(on)), points_table(on), mesh_table(on)]
+        title = f"## {on.form.label}\n\nNamed `{on.form.name}` in other tables.\n"
+        parts += [title, points_table(on), mesh_table(on)]
     parts += ["## The machine\n", wrapped("\n".join([*machine(), *busy(load)]))]
     parts += [wrapped(TARGETS.format(counts=counts, steps=STEPS)), targets(surfaces)]
     text = "\n".join(parts)
     return "\n".join([wrapped(HEAD.format(surfaces=len(surfaces))), opening(text), text])
-
-
-def chosen(on: OnSurface) -> str:
-    """Say what balanced takes."""
-    taken = listed(f"**{name}** at {count:,} points" for count, name in on.chosen.items())
-    return f"`{on.form.name}`: **balanced** takes {taken}."
 
 
 def busy(load: float | None) -> list[str]:

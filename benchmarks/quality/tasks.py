@@ -11,7 +11,7 @@ from gaussmap.docs.orders import listed, markdown
 from ..peers.peer import Peer
 from .measure import LAST, OnSurface
 from .meshers import OTHER_MESHERS, OWN_MESHERS, Mesher
-from .ways import DENSITIES, ISOTROPIC, OTHERS
+from .ways import BALANCED, DENSITIES, OTHERS
 
 __all__ = ["TASKS", "Measure", "Task", "table"]
 
@@ -40,7 +40,7 @@ class Task:
     title: str
     measures: tuple[Measure, ...]
     own: Sequence[Way] = DENSITIES
-    base: Way = ISOTROPIC
+    base: Way = BALANCED
     others: Sequence[Way] = OTHERS
 
 
@@ -75,7 +75,7 @@ MESHES = tuple(
 NORMAL_MESHERS = OWN_MESHERS[1:]  # those that prefer normals
 TASKS = (
     Task("registration", (of_points("plane", "plane"),)),
-    Task("meshing", MESHES, NORMAL_MESHERS, NORMAL_MESHERS[-1], OTHER_MESHERS),
+    Task("meshing", MESHES, NORMAL_MESHERS, NORMAL_MESHERS[0], OTHER_MESHERS),
     Task("inspection", (GAP, G)),
     Task("look-up, learning", (MEAN, GAP)),
     Task("no normal may be far off", (E,)),

@@ -21,7 +21,6 @@ __all__ = [
     "FARTHEST",
     "GAUSS",
     "GMSH",
-    "ISOTROPIC",
     "OPENCASCADE",
     "OTHERS",
     "PERFECT",
@@ -90,10 +89,9 @@ ICOSAHEDRAL = Peer("the same, icosahedral normals", "", "numpy", icosahedral, 0,
 GAUSS = own("**gauss**", "gauss")
 BALANCED = own("**balanced**", "balanced")
 ALIGNED = own("**aligned**", "aligned")
-ISOTROPIC = own("**isotropic**", "isotropic")
-RELAXED = own(f"**isotropic**, relax={STEPS}", "isotropic", STEPS)
+RELAXED = own(f"**balanced**, relax={STEPS}", "balanced", STEPS)
 UNIFORM = own("**uniform**", "uniform")
-DENSITIES = (BALANCED, ALIGNED, ISOTROPIC, GAUSS, UNIFORM)
+DENSITIES = (BALANCED, ALIGNED, GAUSS, UNIFORM)
 POISSON = (
     Peer("Open3D, Poisson disk", "", "open3d", open3d_poisson, 0, ROUNDS),
     Peer("PyMeshLab, Poisson disk", "", "pymeshlab", pymeshlab_poisson, 0, ROUNDS),

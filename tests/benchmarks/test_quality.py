@@ -125,8 +125,6 @@ def test_a_surface_is_measured(few):
         ways.PERFECT.title, ways.BALANCED.title, "gone", "mesh, mesh", "mesh, no mesh",
     ]  # fmt: skip
     assert {key for key, x in on.found.items() if x.times > 0.0} == {(ways.PERFECT, 400)}
-    assert set(on.chosen) == {200, 400}
-    assert set(on.chosen.values()) <= {"aligned", "isotropic"}
 
 
 @pytest.mark.compiled
@@ -181,8 +179,7 @@ def mesh(worst):
 def surface(found, meshes=(), missing=(), form=UNTUNED[1]):
     """A surface where each way found the same for both counts."""
     both = {(way, n): x for way, x in found.items() for n in measure.COUNTS}
-    chosen = dict.fromkeys(measure.COUNTS, "aligned")
-    return OnSurface(form, both, dict(meshes), chosen, dict.fromkeys(missing, "No module 'x'"))
+    return OnSurface(form, both, dict(meshes), dict.fromkeys(missing, "No module 'x'"))
 
 
 @pytest.mark.parametrize(
@@ -204,19 +201,21 @@ def test_each_criterion_compares_what_its_title_says():
     """Values that are all different: E = 2, 3, 5 … and G = 20, 30, 50 …"""
     numbers = {
         ways.GAUSS: of(2, 20), ways.PERFECT: of(3, 30), ways.RELAXED: of(5, 50),
-        ways.GMSH: of(7, 70), ways.BALANCED: of(11, 110), ways.ISOTROPIC: of(29, 290),
+        ways.GMSH: of(7, 70), ways.BALANCED: of(11, 110), ways.ALIGNED: of(29, 290),
         ways.POISSON[0]: of(13, 130, 17), ways.POISSON[1]: of(19, 190, 23),
     }  # fmt: skip
-    on = surface(numbers, {meshers.THROUGH_BALANCED: mesh(3), meshers.GMSH_MESH: mesh(4)})
+    on = surface(numbers, {
+        meshers.THROUGH_BALANCED: mesh(3), meshers.THROUGH_ALIGNED: mesh(5),
+        meshers.GMSH_MESH: mesh(4),
+    })  # fmt: skip
     found = {x.title: x.value(on, measure.LAST) for x in criteria.CRITERIA}
     assert found == pytest.approx({
-        "balanced, E": 11,
-        "balanced, G": 110,
-        "mesh : Gmsh, worst angle": 3 / 4,
-        "mesh : Gmsh, Hausdorff distance": 3 / 4,
-        "balanced : isotropic, E": 11 / 29,
-        "balanced : isotropic, G": 11 / 29,
-        "balanced : isotropic, gap": 11 / 29,
+        "aligned, E": 29,
+        "aligned, G": 290,
+        "mesh, aligned : Gmsh, worst angle": 5 / 4,
+        "mesh, aligned : Gmsh, Hausdorff distance": 5 / 4,
+        "mesh, balanced : Gmsh, worst angle": 3 / 4,
+        "mesh, balanced : Gmsh, Hausdorff distance": 3 / 4,
         "gauss : exact, G": 20 / 30,
         "relaxed : Gmsh, G": 50 / 70,
         "relaxed : Gmsh, E": 5 / 7,
@@ -236,8 +235,8 @@ def criterion(title, surfaces=()):
 
 
 def test_a_criterion_is_judged_on_its_surfaces_and_counts():
-    every = (surface({ways.BALANCED: of(2.5, 1)}, form=Torus()), surface({ways.BALANCED: of(1, 1)}))
-    (found,) = criteria.verdicts(criterion("balanced, E", ("torus",)), every)
+    every = (surface({ways.ALIGNED: of(2.5, 1)}, form=Torus()), surface({ways.ALIGNED: of(1, 1)}))
+    (found,) = criteria.verdicts(criterion("aligned, E", ("torus",)), every)
     assert (found.surface, found.count, found.value, found.met) == (
         "torus",
         measure.LAST,
@@ -279,14 +278,14 @@ def by_density(**E):
 
 def test_the_best_density_is_taken_and_the_default_where_it_is_as_good():
     task = tasks.TASKS[-1]
-    values = {"balanced": 1.0, "aligned": 2.0, "isotropic": 4.0, "gauss": 8.0, "uniform": 1.0}
+    values = {"balanced": 1.0, "aligned": 2.0, "gauss": 8.0, "uniform": 1.0}
     for uniform, expected in ((0.99, ways.BALANCED), (0.97, ways.DENSITIES[-1])):
         on = surface(by_density(**values | {"uniform": uniform}))
         assert tasks.taken(task, [on]) is expected
 
 
 def test_densities_are_compared_by_geometric_means():
-    values = {"balanced": 1.0, "aligned": 1.0, "isotropic": 2.0, "gauss": 1.0, "uniform": 1.0}
+    values = {"balanced": 2.0, "aligned": 1.0, "gauss": 1.0, "uniform": 1.0}
     every = [surface(by_density(**values | {"gauss": x})) for x in (1.0, 16.0)]
     task = tasks.TASKS[-1]
     found = tasks.compared(task.measures[0], task, ways.GAUSS, every)
@@ -338,10 +337,11 @@ def test_the_page_opens_with_who_wins_and_ends_with_targets(text):
 
 
 def test_the_opening_counts_who_is_best():
-    def table(own: float, other: float) -> str:
+    def table(own: float, other: float, aligned: float) -> str:
         return (
             "| a | E | mean E | G | gap | plane | balanced |\n| :-- | --: |\n"
             f"| **balanced** | {own} | 1 | {own} | 2 | 1 | – |\n"
+            f"| **aligned** | {aligned} | 1 | {aligned} | 2 | 1 | 1 × |\n"
             f"| **gauss** | 0 | 0 | 0 | 0 | 0 | – |\n"
             f"| Gmsh, x | {other} | 1 | {other} | 1 | 1 | 1 × |\n"
             "| Open3D, Poisson disk | 9 | 9 | 9 | 9 | 9 | 0.5 × |\n"
@@ -349,12 +349,13 @@ def test_the_opening_counts_who_is_best():
 
     meshes = "| mesh | worst angle | mean angle | Hausdorff distance |\n| :-- | --: |\n"
     meshes += '| **balanced**, prefer="normals" | 1 | 1 | 1 |\n| Gmsh, x | 2 | 2 | 2 |\n'
-    text = f"## a\n\n{table(1, 2)}\n{meshes}\n## b\n\n{table(3, 2)}\n{meshes}"
+    meshes += '| **aligned**, prefer="normals" | 3 | 1 | 1 |\n'
+    text = f"## a\n\n{table(1, 2, 4)}\n{meshes}\n## b\n\n{table(3, 2, 6)}\n{meshes}"
     found = opening(text.replace("| a |", "|  |"))
-    assert "| E | 1 of 2 | 0.50 to 1.50 | Gmsh, x (1) |" in found
-    assert "| gap | 0 of 2 | 2.00 to 2.00 | Gmsh, x (2) |" in found
-    assert "| worst angle | 2 of 2 | 0.50 to 0.50 | – |" in found
-    assert "others in 4 of 6 comparisons" in found
+    assert "| E | 1 of 2 | 0.50 to 1.50 | 0 of 2 | 2.00 to 3.00 | Gmsh, x (1) |" in found
+    assert "| gap | 0 of 2 | 2.00 to 2.00 | 0 of 2 | 2.00 to 2.00 | Gmsh, x (2) |" in found
+    assert "| worst angle | 2 of 2 | 0.50 to 0.50 | 0 of 2 | 1.50 to 1.50 | – |" in found
+    assert "others in 4 of 6 comparisons, **aligned** in 0 of 6" in found
     assert "**balanced** is 0.5 times as fast" in found
 
 

@@ -71,7 +71,7 @@ def test_promises_for_the_torus():
         round_cells * 2 * math.pi / math.sqrt(0.35), math.sqrt(4 * math.pi),
         math.sqrt(0.5) * 2 * math.pi, round_cells * math.sqrt(8 * math.pi),
     )  # fmt: skip
-    promised = found.isotropic, found.aligned, found.graded, found.bound
+    promised = found.balanced, found.aligned, found.graded, found.bound
     assert np.array(promised) / scale == pytest.approx(expected, rel=1e-4)
 
 

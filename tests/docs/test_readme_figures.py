@@ -9,7 +9,7 @@ ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 MESH_OF = {
     "**balanced**": '**balanced**, prefer="normals"',
-    "**isotropic**": '**isotropic**, prefer="normals"',
+    "**aligned**": '**aligned**, prefer="normals"',
     "NumPy, (u,v) grid, closed form": "grid of parameters",
 }
 
