@@ -628,7 +628,7 @@ class TestOffsets:
     @pytest.mark.parametrize("name", ["torus", "sphere", "graph", "moebius", "dome"])
     def test_an_offset_has_the_topology_of_the_surface(self, name, prefer):
         _, characteristic, borders = surfaces[name]
-        fields = ("points", "normals", "uv", "row", "column")
+        fields = ("points", "normals", "uv")
         samples = samples_on(surfaces[name][0](), count=400, fields=fields)
         mesh = samples.offset(0.05).offset(0.05).mesh(prefer=prefer)
         assert mesh.euler_characteristic == characteristic
