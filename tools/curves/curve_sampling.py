@@ -20,12 +20,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...generated import curve as formulas
 from ...runtime.base.checks import checked_count
 from ...runtime.base.errors import GaussmapWarning, InputError, in_memory
+from ...runtime.base.formula_calls import plane_vector, python_function
 from ...runtime.base.memory import check_memory
 from ...runtime.directions.circle import arc_of_normals, circle
 from ...runtime.directions.unit import as_normals
-from ..kernels import curve as kernels
 from .curve import Curve
 from .curve_samples import CurveReport, CurveSamples
 from .curve_spline import CurveSpline, angles_of
@@ -149,7 +150,7 @@ def _places(spline: CurveSpline, angles: Array) -> NDArray[np.int64]:
     with np.errstate(divide="ignore"):
         errors = spline.noise / np.hypot(*spline.joint_normals.T)
     start = int(curved[0]) + 1 if len(curved) else 1
-    kernels.merge_joints(ends, turns, errors, start if spline.periodic else 0)
+    _merge_joints(ends, turns, errors, start if spline.periodic else 0)
     if not spline.periodic:
         for joint, outwards in ((0, -1.0), (-1, 1.0)):
             if not spline.straight[joint]:
@@ -158,6 +159,26 @@ def _places(spline: CurveSpline, angles: Array) -> NDArray[np.int64]:
         ends -= 2 * np.pi * beyond
         turns += beyond
     return np.searchsorted(angles, ends).astype(np.int64) + len(angles) * turns
+
+
+def _merge_joints(angles: Array, turns: NDArray[np.int64], errors: Array, start: int) -> None:
+    """Give neighbouring joints one normal if their normals differ only by rounding.
+
+    angles + 2π turns (P + 1,) are the angles at joints, errors (P + 1,) their rounding. The joints
+    of a closed curve are visited from the joint `start` > 0 on; 0 is the first one of an open one.
+    """
+    pieces = len(angles) - 1
+    whole = turns[pieces] - turns[0]
+    bounds = 2.0 * np.minimum(errors[1:], errors[:-1])
+    close = np.abs(np.diff(angles) + 2.0 * np.pi * np.diff(turns)) <= 2.0 * bounds
+    visited = np.roll(np.arange(pieces), -start)[: pieces - (start > 0)]
+    for before in visited[close[visited]].tolist():
+        here = before + 1
+        step = angles[here] - angles[before] + 2.0 * np.pi * (turns[here] - turns[before])
+        if abs(step) <= bounds[before]:
+            angles[here], turns[here] = angles[before], turns[before]
+            if here == pieces and start > 0:
+                angles[0], turns[0] = angles[here], turns[here] - whole
 
 
 def _by_count(spline: CurveSpline, count: int) -> tuple[Array, Hits]:
@@ -187,19 +208,19 @@ def _by_count(spline: CurveSpline, count: int) -> tuple[Array, Hits]:
 
 def filled(spline: CurveSpline, normals: Array, hits: Hits) -> CurveSamples:
     """Return the samples at hits of unit normals (S, 2)."""
-    count = len(hits)
-    points, directions = np.empty((count, 2)), np.empty((count, 2))
-    parameters, support, curvature = (np.empty(count) for _ in range(3))
-    with np.errstate(all="ignore"):  # uncompiled code warns where κ ≈ 0
-        kernels.fill_samples(
-            spline.coefficients, spline.scale, normals, spline.domain[0], spline.step,
-            hits.piece_index, hits.normal_index, hits.signs,
-            points, directions, parameters, support, curvature,
-        )  # fmt: skip
+    mine, piece = normals[hits.normal_index], hits.piece_index
+    n, arcs = plane_vector(mine), spline.arcs(piece)
+    A = mine[:, 0] * arcs.a.x + mine[:, 1] * arcs.a.y
+    with np.errstate(all="ignore"):  # where κ ≈ 0
+        # If the turn of an arc is within rounding, so is the parameter of the normal.
+        inside = np.clip(python_function(formulas.arc_parameter)(arcs, n), 0.0, 1.0)
+        t: Array = np.where(A != 0.0, inside, 0.5)
+        x, curvature = python_function(formulas.arc_sample)(arcs, t, A)
+    points = spline.coefficients[piece + 1] + np.stack(x, axis=-1) / spline.scale
     report = CurveReport(
         curve=spline.name,
         normals=len(normals),
-        samples=count,
+        samples=len(hits),
         pieces=spline.pieces,
         straight_share=_straight_share(spline, len(normals)),
         inflections=len(spline.inflections),
@@ -207,9 +228,16 @@ def filled(spline: CurveSpline, normals: Array, hits: Hits) -> CurveSamples:
     )
     ends = spline.evaluate(spline.domain) if not spline.periodic else np.empty((0, 2))
     return CurveSamples(
-        points, directions, parameters, support, curvature,
-        hits.normal_index, hits.piece_index, ends, report,
-    )  # fmt: skip
+        points=points,
+        normals=mine,
+        parameters=spline.domain[0] + spline.step * (piece + t),
+        support=np.einsum("kx,kx->k", mine, points),
+        curvature=np.copysign(spline.scale * curvature, hits.signs),
+        normal_index=hits.normal_index,
+        piece_index=piece,
+        ends=ends,
+        report=report,
+    )
 
 
 def _straight_share(spline: CurveSpline, normals: int) -> float:

@@ -17,7 +17,6 @@ from ...runtime.base.scales import scale_to_one
 from ...runtime.base.tolerances import DIFFERENCE_ERROR
 from ...runtime.domain.domain import Interval, checked_interval
 from ...runtime.spline.spline import short_label
-from ..kernels import curve as kernels
 
 __all__ = ["CurveSpline", "angles_of"]
 
@@ -280,12 +279,28 @@ class CurveSpline:
     def _evaluate(self, t: ArrayLike) -> tuple[Array, Array, Array]:
         array = real_array(t, "t")
         places = self._places(array.ravel())
-        points, normals = np.empty((places.size, 2)), np.empty((places.size, 2))
-        curvatures = np.empty(places.size)
-        with np.errstate(all="ignore"):  # what is uncompiled warns at singular points
-            kernels.evaluate(self.coefficients, self.scale, places, points, normals, curvatures)
+        piece = np.clip(np.floor(places).astype(np.int64), 0, self.pieces - 1)
+        arcs, within = self.arcs(piece), places - piece
+        x = python_function(formulas.arc_envelope)(arcs, within)
+        tangent, *normal = python_function(formulas.arc_tangent)(arcs, within)
+        with np.errstate(all="ignore"):  # at singular points
+            lengths = np.hypot(*normal)
+            A = (arcs.a.x * normal[0] + arcs.a.y * normal[1]) / lengths
+            curvatures = self.scale * python_function(formulas.arc_curvature)(A, tangent)
+        points = self.coefficients[piece + 1] + np.stack(x, axis=-1) / self.scale
         shape = array.shape
-        return points.reshape(*shape, 2), normals.reshape(*shape, 2), curvatures.reshape(shape)
+        return (
+            points.reshape(*shape, 2),
+            np.stack(normal, axis=-1).reshape(*shape, 2),
+            curvatures.reshape(shape),
+        )
+
+    def arcs(self, piece: NDArray[np.int64]) -> Arc:
+        """Return the arcs of pieces (k,), relative to their coefficients and times `scale`."""
+        steps = self.scale * np.diff(self.coefficients, axis=0)
+        return python_function(formulas.arc)(
+            plane_vector(-steps[piece]), plane_vector(steps[piece + 1])
+        )
 
     def _places(self, t: Array) -> Array:
         """Return parameters in pieces; InputError if one lies outside."""

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -203,7 +204,7 @@ class SupportFunction(ABC):
         array([[0.  , 0.75]])
 
         """
-        return OffsetCurve(self, finite_number(distance, "distance"))
+        return Moved(self, distance=finite_number(distance, "distance"))
 
     def translated(self, shift: ArrayLike) -> SupportFunction:
         """Return h + n·t: the curve of the points x + t.
@@ -232,7 +233,7 @@ class SupportFunction(ABC):
         array([3.])
 
         """
-        return Translated(self, finite_array(shift, (2,), "shift"))
+        return Moved(self, shift=finite_array(shift, (2,), "shift"))
 
     def rotated(self, angle: float) -> SupportFunction:
         """Return h(R⁻¹n): the curve of the points R x, turned counter-clockwise by an angle.
@@ -261,7 +262,9 @@ class SupportFunction(ABC):
         array([2.])
 
         """
-        return Rotated(self, finite_number(angle, "angle"))
+        turn = math.radians(finite_number(angle, "angle"))
+        R = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
+        return Moved(self, motion=R, turn=R)
 
     def scaled(self, factor: float) -> SupportFunction:
         """Return s h: the curve of the points s x, with the same normals also for s < 0.
@@ -292,7 +295,7 @@ class SupportFunction(ABC):
         s = finite_number(factor, "factor")
         if s == 0.0:
             raise InputError("factor must not be 0: the curve would shrink to a point.")
-        return Scaled(self, s)
+        return Moved(self, motion=s * np.eye(2), growth=s)
 
     def reversed(self) -> SupportFunction:
         """Return −h(−n): the same curve with the opposite normals.
@@ -311,7 +314,7 @@ class SupportFunction(ABC):
         array([[-1.,  0.]])
 
         """
-        return Reversed(self)
+        return Moved(self, turn=-np.eye(2), growth=-1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -351,79 +354,23 @@ class Sum(SupportFunction):
 
 
 @dataclass(frozen=True, eq=False)
-class OffsetCurve(SupportFunction):
-    """h + d, the convolution with a circle of the radius d round the origin."""
+class Moved(SupportFunction):
+    """That of the points M x + t + d n, with the normals of x after `turn`.
+
+    Radii of curvature become `growth` times themselves, plus d.
+    """
 
     of: SupportFunction
-    distance: float
+    motion: Array = field(default_factory=partial(np.eye, 2))
+    turn: Array = field(default_factory=partial(np.eye, 2))
+    shift: Array = field(default_factory=partial(np.zeros, 2))
+    distance: float = 0.0
+    growth: float = 1.0
 
     def _at(self, normals: Array) -> CurveBranches:
-        branches, d = self.of._at(normals), self.distance
-        return replace(
-            branches,
-            support=branches.support + d,
-            points=branches.points + d * branches.normals,
-            radius=branches.radius + d,
-        )
-
-
-@dataclass(frozen=True, eq=False)
-class Translated(SupportFunction):
-    """h + n·t, the convolution with the point t."""
-
-    of: SupportFunction
-    shift: Array
-
-    def _at(self, normals: Array) -> CurveBranches:
-        branches = self.of._at(normals)
-        support = branches.support + branches.normals @ self.shift
-        return replace(branches, support=support, points=branches.points + self.shift)
-
-
-@dataclass(frozen=True, eq=False)
-class Rotated(SupportFunction):
-    """h(R⁻¹n) for a rotation R by an angle in degrees."""
-
-    of: SupportFunction
-    angle: float
-
-    def _at(self, normals: Array) -> CurveBranches:
-        angle = math.radians(self.angle)
-        R = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
-        branches = self.of._at(as_normals(normals @ R, 2))
-        return replace(
-            branches, normals=normals[branches.normal_index], points=branches.points @ R.T
-        )
-
-
-@dataclass(frozen=True, eq=False)
-class Scaled(SupportFunction):
-    """s h."""
-
-    of: SupportFunction
-    factor: float
-
-    def _at(self, normals: Array) -> CurveBranches:
-        branches, s = self.of._at(normals), self.factor
-        return replace(
-            branches,
-            support=s * branches.support,
-            points=s * branches.points,
-            radius=s * branches.radius,
-        )
-
-
-@dataclass(frozen=True, eq=False)
-class Reversed(SupportFunction):
-    """−h(−n)."""
-
-    of: SupportFunction
-
-    def _at(self, normals: Array) -> CurveBranches:
-        branches = self.of._at(-normals)
-        return replace(
-            branches,
-            normals=-branches.normals,
-            support=-branches.support,
-            radius=-branches.radius,
-        )
+        branches = self.of._at(normals @ self.turn)
+        mine = normals[branches.normal_index]
+        points = branches.points @ self.motion.T + self.shift + self.distance * mine
+        support = np.einsum("kx,kx->k", mine, points)
+        radius = self.growth * branches.radius + self.distance
+        return replace(branches, normals=mine, support=support, points=points, radius=radius)
