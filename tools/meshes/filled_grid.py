@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ...runtime.spline.spline import Spline
 from ..kernels.insertion import LatticeCells, insert_points
 from .graded_grid import GradedGrid
-from .triangulation import neighbours
+from .links import neighbours
 from .vertices import CLOSE, Vertices, before_offset, points_at
 
 if TYPE_CHECKING:

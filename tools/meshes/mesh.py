@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,10 +14,8 @@ from ...runtime.base.errors import InputError
 from ...runtime.base.scales import scale_to_one
 from ...runtime.spline.spline import short_label
 from ..kernels.flips import smallest_cosines, smallest_tangents
+from .links import edge_numbers
 from .methods import Methods
-
-if TYPE_CHECKING:
-    pass
 
 __all__ = ["Mesh", "centred", "scaled"]
 
@@ -124,10 +122,9 @@ class Mesh(Methods):
     @cached_property
     def _edges(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """The edges (E, 2), and in how many triangles each of them is."""
-        pairs = np.sort(self.triangles[:, [[1, 2], [2, 0], [0, 1]]].reshape(-1, 2), axis=1)
         count = max(len(self.vertices), 1)
-        keys, times = np.unique(pairs[:, 0] * count + pairs[:, 1], return_counts=True)
-        return np.stack(np.divmod(keys, count), axis=1), times
+        numbers, times = np.unique(edge_numbers(self.triangles, count), return_counts=True)
+        return np.stack(np.divmod(numbers, count), axis=1), times
 
     @property
     def edges(self) -> NDArray[np.int64]:

@@ -15,9 +15,10 @@ from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
 from .filled_grid import grid_triangles
 from .improvement import checked_prefer, flip_edges, improved
+from .links import neighbours
 from .mesh import Mesh
 from .triangulated import Triangulated, too_few
-from .triangulation import neighbours, triangulations
+from .triangulation import triangulations
 from .trimming import trimmed_triangles
 from .vertices import Vertices, before_offset, boundary_of, check_fields
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from ...runtime.base.errors import InputError
 from ..kernels.flips import smallest_cosines
+from .links import neighbours
 from .mesh import Mesh, scaled
-from .triangulation import neighbours
 
 __all__ = ["Triangulated", "too_few"]
 

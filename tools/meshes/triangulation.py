@@ -22,9 +22,8 @@ from ...runtime.base.threads import over_ranges
 from ...runtime.base.tolerances import CIRCLE_HEIGHT_ERROR
 from ...runtime.domain.domain import Boundary
 from ...runtime.kernels import surfaces as kernels
-from ..kernels.links import link_triangles
 
-__all__ = ["Triangulation", "neighbours", "triangulations"]
+__all__ = ["Triangulation", "triangulations"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -86,18 +85,6 @@ def _attempts(has_copies: bool, distance: float) -> list[tuple[float, float]]:
     first = [(DISPLACEMENTS[0], margin) for margin in near]
     first += [(DISPLACEMENTS[1], margin) for margin in near[-1:]]
     return first + [(x, margin) for margin in MARGINS for x in DISPLACEMENTS]
-
-
-def neighbours(triangles: Indices, may_end: NDArray[np.bool_]) -> tuple[Indices, bool]:
-    """Return the triangles (k, 3) opposite to the corners, −1 for none, and whether all are there.
-
-    All are there if each edge is in two triangles, or in one between two vertices where the surface
-    `may_end`. Triangles at an edge of three or more are no neighbours.
-    """
-    triangles = np.ascontiguousarray(triangles)
-    starts, adjacent = np.empty(len(may_end), dtype=np.int64), np.full(triangles.shape, -1)
-    by_end, order = np.empty((2, triangles.size), dtype=np.int64)
-    return adjacent, bool(link_triangles(triangles, may_end, starts, by_end, order, adjacent))
 
 
 # --- open rectangles ------------------------------------------------------------------------------

@@ -20,7 +20,7 @@ from ...runtime.base.trees import tree_of
 from ...runtime.domain.domain import Boundary
 from ...runtime.spline.spline import Spline
 from .border import border_lines, wrapped
-from .triangulation import neighbours
+from .links import edge_numbers, neighbours
 from .vertices import CLOSE, Vertices, before_offset, points_at, spacings_at
 
 if TYPE_CHECKING:
@@ -268,8 +268,7 @@ class _Trimmed:
     def refine(self, whole: Vertices, triangles: Indices, numbers: list[Indices]) -> bool:
         """Add points of the border where it is not made of edges; say whether there are any."""
         count = len(whole.positions)
-        pairs = np.sort(triangles[:, [[1, 2], [2, 0], [0, 1]]].reshape(-1, 2), axis=1)
-        edges = np.unique(pairs[:, 0] * count + pairs[:, 1])
+        edges = np.unique(edge_numbers(triangles, count))
         added = False
         for line, number in zip(self.lines, numbers, strict=True):
             ends = np.sort(np.stack([number[:-1], number[1:]], axis=1), axis=1)

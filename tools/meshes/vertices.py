@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ...generated.mesh import border_spacing
+from ...runtime.base.formula_calls import python_function
 from ...runtime.base.trees import tree_of
 from ...runtime.domain.domain import Boundary, BoundaryPair
 from ...runtime.samples.fields import GRID_NAMES, missing_fields
 from ...runtime.spline.spline import Spline
-from ..kernels.spacing import border_spacings
 
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
@@ -205,10 +206,8 @@ def _poles(inner: Vertices, tree: KDTree, spline: Spline, boundary: Boundary) ->
 def spacings_at(tree: KDTree, points: Array) -> Array:
     """Return spacings (k,) of vertices at points (k, 3), from the distances of samples there."""
     nearest = min(NEAREST, tree.n)
-    spacings = np.empty(len(points))
     distances = tree.query(points, k=nearest, workers=-1)[0].reshape(len(points), -1)[:, -1]
-    border_spacings(distances, float(nearest), spacings)
-    return spacings
+    return distances * python_function(border_spacing)(1.0, nearest)
 
 
 # --- open sides -----------------------------------------------------------------------------------

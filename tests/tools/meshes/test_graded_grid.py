@@ -11,8 +11,8 @@ import pytest
 from gaussmap.runtime.samples.report import SamplingReport
 from gaussmap.tools.meshes import triangulation
 from gaussmap.tools.meshes.graded_grid import GradedGrid
+from gaussmap.tools.meshes.links import neighbours
 from gaussmap.tools.meshes.meshing import triangulated_on_grid
-from gaussmap.tools.meshes.triangulation import neighbours
 
 from .test_meshing import NO_AREA, PREFER, TURN, components, is_one_fan_at_each_vertex, latitude
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from gaussmap.tools.meshes import triangulation
+from gaussmap.tools.meshes.links import neighbours
 
 
 @pytest.mark.parametrize("kind", ["periodic", "mirrored"])
@@ -24,17 +25,17 @@ def test_strips_give_the_triangles_of_the_whole(kind: str, monkeypatch):
         turned = (first + np.arange(3)) % 3
         rows = [np.take_along_axis(x, turned, axis=1) for x in (triangles, sides)]
         found.append(np.unique(np.hstack(rows), axis=0))
-        assert triangulation.neighbours(triangles, ~free)[1]
+        assert neighbours(triangles, ~free)[1]
     np.testing.assert_array_equal(*found)
 
 
 def test_edges_of_one_two_and_three_triangles():
     triangles = np.array([[0, 1, 2], [2, 1, 3], [3, 1, 4]])
-    adjacent, is_closed = triangulation.neighbours(triangles, np.ones(5, dtype=bool))
+    adjacent, is_closed = neighbours(triangles, np.ones(5, dtype=bool))
     np.testing.assert_array_equal(adjacent, [[1, -1, -1], [2, -1, 0], [-1, -1, 1]])
     assert is_closed
-    assert not triangulation.neighbours(triangles, np.arange(5) > 0)[1]
+    assert not neighbours(triangles, np.arange(5) > 0)[1]
     third = np.concatenate([triangles, [[1, 2, 5]]])
-    adjacent, is_closed = triangulation.neighbours(third, np.ones(6, dtype=bool))
+    adjacent, is_closed = neighbours(third, np.ones(6, dtype=bool))
     assert not is_closed
     np.testing.assert_array_equal(adjacent[:2], [[-1, -1, -1], [2, -1, -1]])

@@ -1,0 +1,37 @@
+"""Which triangles of a mesh share an edge."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["edge_numbers", "neighbours"]
+
+Indices = NDArray[np.int64]
+
+
+def edge_numbers(triangles: Indices, count: int) -> Indices:
+    """Return numbers (k, 3) of the edges opposite to the corners of triangles between vertices.
+
+    They are first · count + second, the smaller one of the vertices first.
+    """
+    one, other = triangles[:, [1, 2, 0]], triangles[:, [2, 0, 1]]
+    return np.minimum(one, other) * count + np.maximum(one, other)
+
+
+def neighbours(triangles: Indices, may_end: NDArray[np.bool_]) -> tuple[Indices, bool]:
+    """Return the triangles (k, 3) opposite to the corners, −1 for none, and whether all are there.
+
+    All are there if each edge is in two triangles, or in one between two vertices where the surface
+    `may_end`. Triangles at an edge of three or more are no neighbours.
+    """
+    numbers = edge_numbers(triangles, len(may_end)).ravel()
+    order = np.argsort(numbers, kind="stable")
+    first = np.flatnonzero(np.diff(numbers[order], prepend=-1))
+    times = np.diff(first, append=len(order))
+    one, other = order[first[times == 2]], order[first[times == 2] + 1]
+    adjacent = np.full(triangles.shape, -1)
+    adjacent.flat[one], adjacent.flat[other] = other // 3, one // 3
+    ends = np.divmod(numbers[order[first[times == 1]]], len(may_end))
+    all_there = bool(len(one) and times.max() == 2 and may_end[np.concatenate(ends)].all())
+    return adjacent, all_there
