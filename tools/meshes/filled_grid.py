@@ -1,7 +1,8 @@
-"""The triangles of a grid, and the samples between its lines inserted into them."""
+"""The triangles of a grid; a cell with samples between its lines is triangulated on its own."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -9,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.spline.spline import Spline
-from ..kernels.insertion import LatticeCells, insert_points
 from .graded_grid import GradedGrid
 from .links import neighbours
-from .vertices import CLOSE, Vertices, before_offset, points_at
+from .triangulation import delaunay
+from .vertices import Vertices
 
 if TYPE_CHECKING:
     from ...runtime.samples.samples import Samples
@@ -22,10 +23,11 @@ __all__ = ["grid_triangles"]
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-# A cell may have at most this number of vertices between lines.
-MOST_IN_CELL = 64
+# At most this number of vertices lie between lines.
+MOST_BETWEEN = 20_000
 # Points that are added on an open side below samples are apart by this part of a cell.
 APART = 1.0 / 64.0
+CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 
 
 def grid_triangles(samples: Samples, spline: Spline) -> tuple[Vertices, Indices, Indices] | None:
@@ -34,17 +36,20 @@ def grid_triangles(samples: Samples, spline: Spline) -> tuple[Vertices, Indices,
     None if the samples are on no `GradedGrid`, or too many of them between its lines.
     """
     grid = GradedGrid.of(samples, spline)
-    if grid is None:
+    if grid is None or len(grid.between) > MOST_BETWEEN:
         return None
-    if len(grid.between):
-        grid = _with_feet(_with_samples_at_poles(grid), samples, spline)
-        if np.bincount(grid.cells_of(grid.between)).max(initial=0) > MOST_IN_CELL:
-            return None
-    triangles, adjacent = _filled(grid)
+    grid = _with_samples_at_poles(grid)
+    for axis in (0, 1):
+        for place, end in enumerate(grid.along(axis).ends):
+            grid = _with_feet(grid, axis, place) if end == "open" else grid
+    triangles, cell = grid.triangles()
+    filled = dict(_filled(grid))
+    triangles = np.concatenate([triangles[~np.isin(cell, list(filled))], *filled.values()])
     if grid.is_swapped:
-        triangles, adjacent = (np.ascontiguousarray(x[:, [0, 2, 1]]) for x in (triangles, adjacent))
+        triangles = triangles[:, [0, 2, 1]]
+    adjacent, is_whole = neighbours(triangles, ~grid.vertices.is_free)
     vertices = replace(grid.vertices, positions=grid.uv(grid.vertices.positions))
-    return vertices, triangles, adjacent
+    return (vertices, triangles, adjacent) if is_whole else None
 
 
 def _with_samples_at_poles(grid: GradedGrid) -> GradedGrid:
@@ -58,45 +63,17 @@ def _with_samples_at_poles(grid: GradedGrid) -> GradedGrid:
     return replace(grid, nodes=nodes, between=between)
 
 
-def _with_feet(grid: GradedGrid, samples: Samples, spline: Spline) -> GradedGrid:
-    """Add points on open sides opposite to samples close to them.
+def _with_feet(grid: GradedGrid, axis: int, place: int) -> GradedGrid:
+    """Add points on an open side, an end of x (axis 0) or y (axis 1), opposite to samples near it.
 
-    Otherwise a triangle of such a sample and two points of the side might be flat, or folded.
+    Near are those that are closer to it than to the next node, in cells. Otherwise a triangle of
+    such a sample and two points of the side might be flat, or folded.
     """
-    points, numbers = before_offset(samples) * spline.scale, grid.between
-    for axis in (0, 1):
-        depth = grid.places[numbers, axis]
-        for place, end in enumerate(grid.along(axis).ends):
-            last = grid.along(axis).cells
-            near = (
-                (depth > 0.0) & (depth < 1.0) if place == 0 else (last - 1 < depth) & (depth < last)
-            )
-            if end == "open" and near.any():
-                grid = _with_feet_on(grid, axis, place, numbers[near], points, spline)
-    return grid
-
-
-def _with_feet_on(
-    grid: GradedGrid, axis: int, place: int, near: Indices, points: Array, spline: Spline
-) -> GradedGrid:
-    """Add points on one side, an end of x (axis 0) or y (axis 1), opposite to samples `near` it."""
-
-    def side(along: Array) -> Array:
-        return points_at(spline, grid.uv(grid.on_side(axis, place, along)))
-
-    along, lines = grid.places[near, 1 - axis], grid.along(axis)
-    left = np.minimum(np.floor(along), grid.along(1 - axis).cells - 1)
-    foot, start, end = side(along), side(left), side(left + 1.0)
-    depth, length, before, after = (
-        np.linalg.norm(x, axis=1)
-        for x in (points[near] - foot, end - start, foot - start, end - foot)
-    )
-    is_close = (depth < CLOSE * length) & (depth < np.minimum(before, after))
-    along = along[is_close]
+    near, side = grid.places[grid.between], float(place * grid.along(axis).cells)
+    depth, along = np.abs(near[:, axis] - side), near[:, 1 - axis]
+    along = along[(depth > 0.0) & (depth < np.abs(along - np.rint(along)))]
     along = along[np.unique(np.rint(along / APART), return_index=True)[1]]
-    if not len(along):
-        return grid
-    places = np.full((len(along), 2), float(place * lines.cells))
+    places = np.full((len(along), 2), side)
     places[:, 1 - axis] = along
     added = Vertices.fixed(grid.on_side(axis, place, along), np.full(len(along), -1))
     numbers = len(grid.places) + np.arange(len(along))
@@ -108,27 +85,42 @@ def _with_feet_on(
     )
 
 
-def _filled(grid: GradedGrid) -> tuple[Indices, Indices]:
-    """Return the triangles of a grid, counterclockwise in x and y, and their neighbours."""
-    triangles, cell = grid.triangles()
-    adjacent = neighbours(triangles, ~grid.vertices.is_free)[0]
-    if not len(grid.between):
-        return triangles, adjacent
-    count, more = len(triangles), 2 * len(grid.between)
-    following = np.where(np.diff(cell, append=-1) == 0, np.arange(1, count + 1), -1)
-    cells = LatticeCells(
-        shape=np.array([grid.x.cells, grid.y.cells]),
-        periods=np.array([z.cells if z.closes else 0 for z in (grid.x, grid.y)]),
-        poles=np.array([end == "pole" for end in grid.y.ends]),
-        cell=_longer(cell, more),
-        first=np.searchsorted(cell, np.arange(grid.x.cells * grid.y.cells)),
-        following=_longer(following, more),
-    )
-    triangles, adjacent = _longer(triangles, more), _longer(adjacent, more)
-    count = insert_points(grid.places, triangles, adjacent, count, grid.between, cells)
-    return triangles[:count], adjacent[:count]
+def _filled(grid: GradedGrid) -> Iterator[tuple[int, Indices]]:
+    """Yield the cells with vertices between their corners, and the triangles (k, 3) there.
+
+    A vertex on a line is in the cells on both sides. Of several at one place the first counts.
+    """
+    shape = np.array([grid.x.cells, grid.y.cells])
+    closes = np.array([grid.x.closes, grid.y.closes])
+    places = grid.places[grid.between]
+    places = np.where(closes, places % shape, places)
+    first = np.unique(places, axis=0, return_index=True)[1]
+    first = first[(places[first] % 1.0 > 0.0).any(axis=1)]
+    numbers, places = grid.between[first], places[first]
+    members: dict[int, list[int]] = {}
+    for back in np.ndindex(2, 2):
+        cells = np.floor(places).astype(np.int64) - back
+        touches = (places - cells <= 1.0).all(axis=1)
+        cells = np.where(closes, cells % shape, cells)
+        touches &= ((cells >= 0) & (cells < shape)).all(axis=1)
+        for k in np.flatnonzero(touches).tolist():
+            members.setdefault(int(cells[k] @ (1, shape[0])), []).append(k)
+    for cell, inside in members.items():
+        row, column = divmod(cell, int(shape[0]))
+        # One that lies on the last line of a periodic direction is beyond the first cell.
+        within = places[inside] - (column, row)
+        within = np.where(within < 0.0, within + shape, within)
+        yield cell, _in_cell(grid, row, column, numbers[inside], within)
 
 
-def _longer(array: Indices, more: int) -> Indices:
-    """Return an array with more rows, of −1."""
-    return np.concatenate([array, np.full((more, *array.shape[1:]), -1)])
+def _in_cell(grid: GradedGrid, row: int, column: int, inner: Indices, within: Array) -> Indices:
+    """Triangulate a cell with inner vertices; next to a pole, lines of constant x meet there."""
+    rows, columns = np.array([[row, column]] * 4).T + CORNERS.T[::-1].astype(np.int64)
+    corners = grid.nodes[rows % grid.nodes.shape[0], columns % grid.nodes.shape[1]]
+    x, y = np.concatenate([CORNERS, within]).T
+    for is_there, height in (
+        (row == 0 and grid.y.ends[0] == "pole", y),
+        (row == grid.y.cells - 1 and grid.y.ends[1] == "pole", 1.0 - y),
+    ):
+        x = 0.5 + (x - 0.5) * height if is_there else x
+    return np.concatenate([corners, inner])[delaunay(np.stack([x, y], axis=1))]

@@ -25,6 +25,8 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
+# Places between lines are rounded to this part of a cell: a sample that close lies on a line.
+FINE = 2.0**-20
 # The parameters of samples on a line differ by at most this part of the distance of lines: float32
 # rounds them by 6e-8 of the domain.
 STRAIGHT = 1e-3
@@ -150,6 +152,7 @@ class GradedGrid:
         nodes[is_added] = count + np.arange(len(row))
         nodes[at_poles] = nodes[at_poles, :1]
         places = np.stack([x.numbers(positions[:, 0]), y.numbers(positions[:, 1])], axis=1)
+        places = np.rint(places / FINE) * FINE
         own = np.indices(numbers.shape)
         places[numbers] = np.stack([own[1] + x.added[0], own[0] + y.added[0]], axis=-1)
         places = np.concatenate([places, np.stack([column, row], axis=1).astype(np.float64)])
@@ -172,12 +175,6 @@ class GradedGrid:
         positions = np.full((len(along), 2), float(place))
         positions[:, 1 - axis] = self.along(1 - axis).at(along)
         return positions
-
-    def cells_of(self, numbers: Indices) -> Indices:
-        """Return the cells (k,) of vertices."""
-        shape = np.array([self.x.cells, self.y.cells])
-        column, row = np.minimum(self.places[numbers].astype(np.int64), shape - 1).T
-        return column + row * shape[0]
 
     def triangles(self) -> tuple[Indices, Indices]:
         """Return triangles (k, 3), counterclockwise in x and y, and their cells (k,)."""

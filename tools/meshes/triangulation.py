@@ -23,7 +23,7 @@ from ...runtime.base.tolerances import CIRCLE_HEIGHT_ERROR
 from ...runtime.domain.domain import Boundary
 from ...runtime.kernels import surfaces as kernels
 
-__all__ = ["Triangulation", "triangulations"]
+__all__ = ["Triangulation", "delaunay", "triangulations"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -74,7 +74,9 @@ def triangulations(
             elif closing:
                 yield _on_sphere(moved, boundary, lengths, closing[0])
             else:
-                yield _in_rectangle(np.where(is_free[:, None], moved, _curved(moved)) * lengths)
+                curved = np.where(is_free[:, None], moved, _curved(moved))
+                triangles = delaunay(curved * lengths)
+                yield triangles, np.ones_like(triangles)
 
 
 def _attempts(has_copies: bool, distance: float) -> list[tuple[float, float]]:
@@ -97,14 +99,11 @@ def _curved(positions: Array) -> Array:
     return positions + outwards * heights[:, ::-1]
 
 
-def _in_rectangle(points: Array) -> Triangulation:
+def delaunay(points: Array) -> Indices:
+    """Return the triangles (k, 3) of points (n, 2) of the plane, counterclockwise."""
     from scipy.spatial import Delaunay
 
-    return _all_in_front(_counterclockwise(points, Delaunay(points).simplices))
-
-
-def _counterclockwise(points: Array, triangles: NDArray[Any]) -> Indices:
-    """Return triangles of the plane, oriented counterclockwise."""
+    triangles = Delaunay(points).simplices
     a, b, c = (points[triangles[:, k]].T for k in range(3))
     is_clockwise = (b[0] - a[0]) * (c[1] - a[1]) < (b[1] - a[1]) * (c[0] - a[0])
     return _turned(triangles, is_clockwise)
@@ -114,10 +113,6 @@ def _turned(triangles: NDArray[Any], which: NDArray[np.bool_]) -> Indices:
     result = triangles.astype(np.int64)
     result[which] = result[which][:, [0, 2, 1]]
     return result
-
-
-def _all_in_front(triangles: Indices) -> Triangulation:
-    return triangles, np.ones_like(triangles)
 
 
 # --- spheres, disks, bands: periodic in one parameter ---------------------------------------------
@@ -204,8 +199,6 @@ def _in_strip(
 
     Those are triangles whose corner of the smallest number is in the strip, and no copy.
     """
-    from scipy.spatial import Delaunay
-
     number, strips, margin = strip
     along = points[:, 0] * strips - number
     near = np.flatnonzero((along > -margin * strips) & (along < 1.0 + margin * strips))
@@ -214,6 +207,5 @@ def _in_strip(
     own &= (along[near] < 1.0) | (number == strips - 1)
     own &= original[near] == near
     near = np.concatenate([near[own], near[~own]])
-    scaled = points[near] * lengths
-    triangles = _counterclockwise(scaled, Delaunay(scaled).simplices)
+    triangles = delaunay(points[near] * lengths)
     return _one_of_each(triangles, original[near], int(own.sum()), is_mirrored[near])
