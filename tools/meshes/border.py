@@ -13,8 +13,9 @@ from ...runtime.domain.trim import TrimPart
 from ...runtime.spline.missing import Known
 from ...runtime.spline.spline import Spline
 from ..gauss_map.chains import Segment, joined
+from .places import ON_SIDE, uv_at, wrapped
 
-__all__ = ["border_lines", "wrapped"]
+__all__ = ["border_lines"]
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -23,8 +24,6 @@ Flags = NDArray[np.bool_]
 STEPS_A_CELL = 8
 # Whether a segment is a border is tested at this distance from its middle on both sides.
 ASIDE = 1e-7
-# What is closer to an open side than this lies on it.
-ON_SIDE = 1e-9
 # The border of a predicate is searched on a grid with this number of nodes for each cell, of these
 # numbers of nodes, and then by bisections; so are middles of its segments, several times.
 NODES_A_CELL, FEWEST, MOST, BISECTIONS, PASSES = 4, 64, 1024, 40, 5
@@ -47,22 +46,8 @@ def border_lines(spline: Spline) -> list[Array]:
     return lines
 
 
-def wrapped(positions: Array, boundary: Boundary) -> Array:
-    """Return positions (k, 2) in the unit square, across its seams."""
-    positions = positions.copy()
-    for axis, (end, _) in enumerate(boundary):
-        if end in ("periodic", "mirrored"):
-            turns = np.floor(positions[:, axis])
-            positions[:, axis] -= turns
-            if end == "mirrored":
-                odd = np.mod(turns, 2.0) == 1.0
-                positions[odd, 1 - axis] = 1.0 - positions[odd, 1 - axis]
-    return positions
-
-
 def _uv(positions: Array, spline: Spline) -> Array:
-    low, high = np.array(spline.domain).T
-    return low + wrapped(positions, spline.boundary) * (high - low)
+    return uv_at(spline, wrapped(positions, spline.boundary))
 
 
 def _lines(part: TrimPart, spline: Spline) -> list[Array]:
@@ -176,49 +161,25 @@ def _edges_of_known(part: Known, boundary: Boundary) -> Iterator[Segment]:
 
 
 def _changes(part: TrimPart, spline: Spline) -> Iterator[Segment]:
-    """Yield the segments on which a condition changes: marching squares, refined by bisection."""
-    counts = [int(np.clip(NODES_A_CELL * x, FEWEST, MOST)) for x in spline.cells]
-    closes = [ends[0] == "periodic" for ends in spline.boundary]
-    nodes = np.stack(
-        np.meshgrid(*(np.linspace(0.0, 1.0, k + 1) for k in counts), indexing="ij"), -1
-    )
+    """Yield the lines on which a condition changes: between nodes of a grid, by bisection."""
+    from contourpy import LineType, contour_generator
 
-    def contains(positions: Array) -> Flags:
-        return part.contains(_uv(positions.reshape(-1, 2), spline)).reshape(positions.shape[:-1])
-
-    inside = contains(nodes)
-    crossings = []
-    for axis in (0, 1):
-        if closes[axis]:
-            inside[(-1, slice(None)) if axis == 0 else (slice(None), -1)] = (
-                inside[0] if axis == 0 else inside[:, 0]
-            )
-    for axis in (0, 1):
-        start, end = (nodes[:-1], nodes[1:]) if axis == 0 else (nodes[:, :-1], nodes[:, 1:])
-        at_start, at_end = (
-            (inside[:-1], inside[1:]) if axis == 0 else (inside[:, :-1], inside[:, 1:])
-        )
-        changes = at_start != at_end
-        found = np.full((*changes.shape, 2), np.nan)
-        found[changes] = _bisected(start[changes], end[changes], at_start[changes], part, spline)
-        crossings.append(found)
-    along_u, along_v = crossings
-
-    def node(axis: int, i: int, j: int) -> tuple[int, int, int]:
-        return (axis, i % counts[0] if closes[0] else i, j % counts[1] if closes[1] else j)
-
-    sides = [along_u[:, :-1], along_v[1:], along_u[:, 1:], along_v[:-1]]  # south, east, north, west
-    cut = ~np.isnan(np.stack([x[..., 0] for x in sides], axis=-1))
-    for i, j in np.argwhere(cut.any(axis=2)).tolist():
-        names = [node(0, i, j), node(1, i + 1, j), node(0, i, j + 1), node(1, i, j)]
-        ends = np.flatnonzero(cut[i, j]).tolist()
-        pairs = [(ends[0], ends[1])]
-        if len(ends) == 4:
-            centre = (nodes[i, j] + nodes[i + 1, j + 1]) / 2.0
-            alike = bool(contains(centre[None])[0]) == bool(inside[i, j])
-            pairs = [(0, 1), (2, 3)] if alike else [(0, 3), (1, 2)]
-        for a, b in pairs:
-            yield names[a], names[b], np.stack([sides[a][i, j], sides[b][i, j]])
+    counts = np.clip(NODES_A_CELL * np.array(spline.cells), FEWEST, MOST)
+    closes = np.array([ends[0] == "periodic" for ends in spline.boundary])
+    nodes = np.moveaxis(np.indices(tuple((counts + 1).tolist())), 0, -1) / counts
+    inside = part.contains(_uv(nodes.reshape(-1, 2), spline)).reshape(nodes.shape[:2])
+    for axis in np.flatnonzero(closes):
+        rows = np.swapaxes(inside, 0, axis)
+        rows[-1] = rows[0]
+    # contourpy counts the second axis first.
+    contours = contour_generator(z=inside.T.astype(np.float64), line_type=LineType.Separate)
+    for found in contours.lines(0.5):
+        line = np.asarray(found)
+        low, high = np.floor(line).astype(np.int64), np.ceil(line)
+        at_low = inside[low[:, 0], low[:, 1]]
+        places = _bisected(low / counts, high / counts, at_low, part, spline)
+        start, end = np.where(closes, line[[0, -1]] % counts, line[[0, -1]]).tolist()
+        yield tuple(start), tuple(end), places
 
 
 def _refined(line: Array, part: TrimPart, spline: Spline) -> Array:

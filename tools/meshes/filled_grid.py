@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ...runtime.spline.spline import Spline
 from .graded_grid import GradedGrid
 from .links import neighbours
+from .places import on_side
 from .triangulation import delaunay
 from .vertices import Vertices
 
@@ -73,8 +74,7 @@ def _with_feet(grid: GradedGrid, axis: int, place: int) -> GradedGrid:
     depth, along = np.abs(near[:, axis] - side), near[:, 1 - axis]
     along = along[(depth > 0.0) & (depth < np.abs(along - np.rint(along)))]
     along = along[np.unique(np.rint(along / APART), return_index=True)[1]]
-    places = np.full((len(along), 2), side)
-    places[:, 1 - axis] = along
+    places = on_side(axis, side, along)
     added = Vertices.fixed(grid.on_side(axis, place, along), np.full(len(along), -1))
     numbers = len(grid.places) + np.arange(len(along))
     return replace(

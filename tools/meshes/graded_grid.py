@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from ...runtime.domain.domain import BoundaryPair
 from ...runtime.spline.spline import Spline
-from .vertices import ON_BORDER, Vertices, boundary_of
+from .places import ON_SIDE, boundary_of, on_side
+from .vertices import Vertices
 
 if TYPE_CHECKING:
     from ...runtime.samples.samples import Samples
@@ -64,7 +65,7 @@ class Lines:
             return None
         if closes:
             return None if len(places) < FEWEST else cls(places, ends, (0, 0))
-        low, high = int(places[0] > ON_BORDER), int(places[-1] < 1.0 - ON_BORDER)
+        low, high = int(places[0] > ON_SIDE), int(places[-1] < 1.0 - ON_SIDE)
         if (ends[0] == "pole" and not low) or (ends[1] == "pole" and not high):
             return None
         inner = places[1 - low : len(places) - 1 + high]
@@ -92,7 +93,7 @@ class Lines:
         if self.closes:
             places, positions = np.append(places, first + 1.0), first + (positions - first) % 1.0
         else:
-            on_end = np.abs(positions - np.rint(positions)) <= ON_BORDER
+            on_end = np.abs(positions - np.rint(positions)) <= ON_SIDE
             positions = np.where(on_end, np.rint(positions), positions)
         return np.interp(positions, places, np.arange(len(places)))
 
@@ -172,9 +173,7 @@ class GradedGrid:
 
     def on_side(self, axis: int, place: int, along: Array) -> Array:
         """Return positions (k, 2) at an end of x (axis 0) or y (axis 1), at lines of the other."""
-        positions = np.full((len(along), 2), float(place))
-        positions[:, 1 - axis] = self.along(1 - axis).at(along)
-        return positions
+        return on_side(axis, place, self.along(1 - axis).at(along))
 
     def triangles(self) -> tuple[Indices, Indices]:
         """Return triangles (k, 3), counterclockwise in x and y, and their cells (k,)."""

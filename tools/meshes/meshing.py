@@ -17,10 +17,11 @@ from .filled_grid import grid_triangles
 from .improvement import checked_prefer, flip_edges, improved
 from .links import neighbours
 from .mesh import Mesh
+from .places import boundary_of, uv_at
 from .triangulated import Triangulated, too_few
 from .triangulation import triangulations
 from .trimming import trimmed_triangles
-from .vertices import Vertices, before_offset, boundary_of, check_fields
+from .vertices import Vertices, before_offset, check_fields
 
 if TYPE_CHECKING:
     from ...runtime.samples.samples import Samples
@@ -69,7 +70,7 @@ def triangulated(samples: Samples, spline: Spline, must_be_whole: bool = True) -
         triangles, sides, adjacent = _triangles(vertices, spline, boundary, must_be_whole)
     else:
         vertices, triangles, sides, adjacent, is_whole = trimmed_triangles(
-            vertices, samples, spline, boundary, _lengths(spline),
+            vertices, before_offset(samples), spline, _lengths(spline),
             lambda x: _triangles(x, spline, boundary, False),
         )  # fmt: skip
         if not len(triangles) or (must_be_whole and not is_whole):
@@ -157,7 +158,7 @@ def _on_surface(vertices: Vertices, samples: Samples, spline: Spline) -> tuple[A
 
     Points of an offset are those of the surface.
     """
-    uv = vertices.uv(spline)
+    uv = uv_at(spline, vertices.positions)
     points, normals = np.empty((2, len(uv), 3))
     is_sample = vertices.sample >= 0
     own = vertices.sample[is_sample]

@@ -1,0 +1,84 @@
+"""Positions in the parameter domain, scaled to the unit square: across its seams, and in space."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...generated.mesh import border_spacing
+from ...runtime.base.formula_calls import python_function
+from ...runtime.domain.domain import Boundary, BoundaryPair
+from ...runtime.spline.spline import Spline
+
+if TYPE_CHECKING:
+    from scipy.spatial import KDTree
+
+__all__ = ["ON_SIDE", "boundary_of", "on_side", "points_at", "spacings_at", "uv_at", "wrapped"]
+
+Array = NDArray[np.float64]
+
+# What is closer to an open side or a pole than this part of the domain lies on it.
+ON_SIDE = 1e-9
+# The spacing of points on a border follows from the distance of the k-th nearest sample, this k.
+NEAREST = 4
+
+
+def wrapped(positions: Array, boundary: Boundary, around: Array | None = None) -> Array:
+    """Return positions (..., 2) in the unit square, across its seams.
+
+    Or, with positions `around`, the copies that are nearest to these.
+    """
+    positions = positions.copy()
+    for axis, (end, _) in enumerate(boundary):
+        if end in ("periodic", "mirrored"):
+            along = positions[..., axis]
+            turns = np.floor(along) if around is None else np.rint(along - around[..., axis])
+            positions[..., axis] -= turns
+            if end == "mirrored":
+                odd = np.mod(turns, 2.0) == 1.0
+                positions[odd, 1 - axis] = 1.0 - positions[odd, 1 - axis]
+    return positions
+
+
+def uv_at(spline: Spline, positions: Array) -> Array:
+    """Return the parameters (k, 2) at positions."""
+    low, high = np.array(spline.domain).T
+    return np.where(positions == 1.0, high, low + positions * (high - low))
+
+
+def points_at(spline: Spline, positions: Array) -> Array:
+    """Return the points (k, 3) of a spline at positions, times its scale."""
+    return spline.evaluate(*uv_at(spline, positions).T) * spline.scale
+
+
+def spacings_at(tree: KDTree, points: Array) -> Array:
+    """Return spacings (k,) of vertices at points (k, 3), from the distances of samples there."""
+    nearest = min(NEAREST, tree.n)
+    distances = tree.query(points, k=nearest, workers=-1)[0].reshape(len(points), -1)[:, -1]
+    return distances * python_function(border_spacing)(1.0, nearest)
+
+
+def on_side(axis: int, place: float, t: Array) -> Array:
+    """Return positions (k, 2) with u (axis 0) or v (axis 1) at an end and the other at t (k,)."""
+    fixed = np.full_like(t, place)
+    return np.stack([fixed, t] if axis == 0 else [t, fixed], axis=1)
+
+
+def boundary_of(spline: Spline, apexes: bool = False) -> Boundary:
+    """Return the boundary conditions of a spline; an end that is a single point is a pole.
+
+    That is the end of a surface that closes around it, and with `apexes` any other one.
+    """
+    size = float(np.ptp(spline.coefficients, axis=(0, 1)).max()) * spline.scale
+    found: list[BoundaryPair] = []
+    for axis, ends in enumerate(spline.boundary):
+        kinds = list(ends)
+        for place, end in enumerate(ends):
+            if end == "open" and (apexes or spline.boundary[1 - axis][0] == "periodic"):
+                t = np.linspace(0.0, 1.0, spline.cells[1 - axis] + 1)
+                side = points_at(spline, on_side(axis, place, t))
+                kinds[place] = "pole" if np.ptp(side, axis=0).max() <= ON_SIDE * size else end
+        found.append((kinds[0], kinds[1]))
+    return found[0], found[1]
