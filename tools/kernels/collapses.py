@@ -18,14 +18,23 @@ COSINE_LOSS = 0.1
 
 
 @loop
-def edge_onwards(triangles, vertex, t, over, following):
-    """Return the edge of the triangle `following` across which the next one around a vertex lies.
+def find_fan(triangles, neighbours, first, b, a, fan):
+    """Write the triangles around b from `first`, at the edge a b, to the other one there.
 
-    `following` lies across the edge `over` of triangle t. Edges are numbered as the corners
-    opposite to them.
+    Returns their number, or 0 if b is on a border, or more than `fan` (n,) holds.
     """
-    shared = triangles[t, 3 - over - corner_of(triangles, t, vertex)]
-    return corner_of(triangles, following, shared)
+    t, over = first, corner_of(triangles, first, a)
+    for k in range(fan.size):
+        fan[k] = t
+        following = neighbours[t, over]
+        if following < 0:
+            return 0
+        # The next edge is opposite to the vertex that both have beside b.
+        shared = triangles[t, 3 - over - corner_of(triangles, t, b)]
+        over, t = corner_of(triangles, following, shared), following
+        if t == first:
+            return k + 1
+    return 0
 
 
 @loop
@@ -59,58 +68,50 @@ def cosine_with(points, normals, triangles, sides, t, b, a, turn):
 
 
 @loop
-def tangent_after(points, normals, triangles, sides, neighbours, least, first, b, a):
+def tangent_after(points, normals, triangles, sides, neighbours, least, first, b, a, fan):
     """Return the smallest tangent around b after b is moved to a, or −1 if that is not allowed.
 
     `first` is a triangle with both corners. The smallest tangent has to rise, the smallest cosine
     may fall to `least` or a little, b must not lie on a border, and the mesh has to remain a
     surface.
     """
-    turn = turn_between(triangles, sides, first, a, b)
-    before, after, cosine_before, cosine_after = 2.0, 2.0, 1.0, 1.0  # tan 60° is 1.73
-    t, over, removed = first, corner_of(triangles, first, a), 0
-    while True:
+    count = find_fan(triangles, neighbours, first, b, a, fan)
+    if count == 0:
+        return -1.0
+    other, turn = fan[count - 1], turn_between(triangles, sides, first, a, b)
+    if turn_between(triangles, sides, other, a, b) != turn:
+        return -1.0
+    before = min(
+        tangent_with(points, triangles, first, b, b), tangent_with(points, triangles, other, b, b)
+    )
+    after, cosine_before, cosine_after = 2.0, 1.0, 1.0  # tan 60° is 1.73
+    for t in fan[1 : count - 1]:
         before = min(before, tangent_with(points, triangles, t, b, b))
-        if corner_of(triangles, t, a) < 0:
-            now = cosine_with(points, normals, triangles, sides, t, b, b, 1)
-            cosine_before = min(cosine_before, now)
-            then = cosine_with(points, normals, triangles, sides, t, b, a, turn)
-            cosine_after = min(cosine_after, then)
-            after = min(after, tangent_with(points, triangles, t, b, a))
-        elif turn_between(triangles, sides, t, a, b) == turn:
-            removed += 1
-        following = neighbours[t, over]
-        if following < 0:
-            return -1.0
-        over, t = edge_onwards(triangles, b, t, over, following), following
-        if t == first:
-            break
+        after = min(after, tangent_with(points, triangles, t, b, a))
+        now = cosine_with(points, normals, triangles, sides, t, b, b, 1)
+        cosine_before = min(cosine_before, now)
+        then = cosine_with(points, normals, triangles, sides, t, b, a, turn)
+        cosine_after = min(cosine_after, then)
     is_better = before + QUALITY_GAIN < after < 2.0
     is_folded = cosine_after < min(cosine_before - COSINE_LOSS, least)
-    if (
-        is_folded
-        or not is_better
-        or removed != 2
-        or have_other_neighbours(triangles, neighbours, first, b, a)
-    ):
+    if is_folded or not is_better or have_other_neighbours(triangles, neighbours, b, a, fan, count):
         return -1.0
     return after
 
 
 @loop
-def have_other_neighbours(triangles, neighbours, first, b, a):
+def have_other_neighbours(triangles, neighbours, b, a, fan, count):
     """Return whether a and b have common neighbours beside those in the triangles at their edge."""
-    t, over = first, corner_of(triangles, first, a)
-    while True:
-        following = neighbours[t, over]
-        next_over = edge_onwards(triangles, b, t, over, following)
-        if corner_of(triangles, t, a) < 0 and corner_of(triangles, following, a) < 0:
-            common = triangles[following, next_over]
-            if are_joined(triangles, neighbours, first, a, common):
+    first, other = fan[0], fan[count - 1]
+    for t in fan[1 : count - 1]:
+        for k in range(3):
+            vertex = triangles[t, k]
+            is_beside = corner_of(triangles, first, vertex) + corner_of(triangles, other, vertex)
+            if vertex == a or (
+                is_beside == -2 and are_joined(triangles, neighbours, first, a, vertex)
+            ):
                 return True
-        over, t = next_over, following
-        if t == first:
-            return False
+    return False
 
 
 @loop
@@ -129,31 +130,25 @@ def remove_triangle(triangles, neighbours, t, b, a):
 
 
 @loop
-def collapse_edge(triangles, sides, neighbours, first, b, a):
+def collapse_edge(triangles, sides, neighbours, first, b, a, fan):
     """Move b to a, both corners of the triangle `first`."""
     turn = turn_between(triangles, sides, first, a, b)
-    t, over = first, corner_of(triangles, first, a)
-    other = neighbours[first, 3 - over - corner_of(triangles, first, b)]
-    while True:
-        following = neighbours[t, over]
-        next_over = edge_onwards(triangles, b, t, over, following)
-        if corner_of(triangles, t, a) < 0:
-            k = corner_of(triangles, t, b)
-            triangles[t, k] = a
-            sides[t, k] *= turn
-        over, t = next_over, following
-        if t == first:
-            break
+    count = find_fan(triangles, neighbours, first, b, a, fan)
+    for t in fan[1 : count - 1]:
+        k = corner_of(triangles, t, b)
+        triangles[t, k] = a
+        sides[t, k] *= turn
     remove_triangle(triangles, neighbours, first, b, a)
-    remove_triangle(triangles, neighbours, other, b, a)
+    remove_triangle(triangles, neighbours, fan[count - 1], b, a)
 
 
 @jit
-def collapse_edges(points, normals, triangles, sides, neighbours, is_free, smallest, least):
+def collapse_edges(points, normals, triangles, sides, neighbours, is_free, smallest, least, fan):
     """Collapse edges of triangles with small angles if these grow; return the number of collapses.
 
     A triangle is treated if the tangent of its smallest angle is below `smallest`: of the collapses
     of its edges that move a free vertex, the one after which the tangents are largest is done.
+    `fan` (n,) is workspace for the triangles around a vertex.
     """
     collapses = 0
     for t in range(triangles.shape[0]):
@@ -165,11 +160,11 @@ def collapse_edges(points, normals, triangles, sides, neighbours, is_free, small
             i, j = triangles[t, k % 3], triangles[t, (k + 1 + k // 3) % 3]
             if is_free[i]:
                 tangent = tangent_after(
-                    points, normals, triangles, sides, neighbours, least, t, i, j
+                    points, normals, triangles, sides, neighbours, least, t, i, j, fan
                 )
                 if tangent > largest:
                     largest, b, a = tangent, i, j
         if largest > 0.0:
-            collapse_edge(triangles, sides, neighbours, t, b, a)
+            collapse_edge(triangles, sides, neighbours, t, b, a, fan)
             collapses += 1
     return collapses

@@ -7,13 +7,11 @@ from dataclasses import replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...runtime.base.errors import InputError, shown
 from ...runtime.base.tolerances import NO_AREA
 from ..kernels import collapses
 from ..kernels import flips as kernels
-from .mesh import scaled
 from .triangulated import Triangulated
 
 __all__ = ["Prefer", "checked_prefer", "flip_edges", "improved"]
@@ -30,6 +28,8 @@ SMALLEST = (5.0, 10.0, 15.0, 20.0, 25.0)
 PART, ENOUGH = 0.05, 25.0
 # For each bound at most this number of times: a collapse may allow another one.
 ROUNDS = 4
+# No vertex in more triangles than this is moved.
+MOST_AROUND = 256
 
 
 def checked_prefer(prefer: object) -> Prefer:
@@ -69,28 +69,14 @@ def flip_edges(mesh: Triangulated, prefer: Prefer, least: float = 1.0) -> int:
     For "shape" cosines between triangles and normals may fall, down to `least`.
     """
     return kernels.flip_edges(
-        scaled(mesh.points),
-        mesh.normals,
-        mesh.triangles,
-        mesh.sides,
-        mesh.neighbours,
-        prefer == "shape",
-        least,
-        np.arange(len(mesh.triangles)),
-        np.ones(len(mesh.triangles), dtype=np.bool_),
-    )
-
-
-def tangents_of(mesh: Triangulated) -> NDArray[np.float64]:
-    """Return the tangent of the smallest angle of each triangle (k,)."""
-    tangents = np.empty(len(mesh.triangles))
-    kernels.smallest_tangents(scaled(mesh.points), mesh.triangles, tangents)
-    return tangents
+        *mesh.arrays(), prefer == "shape", least,
+        np.arange(len(mesh.triangles)), np.ones(len(mesh.triangles), dtype=np.bool_),
+    )  # fmt: skip
 
 
 def _has_good_shape(mesh: Triangulated) -> bool:
     """Say whether few enough triangles, but for those on borders, have small angles."""
-    inner = tangents_of(mesh)[(mesh.neighbours >= 0).all(axis=1)]
+    inner = mesh.tangents()[(mesh.neighbours >= 0).all(axis=1)]
     few = math.tan(math.radians(ENOUGH))
     return bool(np.count_nonzero(inner < few) <= PART * len(inner))
 
@@ -100,15 +86,8 @@ def _without_small_angles(
 ) -> Triangulated:
     """Collapse and flip edges at triangles below the tangent `smallest`, while that helps."""
     for _ in range(ROUNDS):
-        if tangents_of(mesh).min(initial=np.inf) >= smallest or not collapses.collapse_edges(
-            scaled(mesh.points),
-            mesh.normals,
-            mesh.triangles,
-            mesh.sides,
-            mesh.neighbours,
-            mesh.is_free,
-            smallest,
-            least,
+        if mesh.tangents().min(initial=np.inf) >= smallest or not collapses.collapse_edges(
+            *mesh.arrays(), mesh.is_free, smallest, least, np.empty(MOST_AROUND, dtype=np.int64)
         ):
             break
         mesh = mesh.chosen(mesh.triangles[:, 0] >= 0)

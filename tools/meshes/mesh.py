@@ -17,7 +17,7 @@ from ..kernels.flips import smallest_cosines, smallest_tangents
 from .links import edge_numbers
 from .methods import Methods
 
-__all__ = ["Mesh", "centred", "scaled"]
+__all__ = ["Mesh", "centred", "cosines_of", "scaled", "tangents_of"]
 
 # The default of `sides`: 1 everywhere.
 _ALL_ALIKE: Any = None
@@ -148,19 +148,13 @@ class Mesh(Methods):
 
         In degrees; 180 for a triangle without area.
         """
-        cosines = np.empty(len(self.triangles))
-        if len(cosines):
-            points = scaled(self.vertices)
-            smallest_cosines(points, self.normals, self.triangles, self.sides, cosines)
+        cosines = cosines_of(self.vertices, self.normals, self.triangles, self.sides)
         return np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0)))
 
     @cached_property
     def smallest_angles(self) -> NDArray[np.float64]:
         """(T,) float64 array: the smallest angle of each triangle, in degrees; at most 60."""
-        tangents = np.empty(len(self.triangles))
-        if len(tangents):
-            smallest_tangents(scaled(self.vertices), self.triangles, tangents)
-        return np.degrees(np.arctan(tangents))
+        return np.degrees(np.arctan(tangents_of(self.vertices, self.triangles)))
 
     def summary(self) -> str:
         """Return one line: vertices, samples left out, triangles, and their quality.
@@ -193,6 +187,27 @@ class Mesh(Methods):
         )
         line += f"; 95 % have angles of at least {small:.1f}°"
         return f"{line}; they deviate from the normals by {mean:.2f}° (mean), {worst:.2f}° (worst)"
+
+
+def cosines_of(
+    points: NDArray[np.float64],
+    normals: NDArray[np.float64],
+    triangles: NDArray[np.int64],
+    sides: NDArray[np.int64],
+) -> NDArray[np.float64]:
+    """Return the smallest cosine (T,) of each triangle and the normals at its corners."""
+    cosines = np.empty(len(triangles))
+    if len(triangles):
+        smallest_cosines(scaled(points), normals, triangles, sides, cosines)
+    return cosines
+
+
+def tangents_of(points: NDArray[np.float64], triangles: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return the tangent of the smallest angle (T,) of each triangle."""
+    tangents = np.empty(len(triangles))
+    if len(triangles):
+        smallest_tangents(scaled(points), triangles, tangents)
+    return tangents
 
 
 def scaled(points: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -102,7 +102,8 @@ def _through(
     uv, points, normals = _on_surface(vertices, samples, spline)
     _fill_missing(normals, triangles, sides)
     if samples.offset_of is not None:
-        points = _moved(vertices, points, normals, samples)
+        added = vertices.sample < 0
+        points[added] += samples.offset_of.distance * normals[added]
     return Triangulated(
         spline.name, uv, vertices.sample, vertices.is_free,
         points, normals, triangles, sides, adjacent, vertices.is_node(samples),
@@ -156,14 +157,14 @@ def _lengths(spline: Spline) -> Array:
 def _on_surface(vertices: Vertices, samples: Samples, spline: Spline) -> tuple[Array, Array, Array]:
     """Return parameters, points and unit normals of vertices; NaN for missing normals.
 
-    Points of an offset are those of the surface.
+    Added points of an offset are those of the surface.
     """
     uv = uv_at(spline, vertices.positions)
     points, normals = np.empty((2, len(uv), 3))
     is_sample = vertices.sample >= 0
     own = vertices.sample[is_sample]
     uv[is_sample] = samples.uv[own]
-    points[is_sample], normals[is_sample] = before_offset(samples)[own], samples.normals[own]
+    points[is_sample], normals[is_sample] = samples.points[own], samples.normals[own]
     base = samples.offset_of or samples
     added = uv[~is_sample]
     if not isinstance(base.surface, Surface) or not len(added):
@@ -186,15 +187,6 @@ def _is_added_at_apex(vertices: Vertices, spline: Spline) -> NDArray[np.bool_]:
         if boundary[axis][place] == "pole" != spline.boundary[axis][place]:
             found |= (vertices.positions[:, axis] == place) & (vertices.sample < 0)
     return found
-
-
-def _moved(vertices: Vertices, points: Array, normals: Array, samples: Samples) -> Array:
-    """Return the points of an offset: the samples, and added vertices moved as they were."""
-    assert samples.offset_of is not None
-    is_sample = vertices.sample >= 0
-    moved = points + samples.offset_of.distance * normals
-    moved[is_sample] = samples.points[vertices.sample[is_sample]]
-    return moved
 
 
 def _fill_missing(normals: Array, triangles: Indices, sides: Indices) -> None:

@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.base.errors import InputError
-from ..kernels.flips import smallest_cosines
 from .links import neighbours
-from .mesh import Mesh, scaled
+from .mesh import Mesh, cosines_of, scaled, tangents_of
 
 __all__ = ["Triangulated", "too_few"]
 
@@ -41,9 +40,15 @@ class Triangulated:
 
     def cosines(self) -> Array:
         """Return the smallest cosine of each triangle and the normals at its corners."""
-        cosines = np.empty(len(self.triangles))
-        smallest_cosines(scaled(self.points), self.normals, self.triangles, self.sides, cosines)
-        return cosines
+        return cosines_of(self.points, self.normals, self.triangles, self.sides)
+
+    def tangents(self) -> Array:
+        """Return the tangent of the smallest angle of each triangle."""
+        return tangents_of(self.points, self.triangles)
+
+    def arrays(self) -> tuple[Array, Array, Indices, Indices, Indices]:
+        """Return what kernels take: points, normals, triangles, sides, and neighbours."""
+        return scaled(self.points), self.normals, self.triangles, self.sides, self.neighbours
 
     def within(self, angle: float) -> Triangulated:
         """Leave out the triangles that deviate by more than `angle` degrees from normals.
