@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from gaussmap.tools.pictures.globe import draw_globe
 from gaussmap.tools.pictures.palette import INK
 from gaussmap.tools.pictures.scene import Scene
+from gaussmap.tools.pictures.sphere_half import draw_globe
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import to_rgb

@@ -13,7 +13,6 @@ import numpy as np
 
 from ...runtime.base.compiling import NOTICE
 from ...runtime.base.errors import InputError
-from ...runtime.samples.request import checked_request
 from ...runtime.surface.surfaces import CATALOGUE
 from ..batch.arguments import SECONDS, asked_of, stored, where
 from ..batch.inputs import Source
@@ -23,7 +22,7 @@ from ..batch.watching import progress
 from ..sources.named import Named
 from ..sources.surface_of import surface_of
 from .console import say, table
-from .inputs import named_normals
+from .inputs import request_of
 from .part_lists import listed
 
 __all__ = ["run"]
@@ -36,12 +35,7 @@ def run(options: SimpleNamespace) -> None:
     """Sample many parts into a data set."""
     NOTICE.quiet = options.quiet
     parts, named = _parts_of(options)
-    normals = named_normals(options)
-    amount = options.count, options.angle, options.coverage
-    count = COUNT if normals is None and amount == (None, None, None) else options.count
-    request = checked_request(
-        normals, count, options.angle, options.coverage, options.density, options.relax, None
-    )
+    request = request_of(options, COUNT)
     fields = None if options.fields is None else options.fields.split(",")
     start = time.monotonic()
     tally = make(

@@ -13,41 +13,48 @@ from numpy.typing import NDArray
 from ...runtime import directions
 from ...runtime.base.compiling import NOTICE
 from ...runtime.base.errors import InputError
+from ...runtime.base.progress import busy
+from ...runtime.sample import sample_and_normals
+from ...runtime.samples.request import Request, checked_request
+from ...runtime.samples.samples import Samples
 from ..cad.part import Part
 from ..files.numpy_files import array_file, is_array_file, read_array
 from ..sources.elevations import is_raster_file
 from ..sources.named import Named
 from ..sources.surface_of import surface_of, with_tolerance
 
-__all__ = ["arguments", "named_normals"]
+__all__ = ["request_of", "sampled"]
 
 
-def arguments(options: SimpleNamespace, default_count: int) -> dict[str, Any]:
-    """Return the arguments of `sampling.sample` that were given."""
+def sampled(
+    options: SimpleNamespace,
+    default_count: int,
+    **how: Any,  # noqa: ANN401
+) -> tuple[Samples, NDArray[np.float64]]:
+    """Return the samples that a command asks for, and the unit normals that were asked."""
     NOTICE.quiet = options.quiet
+    progress = not options.quiet
     _spare_inputs(options)
-    normals = named_normals(options)
+    request = request_of(options, default_count)
     named = Named.of(options)
     surface_, cells = surface_of(named), None
     if not isinstance(surface_, Part):
         surface_, cells = with_tolerance(surface_, named)
+    how |= {"cells": cells, "on": options.on, "threads": options.threads, "progress": progress}
+    with busy("sampling", progress):
+        return sample_and_normals(surface_, request, **how)
+
+
+def request_of(options: SimpleNamespace, default_count: int) -> Request:
+    """Return what is asked for; without any number and normals, the default count."""
+    normals = _named_normals(options)
     asked = normals, options.count, options.angle, options.coverage
-    return {
-        "surface": surface_,
-        "normals": normals,
-        "count": default_count if all(x is None for x in asked) else options.count,
-        "angle": options.angle,
-        "coverage": options.coverage,
-        "density": options.density,
-        "relax": options.relax,
-        "cells": cells,
-        "on": options.on,
-        "threads": options.threads,
-        "progress": not options.quiet,
-    }
+    count = default_count if all(x is None for x in asked) else options.count
+    how = options.density, options.relax, vars(options).get("threads")
+    return checked_request(normals, count, options.angle, options.coverage, *how)
 
 
-def named_normals(options: SimpleNamespace) -> NDArray[np.float64] | None:
+def _named_normals(options: SimpleNamespace) -> NDArray[np.float64] | None:
     """Return the normals that are named or in a file; None if a number says how many samples."""
     if options.seed is not None and options.random is None:
         raise InputError("--seed is for --random COUNT, which is not there.")

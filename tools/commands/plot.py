@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
-from ..pictures.to_file import check_target, plot_to_file
+from ...runtime.base.progress import busy
+from ..pictures.plot import COUNT, plot_samples
+from ..pictures.to_file import check_target, write_figure
 from .console import summarize
-from .inputs import arguments
+from .inputs import sampled
 
 __all__ = ["run"]
 
@@ -14,5 +16,7 @@ __all__ = ["run"]
 def run(options: SimpleNamespace) -> None:
     """Draw a surface and its samples."""
     check_target(options.output)
-    samples = plot_to_file(path=options.output, **arguments(options, default_count=2_000))
+    samples, normals = sampled(options, COUNT)
+    with busy("drawing", not options.quiet):
+        write_figure(plot_samples(samples, normals=normals), options.output)
     summarize(samples, options)

@@ -7,12 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 
 from ...runtime.base.errors import InputError
-from ...runtime.sample import sample
 from ...runtime.samples.fields import checked_fields
 from ..cad.part_files import is_part_file
 from ..files.formats import check_fields, check_samples_target
 from .console import summarize
-from .inputs import arguments
+from .inputs import sampled
 
 __all__ = ["run"]
 
@@ -29,12 +28,7 @@ def run(options: SimpleNamespace) -> None:
     if options.progressive and not {"points", "normals"} <= {*written}:
         raise InputError("--progressive needs points and normals among the --fields.")
     dtype = np.float32 if options.float32 else np.float64
-    samples = sample(
-        **arguments(options, default_count=10_000),
-        fields=fields,
-        dtype=dtype,
-        edges=options.edges,
-    )
+    samples, _ = sampled(options, 10_000, fields=fields, dtype=dtype, edges=options.edges)
     if options.progressive:
         samples = samples.progressive(progress=not options.quiet)
     samples.write(options.output, progress=not options.quiet)

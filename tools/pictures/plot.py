@@ -15,7 +15,6 @@ from ...runtime.base.checks import finite_array, listed, real_values
 from ...runtime.base.errors import InputError
 from ...runtime.base.extras import check_extra
 from ...runtime.directions.unit import as_normals
-from ...runtime.fitting.fit import spline_of
 from ...runtime.sample import sample
 from ...runtime.samples.samples import Samples
 from ...runtime.spline.spline import Spline
@@ -23,35 +22,24 @@ from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import named
 from ..cad.part import Part
 from .colours import CURVATURE, checked_values, colours_of, draw_scale
-from .layout import (
-    HEIGHT,
-    LEFT,
-    LEGENDS,
-    MIDDLE,
-    RADIUS,
-    RIGHT,
-    TITLES,
-    WIDTH,
-    box,
-    write,
-)  # fmt: skip
 from .palette import PALE, STYLE
-from .part_scene import part_scene
-from .scene import AZIMUTH, ELEVATION, Scene
+from .scene import VIEW, Scene, scene_of_samples
 from .scene import view as rows_of_view
-from .sphere_half import draw_sphere
+from .sphere_half import RADIUS, draw_sphere
 from .surface_half import View, draw_surface
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["COUNT", "checked_normals", "draw", "plot", "plot_part", "plot_samples", "scene_of"]
+__all__ = ["COUNT", "plot", "plot_part", "plot_samples", "style"]
 
 COUNT = 2_000  # samples, if no number is given
 DOTS_PER_INCH = 200
 LONGEST_LINE = 140  # letters of the summary
-VIEW = (ELEVATION, AZIMUTH)
+# In inches: the size, the centres of both halves, and the heights of titles and legends.
+WIDTH, HEIGHT, MIDDLE, TITLES, LEGENDS = 9.0, 4.9, 2.45, 4.17, 0.56
+LEFT, RIGHT = 2.4, 6.8
 
 
 def plot(
@@ -119,16 +107,11 @@ def plot(
 
     """
     check_extra("matplotlib", "plot", "a picture")
-    seen_from = _checked_view(view)
-    panels = _checked_axes(axes)
     if not isinstance(surface, Spline | Part):
         surface = named(surface)
     if samples is None:
         samples = sample(surface, COUNT)
-    directions = checked_normals(samples, () if normals is None else normals)
-    checked_values(samples, color)
-    scene = scene_of(surface, rows_of_view(*seen_from))
-    return draw(samples, scene, directions, color=color, view=seen_from, axes=panels)
+    return plot_samples(samples, surface, color=color, view=view, axes=axes, normals=normals)
 
 
 def plot_part(
@@ -180,46 +163,15 @@ def plot_samples(
 ) -> Figure:
     """Return what `plot` returns, for `Samples.plot`."""
     check_extra("matplotlib", "plot", "a picture")
-    seen_from = _checked_view(view)
+    elevation, azimuth = finite_array(view, (2,), "view").tolist()
     panels = _checked_axes(axes)
-    directions = checked_normals(samples, () if normals is None else normals)
+    directions = _checked_normals(samples, () if normals is None else normals)
     checked_values(samples, color)
-    scene = scene_of_samples(samples, surface, rows_of_view(*seen_from))
-    return draw(samples, scene, directions, color=color, view=seen_from, axes=panels)
+    scene = scene_of_samples(samples, surface, rows_of_view(elevation, azimuth))
+    return _drawn(samples, scene, directions, color, (elevation, azimuth), panels)
 
 
-def scene_of_samples(
-    samples: Samples,
-    surface: Surface | Spline | Part | None = None,
-    seen_from: NDArray[np.float64] | None = None,
-) -> Scene:
-    """Return the scene of what samples are on; InputError if that is unknown."""
-    base = samples.offset_of
-    for known in (surface, samples.spline, samples.surface):
-        if known is not None:
-            return scene_of(known, seen_from)  # pyright: ignore[reportArgumentType]
-    if base is not None and base.spline is not None:
-        return Scene.of(base.spline, seen_from, base.distance)
-    raise InputError(
-        "these samples do not know their surface (those from a file do not); give it, as in "
-        "samples.plot(surface)."
-    )
-
-
-def scene_of(
-    surface: Surface | Spline | Part, seen_from: NDArray[np.float64] | None = None
-) -> Scene:
-    """Return the scene of a surface, its spline, or a part."""
-    if isinstance(surface, Part):
-        return part_scene(surface, seen_from)
-    if not isinstance(surface, Surface | Spline):
-        kind = type(surface).__name__
-        raise InputError(f"surface must be a Surface, a Spline or a Part, not {kind}.")
-    # Of several pieces one spline is drawn, which rounds the edges between them.
-    return Scene.of(spline_of(surface, None), seen_from)
-
-
-def checked_normals(samples: Samples, normals: ArrayLike) -> NDArray[np.float64]:
+def _checked_normals(samples: Samples, normals: ArrayLike) -> NDArray[np.float64]:
     """Return the prescribed normals as unit vectors (S, 3), none if none are given.
 
     Raises InputError if there are too few of them for the samples.
@@ -235,11 +187,6 @@ def checked_normals(samples: Samples, normals: ArrayLike) -> NDArray[np.float64]
     if len(samples) and int(samples.normal_index.max()) >= len(directions):
         raise InputError("the samples do not belong to these normals: there are too few normals.")
     return directions
-
-
-def _checked_view(view: Sequence[float]) -> View:
-    elevation, azimuth = finite_array(view, (2,), "view").tolist()
-    return elevation, azimuth
 
 
 def _checked_axes(axes: Axes | Sequence[Axes] | None) -> tuple[Any, ...]:
@@ -259,50 +206,45 @@ def _checked_axes(axes: Axes | Sequence[Axes] | None) -> tuple[Any, ...]:
     return tuple(panels)
 
 
-def draw(
+def _drawn(
     samples: Samples,
     scene: Scene,
     normals: NDArray[np.float64],
-    *,
-    color: str | ArrayLike = CURVATURE,
-    view: View = VIEW,
-    axes: Sequence[Any] = (),
-    dots_per_inch: float = DOTS_PER_INCH,
+    color: str | ArrayLike,
+    view: View,
+    axes: Sequence[Any],
 ) -> Figure:
     """Draw samples on a scene, and the prescribed normals, into a new figure or into axes."""
-    with _style():
+    with style():
         colours = colours_of(samples, color)
         if axes:
             draw_surface(axes[0], samples, scene, colours, view, zoomed=False)
-            if len(axes) == 2:
-                _sphere_axes(axes[1])
-                draw_sphere(axes[1], samples, normals, scene.view)
+            for sphere in axes[1:]:
+                draw_sphere(sphere, samples, normals, scene.view)
             return axes[0].figure
         from .figure import Picture
 
-        figure = Picture(figsize=(WIDTH, HEIGHT), dpi=dots_per_inch)
+        figure = Picture(figsize=(WIDTH, HEIGHT), dpi=DOTS_PER_INCH)
         _write_titles(figure, samples)
-        place = box(LEFT, MIDDLE, 4.5, 4.5)
-        left: Any = figure.add_axes(place, projection="3d")
+        left: Any = figure.add_axes(_box(LEFT, MIDDLE, 4.5, 4.5), projection="3d")
         visible = draw_surface(left, samples, scene, colours, view, zoomed=True)
-        if len(samples):
-            draw_scale(figure.add_axes(box(LEFT, LEGENDS + 0.06, 2.7, 0.1)), colours)
-        title = f"{visible:,} of {len(samples):,} samples visible"
-        write(figure, LEFT, TITLES, title if len(samples) else "no samples")
-        right = figure.add_axes(box(RIGHT, MIDDLE, 2.6 * RADIUS, 2.6 * RADIUS))
-        _sphere_axes(right)
+        right = figure.add_axes(_box(RIGHT, MIDDLE, 2.6 * RADIUS, 2.6 * RADIUS))
         handles = draw_sphere(right, samples, normals, scene.view)
+        title, whose = "no samples", "the prescribed normals"
+        if len(samples):
+            draw_scale(figure.add_axes(_box(LEFT, LEGENDS + 0.06, 2.7, 0.1)), colours)
+            title, whose = f"{visible:,} of {len(samples):,} samples visible", "their normals"
+        _write(figure, LEFT, TITLES, title)
+        _write(figure, RIGHT, TITLES, f"{whose}, on the unit sphere")
         figure.legend(
             handles=handles, loc="center", bbox_to_anchor=(RIGHT / WIDTH, LEGENDS / HEIGHT),
             ncols=3, frameon=False, handletextpad=0.1, columnspacing=1.4,
         )  # fmt: skip
-        whose = "their normals" if len(samples) else "the prescribed normals"
-        write(figure, RIGHT, TITLES, f"{whose}, on the unit sphere")
     return figure
 
 
 @contextmanager
-def _style() -> Iterator[None]:
+def style() -> Iterator[None]:
     """Draw with matplotlib's defaults, so that a picture does not depend on the user's settings."""
     import matplotlib.style
 
@@ -315,16 +257,21 @@ def _style() -> Iterator[None]:
         yield
 
 
-def _sphere_axes(axes: Axes) -> None:
-    axes.set(xlim=(-1.3, 1.3), ylim=(-1.3, 1.3), aspect="equal")
-    axes.set_axis_off()
-
-
 def _write_titles(figure: Figure, samples: Samples) -> None:
     """Write the name of the surface and the summary of the samples."""
     name = " ".join(samples.report.surface.split())
-    write(figure, WIDTH / 2, 4.64, name if len(name) <= 80 else name[:79] + "…", fontsize=11)
+    _write(figure, WIDTH / 2, 4.64, name if len(name) <= 80 else name[:79] + "…", fontsize=11)
     lines = textwrap.wrap(samples.summary(), LONGEST_LINE)
     for k, line in enumerate(lines):
         place = 4.43 + 0.03 * (len(lines) - 1) - 0.12 * k
-        write(figure, WIDTH / 2, place, line, fontsize=7.5, color=PALE)
+        _write(figure, WIDTH / 2, place, line, fontsize=7.5, color=PALE)
+
+
+def _write(figure: Figure, x: float, y: float, text: str, **looks: Any) -> None:  # noqa: ANN401
+    """Write a text at a position in inches; dollar signs in it are not mathematics."""
+    figure.text(x / WIDTH, y / HEIGHT, text, ha="center", parse_math=False, **looks)
+
+
+def _box(x: float, y: float, width: float, height: float) -> tuple[float, float, float, float]:
+    """Return a rectangle, given by its centre and size in inches, in fractions of the figure."""
+    return (x - width / 2) / WIDTH, (y - height / 2) / HEIGHT, width / WIDTH, height / HEIGHT

@@ -1,4 +1,4 @@
-"""Visibility of points in a picture.
+"""What is drawn of a surface or of a CAD part, in pictures and on pages, and what is visible of it.
 
 Matplotlib draws in three dimensions without a depth test. Here a point is hidden if a triangle of
 a mesh of the surface lies between it and the viewer.
@@ -13,11 +13,28 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ...runtime.base.errors import InputError, SurfaceError
+from ...runtime.fitting.fit import spline_of
+from ...runtime.samples.samples import Samples
 from ...runtime.spline.spline import Spline
+from ...runtime.surface.surface import Surface
+from ..cad.face_pieces import FacePiece, pieces_of
+from ..cad.part import Part
 
-__all__ = ["AZIMUTH", "ELEVATION", "Scene", "front", "height_factor", "quadrangles", "view"]
+__all__ = [
+    "VIEW",
+    "Scene",
+    "front",
+    "height_factor",
+    "quadrangles",
+    "scene_of",
+    "scene_of_samples",
+    "view",
+]
 
-ELEVATION, AZIMUTH = 28.0, -55.0  # of the viewer, in degrees
+Array = NDArray[np.float64]
+
+VIEW = ELEVATION, AZIMUTH = 28.0, -55.0  # of the viewer, in degrees
 MESH, MOST_MESH = 112, 224  # quadrangles along u and v: the number of cells, within these limits
 ISOLINES = 16  # parameter lines along u and v
 # A surface hides a sample if it is nearer to the viewer by this fraction of its diameter.
@@ -25,9 +42,12 @@ HIDING = 0.01
 # A ratio of height to width below LOW or above HIGH is changed to about the second number.
 LOW, LOW_WANTED = 0.1, 0.25
 HIGH, HIGH_WANTED = 10.0, 2.0
+# Of parts: grid lines across a plane, across other faces, and across those of parts with many.
+FLAT, CURVED, SMALL, MANY = 2, 40, 12, 60
+PIECES = 160  # into which the border of a face is divided, about
 
 
-def view(elevation: float = ELEVATION, azimuth: float = AZIMUTH) -> NDArray[np.float64]:
+def view(elevation: float = ELEVATION, azimuth: float = AZIMUTH) -> Array:
     """Return the rows (3, 3) right, up, and towards a viewer at two angles in degrees."""
     angles = math.radians(elevation), math.radians(azimuth)
     s, c, S, C = (f(angle) for angle in angles for f in (math.sin, math.cos))
@@ -42,52 +62,23 @@ class Scene:
     line is an array (k, 3). `view` holds the rows right, up, and towards the viewer.
     """
 
-    quadrangles: NDArray[np.float64]
-    lines: tuple[NDArray[np.float64], ...] = ()
+    quadrangles: Array
+    lines: tuple[Array, ...] = ()
     factor: float = 1.0
-    view: NDArray[np.float64] = field(default_factory=view)
+    view: Array = field(default_factory=view)
 
-    @classmethod
-    def of(
-        cls,
-        spline: Spline,
-        seen_from: NDArray[np.float64] | None = None,
-        distance: float = 0.0,
-    ) -> Scene:
-        """Return the scene of a spline, or of its offset, with heights rescaled if necessary."""
-        u, v = (
-            np.linspace(low, high, min(max(MESH, count), MOST_MESH) + 1)
-            for (low, high), count in zip(spline.domain, spline.cells, strict=True)
-        )
-        mesh = spline.evaluate(u[:, None], v)
-        if distance:
-            mesh = mesh + distance * np.nan_to_num(spline.normals(u[:, None], v))
-        pieces = [x[_some(len(x))] for x in (mesh, np.swapaxes(mesh, 0, 1))]
-        return cls.made(quadrangles(mesh), (*pieces[0], *pieces[1]), seen_from)
-
-    @classmethod
-    def made(
-        cls,
-        quadrangles: NDArray[np.float64],
-        lines: tuple[NDArray[np.float64], ...],
-        seen_from: NDArray[np.float64] | None = None,
-    ) -> Scene:
-        """Return the scene of quadrangles and lines, with heights rescaled if necessary."""
-        factor = height_factor(np.ptp(quadrangles.reshape(-1, 3), axis=0))
-        return cls(quadrangles, lines, factor, view() if seen_from is None else seen_from)
-
-    def seen(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    def seen(self, points: Array) -> Array:
         """Return points (..., 3) as right, up, and nearness to the viewer."""
         return (points * [1.0, 1.0, self.factor]) @ self.view.T
 
     @cached_property
-    def triangles(self) -> NDArray[np.float64]:
+    def triangles(self) -> Array:
         """The halves (T, 3, 3) of the quadrangles, in the coordinates of `seen`."""
         seen = self.seen(self.quadrangles)
         return np.concatenate([seen[:, [0, 1, 2]], seen[:, [0, 2, 3]]])
 
     @cached_property
-    def brightness(self) -> NDArray[np.float64]:
+    def brightness(self) -> Array:
         """The brightness (Q,) of the quadrangles, 0 … 1; the light comes from the upper left."""
         a, b, c, d = np.moveaxis(self.seen(self.quadrangles), 1, 0)
         size = np.abs([c - a, d - b]).max() or 1.0
@@ -99,7 +90,7 @@ class Scene:
         return np.clip(normals @ (lamp / np.linalg.norm(lamp)), 0.0, 1.0)
 
     @cached_property
-    def visible_lines(self) -> NDArray[np.float64]:
+    def visible_lines(self) -> Array:
         """The visible segments (k, 2, 3) of the lines."""
         if not self.lines:
             return np.empty((0, 2, 3))
@@ -110,32 +101,116 @@ class Scene:
         first = np.delete(np.arange(len(seen)), ends - 1)
         return segments[seen[first] & seen[first + 1]]
 
-    def visible(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
+    def visible(self, points: Array) -> NDArray[np.bool_]:
         """Return which points (P, 3) of the surface are visible, as booleans (P,)."""
         seen = self.seen(points)
         diameter = float(np.linalg.norm(np.ptp(self.triangles.reshape(-1, 3), axis=0)))
         return seen[:, 2] >= front(self.triangles, seen[:, :2]) - HIDING * diameter
 
 
-def _some(count: int) -> NDArray[np.int64]:
-    """Return the numbers of the parameter lines that are drawn, of `count`."""
-    return np.linspace(0, count - 1, ISOLINES + 1).round().astype(np.int64)
+def scene_of_samples(
+    samples: Samples, surface: object = None, seen_from: Array | None = None
+) -> Scene:
+    """Return the scene of what samples are on; InputError if that is unknown."""
+    base = samples.offset_of
+    for known in (surface, samples.spline, samples.surface):
+        if known is not None:
+            return scene_of(known, seen_from)
+    if base is not None and base.spline is not None:
+        return scene_of(base.spline, seen_from, base.distance)
+    raise InputError(
+        "these samples do not know their surface (those from a file do not); give it, as in "
+        "samples.plot(surface)."
+    )
 
 
-def quadrangles(mesh: NDArray[np.float64]) -> NDArray[np.float64]:
+def scene_of(surface: object, seen_from: Array | None = None, distance: float = 0.0) -> Scene:
+    """Return the scene of a surface, its spline, their offset, or a part, with heights rescaled.
+
+    Raises SurfaceError for a part of which no face can be used, InputError for anything else.
+    """
+    if isinstance(surface, Part):
+        drawn, lines = _of_part(surface)
+    elif isinstance(surface, Surface | Spline):
+        # Of several pieces one spline is drawn, which rounds the edges between them.
+        drawn, lines = _of_spline(spline_of(surface, None), distance)
+    else:
+        kind = type(surface).__name__
+        raise InputError(f"surface must be a Surface, a Spline or a Part, not {kind}.")
+    factor = height_factor(np.ptp(drawn.reshape(-1, 3), axis=0))
+    return Scene(drawn, lines, factor, view() if seen_from is None else seen_from)
+
+
+def _of_spline(spline: Spline, distance: float) -> tuple[Array, tuple[Array, ...]]:
+    """Return quadrangles of a spline, or of its offset, and parameter lines."""
+    u, v = (
+        np.linspace(low, high, min(max(MESH, count), MOST_MESH) + 1)
+        for (low, high), count in zip(spline.domain, spline.cells, strict=True)
+    )
+    mesh = spline.evaluate(u[:, None], v)
+    if distance:
+        mesh = mesh + distance * np.nan_to_num(spline.normals(u[:, None], v))
+    lines = [
+        line
+        for side in (mesh, np.swapaxes(mesh, 0, 1))
+        for line in side[np.linspace(0, len(side) - 1, ISOLINES + 1).round().astype(np.int64)]
+    ]
+    return quadrangles(mesh), tuple(lines)
+
+
+def _of_part(part: Part) -> tuple[Array, tuple[Array, ...]]:
+    """Return triangles of the faces of a part, and their borders."""
+    fine = SMALL if len(part) > MANY else CURVED
+    pieces, _ = pieces_of(part.faces)
+    if not pieces:
+        raise SurfaceError(f"{part.name!r} has no face that can be drawn.")
+    triangles, lines = zip(*(_of_face(piece, fine) for piece in pieces), strict=True)
+    return np.concatenate(triangles)[:, [0, 1, 2, 2]], tuple(x for some in lines for x in some)
+
+
+def _of_face(piece: FacePiece, fine: int) -> tuple[Array, list[Array]]:
+    """Return triangles (k, 3, 3) of a face, and its border as lines."""
+    from scipy.spatial import Delaunay
+
+    surface, trim = piece.surface, piece.surface.trim
+    low, high = np.array(surface.domain).T
+    size = high - low
+    loops = [np.clip(low + size * _divided((x - low) / size), low, high) for x in piece.polygons]
+    across = FLAT if piece.face.kind == "plane" else fine
+    grid = np.meshgrid(*np.linspace(low, high, across + 1).T, indexing="ij")
+    places = np.stack(grid, axis=2).reshape(-1, 2)
+    if trim is not None:
+        inner = places[trim.contains(places)]
+        places = np.unique(np.concatenate([inner, *(x[:-1] for x in loops)]), axis=0)
+    triangles = Delaunay((places - low) / size, qhull_options="QJ Pp").simplices
+    if trim is not None:
+        triangles = triangles[trim.contains(places[triangles].mean(axis=1))]
+    return surface.evaluate(*places.T)[triangles], [surface.evaluate(*x.T) for x in loops]
+
+
+def _divided(loop: Array) -> Array:
+    """Return a closed polygon in the unit square with more points; the first one is repeated."""
+    closed = np.concatenate([loop, loop[:1]])
+    lengths = np.linalg.norm(np.diff(closed, axis=0), axis=1)
+    counts = np.maximum(np.ceil(lengths * PIECES / max(lengths.sum(), 1e-300)), 1)
+    corners = np.concatenate([[0.0], np.cumsum(counts)])
+    return np.stack([np.interp(np.arange(corners[-1] + 1), corners, x) for x in closed.T], axis=1)
+
+
+def quadrangles(mesh: Array) -> Array:
     """Return the quadrangles (Q, 4, 3) of a mesh (m + 1, n + 1, 3), corners in cyclic order."""
     corners = mesh[:-1, :-1], mesh[1:, :-1], mesh[1:, 1:], mesh[:-1, 1:]
     return np.stack([x.reshape(-1, 3) for x in corners], axis=1)
 
 
-def front(triangles: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.float64]:
+def front(triangles: Array, places: Array) -> Array:
     """Return the depth of the front one of triangles (T, 3, 3) at places (P, 2); −∞ without one."""
     flat = triangles[..., :2]
     grid = max(1, round(math.sqrt(len(triangles)) / 2))
     lowest, highest = flat.min(axis=(0, 1)), flat.max(axis=(0, 1))
     step = np.where(highest > lowest, highest - lowest, 1.0) / grid
 
-    def square(points: NDArray[np.float64]) -> NDArray[np.int64]:
+    def square(points: Array) -> NDArray[np.int64]:
         return np.clip(np.floor((points - lowest) / step), 0, grid - 1).astype(np.int64)
 
     # Every triangle is listed in all squares that its bounding box meets.
@@ -166,11 +241,11 @@ def _runs(counts: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int6
     return which, np.arange(len(which)) - (np.cumsum(counts) - counts)[which]
 
 
-def _cross(left: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.float64]:
+def _cross(left: Array, right: Array) -> Array:
     return left[:, 0] * right[:, 1] - left[:, 1] * right[:, 0]
 
 
-def height_factor(extent: NDArray[np.float64]) -> float:
+def height_factor(extent: Array) -> float:
     """Return the factor of heights: 1, unless the surface is very flat or very high."""
     width, height = float(extent[:2].max()), float(extent[2])
     if LOW * width <= height <= HIGH * width or height <= 1e-9 * width or width <= 1e-9 * height:

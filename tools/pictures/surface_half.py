@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from ...runtime.samples.samples import Samples
 from .colours import Colours
-from .layout import ROOM_HEIGHT, ROOM_WIDTH
 from .palette import INK
 from .scene import Scene
 
 __all__ = ["View", "draw_surface"]
 
+ROOM_WIDTH, ROOM_HEIGHT = 4.1, 3.1  # in inches
 View = tuple[float, float]  # elevation and azimuth of the viewer, in degrees
 
 

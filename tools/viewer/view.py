@@ -27,8 +27,7 @@ from ...runtime.surface.surface import Surface
 from ..cad.part import Part
 from ..files import paths
 from ..pictures.palette import ELLIPTIC, HYPERBOLIC, PARABOLIC, SCALE
-from ..pictures.plot import scene_of_samples
-from ..pictures.scene import Scene
+from ..pictures.scene import Scene, scene_of_samples
 
 __all__ = ["COUNT", "MOST", "SUFFIXES", "check_count", "check_target", "page", "view"]
 

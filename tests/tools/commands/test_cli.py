@@ -14,7 +14,8 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.commands import sample as sampling
+from gaussmap.runtime.samples.request import Request
+from gaussmap.tools.commands import inputs
 from gaussmap.tools.commands.cli import main
 
 FEW = ["--count", "60", "--cells", "8", "8"]
@@ -263,13 +264,13 @@ def test_every_file_type(suffix: str, capsys: pytest.CaptureFixture[str]) -> Non
 
 def test_quiet(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     progress = []
-    sample = sampling.sample
+    sample = inputs.sample_and_normals
 
-    def spy(*arguments: object, **options: object) -> gm.Samples:
+    def spy(*arguments: object, **options: object) -> object:
         progress.append(options["progress"])
         return sample(*arguments, **options)  # pyright: ignore[reportArgumentType]
 
-    monkeypatch.setattr(sampling, "sample", spy)
+    monkeypatch.setattr(inputs, "sample_and_normals", spy)
     assert main(["sample", "torus", *FEW, "-o", "a.npz", "--quiet"]) == 0
     assert capsys.readouterr() == ("", "")
     assert main(["sample", "torus", *FEW, "-o", "a.npz"]) == 0
@@ -279,11 +280,11 @@ def test_quiet(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPat
 def test_the_default_is_a_count(monkeypatch: pytest.MonkeyPatch) -> None:
     asked = {}
 
-    def spy(**options: object) -> gm.Samples:
-        asked.update(options)
+    def spy(_: object, request: Request, **options: object) -> gm.Samples:
+        asked.update(vars(request) | options)
         raise gm.errors.InputError("enough")
 
-    monkeypatch.setattr(sampling, "sample", spy)
+    monkeypatch.setattr(inputs, "sample_and_normals", spy)
     assert main(["sample", "torus", "-o", "a.npz"]) == 2
     assert (asked["count"], asked["normals"]) == (10_000, None)
     assert main(["sample", "torus", "--frequency", "2", "--threads", "3", "-o", "a.npz"]) == 2
@@ -531,10 +532,10 @@ def test_an_error_is_one_line(
 
 
 def test_bad_output_is_found_before_the_work(monkeypatch: pytest.MonkeyPatch) -> None:
-    def work(**_: object) -> None:
+    def work(*_: object, **__: object) -> None:
         pytest.fail("worked in vain")
 
-    monkeypatch.setattr(sampling, "sample", work)
+    monkeypatch.setattr(inputs, "sample_and_normals", work)
     assert main(["sample", "torus", "-o", "a.stl"]) == 2
     assert main(["sample", "torus", "-o", "missing/a.ply"]) == 2
 
@@ -556,19 +557,19 @@ def test_an_error_in_a_process() -> None:
 
 
 def test_no_memory(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    def sample(**_: object) -> None:
+    def sample(*_: object, **__: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr(sampling, "sample", sample)
+    monkeypatch.setattr(inputs, "sample_and_normals", sample)
     assert main(["sample", "torus", *TO]) == 2
     assert re.fullmatch("gaussmap: error: there is not enough memory.*\n", capsys.readouterr().err)
 
 
 def test_a_bug_keeps_its_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
-    def sample(**_: object) -> None:
+    def sample(*_: object, **__: object) -> None:
         raise ZeroDivisionError
 
-    monkeypatch.setattr(sampling, "sample", sample)
+    monkeypatch.setattr(inputs, "sample_and_normals", sample)
     with pytest.raises(ZeroDivisionError):
         main(["sample", "torus", *TO])
 
@@ -581,11 +582,11 @@ def test_interrupted_in_a_callback(
     class Unraisable:
         exc_type = KeyboardInterrupt
 
-    def sample(**_: object) -> None:
+    def sample(*_: object, **__: object) -> None:
         sys.unraisablehook(Unraisable())  # pyright: ignore[reportArgumentType]
         raise RuntimeError("compilation failed")
 
-    monkeypatch.setattr(sampling, "sample", sample)
+    monkeypatch.setattr(inputs, "sample_and_normals", sample)
     hook = sys.unraisablehook
     assert main(["sample", "torus", *TO]) == 130
     assert capsys.readouterr() == ("", "gaussmap: interrupted\n")

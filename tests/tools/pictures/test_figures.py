@@ -11,9 +11,8 @@ from types import ModuleType
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.pictures.part_scene import part_scene
-from gaussmap.tools.pictures.scene import view
-from gaussmap.tools.pictures.to_file import write_plot
+from gaussmap.tools.pictures.scene import scene_of, view
+from gaussmap.tools.pictures.to_file import write_figure
 
 pytest.importorskip("matplotlib")
 from matplotlib import image
@@ -42,7 +41,7 @@ def drawn(figure: Figure) -> np.ndarray:
 @pytest.mark.slow
 def test_it_is_the_picture_of_the_command_line(samples: gm.Samples, tmp_path: Path) -> None:
     assert samples.spline is not None
-    write_plot(samples, samples.spline, (), tmp_path / "a.png")
+    write_figure(samples.plot(), tmp_path / "a.png")
     samples.plot().savefig(tmp_path / "b.png")
     gm.plot(samples.spline, samples).savefig(tmp_path / "c.png")
     first, *others = (image.imread(tmp_path / f"{x}.png") for x in "abc")
@@ -133,9 +132,9 @@ def test_samples_of_parts(parts: ModuleType) -> None:
 
 @pytest.mark.slow
 def test_faces_of_all_kinds_and_their_trims(parts: ModuleType) -> None:
-    scene = part_scene(parts.all_kinds())
+    scene = scene_of(parts.all_kinds())
     assert np.isfinite(scene.quadrangles).all()
-    a, b, c, _ = np.moveaxis(part_scene(parts.box()).quadrangles, 1, 0)
+    a, b, c, _ = np.moveaxis(scene_of(parts.box()).quadrangles, 1, 0)
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
     assert areas.sum() == pytest.approx(22.0)
 
@@ -144,7 +143,7 @@ def test_faces_of_all_kinds_and_their_trims(parts: ModuleType) -> None:
 @pytest.mark.parametrize("beyond", [6e-5, 1e-2])
 def test_loops_that_leave_the_surface(beyond: float, is_reversed: bool, parts: ModuleType) -> None:
     """Open CASCADE's trims leave the domains of their NURBS by its tolerance."""
-    scene = part_scene(parts.overrun(beyond, is_reversed=is_reversed))
+    scene = scene_of(parts.overrun(beyond, is_reversed=is_reversed))
     corners = scene.quadrangles.reshape(-1, 3)
     assert len(scene.lines) == 1
     for found in (corners, *scene.lines):

@@ -5,6 +5,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import gaussmap as gm
@@ -26,6 +27,15 @@ def torus() -> gm.Spline:
     return gm.fit(gm.surfaces.torus(), cells=(24, 24))
 
 
+def plotted(
+    surface: gm.Surface | gm.Spline, path: Path, normals: np.ndarray | None = None, **asked: Any
+) -> gm.Samples:
+    """Draw samples of a surface into a file."""
+    samples = gm.sample(surface, normals=normals, **asked)
+    to_file.write_figure(samples.plot(normals=normals), path)
+    return samples
+
+
 def picture(path: Path) -> np.ndarray:
     return image.imread(path)
 
@@ -40,7 +50,7 @@ def share(pixels: np.ndarray, colour: str) -> float:
 
 def test_png(torus: gm.Spline, tmp_path: Path) -> None:
     path = tmp_path / "torus.png"
-    samples = to_file.plot_to_file(torus, path, count=600)
+    samples = plotted(torus, path, count=600)
     assert abs(len(samples) - 600) < 30
     pixels = picture(path)
     assert pixels.shape == SIZE
@@ -55,13 +65,13 @@ def test_png(torus: gm.Spline, tmp_path: Path) -> None:
 
 def test_the_samples_are_those_of_sample(tmp_path: Path) -> None:
     surface = gm.surfaces.monkey_saddle()
-    drawn = to_file.plot_to_file(surface, tmp_path / "a.png", count=50)
+    drawn = plotted(surface, tmp_path / "a.png", count=50)
     assert (drawn.points == gm.sample(surface, count=50).points).all()
 
 
 def test_normals_without_samples_are_grey(tmp_path: Path) -> None:
     surface = gm.surfaces.elliptic_paraboloid()
-    samples = to_file.plot_to_file(surface, tmp_path / "a.png", gm.fibonacci(300), cells=(16, 16))
+    samples = plotted(surface, tmp_path / "a.png", gm.fibonacci(300), cells=(16, 16))
     assert 0 < len(samples) < 150
     right = np.split(picture(tmp_path / "a.png"), 2, axis=1)[1]
     assert share(right, palette.NO_SAMPLE) > 0.005
@@ -72,7 +82,7 @@ def test_normals_without_samples_are_grey(tmp_path: Path) -> None:
 @pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
 @pytest.mark.quick_for("plane", "sphere")
 def test_surfaces_of_all_kinds(name: str, tmp_path: Path) -> None:
-    to_file.plot_to_file(gm.surfaces.surface(name), tmp_path / "a.png", count=100, cells=(16, 16))
+    plotted(gm.surfaces.surface(name), tmp_path / "a.png", count=100, cells=(16, 16))
     assert picture(tmp_path / "a.png").shape == SIZE
 
 
@@ -111,7 +121,7 @@ def texts_of(surface: gm.Surface, path: Path, monkeypatch: pytest.MonkeyPatch) -
         save(figure, *arguments, **options)  # pyright: ignore[reportArgumentType]
 
     monkeypatch.setattr(Figure, "savefig", spy)
-    to_file.plot_to_file(surface, path, count=100)
+    plotted(surface, path, count=100)
     return {
         text.get_text()
         for text in figures[0].findobj(Text)
@@ -123,7 +133,7 @@ def texts_of(surface: gm.Surface, path: Path, monkeypatch: pytest.MonkeyPatch) -
 @pytest.mark.quick_for(".svg")
 def test_other_suffixes_and_equal_bytes(suffix: str, torus: gm.Spline, tmp_path: Path) -> None:
     for name in ("a", "b"):
-        to_file.plot_to_file(torus, tmp_path / f"{name}{suffix}", count=100)
+        plotted(torus, tmp_path / f"{name}{suffix}", count=100)
     content = (tmp_path / f"a{suffix}").read_bytes()
     assert content == (tmp_path / f"b{suffix}").read_bytes()
     assert content.startswith({".pdf": b"%PDF", ".svg": b"<?xml", ".PNG": b"\x89PNG"}[suffix])
@@ -134,10 +144,10 @@ def test_other_suffixes_and_equal_bytes(suffix: str, torus: gm.Spline, tmp_path:
 def test_no_global_state(torus: gm.Spline, tmp_path: Path) -> None:
     import matplotlib
 
-    to_file.plot_to_file(torus, tmp_path / "a.png", count=50)
+    plotted(torus, tmp_path / "a.png", count=50)
     with matplotlib.rc_context({"figure.facecolor": "red", "font.size": 30, "text.color": "red"}):
         before = dict(matplotlib.rcParams)
-        to_file.plot_to_file(torus, tmp_path / "b.png", count=50)
+        plotted(torus, tmp_path / "b.png", count=50)
         assert dict(matplotlib.rcParams) == before
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
 
@@ -146,8 +156,8 @@ def test_no_global_state(torus: gm.Spline, tmp_path: Path) -> None:
 def test_no_pyplot(tmp_path: Path) -> None:
     code = (
         "import sys, gaussmap as gm\n"
-        "from gaussmap.tools.pictures.to_file import plot_to_file\n"
-        "plot_to_file(gm.surfaces.torus(), sys.argv[1], count=50)\n"
+        "from gaussmap.tools.pictures.to_file import write_figure\n"
+        "write_figure(gm.sample('torus', 50).plot(), sys.argv[1])\n"
         "print('matplotlib' in sys.modules, 'matplotlib.pyplot' in sys.modules)"
     )
     done = subprocess.run(
@@ -161,7 +171,7 @@ def test_no_pyplot(tmp_path: Path) -> None:
 def test_extreme_sizes(tmp_path: Path) -> None:
     for radius in (1e-100, 1e100):
         sphere = gm.surfaces.sphere(radius=radius)
-        to_file.plot_to_file(sphere, tmp_path / "a.png", count=50, cells=(16, 16))
+        plotted(sphere, tmp_path / "a.png", count=50, cells=(16, 16))
         assert picture(tmp_path / "a.png").shape == SIZE
 
 
@@ -180,25 +190,22 @@ def test_nothing_half_written(
 
     monkeypatch.setattr(Figure, "savefig", half)
     with pytest.raises(KeyboardInterrupt):
-        to_file.plot_to_file(torus, path, count=50)
+        plotted(torus, path, count=50)
     assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("a.png", "old")]
 
 
 @pytest.mark.parametrize("name", ["plane", "cylinder"])
 def test_samples_that_no_normal_gave(name: str, tmp_path: Path) -> None:
-    drawn = to_file.plot_to_file(
-        gm.surfaces.surface(name), tmp_path / "a.png", count=50, cells=(8, 8)
-    )
+    drawn = plotted(gm.surfaces.surface(name), tmp_path / "a.png", count=50, cells=(8, 8))
     assert set(drawn.kind) <= {"filling", "grid"}
     assert picture(tmp_path / "a.png").shape == SIZE
 
 
-def test_fields_that_pictures_need(tmp_path: Path) -> None:
+def test_fields_that_pictures_need() -> None:
     spline, normals = gm.fit(gm.surfaces.torus(), (12, 8)), gm.icosphere(6)
     samples = gm.sample(spline, normals=normals, fields=("points",))
     with pytest.raises(gm.errors.MissingFieldError, match="add 'normal_index' to fields"):
-        to_file.write_plot(samples, spline, normals, tmp_path / "a.png")
-    assert not any(tmp_path.iterdir())
+        samples.plot(normals=normals)
 
 
 def test_surfaces_of_several_pieces(tmp_path: Path) -> None:
@@ -208,28 +215,28 @@ def test_surfaces_of_several_pieces(tmp_path: Path) -> None:
     surface = gm.Surface.from_nurbs((2, 2), knots, points)
     assert len(surface.pieces()) == 2
     path = tmp_path / "a.png"
-    samples = to_file.plot_to_file(surface, path, count=100, cells=(24, 24))
+    samples = plotted(surface, path, count=100, cells=(24, 24))
     assert len(samples) == 100
     assert path.stat().st_size > 10_000
 
 
 def test_bad_targets(torus: gm.Spline, tmp_path: Path) -> None:
     with pytest.raises(gm.errors.UnknownNameError, match=r"use one of \.png, \.pdf, \.svg"):
-        to_file.plot_to_file(torus, tmp_path / "a.jpg", count=50)
+        plotted(torus, tmp_path / "a.jpg", count=50)
     with pytest.raises(gm.errors.FileError, match="does not exist"):
-        to_file.plot_to_file(torus, tmp_path / "missing" / "a.png", count=50)
+        plotted(torus, tmp_path / "missing" / "a.png", count=50)
 
 
 def test_bad_arguments(torus: gm.Spline, tmp_path: Path) -> None:
     path = tmp_path / "a.png"
     with pytest.raises(gm.errors.InputError, match="already has its cells"):
-        to_file.plot_to_file(torus, path, count=50, cells=(8, 8))
+        plotted(torus, path, count=50, cells=(8, 8))
     with pytest.raises(gm.errors.InputError, match="say how many samples"):
-        to_file.plot_to_file(torus, path)
+        plotted(torus, path)
     with pytest.raises(gm.errors.InputError, match="no samples to draw"):
-        to_file.write_plot(gm.sample(torus, normals=[[0, 0, 1]])[:0], torus, [], path)
+        gm.sample(torus, normals=[[0, 0, 1]])[:0].plot()
     with pytest.raises(gm.errors.InputError, match="too few normals"):
-        to_file.write_plot(gm.sample(torus, count=50), torus, [(0, 0, 1)], path)
+        gm.sample(torus, count=50).plot(normals=[(0, 0, 1)])
     assert not path.exists()
 
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.pictures.scene import Scene, front, height_factor, view
+from gaussmap.tools.pictures.scene import front, height_factor, scene_of, view
 
 pytestmark = pytest.mark.compiled  # every scene evaluates a fine mesh
 
@@ -12,7 +12,7 @@ def test_a_convex_surface_hides_its_back() -> None:
     spline = gm.fit(gm.surfaces.sphere())
     samples = gm.sample(spline, count=2000)
     facing = samples.normals @ view()[2]
-    visible = Scene.of(spline).visible(samples.points)
+    visible = scene_of(spline).visible(samples.points)
     assert visible[facing > 0.05].all()
     assert not visible[facing < -0.15].any()
 
@@ -26,7 +26,7 @@ def test_waves_hide_what_faces_the_viewer() -> None:
     above = z > 0.5 * np.sin(5 * x) * np.cos(5 * y)
     over = (np.abs(x) < 1) & (np.abs(y) < 1)
     crossing = (above[:, 1:] != above[:, :-1]) & over[:, 1:] & over[:, :-1]
-    visible = Scene.of(spline).visible(samples.points)
+    visible = scene_of(spline).visible(samples.points)
     hidden = (crossing & (steps[1:] > 0.06)).any(axis=1)
     assert not visible[hidden].any()
     assert visible[~crossing.any(axis=1)].mean() > 0.995  # but for some at an edge

@@ -2,8 +2,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from gaussmap.tools.pictures.globe import view_of
 from gaussmap.tools.pictures.scene import view
+from gaussmap.tools.pictures.sphere_half import view_of
 
 
 @pytest.mark.parametrize("mean", [(0, 0, 1), (1, 0, 0), (0, 0, 0), (0, 0, -1), None])
