@@ -141,13 +141,13 @@ def _of_a_shard(known: Path, folder: Path) -> dict[str, float]:
     )
     create(folder, settings)
     schema = points_schema(settings)
-    with Shard(folder, 0, settings) as shard:
-        parts = range(OF_A_SHARD)
-        tables = [points_table(dataset.samples(part), part, schema) for part in parts]
-        known_rows = dataset.manifest().to_pylist()
-        rows = [ManifestRow(**known_rows[part]) for part in parts]
-        add = _seconds(lambda: [*map(shard.add, rows, tables)])
-        commit = _seconds(lambda: shard.commit(parts))
+    shard = Shard(folder, 0, settings)
+    parts = range(OF_A_SHARD)
+    tables = [points_table(dataset.samples(part), part, schema) for part in parts]
+    known_rows = dataset.manifest().to_pylist()
+    rows = [ManifestRow(**known_rows[part]) for part in parts]
+    add = _seconds(lambda: [*map(shard.add, rows, tables)])
+    commit = _seconds(lambda: shard.commit(parts))
     size = sum(x.stat().st_size for x in (folder / MANIFEST).iterdir())
     return {
         "add": add / OF_A_SHARD * 1e3,

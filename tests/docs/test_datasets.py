@@ -34,8 +34,9 @@ def test_the_columns_of_points():
 def test_the_columns_of_the_manifest():
     lines = []
     for field in manifest_schema():
-        _, null, unit, meaning = MANIFEST[field.name]
-        cells = [field.name, str(field.type), unit, "if unknown" if null else "never", meaning]
+        known = MANIFEST[field.name].metadata
+        cells = [field.name, str(field.type), known.get("unit", ""),
+                 "if unknown" if field.nullable else "never", known["meaning"]]  # fmt: skip
         lines.append(re.sub("  +", " ", f"| {' | '.join(cells)} |").replace("double", "float64"))
     assert "\n".join(lines) in PAGE
 
@@ -55,10 +56,10 @@ def folder(tmp_path: Path) -> Path:
     settings = Settings.of_this_version(asked={}, fields=FLOAT_NAMES, parts_per_shard=1)
     create(tmp_path / "dataset", settings)
     for k, part in enumerate(samples):
-        with Shard(tmp_path / "dataset", k, settings) as shard:
-            row = ManifestRow(k, part.report.surface, "catalogue", "0", samples=len(part))
-            shard.add(row, points_table(part, k, shard.schema))
-            shard.commit([k])
+        shard = Shard(tmp_path / "dataset", k, settings)
+        row = ManifestRow(k, part.report.surface, "catalogue", "0", samples=len(part))
+        shard.add(row, points_table(part, k, shard.schema))
+        shard.commit([k])
     return tmp_path
 
 

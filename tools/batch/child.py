@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
+import json
 import os
 import pickle
 import subprocess
 import sys
 import threading
 from contextlib import suppress
-from dataclasses import dataclass
 from typing import Any
 
 from ...runtime.base.errors import FileError, GaussmapError
-from .frames import read_frame
+from .manifest import ManifestRow
+from .plan import Limits
 from .serving import Task
 
-__all__ = ["Answer", "Child", "Limits", "StoppedError"]
+__all__ = ["Child", "StoppedError"]
 
 # Modules of users are found after those of Python and of packages: none hides them.
 PROGRAM = (
@@ -25,34 +26,8 @@ PROGRAM = (
 THREADS = ("NUMBA_NUM_THREADS", "OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
 
-@dataclass(frozen=True, slots=True)
-class Limits:
-    """The longest time that a part may take, in seconds, and the most memory, in GiB."""
-
-    seconds: float
-    memory: float
-
-
 class StoppedError(GaussmapError):
     """The run was stopped: the part is not done, and nothing is said of it."""
-
-
-@dataclass(frozen=True, slots=True)
-class Answer:
-    """What became of a part: numbers of the manifest, and the table of its samples."""
-
-    about: dict[str, Any]
-    table: Any = None
-
-    @property
-    def same(self) -> bool:
-        """Whether the part is unchanged, so that it was not sampled."""
-        return bool(self.about.get("same"))
-
-    @property
-    def error(self) -> str:
-        """Why it could not be sampled, or nothing."""
-        return str(self.about.get("error") or "")
 
 
 class Child:
@@ -72,31 +47,32 @@ class Child:
         """Whether `end` was called: no part is sampled any more."""
         return self._stopped
 
-    def sample(self, task: Task) -> Answer:
-        """Return what became of a part.
+    def sample(self, task: Task) -> ManifestRow | None:
+        """Return what became of a part, whose samples are written then; None if it is unchanged.
 
-        Raises StoppedError if `end` was called.
+        Raises StoppedError if `end` was called, FileError if the samples cannot be written.
         """
         late = threading.Event()
         process = self._running()
         assert process.stdin is not None
-        assert process.stdout is not None
         timer = threading.Timer(self.limits.seconds, _end_late, (process, late))
         timer.daemon = True
         about: dict[str, Any] = {}
-        table = None
         timer.start()
         try:
             pickle.dump(task, process.stdin, protocol=pickle.HIGHEST_PROTOCOL)
             process.stdin.flush()
-            while not about.keys() & {"same", "error", "samples"}:
-                more, table = read_frame(process.stdout)
-                about |= more
+            while not about.keys() & {"seconds", "stop"}:
+                about |= _line(process)
+                if about.get("content") == task.known:
+                    return None
         except (EOFError, OSError, ValueError):
             about["error"] = self._why(process, late)
         finally:
             timer.cancel()
-        return Answer(about, table)
+        if "stop" in about:
+            raise FileError(about["stop"])
+        return task.row(about)
 
     def end(self, stop: bool = True) -> None:
         """End the process; with `stop`, none is started again."""
@@ -126,9 +102,8 @@ class Child:
             stdout=subprocess.PIPE,
             env=os.environ | dict.fromkeys(THREADS, "1"),
         )
-        assert process.stdout is not None
         try:
-            read_frame(process.stdout)
+            _line(process)
         except EOFError:
             _end(process)
             raise FileError(
@@ -152,6 +127,15 @@ class Child:
             f"the process that sampled it ended {how}; it may need more memory than "
             f"{self.limits.memory:g} GiB, or its function or file ends processes."
         )
+
+
+def _line(process: subprocess.Popen[bytes]) -> dict[str, Any]:
+    """Return what a process says; EOFError if it has ended."""
+    assert process.stdout is not None
+    line = process.stdout.readline()
+    if not line.endswith(b"\n"):
+        raise EOFError
+    return json.loads(line)
 
 
 def _end_late(process: subprocess.Popen[bytes], late: threading.Event) -> None:

@@ -7,35 +7,27 @@ shard is in that folder; Dask gives the shard to another one.
 
 from __future__ import annotations
 
-import atexit
-import threading
 from collections.abc import Generator, Iterable, Iterator, Sequence
 from concurrent.futures import CancelledError
 from contextlib import contextmanager
-from itertools import islice
 from pathlib import Path
 from typing import Any
-from uuid import uuid4
 
 from ... import __version__
 from ...runtime.base.errors import FileError, InputError, shown
 from ...runtime.base.extras import from_extra
 from ...runtime.kernels.jit import digest
-from .child import Child, Limits
 from .folder import SETTINGS
 from .inputs import Input
-from .running import Plan, Tally, run_shard
+from .plan import Plan
+from .running import Tally, run
 
 __all__ = ["connected", "run_on_cluster"]
 
-# Shards for each thread of a worker that wait: Dask knows of no others.
-AHEAD = 2
 # How often a shard is given to another worker after one was lost.
 LOST = 10
 # In seconds: how long a scheduler, and its first worker, may take to answer.
 PATIENCE = 30
-
-_HERE = threading.local()
 
 
 @contextmanager
@@ -76,34 +68,13 @@ def run_on_cluster(
     """
     distributed = from_extra("distributed", "cluster", "sampling on a cluster")
     threads = _checked_workers(client, plan)
-    left = iter(shards)
-    done = distributed.as_completed(with_results=True, loop=client.loop)
-    waiting: set[Any] = set()
-    run = f"gaussmap-{uuid4()}"
-
-    def submit(number: int, inputs: Sequence[Input]) -> None:
-        future = client.submit(
-            work, plan, number, inputs, pure=False, retries=LOST, key=f"{run}-{number}"
-        )
-        waiting.add(future)
-        done.add(future)
-
     try:
-        for number, inputs in islice(left, AHEAD * threads):
-            submit(number, inputs)
-        for future, tally in done:
-            waiting.discard(future)
-            yield tally
-            for number, inputs in islice(left, 1):
-                submit(number, inputs)
+        yield from run(plan, shards, client.get_executor(pure=False, retries=LOST), threads)
     except (CancelledError, distributed.scheduler.KilledWorker) as error:
         raise FileError(
             f"the cluster has lost shards ({type(error).__name__}): its scheduler has ended, or "
             "workers end again and again; what is done is kept, run the same again."
         ) from error
-    finally:
-        if waiting:
-            client.cancel(list(waiting), force=True)
 
 
 def _checked_workers(client: Any, plan: Plan) -> int:  # noqa: ANN401
@@ -128,24 +99,6 @@ def _checked_workers(client: Any, plan: Plan) -> int:  # noqa: ANN401
     return sum(client.nthreads().values())
 
 
-# --- in the worker --------------------------------------------------------------------------------
-
-
 def state_of(folder: str) -> tuple[str, str, bool]:
     """Return the version of a worker's package, its formulas, and whether it sees the folder."""
     return __version__, digest(), (Path(folder) / SETTINGS).is_file()
-
-
-def work(plan: Plan, number: int, inputs: Sequence[Input]) -> Tally:
-    """Do a shard, with the process of this thread of the worker."""
-    return run_shard(plan, number, inputs, _child(plan.limits))
-
-
-def _child(limits: Limits) -> Child:
-    child = getattr(_HERE, "child", None)
-    if child is None or child.limits != limits:
-        if child is not None:
-            child.end()
-        child = _HERE.child = Child(limits)
-        atexit.register(child.end)
-    return child

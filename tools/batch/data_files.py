@@ -1,11 +1,11 @@
-"""Reading the files of a data set: manifests, and the samples of one part."""
+"""Reading the Parquet files of a data set."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,80 +14,13 @@ from ...runtime.base.errors import FileError
 from ...runtime.base.extras import from_extra
 from ...runtime.samples.fields import COLUMNS, row_shape
 from .arrow_tables import points_schema
-from .folder import MANIFEST, POINTS, Settings, shard_path, shards_in
-from .manifest import ManifestRow, manifest_schema, rows_of
+from .folder import MANIFEST, Settings, shard_path
+from .manifest import manifest_schema
 
-__all__ = [
-    "Opened",
-    "arrays_in",
-    "count_parts",
-    "manifest_of",
-    "opened",
-    "row_of",
-    "rows_of_part",
-    "rows_of_parts",
-    "stacked",
-]
+__all__ = ["REMEDY", "arrays_in", "opened", "rows_of_parts", "stacked"]
 
 LONGEST_REASON = 100
 REMEDY = "remove it, and run the same sampling again"
-
-
-class Opened(Protocol):
-    """A data set of which files are read: a `Dataset`, or a `Shard` of one."""
-
-    @property
-    def folder(self) -> Path:
-        """Where it is."""
-        ...
-
-    @property
-    def settings(self) -> Settings:
-        """What all its parts have in common."""
-        ...
-
-
-def manifest_of(data: Opened, columns: Sequence[str] | None) -> Any:  # noqa: ANN401
-    """Return the rows of all finished shards as a table of Arrow, in order."""
-    arrow = from_extra("pyarrow", "batch", "a data set")
-    schema = manifest_schema()
-    if columns is not None:
-        schema = arrow.schema([schema.field(name) for name in columns])
-    tables = [schema.empty_table()]
-    for number in shards_in(data.folder):
-        with opened(data, MANIFEST, number) as file:
-            tables.append(file.read(columns=schema.names, use_threads=False).cast(schema))
-    return arrow.concat_tables(tables).combine_chunks()
-
-
-def count_parts(data: Opened) -> int:
-    """Return the number of parts of all finished shards."""
-    count = 0
-    for number in shards_in(data.folder):
-        with opened(data, MANIFEST, number) as file:
-            count += file.metadata.num_rows
-    return count
-
-
-def row_of(data: Opened, part: int) -> ManifestRow | None:
-    """Return the row of a part; None if there is none."""
-    number = part // data.settings.parts_per_shard
-    if not shard_path(data.folder, MANIFEST, number).exists():
-        return None
-    with opened(data, MANIFEST, number) as file:
-        rows = rows_of(file.read(use_threads=False))
-    return next((row for row in rows if row.part == part), None)
-
-
-def rows_of_part(data: Opened, row: ManifestRow) -> Any:  # noqa: ANN401
-    """Return the table of the samples of a part; FileError unless all of them are there."""
-    number = row.part // data.settings.parts_per_shard
-    with opened(data, POINTS, number) as file:
-        table = rows_of_parts(file, [row.part])
-    if len(table) != row.samples:
-        path = shard_path(data.folder, POINTS, number)
-        raise FileError(f"'{path}' does not belong to its manifest; {REMEDY}.")
-    return table
 
 
 def rows_of_parts(file: Any, parts: Sequence[int]) -> Any:  # noqa: ANN401
@@ -110,10 +43,7 @@ def _range_of(file: Any, group: int) -> tuple[int, int] | None:  # noqa: ANN401
 
 def arrays_in(table: Any, names: Sequence[str]) -> dict[str, list[NDArray[Any]]]:  # noqa: ANN401
     """Return the columns of fields; what is null is NaN, −1 or False."""
-    return {
-        name: [_filled(table[column]) for column in COLUMNS[name]]
-        for name in names
-    }  # fmt: skip
+    return {name: [_filled(table[column]) for column in COLUMNS[name]] for name in names}
 
 
 def _filled(column: Any) -> NDArray[Any]:  # noqa: ANN401
@@ -135,13 +65,13 @@ def stacked(columns: Sequence[NDArray[Any]], name: str) -> NDArray[Any]:
 
 
 @contextmanager
-def opened(data: Opened, kind: str, number: int) -> Iterator[Any]:
+def opened(folder: Path, settings: Settings, kind: str, number: int) -> Iterator[Any]:
     """Yield the open Parquet file of a shard; FileError if it cannot be read, or is another one."""
     parquet = from_extra("pyarrow.parquet", "batch", "a data set")
-    path = shard_path(data.folder, kind, number)
+    path = shard_path(folder, kind, number)
     try:
         with parquet.ParquetFile(path) as file:
-            _check(file, data.settings, kind, number)
+            _check(file, settings, kind, number)
             yield file
     except (FileError, MemoryError):
         raise

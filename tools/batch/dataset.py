@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, SupportsIndex
@@ -11,15 +12,15 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from ...runtime.base.checks import known_name, listed, whole_number, yes_or_no
-from ...runtime.base.errors import InputError, UnknownNameError, shown
-from ...runtime.base.extras import check_extra
+from ...runtime.base.errors import FileError, InputError, UnknownNameError, shown
+from ...runtime.base.extras import check_extra, from_extra
 from ...runtime.samples.fields import COLUMNS, UNITS, checked_dtype, dtype_of
 from ..files.paths import PathLike, checked_path
-from .data_files import arrays_in, count_parts, manifest_of, row_of, rows_of_part, stacked
-from .folder import Settings, read_settings
+from .data_files import REMEDY, arrays_in, opened, rows_of_parts, stacked
+from .folder import MANIFEST, POINTS, Settings, read_settings, shard_path, shards_in
 from .loader import Loader
 from .manifest import COLUMNS as MANIFEST_COLUMNS
-from .manifest import FAILED, ManifestRow
+from .manifest import FAILED, ManifestRow, manifest_schema, rows_of
 from .part_labels import checked_labels
 
 if TYPE_CHECKING:
@@ -110,7 +111,11 @@ class Dataset:
         return {name: UNITS[name] for name in self.fields if name in UNITS}
 
     def __len__(self) -> int:
-        return count_parts(self)
+        count = 0
+        for number in shards_in(self.folder):
+            with self._opened(MANIFEST, number) as file:
+                count += file.metadata.num_rows
+        return count
 
     def __repr__(self) -> str:
         return f"Dataset({str(self.folder)!r})"
@@ -167,7 +172,14 @@ class Dataset:
         {'part': 1, 'name': 'sphere', 'status': 'ok', 'samples': 500}
 
         """
-        return manifest_of(self, _checked_names(columns, MANIFEST_COLUMNS, "column"))
+        names = _checked_names(columns, MANIFEST_COLUMNS, "column") or MANIFEST_COLUMNS
+        arrow = from_extra("pyarrow", "batch", "a data set")
+        schema = arrow.schema([manifest_schema().field(name) for name in names])
+        tables = [schema.empty_table()]
+        for number in shards_in(self.folder):
+            with self._opened(MANIFEST, number) as file:
+                tables.append(file.read(columns=schema.names, use_threads=False).cast(schema))
+        return arrow.concat_tables(tables).combine_chunks()
 
     def samples(self, part: SupportsIndex) -> Samples:
         """Return the samples of a part.
@@ -199,12 +211,20 @@ class Dataset:
 
         """
         number = whole_number(part, "part", least=0)
-        row = row_of(self, number)
-        if row is None:
+        shard, rows = number // self.settings.parts_per_shard, []
+        if shard_path(self.folder, MANIFEST, shard).exists():
+            with self._opened(MANIFEST, shard) as file:
+                rows = [x for x in rows_of(file.read(use_threads=False)) if x.part == number]
+        if not rows:
             raise UnknownNameError(f"there is no part {number} in '{self.folder}'.")
+        (row,) = rows
         if row.status == FAILED:
             raise UnknownNameError(f"part {number} ('{row.name}') has failed: {row.error}")
-        table = rows_of_part(self, row)
+        with self._opened(POINTS, shard) as file:
+            table = rows_of_parts(file, [number])
+        if len(table) != row.samples:
+            path = shard_path(self.folder, POINTS, shard)
+            raise FileError(f"'{path}' does not belong to its manifest; {REMEDY}.")
         held = [name for name in self.fields if table[COLUMNS[name][0]].null_count < len(table)]
         wanted = held or self.fields  # a part without samples has empty arrays
         arrays = {name: stacked(x, name) for name, x in arrays_in(table, wanted).items()}
@@ -298,7 +318,8 @@ class Dataset:
         """
         known, label_type = checked_labels(labels, self.manifest)
         return Loader(
-            data=self,
+            folder=self.folder,
+            settings=self.settings,
             points=whole_number(points, "points"),
             parts=whole_number(parts, "parts"),
             types=self._types(fields, dtype),
@@ -309,6 +330,9 @@ class Dataset:
             labels=known,
             label_type=label_type,
         ).batches()
+
+    def _opened(self, kind: str, number: int) -> AbstractContextManager[Any]:
+        return opened(self.folder, self.settings, kind, number)
 
     def _types(self, fields: Sequence[str], dtype: DTypeLike | None) -> dict[str, np.dtype[Any]]:
         number = checked_dtype(self.settings.dtype if dtype is None else dtype)

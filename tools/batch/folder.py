@@ -3,7 +3,7 @@
     dataset.json                  the settings
     points/shard-000000.parquet   the samples of consecutive parts
     manifest/shard-000000.parquet a row for each of these parts
-    partial/shard-000000.arrow    the same of a shard that is not finished; see partial.py
+    partial/000000.arrow          the same of a part, of a shard that is not finished
     files/                        a file for each part, if wanted
     normals.npy                   the prescribed normals, if there are any
 
@@ -22,15 +22,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import IO, Annotated, Any, TypedDict
+from typing import IO, Annotated, Any
 
 from ... import __version__
 from ...runtime.base.errors import FileError, GaussmapError, InputError
-from ...runtime.base.limits import MOST, MOST_STEPS
 from ...runtime.samples.fields import COLUMNS, EDGE_NAMES
-from ..files.declared import POSITIVE, Entries, check_entries, names_among, one_of, within
+from ..files.declared import check_entries, names_among, one_of, within
 from ..files.paths import PathLike, atomic_path, checked_path, reason_of
-from ..sources.named import Named
 
 __all__ = [
     "CODECS",
@@ -46,11 +44,10 @@ __all__ = [
     "opened",
     "parts_per_shard",
     "read_settings",
-    "remove_files",
-    "remove_shards",
+    "remove_from",
+    "replaced",
     "shard_path",
     "shards_in",
-    "temporary_path",
 ]
 
 SETTINGS, LOCK, NORMALS = "dataset.json", ".lock", "normals.npy"
@@ -64,23 +61,8 @@ MOST_PARTS, MOST_SAMPLES, LEAST_SHARDS = 256, 1 << 22, 64
 PARTS_OF_A_STREAM = 64
 CODECS = ("zstd", "snappy", "gzip", "lz4", "none")
 FIELDS = tuple(name for name in COLUMNS if name not in EDGE_NAMES)
-SHARD = re.compile(r"shard-([0-9]{6,})(\.[0-9]+)?\.(parquet|arrow)")
-
-Count = Annotated[int, within(1, MOST)]
-
-
-class AskedFor(TypedDict, total=False):
-    """What was asked for of each part, beside the options with which files are read."""
-
-    count: Count
-    angle: Annotated[float, POSITIVE, within(0, 90)]
-    coverage: Annotated[float, POSITIVE]
-    density: str | Annotated[float, POSITIVE]
-    relax: Annotated[int, within(0, MOST_STEPS)]
-    cells: tuple[Count, Count]
-    on: Annotated[str, one_of(("surface", "spline"))]
-    normals: str
-    measured: bool
+# The names of files of shards, and of parts.
+SHARD, PART = re.compile(r"shard-([0-9]{6,})\.parquet"), re.compile(r"([0-9]{6,})\b.*")
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +91,7 @@ class Settings:
 
     """
 
-    asked: Annotated[dict[str, Any], Entries((Named, AskedFor))]
+    asked: dict[str, Any]
     fields: Annotated[tuple[str, ...], names_among(FIELDS)]
     dtype: Annotated[str, one_of(("float64", "float32"))]
     compression: Annotated[str, one_of(CODECS)]
@@ -162,27 +144,39 @@ def parts_per_shard(parts: int | None, count: int | None) -> int:
 
 
 def shard_path(folder: Path, kind: str, number: int) -> Path:
-    """Return the path of a shard's points, manifest or partial."""
-    return folder / kind / f"shard-{number:06d}{'.arrow' if kind == PARTIAL else '.parquet'}"
+    """Return the path of a shard's points or manifest."""
+    return folder / kind / f"shard-{number:06d}.parquet"
 
 
-def temporary_path(folder: Path) -> Path:
-    """Return a new path for a file that is being written.
+@contextmanager
+def replaced(folder: Path, path: Path) -> Iterator[Path]:
+    """Yield a path to write to; the file takes the place of `path` when it is complete.
 
     It is not where finished files are: Polars and DuckDB would take it for one of them.
     """
-    return folder / PARTIAL / f"{secrets.token_hex(8)}{TEMPORARY}"
+    temporary = folder / PARTIAL / f"{secrets.token_hex(8)}{TEMPORARY}"
+    try:
+        yield temporary
+        os.replace(temporary, path)
+    except OSError as error:
+        raise FileError(
+            f"'{path}' cannot be written: {reason_of(error)}; what is done is kept, run the same "
+            "again when that is mended."
+        ) from error
+    finally:
+        with suppress(OSError):
+            temporary.unlink()
 
 
 def shards_in(folder: Path) -> list[int]:
     """Return the numbers of the finished shards, in order."""
-    return sorted(number for number, _ in _files_of_shards(folder / MANIFEST))
+    return sorted(number for number, _ in _numbered(folder / MANIFEST, SHARD))
 
 
-def _files_of_shards(folder: Path) -> Iterator[tuple[int, Path]]:
-    """Yield the files of shards in a folder, with the numbers of these."""
-    for path in folder.glob("shard-*"):
-        if found := SHARD.fullmatch(path.name):
+def _numbered(folder: Path, names: re.Pattern[str]) -> Iterator[tuple[int, Path]]:
+    """Yield the files of shards or of parts in a folder, with the numbers of these."""
+    for path in folder.glob("*"):
+        if found := names.fullmatch(path.name):
             yield int(found[1]), path
 
 
@@ -209,10 +203,15 @@ def opened(folder: PathLike, settings: Settings, overwrite: bool = False) -> Ite
     _usable(path)
     with locked(path):
         known = create(path, settings, overwrite)
-        with _writing(path):
-            for left in (path / PARTIAL).glob(f"*{TEMPORARY}"):  # by runs that were killed
-                left.unlink()
+        _remove_temporary(path)  # by runs that were killed
         yield known
+        _remove_temporary(path)  # by processes that were
+
+
+def _remove_temporary(path: Path) -> None:
+    with _writing(path):
+        for left in (path / PARTIAL).glob(f"*{TEMPORARY}"):
+            left.unlink(missing_ok=True)
 
 
 def create(folder: PathLike, settings: Settings, overwrite: bool = False) -> Settings:
@@ -285,22 +284,16 @@ def _writing(path: Path) -> Iterator[None]:
         raise FileError(f"'{path}' cannot be written to: {reason_of(error)}.") from error
 
 
-def remove_shards(folder: Path, first: int) -> None:
-    """Remove the shards from a number on: they are of a list that was longer."""
+def remove_from(folder: Path, shards: int, parts: int) -> None:
+    """Remove shards and parts from these numbers on: they are of a list that was longer."""
+    of_shards, of_parts = (SHARD, shards), (PART, parts)
+    # Without its manifest a shard is not there.
+    kinds = {MANIFEST: of_shards, POINTS: of_shards, PARTIAL: of_parts, FILES: of_parts}
     with _writing(folder):
-        for kind in (MANIFEST, POINTS, PARTIAL):  # without its manifest a shard is not there
-            for number, path in _files_of_shards(folder / kind):
+        for kind, (names, first) in kinds.items():
+            for number, path in _numbered(folder / kind, names):
                 if number >= first:
                     path.unlink()
-
-
-def remove_files(folder: Path, first: int) -> None:
-    """Remove the files of the parts from a number on, if there are any."""
-    with _writing(folder):
-        for path in (folder / FILES).iterdir():
-            number = path.name.partition("-")[0].partition(".")[0]
-            if number.isdecimal() and int(number) >= first:
-                path.unlink()
 
 
 def _same(old: Settings, new: Settings, path: Path) -> Settings:
@@ -342,28 +335,21 @@ def locked(folder: Path) -> Iterator[None]:
     The lock is the system's, so that it ends with the process. Where the file system has no locks
     there is none.
     """
-    with _lock_file(folder) as file:
+    with _writing(folder):
+        file = open(folder / LOCK, "ab")  # noqa: SIM115 - what follows may raise OSError, too
+    with file:
         _lock(file, folder)
         yield
-
-
-def _lock_file(folder: Path) -> IO[bytes]:
-    try:
-        return open(folder / LOCK, "ab")
-    except OSError as error:
-        raise FileError(f"'{folder}' cannot be written to: {reason_of(error)}.") from error
 
 
 def _lock(file: IO[bytes], folder: Path) -> None:
     try:
         import fcntl
-    except ImportError:  # Windows
-        return
-    try:
+
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         raise FileError(
             f"another run writes to '{folder}'; wait until it ends, or stop it."
         ) from None
-    except OSError:
+    except (ImportError, OSError):  # Windows, and file systems without locks
         return

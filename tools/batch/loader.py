@@ -6,6 +6,7 @@ import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,8 +14,8 @@ from numpy.typing import NDArray
 
 from ...runtime.base.errors import GaussmapWarning, InputError
 from ...runtime.samples.fields import COLUMNS, row_shape
-from .data_files import Opened, arrays_in, opened
-from .folder import POINTS, shards_in
+from .data_files import arrays_in, opened
+from .folder import POINTS, Settings, shards_in
 
 __all__ = ["Batch", "Loader"]
 
@@ -30,7 +31,8 @@ class Loader:
     `types` has the type of each field that is wanted, and `seed` is None for the order of the list.
     """
 
-    data: Opened
+    folder: Path
+    settings: Settings
     points: int
     parts: int
     types: Mapping[str, np.dtype[Any]]
@@ -136,19 +138,19 @@ class Loader:
             if not groups:
                 del waiting[k]
                 continue
-            with opened(self.data, POINTS, shard) as file:
+            with opened(self.folder, self.settings, POINTS, shard) as file:
                 table = file.read_row_group(groups.pop(), columns=names, use_threads=False)
             yield table
 
     def _groups_of(self, shard: int, rng: np.random.Generator) -> list[int]:
         """Return the row groups of a shard, the first one last."""
-        with opened(self.data, POINTS, shard) as file:
+        with opened(self.folder, self.settings, POINTS, shard) as file:
             count = file.metadata.num_row_groups
         return list(range(count))[::-1] if self.seed is None else rng.permutation(count).tolist()
 
     def _numbers(self) -> list[int]:
         """Return the shards of this worker. All workers shuffle the same list."""
-        numbers = shards_in(self.data.folder)
+        numbers = shards_in(self.folder)
         if self.seed is not None:
             numbers = [numbers[k] for k in self._generator(1).permutation(len(numbers))]
         index, count = self.shard

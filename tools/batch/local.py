@@ -5,18 +5,15 @@ from __future__ import annotations
 import signal
 import threading
 from collections.abc import Generator, Iterable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
-from itertools import islice
 
 from .child import Child
 from .inputs import Input
-from .running import Plan, Tally, run_shard
+from .plan import Plan
+from .running import Tally, run, use
 
 __all__ = ["run_locally"]
-
-# Shards for each worker that wait.
-AHEAD = 2
 
 
 def run_locally(
@@ -28,33 +25,15 @@ def run_locally(
     Ctrl-C end all processes.
     """
     children = [Child(plan.limits) for _ in range(workers)]
-    free, here = iter(children), threading.local()
-
-    def begin() -> None:
-        here.child = next(free)
-
-    def work(number: int, inputs: Sequence[Input]) -> Tally:
-        return run_shard(plan, number, inputs, here.child)
-
-    pool = ThreadPoolExecutor(workers, "gaussmap-batch", begin)
-    waiting: set[Future[Tally]] = set()
+    free = iter(children)
+    pool = ThreadPoolExecutor(workers, "gaussmap-batch", lambda: use(next(free)))
     try:
-        left = iter(shards)
-        while True:
-            for number, inputs in islice(left, AHEAD * workers - len(waiting)):
-                waiting.add(pool.submit(work, number, inputs))
-            if not waiting:
-                return
-            done, waiting = wait(waiting, return_when=FIRST_COMPLETED)
-            for future in done:
-                yield future.result()
+        yield from run(plan, shards, pool, workers)
     finally:
         with _without_ctrl_c():
-            for future in waiting:
-                future.cancel()
             for child in children:
                 child.end()
-            pool.shutdown()
+            pool.shutdown(cancel_futures=True)
 
 
 @contextmanager

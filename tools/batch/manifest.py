@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field, fields
 from typing import Any
 
 from ...runtime.base.extras import from_extra
@@ -20,41 +20,42 @@ __all__ = [
 ]
 
 OK, FAILED = "ok", "failed"
-# The columns: the type of Arrow, whether it may be null, the unit, and what it is.
-COLUMNS: dict[str, tuple[str, bool, str, str]] = {
-    "part": ("int64", False, "", "the number of the part in the list, from 0 on"),
-    "name": ("string", False, "", "the name of the part"),
-    "source": ("string", False, "", "the path of the file, or the type of the surface"),
-    "content": ("string", False, "", "a SHA-256 of what was sampled, by which it is known again"),
-    "status": ("string", False, "", '"ok" or "failed"'),
-    "attempts": ("int32", False, "", "how often sampling was tried"),
-    "samples": ("int64", False, "", "the number of samples"),
-    "misfit": ("float64", True, "L", "the largest distance of the spline from the surface"),
-    "coverage": ("float64", True, "L", "the largest distance of the surface from a sample"),
-    "angle": ("float64", True, "degree", "the largest angle between normals of surface and sample"),
-    "seconds": ("float64", False, "s", "the time that sampling took"),
-    "warnings": ("string", False, "", "the warnings, a line for each"),
-    "error": ("string", False, "", "why sampling failed, in one sentence"),
-}
+# The types of Arrow for those of the columns.
+TYPES = {"int": "int64", "str": "string", "float": "float64", "float | None": "float64"}
+
+
+def _column(meaning: str, unit: str = "", **default: Any) -> Any:  # noqa: ANN401
+    """Return the field of a column, with what it is, and its unit."""
+    about = {"meaning": meaning} | ({"unit": unit} if unit else {})
+    return field(metadata=about, **default)
 
 
 @dataclass(frozen=True, slots=True)
 class ManifestRow:
-    """What became of a part; `COLUMNS` says what the numbers are."""
+    """What became of a part."""
 
-    part: int
-    name: str
-    source: str
-    content: str
-    status: str = OK
-    attempts: int = 1
-    samples: int = 0
-    misfit: float | None = None
-    coverage: float | None = None
-    angle: float | None = None
-    seconds: float = 0.0
-    warnings: str = ""
-    error: str = ""
+    part: int = _column("the number of the part in the list, from 0 on")
+    name: str = _column("the name of the part")
+    source: str = _column("the path of the file, or the type of the surface")
+    content: str = _column("a SHA-256 of what was sampled, by which it is known again")
+    status: str = _column('"ok" or "failed"', default=OK)
+    attempts: int = _column("how often sampling was tried", default=1)
+    samples: int = _column("the number of samples", default=0)
+    misfit: float | None = _column(
+        "the largest distance of the spline from the surface", "L", default=None
+    )
+    coverage: float | None = _column(
+        "the largest distance of the surface from a sample", "L", default=None
+    )
+    angle: float | None = _column(
+        "the largest angle between normals of surface and sample", "degree", default=None
+    )
+    seconds: float = _column("the time that sampling took", "s", default=0.0)
+    warnings: str = _column("the warnings, a line for each", default="")
+    error: str = _column("why sampling failed, in one sentence", default="")
+
+
+COLUMNS = {x.name: x for x in fields(ManifestRow)}
 
 
 def manifest_schema() -> Any:  # noqa: ANN401
@@ -62,10 +63,10 @@ def manifest_schema() -> Any:  # noqa: ANN401
     arrow = from_extra("pyarrow", "batch", "a data set")
     return arrow.schema(
         [
-            arrow.field(name, arrow.type_for_alias(kind), nullable=null).with_metadata(
-                {"meaning": meaning} | ({"unit": unit} if unit else {})
-            )
-            for name, (kind, null, unit, meaning) in COLUMNS.items()
+            arrow.field(
+                name, arrow.type_for_alias(TYPES[str(x.type)]), nullable="None" in str(x.type)
+            ).with_metadata(dict(x.metadata))
+            for name, x in COLUMNS.items()
         ]
     )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from typing import Any, Literal, overload
+from typing import Any, Literal, TypedDict, Unpack, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
@@ -20,16 +20,45 @@ from ...runtime.samples.samples import Samples
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
 from ..files.paths import PathLike
-from .arguments import CODEC, SECONDS, asked_of, stored, where
 from .dataset import Dataset, open_dataset
 from .inputs import Source
-from .making import Unwatched, make
-from .watching import Bar
+from .making import make
+from .plan import CODEC, SECONDS, asked_of, stored, where
+from .watching import Bar, Watch
 
 __all__ = ["sample_many"]
 
 Surfaces = Iterable[Surface | Spline | str]
-ON_ERROR = ("raise", "skip", "none", "return")
+ON_ERROR = ("raise", "skip", "return")
+
+
+class _How(TypedDict, total=False):
+    """The options with which each surface is sampled."""
+
+    normals: ArrayLike | None
+    progress: bool
+    angle: float | None
+    coverage: float | None
+    density: str | float | None
+    relax: int
+    cells: Sequence[int] | None
+    on: str | None
+    fields: Sequence[str] | None
+    dtype: DTypeLike
+
+
+class _Stored(_How, total=False):
+    """The options of data sets."""
+
+    workers: int | None
+    scheduler: object
+    time_limit: float
+    memory_limit: float | None
+    measure: bool
+    files: str | None
+    compression: str
+    overwrite: bool
+    retry_failed: bool
 
 
 @overload
@@ -37,38 +66,9 @@ def sample_many(
     surfaces: Surfaces,
     count: int | None = None,
     *,
-    normals: ArrayLike | None = None,
-    progress: bool = True,
-    on_error: Literal["none"],
-    angle: float | None = None,
-    coverage: float | None = None,
-    density: str | float | None = None,
-    relax: int = 0,
-    cells: Sequence[int] | None = None,
-    on: str | None = None,
-    fields: Sequence[str] | None = None,
-    dtype: DTypeLike = np.float64,
-    threads: int | None = None,
-) -> Iterator[Samples | None]: ...
-
-
-@overload
-def sample_many(
-    surfaces: Surfaces,
-    count: int | None = None,
-    *,
-    normals: ArrayLike | None = None,
-    progress: bool = True,
     on_error: Literal["return"],
-    angle: float | None = None,
-    coverage: float | None = None,
-    density: str | float | None = None,
-    relax: int = 0,
-    cells: Sequence[int] | None = None,
-    on: str | None = None,
-    fields: Sequence[str] | None = None,
-    dtype: DTypeLike = np.float64,
     threads: int | None = None,
+    **how: Unpack[_How],
 ) -> Iterator[Samples | GaussmapError]: ...
 
 
@@ -77,18 +77,9 @@ def sample_many(
     surfaces: Surfaces,
     count: int | None = None,
     *,
-    normals: ArrayLike | None = None,
-    progress: bool = True,
     on_error: Literal["raise", "skip"] = "raise",
-    angle: float | None = None,
-    coverage: float | None = None,
-    density: str | float | None = None,
-    relax: int = 0,
-    cells: Sequence[int] | None = None,
-    on: str | None = None,
-    fields: Sequence[str] | None = None,
-    dtype: DTypeLike = np.float64,
     threads: int | None = None,
+    **how: Unpack[_How],
 ) -> Iterator[Samples]: ...
 
 
@@ -97,28 +88,8 @@ def sample_many(
     surfaces: Iterable[Source],
     count: int | None = None,
     *,
-    normals: ArrayLike | None = None,
-    progress: bool = True,
-    on_error: None = None,
-    angle: float | None = None,
-    coverage: float | None = None,
-    density: str | float | None = None,
-    relax: int = 0,
-    cells: Sequence[int] | None = None,
-    on: str | None = None,
-    fields: Sequence[str] | None = None,
-    dtype: DTypeLike = np.float64,
-    threads: None = None,
     out: PathLike,
-    workers: int | None = None,
-    scheduler: object = None,
-    time_limit: float = SECONDS,
-    memory_limit: float | None = None,
-    measure: bool = False,
-    files: str | None = None,
-    compression: str = CODEC,
-    overwrite: bool = False,
-    retry_failed: bool = False,
+    **how: Unpack[_Stored],
 ) -> Dataset: ...
 
 
@@ -148,7 +119,7 @@ def sample_many(
     compression: str = CODEC,
     overwrite: bool = False,
     retry_failed: bool = False,
-) -> Iterator[Samples | GaussmapError | None] | Dataset:
+) -> Iterator[Samples | GaussmapError] | Dataset:
     """Yield the samples of each of several surfaces, in order; or make a data set of them.
 
     With `out` the parts are sampled by several processes, on this machine or on a cluster, into a
@@ -166,10 +137,9 @@ def sample_many(
         process has one thread.
     progress : bool, default True
         Show a bar on standard error, if that is a terminal.
-    on_error : {"raise", "skip", "none", "return"}, default "raise"
+    on_error : {"raise", "skip", "return"}, default "raise"
         Without `out`, what happens if a surface cannot be sampled: its error is raised; or it is
-        left out with a warning; or None is yielded in its place, with a warning; or its error is
-        yielded there.
+        left out with a warning; or its error is yielded in its place.
     out : path, optional
         The folder of the data set. All that follow are for data sets only.
     workers : int, optional
@@ -196,7 +166,7 @@ def sample_many(
 
     Yields
     ------
-    Samples, GaussmapError or None
+    Samples or GaussmapError
         The samples of the next surface: ``samples.report.index`` is its number among `surfaces`,
         from 0 on, and ``samples.report.surface`` its name.
 
@@ -221,7 +191,7 @@ def sample_many(
     Warns
     -----
     GaussmapWarning
-        If a surface is left out, or None stands for it.
+        If a surface is left out.
 
     Notes
     -----
@@ -257,9 +227,7 @@ def sample_many(
             if value is not None:
                 raise InputError(f"{name}=… is for data sets; name the folder of one by out=….")
         checked_fields(fields, checked_place(on) != "spline")
-        action = known_name(
-            "raise" if on_error is None else on_error, ON_ERROR, "value of on_error"
-        )
+        action = known_name(on_error or "raise", ON_ERROR, "value of on_error")
         how = {"cells": cells, "on": on, "fields": fields, "threads": threads}
         return _each(surfaces, request, how | {"dtype": checked_dtype(dtype)}, action, shows)
     if on_error is not None or threads is not None:
@@ -271,7 +239,7 @@ def sample_many(
         asked_of(request, cells, on, yes_or_no(measure, "measure")),
         stored(fields, dtype, compression, files),
         where(workers, scheduler, time_limit, memory_limit),
-        watch=Bar() if shows else Unwatched(),
+        watch=Bar() if shows else Watch(),
         overwrite=yes_or_no(overwrite, "overwrite"),
         again=yes_or_no(retry_failed, "retry_failed"),
     )
@@ -289,7 +257,7 @@ def _iterates(surfaces: Iterable[Source]) -> bool:
 
 def _each(
     surfaces: Iterable[Any], request: Request, how: dict[str, Any], on_error: str, shows: bool
-) -> Iterator[Samples | GaussmapError | None]:
+) -> Iterator[Samples | GaussmapError]:
     """Yield the samples of each surface, or what `on_error` says."""
     from tqdm import tqdm
 
@@ -299,26 +267,17 @@ def _each(
             samples, _ = sample_and_normals(surface, request, progress=False, **how)
         except GaussmapError as error:
             where = f"surface {place} ({_name(surface)})"
-            if on_error in ("raise", "return"):
-                error.add_note(f"This is {where} of sample_many.")
+            if on_error == "skip":
+                warnings.warn(f"{where} is left out: {error}", GaussmapWarning, stacklevel=2)
+                continue
+            error.add_note(f"This is {where} of sample_many.")
             if on_error == "raise":
                 raise
-            if on_error == "return":
-                yield error
-                continue
-            left = "left out" if on_error == "skip" else "None"
-            warnings.warn(f"{where} is {left}: {error}", GaussmapWarning, stacklevel=2)
-            if on_error == "none":
-                yield None
+            yield error
         else:
-            yield _numbered(samples, place)
-
-
-def _numbered(samples: Samples, index: int) -> Samples:
-    """Return samples whose report has the number of the surface."""
-    report = replace(samples.report, index=index)
-    known = {"spline": samples.spline, "surface": samples.surface}
-    return Samples(**samples.arrays(), report=report, **known)
+            report = replace(samples.report, index=place)
+            known = {"spline": samples.spline, "surface": samples.surface}
+            yield Samples(**samples.arrays(), report=report, **known)
 
 
 def _name(surface: object) -> str:

@@ -14,7 +14,7 @@ from .manifest import COLUMNS
 
 __all__ = ["checked_labels"]
 
-NUMBERS = tuple(name for name, (kind, *_) in COLUMNS.items() if kind != "string")
+NUMBERS = tuple(name for name, column in COLUMNS.items() if column.type != "str")
 
 
 def checked_labels(

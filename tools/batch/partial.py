@@ -1,109 +1,60 @@
-"""The files of a shard that is not finished: streams of Arrow, with a batch for each part.
+"""What is done of a shard that is not finished: a file of Arrow for each part.
 
-The row of the manifest is in the metadata of the batch. A part is done when its batch is there
-whole: what follows the last whole batch is left by a process that was killed. So each process has
-a file of its own: the first `shard-000007.arrow`, the next `shard-000007.1.arrow`.
+The row of the manifest is in the metadata of its schema. A part is done when its file is there,
+which the process that samples writes at once.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager
 from dataclasses import asdict
-from itertools import count
 from pathlib import Path
 from typing import Any
 
 from ...runtime.base.extras import from_extra
 from ..files.declared import check_entries
+from .folder import PARTIAL, replaced
 from .manifest import ManifestRow
 
-__all__ = ["PartialFile", "batches_in", "files_of"]
+__all__ = ["part_path", "read_part", "write_part"]
 
 ROW = b"row"
 
 
-def files_of(first: Path) -> list[Path]:
-    """Return the files of a shard that are there, the oldest one first."""
-    numbers = {path: path.suffixes[-2][1:] for path in first.parent.glob(f"{first.stem}.*.arrow")}
-    later = {int(number): path for path, number in numbers.items() if number.isdecimal()}
-    return [first] * first.exists() + [later[k] for k in sorted(later)]
+def part_path(folder: Path, part: int) -> Path:
+    """Return the path of a part that is done, of a shard that is not finished."""
+    return folder / PARTIAL / f"{part:06d}.arrow"
 
 
-@contextmanager
-def batches_in(
-    files: Sequence[Path],
-    schema: Any,  # noqa: ANN401
-) -> Iterator[dict[int, tuple[ManifestRow, Any]]]:
-    """Yield the row and the batch of each part, the last one if there are several.
+def write_part(folder: Path, row: ManifestRow, table: Any, schema: Any) -> None:  # noqa: ANN401
+    """Write a part and its row, in place of what is there of it; without a table, no samples."""
+    arrow = from_extra("pyarrow", "batch", "a data set")
+    table = schema.empty_table() if table is None else table
+    about = {**schema.metadata, ROW: json.dumps(asdict(row))}
+    table = table.replace_schema_metadata(about)
+    with (
+        replaced(folder, part_path(folder, row.part)) as temporary,
+        arrow.OSFile(str(temporary), "wb") as file,
+        arrow.ipc.new_file(file, table.schema) as writer,
+    ):
+        writer.write_table(table)
 
-    The batches are views of the files, which are mapped into memory inside the block.
+
+def read_part(folder: Path, part: int, schema: Any) -> tuple[ManifestRow, Any] | None:  # noqa: ANN401
+    """Return the row and the table of a part; None if it is not done, or its file is damaged.
+
+    The table is a view of the file, which is mapped into memory.
     """
     arrow = from_extra("pyarrow", "batch", "a data set")
-    found: dict[int, tuple[ManifestRow, Any]] = {}
-    with ExitStack() as mapped:
-        for path in files:
-            try:
-                file = mapped.enter_context(arrow.memory_map(str(path)))
-            except (OSError, ValueError):  # it is empty
-                continue
-            for row, batch in _whole_batches(arrow, file, schema):
-                found[row.part] = row, batch
-        yield found
-        found.clear()
-
-
-def _whole_batches(arrow: Any, file: Any, schema: Any) -> Iterator[tuple[ManifestRow, Any]]:  # noqa: ANN401
     try:
-        reader = arrow.ipc.open_stream(file)
-        while reader.schema.equals(schema, check_metadata=True):
-            batch, metadata = reader.read_next_batch_with_custom_metadata()
-            batch.validate(full=True)
-            row = json.loads(metadata[ROW])
-            check_entries(row, ManifestRow)
-            yield ManifestRow(**row), batch
-    except Exception:  # Arrow raises a dozen kinds on bad bytes, and StopIteration at the end
-        return
-
-
-class PartialFile:
-    """A new file of a shard, to which parts are appended."""
-
-    def __init__(self, first: Path, schema: Any) -> None:  # noqa: ANN401
-        self._arrow = from_extra("pyarrow", "batch", "a data set")
-        self._schema = schema
-        path = _new(first)
-        try:
-            self._file = self._arrow.OSFile(str(path), "wb")
-            self._writer = self._arrow.ipc.new_stream(self._file, schema)
-        except BaseException:
-            path.unlink(missing_ok=True)
-            raise
-
-    def add(self, row: ManifestRow, table: Any) -> None:  # noqa: ANN401
-        """Write a part: when this returns, the part is done, even if the process is killed."""
-        text = json.dumps(asdict(row)).encode()
-        self._writer.write_batch(self._as_batch(table), custom_metadata={ROW: text})
-        self._file.flush()
-
-    def close(self) -> None:
-        """Close the file. The stream gets no end, for which a full disk has no room."""
-        self._file.close()
-
-    def _as_batch(self, table: Any) -> Any:  # noqa: ANN401
-        if table is None or not len(table):
-            return self._arrow.RecordBatch.from_pylist([], schema=self._schema)
-        return table.combine_chunks().to_batches()[0]
-
-
-def _new(first: Path) -> Path:
-    """Make a new file, which follows those that are there."""
-    for number in count():
-        path = first.with_suffix(f".{number}.arrow") if number else first
-        try:
-            path.touch(exist_ok=False)
-        except FileExistsError:
-            continue
-        return path
-    raise AssertionError
+        with arrow.memory_map(str(part_path(folder, part))) as file:
+            table = arrow.ipc.open_file(file).read_all()
+        table.validate(full=True)
+        about = dict(table.schema.metadata)
+        row = json.loads(about.pop(ROW))
+        check_entries(row, ManifestRow)
+        table = table.replace_schema_metadata(about)
+        known = table.schema.equals(schema, check_metadata=True) and row["part"] == part
+        return (ManifestRow(**row), table) if known else None
+    except Exception:  # Arrow raises a dozen kinds on bad bytes
+        return None

@@ -2,55 +2,34 @@
 
 from __future__ import annotations
 
-import re
-import unicodedata
-from collections.abc import Mapping, Sequence
+import atexit
+import threading
+from collections.abc import Generator, Iterable, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from dataclasses import dataclass, replace
+from itertools import islice
 from pathlib import Path
 from typing import Self
 
 from ...runtime.base.errors import FileError
-from .asked import Asked
-from .child import Answer, Child, Limits
-from .folder import FILES, Settings, read_settings
+from .child import Child
+from .folder import read_settings
 from .inputs import Input
-from .manifest import FAILED, OK, ManifestRow
+from .manifest import FAILED, ManifestRow
+from .plan import Plan
 from .serving import Task
 from .shards import Shard
 
-__all__ = ["Plan", "Tally", "file_name", "run_shard"]
+__all__ = ["Tally", "run", "run_shard", "use"]
 
 # How often a part is tried that fails.
 ATTEMPTS = 2
 # So many failures are shown when a run ends; the manifest has all.
 SHOWN = 10
-LONGEST_NAME = 60
+# Shards for each worker that wait: executors know of no others.
+AHEAD = 2
 
-
-@dataclass(frozen=True, eq=False, slots=True)
-class Plan:
-    """What all shards of a run have in common.
-
-    Attributes
-    ----------
-    folder : str
-        The absolute path of the data set, the same on all machines.
-    settings : Settings
-        Those of the data set.
-    asked : Asked
-        What is asked of each part.
-    limits : Limits
-        Those of each part.
-    again : bool
-        Whether parts that failed in an earlier run are tried again.
-
-    """
-
-    folder: str
-    settings: Settings
-    asked: Asked
-    limits: Limits
-    again: bool = False
+_HERE = threading.local()
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,8 +43,14 @@ class Tally:
     failed: int = 0
     kept: int = 0
     samples: int = 0
-    seconds: float = 0.0
     failures: tuple[tuple[str, str], ...] = ()
+
+    @classmethod
+    def of(cls, row: ManifestRow, kept: bool) -> Self:
+        """Return the tally of one part."""
+        if row.status == FAILED:
+            return cls(failed=1, failures=((row.name, row.error),))
+        return cls(ok=int(not kept), kept=int(kept), samples=row.samples)
 
     @property
     def parts(self) -> int:
@@ -78,9 +63,44 @@ class Tally:
             self.failed + other.failed,
             self.kept + other.kept,
             self.samples + other.samples,
-            self.seconds + other.seconds,
             (self.failures + other.failures)[:SHOWN],
         )
+
+
+def run(
+    plan: Plan, shards: Iterable[tuple[int, Sequence[Input]]], executor: Executor, workers: int
+) -> Generator[Tally]:
+    """Yield what became of each shard, when it is finished; closing it cancels those that wait."""
+    left = iter(shards)
+    waiting: set[Future[Tally]] = set()
+    try:
+        while True:
+            for number, inputs in islice(left, AHEAD * workers - len(waiting)):
+                waiting.add(executor.submit(work, plan, number, inputs))
+            if not waiting:
+                return
+            done, waiting = wait(waiting, return_when=FIRST_COMPLETED)
+            for future in done:
+                yield future.result()
+    finally:
+        for future in waiting:
+            future.cancel()
+
+
+def use(child: Child) -> None:
+    """Let this thread do its shards by a process that others end."""
+    _HERE.child = child
+
+
+def work(plan: Plan, number: int, inputs: Sequence[Input]) -> Tally:
+    """Do a shard by the process of this thread; one of a cluster's workers starts its own."""
+    child = getattr(_HERE, "child", None)
+    if child is None or child.limits != plan.limits:
+        if child is not None:
+            child.end()
+        child = _HERE.child = Child(plan.limits)
+        atexit.register(child.end)
+    return run_shard(plan, number, inputs, child)
 
 
 def run_shard(plan: Plan, number: int, inputs: Sequence[Input], child: Child) -> Tally:
@@ -89,102 +109,50 @@ def run_shard(plan: Plan, number: int, inputs: Sequence[Input], child: Child) ->
     Raises FileError if the data set cannot be written.
     """
     tally = Tally()
-    with Shard(Path(plan.folder), number, plan.settings) as shard:
-        before_all = dict(shard.rows)
-        for part in inputs:
-            before = shard.rows.get(part.part)
-            file = _file(plan, part)
-            answer, attempts = _tried(plan, part, child, file, _known(plan, part, before, file))
-            if answer.same and before is not None:
-                tally += _tally(before, kept=True)
-                continue
-            row = _row(part, answer, attempts)
-            if before is None or not _fails_again(before, row):
-                shard.add(row, answer.table)
-            tally += _tally(row)
-        # A worker of Dask that nobody waits for may come after another run.
-        if read_settings(plan.folder).to_json() != plan.settings.to_json():
-            raise FileError(f"'{plan.folder}' holds another data set by now.")
-        shard.commit([part.part for part in inputs])
+    shard = Shard(Path(plan.folder), number, plan.settings)
+    before_all = dict(shard.rows)
+    for part in inputs:
+        before = shard.rows.get(part.part)
+        found = _tried(plan, part, child, before)
+        row = found or before
+        assert row is not None
+        if row.status != FAILED:
+            shard.rows[part.part] = row  # whose samples are written
+        elif before is None or replace(before, seconds=0.0) != replace(row, seconds=0.0):
+            shard.add(row)
+        tally += Tally.of(row, kept=found is None)
+    # A worker of Dask that nobody waits for may come after another run.
+    if read_settings(plan.folder).to_json() != plan.settings.to_json():
+        raise FileError(f"'{plan.folder}' holds another data set by now.")
+    shard.commit([part.part for part in inputs])
     _remove_files(plan, before_all, inputs)
     return tally
 
 
-def file_name(part: int, name: str, suffix: str) -> str:
-    """Return the name of the file of a part: its number, and what is harmless of its name."""
-    plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
-    clean = re.sub(r"[^A-Za-z0-9_-]+", "-", plain).strip("-")[:LONGEST_NAME]
-    return f"{part:06d}{'-' if clean else ''}{clean}{suffix}"
-
-
-def _file(plan: Plan, part: Input | ManifestRow) -> Path | None:
-    suffix = plan.settings.files
-    if suffix is None:
-        return None
-    return Path(plan.folder) / FILES / file_name(part.part, part.name, suffix)
-
-
 def _remove_files(plan: Plan, before: Mapping[int, ManifestRow], inputs: Sequence[Input]) -> None:
     """Remove the files of parts that are not in the list any more, or have another name now."""
-    kept = {_file(plan, part) for part in inputs}
-    for file in {_file(plan, row) for row in before.values()} - kept:
+    kept = {plan.file(part) for part in inputs}
+    for file in {plan.file(row) for row in before.values()} - kept:
         if file is not None:
             file.unlink(missing_ok=True)
 
 
-def _known(plan: Plan, part: Input, before: ManifestRow | None, file: Path | None) -> str | None:
+def _tried(plan: Plan, part: Input, child: Child, before: ManifestRow | None) -> ManifestRow | None:
+    """Return what became of a part, after some attempts; None if it need not be done again."""
+    known = _known(plan, part, before)
+    row = child.sample(Task(part, plan, known))
+    for attempt in range(2, ATTEMPTS + 1):
+        if row is None or row.status != FAILED:
+            break
+        row = child.sample(Task(part, plan, known, attempt))
+    return row
+
+
+def _known(plan: Plan, part: Input, before: ManifestRow | None) -> str:
     """Return the content of a part that need not be done again, if it has not changed."""
     if before is None or (before.name, before.source) != (part.name, part.source):
-        return None
+        return ""
     if before.status == FAILED:
-        return None if plan.again or not before.content else before.content
-    return before.content if file is None or file.exists() else None
-
-
-def _tried(
-    plan: Plan, part: Input, child: Child, file: Path | None, known: str | None
-) -> tuple[Answer, int]:
-    """Return what became of a part, and after how many attempts."""
-    path = None if file is None else str(file)
-    task = Task(part, known, plan.asked, plan.settings, plan.limits, path)
-    answer, attempts = child.sample(task), 1
-    while answer.error and attempts < ATTEMPTS:
-        answer, attempts = child.sample(task), attempts + 1
-    return answer, attempts
-
-
-def _row(part: Input, answer: Answer, attempts: int) -> ManifestRow:
-    about = answer.about
-    return ManifestRow(
-        part=part.part,
-        name=part.name,
-        source=part.source,
-        content=about.get("content", ""),
-        status=FAILED if answer.error else OK,
-        attempts=attempts,
-        samples=about.get("samples", 0),
-        misfit=about.get("misfit"),
-        coverage=about.get("coverage"),
-        angle=about.get("angle"),
-        seconds=about.get("seconds", 0.0),
-        warnings=about.get("warnings", ""),
-        error=answer.error,
-    )
-
-
-def _fails_again(before: ManifestRow, row: ManifestRow) -> bool:
-    """Say whether a part has failed as in an earlier run, so that nothing is new."""
-    then, now = (replace(x, seconds=0.0) for x in (before, row))
-    return row.status == FAILED and then == now
-
-
-def _tally(row: ManifestRow, kept: bool = False) -> Tally:
-    failed = row.status == FAILED
-    return Tally(
-        ok=int(not failed and not kept),
-        failed=int(failed),
-        kept=int(kept and not failed),
-        samples=row.samples,
-        seconds=0.0 if kept else row.seconds,
-        failures=((row.name, row.error),) if failed else (),
-    )
+        return "" if plan.again else before.content
+    file = plan.file(part)
+    return before.content if file is None or file.exists() else ""

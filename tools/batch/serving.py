@@ -1,25 +1,30 @@
 """What the process does that samples parts.
 
-It gets pickled tasks on its standard input and answers with frames on what was its standard output;
-what functions of users print goes to standard error. It ends when its input does.
+It gets pickled tasks on its standard input and answers with lines of JSON on what was its standard
+output; what functions of users print goes to standard error. It ends when its input does.
 """
 
 from __future__ import annotations
 
+import json
 import os
 import pickle
 import signal
 import time
 import warnings
-from contextlib import suppress
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import IO, Any
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any
+
+from ..files.processes import end_with_parent, limit
+
+if TYPE_CHECKING:
+    from .manifest import ManifestRow
 
 __all__ = ["Task", "main"]
 
 GIB = 2**30
-# Of Linux: the signal that a process gets when its parent ends.
-PR_SET_PDEATHSIG = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,44 +35,50 @@ class Task:
     ----------
     input : Input
         The part.
-    known : str or None
-        The content of the part that was sampled already, if it is unchanged.
-    asked : Asked
-        What to sample.
-    settings : Settings
-        Those of the data set.
-    limits : Limits
-        Those of this process, which reading a CAD file has, too.
-    file : str or None
-        The path of the file of its own that the part gets.
+    plan : Plan
+        What to sample, and where the data set is.
+    known : str
+        The content of the part that was sampled already, if it is unchanged; else nothing.
+    attempt : int
+        How often sampling was tried, this time included.
 
     """
 
     input: Any
-    known: str | None
-    asked: Any
-    settings: Any
-    limits: Any
-    file: str | None = None
+    plan: Any
+    known: str = ""
+    attempt: int = 1
+
+    def row(self, about: dict[str, Any]) -> ManifestRow:
+        """Return what became of the part."""
+        from .manifest import FAILED, OK, ManifestRow
+
+        part, status = self.input, FAILED if about.get("error") else OK
+        about = {"content": "", "status": status, "attempts": self.attempt} | about
+        return ManifestRow(part.part, part.name, part.source, **about)
 
 
 def main(memory: float, parent: int) -> None:
     """Answer tasks until there are no more, with at most so many GiB of memory."""
     tasks, answers = _streams()
-    _end_with_parent(parent)
-    _limit_memory(memory)
+    end_with_parent(signal.SIGKILL, parent)
+    limit(RLIMIT_DATA=int(memory * GIB))
     from ...runtime.sample import sample  # noqa: F401 - which takes its time, and that is not a part's
-    from .frames import write_frame
 
-    write_frame(answers, {})
+    _say(answers, {})
     while True:
         try:
             task = pickle.load(tasks)
         except EOFError:
             return
-        # First the content: it is known then, even if sampling kills this process.
-        for about, table in _answers(task):
-            write_frame(answers, about, table)
+        for about in _answers(task):
+            _say(answers, about)
+
+
+def _say(answers: IO[bytes], about: dict[str, Any]) -> None:
+    """Write a line. It is no pickle: what reads it runs no code that a file may hold."""
+    answers.write(json.dumps(about).encode() + b"\n")
+    answers.flush()
 
 
 def _streams() -> tuple[IO[bytes], IO[bytes]]:
@@ -81,8 +92,8 @@ def _streams() -> tuple[IO[bytes], IO[bytes]]:
     return os.fdopen(tasks, "rb"), os.fdopen(answers, "wb")
 
 
-def _answers(task: Task) -> Any:  # noqa: ANN401
-    """Yield the content of a part, and what became of it, with a table of its samples."""
+def _answers(task: Task) -> Iterator[dict[str, Any]]:
+    """Yield the content of a part, and numbers of the manifest when its samples are written."""
     from ...runtime.base.errors import GaussmapError
 
     start = time.perf_counter()
@@ -92,20 +103,35 @@ def _answers(task: Task) -> Any:  # noqa: ANN401
         warnings.simplefilter("always")
         try:
             surface, content = _source(task)
-            yield {"content": content}, None
+            # First of all: it is known then, even if sampling kills this process.
+            yield {"content": content}
             if content == task.known:
-                yield {"same": True}, None
                 return
-            about, table = _sampled(surface, task)
+            about["content"] = content
+            more, table = _sampled(surface, task)
+            about |= more
         except GaussmapError as error:
-            about = {"error": str(error)}
+            about["error"] = str(error)
         except MemoryError:
-            about = {"error": "needs more memory than memory_limit; raise it."}
+            about["error"] = "needs more memory than memory_limit; raise it."
         except Exception as error:  # of what users' functions and files do
-            about = {"error": f"{type(error).__name__}: {error}"}
-    about["seconds"] = time.perf_counter() - start
+            about["error"] = f"{type(error).__name__}: {error}"
     about["warnings"] = "\n".join(dict.fromkeys(str(x.message) for x in caught))
-    yield about, table
+    about["seconds"] = time.perf_counter() - start
+    yield about if table is None else _written(task, about, table)
+
+
+def _written(task: Task, about: dict[str, Any], table: Any) -> dict[str, Any]:  # noqa: ANN401
+    """Write the samples of a part, and return numbers of the manifest, or why that failed."""
+    from ...runtime.base.errors import FileError
+    from .partial import write_part
+
+    plan = task.plan
+    try:
+        write_part(Path(plan.folder), task.row(about), table, table.schema)
+    except FileError as error:
+        return {"stop": str(error)}
+    return about
 
 
 def _source(task: Task) -> tuple[Any, str]:
@@ -122,9 +148,10 @@ def _source(task: Task) -> tuple[Any, str]:
     content = content_of(array_file(path))
     if content == task.known:
         return None, content
-    named = replace(task.asked.named, surface=path, quiet=True)
+    named = replace(task.plan.asked.named, surface=path, quiet=True)
     if is_part_file(path):  # neither of which has cells
-        limits = {"time_limit": task.limits.seconds, "memory_limit": task.limits.memory}
+        limits = task.plan.limits
+        limits = {"time_limit": limits.seconds, "memory_limit": limits.memory}
         named = replace(named, tolerance=None, **limits)
     return surface_of(named), content
 
@@ -137,22 +164,23 @@ def _sampled(source: Any, task: Task) -> tuple[dict[str, Any], Any]:  # noqa: AN
     from ..cad.part import Part
     from ..sources.surface_of import with_tolerance
     from .arrow_tables import points_schema, points_table
-    from .asked import normals_in
+    from .plan import normals_in
 
-    arguments = dict(task.asked.arguments)
+    asked, settings = task.plan.asked, task.plan.settings
+    arguments = dict(asked.arguments)
     part = isinstance(source, Part)
     surface, arguments["cells"] = source, None
     if not part:
-        named = replace(task.asked.named, cells=task.asked.arguments["cells"], quiet=True)
+        named = replace(asked.named, cells=asked.arguments["cells"], quiet=True)
         surface, arguments["cells"] = with_tolerance(source, named)
     on = "surface" if part else place_of_samples(surface, arguments.get("on"))
     grid = arguments.get("density") == "aligned"
     known = checked_fields(None, on == "surface", grid=grid and not part, part=part)
     samples = sample(
         surface,
-        normals=None if task.asked.normals is None else normals_in(task.asked.normals),
-        fields=tuple(name for name in task.settings.fields if name in known),
-        dtype=task.settings.dtype,
+        normals=None if asked.normals is None else normals_in(asked.normals),
+        fields=tuple(name for name in settings.fields if name in known),
+        dtype=settings.dtype,
         threads=1,
         **arguments,
     )
@@ -163,29 +191,10 @@ def _sampled(source: Any, task: Task) -> tuple[dict[str, Any], Any]:  # noqa: AN
         "coverage": report.coverage,
         "angle": report.angle,
     }
-    if task.asked.measured and len(samples):
+    if asked.measured and len(samples):
         about["coverage"] = samples.coverage(threads=1)
         about["angle"] = samples.normal_deviation(threads=1)
-    if task.file is not None:
-        samples.write(task.file)
-    return about, points_table(samples, task.input.part, points_schema(task.settings))
-
-
-def _end_with_parent(parent: int) -> None:
-    """Let the system end this process when that which waits for it is killed, where it can."""
-    with suppress(AttributeError, OSError, TypeError):
-        import ctypes
-
-        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-        if os.getppid() != parent:  # it was killed before
-            os._exit(1)
-
-
-def _limit_memory(gib: float) -> None:
-    with suppress(ImportError, OSError, ValueError):  # some systems have no limits
-        import resource
-
-        for kind, limit in ((resource.RLIMIT_DATA, int(gib * GIB)), (resource.RLIMIT_CORE, 0)):
-            _, hard = resource.getrlimit(kind)
-            low = limit if hard == resource.RLIM_INFINITY else min(limit, hard)
-            resource.setrlimit(kind, (low, hard))
+    file = task.plan.file(task.input)
+    if file is not None:
+        samples.write(file)
+    return about, points_table(samples, task.input.part, points_schema(settings))

@@ -3,38 +3,44 @@
 from __future__ import annotations
 
 import sys
-import time
 from typing import Any
 
-from .making import Watch
+from tqdm import tqdm
+
+from ...runtime.base.threads import seen
 from .running import Tally
 
-__all__ = ["Bar", "Log", "progress"]
+__all__ = ["Bar", "Log", "Watch", "progress"]
 
 # In seconds: how often a log gets a line.
 INTERVAL = 10.0
 
 
-def progress() -> Watch:
-    """Return what shows a run on standard error."""
-    return Bar() if sys.stderr is not None and sys.stderr.isatty() else Log()
+class Watch:
+    """What is told of a run while it goes on, in the process that started it; this says nothing."""
+
+    def begin(self, parts: int | None, dashboard: str | None) -> None:
+        """Hear of the number of parts, if it is known, and the address of Dask's dashboard."""
+
+    def add(self, tally: Tally) -> None:
+        """Hear what became of the parts of a shard."""
+
+    def end(self) -> None:
+        """Hear that the run has ended."""
 
 
-class Bar:
+class Bar(Watch):
     """A bar on standard error, if that is a terminal: parts done, failures, rate and time left."""
 
-    def __init__(self) -> None:
-        self._bar: Any = None
-        self._failed = 0
+    how: dict[str, Any] = {"disable": None}  # noqa: RUF012 - no other object changes it
 
     def begin(self, parts: int | None, dashboard: str | None) -> None:
         """Show an empty bar, and where Dask's dashboard is."""
-        from tqdm import tqdm
-
+        if dashboard is not None:
+            self._say(f"Dask's dashboard: {dashboard}")
         # The first parts take longer, and those of an earlier run no time: the rate is a mean.
-        self._bar = tqdm(total=parts, desc="sampling", unit="part", disable=None, smoothing=0.1)
-        if dashboard is not None and not self._bar.disable:
-            self._bar.write(f"Dask's dashboard: {dashboard}", file=sys.stderr)
+        self._bar = tqdm(total=parts, desc="sampling", unit="part", smoothing=0.1, **self.how)
+        self._failed = 0
 
     def add(self, tally: Tally) -> None:
         """Show that parts are done."""
@@ -43,44 +49,44 @@ class Bar:
             self._bar.set_postfix(failed=self._failed, refresh=False)
         self._bar.update(tally.parts)
 
-    def end(self, tally: Tally) -> None:
+    def end(self) -> None:
         """End the bar."""
         self._bar.close()
 
+    def _say(self, text: str) -> None:
+        if seen(True):
+            print(text, file=sys.stderr)
 
-class Log:
-    """A line on standard error every ten seconds: parts done, failures, rate and time left."""
+
+class Log(Bar):
+    """The same as a line every ten seconds."""
 
     def __init__(self) -> None:
-        self._parts: int | None = None
-        self._done = Tally()
-        self._start = self._last = 0.0
-
-    def begin(self, parts: int | None, dashboard: str | None) -> None:
-        """Say where Dask's dashboard is."""
-        self._parts = parts
-        self._start = self._last = time.monotonic()
-        if dashboard is not None:
-            self._say(f"Dask's dashboard: {dashboard}")
-
-    def add(self, tally: Tally) -> None:
-        """Say how many parts are done, if the last line is long ago."""
-        self._done += tally
-        now = time.monotonic()
-        if now - self._last >= INTERVAL:
-            self._last = now
-            self._say(self._line(now - self._start))
-
-    def end(self, tally: Tally) -> None:
-        """Say nothing: the summary follows."""
-
-    def _line(self, seconds: float) -> str:
-        done, rate = self._done.parts, self._done.parts / seconds
-        of = "" if self._parts is None else f" of {self._parts:,}"
-        left = "" if self._parts is None else f", {(self._parts - done) / rate:.0f} s left"
-        failed = f", {self._done.failed:,} failed" if self._done.failed else ""
-        return f"{done:,}{of} parts{failed}, {rate:.1f} parts/s{left}"
+        """Write lines in place of a bar."""
+        self.how = {
+            "file": _Lines(),
+            "bar_format": "{n} of {total} parts{postfix}, {rate_fmt}, {remaining} left",
+            "mininterval": INTERVAL,
+            "miniters": 1,
+            "delay": INTERVAL,
+            "leave": False,
+        }
 
     def _say(self, text: str) -> None:
-        if sys.stderr is not None:
-            print(f"gaussmap: {text}", file=sys.stderr, flush=True)
+        _Lines().write(text)
+
+
+class _Lines:
+    """Standard error as a file of lines."""
+
+    def write(self, text: str) -> None:
+        if (line := text.strip()) and sys.stderr is not None:
+            print(f"gaussmap: {line}", file=sys.stderr, flush=True)
+
+    def flush(self) -> None:
+        pass
+
+
+def progress() -> Watch:
+    """Return what shows a run on standard error."""
+    return Bar() if seen(True) else Log()

@@ -11,22 +11,22 @@ import json
 import os
 import signal
 import sys
-from contextlib import suppress
 from pathlib import Path
+
+from ..files.processes import end_with_parent, limit
 
 __all__ = ["ERROR", "PART", "main"]
 
 PART, ERROR = "part.npz", "error.txt"
-# Of Linux: the signal that a process gets when its parent ends.
-PR_SET_PDEATHSIG = 1
 
 
 def main(text: str) -> None:
     """Read a file into a part: what to read, and the limits, are a JSON object."""
     request = json.loads(text)
     folder = Path(request["folder"])
-    _end_with_parent()
-    _limit(request["memory"], request["seconds"])
+    end_with_parent(signal.SIGTERM)
+    # Of processor time, for the case that nobody waits any more.
+    limit(RLIMIT_AS=int(request["memory"]), RLIMIT_CPU=int(request["seconds"]) + 5)
     try:
         message = _read(request, folder)
     except MemoryError:
@@ -63,30 +63,6 @@ def _read(request: dict[str, str], folder: Path) -> str:
         reason = " ".join(f"{type(error).__name__}: {error}".split())[:200].rstrip(".")
         return f"cannot be read: Open CASCADE fails on it ({reason})."
     return ""
-
-
-def _end_with_parent() -> None:
-    """Let the system end this process when that which waits for it is killed, where it can."""
-    with suppress(AttributeError, OSError, TypeError):
-        import ctypes
-
-        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
-
-
-def _limit(memory: float, seconds: float) -> None:
-    """Limit memory in bytes, and processor time, for the case that nobody waits any more."""
-    with suppress(ImportError, OSError, ValueError):  # some systems have no limits
-        import resource
-
-        for kind, limit in (
-            (resource.RLIMIT_AS, int(memory)),
-            (resource.RLIMIT_CPU, int(seconds) + 5),
-            (resource.RLIMIT_CORE, 0),
-        ):
-            _, hard = resource.getrlimit(kind)
-            low = limit if hard == resource.RLIM_INFINITY else min(limit, hard)
-            with suppress(OSError, ValueError):
-                resource.setrlimit(kind, (low, hard))
 
 
 if __name__ == "__main__":

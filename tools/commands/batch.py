@@ -14,11 +14,11 @@ import numpy as np
 from ...runtime.base.compiling import NOTICE
 from ...runtime.base.errors import InputError
 from ...runtime.surface.surfaces import CATALOGUE
-from ..batch.arguments import SECONDS, asked_of, stored, where
 from ..batch.inputs import Source
-from ..batch.making import Unwatched, make
+from ..batch.making import make
+from ..batch.plan import SECONDS, asked_of, stored, where
 from ..batch.running import Tally
-from ..batch.watching import progress
+from ..batch.watching import Watch, progress
 from ..sources.named import Named
 from ..sources.surface_of import surface_of
 from .console import say, table
@@ -54,7 +54,7 @@ def run(options: SimpleNamespace) -> None:
             SECONDS if options.time_limit is None else options.time_limit,
             options.memory_limit,
         ),
-        watch=Unwatched() if options.quiet else progress(),
+        watch=Watch() if options.quiet else progress(),
         overwrite=options.overwrite,
         again=options.retry_failed,
     )

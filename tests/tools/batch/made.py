@@ -55,9 +55,9 @@ def write(
     create(folder, known)
     for number in range(-(-len(counts) // SEPARATE)):
         parts = range(len(counts))[number * SEPARATE : (number + 1) * SEPARATE]
-        with Shard(folder, number, known) as shard:
-            for part in parts:
-                table = points_table(samples_of(part, counts[part], dtype), part, shard.schema)
-                shard.add(row_of(part, counts[part]), None if part == BROKEN else table)
-            shard.commit(parts)
+        shard = Shard(folder, number, known)
+        for part in parts:
+            table = points_table(samples_of(part, counts[part], dtype), part, shard.schema)
+            shard.add(row_of(part, counts[part]), None if part == BROKEN else table)
+        shard.commit(parts)
     return gm.open_dataset(folder)

@@ -11,10 +11,10 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.batch.arguments import where
-from gaussmap.tools.batch.asked import Asked
-from gaussmap.tools.batch.making import Unwatched, make
+from gaussmap.tools.batch.making import make
+from gaussmap.tools.batch.plan import Asked, where
 from gaussmap.tools.batch.running import Tally
+from gaussmap.tools.batch.watching import Watch
 
 pytest.importorskip("pyarrow")
 distributed = pytest.importorskip("distributed")
@@ -81,7 +81,7 @@ def cluster(tmp_path: Path) -> Iterator[Cluster]:
     found.end()
 
 
-class Killer(Unwatched):
+class Killer(Watch):
     """Kills a worker when ten parts are done, and counts all."""
 
     def __init__(self, cluster: Cluster) -> None:
@@ -102,7 +102,7 @@ def test_a_worker_that_is_killed_loses_nothing(tmp_path, cluster):
                  where(None, cluster.address, 60.0, 4.0), watch=killer)  # fmt: skip
     assert killer.killed
     assert (tally.parts, tally.failed) == (PARTS, 0)
-    make(parts, tmp_path / "here", ASKED, STORED, where(2, None, 60.0, 4.0), watch=Unwatched())
+    make(parts, tmp_path / "here", ASKED, STORED, where(2, None, 60.0, 4.0), watch=Watch())
     assert data_of(tmp_path / "cluster") == data_of(tmp_path / "here")
     assert not list((tmp_path / "cluster" / "partial").iterdir())
 

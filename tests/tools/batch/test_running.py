@@ -13,7 +13,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.tools.batch.inputs import inputs_of
-from gaussmap.tools.batch.running import file_name
+from gaussmap.tools.batch.plan import file_name
 
 pytest.importorskip("pyarrow")
 pytest.importorskip("cloudpickle")

@@ -21,12 +21,12 @@ from gaussmap.tools.batch.folder import (
     opened,
     parts_per_shard,
     read_settings,
-    remove_shards,
+    remove_from,
+    replaced,
     shard_path,
-    temporary_path,
 )
 from gaussmap.tools.batch.manifest import FAILED, ManifestRow, manifest_table, rows_of
-from gaussmap.tools.batch.partial import batches_in
+from gaussmap.tools.batch.partial import part_path, read_part
 from gaussmap.tools.batch.shards import Shard
 
 pytest.importorskip("pyarrow")
@@ -71,10 +71,10 @@ def finished(path: Path) -> dict[str, bytes]:
 @pytest.fixture(scope="module")
 def undisturbed(tmp_path_factory) -> dict[str, bytes]:
     path, known = folder(tmp_path_factory.mktemp("whole") / "set")
-    with Shard(path, 0, known) as shard:
-        for part in COUNTS:
-            add(shard, part)
-        shard.commit(list(COUNTS))
+    shard = Shard(path, 0, known)
+    for part in COUNTS:
+        add(shard, part)
+    shard.commit(list(COUNTS))
     return finished(path)
 
 
@@ -82,11 +82,11 @@ def test_what_is_written_is_read(tmp_path):
     import pyarrow.parquet as parquet
 
     path, known = folder(tmp_path)
-    with Shard(path, 0, known) as shard:
-        for part in COUNTS:
-            add(shard, part)
-        shard.commit(list(COUNTS))
-        assert not shard_path(path, PARTIAL, 0).exists()
+    shard = Shard(path, 0, known)
+    for part in COUNTS:
+        add(shard, part)
+    shard.commit(list(COUNTS))
+    assert not any((path / PARTIAL).iterdir())
     table = parquet.read_table(shard_path(path, POINTS, 0))
     np.testing.assert_array_equal(
         table["part"], np.repeat(list(COUNTS), list(COUNTS.values())), strict=False
@@ -102,73 +102,62 @@ def test_what_is_written_is_read(tmp_path):
 
 def test_any_order_and_any_interruption_end_with_the_same_bytes(tmp_path, undisturbed):
     path, known = folder(tmp_path)
-    for part in (3, 0, *10 * (4,)):  # more than ten files: 10 comes after 9
-        with Shard(path, 0, known) as shard:
-            shard.add(replace(row(4), content="old")) if part == 4 else add(shard, part)
-    with Shard(path, 0, known) as shard:
-        add(shard, 4)
-    with Shard(path, 6, known) as shard:  # another one
-        add(shard, 2)
-    assert shard_path(path, PARTIAL, 0).with_suffix(".12.arrow").exists()
-    with Shard(path, 0, known) as shard:
-        assert list(shard.rows) == [3, 0, 4]
-        assert shard.rows[4].content == "1"
-        add(shard, 1)
-        add(shard, 2)
-        shard.commit(list(COUNTS))
+    for part in (3, 0, 4):
+        shard = Shard(path, 0, known)
+        shard.add(replace(row(4), content="old")) if part == 4 else add(shard, part)
+    add(Shard(path, 0, known), 4)
+    shard = Shard(path, 0, known)
+    assert list(shard.rows) == [0, 3, 4]
+    assert shard.rows[4].content == "1"
+    add(shard, 1)
+    add(shard, 2)
+    shard.commit(list(COUNTS))
     assert finished(path) == undisturbed
 
 
 @pytest.mark.parametrize("left", [0, 1, 100, 0.3, 0.9, 0.999])
-def test_a_truncated_tail_is_dropped(tmp_path, undisturbed, left):
+def test_a_part_that_is_cut_is_done_again(tmp_path, undisturbed, left):
     path, known = folder(tmp_path)
-    partial = shard_path(path, PARTIAL, 0)
-    with Shard(path, 0, known) as shard:
-        add(shard, 0)
-        before = partial.stat().st_size
-        add(shard, 2)
-        after = partial.stat().st_size
-    size = left if isinstance(left, int) else before + int(left * (after - before))
-    partial.write_bytes(partial.read_bytes()[:size])
-    with Shard(path, 0, known) as shard:
-        assert list(shard.rows) == ([0] if size >= before else [])
-        for part in COUNTS:
-            if part not in shard.rows:
-                add(shard, part)
-        shard.commit(list(COUNTS))
+    shard = Shard(path, 0, known)
+    add(shard, 0)
+    add(shard, 2)
+    data = part_path(path, 2).read_bytes()
+    size = left if isinstance(left, int) else int(left * len(data))
+    part_path(path, 2).write_bytes(data[:size])
+    shard = Shard(path, 0, known)
+    assert list(shard.rows) == [0]
+    for part in COUNTS:
+        if part not in shard.rows:
+            add(shard, part)
+    shard.commit(list(COUNTS))
     assert finished(path) == undisturbed
 
 
 def test_cut_at_any_byte(tmp_path):
     path, known = folder(tmp_path)
-    partial = shard_path(path, PARTIAL, 0)
-    with Shard(path, 0, known) as shard:
-        add(shard, 0)
-        before = partial.stat().st_size
-        add(shard, 4)
-        after = partial.stat().st_size
-    data = partial.read_bytes()
-    schema = Shard(path, 0, known).schema
-    for size in range(before, after):
-        partial.write_bytes(data[:size])
-        with batches_in([partial], schema) as batches:
-            assert list(batches) == [0], size
-    partial.write_bytes(data[:after])
+    shard = Shard(path, 0, known)
+    add(shard, 0)
+    add(shard, 4)
+    data = part_path(path, 4).read_bytes()
+    for size in range(len(data)):
+        part_path(path, 4).write_bytes(data[:size])
+        assert read_part(path, 4, shard.schema) is None, size
+    part_path(path, 4).write_bytes(data)
     assert list(Shard(path, 0, known).rows) == [0, 4]
 
 
 def test_a_kill_between_points_and_manifest(tmp_path, undisturbed, monkeypatch):
     path, known = folder(tmp_path)
-    with Shard(path, 0, known) as shard:
-        for part in COUNTS:
-            add(shard, part)
-        shard.commit(list(COUNTS))
+    shard = Shard(path, 0, known)
+    for part in COUNTS:
+        add(shard, part)
+    shard.commit(list(COUNTS))
     shard_path(path, MANIFEST, 0).unlink()
-    with Shard(path, 0, known) as shard:
-        assert not shard.rows
-        for part in COUNTS:
-            add(shard, part)
-        shard.commit(list(COUNTS))
+    shard = Shard(path, 0, known)
+    assert not shard.rows
+    for part in COUNTS:
+        add(shard, part)
+    shard.commit(list(COUNTS))
     assert finished(path) == undisturbed
 
 
@@ -176,48 +165,48 @@ def test_a_part_that_changed_is_replaced_and_the_others_are_kept(tmp_path, undis
     import pyarrow.parquet as parquet
 
     path, known = folder(tmp_path)
-    with Shard(path, 0, known) as shard:
-        for part in COUNTS:
-            add(shard, part)
-        shard.commit(list(COUNTS))
-        seen = shard_path(path, POINTS, 0).stat().st_mtime_ns
-        shard.commit(list(COUNTS))
-        assert shard_path(path, POINTS, 0).stat().st_mtime_ns == seen  # nothing to do
-    with Shard(path, 0, known) as shard:
-        assert len(shard.rows) == len(COUNTS)
-        shard.add(row(4, "2"), points_table(samples(9, 5), 4, shard.schema))
-        shard.commit(list(COUNTS))
+    shard = Shard(path, 0, known)
+    for part in COUNTS:
+        add(shard, part)
+    shard.commit(list(COUNTS))
+    seen = shard_path(path, POINTS, 0).stat().st_mtime_ns
+    shard.commit(list(COUNTS))
+    assert shard_path(path, POINTS, 0).stat().st_mtime_ns == seen  # nothing to do
+    shard = Shard(path, 0, known)
+    assert len(shard.rows) == len(COUNTS)
+    shard.add(row(4, "2"), points_table(samples(9, 5), 4, shard.schema))
+    shard.commit(list(COUNTS))
     table = parquet.read_table(shard_path(path, POINTS, 0))
     np.testing.assert_array_equal(table["x"][-5:], samples(9, 5).points[:, 0])
-    with Shard(path, 0, known) as shard:
-        assert shard.rows[4].content == "2"
-        add(shard, 4)
-        shard.commit(list(COUNTS))
+    shard = Shard(path, 0, known)
+    assert shard.rows[4].content == "2"
+    add(shard, 4)
+    shard.commit(list(COUNTS))
     assert finished(path) == undisturbed
-    with Shard(path, 0, known) as shard:  # the list has become shorter
-        shard.commit([0, 1])
+    shard = Shard(path, 0, known)  # the list has become shorter
+    shard.commit([0, 1])
     assert parquet.read_table(shard_path(path, POINTS, 0)).num_rows == COUNTS[0]
 
 
 def test_parts_without_samples(tmp_path):
     path, known = folder(tmp_path)
     bad = replace(row(1), status=FAILED, error="no such file.", misfit=0.5)
-    with Shard(path, 0, known) as shard:
-        shard.add(bad)
-        shard.commit([1])
+    shard = Shard(path, 0, known)
+    shard.add(bad)
+    shard.commit([1])
     assert Shard(path, 0, known).rows == {1: bad}
 
 
 @pytest.mark.parametrize("data", [b"", b"PAR1", bytes(1000), b"not arrow" * 100])
 def test_damaged_files_are_done_again(tmp_path, undisturbed, data):
     path, known = folder(tmp_path)
-    for kind in (POINTS, MANIFEST, PARTIAL):
-        shard_path(path, kind, 0).write_bytes(data)
-    with Shard(path, 0, known) as shard:
-        assert not shard.rows
-        for part in COUNTS:
-            add(shard, part)
-        shard.commit(list(COUNTS))
+    for file in (*(shard_path(path, kind, 0) for kind in (POINTS, MANIFEST)), part_path(path, 2)):
+        file.write_bytes(data)
+    shard = Shard(path, 0, known)
+    assert not shard.rows
+    for part in COUNTS:
+        add(shard, part)
+    shard.commit(list(COUNTS))
     assert finished(path) == undisturbed
 
 
@@ -236,44 +225,43 @@ def files_of_at_most(size: int) -> Iterator[None]:
 class TestFullDisk:
     def test_what_is_done_stays_and_parts_follow_it(self, tmp_path, undisturbed):
         path, known = folder(tmp_path)
-        partial = shard_path(path, PARTIAL, 0)
-        with Shard(path, 0, known) as shard:
-            add(shard, 0)
-            with files_of_at_most(partial.stat().st_size + 10_000):
-                for _ in range(2):
-                    with pytest.raises(gm.errors.FileError, match="what is done is kept") as error:
-                        add(shard, 2)
-                    assert "\n" not in str(error.value)
-            assert list(Shard(path, 0, known).rows) == list(shard.rows) == [0]
-            for part in (1, 2, 3, 4):  # there is room again
-                add(shard, part)
-            shard.commit(list(COUNTS))
+        shard = Shard(path, 0, known)
+        add(shard, 0)
+        with files_of_at_most(10_000):
+            for _ in range(2):
+                with pytest.raises(gm.errors.FileError, match="what is done is kept") as error:
+                    add(shard, 2)
+                assert "\n" not in str(error.value)
+        assert list(Shard(path, 0, known).rows) == list(shard.rows) == [0]
+        for part in (1, 2, 3, 4):  # there is room again
+            add(shard, part)
+        shard.commit(list(COUNTS))
         assert finished(path) == undisturbed
 
     def test_the_error_is_not_hidden_by_closing(self, tmp_path):
         path, known = folder(tmp_path)
         with (
             pytest.raises(gm.errors.FileError, match="File too large; what is done"),
-            Shard(path, 0, known) as shard,
             files_of_at_most(5000),
         ):
-            add(shard, 2)
+            add(Shard(path, 0, known), 2)
         assert not Shard(path, 0, known).rows
 
     def test_while_the_shard_is_finished(self, tmp_path, undisturbed):
         path, known = folder(tmp_path)
-        with Shard(path, 0, known) as shard:
-            for part in COUNTS:
-                add(shard, part)
-            for size in (100, 1000, 100_000):
-                with (
-                    files_of_at_most(size),
-                    pytest.raises(gm.errors.FileError, match="what is done is kept"),
-                ):
-                    shard.commit(list(COUNTS))
-                assert not list((path / POINTS).iterdir()) + list((path / MANIFEST).iterdir())
-                assert [x.name for x in (path / PARTIAL).iterdir()] == ["shard-000000.arrow"]
-            shard.commit(list(COUNTS))
+        shard = Shard(path, 0, known)
+        for part in COUNTS:
+            add(shard, part)
+        for size in (100, 1000, 100_000):
+            with (
+                files_of_at_most(size),
+                pytest.raises(gm.errors.FileError, match="what is done is kept"),
+            ):
+                shard.commit(list(COUNTS))
+            assert not list((path / POINTS).iterdir()) + list((path / MANIFEST).iterdir())
+            names = sorted(x.name for x in (path / PARTIAL).iterdir())
+            assert names == [f"{part:06d}.arrow" for part in COUNTS]
+        shard.commit(list(COUNTS))
         assert finished(path) == undisturbed
 
     def test_for_the_manifest_only(self, tmp_path, undisturbed, monkeypatch):
@@ -281,15 +269,16 @@ class TestFullDisk:
             raise OSError(errno.ENOSPC, "No space left on device")
 
         path, known = folder(tmp_path)
-        with Shard(path, 0, known) as shard, monkeypatch.context() as patched:
+        shard = Shard(path, 0, known)
+        with monkeypatch.context() as patched:
             for part in COUNTS:
                 add(shard, part)
             patched.setattr("pyarrow.parquet.write_table", full)
             with pytest.raises(gm.errors.FileError, match="what is done is kept"):
                 shard.commit(list(COUNTS))
-        with Shard(path, 0, known) as shard:
-            assert list(shard.rows) == list(COUNTS)  # nothing has to be done again
-            shard.commit(list(COUNTS))
+        shard = Shard(path, 0, known)
+        assert list(shard.rows) == list(COUNTS)  # nothing has to be done again
+        shard.commit(list(COUNTS))
         assert finished(path) == undisturbed
 
 
@@ -301,29 +290,29 @@ def test_large_parts_have_the_same_bytes_however_they_were_read(tmp_path):
         return replace(row(0), part=part, samples=count)
 
     seen = []
-    with Shard(path, 0, known) as shard:
-        for part in (1, 2):
-            shard.add(large(part), points_table(samples(part, count), part, shard.schema))
-        shard.commit([1, 2])
-        seen.append(finished(path))
-    with Shard(path, 0, known) as shard:  # of which one is read from the Parquet file
-        shard.add(large(2), points_table(samples(2, count), 2, shard.schema))
-        shard.commit([1, 2])
-        seen.append(finished(path))
+    shard = Shard(path, 0, known)
+    for part in (1, 2):
+        shard.add(large(part), points_table(samples(part, count), part, shard.schema))
+    shard.commit([1, 2])
+    seen.append(finished(path))
+    shard = Shard(path, 0, known)  # of which one is read from the Parquet file
+    shard.add(large(2), points_table(samples(2, count), 2, shard.schema))
+    shard.commit([1, 2])
+    seen.append(finished(path))
     assert seen[0] == seen[1]
 
 
 def test_cad_parts_have_no_patches(tmp_path):
     known = Settings.of_this_version(asked={}, fields=("points", "normals", "patch_index"))
     data = create(tmp_path, known)
-    with Shard(tmp_path, 0, data) as shard:
-        for part, patches in enumerate((None, np.arange(5))):
-            vectors: dict[str, Any] = dict.fromkeys(("points", "normals"), np.ones((5, 3)))
-            some = gm.Samples(**vectors, patch_index=patches, report=samples(0, 5).report)  # pyright: ignore[reportArgumentType]
-            shard.add(
-                ManifestRow(part, "a", "b", "c", samples=5), points_table(some, part, shard.schema)
-            )
-        shard.commit([0, 1])
+    shard = Shard(tmp_path, 0, data)
+    for part, patches in enumerate((None, np.arange(5))):
+        vectors: dict[str, Any] = dict.fromkeys(("points", "normals"), np.ones((5, 3)))
+        some = gm.Samples(**vectors, patch_index=patches, report=samples(0, 5).report)  # pyright: ignore[reportArgumentType]
+        shard.add(
+            ManifestRow(part, "a", "b", "c", samples=5), points_table(some, part, shard.schema)
+        )
+    shard.commit([0, 1])
     read = gm.open_dataset(tmp_path)
     assert read.samples(0).fields == ("points", "normals")
     np.testing.assert_array_equal(read.samples(1).patch_index, np.arange(5))
@@ -331,9 +320,9 @@ def test_cad_parts_have_no_patches(tmp_path):
 
 def test_names_that_are_no_text(tmp_path):
     path, known = folder(tmp_path)
-    with Shard(path, 0, known) as shard:
-        shard.add(replace(row(1), name="part\udcff.step", source="\0\n"))
-        shard.commit([1])
+    shard = Shard(path, 0, known)
+    shard.add(replace(row(1), name="part\udcff.step", source="\0\n"))
+    shard.commit([1])
     assert Shard(path, 0, known).rows[1].name == "part\\udcff.step"
 
 
@@ -373,9 +362,9 @@ class TestFolder:
     def test_overwrite_leaves_what_is_not_of_the_data_set(self, tmp_path):
         path, known = folder(tmp_path)
         (path / "notes.txt").write_text("mine")
-        with Shard(path, 0, known) as shard:
-            add(shard, 0)
-            shard.commit([0])
+        shard = Shard(path, 0, known)
+        add(shard, 0)
+        shard.commit([0])
         create(path, known, overwrite=True)
         assert (path / "notes.txt").read_text() == "mine"
         assert not any((path / POINTS).iterdir())
@@ -404,9 +393,9 @@ class TestFolder:
     def test_one_run_at_a_time(self, tmp_path, overwrite):
         path = tmp_path / "new"
         with opened(path, settings()) as known:
-            with Shard(path, 0, known) as shard:
-                add(shard, 0)
-                shard.commit([0])
+            shard = Shard(path, 0, known)
+            add(shard, 0)
+            shard.commit([0])
             with (
                 pytest.raises(gm.errors.FileError, match="another run"),
                 opened(path, known, overwrite),
@@ -427,25 +416,25 @@ class TestFolder:
 
     def test_what_a_killed_run_was_writing_is_removed(self, tmp_path):
         path, known = folder(tmp_path)
-        assert temporary_path(path).parent == path / PARTIAL
-        temporary_path(path).write_bytes(b"PAR1")
+        with replaced(path, path / POINTS / "a.parquet") as temporary:
+            assert temporary.parent == path / PARTIAL
+            temporary.touch()
+            (path / PARTIAL / f"0{temporary.name}").write_bytes(b"PAR1")
         with opened(path, known):
             assert not any((path / PARTIAL).iterdir())
 
     def test_shards_of_a_longer_list_are_removed(self, tmp_path):
-        path, known = folder(tmp_path)
+        path, known = folder(tmp_path, parts_per_shard=2)
         for number in (6, 7, 1_234_567):
-            with Shard(path, number, known) as shard:
-                add(shard, 0)
-                shard.commit([0])
-                add(shard, 1)
-            with Shard(path, number, known) as shard:
-                add(shard, 2)
+            first, second = (replace(row(1), part=2 * number + k) for k in (0, 1))
+            shard = Shard(path, number, known)
+            shard.add(first)
+            shard.commit([first.part])
+            shard.add(second)
         (path / POINTS / "mine.txt").touch()
-        remove_shards(path, 7)
+        remove_from(path, 7, 14)
         left = [x.name for kind in (POINTS, MANIFEST, PARTIAL) for x in (path / kind).iterdir()]
-        shard_6 = ["shard-000006.1.arrow", "shard-000006.arrow", *2 * ["shard-000006.parquet"]]
-        assert sorted(left) == ["mine.txt", *shard_6]
+        assert sorted(left) == ["000013.arrow", "mine.txt", *2 * ["shard-000006.parquet"]]
 
     def test_parts_per_shard(self):
         assert parts_per_shard(200, 2048) == 3
