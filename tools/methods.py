@@ -19,10 +19,6 @@ from ..runtime.samples.samples import spline_or
 from ..runtime.samples.whole import Whole
 
 if TYPE_CHECKING:
-    import open3d  # pyright: ignore[reportMissingImports]
-    import pandas
-    import pyvista
-    import trimesh
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -36,10 +32,6 @@ __all__ = [
     "mesh",
     "offset",
     "plot",
-    "to_dataframe",
-    "to_open3d",
-    "to_pyvista",
-    "to_trimesh",
     "view",
     "weights",
     "write",
@@ -390,112 +382,3 @@ def view(
     from .viewer.view import view as write_page
 
     write_page(self, path, surface)
-
-
-def to_dataframe(self: Samples) -> pandas.DataFrame:
-    """Return a table with one row for each sample and the columns of a `.csv` file.
-
-    Returns
-    -------
-    pandas.DataFrame
-        A copy, as of the other conversions.
-
-    Raises
-    ------
-    MissingExtraError
-        Without the extra `pandas`.
-
-    Examples
-    --------
-    >>> import gaussmap as gm
-    >>> table = gm.sample("torus", 200, cells=(16, 16)).to_dataframe()
-    >>> len(table), list(table.columns)[:4]
-    (200, ['x', 'y', 'z', 'nx'])
-
-    """
-    from .files.interop import samples_to_dataframe
-
-    return samples_to_dataframe(self)
-
-
-def to_pyvista(self: Samples) -> pyvista.PolyData:
-    """Return the points with all other fields as point data.
-
-    Returns
-    -------
-    pyvista.PolyData
-        The normals are its normals.
-
-    Raises
-    ------
-    MissingExtraError
-        Without the extra `vtk`.
-    MissingFieldError
-        Unless the samples have the field points.
-
-    Examples
-    --------
-    >>> import gaussmap as gm
-    >>> gm.sample("torus", 200, cells=(16, 16)).to_pyvista().n_points
-    200
-
-    """
-    from .files.interop import samples_to_pyvista
-
-    return samples_to_pyvista(self)
-
-
-def to_trimesh(self: Samples) -> trimesh.PointCloud:
-    """Return the points in float64, with all other fields in `metadata`.
-
-    Returns
-    -------
-    trimesh.PointCloud
-        The points.
-
-    Raises
-    ------
-    MissingExtraError
-        Without the extra `trimesh`.
-    MissingFieldError
-        Unless the samples have the field points.
-
-    Examples
-    --------
-    >>> import gaussmap as gm
-    >>> cloud = gm.sample("torus", 200, cells=(16, 16)).to_trimesh()
-    >>> cloud.vertices.shape, cloud.metadata["normals"].shape
-    ((200, 3), (200, 3))
-
-    """
-    from .files.interop import samples_to_trimesh
-
-    return samples_to_trimesh(self)
-
-
-def to_open3d(self: Samples) -> open3d.geometry.PointCloud:
-    """Return the points in float64, with their normals if the samples have them.
-
-    Returns
-    -------
-    open3d.geometry.PointCloud
-        The points.
-
-    Raises
-    ------
-    MissingExtraError
-        Without the extra `open3d`.
-    MissingFieldError
-        Unless the samples have the field points.
-
-    Examples
-    --------
-    >>> import gaussmap as gm
-    >>> samples = gm.sample("torus", 200, cells=(16, 16))
-    >>> samples.to_open3d().has_normals()  # doctest: +SKIP
-    True
-
-    """
-    from .files.interop import samples_to_open3d
-
-    return samples_to_open3d(self)

@@ -11,6 +11,7 @@ from ..base.later import Later
 __all__ = ["Methods"]
 
 DENSITY, TOOLS = "gaussmap.runtime.density.methods", "gaussmap.tools.methods"
+OTHERS = "gaussmap.tools.files.of_samples"
 
 
 class Methods:
@@ -25,10 +26,10 @@ class Methods:
     mesh = Later(TOOLS)
     offset = Later(TOOLS)
     plot = Later(TOOLS)
-    to_dataframe = Later(TOOLS)
-    to_open3d = Later(TOOLS)
-    to_pyvista = Later(TOOLS)
-    to_trimesh = Later(TOOLS)
+    to_dataframe = Later(OTHERS)
+    to_open3d = Later(OTHERS)
+    to_pyvista = Later(OTHERS)
+    to_trimesh = Later(OTHERS)
     view = Later(TOOLS)
     weights = Later(TOOLS)
     write = Later(TOOLS)

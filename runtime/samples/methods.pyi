@@ -1,13 +1,13 @@
 """The methods of `Samples` that rooms above this one define; `methods.py` loads them."""
 
 class Methods:
+    from ...tools.files.of_samples import to_dataframe as to_dataframe
+    from ...tools.files.of_samples import to_open3d as to_open3d
+    from ...tools.files.of_samples import to_pyvista as to_pyvista
+    from ...tools.files.of_samples import to_trimesh as to_trimesh
     from ...tools.methods import mesh as mesh
     from ...tools.methods import offset as offset
     from ...tools.methods import plot as plot
-    from ...tools.methods import to_dataframe as to_dataframe
-    from ...tools.methods import to_open3d as to_open3d
-    from ...tools.methods import to_pyvista as to_pyvista
-    from ...tools.methods import to_trimesh as to_trimesh
     from ...tools.methods import view as view
     from ...tools.methods import weights as weights
     from ...tools.methods import write as write

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from io import BufferedReader
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ...runtime.base.errors import InputError, UnknownNameError
 from ...runtime.base.extras import check_extra
@@ -15,13 +15,7 @@ from .arrow import write_arrow, write_parquet
 from .gltf import write_glb
 from .las import write_las
 from .npz import read_npz, write_npz
-from .paths import (
-    PathLike,
-    atomic_path,
-    check_target,
-    checked_path,
-    known_suffix,
-)
+from .paths import PathLike, atomic_path, check_target, checked_path, known_suffix
 from .ply import read_ply, write_mesh_ply, write_ply
 from .reading import opened
 from .tables import write_csv, write_xyz
@@ -43,47 +37,40 @@ __all__ = [
     "write_samples",
 ]
 
-WRITERS: dict[str, Callable[[Samples, Path], None]] = {
-    ".npz": write_npz,
-    ".ply": write_ply,
-    ".csv": write_csv,
-    ".vtp": write_vtp,
-    ".xyz": write_xyz,
-    ".parquet": write_parquet,
-    ".arrow": write_arrow,
-    ".feather": write_arrow,
-    ".las": write_las,
-    ".laz": write_las,
-}
-READERS: dict[str, Callable[[BufferedReader], Samples]] = {".npz": read_npz, ".ply": read_ply}
-MESH_WRITERS: dict[str, Callable[[Mesh, Path], None]] = {
-    ".ply": write_mesh_ply,
-    ".obj": write_obj,
-    ".stl": write_stl,
-    ".vtk": write_vtk,
-    ".vtu": write_vtu,
-    ".vtp": write_mesh_vtp,
-    ".glb": write_glb,
-}
-SUFFIXES, READABLE_SUFFIXES = tuple(WRITERS), tuple(READERS)
-MESH_SUFFIXES = tuple(MESH_WRITERS)
 
-# The library that writes a format, and the extra that brings it.
-_EXTRAS = {
-    ".glb": ("trimesh", "trimesh"),
-    ".parquet": ("pyarrow", "tables"),
-    ".arrow": ("pyarrow", "tables"),
-    ".feather": ("pyarrow", "tables"),
-    ".las": ("laspy", "gis"),
-    ".laz": ("lazrs", "gis"),
+class Format(NamedTuple):
+    """What writes files of a suffix, the fields that these need, and the extra that brings it."""
+
+    write: Callable[[Any, Path], None]
+    needs: tuple[str, ...] = ()
+    library: str = ""
+    extra: str = ""
+
+
+READERS: dict[str, Callable[[BufferedReader], Samples]] = {".npz": read_npz, ".ply": read_ply}
+OF_SAMPLES = {
+    ".npz": Format(write_npz),
+    ".ply": Format(write_ply, ("points",)),
+    ".csv": Format(write_csv),
+    ".vtp": Format(write_vtp, ("points",)),
+    ".xyz": Format(write_xyz, ("points", "normals")),
+    ".parquet": Format(write_parquet, (), "pyarrow", "tables"),
+    ".arrow": Format(write_arrow, (), "pyarrow", "tables"),
+    ".feather": Format(write_arrow, (), "pyarrow", "tables"),
+    ".las": Format(write_las, ("points",), "laspy", "gis"),
+    ".laz": Format(write_las, ("points",), "lazrs", "gis"),
 }
-# The formats of single precision.
-_SINGLE = (".glb", ".stl")
-# The fields that a format cannot do without.
-_NEEDED = {
-    **dict.fromkeys((".ply", ".vtp", ".las", ".laz"), ("points",)),
-    ".xyz": ("points", "normals"),
+OF_MESHES = {
+    ".ply": Format(write_mesh_ply),
+    ".obj": Format(write_obj),
+    ".stl": Format(write_stl),
+    ".vtk": Format(write_vtk),
+    ".vtu": Format(write_vtu),
+    ".vtp": Format(write_mesh_vtp),
+    ".glb": Format(write_glb, (), "trimesh", "trimesh"),
 }
+SUFFIXES, READABLE_SUFFIXES, MESH_SUFFIXES = tuple(OF_SAMPLES), tuple(READERS), tuple(OF_MESHES)
+SINGLE = (".glb", ".stl")  # of single precision
 
 
 def write_samples(samples: Samples, path: PathLike) -> None:
@@ -91,7 +78,7 @@ def write_samples(samples: Samples, path: PathLike) -> None:
     suffix = _suffix_of_samples(path)
     check_fields(path, samples.fields)
     with atomic_path(path) as temporary:
-        WRITERS[suffix](samples, temporary)
+        OF_SAMPLES[suffix].write(samples, temporary)
 
 
 def write_mesh(mesh: Mesh, path: PathLike) -> None:
@@ -99,17 +86,27 @@ def write_mesh(mesh: Mesh, path: PathLike) -> None:
     suffix = known_suffix(path, MESH_SUFFIXES)
     if not len(mesh.triangles):
         raise InputError("this mesh has no triangles, and so there is nothing to write.")
-    if suffix in _SINGLE:
+    if suffix in SINGLE:
         warn_of_rounding(mesh.vertices, 4)
     with atomic_path(path) as temporary:
-        MESH_WRITERS[suffix](mesh, temporary)
+        OF_MESHES[suffix].write(mesh, temporary)
 
 
 def check_samples_target(path: PathLike) -> None:
     """Raise now what writing samples to `path` would raise later, see `check_target`."""
-    _suffix_of_samples(path)
-    check_target(path, SUFFIXES)
-    _check_library(path)
+    suffix = _suffix_of_samples(path)
+    _check_target(path, suffix, OF_SAMPLES)
+
+
+def check_mesh_target(path: PathLike) -> None:
+    """Raise now what writing a mesh to `path` would raise later, see `check_target`."""
+    _check_target(path, known_suffix(path, MESH_SUFFIXES), OF_MESHES)
+
+
+def _check_target(path: PathLike, suffix: str, formats: Mapping[str, Format]) -> None:
+    check_target(path, tuple(formats))
+    if library := formats[suffix].library:
+        check_extra(library, formats[suffix].extra, purpose=f"a {suffix} file")
 
 
 def _suffix_of_samples(path: PathLike) -> str:
@@ -123,22 +120,10 @@ def _suffix_of_samples(path: PathLike) -> str:
     return known_suffix(path, SUFFIXES)
 
 
-def check_mesh_target(path: PathLike) -> None:
-    """Raise now what writing a mesh to `path` would raise later, see `check_target`."""
-    check_target(path, MESH_SUFFIXES)
-    _check_library(path)
-
-
-def _check_library(path: PathLike) -> None:
-    suffix = checked_path(path).suffix.lower()
-    if suffix in _EXTRAS:
-        check_extra(*_EXTRAS[suffix], purpose=f"a {suffix} file")
-
-
 def check_fields(path: PathLike, fields: Sequence[str]) -> None:
     """Raise InputError if the format of a file, told by its suffix, needs other fields too."""
-    suffix = checked_path(path).suffix.lower()
-    lacking = [repr(name) for name in _NEEDED.get(suffix, ()) if name not in fields]
+    suffix = _suffix_of_samples(path)
+    lacking = [repr(name) for name in OF_SAMPLES[suffix].needs if name not in fields]
     if lacking:
         raise InputError(
             f"a {suffix} file needs {' and '.join(lacking)}; add that to the fields, or write a "

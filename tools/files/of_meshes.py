@@ -5,8 +5,11 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from ...runtime.base.extras import from_extra
 from .formats import write_mesh
-from .interop import mesh_to_open3d, mesh_to_pyvista, mesh_to_trimesh
+from .of_samples import polydata, vectors
 
 if TYPE_CHECKING:
     import open3d  # pyright: ignore[reportMissingImports]
@@ -81,7 +84,10 @@ def to_pyvista(self: Mesh) -> pyvista.PolyData:
     400
 
     """
-    return mesh_to_pyvista(self)
+    pv = from_extra("pyvista", "vtk", "this")
+    data = pv.PolyData.from_regular_faces(self.vertices.copy(), self.triangles)
+    arrays = {"normals": self.normals, "uv": self.uv, "sample_index": self.sample_index}
+    return polydata(pv, data, arrays)
 
 
 def to_trimesh(self: Mesh) -> trimesh.Trimesh:
@@ -104,7 +110,13 @@ def to_trimesh(self: Mesh) -> trimesh.Trimesh:
     True
 
     """
-    return mesh_to_trimesh(self)
+    return from_extra("trimesh", "trimesh", "this").Trimesh(
+        self.vertices.copy(),
+        self.triangles.copy(),
+        vertex_normals=self.normals.copy(),
+        vertex_attributes={"uv": self.uv.copy(), "sample_index": self.sample_index.copy()},
+        process=False,
+    )
 
 
 def to_open3d(self: Mesh) -> open3d.geometry.TriangleMesh:
@@ -128,4 +140,8 @@ def to_open3d(self: Mesh) -> open3d.geometry.TriangleMesh:
     True
 
     """
-    return mesh_to_open3d(self)
+    library = from_extra("open3d", "open3d", "this")
+    triangles = library.utility.Vector3iVector(self.triangles.astype(np.int32))
+    result = library.geometry.TriangleMesh(vectors(library, self.vertices), triangles)
+    result.vertex_normals = vectors(library, self.normals)
+    return result

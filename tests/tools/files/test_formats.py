@@ -1026,7 +1026,7 @@ def test_an_interruption_leaves_the_older_file(tmp_path, monkeypatch, capsys, ma
         raise KeyboardInterrupt
 
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setitem(formats.WRITERS, ".npz", half)
+    monkeypatch.setitem(formats.OF_SAMPLES, ".npz", formats.Format(half))
     Path("a.npz").write_text("old")
     assert main(["sample", "torus", "--count", "60", "--cells", "8", "8", "-o", "a.npz"]) == 130
     assert capsys.readouterr() == ("", "gaussmap: interrupted\n")

@@ -1,0 +1,148 @@
+"""The methods of `Samples` that make the objects of other libraries, each loaded when asked for."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.base.extras import from_extra
+from ...runtime.samples.fields import columns_of
+
+if TYPE_CHECKING:
+    import open3d  # pyright: ignore[reportMissingImports]
+    import pandas
+    import pyvista
+    import trimesh
+
+    from ...runtime.samples.samples import Samples
+
+__all__ = ["polydata", "to_dataframe", "to_open3d", "to_pyvista", "to_trimesh", "vectors"]
+
+
+def to_dataframe(self: Samples) -> pandas.DataFrame:
+    """Return a table with one row for each sample and the columns of a `.csv` file.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A copy, as of the other conversions.
+
+    Raises
+    ------
+    MissingExtraError
+        Without the extra `pandas`.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> table = gm.sample("torus", 200, cells=(16, 16)).to_dataframe()
+    >>> len(table), list(table.columns)[:4]
+    (200, ['x', 'y', 'z', 'nx'])
+
+    """
+    columns = columns_of(self.arrays())
+    pandas = from_extra("pandas", "pandas", "this")
+    return pandas.DataFrame({name: column.copy() for name, column in columns.items()})
+
+
+def to_pyvista(self: Samples) -> pyvista.PolyData:
+    """Return the points with all other fields as point data.
+
+    Returns
+    -------
+    pyvista.PolyData
+        The normals are its normals.
+
+    Raises
+    ------
+    MissingExtraError
+        Without the extra `vtk`.
+    MissingFieldError
+        Unless the samples have the field points.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> gm.sample("torus", 200, cells=(16, 16)).to_pyvista().n_points
+    200
+
+    """
+    points, pv = self.points, from_extra("pyvista", "vtk", "this")
+    arrays = {name: getattr(self, name) for name in self.fields if name != "points"}
+    return polydata(pv, pv.PolyData(points.copy()), arrays)
+
+
+def to_trimesh(self: Samples) -> trimesh.PointCloud:
+    """Return the points in float64, with all other fields in `metadata`.
+
+    Returns
+    -------
+    trimesh.PointCloud
+        The points.
+
+    Raises
+    ------
+    MissingExtraError
+        Without the extra `trimesh`.
+    MissingFieldError
+        Unless the samples have the field points.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> cloud = gm.sample("torus", 200, cells=(16, 16)).to_trimesh()
+    >>> cloud.vertices.shape, cloud.metadata["normals"].shape
+    ((200, 3), (200, 3))
+
+    """
+    points = self.points.astype(np.float64)
+    arrays = {name: getattr(self, name).copy() for name in self.fields if name != "points"}
+    return from_extra("trimesh", "trimesh", "this").PointCloud(points, metadata=arrays)
+
+
+def to_open3d(self: Samples) -> open3d.geometry.PointCloud:
+    """Return the points in float64, with their normals if the samples have them.
+
+    Returns
+    -------
+    open3d.geometry.PointCloud
+        The points.
+
+    Raises
+    ------
+    MissingExtraError
+        Without the extra `open3d`.
+    MissingFieldError
+        Unless the samples have the field points.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> samples = gm.sample("torus", 200, cells=(16, 16))
+    >>> samples.to_open3d().has_normals()  # doctest: +SKIP
+    True
+
+    """
+    points, library = self.points, from_extra("open3d", "open3d", "this")
+    cloud = library.geometry.PointCloud(vectors(library, points))
+    if "normals" in self.fields:
+        cloud.normals = vectors(library, self.normals)
+    return cloud
+
+
+def polydata(pv: Any, data: Any, arrays: dict[str, NDArray[Any]]) -> Any:  # noqa: ANN401
+    """Give points their arrays, with the normals as such."""
+    for name, array in arrays.items():
+        # By way of VTK: pyvista refuses arrays without elements.
+        numbers = array.view(np.uint8) if array.dtype == np.bool_ else array
+        data.GetPointData().AddArray(pv.convert_array(numbers, name=name, deep=True))
+    if "normals" in arrays:
+        data.GetPointData().SetActiveNormals("normals")
+    return data
+
+
+def vectors(library: Any, rows: NDArray[Any]) -> Any:  # noqa: ANN401
+    """Return rows (N, 3) as Open3D has them."""
+    return library.utility.Vector3dVector(rows.astype(np.float64))
