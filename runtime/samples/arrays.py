@@ -20,7 +20,7 @@ from ..surface.surface import Surface
 from .fields import (
     COLUMNS,
     DERIVED,
-    OPTIONAL_NAMES,
+    FIELDS,
     REAL_NAMES,
     dtype_of,
     missing_fields,
@@ -34,6 +34,13 @@ __all__ = ["SampleArrays"]
 
 # What a field is set to that was not asked for; reading it raises MissingFieldError.
 _NOT_ASKED: Any = None
+# The types of what is no array.
+_KINDS = {
+    "report": (SamplingReport, "a SamplingReport"),
+    "spline": (Spline | None, "a Spline or None"),
+    "surface": (Surface | Whole | None, "a Surface or None"),
+    "offset_of": (OffsetOf | None, "an OffsetOf or None"),
+}
 
 
 @dataclass(frozen=True, eq=False, slots=True, repr=False)
@@ -73,18 +80,11 @@ class SampleArrays:
             if name in arrays:
                 shape, dtype = (count, *row_shape(name)), dtype_of(name, floating)
                 object.__setattr__(self, name, checked_array(name, arrays[name], shape, dtype))
-            elif name not in OPTIONAL_NAMES:
+            elif not FIELDS[name].only:
                 object.__delattr__(self, name)  # an empty slot, for which __getattr__ speaks
-        if not isinstance(self.report, SamplingReport):
-            raise InputError(f"report must be a SamplingReport, not {type(self.report).__name__}.")
-        if not isinstance(self.spline, Spline | None):
-            raise InputError(f"spline must be a Spline or None, not {type(self.spline).__name__}.")
-        if not isinstance(self.surface, Surface | Whole | None):
-            name = type(self.surface).__name__
-            raise InputError(f"surface must be a Surface or None, not {name}.")
-        if not isinstance(self.offset_of, OffsetOf | None):
-            name = type(self.offset_of).__name__
-            raise InputError(f"offset_of must be an OffsetOf or None, not {name}.")
+        for name, (kind, allowed) in _KINDS.items():
+            if not isinstance(value := getattr(self, name), kind):
+                raise InputError(f"{name} must be {allowed}, not {type(value).__name__}.")
 
     def __getattr__(self, name: str) -> Any:  # noqa: ANN401
         if name in COLUMNS or name in DERIVED:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 from warnings import catch_warnings, simplefilter
 
 from ..base.errors import InputError, MissingFieldError, shown
@@ -26,7 +26,6 @@ __all__ = [
     "GRID_NAMES",
     "INDEX_NAMES",
     "INTEGER_NAMES",
-    "OPTIONAL_NAMES",
     "PART_NAMES",
     "REAL_NAMES",
     "UNITS",
@@ -40,58 +39,63 @@ __all__ = [
     "row_shape",
 ]
 
-# Every array of `Samples`, and the columns that it has in a table: one for each of its numbers.
-COLUMNS: dict[str, tuple[str, ...]] = {
-    "points": ("x", "y", "z"),
-    "normals": ("nx", "ny", "nz"),
-    "uv": ("u", "v"),
-    "support": ("support",),
-    "gaussian_curvature": ("gaussian_curvature",),
-    "mean_curvature": ("mean_curvature",),
-    "normal_index": ("normal_index",),
-    "patch_index": ("patch_index",),
-    "on_surface": ("on_surface",),
-    "row": ("row",),
-    "column": ("column",),
-    "face_index": ("face_index",),
-    "solid_index": ("solid_index",),
-    "other_normals": ("other_nx", "other_ny", "other_nz"),
-    "other_uv": ("other_u", "other_v"),
-    "other_face_index": ("other_face_index",),
+
+class Field(NamedTuple):
+    """An array of `Samples`: its columns in a table, one for each of its numbers, and their type.
+
+    `only` says which samples have it, if not all do. `unit` is that of real numbers: L is that of
+    the surface, u and v have their own.
+    """
+
+    columns: tuple[str, ...]
+    unit: str = ""
+    kind: str = "real"
+    only: str = ""
+
+
+FIELDS: dict[str, Field] = {
+    "points": Field(("x", "y", "z"), "L"),
+    "normals": Field(("nx", "ny", "nz"), "1"),
+    "uv": Field(("u", "v"), "parameter"),
+    "support": Field(("support",), "L"),
+    "gaussian_curvature": Field(("gaussian_curvature",), "1/L^2"),
+    "mean_curvature": Field(("mean_curvature",), "1/L"),
+    "normal_index": Field(("normal_index",), kind="index"),
+    "patch_index": Field(("patch_index",), kind="index"),
+    "on_surface": Field(("on_surface",), kind="flag", only="surface"),
+    "row": Field(("row",), kind="index", only="grid"),
+    "column": Field(("column",), kind="index", only="grid"),
+    "face_index": Field(("face_index",), kind="index", only="part"),
+    "solid_index": Field(("solid_index",), kind="index", only="part"),
+    "other_normals": Field(("other_nx", "other_ny", "other_nz"), "1", only="edges"),
+    "other_uv": Field(("other_u", "other_v"), "parameter", only="edges"),
+    "other_face_index": Field(("other_face_index",), kind="index", only="edges"),
 }
-# The units of those that are no integers: L is that of the surface, u and v have their own.
-UNITS: dict[str, str] = {
-    "points": "L",
-    "normals": "1",
-    "uv": "parameter",
-    "support": "L",
-    "gaussian_curvature": "1/L^2",
-    "mean_curvature": "1/L",
-    "other_normals": "1",
-    "other_uv": "parameter",
+# Which samples have fields that not all have.
+ONLY = {
+    "surface": 'on the surface only; see on="surface"',
+    "grid": 'on a grid only; see density="aligned"',
+    "part": "of CAD parts only; see gm.read_part",
+    "edges": "of CAD parts with edges=True only",
 }
-INDEX_NAMES = ("normal_index", "patch_index")
-# Only samples of a surface have these, not those of its spline.
-FLAG_NAMES = ("on_surface",)
-# Only samples of which some are on a grid have these.
-GRID_NAMES = ("row", "column")
-# Only samples of CAD parts have these.
-PART_NAMES = ("face_index", "solid_index")
-# Of these, only those of which some are on sharp edges have these.
-EDGE_NAMES = ("other_normals", "other_uv", "other_face_index")
-OPTIONAL_NAMES = FLAG_NAMES + GRID_NAMES + PART_NAMES + EDGE_NAMES
-INTEGER_NAMES = INDEX_NAMES + GRID_NAMES + PART_NAMES + ("other_face_index",)
-ARRAY_NAMES: tuple[str, ...] = tuple(name for name in COLUMNS if name not in OPTIONAL_NAMES)
-ARRAY_NAMES_ON_SURFACE: tuple[str, ...] = ARRAY_NAMES + FLAG_NAMES
-ARRAY_NAMES_OF_PART: tuple[str, ...] = (
-    *(name for name in ARRAY_NAMES_ON_SURFACE if name != "patch_index"),
-    *PART_NAMES,
-)
-FLOAT_NAMES: tuple[str, ...] = tuple(name for name in ARRAY_NAMES if name not in INDEX_NAMES)
-# All whose numbers may be float32.
-REAL_NAMES: tuple[str, ...] = tuple(
-    name for name in COLUMNS if name not in INTEGER_NAMES + FLAG_NAMES
-)
+
+
+def _only(samples: str) -> tuple[str, ...]:
+    return tuple(name for name, x in FIELDS.items() if x.only == samples)
+
+
+def _of_kind(kind: str) -> tuple[str, ...]:
+    return tuple(name for name, x in FIELDS.items() if x.kind == kind)
+
+
+COLUMNS = {name: x.columns for name, x in FIELDS.items()}
+UNITS = {name: x.unit for name, x in FIELDS.items() if x.unit}
+ARRAY_NAMES, FLAG_NAMES, GRID_NAMES, PART_NAMES, EDGE_NAMES = map(_only, ("", *ONLY))
+REAL_NAMES, INTEGER_NAMES = _of_kind("real"), _of_kind("index")
+FLOAT_NAMES = tuple(name for name in ARRAY_NAMES if name in REAL_NAMES)
+INDEX_NAMES = tuple(name for name in ARRAY_NAMES if name in INTEGER_NAMES)
+ARRAY_NAMES_ON_SURFACE = ARRAY_NAMES + FLAG_NAMES
+ARRAY_NAMES_OF_PART = tuple(x for x in ARRAY_NAMES_ON_SURFACE if x != "patch_index") + PART_NAMES
 # What is computed from fields when it is read.
 DERIVED: dict[str, tuple[str, ...]] = {
     "elliptic": ("gaussian_curvature",),
@@ -112,9 +116,7 @@ def dtype_of(name: str, floating: DTypeLike) -> np.dtype[Any]:
     """Return the type of a field, if that of all numbers but the indices is `floating`."""
     import numpy as np
 
-    if name in FLAG_NAMES:
-        return np.dtype(np.bool_)
-    return np.dtype(np.int64 if name in INTEGER_NAMES else floating)
+    return np.dtype({"flag": np.bool_, "index": np.int64, "real": floating}[FIELDS[name].kind])
 
 
 def bytes_of(fields: Iterable[str], floating: DTypeLike) -> int:
@@ -165,6 +167,7 @@ def checked_fields(
     """
     from ..base.checks import known_name, listed
 
+    has = {"": True, "surface": surface, "grid": grid, "part": part, "edges": edges}
     known = ARRAY_NAMES_ON_SURFACE if surface else ARRAY_NAMES
     known += GRID_NAMES if grid else ()
     if part:
@@ -190,14 +193,8 @@ def checked_fields(
             raise InputError(
                 f"{name} is computed when it is read, from {needed}; name what it needs."
             )
-        if name in FLAG_NAMES and not surface:
-            raise InputError(f'{name} is a field of samples on the surface only; see on="surface".')
-        if name in PART_NAMES and not part:
-            raise InputError(f"{name} is a field of samples of CAD parts only; see gm.read_part.")
-        if name in EDGE_NAMES and not edges:
-            raise InputError(f"{name} is a field of samples of CAD parts with edges=True only.")
-        if name in GRID_NAMES and not grid:
-            raise InputError(f'{name} is a field of samples on a grid only; see density="aligned".')
+        if name in FIELDS and not has[FIELDS[name].only]:
+            raise InputError(f"{name} is a field of samples {ONLY[FIELDS[name].only]}.")
         known_name(name, known, "field")
     return tuple(name for name in known if name in names)
 

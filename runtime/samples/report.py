@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import operator
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Protocol, SupportsIndex
@@ -46,6 +46,56 @@ COUNTS = (
     "index", "faces", "empty_faces", "edge_samples",
 )  # fmt: skip
 DISTANCES = ("coverage", "angle", "fit_distance", "fit_rms", "fit_angle")
+
+
+def _text(name: str, value: str) -> str:
+    if not isinstance(value, str):
+        raise InputError(f"{name} must be a string, not {type(value).__name__}.")
+    return value
+
+
+def _count(name: str, value: SupportsIndex) -> int:
+    """Return `value` as a plain int ≥ 0: a NumPy integer would not go into JSON."""
+    try:
+        count = operator.index(value)
+    except TypeError:
+        raise InputError(f"{name} must be an integer, not {shown(value)}.") from None
+    if count < 0:
+        raise InputError(f"{name} must not be negative, and is {count}.")
+    return count
+
+
+def _distance(name: str, value: float) -> float:
+    """Return `value` as a plain float ≥ 0."""
+    number = _number(name, value)
+    if not number >= 0.0:
+        raise InputError(f"{name} must not be negative, and is {number!r}.")
+    return number
+
+
+def _share(name: str, value: float) -> float:
+    share = _number(name, value)
+    if not -SHARE_ROUNDING <= share <= 1.0 + SHARE_ROUNDING:
+        raise InputError(f"{name} must lie between 0 and 1, and is {share!r}.")
+    return min(max(share, 0.0), 1.0)
+
+
+def _number(name: str, value: float) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} must be a number, not {shown(value)}.") from None
+
+
+# What makes plain values of the entries, and refuses others; only those of KNOWN are never None.
+KNOWN = ("surface", "samples")
+CHECKS: dict[str, Callable[[str, Any], Any]] = {
+    **dict.fromkeys(("surface", "crs"), _text),
+    **dict.fromkeys(("samples", *COUNTS), _count),
+    **dict.fromkeys(DISTANCES, _distance),
+    "developable_share": _share,
+    "origin": lambda _, origin: checked_origin(origin),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,25 +212,14 @@ class SamplingReport:
     origin: tuple[float, float, float] | None = None
 
     def __post_init__(self) -> None:
-        if not isinstance(self.surface, str):
-            raise InputError(f"surface must be a string, not {type(self.surface).__name__}.")
         if self.on is not None:
             known_name(self.on, PLACES, "place of samples")
         if self.density is not None:
             known_name(self.density, ("aligned",), "density on a grid")
-        if self.crs is not None and not isinstance(self.crs, str):
-            raise InputError(f"crs must be a string, not {type(self.crs).__name__}.")
-        if self.origin is not None:
-            object.__setattr__(self, "origin", checked_origin(self.origin))
-        for name in COUNTS:
+        for name, check in CHECKS.items():
             value = getattr(self, name)
-            object.__setattr__(self, name, None if value is None else _count(name, value))
-        object.__setattr__(self, "samples", _count("samples", self.samples))
-        if self.developable_share is not None:
-            object.__setattr__(self, "developable_share", _share(self.developable_share))
-        for name in DISTANCES:
-            value = getattr(self, name)
-            object.__setattr__(self, name, None if value is None else _distance(name, value))
+            if value is not None or name in KNOWN:
+                object.__setattr__(self, name, check(name, value))
 
 
 class Sampled(Measured, Protocol):
@@ -316,35 +355,3 @@ def have_large_squares(H: NDArray[np.floating], dtype: np.dtype[Any]) -> bool:
     """Say whether the curvatures H, where they are finite, have squares that a type cannot hold."""
     finite = np.abs(H[np.isfinite(H)].astype(np.float64))
     return float(finite.max(initial=0.0)) > math.sqrt(float(np.finfo(dtype).max))
-
-
-def _count(name: str, value: SupportsIndex) -> int:
-    """Return `value` as a plain int ≥ 0: a NumPy integer would not go into JSON."""
-    try:
-        count = operator.index(value)
-    except TypeError:
-        raise InputError(f"{name} must be an integer, not {shown(value)}.") from None
-    if count < 0:
-        raise InputError(f"{name} must not be negative, and is {count}.")
-    return count
-
-
-def _distance(name: str, value: float) -> float:
-    """Return `value` as a plain float ≥ 0."""
-    try:
-        distance = float(value)
-    except (TypeError, ValueError):
-        raise InputError(f"{name} must be a number, not {shown(value)}.") from None
-    if not distance >= 0.0:
-        raise InputError(f"{name} must not be negative, and is {distance!r}.")
-    return distance
-
-
-def _share(value: float) -> float:
-    try:
-        share = float(value)
-    except (TypeError, ValueError):
-        raise InputError(f"developable_share must be a number, not {shown(value)}.") from None
-    if not math.isfinite(share) or not -SHARE_ROUNDING <= share <= 1.0 + SHARE_ROUNDING:
-        raise InputError(f"developable_share must lie between 0 and 1, and is {share!r}.")
-    return min(max(share, 0.0), 1.0)
