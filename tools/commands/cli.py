@@ -15,7 +15,7 @@ import click
 from ...runtime.base.errors import GaussmapError, GaussmapWarning
 from . import console
 from .completion import PROGRAM, completed
-from .parser import TO_TRY, parser
+from .parser import parser
 
 __all__ = ["main"]
 
@@ -58,10 +58,8 @@ def _run(arguments: list[str], ready: Callable[[], object]) -> int:
     program = parser()
     if (code := completed(program)) is not None:
         return code
-    if not arguments:
-        program.epilog, arguments = TO_TRY, ["--help"]
     try:
-        with program.make_context(PROGRAM, arguments, obj=ready) as context:
+        with program.make_context(PROGRAM, arguments or ["--help"], obj=ready) as context:
             program.invoke(context)
     except click.exceptions.Exit as done:  # of --help and --version
         return done.exit_code

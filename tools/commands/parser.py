@@ -6,6 +6,7 @@ done by `run` in the module of its name, see `options.Command`.
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import click
@@ -31,34 +32,18 @@ from .options import (
 )  # fmt: skip
 from .surface_options import cad_options, made_options, surface_argument, surface_options
 
-__all__ = ["TO_TRY", "parser"]
+__all__ = ["parser"]
 
 SETTINGS = {"help_option_names": ["-h", "--help"]}
 
 EXAMPLES = """\
-\b
-examples:
-  gaussmap sample torus --count 10000 -o torus.ply
-  gaussmap sample torus --set major=1.0 --set minor=0.2 --frequency 32 -o torus.npz
-  gaussmap sample heights.npy --spacing 30 30 --count 50000 -o terrain.ply
-  gaussmap mesh torus --count 5000 -o torus.obj
-  gaussmap plot torus -o torus.png
-  gaussmap surfaces torus
-  gaussmap formulas --latex
-  gaussmap formulas --html formulas.html
-
-`gaussmap COMMAND --help` explains a command.
-"""
-
-# What `gaussmap` alone shows in place of the examples.
-TO_TRY = """\
 \b
 three commands to try:
   gaussmap surfaces                                 the surfaces that have names
   gaussmap sample torus --count 1000 -o torus.csv   1,000 points with normals and curvatures
   gaussmap plot torus -o torus.png                  a picture; pip install 'gaussmap[plot]' first
 
-`gaussmap --help` has more examples, and `gaussmap COMMAND --help` explains a command.
+`gaussmap COMMAND --help` explains a command, with examples.
 """
 
 SAMPLE_EXAMPLES = """\
@@ -153,42 +138,30 @@ def parser() -> click.Group:
     return program
 
 
-def _command(
-    name: str, short: str, text: str, *parameters: click.Parameter, epilog: str = ""
-) -> Command:
+def _command(name: str, text: str, *parameters: click.Parameter, epilog: str = "") -> Command:
+    """Return a command; the list of all shows its text up to the first colon or full stop."""
+    short = f"{re.split('[.:]', text)[0]}."
     return Command(
-        name,
-        params=[*parameters],
-        short_help=short,
-        help=text,
-        epilog=epilog,
+        name, params=[*parameters], short_help=short, help=text, epilog=epilog,
         context_settings=SETTINGS,
-    )
+    )  # fmt: skip
 
 
 def _sample() -> Command:
     group = "contents of the file"
-    known = ", ".join(ARRAY_NAMES_ON_SURFACE)
-    of_parts, on_edges = " and ".join(PART_NAMES), ", ".join(EDGE_NAMES)
-    names = (
-        f"Write these arrays only (default: all). They are {known}; of CAD parts {of_parts}, too; "
-        f"with --edges {on_edges}, too."
-    )
+    default = f"all, with --edges {', '.join(EDGE_NAMES)}, too"
     prefixes = "Order the samples such that every prefix of them is well distributed."
-    single = "Write single precision: 7 digits instead of 16."
     edges = "Of a CAD part: add samples on its sharp edges, with the normals of both faces."
     return _command(
         "sample",
-        "Sample a surface and write the samples to a file.",
         "Sample a surface and write the samples to a file: points with normals, parameters and "
         "curvatures. Samples are the points that have prescribed normals, and samples that fill "
         "the gaps between these, where the surface is flat or developable.",
         *_sampling(default_count=10_000),
         _output(".npz, .ply, .csv, .vtp, .xyz, .parquet, .arrow, .feather, .las or .laz"),
         Option("--edges", edges, group="the surface"),
-        Option("--fields NAME,NAME", names, group=group),
+        *_contents(group, default),
         Option("--progressive", prefixes, group=group),
-        Option("--float32", single, group=group),
         epilog=SAMPLE_EXAMPLES,
     )
 
@@ -205,7 +178,6 @@ def _mesh() -> Command:
     )
     return _command(
         "mesh",
-        "Sample a surface and write a triangle mesh of it.",
         "Sample a surface and write a triangle mesh of it. The vertices are the samples, and "
         "points on open borders and at poles.",
         *_sampling(default_count=10_000),
@@ -219,9 +191,8 @@ def _mesh() -> Command:
 def _plot() -> Command:
     return _command(
         "plot",
-        "Draw a surface, its samples and their normals.",
-        "Draw a surface with its samples, coloured by Gaussian curvature, and the unit sphere with "
-        "their normals. Needs Matplotlib: pip install 'gaussmap[plot]'.",
+        "Draw a surface, its samples and their normals: samples coloured by Gaussian curvature, "
+        "normals on the unit sphere. Needs Matplotlib: pip install 'gaussmap[plot]'.",
         *_sampling(default_count=2_000),
         _output(".png, .pdf or .svg"),
         epilog=PLOT_EXAMPLES,
@@ -231,11 +202,11 @@ def _plot() -> Command:
 def _view() -> Command:
     return _command(
         "view",
-        "Write a page with a surface and its normals, linked.",
-        "Write one page for browsers: a surface with its samples, and the unit sphere of their "
-        "normals. Click a normal, and its preimages light up; click a place, and the Gaussian "
-        "image of the region around it lights up. Needs Plotly: pip install 'gaussmap[view]'. A "
-        "page shows at most 50000 samples, and works without a network.",
+        "Write a page with a surface and its normals, linked: for browsers, with the samples, and "
+        "the unit sphere of their normals. Click a normal, and its preimages light up; click a "
+        "place, and the Gaussian image of the region around it lights up. Needs Plotly: pip "
+        "install 'gaussmap[view]'. A page shows at most 50000 samples, and works without a "
+        "network.",
         *_sampling(default_count=5_000),
         _output(".html or .htm"),
         epilog=VIEW_EXAMPLES,
@@ -249,10 +220,6 @@ def _batch() -> Command:
         "The address of a scheduler of Dask, such as tcp://host:8786, whose workers sample, and "
         "see the folder by the same path. Needs pip install 'gaussmap[cluster]'."
     )
-    names = (
-        f"Store these arrays only. They are {', '.join(ARRAY_NAMES_ON_SURFACE)}; of CAD parts "
-        f"{' and '.join(PART_NAMES)}, too (default: those of real numbers)."
-    )
     parts = "A file with a part in each line, a name or a path; - for standard input."
     files = "Write a file for each part, too, of this suffix, such as .ply."
     measure = "Measure coverage and normal deviation of each part, which may take ten times longer."
@@ -262,21 +229,19 @@ def _batch() -> Command:
     memory = "The most memory of a process, in GiB (default: its share of nine tenths of all)."
     return _command(
         "batch",
-        "Sample many parts into a data set.",
-        "Sample many parts, by several processes, into a folder of Parquet files: points with "
-        "normals and curvatures, and a manifest that says of each part how it went. A part that "
-        "fails does not end the run. If the run is stopped, the same command goes on with what is "
-        "missing. PARTS are surfaces and files as `gaussmap sample` takes them, patterns and "
-        "folders; the options hold for all of them. The exit code is 3 if parts failed. Needs pip "
-        "install 'gaussmap[batch]'.",
+        "Sample many parts into a data set: by several processes, into a folder of Parquet files, "
+        "points with normals and curvatures, and a manifest that says of each part how it went. A "
+        "part that fails does not end the run. If the run is stopped, the same command goes on "
+        "with what is missing. PARTS are surfaces and files as `gaussmap sample` takes them, "
+        "patterns and folders; the options hold for all of them. The exit code is 3 if parts "
+        "failed. Needs pip install 'gaussmap[batch]'.",
         click.Argument(["parts"], nargs=-1, required=False, shell_complete=surfaces_and_files),
         *_amount(2048),
         *_distribution(),
         *made_options(several=True),
         Option("-o --output FOLDER", "The folder of the data set.", FOLDER, required=True),
         Option("--list FILE", parts, FILE),
-        Option("--fields NAME,NAME", names, group=data),
-        Option("--float32", "Store single precision: 7 digits instead of 16.", group=data),
+        *_contents(data, "those of real numbers"),
         Option("--compression CODEC", codecs, group=data, default="zstd"),
         Option("--files SUFFIX", files, group=data),
         Option("--measure", measure, group=data),
@@ -295,8 +260,7 @@ def _batch() -> Command:
 def _surfaces() -> Command:
     return _command(
         "surfaces",
-        "List the surfaces of the catalogue, or explain one.",
-        "List the surfaces of the catalogue; with NAME, its parameters.",
+        "List the surfaces of the catalogue, or explain one: with NAME, its parameters.",
         click.Argument(["name"], required=False, shell_complete=surface_names),
     )
 
@@ -304,10 +268,9 @@ def _surfaces() -> Command:
 def _faces() -> Command:
     return _command(
         "faces",
-        "List the faces of a CAD part.",
-        "List the faces of a CAD part, a line for each: its index, kind, area, number of loops, "
-        "name, and why it failed if it cannot be used. PART is a STEP, IGES or BREP file, or an "
-        ".npz file of part.save.",
+        "List the faces of a CAD part: a line for each, with its index, kind, area, number of "
+        "loops, name, and why it failed if it cannot be used. PART is a STEP, IGES or BREP file, "
+        "or an .npz file of part.save.",
         click.Argument(["part"], type=FILE),
         *cad_options(),
     )
@@ -320,8 +283,7 @@ def _formulas() -> Command:
     )
     return _command(
         "formulas",
-        "List the formulas that the program computes with, or show one.",
-        "List the formulas that the program computes with; with NAME, show it.",
+        "List the formulas that the program computes with, or show one: with NAME, that.",
         click.Argument(["name"], required=False, shell_complete=formula_names),
         Option("--latex", "Show LaTeX (of all without a NAME).", exclusive=True),
         Option("--html FILE.html", page, FILE, exclusive=True),
@@ -331,8 +293,7 @@ def _formulas() -> Command:
 def _warm() -> Command:
     return _command(
         "warm",
-        "Compile all kernels ahead of time.",
-        "Compile all kernels ahead of time and keep them on disk, so that neither other commands "
+        "Compile all kernels ahead of time: they are kept on disk, so that neither other commands "
         "nor Python programs wait for the compiler on this computer. For Dockerfiles and CI. Takes "
         "some minutes at first, and seconds when everything is compiled.",
         _quiet(),
@@ -340,14 +301,10 @@ def _warm() -> Command:
 
 
 def _completion() -> Command:
-    text = (
-        "Print what bash, zsh or fish has to run in order to complete commands, options, surfaces, "
-        "formulas and files."
-    )
     return _command(
         "completion",
-        "Let a shell complete commands, surfaces and files.",
-        text,
+        "Let a shell complete commands, surfaces and files: print what bash, zsh or fish has to "
+        "run in order to complete these, options and formulas.",
         click.Argument(["shell"], type=click.Choice(SHELLS)),
         epilog=COMPLETION_EXAMPLES,
     )
@@ -355,6 +312,19 @@ def _completion() -> Command:
 
 def _output(suffixes: str) -> Option:
     return Option("-o --output OUT", f"The file to write: {suffixes}.", FILE, required=True)
+
+
+def _contents(group: str, default: str) -> list[Option]:
+    """Return the options on what is written of each sample."""
+    names = (
+        f"Write these arrays only. They are {', '.join(ARRAY_NAMES_ON_SURFACE)}; of CAD parts "
+        f"{' and '.join(PART_NAMES)}, too (default: {default})."
+    )
+    single = "Write single precision: 7 digits instead of 16."
+    return [
+        Option("--fields NAME,NAME", names, group=group),
+        Option("--float32", single, group=group),
+    ]
 
 
 def _quiet() -> Option:
@@ -370,44 +340,34 @@ def _sampling(default_count: int) -> list[click.Parameter]:
 
 
 def _amount(default_count: int) -> list[Option]:
-    one_of: dict[str, Any] = {
-        "group": "how many samples (one of these; --coverage alone or with another one)",
-        "exclusive": True,
-    }
-    beside = {**one_of, "exclusive": False}
-    return [
-        Option("--count N", f"N samples (default: {default_count}).", whole(MOST), **one_of),
-        Option(
-            "--angle DEGREES",
-            "As many samples as it takes for the normal of every point to lie within this angle of "
-            "the normal of a sample.",
-            number,
-            **one_of,
-        ),
-        Option(
-            "--coverage LENGTH",
-            "As many samples as it takes for every point to lie within this distance of a sample.",
-            number,
-            **beside,
-        ),
-        Option(
-            "--frequency NU",
-            "Normals: the 10 NU^2 + 2 vertices of an icosphere, an icosahedron whose edges are "
-            "divided into NU.",
-            whole(MOST_FREQUENCY),
-            **one_of,
-        ),
-        Option(
-            "--healpix NSIDE",
-            "Normals: the 12 NSIDE^2 centres of the HEALPix pixels, NSIDE a power of 2. Needs pip "
-            "install 'gaussmap[spheres]'.",
-            whole(MOST_FREQUENCY),
-            **one_of,
-        ),
-        Option("--random COUNT", "Normals: COUNT random ones, uniform.", whole(MOST), **one_of),
-        Option("--seed N", "The seed of --random (default: 0).", whole(MOST, least=0), **beside),
-        Option("--normals FILE.npy", "Normals: an array (S, 3), of any lengths.", FILE, **one_of),
+    angle = (
+        "As many samples as it takes for the normal of every point to lie within this angle of the "
+        "normal of a sample."
+    )
+    coverage = (
+        "As many samples as it takes for every point to lie within this distance of a sample."
+    )
+    frequency = (
+        "Normals: the 10 NU^2 + 2 vertices of an icosphere, an icosahedron whose edges are divided "
+        "into NU."
+    )
+    healpix = (
+        "Normals: the 12 NSIDE^2 centres of the HEALPix pixels, NSIDE a power of 2. Needs pip "
+        "install 'gaussmap[spheres]'."
+    )
+    group = "how many samples (one of these; --coverage alone or with another one)"
+    kinds: list[tuple[str, str, Any]] = [
+        ("--count N", f"N samples (default: {default_count}).", whole(MOST)),
+        ("--angle DEGREES", angle, number),
+        ("--coverage LENGTH", coverage, number),
+        ("--frequency NU", frequency, whole(MOST_FREQUENCY)),
+        ("--healpix NSIDE", healpix, whole(MOST_FREQUENCY)),
+        ("--random COUNT", "Normals: COUNT random ones, uniform.", whole(MOST)),
+        ("--seed N", "The seed of --random (default: 0).", whole(MOST, least=0)),
+        ("--normals FILE.npy", "Normals: an array (S, 3), of any lengths.", FILE),
     ]
+    beside = ("--coverage LENGTH", "--seed N")
+    return [Option(*x, group=group, exclusive=x[0] not in beside) for x in kinds]
 
 
 def _distribution() -> list[Option]:

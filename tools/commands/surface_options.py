@@ -37,63 +37,38 @@ def surface_options() -> list[Option]:
 
 def made_options(several: bool = False) -> list[Option]:
     """Return the options that say how a surface is made, or several ones."""
-    tolerance = "Instead of --cells: the largest distance of the spline from the surface or data."
-    return [
-        *_formula_options(several),
-        *_grid_options(),
-        *_spline_options(),
-        Option("--tolerance LENGTH", tolerance, number, group=GROUP),
-        *_terrain_options(),
-        _unit(),
-    ]
-
-
-def _formula_options(several: bool) -> list[Option]:
-    parameter = "A parameter of a surface of the catalogue; may be repeated."
     place = "A further surface; may be repeated" if several else "In place of SURFACE"
     formula = (
         f'{place}: its coordinates, three texts such as "cos(u)" in u and v. They are read as '
         "mathematics, and never run."
     )
     domain = 'The ranges of u and v for --formula; numbers, or texts such as "2*pi".'
-    return [
-        Option(
-            "--set NAME=VALUE",
-            parameter,
-            setting,
-            group=GROUP,
-            multiple=True,
-            shell_complete=settings,
-        ),
-        Option("--formula X Y Z", formula, group=GROUP, multiple=several),
-        Option("--domain U0 U1 V0 V1", domain, group=GROUP),
-    ]
-
-
-def _grid_options() -> list[Option]:
-    spacing = "The grid spacing of elevations; DY < 0 if rows run from north to south."
     periodic = (
         "In which directions a grid of points or a formula is periodic: none (default), u, v or "
         "uv. Do not repeat the first row of a grid at the end."
     )
     nodata = "The number that stands for missing data in a grid, such as -9999; NaN does anyway."
-    axes = click.Choice(("none", "u", "v", "uv"))
-    return [
-        Option("--spacing DX DY", spacing, number, group=GROUP),
-        Option("--periodic AXES", periodic, axes, group=GROUP),
-        Option("--nodata NUMBER", nodata, number, group=GROUP),
-    ]
-
-
-def _spline_options() -> list[Option]:
+    spacing = "The grid spacing of elevations; DY < 0 if rows run from north to south."
     cells = "The cells of the spline along u and v (default: 64 64 or more, or those of the grid)."
     on = (
         "Where samples lie: on the surface itself (default) or on the spline that approximates it. "
         "Of grids in files there is the spline only."
     )
+    tolerance = "Instead of --cells: the largest distance of the spline from the surface or data."
+    parameter = "A parameter of a surface of the catalogue; may be repeated."
+    named = {"multiple": True, "shell_complete": settings}
     return [
+        Option("--set NAME=VALUE", parameter, setting, group=GROUP, **named),
+        Option("--formula X Y Z", formula, group=GROUP, multiple=several),
+        Option("--domain U0 U1 V0 V1", domain, group=GROUP),
+        Option("--spacing DX DY", spacing, number, group=GROUP),
+        Option("--periodic AXES", periodic, click.Choice(("none", "u", "v", "uv")), group=GROUP),
+        Option("--nodata NUMBER", nodata, number, group=GROUP),
         Option("--cells M N", cells, whole(MOST), group=GROUP),
         Option("--on WHERE", on, click.Choice(("surface", "spline")), group=GROUP),
+        Option("--tolerance LENGTH", tolerance, number, group=GROUP),
+        *_terrain_options(),
+        _unit(),
     ]
 
 

@@ -12,14 +12,13 @@ from ...runtime.base.extras import check_extra
 from ...runtime.base.georeference import warn_of_rounding
 from ...runtime.samples.samples import Samples
 from .arrow import write_arrow, write_parquet
-from .gltf import write_glb
 from .las import write_las
 from .npz import read_npz, write_npz
 from .paths import PathLike, atomic_path, check_target, checked_path, known_suffix
 from .ply import read_ply, write_mesh_ply, write_ply
 from .reading import opened
 from .tables import write_csv, write_xyz
-from .triangle_files import write_obj, write_stl
+from .triangle_files import write_glb, write_obj, write_stl
 from .vtk import write_mesh_vtp, write_vtk, write_vtp, write_vtu
 
 if TYPE_CHECKING:

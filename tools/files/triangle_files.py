@@ -1,4 +1,4 @@
-"""Triangles for programs that know little else: .obj and .stl."""
+"""Triangles for programs that know little else: .obj, .stl and .glb, which is binary glTF."""
 
 from __future__ import annotations
 
@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...runtime.base.errors import InputError
+from ...runtime.base.extras import from_extra
 from ...runtime.base.scales import scales_to_one
 from .tables import write_rows
 
 if TYPE_CHECKING:
     from ..meshes.mesh import Mesh
 
-__all__ = ["write_obj", "write_stl"]
+__all__ = ["write_glb", "write_obj", "write_stl"]
 
 _STL_ROW = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
@@ -44,3 +46,17 @@ def write_stl(mesh: Mesh, path: Path) -> None:
         file.write(b"written by gaussmap".ljust(80))
         file.write(np.uint32(len(rows)).astype("<u4").tobytes())
         file.write(rows.data)
+
+
+def write_glb(mesh: Mesh, path: Path) -> None:
+    """Write triangles, vertices and their normals, in single precision."""
+    trimesh = from_extra("trimesh", "trimesh", "a .glb file")
+    if np.abs(mesh.vertices).max() > np.finfo(np.float32).max:
+        raise InputError(
+            "a .glb file holds single precision, for which these vertices are too large; choose "
+            "another unit of length, or write a .ply file."
+        )
+    made = trimesh.Trimesh(
+        mesh.vertices, mesh.triangles, vertex_normals=mesh.normals, process=False
+    )
+    path.write_bytes(made.export(file_type="glb", include_normals=True))

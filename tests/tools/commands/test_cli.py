@@ -679,12 +679,9 @@ def test_help_and_usage_need_no_arrays(arguments: list[str]) -> None:
 def test_a_bare_call_shows_help(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--help"]) == 0
     text = capsys.readouterr().out
-    commands = text[: text.index("  examples:")]
     assert main([]) == 0
-    out, err = capsys.readouterr()
-    assert out.startswith(commands)
-    assert err == ""
-    tried = [line for line in out[len(commands) :].splitlines() if line.startswith("    gaussmap")]
+    assert capsys.readouterr() == (text, "")
+    tried = [line for line in text.splitlines() if line.startswith("    gaussmap")]
     assert len(tried) == 3
     for line in tried[:2]:  # the third one needs Matplotlib
         command = line.split("  ")[2].split()

@@ -8,7 +8,7 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-from gaussmap.tools.commands import warming
+from gaussmap.tools.commands import warm
 from gaussmap.tools.commands.cli import main
 
 README_TESTS = Path(__file__).parents[2] / "test_readme.py"
@@ -49,21 +49,21 @@ def test_nothing_is_left_to_compile(tmp_path: Path, parts: ModuleType) -> None:
     line = ran("gaussmap", "warm", folder=tmp_path)
     assert line.startswith(f"kernels in {tmp_path / 'cache' / 'kernels-'}")
     assert " compiled in " in line
-    warm = compiled(tmp_path)
-    assert len(warm) > 30
+    ahead = compiled(tmp_path)
+    assert len(ahead) > 30
     assert ran("gaussmap", "warm", folder=tmp_path).endswith(": all were compiled already\n")
     assert ran("gaussmap", "warm", "--quiet", folder=tmp_path) == ""
     for command in EVERY_DAY:
         assert ran("gaussmap", *command, folder=tmp_path).startswith("a.")
     ran("pytest", "-q", "-k", "python or command_line", str(README_TESTS), folder=tmp_path)
-    assert compiled(tmp_path) == warm
+    assert compiled(tmp_path) == ahead
 
 
 def test_nothing_can_be_compiled(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(warming, "WORK", ())
-    monkeypatch.setattr(warming.config, "DISABLE_JIT", 1)
+    monkeypatch.setattr(warm, "WORK", ())
+    monkeypatch.setattr(warm.config, "DISABLE_JIT", 1)
     assert main(["warm"]) == 2
     assert "NUMBA_DISABLE_JIT is set" in capsys.readouterr().err
 
@@ -71,9 +71,9 @@ def test_nothing_can_be_compiled(
 def test_a_folder_that_cannot_be_written(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(warming, "WORK", ())
-    monkeypatch.setattr(warming.config, "DISABLE_JIT", 0)
-    monkeypatch.setattr(warming, "cache_folder", lambda: None)
+    monkeypatch.setattr(warm, "WORK", ())
+    monkeypatch.setattr(warm.config, "DISABLE_JIT", 0)
+    monkeypatch.setattr(warm, "cache_folder", lambda: None)
     assert main(["warm"]) == 2
     assert "set NUMBA_CACHE_DIR" in capsys.readouterr().err
 
@@ -83,14 +83,14 @@ def test_a_terminal_sees_what_is_done(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def some_work() -> None:
-        assert warming.NOTICE.quiet
+        assert warm.NOTICE.quiet
 
-    monkeypatch.setattr(warming, "WORK", (some_work,))
+    monkeypatch.setattr(warm, "WORK", (some_work,))
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     assert main(["warm"]) == 0
     out, err = capsys.readouterr()
-    assert out == f"kernels in {warming.cache_folder()}: all were compiled already\n"
+    assert out == f"kernels in {warm.cache_folder()}: all were compiled already\n"
     assert "some_work" in err
-    assert not warming.NOTICE.quiet
+    assert not warm.NOTICE.quiet
     assert main(["warm", "--quiet"]) == 0
     assert capsys.readouterr() == ("", "")
