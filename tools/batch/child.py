@@ -42,11 +42,6 @@ class Child:
         self._lock = threading.Lock()
         self._stopped = False
 
-    @property
-    def stopped(self) -> bool:
-        """Whether `end` was called: no part is sampled any more."""
-        return self._stopped
-
     def sample(self, task: Task) -> ManifestRow | None:
         """Return what became of a part, whose samples are written then; None if it is unchanged.
 
@@ -74,10 +69,10 @@ class Child:
             raise FileError(about["stop"])
         return task.row(about)
 
-    def end(self, stop: bool = True) -> None:
-        """End the process; with `stop`, none is started again."""
+    def end(self) -> None:
+        """End the process; none is started again."""
         with self._lock:
-            self._stopped |= stop
+            self._stopped = True
             if self._process is not None:
                 self._process.kill()
                 _end(self._process)

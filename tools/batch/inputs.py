@@ -28,7 +28,6 @@ Source = Surface | Spline | Part | str | os.PathLike[str]
 # Surfaces are known again by their points at so many parameters along u and v: more than a cell, so
 # that small changes are seen, and fewer than sampling takes.
 LATTICE = 17
-CHUNK = 1 << 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,8 +133,7 @@ def _add_array(digest: Any, array: Any) -> None:  # noqa: ANN401
 def _add_file(digest: Any, path: Path) -> None:  # noqa: ANN401
     try:
         with open(path, "rb") as file:
-            while chunk := file.read(CHUNK):
-                digest.update(chunk)
+            digest.update(hashlib.file_digest(file, "sha256").digest())
     except FileNotFoundError:
         raise FileError(f"'{path}' does not exist.") from None
     except OSError as error:

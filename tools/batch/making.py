@@ -7,12 +7,14 @@ from contextlib import closing, contextmanager
 from functools import partial
 from typing import Any
 
+from ...runtime.base.checks import whole_number
 from ...runtime.base.extras import check_extra
+from ...runtime.base.threads import thread_count
 from ..files.paths import PathLike, checked_path
 from .folder import FILES, Settings, opened, parts_per_shard, remove_from
 from .inputs import Source, in_shards, inputs_of
 from .local import run_locally
-from .plan import Asked, Plan, Where
+from .plan import Asked, Plan, limits_of
 from .running import Tally
 from .watching import Watch
 
@@ -24,8 +26,11 @@ def make(
     folder: PathLike,
     asked: Asked,
     settings: dict[str, Any],
-    where: Where,
     *,
+    workers: int | None,
+    scheduler: object,
+    time_limit: float,
+    memory_limit: float | None,
     watch: Watch,
     overwrite: bool = False,
     again: bool = False,
@@ -35,6 +40,8 @@ def make(
     `settings` has the fields, dtype, compression and files of `Settings`. Raises InputError and
     FileError where `folder.opened` does, and FileError if the data set cannot be written.
     """
+    count = thread_count(None) if workers is None else whole_number(workers, "workers")
+    limits = limits_of(count, time_limit, memory_limit)
     check_extra("pyarrow", "batch", "a data set")
     check_extra("cloudpickle", "batch", "a data set")
     parts = len(sources) if isinstance(sources, Sized) else None
@@ -44,10 +51,10 @@ def make(
         **settings,
     )
     path = checked_path(folder).absolute()
-    with _runner(where) as (run, dashboard), opened(folder, wanted, overwrite) as known:
+    with _runner(count, scheduler) as (run, dashboard), opened(folder, wanted, overwrite) as known:
         if known.files is not None:
             (path / FILES).mkdir(exist_ok=True)
-        plan = Plan(str(path), known, asked.stored(path), where.limits, again)
+        plan = Plan(str(path), known, asked.stored(path), limits, again)
         shards = enumerate(in_shards(inputs_of(sources), known.parts_per_shard))
         tally = Tally()
         watch.begin(parts, dashboard)
@@ -63,12 +70,14 @@ def make(
 
 
 @contextmanager
-def _runner(where: Where) -> Iterator[tuple[Callable[..., Generator[Tally]], str | None]]:
+def _runner(
+    workers: int, scheduler: object
+) -> Iterator[tuple[Callable[..., Generator[Tally]], str | None]]:
     """Yield what runs shards, here or on a cluster, and the address of Dask's dashboard."""
-    if where.scheduler is None:
-        yield partial(run_locally, workers=where.workers), None
+    if scheduler is None:
+        yield partial(run_locally, workers=workers), None
         return
     from .cluster import connected, run_on_cluster
 
-    with connected(where.scheduler) as client:
+    with connected(scheduler) as client:
         yield partial(run_on_cluster, client=client), client.dashboard_link

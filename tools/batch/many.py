@@ -23,7 +23,7 @@ from ..files.paths import PathLike
 from .dataset import Dataset, open_dataset
 from .inputs import Source
 from .making import make
-from .plan import CODEC, SECONDS, asked_of, stored, where
+from .plan import CODEC, SECONDS, asked_of, stored
 from .watching import Bar, Watch
 
 __all__ = ["sample_many"]
@@ -238,7 +238,10 @@ def sample_many(
         out,
         asked_of(request, cells, on, yes_or_no(measure, "measure")),
         stored(fields, dtype, compression, files),
-        where(workers, scheduler, time_limit, memory_limit),
+        workers=workers,
+        scheduler=scheduler,
+        time_limit=time_limit,
+        memory_limit=memory_limit,
         watch=Bar() if shows else Watch(),
         overwrite=yes_or_no(overwrite, "overwrite"),
         again=yes_or_no(retry_failed, "retry_failed"),

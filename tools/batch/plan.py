@@ -19,11 +19,9 @@ from ...runtime.base.checks import (
     listed,
     pair_of_cells,
     positive_number,
-    whole_number,
 )
 from ...runtime.base.memory import GIB
 from ...runtime.base.memory import memory_limit as most_memory
-from ...runtime.base.threads import thread_count
 from ...runtime.place.on_surface import checked_place
 from ...runtime.samples.fields import FLOAT_NAMES, PART_NAMES, checked_dtype, checked_fields
 from ...runtime.samples.request import Request
@@ -40,12 +38,11 @@ __all__ = [
     "Asked",
     "Limits",
     "Plan",
-    "Where",
     "asked_of",
     "file_name",
+    "limits_of",
     "normals_in",
     "stored",
-    "where",
 ]
 
 CODEC, SECONDS = "zstd", 600.0
@@ -60,15 +57,6 @@ class Limits:
 
     seconds: float
     memory: float
-
-
-@dataclass(frozen=True, slots=True)
-class Where:
-    """Where parts are sampled: so many processes here, or Dask's client or scheduler."""
-
-    workers: int
-    limits: Limits
-    scheduler: Any = None
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -201,14 +189,10 @@ def _known_fields(fields: Sequence[str]) -> tuple[str, ...]:
     return wanted + tuple(name for name in PART_NAMES if name in names)
 
 
-def where(
-    workers: int | None, scheduler: object, time_limit: float, memory_limit: float | None
-) -> Where:
-    """Return where parts are sampled, and within which limits."""
-    count = thread_count(None) if workers is None else whole_number(workers, "workers")
-    memory = SHARE * most_memory() / GIB / count if memory_limit is None else memory_limit
-    limits = Limits(
-        positive_number(time_limit, "time_limit", "seconds"),
-        positive_number(memory, "memory_limit", "GiB"),
+def limits_of(workers: int, seconds: float, memory: float | None) -> Limits:
+    """Return the limits of each of so many processes."""
+    share = SHARE * most_memory() / GIB / workers
+    return Limits(
+        positive_number(seconds, "time_limit", "seconds"),
+        positive_number(share if memory is None else memory, "memory_limit", "GiB"),
     )
-    return Where(count, limits, scheduler)

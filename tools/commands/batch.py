@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from dataclasses import replace
+from dataclasses import asdict, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -16,7 +16,7 @@ from ...runtime.base.errors import InputError
 from ...runtime.surface.surfaces import CATALOGUE
 from ..batch.inputs import Source
 from ..batch.making import make
-from ..batch.plan import SECONDS, asked_of, stored, where
+from ..batch.plan import SECONDS, asked_of, stored
 from ..batch.running import Tally
 from ..batch.watching import Watch, progress
 from ..sources.named import Named
@@ -48,12 +48,10 @@ def run(options: SimpleNamespace) -> None:
             options.compression,
             options.files,
         ),
-        where(
-            options.workers,
-            options.scheduler,
-            SECONDS if options.time_limit is None else options.time_limit,
-            options.memory_limit,
-        ),
+        workers=options.workers,
+        scheduler=options.scheduler,
+        time_limit=SECONDS if options.time_limit is None else options.time_limit,
+        memory_limit=options.memory_limit,
         watch=Watch() if options.quiet else progress(),
         overwrite=options.overwrite,
         again=options.retry_failed,
@@ -93,16 +91,8 @@ def _report(options: SimpleNamespace, tally: Tally, seconds: float) -> None:
 
 def _as_json(options: SimpleNamespace, tally: Tally, seconds: float) -> dict[str, Any]:
     failures = [{"name": name, "error": error} for name, error in tally.failures]
-    return {
-        "dataset": options.output,
-        "parts": tally.parts,
-        "ok": tally.ok,
-        "kept": tally.kept,
-        "failed": tally.failed,
-        "samples": tally.samples,
-        "seconds": seconds,
-        "failures": failures,
-    }
+    told = asdict(tally) | {"seconds": seconds, "failures": failures}
+    return {"dataset": options.output, "parts": tally.parts} | told
 
 
 def _rows(options: SimpleNamespace, tally: Tally, seconds: float) -> list[tuple[str, str]]:

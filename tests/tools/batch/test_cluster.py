@@ -12,7 +12,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.tools.batch.making import make
-from gaussmap.tools.batch.plan import Asked, where
+from gaussmap.tools.batch.plan import Asked
 from gaussmap.tools.batch.running import Tally
 from gaussmap.tools.batch.watching import Watch
 
@@ -20,6 +20,7 @@ pytest.importorskip("pyarrow")
 distributed = pytest.importorskip("distributed")
 PARTS = 40
 STORED = {"fields": ("points", "normals"), "dtype": "float32", "compression": "zstd", "files": None}
+LIMITS: dict[str, Any] = {"time_limit": 60.0, "memory_limit": 4.0}
 ASKED = Asked({"count": 50, "density": "uniform", "cells": [8, 8]})
 
 
@@ -99,10 +100,12 @@ def test_a_worker_that_is_killed_loses_nothing(tmp_path, cluster):
     parts = [waves(k) for k in range(PARTS)]
     killer = Killer(cluster)
     tally = make(parts, tmp_path / "cluster", ASKED, STORED,
-                 where(None, cluster.address, 60.0, 4.0), watch=killer)  # fmt: skip
+                 workers=None, scheduler=cluster.address, watch=killer, **LIMITS)  # fmt: skip
     assert killer.killed
     assert (tally.parts, tally.failed) == (PARTS, 0)
-    make(parts, tmp_path / "here", ASKED, STORED, where(2, None, 60.0, 4.0), watch=Watch())
+    make(
+        parts, tmp_path / "here", ASKED, STORED, workers=2, scheduler=None, watch=Watch(), **LIMITS
+    )
     assert data_of(tmp_path / "cluster") == data_of(tmp_path / "here")
     assert not list((tmp_path / "cluster" / "partial").iterdir())
 

@@ -14,7 +14,6 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.samples.request import Request
 from gaussmap.tools.commands import inputs
 from gaussmap.tools.commands.cli import main
 
@@ -280,7 +279,7 @@ def test_quiet(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPat
 def test_the_default_is_a_count(monkeypatch: pytest.MonkeyPatch) -> None:
     asked = {}
 
-    def spy(_: object, request: Request, **options: object) -> gm.Samples:
+    def spy(_: object, request: object, **options: object) -> gm.Samples:
         asked.update(vars(request) | options)
         raise gm.errors.InputError("enough")
 
