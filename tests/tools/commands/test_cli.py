@@ -340,7 +340,7 @@ def test_formulas(capsys: pytest.CaptureFixture[str]) -> None:
     ("arguments", "words"),
     [
         (["--version"], [f"gaussmap {gm.__version__}"]),
-        (["--help"], ["examples:", "gaussmap sample torus --count 10000 -o torus.ply"]),
+        (["--help"], ["to try:", "gaussmap sample torus --count 1000 -o torus.csv"]),
         (
             ["sample", "--help"],
             ["how many samples", "default: 10000", "--spacing DX DY"],
