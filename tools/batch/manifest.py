@@ -22,6 +22,7 @@ __all__ = [
 OK, FAILED = "ok", "failed"
 # The types of Arrow for those of the columns.
 TYPES = {"int": "int64", "str": "string", "float": "float64", "float | None": "float64"}
+NARROWER = {"attempts": "int32"}  # columns with types of their own
 
 
 def _column(meaning: str, unit: str = "", **default: Any) -> Any:  # noqa: ANN401
@@ -64,7 +65,9 @@ def manifest_schema() -> Any:  # noqa: ANN401
     return arrow.schema(
         [
             arrow.field(
-                name, arrow.type_for_alias(TYPES[str(x.type)]), nullable="None" in str(x.type)
+                name,
+                arrow.type_for_alias(NARROWER.get(name, TYPES[str(x.type)])),
+                nullable="None" in str(x.type),
             ).with_metadata(dict(x.metadata))
             for name, x in COLUMNS.items()
         ]

@@ -29,7 +29,7 @@ from .watching import Bar, Watch
 __all__ = ["sample_many"]
 
 Surfaces = Iterable[Surface | Spline | str]
-ON_ERROR = ("raise", "skip", "return")
+ON_ERROR = ("raise", "skip", "none", "return")
 
 
 class _How(TypedDict, total=False):
@@ -59,6 +59,17 @@ class _Stored(_How, total=False):
     compression: str
     overwrite: bool
     retry_failed: bool
+
+
+@overload
+def sample_many(
+    surfaces: Surfaces,
+    count: int | None = None,
+    *,
+    on_error: Literal["none"],
+    threads: int | None = None,
+    **how: Unpack[_How],
+) -> Iterator[Samples | None]: ...
 
 
 @overload
@@ -119,7 +130,7 @@ def sample_many(
     compression: str = CODEC,
     overwrite: bool = False,
     retry_failed: bool = False,
-) -> Iterator[Samples | GaussmapError] | Dataset:
+) -> Iterator[Samples | GaussmapError | None] | Dataset:
     """Yield the samples of each of several surfaces, in order; or make a data set of them.
 
     With `out` the parts are sampled by several processes, on this machine or on a cluster, into a
@@ -137,9 +148,10 @@ def sample_many(
         process has one thread.
     progress : bool, default True
         Show a bar on standard error, if that is a terminal.
-    on_error : {"raise", "skip", "return"}, default "raise"
+    on_error : {"raise", "skip", "none", "return"}, default "raise"
         Without `out`, what happens if a surface cannot be sampled: its error is raised; or it is
-        left out with a warning; or its error is yielded in its place.
+        left out with a warning; or None is yielded in its place, with a warning; or its error is
+        yielded there.
     out : path, optional
         The folder of the data set. All that follow are for data sets only.
     workers : int, optional
@@ -166,7 +178,7 @@ def sample_many(
 
     Yields
     ------
-    Samples or GaussmapError
+    Samples, GaussmapError or None
         The samples of the next surface: ``samples.report.index`` is its number among `surfaces`,
         from 0 on, and ``samples.report.surface`` its name.
 
@@ -191,7 +203,7 @@ def sample_many(
     Warns
     -----
     GaussmapWarning
-        If a surface is left out.
+        If a surface is left out, or None stands for it.
 
     Notes
     -----
@@ -227,7 +239,9 @@ def sample_many(
             if value is not None:
                 raise InputError(f"{name}=… is for data sets; name the folder of one by out=….")
         checked_fields(fields, checked_place(on) != "spline")
-        action = known_name(on_error or "raise", ON_ERROR, "value of on_error")
+        action = known_name(
+            "raise" if on_error is None else on_error, ON_ERROR, "value of on_error"
+        )
         how = {"cells": cells, "on": on, "fields": fields, "threads": threads}
         return _each(surfaces, request, how | {"dtype": checked_dtype(dtype)}, action, shows)
     if on_error is not None or threads is not None:
@@ -260,7 +274,7 @@ def _iterates(surfaces: Iterable[Source]) -> bool:
 
 def _each(
     surfaces: Iterable[Any], request: Request, how: dict[str, Any], on_error: str, shows: bool
-) -> Iterator[Samples | GaussmapError]:
+) -> Iterator[Samples | GaussmapError | None]:
     """Yield the samples of each surface, or what `on_error` says."""
     from tqdm import tqdm
 
@@ -270,8 +284,11 @@ def _each(
             samples, _ = sample_and_normals(surface, request, progress=False, **how)
         except GaussmapError as error:
             where = f"surface {place} ({_name(surface)})"
-            if on_error == "skip":
-                warnings.warn(f"{where} is left out: {error}", GaussmapWarning, stacklevel=2)
+            if on_error in ("skip", "none"):
+                left = "left out" if on_error == "skip" else "None"
+                warnings.warn(f"{where} is {left}: {error}", GaussmapWarning, stacklevel=2)
+                if on_error == "none":
+                    yield None
                 continue
             error.add_note(f"This is {where} of sample_many.")
             if on_error == "raise":
