@@ -19,9 +19,11 @@ __all__ = [
     "Interval",
     "Periodic",
     "Periodicity",
+    "cells_between",
     "checked_boundary",
     "checked_domain",
     "checked_interval",
+    "closes",
     "domain_text",
 ]
 
@@ -80,6 +82,19 @@ def checked_boundary(periodic: Periodic) -> tuple[Boundary, Assumed]:
             raise InputError(f'a "pole" of {name} needs {other} to be periodic ("periodic").')
     assumed_u, assumed_v = (isinstance(x, bool | np.bool_) and not x for x in (along_u, along_v))
     return boundary, (assumed_u, assumed_v)
+
+
+def closes(ends: Sequence[str]) -> bool:
+    """Say whether a parameter is periodic or mirrored, by its boundary conditions."""
+    return ends[0] in ("periodic", "mirrored")
+
+
+def cells_between(shape: Sequence[int], boundary: Boundary) -> tuple[int, int]:
+    """Return the numbers of cells between the points of a grid (m, n, …)."""
+    m, n = (
+        count if closes(ends) else count - 1 for count, ends in zip(shape, boundary, strict=False)
+    )
+    return m, n
 
 
 def domain_text(domain: Domain, boundary: Boundary) -> str:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..base.advice import NO_CLOUDS
 from ..base.checks import as_float
 from ..base.errors import InputError, shown
-from ..domain.domain import Boundary, Domain
+from ..domain.domain import Boundary, Domain, cells_between
 from .missing import filled
 from .quasi_interpolant import apart, fit_grid
 from .spline import Spline
@@ -26,12 +26,9 @@ def spline_of_points(
 ) -> Spline:
     """Return the spline of points (m, n, 3) at the vertices of its cells."""
     _check(points, boundary, name)
-    cells = tuple(
-        count if "periodic" in end or "mirrored" in end else count - 1
-        for count, end in zip(points.shape, boundary, strict=False)
-    )
     if domain is None:
-        domain = (0.0, float(cells[0])), (0.0, float(cells[1]))
+        m, n = cells_between(points.shape, boundary)
+        domain = (0.0, float(m)), (0.0, float(n))
     spline = fit_grid(points, domain, boundary, name)
     _check_closed(points, boundary, name)
     return spline

@@ -11,9 +11,9 @@ from ..base.checks import pair_of_cells
 from ..base.errors import InputError, SurfaceError
 from ..base.memory import check_memory
 from ..base.scales import LARGEST_EXPONENT
-from ..domain.domain import Boundary, Domain
-from ..kernels import spline as kernels
-from .ghosts import Border, Sides, coefficients_with_ring, vertices_with_ring
+from ..domain.domain import Boundary, Domain, cells_between
+from .ghosts import Border, coefficients_with_ring
+from .inner_coefficients import Values, from_grid, from_values
 from .missing import filled
 from .spline import Spline
 
@@ -24,22 +24,9 @@ MOST_CELLS = 10**9
 SAME_POINT = 1e-6
 
 
-def fit_values(
-    centres: NDArray[np.float64],
-    vertices: NDArray[np.float64],
-    middles: Sides,
-    domain: Domain,
-    boundary: Boundary,
-    name: str,
-) -> Spline:
-    """Return the spline of values at centres (m, n, 3) and vertices (m + 1, n + 1, 3) of cells.
-
-    `middles` are the values in the middle of the edges on the border of the domain.
-    """
-    inner = np.empty_like(centres)
-    kernels.fit_centres_and_vertices(centres, vertices, inner)
-    border = Border.of_values(middles, vertices)
-    return _spline(inner, border, domain, boundary, name)
+def fit_values(values: Values, domain: Domain, boundary: Boundary, name: str) -> Spline:
+    """Return the spline of values at the centres and vertices of cells."""
+    return _spline(*from_values(values), domain, boundary, name)
 
 
 def fit_grid(points: NDArray[np.float64], domain: Domain, boundary: Boundary, name: str) -> Spline:
@@ -47,11 +34,8 @@ def fit_grid(points: NDArray[np.float64], domain: Domain, boundary: Boundary, na
 
     Missing points are filled.
     """
-    values = vertices_with_ring(not_too_large(filled(points), name), boundary)
-    inner = np.empty((values.shape[0] - 3, values.shape[1] - 3, 3))
-    checked_cells(inner.shape[:2])
-    kernels.fit_vertices(values, inner)
-    border = Border.of_vertices(values)
+    checked_cells(cells_between(points.shape, boundary))
+    inner, border = from_grid(not_too_large(filled(points), name), boundary)
     return _spline(inner, border, domain, boundary, name)
 
 
