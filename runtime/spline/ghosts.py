@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...generated import spline as formulas
 from ..base.formula_calls import python_function
-from ..domain.domain import Boundary, BoundaryPair
+from ..domain.domain import Boundary, BoundaryPair, closes
 from .planar_ring import ring_around
 
 __all__ = ["Border", "Sides", "coefficients_with_ring", "vertices_with_ring"]
@@ -92,7 +92,7 @@ def _close(result: Array, turned: Array, boundary: Boundary) -> None:
             if kind == "pole":
                 _close_pole(rows, outside, first)
     for rows, end in directions:
-        if end[0] in ("periodic", "mirrored"):
+        if closes(end):
             step = 1 if end[0] == "periodic" else -1
             rows[0], rows[-1] = rows[-2, ::step].copy(), rows[1, ::step].copy()
 
@@ -118,7 +118,7 @@ def vertices_with_ring(values: Array, boundary: Boundary) -> Array:
         return np.ascontiguousarray(np.swapaxes(swapped, 0, 1))
     turned = np.swapaxes(values, 0, 1)
     reverse = values[::-1]  # of vertices that close, the first stays the first
-    reverse = np.roll(reverse, 1, axis=0) if boundary[0][0] in ("periodic", "mirrored") else reverse
+    reverse = np.roll(reverse, 1, axis=0) if closes(boundary[0]) else reverse
     opposite = np.roll(turned, len(values) // 2, axis=1)
     low, high = _beyond(turned, np.swapaxes(reverse, 0, 1), opposite, boundary[1])
     ringed = np.swapaxes(np.concatenate([low, turned, high]), 0, 1)
@@ -134,7 +134,7 @@ def _beyond(
     `mirrored` are the same rows with the other parameter reversed, `opposite` those half a period
     away along it.
     """
-    if boundary[0] in ("periodic", "mirrored"):
+    if closes(boundary):
         source = rows if boundary[0] == "periodic" else mirrored
         return source[-1:], source[:2]
     parts = []

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,13 +15,14 @@ from ..base.errors import GaussmapWarning, InputError, shown
 from ..domain.domain import Boundary, BoundaryPair, Domain
 from ..kernels import spline as kernels
 from ..kernels.trim import find_patches
+from .developable import widened
 from .ghosts import Border, coefficients_with_ring
 from .inner_coefficients import from_grid, from_values, values_at
-from .inside import widened
 from .nodata_blocks import suspicious_block
 
 __all__ = [
     "Known",
+    "checked_nodata",
     "filled",
     "known_of_grid",
     "known_of_values",
@@ -65,15 +67,20 @@ class Known:
         return least < most
 
 
+def checked_nodata(nodata: Any) -> float:  # noqa: ANN401
+    """Return the number that stands for missing data; InputError if it is none."""
+    try:
+        return as_float(nodata)
+    except TypeError:
+        raise InputError(f"nodata must be a number, not {shown(nodata)}.") from None
+
+
 def without_nodata(points: Array, nodata: object, name: str) -> Array:
     """Return points or elevations with NaN in place of `nodata`; a warning if some look like it."""
     if nodata is None:
         _warn_of_nodata(points, name)
         return points
-    try:
-        value = as_float(nodata)  # pyright: ignore[reportArgumentType]
-    except (TypeError, ValueError, OverflowError):
-        raise InputError(f"nodata must be a number, not {shown(nodata)}.") from None
+    value = checked_nodata(nodata)
     with np.errstate(over="ignore"):
         bad = (points == value) | (points == float(np.float32(value)))
     if points.ndim == 3:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..base.checks import pair_of_cells
 from ..base.errors import InputError, SurfaceError
+from ..base.limits import MOST
 from ..base.memory import check_memory
 from ..base.scales import LARGEST_EXPONENT
 from ..domain.domain import Boundary, Domain, cells_between
@@ -19,7 +20,6 @@ from .spline import Spline
 
 __all__ = ["apart", "checked_cells", "fit_grid", "fit_values", "not_too_large"]
 
-MOST_CELLS = 10**9
 # What is said to be one point may be this far apart, relative to the size of the surface.
 SAME_POINT = 1e-6
 
@@ -77,7 +77,7 @@ def checked_cells(cells: Sequence[int]) -> tuple[int, int]:
     m, n = pair_of_cells(cells)
     if min(m, n) < 3:
         raise InputError(f"at least 3 x 3 cells are needed, not {m} x {n}.")
-    if m * n > MOST_CELLS:
-        raise InputError(f"at most {MOST_CELLS:,} cells are possible, not {m:,} x {n:,}.")
+    if m * n > MOST:
+        raise InputError(f"at most {MOST:,} cells are possible, not {m:,} x {n:,}.")
     check_memory("cells", m * n)
     return m, n
