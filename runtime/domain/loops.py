@@ -55,8 +55,7 @@ class Loops:
         def work(first: int, last: int) -> None:
             kernels.find_inside(cells, shifts, places, first, last, inside)
 
-        for _ in over_ranges(work, len(uv), POINTS_AT_A_TIME, threads):
-            pass
+        list(over_ranges(work, len(uv), POINTS_AT_A_TIME, threads))
         return inside
 
     def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> NDArray[np.bool_]:

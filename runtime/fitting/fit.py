@@ -169,7 +169,7 @@ def _fit_to(surface: Surface, asked: Tolerance | None) -> Spline:
     spline, misfit, reached = refined(
         lambda cells: _fitted(surface, cells),
         probe.compare,
-        partial(_variation, surface),
+        partial(variation, surface),
         spline,
         goal,
         bounds,
@@ -220,7 +220,7 @@ def _fit_data_to(
     spline, misfit, reached = refined(
         fitted,
         compare,
-        partial(_variation, surface),
+        partial(variation, surface),
         fitted((min(FEWEST_CELLS[0], most[0]), min(FEWEST_CELLS[1], most[1]))),
         goal,
         replace(BOUNDS, most=most, total=most[0] * most[1]),
@@ -235,14 +235,6 @@ def _fit_data_to(
 def _finest(surface: Surface, grid: NDArray[np.float64]) -> Spline:
     """Return the spline with one cell between any four neighbouring points."""
     return fit_grid(grid, surface.domain, surface.boundary, surface.name)
-
-
-def _variation(
-    surface: Surface, spline: Spline, comparison: Comparison, slopes: bool
-) -> tuple[float, float]:
-    """Return how much the error varies along u and along v where the spline is worst."""
-    place = comparison.steepest if slopes else comparison.farthest
-    return variation(surface, spline, place, slopes)
 
 
 def _within(domain: Domain, bounds: Bounds) -> Bounds:

@@ -61,19 +61,20 @@ class CellMeasure(NamedTuple):
 class Measured(Protocol):
     """A spline, or a surface beside its spline."""
 
-    def _measure_of_cells(self) -> CellMeasure:
-        """Return areas, solid angles and curvatures of the cells."""
+    @property
+    def _cell_measure(self) -> CellMeasure:
+        """Areas, solid angles and curvatures of the cells."""
         ...
 
 
 def developable_share(sampled: Measured, density: float) -> float:
     """Return the share of the area that `density` normals per steradian do not sample."""
-    cells = sampled._measure_of_cells()
+    cells = sampled._cell_measure
     total = float(cells.areas.sum())
     return float(cells.areas[~cells.curved(density)].sum()) / total if total > 0.0 else 1.0
 
 
 def curved_solid_angle(sampled: Measured, density: float) -> float:
     """Return the solid angle of the Gaussian image of curved cells, with multiplicity."""
-    cells = sampled._measure_of_cells()
+    cells = sampled._cell_measure
     return float(cells.solid_angles[cells.curved(density)].sum())

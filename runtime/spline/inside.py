@@ -138,8 +138,7 @@ def places_in_cells(spline: Trimmed, patches: NDArray[np.int64], places: Array) 
     def work(first: int, last: int) -> None:
         to_cells(patches, places, spline.cells[1], first, last, cells)
 
-    for _ in over_ranges(work, len(patches), PLACES_AT_A_TIME, None):
-        pass
+    list(over_ranges(work, len(patches), PLACES_AT_A_TIME, None))
     return cells
 
 
