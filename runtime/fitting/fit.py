@@ -145,9 +145,9 @@ def fit(
             f"a Surface or its name is needed, not {type(surface).__name__}; "
             f"{about_value(surface)}."
         )
-    sides = found_sides(surface)
-    trim = surface.trim and surface.trim.with_boundary(sides.boundary)
-    surface = replace(surface, boundary=sides.boundary, trim=trim)
+    boundary, apexes = found_sides(surface)
+    trim = surface.trim and surface.trim.with_boundary(boundary)
+    surface = replace(surface, boundary=boundary, trim=trim)
     with busy(f"fitting {short_label(surface.name)}", progress):
         if surface.grid is not None:
             spline = _fit_data(surface, surface.grid, cells, asked)
@@ -157,7 +157,7 @@ def fit(
             spline = _fitted(surface, cells)
             misfit = probe_of(surface, spline.cells).compare(spline).misfit
             spline = replace(spline, misfit=misfit, trim=surface.trim)
-    return replace(spline, apexes=sides.apexes, georeference=surface.georeference)
+    return replace(spline, apexes=apexes, georeference=surface.georeference)
 
 
 def _fit_to(surface: Surface, asked: Tolerance | None) -> Spline:

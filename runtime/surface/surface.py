@@ -208,7 +208,7 @@ class Surface(SurfaceValues):
         from .lambdified import compiled
 
         f = compiled(position, two_symbols(parameters))
-        rectangle = numbers(domain, "((u0, u1), (v0, v1))")
+        rectangle = checked_domain(numbers(domain, "((u0, u1), (v0, v1))"))
         boundary, assumed = checked_boundary(periodic)
         return cls(label(name, "surface"), f, rectangle, boundary, assumed_open=assumed)
 
