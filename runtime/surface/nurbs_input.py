@@ -25,8 +25,10 @@ def nurbs_of(degrees: Any, knots: Any, control_points: Any, weights: Any) -> Nur
 
     Raises InputError if they do not define one.
     """
+    definition: tuple[Any, ...] = degrees, knots, control_points, weights
     if knots is None and control_points is None and weights is None:
-        degrees, knots, control_points, weights = _definition_of(degrees)
+        definition = _definition_of(degrees)
+    degrees, knots, control_points, weights = definition
     p, q = (_degree(x, name) for x, name in zip(_pair(degrees, "degrees"), "uv", strict=True))
     points = _finite(control_points, "control_points")
     if points.ndim != 3 or points.shape[2] != 3 or 0 in points.shape:
