@@ -9,6 +9,7 @@ __all__ = [
     "CAD_SUFFIXES",
     "NO_CLOUDS",
     "NO_MESHES",
+    "RASTER_SUFFIXES",
     "about_value",
     "file_advice",
     "is_mesh_file",
@@ -18,7 +19,7 @@ __all__ = [
 ]
 
 CAD_SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp", ".rle")
-_RASTER_SUFFIXES = (".tif", ".tiff")
+RASTER_SUFFIXES = (".tif", ".tiff")
 _MESH_SUFFIXES = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf", ".3mf", ".vtk", ".vtu", ".vtp")
 NO_MESHES = (
     "meshes are not taken, because triangles have no curvature; give the CAD file that it was made "
@@ -42,7 +43,7 @@ def file_advice(name: str) -> str | None:
         return f"read the CAD file first: gm.sample(gm.read_cad({name!r}), ...)"
     if suffix in (".npy", ".npz"):
         return f"read the points first: gm.sample(gm.Surface.from_grid(numpy.load({name!r})), ...)"
-    if suffix in _RASTER_SUFFIXES:
+    if suffix in RASTER_SUFFIXES:
         return f"read the elevations first: gm.sample(gm.terrain({name!r}), ...)"
     return NO_MESHES if suffix in _MESH_SUFFIXES else None
 

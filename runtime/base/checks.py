@@ -54,17 +54,17 @@ def known_name(name: str, known: Sequence[str], kind: str, command: str = "") ->
     raise UnknownNameError(f"there is no {kind} {shown(name)}{hint}")
 
 
-def whole_number(value: object, name: str, least: int = 1) -> int:
-    """Return a whole number from `least` to 10⁹; InputError with its name otherwise."""
+def whole_number(value: object, name: str, least: int = 1, most: int = MOST) -> int:
+    """Return a whole number from `least` to `most`; InputError with its name otherwise."""
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
         example = ""
-        if isinstance(value, float | np.floating) and least <= value <= MOST:
+        if isinstance(value, float | np.floating) and least <= value <= most:
             example = f"; {round(value)} for example"
         raise InputError(
             f"{name} must be a whole number of at least {least}, not {shown(value)}{example}."
         )
-    if value > MOST:
-        raise InputError(f"{name} must be a whole number of at most {MOST:,}, not larger.")
+    if value > most:
+        raise InputError(f"{name} must be a whole number of at most {most:,}, not {shown(value)}.")
     return int(value)
 
 

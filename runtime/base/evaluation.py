@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from .checks import real_array
 from .errors import GaussmapError, InputError, SurfaceError
 
-__all__ = ["called", "evaluated", "returned"]
+__all__ = ["called", "check_finite", "evaluated", "returned"]
 
 
 def evaluated(
@@ -26,12 +26,19 @@ def evaluated(
     """
     arrays = {name: np.atleast_1d(x) for name, x in parameters.items()}
     points = returned(function, tuple(arrays.values()), (dimension,), f"the callable of {label}")
-    if not np.isfinite(points).all():
-        bad = ~np.isfinite(points).all(axis=-1)
-        where = np.unravel_index(int(np.argmax(bad)), bad.shape)
-        place = ", ".join(f"{name} = {float(array[where])}" for name, array in arrays.items())
-        raise SurfaceError(f"{label} is not finite at {place}: {points[where]}.")
+    check_finite(points, arrays, label)
     return points.reshape(*np.shape(next(iter(parameters.values()))), dimension)
+
+
+def check_finite(
+    values: NDArray[np.float64], parameters: Mapping[str, NDArray[np.float64]], label: str
+) -> None:
+    """Raise SurfaceError if values (..., k) at parameters (...) are not finite, and say where."""
+    bad = ~np.isfinite(values).all(axis=-1)
+    if bad.any():
+        where = np.unravel_index(int(np.argmax(bad)), bad.shape)
+        place = ", ".join(f"{name} = {float(array[where])}" for name, array in parameters.items())
+        raise SurfaceError(f"{label} is not finite at {place}: {values[where]}.")
 
 
 def returned(

@@ -12,6 +12,7 @@ from ..base import compiling  # noqa: F401 - announces compilation on terminals
 from ..base.checks import whole_number
 from ..base.errors import InputError, in_memory
 from ..base.extras import from_extra
+from ..base.limits import MOST_FREQUENCY
 from ..base.memory import check_memory
 from ..base.threads import over_ranges
 from ..kernels.icosphere import new_line, write_points
@@ -28,7 +29,6 @@ __all__ = [
 ]
 
 GOLDEN = (1 + math.sqrt(5)) / 2
-MOST_FREQUENT = 10_000
 # The corners, the edges and the faces of an icosahedron.
 PARTS = 1 + 30 + 20
 PARTS_AT_A_TIME = 5
@@ -68,7 +68,7 @@ def icosphere(frequency: int) -> NDArray[np.float64]:
     (10242, 3)
 
     """
-    nu = _refinement(frequency, "frequency")
+    nu = whole_number(frequency, "frequency", most=MOST_FREQUENCY)
     count = 10 * nu**2 + 2
     check_memory("icosphere", count)
     normals = np.empty((count, 3))
@@ -86,8 +86,8 @@ def frequency_within(angle: float) -> int:
     Raises InputError if there is none.
     """
     tangent = math.tan(math.radians(angle))
-    if tangent * MOST_FREQUENT < FACE_RADIUS:
-        least = math.degrees(math.atan(FACE_RADIUS / MOST_FREQUENT))
+    if tangent * MOST_FREQUENCY < FACE_RADIUS:
+        least = math.degrees(math.atan(FACE_RADIUS / MOST_FREQUENCY))
         raise InputError(f"angle must be at least {least:.4f} degrees, not {angle:g}.")
     return max(1, math.ceil(FACE_RADIUS / tangent))
 
@@ -159,7 +159,7 @@ def healpix(nside: int) -> NDArray[np.float64]:
     (3072, 3)
 
     """
-    size = _refinement(nside, "nside")
+    size = whole_number(nside, "nside", most=MOST_FREQUENCY)
     if size & (size - 1):
         raise InputError(f"nside must be a power of 2, not {size}.")
     library = from_extra("astropy_healpix", "spheres", "HEALPix")
@@ -226,13 +226,3 @@ def part_of_fibonacci(
 def spiral_angle(k: NDArray[np.int64]) -> NDArray[np.float64]:
     """Return the azimuth of the points of a Fibonacci lattice."""
     return 2.0 * math.pi * np.modf(k / GOLDEN)[0]
-
-
-def _refinement(value: int, name: str) -> int:
-    """Return the refinement of a set of normals; InputError if it is no number, or too large."""
-    number = whole_number(value, name)
-    if number > MOST_FREQUENT:
-        raise InputError(
-            f"{name} must be a whole number of at most {MOST_FREQUENT:,}, not {number}."
-        )
-    return number

@@ -80,8 +80,7 @@ def in_pieces(
     def work(begin: int, end: int) -> None:
         result[begin:end] = rows(first + begin, first + end)
 
-    for _ in over_ranges(work, last - first, PIECE, threads):
-        pass
+    list(over_ranges(work, last - first, PIECE, threads))
     return result
 
 

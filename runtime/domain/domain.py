@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Literal, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..base.checks import as_float
 from ..base.errors import InputError, shown
@@ -19,9 +20,12 @@ __all__ = [
     "Interval",
     "Periodic",
     "Periodicity",
+    "brought_inside",
+    "cells_between",
     "checked_boundary",
     "checked_domain",
     "checked_interval",
+    "closes",
     "domain_text",
 ]
 
@@ -80,6 +84,36 @@ def checked_boundary(periodic: Periodic) -> tuple[Boundary, Assumed]:
             raise InputError(f'a "pole" of {name} needs {other} to be periodic ("periodic").')
     assumed_u, assumed_v = (isinstance(x, bool | np.bool_) and not x for x in (along_u, along_v))
     return boundary, (assumed_u, assumed_v)
+
+
+def closes(ends: Sequence[str]) -> bool:
+    """Say whether a parameter is periodic or mirrored, by its boundary conditions."""
+    return ends[0] in ("periodic", "mirrored")
+
+
+def cells_between(shape: Sequence[int], boundary: Boundary) -> tuple[int, int]:
+    """Return the numbers of cells between the points of a grid (m, n, …)."""
+    m, n = (
+        count if closes(ends) else count - 1 for count, ends in zip(shape, boundary, strict=False)
+    )
+    return m, n
+
+
+def brought_inside(
+    u: NDArray[np.float64], v: NDArray[np.float64], domain: Domain, boundary: Boundary
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return parameters (k,) less whole periods; those beyond other ends stay what they are."""
+    places = u.copy(), v.copy()
+    for axis, (low, high) in enumerate(domain):
+        values, others = places[axis], places[1 - axis]
+        out = np.flatnonzero((values < low) | (values > high))
+        if closes(boundary[axis]) and len(out):
+            periods = np.floor((values[out] - low) / (high - low))
+            values[out] = np.clip(values[out] - periods * (high - low), low, high)
+            if boundary[axis][0] == "mirrored":
+                odd = out[periods % 2.0 == 1.0]
+                others[odd] = sum(domain[1 - axis]) - others[odd]
+    return places
 
 
 def domain_text(domain: Domain, boundary: Boundary) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -16,7 +15,7 @@ from ..base.errors import InputError, shown
 from ..base.scales import scale_to_one
 from ..base.threads import over_ranges
 from ..kernels import trim as kernels
-from .domain import Boundary, Domain
+from .domain import Boundary, Domain, closes
 
 __all__ = ["Loops", "checked_loops"]
 
@@ -56,8 +55,7 @@ class Loops:
         def work(first: int, last: int) -> None:
             kernels.find_inside(cells, shifts, places, first, last, inside)
 
-        for _ in over_ranges(work, len(uv), POINTS_AT_A_TIME, threads):
-            pass
+        list(over_ranges(work, len(uv), POINTS_AT_A_TIME, threads))
         return inside
 
     def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> NDArray[np.bool_]:
@@ -80,7 +78,7 @@ class Loops:
         """Move points on open sides into the domain, by far less than its size."""
         low, high = np.array(self.domain).T
         nudge = INSIDE * (high - low)
-        is_open = np.array([not _closes(ends) for ends in self.boundary])
+        is_open = np.array([not closes(ends) for ends in self.boundary])
         return np.clip(
             uv, np.where(is_open, low + nudge, -np.inf), np.where(is_open, high - nudge, np.inf)
         )
@@ -109,7 +107,7 @@ class Loops:
     def _periods(self, axis: int) -> list[int]:
         """Return by how many periods points may be shifted along an axis, 0 first."""
         low, high = self.domain[axis]
-        if not _closes(self.boundary[axis]):
+        if not closes(self.boundary[axis]):
             return [0]
         period = high - low
         first = math.floor((float(self.box[0, axis]) - high) / period)
@@ -157,10 +155,6 @@ def _steps(polygon: Array, steps: Array) -> Array:
     return polygon[owner] + (number / parts[owner])[:, None] * along[owner]
 
 
-def _closes(ends: Sequence[str]) -> bool:
-    return ends[0] in ("periodic", "mirrored")
-
-
 # --- reading loops --------------------------------------------------------------------------------
 
 
@@ -172,7 +166,7 @@ def checked_loops(loops: object, domain: Domain, boundary: Boundary) -> Loops:
     for k, polygon in enumerate(polygons):
         for axis, (low, high) in enumerate(domain):
             size = max(np.abs(polygon[:, axis] - low).max(), np.abs(polygon[:, axis] - high).max())
-            if _closes(boundary[axis]) and size > MOST_PERIODS * (high - low):
+            if closes(boundary[axis]) and size > MOST_PERIODS * (high - low):
                 raise InputError(
                     f"loop {k} is more than {MOST_PERIODS} periods of {'uv'[axis]} away from the "
                     f"domain ({low}, {high})."

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..base.errors import InputError, SurfaceError, shown
 from ..base.evaluation import called
-from .domain import Boundary, Domain, domain_text
+from .domain import Boundary, Domain, brought_inside, domain_text
 from .loops import Loops, checked_loops
 
 __all__ = ["Predicate", "Trim", "TrimPart", "trimmed_by"]
@@ -94,7 +94,7 @@ class Trim:
         array([ True, False])
 
         """
-        wrapped = self._wrapped(uv)
+        wrapped = np.stack(brought_inside(*uv.T, self.domain, self.boundary), axis=1)
         inside = self.parts[0].contains(wrapped, threads)
         for part in self.parts[1:]:
             if inside.any():
@@ -148,22 +148,6 @@ class Trim:
     def and_(self, *parts: TrimPart) -> Trim:
         """Return the trim with further conditions."""
         return replace(self, parts=(*self.parts, *parts))
-
-    def _wrapped(self, uv: Array) -> Array:
-        """Bring periodic parameters into the domain."""
-        for axis, (low, high) in enumerate(self.domain):
-            kind = self.boundary[axis][0]
-            if kind not in ("periodic", "mirrored"):
-                continue
-            beyond = (uv[:, axis] < low) | (uv[:, axis] > high)
-            if beyond.any():
-                uv = uv.copy()
-                turns = np.floor((uv[beyond, axis] - low) / (high - low))
-                uv[beyond, axis] = np.clip(uv[beyond, axis] - turns * (high - low), low, high)
-                if kind == "mirrored":
-                    odd = np.flatnonzero(beyond)[np.mod(turns, 2.0) == 1.0]
-                    uv[odd, 1 - axis] = sum(self.domain[1 - axis]) - uv[odd, 1 - axis]
-        return uv
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..domain.domain import Boundary
+from ..domain.domain import Boundary, cells_between
 from ..kernels import spline as kernels
 from ..spline.misfit import Misfit
 from ..spline.spline import Spline
@@ -51,10 +51,8 @@ class Comparison:
 
 def compare_with_data(spline: Spline, data: Array, boundary: Boundary) -> Comparison:
     """Return the misfit of a spline to a grid of points (m, n, 3); those with NaN do not count."""
-    parts = [
-        np.arange(count) / (count if "periodic" in ends or "mirrored" in ends else count - 1)
-        for count, ends in zip(data.shape, boundary, strict=False)
-    ]
+    cells = cells_between(data.shape, boundary)
+    parts = [np.arange(k) / count for k, count in zip(data.shape, cells, strict=False)]
     rows = max(POINTS_AT_A_TIME // len(parts[1]), 1)
     largest, total, count, place = 0.0, 0.0, 0, np.array([0.5, 0.5])
     for first in range(0, len(parts[0]), rows):

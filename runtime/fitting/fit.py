@@ -13,8 +13,8 @@ from numpy.typing import DTypeLike, NDArray
 from ..base.advice import about_value
 from ..base.errors import GaussmapWarning, InputError, SurfaceError, in_memory
 from ..base.progress import busy
-from ..domain.domain import Boundary, Domain
-from ..spline.ghosts import Sides
+from ..domain.domain import Domain, cells_between, closes
+from ..spline.inner_coefficients import values_at
 from ..spline.misfit import Misfit
 from ..spline.missing import known_of_values
 from ..spline.quasi_interpolant import apart, checked_cells, fit_grid, fit_values, not_too_large
@@ -145,9 +145,9 @@ def fit(
             f"a Surface or its name is needed, not {type(surface).__name__}; "
             f"{about_value(surface)}."
         )
-    sides = found_sides(surface)
-    trim = surface.trim and surface.trim.with_boundary(sides.boundary)
-    surface = replace(surface, boundary=sides.boundary, trim=trim)
+    boundary, apexes = found_sides(surface)
+    trim = surface.trim and surface.trim.with_boundary(boundary)
+    surface = replace(surface, boundary=boundary, trim=trim)
     with busy(f"fitting {short_label(surface.name)}", progress):
         if surface.grid is not None:
             spline = _fit_data(surface, surface.grid, cells, asked)
@@ -157,7 +157,7 @@ def fit(
             spline = _fitted(surface, cells)
             misfit = probe_of(surface, spline.cells).compare(spline).misfit
             spline = replace(spline, misfit=misfit, trim=surface.trim)
-    return replace(spline, apexes=sides.apexes, georeference=surface.georeference)
+    return replace(spline, apexes=apexes, georeference=surface.georeference)
 
 
 def _fit_to(surface: Surface, asked: Tolerance | None) -> Spline:
@@ -169,7 +169,7 @@ def _fit_to(surface: Surface, asked: Tolerance | None) -> Spline:
     spline, misfit, reached = refined(
         lambda cells: _fitted(surface, cells),
         probe.compare,
-        partial(_variation, surface),
+        partial(variation, surface),
         spline,
         goal,
         bounds,
@@ -192,7 +192,7 @@ def _fit_data(
     else:
         spline, misfit = _fit_data_to(surface, grid, asked)
     trim = surface.trim
-    finest = cells is None and spline.cells == _finest_cells(grid, surface.boundary)
+    finest = cells is None and spline.cells == cells_between(grid.shape, surface.boundary)
     if trim is not None and not finest and np.isnan(grid).any():
         known = known_of_values(
             trim.parts[0].contains, spline.domain, spline.boundary, spline.cells
@@ -209,7 +209,7 @@ def _fit_data_to(
         raise InputError("normal_tolerance=... is for surfaces; data have no normals.")
     extent = np.nanmax(grid, axis=(0, 1)) - np.nanmin(grid, axis=(0, 1))
     goal = asked.goal(float(np.hypot.reduce(extent)), float(np.nanmax(np.abs(grid))), poles=True)
-    most = _finest_cells(grid, surface.boundary)
+    most = cells_between(grid.shape, surface.boundary)
 
     def fitted(cells: tuple[int, int]) -> Spline:
         return _finest(surface, grid) if cells == most else _fitted(surface, cells)
@@ -220,7 +220,7 @@ def _fit_data_to(
     spline, misfit, reached = refined(
         fitted,
         compare,
-        partial(_variation, surface),
+        partial(variation, surface),
         fitted((min(FEWEST_CELLS[0], most[0]), min(FEWEST_CELLS[1], most[1]))),
         goal,
         replace(BOUNDS, most=most, total=most[0] * most[1]),
@@ -235,23 +235,6 @@ def _fit_data_to(
 def _finest(surface: Surface, grid: NDArray[np.float64]) -> Spline:
     """Return the spline with one cell between any four neighbouring points."""
     return fit_grid(grid, surface.domain, surface.boundary, surface.name)
-
-
-def _finest_cells(grid: NDArray[np.float64], boundary: Boundary) -> tuple[int, int]:
-    """Return the numbers of cells between the points of a grid."""
-    m, n = (
-        count if ends[0] in ("periodic", "mirrored") else count - 1
-        for count, ends in zip(grid.shape, boundary, strict=False)
-    )
-    return m, n
-
-
-def _variation(
-    surface: Surface, spline: Spline, comparison: Comparison, slopes: bool
-) -> tuple[float, float]:
-    """Return how much the error varies along u and along v where the spline is worst."""
-    place = comparison.steepest if slopes else comparison.farthest
-    return variation(surface, spline, place, slopes)
 
 
 def _within(domain: Domain, bounds: Bounds) -> Bounds:
@@ -276,25 +259,23 @@ def _warn(spline: Spline, misfit: Misfit, what: str) -> None:
 
 def _fitted(surface: Surface, cells: Sequence[int]) -> Spline:
     """Return the quasi-interpolant of a surface that can be evaluated anywhere."""
-    m, n = checked_cells(cells)
-    lines = _lines(surface.domain, m, n)
-    centres, vertices = _values(surface, *lines)
-    middles = _middles(surface, *lines)
-    return fit_values(centres, vertices, middles, surface.domain, surface.boundary, surface.name)
+
+    def evaluate(u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
+        return not_too_large(surface.evaluate(u, v), surface.name)
+
+    values = values_at(evaluate, surface.domain, checked_cells(cells))
+    _close(surface, values.vertices)
+    return fit_values(values, surface.domain, surface.boundary, surface.name)
 
 
-def _values(
-    surface: Surface, lines_u: NDArray[np.float64], lines_v: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Evaluate a surface at the centres (m, n, 3) and vertices (m + 1, n + 1, 3) of its cells.
+def _close(surface: Surface, vertices: NDArray[np.float64]) -> None:
+    """Make values (m + 1, n + 1, 3) on a seam bitwise equal, so that the spline closes exactly.
 
-    Vertices on a seam are made bitwise equal, so that the spline closes exactly.
+    Raises SurfaceError if they are not about the same, and for a pole that is not one point.
     """
-    centres = not_too_large(surface.evaluate(lines_u[1::2, None], lines_v[1::2]), surface.name)
-    vertices = not_too_large(surface.evaluate(lines_u[::2, None], lines_v[::2]), surface.name)
     for axis, (along, ends) in enumerate(zip("uv", surface.boundary, strict=True)):
         rows = np.swapaxes(vertices, 0, axis)
-        if ends[0] in ("periodic", "mirrored"):
+        if closes(ends):
             first = rows[0] if ends[0] == "periodic" else rows[0, ::-1].copy()
             if apart(rows[-1], first, vertices):
                 raise SurfaceError(
@@ -308,24 +289,3 @@ def _values(
                     f"surface {surface.name!r} has no pole at {along} = {place}: it is not "
                     "one point there."
                 )
-    return centres, vertices
-
-
-def _middles(surface: Surface, lines_u: NDArray[np.float64], lines_v: NDArray[np.float64]) -> Sides:
-    """Evaluate a surface in the middle of the edges at the ends of v, and at the ends of u."""
-    at_v = not_too_large(surface.evaluate(lines_u[1::2], lines_v[[0, -1], None]), surface.name)
-    at_u = not_too_large(surface.evaluate(lines_u[[0, -1], None], lines_v[1::2]), surface.name)
-    return (at_v[0], at_v[1]), (at_u[0], at_u[1])
-
-
-def _lines(domain: Domain, m: int, n: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the parameters of the edges and middles of the cells, in turn, along u and v."""
-    lines = []
-    for along, (low, high), count in zip("uv", domain, (m, n), strict=True):
-        line = low + (high - low) * (np.arange(2 * count + 1) / (2 * count))
-        if not (np.diff(line) > 0.0).all():
-            raise InputError(
-                f"the domain of {along} is too narrow for {count} cells: ({low}, {high})."
-            )
-        lines.append(line)
-    return lines[0], lines[1]

@@ -178,14 +178,16 @@ def probe_of(surface: Surface, cells: tuple[int, int]) -> Probe:
     return Probe(surface, known, spread or len(numbers), sides, diagonal, extent, largest)
 
 
-def variation(surface: Surface, spline: Spline, place: Array, slopes: bool) -> tuple[float, float]:
-    """Return how much the error of a spline varies along u and along v around a place.
+def variation(
+    surface: Surface, spline: Spline, comparison: Comparison, slopes: bool
+) -> tuple[float, float]:
+    """Return how much the error of a spline varies along u and along v where it is worst.
 
     It varies between the middle of a cell and its ends along u if the cells are too long along u,
     and less if they are too long along v only. With `slopes`, it is relative to the derivative of
     the surface: errors along the shorter way turn normals more.
     """
-    found = []
+    found, place = [], comparison.steepest if slopes else comparison.farthest
     for axis in (0, 1):
         parts = np.repeat(place[:, None], CROSS, axis=1)
         half = 0.5 / spline.cells[axis]

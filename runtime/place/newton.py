@@ -128,21 +128,26 @@ def _refine_away(
     none = np.empty(0, np.int64)
     results = [(none, [none for _ in charts])]
     results += over_ranges(work, len(target.uv), ROWS_AT_A_TIME, threads)
-    _finish(domain, target, np.concatenate([x for x, _ in results]), threads)
+    left = np.concatenate([x for x, _ in results])
+    _on_rows(target, left, lambda x: domain.solve(x, np.arange(len(x.uv)), 0), threads)
     return [np.concatenate([x[k] for _, x in results]) for k in range(len(charts))]
 
 
-def _finish(parameters: Parameters, target: Target, numbers: Numbers, threads: int | None) -> None:
-    """Move the rows that are left over."""
+def _on_rows(
+    target: Target, numbers: Numbers, solve: Callable[[Target], object], threads: int | None
+) -> None:
+    """Call `solve` with copies of some rows; write what it finds into the arrays of all samples."""
 
     def work(first: int, last: int) -> None:
         rows = numbers[first:last]
         part = Target._make(x[rows] for x in target)
-        parameters.solve(part, np.arange(len(rows)), 0)
-        _put(target, rows, part)
+        solve(part)
+        target.state[rows] = part.state
+        found = part.state == FOUND
+        for array, values in zip(target[2:-1], part[2:-1], strict=True):
+            array[rows[found]] = values[found]
 
-    for _ in over_ranges(work, len(numbers), ROWS_AT_A_TIME, threads):
-        pass
+    list(over_ranges(work, len(numbers), ROWS_AT_A_TIME, threads))
 
 
 def _refine_at_pole(
@@ -151,13 +156,11 @@ def _refine_at_pole(
     """Move rows next to a pole in its chart, whatever the sign of K."""
     parameters = Parameters.of_chart(chart, spline)
 
-    def work(first: int, last: int) -> None:
-        rows = numbers[first:last]
-        part = Target._make(x[rows] for x in target)
+    def solve(part: Target) -> None:
         part.normals[:] *= chart.orientation
         part.signs[:] = 0.0
         part.uv[:] = chart.places(part.uv)
-        parameters.solve(part, np.arange(len(rows)), 0)
+        parameters.solve(part, np.arange(len(part.uv)), 0)
         part.uv[:] = chart.parameters(part.uv)
         # Not those in the chart: the differences that it consists of are rounded.
         found = part.state == FOUND
@@ -165,18 +168,8 @@ def _refine_at_pole(
             chart.surface, spline, part.uv[found], threads=1
         )
         part.points[found], part.gaussian[found], part.mean[found] = points, gaussian, mean
-        _put(target, rows, part)
 
-    for _ in over_ranges(work, len(numbers), ROWS_AT_A_TIME, threads):
-        pass
-
-
-def _put(target: Target, rows: Numbers, part: Target) -> None:
-    """Write what was found into the arrays of all samples."""
-    target.state[rows] = part.state
-    found = part.state == FOUND
-    for array, values in zip(target[2:-1], part[2:-1], strict=True):
-        array[rows[found]] = values[found]
+    _on_rows(target, numbers, solve, threads)
 
 
 def evaluate_on_surface(
@@ -200,24 +193,12 @@ def evaluate_on_surface(
         for chart in charts:
             rows = first + np.flatnonzero(chart.next_to(uv[part]))
             if len(rows):
-                _evaluate_at_pole(chart, spline.scale, uv, rows, normals, gaussian, mean)
+                s, t = chart.places(uv[rows]).T.copy()
+                n, K, H = np.empty((len(rows), 3)), np.empty(len(rows)), np.empty(len(rows))
+                scales = np.array([spline.scale, chart.cell, chart.cell])
+                evaluate_jets(chart.jets(s, t), scales, n, K, H)
+                normals[rows], gaussian[rows] = n * chart.orientation, K
+                mean[rows] = H * chart.orientation
 
-    for _ in over_ranges(work, count, ROWS_AT_A_TIME, threads):
-        pass
+    list(over_ranges(work, count, ROWS_AT_A_TIME, threads))
     return points, normals, gaussian, mean
-
-
-def _evaluate_at_pole(
-    chart: PoleChart,
-    size: float,
-    uv: Array,
-    rows: Numbers,
-    normals: Array,
-    gaussian: Array,
-    mean: Array,
-) -> None:
-    """Write normals and curvatures of rows next to a pole."""
-    s, t = chart.places(uv[rows]).T.copy()
-    n, K, H = np.empty((len(rows), 3)), np.empty(len(rows)), np.empty(len(rows))
-    evaluate_jets(chart.jets(s, t), np.array([size, chart.cell, chart.cell]), n, K, H)
-    normals[rows], gaussian[rows], mean[rows] = n * chart.orientation, K, H * chart.orientation

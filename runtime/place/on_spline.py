@@ -101,10 +101,6 @@ class OnSpline:
         """Areas and signed solid angles of the patches, as `Spline.measure`."""
         return self.spline.measure
 
-    def _measure_of_cells(self) -> CellMeasure:
-        """Return areas, solid angles and curvatures of the cells."""
-        return self._cell_measure
-
     @cached_property
     def _cell_measure(self) -> CellMeasure:
         """The same of the cells."""

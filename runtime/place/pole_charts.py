@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ..kernels.refine import chart_jets, jet_of_pole
 from ..spline.spline import Spline
-from ..surface.derivatives import numerical_jets, power_of_two
+from ..surface.derivatives import differences, power_of_two
 from ..surface.surface import Surface
 
 __all__ = ["PoleChart", "pole_charts"]
@@ -100,7 +100,7 @@ class PoleChart:
         """Return 2-jets (k, 6, 3) by s and t."""
         if self.surface.differences is not None:
             step = power_of_two(self.surface.differences.step * abs(self.other - self.end))
-            return numerical_jets(self._evaluate, s, t, (step, step))
+            return differences(self._evaluate, s, t, (step, step))[0]
         uv = self.parameters(np.stack([s, t], axis=1))
         chart = np.empty((len(uv), 6, 3))
         phi = (uv[:, self.angle] - self.surface.domain[self.angle][0]) * self.turn

@@ -8,9 +8,6 @@ left its patch, and only normals of such samples are looked at.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Self
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -45,10 +42,9 @@ def kept_once(spline: Spline, arrays: Fields, at_pole: Mask) -> Mask:
     flagged[normal_index[suspects]] = True
     rows = np.flatnonzero(flagged[normal_index])
     rows = rows[np.lexsort((left[rows], normal_index[rows]))]
-    meeting = Meeting.of(spline, arrays, at_pole, rows[found[rows]])
-    repeats, firsts = meeting.repeats()
-    kept[meeting.rows[repeats]] = False
-    folded = meeting.rows[repeats[~(meeting.at_pole[repeats] | meeting.at_pole[firsts])]]
+    repeats, firsts = _repeats(spline, arrays, at_pole, rows[found[rows]])
+    kept[repeats] = False
+    folded = repeats[~(at_pole[repeats] | at_pole[firsts])]
     other_side = rows[~found[rows]]
     kept[_paired(other_side, _keys(arrays, other_side) ^ 1, _keys(arrays, folded))] = False
     return kept
@@ -66,52 +62,30 @@ def left_patch(spline: Spline, arrays: Fields) -> Mask:
     return left
 
 
-@dataclass(frozen=True, eq=False)
-class Meeting:
-    """Samples that may meet, sorted by normal: their `rows`, and `places` (k, 5) in cells.
+def _repeats(
+    spline: Spline, arrays: Fields, at_pole: Mask, rows: Numbers
+) -> tuple[Numbers, Numbers]:
+    """Return which of some rows, sorted by normal, repeat another one of them, and these.
 
-    These are points and parameters; `periods` (2,) are those of the parameters.
+    They do where points and parameters, in cells, are the same, and the sign of K; at poles the
+    parameters do not count.
     """
-
-    rows: Numbers
-    normal_index: Numbers
-    places: Array
-    is_hyperbolic: Mask
-    at_pole: Mask
-    periods: Array
-
-    @classmethod
-    def of(cls, spline: Spline, arrays: Fields, at_pole: Mask, rows: Numbers) -> Self:
-        """Choose rows of the arrays of samples."""
-        places = arrays["points"][rows] * spline.scale, arrays["uv"][rows] / spline.frame[2:]
-        closes = [ends[0] == "periodic" for ends in spline.boundary]
-        return cls(
-            rows,
-            arrays["normal_index"][rows],
-            np.hstack(places),
-            np.signbit(arrays["gaussian_curvature"][rows]),
-            at_pole[rows],
-            np.where(closes, spline.cells, np.inf),
-        )
-
-    def repeats(self) -> tuple[Numbers, Numbers]:
-        """Return which ones repeat another one, and these."""
-        left = np.arange(len(self.rows))
-        found: list[tuple[Numbers, Numbers]] = [(left[:0], left[:0])]
-        while len(left):
-            first = left[_starts(self.normal_index[left])]
-            same = self._is_same(left, first)
-            again = same & (left != first)
-            found.append((left[again], first[again]))
-            left = left[~same]
-        return np.concatenate([x for x, _ in found]), np.concatenate([x for _, x in found])
-
-    def _is_same(self, some: Numbers, others: Numbers) -> Mask:
-        away = np.abs(self.places[some] - self.places[others])
-        away[:, 3:] = np.minimum(away[:, 3:], np.abs(self.periods - away[:, 3:]))
-        away[self.at_pole[some] | self.at_pole[others], 3:] = 0.0
-        same_sign = self.is_hyperbolic[some] == self.is_hyperbolic[others]
-        return same_sign & (away.max(axis=1) <= MEETING)
+    points, uv = arrays["points"][rows] * spline.scale, arrays["uv"][rows] / spline.frame[2:]
+    places, normals = np.hstack([points, uv]), arrays["normal_index"][rows]
+    is_hyperbolic, poles = np.signbit(arrays["gaussian_curvature"][rows]), at_pole[rows]
+    periods = np.where([ends[0] == "periodic" for ends in spline.boundary], spline.cells, np.inf)
+    left = np.arange(len(rows))
+    found: list[tuple[Numbers, Numbers]] = [(rows[:0], rows[:0])]
+    while len(left):
+        first = left[_starts(normals[left])]
+        away = np.abs(places[left] - places[first])
+        away[:, 3:] = np.minimum(away[:, 3:], np.abs(periods - away[:, 3:]))
+        away[poles[left] | poles[first], 3:] = 0.0
+        same = (is_hyperbolic[left] == is_hyperbolic[first]) & (away.max(axis=1) <= MEETING)
+        again = same & (left != first)
+        found.append((rows[left[again]], rows[first[again]]))
+        left = left[~same]
+    return np.concatenate([x for x, _ in found]), np.concatenate([x for _, x in found])
 
 
 def _starts(values: Numbers) -> Numbers:

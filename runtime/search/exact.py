@@ -93,8 +93,7 @@ def decided_forms(
         mu, scale = spline.coefficients, spline.scale
         decide_exactly(mu, scale, patches, normals, first, last, np.empty(3), decided)
 
-    for _ in over_ranges(work, count, PAIRS_AT_A_TIME, threads):
-        pass
+    list(over_ranges(work, count, PAIRS_AT_A_TIME, threads))
     for first in range(0, count, LONG_PAIRS_AT_A_TIME):
         chunk = first + np.flatnonzero(~known[first : first + LONG_PAIRS_AT_A_TIME])
         if len(chunk) > 0:

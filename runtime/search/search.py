@@ -291,8 +291,7 @@ def fill(
         for start, packed in pieces[first:last]:
             fill_packed(spline, bins, packed, start, arrays)
 
-    for _ in over_ranges(work, len(pieces), 1, threads):
-        pass
+    list(over_ranges(work, len(pieces), 1, threads))
     if len(hits.exact) and any(name in filled for name in FLOAT_NAMES):
         fill_known(
             spline.coefficients, spline.scale, bins.normals, spline.frame,

@@ -3,16 +3,28 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple, Protocol
+from typing import Any, Literal, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["CellMeasure", "Measured", "curved_solid_angle", "developable_share"]
+__all__ = ["CellMeasure", "Measured", "curved_solid_angle", "developable_share", "widened"]
 
 Array = NDArray[np.float64]
 # Regions that 10,000 normals would sample count as curved, even with fewer normals.
 LEAST_DENSITY = 10_000 / (4 * math.pi)
+
+
+def widened(values: NDArray[Any], mode: Literal["edge", "wrap"] = "wrap") -> NDArray[Any]:
+    """Return the largest of the values (m, n) of each cell and its neighbours.
+
+    At the border that of the opposite side is a neighbour ("wrap"), or none ("edge").
+    """
+    for axis in (0, 1):
+        padded = np.pad(values, [(1, 1) if k == axis else (0, 0) for k in (0, 1)], mode=mode)
+        parts = [np.take(padded, np.arange(k, k + values.shape[axis]), axis) for k in range(3)]
+        values = np.maximum.reduce(parts)
+    return values
 
 
 class CellMeasure(NamedTuple):
@@ -33,13 +45,7 @@ class CellMeasure(NamedTuple):
         areas, signed = (x.reshape(*cells, 4).sum(axis=2) for x in measure)
         with np.errstate(divide="ignore", invalid="ignore"):
             curvatures = np.where(areas > 0.0, np.abs(signed) / areas, 0.0)
-        for axis in (0, 1):
-            widths = [(1, 1) if k == axis else (0, 0) for k in (0, 1)]
-            padded = np.pad(curvatures, widths, mode="edge")
-            shifted = (
-                np.take(padded, np.arange(k, k + curvatures.shape[axis]), axis) for k in range(3)
-            )
-            curvatures = np.maximum.reduce(list(shifted))
+        curvatures = widened(curvatures, "edge")
         solid_angles = np.abs(measure[1]).reshape(-1, 4).sum(axis=1)
         return cls(measure[0].reshape(-1, 4).sum(axis=1), solid_angles, curvatures.ravel())
 
@@ -55,19 +61,20 @@ class CellMeasure(NamedTuple):
 class Measured(Protocol):
     """A spline, or a surface beside its spline."""
 
-    def _measure_of_cells(self) -> CellMeasure:
-        """Return areas, solid angles and curvatures of the cells."""
+    @property
+    def _cell_measure(self) -> CellMeasure:
+        """Areas, solid angles and curvatures of the cells."""
         ...
 
 
 def developable_share(sampled: Measured, density: float) -> float:
     """Return the share of the area that `density` normals per steradian do not sample."""
-    cells = sampled._measure_of_cells()
+    cells = sampled._cell_measure
     total = float(cells.areas.sum())
     return float(cells.areas[~cells.curved(density)].sum()) / total if total > 0.0 else 1.0
 
 
 def curved_solid_angle(sampled: Measured, density: float) -> float:
     """Return the solid angle of the Gaussian image of curved cells, with multiplicity."""
-    cells = sampled._measure_of_cells()
+    cells = sampled._cell_measure
     return float(cells.solid_angles[cells.curved(density)].sum())

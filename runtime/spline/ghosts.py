@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from ...generated import spline as formulas
 from ..base.formula_calls import python_function
-from ..domain.domain import Boundary, BoundaryPair
+from ..domain.domain import Boundary, BoundaryPair, closes
 from .planar_ring import ring_around
 
 __all__ = ["Border", "Sides", "coefficients_with_ring", "vertices_with_ring"]
 
 Array = NDArray[np.float64]
-Sides = tuple[tuple[Array, Array], tuple[Array, Array]]
+Sides = tuple[Array, Array, Array, Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,27 +32,24 @@ class Border:
     @classmethod
     def of_values(cls, middles: Sides, g: Array) -> Border:
         """Return the border from values at the middles of its edges and at all vertices."""
-        south, north = (
+        rows = g[:, 0], g[:, -1], g[0], g[-1]
+        south, north, west, east = (
             python_function(formulas.edge_point)(f, row[:-1], row[1:])
-            for f, row in zip(middles[0], (g[:, 0], g[:, -1]), strict=True)
+            for f, row in zip(middles, rows, strict=True)
         )
-        west, east = (
-            python_function(formulas.edge_point)(f, row[:-1], row[1:])
-            for f, row in zip(middles[1], (g[0], g[-1]), strict=True)
-        )
-        return cls(((south, north), (west, east)), g[:: len(g) - 1, :: g.shape[1] - 1])
+        return cls((south, north, west, east), g[:: len(g) - 1, :: g.shape[1] - 1])
 
     @classmethod
     def of_vertices(cls, ringed: Array) -> Border:
         """Return the border from values at the vertices and one ring more."""
-        sides = [
+        south, north, west, east = (
             python_function(formulas.edge_point_from_vertices)(
                 row[1:-2], row[2:-1], row[:-3], row[3:]
             )
             for row in (ringed[:, 1], ringed[:, -2], ringed[1], ringed[-2])
-        ]
+        )
         corners = ringed[1 :: len(ringed) - 3, 1 :: ringed.shape[1] - 3][:2, :2]
-        return cls(((sides[0], sides[1]), (sides[2], sides[3])), corners)
+        return cls((south, north, west, east), corners)
 
 
 def coefficients_with_ring(inner: Array, border: Border, boundary: Boundary) -> Array:
@@ -64,8 +61,8 @@ def coefficients_with_ring(inner: Array, border: Border, boundary: Boundary) -> 
     """
     result = np.pad(inner, [(1, 1), (1, 1), (0, 0)])
     turned = np.swapaxes(result, 0, 1)
-    _open_rows(result, boundary[0], border.sides[1])
-    _open_rows(turned, boundary[1], border.sides[0])
+    _open_rows(result, boundary[0], border.sides[2:])
+    _open_rows(turned, boundary[1], border.sides[:2])
     _close(result, turned, boundary)
     for i, j in ((0, 0), (0, -1), (-1, 0), (-1, -1)):
         if boundary[0][i] == boundary[1][j] == "open":
@@ -95,7 +92,7 @@ def _close(result: Array, turned: Array, boundary: Boundary) -> None:
             if kind == "pole":
                 _close_pole(rows, outside, first)
     for rows, end in directions:
-        if end[0] in ("periodic", "mirrored"):
+        if closes(end):
             step = 1 if end[0] == "periodic" else -1
             rows[0], rows[-1] = rows[-2, ::step].copy(), rows[1, ::step].copy()
 
@@ -121,7 +118,7 @@ def vertices_with_ring(values: Array, boundary: Boundary) -> Array:
         return np.ascontiguousarray(np.swapaxes(swapped, 0, 1))
     turned = np.swapaxes(values, 0, 1)
     reverse = values[::-1]  # of vertices that close, the first stays the first
-    reverse = np.roll(reverse, 1, axis=0) if boundary[0][0] in ("periodic", "mirrored") else reverse
+    reverse = np.roll(reverse, 1, axis=0) if closes(boundary[0]) else reverse
     opposite = np.roll(turned, len(values) // 2, axis=1)
     low, high = _beyond(turned, np.swapaxes(reverse, 0, 1), opposite, boundary[1])
     ringed = np.swapaxes(np.concatenate([low, turned, high]), 0, 1)
@@ -137,7 +134,7 @@ def _beyond(
     `mirrored` are the same rows with the other parameter reversed, `opposite` those half a period
     away along it.
     """
-    if boundary[0] in ("periodic", "mirrored"):
+    if closes(boundary):
         source = rows if boundary[0] == "periodic" else mirrored
         return source[-1:], source[:2]
     parts = []

@@ -14,6 +14,7 @@ from ..base.threads import over_ranges
 from ..domain.domain import Domain
 from ..domain.trim import Trim
 from ..kernels.trim import to_cells
+from .developable import widened
 
 __all__ = [
     "FINEST",
@@ -22,7 +23,6 @@ __all__ = [
     "parameters_of",
     "samples_inside",
     "subcentroids",
-    "widened",
     "with_uv",
 ]
 
@@ -138,8 +138,7 @@ def places_in_cells(spline: Trimmed, patches: NDArray[np.int64], places: Array) 
     def work(first: int, last: int) -> None:
         to_cells(patches, places, spline.cells[1], first, last, cells)
 
-    for _ in over_ranges(work, len(patches), PLACES_AT_A_TIME, None):
-        pass
+    list(over_ranges(work, len(patches), PLACES_AT_A_TIME, None))
     return cells
 
 
@@ -173,12 +172,3 @@ def _shares(spline: Trimmed, patches: NDArray[np.int64], parts: int) -> Array:
         inside = spline.trim.contains(uv)
         shares[first : first + step] = inside.reshape(-1, len(places)).mean(axis=1)
     return shares
-
-
-def widened(values: NDArray[Any]) -> NDArray[Any]:
-    """Return the largest of the values (m, n) of each cell and its neighbours."""
-    for axis in (0, 1):
-        padded = np.pad(values, [(1, 1) if k == axis else (0, 0) for k in (0, 1)], mode="wrap")
-        parts = [np.take(padded, np.arange(k, k + values.shape[axis]), axis) for k in range(3)]
-        values = np.maximum.reduce(parts)
-    return values

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +15,14 @@ from ..base.errors import GaussmapWarning, InputError, shown
 from ..domain.domain import Boundary, BoundaryPair, Domain
 from ..kernels import spline as kernels
 from ..kernels.trim import find_patches
-from .ghosts import Border, Sides, coefficients_with_ring, vertices_with_ring
-from .inside import widened
+from .developable import widened
+from .ghosts import Border, coefficients_with_ring
+from .inner_coefficients import from_grid, from_values, values_at
 from .nodata_blocks import suspicious_block
 
 __all__ = [
     "Known",
+    "checked_nodata",
     "filled",
     "known_of_grid",
     "known_of_values",
@@ -64,15 +67,20 @@ class Known:
         return least < most
 
 
+def checked_nodata(nodata: Any) -> float:  # noqa: ANN401
+    """Return the number that stands for missing data; InputError if it is none."""
+    try:
+        return as_float(nodata)
+    except TypeError:
+        raise InputError(f"nodata must be a number, not {shown(nodata)}.") from None
+
+
 def without_nodata(points: Array, nodata: object, name: str) -> Array:
     """Return points or elevations with NaN in place of `nodata`; a warning if some look like it."""
     if nodata is None:
         _warn_of_nodata(points, name)
         return points
-    try:
-        value = as_float(nodata)  # pyright: ignore[reportArgumentType]
-    except (TypeError, ValueError, OverflowError):
-        raise InputError(f"nodata must be a number, not {shown(nodata)}.") from None
+    value = checked_nodata(nodata)
     with np.errstate(over="ignore"):
         bad = (points == value) | (points == float(np.float32(value)))
     if points.ndim == 3:
@@ -130,10 +138,7 @@ def known_of_grid(points: Array, domain: Domain, boundary: Boundary, name: str) 
                 turned[rows] = True
     zeros = np.zeros((*bad.shape, 3))
     zeros[bad] = np.nan
-    values = vertices_with_ring(zeros, _without_poles(boundary))
-    inner = np.empty((values.shape[0] - 3, values.shape[1] - 3, 3))
-    kernels.fit_vertices(values, inner)
-    known = _known(inner, Border.of_vertices(values), domain, boundary)
+    known = _known(*from_grid(zeros, _without_poles(boundary)), domain, boundary)
     if not known.patches.any():
         raise InputError(
             f"{int(bad.sum()):,} of the {bad.size:,} points of {name} are missing, and every part "
@@ -149,22 +154,13 @@ def known_of_values(
 
     `exists` says that of points (k, 2) of the domain.
     """
-    u, v = (
-        low + (high - low) * (np.arange(2 * count + 1) / (2 * count))
-        for (low, high), count in zip(domain, cells, strict=True)
-    )
 
-    def values(along_u: Array, along_v: Array) -> Array:
-        uv = np.stack(np.meshgrid(along_u, along_v, indexing="ij"), axis=-1)
+    def values(u: Array, v: Array) -> Array:
+        uv = np.stack(np.broadcast_arrays(u, v), axis=-1)
         bad = ~exists(uv.reshape(-1, 2)).reshape(uv.shape[:2])
-        return np.where(np.repeat(bad[..., None], 3, axis=2), np.nan, 0.0)
+        return np.where(bad[..., None], np.nan, np.zeros(3))
 
-    centres, vertices = values(u[1::2], v[1::2]), values(u[::2], v[::2])
-    at_v, at_u = values(u[1::2], v[[0, -1]]), values(u[[0, -1]], v[1::2])
-    middles: Sides = (at_v[:, 0], at_v[:, 1]), (at_u[0], at_u[1])
-    inner = np.empty_like(centres)
-    kernels.fit_centres_and_vertices(centres, vertices, inner)
-    return _known(inner, Border.of_values(middles, vertices), domain, boundary)
+    return _known(*from_values(values_at(values, domain, cells)), domain, boundary)
 
 
 def _known(inner: Array, border: Border, domain: Domain, boundary: Boundary) -> Known:

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from ..base.advice import NO_CLOUDS
 from ..base.checks import as_float
 from ..base.errors import InputError, shown
-from ..domain.domain import Boundary, Domain
+from ..domain.domain import Boundary, Domain, cells_between, closes
 from .missing import filled
 from .quasi_interpolant import apart, fit_grid
 from .spline import Spline
 
-__all__ = ["points_of_elevations", "spline_of_points"]
+__all__ = ["checked_spacing", "points_of_elevations", "spline_of_points"]
 
 # A last row this near to the first, relative to the distance of two rows, is the first row again.
 REPEATED = 1e-3
@@ -26,12 +26,9 @@ def spline_of_points(
 ) -> Spline:
     """Return the spline of points (m, n, 3) at the vertices of its cells."""
     _check(points, boundary, name)
-    cells = tuple(
-        count if "periodic" in end or "mirrored" in end else count - 1
-        for count, end in zip(points.shape, boundary, strict=False)
-    )
     if domain is None:
-        domain = (0.0, float(cells[0])), (0.0, float(cells[1]))
+        m, n = cells_between(points.shape, boundary)
+        domain = (0.0, float(m)), (0.0, float(n))
     spline = fit_grid(points, domain, boundary, name)
     _check_closed(points, boundary, name)
     return spline
@@ -49,7 +46,7 @@ def points_of_elevations(
     rows, columns = elevations.shape
     if columns == 3:
         raise InputError(f"{name} has the shape {elevations.shape}: {NO_CLOUDS}.")
-    dx, dy = _spacing(spacing, max(rows, columns))
+    dx, dy = checked_spacing(spacing, max(rows, columns))
     _check(elevations[..., None], boundary, name)
     x, y = dx * np.arange(columns), dy * np.arange(rows) + 0.0
     if dy < 0.0:
@@ -61,7 +58,8 @@ def points_of_elevations(
     return points, ((float(x[0]), float(x[-1])), (float(y[0]), float(y[-1])))
 
 
-def _spacing(spacing: Sequence[float] | None, count: int) -> tuple[float, float]:
+def checked_spacing(spacing: Sequence[float] | None, count: int) -> tuple[float, float]:
+    """Return the distances of elevations, at most `count` along x and y; InputError for others."""
     try:
         dx, dy = (as_float(x) for x in (() if spacing is None else spacing))
     except (TypeError, ValueError, OverflowError):
@@ -77,7 +75,7 @@ def _spacing(spacing: Sequence[float] | None, count: int) -> tuple[float, float]
 
 def _check(points: NDArray[np.float64], boundary: Boundary, name: str) -> None:
     for axis, end in enumerate(boundary):
-        least = 3 if end[0] in ("periodic", "mirrored") else 4
+        least = 3 if closes(end) else 4
         if points.shape[axis] < least:
             raise InputError(
                 f"{name} has {points.shape[0]} x {points.shape[1]} points; it needs at least "
@@ -107,7 +105,7 @@ def _check_closed(points: NDArray[np.float64], boundary: Boundary, name: str) ->
         )
     for axis, (low, high) in enumerate(boundary):
         rows = np.swapaxes(points, 0, axis)
-        if low in ("periodic", "mirrored"):
+        if closes((low, high)):
             first = rows[0] if low == "periodic" else rows[0, ::-1]
             if _farthest(rows[-1], first) < REPEATED * _farthest(rows[1], rows[0]):
                 raise InputError(

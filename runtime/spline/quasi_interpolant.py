@@ -9,37 +9,24 @@ from numpy.typing import NDArray
 
 from ..base.checks import pair_of_cells
 from ..base.errors import InputError, SurfaceError
+from ..base.limits import MOST
 from ..base.memory import check_memory
 from ..base.scales import LARGEST_EXPONENT
-from ..domain.domain import Boundary, Domain
-from ..kernels import spline as kernels
-from .ghosts import Border, Sides, coefficients_with_ring, vertices_with_ring
+from ..domain.domain import Boundary, Domain, cells_between
+from .ghosts import Border, coefficients_with_ring
+from .inner_coefficients import Values, from_grid, from_values
 from .missing import filled
 from .spline import Spline
 
 __all__ = ["apart", "checked_cells", "fit_grid", "fit_values", "not_too_large"]
 
-MOST_CELLS = 10**9
 # What is said to be one point may be this far apart, relative to the size of the surface.
 SAME_POINT = 1e-6
 
 
-def fit_values(
-    centres: NDArray[np.float64],
-    vertices: NDArray[np.float64],
-    middles: Sides,
-    domain: Domain,
-    boundary: Boundary,
-    name: str,
-) -> Spline:
-    """Return the spline of values at centres (m, n, 3) and vertices (m + 1, n + 1, 3) of cells.
-
-    `middles` are the values in the middle of the edges on the border of the domain.
-    """
-    inner = np.empty_like(centres)
-    kernels.fit_centres_and_vertices(centres, vertices, inner)
-    border = Border.of_values(middles, vertices)
-    return _spline(inner, border, domain, boundary, name)
+def fit_values(values: Values, domain: Domain, boundary: Boundary, name: str) -> Spline:
+    """Return the spline of values at the centres and vertices of cells."""
+    return _spline(*from_values(values), domain, boundary, name)
 
 
 def fit_grid(points: NDArray[np.float64], domain: Domain, boundary: Boundary, name: str) -> Spline:
@@ -47,11 +34,8 @@ def fit_grid(points: NDArray[np.float64], domain: Domain, boundary: Boundary, na
 
     Missing points are filled.
     """
-    values = vertices_with_ring(not_too_large(filled(points), name), boundary)
-    inner = np.empty((values.shape[0] - 3, values.shape[1] - 3, 3))
-    checked_cells(inner.shape[:2])
-    kernels.fit_vertices(values, inner)
-    border = Border.of_vertices(values)
+    checked_cells(cells_between(points.shape, boundary))
+    inner, border = from_grid(not_too_large(filled(points), name), boundary)
     return _spline(inner, border, domain, boundary, name)
 
 
@@ -93,7 +77,7 @@ def checked_cells(cells: Sequence[int]) -> tuple[int, int]:
     m, n = pair_of_cells(cells)
     if min(m, n) < 3:
         raise InputError(f"at least 3 x 3 cells are needed, not {m} x {n}.")
-    if m * n > MOST_CELLS:
-        raise InputError(f"at most {MOST_CELLS:,} cells are possible, not {m:,} x {n:,}.")
+    if m * n > MOST:
+        raise InputError(f"at most {MOST:,} cells are possible, not {m:,} x {n:,}.")
     check_memory("cells", m * n)
     return m, n

@@ -220,17 +220,12 @@ class Spline:
                 areas[first:last], solid_angles[first:last],
             )  # fmt: skip
 
-        for _ in over_ranges(work, self.patches, PATCHES_AT_A_TIME, None):
-            pass
+        list(over_ranges(work, self.patches, PATCHES_AT_A_TIME, None))
         inner = self.coefficients[1:-1, 1:-1].reshape(-1, 3) * self.scale
         diagonal = float(np.linalg.norm(np.ptp(inner, axis=0)))
         if self.inside is not None:
             areas, solid_angles = areas * self.inside.shares, solid_angles * self.inside.shares
         return areas / diagonal**2 if diagonal > 0.0 else areas, solid_angles
-
-    def _measure_of_cells(self) -> CellMeasure:
-        """Return areas, solid angles and curvatures of the cells."""
-        return self._cell_measure
 
     @cached_property
     def _cell_measure(self) -> CellMeasure:

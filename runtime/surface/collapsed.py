@@ -23,7 +23,7 @@ from ..domain.domain import Assumed, Boundary
 from ..spline.quasi_interpolant import SAME_POINT
 from .surface_values import SurfaceValues
 
-__all__ = ["FoundSides", "closed_grid", "found_sides"]
+__all__ = ["closed_grid", "found_sides"]
 
 Array = NDArray[np.float64]
 
@@ -39,16 +39,8 @@ KINK, KINK_OF_DATA = 1e-2, 0.3
 ROUNDING = 64.0
 
 
-@dataclass(frozen=True)
-class FoundSides:
-    """The boundary conditions of a surface, and the number of open sides that are one point."""
-
-    boundary: Boundary
-    apexes: int
-
-
-def found_sides(surface: SurfaceValues) -> FoundSides:
-    """Return the boundary conditions of a surface, with the poles among the sides assumed open.
+def found_sides(surface: SurfaceValues) -> tuple[Boundary, int]:
+    """Return the boundary conditions of a surface, with poles, and the number of its apexes.
 
     A surface that cannot be evaluated next to its sides keeps its own: if that is an error, the fit
     says so at a place of its own.
@@ -58,7 +50,7 @@ def found_sides(surface: SurfaceValues) -> FoundSides:
             if surface.grid is None:
                 return _Sides.of_surface(surface).found()
             return _Sides.of_grid(surface.grid, surface.boundary, surface.assumed_open).found()
-    return FoundSides(surface.boundary, 0)
+    return surface.boundary, 0
 
 
 def closed_grid(points: Array, boundary: Boundary, assumed: Assumed) -> tuple[Array, Boundary]:
@@ -70,7 +62,7 @@ def closed_grid(points: Array, boundary: Boundary, assumed: Assumed) -> tuple[Ar
     if not any(assumed) or min(points.shape[:2]) < 4:
         return points, boundary
     with np.errstate(all="ignore"):
-        found = _Sides.of_grid(points, boundary, assumed).found().boundary
+        found = _Sides.of_grid(points, boundary, assumed).found()[0]
     for axis in (0, 1):
         if boundary[axis][0] != "periodic" == found[axis][0]:
             points = points[:-1] if axis == 0 else points[:, :-1]
@@ -124,8 +116,8 @@ class _Sides:
         same, rounding = SAME_POINT * size + ROUNDING * last_place, ROUNDING * last_place
         return cls(lines, boundary, assumed, False, KINK_OF_DATA, same, rounding)
 
-    def found(self) -> FoundSides:
-        """Return the boundary conditions with those that are found."""
+    def found(self) -> tuple[Boundary, int]:
+        """Return the boundary conditions with those found, and the number of apexes."""
         kinds, apexes = [list(ends) for ends in self.boundary], 0
         for axis, end in ((0, 0), (0, 1), (1, 0), (1, 1)):
             if self.assumed[axis] and self.boundary[axis][end] == "open":
@@ -138,7 +130,7 @@ class _Sides:
                 else:
                     apexes += 1
         boundary = (kinds[0][0], kinds[0][1]), (kinds[1][0], kinds[1][1])
-        return FoundSides(cast(Boundary, boundary), apexes)
+        return cast(Boundary, boundary), apexes
 
     def _is_pole(self, around: int, near: Array) -> bool:
         """Return whether parameter `around` closes, and each meridian continues the opposite one.

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..directions.regions import angles_between
 from ..spline.quasi_interpolant import apart
 from .nurbs import Nurbs
 
@@ -77,11 +78,9 @@ def _turning(nurbs: Nurbs, axis: int, below: float, above: float) -> float:
     low, high = nurbs.domain[axis]
     first = _normals_along(nurbs, axis, (low, below), 1)
     second = _normals_along(nurbs, axis, (above, high), 0)
-    chords = np.linalg.norm(first - second, axis=1)
-    known = chords[np.isfinite(chords)]
-    if len(known) == 0:
-        return np.nan
-    return float(np.degrees(2.0 * np.arcsin(min(known.max() / 2.0, 1.0))))
+    angles = angles_between(first, second)
+    known = angles[np.isfinite(angles)]
+    return float(known.max()) if len(known) else np.nan
 
 
 def _jump(nurbs: Nurbs, axis: int, below: float, above: float) -> float:

@@ -10,14 +10,14 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...generated.differences import FIRST, FIRST_CHANGE, SECOND, SECOND_CHANGE
-from ..domain.domain import Boundary, BoundaryPair, Domain, Interval
+from ..domain.domain import Boundary, BoundaryPair, Domain, Interval, brought_inside
 
 __all__ = [
     "NAMES",
@@ -27,7 +27,6 @@ __all__ = [
     "Function",
     "differences",
     "nodes_between",
-    "numerical_jets",
     "shifts_inside",
     "weighted",
 ]
@@ -83,10 +82,6 @@ class Differences:
     domain: Domain
     boundary: Boundary
     step: float = STEP  # relative to the domain
-
-    def coarser(self) -> Differences:
-        """Return differences with steps of twice the size."""
-        return replace(self, step=2.0 * self.step)
 
     def jets(self, u: Array, v: Array) -> Array:
         """Return x, x_u, x_v, x_uu, x_uv, x_vv (k, 6, 3) for u (k,) and v (k,)."""
@@ -146,32 +141,7 @@ def moved_inside(u: Array, v: Array, domain: Domain, boundary: Boundary) -> tupl
                 half = np.where(others[out] < (low + high) / 2, 0.5, -0.5)
                 others[out] += half * (high - low)
                 values[out] = 2.0 * end - values[out]
-    for axis in (0, 1):
-        kind = boundary[axis][0]
-        if kind in ("periodic", "mirrored"):
-            odd = _brought_back(places[axis], *domain[axis])
-            if kind == "mirrored":
-                places[1 - axis][odd] = sum(domain[1 - axis]) - places[1 - axis][odd]
-    return places
-
-
-def _brought_back(values: Array, low: float, high: float) -> NDArray[np.intp]:
-    """Subtract whole periods in place; return the rows where their number is odd."""
-    out = np.flatnonzero((values < low) | (values > high))
-    periods = np.floor((values[out] - low) / (high - low))
-    values[out] = np.clip(values[out] - periods * (high - low), low, high)
-    return out[periods % 2.0 == 1.0]
-
-
-def numerical_jets(
-    function: Function,
-    u: Array,
-    v: Array,
-    steps: tuple[float, float],
-    bounds: Bounds = EVERYWHERE,
-) -> Array:
-    """Return the first of what `differences` returns."""
-    return differences(function, u, v, steps, bounds)[0]
+    return brought_inside(*places, domain, boundary)
 
 
 def differences(

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base import bridge
+from ..base.checks import listed
 from ..base.errors import InputError, clipped, shown
 
 if TYPE_CHECKING:
@@ -21,7 +22,6 @@ __all__ = [
     "as_condition",
     "as_expression",
     "as_position",
-    "interval",
     "numbers",
     "one_symbol",
     "two_symbols",
@@ -46,22 +46,20 @@ def as_position(position: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> tup
     return tuple(expressions)
 
 
-def numbers(domain: Sequence[Sequence[Any]]) -> list[list[float]]:
-    """Return a domain whose ends may be expressions as floats; raise InputError if it is none."""
-    try:
-        return [[float(as_expression(end, {})) for end in ends] for ends in domain]
-    except (TypeError, ValueError, OverflowError):
-        raise InputError(
-            f"domain must be ((u0, u1), (v0, v1)) in numbers, not {shown(domain)}."
-        ) from None
+def numbers(domain: Sequence[Any], form: str) -> Any:  # noqa: ANN401
+    """Return a domain or an interval with floats for its ends, which may be expressions.
 
+    Raises InputError if it is none, with the form that it must have.
+    """
 
-def interval(domain: Sequence[Any]) -> list[float]:
-    """Return the ends of an interval, which may be expressions, as floats; InputError if not."""
+    def number(end: object) -> Any:  # noqa: ANN401
+        ends = listed(end)
+        return float(as_expression(end, {})) if ends is None else [number(x) for x in ends]
+
     try:
-        return [float(as_expression(end, {})) for end in domain]
+        return number(domain)
     except (TypeError, ValueError, OverflowError):
-        raise InputError(f"domain must be (t0, t1) in numbers, not {shown(domain)}.") from None
+        raise InputError(f"domain must be {form} in numbers, not {shown(domain)}.") from None
 
 
 def _coordinates(position: Sequence[Any], parameters: int) -> tuple[Any, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -36,47 +36,44 @@ def jet_function(
 ) -> Function:
     """Return the function of u (k,) and v (k,) that gives the 2-jets (k, 6, 3) of a surface."""
     label = f"surface {name!r}"
-    numerical = Differences(Guarded(function, (3,), f"the callable of {label}"), domain, boundary)
+    numerical = Differences(guarded(function, (3,), f"the callable of {label}"), domain, boundary)
     if derivatives is not None:
-        guarded = Guarded(derivatives, (len(NAMES), 3), f"derivatives of {label}")
-        compare(guarded, numerical, label)
-        return guarded
+        given = guarded(derivatives, (len(NAMES), 3), f"derivatives of {label}")
+        compare(given, numerical, label)
+        return given
     if not isinstance(function, Differentiable) or not function.differentiable:
         return numerical.jets
-    return Filled(function, numerical) if function.has_gaps else function.jets
+    return filled(function, numerical) if function.has_gaps else function.jets
 
 
-class Guarded:
-    """A user's callable, whose results have one shape, and which one thread calls at a time."""
+def guarded(function: Evaluation, shape: tuple[int, ...], label: str) -> Function:
+    """Return a user's callable, whose results have one shape, and which one thread calls at a time.
 
-    def __init__(self, function: Evaluation, shape: tuple[int, ...], label: str) -> None:
-        """Keep the callable, the shape of what it returns for one place, and its name."""
-        self.function, self.shape, self.label = function, shape, label
-        self.lock = threading.RLock()
+    It raises SurfaceError unless the callable returns arrays of that shape for each place.
+    """
+    lock = threading.RLock()
 
-    def __call__(self, u: Array, v: Array) -> Array:
-        """Return what the callable returns; SurfaceError unless it is an array of that shape."""
-        with self.lock:
-            return returned(self.function, (u, v), self.shape, self.label)
+    def call(u: Array, v: Array) -> Array:
+        with lock:
+            return returned(function, (u, v), shape, label)
+
+    return call
 
 
-@dataclass(frozen=True)
-class Filled:
-    """Derivatives of a formula, and numerical ones where these are not finite."""
+def filled(function: Differentiable, numerical: Differences) -> Function:
+    """Return the derivatives of a formula, with numerical ones where these are not finite."""
 
-    function: Differentiable
-    numerical: Differences
-
-    def __call__(self, u: Array, v: Array) -> Array:
-        """Return the 2-jets (k, 6, 3)."""
-        jets = self.function.jets(u, v)
-        bad = ~np.isfinite(jets).all(axis=(1, 2))
+    def jets(u: Array, v: Array) -> Array:
+        found = function.jets(u, v)
+        bad = ~np.isfinite(found).all(axis=(1, 2))
         if bad.any():
-            jets[bad] = self.numerical.jets(u[bad], v[bad])
-        return jets
+            found[bad] = numerical.jets(u[bad], v[bad])
+        return found
+
+    return jets
 
 
-def compare(derivatives: Guarded, numerical: Differences, label: str) -> None:
+def compare(derivatives: Function, numerical: Differences, label: str) -> None:
     """Raise SurfaceError if derivatives are not finite, or not those of the function.
 
     The message says which one, where, and by how much.
@@ -86,7 +83,8 @@ def compare(derivatives: Guarded, numerical: Differences, label: str) -> None:
         low + (high - low) * (np.sqrt(x) * steps % 1.0)
         for x, (low, high) in zip((0.5, 1 / 3), numerical.domain, strict=True)
     )
-    given, found, coarse = derivatives(u, v), numerical.jets(u, v), numerical.coarser().jets(u, v)
+    coarser = replace(numerical, step=2.0 * numerical.step)
+    given, found, coarse = derivatives(u, v), numerical.jets(u, v), coarser.jets(u, v)
     known = np.logical_and.reduce(np.isfinite(found) & np.isfinite(coarse), axis=-1)
     sizes = np.abs(np.where(known[..., None], found, 0.0)).max(axis=(0, 2))
     with np.errstate(invalid="ignore"):

@@ -32,10 +32,6 @@ class Expressions(Differentiable):
     expressions: tuple[Any, ...]
     symbols: tuple[sympy.Symbol, ...]
 
-    def compile(self) -> None:
-        """Prepare the first call; InputError if the expressions are unusable."""
-        _ = self._position
-
     @property
     def differentiable(self) -> bool:
         """Whether SymPy has the derivatives, and NumPy their functions."""
@@ -84,7 +80,7 @@ def compiled(position: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> Expres
     Raises InputError if they are unusable.
     """
     function = Expressions(as_position(position, symbols), tuple(symbols))
-    function.compile()
+    _ = function._position  # which raises InputError if the expressions are unusable
     return function
 
 

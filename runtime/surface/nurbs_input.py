@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,35 +20,15 @@ Array = NDArray[np.float64]
 MOST_DEGREE = 25
 
 
-class Definition(NamedTuple):
-    """What defines a NURBS surface, as `Surface.from_nurbs` takes it."""
-
-    degrees: Any
-    knots: Any
-    control_points: Any
-    weights: Any
-
-
 def nurbs_of(degrees: Any, knots: Any, control_points: Any, weights: Any) -> Nurbs:  # noqa: ANN401
     """Return the NURBS surface of numbers, or of an object in the place of the degrees.
 
     Raises InputError if they do not define one.
     """
+    definition: tuple[Any, ...] = degrees, knots, control_points, weights
     if knots is None and control_points is None and weights is None:
-        return nurbs_of_arrays(*_definition_of(degrees))
-    return nurbs_of_arrays(degrees, knots, control_points, weights)
-
-
-# --- arrays ---------------------------------------------------------------------------------------
-
-
-def nurbs_of_arrays(
-    degrees: Any,  # noqa: ANN401 - what a user gives
-    knots: Any,  # noqa: ANN401
-    control_points: Any,  # noqa: ANN401
-    weights: Any,  # noqa: ANN401
-) -> Nurbs:
-    """Return the NURBS surface of these numbers; InputError if they do not define one."""
+        definition = _definition_of(degrees)
+    degrees, knots, control_points, weights = definition
     p, q = (_degree(x, name) for x, name in zip(_pair(degrees, "degrees"), "uv", strict=True))
     points = _finite(control_points, "control_points")
     if points.ndim != 3 or points.shape[2] != 3 or 0 in points.shape:
@@ -158,7 +138,7 @@ def _weights(values: ArrayLike, shape: tuple[int, ...]) -> Array:
 # --- objects --------------------------------------------------------------------------------------
 
 
-def _definition_of(value: object) -> Definition:
+def _definition_of(value: object) -> tuple[Any, ...]:
     """Return what defines a surface of geomdl or Splipy, known by the names of its attributes.
 
     Raises InputError for other objects, and for what cannot be taken over.
@@ -173,7 +153,7 @@ def _definition_of(value: object) -> Definition:
     )
 
 
-def _of_geomdl(value: Any) -> Definition:  # noqa: ANN401 - it is not imported
+def _of_geomdl(value: Any) -> tuple[Any, ...]:  # noqa: ANN401 - it is not imported
     """Return what defines a `geomdl.BSpline.Surface` or `geomdl.NURBS.Surface`.
 
     Its control points are in one list, along v first, without their weights.
@@ -191,12 +171,15 @@ def _of_geomdl(value: Any) -> Definition:  # noqa: ANN401 - it is not imported
         raise InputError(
             f"this surface of geomdl does not have {shape[0]} × {shape[1]} control points yet."
         ) from None
-    return Definition(
-        (value.degree_u, value.degree_v), (value.knotvector_u, value.knotvector_v), points, weights
+    return (
+        (value.degree_u, value.degree_v),
+        (value.knotvector_u, value.knotvector_v),
+        points,
+        weights,
     )
 
 
-def _of_splipy(value: Any) -> Definition:  # noqa: ANN401 - it is not imported
+def _of_splipy(value: Any) -> tuple[Any, ...]:  # noqa: ANN401 - it is not imported
     """Return what defines a `splipy.Surface`.
 
     Its control points are w x, w y, w z, w if it is rational. Those at the end of a periodic
@@ -216,4 +199,4 @@ def _of_splipy(value: Any) -> Definition:  # noqa: ANN401 - it is not imported
         _weights(weights, weights.shape)  # before they divide
         points = points[:, :, :-1] / weights[:, :, None]
     degrees = tuple(int(basis.order) - 1 for basis in bases)
-    return Definition(degrees, tuple(basis.knots for basis in bases), points, weights)
+    return degrees, tuple(basis.knots for basis in bases), points, weights

@@ -208,9 +208,9 @@ class Surface(SurfaceValues):
         from .lambdified import compiled
 
         f = compiled(position, two_symbols(parameters))
-        rectangle, (boundary, assumed) = checked_domain(numbers(domain)), checked_boundary(periodic)
-        name = label(name, "surface")
-        return cls(name, f, rectangle, boundary, assumed_open=assumed)
+        rectangle = checked_domain(numbers(domain, "((u0, u1), (v0, v1))"))
+        boundary, assumed = checked_boundary(periodic)
+        return cls(label(name, "surface"), f, rectangle, boundary, assumed_open=assumed)
 
     @classmethod
     def from_grid(

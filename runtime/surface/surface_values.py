@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..base.checks import checked_array, parameter_arrays, text
-from ..base.errors import InputError, SurfaceError, shown
-from ..base.evaluation import evaluated
+from ..base.errors import InputError, shown
+from ..base.evaluation import check_finite, evaluated
 from ..base.georeference import Georeference
 from ..base.scales import scale_to_one
 from ..domain.domain import Assumed, Boundary, Domain, checked_boundary, checked_domain, domain_text
@@ -158,16 +158,9 @@ class SurfaceValues:
                 "of it, which has normals and curvatures."
             )
         jets = self.jets(*(x.flatten() for x in arrays)).reshape(*arrays[0].shape, len(NAMES), 3)
-        if not np.isfinite(jets).all():
-            bad = ~np.isfinite(jets).all(axis=-1)
-            *where, row = np.unravel_index(int(np.argmax(bad)), bad.shape)
-            place = ", ".join(
-                f"{x} = {float(y[*where])}" for x, y in zip("uv", arrays, strict=True)
-            )
-            raise SurfaceError(
-                f"{NAMES[row]} of surface {self.name!r} is not finite at {place}: "
-                f"{jets[(*where, row)]}."
-            )
+        for row, name in enumerate(NAMES):
+            parameters = dict(zip("uv", arrays, strict=True))
+            check_finite(jets[..., row, :], parameters, f"{name} of surface {self.name!r}")
         return jets
 
     def normals(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:

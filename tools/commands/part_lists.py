@@ -7,11 +7,10 @@ import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from ...runtime.base.advice import CAD_SUFFIXES
+from ...runtime.base.advice import CAD_SUFFIXES, RASTER_SUFFIXES
 from ...runtime.base.errors import FileError, InputError
 from ...runtime.surface.surfaces import CATALOGUE
 from ..files.paths import reason_of
-from ..sources.elevations import RASTER_SUFFIXES
 
 __all__ = ["listed"]
 

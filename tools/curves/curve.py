@@ -166,11 +166,11 @@ class Curve:
         array([1., 0.])
 
         """
-        from ...runtime.surface.expressions import interval, one_symbol
+        from ...runtime.surface.expressions import numbers, one_symbol
         from ...runtime.surface.lambdified import compiled
 
         f = compiled(position, one_symbol(parameter))
-        return cls.from_callable(f, interval(domain), periodic, name=name)
+        return cls.from_callable(f, numbers(domain, "(t0, t1)"), periodic, name=name)
 
     @classmethod
     def from_points(cls, points: ArrayLike, closed: bool = False, *, name: str = "points") -> Curve:

@@ -7,8 +7,8 @@ from typing import Any
 
 from numpy.typing import NDArray
 
+from ...runtime.base.advice import RASTER_SUFFIXES
 from ...runtime.base.errors import InputError
-from ...runtime.base.extras import check_extra
 from ...runtime.surface.surface import Surface
 from ..files.numpy_files import array_file, read_array
 from ..terrain.terrain import terrain
@@ -16,14 +16,12 @@ from .named import Named
 
 __all__ = [
     "OF_TERRAIN",
-    "RASTER_SUFFIXES",
     "has_place",
     "is_raster_file",
     "read_raster_file",
     "terrain_of_array",
 ]
 
-RASTER_SUFFIXES = (".tif", ".tiff")
 # The options that only elevations have.
 OF_TERRAIN = ("band", "x", "y", "crs", "source_crs", "origin")
 DEGREES = "EPSG:4326"
@@ -43,19 +41,14 @@ def has_place(named: Named) -> bool:
 
 def read_raster_file(named: Named, source: str) -> Surface:
     """Return the surface of a GeoTIFF."""
-    check_extra("rasterio", "gis", "reading GeoTIFF files")
-    for name in ("x", "y"):
-        if name in named.given():
-            raise InputError(f"--{name} is for .npz files; a GeoTIFF has its own coordinates.")
-    if named.periodic is not None:
-        raise InputError("--periodic is for grids of points, and a GeoTIFF holds elevations.")
+    named.refuse(("x", "y"), "is for .npz files; a GeoTIFF has its own coordinates.")
+    named.refuse(("periodic",), "is for grids of points, and a GeoTIFF holds elevations.")
     return terrain(source, band=named.band or 1, spacing=named.spacing, **_place(named))
 
 
 def terrain_of_array(heights: NDArray[Any], named: Named, source: str) -> Surface:
     """Return the surface of elevations in a .npy or .npz file, with options on coordinates."""
-    if named.band is not None:
-        raise InputError("--band is for GeoTIFF files.")
+    named.refuse(("band",), "is for GeoTIFF files.")
     if heights.ndim != 2 or named.periodic is not None:
         raise InputError(
             "--x, --y, --crs, --source-crs and --origin are for elevations (m, n), and not for "
@@ -69,13 +62,10 @@ def terrain_of_array(heights: NDArray[Any], named: Named, source: str) -> Surfac
         )
     arrays = {axis: read_array(f"{file}:{name}") for axis, name in axes.items()}
     place = _place(named)
-    if _are_degrees(axes) and place["source_crs"] is None:
+    degrees = axes.get("x", "").lower() in LONGITUDES and axes.get("y", "").lower() in LATITUDES
+    if degrees and place["source_crs"] is None:
         place["source_crs"] = DEGREES
     return terrain(heights, **arrays, spacing=named.spacing, name=file.name, **place)
-
-
-def _are_degrees(axes: dict[str, str]) -> bool:
-    return axes.get("x", "").lower() in LONGITUDES and axes.get("y", "").lower() in LATITUDES
 
 
 def _place(named: Named) -> dict[str, Any]:

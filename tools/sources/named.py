@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from types import SimpleNamespace
 from typing import Any, Self
@@ -53,6 +54,16 @@ class Named:
         """Return the options of a command that it has."""
         known = vars(options)
         return cls(**{x.name: known[x.name] for x in fields(cls) if x.name in known})
+
+    def refuse(self, names: Iterable[str], reason: str) -> None:
+        """Raise InputError for the first of some options that was given; {} stands for the source.
+
+        Their names come before the reason, which says why they are not for this source.
+        """
+        for name in names:
+            if name in self.given():
+                source = f"'{self.surface or 'a formula'}'"
+                raise InputError(f"--{name.replace('_', '-')} {reason}".replace("{}", source))
 
     def given(self) -> dict[str, Any]:
         """Return the options that were given, by their names."""

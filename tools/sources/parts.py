@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from pathlib import Path
 
 from ...runtime.base.advice import CAD_SUFFIXES
@@ -11,7 +10,7 @@ from ..cad.part import Part, read_part
 from ..cad.part_files import is_part_file
 from .named import Named
 
-__all__ = ["LIMITS", "read_part_file", "refuse"]
+__all__ = ["LIMITS", "read_part_file"]
 
 # The options of `read_cad`.
 LIMITS = ("unit", "time_limit", "memory_limit")
@@ -21,7 +20,7 @@ def read_part_file(named: Named) -> Part:
     """Read a part. Raises what `read_cad` and `read_part` raise, InputError for other files."""
     source = named.surface or ""
     if Path(source).suffix.lower() == ".npz":
-        refuse(named, LIMITS, "is for STEP, IGES and BREP files")
+        named.refuse(LIMITS, "is for STEP, IGES and BREP files, and {} is none.")
         return read_part(source)
     if not is_part_file(source):
         raise InputError(
@@ -32,11 +31,3 @@ def read_part_file(named: Named) -> Part:
 
     given = {name: value for name, value in named.given().items() if name in LIMITS}
     return read_cad(source, **given, progress=not named.quiet)
-
-
-def refuse(named: Named, names: Iterable[str], purpose: str) -> None:
-    """Raise InputError for the first of some options that was given, and is not for this source."""
-    for name in names:
-        if name in named.given():
-            source = named.surface or "a formula"
-            raise InputError(f"--{name.replace('_', '-')} {purpose}, and '{source}' is none.")

@@ -16,7 +16,7 @@ from ..cad.part_files import is_part_file
 from ..files.numpy_files import array_file, is_array_file, read_array
 from .elevations import OF_TERRAIN, has_place, is_raster_file, read_raster_file, terrain_of_array
 from .named import Named
-from .parts import LIMITS, read_part_file, refuse
+from .parts import LIMITS, read_part_file
 
 __all__ = ["surface_of", "with_tolerance"]
 
@@ -31,32 +31,23 @@ def surface_of(named: Named) -> Surface | Part:
     Raises InputError for options that are not for it, and what the functions for each kind raise.
     """
     if is_part_file(named.surface):
-        for name in NOT_OF_PARTS:
-            if name in named.given():
-                option = name.replace("_", "-")
-                raise InputError(
-                    f"--{option} is for surfaces, and '{named.surface}' is a CAD part."
-                )
+        named.refuse(NOT_OF_PARTS, "is for surfaces, and {} is a CAD part.")
         return read_part_file(named)
-    refuse(named, LIMITS, "is for CAD files")
-    if named.surface is None:
-        refuse(named, OF_TERRAIN, "is for elevations")
-        return _of_formula(named)
-    if is_array_file(named.surface) or is_raster_file(named.surface):
-        return _grid(named, named.surface)
-    _refuse_file(named.surface)
-    refuse(named, OF_TERRAIN, "is for elevations")
-    return _of_catalogue(named, named.surface)
+    named.refuse(LIMITS, "is for CAD files, and {} is none.")
+    source = named.surface
+    if source is not None and (is_array_file(source) or is_raster_file(source)):
+        return _grid(named, source)
+    if source is not None:
+        _refuse_file(source)
+    named.refuse(OF_TERRAIN, "is for elevations, and {} is none.")
+    return _of_formula(named) if source is None else _of_catalogue(named, source)
 
 
 def _of_catalogue(named: Named, source: str) -> Surface:
     name = known_name(source, names(), "surface", "gaussmap surfaces")
-    if named.spacing is not None:
-        raise InputError(f"--spacing is for elevations in a file, and {name} is a surface by name.")
-    if named.periodic is not None:
-        raise InputError(f"--periodic is for grids in a file; {name} knows where it closes.")
-    if named.nodata is not None:
-        raise InputError(f"--nodata is for grids in a file; {name} has no missing points.")
+    named.refuse(("spacing",), "is for elevations in a file, and {} is a surface by name.")
+    named.refuse(("periodic",), "is for grids in a file; {} knows where it closes.")
+    named.refuse(("nodata",), "is for grids in a file; {} has no missing points.")
     parameters = dict(named.set)
     if len(parameters) < len(named.set):
         raise InputError("--set gives the same parameter twice; give each once.")
@@ -79,9 +70,7 @@ def _refuse_file(source: str) -> None:
 
 
 def _of_formula(named: Named) -> Surface:
-    for name in NOT_OF_FORMULAS:
-        if name in named.given():
-            raise InputError(f"--{name} does not go together with --formula; leave it out.")
+    named.refuse(NOT_OF_FORMULAS, "does not go together with --formula; leave it out.")
     if named.formula is None or named.domain is None:
         raise InputError("--formula needs the ranges of u and v: add --domain U0 U1 V0 V1.")
     u0, u1, v0, v1 = named.domain
@@ -95,8 +84,7 @@ def _of_formula(named: Named) -> Surface:
 
 
 def _grid(named: Named, source: str) -> Surface:
-    if named.set:
-        raise InputError("--set is for surfaces by name; a grid in a file has no parameters.")
+    named.refuse(("set",), "is for surfaces by name; a grid in a file has no parameters.")
     if is_raster_file(source):
         return read_raster_file(named, source)
     points = read_array(source)
@@ -110,10 +98,8 @@ def _grid(named: Named, source: str) -> Surface:
         )
     if has_place(named):
         return terrain_of_array(points, named, source)
-    if points.ndim == 3 and named.spacing is not None:
-        raise InputError(
-            f"--spacing is for elevations, and '{source}' has the shape {points.shape}."
-        )
+    if points.ndim == 3:
+        named.refuse(("spacing",), f"is for elevations, and {{}} has the shape {points.shape}.")
     return Surface.from_grid(
         points,
         spacing=named.spacing,

@@ -189,8 +189,7 @@ def _sums(
         arrays["support"][here] = one.support[first] + two.support[second]
         arrays["gaussian_curvature"][here], arrays["mean_curvature"][here] = K, H
 
-    for _ in over_ranges(work, len(i), PIECE, None):
-        pass
+    list(over_ranges(work, len(i), PIECE, None))
     return arrays | {"normal_index": one.normal_index[i]}
 
 

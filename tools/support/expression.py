@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from keyword import iskeyword
 from typing import TYPE_CHECKING, Any
 
@@ -65,7 +65,7 @@ class ExpressionSource:
         inside = np.empty(count, dtype=np.bool_)
         points, hessian = np.empty((count, 3)), np.empty((count, 3, 3))
         try:
-            self._evaluate(normals, inside, points, hessian)
+            _kernel(self.source)(normals, inside, points, hessian)
         except NumbaError as error:
             raise InputError(
                 f"h = {_short(self.h)} cannot be compiled: it is no function that Numba knows."
@@ -88,10 +88,6 @@ class ExpressionSource:
 
     def __str__(self) -> str:
         return f"h = {_short(self.h)}"
-
-    @cached_property
-    def _evaluate(self) -> Callable[..., None]:
-        return _kernel(self.source)
 
 
 @lru_cache(maxsize=128)

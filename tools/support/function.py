@@ -89,7 +89,7 @@ class SupportFunction(SupportValues):
         """
         surface = named(surface)
         if not isinstance(surface, Spline | Surface):
-            raise InputError(f"of_spline takes a Spline or Surface, not {_kind(surface)}.")
+            raise InputError(f"of_spline takes a Spline or Surface, not {type(surface).__name__}.")
         return cls(SplineSource(spline_of(surface, cells)))
 
     @classmethod
@@ -353,7 +353,3 @@ class SupportFunction(SupportValues):
 
     def __repr__(self) -> str:
         return f"SupportFunction({self._source})"
-
-
-def _kind(value: object) -> str:
-    return type(value).__name__

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -62,7 +61,7 @@ class Sum:
 
 
 @dataclass(frozen=True, eq=False)
-class Changed(ABC):
+class Changed:
     """What operations on one support function have in common: how they are written."""
 
     of: Source
@@ -76,14 +75,6 @@ class Changed(ABC):
         """Return the domain; None if that of the surface is none."""
         given = self.of.domain()
         return None if given is None else self._moved(given)
-
-    def __str__(self) -> str:
-        return f"({self.of}) {self._name}"
-
-    @property
-    @abstractmethod
-    def _name(self) -> str:
-        """What was done to the surface, in words."""
 
     def _moved(self, given: Any) -> Any:  # noqa: ANN401
         """Return what is said of the normals of the surface, for those that they become."""
@@ -123,9 +114,8 @@ class Offset(Changed):
         sheets.mean[rows[singular]] = mean[singular]
         return sheets
 
-    @property
-    def _name(self) -> str:
-        return f"offset by {self.distance:g}"
+    def __str__(self) -> str:
+        return f"({self.of}) offset by {self.distance:g}"
 
     def _written(self, h: Any, n: Sequence[Any]) -> Any:  # noqa: ANN401
         return h + _exact(self.distance) * _length(n)
@@ -142,9 +132,8 @@ class Translated(Changed):
         sheets = self.of.sheets(normals)
         return replace(sheets, points=sheets.points + self.shift)
 
-    @property
-    def _name(self) -> str:
-        return f"translated by {tuple(self.shift.tolist())}"
+    def __str__(self) -> str:
+        return f"({self.of}) translated by {tuple(self.shift.tolist())}"
 
     def _written(self, h: Any, n: Sequence[Any]) -> Any:  # noqa: ANN401
         return sum((s * _exact(t) for s, t in zip(n, self.shift.tolist(), strict=True)), start=h)
@@ -162,9 +151,8 @@ class Rotated(Changed):
         R = self.rotation
         return replace(sheets, points=sheets.points @ R.T, hessian=R @ sheets.hessian @ R.T)
 
-    @property
-    def _name(self) -> str:
-        return "rotated"
+    def __str__(self) -> str:
+        return f"({self.of}) rotated"
 
     def _moved(self, given: Any) -> Any:  # noqa: ANN401
         n, columns = normal_components(), self.rotation.T.tolist()
@@ -189,9 +177,8 @@ class Scaled(Changed):
             mean=sheets.mean / s,
         )
 
-    @property
-    def _name(self) -> str:
-        return f"scaled by {self.factor:g}"
+    def __str__(self) -> str:
+        return f"({self.of}) scaled by {self.factor:g}"
 
     def _written(self, h: Any, n: Sequence[Any]) -> Any:  # noqa: ANN401
         return _exact(self.factor) * h
@@ -206,9 +193,8 @@ class Reversed(Changed):
         sheets = self.of.sheets(-normals)
         return replace(sheets, hessian=-sheets.hessian, mean=-sheets.mean)
 
-    @property
-    def _name(self) -> str:
-        return "reversed"
+    def __str__(self) -> str:
+        return f"({self.of}) reversed"
 
     def _moved(self, given: Any) -> Any:  # noqa: ANN401
         n = normal_components()

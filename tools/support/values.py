@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...runtime.base.errors import InputError, shown
 from ...runtime.directions.unit import as_normals
-from .branches import Branches, Sheets
+from .branches import Branches
 from .sources import Source
 
 __all__ = ["SupportValues"]
@@ -53,8 +53,7 @@ class SupportValues:
         Branches(2 elliptic, 2 hyperbolic)
 
         """
-        directions = as_normals(normals)
-        return self._sheets(directions).branches(directions)
+        return self._counted(normals)[0]
 
     def sheets(self, normals: ArrayLike) -> NDArray[np.int64]:
         """Return the number of branches at each normal.
@@ -81,9 +80,7 @@ class SupportValues:
         array([1])
 
         """
-        directions = as_normals(normals)
-        rows = self._sheets(directions).normal_index
-        return np.bincount(rows, minlength=len(directions)).astype(np.int64)
+        return self._counted(normals)[1]
 
     def contains(self, normals: ArrayLike) -> NDArray[np.bool_]:
         """Return which normals lie in the domain of h.
@@ -139,29 +136,29 @@ class SupportValues:
         array([[2., 0., 0.]])
 
         """
-        branches, count = self._single_valued(normals)
-        points = np.full((count, 3), np.nan)
-        points[branches.normal_index] = branches.points
-        return points
+        return self._single_valued(normals, "points")
 
     def __call__(self, normals: ArrayLike) -> NDArray[np.float64]:
         """Return h(n/|n|), (S,), NaN outside the domain; errors as in `envelope`."""
-        branches, count = self._single_valued(normals)
-        values = np.full(count, np.nan)
-        values[branches.normal_index] = branches.support
-        return values
+        return self._single_valued(normals, "support")
 
-    def _sheets(self, directions: NDArray[np.float64]) -> Sheets:
-        with np.errstate(all="ignore"):  # infinite curvatures and radii are valid
-            return self._source.sheets(directions)
-
-    def _single_valued(self, normals: ArrayLike) -> tuple[Branches, int]:
+    def _counted(self, normals: ArrayLike) -> tuple[Branches, NDArray[np.int64]]:
+        """Return all branches, and their number at each normal."""
         directions = as_normals(normals)
-        branches = self._sheets(directions).branches(directions)
-        sheets = np.bincount(branches.normal_index, minlength=len(directions))
-        if sheets.max() > 1:
-            worst = int(np.argmax(sheets > 1))
+        with np.errstate(all="ignore"):  # infinite curvatures and radii are valid
+            sheets = self._source.sheets(directions)
+        counts = np.bincount(sheets.normal_index, minlength=len(directions))
+        return sheets.branches(directions), counts.astype(np.int64)
+
+    def _single_valued(self, normals: ArrayLike, field: str) -> NDArray[np.float64]:
+        """Return a field of the branches, NaN without one; InputError for several of a normal."""
+        branches, counts = self._counted(normals)
+        if counts.max() > 1:
+            worst = int(np.argmax(counts > 1))
             raise InputError(
-                f"normals[{worst}] has {sheets[worst]} branches; branches(normals) returns them."
+                f"normals[{worst}] has {counts[worst]} branches; branches(normals) returns them."
             )
-        return branches, len(directions)
+        found = getattr(branches, field)
+        values = np.full((len(counts), *found.shape[1:]), np.nan)
+        values[branches.normal_index] = found
+        return values

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...runtime.base.checks import real_array
 from ...runtime.base.errors import InputError
+from ...runtime.spline.point_grid import checked_spacing
 
 __all__ = ["check_degrees", "grid_of", "of_arrays", "of_spacing", "of_transform"]
 
@@ -30,9 +31,9 @@ def of_transform(transform: Sequence[float], shape: tuple[int, int]) -> tuple[Ar
     return a * columns + b * rows + c, d * columns + e * rows + f
 
 
-def of_spacing(spacing: tuple[float, float], shape: tuple[int, int]) -> tuple[Array, Array]:
+def of_spacing(spacing: Sequence[float], shape: tuple[int, int]) -> tuple[Array, Array]:
     """Return x and y from 0 on, for distances dx > 0 and dy, negative from north to south."""
-    dx, dy = spacing
+    dx, dy = checked_spacing(spacing, max(shape))
     rows, columns = (np.arange(count, dtype=np.float64) for count in shape)
     return dx * columns, dy * rows + 0.0
 

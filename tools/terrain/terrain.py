@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...runtime.base.advice import is_raster
-from ...runtime.base.checks import as_float, text, whole_number, with_gaps
-from ...runtime.base.errors import InputError, in_memory, shown
+from ...runtime.base.checks import text, whole_number, with_gaps
+from ...runtime.base.errors import InputError, in_memory
 from ...runtime.base.georeference import Georeference, Origin, checked_origin
 from ...runtime.domain.domain import Boundary, Domain
-from ...runtime.spline.missing import without_nodata
+from ...runtime.spline.missing import checked_nodata, without_nodata
 from ...runtime.surface.names import label
 from ...runtime.surface.surface import Surface
 from ..files.paths import checked_path
@@ -137,7 +137,7 @@ def terrain(
     if isinstance(source, str | os.PathLike) or is_raster(source):
         if x is not None or y is not None:
             raise InputError("x and y are for arrays; a raster has its own coordinates.")
-        wanted = whole_number(band, "band"), _nodata(nodata)
+        wanted = whole_number(band, "band"), None if nodata is None else checked_nodata(nodata)
         if isinstance(source, str | os.PathLike):
             path = checked_path(source)
             raster = read_raster(path, *wanted)
@@ -151,15 +151,6 @@ def terrain(
         at_x, at_y = _of_array(raster.heights, x, y, spacing)
     system = given if given is not None else raster.crs if raster.crs is not None else asked
     return _surface(raster, (at_x, at_y), (system, asked), start, said)
-
-
-def _nodata(nodata: float | None) -> float | None:
-    if nodata is None:
-        return None
-    try:
-        return as_float(nodata)
-    except TypeError:
-        raise InputError(f"nodata must be a number, not {shown(nodata)}.") from None
 
 
 def _elevations(source: ArrayLike, nodata: float | None, name: str) -> Array:
@@ -179,7 +170,7 @@ def _of_raster(raster: Raster, spacing: Sequence[float] | None, path: Path) -> t
             f"'{path}' is not georeferenced; say the size of its pixels by spacing=(dx, dy) "
             "(--spacing DX DY), dy < 0 if rows run from north to south."
         )
-    return of_spacing(_spacing(spacing), _shape(raster.heights))
+    return of_spacing(spacing, _shape(raster.heights))
 
 
 def _of_array(
@@ -190,7 +181,7 @@ def _of_array(
             "an array of elevations needs x and y, its coordinates, or spacing=(dx, dy)."
         )
     if spacing is not None:
-        return of_spacing(_spacing(spacing), _shape(heights))
+        return of_spacing(spacing, _shape(heights))
     assert x is not None
     assert y is not None
     return of_arrays(x, y, _shape(heights))
@@ -198,16 +189,6 @@ def _of_array(
 
 def _shape(heights: Array) -> tuple[int, int]:
     return heights.shape[0], heights.shape[1]
-
-
-def _spacing(spacing: Sequence[float]) -> tuple[float, float]:
-    try:
-        dx, dy = (as_float(x) for x in spacing)
-    except (TypeError, ValueError):
-        raise InputError(f"spacing must be two numbers, not {shown(spacing)}.") from None
-    if not (np.isfinite([dx, dy]).all() and dx > 0.0 and dy != 0.0):
-        raise InputError(f"spacing must be finite, dx > 0 and dy not 0, not ({dx}, {dy}).")
-    return dx, dy
 
 
 def _surface(
