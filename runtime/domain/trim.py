@@ -94,7 +94,8 @@ class Trim:
         array([ True, False])
 
         """
-        wrapped = np.stack(brought_inside(*uv.T, self.domain, self.boundary), axis=1)
+        u, v = uv.T
+        wrapped = np.stack(brought_inside(u, v, self.domain, self.boundary), axis=1)
         inside = self.parts[0].contains(wrapped, threads)
         for part in self.parts[1:]:
             if inside.any():

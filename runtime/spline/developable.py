@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cached_property
 from typing import Any, Literal, NamedTuple, Protocol
 
 import numpy as np
@@ -61,7 +62,7 @@ class CellMeasure(NamedTuple):
 class Measured(Protocol):
     """A spline, or a surface beside its spline."""
 
-    @property
+    @cached_property
     def _cell_measure(self) -> CellMeasure:
         """Areas, solid angles and curvatures of the cells."""
         ...

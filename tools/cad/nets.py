@@ -12,7 +12,7 @@ from ...runtime.domain.domain import Interval
 from ...runtime.spline.quasi_interpolant import apart
 from ...runtime.surface.creases import creases, smoothly_closed
 from ...runtime.surface.nurbs import Nurbs
-from ...runtime.surface.nurbs_input import nurbs_of_arrays
+from ...runtime.surface.nurbs_input import nurbs_of
 from .records import Net
 
 __all__ = ["SAME_END", "curve_of_net", "nurbs_of_curve", "nurbs_of_net", "nurbs_over"]
@@ -26,7 +26,7 @@ SAME_END = 1e-7
 
 def nurbs_of_net(net: Net) -> Nurbs:
     """Return the NURBS surface of a net over all of its knots; InputError if it is none."""
-    return nurbs_of_arrays(net.degrees, net.knots, net.points, net.weights)
+    return nurbs_of(net.degrees, net.knots, net.points, net.weights)
 
 
 def nurbs_of_curve(net: Net, along: Array, length: Interval) -> Nurbs:
@@ -37,7 +37,7 @@ def nurbs_of_curve(net: Net, along: Array, length: Interval) -> Nurbs:
     (degree,), (knots,) = net.degrees, net.knots
     points = net.points[:, None] + along * np.array(length)[:, None]
     weights = None if net.weights is None else np.repeat(net.weights[:, None], 2, axis=1)
-    return nurbs_of_arrays((degree, 1), (knots, np.repeat(length, 2)), points, weights)
+    return nurbs_of((degree, 1), (knots, np.repeat(length, 2)), points, weights)
 
 
 def curve_of_net(net: Net) -> Nurbs:
