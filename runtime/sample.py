@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -13,13 +14,13 @@ from .base.georeference import warn_of_rounding
 from .base.memory import check_memory
 from .base.progress import busy
 from .density.chosen_normals import choose
-from .density.filling import filled_samples
-from .density.grid import without_lines
-from .density.law import Law
-from .density.on_pieces import cells_of_piece, pieces_to_sample, sample_pieces
+from .density.filling import fields_of, fill, target_of
+from .density.grid import lines_of, without_lines
+from .density.on_pieces import cells_of_piece, pieces_to_sample, report_of
+from .density.surface_piece import SurfacePiece, space_of
 from .place.on_spline import OnSpline
 from .place.on_surface import checked_place, geometry_of, place_of_samples
-from .samples.fields import bytes_of, checked_dtype, checked_fields
+from .samples.fields import FLAG_NAMES, GRID_NAMES, bytes_of, checked_dtype, checked_fields
 from .samples.report import sampling_report, warn_of
 from .samples.request import Request, checked_request
 from .samples.samples import Samples
@@ -151,13 +152,15 @@ def sample(
     Notes
     -----
     For ``density="balanced"``, κ is the larger principal curvature: neighbouring normals differ by
-    about r, twice the angle. λ is half the mean of κ², or follows from `coverage`.
+    about r, twice the angle. λ is 0.8 times the mean of κ²,
+    or follows from `coverage`; with a count or a coverage, κ counts up to 20 √λ.
 
-    All faces of a part have one target density, and one count; angle and coverage hold for the part
-    as a whole. λ is three times the mean of κ² there, 5 % of a count go where normals are farthest
-    from those of all samples, and every face has a sample if there are twice as many samples as
-    faces. `density` is "balanced", "uniform", a number, or "gauss" with `normals`; `cells` and `on`
-    are not for parts.
+    All faces of a part, and all smooth pieces of a surface, have one target density, and one count;
+    angle and coverage hold for the whole. Pieces that are to have a tenth of all samples at normals
+    or more have a lattice of normals; if any has none, 5 % of a count go where normals are farthest
+    from those of all samples. Every face has a sample if there are twice as many samples as faces.
+    A sample represents places only whose normals are within 60° of its own. Of parts, `density` is
+    "balanced", "uniform", a number, or "gauss" with `normals`; `cells` and `on` are not for parts.
 
     Samples on edges have the `kind` "edge" and the normals of both faces, `normals` and
     `other_normals`. They are on both faces exactly, or, where the faces of the file do not meet, on
@@ -229,28 +232,28 @@ def sample_and_normals(
     if edges:
         raise InputError("edges=True is for CAD parts; other surfaces have no sharp edges.")
     surface, number = named(surface), checked_dtype(dtype)
-    wanted = checked_fields(
-        fields, place_of_samples(surface, on) == "surface", grid=request.density == "aligned"
-    )
+    place = place_of_samples(surface, on)
+    wanted = checked_fields(fields, place == "surface", grid=request.density == "aligned")
     filled = request.density != "gauss"
     memory = {} if out is None else out.arrays()
     if request.count is not None:
         check_memory(request.cost, request.count, bytes_of(wanted, number))
 
-    def sampled(
-        geometry: OnSpline, request: Request, floor: float | None = None
-    ) -> tuple[Samples, NDArray[np.float64]]:
-        arguments = geometry, request, wanted, number, progress if floor is None else False
-        return filled_samples(*arguments, floor) if filled else _by_normals(*arguments)
-
     def geometry(part: Surface | Spline | str, cells: Sequence[int] | None) -> OnSpline:
         return geometry_of(part, cells, number, on, threads, memory)
 
-    if isinstance(surface, Surface) and (pieces := pieces_to_sample(surface)):
+    pieces = pieces_to_sample(surface)
+    if isinstance(surface, Surface) and pieces:
         parts = [geometry(x, cells_of_piece(surface, x, cells)) for x in pieces]
-        samples, normals = sample_pieces(surface, Law(parts, request), sampled, progress)
+        known = surface if place == "surface" else None
+        samples, normals = _filled(surface.name, parts, known, request, wanted, number, progress)
     else:
-        samples, normals = sampled(geometry(surface, cells), request)
+        whole = geometry(surface, cells)
+        arguments = request, wanted, number, progress
+        if filled:
+            samples, normals = _filled(whole.name, [whole], whole.surface, *arguments)
+        else:
+            samples, normals = _by_normals(whole, *arguments)
     if fields is None:
         samples = without_lines(samples)
     warn_of(samples.report, request.count, 5, coverage=request.coverage, filled=filled)
@@ -280,6 +283,35 @@ def _of_whole(
     filled = request.density != "gauss"
     warn_of(samples.report, request.count, 6, coverage=request.coverage, filled=filled)
     return samples, searched
+
+
+def _filled(
+    name: str,
+    geometries: Sequence[OnSpline],
+    surface: Surface | None,
+    request: Request,
+    fields: tuple[str, ...],
+    dtype: np.dtype[np.floating],
+    progress: bool,
+) -> tuple[Samples, NDArray[np.float64]]:
+    """Return samples for any density of all pieces of a surface, and the normals searched."""
+    space = space_of(geometries, geometries[0].threads, target_of(request))
+    filled = fill(space, request, progress)
+    flags = FLAG_NAMES if geometries[0].on == "surface" else ()
+    given, cover = filled.given, filled.cover
+    wanted = [x for x in dict.fromkeys([*fields, *flags]) if x not in GRID_NAMES]
+    arrays = fields_of(filled, wanted, dtype)
+    arrays |= lines_of(cover.grid, cover.count, fields)
+    pieces = [x for x in space.pieces if isinstance(x, SurfacePiece)]
+    report = report_of(name, pieces, given, arrays)
+    is_on_grid = cover.grid is not None and bool((cover.grid.rows >= 0).any())
+    density = "aligned" if is_on_grid else None
+    report = replace(report, coverage=filled.coverage, angle=filled.angle, density=density)
+    spline = geometries[0].spline if len(geometries) == 1 else None
+    held = {name: arrays[name] for name in fields}
+    return Samples(
+        **held, report=report, spline=spline, surface=surface, offset_of=None
+    ), given.normals
 
 
 def _by_normals(

@@ -58,14 +58,13 @@ COSTS: dict[str, Cost] = {
     "gauss": Cost("samples", 76.0, 1.0, "use fewer, fewer fields, float32, or gm.sample_stream"),
     # The others have some candidates for each sample.
     "balanced": Cost("samples", 1300.0, 0.0, FEWER),
-    "uniform": Cost("samples", 1300.0, 0.0, FEWER),
-    "aligned": Cost("samples", 430.0, 0.0, FEWER),
+    "uniform": Cost("samples", 3300.0, 0.0, FEWER),
+    "aligned": Cost("samples", 900.0, 0.0, FEWER),
     "relaxed": Cost("samples", 19e3, 0.0, "use fewer, or relax=0, which takes a tenth"),
-    "candidates": Cost("candidates for samples", 190.0, 0.0, LARGER),
+    "candidates": Cost("candidates for samples", 700.0, 0.0, LARGER),
     "part": Cost("samples", 8e3, 0.0, "use fewer"),
     "relaxed part": Cost("samples", 25e3, 0.0, "use fewer, or relax=0, which takes a third"),
-    "candidates on a part": Cost("candidates for samples", 700.0, 0.0, LARGER),
-    "curve": Cost("samples", 134.0, 0.0, "use fewer"),
+    "curve": Cost("samples", 200.0, 0.0, "use fewer"),
     # 450 in arrays, and what Qhull takes.
     "mesh": Cost("vertices of a mesh", 600.0, 0.0, "use fewer samples"),
     "cells": Cost("cells", 120.0, 0.0, "use fewer, or tolerance=..., which chooses them"),

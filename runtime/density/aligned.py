@@ -12,13 +12,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kernels.forms import patches_at
+from ...generated.spline import SCALE
+from ..place.on_spline import OnSpline
+from .along_borders import points_of
 from .breaks import breaks_along
 from .grid import Grid
 from .lines import Axis
-from .sizing import SizingFunction
+from .space import Space
 from .steps import Forms, Steps, equal_steps, steps_for_count
-from .triangles import Triangles
 
 __all__ = ["AlignedGrid"]
 
@@ -40,23 +41,30 @@ DIGITS = 9
 
 @dataclass(frozen=True, eq=False)
 class AlignedGrid:
-    """The forms of a surface on its parameters, from which grids follow."""
+    """The forms of a piece of a space on its parameters, from which grids follow."""
 
-    sizing: SizingFunction
+    space: Space
+    piece: int
+    geometry: OnSpline
     axes: tuple[Axis, Axis]
     forms: Forms
 
     @classmethod
-    def of(cls, sizing: SizingFunction) -> AlignedGrid:
+    def of(cls, space: Space, piece: int) -> AlignedGrid:
         """Evaluate the forms."""
-        axes = axes_with(sizing, (np.empty(0), np.empty(0)))
-        forms = forms_on(sizing, axes)
-        along_u, along_v = (breaks_along(sizing.geometry, axes, forms, k) for k in (0, 1))
+        (geometry,) = space.pieces[piece].geometries(space.threads)
+        axes = axes_with(geometry, (np.empty(0), np.empty(0)))
+        forms = forms_on(geometry, axes)
+        along_u, along_v = (breaks_along(geometry, axes, forms, k) for k in (0, 1))
         if len(along_u) or len(along_v):
-            axes = axes_with(sizing, (along_u, along_v))
-            forms = forms_on(sizing, axes)
+            axes = axes_with(geometry, (along_u, along_v))
+            forms = forms_on(geometry, axes)
+        # From the lengths of the spline to those of the space.
+        forms[:3] *= (space.unit / (SCALE * geometry.spline.scale)) ** 2
         return cls(
-            sizing,
+            space,
+            piece,
+            geometry,
             axes,
             Forms(forms[3:6].copy(), forms[:3].copy(), (axes[0].widths, axes[1].widths)),
         )
@@ -72,7 +80,7 @@ class AlignedGrid:
     def grid_for(self, most: int, distance: float) -> Grid:
         """Return the finest grid of at most `most` samples, for a scaled distance."""
         whole, grid = float(most), self.grid(self.steps_for(most, distance), most)
-        if self.sizing.spline.trim is None:
+        if self.geometry.spline.trim is None:
             return grid
         for _ in range(TRIALS):
             # Samples outside the trim do not count; at its border gaps are left for others.
@@ -96,7 +104,7 @@ class AlignedGrid:
         ]
         columns, rows = (x.ravel() for x in np.indices([len(x) for x in lines]))
         cells = np.column_stack([lines[0][columns], lines[1][rows]])
-        if most is not None and len(cells) < most and self.sizing.spline.trim is None:
+        if most is not None and len(cells) < most and self.geometry.spline.trim is None:
             between = self._between(lines, most - len(cells))
             cells = np.concatenate([cells, between])
             columns, rows = (np.append(x, np.full(len(between), -1)) for x in (columns, rows))
@@ -183,28 +191,24 @@ class AlignedGrid:
 
     def _at(self, cells: Array, rows: Indices, columns: Indices, lines: tuple[int, int]) -> Grid:
         """Return samples at places (N, 2) in cells, those inside the trim."""
-        spline = self.sizing.spline
-        if spline.trim is not None:
-            uv = spline.frame[:2] + spline.frame[2:] * cells
-            inside = spline.trim.contains(uv, self.sizing.threads)
-            cells, rows, columns = cells[inside], rows[inside], columns[inside]
-        patches, places = np.empty(len(cells), dtype=np.int64), np.empty((len(cells), 2))
-        patches_at(*spline.cells, cells, patches, places)
-        triangles = Triangles(self.sizing, patches, np.repeat(places[:, None], 3, axis=1), places)
-        return Grid(triangles, rows, columns, lines)
+        piece, frame = self.space.pieces[self.piece], self.geometry.spline.frame
+        uv = frame[:2] + frame[2:] * cells
+        inside = piece.contains(uv)
+        made = points_of(self.space, np.full(int(inside.sum()), self.piece), uv[inside])
+        return Grid(self.space.known(made, keep=True), rows[inside], columns[inside], lines)
 
 
-def axes_with(sizing: SizingFunction, breaks: tuple[Array, Array]) -> tuple[Axis, Axis]:
+def axes_with(geometry: OnSpline, breaks: tuple[Array, Array]) -> tuple[Axis, Axis]:
     """Return the two parameters, cut at breaks."""
-    u, v = (Axis.of(float(n), PLACES, x) for n, x in zip(sizing.spline.cells, breaks, strict=True))
+    u, v = (Axis.of(float(n), PLACES, x) for n, x in zip(geometry.cells, breaks, strict=True))
     return u, v
 
 
-def forms_on(sizing: SizingFunction, axes: tuple[Axis, Axis]) -> Array:
+def forms_on(geometry: OnSpline, axes: tuple[Axis, Axis]) -> Array:
     """Return the forms (7, k, l) of what is sampled at the middles of axes, in cells."""
     u, v = (x.middles for x in axes)
     cells = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
-    return sizing.geometry.forms(cells).T.reshape(7, len(u), len(v))
+    return geometry.forms(cells).T.reshape(7, len(u), len(v))
 
 
 def shared(lengths: Array, number: int) -> Indices:

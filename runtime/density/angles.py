@@ -9,17 +9,19 @@ import numpy as np
 from ..base.threads import thread_count
 from ..base.trees import tree_of
 from .candidates import Candidates
+from .cells import Array, Indices
 from .cover import STEP, Cover
-from .triangles import Array, Indices
 
-# Normals at centroids are covered within an angle that is smaller by this part, which is left for
+# Normals at places are covered within an angle that is smaller by this part, which is left for
 # the normals around them.
 MARGIN = 0.02
 # Where normals are far from all others, the radii of the choice fall from this multiple on.
 FIRST = 2.0
+# Normals at neighbouring places on borders are so many times closer than the limit.
+STEPS = 6.0
 # The widest gaps between normals are searched down to this part of the widest radius.
 LEAST = 0.1
-# The widest angles are searched at one of this number of triangles.
+# The widest angles are searched at one of this number of cells.
 EACH = 3
 
 __all__ = ["choose_apart", "cover_normals", "fill_widest_angles"]
@@ -31,23 +33,23 @@ def cover_normals(cover: Cover, angle: float) -> float:
     If the samples are at normals as dense as that, only points at the border of the Gaussian image
     are missing: the nearest of these normals may lie outside of it. Returns the largest angle of
     any normal, in degrees: `angle` if there are singular points, next to which normals are known at
-    the centroids of triangles only.
+    the places of cells only.
     """
     limit = 2.0 * math.sin(math.radians(angle) / 2.0)
-    near, largest, triangles = (1.0 - MARGIN) * limit, 0.0, cover.whole()
-    while len(triangles):
-        rows = triangles.as_samples()
-        within = triangles.chords(rows)
-        distances = _distances(cover, 0, rows)
+    cover.evaluate_exactly()
+    near, largest, cells = (1.0 - MARGIN) * limit, 0.0, cover.whole(limit / STEPS)
+    while len(cells):
+        distances = _distances(cover, 0, cells.rows)
         far = distances > near
         if far.any():
             first = cover.count
-            cover.add(triangles[far][choose_apart(rows[far, 3:6], near, cover.sizing.threads)])
-            distances[far] = _distances(cover, first, rows[far])
-        chords = distances + within
-        far = (chords > limit) & ~triangles.deepest
+            chosen = choose_apart(cells.rows[far, 3:6], near, cover.space.threads)
+            cover.add(cells[np.flatnonzero(far)[chosen]])
+            distances[far] = _distances(cover, first, cells.rows[far])
+        chords = distances + cells.chords
+        far = (chords > limit) & ~cells.deepest
         largest = max(largest, float(chords[~far].max(initial=0.0)))
-        triangles = triangles[far].quarters
+        cells = cells[far].quarters
     return math.degrees(2.0 * math.asin(min(largest, limit) / 2.0))
 
 
@@ -56,7 +58,7 @@ def _distances(cover: Cover, first: int, rows: Array) -> Array:
 
     They are 0 where there is no normal.
     """
-    tree, threads = tree_of(cover.points[first:, 3:]), thread_count(cover.sizing.threads)
+    tree, threads = tree_of(cover.points[first:, 3:]), thread_count(cover.space.threads)
     return np.where(rows[:, 3:6].any(axis=1), tree.query(rows[:, 3:6], workers=threads)[0], 0.0)
 
 
@@ -105,16 +107,15 @@ def fill_widest_angles(cover: Cover, number: int, widest: float) -> None:
 
     Distances are searched from `widest` on. If the gaps get too narrow, fewer samples are added.
     """
-    triangles = cover.triangles[np.arange(0, len(cover.triangles), EACH)]
-    rows = triangles.at_places()
-    candidates = Candidates(_in_normal_space(rows[:, 3:6], rows[:, 7]), widest)
+    cells = cover.cells[np.arange(0, len(cover.cells), EACH)]
+    candidates = Candidates(_in_normal_space(cells.rows[:, 3:6], cells.rows[:, 7]), widest)
     samples = _in_normal_space(cover.points[:, 3:], cover.curvatures)[:, :6]
     candidates.update_distances(samples, widest)
     chosen, radius = np.empty(0, dtype=np.int64), widest
     while len(chosen) < number and radius > LEAST * widest:
         radius *= STEP
         chosen = np.append(chosen, candidates.choose(radius, number - len(chosen)))
-    cover.add(triangles[chosen])
+    cover.add(cells[chosen])
 
 
 def _in_normal_space(normals: Array, K: Array) -> Array:

@@ -3,84 +3,198 @@
 from __future__ import annotations
 
 import math
+import warnings
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import cached_property, partial
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
+from ..base.errors import GaussmapError, GaussmapWarning
 from ..place.on_spline import OnSpline
-from ..samples.fields import ARRAY_NAMES_ON_SURFACE
+from ..samples.fields import ARRAY_NAMES_ON_SURFACE, dtype_of, row_shape
 from ..samples.report import sampling_report
 from ..samples.samples import Samples
 from ..search.bins import NormalBins
-from ..search.search import find
+from ..search.search import Hits, find
 from ..spline.developable import curved_solid_angle
-from .chosen_normals import NORMALS_PER_SAMPLE
+from .chosen_normals import NORMALS_PER_SAMPLE, choose
 from .fibonacci_lattice import Lattice
+from .space import Space
 
-__all__ = ["SamplesAtNormals", "no_samples", "sample_at_lattice", "sample_at_normals"]
+__all__ = ["Given", "at_count", "at_lattices", "at_normals", "nothing_given"]
+
+Array = NDArray[np.float64]
 
 # A lattice that gives too many samples is replaced by one with this part of the normals that would
 # give as many as allowed.
 FEWER = 0.98
 
 
-@dataclass(frozen=True, eq=False)
-class SamplesAtNormals:
-    """The samples at normals (S, 3), of which there are `density` per steradian."""
+class Found(NamedTuple):
+    """The samples of a piece at normals (S, 3)."""
 
-    geometry: OnSpline | None
-    normals: NDArray[np.float64]
+    piece: int
+    normals: Array
+    samples: Samples
+
+
+@dataclass(frozen=True, eq=False)
+class Given:
+    """Samples at normals (S, 3), which are `density` per steradian, on some pieces of a space.
+
+    The normals are those of all pieces, or, if `same_normals` is False, of each one in turn.
+    """
+
+    space: Space
+    normals: Array
     density: float
-    samples: Samples | None
+    found: tuple[Found, ...] = ()
+    same_normals: bool = True
+
+    def __len__(self) -> int:
+        return sum(len(x.samples) for x in self.found)
+
+    @cached_property
+    def pieces(self) -> NDArray[np.int64]:
+        """The pieces (N,) on which they are."""
+        numbers = np.array([x.piece for x in self.found], dtype=np.int64)
+        return np.repeat(numbers, [len(x.samples) for x in self.found])
+
+    @property
+    def rows(self) -> Array:
+        """Scaled points, normals and K (N, 7)."""
+        points, normals, K = (
+            self.field(x, np.float64) for x in ("points", "normals", "gaussian_curvature")
+        )
+        return np.column_stack([self.space.scaled_points(points), normals, K])
 
     @property
     def samples_per_steradian(self) -> float:
         """Samples per steradian of the Gaussian image; those of the normals if it is empty."""
-        if self.samples is None or self.geometry is None:
-            return self.density
-        image = curved_solid_angle(self.geometry, self.density)
-        return len(self.samples) / image if len(self.samples) and image > 0.0 else self.density
+        image = float(self.space.solid_angles(self.density).sum())
+        return len(self) / image if len(self) and image > 0.0 else self.density
+
+    @property
+    def developable(self) -> int | None:
+        """The number of patches without a support function; None if nothing was searched."""
+        numbers = [x.samples.report.developable_patches for x in self.found]
+        return sum(x or 0 for x in numbers) if numbers else None
+
+    def field(self, name: str, dtype: DTypeLike) -> NDArray[Any]:
+        """Return a field (N, …) of the samples."""
+        dtype, parts, first = dtype_of(name, dtype), [np.empty((0, *row_shape(name)))], 0
+        for piece, normals, samples in self.found:
+            indices = self.space.pieces[piece].indices
+            known = getattr(samples, name)
+            if known is None:
+                known = np.full(len(samples), indices[name])
+            elif name == "patch_index":
+                known = known + indices.get(name, 0)
+            elif name == "normal_index":
+                known = known + first
+            parts.append(known)
+            first += 0 if self.same_normals else len(normals)
+        return np.concatenate([x.astype(dtype, copy=False) for x in parts])
 
 
-def no_samples() -> SamplesAtNormals:
+def nothing_given(space: Space) -> Given:
     """Return the samples at no normals."""
-    return SamplesAtNormals(None, np.empty((0, 3)), 0.0, None)
+    return Given(space, np.empty((0, 3)), 0.0)
 
 
-def sample_at_normals(
-    geometry: OnSpline,
-    normals: NDArray[np.float64],
-    progress: bool,
-    density: float | None = None,
-) -> SamplesAtNormals:
-    """Return the samples at normals, by default normals of the whole sphere."""
-    density = len(normals) / (4 * math.pi) if density is None else density
-    bins = NormalBins(normals, geometry.threads)
-    hits = find(geometry.spline, bins, geometry.threads, progress)
-    found = geometry.at_hits(bins, hits, ARRAY_NAMES_ON_SURFACE, np.float64)
-    report = sampling_report(geometry, len(normals), found.number, density, hits.developable)
-    samples = geometry.samples(found.fields, report, found.unrefined)
-    return SamplesAtNormals(geometry, bins.normals, density, samples)
+def at_normals(space: Space, normals: Array, pieces: Iterable[int], progress: bool) -> Given:
+    """Return all points of some pieces that have one of normals (S, 3), each once."""
+    density = len(normals) / (4 * math.pi)
+
+    def search(geometry: OnSpline) -> tuple[Array, Samples]:
+        return normals, _samples_at(geometry, normals, density, progress)
+
+    return Given(space, normals, density, tuple(_searched(space, pieces, search)))
 
 
-def sample_at_lattice(
-    geometry: OnSpline, density: float, progress: bool, most: int | None = None
-) -> SamplesAtNormals:
-    """Return the samples at a lattice with a density of normals per steradian.
+def at_lattices(
+    space: Space, density: float, pieces: Iterable[int], progress: bool, most: int | None = None
+) -> Given:
+    """Return samples at lattices with a density of normals per steradian, one for each piece.
 
-    If there are more than `most` samples, a coarser lattice is searched, and so on. If less than
-    half a sample is expected, there is none.
+    If there are more than `most` samples, coarser lattices are searched, and so on. If less than
+    half a sample of a piece is expected, it has none.
     """
+    pieces = list(pieces)
+    while True:
+        search = partial(_at_lattice, density=density, progress=progress)
+        given = _given(space, density, tuple(_searched(space, pieces, search)))
+        if most is None or len(given) <= most:
+            return given
+        density *= FEWER * most / len(given)
+
+
+def at_count(space: Space, counts: NDArray[np.int64], progress: bool) -> Given:
+    """Return about as many samples of each piece as `counts` (P,) say, at normals of lattices."""
+    parts, densities = list[Found](), [0.0]
+    for piece in np.flatnonzero(counts).tolist():
+
+        def search(geometry: OnSpline, count: int = int(counts[piece])) -> tuple[Array, Samples]:
+            chosen = choose(geometry, count, progress)
+            densities.append(chosen.density)
+            normals = chosen.part(0, len(chosen), space.threads)
+            return normals, _samples_at(geometry, normals, chosen.density, progress, chosen.found)
+
+        parts += _searched(space, [piece], search)
+    return _given(space, max(densities), tuple(parts))
+
+
+def _given(space: Space, density: float, found: tuple[Found, ...]) -> Given:
+    normals = np.concatenate([np.empty((0, 3)), *(x.normals for x in found)])
+    return Given(space, normals, density if found else 0.0, found, same_normals=False)
+
+
+def _searched(
+    space: Space, pieces: Iterable[int], search: Callable[[OnSpline], tuple[Array, Samples] | None]
+) -> Iterable[Found]:
+    """Yield what a search finds on pieces; there is a warning for those that have no spline."""
+    for k in pieces:
+        try:
+            for geometry in space.pieces[k].geometries(space.threads):
+                found = search(geometry)
+                if found is not None:
+                    yield Found(k, *found)
+        except GaussmapError as error:
+            if len(space.pieces) == 1:
+                raise
+            label = space.pieces[k].label
+            message = f"{label} has no samples at normals: {error}"
+            warnings.warn(message, GaussmapWarning, stacklevel=8)
+
+
+def _at_lattice(geometry: OnSpline, density: float, progress: bool) -> tuple[Array, Samples] | None:
     lattice = Lattice.around(geometry.spline)
     image = curved_solid_angle(geometry, density)
+    if round(density * image) == 0:
+        return None
     densest = lattice.density_of(NORMALS_PER_SAMPLE * max(round(density * image), 1000))
     density = min(density, densest)
-    while round(density * image) > 0:
-        normals = lattice.normals(density, threads=geometry.threads)
-        found = sample_at_normals(geometry, normals, progress, density)
-        count = 0 if found.samples is None else len(found.samples)
-        if most is None or count <= most:
-            return found
-        density *= FEWER * most / count
-    return no_samples()
+    normals = lattice.normals(density, threads=geometry.threads)
+    samples = _samples_at(geometry, normals, density, progress)
+    # Nobody has asked for these normals: others take the place of those without a point.
+    return normals, samples if samples.on_surface is None else samples[samples.on_surface]
+
+
+def _samples_at(
+    geometry: OnSpline,
+    normals: Array,
+    density: float,
+    progress: bool,
+    found: tuple[NormalBins, Hits] | None = None,
+) -> Samples:
+    """Return the samples at normals with a density per steradian; `found` if they are searched."""
+    threads = geometry.threads
+    bins, hits = found or (NormalBins(normals, threads), None)
+    if hits is None:
+        hits = find(geometry.spline, bins, threads, progress)
+    placed = geometry.at_hits(bins, hits, ARRAY_NAMES_ON_SURFACE, np.float64)
+    report = sampling_report(geometry, len(normals), placed.number, density, hits.developable)
+    return geometry.samples(placed.fields, report, placed.unrefined)

@@ -32,7 +32,7 @@ class Candidates:
 
     They are rows (M, 8) of point, unit normal, density w, and one more number; candidates without a
     normal are never chosen. All distances are multiplied by √w of the candidate. Samples count for
-    candidates on the same side of the surface only: the angle between the normals is 90 degrees at
+    candidates on the same side of the surface only: the angle between the normals is 60 degrees at
     most.
 
     Samples update the distances of the candidates around them. All in all, a candidate is updated

@@ -1,18 +1,18 @@
-"""Covering a spline with samples, greedily: the widest gaps first."""
+"""Covering the pieces of a surface or a part with samples, greedily: the widest gaps first."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
+from dataclasses import replace
 
 import numpy as np
 
-from ..samples.samples import Samples
+from .along_borders import along_borders
 from .candidates import Candidates
+from .cells import Array, Cells, Indices
 from .grid import Grid
-from .sizing import SizingFunction
-from .triangles import Array, Indices, Triangles, cut_patches, refuse_more
+from .space import Space
 
 __all__ = ["STEP", "Cover"]
 
@@ -22,39 +22,28 @@ WIDEST, STEP = 1.25, 0.98
 # For a maximal set of n samples that are no closer to one another than r, relative to the sizing
 # function, n r² is about this part of the integral of the target density.
 PACKED = 0.6
-# The radii of the triangles of candidates, relative to the covering radius. Smaller triangles are
-# taken when the covering radius has fallen by the factor SMALLER.
-FINE, SMALLER = 0.7, 1.3
-# Where all of the surface is to be covered, and not candidates only, triangles that may hold an
+# The radii of the cells of candidates, relative to the covering radius. Smaller cells are taken
+# when the covering radius has fallen by the factor SMALLER.
+FINE, SMALLER = 0.4, 1.3
+# Where all of the surface is to be covered, and not candidates only, cells that may hold an
 # uncovered point are bisected until they have this radius, relative to the covering radius.
 FINEST = 0.1
 # Distances are renewed within this multiple of the radius first.
 NEAR = 1.25
-# The most triangles at a time: this number, or this multiple of the candidates.
+# The most cells at a time: this number, or this multiple of the candidates.
 MANY, TIMES = 2e7, 8
 
 
-class _Known(NamedTuple):
-    """What is known of samples, see `Cover`."""
-
-    points: Array
-    curvatures: Array
-    exact: Array | None
-    added: Triangles
-
-
 class Cover:
-    """Samples of a spline: some that are given, and others that are added until it is covered.
+    """Samples of a space: some that are given, and others that are added until it is covered.
 
-    A point is covered if a sample is within radius/√w, with the target density w of a sizing
-    function. All lengths are scaled as in `SizingFunction`. Rows of `points` (N, 6), point and unit
-    normal, and `curvatures` (N,), K, are the samples; the first `given` ones are those that were
-    given (only the sign of their K counts, which is not scaled), the others lie at the places of
-    the triangles `added`, of which the first ones are those of the `grid`, if there is one. Samples
-    are evaluated together, when somebody asks for them; `exact` (added, k) are the other columns of
-    their rows, see `OnSpline.as_samples`.
+    A point is covered if a sample is within radius/√w, with the target density w of the space.
+    Lengths are scaled as in `Space`. Rows of `points` (N, 6), point and unit normal, and
+    `curvatures` (N,), K, are the samples; the first `given` ones are those that were given, the
+    others lie at the places of the cells `added`, of which the first ones are those of the `grid`,
+    if there is one.
 
-    Samples are chosen among the places of `triangles`. `show_count` is called with the number of
+    Samples are chosen among the places of `cells`. `show_count` is called with the number of
     samples when it has grown.
 
     The first `fixed` samples, those given and those of the grid, are never removed.
@@ -68,55 +57,41 @@ class Cover:
 
     def __init__(
         self,
-        sizing: SizingFunction,
-        given: Samples | None,
+        space: Space,
+        given: Array | None = None,
         show_count: Callable[[int], object] = lambda count: None,
         grid: Grid | None = None,
     ) -> None:
-        """Begin with given samples of the same spline, and those of a grid."""
-        self.sizing, self.show_count, self.grid = sizing, show_count, grid
-        points, curvatures = np.empty((0, 6)), np.empty(0)
-        if given is not None:
-            points = np.column_stack([sizing.scaled_points(given.points), given.normals])
-            curvatures = given.gaussian_curvature
-        self._begin_with(
-            points, curvatures, Triangles(sizing, np.empty(0, dtype=np.int64), np.empty((0, 3, 2)))
-        )
-        if grid is not None:
-            self._append(grid.triangles)
-        self.fixed = self.count
-
-    def _begin_with(self, points: Array, curvatures: Array, added: Triangles) -> None:
-        """Begin with given samples; `added` has no triangles."""
-        self._known = _Known(points, curvatures, None, added)
-        self._waiting: tuple[Triangles, ...] = ()
-        self.given = self.fixed = len(points)
+        """Begin with given samples (N, 7), points, normals and K, and those of a grid."""
+        self.space, self.show_count, self.grid = space, show_count, grid
+        rows = np.empty((0, 7)) if given is None else given
+        self._points, self._curvatures = rows[:, :6], rows[:, 6]
+        self._added, self._waiting = space.nothing(), list[Cells]()
+        self.given = self.fixed = len(rows)
         self.fine, self.radius_asked, self.count_asked = FINE, 0.0, None
+        if grid is not None:
+            self._append(grid.cells)
+            self.fixed = self.count
 
     @property
     def points(self) -> Array:
         """The points and unit normals (N, 6) of the samples."""
-        return self._evaluated.points
+        return self._joined()._points
 
     @property
     def curvatures(self) -> Array:
         """K (N,) of the samples."""
-        return self._evaluated.curvatures
+        return self._joined()._curvatures
 
     @property
-    def exact(self) -> Array | None:
-        """The other columns (added, k) of the added samples; None without any sample."""
-        return self._evaluated.exact
-
-    @property
-    def added(self) -> Triangles:
-        """The triangles at whose places the added samples lie."""
-        return self._evaluated.added
+    def added(self) -> Cells:
+        """The cells at whose places the added samples lie."""
+        return self._joined()._added
 
     @property
     def count(self) -> int:
         """The number of samples."""
-        return len(self._known.points) + sum(map(len, self._waiting))
+        return len(self._points) + sum(map(len, self._waiting))
 
     def to_radius(self, radius: float, most: int | None = None) -> None:
         """Add samples until every point is within radius/√w of one, or there are `most`."""
@@ -129,7 +104,7 @@ class Cover:
         """Add samples until there are `count`."""
         radius = WIDEST * self._radius_for(count)
         self._begin(radius, count)
-        while self.count == count > self.fixed + 1 and radius * radius < self.sizing.integral:
+        while self.count == count > self.fixed + 1 and radius * radius < self.space.integral:
             # The first candidates have used up the count, wherever the widest gaps are.
             self.remove_added()
             radius *= 2.0
@@ -161,25 +136,57 @@ class Cover:
         if radius < self._candidates.radius / SMALLER:
             self.take_candidates(radius / SMALLER, radius)
         self.radius = radius
-        self._choose(self.triangles, self._candidates, radius, most)
+        self._choose(self.cells, self._candidates, radius, most)
 
     def take_candidates(self, radius: float, widest: float) -> None:
         """Take candidates for sweeps with radii that fall from `widest` to this radius.
 
-        They are the places of triangles whose radii are `fine` times the radius.
+        They are the places of cells whose radii are `fine` times the radius.
         """
-        self.radius, self.triangles = widest, cut_patches(self.sizing, self.fine * radius)
-        self._candidates = self._with_distances(self.triangles.at_places(), radius, widest)
+        self.radius, self.cells = widest, self.space.cut(self.fine * radius)
+        self._candidates = self._with_distances(self.cells.rows, radius, widest)
 
-    def whole(self) -> Triangles:
-        """Return few triangles, which make up the surface."""
-        return cut_patches(self.sizing, math.inf)
+    def whole(self, turn: float) -> Cells:
+        """Return few cells, which make up the surface, and places along its borders.
 
-    def add(self, triangles: Triangles) -> None:
-        """Add the places of some triangles as samples."""
+        Normals turn by about `turn` between these, in radians.
+        """
+        first = replace(self.space.first, space=self.space)
+        return (self.space.evaluated(first) + along_borders(self.space, math.inf, turn)).sorted()
+
+    def missing(self, given: Indices) -> Cells:
+        """Return a cell near the middle of each piece that has no sample, if it has a cell.
+
+        `given` are pieces that have some of those that were given.
+        """
+        held = np.concatenate([given, self.added.pieces])
+        return self.space.middles(np.setdiff1d(self.space.first.pieces, held))
+
+    def remove_last(self, number: int) -> None:
+        """Remove samples that were added last, as long as their pieces have others."""
+        numbers = np.bincount(self.added.pieces, minlength=len(self.space.pieces))
+        removed: list[int] = []
+        for k in range(len(self.added) - 1, self.fixed - self.given - 1, -1):
+            if len(removed) == number:
+                break
+            if numbers[self.added.pieces[k]] > 1:
+                numbers[self.added.pieces[k]] -= 1
+                removed.append(k)
+        self.keep(np.setdiff1d(np.arange(len(self.added)), removed))
+        self.renew_distances(self.radius)
+
+    def add(self, cells: Cells) -> None:
+        """Add the places of some cells as samples."""
         first = self.count
-        self._append(triangles)
+        self._append(cells)
         self._candidates.update_distances(self.points[first:], self.radius)
+
+    def evaluate_exactly(self) -> None:
+        """Take points and normals from the derivatives of what is sampled from now on."""
+        space, added = self.space.exact, self.added
+        if space is not self.space:
+            self.space = space
+            self._replace_added(space.known(replace(added, space=space), keep=True))
 
     def renew_distances(self, widest: float) -> None:
         """Compute the distances of all candidates from the samples again, within `widest`."""
@@ -195,13 +202,9 @@ class Cover:
         """
         chosen = self._candidates.centres(self.count)
         moved = first + np.flatnonzero(chosen[first:] >= 0)
-        triangles = self.triangles[chosen[moved]]
-        rows = triangles.as_samples()
-        points, curvatures, exact, added = self._evaluated
-        points[moved], curvatures[moved] = rows[:, :6], rows[:, 7]
-        if exact is not None:
-            exact[moved - self.given] = rows[:, 8:]
-        added.write(moved - self.given, triangles)
+        cells = self.cells[chosen[moved]]
+        self.points[moved], self.curvatures[moved] = cells.rows[:, :6], cells.rows[:, 7]
+        self.added.write(moved - self.given, cells)
 
     def remove_added(self) -> None:
         """Remove all samples that were added, except those of the grid."""
@@ -209,46 +212,41 @@ class Cover:
 
     def keep(self, numbers: Indices) -> None:
         """Keep some of the added samples, and remove the others."""
-        rows = np.concatenate([np.arange(self.given), self.given + numbers])
-        points, curvatures, exact, added = self._evaluated
-        exact = None if exact is None else exact[numbers]
-        self._known = _Known(points[rows], curvatures[rows], exact, added[numbers])
+        self._replace_added(self.added[numbers])
 
     def _radius_for(self, count: int) -> float:
         """Return the radius at which about `count` samples cover the surface."""
-        return math.sqrt(PACKED * self.sizing.integral / count)
+        return math.sqrt(PACKED * self.space.integral / count)
 
     def _begin(self, radius: float, count: int) -> None:
         self.take_candidates(radius / WIDEST, radius)
         self.sweep(radius, count)
 
     def _choose(
-        self, triangles: Triangles, candidates: Candidates, radius: float, most: int | None
+        self, cells: Cells, candidates: Candidates, radius: float, most: int | None
     ) -> None:
-        """Add those places of some triangles that are far from all samples."""
-        room = len(triangles) if most is None else most - self.count
+        """Add those places of some cells that are far from all samples."""
+        room = len(cells) if most is None else most - self.count
         if room > 0:
-            self._append(triangles[candidates.choose(radius, room)])
+            self._append(cells[candidates.choose(radius, room)])
             self.show_count(self.count)
 
-    def _append(self, triangles: Triangles) -> None:
-        self._waiting += (triangles,)
+    def _append(self, cells: Cells) -> None:
+        self._waiting.append(cells)
 
-    @property
-    def _evaluated(self) -> _Known:
-        """What is known of all samples, those that wait as well."""
-        if not self._waiting:
-            return self._known
-        points, curvatures, exact, added = self._known
-        triangles = sum(self._waiting[1:], start=self._waiting[0])
-        rows = triangles.as_samples()
-        self._waiting, self._known = (), _Known(
-            np.concatenate([points, rows[:, :6]]),
-            np.concatenate([curvatures, rows[:, 7]]),
-            rows[:, 8:].copy() if exact is None else np.concatenate([exact, rows[:, 8:]]),
-            added + triangles,
-        )  # fmt: skip
-        return self._known
+    def _replace_added(self, cells: Cells) -> None:
+        self._points, self._curvatures = self._points[: self.given], self._curvatures[: self.given]
+        self._added, self._waiting = self.space.nothing(), [cells]
+
+    def _joined(self) -> Cover:
+        """Join the samples that wait with the others: many at once are quicker."""
+        if self._waiting:
+            added = sum(self._waiting[1:], start=self._waiting[0])
+            self._waiting = []
+            self._points = np.concatenate([self._points, added.rows[:, :6]])
+            self._curvatures = np.concatenate([self._curvatures, added.rows[:, 7]])
+            self._added = self._added + added
+        return self
 
     def _to_radius_asked(self, widest: float, most: int | None) -> None:
         self.narrow(widest, self.radius_asked, most)
@@ -257,29 +255,35 @@ class Cover:
 
     def _cover_whole_surface(self, radius: float, most: int | None) -> None:
         """Add samples until not only candidates are covered, but all points."""
-        triangles, candidates, small, first = self.triangles, self._candidates, [], self.count
-        while len(triangles):
-            shares = triangles.radii * np.sqrt(candidates.densities) / radius
+        cells, candidates, small, first = self.cells, self._candidates, [], self.count
+        while len(cells):
+            shares = cells.radii * np.sqrt(candidates.densities) / radius
             far = candidates.distances > (1.0 - shares) * radius
             smallest = far & (shares <= FINEST)
-            small.append(triangles[smallest])
+            small.append(cells[smallest])
             far &= ~smallest
-            refuse_more(self.sizing, 4 * far.sum(), max(MANY, TIMES * len(self.triangles)))
-            triangles = triangles[far].halves.halves
-            candidates = self._with_distances(triangles.at_places(), radius, radius)
-            self._choose(triangles, candidates, radius, most)
-        self._cover_small_triangles(sum(small[1:], start=small[0]), radius, most)
+            self._refuse_more(4 * int(far.sum()))
+            cells = cells[far].halves.halves
+            candidates = self._with_distances(cells.rows, radius, radius)
+            self._choose(cells, candidates, radius, most)
+        self._cover_small_cells(sum(small[1:], start=small[0]), radius, most)
         self._candidates.update_distances(self.points[first:], radius)
 
-    def _cover_small_triangles(self, triangles: Triangles, radius: float, most: int | None) -> None:
-        """Add places of small triangles until these are covered as a whole."""
-        rows = triangles.at_places()
-        # A triangle is covered by a sample that is closer to its place by its radius.
-        rows[:, 6] /= (1.0 - triangles.radii * np.sqrt(rows[:, 6]) / radius) ** 2
-        self._choose(triangles, self._with_distances(rows, radius, radius), radius, most)
+    def _refuse_more(self, number: int) -> None:
+        """Raise InputError if a number of cells is too large."""
+        most = max(MANY, TIMES * len(self.cells))
+        if number > most:
+            raise self.space.too_many(most)
+
+    def _cover_small_cells(self, cells: Cells, radius: float, most: int | None) -> None:
+        """Add places of small cells until these are covered as a whole."""
+        rows = cells.rows.copy()
+        # A cell is covered by a sample that is closer to its place by its radius.
+        rows[:, 6] /= (1.0 - cells.radii * np.sqrt(rows[:, 6]) / radius) ** 2
+        self._choose(cells, self._with_distances(rows, radius, radius), radius, most)
 
     def _with_distances(self, rows: Array, radius: float, widest: float) -> Candidates:
         """Return rows as candidates with their distances from all samples, within `widest`."""
-        candidates = Candidates(rows, radius, self.sizing.threads, split=True)
+        candidates = Candidates(rows, radius, self.space.threads, split=True)
         candidates.update_distances(self.points, widest)
         return candidates

@@ -1,4 +1,4 @@
-"""Samples at normals, and samples that fill the gaps between them, for a target density."""
+"""Samples for any density but "gauss": at normals, and where these leave gaps."""
 
 from __future__ import annotations
 
@@ -6,29 +6,29 @@ import math
 from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from ..base.errors import SurfaceError
+from ..base.shares import apportioned
 from ..base.threads import counted
 from ..base.tolerances import FLAT_SURFACE, LENGTH_ERROR
-from ..place.on_spline import OnSpline
-from ..samples.report import sampling_report
+from ..directions.sets import frequency_within
+from ..kernels.sizing import TargetDensity
+from ..samples.fields import dtype_of
 from ..samples.request import BY_CURVATURE, Request
-from ..samples.samples import Samples
-from ..spline.developable import curved_solid_angle
-from .angles import cover_normals
-from .at_normals import SamplesAtNormals, no_samples, sample_at_lattice, sample_at_normals
+from .angles import choose_apart, cover_normals
+from .at_normals import Given, at_count, at_lattices, at_normals, nothing_given
+from .cells import Cells, by_piece
 from .cover import Cover
 from .coverage import coverage
-from .grid import lines_of
+from .deviation import widest_angle
 from .on_grid import cover_on_grid
 from .relaxation import relax
-from .sizing import SizingFunction, TargetDensity
-from .triangles import subdivisions
+from .space import Space
 
-__all__ = ["filled_samples"]
+__all__ = ["Filled", "fields_of", "fill", "spacing", "target_of"]
 
 # Twice the area of a hexagon of circumradius 1.
 HEXAGON = 3.0 * math.sqrt(3.0)
@@ -37,68 +37,262 @@ HEXAGON = 3.0 * math.sqrt(3.0)
 GREEDY = 1.85
 # Balanced: the covering radius of the added samples, relative to that of the normals.
 WIDER = 2.0
-# Balanced: the floor of the target density, relative to the mean of κ².
-FLAT_SHARE = 0.5
+# Balanced: the floor of the target density, relative to the mean of κ², and the κ above which
+# curvature does not count for a count or a coverage, relative to the root of the floor.
+FLOOR, MOST_CURVED = 0.8, 20.0
 # |K|^α vanishes where K does; gaps there are wider than the mean by at most this factor.
 WIDEST_GAP = 1000.0
 # The number of added samples that a sample at a normal is taken to save. It saves up to 0.7; with
 # less, more samples are left for gaps, of which |K| alone leaves wide ones.
 SAVED = 0.25
-# The bisection for the number of normals that leaves enough samples for a coverage: its steps, the
-# part of the count at which it ends, and the logarithm of the ratio of its bounds.
-BISECTIONS, NEAR_ENOUGH, FEWEST_NORMALS = 10, 0.97, 10.0
+# A piece has samples at the normals of a lattice if it is to have this part of all samples there:
+# its spline takes as long as many samples.
+LATTICE = 0.1
+# Pieces whose normals fill less than this solid angle have no samples at prescribed normals.
+LEAST_IMAGE = 1e-9
+# Where pieces have no lattice: the part of a count that goes where normals are farthest from those
+# of all samples.
+FOR_NORMALS = 0.05
+# The chord between the normals of candidates for these samples, relative to that which their number
+# leaves on a sphere, and about the number of these candidates, beside as many as there are samples.
+NORMALS_APART, CANDIDATES = 0.2, 200_000
+# The smallest such chord.
+LEAST_CHORD = math.radians(0.5)
+# Decimal places to which normals of samples differ.
+DIGITS = 6
+# Each piece gets a sample if there are at least this many samples for each piece.
+SAMPLES_A_PIECE = 2
+# The bisection for the radius of a balanced cover that leaves enough samples for a coverage: its
+# steps, the part of the count at which it ends, and the logarithm of the ratio of its bounds.
+BISECTIONS, NEAR_ENOUGH, WIDEST_RADIUS = 10, 0.97, 10.0
 
 
-def filled_samples(
-    geometry: OnSpline,
-    request: Request,
-    fields: Sequence[str],
-    dtype: DTypeLike,
-    progress: bool,
-    floor: float | None = None,
-) -> tuple[Samples, NDArray[np.float64]]:
-    """Return samples for any density but "gauss", and the normals that were searched.
+def target_of(request: Request) -> TargetDensity:
+    """Return the target density of a request, without its floor."""
+    if isinstance(request.density, str):
+        return TargetDensity(curvature_weight=float(request.density in BY_CURVATURE))
+    return TargetDensity(gauss_weight=1.0, exponent=float(request.density))
 
-    `floor` is that of the target density, in L, if a whole determines it of which this is a part.
+
+@dataclass(frozen=True, eq=False)
+class Filled:
+    """The samples of a space: those given, and those of a cover; and what they have reached.
+
+    `coverage` is in L, `angle` in degrees; both are known if they were asked for.
     """
-    angle = None
+
+    cover: Cover
+    given: Given
+    coverage: float | None
+    angle: float | None
+
+
+def fill(space: Space, request: Request, progress: bool) -> Filled:
+    """Sample a space, whose target density has no floor; raises what `sample` raises."""
+    angle = reached = None
     with counted(request.count, progress) as show_count:
-        filling = Filling(geometry, request, progress, show_count, floor)
-        cover, at_normals = filling.cover()
-        cover = filling.relaxed(cover)
+        filling = Filling(space, request, progress, show_count)
+        cover, given = filling.cover()
         if request.angle is not None:
             angle = cover_normals(cover, request.angle)
-        return filling.samples(cover, at_normals, fields, dtype, angle), at_normals.normals
+            if any(x.trim is not None for x in space.pieces):
+                # Tips may be too narrow for cells.
+                angle = max(angle, widest_angle(space, cover.points[:, 3:]))
+        if request.coverage is not None:
+            reached = filling.reached(cover) / space.unit
+    return Filled(cover, given, reached, angle)
+
+
+def fields_of(filled: Filled, fields: Sequence[str], dtype: DTypeLike) -> dict[str, NDArray[Any]]:
+    """Return fields of the samples that are given, followed by those of the cover."""
+    added = filled.cover.added
+    order = np.argsort(added.pieces, kind="stable")
+    added = added[order]
+    parts = [_of_piece(added[rows], k, fields, dtype) for k, rows in by_piece(added)]
+    found = {}
+    for name in fields:
+        given = filled.given.field(name, dtype)
+        new = np.empty((len(order), *given.shape[1:]), dtype=dtype_of(name, dtype))
+        if parts:
+            new[order] = np.concatenate([x[name] for x in parts])
+        found[name] = np.concatenate([given, new])
+    return found
+
+
+def _of_piece(
+    cells: Cells, piece: int, fields: Sequence[str], dtype: DTypeLike
+) -> dict[str, NDArray[Any]]:
+    """Return fields of samples at the places of cells of one piece."""
+    here = cells.space.pieces[piece]
+    found = here.fields_at(cells.places, cells.rows, fields, dtype)
+    for name, number in here.indices.items():
+        if name in fields:
+            found[name] = found.get(name, np.zeros(len(cells), dtype=np.int64)) + number
+    return found
 
 
 @dataclass(frozen=True, eq=False)
 class Filling:
-    """Samples for any density but "gauss": those at normals, and those that fill gaps between them.
+    """A space as it is sampled for a request; `show_count` is called when there are more."""
 
-    `show_count` is called with the number of samples when it has grown.
-    """
-
-    geometry: OnSpline
+    space: Space
     request: Request
     progress: bool
     show_count: Callable[[int], object]
-    floor: float | None = None
 
-    def cover(self) -> tuple[Cover, SamplesAtNormals]:
-        """Return the cover that is asked for, and the samples at normals in it.
+    def cover(self) -> tuple[Cover, Given]:
+        """Return the cover that is asked for, and the samples at normals in it."""
+        request = self.request
+        if request.density == "gauss":
+            given = self._at_normals()
+            return self._new(self.space, given), given
+        if request.density == "aligned":
+            return cover_on_grid(
+                self._balanced(), request, self._asked, self.show_count
+            ), self._none
+        if request.density in BY_CURVATURE:
+            if request.count is None:
+                return self._by_radius()
+            cover, given = self._by_count(self._balanced(capped=True), request.count)
+            if request.coverage is None:
+                return cover, given
+            if self.reached(cover) <= request.coverage * self.space.unit:
+                return cover, given
+            return self._by_count_and_coverage(request.count)
+        space = self._by_power
+        if request.count is not None:
+            return self._by_count(space, request.count)
+        assert self._asked is not None
+        return self._to_radius(space, self._none, self._asked)
 
-        Raises SurfaceError if the surface has no area.
+    def reached(self, cover: Cover) -> float:
+        """Return a bound of the scaled distance of any point from the nearest sample."""
+        asked = math.inf if self.request.coverage is None else self.request.coverage
+        return coverage(self.space, cover.points[:, :3], asked * self.space.unit)
+
+    # --- the target density -----------------------------------------------------------------------
+
+    def _balanced(self, *, capped: bool = False) -> Space:
+        """Return the space with the floor of "balanced", and, if it is capped, a ceiling."""
+        request = self.request
+        # Normals and angles are absolute: flat parts then count as parts of a sphere.
+        absolute = request.normals is not None or request.angle is not None
+        least = 4 * math.pi if absolute else FLAT_SURFACE
+        floor = FLOOR * max(self.space.integral, least) / self.space.area
+        return self.space.between(floor, MOST_CURVED**2 * floor if capped else math.inf)
+
+    @property
+    def _by_power(self) -> Space:
+        """The space with the floor of "uniform" or a power of |K|.
+
+        A power is uniform, too, on pieces whose curvature is an error of their spline.
         """
-        if self.request.density in BY_CURVATURE:
-            return self._balanced()
-        cover = Cover(self._sizing_of_power(), None, self.show_count)
-        if self.request.count is not None:
-            cover.to_count(self.request.count)
-        elif self.request.coverage is not None:
-            cover.to_radius(self._distance(cover.sizing, self.request.coverage))
-        return cover, no_samples()
+        if self.request.density == "uniform":
+            return self.space.between(1.0)
+        images = self.space.solid_angles((self.request.count or 0) / (4 * math.pi))
+        flat = frozenset(np.flatnonzero(images <= LEAST_IMAGE).tolist())
+        if len(flat) == len(images):
+            return self.space.uniform
+        space = replace(self.space, developable=flat, _held={})
+        return space.between(space.integral / space.area / WIDEST_GAP**2)
 
-    def relaxed(self, cover: Cover) -> Cover:
+    @property
+    def _asked(self) -> float | None:
+        """The coverage that is asked for as a scaled length, between rounding and the size.
+
+        Where cells follow from a spline beside the surface, twice its distance is subtracted, and
+        half of the coverage is left at least.
+        """
+        asked, space = self.request.coverage, self.space
+        if asked is None:
+            return None
+        asked = max(asked - 2.0 * space.distance, asked / 2.0)
+        return min(max(asked * space.unit, LENGTH_ERROR * space.size), space.size)
+
+    # --- covers -----------------------------------------------------------------------------------
+
+    def _by_radius(self) -> tuple[Cover, Given]:
+        """Sample at the normals asked for, or at as many as fit a coverage, and fill the gaps."""
+        request, space, asked = self.request, self._balanced(), self._asked
+        if request.angle is not None:
+            frequency_within(request.angle)  # or InputError
+            radius = WIDER * math.radians(request.angle)
+            given = self._at_lattices(radius, space)
+        elif request.normals is not None:
+            given = self._at_normals()
+            radius = WIDER * spacing(given.samples_per_steradian)
+        else:
+            assert asked is not None
+            radius = asked * math.sqrt(max(space.target.floor, space.smallest))
+            space.parts(radius)  # or InputError, before the search
+            given = self._at_lattices(radius, space)
+        if asked is not None:
+            floor = (radius / asked) ** 2
+            is_free = request.angle is None and request.normals is None
+            space = space.between(floor, MOST_CURVED**2 * floor if is_free else math.inf)
+        return self._to_radius(space, given, radius)
+
+    def _to_radius(self, space: Space, given: Given, radius: float) -> tuple[Cover, Given]:
+        """Cover a space within a radius, each piece by a sample if that is not too many."""
+        cover = self._new(space, given)
+        cover.to_radius(radius)
+        cover = self._relaxed(cover)
+        missing = cover.missing(given.pieces)
+        if SAMPLES_A_PIECE * len(space.pieces) <= cover.count + len(missing):
+            cover.add(missing)
+        return cover, given
+
+    def _by_count(self, space: Space, count: int) -> tuple[Cover, Given]:
+        """Divide a count between samples at normals and others, which fill gaps.
+
+        A part of these is for pieces without any, and goes where normals are far from all.
+        """
+        given, rest = self._none, 0
+        if self.request.density in BY_CURVATURE:
+            given = self._for_count(space, count)
+            are_all = len(given.found) == len(space.pieces)
+            rest = 0 if are_all else math.floor(FOR_NORMALS * count)
+        cover = self._new(space, given)
+        cover.to_count(max(count - rest, cover.count))
+        cover = self._relaxed(cover)
+        missing = cover.missing(given.pieces)
+        if SAMPLES_A_PIECE * len(space.pieces) <= count and len(missing):
+            room = count - cover.count
+            if len(missing) > room:
+                cover.remove_last(len(missing) - room)
+            cover.add(missing[: count - cover.count])
+        if cover.count < count and rest:
+            _fill_normals(cover, count - cover.count)
+        cover.fill_up(count)
+        return cover, given
+
+    def _by_count_and_coverage(self, count: int) -> tuple[Cover, Given]:
+        """Find the smallest radius of a balanced cover that leaves enough for a coverage."""
+        asked, best, given = self._asked, None, self._none
+        assert asked is not None
+        high = math.log(count)
+        low = high - WIDEST_RADIUS
+        for _ in range(BISECTIONS):
+            radius = WIDER * spacing(math.exp((low + high) / 2))
+            floor = (radius / asked) ** 2
+            space = self.space.between(floor, MOST_CURVED**2 * floor)
+            found = self._at_lattices(radius, space)
+            cover = self._new(space, found)
+            cover.to_radius(radius, count + 1)
+            if cover.count > count:
+                high = (low + high) / 2
+                continue
+            low, best, given = (low + high) / 2, cover, found
+            if cover.count > NEAR_ENOUGH * count:
+                break
+        if best is None:  # not even without normals
+            best = self._new(self.space.uniform, given)
+            best.to_count(count)
+        best = self._relaxed(best)
+        best.fill_up(count)
+        return best, given
+
+    def _relaxed(self, cover: Cover) -> Cover:
         """Return the relaxed cover, or the given one if relaxing would exceed the coverage."""
         if self.request.relax == 0 or cover.count == cover.fixed:
             return cover
@@ -106,179 +300,58 @@ class Filling:
         relax(relaxed, self.request.relax)
         if self.request.count is None or asked is None:
             return relaxed
-        return relaxed if self._coverage(relaxed, asked) <= asked else cover
+        return relaxed if self.reached(relaxed) <= asked * self.space.unit else cover
 
-    def _sizing_of_power(self) -> SizingFunction:
-        """Return the sizing function of "uniform" or a power of |K|.
+    def _new(self, space: Space, given: Given) -> Cover:
+        return Cover(space, given.rows, self.show_count)
 
-        A power is uniform, too, if all curvature is an error of the spline.
-        """
-        power, count = self.request.density, self.request.count or 0
-        density = count / (4 * math.pi)
-        if isinstance(power, str) or curved_solid_angle(self.geometry, density) == 0.0:
-            return self._sizing(TargetDensity(floor=1.0))
-        sizing = self._sizing(TargetDensity(gauss_weight=1.0, exponent=float(power)))
-        floor = sizing.integral / sizing.area / WIDEST_GAP**2
-        return sizing.with_floor(self._floor_or(floor, sizing, 2.0 * float(power)))
+    # --- samples at normals -----------------------------------------------------------------------
 
-    def _floor_or(self, own: float, sizing: SizingFunction, order: float) -> float:
-        """Return the given floor, for a target density in 1/L^order, or that of this surface."""
-        return own if self.floor is None else self.floor / sizing.unit**order
+    @property
+    def _none(self) -> Given:
+        return nothing_given(self.space)
 
-    def _sizing(self, target: TargetDensity) -> SizingFunction:
-        """Return a sizing function; SurfaceError if the area of the spline is rounding."""
-        sizing = SizingFunction(self.geometry, target)
-        if not sizing.area > sizing.size * sizing.noise:
-            raise SurfaceError(
-                f"surface {sizing.spline.name!r} has no area beyond rounding: all its points lie "
-                'on one curve or are one point; only density="gauss" takes it.'
-            )
-        return sizing
+    def _at_normals(self) -> Given:
+        """Return the samples at the normals that are asked for."""
+        space, count = self.space, self.request.count
+        if count is None:
+            curved = np.flatnonzero(space.images > LEAST_IMAGE)
+            return at_normals(space, self.request.directions, curved, self.progress)
+        seen = space.solid_angles(count / (4 * math.pi))
+        counts = apportioned(count, seen if seen.any() else space.areas)
+        return at_count(space, counts, self.progress)
 
-    def samples(
-        self,
-        cover: Cover,
-        at_normals: SamplesAtNormals,
-        fields: Sequence[str],
-        dtype: DTypeLike,
-        angle: float | None,
-    ) -> Samples:
-        """Return the samples at normals, followed by the added ones."""
-        added, given = cover.points[cover.given :, 3:].copy(), at_normals.samples
-        arrays, unrefined = self.geometry.at_places(
-            cover.added, added, cover.curvatures[cover.given :], cover.exact, fields, dtype
-        )
-        if given is not None:
-            arrays = {
-                name: np.concatenate([getattr(given, name).astype(x.dtype, copy=False), x])
-                for name, x in arrays.items()
-            }
-            unrefined = None if unrefined is None else unrefined + (given.report.unrefined or 0)
-        arrays |= lines_of(cover.grid, cover.count, fields)
-        developable = None if given is None else given.report.developable_patches
-        report = sampling_report(
-            self.geometry, len(at_normals.normals), cover.count, at_normals.density, developable,
-            arrays,
-        )  # fmt: skip
-        asked = self.request.coverage
-        reached = None if asked is None else self._coverage(cover, asked)
-        is_on_grid = cover.grid is not None and (cover.grid.rows >= 0).any()
-        density = "aligned" if is_on_grid else None
-        report = replace(report, coverage=reached, angle=angle, density=density)
-        return self.geometry.samples(arrays, report, unrefined)
+    def _for_count(self, space: Space, count: int) -> Given:
+        """Return the samples at lattices of normals that belong to a count of samples."""
+        seen = space.solid_angles(count / (4 * math.pi))
+        # The number of samples that fill gaps beside one normal per steradian.
+        filling = space.integral / (GREEDY * (WIDER * spacing(1.0)) ** 2)
+        chosen, density = np.arange(len(seen)), 0.0
+        for _ in range(2):  # with all pieces, and then with those that have a lattice
+            curved = float(seen[chosen].sum())
+            density = count / (curved + max(filling - SAVED * curved, 0.0))
+            chosen = np.flatnonzero((seen > 0.0) & (density * seen >= LATTICE * count))
+        return at_lattices(space, density, chosen, self.progress, count)
 
-    def _coverage(self, cover: Cover, asked: float) -> float:
-        """Return a bound of the distance of a point of the surface from the nearest sample."""
-        unit = cover.sizing.unit
-        return coverage(cover.sizing, cover.points[:, :3], asked * unit) / unit
+    def _at_lattices(self, radius: float, space: Space) -> Given:
+        """Return the samples at lattices of normals that belong to a covering radius."""
+        density = 2.0 / (HEXAGON * (radius / WIDER) ** 2)
+        expected = density * space.solid_angles(density)
+        least = max(LATTICE * space.integral / (GREEDY * radius**2), 0.5)
+        return at_lattices(space, density, np.flatnonzero(expected >= least), self.progress)
 
-    def _distance(self, sizing: SizingFunction, coverage: float) -> float:
-        """Return a coverage as a scaled length, between rounding and the size of the surface.
 
-        Triangles are those of the spline: from places on the surface, its points are farther away
-        by twice its distance from the spline, at most. That is subtracted, and half of the coverage
-        is left at least.
-        """
-        coverage = max(coverage - 2.0 * self.geometry.distance, coverage / 2.0)
-        return min(max(coverage * sizing.unit, LENGTH_ERROR * sizing.size), sizing.size)
-
-    # --- balanced ---------------------------------------------------------------------------------
-
-    def _balanced(self) -> tuple[Cover, SamplesAtNormals]:
-        request, sizing = self.request, self._sizing(TargetDensity(curvature_weight=1.0))
-        # Normals and angles are absolute: flat parts then count as parts of a sphere.
-        least = 4 * math.pi if request.normals is not None or request.angle else FLAT_SURFACE
-        floor = FLAT_SHARE * max(sizing.integral, least) / sizing.area
-        floor = self._floor_or(floor, sizing, 2.0)
-        if request.density == "aligned":
-            return self._aligned(sizing.with_floor(floor)), no_samples()
-        if request.count is None:
-            return self._by_radius(sizing, floor)
-        cover, at_normals = self._by_count(sizing.with_floor(floor), request.count)
-        if request.coverage is None or self._coverage(cover, request.coverage) <= request.coverage:
-            return cover, at_normals
-        return self._by_count_and_coverage(sizing, request.count, request.coverage)
-
-    def _aligned(self, sizing: SizingFunction) -> Cover:
-        """Sample on a graded grid, and fill the gaps that it leaves."""
-        asked = self.request.coverage
-        distance = None if asked is None else self._distance(sizing, asked)
-        return cover_on_grid(sizing, self.request, distance, self.show_count)
-
-    def _by_radius(self, sizing: SizingFunction, floor: float) -> tuple[Cover, SamplesAtNormals]:
-        """Sample at the normals asked for, or at as many as fit a coverage, and fill the gaps."""
-        request = self.request
-        if request.angle is not None:
-            at_normals = self._at_normals(request.directions)
-            radius = WIDER * math.radians(request.angle)
-        elif request.normals is not None:
-            at_normals = self._at_normals(request.directions)
-            radius = WIDER * spacing(at_normals.samples_per_steradian)
-        else:
-            assert request.coverage is not None
-            least = float(sizing.largest.min())
-            radius = self._distance(sizing, request.coverage) * math.sqrt(max(floor, least))
-            subdivisions(sizing.with_floor(floor), radius)  # or InputError, before the search
-            at_normals = self._at_normals(density_of(radius / WIDER))
-        if request.coverage is not None:
-            floor = (radius / self._distance(sizing, request.coverage)) ** 2
-        cover = Cover(sizing.with_floor(floor), at_normals.samples, self.show_count)
-        cover.to_radius(radius)
-        return cover, at_normals
-
-    def _by_count(self, sizing: SizingFunction, count: int) -> tuple[Cover, SamplesAtNormals]:
-        """Divide a count between samples at normals and samples that fill the gaps."""
-        seen = curved_solid_angle(self.geometry, count / (4 * math.pi))
-        density = 1.0
-        # The number of samples at one normal per steradian; it is proportional to their density.
-        filling = sizing.integral / (GREEDY * (WIDER * spacing(density)) ** 2)
-        each = seen + max(0.0, filling - SAVED * seen)
-        at_normals = self._at_normals(count / each, count)
-        cover = Cover(sizing, at_normals.samples, self.show_count)
-        cover.to_count(count)
-        return cover, at_normals
-
-    def _by_count_and_coverage(
-        self, sizing: SizingFunction, count: int, coverage: float
-    ) -> tuple[Cover, SamplesAtNormals]:
-        """Find the most normals that leave enough samples for a coverage, by bisection."""
-        seen = curved_solid_angle(self.geometry, count / (4 * math.pi))
-        distance = self._distance(sizing, coverage)
-        high = math.log(count / seen) if seen > 0.0 else 0.0
-        low, best = high - FEWEST_NORMALS, None
-        for _ in range(BISECTIONS):
-            radius = WIDER * spacing(math.exp((low + high) / 2))
-            at_normals = self._at_normals(math.exp((low + high) / 2))
-            floor = (radius / distance) ** 2
-            cover = Cover(sizing.with_floor(floor), at_normals.samples, self.show_count)
-            cover.to_radius(radius, count + 1)
-            if cover.count > count:
-                high = (low + high) / 2
-                continue
-            low, best = (low + high) / 2, (cover, at_normals)
-            if cover.count > NEAR_ENOUGH * count:
-                break
-        if best is None:  # not even without normals
-            cover = Cover(replace(sizing, target=TargetDensity(floor=1.0)), None, self.show_count)
-            cover.to_count(count)
-            return cover, no_samples()
-        best[0].fill_up(count)
-        return best
-
-    def _at_normals(
-        self, asked: NDArray[np.float64] | float, most: int | None = None
-    ) -> SamplesAtNormals:
-        """Return the samples at normals, or at a lattice with a density per steradian."""
-        if isinstance(asked, np.ndarray):
-            return sample_at_normals(self.geometry, asked, self.progress)
-        return sample_at_lattice(self.geometry, asked, self.progress, most)
+def _fill_normals(cover: Cover, number: int) -> None:
+    """Add samples where normals are farthest from those of all samples."""
+    chord = NORMALS_APART * spacing(max(cover.count + number, 1) / (4 * math.pi))
+    most = CANDIDATES + cover.count
+    cells = cover.space.cut_by_normals(max(chord, LEAST_CHORD), most)
+    known = np.unique(cover.points[:, 3:].round(DIGITS), axis=0)
+    opposite = 2.0  # the largest chord between normals
+    chosen = choose_apart(cells.rows[:, 3:6], chord, cover.space.threads, opposite, number, known)
+    cover.add(cells[chosen])
 
 
 def spacing(density: float) -> float:
     """Return the covering radius of a hexagonal lattice of `density` points per area."""
     return math.sqrt(2.0 / (HEXAGON * density))
-
-
-def density_of(radius: float) -> float:
-    """Return the points per area of a hexagonal lattice with a covering radius."""
-    return 2.0 / (HEXAGON * radius * radius)

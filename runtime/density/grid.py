@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..samples.fields import GRID_NAMES
 from ..samples.samples import Samples
-from .triangles import Triangles
+from .cells import Cells
 
 __all__ = ["Grid", "lines_of", "without_lines"]
 
@@ -19,18 +19,32 @@ Indices = NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Samples on a grid: the triangles that have them as their places, and their lines.
+    """Samples on a grid: the cells that have them as their places, and their lines.
 
     `rows` and `columns` (N,) number lines v = const and u = const; −1 for samples between lines.
     """
 
-    triangles: Triangles
+    cells: Cells
     rows: Indices
     columns: Indices
     lines: tuple[int, int]
 
     def __len__(self) -> int:
         return len(self.rows)
+
+    def __add__(self, other: Grid) -> Grid:
+        """Return this grid, followed by one of another piece."""
+        rows, columns = (
+            np.concatenate([x, np.where(y < 0, -1, y + first)])
+            for x, y, first in zip(
+                (self.rows, self.columns),
+                (other.rows, other.columns),
+                self.lines[::-1],
+                strict=True,
+            )
+        )
+        lines = self.lines[0] + other.lines[0], self.lines[1] + other.lines[1]
+        return Grid(self.cells + other.cells, rows, columns, lines)
 
     @property
     def border(self) -> int:

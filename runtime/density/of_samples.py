@@ -6,15 +6,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..fitting.fit import fit
+from ..place.on_spline import OnSpline
+from ..place.on_surface import OnSurface
 from ..samples.whole import NormalDeviation
 from ..spline.spline import Spline
 from ..surface.surface import Surface
 from .coverage import coverage
 from .deviation import normal_deviation
-from .law import area_of
-from .sizing import SizingFunction, uniform
+from .space import Space
+from .surface_piece import space_of
 
-__all__ = ["coverage_of", "deviation_of"]
+__all__ = ["coverage_of", "deviation_of", "space_on"]
 
 
 def coverage_of(
@@ -24,8 +26,8 @@ def coverage_of(
     threads: int | None,
 ) -> float:
     """Return what `Samples.coverage` returns: of all pieces of the surface without a spline."""
-    sizings = _sizings(spline, surface, threads)
-    return max(coverage(x, x.scaled_points(points)) / x.unit for x in sizings)
+    space = space_on(spline, surface, threads)
+    return coverage(space, space.scaled_points(points)) / space.unit
 
 
 def deviation_of(
@@ -36,20 +38,14 @@ def deviation_of(
     threads: int | None,
 ) -> NormalDeviation:
     """Return what `Samples.normal_deviation` returns: of all pieces without a spline."""
-    directions = normals.astype(np.float64)
-    found = [
-        normal_deviation(x, x.scaled_points(points), directions)
-        for x in _sizings(spline, surface, threads)
-    ]
-    return NormalDeviation(max(x.normal_space for x in found), max(x.space for x in found))
+    space = space_on(spline, surface, threads)
+    return normal_deviation(space, space.scaled_points(points), normals.astype(np.float64))
 
 
-def _sizings(
-    spline: Spline | None, surface: Surface | None, threads: int | None
-) -> list[SizingFunction]:
-    """Return the sizing function 1 on what is sampled, or on each piece that has an area."""
+def space_on(spline: Spline | None, surface: Surface | None, threads: int | None) -> Space:
+    """Return what is sampled, or all of its pieces that have an area."""
     if spline is not None:
-        return [uniform(spline, surface, threads)]
+        on = OnSpline(spline, threads)
+        return space_of([on if surface is None else OnSurface(spline, threads, surface)], threads)
     assert surface is not None
-    pieces = [uniform(fit(x), x, threads) for x in surface.pieces()]
-    return [x for x in pieces if area_of(x) > 0.0] if pieces[1:] else pieces
+    return space_of([OnSurface(fit(x), threads, x) for x in surface.pieces()], threads)

@@ -7,7 +7,7 @@ from .cover import Cover
 
 __all__ = ["relax"]
 
-# The radii of the triangles of candidates, relative to the covering radius.
+# The radii of the cells of candidates, relative to the covering radius.
 FINE = 0.2
 # This part of the added samples goes where normals are farthest from those of all samples.
 FOR_NORMALS = 0.1

@@ -7,15 +7,15 @@ import math
 import numpy as np
 
 from ...generated.jet import forms_at_jet
-from ...generated.patch import tangents
-from ...generated.spline import CORNERS
+from ...generated.patch import envelope, tangents
+from ...generated.spline import CORNERS, SCALE
 from ...generated.vectors import Patch
 from .jit import inline, jit, loop
-from .patch import patch_vectors
+from .patch import patch_vectors, vector_at
 from .refine import patch_of_jet
 from .spline import locate
 
-__all__ = ["forms_of_jets", "forms_on_spline", "patches_at"]
+__all__ = ["forms_of_jets", "forms_on_spline", "jets_on_spline", "patches_at"]
 
 # From steps in cells to steps in the parameters u, v of a patch, for its quarter turns.
 TO_PATCH = np.linalg.inv(CORNERS)
@@ -79,6 +79,52 @@ def forms_on_spline(mu, scale, cells, forms):
         E, F, G = in_cells(E, F, G, turn)
         e, f, g = in_cells(e, f, g, turn)
         set_forms(forms, k, E, F, G, e, f, g, D)
+
+
+@inline
+def set_combination(jets, k, row, v, w, a, b):
+    """Write the vector a v + b w into a 2-jet."""
+    jets[k, row, 0] = a * v.x + b * w.x
+    jets[k, row, 1] = a * v.y + b * w.y
+    jets[k, row, 2] = a * v.z + b * w.z
+
+
+@inline
+def set_second(jets, k, row, patch, uu, uv, vv, size):
+    """Write a second derivative: a combination of those of a patch, divided by `size`."""
+    set_combination(jets, k, row, patch.a, patch.c, uu / size, vv / size)
+    jets[k, row, 0] += uv / size * patch.b.x
+    jets[k, row, 1] += uv / size * patch.b.y
+    jets[k, row, 2] += uv / size * patch.b.z
+
+
+@jit
+def jets_on_spline(mu, scale, frame, cells, jets):
+    """Write the 2-jets (k, 6, 3) of a spline at places (k, 2) in cells.
+
+    Second derivatives are those of one of the patches that meet at a place.
+    """
+    size = SCALE * scale
+    du = frame[2]
+    dv = frame[3]
+    for k in range(cells.shape[0]):
+        i = min(max(int(math.floor(cells[k, 0])), 0), mu.shape[0] - 3)
+        j = min(max(int(math.floor(cells[k, 1])), 0), mu.shape[1] - 3)
+        turn, u, v = locate(cells[k, 0] - i - 0.5, cells[k, 1] - j - 0.5)
+        patch = patch_vectors(mu, i + 1, j + 1, turn, scale)
+        x = envelope(patch, u, v)
+        p_u, p_v, _ = tangents(patch, u, v)
+        # Derivatives along the lines of the parameters, from those along the sides of the patch.
+        a = TO_PATCH[turn, 0, 0] / du
+        b = TO_PATCH[turn, 0, 1] / du
+        c = TO_PATCH[turn, 1, 0] / dv
+        d = TO_PATCH[turn, 1, 1] / dv
+        set_combination(jets, k, 0, x, vector_at(mu, i + 1, j + 1), 1.0 / size, 1.0)
+        set_combination(jets, k, 1, p_u, p_v, a / size, b / size)
+        set_combination(jets, k, 2, p_u, p_v, c / size, d / size)
+        set_second(jets, k, 3, patch, a * a, 2.0 * a * b, b * b, size)
+        set_second(jets, k, 4, patch, a * c, a * d + b * c, b * d, size)
+        set_second(jets, k, 5, patch, c * c, 2.0 * c * d, d * d, size)
 
 
 @jit

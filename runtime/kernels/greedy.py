@@ -19,6 +19,8 @@ __all__ = ["choose_far", "update_distances"]
 
 # The number of a sample without one; typed, so that Numba compiles one function for all numbers.
 NO_NUMBER = np.int64(-1)
+# The cosine of the largest angle between normals on the same side of a surface.
+SAME_SIDE = 0.5
 
 
 @inline
@@ -37,7 +39,7 @@ def normal_of(rows, k):
 def update_around(grids, radius, number, x, n):
     """Update the distances of the candidates within radius/√w of a sample x with the normal n.
 
-    A sample counts for candidates on its own side of the surface: n makes an angle of at most 90
+    A sample counts for candidates on its own side of the surface: n makes an angle of at most 60
     degrees with theirs.
     """
     candidates = grids.candidates
@@ -68,7 +70,7 @@ def update_around(grids, radius, number, x, n):
                         square = (dx * dx + dy * dy + dz * dz) * candidates[at, DENSITY]
                         if square < candidates[at, SQUARE]:
                             m = normal_of(candidates, at)
-                            if dot(m, n) >= 0.0:
+                            if dot(m, n) >= SAME_SIDE:
                                 candidates[at, SQUARE] = square
                                 grids.nearest[at] = number
 

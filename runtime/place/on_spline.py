@@ -17,8 +17,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from ..base.georeference import Georeference
 from ..base.memory import check_memory
-from ..kernels.forms import forms_on_spline
-from ..kernels.sizing import TargetDensity
+from ..kernels.forms import forms_on_spline, jets_on_spline, patches_at
 from ..kernels.tile import fill_known
 from ..samples.fields import FLOAT_NAMES, bytes_of, new_field
 from ..samples.report import SamplingReport
@@ -32,7 +31,6 @@ from ..surface.surface import Surface
 
 if TYPE_CHECKING:
     from ..spline.misfit import Misfit
-    from .triangles import Triangles
 
 __all__ = ["Fields", "FieldsOfSamples", "OnSpline", "grouped"]
 
@@ -149,56 +147,42 @@ class OnSpline:
 
     # --- samples that fill gaps -------------------------------------------------------------------
 
-    def densities(self, target: TargetDensity, radii: Array, densities: Array) -> Array:
-        """Return the target densities (patches, 4), without the floor, at the nodes of patches.
+    @property
+    def knows_jets(self) -> bool:
+        """Whether the derivatives of what is sampled are known, and not differences."""
+        return True
 
-        `densities` are those of the spline, radii (patches,) those of the patches.
-        """
-        return densities
+    def jets(self, u: Array, v: Array) -> Array:
+        """Return the 2-jets (k, 6, 3) of what is sampled, see `Surface.jets`."""
+        return self.jets_of_spline(u, v)
 
-    def as_candidates(self, triangles: Triangles, rows: Array) -> Array:
-        """Return the rows (M, 8) of `Triangles.at_places`, from those of the spline."""
-        return rows
+    def jets_of_spline(self, u: Array, v: Array) -> Array:
+        """Return the 2-jets (k, 6, 3) of the spline."""
+        spline, jets = self.spline, np.empty((len(u), 6, 3))
+        jets_on_spline(spline.coefficients, spline.scale, spline.frame, self._in_cells(u, v), jets)
+        return jets
 
-    def as_samples(self, triangles: Triangles) -> Array:
-        """Return the rows (M, 8 + k) of candidates that have become samples.
-
-        The columns after those of candidates are for `at_places`.
-        """
-        return triangles.at_places()
-
-    def normal_chords(self, triangles: Triangles, rows: Array) -> Array:
-        """Return how far normals of triangles (M,) are from those of their rows, at most.
-
-        That is the length of the chord between the unit vectors, or 2 if no bound below √2 is
-        known. `rows` are those of `as_samples`.
-        """
-        return triangles.normal_chords(rows)
-
-    def at_places(
-        self,
-        triangles: Triangles,
-        normals: Array,
-        K: Array,
-        exact: Array | None,
-        fields: Sequence[str],
-        dtype: DTypeLike,
-    ) -> FieldsOfSamples:
-        """Return the samples at the places of triangles; see `as_samples`.
-
-        normals (M, 3), the signs of K (M,) and the columns `exact` are those of their rows.
-        """
-        patch_index, uv = triangles.patches, triangles.uv
-        count, spline = len(triangles), self.spline
+    def at_parameters(
+        self, uv: Array, normals: Array, K: Array, fields: Sequence[str], dtype: DTypeLike
+    ) -> Fields:
+        """Return fields of samples at parameters (k, 2), with unit normals and the signs of K."""
+        count, spline = len(uv), self.spline
+        patches, places = np.empty(count, dtype=np.int64), np.empty((count, 2))
+        patches_at(*spline.cells, self._in_cells(*uv.T), patches, places)
         filled = {x: new_field(x, count, dtype) for x in FLOAT_NAMES if x in fields}
         here = np.arange(count)
         fill_known(
             spline.coefficients, spline.scale, normals, spline.frame,
-            here, np.column_stack([patch_index, here]), np.column_stack([uv, K, uv]),
+            here, np.column_stack([patches, here]), np.column_stack([places, K, places]),
             *(filled[x] if x in filled else new_field(x, 0, dtype) for x in FLOAT_NAMES),
         )  # fmt: skip
-        indices = {"normal_index": np.full(count, -1), "patch_index": patch_index}
-        return FieldsOfSamples(filled | {x: y for x, y in indices.items() if x in fields})
+        indices = {"normal_index": np.full(count, -1), "patch_index": patches}
+        return filled | {x: y for x, y in indices.items() if x in fields}
+
+    def _in_cells(self, u: Array, v: Array) -> Array:
+        """Return parameters in cells from the corner of the domain (k, 2)."""
+        frame = self.spline.frame
+        return (np.stack([u, v], axis=1) - frame[:2]) / frame[2:]
 
 
 def grouped(parts: Iterator[Hits], size: int) -> Iterator[Hits]:

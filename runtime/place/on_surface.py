@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from ...generated.patch import NODE
 from ...generated.spline import SCALE
 from ..base.checks import known_name
 from ..base.errors import InputError
@@ -19,13 +18,12 @@ from ..base.threads import over_ranges
 from ..fitting.fit import spline_of
 from ..kernels import nodes as kernels
 from ..kernels.forms import forms_of_jets
-from ..kernels.sizing import TargetDensity
 from ..samples.fields import FLAG_NAMES
 from ..samples.report import PLACES
 from ..search.bins import NormalBins
 from ..search.search import Hits, find
 from ..spline.developable import CellMeasure
-from ..spline.inside import count_of, parameters_of, samples_inside
+from ..spline.inside import count_of, samples_inside
 from ..spline.spline import Spline
 from ..surface.derivatives import Differentiable
 from ..surface.surface import Surface
@@ -36,24 +34,11 @@ from .on_spline import Array, Fields, FieldsOfSamples, OnSpline, grouped
 from .pole_charts import PoleChart, pole_charts
 from .repeats import kept_once, left_patch
 
-if TYPE_CHECKING:
-    from .triangles import Triangles
-
 __all__ = ["OnSurface", "checked_place", "geometry_of", "place_of_samples"]
 
-AT_A_TIME, POINTS_AT_A_TIME = 1 << 12, 1 << 16
+AT_A_TIME = 1 << 12
 # Samples in turn are looked at in groups of at least this number, whether they repeat others.
 TOGETHER = 1 << 17
-# The places of the nodes of a patch at which target densities are integrated, see `sizing`.
-NODES = np.array([
-    [1.0 - 2.0 * NODE, NODE], [NODE, 1.0 - 2.0 * NODE], [NODE, NODE], [1.0 / 3.0, 1.0 / 3.0],
-])  # fmt: skip
-# The corners of triangles, moved inwards by this part: the surface may be singular in one, at a
-# pole. Angles to the corners are made larger by LARGER for that.
-INWARDS, LARGER = 2.0**-8, 1.0 + 2.0**-6
-# Corners are looked at where the normals of surface and spline are farther apart than this part of
-# what those of a triangle vary by.
-AWAY = 0.25
 
 
 def place_of_samples(surface: object, on: str | None) -> str:
@@ -111,8 +96,6 @@ class OnSurface(OnSpline):
 
     on: ClassVar[str] = "surface"
 
-    _at_nodes: dict[TargetDensity, Array] = field(default_factory=dict, repr=False)
-
     @property
     def distance(self) -> float:
         """How far the points of the surface are from those of the spline, at most: measured."""
@@ -125,8 +108,7 @@ class OnSurface(OnSpline):
         The solid angle is that of the cell, in equal parts: K at its Gauss points.
         """
         areas, inside = self.spline.measure[0], self.spline.inside
-        nodes = self.nodes.reshape(-1, 4, 6)
-        solid_angles = np.repeat((nodes[..., 3] * nodes[..., 5]).sum(axis=1) / 16.0, 4)
+        solid_angles = np.repeat(self._at_gauss_points.reshape(-1, 4).sum(axis=1) / 16.0, 4)
         return areas, solid_angles if inside is None else solid_angles * inside.shares
 
     @cached_property
@@ -134,14 +116,10 @@ class OnSurface(OnSpline):
         """The same of the cells."""
         return CellMeasure.of(self.measure, self.spline.cells)
 
-    @cached_property
-    def nodes(self) -> Array:
-        """Unit normal, K, H and area element (4 cells, 6) at the Gauss points of the cells.
-
-        Lengths are scaled as in splines. Where the surface is singular, all of them are 0.
-        """
-        count = self.patches
-        nodes, columns = np.empty((count, 6)), self.cells[1]
+    @property
+    def _at_gauss_points(self) -> Array:
+        """K times the area of the cell (4 cells,) at its Gauss points; 0 at singular points."""
+        found, columns = np.empty(self.patches), self.cells[1]
         ends = 0.5 + kernels.GAUSS * np.array([-0.5, 0.5])
         u0, v0, du, dv = self.spline.frame
 
@@ -149,11 +127,12 @@ class OnSurface(OnSpline):
             cell, node = np.divmod(np.arange(first, last), 4)
             u = u0 + du * (cell // columns + ends[node // 2])
             v = v0 + dv * (cell % columns + ends[node % 2])
-            jets = self._jets(u, v)
-            kernels.evaluate_nodes(jets, self._size, self.spline.frame, first, nodes)
+            kernels.signed_solid_angles(
+                self.jets(u, v), self._size, self.spline.frame, found[first:last]
+            )
 
-        self._in_parts(work, count)
-        return nodes
+        self._in_parts(work, self.patches)
+        return found
 
     # --- samples at normals -----------------------------------------------------------------------
 
@@ -222,102 +201,41 @@ class OnSurface(OnSpline):
 
     # --- samples that fill gaps -------------------------------------------------------------------
 
-    def densities(self, target: TargetDensity, radii: Array, densities: Array) -> Array:
-        """Return the target densities (patches, 4), without the floor, at the nodes of patches."""
-        found, at_nodes = np.empty_like(densities), np.empty((self.patches // 4, 4))
-        kernels.densities_at_nodes(self.nodes, radii, target, at_nodes)
-        self._at_nodes[target] = at_nodes
-        kernels.densities_on_patches(self.cells[1], at_nodes, NODES, found)
-        return found
+    @property
+    def knows_jets(self) -> bool:
+        """Whether the surface knows its derivatives: not if it is a function of a user."""
+        function = None if self.surface is None else self.surface.function
+        return isinstance(function, Differentiable) and function.differentiable
 
-    def as_candidates(self, triangles: Triangles, rows: Array) -> Array:
-        """Return the rows (M, 8) of `Triangles.at_places`, from those of the spline.
+    def jets(self, u: Array, v: Array) -> Array:
+        """Return the 2-jets (k, 6, 3) of the surface."""
+        assert self.surface is not None
+        return self.surface.jets(u, v)
 
-        Points are those of the surface; normals and densities are interpolated between the nodes
-        of cells.
+    def at_parameters(
+        self, uv: Array, normals: Array, K: Array, fields: Sequence[str], dtype: DTypeLike
+    ) -> Fields:
+        """Return fields of samples at parameters (k, 2); at singular points, those of the spline.
+
+        There the normals and the signs of K are those given.
         """
-        spline, target = self.spline, triangles.sizing.target
-        at_nodes = self._at_nodes[target._replace(floor=0.0)]
-
-        def work(first: int, last: int) -> None:
-            part, here = triangles[first:last], rows[first:last]
-            places = part.uv
-            points = self._points(parameters_of(spline, part.patches, places))
-            here[:, :3] = (points - spline.coefficients[0, 0]) * self._size
-            kernels.interpolate(
-                self.cells[1], self.nodes, at_nodes, target.floor, part.patches, places, here
-            )
-
-        if self._knows_threads:
-            self._in_parts(work, len(triangles))
-        else:
-            for first in range(0, len(triangles), POINTS_AT_A_TIME):
-                work(first, first + POINTS_AT_A_TIME)
-        return rows
-
-    def as_samples(self, triangles: Triangles) -> Array:
-        """Return the rows (M, 12) of candidates that have become samples.
-
-        The last columns are the point, without a scale, and H; the target density is left out, NaN.
-        Where the surface is singular, the last columns are NaN, and the others those of candidates.
-        """
-        points, normals, K, H = self._evaluated(triangles.patches, triangles.uv)
-        rows = np.full((len(triangles), 12), np.nan)
-        rows[:, :3] = (points - self.spline.coefficients[0, 0]) * self._size
-        rows[:, 3:6], rows[:, 7], rows[:, 8:11], rows[:, 11] = normals, K, points, H
-        singular: NDArray[np.bool_] = ~np.any(normals, axis=1)
-        if singular.any():
-            rows[singular, :8], rows[singular, 8:] = triangles[singular].at_places(), np.nan
-        return rows
-
-    def normal_chords(self, triangles: Triangles, rows: Array) -> Array:
-        """Return how far normals of triangles (M,) are from those of their rows; 2 if unknown.
-
-        The normals are taken from the spline, as far away as those at the place of the triangle
-        are. Where that is too much, next to poles for example, they are those at the corners.
-        """
-        away = np.linalg.norm(triangles.on_spline()[:, 3:6] - rows[:, 3:6], axis=1)
-        chords = triangles.normal_chords(rows)
-        far = (away > AWAY * chords) | (chords >= 2.0)
-        chords += away
-        if far.any():
-            chords[far] = self._chords_to_corners(triangles[far], rows[far])
-        return np.minimum(chords, 2.0)
-
-    def _chords_to_corners(self, triangles: Triangles, rows: Array) -> Array:
-        longest = np.zeros(len(triangles))
-        for weights in (1.0 - INWARDS) * np.eye(3) + INWARDS / 3.0:
-            places = np.einsum("k,ikx->ix", weights, triangles.corners)
-            normals = self._evaluated(triangles.patches, places)[1]
-            chords = np.linalg.norm(normals - rows[:, 3:6], axis=1)
-            longest = np.maximum(longest, np.where(normals.any(axis=1), LARGER * chords, 2.0))
-        return longest
-
-    def at_places(
-        self,
-        triangles: Triangles,
-        normals: Array,
-        K: Array,
-        exact: Array | None,
-        fields: Sequence[str],
-        dtype: DTypeLike,
-    ) -> FieldsOfSamples:
-        """Return the samples at the places of triangles; see `as_samples`."""
-        arrays = super().at_places(triangles, normals, K, exact, fields, dtype).fields
-        points, H = np.split(np.empty((0, 4)) if exact is None else exact, [3], axis=1)
-        there: NDArray[np.bool_] = ~np.isnan(H[:, 0])
-        moved = {
-            "uv": parameters_of(self.spline, triangles.patches, triangles.uv),
+        assert self.surface is not None
+        points, directions, gaussian, mean = evaluate_on_surface(
+            self.surface, self.spline, uv, self.threads
+        )
+        there: NDArray[np.bool_] = np.any(directions, axis=1)
+        arrays = super().at_parameters(uv, normals, K, fields, dtype)
+        found = {
+            "uv": uv,
             "points": points,
-            "normals": normals,
-            "support": np.einsum("ij,ij->i", points, normals),
-            "gaussian_curvature": K,
-            "mean_curvature": H[:, 0],
+            "normals": directions,
+            "support": np.einsum("ij,ij->i", points, directions),
+            "gaussian_curvature": gaussian,
+            "mean_curvature": mean,
         }
-        for name in set(arrays) & set(moved):
-            arrays[name][there] = moved[name][there]
-        flags: Fields = {name: there for name in FLAG_NAMES if name in fields}
-        return FieldsOfSamples(arrays | flags, int(np.count_nonzero(~there)))
+        for name in set(arrays) & set(found):
+            arrays[name][there] = found[name][there]
+        return arrays | {name: there for name in FLAG_NAMES if name in fields}
 
     def forms(self, cells: Array) -> Array:
         """Return the fundamental forms (k, 7) at places (k, 2) in cells; see `forms_of_jets`."""
@@ -326,7 +244,7 @@ class OnSurface(OnSpline):
         u, v = (frame[:2] + frame[2:] * cells).T.copy()
 
         def work(first: int, last: int) -> None:
-            forms_of_jets(self._jets(u[first:last], v[first:last]), scales, found[first:last])
+            forms_of_jets(self.jets(u[first:last], v[first:last]), scales, found[first:last])
 
         self._in_parts(work, len(cells))
         return found
@@ -337,30 +255,6 @@ class OnSurface(OnSpline):
     def _size(self) -> float:
         """The scaled length of a length 1 of the surface."""
         return SCALE * self.spline.scale
-
-    def _jets(self, u: Array, v: Array) -> Array:
-        """Return the 2-jets (k, 6, 3) of the surface."""
-        assert self.surface is not None
-        return self.surface.jets(u, v)
-
-    @property
-    def _knows_threads(self) -> bool:
-        """Whether several threads may call the function of the surface: not that of a user."""
-        function = None if self.surface is None else self.surface.function
-        return isinstance(function, Differentiable) and function.differentiable
-
-    def _points(self, uv: Array) -> Array:
-        """Return the points (k, 3) of the surface."""
-        assert self.surface is not None
-        return self.surface.evaluate(*uv.T)
-
-    def _evaluated(
-        self, patches: NDArray[np.int64], places: Array
-    ) -> tuple[Array, Array, Array, Array]:
-        """Return points, normals, K and H at places (M, 2) of patches (M,)."""
-        assert self.surface is not None
-        uv = parameters_of(self.spline, patches, places)
-        return evaluate_on_surface(self.surface, self.spline, uv, self.threads)
 
     def _in_parts(self, work: Callable[[int, int], None], count: int) -> None:
         for _ in over_ranges(work, count, AT_A_TIME, self.threads):

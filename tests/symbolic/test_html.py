@@ -189,7 +189,6 @@ def test_each_call_of_a_kernel_is_listed(path):
         ("curvature", "Part of", "sample, curvature_at, branch, curvature_at_normal"),
         ("hessian_at", "Kernels", "support.hessians_of_patches"),
         ("tangent_plane", "Kernels", "support.support_values"),  # compiled as it is
-        ("arc", "Kernels", "curve.arc_of_piece"),
     ],
 )  # fmt: skip
 def test_uses(name, key, value):

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from ...runtime.base.trees import tree_of
+from ...runtime.density.cells import Array, Flags, Indices
 from ...runtime.density.filling import spacing
 from ...runtime.samples.fields import EDGE_NAMES, INTEGER_NAMES, dtype_of, row_shape
-from .cells import Array, Flags, Indices
 from .edges import Edges, Sides, edges_of, exact_places, sides_at
-from .space import Space
+from .results import PartSpace
 
 __all__ = ["with_edges"]
 
@@ -29,7 +29,7 @@ SLACK = 1e-6
 
 
 def with_edges(
-    space: Space,
+    space: PartSpace,
     count: int,
     arrays: Mapping[str, NDArray[Any]],
     fields: Sequence[str],
@@ -51,7 +51,7 @@ def with_edges(
     }
 
 
-def _on_edges(space: Space, count: int) -> dict[str, NDArray[Any]]:
+def _on_edges(space: PartSpace, count: int) -> dict[str, NDArray[Any]]:
     """Return all fields of the samples on edges of a part that has `count` others."""
     edges = edges_of(space)
     owner, places, ends = _spaced(edges, _step(space, count), max(count, 1))
@@ -62,7 +62,7 @@ def _on_edges(space: Space, count: int) -> dict[str, NDArray[Any]]:
     return _arrays(space, sides[kept])
 
 
-def _step(space: Space, count: int) -> float:
+def _step(space: PartSpace, count: int) -> float:
     """Return the distance between neighbours among `count` samples where the density is 1."""
     integral = space.integral
     if not (count and integral > 0.0):
@@ -101,14 +101,14 @@ def _many_places(edges: Edges) -> tuple[Indices, Array]:
     return owner, number / parts[owner]
 
 
-def _costs(space: Space, sides: Sides) -> Array:
+def _costs(space: PartSpace, sides: Sides) -> Array:
     """Return the lengths (M − 1,) between neighbouring places, in units of the sizing function.
 
     Where the target density follows the curvature, normals turn by no more than this between them.
     """
     target = space.target
     lengths = np.linalg.norm(np.diff(sides.points[:, 0], axis=0), axis=1) * space.unit
-    costs = math.sqrt(space.floor) * lengths
+    costs = math.sqrt(space.target.floor) * lengths
     if target.curvature_weight > 0.0:
         turns = np.linalg.norm(np.diff(sides.normals, axis=0), axis=2).max(axis=1)
         costs = np.maximum(costs, turns)
@@ -151,7 +151,7 @@ def _one_a_corner(sides: Sides, solids: Indices, ends: Flags, tolerance: float) 
     return np.flatnonzero(~dropped)
 
 
-def _arrays(space: Space, sides: Sides) -> dict[str, NDArray[Any]]:
+def _arrays(space: PartSpace, sides: Sides) -> dict[str, NDArray[Any]]:
     """Return all fields of samples."""
     count, points, normals = len(sides), sides.points[:, 0], sides.normals[:, 0]
     faces = np.array([x.face.index for x in space.pieces])[sides.pieces]

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...runtime.density.cells import Array, Flags, Indices
 from ...runtime.kernels.refine import evaluate_jets
-from .cells import Array, Flags, Indices
 from .faces import own_parameters
 from .records import SHARP
-from .space import Space
+from .results import PartSpace
 
 __all__ = ["Edges", "Sides", "edges_of", "exact_places", "sides_at"]
 
@@ -36,7 +36,7 @@ class Edges:
     surfaces of the two `pieces` (E, 2) of a space.
     """
 
-    space: Space
+    space: PartSpace
     pieces: Indices
     points: Array
     starts: Indices
@@ -56,7 +56,7 @@ class Edges:
         return self.points[first] + share * (self.points[first + 1] - self.points[first])
 
 
-def edges_of(space: Space) -> Edges:
+def edges_of(space: PartSpace) -> Edges:
     """Return the sharp edges between the pieces of a space."""
     arrays = space.pieces[0].face.part.arrays
     known = np.full(len(arrays["area"]), -1)
@@ -71,7 +71,7 @@ def edges_of(space: Space) -> Edges:
     )
 
 
-def _of_surfaces(space: Space, pieces: Indices, points: Array) -> Array:
+def _of_surfaces(space: PartSpace, pieces: Indices, points: Array) -> Array:
     """Return parameters (k, 4) of the surfaces of pieces (k, 2), from those of the file."""
     found = points.copy()
     for side in (0, 1):
@@ -135,7 +135,7 @@ class Sides:
         return np.linalg.norm(self.points[:, 0] - self.points[:, 1], axis=1)
 
 
-def sides_at(space: Space, pieces: Indices, uv: Array) -> Sides:
+def sides_at(space: PartSpace, pieces: Indices, uv: Array) -> Sides:
     """Return what is known of both faces at places (M,)."""
     order = np.argsort(pieces.ravel(), kind="stable")
     owner, count = pieces.ravel()[order], len(order)
@@ -168,7 +168,7 @@ def sides_at(space: Space, pieces: Indices, uv: Array) -> Sides:
     )
 
 
-def _inside(space: Space, owner: Indices, places: Array) -> Array:
+def _inside(space: PartSpace, owner: Indices, places: Array) -> Array:
     """Return places (k, 2), those that are beyond the domain by rounding at its end."""
     low, high = np.array([x.surface.domain for x in space.pieces])[owner].transpose(2, 0, 1)
     slack = BEYOND * (high - low)
@@ -199,12 +199,12 @@ def exact_places(edges: Edges, owner: Indices, places: Array) -> tuple[Sides, In
     return sides[kept], kept
 
 
-def _size(space: Space) -> float:
+def _size(space: PartSpace) -> float:
     """Return the size of the part in L."""
     return space.size / space.unit
 
 
-def _intersections(space: Space, starts: Sides) -> tuple[Array, Flags]:
+def _intersections(space: PartSpace, starts: Sides) -> tuple[Array, Flags]:
     """Return parameters (M, 4) where two faces intersect near places, and which were found.
 
     Both points meet in the plane across the edge.

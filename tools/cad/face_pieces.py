@@ -4,17 +4,29 @@ from __future__ import annotations
 
 import itertools
 import math
+import warnings
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
+from ...runtime.base.errors import GaussmapError, GaussmapWarning
+from ...runtime.base.scales import scale_to_one
+from ...runtime.density.piece import Piece
+from ...runtime.domain.domain import Domain
+from ...runtime.domain.trim import Trim
+from ...runtime.kernels.refine import evaluate_jets
+from ...runtime.place.on_spline import OnSpline
+from ...runtime.place.on_surface import geometry_of
+from ...runtime.samples.fields import dtype_of
 from ...runtime.surface.surface import Surface
-from .borders import Border
 from .faces import own_parameters
 from .part import Face
 from .records import Geometry
+from .spline_cells import search_cells
 
 __all__ = ["FacePiece", "pieces_of"]
 
@@ -26,8 +38,6 @@ ANGLE = 0.25
 PARTS_OF_SPAN = 2
 # Lines that are closer to one another than this part of the domain are one.
 SAME_LINE = 1e-9
-# The distance from the border of places beside it, relative to the domain.
-BESIDE = 1e-6
 # Which parameters of a kind of face are angles.
 ANGLES = {
     "cylinder": (True, False),
@@ -39,22 +49,31 @@ ANGLES = {
 
 
 @dataclass(frozen=True, eq=False)
-class FacePiece:
+class FacePiece(Piece):
     """A face, and its surface, whose normals point outward."""
 
     face: Face
     surface: Surface
 
     @property
-    def sizes(self) -> Array:
-        """The lengths (2,) of the domain."""
-        low, high = np.array(self.surface.domain).T
-        return high - low
+    def label(self) -> str:
+        """What it is called in messages."""
+        return self.face.label
 
     @property
-    def middle(self) -> Array:
-        """The parameters (2, 1) of the middle of the domain."""
-        return np.array(self.surface.domain).mean(axis=1, keepdims=True)
+    def domain(self) -> Domain:
+        """The rectangle of the parameters."""
+        return self.surface.domain
+
+    @property
+    def trim(self) -> Trim | None:
+        """The part of the domain that belongs to it, None if that is all of it."""
+        return self.surface.trim
+
+    @cached_property
+    def size(self) -> float:
+        """The root of the area, in L."""
+        return math.sqrt(self.face.area)
 
     @cached_property
     def boxes(self) -> Array:
@@ -77,34 +96,49 @@ class FacePiece:
         loops = [own_parameters(self.surface, x, is_reversed=is_reversed) for x in self.face.loops]
         return [np.clip(x, low, high) for x in loops]
 
-    def border(self, n: int) -> Border | None:
-        """Return the border on a raster of n × n pixels, None if there is none."""
-        trim = self.surface.trim
-        if trim is None:
-            return None
-        held = self.__dict__.setdefault("_borders", {})
-        if n not in held:
-            held[n] = Border(trim, self.surface.domain, n)
-        return held[n]
+    @property
+    def indices(self) -> Mapping[str, int]:
+        """The numbers of the face and of its solid."""
+        return {"face_index": self.face.index, "solid_index": self.face.solid_index}
 
-    def contains(self, places: Array) -> NDArray[np.bool_]:
-        """Return which places (k, 2) are inside the trim."""
-        trim = self.surface.trim
-        return np.ones(len(places), np.bool_) if trim is None else trim.contains(places, 1)
+    def jets(self, u: Array, v: Array) -> Array:
+        """Return 2-jets (k, 6, 3) at parameters."""
+        return self.surface.jets(u, v)
 
-    def beside_border(self, n: int) -> Array:
-        """Return places (k, 2) inside, next to the border, 1/n of the domain apart at most."""
-        found = [_beside(x, self.sizes, n) for x in self.polygons]
-        places = np.concatenate([np.empty((0, 2)), *found])
-        low, high = np.array(self.surface.domain).T
-        places = places[((places > low) & (places < high)).all(axis=1)]
-        return places[self.contains(places)]
+    def geometries(self, threads: int | None) -> list[OnSpline]:
+        """Return what is searched for points with a normal; GaussmapError if it has no spline."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", GaussmapWarning)  # of the fit, which is only a start
+            return [
+                geometry_of(x, search_cells(x), np.float64, "surface", threads)
+                for x in self.surface.pieces()
+            ]
+
+    def fields_at(
+        self, uv: Array, rows: Array, fields: Sequence[str], dtype: DTypeLike
+    ) -> dict[str, NDArray[Any]]:
+        """Return fields of samples at parameters (k, 2)."""
+        jets, count = self.jets(*uv.T.copy()), len(uv)
+        normals, K, H = np.empty((count, 3)), np.empty(count), np.empty(count)
+        scales = np.array([scale_to_one(self.size), *self.sizes])
+        evaluate_jets(jets, scales, normals, K, H)
+        found = {
+            "points": jets[:, 0],
+            "normals": normals,
+            "support": np.einsum("ij,ij->i", jets[:, 0], normals),
+            "uv": uv,
+            "gaussian_curvature": K,
+            "mean_curvature": H,
+            "normal_index": np.full(count, -1),
+            "on_surface": np.ones(count, dtype=np.bool_),
+        }
+        return {
+            x: y.astype(dtype_of(x, dtype), copy=False) for x, y in found.items() if x in fields
+        }
 
 
 def pieces_of(faces: tuple[Face, ...]) -> tuple[list[FacePiece], dict[int, str]]:
     """Return the faces that can be sampled, and by their index why others cannot."""
-    from ...runtime.base.errors import GaussmapError
-
     pieces, reasons = [], {}
     for face in faces:
         try:
@@ -152,17 +186,3 @@ def _knots(geometry: Geometry, axis: int) -> tuple[Array, int]:
         return np.empty(0), 0
     place = axis if of_curve is None else 0
     return np.unique(net.knots[place]), net.degrees[place]
-
-
-def _beside(polygon: Array, sizes: Array, n: int) -> Array:
-    """Return places (k, 2) on both sides of a polygon, no farther apart than 1/n of the domain."""
-    ends = np.roll(polygon, -1, axis=0)
-    along = (ends - polygon) / sizes
-    lengths = np.hypot(*along.T)
-    parts = np.maximum(np.ceil(lengths * n), 1.0).astype(np.int64)
-    owner = np.repeat(np.arange(len(polygon)), parts)
-    number = np.arange(len(owner)) - (np.cumsum(parts) - parts)[owner]
-    places = polygon[owner] + ((number + 0.5) / parts[owner])[:, None] * (ends - polygon)[owner]
-    unit = along / np.where(lengths > 0.0, lengths, 1.0)[:, None]
-    across = BESIDE * sizes * np.stack([-unit[:, 1], unit[:, 0]], axis=1)[owner]
-    return np.concatenate([places + across, places - across])

@@ -7,7 +7,7 @@ import itertools
 import numpy as np
 
 from ...runtime.base.errors import SurfaceError
-from .cells import RADIUS, Array, by_piece
+from ...runtime.density.cells import RADIUS, Array, by_piece
 from .face_pieces import FacePiece
 from .part import Part
 from .results import space_of

@@ -209,7 +209,7 @@ def _by_count(spline: CurveSpline, count: int) -> tuple[Array, Hits]:
 def filled(spline: CurveSpline, normals: Array, hits: Hits) -> CurveSamples:
     """Return the samples at hits of unit normals (S, 2)."""
     mine, piece = normals[hits.normal_index], hits.piece_index
-    n, arcs = plane_vector(mine), spline.arcs(piece)
+    n, arcs = plane_vector(mine), spline._arcs(piece)
     A = mine[:, 0] * arcs.a.x + mine[:, 1] * arcs.a.y
     with np.errstate(all="ignore"):  # where κ ≈ 0
         # If the turn of an arc is within rounding, so is the parameter of the normal.

@@ -280,7 +280,7 @@ class CurveSpline:
         array = real_array(t, "t")
         places = self._places(array.ravel())
         piece = np.clip(np.floor(places).astype(np.int64), 0, self.pieces - 1)
-        arcs, within = self.arcs(piece), places - piece
+        arcs, within = self._arcs(piece), places - piece
         x = python_function(formulas.arc_envelope)(arcs, within)
         tangent, *normal = python_function(formulas.arc_tangent)(arcs, within)
         with np.errstate(all="ignore"):  # at singular points
@@ -295,7 +295,7 @@ class CurveSpline:
             curvatures.reshape(shape),
         )
 
-    def arcs(self, piece: NDArray[np.int64]) -> Arc:
+    def _arcs(self, piece: NDArray[np.int64]) -> Arc:
         """Return the arcs of pieces (k,), relative to their coefficients and times `scale`."""
         steps = self.scale * np.diff(self.coefficients, axis=0)
         return python_function(formulas.arc)(

@@ -247,7 +247,7 @@ def test_little_is_not_looked_up(monkeypatch: pytest.MonkeyPatch) -> None:
         raise AssertionError
 
     monkeypatch.setattr(memory, "free_memory", fail)
-    assert len(gm.sample(TORUS, 5_000, cells=(16, 16))) == 5_000
+    assert len(gm.sample(TORUS, 2_000, cells=(16, 16))) == 2_000
     with pytest.raises(AssertionError):
         gm.sample(TORUS, 20_000, cells=(16, 16))
 

@@ -12,11 +12,11 @@ def relaxed(name: str, count: int) -> gm.Samples:
 
 @pytest.mark.compiled
 def test_relaxing_narrows_gaps_and_angles():
-    """By 12 and 9 percent; they get wider by 15 if samples begin as close as they end."""
-    plain = gm.sample(gm.fit("catenoid", (32, 32)), 600)
-    found = relaxed("catenoid", 600)
-    assert found.coverage() < 0.92 * plain.coverage()
-    assert found.normal_deviation().space < 0.94 * plain.normal_deviation().space
+    """By 8 and 5 percent; they get wider if samples begin as close as they end."""
+    plain = gm.sample(gm.fit("monkey_saddle", (32, 32)), 600)
+    found = relaxed("monkey_saddle", 600)
+    assert found.coverage() < 0.95 * plain.coverage()
+    assert found.normal_deviation().space < 0.98 * plain.normal_deviation().space
 
 
 @pytest.mark.compiled

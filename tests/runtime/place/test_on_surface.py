@@ -139,7 +139,10 @@ def test_angle_and_coverage_hold_for_the_surface():
 
 
 def test_a_coverage_below_the_misfit_is_reached_as_far_as_possible():
-    torus = gm.surfaces.torus()
+    """That is for surfaces that do not know their derivatives; others are covered by these."""
+    known = gm.surfaces.torus()
+    assert (gm.sample(known, coverage=0.05, cells=(6, 6)).report.coverage or 1.0) <= 0.05
+    torus = gm.Surface.from_callable(known.evaluate, known.domain, (True, True))
     with pytest.warns(
         gm.GaussmapWarning, match=r"coverage is 0\.\d+ instead of the requested 0\.05"
     ):
@@ -147,7 +150,7 @@ def test_a_coverage_below_the_misfit_is_reached_as_far_as_possible():
     report = samples.report
     assert report.coverage is not None
     assert report.fit_distance is not None
-    assert 0.05 < report.coverage <= 0.025 + 2.0 * report.fit_distance + 1e-12
+    assert 0.05 < report.coverage <= 1.1 * 0.025 + 2.0 * report.fit_distance
 
 
 class TestPoles:

@@ -4,16 +4,14 @@
 # pyright: reportArgumentType=false, reportAttributeAccessIssue=false
 
 import pickle
+import pkgutil
 
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.cad import sampling
-from gaussmap.tools.cad.cells import BEND_U
 from gaussmap.tools.cad.part import Part
 from gaussmap.tools.cad.records import FaceRecord, Geometry, Net
-from gaussmap.tools.cad.results import space_of
-from gaussmap.tools.cad.space import Space
+from gaussmap.tools.cad.results import PartSpace, space_of
 from scipy.spatial import ConvexHull, cKDTree
 
 
@@ -110,9 +108,11 @@ def test_samples_are_on_their_faces(plates, density):
 def test_coverage_holds_for_the_part(cylinder, coverage, density):
     samples = gm.sample(cylinder, coverage=coverage, density=density)
     assert gap(samples, points_on_cylinder()) <= samples.report.coverage <= coverage
-    assert samples.coverage() <= 1.02 * samples.report.coverage
-    # Squares of half the diagonal cover as much by twice as many samples; edges cost some.
-    assert len(samples) < 1.6 * cylinder.area / (2 * coverage**2) + 30
+    assert samples.coverage() <= 1.1 * samples.report.coverage
+    # Squares of half the diagonal cover as much by twice as many samples; edges cost some, and so
+    # does the curvature of the side.
+    most = 1.6 if density == "uniform" else 2.2
+    assert len(samples) < most * cylinder.area / (2 * coverage**2) + 30
 
 
 def test_count_and_coverage(cylinder):
@@ -160,10 +160,11 @@ def test_angle_holds_in_narrow_tips(made):
     assert samples.normal_deviation().normal_space <= samples.report.angle <= 8.0
 
 
-def test_an_angle_that_is_not_reached_is_reported(made):
-    with pytest.warns(gm.GaussmapWarning, match=r"narrow tips of faces are 3\.15° .* requested 3°"):
-        samples = gm.sample(tips(made, 0.01, 2, 0.3, 10), angle=3.0)
-    assert 3.0 < samples.normal_deviation().normal_space <= samples.report.angle
+@pytest.mark.parametrize("angle", [1.0, 3.0])
+def test_an_angle_holds_in_narrow_tips(made, angle):
+    """Their borders are sampled as finely as normals turn along them."""
+    samples = gm.sample(tips(made, 0.01, 2, 0.3, 10), angle=angle)
+    assert samples.normal_deviation().normal_space <= samples.report.angle <= angle
 
 
 def test_prescribed_normals(plates):
@@ -308,17 +309,18 @@ def test_candidates_for_normals_are_no_more_than_asked(plates):
         cells = space.cut_by_normals(1e-3, most)
         assert len(cells) <= most + len(space.first)
     whole = space.cut_by_normals(0.2, np.inf)  # few are enough: the chord is the one asked for
-    assert whole.numbers[:, BEND_U].max() <= 0.5
+    assert whole.numbers[:, 4].max() <= 0.5
 
 
 def test_five_percent_of_a_count_go_where_normals_are_missing(parts, monkeypatch):
-    numbers, choose = [], sampling.choose_apart
+    name = "gaussmap.runtime.density.filling.choose_apart"
+    numbers, choose = [], pkgutil.resolve_name(name)
 
     def recorded(normals, near, threads, widest, number, known):
         numbers.append(number)
         return choose(normals, near, threads, widest, number, known)
 
-    monkeypatch.setattr(sampling, "choose_apart", recorded)
+    monkeypatch.setattr(name, recorded)
     samples = gm.sample(parts.all_kinds(), 300)
     assert numbers == [15]
     assert samples.normal_deviation().normal_space < 6.5
@@ -339,14 +341,14 @@ def test_every_face_has_a_sample_if_there_are_twice_as_many(made):
 
 def test_candidates_for_missing_normals_are_dense_and_few(parts, monkeypatch):
     """With normals twice as far apart, 2.6° are left; twice as near, there are 7 a sample."""
-    part, numbers, cut = parts.all_kinds(), [], Space.cut_by_normals
+    part, numbers, cut = parts.all_kinds(), [], PartSpace.cut_by_normals
 
     def recorded(*arguments):
         cells = cut(*arguments)
         numbers.append(len(cells))
         return cells
 
-    monkeypatch.setattr(Space, "cut_by_normals", recorded)
+    monkeypatch.setattr(PartSpace, "cut_by_normals", recorded)
     gm.sample(part, 300)
     assert numbers.pop() < 4 * 300
     assert gm.sample(part, 3000).normal_deviation().normal_space < 2.3
@@ -357,14 +359,14 @@ def test_a_part_has_some_candidates_for_each_sample(cylinder, monkeypatch):
 
     With a quarter of them gaps are wider; four times as many take as much more time and memory.
     """
-    numbers, cut = [], Space.cut
+    numbers, cut = [], PartSpace.cut
 
     def recorded(*arguments):
         cells = cut(*arguments)
         numbers.append(len(cells))
         return cells
 
-    monkeypatch.setattr(Space, "cut", recorded)
+    monkeypatch.setattr(PartSpace, "cut", recorded)
     gm.sample(cylinder, 1000, density="uniform")
     assert 4.0 < max(numbers) / 1000 < 10.0
 
@@ -381,15 +383,21 @@ def test_the_widest_angle_on_a_sphere_is_found(made, count):
 
 
 def test_flat_faces_get_their_share(parts):
-    """The target density is three times the mean of κ² at least: a torus has more, a plane not."""
+    """The target density is 0.8 of the mean of κ² at least: a torus has more, a plane not."""
     part = parts.all_kinds()
     counts = np.bincount(gm.sample(part, 1000).face_index, minlength=len(part.faces))
     kinds = [face.kind for face in part.faces]
     ratio = counts[kinds.index("torus")] / counts[kinds.index("plane")]
-    assert ratio == pytest.approx(1.9, rel=0.2)
+    assert ratio == pytest.approx(7.4, rel=0.1)
 
 
 def test_a_coverage_that_no_number_of_samples_has(parts) -> None:
     """Its inverse overflows."""
     with pytest.raises(gm.errors.InputError, match="would have to be searched in more than"):
         gm.sample(parts.box(), coverage=1e-320)
+
+
+def test_samples_beside_borders_are_inside(plates):
+    samples = gm.sample(plates, 2000, density="uniform")
+    hole = np.linalg.norm(samples.uv[samples.face_index == 0] - 0.5, axis=1)
+    assert 0.2999 < hole.min() < 0.3001  # a circle of 720 chords

@@ -8,8 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ...runtime.domain.domain import Domain
-from ...runtime.domain.trim import Trim
+from ..domain.domain import Domain
+from ..domain.trim import Trim
 
 __all__ = ["Border"]
 
@@ -57,4 +57,6 @@ class Border:
         sums = np.zeros((self.n + 1, self.n + 1), dtype=np.int32)
         np.cumsum(passed, axis=0, out=sums[1:, 1:])
         np.cumsum(sums[1:, 1:], axis=1, out=sums[1:, 1:])
-        return sums if all_known else np.add.outer(np.arange(self.n + 1), np.arange(self.n + 1))
+        return (
+            sums if all_known else np.multiply.outer(np.arange(self.n + 1), np.arange(self.n + 1))
+        )

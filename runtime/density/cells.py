@@ -1,4 +1,4 @@
-"""Cells: rectangles of the parameters of faces, among whose places samples are chosen.
+"""Cells: rectangles of the parameters of pieces, among whose places samples are chosen.
 
 Each has a place inside the trim. Cells that are cut by the trim have one where a part of them is
 inside: in the middle, or at one of its subplaces. Where the inside is too narrow for that, places
@@ -7,6 +7,7 @@ next to the border take their turn, as cells without an extent.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -15,10 +16,20 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ...runtime.base.memory import check_memory
-from .face_pieces import FacePiece
+from ..base.memory import check_memory
+from .piece import Piece
 
-__all__ = ["BEND_U", "Cells", "Evaluator", "by_piece", "halved", "into_parts", "new_cells"]
+__all__ = [
+    "Array",
+    "Cells",
+    "Evaluator",
+    "Flags",
+    "Indices",
+    "by_piece",
+    "halved",
+    "into_parts",
+    "new_cells",
+]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -26,15 +37,15 @@ Flags = NDArray[np.bool_]
 
 # The columns of `numbers`, see kernels/cells.py.
 RADIUS, CHORD, ALONG_U, ALONG_V, BEND_U, BEND_V, AREA, LIMIT = range(8)
-# Cells are not cut below this part of the domain of their face.
-DEEPEST = 2.0**-20
+# Cells are not cut below this part of the domain of their piece, and of the size of the surface.
+DEEPEST = 2.0**-14
 
 
 class Evaluator(Protocol):
     """What cells need of their space."""
 
     @property
-    def pieces(self) -> tuple[FacePiece, ...]:
+    def pieces(self) -> tuple[Piece, ...]:
         """The pieces (P,) of the part."""
         ...
 
@@ -43,8 +54,17 @@ class Evaluator(Protocol):
         """The lengths (P, 2) of the domains of the pieces."""
         ...
 
-    def evaluated(self, cells: Cells, *, with_border: bool = False) -> Cells:
+    @property
+    def area(self) -> float:
+        """The area of all pieces, scaled."""
+        ...
+
+    def evaluated(self, cells: Cells) -> Cells:
         """Return those of cells that have a place inside the trim, with their rows and numbers."""
+        ...
+
+    def known(self, cells: Cells, *, keep: bool = False) -> Cells:
+        """Return cells, sorted by their pieces, with rows and numbers."""
         ...
 
 
@@ -67,7 +87,7 @@ class Cells:
     def __len__(self) -> int:
         return len(self.pieces)
 
-    def __getitem__(self, chosen: Indices | Flags) -> Cells:
+    def __getitem__(self, chosen: Indices | Flags | slice) -> Cells:
         """Return some of the cells."""
         return Cells(self.space, *(x[chosen] for x in self._arrays))
 
@@ -80,22 +100,23 @@ class Cells:
     def _arrays(self) -> tuple[NDArray, ...]:
         return (self.pieces, self.boxes, self.places, self.whole, self.rows, self.numbers)
 
+    def sorted(self) -> Cells:
+        """Return the same cells, sorted by their pieces."""
+        if (np.diff(self.pieces) < 0).any():
+            return self[np.argsort(self.pieces, kind="stable")]
+        return self
+
     def write(self, rows: Indices, cells: Cells) -> None:
         """Replace some of the cells by as many others."""
         for mine, others in zip(self._arrays, cells._arrays, strict=True):
             mine[rows] = others
 
-    # --- what a cover asks of its triangles -------------------------------------------------------
+    # --- what covers ask of them ------------------------------------------------------------------
 
     @property
     def radii(self) -> Array:
         """Radii (M,) of balls around the places that hold the cells."""
         return self.numbers[:, RADIUS]
-
-    @property
-    def uv(self) -> Array:
-        """The parameters (M, 2) of the places."""
-        return self.places
 
     @property
     def halves(self) -> Cells:
@@ -105,24 +126,18 @@ class Cells:
     @property
     def quarters(self) -> Cells:
         """The cells bisected twice."""
-        return self.space.evaluated(self._halved()._halved(), with_border=True)
+        return self.space.evaluated(self._halved()._halved())
 
     @property
     def deepest(self) -> Flags:
         """Which cells are so small that they are not cut any more."""
         sizes = self.boxes[:, 2:] - self.boxes[:, :2]
-        return np.all(sizes <= DEEPEST * self.space.sizes[self.pieces], axis=1)
+        small = np.all(sizes <= DEEPEST * self.space.sizes[self.pieces], axis=1)
+        return small | (self.radii <= DEEPEST * math.sqrt(self.space.area))
 
-    def at_places(self) -> Array:
-        """Return scaled point, unit normal, target density and K (M, 8) at the places."""
-        return self.rows.copy()
-
-    def as_samples(self) -> Array:
-        """Return what `at_places` returns."""
-        return self.rows.copy()
-
-    def chords(self, rows: Array) -> Array:
-        """Return how far normals of each cell (M,) are from that at its place, 2 if unknown."""
+    @property
+    def chords(self) -> Array:
+        """How far normals of each cell (M,) are from that at its place, 2 if unknown."""
         return self.numbers[:, CHORD]
 
     def _halved(self) -> Cells:
@@ -132,7 +147,7 @@ class Cells:
 
 def halved(cells: Cells, along_u: Flags) -> Cells:
     """Return the halves (2 M) of cells, along u or along v; they are not evaluated."""
-    check_memory("candidates on a part", 2 * len(cells))
+    check_memory("candidates", 2 * len(cells))
     middle = (cells.boxes[:, :2] + cells.boxes[:, 2:]) / 2.0
     lower, upper = cells.boxes.copy(), cells.boxes.copy()
     lower[:, 2] = np.where(along_u, middle[:, 0], lower[:, 2])
@@ -150,7 +165,7 @@ def halved(cells: Cells, along_u: Flags) -> Cells:
 def into_parts(cells: Cells, parts: Indices) -> Cells:
     """Return cells cut into parts (M, 2) along u and v; they are not evaluated."""
     total = parts.prod(axis=1)
-    check_memory("candidates on a part", total.sum())
+    check_memory("candidates", total.sum())
     owner = np.repeat(np.arange(len(cells)), total)
     number = np.arange(len(owner)) - np.repeat(np.cumsum(total) - total, total)
     place = np.stack(np.divmod(number, parts[owner, 1]), axis=1)

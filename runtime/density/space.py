@@ -1,21 +1,23 @@
-"""All faces of a part as one surface: what its cells hold, and the target density on it."""
+"""All pieces of what is sampled as one surface: its cells, and the target density on it."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...runtime.base.checks import finite_array
-from ...runtime.base.errors import InputError
-from ...runtime.base.scales import scale_to_one
-from ...runtime.base.threads import over_ranges
-from ...runtime.kernels.sizing import TargetDensity
+from ..base.checks import finite_array
+from ..base.errors import InputError
+from ..base.scales import scale_to_one
+from ..base.threads import over_ranges
 from ..kernels.cells import evaluate_cells
+from ..kernels.sizing import TargetDensity
+from .along_borders import BorderLine, along_borders, border_lines
 from .cells import (
     ALONG_U,
     ALONG_V,
@@ -33,7 +35,7 @@ from .cells import (
     into_parts,
     new_cells,
 )
-from .face_pieces import FacePiece
+from .piece import Piece
 from .sifting import beside, placed, sifted
 
 __all__ = ["Space"]
@@ -47,7 +49,7 @@ MOST_LOST = 4
 FEWEST_PIXELS, MOST_PIXELS = 64, 512
 # Cells with more parts than this, which the border passes, are cut in two steps.
 AT_ONCE = 64
-MOST_CELLS = 4e7
+MOST_CELLS = 2e9
 # The factor by which cells are made coarser if there were too many.
 COARSER = 1.2
 # Cells of small faces are evaluated together by one thread.
@@ -58,35 +60,36 @@ FLAT_CURVATURE = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Space:
-    """The pieces of a part, with a target density, at least the floor.
+    """The pieces of a surface or a part, with a target density.
 
-    Lengths are multiplied by `unit`, and points are relative to `centre`, in L.
+    Lengths are multiplied by `unit`, and points are relative to `centre`, in L. The target density
+    of `first` has no floor and no ceiling, so that spaces that differ in these share it. On the
+    `developable` pieces, K is rounding, and a power of it counts as 0.
     """
 
-    name: str
-    pieces: tuple[FacePiece, ...]
+    label: str
+    pieces: tuple[Piece, ...]
     target: TargetDensity
     threads: int | None
-    floor: float = 0.0
-    failed: Mapping[int, str] = field(default_factory=dict)
-    _held: dict[str, Cells] = field(default_factory=dict, repr=False)
+    developable: frozenset[int] = frozenset()
+    _held: dict[str, Any] = field(default_factory=dict, repr=False)
 
-    # --- the part as a whole ----------------------------------------------------------------------
-
-    @cached_property
-    def areas(self) -> Array:
-        """The areas (P,) of the pieces, in L²."""
-        return np.array([x.face.area for x in self.pieces])
+    # --- the whole --------------------------------------------------------------------------------
 
     @cached_property
     def unit(self) -> float:
-        """The scaled length of a length 1 of the part: a power of two."""
-        return scale_to_one(math.sqrt(float(self.areas.sum())))
+        """The scaled length of a length 1: a power of two."""
+        return scale_to_one(max(x.size for x in self.pieces))
+
+    @cached_property
+    def areas(self) -> Array:
+        """The areas (P,) of the pieces, scaled."""
+        return (np.array([x.size for x in self.pieces]) * self.unit) ** 2
 
     @cached_property
     def centre(self) -> Array:
         """What scaled points are relative to, in L."""
-        return self.pieces[0].surface.jets(*self.pieces[0].middle)[0, 0]
+        return self.pieces[0].jets(*self.pieces[0].middle)[0, 0]
 
     @cached_property
     def sizes(self) -> Array:
@@ -102,12 +105,12 @@ class Space:
 
     @property
     def area(self) -> float:
-        """The area of the part, scaled."""
-        return float(self.areas.sum()) * self.unit**2
+        """The area of all pieces, scaled."""
+        return float(self.areas.sum())
 
     @property
     def integral(self) -> float:
-        """The integral of the target density over the part."""
+        """The integral of the target density over all pieces."""
         return float(self.integrals.sum())
 
     @property
@@ -115,23 +118,33 @@ class Space:
         """The integrals (P,) of the target density over the pieces."""
         cells = self.first
         weights, count = cells.numbers[:, AREA], len(self.pieces)
-        values = np.maximum(cells.rows[:, 6], self.floor)
+        values = self._densities
         sums = np.bincount(cells.pieces, weights, count)
         with np.errstate(divide="ignore", invalid="ignore"):
             means = np.bincount(cells.pieces, weights * values, count) / sums
-        means = np.where(np.isfinite(means), means, self.floor)
-        return means * self.areas * self.unit**2
+        means = np.where(np.isfinite(means), means, self.target.floor)
+        return means * self.areas
 
     @property
     def smallest(self) -> float:
         """The smallest target density of a cell."""
-        return float(np.maximum(self.first.rows[:, 6], self.floor).min())
+        return float(self._densities.min())
 
     @property
     def images(self) -> Array:
         """The solid angles (P,) of the Gaussian images of the pieces, with multiplicity."""
         weights = np.abs(self.first.rows[:, 7]) * self.first.numbers[:, AREA]
         return np.bincount(self.first.pieces, weights, len(self.pieces)).astype(np.float64)
+
+    def solid_angles(self, density: float) -> Array:
+        """Return the same of what `density` normals per steradian sample."""
+        known = (x.solid_angle(density) for x in self.pieces)
+        return np.array([y if x is None else x for x, y in zip(known, self.images, strict=True)])
+
+    @property
+    def distance(self) -> float:
+        """How far points of what is sampled are from those of the cells, at most, in L."""
+        return max(x.distance for x in self.pieces)
 
     @property
     def developable_share(self) -> float:
@@ -143,18 +156,33 @@ class Space:
     @property
     def uniform(self) -> Space:
         """The same pieces with the target density 1."""
-        space = Space(self.name, self.pieces, TargetDensity(), self.threads, 1.0, self.failed)
         first = replace(self.first, rows=self.first.rows.copy())
         first.rows[:, 6] = 0.0
-        space._held["first"] = first
+        target, held = TargetDensity(floor=1.0), {"first": first}
+        space = replace(self, target=target, developable=frozenset(), _held=held)
         space.__dict__.update(self._shared)
         return space
 
-    def with_floor(self, floor: float) -> Space:
-        """Return the same space with another floor of the target density."""
-        made = replace(self, floor=floor)
+    @property
+    def exact(self) -> Space:
+        """The same with the derivatives of what is sampled, which may take longer."""
+        pieces = tuple(x.exact for x in self.pieces)
+        if all(x is y for x, y in zip(pieces, self.pieces, strict=True)):
+            return self
+        made = replace(self, pieces=pieces)
         made.__dict__.update(self._shared)
         return made
+
+    def between(self, floor: float, ceiling: float = math.inf) -> Space:
+        """Return the same space with another floor and ceiling of the target density."""
+        made = replace(self, target=self.target._replace(floor=floor, ceiling=ceiling))
+        made.__dict__.update(self._shared)
+        return made
+
+    @property
+    def _densities(self) -> Array:
+        """The target densities of the first cells."""
+        return np.clip(self.first.rows[:, 6], self.target.floor, self.target.ceiling)
 
     @property
     def _shared(self) -> dict[str, object]:
@@ -178,6 +206,13 @@ class Space:
             self._held["first"] = self._first()
         return self._held["first"]
 
+    @property
+    def borders(self) -> list[BorderLine]:
+        """The borders of all pieces, without the floor."""
+        if "borders" not in self._held:
+            self._held["borders"] = border_lines(self.between(0.0))
+        return self._held["borders"]
+
     def middles(self, pieces: Indices) -> Cells:
         """Return the cell nearest to the middle of each of some pieces."""
         first, rows = self.first, []
@@ -193,18 +228,12 @@ class Space:
         return replace(first, space=self)[np.array(rows, dtype=np.int64)]
 
     def cut(self, radius: float) -> Cells:
-        """Return cells that lie within radius/√w of their places, w the target density there."""
-        first = self.first
-        lengths = first.numbers[:, [ALONG_U, ALONG_V]]
-        with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
-            rates = np.sqrt(np.maximum(first.rows[:, 6], self.floor)) / (math.sqrt(2.0) * radius)
-            parts = np.fmax(np.ceil(np.fmin(lengths * rates[:, None], MOST_CELLS)), 1.0)
-        if parts.prod(axis=1).sum() > MOST_CELLS:
-            raise InputError(
-                f"part {self.name!r} would have to be searched in more than {MOST_CELLS:.0e} "
-                "places; ask for a larger coverage or angle, or for fewer samples or normals."
-            )
-        cells, parts = replace(first, space=self), parts.astype(np.int64)
+        """Return cells that lie within radius/√w of their places, w the target density there.
+
+        And places along borders, about as far apart, as cells without an extent.
+        """
+        parts = self.parts(radius)
+        cells = replace(self.first, space=self)
         pixels = self._pixels(radius)
         many = (parts.prod(axis=1) > AT_ONCE) & ~cells.whole
         steps = np.where(many[:, None], np.ceil(np.sqrt(parts)).astype(np.int64), 1)
@@ -212,7 +241,27 @@ class Space:
             into_parts(cells, steps), pixels, np.repeat(np.arange(len(steps)), steps.prod(axis=1))
         )
         cells = into_parts(cells, -(-parts[owner] // steps[owner]))
-        return self.evaluated(cells, pixels, with_border=True)
+        return (self.evaluated(cells, pixels) + along_borders(self, radius)).sorted()
+
+    def parts(self, radius: float) -> Indices:
+        """Return into how many parts (M, 2) `cut` divides the first cells along u and v.
+
+        Raises InputError if these are too many.
+        """
+        lengths = self.first.numbers[:, [ALONG_U, ALONG_V]]
+        with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
+            rates = np.sqrt(self._densities) / (math.sqrt(2.0) * radius)
+            parts = np.fmax(np.ceil(np.fmin(lengths * rates[:, None], MOST_CELLS)), 1.0)
+        if parts.prod(axis=1).sum() > MOST_CELLS:
+            raise self.too_many(MOST_CELLS)
+        return parts.astype(np.int64)
+
+    def too_many(self, cells: float) -> InputError:
+        """Return the error that the surface would have to be searched in more places than that."""
+        return InputError(
+            f"{self.label} would have to be searched in more than {cells:.0e} places; ask for a "
+            "larger coverage or angle, or for fewer samples or normals."
+        )
 
     def cut_by_normals(self, chord: float, most: float) -> Cells:
         """Return cells whose normals are about within a chord from that at their places.
@@ -227,50 +276,37 @@ class Space:
             parts = np.maximum(np.ceil(bends / (2.0 * chord)), 1.0)
         return self.evaluated(into_parts(replace(first, space=self), parts.astype(np.int64)))
 
-    def evaluated(
-        self, cells: Cells, pixels: Indices | None = None, with_border: bool = False
-    ) -> Cells:
-        """Return those of cells that have a place inside the trim, with their rows and numbers.
-
-        With `with_border`, places next to the border are added where the inside is too narrow.
-        """
-        if len(cells) and (np.diff(cells.pieces) < 0).any():
-            cells = cells[np.argsort(cells.pieces, kind="stable")]
+    def evaluated(self, cells: Cells, pixels: Indices | None = None) -> Cells:
+        """Return those of cells that have a place inside the trim, with their rows and numbers."""
         pixels = self._fewest if pixels is None else pixels
-        cells, _ = sifted(cells, pixels)
-        cells, lost = placed(cells)
-        if with_border and len(lost):
-            cells += beside(lost, pixels)
-            cells = cells[np.argsort(cells.pieces, kind="stable")]
-        return self._known(cells)
+        cells, _ = sifted(cells.sorted(), pixels)
+        return self.known(placed(cells)[0])
 
     # --- steps ------------------------------------------------------------------------------------
 
     def _first(self) -> Cells:
         boxes = [x.boxes for x in self.pieces]
         pieces = np.repeat(np.arange(len(boxes)), [len(x) for x in boxes])
-        space = self.with_floor(0.0)
+        space = self.between(0.0)
         cells = new_cells(space, pieces, np.concatenate(boxes))
         done = [space.nothing()]
         for step in range(MOST_BENDS):
             cells.numbers[:, LIMIT] = 0.0
             cells, _ = sifted(cells, self._fewest)
             cells, lost = placed(cells)
-            cells = space._known(cells)
+            cells = space.known(cells)
             bends = cells.numbers[:, [BEND_U, BEND_V]]
             bent = (bends > FLAT).any(axis=1) & ~cells.deepest
             done.append(cells[~bent])
             cells = halved(cells[bent], bends[bent, 0] >= bends[bent, 1])
             if len(lost) and step < MOST_LOST:
                 cells += into_parts(lost, np.full((len(lost), 2), 2))
-                cells = cells[np.argsort(cells.pieces, kind="stable")]
+                cells = cells.sorted()
             elif len(lost):
-                done.append(space._known(beside(lost, self._fewest)))
+                done.append(space.known(beside(lost, self._fewest)))
             if not len(cells):
                 break
-        found = sum(done[1:], start=done[0])
-        found = found[np.argsort(found.pieces, kind="stable")]
-        return found
+        return sum(done[1:], start=done[0]).sorted()
 
     @cached_property
     def _fewest(self) -> Indices:
@@ -279,7 +315,7 @@ class Space:
     def _pixels(self, radius: float) -> Indices:
         """Return for each piece the pixels of its raster: half a radius wide, if that is enough."""
         cells, count = self.first, len(self.pieces)
-        rates = np.sqrt(np.maximum(cells.rows[:, 6], self.floor))
+        rates = np.sqrt(self._densities)
         low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
         np.minimum.at(low, cells.pieces, cells.rows[:, :3])
         np.maximum.at(high, cells.pieces, cells.rows[:, :3])
@@ -291,29 +327,46 @@ class Space:
         power = np.ceil(np.log2(np.clip(wanted, FEWEST_PIXELS, MOST_PIXELS)))
         return (2**power).astype(np.int64)
 
-    def _known(self, cells: Cells) -> Cells:
-        """Return cells, sorted by their pieces, with rows and numbers: those that are finite."""
-        target = self.target._replace(floor=self.floor)
-        ranges = list(by_piece(cells))
-        starts = [0]
-        for _, rows in ranges:
-            if rows.stop - starts[-1] >= CELLS_AT_A_TIME or rows.stop == len(cells):
-                starts.append(rows.stop)
-        ends = {rows.stop: number + 1 for number, (_, rows) in enumerate(ranges)}
-        groups = [0, *(ends[x] for x in starts[1:])]
+    def known(self, cells: Cells, *, keep: bool = False) -> Cells:
+        """Return cells, sorted by their pieces, with rows and numbers.
+
+        Those that are not finite are left out, or, with `keep`, singular.
+        """
 
         def work(first: int, last: int) -> None:
-            for group in range(first, last):
-                for k, rows in ranges[groups[group] : groups[group + 1]]:
-                    piece = self.pieces[k]
-                    jets = piece.surface.jets(*cells.places[rows].T.copy())
+            for group in groups[first:last]:
+                for k, rows in group:
+                    jets = self.pieces[k].jets(*cells.places[rows].T.copy())
                     evaluate_cells(
                         jets, cells.boxes[rows], cells.places[rows], self.unit, self.centre,
-                        target, cells.rows[rows], cells.numbers[rows],
+                        self.pieces[k].finest, self._target_of(k),
+                        cells.rows[rows], cells.numbers[rows],
                     )  # fmt: skip
 
-        for _ in over_ranges(work, len(groups) - 1, 1, self.threads):
+        cells = replace(cells, rows=np.empty_like(cells.rows), numbers=cells.numbers.copy())
+        groups = list(_groups(cells))
+        for _ in over_ranges(work, len(groups), 1, self.threads):
             pass
         known = np.concatenate([cells.rows, cells.numbers], axis=1)
-        lost = np.flatnonzero(~np.isfinite(known).all(axis=1))
-        return cells[np.setdiff1d(np.arange(len(cells)), lost)] if len(lost) else cells
+        finite = np.asarray(np.isfinite(known).all(axis=1))
+        if keep:
+            cells.rows[~finite] = 0.0
+            return cells
+        return cells if finite.all() else cells[finite]
+
+    def _target_of(self, piece: int) -> TargetDensity:
+        flat = piece in self.developable
+        return self.target._replace(gauss_weight=0.0) if flat else self.target
+
+
+def _groups(cells: Cells) -> Iterator[list[tuple[int, slice]]]:
+    """Yield pieces and rows of cells, sorted by pieces: about CELLS_AT_A_TIME at a time."""
+    group, count = [], 0
+    for k, rows in by_piece(cells):
+        for first in range(rows.start, rows.stop, CELLS_AT_A_TIME):
+            last = min(first + CELLS_AT_A_TIME, rows.stop)
+            group, count = [*group, (k, slice(first, last))], count + last - first
+            if count >= CELLS_AT_A_TIME:
+                yield group
+                group, count = [], 0
+    yield group

@@ -11,11 +11,11 @@ import math
 from ...generated.jet import at_jet
 from ...generated.patch import envelope, tangents
 from ...generated.vectors import Vector
-from ...runtime.base.tolerances import VANISHING
-from ...runtime.kernels.jit import inline, jit
-from ...runtime.kernels.refine import patch_of_jet
-from ...runtime.kernels.sizing import density_of
-from ...runtime.kernels.vectors import dot, length, set_row
+from ..base.tolerances import VANISHING
+from .jit import inline, jit
+from .refine import patch_of_jet
+from .sizing import density_of
+from .vectors import dot, length, set_row
 
 __all__ = ["evaluate_cells"]
 
@@ -30,7 +30,7 @@ def distance_of(v, w):
 
 
 @jit
-def evaluate_cells(jets, boxes, places, size, centre, target, rows, numbers):
+def evaluate_cells(jets, boxes, places, size, centre, finest, target, rows, numbers):
     """Write what is known of cells with boxes (M, 4), from 2-jets (M, 6, 3) at places (M, 2).
 
     Boxes are u0, v0, u1, v1. Lengths are multiplied by `size`, and points are relative to a centre.
@@ -39,7 +39,7 @@ def evaluate_cells(jets, boxes, places, size, centre, target, rows, numbers):
     numbers (M, 8): a radius around the point that holds the cell; the chord between the normal and
     others of the cell, 2 where there is none; the lengths of the cell along u and v; its bends
     along u and v, relative to these; its area; the radius of curvature below which curvature does
-    not count: the width of the cell, if it is 0 on entry.
+    not count: the width of the cell, if it is 0 on entry, or of one whose sides are `finest` (2,).
     """
     for k in range(jets.shape[0]):
         du = boxes[k, 2] - boxes[k, 0]
@@ -66,7 +66,13 @@ def evaluate_cells(jets, boxes, places, size, centre, target, rows, numbers):
             else:
                 chord = 2.0
         radius *= BEYOND
-        limit = numbers[k, 7] if numbers[k, 7] > 0.0 else min(along_u, along_v)
+        limit = numbers[k, 7]
+        if limit == 0.0:
+            wide = max(finest[0] / du, 1.0)
+            high = max(finest[1] / dv, 1.0)
+            across_u = (along_u + length(patch.a) * (wide - 1.0)) * wide
+            across_v = (along_v + length(patch.c) * (high - 1.0)) * high
+            limit = min(across_u, across_v)
         for x in range(3):
             rows[k, x] = (jets[k, 0, x] - centre[x]) * size
         set_row(rows[:, 3:6], k, n if regular else Vector(0.0, 0.0, 0.0))

@@ -1,4 +1,4 @@
-"""Which cells are inside the trims of their faces, and where in them."""
+"""Which cells are inside the trims of their pieces, and where in them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from .cells import Array, Cells, Flags, Indices, by_piece, new_cells
-from .face_pieces import FacePiece
+from .piece import Piece
 
 __all__ = ["beside", "placed", "sifted"]
 
@@ -66,7 +66,7 @@ def beside(lost: Cells, pixels: Indices) -> Cells:
     return new_cells(lost.space, np.concatenate(pieces), np.concatenate(boxes), True)
 
 
-def _subplaces(piece: FacePiece, boxes: Array) -> tuple[Flags, Array]:
+def _subplaces(piece: Piece, boxes: Array) -> tuple[Flags, Array]:
     """Return which boxes (M, 4) have a subplace inside, and the one in the middle of these."""
     steps = (np.arange(SUB) + 0.5) / SUB
     grid = np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1).reshape(-1, 2)

@@ -1,0 +1,16 @@
+"""Dividing a count."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["apportioned"]
+
+
+def apportioned(count: int, weights: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Divide a count in proportion to weights (k,), not all 0; the largest fractions round up."""
+    shares = weights * (count / weights.sum())
+    parts = np.floor(shares).astype(np.int64)
+    parts[np.argsort(parts - shares, kind="stable")[: count - int(parts.sum())]] += 1
+    return parts

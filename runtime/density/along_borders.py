@@ -1,0 +1,142 @@
+"""Places along the borders of pieces, as candidates for samples: cells without an extent."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from ..base.trees import tree_of
+from ..domain.domain import brought_inside
+from ..kernels.sizing import TargetDensity
+from .cells import LIMIT, Array, Cells, Evaluator, Indices, by_piece, new_cells
+from .piece import Piece
+
+__all__ = ["BorderLine", "along_borders", "border_lines", "points_of"]
+
+# Borders are measured at places that are this part of the domain apart, or less.
+FINE = 1.0 / 48.0
+# The distance of places from the border, relative to the domain: only inside they have a surface.
+BESIDE = 1e-6
+# The extent of their cells, relative to the domain.
+POINT = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class BorderLine:
+    """A closed polygon of the border of a piece: places (k, 2), the first one repeated.
+
+    rows (k, 8) and limits (k,) are those of cells there.
+    """
+
+    piece: int
+    places: Array
+    rows: Array
+    limits: Array
+
+
+class Bordered(Evaluator, Protocol):
+    """What has borders."""
+
+    @property
+    def first(self) -> Cells:
+        """Cells that it is made of."""
+        ...
+
+    @property
+    def borders(self) -> list[BorderLine]:
+        """The borders of all pieces."""
+        ...
+
+    @property
+    def target(self) -> TargetDensity:
+        """The target density."""
+        ...
+
+
+def border_lines(space: Bordered) -> list[BorderLine]:
+    """Return the borders of all pieces that have a trim of polygons."""
+    found = []
+    for k, rows in by_piece(space.first):
+        piece, cells = space.pieces[k], space.first[rows]
+        if piece.trim is None:
+            continue
+        tree = tree_of(cells.places / piece.sizes)
+        for polygon in piece.polygons:
+            places = _divided(np.concatenate([polygon, polygon[:1]]), piece.sizes)
+            inside = np.clip(_wrapped(piece, places), *np.array(piece.domain).T)
+            made = points_of(space, np.full(len(places), k), inside)
+            made.numbers[:, LIMIT] = cells.numbers[tree.query(inside / piece.sizes)[1], LIMIT]
+            known = space.known(made, keep=True)
+            found.append(BorderLine(k, places, known.rows, known.numbers[:, LIMIT]))
+    return found
+
+
+def along_borders(space: Bordered, step: float, turn: float = math.inf) -> Cells:
+    """Return places inside, beside borders, that are about step/√w apart, w the target density.
+
+    And normals turn by about `turn` between them at most, in radians.
+    """
+    pieces, places, limits = [], [np.empty((0, 2))], [np.empty(0)]
+    for line in space.borders:
+        piece, at = space.pieces[line.piece], _spaced(line, space.target, step, turn)
+        number = np.minimum(at.astype(np.int64), len(line.places) - 2)
+        steps = np.diff(line.places, axis=0)
+        on = line.places[number] + (at - number)[:, None] * steps[number]
+        along = steps[number] / piece.sizes
+        along /= np.maximum(np.hypot(*along.T), np.finfo(np.float64).tiny)[:, None]
+        across = BESIDE * piece.sizes * np.stack([-along[:, 1], along[:, 0]], axis=1)
+        low, high = np.array(piece.domain).T
+        for side in (_wrapped(piece, on + across), _wrapped(piece, on - across)):
+            inside = ((side > low) & (side < high)).all(axis=1)
+            inside[inside] = piece.contains(side[inside])
+            pieces.append(np.full(int(inside.sum()), line.piece))
+            places.append(side[inside])
+            limits.append(line.limits[number[inside]])
+    made = points_of(
+        space, np.concatenate([np.empty(0, np.int64), *pieces]), np.concatenate(places)
+    )
+    made.numbers[:, LIMIT] = np.concatenate(limits)
+    return space.known(made)
+
+
+def points_of(space: Evaluator, pieces: Indices, places: Array) -> Cells:
+    """Return cells without an extent at places (k, 2) of pieces (k,), not evaluated."""
+    extents = POINT * space.sizes[pieces]
+    return new_cells(
+        space, pieces, np.concatenate([places - extents, places + extents], axis=1), True
+    )
+
+
+def _spaced(line: BorderLine, target: TargetDensity, step: float, turn: float) -> Array:
+    """Return where places are: 1.5 is between the second and the third place of the line."""
+    rates = np.sqrt(np.clip(line.rows[:, 6], target.floor, target.ceiling))
+    lengths = np.linalg.norm(np.diff(line.rows[:, :3], axis=0), axis=1)
+    costs = lengths * np.maximum(rates[1:], rates[:-1]) / step
+    normals = line.rows[:, 3:6]
+    chords = np.linalg.norm(np.diff(normals, axis=0), axis=1)
+    regular = np.asarray(normals.any(axis=1))
+    turns = np.where(regular[1:] & regular[:-1], chords, 0.0) / turn
+    total = np.concatenate([[0.0], np.cumsum(np.maximum(costs, turns))])
+    number = math.ceil(total[-1])
+    return np.interp(total[-1] * (np.arange(number) + 0.5) / number, total, np.arange(len(total)))
+
+
+def _divided(polygon: Array, sizes: Array) -> Array:
+    """Return a line (k, 2) with further places, such that steps are FINE at most."""
+    steps = np.diff(polygon, axis=0)
+    parts = np.maximum(np.ceil(np.abs(steps / sizes).max(axis=1) / FINE), 1.0).astype(np.int64)
+    owner = np.repeat(np.arange(len(steps)), parts)
+    number = np.arange(len(owner)) - (np.cumsum(parts) - parts)[owner]
+    inner = polygon[owner] + (number / parts[owner])[:, None] * steps[owner]
+    return np.concatenate([inner, polygon[-1:]])
+
+
+def _wrapped(piece: Piece, places: Array) -> Array:
+    """Return places less whole periods."""
+    if piece.trim is None:
+        return places
+    u, v = places.T
+    return np.stack(brought_inside(u, v, piece.domain, piece.trim.boundary), axis=1)

@@ -1,0 +1,152 @@
+"""A smooth piece of what is sampled: its derivatives, its border, and boxes of its parameters."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from ..domain.domain import Domain
+from ..domain.trim import Trim
+from ..place.on_spline import OnSpline
+from .borders import Border
+
+__all__ = ["Piece"]
+
+Array = NDArray[np.float64]
+
+# The distance from the border of places beside it, relative to the domain.
+BESIDE = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Piece(ABC):
+    """A smooth surface on a rectangle of parameters, or a part of it: a surface, or a face."""
+
+    @property
+    @abstractmethod
+    def label(self) -> str:
+        """What it is called in messages."""
+
+    @property
+    @abstractmethod
+    def domain(self) -> Domain:
+        """The rectangle of the parameters."""
+
+    @property
+    @abstractmethod
+    def trim(self) -> Trim | None:
+        """The part of the domain that belongs to it, None if that is all of it."""
+
+    @cached_property
+    @abstractmethod
+    def size(self) -> float:
+        """The root of the area inside the trim, in L."""
+
+    @cached_property
+    @abstractmethod
+    def boxes(self) -> Array:
+        """Boxes (M, 4) that the domain is made of, in each of which the surface is smooth."""
+
+    @property
+    @abstractmethod
+    def polygons(self) -> Sequence[Array]:
+        """The closed polygons (k, 2) of its trim, the first point of which is not repeated."""
+
+    @abstractmethod
+    def jets(self, u: Array, v: Array) -> Array:
+        """Return 2-jets (k, 6, 3) at parameters, from which candidates follow."""
+
+    @abstractmethod
+    def geometries(self, threads: int | None) -> list[OnSpline]:
+        """Return what is searched for points with a normal; GaussmapError if it has no spline."""
+
+    @abstractmethod
+    def fields_at(
+        self, uv: Array, rows: Array, fields: Sequence[str], dtype: DTypeLike
+    ) -> dict[str, NDArray[Any]]:
+        """Return fields of samples at parameters (k, 2); rows (k, 8) are those of candidates."""
+
+    def solid_angle(self, density: float) -> float | None:
+        """Return the solid angle of the normals of what `density` normals per steradian sample.
+
+        None if it follows from K.
+        """
+        return None
+
+    @property
+    def indices(self) -> Mapping[str, int]:
+        """Fields that are the same for all of its samples, and the number of its first patch."""
+        return MappingProxyType({})
+
+    @property
+    def distance(self) -> float:
+        """How far points of what is sampled are from those of `jets`, at most."""
+        return 0.0
+
+    @property
+    def exact(self) -> Piece:
+        """The piece with the derivatives of what is sampled, which may take longer."""
+        return self
+
+    @property
+    def finest(self) -> Array:
+        """The lengths (2,) of parameters below which its curvature means nothing."""
+        return np.zeros(2)
+
+    @property
+    def sizes(self) -> Array:
+        """The lengths (2,) of the domain."""
+        low, high = np.array(self.domain).T
+        return high - low
+
+    @property
+    def middle(self) -> Array:
+        """The parameters (2, 1) of the middle of the domain."""
+        return np.array(self.domain).mean(axis=1, keepdims=True)
+
+    def border(self, n: int) -> Border | None:
+        """Return the border on a raster of n × n pixels, None if there is none."""
+        if self.trim is None:
+            return None
+        if n not in self._borders:
+            self._borders[n] = Border(self.trim, self.domain, n)
+        return self._borders[n]
+
+    @cached_property
+    def _borders(self) -> dict[int, Border]:
+        return {}
+
+    def contains(self, places: Array) -> NDArray[np.bool_]:
+        """Return which places (k, 2) are inside the trim."""
+        return (
+            np.ones(len(places), np.bool_) if self.trim is None else self.trim.contains(places, 1)
+        )
+
+    def beside_border(self, n: int) -> Array:
+        """Return places (k, 2) inside, next to the border, 1/n of the domain apart at most."""
+        found = [_beside(x, self.sizes, n) for x in self.polygons]
+        places = np.concatenate([np.empty((0, 2)), *found])
+        low, high = np.array(self.domain).T
+        places = places[((places > low) & (places < high)).all(axis=1)]
+        return places[self.contains(places)]
+
+
+def _beside(polygon: Array, sizes: Array, n: int) -> Array:
+    """Return places (k, 2) on both sides of a polygon, no farther apart than 1/n of the domain."""
+    ends = np.roll(polygon, -1, axis=0)
+    along = (ends - polygon) / sizes
+    lengths = np.hypot(*along.T)
+    parts = np.maximum(np.ceil(lengths * n), 1.0).astype(np.int64)
+    owner = np.repeat(np.arange(len(polygon)), parts)
+    number = np.arange(len(owner)) - (np.cumsum(parts) - parts)[owner]
+    places = polygon[owner] + ((number + 0.5) / parts[owner])[:, None] * (ends - polygon)[owner]
+    unit = along / np.where(lengths > 0.0, lengths, 1.0)[:, None]
+    across = BESIDE * sizes * np.stack([-unit[:, 1], unit[:, 0]], axis=1)[owner]
+    return np.concatenate([places + across, places - across])
