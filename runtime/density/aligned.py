@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from ...generated.spline import SCALE
 from ..place.on_spline import OnSpline
-from .along_borders import points_of
 from .breaks import breaks_along
+from .cells import points_of
 from .grid import Grid
 from .lines import Axis
 from .space import Space

@@ -11,17 +11,13 @@ import numpy as np
 from ..base.trees import tree_of
 from ..domain.domain import brought_inside
 from ..kernels.sizing import TargetDensity
-from .cells import LIMIT, Array, Cells, Evaluator, Indices, by_piece, new_cells
-from .piece import Piece
+from .cells import LIMIT, Array, Cells, Evaluator, by_piece, points_of
+from .piece import Piece, beside
 
-__all__ = ["BorderLine", "along_borders", "border_lines", "points_of"]
+__all__ = ["BorderLine", "along_borders", "border_lines"]
 
 # Borders are measured at places that are this part of the domain apart, or less.
 FINE = 1.0 / 48.0
-# The distance of places from the border, relative to the domain: only inside they have a surface.
-BESIDE = 1e-6
-# The extent of their cells, relative to the domain.
-POINT = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,9 +81,7 @@ def along_borders(space: Bordered, step: float, turn: float = math.inf) -> Cells
         number = np.minimum(at.astype(np.int64), len(line.places) - 2)
         steps = np.diff(line.places, axis=0)
         on = line.places[number] + (at - number)[:, None] * steps[number]
-        along = steps[number] / piece.sizes
-        along /= np.maximum(np.hypot(*along.T), np.finfo(np.float64).tiny)[:, None]
-        across = BESIDE * piece.sizes * np.stack([-along[:, 1], along[:, 0]], axis=1)
+        across = beside(steps[number], piece.sizes)
         low, high = np.array(piece.domain).T
         for side in (_wrapped(piece, on + across), _wrapped(piece, on - across)):
             inside = ((side > low) & (side < high)).all(axis=1)
@@ -100,14 +94,6 @@ def along_borders(space: Bordered, step: float, turn: float = math.inf) -> Cells
     )
     made.numbers[:, LIMIT] = np.concatenate(limits)
     return space.known(made)
-
-
-def points_of(space: Evaluator, pieces: Indices, places: Array) -> Cells:
-    """Return cells without an extent at places (k, 2) of pieces (k,), not evaluated."""
-    extents = POINT * space.sizes[pieces]
-    return new_cells(
-        space, pieces, np.concatenate([places - extents, places + extents], axis=1), True
-    )
 
 
 def _spaced(line: BorderLine, target: TargetDensity, step: float, turn: float) -> Array:

@@ -17,7 +17,7 @@ from .cover import STEP, Cover
 MARGIN = 0.02
 # Where normals are far from all others, the radii of the choice fall from this multiple on.
 FIRST = 2.0
-# Normals at neighbouring places on borders are so many times closer than the limit.
+# Along borders, normals are looked at in steps of the limit divided by this.
 STEPS = 6.0
 # The widest gaps between normals are searched down to this part of the widest radius.
 LEAST = 0.1

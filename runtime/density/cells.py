@@ -29,6 +29,7 @@ __all__ = [
     "halved",
     "into_parts",
     "new_cells",
+    "points_of",
 ]
 
 Array = NDArray[np.float64]
@@ -39,6 +40,8 @@ Flags = NDArray[np.bool_]
 RADIUS, CHORD, ALONG_U, ALONG_V, BEND_U, BEND_V, AREA, LIMIT = range(8)
 # Cells are not cut below this part of the domain of their piece, and of the size of the surface.
 DEEPEST = 2.0**-14
+# The extent of cells that stand for a place, relative to the domain of their piece.
+POINT = 1e-9
 
 
 class Evaluator(Protocol):
@@ -46,7 +49,7 @@ class Evaluator(Protocol):
 
     @property
     def pieces(self) -> tuple[Piece, ...]:
-        """The pieces (P,) of the part."""
+        """The pieces (P,) of what is sampled."""
         ...
 
     @cached_property
@@ -206,3 +209,10 @@ def new_cells(space: Evaluator, pieces: Indices, boxes: Array, whole: bool = Fal
     places = (boxes[:, :2] + boxes[:, 2:]) / 2.0
     flags = np.full(count, whole)
     return Cells(space, pieces, boxes, places, flags, np.zeros((count, 8)), np.zeros((count, 8)))
+
+
+def points_of(space: Evaluator, pieces: Indices, places: Array) -> Cells:
+    """Return cells without an extent at places (k, 2) of pieces (k,), not evaluated."""
+    extents = POINT * space.sizes[pieces]
+    boxes = np.concatenate([places - extents, places + extents], axis=1)
+    return new_cells(space, pieces, boxes, whole=True)

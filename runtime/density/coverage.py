@@ -25,7 +25,8 @@ def coverage(space: Space, points: Array, asked: float = math.inf) -> float:
 
     Points and the distance are scaled as in `Space`. This is branch and bound: cells are cut that
     may hold a point farther away than TIGHT times the farthest place, or than `asked` if no place
-    is. Where cells follow from a spline beside the surface, twice its distance from it is added.
+    is. Where cells are those of a spline, and samples on the surface, twice the distance between
+    spline and surface is added.
     Infinite if there are no points.
     """
     if len(points) == 0:

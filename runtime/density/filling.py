@@ -133,7 +133,7 @@ def _of_piece(
 
 @dataclass(frozen=True, eq=False)
 class Filling:
-    """A space as it is sampled for a request; `show_count` is called when there are more."""
+    """How a space is sampled for a request; `show_count` is called with the number of samples."""
 
     space: Space
     request: Request
@@ -200,8 +200,8 @@ class Filling:
     def _asked(self) -> float | None:
         """The coverage that is asked for as a scaled length, between rounding and the size.
 
-        Where cells follow from a spline beside the surface, twice its distance is subtracted, and
-        half of the coverage is left at least.
+        Where cells are those of a spline, and samples on the surface, twice the distance between
+        spline and surface is subtracted, and half of the coverage is left at least.
         """
         asked, space = self.request.coverage, self.space
         if asked is None:

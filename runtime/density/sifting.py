@@ -6,15 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from .cells import Array, Cells, Flags, Indices, by_piece, new_cells
+from .cells import Array, Cells, Flags, Indices, by_piece, points_of
 from .piece import Piece
 
 __all__ = ["beside", "placed", "sifted"]
 
 # Cells that the border passes are tested at SUB² places.
 SUB = 4
-# The extent of cells next to the border, relative to the domain.
-POINT = 1e-9
 
 
 def sifted(cells: Cells, pixels: Indices, owner: Indices | None = None) -> tuple[Cells, Indices]:
@@ -53,17 +51,15 @@ def placed(cells: Cells) -> tuple[Cells, Cells]:
 
 def beside(lost: Cells, pixels: Indices) -> Cells:
     """Return cells without an extent next to the border, where cells have no place inside."""
-    pieces, boxes = [np.empty(0, dtype=np.int64)], [np.empty((0, 4))]
+    pieces, places = [np.empty(0, dtype=np.int64)], [np.empty((0, 2))]
     for k, rows in by_piece(lost):
         n, piece = int(pixels[k]), lost.space.pieces[k]
         border = piece.border(n)
         assert border is not None
-        places = piece.beside_border(2 * n)
-        places = places[border.near(lost.boxes[rows], places)]
-        extent = POINT * piece.sizes
-        boxes.append(np.concatenate([places - extent, places + extent], axis=1))
-        pieces.append(np.full(len(places), k))
-    return new_cells(lost.space, np.concatenate(pieces), np.concatenate(boxes), True)
+        found = piece.beside_border(2 * n)
+        places.append(found[border.near(lost.boxes[rows], found)])
+        pieces.append(np.full(len(places[-1]), k))
+    return points_of(lost.space, np.concatenate(pieces), np.concatenate(places))
 
 
 def _subplaces(piece: Piece, boxes: Array) -> tuple[Flags, Array]:

@@ -17,7 +17,7 @@ from ..domain.trim import Trim
 from ..kernels.sizing import TargetDensity
 from ..place.on_spline import OnSpline
 from ..spline.developable import curved_solid_angle
-from .piece import Piece
+from .piece import Piece, boxes_between
 from .space import Space
 
 __all__ = ["SurfacePiece", "space_of"]
@@ -69,13 +69,10 @@ class SurfacePiece(Piece):
     def boxes(self) -> Array:
         """Boxes (M, 4) between lines of cells."""
         u0, v0, du, dv = self.geometry.spline.frame
-        u, v = (
+        return boxes_between(*(
             low + step * np.unique(np.linspace(0, cells, BOXES + 1).round())
             for low, step, cells in zip((u0, v0), (du, dv), self.geometry.cells, strict=True)
-        )
-        low = np.stack(np.meshgrid(u[:-1], v[:-1], indexing="ij"), axis=-1)
-        high = np.stack(np.meshgrid(u[1:], v[1:], indexing="ij"), axis=-1)
-        return np.concatenate([low, high], axis=-1).reshape(-1, 4)
+        ))  # fmt: skip
 
     @property
     def polygons(self) -> Sequence[Array]:
@@ -84,7 +81,7 @@ class SurfacePiece(Piece):
 
     def jets(self, u: Array, v: Array) -> Array:
         """Return 2-jets (k, 6, 3) at parameters."""
-        if self.exactly or self._is_exact:
+        if self._is_exact:
             return self.geometry.jets(u, v)
         return self.geometry.jets_of_spline(u, v)
 

@@ -15,7 +15,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from ...runtime.base.errors import GaussmapError, GaussmapWarning
 from ...runtime.base.scales import scale_to_one
-from ...runtime.density.piece import Piece
+from ...runtime.density.piece import Piece, boxes_between
 from ...runtime.domain.domain import Domain
 from ...runtime.domain.trim import Trim
 from ...runtime.kernels.refine import evaluate_jets
@@ -78,10 +78,8 @@ class FacePiece(Piece):
     @cached_property
     def boxes(self) -> Array:
         """Boxes (M, 4) that the domain is made of, in each of which the surface is smooth."""
-        lines = [_lines(self.face, axis, self.surface.domain[axis]) for axis in (0, 1)]
-        low = np.stack(np.meshgrid(*(x[:-1] for x in lines), indexing="ij"), axis=-1)
-        high = np.stack(np.meshgrid(*(x[1:] for x in lines), indexing="ij"), axis=-1)
-        return np.concatenate([low, high], axis=-1).reshape(-1, 4)
+        u, v = (_lines(self.face, axis, self.surface.domain[axis]) for axis in (0, 1))
+        return boxes_between(u, v)
 
     @property
     def polygons(self) -> list[Array]:
