@@ -15,7 +15,7 @@ DEM = from matplotlib.cbook import get_sample_data as f; \
 TERRAIN = "$$($(BIN)/python -c '$(DEM)'):elevation" --spacing 74.5 -92.5
 
 .DEFAULT_GOAL := help
-.PHONY: help install demo generate check-generated warm test coverage cad-tests verify bench bench-guard bench-record bench-peers \
+.PHONY: help install demo generate check-generated warm kernels check-kernels test coverage cad-tests verify bench bench-guard bench-record bench-peers \
 	quality parts-quality cold-start batch operations lint typecheck formulas orders errata curves figures gallery meshes registration \
 	alignment docs clean
 
@@ -51,8 +51,19 @@ generate: $(READY) ## derive all formulas and write generated/
 check-generated: $(READY) ## show a diff and fail if generated/ is stale
 	$(BIN)/python -m gaussmap.symbolic --check
 
-warm: $(READY) ## compile all kernels ahead, for all processes that come
-	$(GAUSSMAP) warm
+warm: $(READY) ## compile all kernels into compiled/, as for a wheel, unless they are there
+	$(BIN)/python -m gaussmap.runtime.machine_code.building
+
+# What `gaussmap warm` and the quick tests compile, from an empty folder.
+LISTED := $(CURDIR)/out/kernels
+kernels: $(READY) ## list the kernels again that a wheel has (runtime/machine_code/signatures.json)
+	rm -rf $(LISTED)
+	GAUSSMAP_KERNELS=0 NUMBA_CACHE_DIR=$(LISTED) $(GAUSSMAP) warm
+	GAUSSMAP_KERNELS=0 NUMBA_CACHE_DIR=$(LISTED) $(MAKE) test
+	$(BIN)/python -m gaussmap.runtime.machine_code.listing --write $(LISTED)/kernels-*
+
+check-kernels: $(READY) ## fail if the tests compiled kernels here that a wheel lacks
+	$(BIN)/python -m gaussmap.runtime.machine_code.listing
 
 test: $(READY) ## run the tests, but for those that are slow and seldom fail
 	$(BIN)/python -m pytest -q -m "not slow" --numprocesses auto --dist worksteal

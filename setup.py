@@ -1,15 +1,54 @@
-"""The packages of the wheel: the root of the repository is `gaussmap`, folder X is `gaussmap.X`.
+"""The packages of the wheel, and the machine code of its kernels.
 
-pyproject.toml says everything else; its `packages.find` cannot put a name in front.
+The root of the repository is `gaussmap`, folder X is `gaussmap.X`: `packages.find` of
+pyproject.toml, which says everything else, cannot put a name in front. Kernels are compiled as C
+extensions are; GAUSSMAP_KERNELS=0 leaves them to the first calls, in a wheel for all platforms.
 """
 
+import os
+import shutil
+import subprocess
+import sys
+from contextlib import suppress
+from pathlib import Path
+
 from setuptools import find_namespace_packages, setup
+from setuptools.command.build_py import build_py
+from setuptools.dist import Distribution
 
 FOLDERS = ("generated", "runtime", "runtime.*", "symbolic", "symbolic.*", "tools", "tools.*")
+WANTED = os.environ.get("GAUSSMAP_KERNELS") != "0"
+
+
+class BuildKernels(build_py):
+    """Compile kernels in the folder of which the wheel is made; an editable package has none."""
+
+    def run(self) -> None:
+        """Copy modules, then compile what is not up to date in compiled/."""
+        folder = Path(self.build_lib).resolve()
+        shutil.rmtree(folder / "gaussmap", ignore_errors=True)  # modules of an earlier build
+        super().run()
+        if WANTED and not self.editable_mode:
+            with suppress(FileNotFoundError):
+                shutil.copytree("compiled", folder / "gaussmap" / "compiled")
+            command = [sys.executable, "-m", "gaussmap.runtime.machine_code.building"]
+            environment = os.environ | {"PYTHONPATH": str(folder)}
+            subprocess.run(command, env=environment, cwd=folder, check=True)
+
+
+class WithKernels(Distribution):
+    """A wheel with machine code is for one Python and one platform."""
+
+    def has_ext_modules(self) -> bool:
+        """Return whether there is machine code."""
+        return WANTED
+
 
 setup(
+    distclass=WithKernels,
+    cmdclass={"build_py": BuildKernels},
     packages=[
         "gaussmap",
         *(f"gaussmap.{name}" for name in find_namespace_packages(include=FOLDERS)),
-    ]
+    ],
 )

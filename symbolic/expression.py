@@ -42,8 +42,10 @@ def kernel_source(h: sp.Expr, domain: Boolean | bool = True) -> str:
     points (k, 3), Hessians (k, 3, 3).
 
     `h` and `domain` are in the real symbols n_x, n_y, n_z. Raises NotImplementedError for functions
-    that `math` does not have.
+    that `math` does not have, and for sums over an index.
     """
+    if h.has(sp.Sum, sp.Product):
+        raise NotImplementedError("sums and products over an index")
     condition = f"inside[row] = {source_of(cast(sp.Expr, sp.sympify(domain)))}"
     loop = row_loop(branch(_exact(h)), {"n": (n,)}, {"x": (x,), "hessian": ()}, condition)
     body = textwrap.indent(loop, "    ")

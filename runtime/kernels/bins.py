@@ -6,7 +6,7 @@ The directions may first be mapped by a linear map (3, 3), the frame.
 from __future__ import annotations
 
 from ...generated.vectors import Vector
-from .jit import inline, jit, loop
+from ..machine_code.jit import inline, jit, loop
 from .vectors import row_vector
 
 __all__ = [

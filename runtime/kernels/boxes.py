@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from .jit import inline, loop
+from ..machine_code.jit import inline, loop
 from .strips import AXIS, BOX, ERRORS, ONE_VECTOR, SINE, UNIT, put_box
 from .tile import STEP, vector_in
 

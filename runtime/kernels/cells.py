@@ -12,7 +12,7 @@ from ...generated.jet import at_jet
 from ...generated.patch import envelope, tangents
 from ...generated.vectors import Vector
 from ..base.tolerances import VANISHING
-from .jit import inline, jit
+from ..machine_code.jit import inline, jit
 from .refine import patch_of_jet
 from .sizing import density_of
 from .vectors import dot, length, set_row

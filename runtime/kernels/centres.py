@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from ...generated.vectors import Vector
+from ..machine_code.jit import jit, loop
 from .hash_grids import DENSITY
-from .jit import jit, loop
 
 __all__ = ["link_cells", "move_to_centres"]
 

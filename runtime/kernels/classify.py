@@ -13,7 +13,7 @@ import numpy as np
 from ...generated.patch import forms, parameters
 from ...generated.vectors import Vector
 from ..base.tolerances import ACCURATE
-from .jit import inline, loop
+from ..machine_code.jit import inline, loop
 from .patch import normal_of_patch
 from .vectors import dot
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ...generated.patch import control_normals
 from ...generated.vectors import Vector
-from .jit import jit, loop
+from ..machine_code.jit import jit, loop
 from .patch import patch_vectors, place_of
 from .vectors import dot, length, row_vector, set_row
 

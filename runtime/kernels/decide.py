@@ -15,7 +15,7 @@ import numpy as np
 from ...generated.patch import eliminated_forms, linear_forms, polar_forms
 from ...generated.spline import NEIGHBOURS, triangle
 from ...generated.vectors import Patch, Vector
-from .jit import inline, jit, loop
+from ..machine_code.jit import inline, jit, loop
 from .patch import EAST, NORTH, SOUTH, SOUTHEAST, SOUTHWEST, WEST, place_of, vector_at
 from .vectors import row_vector
 from .wide_integers import MANTISSA, rounded, wide

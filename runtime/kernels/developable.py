@@ -7,7 +7,7 @@ compile, is a kernel of its own.
 from __future__ import annotations
 
 from ...generated.patch import control_normals, forms, parabolic_cubic
-from .jit import jit, loop
+from ..machine_code.jit import jit, loop
 from .patch import normal_of_patch, patch_vectors, place_of
 from .vectors import largest_component, length
 

@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 from ...generated.icosahedron import CORNER_PLACES, EDGE_PLACES
 from ...generated.vectors import Vector
 from ..base.tolerances import ACCURATE
+from ..machine_code.jit import long_vectors, loop
 from .bins import nearest_bin
 from .boxes import box_in, box_on_face, may_reach
 from .classify import NO, UNDECIDED, YES, code_of
 from .icosphere import row_start
-from .jit import long_vectors, loop
 from .runs import NO_FACE, ROW, SIZE
 from .sort import insertion_sort
 from .strips import AXIS, BOUND, SINE, patch_in

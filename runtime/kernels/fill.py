@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .jit import inline, jit, loop
+from ..machine_code.jit import inline, jit, loop
 from .tile import NORMAL, STEP, TILE, fill_tile, load_patch, put
 from .vectors import row_vector
 

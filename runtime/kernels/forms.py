@@ -10,7 +10,7 @@ from ...generated.jet import forms_at_jet
 from ...generated.patch import envelope, tangents
 from ...generated.spline import CORNERS, SCALE
 from ...generated.vectors import Patch
-from .jit import inline, jit, loop
+from ..machine_code.jit import inline, jit, loop
 from .patch import patch_vectors, vector_at
 from .refine import patch_of_jet
 from .spline import locate

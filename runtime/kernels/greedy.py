@@ -11,8 +11,8 @@ import math
 import numpy as np
 
 from ...generated.vectors import Vector
+from ..machine_code.jit import inline, jit, loop
 from .hash_grids import CELL, DENSITY, NORMAL, SQUARE, bucket_of
-from .jit import inline, jit, loop
 from .vectors import dot, row_vector
 
 __all__ = ["choose_far", "update_distances"]

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .jit import inline, jit
+from ..machine_code.jit import inline, jit
 
 __all__ = [
     "CELL",

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated.icosahedron import CORNER_PLACES, EDGE_PLACES, LINES, PHI
-from .jit import inline, jit, long_vectors, loop
+from ..machine_code.jit import inline, jit, long_vectors, loop
 from .tile import STEP, TILE
 from .vectors import whole_vectors
 

@@ -6,7 +6,7 @@ import math
 
 from ...generated.jet import at_jet
 from ..base.tolerances import VANISHING
-from .jit import jit
+from ..machine_code.jit import jit
 from .refine import patch_of_jet
 from .vectors import dot
 

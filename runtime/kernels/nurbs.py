@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated.rational import rational_jet
-from .jit import jit, loop
+from ..machine_code.jit import jit, loop
 from .vectors import row_vector, set_row
 
 __all__ = ["Net", "Scratch", "jets", "positions"]

@@ -11,7 +11,7 @@ import numpy as np
 from ...generated.patch import curvature_at, envelope, tangents
 from ...generated.spline import NEIGHBOURS, triangle
 from ...generated.vectors import Patch, Vector
-from .jit import inline, jit, loop
+from ..machine_code.jit import inline, jit, loop
 from .vectors import length, set_row
 
 __all__ = [

@@ -17,7 +17,7 @@ from ...generated.jet import newton as newton_of_jet
 from ...generated.patch import tangents
 from ...generated.vectors import Patch, Vector
 from ..base.tolerances import NORMAL_ERROR, VANISHING
-from .jit import inline, jit
+from ..machine_code.jit import inline, jit
 from .vectors import dot, row_vector, set_jet, set_row
 
 __all__ = [

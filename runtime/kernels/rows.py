@@ -16,7 +16,7 @@ from ...generated.icosahedron import (
     LENGTHS,
     STRETCHES,
 )
-from .jit import inline, loop
+from ..machine_code.jit import inline, loop
 from .vectors import VECTOR
 from .windows import bounding_box, face_window, map_cone, set_empty, spans_of_hull
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..machine_code.jit import inline, jit, loop
 from .classify import UNDECIDED, YES
 from .icosphere import ZERO, row_start, write_normals
-from .jit import inline, jit, loop
 from .tile import STEP, TILE, fill_tile, load_patch
 from .vectors import whole_vectors
 

@@ -17,10 +17,10 @@ from ...generated.icosahedron import FACES, PHI, POSITIONS
 from ...generated.patch import eliminated_forms, linear_forms
 from ...generated.vectors import Vector
 from ..base.tolerances import ACCURATE, LATTICE_ERROR
+from ..machine_code.jit import inline, jit, loop
 from .classify import NO, UNDECIDED, YES, classify, count_undecided, look_again
 from .few import NO_STARTS, Few, classify_few, store_few_runs
 from .icosphere import ONE, ZERO, write_line
-from .jit import inline, jit, loop
 from .rows import FaceMemory, border_points, count_points, points_inside
 from .runs import store_border, store_runs, store_undecided
 from .search import FEW, Coefficients, Found

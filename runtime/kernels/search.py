@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..machine_code.jit import inline, jit, loop
 from .classify import UNDECIDED, YES, classify, count_undecided, look_again
 from .few import Few, classify_few, copy_few
-from .jit import inline, jit, loop
 from .sort import pack_hits, store_sorted
 from .strips import AXIS, BOUND, FLAT, SINE, Polyhedron, Strip, patch_in, strip_of
 from .tile import vector_in

@@ -10,7 +10,7 @@ import math
 from typing import NamedTuple
 
 from ...generated.patch import largest_curvature
-from .jit import inline
+from ..machine_code.jit import inline
 
 __all__ = ["TargetDensity", "density_of"]
 

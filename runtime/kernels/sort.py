@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .jit import inline, jit, loop
+from ..machine_code.jit import inline, jit, loop
 
 __all__ = ["insertion_sort", "merge_hits", "pack_hits", "store_sorted"]
 

@@ -13,7 +13,7 @@ from ...generated.spline import (
     coefficient_from_vertices,
     control_net,
 )
-from .jit import inline, jit
+from ..machine_code.jit import inline, jit
 from .patch import normal_of_patch, patch_vectors, place_of, point_of_patch, vector_at
 from .vectors import set_row
 

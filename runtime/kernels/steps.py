@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from .jit import inline, jit, loop
+from ..machine_code.jit import inline, jit, loop
 
 __all__ = ["shared_steps"]
 

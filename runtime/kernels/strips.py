@@ -19,9 +19,9 @@ from ...generated.patch import control_normals
 from ...generated.spline import triangle
 from ...generated.vectors import Patch, Vector
 from ..base.tolerances import ANGLE_ERROR, FORM_ERROR, SHORT_CONTROL_NORMAL
+from ..machine_code.jit import inline, loop
 from .cone import tangent_bounds
 from .developable import may_be_developable
-from .jit import inline, loop
 from .patch import place_of, vector_at
 from .tile import STEP, TILE, put, vector_in
 from .vectors import dot, length

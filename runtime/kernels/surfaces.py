@@ -7,7 +7,7 @@ from functools import cache
 
 from ...generated.surface_jets import JETS
 from ...generated.surfaces import CATALOGUE
-from .jit import jit
+from ..machine_code.jit import jit
 
 __all__ = ["jets", "positions"]
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ...generated.patch import sample
 from ...generated.spline import CORNERS, SCALE
 from ...generated.vectors import Patch, Vector
-from .jit import jit, long_vectors, loop
+from ..machine_code.jit import jit, long_vectors, loop
 from .patch import (
     curvatures_of_patch,
     normal_of_patch,

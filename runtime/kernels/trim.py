@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated.spline import CORNERS
-from .jit import inline, jit, loop
+from ..machine_code.jit import inline, jit, loop
 from .patch import place_of
 from .spline import locate
 

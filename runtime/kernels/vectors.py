@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from ...generated.vectors import Vector
-from .jit import inline, loop
+from ..machine_code.jit import inline, loop
 
 __all__ = [
     "VECTOR",

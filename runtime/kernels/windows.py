@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated.vectors import Vector
+from ..machine_code.jit import inline, loop
 from .bins import mapped, nearest_bin, on_face
-from .jit import inline, loop
 from .strips import AXIS, ERRORS, ONE_VECTOR, SINE, UNIT
 from .tile import STEP, vector_in
 from .vectors import length, row_vector, set_row, whole_vectors

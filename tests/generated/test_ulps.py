@@ -27,7 +27,7 @@ import numpy as np
 import pytest
 from gaussmap.generated import patch, support_function
 from gaussmap.generated.vectors import Patch, Vector
-from gaussmap.runtime.kernels.jit import jit
+from gaussmap.runtime.machine_code.jit import jit
 from gaussmap.symbolic import formulas
 from gaussmap.symbolic.emit import arguments
 from gaussmap.symbolic.emit import grouped as outputs_in_groups

@@ -16,7 +16,7 @@ from typing import Any
 from ... import __version__
 from ...runtime.base.errors import FileError, InputError, shown
 from ...runtime.base.extras import from_extra
-from ...runtime.kernels.jit import digest
+from ...runtime.machine_code.sources import digest
 from .folder import SETTINGS
 from .inputs import Input
 from .plan import Plan

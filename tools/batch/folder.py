@@ -26,6 +26,7 @@ from typing import IO, Annotated, Any
 
 from ... import __version__
 from ...runtime.base.errors import FileError, GaussmapError, InputError
+from ...runtime.machine_code.sources import digest
 from ...runtime.samples.fields import COLUMNS, EDGE_NAMES
 from ..files.declared import check_entries, names_among, one_of, within
 from ..files.paths import PathLike, atomic_path, checked_path, reason_of
@@ -112,8 +113,6 @@ class Settings:
         files: str | None = None,
     ) -> Settings:
         """Return settings for samples that this version of the package computes."""
-        from ...runtime.kernels.jit import digest  # Numba, which reading a data set does without
-
         how = fields, dtype, compression, parts_per_shard, files
         # As they are read again: tuples become lists.
         return cls.from_json(cls(asked, *how, __version__, digest(), FORMAT).to_json())

@@ -18,7 +18,7 @@ from ...runtime.base.compiling import NOTICE
 from ...runtime.base.errors import FileError, GaussmapWarning, InputError
 from ...runtime.directions import fibonacci, icosphere
 from ...runtime.fitting.fit import fit
-from ...runtime.kernels.jit import cache_folder
+from ...runtime.machine_code.kept import kept_folder
 from ...runtime.sample import sample
 from ...runtime.samples.samples import Samples
 from ...runtime.stream import sample_stream
@@ -61,7 +61,7 @@ def run(options: SimpleNamespace) -> None:
 
     if config.DISABLE_JIT:  # pyright: ignore[reportAttributeAccessIssue]
         raise InputError("NUMBA_DISABLE_JIT is set: nothing is compiled; unset it.")
-    folder = cache_folder()
+    folder = kept_folder()
     if folder is None:
         raise FileError(
             "no folder for compiled kernels can be written; set NUMBA_CACHE_DIR to one that can."

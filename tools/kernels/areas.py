@@ -5,8 +5,8 @@ from __future__ import annotations
 from ...generated.mesh import edge_over_surface
 from ...generated.patch import NODE, power_form, tangents
 from ...generated.vectors import Vector
-from ...runtime.kernels.jit import inline, jit
 from ...runtime.kernels.vectors import dot, length, row_vector
+from ...runtime.machine_code.jit import inline, jit
 
 __all__ = ["corner_areas"]
 

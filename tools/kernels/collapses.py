@@ -8,7 +8,7 @@ has vanished are −1.
 from __future__ import annotations
 
 from ...runtime.base.tolerances import QUALITY_GAIN
-from ...runtime.kernels.jit import jit, loop
+from ...runtime.machine_code.jit import jit, loop
 from .flips import are_joined, corner_of, smallest_cosine, smallest_tangent
 
 __all__ = ["collapse_edges"]

@@ -7,8 +7,8 @@ import math
 from ...generated.faces import offset_jet, revolution_jet
 from ...generated.jet import at_jet
 from ...generated.vectors import Patch
-from ...runtime.kernels.jit import jit
 from ...runtime.kernels.vectors import row_vector, set_jet
+from ...runtime.machine_code.jit import jit
 
 __all__ = ["offset", "revolve"]
 

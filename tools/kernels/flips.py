@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from ...generated.mesh import corner_cotangents, corner_products
 from ...runtime.base.tolerances import QUALITY_GAIN
-from ...runtime.kernels.jit import inline, jit, loop
 from ...runtime.kernels.vectors import row_vector
+from ...runtime.machine_code.jit import inline, jit, loop
 
 __all__ = ["flip_edges", "smallest_cosines", "smallest_tangents"]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ...generated.gaussian_image import boundary_arc, solid_angle
 from ...generated.vectors import Vector
-from ...runtime.kernels.jit import jit
+from ...runtime.machine_code.jit import jit
 
 __all__ = ["integrate_arcs"]
 

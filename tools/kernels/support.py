@@ -20,9 +20,9 @@ from ...generated.support import (
     parameters_at,
 )
 from ...generated.vectors import Hessian, Vector
-from ...runtime.kernels.jit import inline, jit
 from ...runtime.kernels.patch import patch_vectors, place_of
 from ...runtime.kernels.vectors import dot, length, row_vector
+from ...runtime.machine_code.jit import inline, jit
 
 __all__ = [
     "DOUBTFUL",

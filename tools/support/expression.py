@@ -1,22 +1,20 @@
-"""A support function that a user writes as h(n): compiled like gaussmap's own formulas."""
+"""A support function that a user writes as h(n): read, differentiated and evaluated."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from keyword import iskeyword
 from typing import TYPE_CHECKING, Any
 
-import numba
 import numpy as np
-from numba.core.errors import NumbaError
 from numpy.typing import NDArray
 
 from ...runtime.base import bridge
 from ...runtime.base.errors import InputError, clipped, shown
 from ...runtime.surface.expressions import as_condition, as_expression
 from .branches import Sheets, curvatures
+from .expression_kernel import kernel_of
 
 if TYPE_CHECKING:
     import sympy
@@ -64,12 +62,7 @@ class ExpressionSource:
         count = len(normals)
         inside = np.empty(count, dtype=np.bool_)
         points, hessian = np.empty((count, 3)), np.empty((count, 3, 3))
-        try:
-            _kernel(self.source)(normals, inside, points, hessian)
-        except NumbaError as error:
-            raise InputError(
-                f"h = {_short(self.h)} cannot be compiled: it is no function that Numba knows."
-            ) from error
+        kernel_of(self.source)(normals, inside, points, hessian)
         rows = np.flatnonzero(inside & np.isfinite(points).all(axis=1))
         points, hessian = points[rows], hessian[rows]
         _, gaussian, mean = curvatures(normals[rows], hessian)
@@ -88,14 +81,6 @@ class ExpressionSource:
 
     def __str__(self) -> str:
         return f"h = {_short(self.h)}"
-
-
-@lru_cache(maxsize=128)
-def _kernel(source: str) -> Callable[..., None]:
-    """Compile a module that defines `evaluate`, once in a process."""
-    namespace: dict[str, Any] = {"__name__": __name__}  # whose kernel it is
-    exec(compile(source, "<support function>", "exec"), namespace)
-    return numba.njit(nogil=True, error_model="numpy")(namespace["evaluate"])
 
 
 def _names(normal: Sequence[Any]) -> list[str]:

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 from gaussmap.generated.patch import parameters
-from gaussmap.runtime.kernels.jit import jit
 from gaussmap.runtime.kernels.wide_integers import rounded, wide
+from gaussmap.runtime.machine_code.jit import jit
 from hypothesis import example, given
 from hypothesis import strategies as st
 

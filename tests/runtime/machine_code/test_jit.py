@@ -7,11 +7,10 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numba
 import pytest
-from gaussmap.runtime.kernels import jit
+from gaussmap.runtime.machine_code import jit, kept, sources
 from numba.core import config, event
 
 PACKAGE = Path(__file__).parents[3]
@@ -76,6 +75,13 @@ def triple(x: float) -> float:
     return 3.0 * x
 
 
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder in which machine code is kept during a test."""
+    monkeypatch.setattr(kept, "kept_folder", lambda: tmp_path)
+    return tmp_path
+
+
 def compiled_when(kernel: Callable[[float], float]) -> int:
     """Return how many functions are compiled when a kernel that triples is called."""
     with event.install_recorder("numba:compile") as compiled:
@@ -102,23 +108,34 @@ def one_bit(content: bytes) -> bytes:
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("damage", [nothing, half, garbage, one_bit])
-@pytest.mark.parametrize("suffix", ["nbi", "nbc"])
 def test_damaged_machine_code_is_compiled_again(
-    damage: Callable[[bytes], bytes], suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    damage: Callable[[bytes], bytes], folder: Path
 ) -> None:
-    monkeypatch.setattr(jit, "cache_folder", lambda: tmp_path)
     assert compiled_when(jit.jit(triple)) == 1
     assert compiled_when(jit.jit(triple)) == 0
-    (path,) = tmp_path.rglob(f"*.{suffix}")
+    (path,) = folder.glob("*.kernel")
     path.write_bytes(damage(path.read_bytes()))
     assert compiled_when(jit.jit(triple)) == 1
     assert compiled_when(jit.jit(triple)) == 0
 
 
 @pytest.mark.compiled
+@pytest.mark.parametrize("option", ["NUMBA_OPT", "NUMBA_BOUNDSCHECK"])
+def test_other_options_of_numba_are_other_machine_code(
+    option: str, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert compiled_when(jit.jit(triple)) == 1
+    with monkeypatch.context() as patch:
+        patch.setenv(option, "1")
+        assert compiled_when(jit.jit(triple)) == 1
+        assert compiled_when(jit.jit(triple)) == 0
+    assert compiled_when(jit.jit(triple)) == 0
+
+
+@pytest.mark.compiled
 @pytest.mark.slow
 def test_two_processes_compile_a_kernel_once(tmp_path: Path) -> None:
-    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path), "GAUSSMAP_KERNELS": "0"}
     both = [
         subprocess.Popen([sys.executable, "-c", NORMAL], env=environment, stdout=subprocess.PIPE)
         for _ in range(2)
@@ -131,8 +148,8 @@ def test_two_processes_compile_a_kernel_once(tmp_path: Path) -> None:
 def test_a_lock_that_is_held_for_too_long_is_not_waited_for(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(jit, "LONGEST_WAIT", 0.05)
-    first, second = (jit.FileLock(tmp_path / "lock") for _ in range(2))
+    monkeypatch.setattr(kept, "LONGEST_WAIT", 0.05)
+    first, second = (kept.FileLock(tmp_path / "lock") for _ in range(2))
     first.acquire()
     start = time.monotonic()
     second.acquire()
@@ -143,15 +160,15 @@ def test_a_lock_that_is_held_for_too_long_is_not_waited_for(
 
 
 @pytest.mark.compiled
-def test_machine_code_that_cannot_be_saved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(jit, "cache_folder", lambda: tmp_path)
-    kernel: Any = jit.jit(triple)
-
-    def full(path: str) -> None:
+def test_machine_code_that_cannot_be_saved(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> None:
         raise OSError("No space left on device")
 
-    monkeypatch.setattr(kernel._cache._cache_file, "_open_for_write", full)
-    assert compiled_when(kernel) == 1
+    with monkeypatch.context() as patch:
+        patch.setattr(kept.os, "replace", full)
+        assert compiled_when(jit.jit(triple)) == 1
+    assert not [*folder.glob("*.kernel")]
+    assert [x.suffix for x in folder.iterdir()] == [".lock"]
     assert compiled_when(jit.jit(triple)) == 1
 
 
@@ -168,18 +185,18 @@ def test_folders_that_were_not_used_for_long_are_removed(tmp_path: Path) -> None
     now = time.time()
     for folder, days in (
         (ours, 90),
-        (recent, jit.DAYS_KEPT - 1),
-        (old, jit.DAYS_KEPT + 1),
+        (recent, kept.DAYS_KEPT - 1),
+        (old, kept.DAYS_KEPT + 1),
         (others, 90),
     ):
         folder.mkdir()
         (folder / "code").write_text("")
         used = now - days * 24 * 3600
         os.utime(folder, (used, used))
-    jit.remove_unused(ours)
+    kept.remove_unused(ours)
     assert {*tmp_path.iterdir()} == {ours, recent, others}
     assert ours.stat().st_mtime > now - 60
-    jit.remove_unused(tmp_path / "missing" / "folder")
+    kept.remove_unused(tmp_path / "missing" / "folder")
 
 
 def test_the_digest_covers_all_that_kernels_are_made_of() -> None:
@@ -193,11 +210,12 @@ def test_the_digest_covers_all_that_kernels_are_made_of() -> None:
         "print(*(x.__file__ for name, x in sys.modules.items() if name.startswith('gaussmap')))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    loaded = {Path(name) for name in done.stdout.split() if not name.endswith("__init__.py")}
-    sources = {path for name in jit.SOURCES for path in jit.PACKAGE.glob(name)}
-    # This only tells the user that kernels are compiled.
-    notice = PACKAGE / "runtime" / "base" / "compiling.py"
-    assert {x.resolve() for x in loaded} <= {x.resolve() for x in (*sources, notice)}
+    paths = (Path(name).resolve() for name in done.stdout.split())
+    loaded = {path for path in paths if path.name != "__init__.py"}
+    listed = {path for name in sources.SOURCES for path in sources.PACKAGE.glob(name)}
+    room = {*(PACKAGE / "runtime" / "machine_code").glob("*.py")}  # says where code is kept
+    others = {PACKAGE / "runtime" / "base" / name for name in ("compiling.py", "errors.py")}
+    assert loaded <= {x.resolve() for x in (*listed, *room, *others)}
 
 
 def test_without_compilation_kernels_are_functions() -> None:
@@ -211,11 +229,11 @@ def test_without_compilation_kernels_are_functions() -> None:
 def test_a_cache_that_cannot_be_written(monkeypatch: pytest.MonkeyPatch) -> None:
     """Kernels are compiled all the same, and not kept."""
     nowhere = Path(os.devnull) / "cache"
-    monkeypatch.setattr(jit, "PACKAGE", nowhere)
+    monkeypatch.setattr(kept, "PACKAGE", nowhere)
     monkeypatch.setattr(config, "CACHE_DIR", "")
     monkeypatch.setenv("XDG_CACHE_HOME", str(nowhere))
-    monkeypatch.setattr(jit, "cache_folder", jit.cache_folder.__wrapped__)
-    monkeypatch.setattr(jit, "digest", lambda: "0")
+    monkeypatch.setattr(kept, "kept_folder", kept.kept_folder.__wrapped__)
+    monkeypatch.setattr(kept, "digest", lambda: "0")
 
-    assert jit.cache_folder() is None
+    assert kept.kept_folder() is None
     assert jit.jit(triple)(2.0) == 6.0

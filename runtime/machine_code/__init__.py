@@ -1,0 +1,1 @@
+"""Machine code of kernels: shipped with the package, or compiled here and kept."""

@@ -1,0 +1,111 @@
+"""Compile all kernels of the list of signatures into the file that comes with the package.
+
+    python -m gaussmap.runtime.machine_code.building [FOLDER]
+
+compiles them for the level of this architecture, without running them, in as many processes as
+there are cores, into FOLDER/compiled (of the package, if no folder is named). A file of the same
+sources and versions stays as it is. GAUSSMAP_KERNELS=0 switches it off, as it does its use.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+from numba.core.caching import NullCache
+from numba.core.dispatcher import Dispatcher
+
+from . import signatures, sources
+from .entries import entry_of, key_of
+from .jit import jit
+from .processors import Level, changed_options, identity, level_here
+from .shipped import SWITCH, Pack, pack_path, write_pack
+from .sources import PACKAGE
+
+__all__ = ["build", "kernel_named"]
+
+# Intel's library of vectors may be on the machine that builds, and not on others.
+OPTIONS = {"NUMBA_CPU_FEATURES": "", "NUMBA_DISABLE_INTEL_SVML": "1"}
+
+
+class _Taken(NullCache):
+    """Takes the kernels that are compiled, as entries by their keys."""
+
+    def __init__(self, function: Callable[..., Any], entries: dict[str, bytes]) -> None:
+        self._function, self._entries = function, entries
+
+    def save_overload(self, sig: Any, cres: Any) -> None:
+        self._entries[key_of(self._function, sig)] = entry_of(cres)
+
+
+def build(folder: Path = PACKAGE) -> Path | None:
+    """Make the file of the package, unless it is there; None if this architecture has none."""
+    path, level = pack_path(folder), level_here()
+    if path is None or level is None or _is_built(path):
+        return path
+    entries: dict[str, bytes] = {}
+    with _options(level), ProcessPoolExecutor(mp_context=get_context("spawn")) as processes:
+        for compiled in processes.map(_compiled, _modules()):
+            entries.update(compiled)
+    write_pack(path, dict(sorted(entries.items())), signatures=signatures.digest())
+    return path
+
+
+def kernel_named(name: str) -> Any:
+    """Return the kernel of a module's name for it, or of the formula that is one."""
+    function = signatures.named(name)
+    return function if isinstance(function, Dispatcher) else jit(function)
+
+
+@contextmanager
+def _options(level: Level) -> Iterator[None]:
+    """Set Numba's options for a level of processors, in processes that start meanwhile."""
+    before = dict(os.environ)
+    for name in changed_options():
+        del os.environ[name]
+    os.environ.update(OPTIONS, NUMBA_CPU_NAME=level.name)
+    try:
+        yield
+    finally:
+        os.environ.clear()
+        os.environ.update(before)
+
+
+def _is_built(path: Path) -> bool:
+    try:
+        pack = Pack(path)
+    except (OSError, ValueError):
+        return False
+    made = (pack.identity, pack.digest, pack.header.get("signatures"))
+    return made == (identity(), sources.digest(), signatures.digest())
+
+
+def _modules() -> list[dict[str, Any]]:
+    """Return the signatures of modules, whose kernels share parts; those with most come first."""
+    modules: dict[str, dict[str, Any]] = defaultdict(dict)
+    for name, kinds in signatures.read().items():
+        modules[name.rpartition(".")[0]][name] = kinds
+    return sorted(modules.values(), key=lambda x: sum(map(len, x.values())), reverse=True)
+
+
+def _compiled(listing: Mapping[str, Any]) -> dict[str, bytes]:
+    """Compile kernels for their signatures; called in a process of its own."""
+    entries: dict[str, bytes] = {}
+    for name, kinds in listing.items():
+        kernel = kernel_named(name)
+        kernel._cache = _Taken(kernel.py_func, entries)
+        for kind in kinds:
+            kernel.compile(tuple(map(signatures.as_types, kind)))
+    return entries
+
+
+if __name__ == "__main__":
+    if os.environ.get(SWITCH) != "0":
+        build(*map(Path, sys.argv[1:]))

@@ -1,0 +1,78 @@
+"""Where Numba looks for the machine code of a kernel before it compiles, and keeps it after."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from numba.core.caching import NullCache
+
+from ..base.errors import GaussmapWarning
+from . import kept, shipped
+from .entries import entry_of, kernel_of, key_of
+
+__all__ = ["KernelCache", "say_why"]
+
+
+class KernelCache(NullCache):
+    """The machine code of one kernel: that of the package, or what was compiled here."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        """Touch no file: that waits for the first call."""
+        self._function = function
+        self._lock: kept.FileLock | None = None
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Return a kernel; wait for a process that compiles it now. None: this one has to."""
+        key = key_of(self._function, sig)
+        pack, folder = shipped.open_pack(), kept.kept_folder()
+        found = None if pack is None else _restored(pack.get(key), target_context)
+        if found is None and folder is not None:
+            found = self._kept((folder, key, _processor(target_context)), target_context)
+        if found is None:
+            say_why()
+        return found
+
+    def _kept(self, place: tuple[Path, str, object], context: Any) -> Any:
+        lock = kept.lock_of(*place)
+        found = _restored(kept.load(*place), context)
+        if found is None:
+            lock.acquire()
+            found = _restored(kept.load(*place), context)
+        if found is None:
+            self._lock = lock  # until it is compiled
+        else:
+            lock.release()
+        return found
+
+    def save_overload(self, sig: Any, cres: Any) -> None:
+        """Keep what was compiled here, and let waiting processes load it."""
+        folder = kept.kept_folder()
+        if folder is not None:
+            key, processor = key_of(self._function, sig), _processor(cres.target_context)
+            kept.save(folder, key, processor, entry_of(cres))
+        if self._lock is not None:
+            self._lock.release()
+
+
+def _restored(entry: bytes | None, context: Any) -> Any:
+    return None if entry is None else kernel_of(entry, context)
+
+
+def _processor(context: Any) -> object:
+    return context.codegen().magic_tuple()
+
+
+@cache
+def say_why() -> None:
+    """Warn, once, if the package has machine code that is for other versions than these."""
+    if others := shipped.misfit():
+        warnings.warn(
+            f"the compiled kernels of this installation are for {others}: they are compiled here, "
+            "once, which takes about a minute; install these versions to avoid it.",
+            GaussmapWarning,
+            stacklevel=2,
+        )

@@ -1,0 +1,61 @@
+"""The compilation of the functions of this package, and the cache of their machine code."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import numba
+from numba import types
+from numba.core import config as numba_config
+from numba.extending import intrinsic
+
+from ...generated.vectors import inline
+from ..base import compiling  # noqa: F401 - installs the notice of compilation
+from .cache import KernelCache
+
+__all__ = ["inline", "jit", "long_vectors", "loop"]
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+config: Any = numba_config  # Numba makes its attributes at run time
+# Kernels are called from Python and from one another, and never from C.
+OPTIONS = {"nogil": True, "error_model": "numpy", "fastmath": False, "no_cfunc_wrapper": True}
+
+
+def loop(function: Function) -> Function:
+    """Compile a part of kernels once, as a function of its own.
+
+    This is for functions that are long or called in several places. They allocate no memory: arrays
+    come from the caller. Short functions are `inline`, that is, copied into their callers.
+    """
+    return numba.njit(_nrt=False, no_cpython_wrapper=True, **OPTIONS)(function)  # pyright: ignore
+
+
+def jit(function: Function) -> Function:
+    """Compile a kernel for the first call from Python, unless its machine code is there already.
+
+    Kernels allocate no memory either: all arrays are arguments. They are called from Python only:
+    machine code of the package cannot be linked into other kernels.
+    """
+    kernel = numba.njit(_nrt=False, **OPTIONS)(function)  # pyright: ignore
+    if not config.DISABLE_JIT:
+        kernel._cache = KernelCache(function)
+    return kernel
+
+
+def _long_vectors(_: object) -> tuple[Any, Callable[..., Any]]:
+    """Ask for the longest vectors of the processor in the function that calls this first.
+
+    LLVM uses half of their length unless it is told to. The results are the same.
+    """
+
+    def lowered(context: Any, builder: Any, *_: object) -> Any:
+        # llvmlite's own `add` knows no attributes with values.
+        set.add(builder.function.attributes, '"prefer-vector-width"="512"')
+        return context.get_dummy_value()
+
+    return types.void(), lowered
+
+
+long_vectors: Any = (lambda: None) if config.DISABLE_JIT else intrinsic(_long_vectors)

@@ -1,0 +1,135 @@
+"""Machine code that was compiled here, kept on disk: a folder with a file for each entry.
+
+The folder is named after the digest of all sources of kernels: after a change of a formula the
+kernels are compiled again, and after its reversal they are found again. (Numba's own cache looks at
+the file of a kernel only: https://github.com/numba/numba/issues/1833.)
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+from typing import IO, Any
+
+from numba.core import config as numba_config
+
+from .processors import changed_options, identity
+from .sources import PACKAGE, digest
+
+__all__ = ["FileLock", "entries_in", "kept_folder", "load", "lock_of", "save"]
+
+config: Any = numba_config  # Numba makes its attributes at run time
+# Folders of other sources are removed after this many days without use.
+DAYS_KEPT = 30
+# In seconds: how long a process waits for another one that compiles, and how often it looks.
+LONGEST_WAIT, POLL = 120.0, 0.02
+SUFFIX = ".kernel"
+
+
+@cache
+def kept_folder() -> Path | None:
+    """Return the folder for machine code made of these sources; None if none can be written.
+
+    It is in NUMBA_CACHE_DIR if that is set, else next to the sources, or else in the user's cache
+    folder.
+    """
+    asked = config.CACHE_DIR
+    home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    for base in [Path(asked)] if asked else [PACKAGE / "__pycache__", home / "gaussmap"]:
+        folder = base / f"kernels-{digest()}"
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            tempfile.TemporaryFile(dir=folder).close()
+        except OSError:
+            continue
+        remove_unused(folder)
+        return folder
+    return None
+
+
+def load(folder: Path, key: str, processor: object) -> bytes | None:
+    """Return an entry that was compiled for a processor, perhaps a damaged one; None: not here."""
+    with suppress(OSError):
+        return _path(folder, key, processor).read_bytes()
+    return None
+
+
+def save(folder: Path, key: str, processor: object, entry: bytes) -> None:
+    """Keep an entry, whole or not at all; ignore errors of the disk."""
+    with suppress(OSError), tempfile.NamedTemporaryFile(dir=folder, delete=False) as file:
+        try:
+            file.write(entry)
+            file.close()
+            os.replace(file.name, _path(folder, key, processor))
+        except OSError:
+            os.unlink(file.name)
+
+
+def lock_of(folder: Path, key: str, processor: object) -> FileLock:
+    """Return the lock of those who compile an entry."""
+    return FileLock(_path(folder, key, processor).with_suffix(".lock"))
+
+
+def entries_in(folder: Path) -> Iterator[bytes]:
+    """Read all entries of a folder, in the order of their names."""
+    for path in sorted(folder.glob(f"*{SUFFIX}")):
+        yield path.read_bytes()
+
+
+def _path(folder: Path, key: str, processor: object) -> Path:
+    """Return the file of an entry: one for each set of versions, options and processor."""
+    what = repr((key, processor, identity(), changed_options()))
+    return folder / f"{hashlib.sha256(what.encode()).hexdigest()[:32]}{SUFFIX}"
+
+
+class FileLock:
+    """A lock between processes: many that start at a time compile each kernel once, not each.
+
+    It ends with its process. Where there are no locks, each process compiles.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._file: IO[bytes] | None = None
+
+    def acquire(self) -> None:
+        """Wait for the lock."""
+        self.release()  # an earlier compilation may have failed
+        with suppress(ImportError, OSError):  # Windows; read-only folders
+            import fcntl
+
+            self._file = open(self._path, "ab")  # noqa: SIM115 - it is open as long as it locks
+            end = time.monotonic() + LONGEST_WAIT
+            while time.monotonic() < end:
+                try:
+                    fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                    return
+                except BlockingIOError:
+                    time.sleep(POLL)
+            self.release()
+
+    def __del__(self) -> None:
+        self.release()  # compilation has failed
+
+    def release(self) -> None:
+        """Let others have it."""
+        file, self._file = self._file, None
+        if file is not None:
+            file.close()
+
+
+def remove_unused(folder: Path) -> None:
+    """Mark a folder as used; remove the folders of other digests that are long unused."""
+    oldest = time.time() - DAYS_KEPT * 24 * 3600
+    with suppress(OSError):
+        os.utime(folder)
+        for other in folder.parent.glob("kernels-" + 16 * "[0-9a-f]"):
+            if other.stat().st_mtime < oldest:
+                shutil.rmtree(other, ignore_errors=True)

@@ -1,0 +1,62 @@
+"""Compare the list of signatures with what was compiled here, or write it anew.
+
+    python -m gaussmap.runtime.machine_code.listing [--write] [FOLDER]
+
+Kernels are compiled, and kept in the folder (that of this machine, if none is named), when the file
+of the package does not have them: after a run of tests these are what the list lacks. Exit code 1
+says that it lacks some.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections import defaultdict
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from . import signatures
+from .entries import signature_in
+from .kept import entries_in, kept_folder
+
+__all__ = ["compiled_in", "main", "missing"]
+
+PACKAGE = __name__.partition(".")[0]
+
+
+def compiled_in(folder: Path) -> dict[str, list[Any]]:
+    """Return the signatures of the kernels of this package that a folder keeps."""
+    found: dict[str, list[Any]] = defaultdict(list)
+    for entry in entries_in(folder):
+        module, name, types = signature_in(entry) or ("", "", ())
+        kinds = [signatures.as_json(x) for x in types]
+        is_ours = module.startswith(f"{PACKAGE}.") and "evaluate_" not in name
+        if is_ours and kinds not in found[f"{module}.{name}"]:
+            found[f"{module}.{name}"].append(kinds)
+    return {name: kinds for name, kinds in found.items() if kinds}
+
+
+def missing(folder: Path) -> list[str]:
+    """Return the kernels, with types of arguments, that a folder keeps and the list lacks."""
+    listed = signatures.read()
+    found = compiled_in(folder).items()
+    return [f"{name}{x}" for name, kinds in found for x in kinds if x not in listed.get(name, ())]
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Run the command; return its exit code."""
+    names = [x for x in arguments if x != "--write"]
+    folder = Path(names[0]) if names else kept_folder()
+    if folder is None:
+        return 0  # nothing can be kept
+    if "--write" in arguments:
+        signatures.write(compiled_in(folder))
+        return 0
+    lacking = missing(folder)
+    for each in lacking:
+        print(f"{signatures.SIGNATURES.name} lacks {each}: make kernels", file=sys.stderr)
+    return 1 if lacking else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,74 @@
+"""What machine code depends on beside the sources of kernels: versions, platform and processor."""
+
+from __future__ import annotations
+
+import os
+import sys
+import sysconfig
+from typing import Any, NamedTuple
+
+import llvmlite
+import llvmlite.binding as llvm
+import numba
+
+__all__ = ["Level", "changed_options", "identity", "level_here", "runs_here"]
+
+SYSTEMS = ("linux", "darwin", "windows")
+# Options of Numba, as variables of the environment, that change the code or what it checks.
+CODE_OPTIONS = (
+    "CPU_NAME", "CPU_FEATURES", "OPT", "ENABLE_AVX", "LOOP_VECTORIZE", "SLP_VECTORIZE", "DEBUG",
+    "DEBUGINFO", "BOUNDSCHECK", "FULL_TRACEBACKS", "ENABLE_PROFILING",
+)  # fmt: skip
+
+
+class Level(NamedTuple):
+    """A level of processors of one architecture: those with all its features run its code."""
+
+    name: str
+    """LLVM's name of the processor."""
+    features: str
+    """LLVM's names of the features that go beyond the architecture."""
+
+
+V3 = "cx16 sahf popcnt sse3 sse4.1 sse4.2 ssse3 avx avx2 bmi bmi2 f16c fma lzcnt movbe"
+# One level for each architecture: between v3 and the processor's own code lie 0 to 12 % of time.
+LEVELS = {
+    "x86_64": Level("x86-64-v3", V3),
+    "aarch64": Level("generic", "neon"),
+    "arm64": Level("apple-m1", "neon"),
+}
+
+
+def identity() -> dict[str, str]:
+    """Return what machine code depends on, but for the sources of kernels and the processor.
+
+    Releases of one series of Numba, and of llvmlite, understand one another's machine code.
+    """
+    architecture, _, system = llvm.get_process_triple().partition("-")
+    return {
+        "numba": _series(numba.__version__),
+        "llvmlite": _series(llvmlite.__version__),
+        "python": str(sysconfig.get_config_var("SOABI") or sys.implementation.cache_tag),
+        "platform": f"{architecture}-{next((x for x in SYSTEMS if x in system), system)}",
+    }
+
+
+def level_here() -> Level | None:
+    """Return the level of the architecture of this machine; None if there is none."""
+    return LEVELS.get(llvm.get_process_triple().partition("-")[0])
+
+
+def runs_here(level: Level) -> bool:
+    """Return whether this processor has all features of a level."""
+    features: Any = llvm.get_host_cpu_features()
+    return all(features.get(name) for name in level.features.split())
+
+
+def changed_options() -> dict[str, str]:
+    """Return the options of Numba that ask for other code than usual, by variable."""
+    names = (f"NUMBA_{name}" for name in CODE_OPTIONS)
+    return {name: os.environ[name] for name in names if os.environ.get(name)}
+
+
+def _series(version: str) -> str:
+    return ".".join(version.split(".")[:2])

@@ -1,0 +1,111 @@
+"""The file of machine code that comes with the package: `compiled/LEVEL.kernels`.
+
+A wheel has the file of one level of processors, made by `building`. It is used if the sources of
+kernels, the series of Numba, Python and the platform are those of the build, and the processor has
+the level; else kernels are compiled here. The results are the same, bit for bit.
+
+The file is `MAGIC`, the size of a header, the header (JSON), and the entries that it lists. It is
+read from the folder of the package only: entries are pickles, which could run anything.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from numba.core import config as numba_config
+
+from .processors import changed_options, identity, level_here, runs_here
+from .sources import PACKAGE, digest
+
+__all__ = ["MAGIC", "SWITCH", "WORD", "Pack", "misfit", "open_pack", "pack_path", "write_pack"]
+
+config: Any = numba_config  # Numba makes its attributes at run time
+MAGIC = b"gaussmap kernels 1\n"
+WORD = 8  # bytes of the size of the header
+SWITCH = "GAUSSMAP_KERNELS"  # set to 0, the file is neither built nor used
+
+
+class Pack:
+    """An open file of machine code; entries are read when they are asked for.
+
+    Raises OSError if it cannot be read, ValueError if it is not such a file.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        with open(path, "rb") as file:
+            if file.read(len(MAGIC)) != MAGIC:
+                raise ValueError(f"{path} does not hold kernels of gaussmap")
+            size = int.from_bytes(file.read(WORD), "little")
+            self.header: dict[str, Any] = json.loads(file.read(size))
+        self._base = len(MAGIC) + WORD + size
+        self.places: dict[str, tuple[int, int]] = self.header["places"]
+        self.identity: dict[str, str] = self.header["identity"]
+        self.digest: str = self.header["digest"]
+
+    def get(self, key: str) -> bytes | None:
+        """Return an entry, perhaps a damaged one; None if it is not here."""
+        place = self.places.get(key)
+        if place is None:
+            return None
+        with open(self.path, "rb") as file:
+            file.seek(self._base + place[0])
+            return file.read(place[1])
+
+
+def pack_path(folder: Path = PACKAGE) -> Path | None:
+    """Return where a package has the file for this architecture; None if it can have none."""
+    level = level_here()
+    return None if level is None else folder / "compiled" / f"{level.name}.kernels"
+
+
+def write_pack(path: Path, entries: Mapping[str, bytes], **header: object) -> None:
+    """Write a file of entries by their keys; it appears whole or not at all."""
+    places, offset = {}, 0
+    for key, entry in entries.items():
+        places[key] = (offset, len(entry))
+        offset += len(entry)
+    text = json.dumps({"identity": identity(), "digest": digest(), **header, "places": places})
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_suffix(".part")
+    with open(part, "wb") as file:
+        file.write(MAGIC + len(text).to_bytes(WORD, "little") + text.encode())
+        file.writelines(entries.values())
+    part.replace(path)
+
+
+@cache
+def open_pack() -> Pack | None:
+    """Return the file of the package if its code runs here and is of these sources; else None."""
+    pack = _pack_of_package()
+    if pack is None or pack.identity != identity() or changed_options():
+        return None
+    level = level_here()
+    fits = level is not None and runs_here(level) and pack.digest == digest()
+    return pack if fits else None
+
+
+@cache
+def misfit() -> str:
+    """Say which other versions the file of the package is for; an empty text if for these."""
+    pack = _pack_of_package()
+    if pack is None:
+        return ""
+    here = identity()
+    others = [f"{name} {x}" for name, x in pack.identity.items() if here.get(name) != x]
+    return ", ".join(others)
+
+
+def _pack_of_package() -> Pack | None:
+    path = pack_path()
+    if path is None or config.DISABLE_JIT or os.environ.get(SWITCH) == "0":
+        return None
+    try:
+        return Pack(path)
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):  # missing, or damaged
+        return None

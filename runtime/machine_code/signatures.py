@@ -1,0 +1,77 @@
+"""The list of signatures of kernels, `signatures.json`: what the file of the package is made of.
+
+A type is a text, as "float64", "int64 2 C" (an array: item, dimensions, layout) or "int64 2 C
+readonly", a list of types (a tuple), or {"module.Class": a list of types} (a named tuple).
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from numba import types
+
+__all__ = ["SIGNATURES", "as_json", "as_types", "digest", "named", "read", "write"]
+
+SIGNATURES = Path(__file__).with_suffix(".json")
+# The types of arguments of each kernel, by its module and name.
+Listing = Mapping[str, Sequence[Any]]
+
+
+def read() -> Listing:
+    """Return the signatures of all kernels, as JSON has them."""
+    return json.loads(SIGNATURES.read_text(encoding="utf-8"))
+
+
+def digest() -> str:
+    """Return a digest of the list."""
+    return hashlib.sha256(SIGNATURES.read_bytes()).hexdigest()[:16]
+
+
+def write(listing: Listing) -> None:
+    """Replace the list; one line for each signature."""
+    blocks = []
+    for name in sorted(listing):
+        lines = ",\n  ".join(sorted(map(json.dumps, listing[name])))
+        blocks.append(f" {json.dumps(name)}: [\n  {lines}\n ]")
+    SIGNATURES.write_text("{\n" + ",\n".join(blocks) + "\n}\n", encoding="utf-8")
+
+
+def as_json(kind: Any) -> Any:
+    """Return a type of Numba as JSON; TypeError for one that no kernel takes."""
+    if isinstance(kind, types.Array):
+        readonly = "" if kind.mutable else " readonly"
+        return f"{kind.dtype} {kind.ndim} {kind.layout}{readonly}"
+    if isinstance(kind, types.BaseTuple):
+        items = [as_json(x) for x in kind]  # pyright: ignore[reportGeneralTypeIssues]
+        made = getattr(kind, "instance_class", None)
+        if made is None:
+            return items
+        return {f"{made.__module__}.{made.__qualname__}": items}
+    if isinstance(kind, types.Number | types.Boolean):
+        return str(kind)
+    raise TypeError(f"{kind} in a signature of a kernel")
+
+
+def as_types(kind: Any) -> Any:
+    """Return the type of Numba that JSON stands for."""
+    if isinstance(kind, list):
+        return types.BaseTuple.from_types([as_types(x) for x in kind])
+    if isinstance(kind, dict):
+        ((name, items),) = kind.items()
+        return types.BaseTuple.from_types([as_types(x) for x in items], named(name))
+    item, *array = kind.split()
+    if not array:
+        return getattr(types, "boolean" if item == "bool" else item)
+    dimensions, layout, *readonly = array
+    return types.Array(as_types(item), int(dimensions), layout, readonly=bool(readonly))
+
+
+def named(name: str) -> Any:
+    """Return what a module calls by a name, as "gaussmap.runtime.kernels.fill.Target"."""
+    module, _, name = name.rpartition(".")
+    return getattr(import_module(module), name)

@@ -1,0 +1,116 @@
+"""The list of signatures, and the kernels that are compiled for it without being called."""
+
+from collections import namedtuple
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from gaussmap.runtime.machine_code import building, entries, jit, kept, listing, shipped, signatures
+from numba import typeof, types
+
+Pair = namedtuple("Pair", "first second")
+
+
+def readonly() -> np.ndarray:
+    array = np.zeros((2, 3), dtype=np.int32)
+    array.flags.writeable = False
+    return array
+
+
+@pytest.mark.parametrize(
+    ("value", "expected"),
+    [
+        (1.0, "float64"),
+        (1, "int64"),
+        (True, "bool"),
+        (np.float32(1), "float32"),
+        (np.uint64(1), "uint64"),
+        (np.zeros((2, 3)), "float64 2 C"),
+        (np.zeros(4, dtype=bool)[::2], "bool 1 A"),
+        (np.zeros((2, 3), order="F"), "float64 2 F"),
+        (readonly(), "int32 2 C readonly"),
+        ((1, 2.0), ["int64", "float64"]),
+        ((1.0, 2.0), ["float64", "float64"]),
+        (Pair(1, np.zeros(2)), {f"{__name__}.Pair": ["int64", "float64 1 C"]}),
+        (Pair(1, 2), {f"{__name__}.Pair": ["int64", "int64"]}),
+    ],
+)
+def test_types_are_read_as_they_were_written(value: Any, expected: Any) -> None:
+    kind = typeof(value)
+    assert signatures.as_json(kind) == expected
+    if __name__ not in str(expected) or _is_importable():
+        assert signatures.as_types(expected) == kind
+
+
+def _is_importable() -> bool:
+    try:
+        return signatures.named(f"{__name__}.Pair") is Pair
+    except ImportError:  # pytest imports tests from their paths
+        return False
+
+
+def test_types_that_no_kernel_takes() -> None:
+    with pytest.raises(TypeError, match="in a signature of a kernel"):
+        signatures.as_json(types.unicode_type)
+
+
+def test_the_list_is_as_it_would_be_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    content = signatures.SIGNATURES.read_bytes()
+    listing = signatures.read()
+    monkeypatch.setattr(signatures, "SIGNATURES", tmp_path / "signatures.json")
+    signatures.write(listing)
+    assert signatures.SIGNATURES.read_bytes() == content
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("name", [*signatures.read()])
+def test_all_listed_kernels_are_there(name: str) -> None:
+    kernel = building.kernel_named(name)
+    assert f"{kernel.py_func.__module__}.{kernel.py_func.__qualname__}" == name
+    for kinds in signatures.read()[name]:
+        assert len(kinds) == kernel.py_func.__code__.co_argcount
+        assert [signatures.as_json(signatures.as_types(x)) for x in kinds] == kinds
+
+
+@pytest.mark.compiled
+@pytest.mark.slow
+def test_a_file_is_built_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    name = "gaussmap.runtime.kernels.unit.are_unit"
+    monkeypatch.setattr(signatures, "read", {name: signatures.read()[name]}.copy)
+    path = building.build(tmp_path)
+    assert path is not None
+    pack, built = shipped.Pack(path), path.stat().st_mtime_ns
+    (key,) = pack.places
+    assert key.startswith(name)
+    entry = pack.get(key)
+    assert entry is not None
+    assert entries.signature_in(entry) is not None
+    assert building.build(tmp_path) == path
+    assert path.stat().st_mtime_ns == built
+    monkeypatch.setattr(signatures, "digest", lambda: "another list")
+    assert building.build(tmp_path) == path
+    assert path.stat().st_mtime_ns > built
+    assert [*path.parent.iterdir()] == [path]
+
+
+@pytest.mark.compiled
+def test_what_the_list_lacks(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A kernel that is compiled here is found; after the list is written, it is on the list."""
+    name = "gaussmap.runtime.kernels.unit.are_unit"
+    (kinds,) = signatures.read()[name]
+    monkeypatch.setattr(kept, "kept_folder", lambda: tmp_path)
+    monkeypatch.setattr(shipped, "open_pack", lambda: None)
+    monkeypatch.setattr(signatures, "SIGNATURES", tmp_path / "signatures.json")
+    signatures.write({})
+    kernel = jit.jit(building.kernel_named(name).py_func)
+    kernel.compile(tuple(map(signatures.as_types, kinds)))
+    assert listing.main([str(tmp_path)]) == 1
+    assert f"lacks {name}" in capsys.readouterr().err
+    assert listing.main(["--write", str(tmp_path)]) == 0
+    assert signatures.read() == {name: [kinds]}
+    assert listing.main([str(tmp_path)]) == 0
