@@ -30,10 +30,19 @@ def compiled_in(folder: Path) -> dict[str, list[Any]]:
     for entry in entries_in(folder):
         module, name, types = signature_in(entry) or ("", "", ())
         kinds = [signatures.as_json(x) for x in types]
-        is_ours = module.startswith(f"{PACKAGE}.") and "evaluate_" not in name
-        if is_ours and kinds not in found[f"{module}.{name}"]:
+        if _is_named(module, name) and kinds not in found[f"{module}.{name}"]:
             found[f"{module}.{name}"].append(kinds)
     return {name: kinds for name, kinds in found.items() if kinds}
+
+
+def _is_named(module: str, name: str) -> bool:
+    """Return whether a kernel is one of this package, and none of a test or a user."""
+    if not module.startswith(f"{PACKAGE}."):
+        return False
+    try:
+        return signatures.named(f"{module}.{name}") is not None
+    except (ImportError, AttributeError):
+        return False
 
 
 def missing(folder: Path) -> list[str]:
