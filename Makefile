@@ -15,7 +15,7 @@ DEM = from matplotlib.cbook import get_sample_data as f; \
 TERRAIN = "$$($(BIN)/python -c '$(DEM)'):elevation" --spacing 74.5 -92.5
 
 .DEFAULT_GOAL := help
-.PHONY: help install demo generate check-generated warm kernels check-kernels test coverage cad-tests verify bench bench-guard bench-record bench-peers \
+.PHONY: help install demo generate check-generated compiled kernels check-kernels test coverage cad-tests verify bench bench-guard bench-record bench-peers \
 	quality parts-quality cold-start batch operations lint typecheck formulas orders errata curves figures gallery meshes registration \
 	alignment docs clean
 
@@ -38,7 +38,7 @@ $(READY): $(DEMO)
 
 install: $(READY) ## make .venv with all that developers need
 
-demo: $(DEMO) ## sample a torus and real terrain: a PLY and a PNG of each in out/
+demo: $(DEMO) compiled ## sample a torus and real terrain: a PLY and a PNG of each in out/
 	@mkdir -p out
 	$(GAUSSMAP) sample torus --count 10000 -o out/torus.ply
 	$(GAUSSMAP) plot torus --count 2000 -o out/torus.png
@@ -51,7 +51,7 @@ generate: $(READY) ## derive all formulas and write generated/
 check-generated: $(READY) ## show a diff and fail if generated/ is stale
 	$(BIN)/python -m gaussmap.symbolic --check
 
-warm: $(READY) ## compile all kernels into compiled/, as for a wheel, unless they are there
+compiled: $(DEMO) ## compile all kernels into compiled/, as for a wheel, unless they are there
 	$(BIN)/python -m gaussmap.runtime.machine_code.building
 
 # What `gaussmap warm` and the quick tests compile, from an empty folder.
@@ -65,7 +65,7 @@ kernels: $(READY) ## list the kernels again that a wheel has (runtime/machine_co
 check-kernels: $(READY) ## fail if the tests compiled kernels here that a wheel lacks
 	$(BIN)/python -m gaussmap.runtime.machine_code.listing
 
-test: $(READY) ## run the tests, but for those that are slow and seldom fail
+test: $(READY) compiled ## run the tests, but for those that are slow and seldom fail
 	$(BIN)/python -m pytest -q -m "not slow" --numprocesses auto --dist worksteal
 
 coverage: $(READY) ## run kernels and formulas without compilation; fail if few of their lines ran

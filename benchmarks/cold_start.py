@@ -1,7 +1,9 @@
-"""What the first call of a process costs with an empty cache of kernels, function by function.
+"""What the first call of a process costs: with the kernels of the package, and without.
 
-`make cold-start` writes docs/cold_start.md. Each call runs in a process of its own, whose
-NUMBA_CACHE_DIR is empty. Times are those of the processor, and of one thread.
+`make cold-start` writes docs/cold_start.md. `python cold_start.py --check` is run by CI in an
+environment that has a wheel: no call may compile a kernel, or cost many seconds more than its
+repetition. Each call runs in a process of its own, whose NUMBA_CACHE_DIR is empty. This file needs
+nothing but Python, so that it can be run there.
 """
 
 from __future__ import annotations
@@ -9,123 +11,187 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import resource
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import NamedTuple
 
-import numba
-from llvmlite.binding import get_host_cpu_name
+__all__ = ["CALLS", "COMMANDS", "Cost", "cost", "main", "page"]
 
-__all__ = ["CALLS", "cold", "main", "page"]
-
+# Seconds of the processor: of a first call, beyond those of its repetition; with SymPy's import and
+# derivatives, too.
+MOST, MOST_OF_SYMPY = 1.5, 3.0
+TORUS = "gm.sample('torus', 10_000{})"
+WAVES = "np.hypot(*np.mgrid[-1:1:40j, -1:1:50j])**3"
+NET = "np.stack([*np.mgrid[0:4.0, 0:4.0], np.cos(np.mgrid[0:4.0, 0:4.0]).sum(axis=0)], axis=-1)"
 CALLS = {
-    "`gm.sample(torus, normals=…)`": "gm.sample(torus, normals=gm.fibonacci(10_000))",
-    "`gm.sample(torus, 10_000)`": "gm.sample(torus, 10_000)",
-    "the same, and `.mesh()`": "gm.sample(torus, 10_000).mesh()",
+    "`gm.sample(torus, 10_000)`": TORUS.format(""),
+    "the same, and `.mesh()`": TORUS.format("") + ".mesh()",
+    "the same, and `.coverage()`": TORUS.format("") + ".coverage()",
+    "… `normals=…`": "gm.sample('torus', normals=gm.fibonacci(10_000))",
+    "… `angle=3`": "gm.sample('torus', angle=3)",
+    "… `coverage=0.05`": "gm.sample('torus', coverage=0.05)",
+    '… `density="gauss"`': TORUS.format(", density='gauss'"),
+    '… `density="aligned"`': TORUS.format(", density='aligned'"),
+    '… `density="uniform"`': TORUS.format(", density='uniform'"),
+    "… `dtype=float32`": TORUS.format(", dtype=np.float32"),
     "`SupportFunction.of_spline(torus)`": (
-        "gm.SupportFunction.of_spline(torus).branches(gm.icosphere(8))"
+        "gm.SupportFunction.of_spline(gm.surfaces.torus()).branches(gm.icosphere(8))"
     ),
+    "`gm.silhouette(torus)`": "gm.silhouette(gm.surfaces.torus(), direction=(1, 2, 3))",
+    "`Surface.from_callable`": (
+        "gm.sample(gm.Surface.from_callable("
+        "lambda u, v: np.stack([u, v, np.sin(3*u)*v], -1), ((0, 1), (0, 1))), 1000)"
+    ),
+    "`Surface.from_grid`": f"gm.sample(gm.Surface.from_grid({WAVES}, spacing=(1.0, 1.0)), 1000)",
+    "`Surface.from_nurbs`": (
+        f"gm.sample(gm.Surface.from_nurbs((3, 3), (np.repeat([0.0, 1.0], 4),)*2, {NET}), 1000)"
+    ),
+    "`Surface.from_sympy`": (
+        "gm.sample(gm.Surface.from_sympy(('u', 'v', 'u**2*v + sin(v)'), ('u', 'v'), "
+        "domain=((-1, 1), (-1, 1))), 1000)"
+    ),
+    "`SupportFunction.from_sympy`": (
+        "gm.SupportFunction.from_sympy('sqrt(4*n_x**2 + n_y**2 + n_z**2)')"
+        ".branches(gm.fibonacci(1000))"
+    ),
+    "a part from an .npz file": "gm.sample(gm.read_part('part.npz'), 2000)",
 }
-LISTED = 10  # functions in the table of a call
-
-CHILD = """
-import json, sys, time
-from collections import Counter
-from numba.core import event
-
-class Listener(event.Listener):
-    def __init__(self):
-        self.open, self.seconds, self.calls = [], Counter(), Counter()
-    def on_start(self, event):
-        if event.data is not None:
-            self.open.append([event.data["dispatcher"].py_func, time.process_time(), 0.0])
-    def on_end(self, event):
-        if event.data is not None:
-            function, start, inner = self.open.pop()
-            whole = time.process_time() - start
-            name = f"{function.__module__}.{function.__qualname__}"
-            self.seconds[name] += whole - inner
-            self.calls[name] += 1
-            if self.open:
-                self.open[-1][2] += whole
-
+# Their processes start others, or are the command line: nothing is repeated.
+BATCH = """
 import gaussmap as gm
-torus = gm.surfaces.torus()
-listener = Listener()
-with event.install_listener("numba:compile", listener):
-    CALL
-rows = [(name, listener.calls[name], seconds) for name, seconds in listener.seconds.most_common()]
-json.dump({"seconds": time.process_time(), "functions": rows}, sys.stdout)
+if __name__ == "__main__":
+    done = gm.sample_many(["part.npz"] * 20, 200, out="data", workers=2, progress=False)
+    assert len(done) == 20
 """
+GAUSSMAP = ["-m", "gaussmap"]
+COMMANDS = {
+    "20 parts by two processes": ["-c", BATCH],
+    "`gaussmap sample`": [*GAUSSMAP, "sample", "torus", "--count", "10000", "-o", "torus.ply"],
+    "`gaussmap mesh`": [*GAUSSMAP, "mesh", "torus", "--count", "2000", "-o", "torus.stl"],
+}
+CHILD = """
+import json, sys, time, warnings
+import numpy as np
+import gaussmap as gm
+times = [time.process_time()]
+for _ in range(2):
+    CALL
+    times.append(time.process_time())
+json.dump(times, sys.stdout)
+"""
+# A part with faces of all kinds, for the calls that read one.
+PART = "from gaussmap.tools.cad.examples import all_kinds; all_kinds().save('part.npz')"
+HERE_ONLY = {"GAUSSMAP_KERNELS": "0"}
 
 PAGE = """\
-# The first call: what compilation costs
+# The first call
 
-Written by `make cold-start`: do not edit. Numba compiles kernels when they are first called, and
-keeps the machine code on disk: only the first process pays, and after it the first one that sees
-changed kernels, another Numba or another processor. `gaussmap warm` compiles everything ahead.
+Written by `make cold-start`: do not edit. A wheel has all kernels as machine code; without it,
+Numba compiles each one when it is first called, and keeps its machine code on disk.
 
-Seconds of the processor (one core), from the start of Python to the end of the call, in a
-process whose cache is empty, and in one that finds all machine code there; and the number of
-functions that are compiled, those of Numba's own library included.
+Seconds of the processor (one core), from the start of Python to the end of the call, in a process
 
-| call | empty cache | full cache | functions |
-| :-- | --: | --: | --: |
+- *of a wheel*: that finds the machine code of the package,
+- *compiling*: that has none (`GAUSSMAP_KERNELS=0`) and compiles,
+- *kept*: that finds what the one before has kept;
+
+and, in the first two, those of the first call beyond its repetition in the same process.
+
+| call | wheel | beyond | compiling | beyond | kept | kernels |
+| :-- | --: | --: | --: | --: | --: | --: |
 {rows}
 
-The functions that take longest to compile, without those that they call:
-
-{tables}
-
-Measured with Numba {numba} on {processor}.
+Measured with Python {python}.
 """
 
 
-def cold(call: str, folder: Path) -> dict[str, Any]:
-    """Return the seconds of a call in a new process, and the functions it compiled.
+class Cost(NamedTuple):
+    """What a process cost: seconds of the processor in all, and of its first call."""
 
-    Machine code is read from a folder and written there.
-    """
+    seconds: float
+    """From the start of Python to the end of the first call; NaN if it was not repeated: of all."""
+    beyond: float
+    """Those of the first call beyond its repetition."""
+    compiled: int
+    """How many kernels are kept in its folder afterwards."""
+
+
+def cost(arguments: Sequence[str], cache: Path, options: Mapping[str, str] | None = None) -> Cost:
+    """Run Python with arguments in the folder of the cache's parent; return what it cost."""
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(cache), **(options or {})}
+    before = _of_children()
     run = subprocess.run(
-        [sys.executable, "-c", CHILD.replace("CALL", call)],
-        env=os.environ | {"NUMBA_CACHE_DIR": str(folder), "NUMBA_NUM_THREADS": "1"},
+        [sys.executable, *arguments],
+        env=environment,
+        cwd=cache.parent,
         stdout=subprocess.PIPE,
+        text=True,
         check=True,
     )
-    return json.loads(run.stdout)
+    seconds, beyond = _of_children() - before, 0.0
+    if run.stdout.startswith("["):
+        start, first, second = json.loads(run.stdout)
+        seconds, beyond = first, (first - start) - (second - first)
+    return Cost(seconds, beyond, len([*cache.rglob("*.kernel")]))
+
+
+def _of_children() -> float:
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def programs() -> dict[str, list[str]]:
+    """Return the arguments of Python for each call."""
+    calls = {name: ["-c", CHILD.replace("CALL", call)] for name, call in CALLS.items()}
+    return calls | COMMANDS
+
+
+def check() -> int:
+    """Return how many calls compile, or cost too much; print each."""
+    failed = 0
+    with tempfile.TemporaryDirectory() as folder:
+        cost(["-c", PART], Path(folder, "cache"))
+        for number, (name, arguments) in enumerate(programs().items()):
+            each = cost(arguments, Path(folder, f"cache{number}"))
+            most = MOST_OF_SYMPY if "sympy" in name else MOST
+            is_right = each.compiled == 0 and each.beyond <= most
+            failed += not is_right
+            print(
+                f"{'ok    ' if is_right else 'FAILED'} {name}: {each.seconds:.2f} s, "
+                f"{each.beyond:.2f} beyond its repetition, {each.compiled} kernels compiled"
+            )
+    return failed
 
 
 def page() -> str:
     """Return docs/cold_start.md, measured now."""
-    rows, tables = [], []
-    for name, call in CALLS.items():
-        with tempfile.TemporaryDirectory() as folder:
-            first, second = (cold(call, Path(folder)) for _ in range(2))
-        functions = first["functions"]
-        number = sum(count for _, count, _ in functions)
-        rows.append(f"| {name} | {first['seconds']:.1f} | {second['seconds']:.1f} | {number} |")
-        lines = [
-            f"| `{function.removeprefix('gaussmap.')}` | {count} | {seconds:.2f} |"
-            for function, count, seconds in functions[:LISTED]
-        ]
-        head = f"| {name} | times | seconds |\n| :-- | --: | --: |"
-        tables.append("\n".join([head, *lines]))
-    return PAGE.format(
-        rows="\n".join(rows),
-        tables="\n\n".join(tables),
-        numba=numba.__version__,
-        processor=get_host_cpu_name(),
-    )
+    rows = []
+    with tempfile.TemporaryDirectory() as folder:
+        cost(["-c", PART], Path(folder, "cache"))
+        for number, (name, arguments) in enumerate(programs().items()):
+            empty, own = Path(folder, f"empty{number}"), Path(folder, f"own{number}")
+            wheel = cost(arguments, empty)
+            first, kept = (cost(arguments, own, HERE_ONLY) for _ in range(2))
+            beyond = [f"{x.beyond:.2f}" if x.beyond else "" for x in (wheel, first)]
+            rows.append(
+                f"| {name} | {wheel.seconds:.2f} | {beyond[0]} | {first.seconds:.1f} | {beyond[1]} "
+                f"| {kept.seconds:.2f} | {first.compiled} |"
+            )
+    return PAGE.format(rows="\n".join(rows), python=sys.version.split()[0])
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Print the page; return the exit code."""
-    argparse.ArgumentParser(description=__doc__).parse_args(arguments)
+    """Print the page, or check; return the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--check", action="store_true", help="fail if a call compiles")
     start = time.monotonic()
+    if parser.parse_args(arguments).check:
+        return 1 if check() else 0
     print(page(), end="")
     print(f"cold_start: {time.monotonic() - start:.0f} s", file=sys.stderr)
     return 0

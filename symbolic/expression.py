@@ -10,20 +10,20 @@ from typing import cast
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
-from .formula import Formula, compose
-from .loops import row_loop
-from .notation import Definition, dot, flat, scalar
-from .patch import n
-from .printer import source_of
-from .support import (
+from .envelope import (
     ENTRIES,
     ENVELOPE_OPERATOR,
-    HESSIAN_OF_EXTENSION,
     HESSIAN_SYMBOLS,
     INTRINSIC_GRADIENT,
     SECOND_DERIVATIVES,
+    hessian_of_extension,
+    n,
     x,
 )
+from .formula import Formula, compose
+from .loops import row_loop
+from .notation import Definition, dot, flat, scalar
+from .printer import source_of
 
 __all__ = ["NORMAL", "is_homogeneous", "kernel_source"]
 
@@ -66,7 +66,10 @@ def branch(h: sp.Expr) -> Formula:
     names = (scalar("h"), *flat([INTRINSIC_GRADIENT.inputs[0]]), *SECOND_DERIVATIVES)
     parts = [
         _given((*zip(names, (h, *gradient, *hessian), strict=True),)),
-        *(y.in_components() for y in (INTRINSIC_GRADIENT, ENVELOPE_OPERATOR, HESSIAN_OF_EXTENSION)),
+        *(
+            y.in_components()
+            for y in (INTRINSIC_GRADIENT, ENVELOPE_OPERATOR, hessian_of_extension())
+        ),
     ]
     return compose("given", "", parts, source="eqs. (5) and (6)", outputs=outputs)
 

@@ -60,7 +60,7 @@ def latex_of(expression: Any) -> str:  # noqa: ANN401
 
 def normal_components() -> tuple[Any, ...]:
     """Return the symbols n_x, n_y, n_z."""
-    from ...symbolic.patch import n
+    from ...symbolic.envelope import n
 
     return n.components
 

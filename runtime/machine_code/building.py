@@ -50,6 +50,7 @@ def build(folder: Path = PACKAGE) -> Path | None:
     path, level = pack_path(folder), level_here()
     if path is None or level is None or _is_built(path):
         return path
+    print(f"compiling the kernels of gaussmap into {path}", file=sys.stderr)
     entries: dict[str, bytes] = {}
     with _options(level), ProcessPoolExecutor(mp_context=get_context("spawn")) as processes:
         for compiled in processes.map(_compiled, _modules()):
