@@ -1,4 +1,4 @@
-"""The notice on a terminal while kernels are compiled, at their first call.
+"""The notice, on a terminal or in a notebook, while kernels are compiled at their first call.
 
 Importing this module installs it: modules whose kernels users call import it.
 """
@@ -15,12 +15,13 @@ __all__ = ["NOTICE", "Notice"]
 
 PACKAGE = __name__.partition(".")[0]
 ERASE = "\r\033[K"  # to the start of the line, and clear it
+NOTEBOOKS = "ipykernel."  # whose standard error is no terminal, and shows lines that change
 # The notice appears after this many seconds of compilation.
 PATIENCE = 2.0
 
 
 class Notice(event.Listener):
-    """Shows a line on standard error, if it is a terminal, while kernels of gaussmap compile.
+    """Shows a line on standard error, unless it is a file, while kernels of gaussmap compile.
 
     The line appears when compilation has taken longer than `PATIENCE` in this process. Numba sends
     events under a lock, so there is one compilation at a time; each of its passes updates the line.
@@ -59,12 +60,18 @@ class Notice(event.Listener):
             self._show(f"gaussmap: compiling kernels, only once here ({seconds:.0f} s): {name}")
 
     def _show(self, line: str) -> None:
-        """Replace the line on the terminal."""
-        if line == self.line or self.quiet or sys.stderr is None or not sys.stderr.isatty():
+        """Replace the line."""
+        if line == self.line or self.quiet or sys.stderr is None:
+            return
+        if sys.stderr.isatty():
+            erase = ERASE
+        elif type(sys.stderr).__module__.startswith(NOTEBOOKS):
+            erase = f"\r{' ' * len(self.line)}\r"
+        else:
             return
         self.line = line
         with suppress(OSError, ValueError):  # the terminal is closed
-            sys.stderr.write(f"{ERASE}{line}")
+            sys.stderr.write(f"{erase}{line}")
             sys.stderr.flush()
 
 

@@ -1,25 +1,40 @@
-"""The measurement of first calls: an empty cache compiles, a full one does not."""
+"""The measurement of first calls: what compiles is seen, and fails the check."""
+
+from pathlib import Path
 
 import pytest
 from gaussmap.benchmarks import cold_start
 
-CALL = "gm.fit(torus, cells=(3, 4)).evaluate(0.5, 0.5)"
+CALL = "gm.fit('torus', cells=(3, 4)).evaluate(0.5, 0.5)"
+
+pytestmark = [pytest.mark.compiled, pytest.mark.slow]
 
 
-@pytest.mark.compiled
-@pytest.mark.slow
-def test_only_an_empty_cache_compiles(tmp_path):
-    first, second = (cold_start.cold(CALL, tmp_path) for _ in range(2))
-    names = [name for name, _, _ in first["functions"]]
-    assert "gaussmap.runtime.kernels.spline.evaluate" in names
-    assert all(seconds > 0.0 for _, _, seconds in first["functions"])
-    assert second["functions"] == []
-
-
-@pytest.mark.slow
-@pytest.mark.compiled
-def test_the_page_has_a_row_and_a_table_for_each_call(monkeypatch):
+@pytest.fixture(autouse=True)
+def one_call(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cold_start, "CALLS", {"`fit`": CALL})
-    page = cold_start.page()
-    assert page.count("| `fit` |") == 2
-    assert "| `runtime.kernels.spline.evaluate` | 1 |" in page
+    monkeypatch.setattr(cold_start, "COMMANDS", {})
+
+
+def test_only_an_empty_cache_compiles(tmp_path: Path) -> None:
+    (arguments,) = cold_start.programs().values()
+    folder = tmp_path / "cache"
+    first, second = (cold_start.cost(arguments, folder, cold_start.HERE_ONLY) for _ in range(2))
+    assert first.compiled == second.compiled > 0
+    assert first.beyond > second.beyond > 0.0
+    assert first.seconds > first.beyond
+
+
+def test_the_check_fails_if_kernels_are_compiled(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("GAUSSMAP_KERNELS", "0")
+    assert cold_start.main(["--check"]) == 1
+    assert "FAILED `fit`" in capsys.readouterr().out
+
+
+def test_the_page_has_a_row_for_each_call() -> None:
+    row = next(x for x in cold_start.page().splitlines() if x.startswith("| `fit` |"))
+    *_, compiling, _, kept, kernels, _ = row.split("|")
+    assert int(kernels) > 0
+    assert float(compiling) > float(kept) > 0.0

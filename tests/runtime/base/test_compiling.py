@@ -48,6 +48,22 @@ def test_compilation_is_shown_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 @pytest.mark.compiled
+def test_compilation_is_shown_in_a_notebook(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its output knows no codes of terminals: spaces erase a line."""
+    notebook = type("OutStream", (io.StringIO,), {"__module__": "ipykernel.iostream"})()
+    monkeypatch.setattr(sys, "stderr", notebook)
+    monkeypatch.setattr(compiling, "PATIENCE", 0.0)
+    assert compiled_now()(1) == 3
+    written = notebook.getvalue()
+    assert "compiling kernels" in written
+    assert "\033" not in written
+    assert written.rsplit("\r", 1)[1] == ""
+    *_, blank, _ = written.split("\r")
+    assert blank.strip() == ""
+    assert len(blank) >= len(written.split("\r")[-4])
+
+
+@pytest.mark.compiled
 def test_compilation_is_not_shown(monkeypatch: pytest.MonkeyPatch) -> None:
     """Not in files, not if it is quick, not if it is of others, and not to who wants quiet."""
     monkeypatch.setattr(compiling, "PATIENCE", 0.0)

@@ -1,0 +1,45 @@
+"""What `import gaussmap` and a first call load: nothing large that they do not need."""
+
+import subprocess
+import sys
+
+import pytest
+
+# Numba loads the last two, and parts of SciPy, with its compiler.
+LARGE = (
+    "contourpy", "matplotlib", "pandas", "pyarrow", "scipy.linalg", "scipy.spatial", "sympy",
+    "numba.np.arraymath", "numba.np.linalg",
+)  # fmt: skip
+EXPECTED = {"numba", "numpy"}
+
+
+def loaded_by(code: str) -> set[str]:
+    """Return the large modules that a new process has loaded after some code."""
+    listing = f"import sys; print(*[x for x in {(*LARGE, *EXPECTED)} if x in sys.modules])"
+    done = subprocess.run(
+        [sys.executable, "-c", f"{code}\n{listing}"], capture_output=True, text=True, check=True
+    )
+    return set(done.stdout.splitlines()[-1].split()) if done.stdout.strip() else set()
+
+
+def test_the_import_loads_nothing() -> None:
+    assert loaded_by("import gaussmap") == set()
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize(
+    ("call", "others"),
+    [
+        ("gm.sample('torus', 500)", set()),
+        ("gm.sample('torus', normals=gm.fibonacci(50))", set()),
+        ("gm.sample('torus', 500, density='uniform')", set()),
+        ("gm.sample('torus', angle=20)", {"scipy.linalg", "scipy.spatial"}),  # for nearest samples
+    ],
+)
+def test_a_first_call_loads_numba_without_its_compiler(call: str, others: set[str]) -> None:
+    """Machine code of the package, or kept, is there: its types are known without compiling."""
+    from gaussmap.runtime.machine_code import shipped
+
+    if shipped.open_pack() is None:
+        pytest.skip("there is no machine code of these sources: make compiled")
+    assert loaded_by(f"import gaussmap as gm; {call}") == EXPECTED | others
