@@ -73,7 +73,7 @@ def sample(
     angle : float, optional
         The largest angle, in degrees and at most 90, between the normal of any point of the surface
         and that of the sample nearest in normal. Next to singular points of the spline, such as
-        cusps, it holds as far as triangles of a thousandth of a patch resolve them. Not with
+        cusps, it holds as far as cells of 2⁻¹⁴ of its size resolve them. Not with
         ``density="gauss"``: next to open borders, normals alone leave up to half as much again.
     coverage : float, optional
         The largest distance, in the unit L of the surface, from any point of it to the nearest

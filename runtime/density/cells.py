@@ -124,12 +124,16 @@ class Cells:
     @property
     def halves(self) -> Cells:
         """The cells bisected across their longer sides, without those outside the trim."""
-        return self.space.evaluated(self._halved())
+        along_u = self.numbers[:, ALONG_U] >= self.numbers[:, ALONG_V]
+        return self.space.evaluated(halved(self, along_u))
 
     @property
     def quarters(self) -> Cells:
-        """The cells bisected twice."""
-        return self.space.evaluated(self._halved()._halved())
+        """The cells bisected along u and along v.
+
+        Where the surface is singular, normals turn most along the shorter side.
+        """
+        return self.space.evaluated(into_parts(self, np.full((len(self), 2), 2)))
 
     @property
     def deepest(self) -> Flags:
@@ -142,10 +146,6 @@ class Cells:
     def chords(self) -> Array:
         """How far normals of each cell (M,) are from that at its place, 2 if unknown."""
         return self.numbers[:, CHORD]
-
-    def _halved(self) -> Cells:
-        along_u = self.numbers[:, ALONG_U] >= self.numbers[:, ALONG_V]
-        return halved(self, along_u)
 
 
 def halved(cells: Cells, along_u: Flags) -> Cells:

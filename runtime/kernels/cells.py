@@ -9,10 +9,10 @@ from __future__ import annotations
 import math
 
 from ...generated.jet import at_jet
-from ...generated.patch import envelope, tangents
-from ...generated.vectors import Vector
+from ...generated.patch import control_normals, envelope, tangents
+from ...generated.vectors import Patch, Vector
 from ..base.tolerances import VANISHING
-from ..machine_code.jit import inline, jit
+from ..machine_code.jit import inline, jit, loop
 from .refine import patch_of_jet
 from .sizing import density_of
 from .vectors import dot, length, set_row
@@ -29,6 +29,38 @@ def distance_of(v, w):
     return length(Vector(v.x - w.x, v.y - w.y, v.z - w.z))
 
 
+@loop
+def squared_sine(patch, s, t, sign, n, least):
+    """Return that of the largest angle from n to normals over half a cell; 2 if it is not acute.
+
+    These are combinations of control normals, of which those shorter than `least` count for
+    nothing. The half is the triangle of the corner s, t and those a step of `sign` away from it.
+    """
+    p_u, p_v, _ = tangents(patch, s, t)
+    d = Vector(sign * p_u.x, sign * p_u.y, sign * p_u.z)
+    e = Vector(sign * p_v.x, sign * p_v.y, sign * p_v.z)
+    largest = 0.0
+    for m in control_normals(Patch(patch.a, patch.b, patch.c, d, e, patch.p)):
+        size = dot(m, m)
+        if size > least * least:
+            x = m.y * n.z - m.z * n.y
+            y = m.z * n.x - m.x * n.z
+            z = m.x * n.y - m.y * n.x
+            sine = (x * x + y * y + z * z) / size
+            largest = max(largest, sine if dot(m, n) > 0.0 else 2.0)
+    return largest
+
+
+@inline
+def chord_of_cell(patch, low_s, low_t, n, least):
+    """Return the largest chord between n and normals of a cell, 2 if an angle is not acute."""
+    square = max(
+        squared_sine(patch, low_s, low_t, 1.0, n, least),
+        squared_sine(patch, low_s + 1.0, low_t + 1.0, -1.0, n, least),
+    )
+    return math.sqrt(2.0 * square / (1.0 + math.sqrt(1.0 - square))) if square < 1.0 else 2.0
+
+
 @jit
 def evaluate_cells(jets, boxes, places, size, centre, finest, target, rows, numbers):
     """Write what is known of cells with boxes (M, 4), from 2-jets (M, 6, 3) at places (M, 2).
@@ -36,10 +68,11 @@ def evaluate_cells(jets, boxes, places, size, centre, finest, target, rows, numb
     Boxes are u0, v0, u1, v1. Lengths are multiplied by `size`, and points are relative to a centre.
 
     rows (M, 8): point, unit normal, target density and K; normal and K are 0 at singular points.
-    numbers (M, 8): a radius around the point that holds the cell; the chord between the normal and
-    others of the cell, 2 where there is none; the lengths of the cell along u and v; its bends
-    along u and v, relative to these; its area; the radius of curvature below which curvature does
-    not count: the width of the cell, if it is 0 on entry, or of one whose sides are `finest` (2,).
+    numbers (M, 8): a radius around the point that holds the cell; the largest chord between the
+    normal and others of the cell, 0 if these are rounding, 2 if an angle is not acute or there is
+    no normal; the lengths of the cell along u and v; its bends along u and v, relative to these, 0
+    if these are rounding; its area; the radius of curvature below which curvature does not count:
+    the width of the cell, if it is 0 on entry, or of one whose sides are `finest` (2,).
     """
     for k in range(jets.shape[0]):
         du = boxes[k, 2] - boxes[k, 0]
@@ -49,23 +82,22 @@ def evaluate_cells(jets, boxes, places, size, centre, finest, target, rows, numb
         scale = math.sqrt(dot(patch.d, patch.d) * dot(patch.e, patch.e))
         regular = area > VANISHING * scale and abs(K) < math.inf
         radius = 0.0
-        chord = 0.0
         along_u = 0.0
         along_v = 0.0
         for corner in range(4):
             s = (boxes[k, 2 * (corner % 2)] - places[k, 0]) / du
             t = (boxes[k, 1 + 2 * (corner // 2)] - places[k, 1]) / dv
             radius = max(radius, distance_of(envelope(patch, s, t), patch.p))
-            p_u, p_v, N = tangents(patch, s, t)
+            p_u, p_v, _ = tangents(patch, s, t)
             along_u = max(along_u, length(p_u))
             along_v = max(along_v, length(p_v))
-            size_of_N = length(N)
-            if regular and size_of_N > VANISHING * length(p_u) * length(p_v):
-                m = Vector(N.x / size_of_N, N.y / size_of_N, N.z / size_of_N)
-                chord = max(chord, distance_of(m, n))
-            else:
-                chord = 2.0
         radius *= BEYOND
+        low_s = (boxes[k, 0] - places[k, 0]) / du
+        low_t = (boxes[k, 1] - places[k, 1]) / dv
+        normal = n if regular else Vector(0.0, 0.0, 0.0)
+        longest = max(along_u, along_v)
+        least = VANISHING * longest
+        chord = chord_of_cell(patch, low_s, low_t, normal, least * longest)
         limit = numbers[k, 7]
         if limit == 0.0:
             wide = max(finest[0] / du, 1.0)
@@ -75,14 +107,14 @@ def evaluate_cells(jets, boxes, places, size, centre, finest, target, rows, numb
             limit = min(across_u, across_v)
         for x in range(3):
             rows[k, x] = (jets[k, 0, x] - centre[x]) * size
-        set_row(rows[:, 3:6], k, n if regular else Vector(0.0, 0.0, 0.0))
+        set_row(rows[:, 3:6], k, normal)
         rows[k, 6] = density_of(K, H, limit, target) if regular else target.floor
         rows[k, 7] = K if regular else 0.0
         numbers[k, 0] = radius
         numbers[k, 1] = min(BEYOND * chord, 2.0)
         numbers[k, 2] = along_u
         numbers[k, 3] = along_v
-        numbers[k, 4] = length(patch.a) / along_u if along_u > 0.0 else 0.0
-        numbers[k, 5] = length(patch.c) / along_v if along_v > 0.0 else 0.0
+        numbers[k, 4] = length(patch.a) / along_u if along_u > least else 0.0
+        numbers[k, 5] = length(patch.c) / along_v if along_v > least else 0.0
         numbers[k, 6] = area
         numbers[k, 7] = limit

@@ -245,7 +245,7 @@ def test_more_than_the_size_of_a_surface_asks_for_a_few_samples(coverage):
 def test_a_coverage_takes_few_samples(name, area):
     """1.9 times as many as a hexagonal lattice with this covering radius has.
 
-    It is 2.2 times if the smallest triangles around uncovered points are twice as large.
+    It is 2.2 times if the smallest cells around uncovered points are twice as large.
     """
     samples = gm.sample(gm.fit(name, (16, 16)), coverage=0.05, density="uniform")
     lattice = 2.0 * area / (3.0 * math.sqrt(3.0) * 0.05**2)
@@ -320,7 +320,7 @@ SINGULAR = {
 @pytest.mark.quick_for("swallowtail")
 @pytest.mark.slow
 def test_angles_are_kept_at_singular_points(name, cells):
-    """Places nearer to a singular point than triangles are cut would need another bound."""
+    """Places nearer to a singular point than cells are cut would need another bound."""
     surface = gm.Surface.from_callable(
         lambda u, v: np.stack(np.broadcast_arrays(*SINGULAR[name](u, v)), axis=-1),
         ((-1.0, 1.0), (-1.0, 1.0)),
