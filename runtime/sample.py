@@ -13,6 +13,7 @@ from .base.errors import InputError, in_memory, shown
 from .base.georeference import warn_of_rounding
 from .base.memory import check_memory
 from .base.progress import busy
+from .density.at_normals import samples_at
 from .density.chosen_normals import choose
 from .density.filling import fields_of, fill, target_of
 from .density.grid import lines_of, without_lines
@@ -21,12 +22,10 @@ from .density.surface_piece import SurfacePiece, space_of
 from .place.on_spline import OnSpline
 from .place.on_surface import checked_place, geometry_of, place_of_samples
 from .samples.fields import FLAG_NAMES, GRID_NAMES, bytes_of, checked_dtype, checked_fields
-from .samples.report import sampling_report, warn_of
+from .samples.report import warn_of
 from .samples.request import Request, checked_request
 from .samples.samples import Samples
 from .samples.whole import Whole
-from .search.bins import NormalBins
-from .search.search import find
 from .spline.spline import Spline
 from .surface.surface import Surface
 from .surface.surfaces import named
@@ -249,11 +248,13 @@ def sample_and_normals(
         samples, normals = _filled(surface.name, parts, known, request, wanted, number, progress)
     else:
         whole = geometry(surface, cells)
-        arguments = request, wanted, number, progress
         if filled:
-            samples, normals = _filled(whole.name, [whole], whole.surface, *arguments)
+            samples, normals = _filled(
+                whole.name, [whole], whole.surface, request, wanted, number, progress
+            )
         else:
-            samples, normals = _by_normals(whole, *arguments)
+            chosen = choose(whole, request.normals_or_count, progress)
+            samples, normals = samples_at(whole, chosen, wanted, number, progress)
     if fields is None:
         samples = without_lines(samples)
     warn_of(samples.report, request.count, 5, coverage=request.coverage, filled=filled)
@@ -312,22 +313,3 @@ def _filled(
     return Samples(
         **held, report=report, spline=spline, surface=surface, offset_of=None
     ), given.normals
-
-
-def _by_normals(
-    geometry: OnSpline,
-    request: Request,
-    fields: tuple[str, ...],
-    dtype: np.dtype[np.floating],
-    progress: bool,
-) -> tuple[Samples, NDArray[np.float64]]:
-    """Return the points that have the normals that are asked, and these."""
-    chosen, threads = choose(geometry, request.normals_or_count, progress), geometry.threads
-    bins, hits = chosen.found or (NormalBins(chosen.part(0, len(chosen), threads), threads), None)
-    if hits is None:
-        hits = find(geometry.spline, bins, threads, progress)
-    found = geometry.at_hits(bins, hits, fields, dtype)
-    report = sampling_report(
-        geometry, len(bins.normals), found.number, chosen.density, hits.developable, found.fields
-    )
-    return geometry.samples(found.fields, report, found.unrefined), bins.normals

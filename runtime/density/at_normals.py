@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Any, NamedTuple
@@ -18,13 +18,13 @@ from ..samples.fields import ARRAY_NAMES_ON_SURFACE, dtype_of, row_shape
 from ..samples.report import sampling_report
 from ..samples.samples import Samples
 from ..search.bins import NormalBins
-from ..search.search import Hits, find
+from ..search.search import find
 from ..spline.developable import curved_solid_angle
-from .chosen_normals import NORMALS_PER_SAMPLE, choose
+from .chosen_normals import NORMALS_PER_SAMPLE, Chosen, choose
 from .fibonacci_lattice import Lattice
 from .space import Space
 
-__all__ = ["Given", "at_count", "at_lattices", "at_normals", "nothing_given"]
+__all__ = ["Given", "at_count", "at_lattices", "at_normals", "nothing_given", "samples_at"]
 
 Array = NDArray[np.float64]
 
@@ -37,8 +37,8 @@ class Found(NamedTuple):
     """The samples of a piece at normals (S, 3)."""
 
     piece: int
-    normals: Array
     samples: Samples
+    normals: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +86,7 @@ class Given:
     def field(self, name: str, dtype: DTypeLike) -> NDArray[Any]:
         """Return a field (N, …) of the samples."""
         dtype, parts, first = dtype_of(name, dtype), [np.empty((0, *row_shape(name)))], 0
-        for piece, normals, samples in self.found:
+        for piece, samples, normals in self.found:
             indices = self.space.pieces[piece].indices
             known = getattr(samples, name)
             if known is None:
@@ -109,8 +109,8 @@ def at_normals(space: Space, normals: Array, pieces: Iterable[int], progress: bo
     """Return all points of some pieces that have one of normals (S, 3), each once."""
     density = len(normals) / (4 * math.pi)
 
-    def search(geometry: OnSpline) -> tuple[Array, Samples]:
-        return normals, _samples_at(geometry, normals, density, progress)
+    def search(geometry: OnSpline) -> tuple[Samples, Array]:
+        return _with_all_fields(geometry, choose(geometry, normals, progress), progress)
 
     return Given(space, normals, density, tuple(_searched(space, pieces, search)))
 
@@ -137,11 +137,10 @@ def at_count(space: Space, counts: NDArray[np.int64], progress: bool) -> Given:
     parts, densities = list[Found](), [0.0]
     for piece in np.flatnonzero(counts).tolist():
 
-        def search(geometry: OnSpline, count: int = int(counts[piece])) -> tuple[Array, Samples]:
+        def search(geometry: OnSpline, count: int = int(counts[piece])) -> tuple[Samples, Array]:
             chosen = choose(geometry, count, progress)
             densities.append(chosen.density)
-            normals = chosen.part(0, len(chosen), space.threads)
-            return normals, _samples_at(geometry, normals, chosen.density, progress, chosen.found)
+            return _with_all_fields(geometry, chosen, progress)
 
         parts += _searched(space, [piece], search)
     return _given(space, max(densities), tuple(parts))
@@ -153,7 +152,7 @@ def _given(space: Space, density: float, found: tuple[Found, ...]) -> Given:
 
 
 def _searched(
-    space: Space, pieces: Iterable[int], search: Callable[[OnSpline], tuple[Array, Samples] | None]
+    space: Space, pieces: Iterable[int], search: Callable[[OnSpline], tuple[Samples, Array] | None]
 ) -> Iterable[Found]:
     """Yield what a search finds on pieces; there is a warning for those that have no spline."""
     for k in pieces:
@@ -170,31 +169,32 @@ def _searched(
             warnings.warn(message, GaussmapWarning, stacklevel=8)
 
 
-def _at_lattice(geometry: OnSpline, density: float, progress: bool) -> tuple[Array, Samples] | None:
+def _at_lattice(geometry: OnSpline, density: float, progress: bool) -> tuple[Samples, Array] | None:
     lattice = Lattice.around(geometry.spline)
     image = curved_solid_angle(geometry, density)
     if round(density * image) == 0:
         return None
     densest = lattice.density_of(NORMALS_PER_SAMPLE * max(round(density * image), 1000))
-    density = min(density, densest)
-    normals = lattice.normals(density, threads=geometry.threads)
-    samples = _samples_at(geometry, normals, density, progress)
+    chosen = Chosen(lattice, min(density, densest))
+    samples, normals = _with_all_fields(geometry, chosen, progress)
     # Nobody has asked for these normals: others take the place of those without a point.
-    return normals, samples if samples.on_surface is None else samples[samples.on_surface]
+    return (samples if samples.on_surface is None else samples[samples.on_surface]), normals
 
 
-def _samples_at(
-    geometry: OnSpline,
-    normals: Array,
-    density: float,
-    progress: bool,
-    found: tuple[NormalBins, Hits] | None = None,
-) -> Samples:
-    """Return the samples at normals with a density per steradian; `found` if they are searched."""
+def samples_at(
+    geometry: OnSpline, chosen: Chosen, fields: Sequence[str], dtype: DTypeLike, progress: bool
+) -> tuple[Samples, Array]:
+    """Return the samples at chosen normals, with the fields that are requested, and these."""
     threads = geometry.threads
-    bins, hits = found or (NormalBins(normals, threads), None)
+    bins, hits = chosen.found or (NormalBins(chosen.part(0, len(chosen), threads), threads), None)
     if hits is None:
         hits = find(geometry.spline, bins, threads, progress)
-    placed = geometry.at_hits(bins, hits, ARRAY_NAMES_ON_SURFACE, np.float64)
-    report = sampling_report(geometry, len(normals), placed.number, density, hits.developable)
-    return geometry.samples(placed.fields, report, placed.unrefined)
+    found = geometry.at_hits(bins, hits, fields, dtype)
+    report = sampling_report(
+        geometry, len(bins.normals), found.number, chosen.density, hits.developable, found.fields
+    )
+    return geometry.samples(found.fields, report, found.unrefined), bins.normals
+
+
+def _with_all_fields(geometry: OnSpline, chosen: Chosen, progress: bool) -> tuple[Samples, Array]:
+    return samples_at(geometry, chosen, ARRAY_NAMES_ON_SURFACE, np.float64, progress)
