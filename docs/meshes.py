@@ -103,8 +103,7 @@ Written by `make meshes`: do not edit.
 
 Triangle meshes of three surfaces with M vertices, about {counts}. The vertices of `samples.mesh()`
 are the samples of `gm.sample(count=…)` and points on open borders, M in all. Those of
-`density="aligned"` are on a graded grid, whose cells are cut along a diagonal; edges are flipped as
-for `prefer="normals"`.
+`density="aligned"` are on a graded grid, of which each is a vertex.
 By default edges are flipped until triangles are Delaunay on the surface,
 and samples too close to others are left out; with `prefer="normals"` until no flip reduces the
 angles between two triangles and the normals at their corners. The row below both is the

@@ -129,10 +129,7 @@ def mesh(
     added there, as far apart as the samples near them. Then edges are flipped. Samples that
     coincide become one vertex.
 
-    Samples on a complete graded grid (`row` and `column`) need no Delaunay triangulation: each
-    cell of the grid is cut along a diagonal, and samples between its lines are inserted. Points
-    are added where its lines meet open borders. Samples of trimmed and of one-sided surfaces,
-    parts of grids, and grids with more than 30 % of other samples are meshed as any others.
+    Samples on a graded grid (`row` and `column`) stay vertices, however long its cells are.
 
     Parameters
     ----------

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,11 +14,10 @@ from ...runtime.domain.domain import Boundary
 from ...runtime.place.newton import evaluate_on_surface
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
-from .filled_grid import grid_triangles
 from .improvement import checked_prefer, flip_edges, improved
 from .links import neighbours
 from .mesh import Mesh
-from .places import boundary_of, uv_at
+from .places import apexes_of, boundary_of, uv_at
 from .triangulated import Triangulated, too_few
 from .triangulation import triangulations
 from .trimming import trimmed_triangles
@@ -26,7 +26,7 @@ from .vertices import Vertices, before_offset, check_fields
 if TYPE_CHECKING:
     from ...runtime.samples.samples import Samples
 
-__all__ = ["mesh_of", "triangulated", "triangulated_on_grid"]
+__all__ = ["mesh_of", "triangulated"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -42,9 +42,7 @@ def mesh_of(samples: Samples, spline: Spline, angle: float | None, prefer: str) 
         raise InputError("there are no samples, and so there is nothing to make a mesh of.")
     check_fields(samples)
     check_memory("mesh", len(samples))
-    mesh = triangulated_on_grid(samples, spline)
-    if mesh is None:
-        mesh = triangulated(samples, spline, must_be_whole=angle is None)
+    mesh = triangulated(samples, spline, must_be_whole=angle is None)
     if largest < WHOLE:
         flip_edges(mesh, "normals")
         mesh = mesh.within(largest)
@@ -75,30 +73,7 @@ def triangulated(samples: Samples, spline: Spline, must_be_whole: bool = True) -
         )  # fmt: skip
         if not len(triangles) or (must_be_whole and not is_whole):
             raise too_few(len(vertices.sample), spline.name)
-    return _through(samples, spline, vertices, triangles, sides, adjacent)
-
-
-def triangulated_on_grid(samples: Samples, spline: Spline) -> Triangulated | None:
-    """Triangulate samples on a graded grid, and flip edges towards the normals.
-
-    None if they are on no complete grid, or if some triangles remain folded: too many samples
-    are between its lines, or all are too far apart.
-    """
-    found = grid_triangles(samples, spline)
-    if found is None:
-        return None
-    vertices, triangles, adjacent = found
-    sides = np.ones_like(triangles)
-    mesh = _through(samples, spline, vertices, triangles, sides, adjacent)
-    flip_edges(mesh, "normals")
-    return None if mesh.cosines().min() < 0.0 else mesh
-
-
-def _through(
-    samples: Samples, spline: Spline, vertices: Vertices,
-    triangles: Indices, sides: Indices, adjacent: Indices,
-) -> Triangulated:  # fmt: skip
-    """Add the points and normals of vertices."""
+    triangles, sides, adjacent = _at_apexes(vertices, spline, triangles, sides, adjacent)
     uv, points, normals = _on_surface(vertices, samples, spline)
     _fill_missing(normals, triangles, sides)
     if samples.offset_of is not None:
@@ -175,18 +150,29 @@ def _on_surface(vertices: Vertices, samples: Samples, spline: Spline) -> tuple[A
     else:
         points[~is_sample], found = evaluate_on_surface(base.surface, spline, added)[:2]
         normals[~is_sample] = np.where(found.any(axis=1, keepdims=True), found, np.nan)
-    normals[_is_added_at_apex(vertices, spline)] = np.nan
+    for apex in _apexes(vertices, spline):
+        normals[apex[vertices.sample[apex] < 0]] = np.nan
     return uv, points, normals
 
 
-def _is_added_at_apex(vertices: Vertices, spline: Spline) -> NDArray[np.bool_]:
-    """Say which vertices are added where a side is one point, and no pole: it has no normal."""
-    found = np.zeros(len(vertices.sample), dtype=bool)
-    boundary = boundary_of(spline, apexes=True)
-    for axis, place in ((0, 0), (0, 1), (1, 0), (1, 1)):
-        if boundary[axis][place] == "pole" != spline.boundary[axis][place]:
-            found |= (vertices.positions[:, axis] == place) & (vertices.sample < 0)
-    return found
+def _apexes(vertices: Vertices, spline: Spline) -> Iterator[Indices]:
+    """Yield the vertices on each side that is an apex, which has no normal."""
+    for axis, place in apexes_of(spline):
+        yield np.flatnonzero(vertices.positions[:, axis] == place)
+
+
+def _at_apexes(
+    vertices: Vertices, spline: Spline, triangles: Indices, sides: Indices, adjacent: Indices
+) -> tuple[Indices, Indices, Indices]:
+    """Return triangles, sides and neighbours with one vertex for all that are at an apex."""
+    number = np.arange(len(vertices.sample))
+    for apex in _apexes(vertices, spline):
+        number[apex] = number[apex[:1]]
+    if (number == np.arange(len(number))).all():
+        return triangles, sides, adjacent
+    triangles = number[triangles]
+    kept = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
+    return triangles[kept], sides[kept], neighbours(triangles[kept], ~vertices.is_free)[0]
 
 
 def _fill_missing(normals: Array, triangles: Indices, sides: Indices) -> None:

@@ -15,7 +15,16 @@ from ...runtime.spline.spline import Spline
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
 
-__all__ = ["ON_SIDE", "boundary_of", "on_side", "points_at", "spacings_at", "uv_at", "wrapped"]
+__all__ = [
+    "ON_SIDE",
+    "apexes_of",
+    "boundary_of",
+    "on_side",
+    "points_at",
+    "spacings_at",
+    "uv_at",
+    "wrapped",
+]
 
 Array = NDArray[np.float64]
 
@@ -66,19 +75,30 @@ def on_side(axis: int, place: float, t: Array) -> Array:
     return np.stack([fixed, t] if axis == 0 else [t, fixed], axis=1)
 
 
-def boundary_of(spline: Spline, apexes: bool = False) -> Boundary:
-    """Return the boundary conditions of a spline; an end that is a single point is a pole.
-
-    That is the end of a surface that closes around it, and with `apexes` any other one.
-    """
-    size = float(np.ptp(spline.coefficients, axis=(0, 1)).max()) * spline.scale
+def boundary_of(spline: Spline) -> Boundary:
+    """Return the boundary conditions of a spline; an end that closes around a point is a pole."""
     found: list[BoundaryPair] = []
     for axis, ends in enumerate(spline.boundary):
-        kinds = list(ends)
-        for place, end in enumerate(ends):
-            if end == "open" and (apexes or spline.boundary[1 - axis][0] == "periodic"):
-                t = np.linspace(0.0, 1.0, spline.cells[1 - axis] + 1)
-                side = points_at(spline, on_side(axis, place, t))
-                kinds[place] = "pole" if np.ptp(side, axis=0).max() <= ON_SIDE * size else end
-        found.append((kinds[0], kinds[1]))
+        closes = spline.boundary[1 - axis][0] == "periodic"
+        low, high = (
+            "pole" if closes and end == "open" and _is_point(spline, axis, place) else end
+            for place, end in enumerate(ends)
+        )
+        found.append((low, high))
     return found[0], found[1]
+
+
+def apexes_of(spline: Spline) -> list[tuple[int, int]]:
+    """Return the axis and the end, 0 or 1, of each open side that is a single point."""
+    return [
+        (axis, place)
+        for axis, place in np.ndindex(2, 2)
+        if spline.boundary[axis][place] == "open" and _is_point(spline, axis, place)
+    ]
+
+
+def _is_point(spline: Spline, axis: int, place: int) -> bool:
+    size = float(np.ptp(spline.coefficients, axis=(0, 1)).max()) * spline.scale
+    t = np.linspace(0.0, 1.0, spline.cells[1 - axis] + 1)
+    side = points_at(spline, on_side(axis, place, t))
+    return bool(np.ptp(side, axis=0).max() <= ON_SIDE * size)
