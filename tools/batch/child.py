@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 from contextlib import suppress
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from ...runtime.base.errors import FileError, GaussmapError
@@ -39,6 +40,8 @@ class Child:
     def __init__(self, limits: Limits) -> None:
         self.limits = limits
         self._process: subprocess.Popen[bytes] | None = None
+        # For temporary files, which a process that is killed leaves.
+        self._folder = TemporaryDirectory(prefix="gaussmap-", ignore_cleanup_errors=True)
         self._lock = threading.Lock()
         self._stopped = False
 
@@ -77,6 +80,7 @@ class Child:
                 self._process.kill()
                 _end(self._process)
                 self._process = None
+            self._folder.cleanup()
 
     def _running(self) -> subprocess.Popen[bytes]:
         with self._lock:
@@ -95,7 +99,7 @@ class Child:
             [sys.executable, "-P", "-c", PROGRAM.format(paths, self.limits.memory, os.getpid())],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            env=os.environ | dict.fromkeys(THREADS, "1"),
+            env=os.environ | dict.fromkeys(THREADS, "1") | {"TMPDIR": self._folder.name},
         )
         try:
             _line(process)

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any, SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from ...runtime.base.checks import known_name, listed, whole_number, yes_or_no
+from ...runtime.base.checks import whole_number, yes_or_no
 from ...runtime.base.errors import FileError, InputError, UnknownNameError, shown
 from ...runtime.base.extras import check_extra, from_extra
 from ...runtime.samples.fields import COLUMNS, UNITS, checked_dtype, dtype_of
 from ..files.paths import PathLike, checked_path
 from .data_files import REMEDY, arrays_in, opened, rows_of_parts, stacked
-from .folder import MANIFEST, POINTS, Settings, read_settings, shard_path, shards_in
+from .folder import MANIFEST, POINTS, Settings, checked_names, read_settings, shard_path, shards_in
 from .loader import Loader
 from .manifest import COLUMNS as MANIFEST_COLUMNS
 from .manifest import FAILED, ManifestRow, manifest_schema, rows_of
@@ -172,7 +172,9 @@ class Dataset:
         {'part': 1, 'name': 'sphere', 'status': 'ok', 'samples': 500}
 
         """
-        names = _checked_names(columns, MANIFEST_COLUMNS, "column") or MANIFEST_COLUMNS
+        names = tuple(MANIFEST_COLUMNS)
+        if columns is not None:
+            names = checked_names(columns, names, "column")
         arrow = from_extra("pyarrow", "batch", "a data set")
         schema = arrow.schema([manifest_schema().field(name) for name in names])
         tables = [schema.empty_table()]
@@ -336,7 +338,7 @@ class Dataset:
 
     def _types(self, fields: Sequence[str], dtype: DTypeLike | None) -> dict[str, np.dtype[Any]]:
         number = checked_dtype(self.settings.dtype if dtype is None else dtype)
-        names = _checked_names(fields, self.fields, "field") or self.fields
+        names = self.fields if fields is None else checked_names(fields, self.fields, "field")
         return {name: dtype_of(name, number) for name in names}
 
 
@@ -352,23 +354,6 @@ def _samples(arrays: dict[str, NDArray[Any]], row: ManifestRow) -> Samples:
     )  # fmt: skip
     known: dict[str, Any] = {**arrays}
     return Samples(**known, report=report)
-
-
-def _checked_names(
-    names: Sequence[str] | None, known: Sequence[str] | Mapping[str, Any], kind: str
-) -> tuple[str, ...] | None:
-    """Return names, each known; None stands for all."""
-    if names is None:
-        return None
-    if isinstance(names, str):
-        raise InputError(f"{kind}s must be a tuple of names, such as ({shown(names)},).")
-    items = listed(names)
-    if items is None:
-        raise InputError(f"{kind}s must be a tuple of names, not {shown(names)}.")
-    wanted = tuple(known_name(name, tuple(known), kind) for name in items)
-    if not wanted or len(set(wanted)) < len(wanted):
-        raise InputError(f"{kind}s must name at least one {kind}, and none twice.")
-    return wanted
 
 
 def _checked_seed(seed: int | Sequence[int] | None) -> tuple[int, ...] | None:

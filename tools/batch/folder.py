@@ -18,18 +18,18 @@ import os
 import re
 import secrets
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
-from typing import IO, Annotated, Any
+from typing import IO, Any
 
 from ... import __version__
-from ...runtime.base.errors import FileError, GaussmapError, InputError
+from ...runtime.base.checks import known_name, listed, text, whole_number
+from ...runtime.base.errors import FileError, GaussmapError, InputError, shown
 from ...runtime.machine_code.sources import digest
 from ...runtime.samples.fields import COLUMNS, EDGE_NAMES
-from ..files.declared import check_entries, names_among, one_of, within
-from ..files.paths import PathLike, atomic_path, checked_path, reason_of
+from ..files.paths import BEGUN, PathLike, atomic_path, checked_path, reason_of
 
 __all__ = [
     "CODECS",
@@ -41,6 +41,7 @@ __all__ = [
     "POINTS",
     "SETTINGS",
     "Settings",
+    "checked_names",
     "create",
     "opened",
     "parts_per_shard",
@@ -93,10 +94,10 @@ class Settings:
     """
 
     asked: dict[str, Any]
-    fields: Annotated[tuple[str, ...], names_among(FIELDS)]
-    dtype: Annotated[str, one_of(("float64", "float32"))]
-    compression: Annotated[str, one_of(CODECS)]
-    parts_per_shard: Annotated[int, within(1, MOST_PARTS)]
+    fields: tuple[str, ...]
+    dtype: str
+    compression: str
+    parts_per_shard: int
     files: str | None
     gaussmap: str
     formulas: str
@@ -122,14 +123,46 @@ class Settings:
         return json.dumps(asdict(self), indent=2) + "\n"
 
     @classmethod
-    def from_json(cls, text: str) -> Settings:
-        """Return the settings that `to_json` has written; ValueError if the text has none."""
-        known = json.loads(text)
-        if isinstance(known, dict) and known.get("format", FORMAT) != FORMAT:
-            raise ValueError("it is of another version of gaussmap")
-        check_entries(known, cls)
-        settings = cls(**known)
-        return replace(settings, fields=tuple(settings.fields))
+    def from_json(cls, written: str) -> Settings:
+        """Return the settings that `to_json` has written; an error if the text has none."""
+        known, names = json.loads(written), [x.name for x in fields(cls)]
+        if not isinstance(known, dict):
+            raise InputError(f"it must be a dictionary of entries, not {shown(known)}.")
+        for name in known:
+            known_name(name, names, "entry")
+        for name in names:
+            if name not in known:
+                raise InputError(f"the entry {name} is missing.")
+        if known["format"] != FORMAT or isinstance(known["format"], bool):
+            raise InputError("it is of another version of gaussmap.")
+        if not isinstance(known["asked"], dict):
+            raise InputError(f"asked must be a dictionary of entries, not {shown(known['asked'])}.")
+        return cls(
+            asked=known["asked"],
+            fields=checked_names(known["fields"], FIELDS, "field"),
+            dtype=known_name(known["dtype"], ("float64", "float32"), "dtype"),
+            compression=known_name(known["compression"], CODECS, "compression"),
+            parts_per_shard=whole_number(
+                known["parts_per_shard"], "parts_per_shard", 1, MOST_PARTS
+            ),
+            files=None if known["files"] is None else text(known["files"], "files"),
+            gaussmap=text(known["gaussmap"], "gaussmap"),
+            formulas=text(known["formulas"], "formulas"),
+            format=FORMAT,
+        )
+
+
+def checked_names(names: object, known: Sequence[str], kind: str) -> tuple[str, ...]:
+    """Return names, each known: at least one, and none twice."""
+    if isinstance(names, str):
+        raise InputError(f"{kind}s must be a tuple of names, such as ({shown(names)},).")
+    items = listed(names)
+    if items is None:
+        raise InputError(f"{kind}s must be a tuple of names, not {shown(names)}.")
+    wanted = tuple(known_name(name, known, kind) for name in items)
+    if not wanted or len(set(wanted)) < len(wanted):
+        raise InputError(f"{kind}s must name at least one {kind}, and none twice.")
+    return wanted
 
 
 def parts_per_shard(parts: int | None, count: int | None) -> int:
@@ -188,8 +221,8 @@ def read_settings(folder: PathLike) -> Settings:
         return Settings.from_json(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise FileError(f"'{path}' cannot be read: {reason_of(error)}.") from error
-    except (ValueError, RecursionError) as error:
-        raise FileError(f"'{path}' cannot be used: {error}.") from error
+    except (GaussmapError, ValueError, RecursionError) as error:
+        raise FileError(f"'{path}' cannot be used: {str(error).rstrip('.')}.") from error
 
 
 @contextmanager
@@ -209,7 +242,7 @@ def opened(folder: PathLike, settings: Settings, overwrite: bool = False) -> Ite
 
 def _remove_temporary(path: Path) -> None:
     with _writing(path):
-        for left in (path / PARTIAL).glob(f"*{TEMPORARY}"):
+        for left in [*path.glob(f"{PARTIAL}/*{TEMPORARY}"), *path.glob(f"{FILES}/{BEGUN}*")]:
             left.unlink(missing_ok=True)
 
 
@@ -249,7 +282,7 @@ def _usable(path: Path) -> None:
         path.mkdir(parents=True, exist_ok=True)
         if not (path / SETTINGS).exists() and any(
             # Of a run that was killed while it wrote the settings.
-            entry.name != LOCK and not entry.name.startswith(".gaussmap-")
+            entry.name != LOCK and not entry.name.startswith(BEGUN)
             for entry in path.iterdir()
         ):
             raise FileError(

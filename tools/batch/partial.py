@@ -12,9 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from ...runtime.base.extras import from_extra
-from ..files.declared import check_entries
 from .folder import PARTIAL, replaced
-from .manifest import ManifestRow
+from .manifest import ManifestRow, manifest_table, rows_of
 
 __all__ = ["part_path", "read_part", "write_part"]
 
@@ -51,10 +50,9 @@ def read_part(folder: Path, part: int, schema: Any) -> tuple[ManifestRow, Any] |
             table = arrow.ipc.open_file(file).read_all()
         table.validate(full=True)
         about = dict(table.schema.metadata)
-        row = json.loads(about.pop(ROW))
-        check_entries(row, ManifestRow)
+        (row,) = rows_of(manifest_table([ManifestRow(**json.loads(about.pop(ROW)))]))
         table = table.replace_schema_metadata(about)
-        known = table.schema.equals(schema, check_metadata=True) and row["part"] == part
-        return (ManifestRow(**row), table) if known else None
+        known = table.schema.equals(schema, check_metadata=True) and row.part == part
+        return (row, table) if known else None
     except Exception:  # Arrow raises a dozen kinds on bad bytes
         return None

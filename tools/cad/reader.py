@@ -21,7 +21,6 @@ from ...runtime.base.extras import check_extra
 from ...runtime.base.memory import GIB
 from ...runtime.base.progress import busy
 from ..files.paths import PathLike, checked_path, reason_of
-from ..files.temporary import new_name, remove_left
 from .part import Part, read_part
 from .units import METRES, unit_named
 from .worker import ERROR, PART
@@ -106,9 +105,7 @@ def read_cad(
         raise InputError(f"memory_limit must be at least {LEAST_MEMORY:g} GiB, not {gib:g}.")
     _check_file(path)
     check_extra("OCP", "cad", "reading CAD files")
-    remove_left(Path(tempfile.gettempdir()))
-    prefix = f"{new_name()}."  # and what tempfile makes up
-    with tempfile.TemporaryDirectory(prefix=prefix, ignore_cleanup_errors=True) as name:
+    with tempfile.TemporaryDirectory(prefix="gaussmap-", ignore_cleanup_errors=True) as name:
         folder = Path(name)
         request = {
             "path": str(_plain(path.absolute(), folder)),

@@ -8,17 +8,28 @@ from __future__ import annotations
 
 import errno
 import os
+import secrets
 import stat
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ...runtime.base.errors import FileError, GaussmapError, InputError, UnknownNameError, shown
-from .temporary import new_name, remove_left
 
-__all__ = ["PathLike", "atomic_path", "check_target", "checked_path", "known_suffix", "reason_of"]
+__all__ = [
+    "BEGUN",
+    "PathLike",
+    "atomic_path",
+    "check_target",
+    "checked_path",
+    "known_suffix",
+    "reason_of",
+]
 
 PathLike = str | os.PathLike[str]
+
+# How the names of temporary files begin.
+BEGUN = ".gaussmap-"
 
 
 def known_suffix(path: PathLike, known: Sequence[str]) -> str:
@@ -59,15 +70,13 @@ def atomic_path(path: PathLike) -> Iterator[Path]:
     The temporary file lies in the same folder and has the same suffix. If the block raises,
     KeyboardInterrupt included, the temporary file is removed and an existing file at `path` stays
     as it was. A new file gets the permissions that the umask gives; one that replaces another
-    keeps that one's. A symbolic link is followed, not replaced. What killed processes have left in
-    the folder is removed.
+    keeps that one's. A symbolic link is followed, not replaced.
 
     Raises FileError if the folder is missing, if `path` is a folder, protected or not a regular
     file, or if the block raises an OSError, for example because the disk is full.
     """
     path = checked_path(path)
     target = _target(path)
-    remove_left(target.parent)
     temporary = _temporary(target)
     try:
         yield temporary
@@ -138,7 +147,7 @@ def _mode(path: Path) -> int | None:
 def _temporary(target: Path) -> Path:
     # Not tempfile: its files are private to the user (mode 0600) whatever the umask says. Not the
     # target's stem: with an addition it could become too long.
-    return target.with_name(f".{new_name()}{target.suffix}")
+    return target.with_name(f"{BEGUN}{secrets.token_hex(8)}{target.suffix}")
 
 
 def reason_of(error: OSError) -> str:

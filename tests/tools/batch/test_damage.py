@@ -97,11 +97,11 @@ def test_each_entry_of_the_settings(folder: Path, key: str) -> None:
     known = json.loads((folder / "dataset.json").read_text())
     left = {name: value for name, value in known.items() if name != key}
     assert f"the entry {key} is missing" in refused(folder, left)
-    assert f"did you mean {key}?" in refused(folder, left | {key[:-1]: known[key]})
+    assert f"did you mean {key}" in refused(folder, left | {key[:-1]: known[key]})
     assert "there is no entry 'more'" in refused(folder, known | {"more": 1})
     for wrong in WRONG[key]:
         text = refused(folder, known | {key: wrong})
-        assert key in text or "another version" in text or "dictionary" in text, text
+        assert key.rstrip("s") in text or "another version" in text or "dictionary" in text, text
 
 
 @pytest.mark.parametrize(
