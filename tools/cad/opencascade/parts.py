@@ -5,14 +5,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 from OCP.TopoDS import TopoDS
 
-from ..counts import faces_said
-from ..damaged_step import LostFace
 from ..inspection import BadFileError
-from ..preparation import Source
-from ..records import FaceRecord, Geometry, PartRecord
+from ..records import FaceRecord, PartRecord
 from ..units import METRES, with_unit
 from .edges import sharp_edges
 from .faces import FaceReader
@@ -23,12 +21,14 @@ from .solids import PlacedFace, gathered
 __all__ = ["part_record"]
 
 
-def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
-    """Return the part in a file, in a unit or its own; BadFileError says why it cannot be read."""
-    document, lost = read_file(source)
+def part_record(path: Path, form: str, said: int, name: str, unit: str | None) -> PartRecord:
+    """Return the part in a file, in a unit or its own; BadFileError says why it cannot be read.
+
+    `form` is STEP, IGES or BREP, and `said` the number of faces that the file says to have.
+    """
+    document = read_file(path, form)
     found = gathered(document)
-    said = faces_said(source.content, source.format)
-    if not found.faces and not lost:
+    if not found.faces:
         raise BadFileError(
             f"is damaged: Open CASCADE can make none of its {said} faces; export it again."
             if said
@@ -37,10 +37,9 @@ def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
     reader = FaceReader()
     faces = [_face(x, reader) for x in found.faces]
     if all(x.reason for x in faces):
-        why = faces[0].reason if faces else lost[0].reason
+        why = faces[0].reason
         raise BadFileError(f"has no face that can be used: of the first one, {why}.")
-    said += len(source.lost)
-    missing = said - _different(found.faces) - len(lost)
+    missing = said - _different(found.faces)
     if missing > 0:
         document.warnings.append(
             f"{missing} of {said} faces are missing: Open CASCADE cannot make them; export the "
@@ -54,7 +53,7 @@ def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
         in_unit,
         METRES[in_unit],
         found.closed,
-        [*(with_unit(x, factor) for x in faces), *map(_lost_face, lost)],
+        [with_unit(x, factor) for x in faces],
         found.solid_names,
         edges,
         document.warnings,
@@ -72,7 +71,3 @@ def _different(faces: list[PlacedFace]) -> int:
     for face in faces:
         known.set(face.shape, True)
     return len(known)
-
-
-def _lost_face(face: LostFace) -> FaceRecord:
-    return FaceRecord(Geometry("unknown"), name=face.name, reason=face.reason)

@@ -9,8 +9,9 @@ import pytest
 
 pytest.importorskip("OCP")
 
+from gaussmap.tools.cad.counts import faces_said
+from gaussmap.tools.cad.inspection import checked_format
 from gaussmap.tools.cad.opencascade.parts import part_record
-from gaussmap.tools.cad.preparation import prepared
 from OCP.BRep import BRep_Builder
 from OCP.BRepTools import BRepTools
 from OCP.IGESControl import IGESControl_Writer
@@ -57,14 +58,16 @@ def write(tmp_path, capfd):
     capfd.readouterr()
 
 
-@pytest.fixture
-def read(tmp_path):
+def record_of(path: Path, unit: str | None = None):
     """Read a file in this process, as the reader's process does."""
+    content = path.read_bytes()
+    form = checked_format(content)
+    return part_record(path, form, faces_said(content, form), path.name, unit)
 
-    def read(path: Path, unit: str | None = None):
-        return part_record(prepared(path, tmp_path), path.name, unit)
 
-    return read
+@pytest.fixture
+def read():
+    return record_of
 
 
 def in_loops(uv: np.ndarray, loops) -> np.ndarray:
