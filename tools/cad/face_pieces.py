@@ -26,7 +26,6 @@ from ...runtime.surface.surface import Surface
 from .faces import own_parameters
 from .part import Face
 from .records import Geometry
-from .spline_cells import search_cells
 
 __all__ = ["FacePiece", "pieces_of"]
 
@@ -38,6 +37,9 @@ ANGLE = 0.25
 PARTS_OF_SPAN = 2
 # Lines that are closer to one another than this part of the domain are one.
 SAME_LINE = 1e-9
+# The spline on which points with a normal are searched has so many cells for each part, and these
+# numbers at least and at most. What a spline is off, it loses at the border.
+CELLS_A_PART, FEWEST, MOST = 3, 64, 256
 # Which parameters of a kind of face are angles.
 ANGLES = {
     "cylinder": (True, False),
@@ -81,6 +83,10 @@ class FacePiece(Piece):
         u, v = (_lines(self.face, axis, self.surface.domain[axis]) for axis in (0, 1))
         return boxes_between(u, v)
 
+    def lines(self, axis: int) -> Array:
+        """Return the values of u (axis 0) or v between which the surface is smooth."""
+        return np.unique(self.boxes[:, [axis, axis + 2]])
+
     @property
     def polygons(self) -> list[Array]:
         """The closed polygons (k, 2) around it, the first point of which is not repeated.
@@ -108,9 +114,20 @@ class FacePiece(Piece):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", GaussmapWarning)  # of the fit, which is only a start
             return [
-                geometry_of(x, search_cells(x), np.float64, "surface", threads)
+                geometry_of(x, self._cells(x.domain), np.float64, "surface", threads)
                 for x in self.surface.pieces()
             ]
+
+    def _cells(self, domain: Domain) -> tuple[int, int]:
+        """Return the numbers of cells, for each part of its lines some, of a spline over a domain.
+
+        The fit of any surface compares splines with it, which takes longer than all the rest.
+        """
+        along_u, along_v = (
+            min(max(CELLS_A_PART * (1 + int(((lines > low) & (lines < high)).sum())), FEWEST), MOST)
+            for lines, (low, high) in zip((self.lines(0), self.lines(1)), domain, strict=True)
+        )
+        return along_u, along_v
 
     def fields_at(
         self, uv: Array, rows: Array, fields: Sequence[str], dtype: DTypeLike

@@ -46,7 +46,7 @@ def _mean_height(piece: FacePiece, centre: Array) -> float:
     By Green's theorem: ∫∫ g du dv over the face is ∮ G dv around it, G the integral of g along u.
     The area is the CAD library's, so that of the polygons of the border need not be exact.
     """
-    lines = _lines(piece, 0), _lines(piece, 1)
+    lines = piece.lines(0), piece.lines(1)
     total = np.zeros(2)
     for polygon, sign in zip(piece.polygons, _signs(piece), strict=True):
         places, steps = _divided(polygon, lines)
@@ -89,11 +89,6 @@ def _signs(piece: FacePiece) -> Array:
     return np.where(in_domain & piece.contains(np.clip(found, low, high)), 1.0, -1.0)
 
 
-def _lines(piece: FacePiece, axis: int) -> Array:
-    """Return the values of u (axis 0) or v between which the surface is smooth."""
-    return np.unique(piece.boxes[:, [axis, axis + 2]])
-
-
 def _divided(polygon: Array, lines: tuple[Array, Array]) -> tuple[Array, Array]:
     """Return places (k, 2) on a polygon and the steps (k, 2) to the next, no line between them."""
     steps = np.roll(polygon, -1, axis=0) - polygon
@@ -127,7 +122,7 @@ def bounds_of(part: Part) -> Array:
         piece, places = space.pieces[k], space.first.places[rows]
         points = _points(piece, places)
         found.append((piece, places, None, points, space.first.numbers[rows, RADIUS] / space.unit))
-        lines = _lines(piece, 0), _lines(piece, 1)
+        lines = piece.lines(0), piece.lines(1)
         for polygon in piece.polygons:
             starts, steps = _divided(polygon, lines)
             points, ends = _points(piece, starts), _points(piece, starts + steps)

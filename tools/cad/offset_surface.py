@@ -23,7 +23,7 @@ from ...runtime.surface.nurbs import Nurbs
 from ..kernels import faces as kernels
 from .turned import ProfileCurve, Turned
 
-__all__ = ["OffsetSurface", "knots_of"]
+__all__ = ["OffsetSurface"]
 
 Array = NDArray[np.float64]
 
@@ -95,7 +95,7 @@ class OffsetSurface(Differentiable):
 
     def _span(self, axis: int, values: Array) -> tuple[Array, Array]:
         """Return the ends of the knot spans that hold values (k,), inside the domain."""
-        (first, last), knots = self.domain[axis], knots_of(self.basis, axis)
+        (first, last), knots = self.domain[axis], _knots_of(self.basis, axis)
         inner = np.unique(knots[(knots > first) & (knots < last)])
         lines = np.concatenate([[first], inner, [last]])
         place = np.clip(np.searchsorted(lines, values, "right") - 1, 0, len(lines) - 2)
@@ -109,7 +109,7 @@ class OffsetSurface(Differentiable):
         return self.basis.jets(u, v)[:, 0] + moved
 
 
-def knots_of(function: Differentiable, axis: int) -> Array:
+def _knots_of(function: Differentiable, axis: int) -> Array:
     """Return the knots of the function of a face in u (axis 0) or v (axis 1), not reversed."""
     if isinstance(function, Moved):
         function = cast(Differentiable, function.surface.function)
@@ -117,4 +117,4 @@ def knots_of(function: Differentiable, axis: int) -> Array:
         return function.knots[axis]
     if isinstance(function, Turned) and isinstance(function.profile, ProfileCurve) and axis == 1:
         return function.profile.surface.knots[0]
-    return knots_of(function.basis, axis) if isinstance(function, OffsetSurface) else np.empty(0)
+    return _knots_of(function.basis, axis) if isinstance(function, OffsetSurface) else np.empty(0)

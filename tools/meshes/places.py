@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...generated.mesh import border_spacing
 from ...runtime.base.formula_calls import python_function
-from ...runtime.domain.domain import Boundary, BoundaryPair
+from ...runtime.domain.domain import Boundary, BoundaryCondition, BoundaryPair
 from ...runtime.spline.spline import Spline
 
 if TYPE_CHECKING:
@@ -80,11 +80,11 @@ def boundary_of(spline: Spline) -> Boundary:
     found: list[BoundaryPair] = []
     for axis, ends in enumerate(spline.boundary):
         closes = spline.boundary[1 - axis][0] == "periodic"
-        low, high = (
+        kinds: list[BoundaryCondition] = [
             "pole" if closes and end == "open" and _is_point(spline, axis, place) else end
             for place, end in enumerate(ends)
-        )
-        found.append((low, high))
+        ]
+        found.append((kinds[0], kinds[1]))
     return found[0], found[1]
 
 
