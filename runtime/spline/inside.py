@@ -27,14 +27,11 @@ __all__ = [
 ]
 
 Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 # A patch is tested at the centroids of this number of triangles squared: COARSE for all, where it
 # is not known which cells the border of the trim passes, and FINEST for those it may pass.
 COARSE, FINEST = 4, 8
 POINTS_AT_A_TIME, PLACES_AT_A_TIME = 1 << 20, 1 << 16
-# Next to the border cells are cut into smaller ones, FINEST² at most and about MOST_CELLS in all.
-MOST_CELLS = 1 << 22
 
 
 class Trimmed(Protocol):
@@ -58,13 +55,11 @@ class Trimmed(Protocol):
 class Inside:
     """The shares (patches,) of the patches inside a trim, from 0 to 1, by their parameters.
 
-    `reached` (patches,) says which patches may have a part inside, however small; `near` (f m, f n)
-    which parts of the cells, f × f of them, are next to the border.
+    `reached` (patches,) says which patches may have a part inside, however small.
     """
 
     shares: Array
     reached: NDArray[np.bool_]
-    near: NDArray[np.bool_]
 
     @classmethod
     def of(cls, spline: Trimmed) -> Inside:
@@ -84,31 +79,7 @@ class Inside:
                 f"the trim of surface {spline.name!r} leaves nothing of it, or less than a part of "
                 "a cell of its spline; is it inside the domain?"
             )
-        near = _near_border(spline, passed, shares)
-        return cls(shares, cut | (shares > 0.0), near)
-
-    def is_near(self, spline: Trimmed, patches: NDArray[np.int64], places: Array) -> Flags:
-        """Say which parameters (k, 2) of patches (k,) are next to the border."""
-        parts = len(self.near) // spline.cells[0]
-        i, j = (parts * places_in_cells(spline, patches, places)).astype(np.int64).T
-        m, n = self.near.shape
-        return self.near[np.clip(i, 0, m - 1), np.clip(j, 0, n - 1)]
-
-
-def _near_border(spline: Trimmed, passed: Flags, shares: Array) -> Flags:
-    """Return `Inside.near`, for the cells (m, n) that the border may pass."""
-    assert spline.trim is not None
-    m, n = spline.cells
-    parts = FINEST
-    while parts > 1 and parts * parts * m * n > MOST_CELLS:
-        parts //= 2
-    known, _ = spline.trim.cells_of_border(spline.domain, (parts * m, parts * n))
-    inside = np.repeat(np.repeat(shares.reshape(m, n, 4)[..., 0] > 0.5, parts, 0), parts, 1)
-    i, j = np.nonzero(np.repeat(np.repeat(passed, parts, 0), parts, 1))
-    places = (np.stack([i, j], axis=1) + 0.5) / parts
-    inside[i, j] = spline.trim.contains(spline.frame[:2] + spline.frame[2:] * places)
-    number = inside.astype(np.int8)
-    return known | (widened(number) != -widened(-number))
+        return cls(shares, cut | (shares > 0.0))
 
 
 def with_uv(spline: Trimmed, fields: Sequence[str]) -> tuple[str, ...]:
@@ -131,20 +102,14 @@ def count_of(arrays: dict[str, NDArray[Any]]) -> int:
     return len(next(iter(arrays.values())))
 
 
-def places_in_cells(spline: Trimmed, patches: NDArray[np.int64], places: Array) -> Array:
-    """Return parameters (k, 2) of patches (k,) in cells from the corner of the domain."""
-    cells, places = np.empty((len(patches), 2)), np.ascontiguousarray(places)
-
-    def work(first: int, last: int) -> None:
-        to_cells(patches, places, spline.cells[1], first, last, cells)
-
-    list(over_ranges(work, len(patches), PLACES_AT_A_TIME, None))
-    return cells
-
-
 def parameters_of(spline: Trimmed, patches: NDArray[np.int64], places: Array) -> Array:
     """Return the parameters (k, 2) of the surface at parameters (k, 2) of patches (k,)."""
-    uv = places_in_cells(spline, patches, places)
+    uv, places = np.empty((len(patches), 2)), np.ascontiguousarray(places)
+
+    def work(first: int, last: int) -> None:
+        to_cells(patches, places, spline.cells[1], first, last, uv)
+
+    list(over_ranges(work, len(patches), PLACES_AT_A_TIME, None))
     uv *= spline.frame[2:]
     uv += spline.frame[:2]
     return uv

@@ -9,7 +9,7 @@ import numpy as np
 from .part import Part, part_of
 from .records import EdgeRecord, FaceRecord, Geometry, Net, PartRecord
 
-__all__ = ["all_kinds", "box", "box_edges", "box_faces", "overrun"]
+__all__ = ["all_kinds", "box", "box_edges", "box_faces"]
 
 
 def box(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> Part:
@@ -94,24 +94,3 @@ def all_kinds() -> Part:
     ends = (0.1, 0.9)
     faces = [FaceRecord(x, (ends, ends), loops=[circle], area=0.5) for x in geometries]
     return part_of(PartRecord("kinds", "mm", 1e-3, False, faces))
-
-
-def overrun(beyond: float = 6e-5, *, is_reversed: bool = False) -> Part:
-    """Return the saddle z = x y over the unit square, cut by a circle that leaves it.
-
-    Loops of CAD files do, within their tolerance.
-
-    Examples
-    --------
-    >>> from gaussmap.tools.cad.examples import overrun
-    >>> overrun().faces[0].domain[0][0] < overrun().faces[0].surface.domain[0][0]
-    True
-
-    """
-    knots, ends = np.array([0.0, 0.0, 1.0, 1.0]), (-beyond, 1.0 + beyond)
-    points = np.array([[(0.0, 0.0, 0.0), (0.0, 1.0, 0.0)], [(1.0, 0.0, 0.0), (1.0, 1.0, 1.0)]])
-    angles = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
-    circle = 0.5 + (0.5 + beyond) * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    saddle = Geometry("nurbs", net=Net((1, 1), (knots, knots), points))
-    face = FaceRecord(saddle, (ends, ends), loops=[circle], reversed=is_reversed, area=0.8)
-    return part_of(PartRecord("overrun", "mm", 1e-3, False, [face]))

@@ -143,7 +143,13 @@ def test_faces_of_all_kinds_and_their_trims(parts: ModuleType) -> None:
 @pytest.mark.parametrize("beyond", [6e-5, 1e-2])
 def test_loops_that_leave_the_surface(beyond: float, is_reversed: bool, parts: ModuleType) -> None:
     """Open CASCADE's trims leave the domains of their NURBS by its tolerance."""
-    scene = scene_of(parts.overrun(beyond, is_reversed=is_reversed))
+    knots, ends = np.array([0.0, 0.0, 1.0, 1.0]), (-beyond, 1.0 + beyond)
+    points = np.array([[(0.0, 0.0, 0.0), (0.0, 1.0, 0.0)], [(1.0, 0.0, 0.0), (1.0, 1.0, 1.0)]])
+    angles = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
+    circle = 0.5 + (0.5 + beyond) * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    saddle = parts.Geometry("nurbs", net=parts.Net((1, 1), (knots, knots), points))
+    face = parts.FaceRecord(saddle, (ends, ends), loops=[circle], reversed=is_reversed, area=0.8)
+    scene = scene_of(parts.part_of(parts.PartRecord("saddle", "mm", 1e-3, False, [face])))
     corners = scene.quadrangles.reshape(-1, 3)
     assert len(scene.lines) == 1
     for found in (corners, *scene.lines):
