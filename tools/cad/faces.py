@@ -24,8 +24,8 @@ from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import CatalogueFunction
 from .nets import SAME_END, curve_of_net, nurbs_of_curve, nurbs_of_net, nurbs_over
 from .offset_surface import OffsetSurface
-from .records import Geometry
-from .turned import Line, ProfileCurve, Turned
+from .records import Geometry, Net
+from .turned import Turned
 
 __all__ = ["face_surface", "own_parameters"]
 
@@ -132,7 +132,9 @@ def _turned_line(
     geometry: Geometry, domain: Domain, radius: float, along: tuple[float, float, float]
 ) -> Shape:
     around, ends = _around(domain[0])
-    function = Turned(Line((radius, 0.0, 0.0), along))
+    places = np.array(domain[1])
+    line = Net((1,), (np.repeat(places, 2),), [radius, 0.0, 0.0] + places[:, None] * along)
+    function = Turned(curve_of_net(line))
     collapses = along[0] != 0.0
     return Shape(
         function, (around, domain[1]), (ends, OPEN), _placement(geometry.numbers), collapses
@@ -195,9 +197,7 @@ def _revolution(geometry: Geometry, domain: Domain) -> Shape:
     curve = nurbs_over(curve_of_net(net), (domain[1], (0.0, 1.0)))
     across = PERIODIC if curve.periodic[0] else OPEN
     placement = AffineMap(frame, origin)
-    return Shape(
-        Turned(ProfileCurve(curve)), (around, curve.domain[0]), (ends, across), placement, True
-    )
+    return Shape(Turned(curve), (around, curve.domain[0]), (ends, across), placement, True)
 
 
 def _frame(axis: Array) -> Array:

@@ -21,7 +21,7 @@ from ...runtime.surface.derivatives import Differentiable, nodes_between, shifts
 from ...runtime.surface.moved import Moved
 from ...runtime.surface.nurbs import Nurbs
 from ..kernels import faces as kernels
-from .turned import ProfileCurve, Turned
+from .turned import Turned
 
 __all__ = ["OffsetSurface"]
 
@@ -115,6 +115,6 @@ def _knots_of(function: Differentiable, axis: int) -> Array:
         function = cast(Differentiable, function.surface.function)
     if isinstance(function, Nurbs):
         return function.knots[axis]
-    if isinstance(function, Turned) and isinstance(function.profile, ProfileCurve) and axis == 1:
-        return function.profile.surface.knots[0]
+    if isinstance(function, Turned) and axis == 1:
+        return function.curve.knots[0]
     return _knots_of(function.basis, axis) if isinstance(function, OffsetSurface) else np.empty(0)

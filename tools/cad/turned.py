@@ -1,87 +1,31 @@
-"""Surfaces of revolution: a straight line or a NURBS curve that is turned about the z axis."""
+"""Surfaces of revolution: a NURBS curve that is turned about the z axis."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import Protocol
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.base import compiling  # noqa: F401 - announces compilation on terminals
-from ...runtime.domain.domain import Domain, Interval
+from ...runtime.domain.domain import Domain
 from ...runtime.surface.derivatives import Differentiable
 from ...runtime.surface.nurbs import Nurbs
 from ..kernels import faces as kernels
 
-__all__ = ["Line", "Profile", "ProfileCurve", "Turned"]
+__all__ = ["Turned"]
 
 Array = NDArray[np.float64]
 
 
-class Profile(Protocol):
-    """A curve c(v)."""
-
-    @property
-    def kinks(self) -> tuple[float, ...]:
-        """The values of v where it is not smooth."""
-        ...
-
-    def jets(self, v: Array) -> Array:
-        """Return its points and its first and second derivatives (k, 3, 3)."""
-        ...
-
-    def restricted(self, interval: Interval) -> Profile:
-        """Return a part of it."""
-        ...
-
-
-@dataclass(frozen=True)
-class Line:
-    """The straight line start + v along."""
-
-    start: tuple[float, float, float]
-    along: tuple[float, float, float]
-    kinks: tuple[float, ...] = ()
-
-    def jets(self, v: Array) -> Array:
-        """Return its points and its first and second derivatives (k, 3, 3)."""
-        jets = np.zeros((len(v), 3, 3))
-        for axis in range(3):
-            jets[:, 0, axis] = self.start[axis] + self.along[axis] * v
-            jets[:, 1, axis] = self.along[axis]
-        return jets
-
-    def restricted(self, interval: Interval) -> Line:
-        """Return the line itself."""
-        return self
-
-
-@dataclass(frozen=True, eq=False)
-class ProfileCurve:
-    """A NURBS curve: the line v = 0 of a surface whose u is the parameter of the curve."""
-
-    surface: Nurbs
-
-    @property
-    def kinks(self) -> tuple[float, ...]:
-        """The parameters where it is not smooth."""
-        return self.surface.creases[0]
-
-    def jets(self, v: Array) -> Array:
-        """Return its points and its first and second derivatives (k, 3, 3)."""
-        return self.surface.jets(v, np.zeros(len(v)))[:, [0, 1, 3]]
-
-    def restricted(self, interval: Interval) -> ProfileCurve:
-        """Return a part of it."""
-        return ProfileCurve(self.surface.restricted((interval, self.surface.domain[1])))
-
-
 @dataclass(frozen=True, eq=False)
 class Turned(Differentiable):
-    """The surface x(u,v) of a curve c(v) that is turned about the z axis by the angle u."""
+    """The surface x(u,v) of a curve that is turned about the z axis by the angle u.
 
-    profile: Profile
+    The curve is the line v = 0 of a NURBS, whose u is v here.
+    """
+
+    curve: Nurbs
 
     def __call__(self, u: Array, v: Array) -> Array:
         """Return the points (..., 3)."""
@@ -89,15 +33,15 @@ class Turned(Differentiable):
 
     def jets(self, u: Array, v: Array) -> Array:
         """Return positions and derivatives (k, 6, 3)."""
-        jets = np.empty((len(u), 6, 3))
-        kernels.revolve(np.ascontiguousarray(u), self.profile.jets(v), jets)
+        jets, along = np.empty((len(u), 6, 3)), self.curve.jets(v, np.zeros(len(v)))[:, [0, 1, 3]]
+        kernels.revolve(np.ascontiguousarray(u), along, jets)
         return jets
 
     @property
     def creases(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """No values of u, and the values of v where the curve is not smooth."""
-        return (), self.profile.kinks
+        return (), self.curve.creases[0]
 
     def restricted(self, domain: Domain) -> Turned:
         """Return a part of the surface, evaluated from inside where the curve is not smooth."""
-        return replace(self, profile=self.profile.restricted(domain[1]))
+        return Turned(self.curve.restricted((domain[1], self.curve.domain[1])))
