@@ -15,6 +15,8 @@ from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
+from importlib import import_module
+from inspect import getsource
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
@@ -89,11 +91,12 @@ def _is_built(path: Path) -> bool:
 
 
 def _modules() -> list[dict[str, Any]]:
-    """Return the signatures of modules, whose kernels share parts; those with most come first."""
+    """Return the signatures of modules, whose kernels share parts; the longest sources first."""
     modules: dict[str, dict[str, Any]] = defaultdict(dict)
     for name, kinds in signatures.read().items():
         modules[name.rpartition(".")[0]][name] = kinds
-    return sorted(modules.values(), key=lambda x: sum(map(len, x.values())), reverse=True)
+    longest_first = sorted(modules, key=lambda x: len(getsource(import_module(x))), reverse=True)
+    return [modules[name] for name in longest_first]
 
 
 def _compiled(listing: Mapping[str, Any]) -> dict[str, bytes]:
