@@ -21,7 +21,7 @@ from .kept import entries_in, kept_folder
 
 __all__ = ["compiled_in", "main", "missing"]
 
-PACKAGE = __name__.partition(".")[0]
+PACKAGE = signatures.__name__.partition(".")[0]  # this module may be __main__
 
 
 def compiled_in(folder: Path) -> dict[str, list[Any]]:

@@ -73,7 +73,7 @@ def test_a_folder_that_cannot_be_written(
 ) -> None:
     monkeypatch.setattr(warm, "WORK", ())
     monkeypatch.setattr(warm.config, "DISABLE_JIT", 0)
-    monkeypatch.setattr(warm, "cache_folder", lambda: None)
+    monkeypatch.setattr(warm, "kept_folder", lambda: None)
     assert main(["warm"]) == 2
     assert "set NUMBA_CACHE_DIR" in capsys.readouterr().err
 
@@ -89,7 +89,7 @@ def test_a_terminal_sees_what_is_done(
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     assert main(["warm"]) == 0
     out, err = capsys.readouterr()
-    assert out == f"kernels in {warm.cache_folder()}: all were compiled already\n"
+    assert out == f"kernels in {warm.kept_folder()}: all were compiled already\n"
     assert "some_work" in err
     assert not warm.NOTICE.quiet
     assert main(["warm", "--quiet"]) == 0
