@@ -5,7 +5,6 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 from numba.core.caching import NullCache
@@ -28,15 +27,19 @@ class KernelCache(NullCache):
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return a kernel; wait for a process that compiles it now. None: this one has to."""
         key = key_of(self._function, sig)
-        pack, folder = shipped.open_pack(), kept.kept_folder()
+        pack = shipped.open_pack()
         found = None if pack is None else _restored(pack.get(key), target_context)
-        if found is None and folder is not None:
-            found = self._kept((folder, key, _processor(target_context)), target_context)
+        if found is None:
+            found = self._kept(key, target_context)
         if found is None:
             say_why()
         return found
 
-    def _kept(self, place: tuple[Path, str, object], context: Any) -> Any:
+    def _kept(self, key: str, context: Any) -> Any:
+        folder = kept.kept_folder()
+        if folder is None:
+            return None
+        place = (folder, key, _processor(context))
         lock = kept.lock_of(*place)
         found = _restored(kept.load(*place), context)
         if found is None:
