@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..base.errors import InputError
+from ..base.wording import counted
 from ..spline.spline import Spline, short_label
 from .arrays import SampleArrays
 from .methods import Methods
@@ -153,7 +154,7 @@ class Samples(SampleArrays, Methods):
 
     def __repr__(self) -> str:
         label = short_label(self.report.surface)
-        points = f"{len(self):,} point{'s' * (len(self) != 1)}"
+        points = counted(len(self), "point")
         return f"Samples({points} on {label}{kinds_of_points(self)})"
 
 

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, DTypeLike
 
 from ...runtime.base.checks import known_name, yes_or_no
 from ...runtime.base.errors import GaussmapError, GaussmapWarning, InputError, shown
+from ...runtime.base.threads import seen
 from ...runtime.place.on_surface import checked_place
 from ...runtime.sample import sample_and_normals
 from ...runtime.samples.fields import checked_dtype, checked_fields
@@ -24,7 +25,7 @@ from .dataset import Dataset, open_dataset
 from .inputs import Source
 from .making import make
 from .plan import CODEC, SECONDS, asked_of, stored
-from .watching import Bar, Watch
+from .watching import Watch
 
 __all__ = ["sample_many"]
 
@@ -256,7 +257,7 @@ def sample_many(
         scheduler=scheduler,
         time_limit=time_limit,
         memory_limit=memory_limit,
-        watch=Bar() if shows else Watch(),
+        watch=Watch(seen(shows)),
         overwrite=yes_or_no(overwrite, "overwrite"),
         again=yes_or_no(retry_failed, "retry_failed"),
     )

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.base.errors import SurfaceError
+from ...runtime.base.wording import counted
 from ...runtime.samples.whole import Whole
 from ..files.paths import PathLike
 from .methods import Methods
@@ -59,11 +60,8 @@ class Part(Methods, Whole[Any]):
     about: dict[str, Any]
 
     def __repr__(self) -> str:
-        faces, solids = len(self), len(self.solids)
-        return (
-            f"Part({self.name}: {faces} face{'s' * (faces != 1)}, "
-            f"{solids} solid{'s' * (solids != 1)}, {self.unit})"
-        )
+        faces, solids = counted(len(self), "face"), counted(len(self.solids), "solid")
+        return f"Part({self.name}: {faces}, {solids}, {self.unit})"
 
     def __len__(self) -> int:
         return len(self.arrays["area"])
@@ -331,7 +329,7 @@ class Solid:
     faces: NDArray[np.int64]
 
     def __repr__(self) -> str:
-        return f"Solid({self.index} {self.name!r}: {len(self.faces)} faces)"
+        return f"Solid({self.index} {self.name!r}: {counted(len(self.faces), 'face')})"
 
     @property
     def area(self) -> float:

@@ -20,9 +20,9 @@ from ...runtime.base.errors import FileError, GaussmapWarning, InputError, shown
 from ...runtime.base.extras import check_extra
 from ...runtime.base.memory import GIB
 from ...runtime.base.progress import busy
+from ..files.lengths import METRES, unit_named
 from ..files.paths import PathLike, checked_path, reason_of
 from .part import Part, read_part
-from .units import METRES, unit_named
 from .worker import ERROR, PART
 
 __all__ = ["read_cad"]

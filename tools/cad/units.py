@@ -1,4 +1,4 @@
-"""Units of length: their names in files, and records in another unit."""
+"""Records of faces in another unit of length."""
 
 from __future__ import annotations
 
@@ -9,39 +9,7 @@ import numpy as np
 
 from .records import FaceRecord, Geometry
 
-__all__ = ["METRES", "unit_named", "with_unit"]
-
-# The length of each unit in metres.
-METRES: dict[str, float] = {
-    "nm": 1e-9,
-    "um": 1e-6,
-    "mm": 1e-3,
-    "cm": 1e-2,
-    "dm": 1e-1,
-    "m": 1.0,
-    "km": 1e3,
-    "uin": 2.54e-8,
-    "mil": 2.54e-5,
-    "in": 2.54e-2,
-    "ft": 0.3048,
-    "yd": 0.9144,
-    "mi": 1609.344,
-}
-SYNONYMS = {
-    "nm": ("nanometre", "nanometer"),
-    "um": ("µm", "μm", "micron", "micrometre", "micrometer"),
-    "mm": ("millimetre", "millimeter", "millimetres", "millimeters"),
-    "cm": ("centimetre", "centimeter", "centimetres", "centimeters"),
-    "dm": ("decimetre", "decimeter"),
-    "m": ("metre", "meter", "metres", "meters"),
-    "km": ("kilometre", "kilometer"),
-    "uin": ("microinch",),
-    "in": ("inch", "inches", '"'),
-    "ft": ("foot", "feet"),
-    "yd": ("yard",),
-    "mi": ("mile",),
-}
-NAMES = {**{x: x for x in METRES}, **{x: unit for unit, every in SYNONYMS.items() for x in every}}
+__all__ = ["scaled_parameters", "with_unit"]
 
 # Where the numbers of a kind are lengths, and which parameters.
 LENGTHS: dict[str, tuple[tuple[int, ...], tuple[bool, bool]]] = {
@@ -56,11 +24,6 @@ LENGTHS: dict[str, tuple[tuple[int, ...], tuple[bool, bool]]] = {
     "offset": ((0,), (False, False)),
     "unknown": ((), (False, False)),
 }
-
-
-def unit_named(name: str) -> str | None:
-    """Return the unit that a file or a user calls so; None if there is no such unit."""
-    return NAMES.get(name.strip().lower())
 
 
 def with_unit(face: FaceRecord, factor: float) -> FaceRecord:

@@ -13,6 +13,7 @@ import numpy as np
 
 from ...runtime.base.compiling import NOTICE
 from ...runtime.base.errors import InputError
+from ...runtime.base.wording import counted
 from ...runtime.surface.surfaces import CATALOGUE
 from ..batch.inputs import Source
 from ..batch.making import make
@@ -98,19 +99,18 @@ def _as_json(options: SimpleNamespace, tally: Tally, seconds: float) -> dict[str
 def _rows(options: SimpleNamespace, tally: Tally, seconds: float) -> list[tuple[str, str]]:
     """Return names and sentences of the summary."""
     rows = [
-        ("data set", f"{options.output}: {tally.samples:,} samples of {_parts(tally.parts)}"),
-        ("sampled", f"{_parts(tally.ok)} in {seconds:.1f} s"),
+        (
+            "data set",
+            f"{options.output}: {tally.samples:,} samples of {counted(tally.parts, 'part')}",
+        ),
+        ("sampled", f"{counted(tally.ok, 'part')} in {seconds:.1f} s"),
     ]
     if tally.kept:
-        rows.append(("kept", f"{_parts(tally.kept)} of an earlier run"))
+        rows.append(("kept", f"{counted(tally.kept, 'part')} of an earlier run"))
     if tally.failed:
-        rows.append(("failed", f"{_parts(tally.failed)}; the manifest says why"))
+        rows.append(("failed", f"{counted(tally.failed, 'part')}; the manifest says why"))
         rows += [(f"  {name}", error) for name, error in tally.failures]
         if tally.failed > len(tally.failures):
             rows.append(("  …", f"and {tally.failed - len(tally.failures):,} more"))
         rows.append(("next", "mend these and run the same again, with --retry-failed"))
     return rows
-
-
-def _parts(count: int) -> str:
-    return f"{count:,} part{'' if count == 1 else 's'}"

@@ -18,6 +18,7 @@ from ...runtime.domain.domain import Boundary, Domain
 from ...runtime.spline.missing import checked_nodata, without_nodata
 from ...runtime.surface.names import label
 from ...runtime.surface.surface import Surface
+from ..files.lengths import METRES, unit_named
 from ..files.paths import checked_path
 from ..files.reference_systems import checked_crs, crs_text, projected, target_crs
 from .coordinates import check_degrees, grid_of, is_even, of_arrays, of_spacing, of_transform
@@ -31,14 +32,6 @@ __all__ = ["terrain"]
 Array = NDArray[np.float64]
 
 OPEN: Boundary = ("open", "open"), ("open", "open")
-# Units of heights, by the names that files give them, in metres.
-UNITS = {
-    **dict.fromkeys(("m", "metre", "metres", "meter", "meters"), 1.0),
-    **dict.fromkeys(("ft", "foot", "feet", "international foot"), 0.3048),
-    **dict.fromkeys(("us survey foot", "us-ft", "ftus"), 1200.0 / 3937.0),
-    **dict.fromkeys(("km", "kilometre", "kilometer"), 1000.0),
-    **dict.fromkeys(("cm", "centimetre", "centimeter"), 0.01),
-}
 SAME_UNIT = 1e-5
 
 
@@ -243,11 +236,11 @@ def _points(x: Array, y: Array, heights: Array, name: str) -> tuple[Array, Domai
 
 def _check_unit(unit: str, system: Any, name: str) -> None:  # noqa: ANN401
     """Raise InputError if heights are known to be in another unit than x and y."""
-    metres = UNITS.get(unit.strip().lower())
-    if metres is None or system is None:
+    known = unit_named(unit)
+    if known is None or system is None:
         return
     along, factor = system.linear_units_factor
-    if abs(factor / metres - 1.0) > SAME_UNIT:
+    if abs(factor / METRES[known] - 1.0) > SAME_UNIT:
         raise InputError(
             f"{name} has heights in {unit} and x, y in {along}: normals need one unit; say a CRS "
             f"in {unit} by crs=... (--crs), to which x and y are projected."

@@ -86,6 +86,7 @@ class Killer(Watch):
     """Kills a worker when ten parts are done, and counts all."""
 
     def __init__(self, cluster: Cluster) -> None:
+        super().__init__()
         self.cluster, self.parts, self.killed = cluster, 0, False
 
     def add(self, tally: Tally) -> None:

@@ -10,7 +10,7 @@ def test_a_log_has_few_lines(
 ) -> None:
     for interval, count in ((10.0, 1), (0.0, 6)):
         monkeypatch.setattr(watching, "INTERVAL", interval)
-        log = watching.Log()
+        log = watching.progress()
         log.begin(1000, "http://host:8787/status")
         for failed in (0, 0, 1, 0):
             log.add(Tally(ok=50 - failed, failed=failed))

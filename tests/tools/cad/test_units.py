@@ -1,26 +1,12 @@
-"""Units of length, and faces in another unit."""
+"""Faces in another unit."""
 
 import numpy as np
 import pytest
 from gaussmap.tools.cad.records import FaceRecord, Geometry, Net
-from gaussmap.tools.cad.units import METRES, unit_named, with_unit
+from gaussmap.tools.cad.units import with_unit
 
 CURVE = Net((1,), (np.array([0.0, 0.0, 5.0, 5.0]),), np.array([(1.0, 2.0, 3.0), (4.0, 5.0, 6.0)]))
 PLACE = [1.0, 2.0, 3.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]
-
-
-@pytest.mark.parametrize(
-    ("name", "unit"),
-    [("MM", "mm"), (" millimetre", "mm"), ("INCH", "in"), ("Foot", "ft"), ("ell", None)],
-)
-def test_units_have_several_names(name, unit):
-    assert unit_named(name) == unit
-
-
-def test_lengths_are_those_of_the_standards():
-    assert METRES["in"] == 0.0254
-    assert METRES["ft"] == pytest.approx(12 * METRES["in"])
-    assert METRES["mi"] == pytest.approx(5280 * METRES["ft"])
 
 
 @pytest.mark.parametrize(

@@ -14,8 +14,8 @@ from OCP.IGESCAFControl import IGESCAFControl_Reader
 from OCP.STEPCAFControl import STEPCAFControl_Reader
 from OCP.TopoDS import TopoDS_Shape
 
+from ...files.lengths import METRES, unit_named
 from ..inspection import BadFileError
-from ..units import METRES, unit_named
 from .documents import Document, PlacedShape, new_document, pieces_of
 from .shapes import sequence
 

@@ -9,9 +9,10 @@ from pathlib import Path
 
 from OCP.TopoDS import TopoDS
 
+from ...files.lengths import METRES
 from ..inspection import BadFileError
 from ..records import FaceRecord, PartRecord
-from ..units import METRES, with_unit
+from ..units import with_unit
 from .edges import sharp_edges
 from .faces import FaceReader
 from .files import read_file
