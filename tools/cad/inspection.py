@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 
-__all__ = ["HEAD", "BadFileError", "checked_format", "format_of"]
+__all__ = ["HEAD", "NOT_FINITE", "TEXTS", "BadFileError", "checked_format", "format_of"]
 
 HEAD = 4096
 START_OF_STEP = re.compile(rb"(?<!END-)ISO-10303-21\s*;")
@@ -26,15 +26,18 @@ NOT_FINITE = {
 }
 SHAPES = re.compile(rb"^TShapes (\d+)\s*$", re.MULTILINE)
 WHOLE = re.compile(rb"\s[-+]\d+ \d+[\s\d]*\Z")
-TEXTS = re.compile(rb"'[^']*'|/\*.*?\*/", re.DOTALL)  # and comments
+TEXTS = re.compile(rb"'[^']*'")
 
 
 class BadFileError(Exception):
     """A file cannot be read; the text continues "'path' …" and ends in a full stop."""
 
 
-def checked_format(content: bytes) -> str:
-    """Return the format of a file, STEP, IGES or BREP; BadFileError says what is wrong with it."""
+def checked_format(content: bytes) -> tuple[str, bool]:
+    """Return the format of a file, STEP, IGES or BREP, and whether all its numbers are finite.
+
+    BadFileError says what is wrong with a file; only STEP files with other numbers can be read.
+    """
     if not content.strip():
         raise BadFileError("is empty.")
     form = format_of(content[:HEAD])
@@ -46,9 +49,10 @@ def checked_format(content: bytes) -> str:
         _check_iges(content)
     if form == "BREP":
         _check_brep(content)
-    if not _is_finite(content, form):
+    finite = _is_finite(content, form)
+    if not finite and form != "STEP":
         raise BadFileError("holds numbers that are not finite; export it again.")
-    return form
+    return form, finite
 
 
 def _is_finite(content: bytes, form: str) -> bool:

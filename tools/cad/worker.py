@@ -37,12 +37,11 @@ def main(text: str) -> None:
 
 def _read(request: dict[str, str], folder: Path) -> str:
     """Write the part; return why it cannot be read, or nothing."""
-    from .inspection import BadFileError, checked_format
+    from .inspection import BadFileError
+    from .preparation import prepared
 
-    path = Path(request["path"])
     try:  # before Open CASCADE is loaded, which takes a second
-        content = path.read_bytes()
-        form = checked_format(content)
+        source = prepared(Path(request["path"]), folder)
     except BadFileError as error:
         return str(error)
     except OSError as error:
@@ -51,12 +50,10 @@ def _read(request: dict[str, str], folder: Path) -> str:
         from .opencascade.parts import part_record
     except ImportError as error:
         return f"cannot be read: Open CASCADE does not load ({error})."
-    from .counts import faces_said
     from .saving import write_record
 
     try:
-        said = faces_said(content, form)
-        record = part_record(path, form, said, request["name"], request["unit"])
+        record = part_record(source, request["name"], request["unit"])
         write_record(record, folder / PART)
     except BadFileError as error:
         return str(error)

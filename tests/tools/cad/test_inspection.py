@@ -1,7 +1,9 @@
-"""Files before they are read: their formats, and whether they are whole."""
+"""Files before they are read: their formats, whether they are whole, their damaged faces."""
 
 import pytest
+from gaussmap.tools.cad.damaged_step import without_damaged_faces
 from gaussmap.tools.cad.inspection import BadFileError, checked_format
+from gaussmap.tools.cad.preparation import prepared
 
 STEP = b"""ISO-10303-21;
 HEADER;
@@ -45,7 +47,7 @@ def iges(lines=(("S", 1), ("G", 1), ("D", 2), ("P", 1)), end=True) -> bytes:
     ("content", "form"), [(STEP, "STEP"), (BREP, "BREP"), (BREP + b"0\n", "BREP"), (iges(), "IGES")]
 )
 def test_formats_are_known_by_their_content(content, form):
-    assert checked_format(content) == form
+    assert checked_format(content) == (form, True)
 
 
 @pytest.mark.parametrize(
@@ -62,10 +64,6 @@ def test_formats_are_known_by_their_content(content, form):
         (iges(end=False), "is truncated"),
         (iges().replace(b"D      2P", b"D      4P"), "is damaged: its last line says 4 lines"),
         (iges().replace(b"ppppp", b",NaN,"), "not finite"),
-        *(
-            (STEP.replace(b"3.,4.", x + b",4."), "not finite")
-            for x in (b"nan", b"-NaN", b"inf", b"1.E+400", b"2.5E999")
-        ),
     ],
 )
 def test_what_is_wrong_is_one_sentence(content, reason):
@@ -74,5 +72,52 @@ def test_what_is_wrong_is_one_sentence(content, reason):
     assert str(error.value).count(". ") == 0
 
 
-def test_texts_and_comments_are_no_numbers():
-    assert checked_format(STEP.replace(b"#98", b"(nan, 1.)")) == "STEP"
+def test_texts_and_comments_are_no_numbers_and_no_references():
+    assert checked_format(STEP) == ("STEP", True)
+    assert without_damaged_faces(STEP, {})[1] == ()
+
+
+@pytest.mark.parametrize("number", [b"nan", b"-NaN", b"inf", b"1.E+400", b"2.5E999"])
+def test_a_face_with_numbers_that_are_not_finite_is_left_out(number):
+    content = STEP.replace(b"3.,4.", number + b",4.")
+    assert checked_format(content) == ("STEP", False)
+    rest, lost = without_damaged_faces(content, {})
+    assert [(x.name, x.reason) for x in lost] == [
+        ("#3", "its #9 holds a number that is not finite")
+    ]
+    assert b"#1=CLOSED_SHELL('',(#2));" in rest
+    assert without_damaged_faces(rest, {})[1] == ()
+
+
+def test_a_number_that_is_not_finite_and_in_no_face_is_an_error():
+    content = STEP.replace(b"ENDSEC;\nEND", b"#10=AXIS('',(nan));\nENDSEC;\nEND")
+    with pytest.raises(BadFileError, match="in #10"):
+        without_damaged_faces(content, {})
+
+
+def test_faces_that_refer_to_nothing_are_left_out():
+    rest, lost = without_damaged_faces(STEP.replace(b"#4),#5", b"#77),#5"), {})
+    assert [(x.name, x.reason) for x in lost] == [
+        ("top", "its #2 refers to #77, which the file lacks")
+    ]
+    assert b"#1=CLOSED_SHELL('',(#3));" in rest
+    rest, lost = without_damaged_faces(STEP.replace(b"(#2,#3)", b"(#2,#77)"), {})
+    assert [(x.name, x.reason) for x in lost] == [("#77", "the file lacks it")]
+    assert b"#1=CLOSED_SHELL('',(#2));" in rest
+
+
+def test_both_faces_of_a_damaged_surface_are_left_out():
+    rest, lost = without_damaged_faces(STEP, {8: "its #8 is damaged"})
+    assert [x.name for x in lost] == ["top", "#3"]
+    assert b"#1=CLOSED_SHELL('',());" in rest
+
+
+def test_a_copy_is_made_of_files_with_damaged_faces_only(tmp_path):
+    path = tmp_path / "part.step"
+    path.write_bytes(STEP)
+    assert prepared(path, tmp_path).path == path
+    path.write_bytes(STEP.replace(b"3.,4.", b"nan,4."))
+    source = prepared(path, tmp_path)
+    assert source.path != path
+    assert source.path.read_bytes() == source.content
+    assert len(source.lost) == 1

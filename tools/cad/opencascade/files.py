@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -15,33 +16,45 @@ from OCP.STEPCAFControl import STEPCAFControl_Reader
 from OCP.TopoDS import TopoDS_Shape
 
 from ...files.lengths import METRES, unit_named
+from ..damaged_step import LostFace, numbers_of_entities
 from ..inspection import BadFileError
+from ..preparation import Source
 from .documents import Document, PlacedShape, new_document, pieces_of
 from .shapes import sequence
 
 __all__ = ["read_file"]
 
-# Of what Open CASCADE says of the entities of a file, in small letters, what makes faces wrong.
-NO_NUMBER, UNRESOLVED = "not a real", "unresolved"
+# Of what Open CASCADE says of the entities of a file, in small letters, what makes a face unusable.
+UNRESOLVED = "unresolved"
+DAMAGE = ("not a real", UNRESOLVED)
 
 
-def read_file(path: Path, form: str) -> Document:
-    """Return what a file holds, in millimetres; BadFileError says why it cannot be read."""
-    return {"STEP": _step, "IGES": _iges, "BREP": _brep}[form](path)
+def read_file(source: Source) -> tuple[Document, tuple[LostFace, ...]]:
+    """Return what a file holds, in millimetres, and the faces that were left out.
+
+    BadFileError says why a file cannot be read.
+    """
+    if source.format == "STEP":
+        return _step(source)
+    read = _iges if source.format == "IGES" else _brep
+    return read(source.path), ()
 
 
-def _step(path: Path) -> Document:
-    reader = _read_by(STEPCAFControl_Reader(), path)
-    unresolved = _has_unresolved(reader.ChangeReader())
+def _step(source: Source) -> tuple[Document, tuple[LostFace, ...]]:
+    reader = _read_step(source.path)
+    damaged = _damaged(reader, source.content)
+    repaired = None if damaged is None else source.without(damaged)
+    if repaired is not None:
+        source, reader = repaired, _read_step(repaired.path)
     document = new_document()
     reader.Transfer(document)
     found = pieces_of(document)
     _set_unit(found, reader.ChangeReader())
-    if unresolved:
-        found.warnings.append(
-            "it refers to what it lacks: faces may be missing, or lack holes; export it again."
-        )
-    return found
+    return found, source.lost
+
+
+def _read_step(path: Path) -> Any:  # noqa: ANN401
+    return _read_by(STEPCAFControl_Reader(), path)
 
 
 def _read_by(reader: Any, path: Path) -> Any:  # noqa: ANN401
@@ -54,21 +67,30 @@ def _read_by(reader: Any, path: Path) -> Any:  # noqa: ANN401
     return reader
 
 
-def _has_unresolved(reader: Any) -> bool:  # noqa: ANN401
-    """Say whether entities refer to others that the file lacks.
-
-    BadFileError for a text in place of a number: Open CASCADE would take 0.
-    """
-    texts, checks = [], reader.WS().ModelCheckList()
+def _damaged(reader: Any, content: bytes) -> Mapping[int, str] | None:  # noqa: ANN401
+    """Return the entities that Open CASCADE calls damaged, with reasons; None if there are none."""
+    found: dict[int, str] = {}
+    checks = reader.ChangeReader().WS().ModelCheckList()
+    if checks.IsEmpty(True):
+        return None
     checks.Start()
     while checks.More():
         check = checks.Value()
-        texts += [check.CFail(k) for k in range(1, check.NbFails() + 1)]
+        texts = [check.CFail(k) for k in range(1, check.NbFails() + 1)]
+        bad = [x for x in texts if any(word in x.lower() for word in DAMAGE)]
+        if bad:
+            found[checks.Number()] = bad[0]
         checks.Next()
-    bad = next((x for x in texts if NO_NUMBER in x.lower()), None)
-    if bad is not None:
-        raise BadFileError(f"is damaged: {bad.strip()}; export it again.")
-    return any(UNRESOLVED in x.lower() for x in texts)
+    if not found:
+        return None
+    numbers = numbers_of_entities(content)
+    if len(numbers) != reader.ChangeReader().StepModel().NbEntities():
+        return {}  # those that are missing are found without
+    return {
+        numbers[k - 1]: f"its #{numbers[k - 1]} is damaged ({text})"
+        for k, text in found.items()
+        if k > 0 and UNRESOLVED not in text.lower()
+    }
 
 
 def _set_unit(document: Document, reader: Any) -> None:  # noqa: ANN401

@@ -5,13 +5,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 from OCP.TopoDS import TopoDS
 
 from ...files.lengths import METRES
+from ..counts import faces_said
+from ..damaged_step import LostFace
 from ..inspection import BadFileError
-from ..records import FaceRecord, PartRecord
+from ..preparation import Source
+from ..records import FaceRecord, Geometry, PartRecord
 from ..units import with_unit
 from .edges import sharp_edges
 from .faces import FaceReader
@@ -22,14 +24,12 @@ from .solids import PlacedFace, gathered
 __all__ = ["part_record"]
 
 
-def part_record(path: Path, form: str, said: int, name: str, unit: str | None) -> PartRecord:
-    """Return the part in a file, in a unit or its own; BadFileError says why it cannot be read.
-
-    `form` is STEP, IGES or BREP, and `said` the number of faces that the file says to have.
-    """
-    document = read_file(path, form)
+def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
+    """Return the part in a file, in a unit or its own; BadFileError says why it cannot be read."""
+    document, lost = read_file(source)
     found = gathered(document)
-    if not found.faces:
+    said = faces_said(source.content, source.format)
+    if not found.faces and not lost:
         raise BadFileError(
             f"is damaged: Open CASCADE can make none of its {said} faces; export it again."
             if said
@@ -38,9 +38,10 @@ def part_record(path: Path, form: str, said: int, name: str, unit: str | None) -
     reader = FaceReader()
     faces = [_face(x, reader) for x in found.faces]
     if all(x.reason for x in faces):
-        why = faces[0].reason
+        why = faces[0].reason if faces else lost[0].reason
         raise BadFileError(f"has no face that can be used: of the first one, {why}.")
-    missing = said - _different(found.faces)
+    said += len(source.lost)
+    missing = said - _different(found.faces) - len(lost)
     if missing > 0:
         document.warnings.append(
             f"{missing} of {said} faces are missing: Open CASCADE cannot make them; export the "
@@ -54,7 +55,7 @@ def part_record(path: Path, form: str, said: int, name: str, unit: str | None) -
         in_unit,
         METRES[in_unit],
         found.closed,
-        [with_unit(x, factor) for x in faces],
+        [*(with_unit(x, factor) for x in faces), *map(_lost_face, lost)],
         found.solid_names,
         edges,
         document.warnings,
@@ -72,3 +73,7 @@ def _different(faces: list[PlacedFace]) -> int:
     for face in faces:
         known.set(face.shape, True)
     return len(known)
+
+
+def _lost_face(face: LostFace) -> FaceRecord:
+    return FaceRecord(Geometry("unknown"), name=face.name, reason=face.reason)

@@ -9,9 +9,8 @@ import pytest
 
 pytest.importorskip("OCP")
 
-from gaussmap.tools.cad.counts import faces_said
-from gaussmap.tools.cad.inspection import checked_format
 from gaussmap.tools.cad.opencascade.parts import part_record
+from gaussmap.tools.cad.preparation import prepared
 from OCP.BRep import BRep_Builder
 from OCP.BRepTools import BRepTools
 from OCP.IGESControl import IGESControl_Writer
@@ -58,16 +57,14 @@ def write(tmp_path, capfd):
     capfd.readouterr()
 
 
-def record_of(path: Path, unit: str | None = None):
-    """Read a file in this process, as the reader's process does."""
-    content = path.read_bytes()
-    form = checked_format(content)
-    return part_record(path, form, faces_said(content, form), path.name, unit)
-
-
 @pytest.fixture
-def read():
-    return record_of
+def read(tmp_path):
+    """Read a file in this process, as the reader's process does."""
+
+    def read(path: Path, unit: str | None = None):
+        return part_record(prepared(path, tmp_path), path.name, unit)
+
+    return read
 
 
 def in_loops(uv: np.ndarray, loops) -> np.ndarray:

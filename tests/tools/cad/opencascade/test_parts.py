@@ -204,12 +204,33 @@ def test_assemblies_have_names_colours_and_placements(tmp_path, read, capfd):
 # --- damage ---------------------------------------------------------------------------------------
 
 
+def test_a_face_that_lacks_something_fails_and_the_others_do_not(write, read):
+    path = write(drilled_box())
+    text = path.read_text()
+    whole = read(path)
+    path.write_text(re.sub(r"(ADVANCED_FACE\('',\()(#\d+)", r"\g<1>#999999", text, count=1))
+    part = read(path)
+    failed = [x for x in part.faces if x.reason]
+    assert [x.reason.endswith("refers to #999999, which the file lacks") for x in failed] == [True]
+    assert failed[0].name.startswith("#")
+    assert not part.oriented
+    good = sorted(x.area for x in part.faces if not x.reason)
+    assert all(min(abs(a - x.area) for x in whole.faces) < 1e-9 for a in good)
+    assert len(good) == 6
+
+
 @pytest.mark.parametrize("number", ["nan", "1.E+400", "'text'"])
-def test_numbers_that_are_none_are_refused(number, write, read):
+def test_numbers_that_are_none_cost_only_their_faces(number, write, read):
     path = write(box())
     text = path.read_text()
-    path.write_text(re.sub(r"(CARTESIAN_POINT\('',\()[^,]*,", rf"\g<1>{number},", text, count=1))
-    with pytest.raises(BadFileError, match=r"not finite|is damaged: .*not a Real"):
+    vertex = re.search(r"VERTEX_POINT\('',(#\d+)\)", text)
+    assert vertex is not None
+    point = rf"({vertex[1]} = CARTESIAN_POINT\('',\()[^,]*,"
+    path.write_text(re.sub(point, rf"\g<1>{number},", text))
+    part = read(path)
+    assert [bool(x.reason) for x in part.faces] == 3 * [False] + 3 * [True]
+    path.write_text(re.sub(r"(CARTESIAN_POINT\('',\()[^,]*,", rf"\g<1>{number},", text))
+    with pytest.raises(BadFileError):
         read(path)
 
 
@@ -230,13 +251,15 @@ def test_files_that_end_too_early_are_refused(suffix, write, read):
             read(path)
 
 
-@pytest.mark.parametrize("kind", ["PLANE", "EDGE_LOOP", "EDGE_CURVE", "ADVANCED_FACE"])
-def test_what_lacks_something_is_told(kind, write, read):
+@pytest.mark.parametrize("kind", ["PLANE", "VERTEX_POINT", "EDGE_LOOP", "LINE"])
+def test_faces_of_entities_that_are_missing_are_named(kind, write, read):
     path = write(drilled_box())
     path.write_text(re.sub(rf"\n#\d+ = {kind}\([^;]*;", "", path.read_text(), count=1))
     part = read(path)
-    assert part.warnings[0].startswith("it refers to what it lacks: faces may be missing")
-    assert 5 <= sum(not x.reason for x in part.faces) <= 6
+    assert len(part.faces) == 7
+    reasons = [x.reason for x in part.faces if x.reason]
+    assert 1 <= len(reasons) <= 5
+    assert all("which the file lacks" in x for x in reasons)
 
 
 def test_faces_that_open_cascade_leaves_out_are_told(write, read):

@@ -10,11 +10,7 @@ import pytest
 
 pytest.importorskip("OCP")
 
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
-from OCP.gp import gp_Pln
-
-from .conftest import compound
 
 
 def box():
@@ -36,15 +32,16 @@ def test_a_part_is_read(tmp_path, write, capfd):
 
 
 def test_failed_faces_are_a_warning(tmp_path, write):
-    path = tmp_path / "bö\udcffx.brep"  # a name that is not UTF-8
-    plane = BRepBuilderAPI_MakeFace(gp_Pln()).Face()
-    write(compound(box(), plane), "box.brep").rename(path)
+    path = tmp_path / "bö\udcffx.step"  # a name that is not UTF-8
+    write(box(), "box.step", "INCH").rename(path)
+    text = path.read_text()
+    path.write_text(text.replace("ADVANCED_FACE('',(#", "ADVANCED_FACE('lid',(#99999", 1))
     with pytest.warns(
-        gm.GaussmapWarning, match=r"1 of 7 faces of .* cannot be used: face 6: it has no boundary"
+        gm.GaussmapWarning, match=r"1 of 6 faces of .* cannot be used: face 5 \(lid\)"
     ):
-        part = gm.read_cad(path, unit="in")
-    assert [x.index for x in part.failed] == [6]
-    assert part.unit == "in"
+        part = gm.read_cad(path, unit="mm")
+    assert [x.name for x in part.failed] == ["lid"]
+    assert part.unit == "mm"
 
 
 def test_a_file_that_takes_too_long_is_an_error(write):

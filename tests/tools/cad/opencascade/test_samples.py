@@ -9,8 +9,10 @@ import pytest
 pytest.importorskip("OCP")
 
 from gaussmap.tools.cad.faces import own_parameters
+from gaussmap.tools.cad.opencascade.parts import part_record
 from gaussmap.tools.cad.opencascade.shapes import parts_of
 from gaussmap.tools.cad.part import part_of
+from gaussmap.tools.cad.preparation import prepared
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
@@ -26,7 +28,7 @@ from OCP.TopAbs import TopAbs_Orientation, TopAbs_ShapeEnum, TopAbs_State
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS
 
-from .conftest import record_of, written
+from .conftest import written
 
 IN, OUT = TopAbs_State.TopAbs_IN, TopAbs_State.TopAbs_OUT
 
@@ -56,7 +58,7 @@ def made(request, tmp_path_factory):
     shape = request.param()
     folder = tmp_path_factory.mktemp("cad")
     path = written(shape, folder / "part.brep")
-    part = part_of(record_of(path))
+    part = part_of(part_record(prepared(path, folder), "part", None))
     faces = parts_of(shape, TopAbs_ShapeEnum.TopAbs_FACE)
     forward = TopAbs_Orientation.TopAbs_FORWARD
     return shape, [TopoDS.Face(x.Oriented(forward)) for x in faces], part
