@@ -3,8 +3,6 @@
 Written by `make generate`, SymPy 1.14.0, float64, no fast-math: do not edit, change symbolic/.
 """
 
-import math
-
 from .vectors import Arc, PlaneVector, inline
 
 
@@ -121,23 +119,6 @@ def arc_curvature(A, p_t):
     """
     p_t_x, p_t_y = p_t
     kappa = -A / (p_t_x * p_t_x + p_t_y * p_t_y)
-    return kappa
-
-
-@inline
-def arc_curvature_at(a, p_t):
-    """The curvature at a parameter, for the normal n = N/|N| of `arc_tangent` in
-    `arc_curvature`.
-
-        kappa = (det(p_t, a))/|p_t|**3
-
-    Source: beyond the paper: Sect. 4.1; 12 operations as written, 12 here.
-    """
-    a_x, a_y = a
-    p_t_x, p_t_y = p_t
-    kappa = (a_y * p_t_x - a_x * p_t_y) / (
-        (p_t_x * p_t_x + p_t_y * p_t_y) * math.sqrt(p_t_x * p_t_x + p_t_y * p_t_y)
-    )
     return kappa
 
 

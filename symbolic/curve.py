@@ -18,7 +18,7 @@ from itertools import pairwise
 import sympy as sp
 
 from .formula import Formula, compose
-from .notation import Det, Dot, dot, plane_vectors, scalar, substitute
+from .notation import Dot, plane_vectors, scalar, substitute
 
 __all__ = ["FORMULAS", "NET", "b_spline_net"]
 
@@ -135,26 +135,6 @@ CURVATURE = Formula.build(
 )
 
 
-def _curvature_at() -> sp.Expr:
-    """Put the unit normal of TANGENT into CURVATURE: there A = −det(p_t, a)/|p_t|.
-
-    Raises ArithmeticError if N·a is not −det(p_t, a).
-    """
-    area = Det(p_t, a)
-    _, N_x, N_y = (value for _, value in TANGENT.definitions)
-    if sp.expand(dot(sp.Matrix([N_x, N_y]), a.column) + area.in_components()) != 0:
-        raise ArithmeticError("N·a is not −det(p_t, a)")
-    return substitute(1 / _radius(), {A: -area / sp.sqrt(Dot(p_t, p_t))})
-
-
-CURVATURE_AT = Formula.build(
-    "arc_curvature_at",
-    "The curvature at a parameter, for the normal $n = N/|N|$ of `arc_tangent` in `arc_curvature`.",
-    source=f"beyond the paper: {SECTION}",
-    inputs=[a, p_t],
-    outputs=[("kappa", _curvature_at())],
-)
-
 SAMPLE = compose(
     "arc_sample",
     "What a sample of a curve holds: the point, the tangent and the curvature.",
@@ -243,7 +223,6 @@ FORMULAS = (
     ENVELOPE,
     TANGENT,
     CURVATURE,
-    CURVATURE_AT,
     SAMPLE,
     CONTROL_NET,
     ARC,

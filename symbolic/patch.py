@@ -8,9 +8,8 @@ Q = n·e of the normal n; the vectors come back in by the chain rule, since ∂A
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import chain, combinations, product
+from itertools import combinations, product
 
 import sympy as sp
 
@@ -24,8 +23,6 @@ VECTORS = (a, b, c, d, e)
 A, B, C, P, Q = LINEAR_FORMS = tuple(scalar(x) for x in "ABCPQ")
 D, U, V, W = (scalar(x) for x in "DUVW")
 u, v, r = (scalar(x) for x in "uvr")
-Place = tuple[sp.Expr, sp.Expr]
-CORNERS = tuple((scalar(f"u{i}"), scalar(f"v{i}")) for i in range(3))
 FORM_TERMS = [(form.name, Dot(n, x)) for form, x in zip(LINEAR_FORMS, VECTORS, strict=True)]
 
 
@@ -309,15 +306,11 @@ def bernstein(polynomial: sp.Expr, degree: int) -> dict[str, sp.Expr]:
     return result
 
 
-def _control_normals(
-    name: str,
-    text: str,
-    inputs: Sequence[sp.Symbol],
-    corners: Mapping[str, Place],
-) -> Formula:
-    """Multiply the linear fields p_u and p_v, both given at corners, in Bernstein form."""
+def _control_normals() -> Formula:
+    """Multiply the linear fields p_u and p_v, both given at the corners, in Bernstein form."""
+    corners = {"100": (1, 0), "010": (0, 1), "001": (0, 0)}
     tangents = [
-        (f"{field_name}{corner}", sp.expand(substitute(field, {u: at[0], v: at[1]})))
+        (f"{field_name}{corner}", sp.expand(substitute(field, {u: sp.S(at[0]), v: sp.S(at[1])})))
         for corner, at in corners.items()
         for field_name, field in (("s", P_U), ("t", P_V))
     ]
@@ -328,29 +321,17 @@ def _control_normals(
         share = sp.S.One if left == right else sp.S.Half
         outputs[f"N{index}"] = outputs.get(f"N{index}", sp.S.Zero) + share * Cross(s, t)
     return Formula.build(
-        name,
-        text,
+        "control_normals",
+        "The Bézier net of the normal field $N(u,v) = p_u × p_v$: every oriented normal of the "
+        "patch is a non-negative combination of these six vectors.",
         source="Sect. 3.2, eq. (14)",
-        inputs=inputs,
+        inputs=VECTORS,
         terms=tangents,
         outputs=sorted(outputs.items(), reverse=True),
     )
 
 
-CONTROL_NORMALS = _control_normals(
-    "control_normals",
-    "The Bézier net of the normal field $N(u,v) = p_u × p_v$: every oriented normal of the "
-    "patch is a non-negative combination of these six vectors.",
-    VECTORS,
-    {"100": (sp.S.One, sp.S.Zero), "010": (sp.S.Zero, sp.S.One), "001": (sp.S.Zero, sp.S.Zero)},
-)
-
-PART_NORMALS = _control_normals(
-    "part_normals",
-    "The Bézier net of the normal field over a part of the domain, a triangle with three corners.",
-    [*VECTORS, *chain(*CORNERS)],
-    dict(zip(("001", "100", "010"), CORNERS, strict=True)),
-)
+CONTROL_NORMALS = _control_normals()
 
 
 def _parabolic_cubic() -> Formula:
@@ -439,51 +420,6 @@ LARGEST_CURVATURE = Formula.build(
 )
 
 
-def _squares_along(
-    name: str, text: str, steps: Mapping[str, Place], ends: Iterable[tuple[str, ...]]
-) -> Formula:
-    """Square the derivatives along steps in the domain, at corners of a part of it.
-
-    An end is the number of a corner and the name of a step.
-    """
-    terms, outputs = [], []
-    for i, at in enumerate(CORNERS):
-        here = dict(zip((u, v), at, strict=True))
-        terms += [(f"s{i}", substitute(P_U, here)), (f"t{i}", substitute(P_V, here))]
-    for step, along in steps.items():
-        terms += zip((f"du{step}", f"dv{step}"), along, strict=True)
-    for corner, step in ends:
-        s, t, q = vectors([f"s{corner}", f"t{corner}", f"q{corner}{step}"])
-        terms.append((q.name, scalar(f"du{step}") * s + scalar(f"dv{step}") * t))
-        outputs.append((f"r{corner}{step}", Dot(q, q)))
-    inputs = [*VECTORS, *chain(*CORNERS)]
-    return Formula.build(name, text, inputs=inputs, terms=terms, outputs=outputs)
-
-
-def _between(first: Place, last: Place) -> Place:
-    """Return the step from one place of the domain to another."""
-    return last[0] - first[0], last[1] - first[1]
-
-
-MIDDLE = sp.Add(*(x for x, _ in CORNERS)) / 3, sp.Add(*(x for _, x in CORNERS)) / 3
-
-REACH = _squares_along(
-    "reach",
-    "Squares whose maximum bounds the squared radius of a part of the patch over a triangle, "
-    "around the image of the centroid: the derivative along the step from the centroid to each "
-    "corner, at each corner.",
-    {str(i): _between(MIDDLE, corner) for i, corner in enumerate(CORNERS)},
-    product("012", repeat=2),
-)
-
-SIDES = _squares_along(
-    "sides",
-    "Bounds of the squared lengths of the sides of a part of the patch over a triangle: the "
-    "squared derivative along each side, at both of its ends.",
-    {str(i): _between(CORNERS[i - 2], CORNERS[i - 1]) for i in range(3)},
-    [(str((i + k) % 3), str(i)) for i in range(3) for k in (1, 2)],
-)
-
 FORMULAS = (
     POWER_FORM,
     FORMS,
@@ -500,12 +436,9 @@ FORMULAS = (
     ORIENTATION,
     CLOSED_CURVATURE,
     CONTROL_NORMALS,
-    PART_NORMALS,
     PARABOLIC_CUBIC,
     MEASURE,
     SAMPLE,
     CURVATURE_AT,
     LARGEST_CURVATURE,
-    REACH,
-    SIDES,
 )

@@ -11,13 +11,15 @@ import numpy as np
 from ..base.trees import tree_of
 from ..domain.domain import brought_inside
 from ..kernels.sizing import TargetDensity
-from .cells import LIMIT, Array, Cells, Evaluator, by_piece, points_of
-from .piece import Piece, beside
+from .cells import LIMIT, Array, Cells, Evaluator, Indices, by_piece, points_of
+from .piece import Piece
 
-__all__ = ["BorderLine", "along_borders", "border_lines"]
+__all__ = ["BorderLine", "along_borders", "beside_border", "border_lines"]
 
 # Borders are measured at places that are this part of the domain apart, or less.
 FINE = 1.0 / 48.0
+# The distance from the border of places beside it, relative to the domain.
+BESIDE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +63,7 @@ def border_lines(space: Bordered) -> list[BorderLine]:
             continue
         tree = tree_of(cells.places / piece.sizes)
         for polygon in piece.polygons:
-            places = _divided(np.concatenate([polygon, polygon[:1]]), piece.sizes)
+            places = _divided(polygon, piece.sizes, FINE)
             inside = np.clip(_wrapped(piece, places), *np.array(piece.domain).T)
             made = points_of(space, np.full(len(places), k), inside)
             made.numbers[:, LIMIT] = cells.numbers[tree.query(inside / piece.sizes)[1], LIMIT]
@@ -81,14 +83,10 @@ def along_borders(space: Bordered, step: float, turn: float = math.inf) -> Cells
         number = np.minimum(at.astype(np.int64), len(line.places) - 2)
         steps = np.diff(line.places, axis=0)
         on = line.places[number] + (at - number)[:, None] * steps[number]
-        across = beside(steps[number], piece.sizes)
-        low, high = np.array(piece.domain).T
-        for side in (_wrapped(piece, on + across), _wrapped(piece, on - across)):
-            inside = ((side > low) & (side < high)).all(axis=1)
-            inside[inside] = piece.contains(side[inside])
-            pieces.append(np.full(int(inside.sum()), line.piece))
-            places.append(side[inside])
-            limits.append(line.limits[number[inside]])
+        inside, owner = _beside(piece, on, steps[number])
+        pieces.append(np.full(len(inside), line.piece))
+        places.append(inside)
+        limits.append(line.limits[number[owner]])
     made = points_of(
         space, np.concatenate([np.empty(0, np.int64), *pieces]), np.concatenate(places)
     )
@@ -110,14 +108,41 @@ def _spaced(line: BorderLine, target: TargetDensity, step: float, turn: float) -
     return np.interp(total[-1] * (np.arange(number) + 0.5) / number, total, np.arange(len(total)))
 
 
-def _divided(polygon: Array, sizes: Array) -> Array:
-    """Return a line (k, 2) with further places, such that steps are FINE at most."""
+def beside_border(piece: Piece, step: float) -> Array:
+    """Return places (k, 2) inside, beside the border, that are `step` of the domain apart."""
+    found = [np.empty((0, 2))]
+    for polygon in piece.polygons:
+        line = _divided(polygon, piece.sizes, step)
+        steps = np.diff(line, axis=0)
+        found.append(_beside(piece, line[:-1] + steps / 2.0, steps)[0])
+    return np.concatenate(found)
+
+
+def _divided(polygon: Array, sizes: Array, step: float) -> Array:
+    """Return a polygon (k, 2), closed, with further places: steps are `step` of sizes at most."""
+    polygon = np.concatenate([polygon, polygon[:1]])
     steps = np.diff(polygon, axis=0)
-    parts = np.maximum(np.ceil(np.abs(steps / sizes).max(axis=1) / FINE), 1.0).astype(np.int64)
+    parts = np.maximum(np.ceil(np.abs(steps / sizes).max(axis=1) / step), 1.0).astype(np.int64)
     owner = np.repeat(np.arange(len(steps)), parts)
     number = np.arange(len(owner)) - (np.cumsum(parts) - parts)[owner]
     inner = polygon[owner] + (number / parts[owner])[:, None] * steps[owner]
     return np.concatenate([inner, polygon[-1:]])
+
+
+def _beside(piece: Piece, places: Array, steps: Array) -> tuple[Array, Indices]:
+    """Return which places are inside, of those to the left and right of places (k, 2) on a border.
+
+    And the numbers of these; the border runs along steps (k, 2).
+    """
+    along = steps / piece.sizes
+    lengths = np.hypot(*along.T)
+    unit = along / np.where(lengths > 0.0, lengths, 1.0)[:, None]
+    across = BESIDE * piece.sizes * np.stack([-unit[:, 1], unit[:, 0]], axis=1)
+    both = _wrapped(piece, np.concatenate([places + across, places - across]))
+    low, high = np.array(piece.domain).T
+    inside = ((both > low) & (both < high)).all(axis=1)
+    inside[inside] = piece.contains(both[inside])
+    return both[inside], np.tile(np.arange(len(places)), 2)[inside]
 
 
 def _wrapped(piece: Piece, places: Array) -> Array:

@@ -17,12 +17,9 @@ from ..domain.trim import Trim
 from ..place.on_spline import OnSpline
 from .borders import Border
 
-__all__ = ["Piece", "beside", "boxes_between"]
+__all__ = ["Piece", "boxes_between"]
 
 Array = NDArray[np.float64]
-
-# The distance from the border of places beside it, relative to the domain.
-BESIDE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,40 +126,9 @@ class Piece(ABC):
             np.ones(len(places), np.bool_) if self.trim is None else self.trim.contains(places, 1)
         )
 
-    def beside_border(self, n: int) -> Array:
-        """Return places (k, 2) inside, next to the border, 1/n of the domain apart at most."""
-        found = [_beside(x, self.sizes, n) for x in self.polygons]
-        places = np.concatenate([np.empty((0, 2)), *found])
-        low, high = np.array(self.domain).T
-        places = places[((places > low) & (places < high)).all(axis=1)]
-        return places[self.contains(places)]
-
 
 def boxes_between(u: Array, v: Array) -> Array:
     """Return the boxes (M, 4) between neighbouring lines u = const and v = const."""
     low = np.stack(np.meshgrid(u[:-1], v[:-1], indexing="ij"), axis=-1)
     high = np.stack(np.meshgrid(u[1:], v[1:], indexing="ij"), axis=-1)
     return np.concatenate([low, high], axis=-1).reshape(-1, 4)
-
-
-def beside(steps: Array, sizes: Array) -> Array:
-    """Return the ways (k, 2) across steps (k, 2), to the left, from a border to places beside it.
-
-    `sizes` (2,) are the lengths of the domain.
-    """
-    along = steps / sizes
-    lengths = np.hypot(*along.T)
-    unit = along / np.where(lengths > 0.0, lengths, 1.0)[:, None]
-    return BESIDE * sizes * np.stack([-unit[:, 1], unit[:, 0]], axis=1)
-
-
-def _beside(polygon: Array, sizes: Array, n: int) -> Array:
-    """Return places (k, 2) on both sides of a polygon, no farther apart than 1/n of the domain."""
-    steps = np.roll(polygon, -1, axis=0) - polygon
-    lengths = np.hypot(*(steps / sizes).T)
-    parts = np.maximum(np.ceil(lengths * n), 1.0).astype(np.int64)
-    owner = np.repeat(np.arange(len(polygon)), parts)
-    number = np.arange(len(owner)) - (np.cumsum(parts) - parts)[owner]
-    places = polygon[owner] + ((number + 0.5) / parts[owner])[:, None] * steps[owner]
-    across = beside(steps, sizes)[owner]
-    return np.concatenate([places + across, places - across])

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from .along_borders import beside_border
 from .cells import Array, Cells, Flags, Indices, by_piece, points_of
 from .piece import Piece
 
@@ -56,7 +57,7 @@ def beside(lost: Cells, pixels: Indices) -> Cells:
         n, piece = int(pixels[k]), lost.space.pieces[k]
         border = piece.border(n)
         assert border is not None
-        found = piece.beside_border(2 * n)
+        found = beside_border(piece, 0.5 / n)
         places.append(found[border.near(lost.boxes[rows], found)])
         pieces.append(np.full(len(places[-1]), k))
     return points_of(lost.space, np.concatenate(pieces), np.concatenate(places))

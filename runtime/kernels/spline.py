@@ -114,6 +114,15 @@ def locate(s, t):
 
 
 @inline
+def patch_at(x, y, rows, columns):
+    """Return row, column and triangle of the cell of a place in cells, and u, v there."""
+    i = min(max(int(math.floor(x)), 0), rows - 1)
+    j = min(max(int(math.floor(y)), 0), columns - 1)
+    turn, u, v = locate(x - i - 0.5, y - j - 0.5)
+    return i, j, turn, u, v
+
+
+@inline
 def in_triangle(s, t, turn):
     """Return u, v in a triangle of a cell; s, t are relative to the centre of it, in cells."""
     for _ in range(turn):
@@ -126,9 +135,7 @@ def evaluate(mu, scale, cells, points, normals):
     """Write points (k, 3) and unnormalized normals (k, 3) at places (k, 2) in cells."""
     size = SCALE * scale
     for k in range(cells.shape[0]):
-        i = min(max(int(math.floor(cells[k, 0])), 0), mu.shape[0] - 3)
-        j = min(max(int(math.floor(cells[k, 1])), 0), mu.shape[1] - 3)
-        turn, u, v = locate(cells[k, 0] - i - 0.5, cells[k, 1] - j - 0.5)
+        i, j, turn, u, v = patch_at(cells[k, 0], cells[k, 1], mu.shape[0] - 2, mu.shape[1] - 2)
         patch = patch_vectors(mu, i + 1, j + 1, turn, scale)
         x = point_of_patch(patch, u, v)
         points[k, 0] = mu[i + 1, j + 1, 0] + x.x / size

@@ -13,7 +13,6 @@ one wherever it is asked for, so that rounding matters next to a segment alone.
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -22,7 +21,7 @@ from numpy.typing import NDArray
 from ...generated.spline import CORNERS
 from ..machine_code.jit import inline, jit, loop
 from .patch import place_of
-from .spline import locate
+from .spline import patch_at
 
 __all__ = ["Cells", "find_inside", "find_parities", "find_patches", "list_segments", "to_cells"]
 
@@ -201,9 +200,7 @@ def list_segments(cells, margins, stores):
 def find_patches(cells, rows, columns, patches):
     """Write the numbers (k,) of the patches at places (k, 2) in cells of a grid."""
     for k in range(cells.shape[0]):
-        i = min(max(int(math.floor(cells[k, 0])), 0), rows - 1)
-        j = min(max(int(math.floor(cells[k, 1])), 0), columns - 1)
-        turn, _, _ = locate(cells[k, 0] - i - 0.5, cells[k, 1] - j - 0.5)
+        i, j, turn, _, _ = patch_at(cells[k, 0], cells[k, 1], rows, columns)
         patches[k] = 4 * (i * columns + j) + turn
 
 

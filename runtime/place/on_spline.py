@@ -7,7 +7,7 @@ functions and solid angles take the curvature of the surface from the Gauss poin
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
@@ -15,9 +15,11 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from ...generated.spline import SCALE
 from ..base.georeference import Georeference
 from ..base.memory import check_memory
-from ..kernels.forms import forms_on_spline, jets_on_spline, patches_at
+from ..base.threads import over_ranges
+from ..kernels.forms import forms_of_jets, jets_on_spline, patches_at
 from ..kernels.tile import fill_known
 from ..samples.fields import FLOAT_NAMES, bytes_of, new_field
 from ..samples.report import SamplingReport
@@ -36,6 +38,8 @@ __all__ = ["Fields", "FieldsOfSamples", "OnSpline", "grouped"]
 
 Array = NDArray[np.float64]
 Fields = dict[str, NDArray[Any]]
+
+AT_A_TIME = 1 << 12
 
 
 class FieldsOfSamples(NamedTuple):
@@ -139,12 +143,6 @@ class OnSpline:
             **fields, report=report, spline=self.spline, surface=self.surface, offset_of=None
         )
 
-    def forms(self, cells: Array) -> Array:
-        """Return the fundamental forms (k, 7) at places (k, 2) in cells; see `forms_of_jets`."""
-        found = np.empty((len(cells), 7))
-        forms_on_spline(self.spline.coefficients, self.spline.scale, cells, found)
-        return found
-
     # --- samples that fill gaps -------------------------------------------------------------------
 
     @property
@@ -178,6 +176,27 @@ class OnSpline:
         )  # fmt: skip
         indices = {"normal_index": np.full(count, -1), "patch_index": patches}
         return filled | {x: y for x, y in indices.items() if x in fields}
+
+    def forms(self, cells: Array) -> Array:
+        """Return the fundamental forms (k, 7) at places (k, 2) in cells; see `forms_of_jets`."""
+        found, frame = np.empty((len(cells), 7)), self.spline.frame
+        scales = np.array([self._size, *frame[2:]])
+        u, v = (frame[:2] + frame[2:] * cells).T.copy()
+
+        def work(first: int, last: int) -> None:
+            forms_of_jets(self.jets(u[first:last], v[first:last]), scales, found[first:last])
+
+        self._in_parts(work, len(cells))
+        return found
+
+    @property
+    def _size(self) -> float:
+        """The scaled length of a length 1."""
+        return SCALE * self.spline.scale
+
+    def _in_parts(self, work: Callable[[int, int], None], count: int) -> None:
+        for _ in over_ranges(work, count, AT_A_TIME, self.threads):
+            pass
 
     def _in_cells(self, u: Array, v: Array) -> Array:
         """Return parameters in cells from the corner of the domain (k, 2)."""

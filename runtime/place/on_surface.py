@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
@@ -11,13 +11,10 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from ...generated.spline import SCALE
 from ..base.checks import known_name
 from ..base.errors import InputError
-from ..base.threads import over_ranges
 from ..fitting.fit import spline_of
 from ..kernels import nodes as kernels
-from ..kernels.forms import forms_of_jets
 from ..samples.fields import FLAG_NAMES
 from ..samples.report import PLACES
 from ..search.bins import NormalBins
@@ -36,7 +33,6 @@ from .repeats import kept_once, left_patch
 
 __all__ = ["OnSurface", "checked_place", "geometry_of", "place_of_samples"]
 
-AT_A_TIME = 1 << 12
 # Samples in turn are looked at in groups of at least this number, whether they repeat others.
 TOGETHER = 1 << 17
 
@@ -236,26 +232,3 @@ class OnSurface(OnSpline):
         for name in set(arrays) & set(found):
             arrays[name][there] = found[name][there]
         return arrays | {name: there for name in FLAG_NAMES if name in fields}
-
-    def forms(self, cells: Array) -> Array:
-        """Return the fundamental forms (k, 7) at places (k, 2) in cells; see `forms_of_jets`."""
-        found, frame = np.empty((len(cells), 7)), self.spline.frame
-        scales = np.array([self._size, *frame[2:]])
-        u, v = (frame[:2] + frame[2:] * cells).T.copy()
-
-        def work(first: int, last: int) -> None:
-            forms_of_jets(self.jets(u[first:last], v[first:last]), scales, found[first:last])
-
-        self._in_parts(work, len(cells))
-        return found
-
-    # --- evaluation -------------------------------------------------------------------------------
-
-    @property
-    def _size(self) -> float:
-        """The scaled length of a length 1 of the surface."""
-        return SCALE * self.spline.scale
-
-    def _in_parts(self, work: Callable[[int, int], None], count: int) -> None:
-        for _ in over_ranges(work, count, AT_A_TIME, self.threads):
-            pass

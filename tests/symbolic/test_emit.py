@@ -16,7 +16,6 @@ import pytest
 import sympy as sp
 from gaussmap.generated import vectors
 from gaussmap.symbolic import (
-    curve,
     emit,
     files,
     formulas,
@@ -100,8 +99,6 @@ def exact_inputs(formula, seed: int) -> dict[str, Fraction]:
         symbol.name: Fraction(generator.randint(-40, 40) * 2 + 1, generator.randint(1, 30))
         for symbol in formula.in_components().inputs
     }
-    if formula is curve.CURVATURE_AT:
-        return inputs | {"p_t_x": 3 * inputs["a_x"], "p_t_y": 4 * inputs["a_x"]}
     if formula is patch.LARGEST_CURVATURE:  # of principal curvatures that differ by 2 K
         return inputs | {"K": inputs["H"] ** 2 - inputs["K"] ** 2}
     if formula is gaussian_image.SOLID_ANGLE:

@@ -222,7 +222,7 @@ def test_entries_name_source_inputs_and_operations(formula):
         ("boundary_arc", "`gaussian_image.boundary_arc`."),
         ("coefficient_from_centres", "`spline.coefficient_from_centres`."),
         ("torus", "`surface_jets.torus`, `surfaces.torus`."),
-        ("control_normals", "`patch.control_normals`."),  # part_normals has others of these names
+        ("control_normals", "`patch.control_normals`."),
         ("sample", "`patch.sample`."),  # to `branch` u and v are known
     ],
 )  # fmt: skip

@@ -316,18 +316,6 @@ def test_control_normals_reproduce_the_normal_field(case):
     assert (bezier_point(points) - case.normal).applyfunc(sp.expand) == sp.zeros(3, 1)
 
 
-def test_part_normals_reproduce_the_normal_field_of_a_part(case):
-    values = case.triangle.evaluate(patch.PART_NORMALS)
-    points = [
-        [values[f"N{index}_{axis}"] for axis in "xyz"]
-        for index in ("200", "020", "002", "110", "101", "011")
-    ]
-    shares = (1 - u - v, u, v)
-    here = (sum(x * y[k] for x, y in zip(shares, patch.CORNERS, strict=True)) for k in range(2))
-    part = case.normal.xreplace(dict(zip((u, v), here, strict=True)))
-    assert (bezier_point(points) - part).applyfunc(sp.expand) == sp.zeros(3, 1)
-
-
 def test_parabolic_cubic_is_d_of_the_normal_field(case):
     D = case.triangle.forms["D"].xreplace(dict(zip(n, case.normal, strict=True)))
     net = case.triangle.evaluate(patch.PARABOLIC_CUBIC)
