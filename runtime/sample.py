@@ -90,7 +90,7 @@ def sample(
     relax : int, default 0
         Steps, at most 10, that move the samples that fill gaps to better places. Two or three are
         enough; they take 20 to 40 times as long as the sampling and 20 kB of memory for each sample
-        instead of 1 or 2 kB.
+        instead of 3 kB.
     cells : (int, int), optional
         The numbers of cells of the spline along u and v, see `fit`. Pieces of a surface share them,
         in proportion to their parameters.
@@ -156,10 +156,11 @@ def sample(
 
     All faces of a part, and all smooth pieces of a surface, have one target density, and one count;
     angle and coverage hold for the whole. Pieces that are to have a tenth of all samples at normals
-    or more have a lattice of normals; if any has none, 5 % of a count go where normals are farthest
-    from those of all samples. Every face has a sample if there are twice as many samples as faces.
-    A sample represents places only whose normals are within 60° of its own. Of parts, `density` is
-    "balanced", "uniform", a number, or "gauss" with `normals`; `cells` and `on` are not for parts.
+    or more have a lattice of normals; if any of several has none, 5 % of a count go where normals
+    are farthest from those of all samples. Every face has a sample if there are twice as many
+    samples as faces. A sample represents places only whose normals are within 60° of its own. Of
+    parts, `density` is "balanced", "uniform", a number, or "gauss" with `normals`; `cells` and `on`
+    are not for parts.
 
     Samples on edges have the `kind` "edge" and the normals of both faces, `normals` and
     `other_normals`. They are on both faces exactly, or, where the faces of the file do not meet, on

@@ -57,10 +57,10 @@ COSTS: dict[str, Cost] = {
     "stored": Cost("samples", 0.0, 1.0, 'use fewer normals, fewer fields or dtype="float32"'),
     "gauss": Cost("samples", 76.0, 1.0, "use fewer, fewer fields, float32, or gm.sample_stream"),
     # The others have some candidates for each sample.
-    "balanced": Cost("samples", 1300.0, 0.0, FEWER),
+    "balanced": Cost("samples", 3300.0, 0.0, FEWER),
     "uniform": Cost("samples", 3300.0, 0.0, FEWER),
     "aligned": Cost("samples", 900.0, 0.0, FEWER),
-    "relaxed": Cost("samples", 19e3, 0.0, "use fewer, or relax=0, which takes a tenth"),
+    "relaxed": Cost("samples", 19e3, 0.0, "use fewer, or relax=0, which takes a sixth"),
     "candidates": Cost("candidates for samples", 700.0, 0.0, LARGER),
     "part": Cost("samples", 8e3, 0.0, "use fewer"),
     "relaxed part": Cost("samples", 25e3, 0.0, "use fewer, or relax=0, which takes a third"),

@@ -50,8 +50,8 @@ SAVED = 0.25
 LATTICE = 0.1
 # Pieces whose normals fill less than this solid angle have no samples at prescribed normals.
 LEAST_IMAGE = 1e-9
-# Where pieces have no lattice: the part of a count that goes where normals are farthest from those
-# of all samples.
+# Where some of several pieces have no lattice: the part of a count that goes where normals are
+# farthest from those of all samples. On one piece, that is where the others are.
 FOR_NORMALS = 0.05
 # The chord between the normals of candidates for these samples, relative to that which their number
 # leaves on a sphere, and about the number of these candidates, beside as many as there are samples.
@@ -245,13 +245,14 @@ class Filling:
     def _by_count(self, space: Space, count: int) -> tuple[Cover, Given]:
         """Divide a count between samples at normals and others, which fill gaps.
 
-        A part of these is for pieces without any, and goes where normals are far from all.
+        A part of these is for pieces without any among several, and goes where normals are far
+        from all.
         """
         given, rest = self._none, 0
         if self.request.density in BY_CURVATURE:
             given = self._for_count(space, count)
-            are_all = len(given.found) == len(space.pieces)
-            rest = 0 if are_all else math.floor(FOR_NORMALS * count)
+            if len(given.found) < len(space.pieces) > 1:
+                rest = math.floor(FOR_NORMALS * count)
         cover = self._new(space, given)
         cover.to_count(max(count - rest, cover.count))
         cover = self._relaxed(cover)
