@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...generated import gaussian_image as formulas
 from ...runtime.base.checks import whole_number
 from ...runtime.base.formula_calls import python_function, vector
-from .solid_angle import EDGES, boundary_of
+from .solid_angle import EDGES, boundary_of, first_directions
 
 __all__ = ["BoundaryArc", "boundary_arcs", "edge_arcs"]
 
@@ -196,7 +196,7 @@ def _turn(
     It is an arc of a great circle, half of it between opposite normals; one point if the surface is
     regular there. `where` holds the point and two directions from it, backwards and inwards.
     """
-    start, end = _direction(arc.control_normals[::-1]), _direction(after.control_normals)
+    start, end = first_directions(np.stack([arc.control_normals[::-1], after.control_normals]))
     middle = 0.5 * (start + end)
     size = min(float(np.linalg.norm(x[x.any(axis=1)], axis=1).min(initial=np.inf))
                for x in (arc.control_normals, after.control_normals))  # fmt: skip
@@ -237,10 +237,3 @@ def _inner_limit(
         if length > 4.0 * errors * noise:
             return across / length
     return np.zeros(3)
-
-
-def _direction(net: Array) -> Array:
-    """Return the first nonzero control normal, normalized; zero if all are zero."""
-    normal = net[int(net.any(axis=1).argmax())]
-    length = float(np.linalg.norm(normal))
-    return normal / length if length else normal

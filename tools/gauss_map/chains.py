@@ -7,11 +7,44 @@ from collections.abc import Hashable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Segment", "joined"]
+__all__ = ["Segment", "chained", "continued", "joined"]
 
 Array = NDArray[np.float64]
+Ends = tuple[Hashable, Hashable]
 # The nodes at both ends of a piece of a polyline, and its vertices (k, 2).
 Segment = tuple[Hashable, Hashable, Array]
+
+
+def chained(pieces: Sequence[Ends]) -> list[tuple[list[tuple[int, bool]], bool]]:
+    """Put pieces, given by their ends, in the order of curves, which end unless two pieces meet.
+
+    A curve is the numbers of its pieces, each with whether it is turned; also returns whether it is
+    closed.
+    """
+    at_node: dict[Hashable, list[int]] = {}
+    for number, ends in enumerate(pieces):
+        for node in ends:
+            at_node.setdefault(node, []).append(number)
+    unused = dict.fromkeys(range(len(pieces)))
+
+    def walk(number: int, node: Hashable) -> list[tuple[int, bool]]:
+        chain = []
+        while True:
+            del unused[number]
+            start, end = pieces[number]
+            chain.append((number, start != node))
+            node = end if start == node else start
+            following = [x for x in at_node[node] if x in unused]
+            if len(at_node[node]) != 2 or not following:
+                return chain
+            number = following[0]
+
+    ends = [(x, node) for node, numbers in at_node.items() if len(numbers) != 2 for x in numbers]
+    result = [(walk(number, node), False) for number, node in ends if number in unused]
+    while unused:
+        number = next(iter(unused))
+        result.append((walk(number, pieces[number][0]), True))
+    return result
 
 
 def joined(segments: Sequence[Segment]) -> list[tuple[Array, bool]]:
@@ -21,42 +54,16 @@ def joined(segments: Sequence[Segment]) -> list[tuple[Array, bool]]:
     have several places: each segment is moved to where the one before it ends, so that a polyline
     may run beyond the domain. A closed polyline repeats its first node at its end.
     """
-    at_node: dict[Hashable, list[int]] = {}
-    for number, (start, end, _) in enumerate(segments):
-        at_node.setdefault(start, []).append(number)
-        at_node.setdefault(end, []).append(number)
-    unused = dict.fromkeys(range(len(segments)))
-    ends = [node for node, numbers in at_node.items() if len(numbers) != 2]
     result = []
-    for node in ends:
-        for number in at_node[node]:
-            if number in unused:
-                result.append((_walk(segments, at_node, unused, node, number), False))
-    while unused:
-        number = next(iter(unused))
-        result.append((_walk(segments, at_node, unused, segments[number][0], number), True))
+    for chain, closed in chained([segment[:2] for segment in segments]):
+        parts = [segments[number][2][:: -1 if turned else 1] for number, turned in chain]
+        result.append((continued(parts), closed))
     return result
 
 
-def _walk(
-    segments: Sequence[Segment],
-    at_node: dict[Hashable, list[int]],
-    unused: dict[int, None],
-    node: Hashable,
-    number: int,
-) -> Array:
-    """Follow segments from a node on until they end or come back."""
-    places: list[Array] = []
-    while True:
-        del unused[number]
-        start, end, ends = segments[number]
-        if start != node:
-            start, end, ends = end, start, ends[::-1]
-        if not places:
-            places.append(ends[0])
-        places.extend(ends[1:] + (places[-1] - ends[0]))
-        node = end
-        following = [x for x in at_node[node] if x in unused]
-        if len(at_node[node]) != 2 or not following:
-            return np.array(places)
-        number = following[0]
+def continued(parts: Sequence[Array]) -> Array:
+    """Join polylines (k, 2), each moved to where the one before it ends."""
+    line = [parts[0]]
+    for part in parts[1:]:
+        line.append(part[1:] + (line[-1][-1] - part[0]))
+    return np.concatenate(line)

@@ -22,7 +22,6 @@ from .parabolic_spline import polylines_of
 from .parabolic_surface import field_of, search
 from .polylines import refined
 from .rectangles import merged
-from .saddles import critical_points
 
 __all__ = ["ParabolicCurve", "ParabolicPoint", "ParabolicPoints", "parabolic_points"]
 
@@ -182,9 +181,12 @@ def parabolic_points(
     A smooth surface is interpolated on each panel by polynomials of degree 15 and differentiated.
     The error of K is estimated: it is about 1e-9 where the surface is resolved, and up to 1 % of K
     on the panel where it is not. Where K is less than its error, its sign is not used: such places
-    are `flat`. Zeros of K of higher order are located only as accurately as K is known. Curves
-    closer to each other than a cell (1/16 of a panel) may be missed or joined wrongly; so may a
-    crossing at which they are separated by less than 1/16 of a cell.
+    are `flat`. Zeros of K of higher order are located only as accurately as K is known.
+
+    The signs of K on a grid of at least 128 × 128 cells, 8 × 8 or more for each panel, show the
+    curves. Bounds of K tell where other curves may be; where they are closer to each other than a
+    cell, or closed and smaller, the grid is refined to at most 512 × 512 cells. Those that are
+    still smaller or closer are `isolated`, or may be joined wrongly.
 
     Examples
     --------
@@ -206,15 +208,16 @@ def parabolic_points(
 
 
 def _of_spline(spline: Spline, tolerance: float) -> ParabolicPoints:
-    classes = classify_patches(spline).reshape(-1, 4)
+    classes = classify_patches(spline)
     curves = []
     scale = spline.scale
     size = tolerance * _size(spline.coefficients[1:-1, 1:-1].reshape(-1, 3) * scale)
-    for uv, closed in polylines_of(spline):
+    for uv, closed in polylines_of(spline, classes):
         finer = refined(uv, lambda x: scale * _evaluated(spline, x), size, lambda x: x)
         curves.append(ParabolicCurve(finer, _evaluated(spline, finer), closed))
     flat = np.isin(classes, (PatchClass.PLANAR, PatchClass.DEVELOPABLE, PatchClass.SINGULAR))
-    i, j = np.divmod(np.flatnonzero(flat.all(axis=1)), spline.cells[1])
+    cells = np.flatnonzero(flat.reshape(-1, 4).all(axis=1))
+    i, j = np.divmod(cells, spline.cells[1])
     corners = np.stack([[i, j], [i + 1, j + 1]]).transpose(2, 0, 1)
     boxes = spline.frame[:2] + corners * spline.frame[2:]
     return ParabolicPoints(tuple(curves), (), merged(boxes), bool(flat.all()))
@@ -225,11 +228,12 @@ def _of_surface(
 ) -> ParabolicPoints:
     field = field_of(surface, panels)
     extent = np.array([high - low for low, high in surface.domain])
-    found = search(field, 0.125 * tolerance * extent)
-    if found.unresolved > WORTH_A_WARNING:
+    polylines, places, boxes, flat = search(field, 0.125 * tolerance * extent)
+    unresolved = field.share(field.unresolved)
+    if unresolved > WORTH_A_WARNING:
         warnings.warn(
             f"the curvature of {surface.name!r} cannot be computed on "
-            f"{100.0 * found.unresolved:.3g} % of its domain (a pole, a crease, fine detail, or "
+            f"{100.0 * unresolved:.3g} % of its domain (a pole, a crease, fine detail, or "
             "coordinates with too few digits), which is left out; the spline of the surface "
             "(`fit`) has parabolic points everywhere.",
             GaussmapWarning,
@@ -240,7 +244,7 @@ def _of_surface(
     size = tolerance * _size(grid.reshape(-1, 3) * scale)
     limits = _limits(surface)
     curves = []
-    for uv, closed in found.polylines:
+    for uv, closed in polylines:
         finer = refined(
             uv,
             lambda x: scale * _evaluated(surface, x),
@@ -248,14 +252,11 @@ def _of_surface(
             lambda x: np.clip(_onto_curve(field, x), *limits),
         )
         curves.append(ParabolicCurve(finer, _evaluated(surface, finer), closed))
-    isolated = []
-    for box in found.boxes:
-        uv = _lowest(field, box)
-        isolated.append(ParabolicPoint(uv, _evaluated(surface, uv[None])[0], box))
-    return ParabolicPoints(tuple(curves), tuple(isolated), found.flat, bool(field.flat.all()))
+    isolated = map(ParabolicPoint, places, _evaluated(surface, places), boxes)
+    return ParabolicPoints(tuple(curves), tuple(isolated), flat, bool(field.flat.all()))
 
 
-# --- places on the curves and points K = 0 --------------------------------------------------------
+# --- places on the curves K = 0 -------------------------------------------------------------------
 
 
 def _onto_curve(field: CurvatureField, places: Array) -> Array:
@@ -266,14 +267,6 @@ def _onto_curve(field: CurvatureField, places: Array) -> Array:
         step = np.divide(K, square, out=np.zeros_like(K), where=square > 0.0)
         places = places - step[:, None] * slope
     return places
-
-
-def _lowest(field: CurvatureField, box: Array) -> Array:
-    """Return the place in a rectangle where the gradient of K vanishes, else its middle."""
-    middle = box.mean(axis=0)
-    place = critical_points(field, middle[None], box[1] - box[0])
-    inside = ((box[0] <= place[0]) & (place[0] <= box[1])).all()
-    return place[0] if inside else middle
 
 
 # --- arguments and evaluation ---------------------------------------------------------------------

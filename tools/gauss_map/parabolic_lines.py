@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import reduce
 from itertools import combinations
 
 import numpy as np
@@ -184,8 +185,7 @@ def pieces_of(patch: Patches) -> tuple[Piece, ...]:
 
 def clipped(polygon: Array, line: Array) -> Array | None:
     """Return the part of a convex polygon (k, 2) where line · (u, v, 1) ≥ 0; None if it is thin."""
-    heights = polygon @ line[:2] + line[2]
-    heights[np.abs(heights) <= PARAMETER_ERROR * (1.0 + abs(line[2]))] = 0.0
+    heights = _heights(polygon, line)
     if heights.max() <= 0.0:
         return None
     corners = []
@@ -196,6 +196,12 @@ def clipped(polygon: Array, line: Array) -> Array | None:
         if here >= 0.0:
             corners.append(polygon[k])
     return np.array(corners) if len(corners) > 2 else None
+
+
+def _heights(places: Array, line: Array) -> Array:
+    """Return line · (u, v, 1) at places (k, 2), zero where it is zero up to rounding."""
+    heights = places @ line[:2] + line[2]
+    return np.where(np.abs(heights) <= PARAMETER_ERROR * (1.0 + abs(line[2])), 0.0, heights)
 
 
 def singular_points(patch: Patches) -> Array:
@@ -276,15 +282,11 @@ def _turned(coefficients: Array, angle: float) -> Array:
     """Return the binary cubic in (x, y), with s = x cos − y sin and t = x sin + y cos."""
     s = np.array([math.cos(angle), -math.sin(angle)])
     t = np.array([math.sin(angle), math.cos(angle)])
-    terms = [k * _product([s] * (3 - power) + [t] * power) for power, k in enumerate(coefficients)]
+    terms = [
+        k * reduce(np.convolve, [s] * (3 - power) + [t] * power)
+        for power, k in enumerate(coefficients)
+    ]
     return np.sum(terms, axis=0)
-
-
-def _product(factors: list[Array]) -> Array:
-    result = np.ones(1)
-    for factor in factors:
-        result = np.convolve(result, factor)
-    return result
 
 
 def _merged(angles: list[float]) -> list[tuple[float, int]]:
@@ -316,20 +318,13 @@ def _line(patch: Patches, s: float, t: float) -> tuple[float, Array] | None:
 
 def _segment(s: float, t: float, rho: float) -> Array | None:
     """Return the ends (2, 2) of the part of a line inside the triangle, None if there is none."""
-    foot, along = -rho * np.array([s, t]), np.array([-t, s])
-    low, high = -math.inf, math.inf
-    for form in np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, -1.0, 1.0]]):
-        height, slope = float(form[:2] @ foot + form[2]), float(form[:2] @ along)
-        if abs(slope) <= PARAMETER_ERROR:
-            if height < -PARAMETER_ERROR:
-                return None
-        elif slope > 0.0:
-            low = max(low, -height / slope)
-        else:
-            high = min(high, -height / slope)
-    if high - low <= PARAMETER_ERROR:
-        return None
-    return np.clip(foot + np.array([[low], [high]]) * along, 0.0, 1.0)
+    line = np.array([s, t, rho])
+    polygon = clipped(TRIANGLE, line)
+    if polygon is None:
+        polygon = clipped(TRIANGLE, -line)
+    assert polygon is not None
+    ends = polygon[_heights(polygon, line) == 0.0]
+    return ends if len(ends) == 2 else None
 
 
 def _oriented(

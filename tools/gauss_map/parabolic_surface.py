@@ -1,47 +1,32 @@
-"""The parabolic points of a smooth surface: K = 0 by subdivision (paper, Remark 3.1).
+"""The parabolic points of a smooth surface: K = 0 (paper, Remark 3.1).
 
 Contour lines on a grid find the curves across which K changes its sign; each vertex is then moved
-to a zero of K. Rectangles in which K keeps its sign are subdivided as long as K may vanish there,
-by its bounds: those left at the tolerance hold points or curves where K touches zero.
+to a zero of K. Newton's method finds the points where K touches zero.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import find_objects, label, maximum_filter
 
 from ...runtime.surface.surface import Surface
+from .critical_points import critical_zeros
 from .curvature_field import CurvatureField
-from .rectangles import clusters, merged, touching
+from .rectangles import merged
 from .sign_grid import SignGrid
-from .touching_zeros import TouchingZeros, parted, touching_zeros
 from .zero_curves import zero_curves
 
-__all__ = ["Search", "field_of", "search"]
+__all__ = ["field_of", "search"]
 
 Array = NDArray[np.float64]
 PANELS = (8, 8)
 MOST_PANELS = 64
-# Cells of the grid along a side of a panel; doubled where a curve is too small for them.
-CELLS = 16
-MOST_LINES = 512
-
-
-@dataclass(frozen=True, eq=False)
-class Search:
-    """The zeros of K, all in parameters.
-
-    `polylines` are (k, 2) with whether they are closed; `boxes` (k, 2, 2) are rectangles (low and
-    high corner) that hold zeros of K without a change of sign, and `flat` (k, 2, 2) those where K
-    is zero up to its error. `unresolved` is the share of the domain where K is not known.
-    """
-
-    polylines: list[tuple[Array, bool]]
-    boxes: Array
-    flat: Array
-    unresolved: float
+# The least number of cells of the grid along the domain, and along a panel. It is doubled up to the
+# largest where curves are closer to each other than a cell, or smaller.
+CELLS, CELLS_A_PANEL, MOST_CELLS = 128, 8, 512
+# A group of cells in which K is zero up to its error counts as a point up to this side, in cells.
+FEW_CELLS = 4
 
 
 def field_of(surface: Surface, cells: tuple[int, int] | None) -> CurvatureField:
@@ -61,31 +46,52 @@ def _known(field: CurvatureField) -> tuple[float, float]:
     return field.share(field.unresolved), field.share(field.rough)
 
 
-def search(field: CurvatureField, size: Array) -> Search:
-    """Find the zeros of K; rectangles are subdivided to the `size` (2,), in parameters."""
-    grid, found = _fine_enough(field, size)
-    polylines, near_crossing = zero_curves(grid, size)
-    small, large = parted(grid, merged(np.concatenate([grid.rectangles(grid.flat), found.zero])))
-    flat = merged(np.concatenate([grid.rectangles(grid.panels(field.flat)), large]))
-    boxes = np.concatenate([found.boxes, small])
-    boxes = boxes[~near_crossing[grid.cells_at(boxes.mean(axis=1))]]
-    groups = clusters(boxes, size)
-    at_flat = np.array([touching(group, flat, size).any() for group in groups], dtype=bool)
-    rim = [boxes[touching(group, boxes, 0.0 * size)] for group in groups[at_flat]]
-    return Search(
-        polylines,
-        groups[~at_flat],
-        np.concatenate([flat, *rim]),
-        field.share(field.unresolved),
-    )
+def search(
+    field: CurvatureField, size: Array
+) -> tuple[list[tuple[Array, bool]], Array, Array, Array]:
+    """Return the zeros of K, all in parameters.
 
-
-def _fine_enough(field: CurvatureField, size: Array) -> tuple[SignGrid, TouchingZeros]:
-    """Double the cells until the signs at their corners show every curve that is not tiny."""
-    cells = CELLS
+    These are polylines (k, 2) with whether they are closed; places (k, 2) where K is zero without a
+    change of sign; rectangles around these (k, 2, 2), low and high corner; and rectangles where K
+    is zero up to its error. Curves closer than `size` (2,), in parameters, cross or are a point.
+    """
+    panels = max(field.noise.shape)
+    cells = max(CELLS // panels, CELLS_A_PANEL)
     while True:
         grid = SignGrid(field, cells)
-        found = touching_zeros(grid, size, 2 * cells * max(field.noise.shape) > MOST_LINES)
-        if found is not None:
-            return grid, found
+        saddles, touched, unclear = critical_zeros(grid, size)
+        if not unclear or 2 * cells * panels > MOST_CELLS:
+            break
         cells *= 2
+    curves, touched = zero_curves(grid, saddles, touched)
+    return curves, *_regions(grid, touched, size)
+
+
+def _regions(grid: SignGrid, touched: Array, size: Array) -> tuple[Array, Array, Array]:
+    """Return points (k, 2) where K touches zero, boxes around them, and rectangles of flat regions.
+
+    A few flat cells, away from others and from curves, are such a point.
+    """
+    points = np.zeros_like(grid.flat)
+    points[grid.cells_at(touched)] = True
+    groups = np.zeros(grid.flat.shape, dtype=np.int64)
+    label(maximum_filter(grid.flat | points, 2 * FEW_CELLS + 1), output=groups)
+    groups = np.where(grid.flat | points, groups, 0)
+    group_of = groups[grid.cells_at(touched)]
+    low, high = np.array([line[[0, -1]] for line in grid.lines]).T
+    places, boxes, flat = [], [], np.zeros_like(grid.flat)
+    for k, where in enumerate(find_objects(groups), start=1):
+        cells = np.argwhere((groups[where] == k) & grid.flat[where]) + [x.start for x in where]
+        at = tuple(cells.T)
+        if len(cells) and (np.ptp(cells, axis=0).max() >= FEW_CELLS or grid.near_curves[at].any()):
+            flat[at] = True
+            continue
+        here = touched[group_of == k]
+        corners = grid.at(np.concatenate([cells, cells + 1]))
+        hull = np.concatenate([here - 0.5 * size, here + 0.5 * size, corners])
+        boxes.append([hull.min(axis=0), hull.max(axis=0)])
+        middle = hull.mean(axis=0, keepdims=True)
+        found = here if len(here) else middle
+        places.append(found[np.abs(found - middle).max(axis=1).argmin()])
+    boxes = np.clip(np.reshape(boxes, (-1, 2, 2)), low, high)
+    return np.reshape(places, (-1, 2)), boxes, merged(grid.rectangles(flat))

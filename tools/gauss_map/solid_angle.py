@@ -12,7 +12,14 @@ from ...generated.gaussian_image import boundary_arc
 from ...runtime.base.formula_calls import python_function, vector
 from ..kernels.solid_angle import integrate_arcs
 
-__all__ = ["boundary_of", "by_boundary", "is_wide", "solid_angles", "triangle_of"]
+__all__ = [
+    "boundary_of",
+    "by_boundary",
+    "first_directions",
+    "is_wide",
+    "solid_angles",
+    "triangle_of",
+]
 
 Array = NDArray[np.float64]
 # Normals of one triangle must be this near to their mean (as a cosine); wider ones are subdivided.
@@ -101,7 +108,7 @@ def boundary_of(normals: Array) -> list[Array]:
         edges.append(np.where(np.any(arc, axis=(1, 2), keepdims=True), arc, limit))
     corners = []
     for before, after in ((edges[2], edges[0]), (edges[0], edges[1]), (edges[1], edges[2])):
-        start, end = _first(before[:, ::-1]), _first(after)
+        start, end = first_directions(before[:, ::-1]), first_directions(after)
         corners.append(np.stack([start, 0.5 * (start + end), end], axis=1))
     return edges + corners
 
@@ -224,7 +231,7 @@ def _has_short_end(arcs: Array) -> NDArray[np.bool_]:
     return ends.min(axis=1) < SHORT * lengths.max(axis=1)
 
 
-def _first(arcs: Array) -> Array:
+def first_directions(arcs: Array) -> Array:
     """Return the first control normal (k, 3) of each arc that is not zero, of unit length."""
     nonzero = arcs.any(axis=2)
     first = np.take_along_axis(arcs, nonzero.argmax(axis=1)[:, None, None], axis=1)[:, 0]

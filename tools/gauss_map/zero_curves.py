@@ -7,13 +7,11 @@ are led straight to the saddle.
 
 from __future__ import annotations
 
-from collections.abc import Hashable
-
 import numpy as np
 from numpy.typing import NDArray
 
-from .chains import Segment, joined
-from .saddles import SAME, crossings
+from .chains import continued
+from .sign_changes import sign_changes
 from .sign_grid import SignGrid
 
 __all__ = ["zero_curves"]
@@ -21,148 +19,87 @@ __all__ = ["zero_curves"]
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Mask = NDArray[np.bool_]
+# A polyline (k, 2), and whether it is closed: it then ends where it begins, or a period away.
+Curve = tuple[Array, bool]
 # Accuracy of a vertex relative to the side of a cell on which it lies.
 ACCURACY = 1e-11
+# What is closer to a corner, relative to the side, is there.
+AT_CORNER = 1e-6
 # Largest distance, in cells, from a saddle to the border of its block. Curves that cross at a small
 # angle need a large block.
 LARGEST_BLOCK = 16
-# Size of the values handed to the contouring where a cell has to be decided by its centre.
-DECISIVE = 3.0
 
 
-def zero_curves(grid: SignGrid, size: Array) -> tuple[list[tuple[Array, bool]], Mask]:
-    """Return the curves K = 0 as polylines (k, 2), whether each is closed, and the cells cut out.
+def zero_curves(grid: SignGrid, saddles: Array, touched: Array) -> tuple[list[Curve], Array]:
+    """Return the curves K = 0, cut at saddles. They may run beyond the ends of a period.
 
-    Curves whose distance at a saddle of K is less than `size` (2,) cross there, and end.
+    Also returns the places that K touches without those near saddles, which are on such curves.
     """
-    contours = _Contours(grid)
-    for saddle in crossings(grid, size):
-        contours.cut(saddle)
-    pieces = contours.pieces() + contours.spokes + _along_borders(contours)
-    return joined(pieces), contours.taken
+    lines = sign_changes(_decided(grid), grid.kinds, lambda *ends: _zeros_between(grid, *ends))
+    curves = [(continued(parts), closed) for parts, closed in lines]
+    for number, saddle in enumerate(saddles):
+        others = np.delete(saddles, number, axis=0)
+        curves, touched = _cut(grid, curves, touched, saddle, others)
+    return curves, touched
 
 
-class _Contours:
-    """The contour lines of the signs of K on a grid, as segments that pass through one cell each.
+def _cut(
+    grid: SignGrid, curves: list[Curve], touched: Array, saddle: Array, others: Array
+) -> tuple[list[Curve], Array]:
+    """Cut curves at the smallest block around a saddle that at least four curves enter, if any.
 
-    A vertex lies on a side of a cell; its `codes` are the coordinates of the middle of that side in
-    half cells, modulo the periods: a name of the vertex.
+    A block that is clipped by the border of the domain needs two only: the ends of the others may
+    be shorter than a cell, or outside.
     """
+    low, high = np.array([line[[0, -1]] for line in grid.lines]).T
+    wraps, cell = np.array(grid.field.wraps), grid.sizes(grid.cells_at(saddle[None]))
 
-    def __init__(self, grid: SignGrid) -> None:
-        self.grid = grid
-        self.taken = np.zeros_like(grid.mask)
-        self.spokes: list[Segment] = []
-        lines = _contour_lines(grid)
-        x = np.concatenate([np.empty((0, 2)), *lines])
-        owner = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
-        ends = np.stack([np.floor(x), np.ceil(x)]).astype(np.int64)
-        self.codes = self.modulo(ends.sum(axis=0))
-        middle = np.floor(0.5 * (x[1:] + x[:-1])).astype(np.int64)
-        # The step from one line to the next is no segment, and may lie beyond the last cell.
-        self.cells = np.minimum(middle, np.array(grid.mask.shape) - 1)
-        self.kept = (owner[1:] == owner[:-1]) & grid.mask[tuple(self.cells.T)]
-        used = np.zeros(len(x), dtype=bool)
-        used[:-1] |= self.kept
-        used[1:] |= self.kept
-        self.places = np.full(x.shape, np.nan)
-        self.places[used] = _zeros_between(grid, *ends[:, used])
+    def away(places: Array) -> Array:
+        offset = places - saddle
+        return offset - np.where(wraps, (high - low) * np.round(offset / (high - low)), 0.0)
 
-    def cut(self, saddle: Array) -> None:
-        """Cut out the smallest block around a saddle that at least four curves enter, if any.
-
-        A block that is clipped by the border of the domain needs two only: the ends of the others
-        may be shorter than a cell, or outside.
-        """
-        count, wraps = np.array(self.taken.shape), self.grid.field.wraps
-        centre = np.array([int(k[0]) for k in self.grid.cells_at(saddle[None])])
-        apart = np.abs(self.cells - centre)
-        apart = np.where(wraps, np.minimum(apart, count - apart), apart).max(axis=1)
-        for reach in range(1, LARGEST_BLOCK + 1):
-            block, whole = self._block(centre, reach)
-            if not self.grid.mask[block].all() or self.taken[block].any():
-                return
-            inside = self.kept & (apart <= reach)
-            entries, places = self._entries(inside, saddle)
-            if len(entries) >= (4 if whole else 2):
-                self.taken[block] = True
-                self.kept &= ~inside
-                node = ("crossing", *saddle.tolist())
-                self.spokes += [
-                    (_name(code), node, np.stack([place, saddle]))
-                    for code, place in zip(entries, places, strict=True)
-                ]
-                return
-
-    def pieces(self) -> list[Segment]:
-        """Return the runs of segments that were kept."""
-        kept = np.flatnonzero(self.kept)
-        runs = np.split(kept, np.flatnonzero(np.diff(kept) > 1) + 1) if len(kept) else []
-        return [
-            (_name(self.codes[a]), _name(self.codes[b]), self.places[a : b + 1])
-            for a, b in ((run[0], run[-1] + 1) for run in runs)
-        ]
-
-    def modulo(self, codes: Integers) -> Integers:
-        """Return coordinates (…, 2) in half cells, modulo the period in periodic directions."""
-        period = 2 * np.array(self.taken.shape)
-        return np.where(self.grid.field.wraps, np.mod(codes, period), codes)
-
-    def _block(self, centre: Integers, reach: int) -> tuple[tuple[Integers, ...], bool]:
-        """Return the cells of a block as an index, and whether it lies inside the domain."""
-        axes, whole = [], True
-        for k, count, wraps in zip(centre, self.taken.shape, self.grid.field.wraps, strict=True):
-            cells = np.arange(k - reach, k + reach + 1)
-            inside = (cells >= 0) & (cells < count)
-            axes.append(np.mod(cells, count) if wraps else cells[inside])
-            whole = whole and (wraps or bool(inside.all()))
-        return np.ix_(*axes), whole
-
-    def _entries(self, inside: Mask, saddle: Array) -> tuple[Integers, Array]:
-        """Return codes and places of vertices where curves enter the block of these segments.
-
-        These are the ends of one segment only. They are moved by periods to be next to the saddle.
-        """
-        numbers = np.flatnonzero(inside)
-        numbers = np.concatenate([numbers, numbers + 1])
-        codes, first, counts = np.unique(
-            self.codes[numbers], axis=0, return_index=True, return_counts=True
-        )
-        places = self.places[numbers[first]]
-        period = np.array([line[-1] - line[0] for line in self.grid.lines])
-        away = places - saddle
-        away -= np.where(self.grid.field.wraps, period * np.round(away / period), 0.0)
-        cell = np.array([np.diff(line).min() for line in self.grid.lines])
-        entry = (counts == 1) & (np.abs(away) > SAME * cell).any(axis=1)
-        return codes[entry], (saddle + away)[entry]
+    for reach in cell * (np.arange(LARGEST_BLOCK)[:, None] + 1.5):
+        if (np.abs(away(others)) <= reach).all(axis=1).any():
+            break
+        whole = (wraps | ((saddle - reach >= low) & (saddle + reach <= high))).all()
+        result, entries = [], 0
+        for line, closed in curves:
+            from_saddle = away(line)
+            near: Mask = (np.abs(from_saddle) <= reach).all(axis=1)
+            if not near.any():
+                result.append((line, closed))
+                continue
+            if closed:  # begin inside
+                first = int(near.argmax())
+                line = np.concatenate([line[first:], line[1 : first + 1] + line[-1] - line[0]])
+                from_saddle = np.concatenate([from_saddle[first:], from_saddle[1 : first + 1]])
+                near = np.concatenate([near[first:], near[1 : first + 1]])
+            line[near] -= from_saddle[near]
+            for run in np.split(np.arange(len(line)), np.flatnonzero(np.diff(near)) + 1):
+                if not near[run[0]]:
+                    before, after = int(run[0] > 0), int(run[-1] < len(line) - 1)
+                    entries += before + after
+                    result.append((line[run[0] - before : run[-1] + 1 + after], False))
+        if entries >= (4 if whole else 2):
+            return result, touched[(np.abs(away(touched)) > reach).any(axis=1)]
+    return curves, touched
 
 
-def _name(code: Integers) -> Hashable:
-    return tuple(code.tolist())
+def _decided(grid: SignGrid) -> Array:
+    """Return values with the signs of K whose mean has the sign of K at the centre of a cell.
 
-
-def _contour_lines(grid: SignGrid) -> list[Array]:
-    """Return the lines (k, 2) between corners of different sign, in cells.
-
-    Two curves pass through a cell whose four sides are crossed. The sign of K at its centre decides
-    how they are joined; contourpy takes the mean of the corners instead, so that two of these are
-    made larger.
+    That decides how two curves are joined that pass through one cell; values are made larger there.
     """
-    from contourpy import LineType, contour_generator  # not needed for splines
-
-    values = np.where(grid.signs, 1.0, -1.0)
-    i, j = np.nonzero(grid.crossed & (grid.signs[:-1, :-1] == grid.signs[1:, 1:])
-                      & (grid.signs[1:, :-1] == grid.signs[:-1, 1:]))  # fmt: skip
-    if len(i):
-        centres = grid.rectangles_at(i, j).mean(axis=1)
-        positive = grid.field.evaluate(centres) > 0.0
-        for di, dj in ((0, 0), (1, 0), (0, 1), (1, 1)):
-            larger = grid.signs[i + di, j + dj] == positive
-            corner = i[larger] + di, j[larger] + dj
-            values[corner] = DECISIVE * np.sign(values[corner])
-    # contourpy counts the second axis first.
-    lines = contour_generator(z=values.T, line_type=LineType.Separate).lines(0.0)
-    return [np.asarray(line) for line in lines]
+    values, largest = grid.values.copy(), np.nanmax(np.abs(grid.values), initial=0.0)
+    positive = values >= 0.0
+    opposite = (positive[:-1, :-1] == positive[1:, 1:]) & (positive[1:, :-1] == positive[:-1, 1:])
+    cells = np.argwhere(grid.crossed & opposite)
+    at_centre = grid.field.evaluate(0.5 * (grid.at(cells) + grid.at(cells + 1))) > 0.0
+    for step in np.argwhere(np.ones((2, 2))):
+        corner = cells + step
+        larger = tuple(corner[positive[tuple(corner.T)] == at_centre].T)
+        values[larger] = np.copysign(largest, values[larger])
+    return values
 
 
 def _zeros_between(grid: SignGrid, low: Integers, high: Integers) -> Array:
@@ -173,11 +110,8 @@ def _zeros_between(grid: SignGrid, low: Integers, high: Integers) -> Array:
     """
     from scipy.optimize.elementwise import find_root
 
-    start, end = (
-        np.stack([line[k] for line, k in zip(grid.lines, x.T, strict=True)], axis=1)
-        for x in (low, high)
-    )
-    sign = np.where(grid.signs[tuple(low.T)], 1.0, -1.0)
+    start, end = grid.at(low), grid.at(high)
+    sign = np.where(grid.values[tuple(low.T)] >= 0.0, 1.0, -1.0)
 
     def K(share: Array, which: Integers) -> Array:
         value = grid.field.evaluate(start[which] + share[:, None] * (end - start)[which])
@@ -186,17 +120,6 @@ def _zeros_between(grid: SignGrid, low: Integers, high: Integers) -> Array:
 
     none, one = np.zeros(len(low)), np.ones(len(low))
     tolerances = {"xatol": ACCURACY, "xrtol": 0.0, "fatol": 0.0, "frtol": 0.0}
-    found = find_root(K, (none, one), args=(np.arange(len(low)),), tolerances=tolerances)
-    return start + found.x[:, None] * (end - start)
-
-
-def _along_borders(contours: _Contours) -> list[Segment]:
-    """Return the sides of cells on the border of the domain along which K vanishes."""
-    (u, v), borders = contours.grid.lines, contours.grid.borders
-    corners = np.array(borders, dtype=np.int64).reshape(-1, 2, 2)
-    codes = contours.modulo(2 * corners)
-    places = np.stack([u[corners[..., 0]], v[corners[..., 1]]], axis=-1)
-    return [
-        (("border", _name(start)), ("border", _name(end)), ends)
-        for (start, end), ends in zip(codes, places, strict=True)
-    ]
+    share = find_root(K, (none, one), args=(np.arange(len(low)),), tolerances=tolerances).x[:, None]
+    inner = np.where(share < AT_CORNER, start, start + share * (end - start))
+    return np.where(share > 1.0 - AT_CORNER, end, inner)

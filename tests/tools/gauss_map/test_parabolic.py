@@ -343,9 +343,10 @@ def test_curvature_field_of_the_torus_is_exact_up_to_its_noise() -> None:
     for panels in (8, 16):
         field = CurvatureField.of_surface(surface, (panels, panels))
         cosine = np.cos(places[:, 1])
-        exact = cosine / (0.35 * (1.0 + 0.35 * cosine)) * 4.0  # of the torus of half the size
-        error = np.abs(field.evaluate(places) - exact)
-        assert error.max() <= field.noise.max() < 4.0 * 2e-8  # K reaches 4.4 and −4.4, times 4
+        exact = cosine * (1.0 + 0.35 * cosine) ** 3  # K |p_u × p_v|⁴, up to a factor
+        found = field.evaluate(places)
+        factor = float(found @ exact / (exact @ exact))
+        assert np.abs(found - factor * exact).max() <= field.noise.max() < 1e-7 * factor
 
 
 @pytest.mark.compiled
@@ -562,6 +563,7 @@ def test_small_closed_curve() -> None:
     assert len(found.curves) == 2
     for curve in found.curves:
         assert curve.closed
+        assert np.ptp(np.linalg.norm(curve.uv - [0.3, 0.2], axis=1)) < 1e-7  # circles, as K has
         assert np.abs(curve.uv - [0.3, 0.2]).max() < 0.2
         np.testing.assert_array_equal(curve.uv[0], curve.uv[-1])
 
@@ -626,6 +628,40 @@ def test_closed_curve_smaller_than_all_cells_is_isolated() -> None:
     assert (ring.box[0] <= e / 3).all()
     assert (ring.box[1] >= -e / 3).all()
     assert np.abs(ring.box).max() < 1 / 64
+
+
+def strip(width: float) -> gm.Surface:
+    """Return z = u² + h, K ∝ 2 h_vv − h_uv², h_vv = t² − w²(1 + u/2)/4 with t = v − 0.1003."""
+
+    def f(u: Array, v: Array) -> Array:
+        t = v - 0.1003
+        return u * u + t**4 / 12 - width**2 / 4 * (1 + u / 2) * t**2 / 2
+
+    return graph(f)
+
+
+@pytest.mark.compiled
+@pytest.mark.slow
+@pytest.mark.parametrize("width", [0.02, 0.006])
+def test_curves_close_to_each_other_are_two(width: float) -> None:
+    """K is negative in a strip from border to border, narrower than cells; its slope is not 0."""
+    found = gm.gauss_map.parabolic_points(strip(width))
+    assert found.isolated == ()
+    assert [curve.closed for curve in found.curves] == [False, False]
+    for curve in found.curves:
+        u, v = curve.uv.T
+        assert sorted(np.round(u[[0, -1]], 9)) == [-1.0, 1.0]
+        exact = 0.5 * width * np.sqrt(1.0 + 0.5 * u)
+        np.testing.assert_allclose(np.abs(v - 0.1003), exact, atol=2e-6)
+
+
+@pytest.mark.compiled
+@pytest.mark.slow
+def test_curves_closer_to_each_other_than_all_cells_are_not_lost() -> None:
+    found = gm.gauss_map.parabolic_points(strip(0.001))
+    places = np.concatenate([*(c.uv for c in found.curves), *(x.box for x in found.isolated)])
+    assert np.abs(places[:, 1] - 0.1003).max() < 0.003
+    assert np.ptp(places[:, 0]) > 1.9
 
 
 @pytest.mark.compiled

@@ -222,6 +222,28 @@ def test_polylines_of_other_surfaces(name: str, closed: list[bool]) -> None:
 
 
 @compiled
+@pytest.mark.parametrize("first", [-np.pi, 0.0, -2.0])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_polylines_follow_open_borders(first: float, sign: float) -> None:
+    """Normals of a helicoid are perpendicular to x on the rulings v = kπ, two of them borders."""
+
+    def f(u: Any, v: Any) -> Any:
+        return np.stack([u * np.cos(v), sign * u * np.sin(v), 0.5 * v + 0.0 * u], axis=-1)
+
+    last = np.pi
+    surface = gm.Surface.from_callable(f, ((-1.0, 1.0), (first, last)))
+    samples = gm.silhouette(surface, [1, 0, 0], count=300)
+    rulings = [k * np.pi for k in (-1, 0, 1) if first <= k * np.pi <= last]
+    assert len(samples.polylines) == len(rulings)
+    for line, v in zip(sorted(open_lines(samples), key=lambda x: samples.uv[x[0], 1]), rulings,
+                       strict=True):  # fmt: skip
+        assert len(line) == len(samples) // len(rulings)
+        np.testing.assert_allclose(samples.uv[line, 1], v, atol=1e-4)
+        steps = np.diff(samples.uv[line, 0])
+        assert (steps > 0.0).all() or (steps < 0.0).all()
+
+
+@compiled
 def test_polylines_are_cut_at_a_trim() -> None:
     low, high = 0.1, 2.5
     square = [[low, 0.2], [high, 0.2], [high, 6.0], [low, 6.0]]

@@ -1,0 +1,77 @@
+"""Lines between the nodes of a grid where values are positive and those where they are not."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .chains import chained
+
+__all__ = ["sign_changes", "with_borders"]
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+# Values grow from a border if they exceed their error by this factor next to it.
+CLEAR = 100.0
+TINY = float(np.finfo(float).tiny)
+
+
+def sign_changes(
+    values: Array, kinds: tuple[str, str], places: Callable[[Integers, Integers], Array]
+) -> list[tuple[list[Array], bool]]:
+    """Return the lines between nodes with a value ≥ 0 and the others, and whether each is closed.
+
+    There are none in cells with NaN. Of the four crossed sides of a cell those are joined that the
+    mean of its corners separates. `places` returns those (k, 2) of a line on sides between nodes
+    (k, 2) and (k, 2). A line has several parts (k, 2) if it passes seams: `kinds` are "periodic" or
+    "mirrored" for the ends along u and along v that are the same.
+    """
+    from contourpy import LineType, contour_generator
+
+    size = np.abs(values) / (np.nanmax(np.abs(values), initial=0.0) or 1.0)
+    # So vertices are in the middle third of their sides.
+    apart = np.where(values >= 0.0, 1.0 + size, -1.0 - size)
+    # contourpy counts the second axis first.
+    lines = contour_generator(z=apart.T, line_type=LineType.Separate).lines(0.0)
+    if not lines:
+        return []
+    # The middles of the crossed sides, in halves of a cell.
+    codes = [np.rint(2.0 * np.asarray(x)).astype(np.int64) for x in lines]
+    last = 2 * np.array(values.shape) - 2
+
+    def name(code: Integers) -> Hashable:
+        """Return a name of a side, the same on both sides of a seam."""
+        for axis, kind in enumerate(kinds):
+            if kind in ("periodic", "mirrored") and code[axis] == last[axis]:
+                code = np.where(np.arange(2) == axis, 0, code)
+                if kind == "mirrored":
+                    code[1 - axis] = last[1 - axis] - code[1 - axis]
+        return tuple(code.tolist())
+
+    every = np.concatenate(codes)
+    ends = np.cumsum([len(x) for x in codes])[:-1]
+    parts = np.split(places(every // 2, (every + 1) // 2), ends)
+    return [
+        ([parts[number][:: -1 if turned else 1] for number, turned in chain], closed)
+        for chain, closed in chained([(name(x[0]), name(x[-1])) for x in codes])
+    ]
+
+
+def with_borders(values: Array, noise: Array, kinds: tuple[str, str]) -> Array:
+    """Return values with another sign than inside along open borders on which they are zero.
+
+    So the border is a line between positive values and others. Values are zero up to `noise`, and
+    have to grow linearly from the border: otherwise they only touch zero.
+    """
+    result = values.copy()
+    for axis, kind in enumerate(kinds):
+        value, size, error = (np.swapaxes(x, 0, axis) for x in (result, np.abs(values), noise))
+        for end, inner, next_ in ((0, 1, 2), (-1, -2, -3)):
+            grows = (size[inner] >= CLEAR * error[inner]) & (size[inner] >= 0.375 * size[next_])
+            zero = (size[end] <= error[end]) & grows & (kind == "open")
+            pairs = zero[1:] & zero[:-1]
+            along = np.append(pairs, False) | np.append(False, pairs)
+            value[end] = np.where(along, np.copysign(TINY, -value[inner]), value[end])
+    return result
