@@ -71,7 +71,8 @@ def _edges(spline: Spline, lines: list[tuple[int, Array]]) -> Array:
     for axis, (count, kind) in enumerate(zip(spline.cells, spline.boundary, strict=True)):
         if kind[0] == "periodic":
             names[:, axis] %= 4 * count
-    _, first, number = np.unique(names, axis=0, return_index=True, return_inverse=True)
+    keys = names @ np.array([4 * spline.cells[1] + 1, 1])
+    _, first, number = np.unique(keys, return_index=True, return_inverse=True)
     cuts: dict[int, set[float]] = defaultdict(lambda: {0.0, 1.0})
     for patch, segment in lines:
         for place in segment:
@@ -111,5 +112,7 @@ def _signs(
     patch = 4 * (cell[:, 0] * spline.cells[1] + cell[:, 1]) + turn
     uv = np.einsum("kx,kxy->ky", local, np.linalg.inv(grid.CORNERS)[turn])
     D = np.einsum("kd,kd->k", cubic_bernstein(uv), patches.cubic[patch])
-    curved = np.isin(classes, (PatchClass.ELLIPTIC, PatchClass.HYPERBOLIC, PatchClass.MIXED))
-    return np.where(inside & curved[patch], np.sign(D), 0.0).astype(np.int64)
+    of_patch = classes[patch]
+    signs = np.where(of_patch == PatchClass.MIXED, np.sign(D), 0.0)
+    signs[of_patch == PatchClass.ELLIPTIC], signs[of_patch == PatchClass.HYPERBOLIC] = 1.0, -1.0
+    return np.where(inside, signs, 0.0).astype(np.int64)

@@ -239,7 +239,7 @@ def test_parabolic_circles_of_a_torus_spline(cells: tuple[int, int]) -> None:
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("name", ["dupin_cyclide", "moebius_band", "wavy_graph"])
+@pytest.mark.parametrize("name", ["cone", "dupin_cyclide", "moebius_band", "wavy_graph"])
 @pytest.mark.quick_for("wavy_graph")
 def test_curvature_changes_sign_across_the_polylines_of_a_spline(name: str) -> None:
     """On both sides of the middle of every segment K has two signs, by the spline's own samples."""
