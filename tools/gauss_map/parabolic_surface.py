@@ -12,7 +12,7 @@ from scipy.ndimage import find_objects, label, maximum_filter
 
 from ...runtime.surface.surface import Surface
 from .critical_points import critical_zeros
-from .curvature_field import CurvatureField
+from .curvature_field import SURE, CurvatureField
 from .rectangles import merged
 from .sign_grid import SignGrid
 from .zero_curves import zero_curves
@@ -27,6 +27,7 @@ MOST_PANELS = 64
 CELLS, CELLS_A_PANEL, MOST_CELLS = 128, 8, 512
 # A group of cells in which K is zero up to its error counts as a point up to this side, in cells.
 FEW_CELLS = 4
+TINY = float(np.finfo(float).tiny)
 
 
 def field_of(surface: Surface, cells: tuple[int, int] | None) -> CurvatureField:
@@ -78,6 +79,10 @@ def _regions(grid: SignGrid, touched: Array, size: Array) -> tuple[Array, Array,
     label(maximum_filter(grid.flat | points, 2 * FEW_CELLS + 1), output=groups)
     groups = np.where(grid.flat | points, groups, 0)
     group_of = groups[grid.cells_at(touched)]
+    # So far from a point K may be zero up to its error.
+    curving = np.abs(np.diagonal(grid.field.hessian(touched), axis1=1, axis2=2)) + TINY
+    doubt = np.sqrt(2.0 * SURE * grid.field.noise_at(touched)[:, None] / curving)
+    reach = np.clip(doubt, 0.5 * size, grid.sizes(grid.cells_at(touched)))
     low, high = np.array([line[[0, -1]] for line in grid.lines]).T
     places, boxes, flat = [], [], np.zeros_like(grid.flat)
     for k, where in enumerate(find_objects(groups), start=1):
@@ -86,9 +91,9 @@ def _regions(grid: SignGrid, touched: Array, size: Array) -> tuple[Array, Array,
         if len(cells) and (np.ptp(cells, axis=0).max() >= FEW_CELLS or grid.near_curves[at].any()):
             flat[at] = True
             continue
-        here = touched[group_of == k]
+        here, around = touched[group_of == k], reach[group_of == k]
         corners = grid.at(np.concatenate([cells, cells + 1]))
-        hull = np.concatenate([here - 0.5 * size, here + 0.5 * size, corners])
+        hull = np.concatenate([here - around, here + around, corners])
         boxes.append([hull.min(axis=0), hull.max(axis=0)])
         middle = hull.mean(axis=0, keepdims=True)
         found = here if len(here) else middle
