@@ -4,7 +4,8 @@ from typing import Any
 
 import pytest
 import sympy as sp
-from gaussmap.symbolic import formulas, support
+from gaussmap.symbolic import formulas
+from gaussmap.symbolic.envelope import ENTRIES
 from gaussmap.symbolic.expression import (
     LONGEST_PROOF,
     NORMAL,
@@ -49,7 +50,7 @@ def test_branch_is_what_differentiation_of_the_extension_gives(h):
     for place in places():
         for axis, s in zip("xyz", NORMAL, strict=True):
             assert at(place, derived[f"x_{axis}"] - sp.diff(extension, s)) == 0
-        for key, (i, j) in support.ENTRIES.items():
+        for key, (i, j) in ENTRIES.items():
             second = sp.diff(extension, NORMAL[i], NORMAL[j])
             assert at(place, derived[f"H_{key}"] - second) == 0
 
@@ -103,7 +104,7 @@ def test_curvature_from_hessian_against_eigenvalues():
     n, s, t = (sp.Matrix(v) / 3 for v in ((2, 1, 2), (1, 2, -2), (2, -2, -1)))
     hessian = 5 * s * s.T - 3 * t * t.T
     values: dict[Any, Any] = dict(zip(NORMAL, n, strict=True))
-    values |= {scalar(f"H_{key}"): hessian[place] for key, place in support.ENTRIES.items()}
+    values |= {scalar(f"H_{key}"): hessian[place] for key, place in ENTRIES.items()}
     formula = formulas["curvature_from_hessian"]
     result = {name: v.xreplace(values) for name, v in formula.expanded().items()}
     assert result == {

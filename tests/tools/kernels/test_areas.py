@@ -9,7 +9,7 @@ CORNERS = np.array([(0.0, 0.0, 0.0), (3.0, 0.0, 0.0), (0.0, 4.0, 0.0)])
 
 def areas_of(points: np.ndarray, normals: np.ndarray, sides: tuple[int, int, int]) -> np.ndarray:
     areas = np.full((1, 3), np.nan)
-    corner_areas(points, normals, np.array([[0, 1, 2]]), np.array([sides], dtype=float), areas)
+    corner_areas(points, normals, np.array([[0, 1, 2]]), np.array([sides]), areas)
     return areas[0]
 
 
