@@ -28,7 +28,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     steps = len(FORMS) * (len(PEERS) + 1) + 1
     with tqdm(total=steps, desc="measuring", disable=None, file=sys.stderr) as bar:
         surfaces = [_on_surface(form, bar) for form in FORMS]
-        bar.set_postfix_str("cold and warm")
+        bar.set_postfix_str("durations")
         taken = measure_durations(largest)
         series = scale.measure(largest)
         bar.update()

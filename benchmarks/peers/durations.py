@@ -1,4 +1,4 @@
-"""How long sampling takes, cold and warm: the first table of docs/performance.md."""
+"""How long sampling takes: the first table of docs/performance.md."""
 
 from __future__ import annotations
 
@@ -50,9 +50,8 @@ the fit of the spline included; more than {stream:,} points come in chunks (`gm.
 
 {table}
 
-A new process takes {warm} s for its first 10⁴ points, with imports and loading of machine code.
-The very first one on a computer compiles that code: {cold} s at normals, {cold_default} s for the
-default; `gaussmap warm` does it ahead ([details](cold_start.md)).
+A new process takes {warm} s for its first 10⁴ points, with imports and loading of machine code
+([details](cold_start.md)).
 
 A grid of parameters is faster, if there is a closed form: {ratio} times at {largest:,} points. Come
 here for what it does not have: the points that have given normals, each exactly once; density that
@@ -70,7 +69,6 @@ class Duration:
     default: dict[int, float]
     grid: dict[int, float]
     warm: tuple[float, float]
-    cold: tuple[float, float]
 
 
 def measure_durations(largest: int) -> Duration:
@@ -78,7 +76,6 @@ def measure_durations(largest: int) -> Duration:
     counts = [x for x in COUNTS if x <= max(largest, FIRST)]
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        cold = tuple(_seconds(kind, FIRST, folder, 1)[0] for kind in (AT_NORMALS, DEFAULT))
         new = {kind: _seconds(kind, FIRST, folder, 9) for kind in (AT_NORMALS, DEFAULT)}
         at_normals, default = ({FIRST: min(new[kind][1:])} for kind in (AT_NORMALS, DEFAULT))
         for count in counts[1:]:
@@ -87,8 +84,7 @@ def measure_durations(largest: int) -> Duration:
             if count <= STREAMED:
                 default[count] = min(_seconds(DEFAULT, count, folder, 2))
     grid = {count: _of_grid(count) for count in counts if count <= STREAMED}
-    first = new[AT_NORMALS][0], new[DEFAULT][0]
-    return Duration(at_normals, default, grid, first, (cold[0], cold[1]))
+    return Duration(at_normals, default, grid, (new[AT_NORMALS][0], new[DEFAULT][0]))
 
 
 def durations(measured: Duration) -> str:
@@ -104,8 +100,6 @@ def durations(measured: Duration) -> str:
         stream=STREAMED,
         table="TABLE",
         warm=f"{measured.warm[0]:.1f} (default {measured.warm[1]:.1f})",
-        cold=f"{measured.cold[0]:.0f}",
-        cold_default=f"{measured.cold[1]:.0f}",
         ratio=f"{measured.at_normals[largest] / measured.grid[largest]:.1f}",
         largest=largest,
     )

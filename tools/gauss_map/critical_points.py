@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter
 
 from .curvature_field import SURE, CurvatureField
 from .sign_grid import SignGrid
@@ -61,6 +60,8 @@ def critical_zeros(grid: SignGrid, size: Array) -> tuple[Array, Array, bool]:
     ring = (np.abs(K) > noise) & (K * grid.values[cells] < 0.0)
     touched = ~saddle & (near | ring) & away_from_curves[cells]
     unclear = (close | (ring & away_from_curves[cells])) & ~near
+    from scipy.ndimage import maximum_filter
+
     explained = np.zeros_like(grid.mask)
     explained[grid.cells_at(places[touched])] = True
     hidden = may_vanish & away_from_curves & ~maximum_filter(explained, 3).astype(bool)

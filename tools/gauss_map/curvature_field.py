@@ -7,13 +7,13 @@ interpolated too. Its last coefficients tell its error: that of rounding, or of 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
-from scipy.stats import binom
 
 from ...generated import gaussian_image as formulas
 from ...runtime.base.formula_calls import python_function, vector
@@ -37,6 +37,15 @@ ACCURATE = 1e-8
 LEAST_AREA = 1e-2
 # The sign of K is used where |K| exceeds its estimated error by this factor.
 SURE = 4.0
+
+
+def _bernstein(degree: int, t: Array) -> Array:
+    """Return the Bernstein polynomials (N, degree + 1) at t (N,)."""
+    k = np.arange(degree + 1)
+    number = np.array([math.comb(degree, x) for x in k])
+    return number * t[:, None] ** k * (1.0 - t[:, None]) ** (degree - k)
+
+
 NODES = chebyshev.chebpts1(ORDER)
 TO_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(NODES, ORDER - 1))
 # From coefficients to those of derivatives of the order 0, 1 and 2.
@@ -44,7 +53,7 @@ TO_DERIVATIVE = [
     np.pad(chebyshev.chebder(np.eye(ORDER), order), ((0, order), (0, 0))) for order in range(3)
 ]
 # From values at the nodes to those of the Bernstein polynomials, 0 … 1.
-TO_BERNSTEIN = np.linalg.inv(binom.pmf(np.arange(ORDER), ORDER - 1, 0.5 + 0.5 * NODES[:, None]))
+TO_BERNSTEIN = np.linalg.inv(_bernstein(ORDER - 1, 0.5 + 0.5 * NODES))
 # Bounds are computed to this, relative to the largest coefficient.
 ROUNDING = 1e-11
 # From values at the nodes to derivatives there.

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import find_objects, label, maximum_filter
 
 from ...runtime.surface.surface import Surface
 from .critical_points import critical_zeros
@@ -73,6 +72,8 @@ def _regions(grid: SignGrid, touched: Array, size: Array) -> tuple[Array, Array,
 
     A few flat cells, away from others and from curves, are such a point.
     """
+    from scipy.ndimage import find_objects, label, maximum_filter
+
     points = np.zeros_like(grid.flat)
     points[grid.cells_at(touched)] = True
     groups = np.zeros(grid.flat.shape, dtype=np.int64)

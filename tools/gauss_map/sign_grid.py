@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter, maximum_filter1d, minimum_filter
 
 from .curvature_field import ORDER, SURE, CurvatureField
 from .sign_changes import with_borders
@@ -30,6 +29,8 @@ class SignGrid:
     """
 
     def __init__(self, field: CurvatureField, cells: int) -> None:
+        from scipy.ndimage import maximum_filter, minimum_filter
+
         self.field, self.cells = field, cells
         self.lines = [_refined(line, cells) for line in field.lines]
         in_u, in_v = ("periodic" if wraps else "open" for wraps in field.wraps)
@@ -54,6 +55,8 @@ class SignGrid:
     @cached_property
     def near_curves(self) -> Mask:
         """Which cells are crossed, or next to such a cell."""
+        from scipy.ndimage import maximum_filter1d
+
         near = self.crossed
         for axis, wraps in enumerate(self.field.wraps):
             near = maximum_filter1d(near, 3, axis, mode="wrap" if wraps else "nearest")

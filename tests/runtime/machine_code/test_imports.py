@@ -7,7 +7,8 @@ import pytest
 
 # Numba loads the last two, and parts of SciPy, with its compiler.
 LARGE = (
-    "contourpy", "matplotlib", "pandas", "pyarrow", "scipy.linalg", "scipy.spatial", "sympy",
+    "contourpy", "matplotlib", "pandas", "pyarrow", "scipy.linalg", "scipy.spatial",
+    "scipy.ndimage", "scipy.stats", "sympy",
     "numba.np.arraymath", "numba.np.linalg",
 )  # fmt: skip
 EXPECTED = {"numba", "numpy"}
@@ -34,6 +35,7 @@ def test_the_import_loads_nothing() -> None:
         ("gm.sample('torus', normals=gm.fibonacci(50))", set()),
         ("gm.sample('torus', 500, density='uniform')", set()),
         ("gm.sample('torus', angle=20)", {"scipy.linalg", "scipy.spatial"}),  # for nearest samples
+        ("gm.sample('torus', 500).mesh()", {"scipy.linalg", "scipy.spatial"}),
     ],
 )
 def test_a_first_call_loads_numba_without_its_compiler(call: str, others: set[str]) -> None:
