@@ -312,7 +312,7 @@ def text():
     steep = scale.Series("patches", [(n, 0, 1e-9 * n**1.2) for n in (10, 99)])
     taken = Duration(
         {10**4: 0.0123, 10**6: 0.2, 10**8: 9.3}, {10**4: 0.05, 10**6: 3.2},
-        {10**4: 0.0004, 10**6: 0.025}, (1.2, 1.6), (20.0, 60.0),
+        {10**4: 0.0004, 10**6: 0.025}, (1.2, 1.6),
     )  # fmt: skip
     return page.page(surfaces, [linear, steep], taken)
 
