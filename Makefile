@@ -104,8 +104,12 @@ bench-guard: $(READY) ## fail if sampling is 30 % slower than recorded, beside t
 bench-record: $(READY) ## record the ratios that bench-guard compares with
 	$(BIN)/python -m gaussmap.benchmarks.guard --record
 
-cold-start: $(READY) ## measure what the first call compiles again (docs/cold_start.md)
-	$(BIN)/python -m gaussmap.benchmarks.cold_start > docs/cold_start.tmp
+cold-start: $(READY) ## measure what the first call of a wheel costs again (docs/cold_start.md)
+	rm -rf out/wheel
+	$(BIN)/python -m pip wheel --quiet --no-deps --wheel-dir out/wheel .
+	$(PYTHON) -m venv out/wheel/venv
+	out/wheel/venv/bin/python -m pip install --quiet "$$(ls out/wheel/*.whl)[batch]"
+	out/wheel/venv/bin/python benchmarks/cold_start.py > docs/cold_start.tmp
 	mv docs/cold_start.tmp docs/cold_start.md
 
 batch: $(READY) ## measure what data sets of many parts cost again (docs/batch.md)

@@ -96,8 +96,8 @@ PAGE = """\
 # The first call
 
 Written by `make cold-start`: do not edit. A wheel has all kernels as machine code. Seconds of the
-processor (one core), from the start of Python to the end of the call, and those of the call beyond
-its repetition in the same process; for commands, all there is.
+processor (one core) in an environment with a wheel: from the start of Python to the end of the
+call, and those of the call beyond its repetition in the same process; for commands, all there is.
 
 | call | seconds | beyond its repetition |
 | :-- | --: | --: |
