@@ -4,7 +4,7 @@
 
 compiles them for the level of this architecture, without running them, in as many processes as
 there are cores, into FOLDER/compiled (of the package, if no folder is named). A file of the same
-sources and versions stays as it is. GAUSSMAP_KERNELS=0 switches it off, as it does its use.
+sources and versions stays as it is. With GAUSSMAP_KERNELS=0 nothing is compiled, and no file used.
 """
 
 from __future__ import annotations

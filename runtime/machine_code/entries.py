@@ -2,19 +2,30 @@
 
 Of what Numba keeps in its own cache, an entry leaves out LLVM's bitcode and the annotated source:
 machine code that no other compiled function is linked with needs neither. It is loaded without
-Numba's compiler.
+Numba's compiler. Files of entries appear whole or not at all, and damage is found by a checksum.
 """
 
 from __future__ import annotations
 
 import hashlib
+import os
 import pickle
+import uuid
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from numba.core.compiler import CompileResult
 
-__all__ = ["entry_of", "kernel_of", "key_of", "signature_in"]
+__all__ = [
+    "entry_of",
+    "kernel_of",
+    "key_of",
+    "opened",
+    "replace_file",
+    "sealed",
+    "signature_in",
+]
 
 CHECKSUM = 32  # bytes of SHA-256
 
@@ -29,8 +40,9 @@ def entry_of(compiled: CompileResult) -> bytes:
     """Return the entry of a kernel that was compiled."""
     library, description, environment, signature, *_, environments = compiled._reduce()
     name, _, (code, _) = library
-    data = pickle.dumps((name, code, description, environment, signature, environments), protocol=5)
-    return hashlib.sha256(data).digest() + data
+    return sealed(
+        pickle.dumps((name, code, description, environment, signature, environments), protocol=5)
+    )
 
 
 def kernel_of(entry: bytes, context: Any) -> CompileResult | None:
@@ -67,8 +79,27 @@ def signature_in(entry: bytes) -> tuple[str, str, tuple[Any, ...]] | None:
     return description.modname, description.qualname, signature.args
 
 
+def sealed(data: bytes) -> bytes:
+    """Return data behind a checksum."""
+    return hashlib.sha256(data).digest() + data
+
+
+def opened(content: bytes) -> bytes | None:
+    """Return what was sealed; None if it is damaged."""
+    checksum, data = content[:CHECKSUM], content[CHECKSUM:]
+    return data if hashlib.sha256(data).digest() == checksum else None
+
+
+def replace_file(path: Path, content: bytes) -> None:
+    """Write a file, with the permissions of new files: it appears whole or not at all."""
+    part = path.with_name(f"{path.name}.{uuid.uuid4().hex}")
+    try:
+        part.write_bytes(content)
+        os.replace(part, path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
 def _content(entry: bytes) -> tuple[Any, ...] | None:
-    checksum, data = entry[:CHECKSUM], entry[CHECKSUM:]
-    if hashlib.sha256(data).digest() != checksum:
-        return None
-    return pickle.loads(data)
+    data = opened(entry)
+    return None if data is None else pickle.loads(data)

@@ -20,6 +20,7 @@ from typing import IO, Any
 
 from numba.core import config as numba_config
 
+from .entries import replace_file
 from .processors import changed_options, identity
 from .sources import PACKAGE, digest
 
@@ -63,13 +64,8 @@ def load(folder: Path, key: str, processor: object) -> bytes | None:
 
 def save(folder: Path, key: str, processor: object, entry: bytes) -> None:
     """Keep an entry, whole or not at all; ignore errors of the disk."""
-    with suppress(OSError), tempfile.NamedTemporaryFile(dir=folder, delete=False) as file:
-        try:
-            file.write(entry)
-            file.close()
-            os.replace(file.name, _path(folder, key, processor))
-        except OSError:
-            os.unlink(file.name)
+    with suppress(OSError):
+        replace_file(_path(folder, key, processor), entry)
 
 
 def lock_of(folder: Path, key: str, processor: object) -> FileLock:

@@ -1,4 +1,4 @@
-"""What machine code depends on beside the sources of kernels: versions, platform and processor."""
+"""Versions, platform and processor: what machine code depends on, apart from its sources."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ LEVELS = {
 
 
 def identity() -> dict[str, str]:
-    """Return what machine code depends on, but for the sources of kernels and the processor.
+    """Return the versions and the platform that machine code depends on.
 
     Releases of one series of Numba, and of llvmlite, understand one another's machine code.
     """

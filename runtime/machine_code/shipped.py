@@ -4,8 +4,8 @@ A wheel has the file of one level of processors, made by `building`. It is used 
 kernels, the series of Numba, Python and the platform are those of the build, and the processor has
 the level; else kernels are compiled here. The results are the same, bit for bit.
 
-The file is `MAGIC`, the size of a header, the header (JSON), and the entries that it lists. It is
-read from the folder of the package only: entries are pickles, which could run anything.
+The file is `MAGIC`, the size of a header, the header (sealed JSON), and the entries that it lists.
+It is read from the folder of the package only: entries are pickles, which could run anything.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from typing import Any
 
 from numba.core import config as numba_config
 
+from .entries import opened, replace_file, sealed
 from .processors import changed_options, identity, level_here, runs_here
 from .sources import PACKAGE, digest
 
@@ -31,31 +32,30 @@ SWITCH = "GAUSSMAP_KERNELS"  # set to 0, the file is neither built nor used
 
 
 class Pack:
-    """An open file of machine code; entries are read when they are asked for.
+    """A file of machine code.
 
-    Raises OSError if it cannot be read, ValueError if it is not such a file.
+    Raises OSError if it cannot be read, ValueError if it is not such a file, or its header is
+    damaged.
     """
 
     def __init__(self, path: Path) -> None:
-        self.path = path
-        with open(path, "rb") as file:
-            if file.read(len(MAGIC)) != MAGIC:
-                raise ValueError(f"{path} does not hold kernels of gaussmap")
-            size = int.from_bytes(file.read(WORD), "little")
-            self.header: dict[str, Any] = json.loads(file.read(size))
-        self._base = len(MAGIC) + WORD + size
+        content, start = path.read_bytes(), len(MAGIC) + WORD
+        end = start + int.from_bytes(content[len(MAGIC) : start], "little")
+        text = opened(content[start:end])
+        if not content.startswith(MAGIC) or text is None:
+            raise ValueError(f"{path} does not hold kernels of gaussmap")
+        self.header: dict[str, Any] = json.loads(text)
+        self._entries = content[end:]
         self.places: dict[str, tuple[int, int]] = self.header["places"]
         self.identity: dict[str, str] = self.header["identity"]
         self.digest: str = self.header["digest"]
 
     def get(self, key: str) -> bytes | None:
         """Return an entry, perhaps a damaged one; None if it is not here."""
-        place = self.places.get(key)
-        if place is None:
+        if key not in self.places:
             return None
-        with open(self.path, "rb") as file:
-            file.seek(self._base + place[0])
-            return file.read(place[1])
+        offset, size = self.places[key]
+        return self._entries[offset : offset + size]
 
 
 def pack_path(folder: Path = PACKAGE) -> Path | None:
@@ -65,18 +65,16 @@ def pack_path(folder: Path = PACKAGE) -> Path | None:
 
 
 def write_pack(path: Path, entries: Mapping[str, bytes], **header: object) -> None:
-    """Write a file of entries by their keys; it appears whole or not at all."""
+    """Write a file of entries by their keys."""
     places, offset = {}, 0
     for key, entry in entries.items():
         places[key] = (offset, len(entry))
         offset += len(entry)
     text = json.dumps({"identity": identity(), "digest": digest(), **header, "places": places})
+    front = sealed(text.encode())
     path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_suffix(".part")
-    with open(part, "wb") as file:
-        file.write(MAGIC + len(text).to_bytes(WORD, "little") + text.encode())
-        file.writelines(entries.values())
-    part.replace(path)
+    size = len(front).to_bytes(WORD, "little")
+    replace_file(path, b"".join([MAGIC, size, front, *entries.values()]))
 
 
 @cache
@@ -90,7 +88,6 @@ def open_pack() -> Pack | None:
     return pack if fits else None
 
 
-@cache
 def misfit() -> str:
     """Say which other versions the file of the package is for; an empty text if for these."""
     pack = _pack_of_package()
@@ -107,5 +104,5 @@ def _pack_of_package() -> Pack | None:
         return None
     try:
         return Pack(path)
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):  # missing, or damaged
+    except (OSError, ValueError):  # missing, or damaged
         return None

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numba
 import pytest
-from gaussmap.runtime.machine_code import jit, kept, sources
+from gaussmap.runtime.machine_code import entries, jit, kept, sources
 from numba.core import config, event
 
 PACKAGE = Path(__file__).parents[3]
@@ -160,12 +160,22 @@ def test_a_lock_that_is_held_for_too_long_is_not_waited_for(
 
 
 @pytest.mark.compiled
+@pytest.mark.skipif(os.name == "nt", reason="Windows has other permissions")
+def test_machine_code_can_be_read_by_other_users(folder: Path) -> None:
+    """As new files can: one user may compile for all, by `gaussmap warm`."""
+    assert compiled_when(jit.jit(triple)) == 1
+    (path,) = folder.glob("*.kernel")
+    (folder / "new").touch()
+    assert path.stat().st_mode == (folder / "new").stat().st_mode
+
+
+@pytest.mark.compiled
 def test_machine_code_that_cannot_be_saved(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(*_: object) -> None:
         raise OSError("No space left on device")
 
     with monkeypatch.context() as patch:
-        patch.setattr(kept.os, "replace", full)
+        patch.setattr(entries.os, "replace", full)
         assert compiled_when(jit.jit(triple)) == 1
     assert not [*folder.glob("*.kernel")]
     assert [x.suffix for x in folder.iterdir()] == [".lock"]
