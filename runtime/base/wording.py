@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-__all__ = ["counted"]
+__all__ = ["plural"]
 
 
-def counted(count: int, what: str) -> str:
+def plural(count: int, what: str) -> str:
     """Return a number and what is counted, such as "1 part" and "2,000 parts"."""
     return f"{count:,} {what}{'' if count == 1 else 's'}"

@@ -109,7 +109,7 @@ def _spaced(line: BorderLine, target: TargetDensity, step: float, turn: float) -
 
 
 def beside_border(piece: Piece, step: float) -> Array:
-    """Return places (k, 2) inside, beside the border, that are `step` of the domain apart."""
+    """Return places (k, 2) inside, close to the border, at distances `step` along it."""
     found = [np.empty((0, 2))]
     for polygon in piece.polygons:
         line = _divided(polygon, piece.sizes, step)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..base.errors import InputError
-from ..base.wording import counted
+from ..base.wording import plural
 from ..spline.spline import Spline, short_label
 from .arrays import SampleArrays
 from .methods import Methods
@@ -154,7 +154,7 @@ class Samples(SampleArrays, Methods):
 
     def __repr__(self) -> str:
         label = short_label(self.report.surface)
-        points = counted(len(self), "point")
+        points = plural(len(self), "point")
         return f"Samples({points} on {label}{kinds_of_points(self)})"
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.georeference import crs_label
-from ..base.wording import counted
+from ..base.wording import plural
 from .report import SamplingReport, count_infinite, have_large_squares
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ GRID = "a grid that follows the curvature"
 def summary_of(samples: SampleArrays) -> str:
     """Return one line: the number of samples, where they come from, what they cover."""
     report, split = samples.report, kinds_of_points(samples).removeprefix(": ").strip(" ()")
-    line = f"{counted(len(samples), 'sample')}{_origin(samples)} ({split})"
+    line = f"{plural(len(samples), 'sample')}{_origin(samples)} ({split})"
     if len(samples) != report.samples:
         line = f"{len(samples):,} of {report.samples:,}" + line.removeprefix(f"{len(samples):,}")
     if report.angle is not None:
@@ -43,7 +43,7 @@ def summary_of(samples: SampleArrays) -> str:
     if report.edge_samples is not None:
         line += f"; {report.edge_samples:,} of the samples are on sharp edges"
     if report.unrefined:
-        line += f"; {counted(report.unrefined, 'sample')} could not be moved to the surface: there "
+        line += f"; {plural(report.unrefined, 'sample')} could not be moved to the surface: there "
         line += "normals and curvatures are those of its spline"
     if report.apexes:
         tips = "a sharp tip" if report.apexes == 1 else f"{report.apexes} sharp tips"
@@ -103,7 +103,7 @@ def _origin(samples: SampleArrays) -> str:
         return " in the gaps between normals" if normals else ""
     if not normals:
         return ""
-    given = f"found by {counted(normals, 'normal')}"
+    given = f"found by {plural(normals, 'normal')}"
     if not filling:
         return f" {given}"
     return f": {len(samples) - filling:,} {given}, {filling:,} in the gaps between these"

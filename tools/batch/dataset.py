@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from ...runtime.base.checks import whole_number, yes_or_no
 from ...runtime.base.errors import FileError, InputError, UnknownNameError, shown
 from ...runtime.base.extras import check_extra, from_extra
-from ...runtime.base.wording import counted
+from ...runtime.base.wording import plural
 from ...runtime.samples.fields import COLUMNS, UNITS, checked_dtype, dtype_of
 from ..files.paths import PathLike, checked_path
 from .data_files import REMEDY, arrays_in, opened, rows_of_parts, stacked
@@ -140,7 +140,7 @@ class Dataset:
         failed = int((np.asarray(table["status"]) == FAILED).sum())
         samples = int(np.asarray(table["samples"]).sum())
         some = f", {failed:,} of which failed," if failed else ""
-        return f"{counted(len(table), 'part')}{some} with {samples:,} samples"
+        return f"{plural(len(table), 'part')}{some} with {samples:,} samples"
 
     def manifest(self, columns: Sequence[str] | None = None) -> pyarrow.Table:
         """Return the manifest: a row for each part, what became of it.

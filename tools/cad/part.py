@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.base.errors import SurfaceError
-from ...runtime.base.wording import counted
+from ...runtime.base.wording import plural
 from ...runtime.samples.whole import Whole
 from ..files.paths import PathLike
 from .methods import Methods
@@ -60,7 +60,7 @@ class Part(Methods, Whole[Any]):
     about: dict[str, Any]
 
     def __repr__(self) -> str:
-        faces, solids = counted(len(self), "face"), counted(len(self.solids), "solid")
+        faces, solids = plural(len(self), "face"), plural(len(self.solids), "solid")
         return f"Part({self.name}: {faces}, {solids}, {self.unit})"
 
     def __len__(self) -> int:
@@ -329,7 +329,7 @@ class Solid:
     faces: NDArray[np.int64]
 
     def __repr__(self) -> str:
-        return f"Solid({self.index} {self.name!r}: {counted(len(self.faces), 'face')})"
+        return f"Solid({self.index} {self.name!r}: {plural(len(self.faces), 'face')})"
 
     @property
     def area(self) -> float:

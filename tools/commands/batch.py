@@ -13,7 +13,7 @@ import numpy as np
 
 from ...runtime.base.compiling import NOTICE
 from ...runtime.base.errors import InputError
-from ...runtime.base.wording import counted
+from ...runtime.base.wording import plural
 from ...runtime.surface.surfaces import CATALOGUE
 from ..batch.inputs import Source
 from ..batch.making import make
@@ -101,14 +101,14 @@ def _rows(options: SimpleNamespace, tally: Tally, seconds: float) -> list[tuple[
     rows = [
         (
             "data set",
-            f"{options.output}: {tally.samples:,} samples of {counted(tally.parts, 'part')}",
+            f"{options.output}: {tally.samples:,} samples of {plural(tally.parts, 'part')}",
         ),
-        ("sampled", f"{counted(tally.ok, 'part')} in {seconds:.1f} s"),
+        ("sampled", f"{plural(tally.ok, 'part')} in {seconds:.1f} s"),
     ]
     if tally.kept:
-        rows.append(("kept", f"{counted(tally.kept, 'part')} of an earlier run"))
+        rows.append(("kept", f"{plural(tally.kept, 'part')} of an earlier run"))
     if tally.failed:
-        rows.append(("failed", f"{counted(tally.failed, 'part')}; the manifest says why"))
+        rows.append(("failed", f"{plural(tally.failed, 'part')}; the manifest says why"))
         rows += [(f"  {name}", error) for name, error in tally.failures]
         if tally.failed > len(tally.failures):
             rows.append(("  …", f"and {tally.failed - len(tally.failures):,} more"))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from types import SimpleNamespace
 
-from ...runtime.base.wording import counted
+from ...runtime.base.wording import plural
 from ..cad.part import Face
 from ..sources.named import Named
 from ..sources.parts import read_part_file
@@ -24,7 +24,7 @@ def run(options: SimpleNamespace) -> None:
 
 
 def _line(face: Face, digits: int, kinds: int) -> str:
-    loops = counted(len(face.loops), "loop")
+    loops = plural(len(face.loops), "loop")
     name = f"  {face.name}" if face.name else ""
     failed = f"  failed: {face.reason}" if face.reason else ""
     known = f"{face.index:{digits}}  {face.kind:{kinds}}  {face.area:12.6g}  {loops:8}"

@@ -159,8 +159,9 @@ class CurvatureField:
         ])  # fmt: skip
 
     def bounded(self, cells: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-        """Return in which cells, so many along a panel, K may vanish, and its derivatives as well.
+        """Return the cells in which K may vanish, and those in which its derivatives may, too.
 
+        A panel has `cells` cells along each side.
         A polynomial and its derivatives are bounded by the coefficients of Bernstein polynomials.
         """
         local = (np.arange(cells)[:, None] + 0.5 + 0.5 * NODES) * (2.0 / cells) - 1.0

@@ -24,8 +24,8 @@ class SignGrid:
     `values` are those of K, with a sign of a neighbour where they are zero up to their error, and
     NaN where there is none, or K is unknown. So a curve through corners is crossed once or not at
     all, whatever the signs of the rounding. In the cells of `mask` K is known at all corners; those
-    of them that are `crossed` have corners of both signs. On `flat` cells K is zero up to its
-    error, as it is at the corners in `zero`.
+    of them that are `crossed` have corners of both signs. K is zero, up to its error, at the
+    corners in `zero` and in the whole of `flat` cells.
     """
 
     def __init__(self, field: CurvatureField, cells: int) -> None:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...runtime.base.errors import InputError
 from ...runtime.base.extras import from_extra
 from ...runtime.base.memory import check_memory
-from ...runtime.base.wording import counted
+from ...runtime.base.wording import plural
 from ..files.reading import UnusableError, opened, readable
 
 __all__ = ["Raster", "raster_of", "read_raster"]
@@ -62,7 +62,7 @@ def raster_of(dataset: Any, band: int, nodata: float | None) -> Raster:  # noqa:
 
 
 def _no_band(name: Path | str, bands: int, band: int) -> InputError:
-    return InputError(f"'{name}' has {counted(bands, 'band')}, and no band {band}.")
+    return InputError(f"'{name}' has {plural(bands, 'band')}, and no band {band}.")
 
 
 def _raster(dataset: Any, band: int, nodata: float | None) -> Raster:  # noqa: ANN401
