@@ -37,8 +37,8 @@ ANGLE = 0.25
 PARTS_OF_SPAN = 2
 # Lines that are closer to one another than this part of the domain are one.
 SAME_LINE = 1e-9
-# Points with a normal are searched on a spline: its cells for each part of a span, and the least and
-# the largest number of all. At the border, points are lost by the error of the spline.
+# Points with a normal are searched on a spline: its cells for each part of a span, and their least
+# and largest number. At the border, points are lost by the error of the spline.
 CELLS_A_PART, FEWEST, MOST = 3, 64, 256
 # Which parameters of a kind of face are angles.
 ANGLES = {

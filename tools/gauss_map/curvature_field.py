@@ -161,8 +161,8 @@ class CurvatureField:
     def bounded(self, cells: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
         """Return the cells in which K may vanish, and those in which its derivatives may, too.
 
-        A panel has `cells` cells along each side.
-        A polynomial and its derivatives are bounded by the coefficients of Bernstein polynomials.
+        A panel has `cells` cells along each side. A polynomial and its derivatives are bounded by
+        the coefficients of Bernstein polynomials.
         """
         local = (np.arange(cells)[:, None] + 0.5 + 0.5 * NODES) * (2.0 / cells) - 1.0
         into = (TO_BERNSTEIN @ chebyshev.chebvander(local, ORDER - 1)).reshape(-1, ORDER)
