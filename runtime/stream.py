@@ -20,7 +20,7 @@ from .samples.report import SamplingReport, count_infinite, sampling_report, war
 from .samples.request import Request, checked_request
 from .samples.samples import Samples
 from .search.bins import NormalBins
-from .search.search import Hits, Search, merged
+from .search.search import Hits, Search, find, merged
 from .spline.spline import Spline
 from .surface.surface import Surface
 from .surface.surfaces import named
@@ -174,6 +174,9 @@ def find_in_turn(
     if search.all_developable:
         yield Hits.none(spline.patches)
         return
+    if search.in_tree:
+        yield find(spline, bins, threads, progress)
+        return
     border = _Border.of(search, threads)
     size = search.range_size(threads)
     yield from over_ranges(border.hits, spline.patches, size, threads, progress)
@@ -221,4 +224,4 @@ class _Border:
         decided = np.concatenate([decided, self.decided[low:high]])
         order = np.lexsort((decided[:, 1], decided[:, 0]))
         local = np.concatenate([local, self.local[low:high]])
-        return merged(found, decided[order], local[order], self.search.bins.frequency > 0)
+        return merged(found, decided[order], local[order], self.search.order)

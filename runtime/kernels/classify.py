@@ -17,7 +17,16 @@ from ..machine_code.jit import inline, loop
 from .patch import normal_of_patch
 from .vectors import dot
 
-__all__ = ["NO", "UNDECIDED", "YES", "classify", "code_of", "count_undecided", "look_again"]
+__all__ = [
+    "NO",
+    "UNDECIDED",
+    "YES",
+    "classify",
+    "code_again",
+    "code_of",
+    "count_undecided",
+    "look_again",
+]
 
 # Typed, since Numba compiles a function anew for each literal number in its arguments.
 NO, YES, UNDECIDED = np.int8(0), np.int8(1), np.int8(2)
@@ -61,18 +70,20 @@ def look_again(patch, x, y, z, codes, count):
     The forms are even in n: they do not distinguish a normal from its opposite, as a cone does.
     """
     for k in range(count):
-        if codes[k] != YES:
-            continue
-        n = Vector(x[k], y[k], z[k])
-        D, U, V, _ = forms(patch, n)
-        u, v = parameters(D, U, V)
-        N = normal_of_patch(patch, u, v)
-        towards = dot(n, N)
-        size = abs(N.x) + abs(N.y) + abs(N.z)
-        if not (abs(towards) > 0.25 * size and size > 0.0):
-            codes[k] = UNDECIDED
-        elif towards < 0.0:
-            codes[k] = NO
+        if codes[k] == YES:
+            codes[k] = code_again(patch, Vector(x[k], y[k], z[k]))
+
+
+@inline
+def code_again(patch, n):
+    """Return the code of a hit of a patch without a narrow cone; see `look_again`."""
+    D, U, V, _ = forms(patch, n)
+    u, v = parameters(D, U, V)
+    N = normal_of_patch(patch, u, v)
+    towards = dot(n, N)
+    size = abs(N.x) + abs(N.y) + abs(N.z)
+    sure = abs(towards) > 0.25 * size and size > 0.0
+    return UNDECIDED if not sure else NO if towards < 0.0 else YES
 
 
 @inline

@@ -24,7 +24,7 @@ from .icosphere import ONE, ZERO, write_line
 from .rows import FaceMemory, border_points, count_points, points_inside
 from .runs import store_border, store_runs, store_undecided
 from .search import FEW, Coefficients, Found
-from .strips import AXIS, BOUND, FLAT, SINE, Polyhedron, Strip, patch_in, strip_of
+from .strips import AXIS, BOUND, FLAT, SINE, Polyhedron, Strip, boxes_of, patch_in, strip_of
 from .tile import STEP, TILE, vector_in
 from .vectors import dot, row_vector, whole_vectors
 from .windows import Cone, load_cone
@@ -122,7 +122,8 @@ def scan_patches(
     begin = end = first_patch
     for number in range(first_patch, last_patch):
         if number == end:
-            begin, end = strip_of(spline, icosahedron, number, last_patch, strip)
+            begin, end = strip_of(spline, number, last_patch, strip)
+            boxes_of(icosahedron, strip)
             classify_few(icosahedron, NO_STARTS, normals, strip, end - begin, few)
         place = number - begin
         face_count, total, at_border = 0, few.starts[place + 1] - few.starts[place], False

@@ -17,7 +17,7 @@ from ..machine_code.jit import inline, jit, loop
 from .classify import UNDECIDED, YES, classify, count_undecided, look_again
 from .few import Few, classify_few, copy_few
 from .sort import pack_hits, store_sorted
-from .strips import AXIS, BOUND, FLAT, SINE, Polyhedron, Strip, patch_in, strip_of
+from .strips import AXIS, BOUND, FLAT, SINE, Polyhedron, Strip, boxes_of, patch_in, strip_of
 from .tile import vector_in
 from .vectors import VECTOR, whole_vectors
 from .windows import Cone, face_window, load_cone, map_cone, set_empty, spans_of_hull
@@ -178,7 +178,8 @@ def search_patches(spline, cube, bins, first, last, found, strip, few, cone, mem
     begin = end = first
     for number in range(first, last):
         if number == end:
-            begin, end = strip_of(spline, cube, number, last, strip)
+            begin, end = strip_of(spline, number, last, strip)
+            boxes_of(cube, strip)
             classify_few(cube, bins.starts, bins.normals, strip, end - begin, few)
         place = number - begin
         sine, bound = strip.rows[SINE + place], strip.rows[BOUND + place]

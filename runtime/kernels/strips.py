@@ -38,6 +38,7 @@ __all__ = [
     "UNIT",
     "Polyhedron",
     "Strip",
+    "boxes_of",
     "patch_in",
     "put_box",
     "strip_of",
@@ -91,28 +92,32 @@ class Strip(NamedTuple):
 
 
 @loop
-def strip_of(spline, polyhedron, number, last, strip):
+def strip_of(spline, number, last, strip):
     """Load the strip of cells that begins with a patch; return its first patch and its end.
 
-    The end is at most `last`, rounded up to whole cells.
+    The end is at most `last`, rounded up to whole cells. Boxes on faces are left out.
     """
     columns = spline.mu.shape[1] - 2
     i, j, turn = place_of(number, columns)
     count = min(CELLS, columns - j, (last - (number - turn) + 3) // 4)
-    load_strip(spline, polyhedron, i, j, count, strip)
+    load_strip(spline, i, j, count, strip)
     return number - turn, number - turn + 4 * count
 
 
 @loop
-def load_strip(spline, polyhedron, i, j, count, strip):
-    """Write the patches of the cells (i, j), …, (i, j + count − 1), at most CELLS."""
-    rows, faces, near = strip
+def load_strip(spline, i, j, count, strip):
+    """Write the patches of the cells (i, j), …, (i, j + count − 1), at most CELLS, and cones."""
     mu, scale, noise, _ = spline
-    write_noise(spline, i, j, count, rows)
-    write_vectors(mu, scale, i, j, count, near, rows)
-    write_cones(noise, rows)
-    write_nearest(polyhedron.frames, rows, faces)
-    write_boxes(polyhedron, rows, faces)
+    write_noise(spline, i, j, count, strip.rows)
+    write_vectors(mu, scale, i, j, count, strip.near, strip.rows)
+    write_cones(noise, strip.rows)
+
+
+@loop
+def boxes_of(polyhedron, strip):
+    """Write the faces of a polyhedron in which the patches of a strip are, and boxes there."""
+    write_nearest(polyhedron.frames, strip.rows, strip.faces)
+    write_boxes(polyhedron, strip.rows, strip.faces)
 
 
 @loop

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from ..base.kept import kept
 from ..base.threads import over_ranges, thread_count
 from ..kernels.developable import count_developable, first_curved
 from ..kernels.fill import fill_samples
@@ -22,6 +23,7 @@ from ..kernels.tile import STEP, fill_known, new_tile
 from ..samples.fields import ARRAY_NAMES, FLOAT_NAMES, INDEX_NAMES, new_field
 from ..spline.spline import Spline
 from .bins import NormalBins, icosahedron
+from .cone_tree import ConeTree
 from .exact import decide
 
 __all__ = ["Hits", "PackedHits", "Search", "SearchResult", "fill", "fill_packed", "find", "merged"]
@@ -33,34 +35,38 @@ RANGES_PER_THREAD = 4
 SAMPLES_AT_A_TIME = 1 << 16
 # The initial and the largest capacity for packed hits; a patch that needs more gets it.
 ROOM, MOST_ROOM = 1 << 15, 1 << 20
+# With fewer normals than a patch for each so many, cells are looked up in the tree of cones.
+NORMALS_FOR_ALL_CELLS = 4
+# A key is number of a patch << 32 | number of a normal; a packed hit has the latter in both places.
+NUMBER, REPEATED = (1 << 32) - 1, (1 << 32) + 1
 
 
 @dataclass(frozen=True, eq=False)
 class PackedHits:
     """Packed hits, sorted by patch and then by normal: rows (k, 2) of a patch and a packed hit.
 
-    A packed hit is number of the normal << 32 | its position in the order of the bins. If `runs` is
-    true, it is a packed run: one or more consecutive normals (see kernels/runs.py).
+    A packed hit is number of the normal << 32 | its row in `normals` (S, 3 or more). If these are
+    None, it is a packed run: one or more consecutive points of an icosphere (see kernels/runs.py).
     """
 
     rows: NDArray[np.int64]
-    runs: bool
+    normals: NDArray[np.float64] | None
 
     @cached_property
     def ends(self) -> NDArray[np.int64]:
         """The cumulative number of samples (k,) at the end of each row."""
-        if not self.runs:
+        if self.normals is not None:
             return np.arange(1, len(self.rows) + 1)
         return np.cumsum(self.rows[:, 1] >> SIZE & LONGEST)
 
     def __len__(self) -> int:
         """Return the number of samples."""
-        return int(self.ends[-1]) if self.runs and len(self.rows) else len(self.rows)
+        return int(self.ends[-1]) if self.normals is None and len(self.rows) else len(self.rows)
 
     @property
     def indices(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """The patches and the normals of the samples."""
-        if not self.runs:
+        if self.normals is not None:
             return self.rows[:, 0], self.rows[:, 1] >> 32
         sizes = np.diff(self.ends, prepend=0)
         firsts = np.repeat((self.rows[:, 1] >> 32) - (self.ends - sizes), sizes)
@@ -70,14 +76,14 @@ class PackedHits:
         """Return the samples first, …, last − 1; there must be at least one."""
         if (first, last) == (0, len(self)):
             return self
-        if not self.runs:
-            return PackedHits(self.rows[first:last], self.runs)
+        if self.normals is not None:
+            return PackedHits(self.rows[first:last], self.normals)
         low, high = np.searchsorted(self.ends, (first, last - 1), side="right")
         rows = self.rows[low : high + 1].copy()
         rows[-1, 1] -= (int(self.ends[high]) - last) << SIZE
         skipped = first - (int(self.ends[low - 1]) if low else 0)
         rows[0, 1] += (skipped << 32) - (skipped << SIZE)
-        return PackedHits(rows, self.runs)
+        return PackedHits(rows, None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,8 +193,37 @@ class Search:
         return np.array([end == "open" for end in (south, east, north, west)])
 
     @cached_property
+    def in_tree(self) -> bool:
+        """Whether the normals are so few that the cells are looked up in a tree of their cones."""
+        return NORMALS_FOR_ALL_CELLS * len(self.bins.normals) < self.spline.patches
+
+    @property
+    def order(self) -> NDArray[np.float64] | None:
+        """The normals in the order to which packed hits refer."""
+        if self.in_tree:
+            return self.bins.normals
+        return None if self.bins.frequency > 0 else self.bins.sorted[1]
+
+    def result_in_tree(self, threads: int | None) -> SearchResult:
+        """Return the hits of all patches, by the tree of cones; it is kept with the spline."""
+        tree = kept(self.spline, ConeTree, lambda: ConeTree.of(self.coefficients, threads))
+        certain, undecided = tree.search(self.bins.normals, threads)
+        developable = kept(self.spline, "developable", lambda: self.developable(tree.flat))
+        bounds = tree.bounds[undecided >> 32]
+
+        def rows(keys: NDArray[np.int64]) -> NDArray[np.int64]:
+            return np.stack([keys >> 32, (keys & NUMBER) * REPEATED], axis=1)
+
+        return SearchResult(
+            self.spline.patches, rows(certain), rows(undecided), bounds, developable
+        )
+
+    @property
     def all_developable(self) -> bool:
         """Whether all patches are developable, up to the rounding of their coordinates."""
+        return kept(self.spline, "all developable", self._all_developable)
+
+    def _all_developable(self) -> bool:
         spline = self.spline
         if first_curved(spline.coefficients, spline.scale, spline.noise) < spline.patches:
             return False
@@ -260,12 +295,15 @@ def find(
     search = Search(spline, bins)
     if search.all_developable:
         return Hits.none(spline.patches)
-    size = search.range_size(threads)
-    ranges = over_ranges(search.results, spline.patches, size, threads, progress)
-    parts = [part for found in ranges for part in found]
+    if search.in_tree:
+        parts = [search.result_in_tree(threads)]
+    else:
+        size = search.range_size(threads)
+        ranges = over_ranges(search.results, spline.patches, size, threads, progress)
+        parts = [part for found in ranges for part in found]
     undecided = np.concatenate([part.undecided for part in parts])
     bounds = np.concatenate([part.bounds for part in parts])
-    return merged(parts, *search.decided(undecided, bounds, threads), bins.frequency > 0)
+    return merged(parts, *search.decided(undecided, bounds, threads), search.order)
 
 
 def fill(
@@ -313,14 +351,14 @@ def fill_packed(
     """
     patches = spline.coefficients, spline.scale
     tile, indices = new_tile()
-    if packed.runs:
+    if packed.normals is None:
         fill_runs(
             *patches, bins.normals, spline.frame, bins.frequency, packed.rows, start,
             tile, indices, np.zeros(2 * STEP, np.int64), *arrays,
         )  # fmt: skip
     else:
         fill_samples(
-            *patches, bins.sorted[1], spline.frame, packed.rows, start, tile, indices, *arrays
+            *patches, packed.normals, spline.frame, packed.rows, start, tile, indices, *arrays
         )
 
 
@@ -328,21 +366,21 @@ def merged(
     parts: Sequence[SearchResult],
     decided: NDArray[np.int64],
     local: NDArray[np.float64],
-    runs: bool,
+    normals: NDArray[np.float64] | None,
 ) -> Hits:
     """Return the certain hits of consecutive ranges, merged with those that were decided exactly.
 
-    `decided` (k, 2) are rows as in `PackedHits`, `local` (k, 5) is that of `Decision`.
+    `decided` (k, 2) and `normals` are those of `PackedHits`, `local` (k, 5) that of `Decision`.
     """
     ends = np.searchsorted(decided[:, 0], [0, *(part.last for part in parts)])
     found, exact, start = [], [], 0
     for part, first, last in zip(parts, ends[:-1], ends[1:], strict=True):
-        packed = PackedHits(part.certain, runs)
+        packed = PackedHits(part.certain, normals)
         if last > first:
             rows = np.empty((len(part.certain) + last - first, 2), dtype=np.int64)
             places = np.empty(last - first, dtype=np.int64)
             merge_hits(part.certain, decided[first:last], rows, places)
-            packed = PackedHits(rows, runs)
+            packed = PackedHits(rows, normals)
             exact.append(start + packed.ends[places] - 1)
         found.append(packed)
         start += len(packed)

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..base.checks import checked_array, parameter_arrays, text
 from ..base.errors import InputError
 from ..base.georeference import Georeference
+from ..base.kept import Immutable
 from ..base.scales import scale_to_one
 from ..base.threads import over_ranges
 from ..base.tolerances import DATA_ERROR, SAME_PARAMETER
@@ -37,7 +38,7 @@ def short_label(name: str) -> str:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Spline:
+class Spline(Immutable):
     """A C¹ quadratic triangular spline on the criss-cross grid (paper, Sect. 3.1); made by `fit`.
 
     Patches are numbered cell by cell (cell = i n + j, i along u), in each cell south, east, north,

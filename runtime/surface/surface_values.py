@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -13,6 +13,7 @@ from ..base.checks import checked_array, parameter_arrays, text
 from ..base.errors import InputError, shown
 from ..base.evaluation import check_finite, evaluated
 from ..base.georeference import Georeference
+from ..base.kept import Immutable
 from ..base.scales import scale_to_one
 from ..domain.domain import Assumed, Boundary, Domain, checked_boundary, checked_domain, domain_text
 from ..domain.trim import Trim
@@ -26,7 +27,7 @@ Evaluation = Callable[[NDArray[np.float64], NDArray[np.float64]], ArrayLike]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SurfaceValues:
+class SurfaceValues(Immutable):
     """What `Surface` is made of, and evaluates."""
 
     name: str
@@ -258,7 +259,3 @@ class SurfaceValues:
         return jet_function(
             self.function, self.derivative_function, self.domain, self.boundary, self.name
         )
-
-    def __getstate__(self) -> dict[str, object]:
-        """Return what is pickled: the fields, without what is made of them."""
-        return {x.name: getattr(self, x.name) for x in fields(self)}
