@@ -17,10 +17,10 @@ from .density.at_normals import samples_at
 from .density.chosen_normals import choose
 from .density.filling import fields_of, fill, target_of
 from .density.grid import lines_of, without_lines
-from .density.on_pieces import cells_of_piece, pieces_to_sample, report_of
+from .density.on_pieces import geometries_of, kept_geometries, report_of
 from .density.surface_piece import SurfacePiece, space_of
 from .place.on_spline import OnSpline
-from .place.on_surface import checked_place, geometry_of, place_of_samples
+from .place.on_surface import checked_place, place_of_samples
 from .samples.fields import FLAG_NAMES, GRID_NAMES, bytes_of, checked_dtype, checked_fields
 from .samples.report import warn_of
 from .samples.request import Request, checked_request
@@ -30,7 +30,7 @@ from .spline.spline import Spline
 from .surface.surface import Surface
 from .surface.surfaces import named
 
-__all__ = ["sample", "sample_and_normals"]
+__all__ = ["sample", "sample_and_normals", "unwarned"]
 
 
 def sample(
@@ -209,7 +209,6 @@ def sample(
         )[0]
 
 
-@in_memory
 def sample_and_normals(
     surface: Surface | Spline | Whole[Samples] | str,
     request: Request,
@@ -224,6 +223,45 @@ def sample_and_normals(
     out: Samples | None = None,
 ) -> tuple[Samples, NDArray[np.float64]]:
     """Return what `sample` returns, and the unit normals that were asked."""
+    samples, normals = unwarned(
+        surface,
+        request,
+        cells=cells,
+        threads=threads,
+        progress=progress,
+        fields=fields,
+        dtype=dtype,
+        on=on,
+        edges=edges,
+        out=out,
+    )
+    filled = request.density != "gauss"
+    warn_of(samples.report, request.count, 4, coverage=request.coverage, filled=filled)
+    rounded = "points" in samples.fields and samples.points.dtype == np.float32
+    if rounded and samples.report.origin is not None:
+        warn_of_rounding(samples.points, 4)
+    return samples, normals
+
+
+@in_memory
+def unwarned(
+    surface: Surface | Spline | Whole[Samples] | str,
+    request: Request,
+    *,
+    cells: Sequence[int] | None,
+    threads: int | None,
+    progress: bool,
+    fields: Sequence[str] | None,
+    dtype: DTypeLike,
+    on: str | None,
+    edges: bool = False,
+    out: Samples | None = None,
+    geometries: Sequence[OnSpline] | None = None,
+) -> tuple[Samples, NDArray[np.float64]]:
+    """Return the same, without warnings of what is missing.
+
+    `geometries` are those of the surface if they are known already.
+    """
     edges = yes_or_no(edges, "edges")
     if not isinstance(out, Samples | None):
         raise InputError(f"out must be Samples of an earlier call, not {shown(out)}.")
@@ -231,37 +269,26 @@ def sample_and_normals(
         return _of_whole(surface, request, cells, on, fields, dtype, threads, progress, edges)
     if edges:
         raise InputError("edges=True is for CAD parts; other surfaces have no sharp edges.")
-    surface, number = named(surface), checked_dtype(dtype)
+    asked, surface, number = surface, named(surface), checked_dtype(dtype)
     place = place_of_samples(surface, on)
     wanted = checked_fields(fields, place == "surface", grid=request.density == "aligned")
-    filled = request.density != "gauss"
     memory = {} if out is None else out.arrays()
     if request.count is not None:
         check_memory(request.cost, request.count, bytes_of(wanted, number))
-
-    def geometry(part: Surface | Spline | str, cells: Sequence[int] | None) -> OnSpline:
-        return geometry_of(part, cells, number, on, threads, memory)
-
-    pieces = pieces_to_sample(surface)
-    if isinstance(surface, Surface) and pieces:
-        parts = [geometry(x, cells_of_piece(surface, x, cells)) for x in pieces]
-        known = surface if place == "surface" else None
-        samples, normals = _filled(surface.name, parts, known, request, wanted, number, progress)
+    if geometries is None:
+        make = geometries_of if request.normals is None else kept_geometries
+        geometries = make(asked, cells, on)
+    geometries = [x.used(number, threads, memory) for x in geometries]
+    if request.density != "gauss" or len(geometries) > 1:
+        known = geometries[0].surface if len(geometries) == 1 else surface
+        known = known if isinstance(known, Surface) and place == "surface" else None
+        samples, normals = _filled(
+            surface.name, geometries, known, request, wanted, number, progress
+        )
     else:
-        whole = geometry(surface, cells)
-        if filled:
-            samples, normals = _filled(
-                whole.name, [whole], whole.surface, request, wanted, number, progress
-            )
-        else:
-            chosen = choose(whole, request.normals_or_count, progress)
-            samples, normals = samples_at(whole, chosen, wanted, number, progress)
-    if fields is None:
-        samples = without_lines(samples)
-    warn_of(samples.report, request.count, 5, coverage=request.coverage, filled=filled)
-    if number == np.float32 and samples.report.origin is not None and "points" in wanted:
-        warn_of_rounding(samples.points, 5)
-    return samples, normals
+        chosen = choose(geometries[0], request.normals_or_count, progress)
+        samples, normals = samples_at(geometries[0], chosen, wanted, number, progress)
+    return (without_lines(samples) if fields is None else samples), normals
 
 
 def _of_whole(
@@ -281,10 +308,7 @@ def _of_whole(
         raise InputError("cells=... are for splines; the faces of a part need none.")
     if checked_place(on) == "spline":
         raise InputError('on="spline" is for surfaces; samples of a part lie on its faces.')
-    samples, searched = part._sampled(request, wanted, number, threads, progress, edges)
-    filled = request.density != "gauss"
-    warn_of(samples.report, request.count, 6, coverage=request.coverage, filled=filled)
-    return samples, searched
+    return part._sampled(request, wanted, number, threads, progress, edges)
 
 
 def _filled(

@@ -12,9 +12,9 @@ from .base.checks import whole_number, yes_or_no
 from .base.errors import InputError
 from .base.threads import over_ranges, shown
 from .density.chosen_normals import choose
-from .density.on_pieces import pieces_to_sample
+from .density.on_pieces import geometries_of, kept_geometries, pieces_to_sample
 from .place.on_spline import FieldsOfSamples, OnSpline
-from .place.on_surface import geometry_of, place_of_samples
+from .place.on_surface import place_of_samples
 from .samples.fields import checked_dtype, checked_fields
 from .samples.report import SamplingReport, count_infinite, sampling_report, warn_of
 from .samples.request import Request, checked_request
@@ -102,7 +102,8 @@ def sample_stream(
         )
     if request.normals is not None:  # the caller may change them before the last chunk
         request = replace(request, normals=request.normals.copy())
-    geometry = geometry_of(surface, cells, number, on, threads)
+    make = geometries_of if request.normals is None else kept_geometries
+    geometry = make(surface, cells, on)[0].used(number, threads)
     shows = yes_or_no(progress, "progress")
     return _Stream(geometry, request, size, wanted, number, shows).chunks()
 

@@ -108,6 +108,10 @@ class Usable:
         return gm.fit(self.torus, (8, 8))
 
     @cached_property
+    def map(self) -> gm.GaussMap:
+        return gm.GaussMap(self.spline)
+
+    @cached_property
     def samples(self) -> gm.Samples:
         return gm.sample(self.torus, count=60, cells=(8, 8))
 
@@ -199,6 +203,7 @@ FLAT = np.array([[[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0], [1.0, 1.0
 # What `self` is, by the class.
 SELF = {
     "Dataset": Of("dataset"),
+    "GaussMap": Of("map"),
     "Mesh": Of("mesh"),
     "Part": Of("part"),
     "Samples": Of("samples"),
@@ -314,8 +319,8 @@ UNUSABLE_FILES = {"read_cad", "read_part", "sample_many"}
 UNTRIED = {("sample_many", "out"): str | Path, ("sample_many", "scheduler"): object}
 # The classes whose objects users may make by themselves.
 MADE = (
-    "Mesh", "Samples", "Spline", "SupportFunction", "Surface", "curves.Curve", "curves.CurveSpline",
-    "gauss_map.GaussianImage", "gauss_map.GaussianImages",
+    "GaussMap", "Mesh", "Samples", "Spline", "SupportFunction", "Surface", "curves.Curve",
+    "curves.CurveSpline", "gauss_map.GaussianImage", "gauss_map.GaussianImages",
 )  # fmt: skip
 ALL = {
     name: x

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -12,18 +13,24 @@ from numpy.typing import NDArray
 
 from ..base.checks import pair_of_cells
 from ..base.errors import InputError
+from ..place.on_spline import OnSpline
+from ..place.on_surface import geometry_of, place_of_samples
 from ..samples.report import SamplingReport, count_unrefined, sampling_report
+from ..spline.spline import Spline
 from ..surface.surface import Surface
+from ..surface.surfaces import named
 from .at_normals import Given
 from .surface_piece import SurfacePiece
 
-__all__ = ["cells_of_piece", "pieces_to_sample", "report_of"]
+__all__ = ["cells_of_piece", "geometries_of", "kept_geometries", "pieces_to_sample", "report_of"]
 
 Array = NDArray[np.float64]
 
 # Each piece is fitted and searched by itself, which takes 20 ms.
 MOST_PIECES = 2000
 FEWEST_CELLS = 4
+# The number of surfaces of which splines and indices are kept; these take some MB each.
+KEPT = 8
 SUMS = ("patches", "apexes")
 LARGEST = ("fit_distance", "fit_angle")
 
@@ -41,6 +48,33 @@ def pieces_to_sample(surface: object) -> tuple[Surface, ...]:
             "spline, which rounds these lines."
         )
     return pieces if len(pieces) > 1 else ()
+
+
+def geometries_of(
+    surface: Surface | Spline | str, cells: Sequence[int] | None, on: str | None
+) -> tuple[OnSpline, ...]:
+    """Return what is sampled: one for each piece of a surface."""
+    surface = named(surface)
+    place_of_samples(surface, on)
+    if isinstance(surface, Surface) and (pieces := pieces_to_sample(surface)):
+        return tuple(geometry_of(x, cells_of_piece(surface, x, cells), on) for x in pieces)
+    return (geometry_of(surface, cells, on),)
+
+
+def kept_geometries(
+    surface: Surface | Spline | str, cells: Sequence[int] | None, on: str | None
+) -> tuple[OnSpline, ...]:
+    """Return the same as `geometries_of`, made once for the last few surfaces."""
+    if not isinstance(surface, Surface | Spline | str):
+        return geometries_of(surface, cells, on)  # raises
+    return _kept(surface, None if cells is None else pair_of_cells(cells), on)
+
+
+@lru_cache(KEPT)
+def _kept(
+    surface: Surface | Spline | str, cells: tuple[int, int] | None, on: str | None
+) -> tuple[OnSpline, ...]:
+    return geometries_of(surface, cells, on)
 
 
 def cells_of_piece(

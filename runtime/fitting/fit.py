@@ -26,7 +26,7 @@ from .comparison import Comparison, compare_with_data
 from .probe import probe_of, variation
 from .tolerance import FAR_OFF, Bounds, Tolerance, checked_tolerance, refined
 
-__all__ = ["DEFAULT_CELLS", "fit", "spline_of"]
+__all__ = ["DEFAULT_CELLS", "check_range", "fit", "spline_of"]
 
 # Without cells or tolerance: the least numbers of cells, and what they are increased for. At
 # creases no number of cells makes normals accurate: the search ends when it does not improve them.
@@ -38,24 +38,24 @@ FEWEST_CELLS = (8, 8)
 BOUNDS = Bounds(most=(4096, 4096), total=2**20, patience=9)
 
 
-def spline_of(
-    surface: Surface | Spline | str, cells: Sequence[int] | None, dtype: DTypeLike = np.float64
-) -> Spline:
+def spline_of(surface: Surface | Spline | str, cells: Sequence[int] | None) -> Spline:
     """Return a spline unchanged, or the spline of a surface or of a surface's name.
 
-    Raises InputError for `cells` with a spline; SurfaceError if its points are beyond the range of
-    `dtype`.
+    Raises InputError for `cells` with a spline.
     """
     if isinstance(surface, Spline) and cells is not None:
         raise InputError("cells=... is for surfaces; this spline already has its cells.")
-    spline = surface if isinstance(surface, Spline) else fit(surface, cells)
-    largest, limits = float(np.abs(spline.coefficients).max()), np.finfo(np.zeros(0, dtype).dtype)
+    return surface if isinstance(surface, Spline) else fit(surface, cells)
+
+
+def check_range(spline: Spline, dtype: DTypeLike) -> None:
+    """Raise SurfaceError if points of a spline are beyond the range of `dtype`."""
+    largest, limits = spline._largest, np.finfo(np.zeros(0, dtype).dtype)
     if not float(limits.tiny) <= largest <= float(limits.max) and largest > 0.0:
         raise SurfaceError(
             f"the coordinates of {spline.name!r} are too {'large' if largest > 1.0 else 'small'} "
             f"for {limits.dtype}; choose another unit of length or dtype=numpy.float64."
         )
-    return spline
 
 
 @in_memory

@@ -10,7 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
@@ -19,6 +20,7 @@ from ...generated.spline import SCALE
 from ..base.georeference import Georeference
 from ..base.memory import check_memory
 from ..base.threads import over_ranges
+from ..fitting.fit import check_range
 from ..kernels.forms import forms_of_jets, jets_on_spline, patches_at
 from ..kernels.tile import fill_known
 from ..samples.fields import FLOAT_NAMES, bytes_of, new_field
@@ -67,6 +69,19 @@ class OnSpline:
     threads: int | None = None
     surface: Surface | None = None
     memory: Mapping[str, NDArray[Any]] = field(default_factory=dict)
+
+    def used(
+        self,
+        dtype: DTypeLike,
+        threads: int | None,
+        memory: Mapping[str, NDArray[Any]] = MappingProxyType({}),
+    ) -> Self:
+        """Return the same for one call: a number of threads, and memory for the samples.
+
+        Raises SurfaceError if points are beyond the range of `dtype`.
+        """
+        check_range(self.spline, dtype)
+        return replace(self, threads=threads, memory=memory)
 
     @property
     def name(self) -> str:

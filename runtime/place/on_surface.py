@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from types import MappingProxyType
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
@@ -24,7 +23,6 @@ from ..spline.inside import count_of, samples_inside
 from ..spline.spline import Spline
 from ..surface.derivatives import Differentiable
 from ..surface.surface import Surface
-from ..surface.surfaces import named
 from .moved_samples import as_fields, moved_samples, part_of
 from .newton import evaluate_on_surface
 from .on_spline import Array, Fields, FieldsOfSamples, OnSpline, grouped
@@ -64,26 +62,15 @@ def checked_place(on: str | None) -> str | None:
     return None if on is None else known_name(on, PLACES, "place of samples")
 
 
-def geometry_of(
-    surface: Surface | Spline | str,
-    cells: Sequence[int] | None,
-    dtype: DTypeLike,
-    on: str | None,
-    threads: int | None,
-    memory: Mapping[str, NDArray[Any]] = MappingProxyType({}),
-) -> OnSpline:
-    """Return what is sampled. Raises what `place_of_samples` and `spline_of` raise.
-
-    Samples of splines at normals are written to the fields in `memory`.
-    """
-    surface = named(surface)
+def geometry_of(surface: Surface | Spline, cells: Sequence[int] | None, on: str | None) -> OnSpline:
+    """Return what is sampled. Raises what `place_of_samples` and `spline_of` raise."""
     place = place_of_samples(surface, on)
-    spline = spline_of(surface, cells, dtype)
+    spline = spline_of(surface, cells)
     if place == "surface" and isinstance(surface, Surface):
         if surface.boundary != spline.boundary:  # poles that the fit has found
             surface = replace(surface, boundary=spline.boundary)
-        return OnSurface(spline, threads, surface)
-    return OnSpline(spline, threads, memory=memory)
+        return OnSurface(spline, surface=surface)
+    return OnSpline(spline)
 
 
 @dataclass(frozen=True, eq=False)

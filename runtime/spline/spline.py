@@ -144,9 +144,14 @@ class Spline(Immutable):
         return scale_to_one(float(max(steps)))
 
     @cached_property
+    def _largest(self) -> float:
+        """The largest modulus of the coordinates of coefficients."""
+        return float(np.abs(self.coefficients).max())
+
+    @property
     def noise(self) -> float:
         """A bound of the rounding of the coordinates, times `scale`."""
-        return DATA_ERROR * float(np.abs(self.coefficients * self.scale).max())
+        return DATA_ERROR * (self._largest * self.scale)
 
     def evaluate(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
         """Return the points of the spline at parameters.

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from ...runtime.base.errors import GaussmapError, GaussmapWarning
+from ...runtime.base.kept import kept
 from ...runtime.base.scales import scale_to_one
 from ...runtime.density.piece import Piece, boxes_between
 from ...runtime.domain.domain import Domain
@@ -111,12 +112,14 @@ class FacePiece(Piece):
 
     def geometries(self, threads: int | None) -> list[OnSpline]:
         """Return what is searched for points with a normal; GaussmapError if it has no spline."""
+        found = kept(self.surface, FacePiece, self._geometries)
+        return [x.used(np.float64, threads) for x in found]
+
+    def _geometries(self) -> list[OnSpline]:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", GaussmapWarning)  # of the fit, which is only a start
-            return [
-                geometry_of(x, self._cells(x.domain), np.float64, "surface", threads)
-                for x in self.surface.pieces()
-            ]
+            pieces = self.surface.pieces()
+            return [geometry_of(x, self._cells(x.domain), "surface") for x in pieces]
 
     def _cells(self, domain: Domain) -> tuple[int, int]:
         """Return the numbers of cells, for each part of its lines some, of a spline over a domain.

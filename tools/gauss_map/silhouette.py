@@ -15,7 +15,7 @@ from ...runtime.base.threads import thread_count
 from ...runtime.density.chosen_normals import NEAR_ENOUGH, NORMALS_PER_SAMPLE
 from ...runtime.directions.circle import circle
 from ...runtime.directions.unit import as_normals, perpendicular, unit_vector
-from ...runtime.fitting.fit import spline_of
+from ...runtime.fitting.fit import check_range, spline_of
 from ...runtime.samples.fields import ARRAY_NAMES, checked_dtype, checked_fields
 from ...runtime.samples.report import sampling_report, warn_of
 from ...runtime.samples.samples import Samples
@@ -141,7 +141,8 @@ def silhouette(
     names, number = checked_fields(fields), checked_dtype(dtype)
     axis, asked = unit_vector(direction, "direction"), whole_number(count, "count")
     thread_count(threads)
-    spline = spline_of(surface, cells, number)
+    spline = spline_of(surface, cells)
+    check_range(spline, number)
     bins, hits = _by_count(spline, axis, asked, threads, progress)
     needed = {*names, "uv", "normal_index"}
     arrays = fill(spline, bins, hits, threads, [x for x in ARRAY_NAMES if x in needed], number)

@@ -182,6 +182,16 @@ def test_prescribed_normals(plates):
     assert (filled.normal_index < 0).sum() > 20
 
 
+def test_a_part_has_a_map(plates):
+    normals, known = gm.fibonacci(40), gm.GaussMap(plates)
+    found = known.points(normals)
+    assert known.surface is plates
+    assert (known.count(normals) == np.bincount(found.normal_index, minlength=40)).all()
+    assert (known.count(normals) == 3).all()
+    assert (known.degree(normals) == 1).all()  # of the sphere; the torus has 0
+    assert found.points.tobytes() == known.points(normals, threads=3).points.tobytes()
+
+
 def test_weights_add_up_to_the_areas(plates):
     samples = gm.sample(plates, 300)
     weights = samples.weights()

@@ -1,0 +1,146 @@
+"""`GaussMap`: the samples of `sample`, whatever was asked before, by whichever thread."""
+
+import pickle
+from concurrent.futures import ThreadPoolExecutor
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+pytestmark = pytest.mark.compiled
+
+Array = NDArray[np.float64]
+AXES = np.concatenate([np.eye(3), -np.eye(3)])
+NORMALS = np.concatenate([AXES, gm.fibonacci(300)])
+
+
+def bits(samples: gm.Samples) -> dict[str, bytes]:
+    return {name: getattr(samples, name).tobytes() for name in samples.fields}
+
+
+def surfaces() -> dict[str, gm.Surface | gm.Spline | str]:
+    v = np.linspace(0.0, 1.0, 9)
+    grid = np.stack(np.meshgrid(v, v, v[:1], indexing="ij"), axis=-1)[:, :, 0]
+    grid[..., 2] = np.sin(5 * grid[..., 0]) * np.cos(4 * grid[..., 1])
+    return {
+        "name": "torus",
+        "sphere": gm.surfaces.sphere(),
+        "callable": gm.Surface.from_callable(
+            lambda u, v: np.stack([u, v, 0.1 * np.sin(7 * u) * np.cos(6 * v)], axis=-1),
+            ((-1, 1), (-1, 1)),
+        ),
+        "grid": gm.Surface.from_grid(grid),
+        "spline": gm.fit("moebius_band", (20, 9)),
+    }
+
+
+SURFACES = surfaces()
+
+
+@pytest.mark.parametrize("name", SURFACES)
+def test_points_are_those_of_sample(name):
+    surface = SURFACES[name]
+    assert bits(gm.GaussMap(surface).points(NORMALS)) == bits(gm.sample(surface, normals=NORMALS))
+
+
+@pytest.mark.parametrize("name", SURFACES)
+def test_answers_do_not_depend_on_earlier_ones(name):
+    surface = SURFACES[name]
+    known = gm.GaussMap(surface)
+    for normals in (AXES[:1], NORMALS, gm.icosphere(8), AXES):
+        known.points(normals)
+    found = known.points(NORMALS)
+    assert bits(found) == bits(gm.GaussMap(surface).points(NORMALS))
+    assert bits(found) == bits(known.points(NORMALS, threads=3))
+
+
+@pytest.mark.parametrize("name", SURFACES)
+def test_one_normal_at_a_time_gives_the_same_points(name):
+    known = gm.GaussMap(SURFACES[name])
+    whole = known.points(NORMALS)
+    for k in range(0, len(NORMALS), 23):
+        one, same = known.points(NORMALS[k : k + 1]), whole[whole.normal_index == k]
+        assert (one.uv == same.uv).all()
+        assert (one.points == same.points).all()
+        assert (one.patch_index == same.patch_index).all()
+
+
+def test_threads_may_share_a_map():
+    known = gm.GaussMap("torus")
+    expected = [bits(known.points(NORMALS[k::4])) for k in range(4)]
+    shared = gm.GaussMap("torus")
+    with ThreadPoolExecutor(4) as pool:
+        found = list(pool.map(lambda k: bits(shared.points(NORMALS[k % 4 :: 4])), range(16)))
+    assert found == expected * 4
+
+
+def test_a_map_is_pickled():
+    known = gm.GaussMap("torus", cells=(20, 30), on="spline")
+    known.points(NORMALS)
+    again = pickle.loads(pickle.dumps(known))
+    assert bits(again.points(NORMALS)) == bits(known.points(NORMALS))
+    assert again.points(AXES).spline.cells == (20, 30)
+
+
+def test_numbers_of_points_and_their_sum_of_signs():
+    known = gm.GaussMap("torus")
+    counts, degrees = known.count(NORMALS), known.degree(NORMALS)
+    assert counts.dtype == degrees.dtype == np.int64
+    generic = np.abs(NORMALS[:, 2]) < 0.999
+    assert (counts[generic] == 2).all()
+    assert (degrees == 0).all()
+    assert (gm.GaussMap("sphere").degree(NORMALS) == 1).all()
+
+
+def test_normals_without_a_point_have_none_without_a_warning(recwarn):
+    known = gm.GaussMap(SURFACES["callable"])
+    assert known.count(-AXES[2:3]).tolist() == [0]
+    assert known.degree(-AXES[2:3]).tolist() == [0]
+    assert not recwarn
+
+
+def test_a_surface_is_fitted_once(monkeypatch):
+    calls = []
+
+    def f(u: Array, v: Array) -> Array:
+        calls.append(u.size)
+        return np.stack([u, v, u * u - v * v], axis=-1)
+
+    surface = gm.Surface.from_callable(f, ((-1, 1), (-1, 1)))
+    first = gm.sample(surface, normals=NORMALS, on="spline")
+    fitted = len(calls)
+    second = gm.sample(surface, normals=NORMALS, on="spline")
+    assert len(calls) == fitted
+    assert bits(first) == bits(second)
+    gm.sample(surface, normals=NORMALS, on="spline", cells=(9, 9))
+    assert len(calls) > fitted
+
+
+def test_surfaces_of_several_pieces_have_maps():
+    knots = [0, 0, 0, 0.5, 0.5, 1, 1, 1]  # double inside: a crease
+    u, v = np.meshgrid(range(5), range(5), indexing="ij")
+    net = np.stack([u, v, 0.3 * (u - 2.0) ** 2 + 0.2 * (v - 2.0) ** 2], axis=-1)
+    net[2:, :, 2] += u[2:]
+    creased = gm.Surface.from_nurbs((2, 2), (knots, knots), net)
+    assert len(creased.pieces()) > 1
+    expected = gm.sample(creased, normals=NORMALS)
+    assert bits(gm.GaussMap(creased).points(NORMALS)) == bits(expected)
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [{"surface": "toru"}, {"surface": 3}, {"surface": "torus", "on": "moon"}, {"surface": [1, 2]}],
+)
+def test_unusable_arguments_are_refused_at_once(arguments):
+    with pytest.raises(gm.GaussmapError):
+        gm.GaussMap(**arguments)
+    with pytest.raises(gm.GaussmapError):
+        gm.sample(**arguments, normals=AXES)
+
+
+def test_unusable_normals_are_refused():
+    known = gm.GaussMap("torus")
+    for normals in ([], [[0, 0, 0]], [[np.nan, 0, 1]], "x", [[1, 2]]):
+        with pytest.raises(gm.GaussmapError):
+            known.count(normals)
