@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from .density.on_pieces import geometries_of
+from .map_methods import Methods
 from .sample import unwarned
 from .samples.request import checked_request
 from .samples.samples import Samples
@@ -19,7 +20,7 @@ from .surface.surfaces import named
 __all__ = ["GaussMap"]
 
 
-class GaussMap:
+class GaussMap(Methods):
     """The Gauss map of a surface, inverted: all points that have given normals, asked for often.
 
     The surface is fitted and indexed when the map is made. After that one normal takes a fraction

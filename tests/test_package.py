@@ -20,9 +20,9 @@ NAMESPACES = {
     "directions": "cap circle covering_radius fibonacci healpix icosphere polygon random",
     "errors": "FileError GaussmapError GaussmapWarning InputError MissingExtraError "
     "MissingFieldError SurfaceError UnknownNameError",
-    "gauss_map": "BoundaryArc GaussianImage GaussianImages ParabolicCurve ParabolicLine "
-    "ParabolicPoint ParabolicPoints PatchClass Piece classify_patches parabolic_lines "
-    "parabolic_points split_patch",
+    "gauss_map": "BoundaryArc GaussianImage GaussianImages ImageCurve ParabolicCurve "
+    "ParabolicLine ParabolicPoint ParabolicPoints PatchClass Piece classify_patches "
+    "parabolic_lines parabolic_points split_patch",
 }
 
 

@@ -19,7 +19,7 @@ class Immutable:
         return {x.name: getattr(self, x.name) for x in fields(self)}  # type: ignore[arg-type]
 
 
-def kept(owner: Immutable, key: Hashable, make: Callable[[], Value]) -> Value:
+def kept(owner: object, key: Hashable, make: Callable[[], Value]) -> Value:
     """Return what was made of an object under a key, or make it and keep it.
 
     Two threads at once may make it twice, and both get the same one.

@@ -3,6 +3,7 @@
 from .boundary import BoundaryArc
 from .classes import PatchClass, classify_patches
 from .image import GaussianImage, GaussianImages
+from .image_curves import ImageCurve
 from .parabolic import ParabolicCurve, ParabolicPoint, ParabolicPoints, parabolic_points
 from .parabolic_lines import ParabolicLine, Piece, parabolic_lines, split_patch
 
@@ -10,6 +11,7 @@ __all__ = [
     "BoundaryArc",
     "GaussianImage",
     "GaussianImages",
+    "ImageCurve",
     "ParabolicCurve",
     "ParabolicLine",
     "ParabolicPoint",

@@ -9,9 +9,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from ...generated import gaussian_image as formulas
 from ...runtime.base.checks import as_float, pair_of_cells
 from ...runtime.base.errors import GaussmapWarning, InputError, shown
+from ...runtime.base.formula_calls import python_function, vector
 from ...runtime.base.scales import scale_to_one
+from ...runtime.domain.domain import brought_inside
 from ...runtime.fitting.fit import fit, spline_of
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
@@ -23,10 +26,23 @@ from .parabolic_surface import field_of, search
 from .polylines import refined
 from .rectangles import merged
 
-__all__ = ["ParabolicCurve", "ParabolicPoint", "ParabolicPoints", "parabolic_points"]
+__all__ = [
+    "ParabolicCurve",
+    "ParabolicPoint",
+    "ParabolicPoints",
+    "checked_tolerance",
+    "curvature",
+    "near_zeros",
+    "onto_zeros",
+    "parabolic_points",
+    "points_of_field",
+]
 
 Array = NDArray[np.float64]
 NEWTON_STEPS = 6
+# K of the surface is compared at places this far apart, relative to the domain; curves of the field
+# are nearer than that to those of the surface.
+STEP, CHORD_STEPS = 1e-6, 2
 MOST_CELLS = 128
 # A share of the domain that is worth a warning.
 WORTH_A_WARNING = 1e-4
@@ -195,7 +211,7 @@ def parabolic_points(
     ParabolicPoints(2 curves, 0 isolated, 0 flat rectangles)
 
     """
-    limit, surface = _tolerance(tolerance), named(surface)
+    limit, surface = checked_tolerance(tolerance), named(surface)
     if isinstance(surface, Spline):
         return _of_spline(spline_of(surface, cells), limit)
     if not isinstance(surface, Surface):
@@ -204,7 +220,7 @@ def parabolic_points(
         )
     if surface.grid is not None:
         return _of_spline(fit(surface, cells), limit)
-    return _of_surface(surface, limit, _panels(cells))
+    return points_of_field(surface, field_of(surface, _panels(cells)), limit)
 
 
 def _of_spline(spline: Spline, tolerance: float) -> ParabolicPoints:
@@ -223,10 +239,8 @@ def _of_spline(spline: Spline, tolerance: float) -> ParabolicPoints:
     return ParabolicPoints(tuple(curves), (), merged(boxes), bool(flat.all()))
 
 
-def _of_surface(
-    surface: Surface, tolerance: float, panels: tuple[int, int] | None
-) -> ParabolicPoints:
-    field = field_of(surface, panels)
+def points_of_field(surface: Surface, field: CurvatureField, tolerance: float) -> ParabolicPoints:
+    """Return the parabolic points of a surface with this field of K; see `parabolic_points`."""
     extent = np.array([high - low for low, high in surface.domain])
     polylines, places, boxes, flat = search(field, 0.125 * tolerance * extent)
     unresolved = field.share(field.unresolved)
@@ -242,15 +256,15 @@ def _of_surface(
     grid = surface.evaluate(*np.meshgrid(*(np.linspace(*ends, 17) for ends in surface.domain)))
     scale = scale_to_one(float(np.ptp(grid, axis=(0, 1)).max()))
     size = tolerance * _size(grid.reshape(-1, 3) * scale)
-    limits = _limits(surface)
     curves = []
     for uv, closed in polylines:
         finer = refined(
             uv,
             lambda x: scale * _evaluated(surface, x),
             size,
-            lambda x: np.clip(_onto_curve(field, x), *limits),
+            lambda x: near_zeros(surface, field, x),
         )
+        finer = onto_zeros(surface, field, finer)
         curves.append(ParabolicCurve(finer, _evaluated(surface, finer), closed))
     isolated = map(ParabolicPoint, places, _evaluated(surface, places), boxes)
     return ParabolicPoints(tuple(curves), tuple(isolated), flat, bool(field.flat.all()))
@@ -259,14 +273,48 @@ def _of_surface(
 # --- places on the curves K = 0 -------------------------------------------------------------------
 
 
-def _onto_curve(field: CurvatureField, places: Array) -> Array:
-    """Move places (k, 2) along the gradient of K to where it vanishes, by Newton steps."""
+def near_zeros(surface: Surface, field: CurvatureField, places: Array) -> Array:
+    """Move places (k, 2) along the gradient of the field to where it vanishes, by Newton steps."""
     for _ in range(NEWTON_STEPS):
         K, slope = field.evaluate(places), field.gradient(places)
         square = np.einsum("kx,kx->k", slope, slope)
         step = np.divide(K, square, out=np.zeros_like(K), where=square > 0.0)
         places = places - step[:, None] * slope
-    return places
+    return np.clip(places, *_limits(surface))
+
+
+def onto_zeros(surface: Surface, field: CurvatureField, places: Array) -> Array:
+    """Move places (k, 2) close to curves K = 0 onto them, as far as the derivatives are exact.
+
+    They move along the gradient of the field, by chord steps from one difference of K; those on the
+    border of the domain along the border. Places without such a zero near by, as crossings and
+    singular points, stay.
+    """
+    if surface.differences is not None:  # the field is as accurate
+        return places
+    extent = np.ptp(surface.domain, axis=1)
+    low, high = _limits(surface)
+    slope = field.gradient(places) * extent * ((low < places) & (places < high))
+    with np.errstate(all="ignore"):
+        along = extent * slope / np.linalg.norm(slope, axis=1, keepdims=True)
+        K = curvature(surface, places)
+        rate = (curvature(surface, places + STEP * along) - K) / STEP
+        moved, share = places, np.zeros(len(places))
+        for _ in range(CHORD_STEPS):
+            share -= K / rate
+            moved = places + share[:, None] * along
+            K = curvature(surface, moved)
+        near = np.abs(share) <= STEP
+    inside = ((low <= moved) & (moved <= high)).all(axis=1)
+    return np.where((near & inside)[:, None], moved, places)
+
+
+def curvature(surface: Surface, places: Array) -> Array:
+    """Return K (k,) of a surface at parameters (k, 2), which may lie beyond a periodic end."""
+    u, v = places.T
+    jets = surface.jets(*brought_inside(u, v, surface.domain, surface.boundary))
+    K = python_function(formulas.gaussian_curvature_of_derivatives)
+    return K(*(vector(jets[:, k]) for k in range(1, 6)))
 
 
 # --- arguments and evaluation ---------------------------------------------------------------------
@@ -274,11 +322,8 @@ def _onto_curve(field: CurvatureField, places: Array) -> Array:
 
 def _evaluated(surface: Surface | Spline, uv: Array) -> Array:
     """Return the points (k, 3) at parameters (k, 2), which may lie beyond a periodic end."""
-    inside = uv.copy()
-    for axis, ((low, high), ends) in enumerate(zip(surface.domain, surface.boundary, strict=True)):
-        if ends[0] == "periodic":
-            inside[:, axis] = low + np.mod(inside[:, axis] - low, high - low)
-    return surface.evaluate(inside[:, 0], inside[:, 1])
+    u, v = uv.T
+    return surface.evaluate(*brought_inside(u, v, surface.domain, surface.boundary))
 
 
 def _limits(surface: Surface) -> tuple[Array, Array]:
@@ -295,7 +340,8 @@ def _size(points: Array) -> float:
     return float(np.linalg.norm(np.ptp(points, axis=0)))
 
 
-def _tolerance(tolerance: float) -> float:
+def checked_tolerance(tolerance: float) -> float:
+    """Return a tolerance of curves; InputError if it is out of range."""
     try:
         value = as_float(tolerance)
     except TypeError:

@@ -190,6 +190,8 @@ def test_a_part_has_a_map(plates):
     assert (known.count(normals) == 3).all()
     assert (known.degree(normals) == 1).all()  # of the sphere; the torus has 0
     assert found.points.tobytes() == known.points(normals, threads=3).points.tobytes()
+    with pytest.raises(gm.GaussmapError, match=r"face\.surface"):
+        known.folds()
 
 
 def test_weights_add_up_to_the_areas(plates):

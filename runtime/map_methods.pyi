@@ -1,0 +1,6 @@
+"""The methods of `GaussMap` that rooms above the runtime define; `map_methods.py` loads them."""
+
+class Methods:
+    from ..tools.gauss_map.image_curves import border_image as border_image
+    from ..tools.gauss_map.image_curves import folds as folds
+    from ..tools.gauss_map.image_curves import margin as margin
