@@ -71,7 +71,7 @@ class GaussMap(Methods):
         self._surface, self._cells, self._on = named(surface), cells, on
         self._geometries = None
         if not isinstance(self._surface, Whole):
-            self._geometries = geometries_of(self._surface, cells, on)
+            self._geometries = geometries_of(self._surface, cells, on, indexed=True)
 
     @property
     def surface(self) -> Surface | Spline | Whole[Samples]:

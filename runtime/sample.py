@@ -271,7 +271,9 @@ def unwarned(
         raise InputError("edges=True is for CAD parts; other surfaces have no sharp edges.")
     asked, surface, number = surface, named(surface), checked_dtype(dtype)
     place = place_of_samples(surface, on)
-    wanted = checked_fields(fields, place == "surface", grid=request.density == "aligned")
+    may_be_proved = place == "surface" and request.density == "gauss" and request.count is None
+    has = {"surface": place == "surface", "grid": request.density == "aligned"}
+    wanted = checked_fields(fields, **has, proved=may_be_proved)
     memory = {} if out is None else out.arrays()
     if request.count is not None:
         check_memory(request.cost, request.count, bytes_of(wanted, number))
@@ -279,6 +281,8 @@ def unwarned(
         make = geometries_of if request.normals is None else kept_geometries
         geometries = make(asked, cells, on)
     geometries = [x.used(number, threads, memory) for x in geometries]
+    if may_be_proved and (len(geometries) > 1 or geometries[0].index is None):
+        wanted = checked_fields(fields, **has)
     if request.density != "gauss" or len(geometries) > 1:
         known = geometries[0].surface if len(geometries) == 1 else surface
         known = known if isinstance(known, Surface) and place == "surface" else None

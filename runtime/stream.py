@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from .base.checks import whole_number, yes_or_no
 from .base.errors import InputError
 from .base.threads import over_ranges, shown
+from .density.at_normals import samples_at
 from .density.chosen_normals import choose
 from .density.on_pieces import geometries_of, kept_geometries, pieces_to_sample
 from .place.on_spline import FieldsOfSamples, OnSpline
@@ -93,7 +94,8 @@ def sample_stream(
     """
     size = whole_number(chunk, "chunk")
     surface, number = named(surface), checked_dtype(dtype)
-    wanted = checked_fields(fields, place_of_samples(surface, on) == "surface")
+    is_on_surface = place_of_samples(surface, on) == "surface"
+    wanted = checked_fields(fields, is_on_surface, proved=is_on_surface)
     request = checked_request(normals, count, None, None, "gauss", 0, threads)
     if pieces := pieces_to_sample(surface):
         raise InputError(
@@ -104,6 +106,8 @@ def sample_stream(
         request = replace(request, normals=request.normals.copy())
     make = geometries_of if request.normals is None else kept_geometries
     geometry = make(surface, cells, on)[0].used(number, threads)
+    if geometry.index is None:
+        wanted = checked_fields(fields, is_on_surface)
     shows = yes_or_no(progress, "progress")
     return _Stream(geometry, request, size, wanted, number, shows).chunks()
 
@@ -119,6 +123,9 @@ class _Stream:
 
     def chunks(self) -> Generator[Samples, None, None]:
         """Yield the chunks of all blocks of normals, at least one, and warn at the end."""
+        if self.geometry.index is not None:
+            yield from self._proved_chunks()
+            return
         geometry, threads = self.geometry, self.geometry.threads
         chosen = choose(geometry, self.request.normals_or_count, self.progress)
         chosen, total = replace(chosen, found=None), len(chosen)  # frees the hits
@@ -145,6 +152,23 @@ class _Stream:
         report = replace(report, samples=came, developable_patches=flat.patches)
         warn_of(replace(report, unrefined=unrefined), self.request.count, stacklevel=3)
 
+    def _proved_chunks(self) -> Generator[Samples, None, None]:
+        """Yield the same of a proved search, whose samples are sorted by normal."""
+        chosen = choose(self.geometry, self.request.normals_or_count, self.progress)
+        total, came, report = len(chosen), 0, None
+        starts = range(0, total, NORMALS_AT_A_TIME)
+        for first in shown(iter(starts), len(starts), self.progress and len(starts) > 1):
+            normals = chosen.part(first, first + NORMALS_AT_A_TIME, self.geometry.threads)
+            block = replace(chosen, source=normals)
+            found = samples_at(self.geometry, block, self.fields, self.dtype, self.progress)[0]
+            for start in range(0, max(len(found), 1), self.size):
+                if start or len(found) or (first == starts[-1] and not came):
+                    part = found[start : start + self.size]
+                    yield _chunk(part, first, total, is_first=start == 0)
+            came, report = came + len(found), found.report
+        assert report is not None
+        warn_of(replace(report, samples=came), self.request.count, stacklevel=3)
+
     def _samples(self, found: FieldsOfSamples, start: int, report: SamplingReport) -> Samples:
         """Return a chunk; its normals are numbered from `start` on."""
         arrays = found.fields
@@ -152,6 +176,23 @@ class _Stream:
             arrays["normal_index"] = arrays["normal_index"] + start
         report = replace(report, samples=found.number, infinite_curvatures=count_infinite(arrays))
         return self.geometry.samples(arrays, report, found.unrefined)
+
+
+def _chunk(found: Samples, start: int, total: int, is_first: bool) -> Samples:
+    """Return a chunk of a block of normals from `start` on; the proof is in the first one."""
+    arrays, report = found.arrays(), found.report
+    if start and "normal_index" in arrays:
+        arrays["normal_index"] = arrays["normal_index"] + start
+    undecided = [x._replace(normal=x.normal + start) for x in report.undecided or ()]
+    report = replace(
+        report,
+        normals=total,
+        samples=len(found),
+        infinite_curvatures=count_infinite(arrays),
+        proved=report.proved if is_first else 0,
+        undecided=tuple(undecided) if is_first else (),
+    )
+    return replace(found, **arrays, report=report)
 
 
 @dataclass

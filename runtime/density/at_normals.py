@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any, NamedTuple
 
@@ -14,11 +14,13 @@ from numpy.typing import DTypeLike, NDArray
 
 from ..base.errors import GaussmapError, GaussmapWarning
 from ..place.on_spline import OnSpline
+from ..place.proved import proved_samples
 from ..samples.fields import ARRAY_NAMES_ON_SURFACE, dtype_of, row_shape
 from ..samples.report import sampling_report
 from ..samples.samples import Samples
 from ..search.bins import NormalBins
-from ..search.search import find
+from ..search.proved import ProvedIndex
+from ..search.search import developable_patches, find
 from ..spline.developable import curved_solid_angle
 from .chosen_normals import NORMALS_PER_SAMPLE, Chosen, choose
 from .fibonacci_lattice import Lattice
@@ -186,6 +188,8 @@ def samples_at(
 ) -> tuple[Samples, Array]:
     """Return the samples at chosen normals, with the fields that are requested, and these."""
     threads = geometry.threads
+    if geometry.index is not None and not isinstance(chosen.source, Lattice):
+        return _proved(geometry, geometry.index, chosen, fields, dtype)
     bins, hits = chosen.found or (NormalBins(chosen.part(0, len(chosen), threads), threads), None)
     if hits is None:
         hits = find(geometry.spline, bins, threads, progress)
@@ -194,6 +198,31 @@ def samples_at(
         geometry, len(bins.normals), found.number, chosen.density, hits.developable, found.fields
     )
     return geometry.samples(found.fields, report, found.unrefined), bins.normals
+
+
+def _proved(
+    geometry: OnSpline,
+    index: ProvedIndex,
+    chosen: Chosen,
+    fields: Sequence[str],
+    dtype: DTypeLike,
+) -> tuple[Samples, Array]:
+    """Return all points of a surface at prescribed normals, and these."""
+    normals, threads = chosen.part(0, len(chosen), geometry.threads), geometry.threads
+    assert geometry.surface is not None
+    found, proof = proved_samples(
+        geometry.surface, geometry.spline, index, normals, fields, dtype, threads
+    )
+    report = sampling_report(
+        geometry,
+        len(normals),
+        found.number,
+        chosen.density,
+        developable_patches(geometry.spline, threads),
+        found.fields,
+    )
+    report = replace(report, **proof._asdict())
+    return geometry.samples(found.fields, report, found.unrefined), normals
 
 
 def _with_all_fields(geometry: OnSpline, chosen: Chosen, progress: bool) -> tuple[Samples, Array]:

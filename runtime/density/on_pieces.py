@@ -51,20 +51,23 @@ def pieces_to_sample(surface: object) -> tuple[Surface, ...]:
 
 
 def geometries_of(
-    surface: Surface | Spline | str, cells: Sequence[int] | None, on: str | None
+    surface: Surface | Spline | str,
+    cells: Sequence[int] | None,
+    on: str | None,
+    indexed: bool = False,
 ) -> tuple[OnSpline, ...]:
-    """Return what is sampled: one for each piece of a surface."""
+    """Return what is sampled: one for each piece of a surface. See `geometry_of`."""
     surface = named(surface)
     place_of_samples(surface, on)
     if isinstance(surface, Surface) and (pieces := pieces_to_sample(surface)):
-        return tuple(geometry_of(x, cells_of_piece(surface, x, cells), on) for x in pieces)
-    return (geometry_of(surface, cells, on),)
+        return tuple(geometry_of(x, cells_of_piece(surface, x, cells), on, indexed) for x in pieces)
+    return (geometry_of(surface, cells, on, indexed),)
 
 
 def kept_geometries(
     surface: Surface | Spline | str, cells: Sequence[int] | None, on: str | None
 ) -> tuple[OnSpline, ...]:
-    """Return the same as `geometries_of`, made once for the last few surfaces."""
+    """Return the same as `geometries_of`, indexed, made once for the last few surfaces."""
     if not isinstance(surface, Surface | Spline | str):
         return geometries_of(surface, cells, on)  # raises
     return _kept(surface, None if cells is None else pair_of_cells(cells), on)
@@ -74,7 +77,7 @@ def kept_geometries(
 def _kept(
     surface: Surface | Spline | str, cells: tuple[int, int] | None, on: str | None
 ) -> tuple[OnSpline, ...]:
-    return geometries_of(surface, cells, on)
+    return geometries_of(surface, cells, on, indexed=True)
 
 
 def cells_of_piece(

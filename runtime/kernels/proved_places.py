@@ -24,7 +24,16 @@ from .proved_cells import (
     third_sizes,
     write_patch,
 )  # fmt: skip
-from .proved_answers import BORDER, COLUMNS, CONTINUUM, DOUBLE_KIND, MULTIPLE, SINGULAR, add_open, add_place
+from .proved_answers import (
+    BORDER,
+    COLUMNS,
+    CONTINUUM,
+    DOUBLE_KIND,
+    MULTIPLE,
+    SINGULAR,
+    add_open,
+    add_place,
+)
 from .proved_clusters import cluster
 from .proved_folds import DOUBLE, NO_PLACE, at_fold
 from .proved_pairs import (

@@ -27,6 +27,7 @@ from ..samples.fields import FLOAT_NAMES, bytes_of, new_field
 from ..samples.report import SamplingReport
 from ..samples.samples import Samples
 from ..search.bins import NormalBins
+from ..search.proved import ProvedIndex
 from ..search.search import Hits, fill
 from ..spline.developable import CellMeasure
 from ..spline.inside import count_of, samples_inside, with_uv
@@ -60,7 +61,8 @@ class FieldsOfSamples(NamedTuple):
 class OnSpline:
     """A spline as what is sampled; `surface` is for `OnSurface`.
 
-    Samples at normals are written to the fields in `memory` that are large enough.
+    Samples at normals are written to the fields in `memory` that are large enough. With an `index`
+    of the surface, all points with prescribed normals are found there.
     """
 
     on: ClassVar[str] = "spline"
@@ -69,6 +71,7 @@ class OnSpline:
     threads: int | None = None
     surface: Surface | None = None
     memory: Mapping[str, NDArray[Any]] = field(default_factory=dict)
+    index: ProvedIndex | None = None
 
     def used(
         self,

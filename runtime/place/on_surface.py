@@ -27,6 +27,7 @@ from .moved_samples import as_fields, moved_samples, part_of
 from .newton import evaluate_on_surface
 from .on_spline import Array, Fields, FieldsOfSamples, OnSpline, grouped
 from .pole_charts import PoleChart, pole_charts
+from .proved import index_of
 from .repeats import kept_once, left_patch
 
 __all__ = ["OnSurface", "checked_place", "geometry_of", "place_of_samples"]
@@ -62,14 +63,20 @@ def checked_place(on: str | None) -> str | None:
     return None if on is None else known_name(on, PLACES, "place of samples")
 
 
-def geometry_of(surface: Surface | Spline, cells: Sequence[int] | None, on: str | None) -> OnSpline:
-    """Return what is sampled. Raises what `place_of_samples` and `spline_of` raise."""
+def geometry_of(
+    surface: Surface | Spline, cells: Sequence[int] | None, on: str | None, indexed: bool = False
+) -> OnSpline:
+    """Return what is sampled, with an index of the surface if it is `indexed` and can be.
+
+    Raises what `place_of_samples` and `spline_of` raise.
+    """
     place = place_of_samples(surface, on)
     spline = spline_of(surface, cells)
     if place == "surface" and isinstance(surface, Surface):
         if surface.boundary != spline.boundary:  # poles that the fit has found
             surface = replace(surface, boundary=spline.boundary)
-        return OnSurface(spline, surface=surface)
+        index = index_of(surface) if indexed else None
+        return OnSurface(spline, surface=surface, index=index)
     return OnSpline(spline)
 
 

@@ -27,6 +27,7 @@ __all__ = [
     "INDEX_NAMES",
     "INTEGER_NAMES",
     "PART_NAMES",
+    "PROVED_NAMES",
     "REAL_NAMES",
     "UNITS",
     "bytes_of",
@@ -63,6 +64,7 @@ FIELDS: dict[str, Field] = {
     "normal_index": Field(("normal_index",), kind="index"),
     "patch_index": Field(("patch_index",), kind="index"),
     "on_surface": Field(("on_surface",), kind="flag", only="surface"),
+    "uv_radius": Field(("u_radius", "v_radius"), "parameter", only="proved"),
     "row": Field(("row",), kind="index", only="grid"),
     "column": Field(("column",), kind="index", only="grid"),
     "face_index": Field(("face_index",), kind="index", only="part"),
@@ -74,6 +76,7 @@ FIELDS: dict[str, Field] = {
 # Which samples have fields that not all have.
 ONLY = {
     "surface": 'on the surface only; see on="surface"',
+    "proved": "at prescribed normals of surfaces with bounds of their derivatives only",
     "grid": 'on a grid only; see density="aligned"',
     "part": "of CAD parts only; see gm.read_part",
     "edges": "of CAD parts with edges=True only",
@@ -90,7 +93,7 @@ def _of_kind(kind: str) -> tuple[str, ...]:
 
 COLUMNS = {name: x.columns for name, x in FIELDS.items()}
 UNITS = {name: x.unit for name, x in FIELDS.items() if x.unit}
-ARRAY_NAMES, FLAG_NAMES, GRID_NAMES, PART_NAMES, EDGE_NAMES = map(_only, ("", *ONLY))
+ARRAY_NAMES, FLAG_NAMES, PROVED_NAMES, GRID_NAMES, PART_NAMES, EDGE_NAMES = map(_only, ("", *ONLY))
 REAL_NAMES, INTEGER_NAMES = _of_kind("real"), _of_kind("index")
 FLOAT_NAMES = tuple(name for name in ARRAY_NAMES if name in REAL_NAMES)
 INDEX_NAMES = tuple(name for name in ARRAY_NAMES if name in INTEGER_NAMES)
@@ -154,21 +157,26 @@ def columns_of(arrays: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
 def checked_fields(
     fields: Sequence[str] | None,
     surface: bool = False,
+    proved: bool = False,
     grid: bool = False,
     part: bool = False,
     edges: bool = False,
 ) -> tuple[str, ...]:
     """Return the fields that are wanted, in the order of `COLUMNS`; None stands for all.
 
-    With `surface` they are for samples on the surface, with `grid` for those that may be on a grid,
-    with `part` for those of a CAD part, and with `edges` on its sharp edges, too. Raises
+    With `surface` they are for samples on the surface, with `proved` for those of a proved search,
+    with `grid` for those that may be on a grid, with `part` for those of a CAD part, and with
+    `edges` on its sharp edges, too. Raises
     UnknownNameError for an unknown name, InputError for what is no tuple of names, for no names,
     for a name that comes twice, and for one that is computed from fields.
     """
     from ..base.checks import known_name, listed
 
-    has = {"": True, "surface": surface, "grid": grid, "part": part, "edges": edges}
+    has = {
+        "": True, "surface": surface, "proved": proved, "grid": grid, "part": part, "edges": edges
+    }  # fmt: skip
     known = ARRAY_NAMES_ON_SURFACE if surface else ARRAY_NAMES
+    known += PROVED_NAMES if proved else ()
     known += GRID_NAMES if grid else ()
     if part:
         known = ARRAY_NAMES_OF_PART + (EDGE_NAMES if edges else ())

@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Protocol, SupportsIndex
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, SupportsIndex
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = [
     "PLACES",
     "SamplingReport",
+    "UndecidedNormal",
     "common_report",
     "count_infinite",
     "count_unrefined",
@@ -43,7 +44,7 @@ SHARE_ROUNDING = 1e-9
 PLACES = ("surface", "spline")
 COUNTS = (
     "normals", "patches", "developable_patches", "infinite_curvatures", "unrefined", "apexes",
-    "index", "faces", "empty_faces", "edge_samples",
+    "proved", "index", "faces", "empty_faces", "edge_samples",
 )  # fmt: skip
 DISTANCES = ("coverage", "angle", "fit_distance", "fit_rms", "fit_angle")
 
@@ -87,6 +88,43 @@ def _number(name: str, value: float) -> float:
         raise InputError(f"{name} must be a number, not {shown(value)}.") from None
 
 
+class UndecidedNormal(NamedTuple):
+    """A normal, and a box of parameters of which it is not known how many of its points it has.
+
+    Attributes
+    ----------
+    normal : int
+        The row of the normal.
+    box : (u0, u1, v0, v1) of float
+        The rectangle. All points outside of such boxes are known.
+    kind : {"double", "multiple", "continuum", "singular"}
+        "double": none or two, next to a fold, up to rounding. "multiple": a point where several may
+        meet. "continuum": a curve or a region with this normal, such as a ruling of a cylinder.
+        "singular": x_u × x_v may vanish.
+    border : bool
+        Whether the box reaches an open side of the domain.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> place = gm.sample("torus", normals=[[0, 0, 1]]).report.undecided[0]
+    >>> place.normal, place.kind, place.border, len(place.box)
+    (0, 'continuum', False, 4)
+
+    """
+
+    normal: int
+    box: tuple[float, float, float, float]
+    kind: str
+    border: bool
+
+    @classmethod
+    def of(cls, values: Sequence[Any]) -> UndecidedNormal:
+        """Return one from plain values, such as those of a file."""
+        normal, (u0, u1, v0, v1), kind, border = values
+        return cls(int(normal), (float(u0), float(u1), float(v0), float(v1)), str(kind), bool(border))
+
+
 # What makes plain values of the entries, and refuses others; only those of KNOWN are never None.
 KNOWN = ("surface", "samples")
 CHECKS: dict[str, Callable[[str, Any], Any]] = {
@@ -95,6 +133,7 @@ CHECKS: dict[str, Callable[[str, Any], Any]] = {
     **dict.fromkeys(DISTANCES, _distance),
     "developable_share": _share,
     "origin": lambda _, origin: checked_origin(origin),
+    "undecided": lambda _, places: tuple(UndecidedNormal.of(x) for x in places),
 }
 
 
@@ -137,6 +176,12 @@ class SamplingReport:
         With ``on="surface"``, the number of samples that are not on it (`Samples.on_surface` is
         False): those at prescribed normals that could not be moved from the spline to the point of
         the surface that has the normal, and others at singular points.
+    proved : int or None
+        The number of prescribed normals of which all points are known, with a proof; the others are
+        `undecided`. None where nothing is proved: on splines, and on surfaces whose derivatives
+        have no bounds.
+    undecided : tuple of UndecidedNormal, or None
+        Where further points of some normals may be: entries (normal, box, kind, border).
     fit_distance, fit_rms : float or None
         The largest distance of the spline from the surface, or from the data, that it approximates,
         and the root mean square of the distance; see `Spline.misfit`.
@@ -176,6 +221,9 @@ class SamplingReport:
     (True, True, True)
     >>> report.on, report.unrefined
     ('surface', 0)
+    >>> report = gm.sample("torus", normals=[[1, 0, 0], [0, 1, 1]]).report
+    >>> report.proved, report.undecided
+    (2, ())
     >>> report.faces, report.empty_faces, report.oriented  # not of a CAD part
     (None, None, None)
     >>> report.density is report.edge_samples is report.crs is report.origin is None
@@ -198,6 +246,8 @@ class SamplingReport:
     infinite_curvatures: int | None = None
     on: str | None = None
     unrefined: int | None = None
+    proved: int | None = None
+    undecided: tuple[UndecidedNormal, ...] | None = None
     fit_distance: float | None = None
     fit_rms: float | None = None
     fit_angle: float | None = None
@@ -334,6 +384,9 @@ def common_report(
     common["samples"] = len(next(iter(arrays.values())))
     common["infinite_curvatures"] = count_infinite(arrays)
     common["unrefined"] = count_unrefined(arrays)
+    if all(x.proved is not None and x.undecided is not None for x in reports):
+        common["proved"] = sum(x.proved or 0 for x in reports)
+        common["undecided"] = tuple(y for x in reports for y in x.undecided or ())
     return SamplingReport(**common)
 
 

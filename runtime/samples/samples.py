@@ -60,6 +60,9 @@ class Samples(SampleArrays, Methods):
         outside of its domain only. Its normal, K and H, with the sign of K, are then those of the
         spline, and not those of the surface at its `uv`, which may differ in everything. None with
         ``on="spline"``, or if it was not requested.
+    uv_radius : (N, 2) float64 array or None
+        Of points that are proved to be all with prescribed normals: how far the exact parameters
+        may be from `uv`. None for other samples.
     row, column : (N,) int64 array or None
         For samples on a grid (see ``density="aligned"`` of `sample`): the numbers of the lines
         v = const and u = const on which a sample is, from 0 upwards; −1 for one that is on no grid.

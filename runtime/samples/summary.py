@@ -26,6 +26,8 @@ def summary_of(samples: SampleArrays) -> str:
     line = f"{plural(len(samples), 'sample')}{_origin(samples)} ({split})"
     if len(samples) != report.samples:
         line = f"{len(samples):,} of {report.samples:,}" + line.removeprefix(f"{len(samples):,}")
+    if report.proved is not None and report.normals:
+        line += f"; complete: proved for {report.proved:,} of {plural(report.normals, 'normal')}"
     if report.angle is not None:
         line += f"; every normal is within {report.angle:.3g}° of that of a sample"
     if report.coverage is not None:

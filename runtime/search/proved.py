@@ -307,7 +307,9 @@ def _discs(
     for axis, ends in enumerate(boundary):
         row = (domain[axis][1] - domain[axis][0]) / cells[axis]
         for k, end in enumerate(ends):
-            disc = pole_disc(tape, domain, 1 - axis, domain[axis][k], row) if end == "pole" else None
+            disc = (
+                pole_disc(tape, domain, 1 - axis, domain[axis][k], row) if end == "pole" else None
+            )
             if disc is not None:
                 discs.append(disc)
                 inside[axis, k] += disc.radius if k == 0 else -disc.radius

@@ -26,7 +26,17 @@ from .bins import NormalBins, icosahedron
 from .cone_tree import ConeTree
 from .exact import decide
 
-__all__ = ["Hits", "PackedHits", "Search", "SearchResult", "fill", "fill_packed", "find", "merged"]
+__all__ = [
+    "Hits",
+    "PackedHits",
+    "Search",
+    "SearchResult",
+    "developable_patches",
+    "fill",
+    "fill_packed",
+    "find",
+    "merged",
+]
 
 # The number of patches of a range, which one thread searches. Each thread gets several ranges,
 # except on small surfaces.
@@ -204,11 +214,15 @@ class Search:
             return self.bins.normals
         return None if self.bins.frequency > 0 else self.bins.sorted[1]
 
+    def tree(self, threads: int | None) -> ConeTree:
+        """Return the tree of cones; it is kept with the spline."""
+        return kept(self.spline, ConeTree, lambda: ConeTree.of(self.coefficients, threads))
+
     def result_in_tree(self, threads: int | None) -> SearchResult:
-        """Return the hits of all patches, by the tree of cones; it is kept with the spline."""
-        tree = kept(self.spline, ConeTree, lambda: ConeTree.of(self.coefficients, threads))
+        """Return the hits of all patches, by the tree of cones."""
+        tree = self.tree(threads)
         certain, undecided = tree.search(self.bins.normals, threads)
-        developable = kept(self.spline, "developable", lambda: self.developable(tree.flat))
+        developable = developable_patches(self.spline, threads)
         bounds = tree.bounds[undecided >> 32]
 
         def rows(keys: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -286,6 +300,12 @@ class Search:
         normals = self.bins.normals[numbers]
         decision = decide(self.spline, patches, normals, numbers, forgiven, threads)
         return undecided[decision.which], decision.local
+
+
+def developable_patches(spline: Spline, threads: int | None) -> int:
+    """Return how many patches are developable, up to the rounding of their coordinates."""
+    search = Search(spline, NormalBins(np.eye(3)))
+    return kept(spline, "developable", lambda: search.developable(search.tree(threads).flat))
 
 
 def find(

@@ -103,10 +103,10 @@ class Tracing:
 
     def angles(self, normals: Array) -> Array:
         """Return the angles (S,), in radians, from normals to the image."""
-        from scipy.spatial import cKDTree
+        from scipy.spatial import KDTree
 
         uv, last = self.curve.uv, len(self.curve.uv) - 1
-        nearest = cKDTree(self.curve.normals).query(normals)[1]
+        nearest = KDTree(self.curve.normals).query(normals)[1]
         low, high = np.maximum(nearest - 1.0, 0.0), np.minimum(nearest + 1.0, last)
         apart = np.empty((PLACES, len(normals)))
         for _ in range(ROUNDS):
@@ -293,7 +293,7 @@ def _cusp_between(geometry: OnSpline, start: Array, end: Array, before: Array, o
         change, along = _change_of_curvature(geometry, place(share))
         return float(change[0] * np.sign(along[0] @ before))
 
-    return place(brentq(value, 0.0, 1.0, xtol=1e-12))[0]
+    return place(float(brentq(value, 0.0, 1.0, xtol=1e-12)))[0]  # pyright: ignore[reportArgumentType]
 
 
 def _change_of_curvature(geometry: OnSpline, uv: Array) -> tuple[Array, Array]:
