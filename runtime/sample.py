@@ -95,11 +95,10 @@ def sample(
         The numbers of cells of the spline along u and v, see `fit`. Pieces of a surface share them,
         in proportion to their parameters.
     on : {"surface", "spline"}, optional
-        Where samples are to lie. "surface": on the surface itself. A sample at a prescribed normal
-        is moved from the spline by Newton's method to the point whose normal is the prescribed one;
-        where there is none near by, it stays on the spline and is marked, see `Samples.on_surface`.
-        Others are evaluated at their parameters. "spline": on the spline. By default on the
-        surface, unless it is given by points or as a spline.
+        Where samples are to lie. "surface": on the surface itself. All points with prescribed
+        normals are found, with a proof, where the derivatives of the surface can be bounded;
+        elsewhere samples are moved from the spline by Newton's method, see Notes. "spline": on the
+        spline. By default on the surface, unless it is given by points or as a spline.
     fields : sequence of str, optional
         The arrays of `Samples` that are computed and stored, such as ``("points", "normals")``; all
         by default.
@@ -123,9 +122,10 @@ def sample(
     Returns
     -------
     Samples
-        The samples at normals, by patch and then by normal, and after them those that fill gaps:
-        their `kind` is "filling" and their `normal_index` −1. Those on a grid, of `kind` "grid",
-        come first. The report gives the angle and the
+        The samples at normals, and after them those that fill gaps: their `kind` is "filling" and
+        their `normal_index` −1. Those on a grid, of `kind` "grid", come first. Samples at normals
+        are in the order of their normals if they are proved to be all, else by patch and then by
+        normal. The report gives the angle and the
         coverage that were reached, if they were asked for.
 
     Raises
@@ -146,6 +146,7 @@ def sample(
     --------
     sample_many : the samples of several surfaces.
     sample_stream : samples in chunks, in bounded memory.
+    GaussMap : the points of one surface at normals, asked for often.
     Samples.coverage : the coverage of any samples.
 
     Notes
@@ -153,6 +154,16 @@ def sample(
     For ``density="balanced"``, κ is the larger principal curvature: neighbouring normals differ by
     about r, twice the angle. λ is 0.8 times the mean of κ²,
     or follows from `coverage`; with a count or a coverage, κ counts up to 20 √λ.
+
+    For prescribed normals the derivatives can be bounded of surfaces of the catalogue, of SymPy
+    expressions, of callables made of NumPy functions, and of affine images of these. The report
+    says for how many normals the points are `proved` to be all, and lists the others in
+    `undecided`; see `SamplingReport`. What is found out about the last eight surfaces is kept, so
+    that the function of a surface must return the same points each time; `GaussMap` keeps it as
+    long as it is wanted. On other surfaces, and at normals that were not prescribed, a sample is
+    moved from the spline to the point with its normal; where there is none near by, it stays on the
+    spline and is marked, see `Samples.on_surface`. Samples that fill gaps are evaluated at their
+    parameters.
 
     All faces of a part, and all smooth pieces of a surface, have one target density, and one count;
     angle and coverage hold for the whole. Pieces that are to have a tenth of all samples at normals

@@ -122,7 +122,8 @@ class UndecidedNormal(NamedTuple):
     def of(cls, values: Sequence[Any]) -> UndecidedNormal:
         """Return one from plain values, such as those of a file."""
         normal, (u0, u1, v0, v1), kind, border = values
-        return cls(int(normal), (float(u0), float(u1), float(v0), float(v1)), str(kind), bool(border))
+        box = float(u0), float(u1), float(v0), float(v1)
+        return cls(int(normal), box, str(kind), bool(border))
 
 
 # What makes plain values of the entries, and refuses others; only those of KNOWN are never None.
