@@ -129,7 +129,7 @@ def either(row, other, period):
 
 @loop
 def relation(row, other, period):
-    """Return 1 if another place is that of a row, 0 if it is another one, −1 if this is not known."""
+    """Return 1 if another place is that of a row, 0 if it is not, −1 if this is not known."""
     du = shift_to(other[0], 0.5 * (row[5] + row[6]), period[0])
     dv = shift_to(other[1], 0.5 * (row[7] + row[8]), period[1])
     u, v = other[0] + du, other[1] + dv

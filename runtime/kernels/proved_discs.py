@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from ...generated.patch import eliminated_forms
 from ..machine_code.jit import inline, jit, loop
-from .proved_answers import BORDER, COLUMNS, MULTIPLE, add_open
+from .proved_answers import BORDER, MULTIPLE, add_open
 from .proved_cells import EPS, linear_forms_of, patch_of
 from .proved_pairs import CLOSE, CONTRACTING
-from .tape import LANES, POINT, U, V, evaluate_points
+from .tape import POINT, U, V, evaluate_points
 from .vectors import row_vector
 
 __all__ = ["RINGS", "WHOLE", "Disc", "decide_discs"]
