@@ -33,7 +33,7 @@ __all__ = ["PoleDisc", "pole_disc"]
 
 Array = NDArray[np.float64]
 
-SECTORS = 128
+SECTORS = 512
 # Discs that are this many times smaller than a row of cells are tried.
 SMALLEST = 2.0**-8
 # The Hessian may change by this part of it in a disc.
