@@ -167,7 +167,7 @@ class _Stream:
                     yield _chunk(part, first, total, is_first=start == 0)
             came, report = came + len(found), found.report
         assert report is not None
-        warn_of(replace(report, samples=came), self.request.count, stacklevel=3)
+        warn_of(replace(report, samples=came), self.request.count, stacklevel=4)
 
     def _samples(self, found: FieldsOfSamples, start: int, report: SamplingReport) -> Samples:
         """Return a chunk; its normals are numbered from `start` on."""
@@ -192,7 +192,7 @@ def _chunk(found: Samples, start: int, total: int, is_first: bool) -> Samples:
         proved=report.proved if is_first else 0,
         undecided=tuple(undecided) if is_first else (),
     )
-    return replace(found, **arrays, report=report)
+    return Samples(**arrays, report=report, spline=found.spline, surface=found.surface)
 
 
 @dataclass

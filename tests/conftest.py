@@ -111,3 +111,13 @@ def parts() -> ModuleType:
     from gaussmap.tools.cad import examples
 
     return examples
+
+
+@pytest.fixture
+def unproved(monkeypatch: pytest.MonkeyPatch) -> None:
+    """All surfaces are those without bounds of derivatives: samples are moved from the spline."""
+    from gaussmap.runtime import sample, stream
+    from gaussmap.runtime.density.on_pieces import geometries_of
+
+    monkeypatch.setattr(sample, "kept_geometries", geometries_of)
+    monkeypatch.setattr(stream, "kept_geometries", geometries_of)

@@ -28,6 +28,9 @@ EXCEPTIONS = {
     "conftest.py": {
         "gaussmap.tools.commands.cli.main",  # the command line in this process
         "gaussmap.tools.cad.examples",  # parts, which else come from files only
+        "gaussmap.runtime.density.on_pieces.geometries_of",  # what is not proved
+        "gaussmap.runtime.sample",
+        "gaussmap.runtime.stream",
     },
     "test_any_argument.py": {"gaussmap.tools.cad.examples.box"},
 }

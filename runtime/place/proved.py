@@ -33,10 +33,12 @@ class Proof(NamedTuple):
 
 
 def index_of(surface: Surface, threads: int | None = None) -> ProvedIndex | None:
-    """Return the index of a surface; None if its derivatives have no bounds."""
+    """Return the index of a surface; None if its derivatives have no bounds, next to poles, too."""
     if surface.tape is None:
         return None
-    return ProvedIndex.of(surface.tape, surface.domain, surface.boundary, threads=threads)
+    index = ProvedIndex.of(surface.tape, surface.domain, surface.boundary, threads=threads)
+    poles = sum(end == "pole" for ends in surface.boundary for end in ends)
+    return index if len(index.discs) == poles else None
 
 
 def proved_samples(

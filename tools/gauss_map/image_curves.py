@@ -30,7 +30,7 @@ from .parabolic import (
     points_of_field,
 )
 from .parabolic_surface import field_of
-from .polylines import refined
+from .polylines import distances, refined
 
 __all__ = ["ImageCurve", "border_image", "folds", "margin"]
 
@@ -51,8 +51,8 @@ TOLERANCE = 1e-3
 # to each other, relative to their size, are closed.
 ON_BORDER, CLOSED = 1e-9, 1e-6
 # The nearest point of a curve is searched among this number of places, then among as many between
-# the neighbours of the nearest one, and so on.
-PLACES, ROUNDS = 9, 6
+# the neighbours of the nearest one, and so on; at last between these, on chords.
+PLACES, ROUNDS = 9, 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,20 +108,21 @@ class Tracing:
         uv, last = self.curve.uv, len(self.curve.uv) - 1
         nearest = KDTree(self.curve.normals).query(normals)[1]
         low, high = np.maximum(nearest - 1.0, 0.0), np.minimum(nearest + 1.0, last)
-        apart = np.empty((PLACES, len(normals)))
+        image = np.empty((PLACES, len(normals), 3))
         for _ in range(ROUNDS):
             places = np.linspace(low, high, PLACES)
             index = np.minimum(places.astype(np.int64), last - 1)
             chord = uv[index] + (places - index)[..., None] * (uv[index + 1] - uv[index])
-            _, found = _points_and_normals(self.geometry, self.onto(chord.reshape(-1, 2)))
-            chords = np.linalg.norm(found.reshape(*places.shape, 3) - normals, axis=2)
-            apart = 2.0 * np.arcsin(np.minimum(np.nan_to_num(chords, nan=2.0) / 2.0, 1.0))
+            found = _points_and_normals(self.geometry, self.onto(chord.reshape(-1, 2)))[1]
+            image = found.reshape(*places.shape, 3)
+            apart = np.nan_to_num(np.linalg.norm(image - normals, axis=2), nan=2.0)
             best = apart.argmin(axis=0)
             low, high = (
                 np.take_along_axis(places, np.clip(best + x, 0, PLACES - 1)[None], axis=0)[0]
                 for x in (-1, 1)
             )
-        return apart.min(axis=0)
+        sides = [distances(normals, *ends) for ends in pairwise(image)]
+        return 2.0 * np.arcsin(np.minimum(np.nanmin(sides, axis=0) / 2.0, 1.0))
 
 
 def folds(self: GaussMap, *, tolerance: float = 1e-4) -> tuple[ImageCurve, ...]:

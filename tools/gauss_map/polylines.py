@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Evaluation", "refined"]
+__all__ = ["Evaluation", "distances", "refined"]
 
 Array = NDArray[np.float64]
 Evaluation = Callable[[Array], Array]
@@ -28,7 +28,7 @@ def refined(uv: Array, evaluate: Evaluation, size: float, onto_curve: Evaluation
         longest = np.abs(along).max(axis=1)
         straight = start + 0.5 * along
         middle = onto_curve(straight)
-        height = _distance(evaluate(middle), evaluate(start), evaluate(uv[1:]))
+        height = distances(evaluate(middle), evaluate(start), evaluate(uv[1:]))
         near = np.abs(middle - straight).max(axis=1) <= longest
         cut = near & (height > size) & (size > 0.0)
         if not cut.any():
@@ -44,7 +44,7 @@ def refined(uv: Array, evaluate: Evaluation, size: float, onto_curve: Evaluation
     return uv
 
 
-def _distance(points: Array, start: Array, end: Array) -> Array:
+def distances(points: Array, start: Array, end: Array) -> Array:
     """Return the distances (k,) of points from segments."""
     along = end - start
     square = np.einsum("kx,kx->k", along, along)

@@ -123,6 +123,7 @@ def test_curvatures_of_a_sphere() -> None:
     np.testing.assert_allclose(samples.mean_curvature, 1.0, rtol=0.0, atol=1e-13)
 
 
+@pytest.mark.usefixtures("unproved")
 @pytest.mark.compiled
 def test_next_to_singular_points_normals_are_those_that_are_prescribed() -> None:
     """A spindle cyclide, with two conical points."""
@@ -331,6 +332,7 @@ CURVED: dict[str, tuple[gm.Surface, tuple[bool, bool]]] = {
 TWICE = [0.04430118180966494, 0.19546534701936175, -0.9797094994971047]
 
 
+@pytest.mark.usefixtures("unproved")
 @pytest.mark.compiled
 @pytest.mark.filterwarnings("ignore:.*could not be moved")
 @pytest.mark.parametrize("cells", [(20, 20), None])
@@ -353,6 +355,7 @@ def test_no_sample_of_a_normal_is_repeated(name: str, cells: tuple[int, int] | N
         np.testing.assert_array_equal(getattr(joined, field), getattr(on_surface, field))
 
 
+@pytest.mark.usefixtures("unproved")
 @pytest.mark.compiled
 @pytest.mark.filterwarnings("ignore:.*could not be moved")
 @pytest.mark.parametrize("cells", [8, 16])

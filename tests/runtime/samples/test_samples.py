@@ -14,6 +14,7 @@ from gaussmap.runtime.samples.fields import (
     EDGE_NAMES,
     GRID_NAMES,
     PART_NAMES,
+    PROVED_NAMES,
 )
 from gaussmap.runtime.samples.report import SamplingReport
 from gaussmap.runtime.samples.samples import Samples
@@ -52,7 +53,7 @@ def curved(K: object, H: object) -> Samples:
 
 class TestConstruction:
     def test_the_array_names_are_the_fields(self):
-        arrays = (*ARRAY_NAMES_ON_SURFACE, *GRID_NAMES, *PART_NAMES, *EDGE_NAMES)
+        arrays = (*ARRAY_NAMES_ON_SURFACE, *PROVED_NAMES, *GRID_NAMES, *PART_NAMES, *EDGE_NAMES)
         assert (*arrays, "report", "spline", "surface", "offset_of") == tuple(
             field.name for field in fields(Samples)
         )
@@ -178,6 +179,8 @@ class TestReport:
             "infinite_curvatures": np.int8(4),
             "on": "surface",
             "unrefined": np.uint8(2),
+            "proved": np.int16(0),
+            "undecided": [(np.int64(0), np.arange(4), np.str_("double"), np.bool_(True))],
             "fit_distance": np.float32(1),
             "fit_rms": np.int8(1),
             "fit_angle": np.float64(1),
@@ -193,9 +196,11 @@ class TestReport:
         }
         report = SamplingReport("s", *numbers, **more)
         assert [type(getattr(report, f.name)) for f in fields(report)] == [
-            str, int, int, int, float, int, float, float, int, str, int, float, float, float,
-            int, int, str, int, int, bool, int, str, tuple,
+            str, int, int, int, float, int, float, float, int, str, int, int, tuple,
+            float, float, float, int, int, str, int, int, bool, int, str, tuple,
         ]  # fmt: skip
+        assert report.undecided == ((0, (0.0, 1.0, 2.0, 3.0), "double", True),)
+        assert [type(x) for x in report.undecided[0]] == [int, tuple, str, bool]
 
     @pytest.mark.parametrize("name", ["normals", "samples", "patches", "developable_patches"])
     @pytest.mark.parametrize("bad", [-1, 1.5, "3"])
