@@ -8,6 +8,7 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from gaussmap.runtime.machine_code.jit import jit
 from gaussmap.tools.commands import warm
 from gaussmap.tools.commands.cli import main
 
@@ -62,7 +63,6 @@ def test_nothing_is_left_to_compile(tmp_path: Path, parts: ModuleType) -> None:
 def test_nothing_can_be_compiled(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(warm, "WORK", ())
     monkeypatch.setattr(warm.config, "DISABLE_JIT", 1)
     assert main(["warm"]) == 2
     assert "NUMBA_DISABLE_JIT is set" in capsys.readouterr().err
@@ -71,7 +71,6 @@ def test_nothing_can_be_compiled(
 def test_a_folder_that_cannot_be_written(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(warm, "WORK", ())
     monkeypatch.setattr(warm.config, "DISABLE_JIT", 0)
     monkeypatch.setattr(warm, "kept_folder", lambda: None)
     assert main(["warm"]) == 2
@@ -79,18 +78,21 @@ def test_a_folder_that_cannot_be_written(
 
 
 @pytest.mark.compiled
-def test_a_terminal_sees_what_is_done(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+def test_what_is_compiled_is_counted(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    def some_work() -> None:
-        assert warm.NOTICE.quiet
-
-    monkeypatch.setattr(warm, "WORK", (some_work,))
-    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    """A kernel whose machine code nobody has: one compilation, for the types on the list."""
+    kernel = jit(lambda array: array.size)
+    kernel.py_func.__qualname__ = f"of_{tmp_path.name}"
+    monkeypatch.setattr(warm.signatures, "read", lambda: {"kernel": [["float64 1 C"]]})
+    monkeypatch.setattr(warm, "kernel_named", lambda name: kernel)
     assert main(["warm"]) == 0
-    out, err = capsys.readouterr()
-    assert out == f"kernels in {warm.kept_folder()}: all were compiled already\n"
-    assert "some_work" in err
-    assert not warm.NOTICE.quiet
+    out = capsys.readouterr().out
+    assert out.startswith(f"kernels in {warm.kept_folder()}: 1 compiled in ")
+    assert [str(x) for x in kernel.nopython_signatures] == [
+        "(Array(float64, 1, 'C', False, aligned=True),) -> int64"
+    ]
+    assert main(["warm"]) == 0
+    assert capsys.readouterr().out.endswith(": all were compiled already\n")
     assert main(["warm", "--quiet"]) == 0
     assert capsys.readouterr() == ("", "")
