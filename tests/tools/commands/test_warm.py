@@ -5,10 +5,11 @@ import subprocess
 import sys
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
+import numba
 import numpy as np
 import pytest
-from gaussmap.runtime.machine_code.jit import jit
 from gaussmap.tools.commands import warm
 from gaussmap.tools.commands.cli import main
 
@@ -79,11 +80,10 @@ def test_a_folder_that_cannot_be_written(
 
 @pytest.mark.compiled
 def test_what_is_compiled_is_counted(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A kernel whose machine code nobody has: one compilation, for the types on the list."""
-    kernel = jit(lambda array: array.size)
-    kernel.py_func.__qualname__ = f"of_{tmp_path.name}"
+    """One compilation of a kernel whose machine code nobody has, for the types on the list."""
+    kernel: Any = numba.njit(lambda array: array.size)
     monkeypatch.setattr(warm.signatures, "read", lambda: {"kernel": [["float64 1 C"]]})
     monkeypatch.setattr(warm, "kernel_named", lambda name: kernel)
     assert main(["warm"]) == 0
