@@ -13,9 +13,8 @@ from ...runtime.base.threads import thread_count
 from ..files.paths import PathLike, checked_path
 from .folder import FILES, Settings, opened, parts_per_shard, remove_from
 from .inputs import Source, in_shards, inputs_of
-from .local import run_locally
 from .plan import Asked, Plan, limits_of
-from .running import Tally
+from .running import Tally, run_locally
 from .watching import Watch
 
 __all__ = ["make"]

@@ -10,6 +10,7 @@ import os
 import re
 import sys
 from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 from io import BufferedReader
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -18,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.base.errors import InputError
+from ...runtime.base.threads import over_ranges, thread_count
 from ...runtime.samples.fields import (
     ARRAY_NAMES,
     COLUMNS,
@@ -30,13 +32,12 @@ from ...runtime.samples.fields import (
 from ...runtime.samples.report import SamplingReport
 from ...runtime.samples.samples import Samples
 from .content import known_fields, lacks, report_from_json, report_to_json
-from .packed import append_rows, kept
 from .reading import UnusableError
 
 if TYPE_CHECKING:
     from ..meshes.mesh import Mesh
 
-__all__ = ["read_ply", "write_mesh_ply", "write_ply"]
+__all__ = ["append_rows", "kept", "read_ply", "write_mesh_ply", "write_ply"]
 
 # The names of types in the standard, the younger ones that some programs write, and two that are
 # in neither.
@@ -58,6 +59,9 @@ _LARGEST_HEADER = 1 << 20
 _LARGEST_INTEGER = 2**31 - 1
 # Rows that are unpacked at once: they fit into a cache.
 _ROWS = 4096
+# Rows that are packed at once: they fit into a cache.
+# Rows for which a thread of its own is worth while. More than four threads wait for the disk.
+FOR_A_THREAD, THREADS = 1 << 16, 4
 
 
 class _Element(NamedTuple):
@@ -219,3 +223,44 @@ def _report(text: str, samples: int) -> SamplingReport:
     if text:
         return report_from_json(text)
     return SamplingReport("an unknown surface", None, samples, None, None, None)
+
+
+def kept(array: NDArray[Any]) -> str:
+    """Return the type that numbers have in a file: there are no booleans, no 64-bit integers."""
+    return {"i8": "i4", "b1": "u1"}.get(array.dtype.str[1:], array.dtype.str[1:])
+
+
+def append_rows(path: Path, arrays: Mapping[str, NDArray[Any]]) -> None:
+    """Append row k of every array, (N,) or (N, d), to a file, for all k.
+
+    Threads write to parts of the file, each packing its next rows while others write.
+    """
+    count, offset = len(next(iter(arrays.values()))), path.stat().st_size
+    blocks = {name: _as_blocks(array) for name, array in arrays.items()}
+    workers = min(thread_count(None), THREADS, 1 + count // FOR_A_THREAD)
+    work = partial(_write_part, path, offset, blocks)
+    for _ in over_ranges(work, count, max(1, -(-count // workers)), workers):
+        pass
+
+
+def _as_blocks(array: NDArray[Any]) -> NDArray[Any]:
+    """Return rows whose bytes stay the same as one opaque entry each, which is copied faster."""
+    if array.ndim == 1 or kept(array) != array.dtype.str[1:]:
+        return array
+    array = np.ascontiguousarray(array)
+    return array.view(f"V{array.itemsize * array.shape[1]}")[:, 0]
+
+
+def _write_part(
+    path: Path, offset: int, blocks: Mapping[str, NDArray[Any]], first: int, last: int
+) -> None:
+    """Write the rows from `first` to `last`, of which row 0 is at `offset`."""
+    row = np.dtype([(name, kept(array), array.shape[1:]) for name, array in blocks.items()])
+    packed = np.empty(min(_ROWS, last - first), row)
+    with open(path, "r+b") as file:
+        file.seek(offset + first * row.itemsize)
+        for start in range(first, last, _ROWS):
+            part = packed[: last - start]
+            for name, array in blocks.items():
+                part[name] = array[start : start + len(part)]
+            file.write(part.data)

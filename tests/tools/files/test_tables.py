@@ -11,7 +11,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.samples.report import SamplingReport
-from gaussmap.tools.files import packed, tables
+from gaussmap.tools.files import ply, tables
 from gaussmap.tools.files.formats import check_samples_target
 
 BINARY = [".parquet", ".arrow", ".feather"]
@@ -155,8 +155,8 @@ def test_ply_by_several_threads(tmp_path, monkeypatch):
         report=SamplingReport("noise", 0, 10_007, 1, 0.0, 0),
     )
     samples.write(tmp_path / "one.ply")
-    monkeypatch.setattr(packed, "FOR_A_THREAD", 1000)
-    monkeypatch.setattr(packed, "thread_count", lambda _: 3)
+    monkeypatch.setattr(ply, "FOR_A_THREAD", 1000)
+    monkeypatch.setattr(ply, "thread_count", lambda _: 3)
     samples.write(tmp_path / "three.ply")
     assert (tmp_path / "one.ply").read_bytes() == (tmp_path / "three.ply").read_bytes()
     assert gm.read_samples(tmp_path / "three.ply").points.tobytes() == samples.points.tobytes()

@@ -20,7 +20,7 @@ from OCP.TopoDS import TopoDS
 from ..records import SHARP, EdgeRecord, FaceRecord
 from ..units import scaled_parameters
 from .p_curves import PCurve, curve_of
-from .shapes import Table, parts_of
+from .shapes import Key, parts_of
 from .solids import PlacedFace
 
 __all__ = ["sharp_edges"]
@@ -69,17 +69,12 @@ def _shared(
     placed: Sequence[PlacedFace], faces: Sequence[FaceRecord]
 ) -> Iterator[list[tuple[int, Any]]]:
     """Yield the edges that two usable faces share: of each face its place, and its edge."""
-    users: Table[list[tuple[int, Any]]] = Table()
-    every = []
+    users: dict[Key, list[tuple[int, Any]]] = {}
     for k, (face, record) in enumerate(zip(placed, faces, strict=True)):
         for edge in parts_of(face.sewn.Oriented(FORWARD), TopAbs_ShapeEnum.TopAbs_EDGE):
-            known = users.get(edge)
-            if known is None:
-                known = []
-                users.set(edge, known)
-                every.append(known)
-            known.append((-1 if record.reason else k, TopoDS.Edge(edge)))
-    for known in every:
+            user = -1 if record.reason else k, TopoDS.Edge(edge)
+            users.setdefault(Key(edge), []).append(user)
+    for known in users.values():
         if len(known) != 2 or known[0][0] == known[1][0] or min(known[0][0], known[1][0]) < 0:
             continue
         # Edges inside of a face, which bound nothing, have other orientations.
