@@ -11,11 +11,12 @@ import numpy as np
 from ...runtime.density.cells import Array, Flags, Indices
 from ...runtime.kernels.refine import evaluate_jets
 from .faces import own_parameters
-from .records import SHARP
 from .results import PartSpace
 
 __all__ = ["Edges", "Sides", "edges_of", "exact_places", "sides_at"]
 
+# Edges are sharp where the normals of their two faces differ by more than this, in degrees.
+SHARP = 1.0
 # Newton's method ends where the points on both faces are closer than this part of the part's size,
 # and has found a place if they are within so many times that.
 SAME, FOUND, MOST_ROUNDS = 1e-14, 1e3, 12
@@ -30,7 +31,7 @@ COLLAPSED, BEYOND = 1e10, 1e-12
 
 @dataclass(frozen=True, eq=False)
 class Edges:
-    """The sharp edges (E,) of a part: polylines of parameters.
+    """The edges (E,) between two faces of a part: polylines of parameters.
 
     The points of edge i are `points` (k, 4) from `starts`[i] to `starts`[i + 1]: u, v on the
     surfaces of the two `pieces` (E, 2) of a space.
@@ -57,7 +58,7 @@ class Edges:
 
 
 def edges_of(space: PartSpace) -> Edges:
-    """Return the sharp edges between the pieces of a space."""
+    """Return the edges between the pieces of a space."""
     arrays = space.pieces[0].face.part.arrays
     known = np.full(len(arrays["area"]), -1)
     known[[x.face.index for x in space.pieces]] = np.arange(len(space.pieces))

@@ -27,8 +27,8 @@ loop_points (k, 2), loop_point_starts (L + 1,) int64, face_loops (F + 1,) int64
     first point is not repeated. A point is inside by the even-odd rule over all loops of a face, in
     any turn; loops run along seams, so that u and v are not taken modulo the periods.
 edge_faces (E, 2) int64, edge_points (k, 4), edge_point_starts (E + 1,) int64
-    The sharp edges: two faces, whose normals differ by more than `records.SHARP` degrees somewhere,
-    and points along the edge, as u, v on the first and u, v on the second face.
+    The edges between two faces: these, and points along the edge, as u, v on the first and u, v on
+    the second face. (Version 0.1 has kept those only at which the normals differ.)
 
 A placement is the origin o and three orthonormal axes X, Y, Z, 12 numbers; Y may be −Z × X. With
 c = cos u X + sin u Y the surfaces are, as in Open CASCADE and STEP,

@@ -13,7 +13,7 @@ from ..damaged_step import LostFace, Source
 from ..inspection import BadFileError, faces_said
 from ..records import FaceRecord, Geometry, PartRecord
 from ..units import with_unit
-from .edges import sharp_edges
+from .edges import shared_edges
 from .faces import FaceReader
 from .files import read_file
 from .shapes import Key
@@ -47,7 +47,7 @@ def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
         )
     in_unit = unit or document.unit
     factor = METRES["mm"] / METRES[in_unit]
-    edges = sharp_edges(found.faces, faces, factor)
+    edges = shared_edges(found.faces, faces, factor)
     return PartRecord(
         name,
         in_unit,
