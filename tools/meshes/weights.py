@@ -27,22 +27,14 @@ SMALLEST = 1e-6
 
 
 def area_weights(samples: Samples, angle: float | None) -> Array:
-    """Return what `Samples.weights` returns."""
+    """Return what `Samples.weights` returns; areas at added vertices are of the nearest sample."""
     mesh = samples.mesh(angle=angle, prefer="normals")
     parts, triangles = _areas(mesh), mesh.triangles
-    is_sample = mesh.sample_index[triangles] >= 0
-    number = is_sample.sum(axis=1)
-    # The parts of added vertices go to the samples at the other corners.
-    added = np.where(is_sample, 0.0, parts).sum(axis=1) / np.maximum(number, 1)
-    shares = np.where(is_sample, parts + added[:, None], 0.0)
-    samples_of, parts_of = mesh.sample_index[triangles[is_sample]], shares[is_sample]
-    weights = np.zeros(len(samples))
-    np.add.at(weights, samples_of, parts_of)
-    lost = number == 0
-    if lost.any():
-        centroids = mesh.vertices[triangles[lost]].mean(axis=1)
-        weights += _nearest(samples.points, centroids, parts[lost].sum(axis=1))
-    return weights
+    owner, added = mesh.sample_index.copy(), np.flatnonzero(mesh.sample_index < 0)
+    if len(added):
+        scale = scale_to_one(float(np.abs(samples.points).max()))
+        owner[added] = tree_of(samples.points * scale).query(mesh.vertices[added] * scale)[1]
+    return np.bincount(owner[triangles].ravel(), parts.ravel(), len(samples)).astype(np.float64)
 
 
 def _areas(mesh: Mesh) -> Array:
@@ -84,10 +76,3 @@ def corner_areas(
         _, _, N = python_function(tangents)(patch, nodes[0], nodes[1])
         areas += np.linalg.norm(np.stack(N, axis=1), axis=1)[:, None] / 6.0 * nodes
     return areas
-
-
-def _nearest(points: Array, centroids: Array, areas: Array) -> Array:
-    """Return areas (N,): those at `centroids`, each added to the nearest of points (N, 3)."""
-    scale = scale_to_one(float(np.abs(points).max()))
-    nearest = tree_of(points * scale).query(centroids * scale)[1]
-    return np.bincount(nearest, areas, minlength=len(points)).astype(np.float64)
