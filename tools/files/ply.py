@@ -10,16 +10,14 @@ import os
 import re
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from functools import partial
 from io import BufferedReader
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.base.errors import InputError
-from ...runtime.base.threads import over_ranges, thread_count
 from ...runtime.samples.fields import (
     ARRAY_NAMES,
     COLUMNS,
@@ -37,7 +35,7 @@ from .reading import UnusableError
 if TYPE_CHECKING:
     from ..meshes.mesh import Mesh
 
-__all__ = ["append_rows", "kept", "read_ply", "write_mesh_ply", "write_ply"]
+__all__ = ["read_ply", "write_mesh_ply", "write_ply"]
 
 # The names of types in the standard, the younger ones that some programs write, and two that are
 # in neither.
@@ -57,11 +55,8 @@ _FIELDS = "gaussmap fields "
 _CHUNK = 200
 _LARGEST_HEADER = 1 << 20
 _LARGEST_INTEGER = 2**31 - 1
-# Rows that are unpacked at once: they fit into a cache.
-_ROWS = 4096
-# Rows that are packed at once: they fit into a cache.
-# Rows for which a thread of its own is worth while. More than four threads wait for the disk.
-FOR_A_THREAD, THREADS = 1 << 16, 4
+# Rows that are packed and unpacked at once: they fit into a cache.
+ROWS = 4096
 
 
 class _Element(NamedTuple):
@@ -87,7 +82,7 @@ def write_ply(samples: Samples, path: Path) -> None:
         _check_narrow(name, column)
     with open(path, "wb") as file:
         file.writelines(_header(comments, columns))
-    append_rows(path, samples.arrays())
+        _write_rows(file, samples.arrays())
 
 
 def write_mesh_ply(mesh: Mesh, path: Path) -> None:
@@ -98,8 +93,8 @@ def write_mesh_ply(mesh: Mesh, path: Path) -> None:
     counts = np.full(len(mesh.triangles), 3, np.uint8)
     with open(path, "wb") as file:
         file.writelines(_header([], columns_of(arrays), len(mesh.triangles)))
-    append_rows(path, arrays)
-    append_rows(path, {"count": counts, "corners": mesh.triangles})
+        _write_rows(file, arrays)
+        _write_rows(file, {"count": counts, "corners": mesh.triangles})
 
 
 def read_ply(file: BufferedReader) -> Samples:
@@ -132,7 +127,7 @@ def _header(
         yield f"comment {comment}\n".encode()
     yield f"element vertex {len(columns['x'])}\n".encode()
     for name, column in columns.items():
-        yield f"property {_NAMES[kept(column)]} {name}\n".encode()
+        yield f"property {_NAMES[_kept(column)]} {name}\n".encode()
     if triangles is not None:
         yield f"element face {triangles}\nproperty list uchar int vertex_indices\n".encode()
     yield b"end_header\n"
@@ -210,8 +205,8 @@ def _fill(file: BufferedReader, row: np.dtype[Any], arrays: Mapping[str, NDArray
     """Read rows into the arrays of their columns."""
     columns = columns_of(arrays)
     count = len(next(iter(columns.values())))
-    block = np.empty(min(_ROWS, count), row)
-    for start in range(0, count, _ROWS):
+    block = np.empty(min(ROWS, count), row)
+    for start in range(0, count, ROWS):
         part = block[: count - start]
         if file.readinto(part.view(np.uint8).data) != part.nbytes:
             raise UnusableError("ends early; write it again.")
@@ -225,42 +220,18 @@ def _report(text: str, samples: int) -> SamplingReport:
     return SamplingReport("an unknown surface", None, samples, None, None, None)
 
 
-def kept(array: NDArray[Any]) -> str:
+def _kept(array: NDArray[Any]) -> str:
     """Return the type that numbers have in a file: there are no booleans, no 64-bit integers."""
     return {"i8": "i4", "b1": "u1"}.get(array.dtype.str[1:], array.dtype.str[1:])
 
 
-def append_rows(path: Path, arrays: Mapping[str, NDArray[Any]]) -> None:
-    """Append row k of every array, (N,) or (N, d), to a file, for all k.
-
-    Threads write to parts of the file, each packing its next rows while others write.
-    """
-    count, offset = len(next(iter(arrays.values()))), path.stat().st_size
-    blocks = {name: _as_blocks(array) for name, array in arrays.items()}
-    workers = min(thread_count(None), THREADS, 1 + count // FOR_A_THREAD)
-    work = partial(_write_part, path, offset, blocks)
-    for _ in over_ranges(work, count, max(1, -(-count // workers)), workers):
-        pass
-
-
-def _as_blocks(array: NDArray[Any]) -> NDArray[Any]:
-    """Return rows whose bytes stay the same as one opaque entry each, which is copied faster."""
-    if array.ndim == 1 or kept(array) != array.dtype.str[1:]:
-        return array
-    array = np.ascontiguousarray(array)
-    return array.view(f"V{array.itemsize * array.shape[1]}")[:, 0]
-
-
-def _write_part(
-    path: Path, offset: int, blocks: Mapping[str, NDArray[Any]], first: int, last: int
-) -> None:
-    """Write the rows from `first` to `last`, of which row 0 is at `offset`."""
-    row = np.dtype([(name, kept(array), array.shape[1:]) for name, array in blocks.items()])
-    packed = np.empty(min(_ROWS, last - first), row)
-    with open(path, "r+b") as file:
-        file.seek(offset + first * row.itemsize)
-        for start in range(first, last, _ROWS):
-            part = packed[: last - start]
-            for name, array in blocks.items():
-                part[name] = array[start : start + len(part)]
-            file.write(part.data)
+def _write_rows(file: BinaryIO, arrays: Mapping[str, NDArray[Any]]) -> None:
+    """Write row k of every array, (N,) or (N, d), for all k."""
+    count = len(next(iter(arrays.values())))
+    row = np.dtype([(name, _kept(array), array.shape[1:]) for name, array in arrays.items()])
+    packed = np.empty(min(ROWS, count), row)
+    for start in range(0, count, ROWS):
+        part = packed[: count - start]
+        for name, array in arrays.items():
+            part[name] = array[start : start + len(part)]
+        file.write(part.data)
