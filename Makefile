@@ -54,11 +54,10 @@ check-generated: $(READY) ## show a diff and fail if generated/ is stale
 compiled: $(DEMO) ## compile all kernels into compiled/, as for a wheel, unless they are there
 	$(BIN)/python -m gaussmap.runtime.machine_code.building
 
-# What `gaussmap warm` and the quick tests compile, from an empty folder.
+# What the quick tests compile, from an empty folder.
 LISTED := $(CURDIR)/out/kernels
 kernels: $(READY) ## list the kernels again that a wheel has (runtime/machine_code/signatures.json)
 	rm -rf $(LISTED)
-	GAUSSMAP_KERNELS=0 NUMBA_CACHE_DIR=$(LISTED) $(GAUSSMAP) warm
 	GAUSSMAP_KERNELS=0 NUMBA_CACHE_DIR=$(LISTED) $(MAKE) test
 	$(BIN)/python -m gaussmap.runtime.machine_code.listing --write $(LISTED)/kernels-*
 

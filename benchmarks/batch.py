@@ -17,7 +17,7 @@ from typing import Any
 
 import gaussmap as gm
 import numpy as np
-from gaussmap.tools.batch.arrow_tables import points_schema, points_table
+from gaussmap.tools.batch.data_files import points_schema, points_table
 from gaussmap.tools.batch.folder import MANIFEST, POINTS, Settings, create, parts_per_shard
 from gaussmap.tools.batch.inputs import in_shards, inputs_of
 from gaussmap.tools.batch.manifest import ManifestRow

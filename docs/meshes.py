@@ -23,8 +23,8 @@ from gaussmap.benchmarks.peers.triangles import (
 )
 from gaussmap.benchmarks.peers.untuned import Boss
 from gaussmap.docs.orders import code, listed, markdown, number, wrapped
-from gaussmap.tools.meshes.improvement import Prefer
 from gaussmap.tools.meshes.meshing import triangulated
+from gaussmap.tools.meshes.triangulated import Prefer
 from matplotlib.cbook import get_sample_data
 
 COUNTS = (2_000, 10_000)

@@ -7,6 +7,21 @@ from .vectors import Hessian, Vector, inline
 
 
 @inline
+def tangent_plane(n, x):
+    """The support function at the normal n of the point x: the distance of the tangent plane
+    from the origin.
+
+        h = n·x
+
+    Source: eqs. (2) and (4); 5 operations as written, 5 here.
+    """
+    n_x, n_y, n_z = n
+    x_x, x_y, x_z = x
+    h = n_x * x_x + n_y * x_y + n_z * x_z
+    return h
+
+
+@inline
 def intrinsic_gradient(dh, n):
     """The intrinsic gradient dh_S of a function on the unit sphere: the gradient dh of any
     extension of it, projected into the tangent plane of the sphere.

@@ -336,23 +336,3 @@ def branch(patch, normals, u_values, v_values, points, hessians, K_values, H_val
         hessians[row, 2, 2] = H_zz
         K_values[row] = K
         H_values[row] = H
-
-
-def tangent_plane(normals, points, h_values):
-    """The support function at the normal n of the point x: the distance of the tangent plane
-    from the origin.
-
-        h = n·x
-
-    Source: eqs. (2) and (4); 5 operations as written, 5 here.
-    Arrays: normals (k, 3), points (k, 3), h_values (k,).
-    """
-    for row in range(normals.shape[0]):
-        n_x = normals[row, 0]
-        n_y = normals[row, 1]
-        n_z = normals[row, 2]
-        x_x = points[row, 0]
-        x_y = points[row, 1]
-        x_z = points[row, 2]
-        h = n_x * x_x + n_y * x_y + n_z * x_z
-        h_values[row] = h

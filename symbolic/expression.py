@@ -1,4 +1,4 @@
-"""A support function h(n) that a user gives: from the expression to the source of its kernel."""
+"""A support function h(n) that a user gives: from the expression to a function of arrays."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from .envelope import (
     x,
 )
 from .formula import Formula, compose
-from .loops import row_loop
 from .notation import Definition, dot, flat, scalar
-from .printer import source_of
+from .printer import array_source_of, source_of
+from .simplify import straight_line
 
-__all__ = ["NORMAL", "is_homogeneous", "kernel_source"]
+__all__ = ["NORMAL", "array_function", "is_homogeneous"]
 
 NORMAL = n.components
 # Longer expressions are not proved to be homogeneous; the general formula serves them too.
@@ -35,21 +35,28 @@ ROUNDING = 1e-9  # relative to h
 GENERIC = sp.Rational(3, 7), sp.Rational(5, 11), sp.Rational(8, 13)
 
 
-def kernel_source(h: sp.Expr, domain: Boolean | bool = True) -> str:
-    """Return a Python module whose `evaluate` writes envelope and Hessian of h for many normals.
+def array_function(h: sp.Expr, domain: Boolean | bool = True) -> str:
+    """Return a Python module whose `evaluate` returns envelope and Hessian of h for many normals.
 
-    Its arguments are unit normals (k, 3), and what it fills: whether they lie in the domain (k,),
-    points (k, 3), Hessians (k, 3, 3).
+    Its arguments are the components of unit normals, arrays (k,). It returns whether they lie in
+    the domain, the components of the points, and the six entries of the Hessians, arrays (k,) or
+    constants.
 
     `h` and `domain` are in the real symbols n_x, n_y, n_z. Raises NotImplementedError for functions
     that `math` does not have, and for sums over an index.
     """
     if h.has(sp.Sum, sp.Product):
         raise NotImplementedError("sums and products over an index")
-    condition = f"inside[row] = {source_of(cast(sp.Expr, sp.sympify(domain)))}"
-    loop = row_loop(branch(_exact(h)), {"n": (n,)}, {"x": (x,), "hessian": ()}, condition)
-    body = textwrap.indent(loop, "    ")
-    return f"import math\n\n\ndef evaluate(normals, inside, points, hessians):\n{body}\n"
+    condition = cast(sp.Expr, sp.sympify(domain))
+    code = straight_line(branch(_exact(h))).assignments
+    for each in (condition, *(value for _, value in code)):
+        source_of(each)  # which raises NotImplementedError
+    lines = [f"{name} = {array_source_of(value)}" for name, value in code]
+    results = [array_source_of(condition), *map(str, (*x.components, *HESSIAN_SYMBOLS))]
+    body = textwrap.indent("\n".join([*lines, f"return {', '.join(results)}"]), "    ")
+    used = [f"import {x}" for x in ("functools", "numpy", "scipy.special") if f"{x}." in body]
+    head = f"def evaluate({', '.join(map(str, NORMAL))}):"
+    return "\n".join([*used, "\n", head, body, ""])
 
 
 def branch(h: sp.Expr) -> Formula:

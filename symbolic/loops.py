@@ -76,12 +76,12 @@ def jet_function(formula: Formula) -> str:
 
 
 def row_loop(
-    formula: Formula, inputs: Mapping[str, Symbols], outputs: Mapping[str, Symbols], *more: str
+    formula: Formula, inputs: Mapping[str, Symbols], outputs: Mapping[str, Symbols]
 ) -> str:
     """Return the loop that reads each row of the inputs, computes, and writes that of the outputs.
 
-    Inputs and outputs are named as arguments; `more` are statements after those that read. Raises
-    ValueError if the formula has a name that the loop needs itself.
+    Inputs and outputs are named as arguments. Raises ValueError if the formula has a name that the
+    loop needs itself.
     """
     taken = {"row", *map(_array, inputs), *map(_array, outputs)}
     names = {x.name for x, _ in straight_line(formula).assignments}
@@ -89,7 +89,6 @@ def row_loop(
         raise ValueError(f"{formula.name} and its loop both name {sorted(clash)}")
     lines = [
         *(f"{x} = {y}" for item in inputs.items() for x, y in _entries(*item)),
-        *more,
         *assignments(formula),
         *(f"{y} = {x}" for item in outputs.items() for x, y in _entries(*item)),
     ]

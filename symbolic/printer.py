@@ -11,10 +11,11 @@ from collections.abc import Iterable
 from typing import Any, cast
 
 import sympy as sp
+from sympy.printing.numpy import SciPyPrinter
 from sympy.printing.precedence import PRECEDENCE
 from sympy.printing.pycode import PythonCodePrinter
 
-__all__ = ["PositiveFirst", "operations", "source_of"]
+__all__ = ["PositiveFirst", "array_source_of", "operations", "source_of"]
 
 LONGEST_PRODUCT = 64  # higher powers are calls of `math.pow`
 
@@ -31,6 +32,8 @@ class PositiveFirst:
 
 class KernelPrinter(PositiveFirst, PythonCodePrinter):
     """Print without `**`, with integers as integers, so that integer arguments stay exact."""
+
+    power, root = "math.pow", "math.sqrt"
 
     def _print_Mul(self, expr: sp.Mul) -> str:
         coefficient, rest = expr.as_coeff_Mul()
@@ -61,9 +64,18 @@ class KernelPrinter(PositiveFirst, PythonCodePrinter):
         """Return a power whose exponent is not known to be negative as factors."""
         whole, half = divmod(exponent, 1)
         if not whole.is_Integer or half not in (0, sp.S.Half) or whole > LONGEST_PRODUCT:
-            return [f"math.pow({self._print(base)}, {self._print(exponent)})"]
-        roots = [f"math.sqrt({self._print(base)})"] if half else []
+            return [f"{self.power}({self._print(base)}, {self._print(exponent)})"]
+        roots = [f"{self.root}({self._print(base)})"] if half else []
         return [self.parenthesize(base, PRECEDENCE["Mul"])] * int(whole) + roots
+
+
+class ArrayPrinter(KernelPrinter, SciPyPrinter):
+    """Print the same for arrays, with the functions of NumPy and of `scipy.special`."""
+
+    power, root = "numpy.power", "numpy.sqrt"
+
+
+SETTINGS = {"fully_qualified_modules": True, "allow_unknown_functions": False}
 
 
 def _without_sign(exponent: sp.Expr) -> sp.Expr:
@@ -83,8 +95,15 @@ def source_of(expression: sp.Expr) -> str:
 
     Raises NotImplementedError for functions that `math` does not have.
     """
-    printer = KernelPrinter({"fully_qualified_modules": True, "allow_unknown_functions": False})
-    return cast(str, printer.doprint(expression))
+    return cast(str, KernelPrinter(SETTINGS).doprint(expression))
+
+
+def array_source_of(expression: sp.Expr) -> str:
+    """Return the expression as Python source for arrays of NumPy.
+
+    Raises NotImplementedError for functions that neither NumPy nor `scipy.special` has.
+    """
+    return cast(str, ArrayPrinter(SETTINGS).doprint(expression))
 
 
 def operations(expressions: Iterable[sp.Expr]) -> int:

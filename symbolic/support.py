@@ -197,7 +197,6 @@ LOOPS = {
     HESSIAN_AT_NORMAL: (n,),
     CURVATURE_AT_NORMAL: (n,),
     BRANCH: (n, scalar("u"), scalar("v")),
-    TANGENT_PLANE: (n, x),
 }
 
 FORMULAS = (

@@ -16,12 +16,18 @@ __all__ = [
     "bezier_triangle",
     "formula_page",
     "formulas",
-    "kernel_source",
     "latex_of",
     "normal_components",
     "reading",
     "tape_steps",
 ]
+
+
+def array_function(expression: Any, condition: Any = True) -> str:  # noqa: ANN401
+    """Return the Python source of the function of a support function; see `symbolic.expression`."""
+    from ...symbolic.expression import array_function
+
+    return array_function(expression, condition)
 
 
 def bezier_triangle(control_points: Sequence[Sequence[Any]]) -> BezierTriangle:
@@ -43,13 +49,6 @@ def formulas() -> Mapping[str, Formula]:
     from ...symbolic import formulas
 
     return formulas
-
-
-def kernel_source(expression: Any, condition: Any = True) -> str:  # noqa: ANN401
-    """Return the Python source of the kernel of a support function; see `symbolic.expression`."""
-    from ...symbolic.expression import kernel_source
-
-    return kernel_source(expression, condition)
 
 
 def latex_of(expression: Any) -> str:  # noqa: ANN401

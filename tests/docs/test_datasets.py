@@ -6,7 +6,7 @@ from pathlib import Path
 import gaussmap as gm
 import pytest
 from gaussmap.runtime.samples.fields import COLUMNS, EDGE_NAMES, FLOAT_NAMES, UNITS
-from gaussmap.tools.batch.arrow_tables import points_schema, points_table
+from gaussmap.tools.batch.data_files import points_schema, points_table
 from gaussmap.tools.batch.folder import Settings, create, parts_per_shard
 from gaussmap.tools.batch.manifest import COLUMNS as MANIFEST
 from gaussmap.tools.batch.manifest import ManifestRow, manifest_schema

@@ -188,7 +188,7 @@ def test_each_call_of_a_kernel_is_listed(path):
          "patch.support_function, support_function.support_function"),
         ("curvature", "Part of", "sample, curvature_at, branch, curvature_at_normal"),
         ("hessian_at", "Kernels", "support.hessians_of_patches"),
-        ("tangent_plane", "Kernels", "support.support_values"),  # compiled as it is
+        ("branch", "Kernels", "support.branches_of_patch"),  # compiled as it is
     ],
 )  # fmt: skip
 def test_uses(name, key, value):

@@ -25,7 +25,6 @@ from .dataset import Dataset, open_dataset
 from .inputs import Source
 from .making import make
 from .plan import CODEC, SECONDS, asked_of, stored
-from .watching import Watch
 
 __all__ = ["sample_many"]
 
@@ -257,7 +256,7 @@ def sample_many(
         scheduler=scheduler,
         time_limit=time_limit,
         memory_limit=memory_limit,
-        watch=Watch(seen(shows)),
+        how={"disable": not seen(shows)},
         overwrite=yes_or_no(overwrite, "overwrite"),
         again=yes_or_no(retry_failed, "retry_failed"),
     )

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import atexit
+import signal
 import threading
-from collections.abc import Generator, Iterable, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
@@ -20,7 +22,7 @@ from .plan import Plan
 from .serving import Task
 from .shards import Shard
 
-__all__ = ["Tally", "run", "run_shard", "use"]
+__all__ = ["Tally", "run", "run_locally", "run_shard", "use"]
 
 # How often a part is tried that fails.
 ATTEMPTS = 2
@@ -156,3 +158,36 @@ def _known(plan: Plan, part: Input, before: ManifestRow | None) -> str:
         return "" if plan.again else before.content
     file = plan.file(part)
     return before.content if file is None or file.exists() else ""
+
+
+def run_locally(
+    plan: Plan, shards: Iterable[tuple[int, Sequence[Input]]], workers: int
+) -> Generator[Tally]:
+    """Yield what became of each shard, when it is finished.
+
+    Each worker is a process, and a thread here that waits for it. Closing the iterator, errors and
+    Ctrl-C end all processes.
+    """
+    children = [Child(plan.limits) for _ in range(workers)]
+    free = iter(children)
+    pool = ThreadPoolExecutor(workers, "gaussmap-batch", lambda: use(next(free)))
+    try:
+        yield from run(plan, shards, pool, workers)
+    finally:
+        with _without_ctrl_c():
+            for child in children:
+                child.end()
+            pool.shutdown(cancel_futures=True)
+
+
+@contextmanager
+def _without_ctrl_c() -> Iterator[None]:
+    """Let a second Ctrl-C not break off ending all processes, which takes a moment only."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, signal.SIG_DFL if before is None else before)

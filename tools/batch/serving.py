@@ -124,7 +124,7 @@ def _answers(task: Task) -> Iterator[dict[str, Any]]:
 def _written(task: Task, about: dict[str, Any], table: Any) -> dict[str, Any]:  # noqa: ANN401
     """Write the samples of a part, and return numbers of the manifest, or why that failed."""
     from ...runtime.base.errors import FileError
-    from .partial import write_part
+    from .shards import write_part
 
     plan = task.plan
     try:
@@ -136,7 +136,7 @@ def _written(task: Task, about: dict[str, Any], table: Any) -> dict[str, Any]:  
 
 def _source(task: Task) -> tuple[Any, str]:
     """Return the part, and what it is known by."""
-    from ..cad.part_files import is_part_file
+    from ..cad.inspection import is_part_file
     from ..files.numpy_files import array_file
     from ..sources.surface_of import surface_of
     from .inputs import content_of
@@ -163,7 +163,7 @@ def _sampled(source: Any, task: Task) -> tuple[dict[str, Any], Any]:  # noqa: AN
     from ...runtime.samples.fields import checked_fields
     from ..cad.part import Part
     from ..sources.surface_of import with_tolerance
-    from .arrow_tables import points_schema, points_table
+    from .data_files import points_schema, points_table
     from .plan import normals_in
 
     asked, settings = task.plan.asked, task.plan.settings

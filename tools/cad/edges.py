@@ -11,11 +11,12 @@ import numpy as np
 from ...runtime.density.cells import Array, Flags, Indices
 from ...runtime.kernels.refine import evaluate_jets
 from .faces import own_parameters
-from .records import SHARP
 from .results import PartSpace
 
 __all__ = ["Edges", "Sides", "edges_of", "exact_places", "sides_at"]
 
+# Edges are sharp where the normals of their two faces differ by more than this, in degrees.
+SHARP = 1.0
 # Newton's method ends where the points on both faces are closer than this part of the part's size,
 # and has found a place if they are within so many times that.
 SAME, FOUND, MOST_ROUNDS = 1e-14, 1e3, 12
@@ -30,7 +31,7 @@ COLLAPSED, BEYOND = 1e10, 1e-12
 
 @dataclass(frozen=True, eq=False)
 class Edges:
-    """The sharp edges (E,) of a part: polylines of parameters.
+    """The edges (E,) between two faces of a part: polylines of parameters.
 
     The points of edge i are `points` (k, 4) from `starts`[i] to `starts`[i + 1]: u, v on the
     surfaces of the two `pieces` (E, 2) of a space.
@@ -57,7 +58,7 @@ class Edges:
 
 
 def edges_of(space: PartSpace) -> Edges:
-    """Return the sharp edges between the pieces of a space."""
+    """Return the edges between the pieces of a space."""
     arrays = space.pieces[0].face.part.arrays
     known = np.full(len(arrays["area"]), -1)
     known[[x.face.index for x in space.pieces]] = np.arange(len(space.pieces))
@@ -137,34 +138,29 @@ class Sides:
 
 def sides_at(space: PartSpace, pieces: Indices, uv: Array) -> Sides:
     """Return what is known of both faces at places (M,)."""
-    order = np.argsort(pieces.ravel(), kind="stable")
-    owner, count = pieces.ravel()[order], len(order)
-    places, scales = _inside(space, owner, uv.reshape(-1, 2)[order]), np.array([space.unit, 1.0, 1])
-    vectors, normals = np.empty((count, 3, 3)), np.empty((count, 3))
-    K, H = np.empty(count), np.empty(count)
-    ends = np.flatnonzero(np.diff(owner, append=-1)) + 1
-    first = 0
-    for last in ends.tolist():
-        k, rows = int(owner[first]), slice(first, last)
+    owner = pieces.ravel()
+    places, scales = _inside(space, owner, uv.reshape(-1, 2)), np.array([space.unit, 1.0, 1.0])
+    vectors, normals = np.empty((len(owner), 3, 3)), np.empty((len(owner), 3))
+    curvatures = np.empty((len(owner), 2))
+    for k, rows in _grouped(owner):
         jets = space.pieces[k].surface.jets(*places[rows].T.copy())
         scales[1:] = space.sizes[k]
-        evaluate_jets(jets, scales, normals[rows], K[rows], H[rows])
-        vectors[rows] = jets[:, :3]
-        first = last
+        n, K, H = np.empty((len(rows), 3)), np.empty(len(rows)), np.empty(len(rows))
+        evaluate_jets(jets, scales, n, K, H)
+        vectors[rows], normals[rows] = jets[:, :3], n
+        curvatures[rows] = np.stack([K, H], axis=1)
     lengths = np.linalg.norm(vectors[:, 1:], axis=2) * space.sizes[owner]
     collapsed = lengths.min(axis=1) * COLLAPSED <= lengths.max(axis=1)
     balls = np.array([x.face.kind == "sphere" for x in space.pieces])
     normals[collapsed & ~balls[owner]] = 0.0
-    back = np.empty(count, dtype=np.int64)
-    back[order] = np.arange(count)
     return Sides(
         pieces,
-        places[back].reshape(-1, 4),
-        vectors[back, 0].reshape(-1, 2, 3),
-        vectors[back, 1:].reshape(-1, 2, 2, 3),
-        normals[back].reshape(-1, 2, 3),
-        np.stack([K, H], axis=1)[back].reshape(-1, 2, 2),
-        collapsed[back].reshape(-1, 2),
+        places.reshape(-1, 4),
+        vectors[:, 0].reshape(-1, 2, 3),
+        vectors[:, 1:].reshape(-1, 2, 2, 3),
+        normals.reshape(-1, 2, 3),
+        curvatures.reshape(-1, 2, 2),
+        collapsed.reshape(-1, 2),
     )
 
 

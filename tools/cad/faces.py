@@ -23,9 +23,8 @@ from ...runtime.surface.nurbs import Nurbs
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import CatalogueFunction
 from .nets import SAME_END, curve_of_net, nurbs_of_curve, nurbs_of_net, nurbs_over
-from .offset_surface import OffsetSurface
+from .offset_surface import OffsetSurface, Turned
 from .records import Geometry, Net
-from .turned import Turned
 
 __all__ = ["face_surface", "own_parameters"]
 

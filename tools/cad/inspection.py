@@ -1,5 +1,6 @@
-"""What kind of CAD file a file is, and whether it is whole: looked at before it is read.
+"""What kind of CAD file a file is, whether it is whole, and how many faces it says that it has.
 
+Files are looked at before they are read.
 Open CASCADE reads the beginning of a file that was cut off as if nothing were missing, and hangs on
 coordinates that are not finite.
 """
@@ -7,8 +8,22 @@ coordinates that are not finite.
 from __future__ import annotations
 
 import re
+import zipfile
+from pathlib import Path
 
-__all__ = ["HEAD", "NOT_FINITE", "TEXTS", "BadFileError", "checked_format", "format_of"]
+from ...runtime.base.advice import CAD_SUFFIXES
+from ..files.numpy_files import array_file
+
+__all__ = [
+    "HEAD",
+    "NOT_FINITE",
+    "TEXTS",
+    "BadFileError",
+    "checked_format",
+    "faces_said",
+    "format_of",
+    "is_part_file",
+]
 
 HEAD = 4096
 START_OF_STEP = re.compile(rb"(?<!END-)ISO-10303-21\s*;")
@@ -27,6 +42,14 @@ NOT_FINITE = {
 SHAPES = re.compile(rb"^TShapes (\d+)\s*$", re.MULTILINE)
 WHOLE = re.compile(rb"\s[-+]\d+ \d+[\s\d]*\Z")
 TEXTS = re.compile(rb"'[^']*'")
+SHELL = re.compile(
+    rb"\b(?:CLOSED_SHELL|OPEN_SHELL|CONNECTED_FACE_SET)\s*\(\s*'[^']*'\s*,\s*\(([^()]*)\)"
+)
+REFERENCE = re.compile(rb"#\d+")
+# The types of entities of IGES that are faces: bounded and trimmed surfaces, and faces of shells.
+IGES_FACES = (b"143", b"144", b"510")
+# Among the names of the arrays of a part that gaussmap saved.
+NAMES = {"about.npy", "face_loops.npy"}
 
 
 class BadFileError(Exception):
@@ -102,3 +125,39 @@ def _check_brep(content: bytes) -> None:
     whole = start is not None and WHOLE.search(content[-HEAD:])
     if start is None or not whole or content.count(b"*", start.end()) != int(start[1]):
         raise BadFileError("is truncated or damaged: it lacks shapes; save it again.")
+
+
+def faces_said(content: bytes, form: str) -> int:
+    """Return the number of faces in a file, each counted once; a smaller one if that is unsure."""
+    if form == "STEP":
+        return len({x for shell in SHELL.findall(content) for x in REFERENCE.findall(shell)})
+    if form == "IGES":
+        return sum(1 for x in _directory(content) if x[:8].strip() in IGES_FACES)
+    return 0
+
+
+def _directory(content: bytes) -> list[bytes]:
+    """Return the first line of each entity in the directory of an IGES file."""
+    return [x for x in content.splitlines() if x[72:73] == b"D"][::2]
+
+
+def is_part_file(source: str | None) -> bool:
+    """Say whether a text names a file that holds a part, by its suffix, beginning or arrays.
+
+    `read_cad` goes by the content of files, and takes any suffix.
+    """
+    if source is None:
+        return False
+    suffix = Path(source).suffix.lower()
+    if suffix in CAD_SUFFIXES:
+        return True
+    try:
+        if suffix != ".npz":
+            if not Path(source).is_file():
+                return False
+            with open(source, "rb") as file:
+                return format_of(file.read(HEAD)) is not None
+        with zipfile.ZipFile(array_file(source)) as archive:
+            return set(archive.namelist()) >= NAMES
+    except (OSError, ValueError, zipfile.BadZipFile):
+        return False

@@ -15,15 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated.differences import FIRST
+from ...runtime.base import compiling  # noqa: F401 - announces compilation on terminals
 from ...runtime.domain.domain import Domain
 from ...runtime.surface.cutting import Creased
 from ...runtime.surface.derivatives import Differentiable, nodes_between, shifts_inside, weighted
 from ...runtime.surface.moved import Moved
 from ...runtime.surface.nurbs import Nurbs
 from ..kernels import faces as kernels
-from .turned import Turned
 
-__all__ = ["OffsetSurface"]
+__all__ = ["OffsetSurface", "Turned"]
 
 Array = NDArray[np.float64]
 
@@ -33,6 +33,35 @@ NODES = np.arange(9)[:, None] - 4
 # Where the other surface has no normal, at a pole or an apex, it is taken at this part of the
 # domain from there.
 BESIDE = 1e-7
+
+
+@dataclass(frozen=True, eq=False)
+class Turned(Differentiable):
+    """The surface x(u,v) of a curve that is turned about the z axis by the angle u.
+
+    The curve is the line v = 0 of a NURBS, whose u is v here.
+    """
+
+    curve: Nurbs
+
+    def __call__(self, u: Array, v: Array) -> Array:
+        """Return the points (..., 3)."""
+        return self.jets(u.ravel(), v.ravel())[:, 0].reshape(*u.shape, 3)
+
+    def jets(self, u: Array, v: Array) -> Array:
+        """Return positions and derivatives (k, 6, 3)."""
+        jets, along = np.empty((len(u), 6, 3)), self.curve.jets(v, np.zeros(len(v)))[:, [0, 1, 3]]
+        kernels.revolve(np.ascontiguousarray(u), along, jets)
+        return jets
+
+    @property
+    def creases(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """No values of u, and the values of v where the curve is not smooth."""
+        return (), self.curve.creases[0]
+
+    def restricted(self, domain: Domain) -> Turned:
+        """Return a part of the surface, evaluated from inside where the curve is not smooth."""
+        return Turned(self.curve.restricted((domain[1], self.curve.domain[1])))
 
 
 @dataclass(frozen=True, eq=False)

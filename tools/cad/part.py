@@ -339,7 +339,7 @@ class Solid:
 
 def part_of(record: PartRecord) -> Part:
     """Return the part of records in memory, without checks."""
-    from .checked_arrays import about_of
+    from .saving import about_of
 
     arrays = packed(record)
     return Part(arrays, about_of(arrays))

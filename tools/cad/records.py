@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["KINDS", "SHARP", "EdgeRecord", "FaceRecord", "Geometry", "Net", "PartRecord"]
+__all__ = ["KINDS", "EdgeRecord", "FaceRecord", "Geometry", "Net", "PartRecord"]
 
 Array = NDArray[np.float64]
 
@@ -29,8 +29,6 @@ KINDS: dict[str, int] = {
     "offset": 1,
     "unknown": 0,
 }
-# Edges are sharp where the normals of their two faces differ by more than this, in degrees.
-SHARP = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +81,7 @@ class FaceRecord:
 
 @dataclass(frozen=True, eq=False)
 class EdgeRecord:
-    """A sharp edge between two faces: parameters (k, 4) along it, u and v on each of them."""
+    """An edge between two faces: parameters (k, 4) along it, u and v on each of them."""
 
     faces: tuple[int, int]
     parameters: Array

@@ -27,8 +27,8 @@ loop_points (k, 2), loop_point_starts (L + 1,) int64, face_loops (F + 1,) int64
     first point is not repeated. A point is inside by the even-odd rule over all loops of a face, in
     any turn; loops run along seams, so that u and v are not taken modulo the periods.
 edge_faces (E, 2) int64, edge_points (k, 4), edge_point_starts (E + 1,) int64
-    The sharp edges: two faces, whose normals differ by more than `records.SHARP` degrees somewhere,
-    and points along the edge, as u, v on the first and u, v on the second face.
+    The edges between two faces: these, and points along the edge, as u, v on the first and u, v on
+    the second face. (Version 0.1 has kept those only at which the normals differ.)
 
 A placement is the origin o and three orthonormal axes X, Y, Z, 12 numbers; Y may be −Z × X. With
 c = cos u X + sin u Y the surfaces are, as in Open CASCADE and STEP,
@@ -47,6 +47,7 @@ c = cos u X + sin u Y the surfaces are, as in Open CASCADE and STEP,
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from io import BufferedReader
 from typing import Any
@@ -57,15 +58,47 @@ from numpy.typing import NDArray
 from ..files.archives import archive_of
 from ..files.paths import PathLike, atomic_path, checked_path, known_suffix
 from ..files.reading import UnusableError, opened
-from .checked_arrays import checked_arrays, dtypes
-from .part_arrays import packed
-from .records import PartRecord
+from .part_arrays import FORMAT, VERSION, packed
+from .records import KINDS, PartRecord
 
-__all__ = ["read_arrays", "write_arrays", "write_record"]
+__all__ = ["about_of", "checked_arrays", "dtypes", "read_arrays", "write_arrays", "write_record"]
 
 SUFFIXES = (".npz",)
 # A part of 100,000 faces takes about 1 GB.
 MOST_BYTES = 4 << 30
+Arrays = dict[str, NDArray[Any]]
+
+# Of each array the letter of its type and its shape: letters are lengths that arrays share, "*" is
+# any length.
+SHAPES: dict[str, tuple[str, tuple[str | int, ...]]] = {
+    "about": ("B", ("*",)),
+    "reversed": ("?", ("F",)),
+    "area": ("d", ("F",)),
+    "solid_index": ("q", ("F",)),
+    "color": ("d", ("F", 3)),
+    "domain": ("d", ("F", 2, 2)),
+    "periods": ("d", ("F", 2)),
+    "kind": ("b", ("S",)),
+    "basis": ("q", ("S",)),
+    "net": ("q", ("S",)),
+    "numbers": ("d", ("*",)),
+    "number_starts": ("q", ("S+1",)),
+    "net_degrees": ("q", ("N", 2)),
+    "net_shapes": ("q", ("N", 2)),
+    "knots": ("d", ("*",)),
+    "knot_starts": ("q", ("N+1",)),
+    "net_points": ("d", ("*", 4)),
+    "net_point_starts": ("q", ("N+1",)),
+    "loop_points": ("d", ("*", 2)),
+    "loop_point_starts": ("q", ("L+1",)),
+    "face_loops": ("q", ("F+1",)),
+    "edge_faces": ("q", ("E", 2)),
+    "edge_points": ("d", ("*", 4)),
+    "edge_point_starts": ("q", ("E+1",)),
+}
+MOST_DEGREE = 25
+# Of faces that are not usable, with the others of the part left as they are.
+NOT_FINITE = "its numbers are not finite"
 
 
 def write_record(record: PartRecord, path: PathLike) -> None:
@@ -101,3 +134,142 @@ def _read(file: BufferedReader) -> tuple[dict[str, NDArray[Any]], dict[str, Any]
             raise UnusableError("says that it holds more than 4 GB, and is not read.")
         arrays = {name: archive.read(name) for name in dtypes()}
     return checked_arrays(arrays)
+
+
+def dtypes() -> tuple[str, ...]:
+    """Return the names of all arrays of a part, in the order of the file."""
+    return tuple(SHAPES)
+
+
+def about_of(arrays: Arrays) -> dict[str, Any]:
+    """Return what the array `about` says."""
+    return json.loads(arrays["about"].tobytes().decode())
+
+
+def checked_arrays(arrays: Arrays) -> tuple[Arrays, dict[str, Any]]:
+    """Return arrays and `about`, UnusableError unless they are those of a part.
+
+    A face whose numbers are not finite gets a reason: it has failed, and the others have not.
+    """
+    about = about_of(arrays)
+    if not isinstance(about, dict) or about.get("format") != FORMAT:
+        raise UnusableError("is no part that gaussmap saved.")
+    if about.get("version") != VERSION:
+        raise UnusableError("comes from another version of gaussmap; read the CAD file again.")
+    found = {name: _typed(name, arrays[name]) for name in SHAPES}
+    _check_lengths(found)
+    for starts, rows in (
+        ("number_starts", len(found["numbers"])),
+        ("knot_starts", len(found["knots"])),
+        ("net_point_starts", len(found["net_points"])),
+        ("loop_point_starts", len(found["loop_points"])),
+        ("edge_point_starts", len(found["edge_points"])),
+        ("face_loops", len(found["loop_point_starts"]) - 1),
+    ):
+        array = found[starts]
+        _require(array[0] == 0 and array[-1] == rows and (np.diff(array) >= 0).all(), starts)
+    _check_surfaces(found)
+    _check_nets(found)
+    faces = len(found["area"])
+    solids = max(len(about.get("solid_names", ())), 1) if faces else 0
+    _require(_within(found["solid_index"], -1, max(faces, solids)), "solid_index")
+    _require(_within(found["edge_faces"], 0, faces), "edge_faces")
+    return found, {**about, "reasons": {**_not_finite(found), **_texts(about, "reasons")}}
+
+
+def _typed(name: str, array: NDArray[Any]) -> NDArray[Any]:
+    letter, shape = SHAPES[name]
+    wanted = np.dtype(letter)
+    same = array.dtype.kind == wanted.kind and array.dtype.itemsize == wanted.itemsize
+    _require(same and array.ndim == len(shape), name)
+    return np.ascontiguousarray(array, dtype=wanted)
+
+
+def _check_lengths(arrays: Arrays) -> None:
+    lengths: dict[str, int] = {}
+    for name, (_, shape) in SHAPES.items():
+        for length, wanted in zip(arrays[name].shape, shape, strict=True):
+            if isinstance(wanted, int):
+                _require(length == wanted, name)
+            elif wanted != "*":
+                letter, more = wanted[0], wanted.endswith("+1")
+                _require(lengths.setdefault(letter, length - more) == length - more >= 0, name)
+    _require(lengths["F"] <= lengths["S"], "kind")
+
+
+def _check_surfaces(arrays: Arrays) -> None:
+    """Each surface has the numbers, the net and the basis that its kind needs."""
+    kind, net, basis = arrays["kind"], arrays["net"], arrays["basis"]
+    names, sizes = list(KINDS), np.array(list(KINDS.values()))
+    _require(_within(kind, 0, len(names)), "kind")
+    failed = kind == names.index("unknown")
+    _require((failed | (np.diff(arrays["number_starts"]) == sizes[kind])).all(), "numbers")
+    with_net = np.isin(kind, [names.index(x) for x in ("nurbs", "revolution", "extrusion")])
+    _require(_within(net, -1, len(arrays["net_shapes"])), "net")
+    _require((~with_net | (net >= 0)).all(), "net")
+    places = np.arange(len(kind))
+    # A basis comes later in the list than what needs it, so that none needs itself.
+    _require(((basis == -1) | ((basis > places) & (basis < len(kind)))).all(), "basis")
+    _require(((kind != names.index("offset")) | (basis >= 0)).all(), "basis")
+    curves = arrays["net_degrees"][:, 1] == 0
+    is_curve = np.where(net >= 0, np.append(curves, False)[net], False)
+    _require((~with_net | (is_curve == (kind != names.index("nurbs")))).all(), "net")
+
+
+def _check_nets(arrays: Arrays) -> None:
+    """Each NURBS has as many knots and control points as its degrees and shape say."""
+    degrees, shapes = arrays["net_degrees"], arrays["net_shapes"]
+    curves = degrees[:, 1] == 0
+    _require(_within(degrees[:, 0], 1, MOST_DEGREE + 1), "net_degrees")
+    _require(_within(degrees[:, 1], 0, MOST_DEGREE + 1), "net_degrees")
+    _require(_within(shapes, 1, 1 << 30) and (shapes[curves, 1] == 1).all(), "net_shapes")
+    along_u, along_v = (shapes + degrees + 1).T
+    _require((np.diff(arrays["net_point_starts"]) == shapes.prod(axis=1)).all(), "net_points")
+    wanted = along_u + np.where(curves, 0, along_v)
+    _require((np.diff(arrays["knot_starts"]) == wanted).all(), "knots")
+
+
+def _not_finite(arrays: Arrays) -> dict[str, str]:
+    """Return the faces that have numbers that are not finite, with the reason."""
+    faces, surfaces = len(arrays["area"]), len(arrays["kind"])
+    bad = np.zeros(surfaces, dtype=np.bool_)
+    bad |= _holds_bad(arrays["numbers"], arrays["number_starts"])
+    nets = _holds_bad(arrays["knots"], arrays["knot_starts"])
+    nets |= _holds_bad(arrays["net_points"], arrays["net_point_starts"])
+    bad |= np.append(nets, False)[arrays["net"]]
+    for k in np.flatnonzero(arrays["basis"] >= 0)[::-1].tolist():
+        bad[k] |= bad[arrays["basis"][k]]
+    loops = _holds_bad(arrays["loop_points"], arrays["loop_point_starts"])
+    of_face = bad[:faces] | _any_between(loops, arrays["face_loops"])
+    for name in ("area", "domain", "periods"):
+        of_face |= _bad_rows(arrays[name])
+    return dict.fromkeys(map(str, np.flatnonzero(of_face).tolist()), NOT_FINITE)
+
+
+def _holds_bad(rows: NDArray[Any], starts: NDArray[np.int64]) -> NDArray[np.bool_]:
+    return _any_between(_bad_rows(rows), starts)
+
+
+def _bad_rows(rows: NDArray[Any]) -> NDArray[np.bool_]:
+    return np.asarray(~np.isfinite(rows).all(axis=tuple(range(1, rows.ndim))))
+
+
+def _any_between(flags: NDArray[np.bool_], starts: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Return for each run starts[i]:starts[i + 1] of flags whether one of them is set."""
+    counts = np.concatenate([[0], np.cumsum(flags)])
+    return counts[starts[1:]] > counts[starts[:-1]]
+
+
+def _texts(about: dict[str, Any], name: str) -> dict[str, str]:
+    found = about.get(name, {})
+    _require(isinstance(found, dict), "about")
+    return {str(key): str(value) for key, value in found.items()}
+
+
+def _within(array: NDArray[Any], low: int, high: int) -> bool:
+    return bool(((array >= low) & (array < high)).all())
+
+
+def _require(holds: object, name: str) -> None:
+    if not holds:
+        raise UnusableError(f"is damaged: its array {name!r} is not what it should be; save again.")

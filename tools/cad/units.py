@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .records import FaceRecord, Geometry
 
@@ -30,7 +30,7 @@ def with_unit(face: FaceRecord, factor: float) -> FaceRecord:
     """Return a face whose lengths are multiplied, and its parameters where they are lengths."""
     if factor == 1.0:
         return face
-    scale = _of_parameters(face.geometry, factor)
+    scale = scaled_parameters(face.geometry, factor)
     return replace(
         face,
         geometry=_scaled(face.geometry, factor),
@@ -41,12 +41,8 @@ def with_unit(face: FaceRecord, factor: float) -> FaceRecord:
     )
 
 
-def scaled_parameters(geometry: Geometry, factor: float) -> Sequence[float]:
+def scaled_parameters(geometry: Geometry, factor: float) -> NDArray[np.float64]:
     """Return what u and v of a surface are multiplied with if lengths are with a factor."""
-    return _of_parameters(geometry, factor).tolist()
-
-
-def _of_parameters(geometry: Geometry, factor: float) -> np.ndarray:
     while geometry.basis is not None:
         geometry = geometry.basis
     return np.where(LENGTHS[geometry.kind][1], factor, 1.0)

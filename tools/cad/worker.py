@@ -37,8 +37,8 @@ def main(text: str) -> None:
 
 def _read(request: dict[str, str], folder: Path) -> str:
     """Write the part; return why it cannot be read, or nothing."""
+    from .damaged_step import prepared
     from .inspection import BadFileError
-    from .preparation import prepared
 
     try:  # before Open CASCADE is loaded, which takes a second
         source = prepared(Path(request["path"]), folder)

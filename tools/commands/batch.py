@@ -16,10 +16,9 @@ from ...runtime.base.errors import InputError
 from ...runtime.base.wording import plural
 from ...runtime.surface.surfaces import CATALOGUE
 from ..batch.inputs import Source
-from ..batch.making import make
+from ..batch.making import make, progress
 from ..batch.plan import SECONDS, asked_of, stored
 from ..batch.running import Tally
-from ..batch.watching import Watch, progress
 from ..sources.named import Named
 from ..sources.surface_of import surface_of
 from .console import say, table
@@ -53,7 +52,7 @@ def run(options: SimpleNamespace) -> None:
         scheduler=options.scheduler,
         time_limit=SECONDS if options.time_limit is None else options.time_limit,
         memory_limit=options.memory_limit,
-        watch=Watch() if options.quiet else progress(),
+        how={"disable": True} if options.quiet else progress(),
         overwrite=options.overwrite,
         again=options.retry_failed,
     )

@@ -5,8 +5,7 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 from ...runtime.base.progress import busy
-from ..pictures.plot import COUNT, plot_samples
-from ..pictures.to_file import check_target, write_figure
+from ..pictures.plot import COUNT, check_target, plot_samples, write_figure
 from .console import summarize
 from .inputs import sampled
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...runtime.base.errors import InputError
 from ...runtime.samples.fields import checked_fields
-from ..cad.part_files import is_part_file
+from ..cad.inspection import is_part_file
 from ..files.formats import check_fields, check_samples_target
 from .console import summarize
 from .inputs import sampled

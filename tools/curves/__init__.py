@@ -1,8 +1,7 @@
 """Planar curves (paper, Sect. 4.1): fitting, sampling by normals, polygons, support functions."""
 
 from .curve import Curve
-from .curve_samples import CurveReport, CurveSamples
-from .curve_sampling import sample
+from .curve_sampling import CurveReport, CurveSamples, sample
 from .curve_spline import CurveSpline
 from .curve_support import CurveBranches, SupportFunction
 from .fitting import fit

@@ -12,7 +12,6 @@ from io import BufferedReader
 from typing import Any
 
 import numpy as np
-from numpy.lib import format as npy
 from numpy.typing import NDArray
 
 from .reading import UnusableError
@@ -22,7 +21,6 @@ __all__ = ["Archive", "archive_of"]
 # An archive may unpack to so many bytes, or to so many times its own size. Arrays of numbers seldom
 # shrink to a tenth; those that are not compressed do not at all.
 HARMLESS, MOST_TIMES = 256 << 20, 100
-HEADERS = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
 
 
 class Archive:
@@ -37,29 +35,22 @@ class Archive:
 
     """
 
-    def __init__(self, archive: zipfile.ZipFile) -> None:
+    def __init__(self, archive: Any) -> None:  # noqa: ANN401 - NumPy's NpzFile
         self._archive = archive
-        self._members = {
-            member.filename.removesuffix(".npy"): member
-            for member in archive.infolist()
-            if member.filename.endswith(".npy")
-        }
-        self.names = tuple(self._members)
-        self.unpacked = sum(member.file_size for member in self._members.values())
+        entries = archive.zip.infolist()
+        names = [x.filename for x in entries if x.filename.endswith(".npy")]
+        self.names = tuple(x.removesuffix(".npy") for x in names)
+        self.unpacked = sum(x.file_size for x in entries)
 
     def read(self, name: str) -> NDArray[Any]:
         """Return an array; UnusableError if it holds no numbers, or not as many as it says."""
-        member = self._members[name]
-        with self._archive.open(member) as stream:
-            version = npy.read_magic(stream)
-            if version not in HEADERS:  # only arrays with fields of many names have a newer one
-                raise UnusableError(f"is damaged: {member.filename!r} is no array of numbers.")
-            shape, _, dtype = HEADERS[version](stream)
-            size = int(np.prod(shape, dtype=object)) * dtype.itemsize
-            if dtype.hasobject or size > member.file_size:
-                raise UnusableError(f"is damaged: {member.filename!r} is no array of numbers.")
-        with self._archive.open(member) as stream:
-            return npy.read_array(stream, allow_pickle=False)
+        try:
+            found = self._archive[f"{name}.npy"]
+        except (ValueError, MemoryError):  # of objects, and of shapes that are too large
+            found = None
+        if not isinstance(found, np.ndarray):
+            raise UnusableError(f"is damaged: '{name}.npy' is no array of numbers.")
+        return found
 
 
 @contextmanager
@@ -70,7 +61,7 @@ def archive_of(file: BufferedReader) -> Iterator[Archive]:
         raise UnusableError("is damaged or is no .npz file; write it again.")
     packed = file.seek(0, 2)
     file.seek(0)
-    with zipfile.ZipFile(file) as archive:
+    with np.lib.npyio.NpzFile(file, allow_pickle=False) as archive:
         arrays = Archive(archive)
         if arrays.unpacked > max(HARMLESS, MOST_TIMES * packed):
             raise UnusableError(

@@ -12,7 +12,7 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from io import BufferedReader
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +30,6 @@ from ...runtime.samples.fields import (
 from ...runtime.samples.report import SamplingReport
 from ...runtime.samples.samples import Samples
 from .content import known_fields, lacks, report_from_json, report_to_json
-from .packed import append_rows, kept
 from .reading import UnusableError
 
 if TYPE_CHECKING:
@@ -56,8 +55,8 @@ _FIELDS = "gaussmap fields "
 _CHUNK = 200
 _LARGEST_HEADER = 1 << 20
 _LARGEST_INTEGER = 2**31 - 1
-# Rows that are unpacked at once: they fit into a cache.
-_ROWS = 4096
+# Rows that are packed and unpacked at once: they fit into a cache.
+ROWS = 4096
 
 
 class _Element(NamedTuple):
@@ -83,7 +82,7 @@ def write_ply(samples: Samples, path: Path) -> None:
         _check_narrow(name, column)
     with open(path, "wb") as file:
         file.writelines(_header(comments, columns))
-    append_rows(path, samples.arrays())
+        _write_rows(file, samples.arrays())
 
 
 def write_mesh_ply(mesh: Mesh, path: Path) -> None:
@@ -94,8 +93,8 @@ def write_mesh_ply(mesh: Mesh, path: Path) -> None:
     counts = np.full(len(mesh.triangles), 3, np.uint8)
     with open(path, "wb") as file:
         file.writelines(_header([], columns_of(arrays), len(mesh.triangles)))
-    append_rows(path, arrays)
-    append_rows(path, {"count": counts, "corners": mesh.triangles})
+        _write_rows(file, arrays)
+        _write_rows(file, {"count": counts, "corners": mesh.triangles})
 
 
 def read_ply(file: BufferedReader) -> Samples:
@@ -128,7 +127,7 @@ def _header(
         yield f"comment {comment}\n".encode()
     yield f"element vertex {len(columns['x'])}\n".encode()
     for name, column in columns.items():
-        yield f"property {_NAMES[kept(column)]} {name}\n".encode()
+        yield f"property {_NAMES[_kept(column)]} {name}\n".encode()
     if triangles is not None:
         yield f"element face {triangles}\nproperty list uchar int vertex_indices\n".encode()
     yield b"end_header\n"
@@ -206,8 +205,8 @@ def _fill(file: BufferedReader, row: np.dtype[Any], arrays: Mapping[str, NDArray
     """Read rows into the arrays of their columns."""
     columns = columns_of(arrays)
     count = len(next(iter(columns.values())))
-    block = np.empty(min(_ROWS, count), row)
-    for start in range(0, count, _ROWS):
+    block = np.empty(min(ROWS, count), row)
+    for start in range(0, count, ROWS):
         part = block[: count - start]
         if file.readinto(part.view(np.uint8).data) != part.nbytes:
             raise UnusableError("ends early; write it again.")
@@ -219,3 +218,20 @@ def _report(text: str, samples: int) -> SamplingReport:
     if text:
         return report_from_json(text)
     return SamplingReport("an unknown surface", None, samples, None, None, None)
+
+
+def _kept(array: NDArray[Any]) -> str:
+    """Return the type that numbers have in a file: there are no booleans, no 64-bit integers."""
+    return {"i8": "i4", "b1": "u1"}.get(array.dtype.str[1:], array.dtype.str[1:])
+
+
+def _write_rows(file: BinaryIO, arrays: Mapping[str, NDArray[Any]]) -> None:
+    """Write row k of every array, (N,) or (N, d), for all k."""
+    count = len(next(iter(arrays.values())))
+    row = np.dtype([(name, _kept(array), array.shape[1:]) for name, array in arrays.items()])
+    packed = np.empty(min(ROWS, count), row)
+    for start in range(0, count, ROWS):
+        part = packed[: count - start]
+        for name, array in arrays.items():
+            part[name] = array[start : start + len(part)]
+        file.write(part.data)

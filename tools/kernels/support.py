@@ -1,4 +1,4 @@
-"""Support functions: the branches of patches at given normals, offsets, and curvatures.
+"""Support functions of patches: which normals they have, and their branches at given normals.
 
 A branch is one patch at one of its normals: the point, the Hessian of the support function, and the
 curvatures.
@@ -11,40 +11,24 @@ import math
 from ...generated import support_function
 from ...generated.patch import forms, parameters, tangents
 from ...generated.spline import SCALE
-from ...generated.support import (
-    curvature_from_hessian,
-    hessian_at,
-    offset,
-    offset_curvature,
-    offset_growth,
-    parameters_at,
-)
-from ...generated.vectors import Hessian, Vector
+from ...generated.support import hessian_at, parameters_at
+from ...generated.vectors import Vector
 from ...runtime.kernels.patch import patch_vectors, place_of
 from ...runtime.kernels.vectors import dot, length, row_vector
-from ...runtime.machine_code.jit import inline, jit
+from ...runtime.machine_code.jit import jit
 
 __all__ = [
     "DOUBTFUL",
     "INSIDE",
     "OUTSIDE",
-    "add_offset",
     "branches_of_patch",
     "classify",
-    "curvatures_from_hessians",
     "hessians_of_patches",
-    "offset_curvatures",
-    "support_values",
 ]
 
 OUTSIDE = 0
 INSIDE = 1
 DOUBTFUL = 2
-# A sum that is smaller than its terms by this factor suffers from cancellation.
-CANCELLED = math.ldexp(1.0, -20)
-
-
-# --- patches --------------------------------------------------------------------------------------
 
 # (patch, normals, u_values, v_values, points, hessians, K_values, H_values)
 branches_of_patch = jit(support_function.branch)
@@ -105,83 +89,3 @@ def hessians_of_patches(mu, scale, patches, normals, known, hessians):
         hessians[k, 0, 1] = hessians[k, 1, 0] = H.H_xy / size
         hessians[k, 0, 2] = hessians[k, 2, 0] = H.H_xz / size
         hessians[k, 1, 2] = hessians[k, 2, 1] = H.H_yz / size
-
-
-# --- any support function -------------------------------------------------------------------------
-
-# (normals, points, h_values)
-support_values = jit(support_function.tangent_plane)
-
-
-@inline
-def size_of_terms(K, H, R):
-    """Return the sum of the moduli of the terms of s = 1 + 2 R H + R² K."""
-    return 1.0 + 2.0 * abs(R * H) + abs(R * R * K)
-
-
-@jit
-def add_offset(R, normals, points, hessians, gaussian, mean, doubtful):
-    """Add a sphere of radius R to points and Hessians at unit normals (k, 3), change curvatures.
-
-    Where a radius of curvature was about 0, or becomes so, these are `doubtful` (k,).
-    """
-    for k in range(normals.shape[0]):
-        x, H = offset(R, row_vector(normals, k))
-        points[k, 0] += x.x
-        points[k, 1] += x.y
-        points[k, 2] += x.z
-        hessians[k, 0, 0] += H.H_xx
-        hessians[k, 1, 1] += H.H_yy
-        hessians[k, 2, 2] += H.H_zz
-        hessians[k, 0, 1] += H.H_xy
-        hessians[k, 1, 0] += H.H_xy
-        hessians[k, 0, 2] += H.H_xz
-        hessians[k, 2, 0] += H.H_xz
-        hessians[k, 1, 2] += H.H_yz
-        hessians[k, 2, 1] += H.H_yz
-        terms = size_of_terms(gaussian[k], mean[k], R)
-        s, K_offset, H_offset = offset_curvature(gaussian[k], mean[k], R)
-        gaussian[k] = K_offset
-        mean[k] = H_offset
-        doubtful[k] = not abs(s) > CANCELLED * terms
-
-
-@jit
-def offset_curvatures(R, rounding, gaussian, mean, folded):
-    """Change the curvatures (k,) to those of the offset, and write where R has passed a radius.
-
-    Where a radius becomes 0, up to the `rounding` of the sum that says so, Gaussian curvature is
-    infinite with its old sign (NaN if it was 0) and mean curvature NaN.
-    """
-    for k in range(gaussian.size):
-        K = gaussian[k]
-        H = mean[k]
-        _, K_offset, H_offset = offset_curvature(K, H, R)
-        s, m = offset_growth(K, H, R)
-        terms = size_of_terms(K, H, R)
-        vanishing = terms < math.inf and abs(s) <= rounding * terms
-        gaussian[k] = K * math.inf if vanishing else K_offset
-        mean[k] = math.nan if vanishing else H_offset
-        folded[k] = vanishing or s < 0.0 or m < 0.0
-
-
-@jit
-def curvatures_from_hessians(normals, hessians, radii, gaussian, mean):
-    """Write principal radii (k, 2), the larger one first, and curvatures (k,).
-
-    hessians (k, 3, 3) are those of the support function at unit normals (k, 3).
-    """
-    for k in range(normals.shape[0]):
-        hessian = Hessian(
-            hessians[k, 0, 0],
-            hessians[k, 1, 1],
-            hessians[k, 2, 2],
-            hessians[k, 0, 1],
-            hessians[k, 0, 2],
-            hessians[k, 1, 2],
-        )
-        m, _, S, K, H = curvature_from_hessian(row_vector(normals, k), hessian)
-        radii[k, 0] = m + math.sqrt(S)
-        radii[k, 1] = m - math.sqrt(S)
-        gaussian[k] = K
-        mean[k] = H

@@ -14,11 +14,10 @@ from ...runtime.domain.domain import Boundary
 from ...runtime.place.newton import evaluate_on_surface
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
-from .improvement import checked_prefer, flip_edges, improved
 from .links import neighbours
 from .mesh import Mesh
 from .places import apexes_of, boundary_of, uv_at
-from .triangulated import Triangulated, too_few
+from .triangulated import Triangulated, checked_prefer, flip_edges, improved, too_few
 from .triangulation import triangulations
 from .trimming import trimmed_triangles
 from .vertices import Vertices, before_offset, check_fields

@@ -7,16 +7,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ...generated.mesh import edge_over_surface
+from ...generated.patch import NODE, power_form, tangents
 from ...runtime.base.errors import SurfaceError
+from ...runtime.base.formula_calls import python_function, vector
 from ...runtime.base.scales import scale_to_one
 from ...runtime.base.trees import tree_of
-from ..kernels.areas import corner_areas
 from .mesh import Mesh, centred
 
 if TYPE_CHECKING:
     from ...runtime.samples.samples import Samples
 
-__all__ = ["area_weights"]
+__all__ = ["area_weights", "corner_areas"]
 
 Array = NDArray[np.float64]
 
@@ -25,29 +27,20 @@ SMALLEST = 1e-6
 
 
 def area_weights(samples: Samples, angle: float | None) -> Array:
-    """Return what `Samples.weights` returns."""
+    """Return what `Samples.weights` returns; areas at added vertices are of the nearest sample."""
     mesh = samples.mesh(angle=angle, prefer="normals")
     parts, triangles = _areas(mesh), mesh.triangles
-    is_sample = mesh.sample_index[triangles] >= 0
-    number = is_sample.sum(axis=1)
-    # The parts of added vertices go to the samples at the other corners.
-    added = np.where(is_sample, 0.0, parts).sum(axis=1) / np.maximum(number, 1)
-    shares = np.where(is_sample, parts + added[:, None], 0.0)
-    samples_of, parts_of = mesh.sample_index[triangles[is_sample]], shares[is_sample]
-    weights = np.zeros(len(samples))
-    np.add.at(weights, samples_of, parts_of)
-    lost = number == 0
-    if lost.any():
-        centroids = mesh.vertices[triangles[lost]].mean(axis=1)
-        weights += _nearest(samples.points, centroids, parts[lost].sum(axis=1))
-    return weights
+    owner, added = mesh.sample_index.copy(), np.flatnonzero(mesh.sample_index < 0)
+    if len(added):
+        scale = scale_to_one(float(np.abs(samples.points).max()))
+        owner[added] = tree_of(samples.points * scale).query(mesh.vertices[added] * scale)[1]
+    return np.bincount(owner[triangles].ravel(), parts.ravel(), len(samples)).astype(np.float64)
 
 
 def _areas(mesh: Mesh) -> Array:
     """Return the parts (T, 3) of the areas over triangles that belong to their corners."""
     points, scale = centred(mesh.vertices)
-    areas = np.empty(mesh.triangles.shape)
-    corner_areas(points * scale, mesh.normals, mesh.triangles, mesh.sides, areas)
+    areas = corner_areas(points * scale, mesh.normals, mesh.triangles, mesh.sides)
     least, limits = SMALLEST * float(areas.sum()) / len(areas), np.finfo(np.float64)
     with np.errstate(over="ignore", under="ignore"):
         smallest, total = least / scale / scale, float(areas.sum()) / scale / scale
@@ -59,8 +52,27 @@ def _areas(mesh: Mesh) -> Array:
     return areas / scale / scale
 
 
-def _nearest(points: Array, centroids: Array, areas: Array) -> Array:
-    """Return areas (N,): those at `centroids`, each added to the nearest of points (N, 3)."""
-    scale = scale_to_one(float(np.abs(points).max()))
-    nearest = tree_of(points * scale).query(centroids * scale)[1]
-    return np.bincount(nearest, areas, minlength=len(points)).astype(np.float64)
+def corner_areas(
+    points: Array, normals: Array, triangles: NDArray[np.int64], sides: NDArray[np.int64]
+) -> Array:
+    """Return the parts (k, 3) of the areas over triangles (k, 3) that belong to their corners.
+
+    The surface is a quadratic Bézier triangle, as perpendicular to the normals at the corners as
+    possible; its area belongs to the corners by barycentric coordinates. If two normals are more
+    than 90 degrees apart, the triangle is flat. `sides` (k, 3) are 1 or −1: the side of the surface
+    at a corner.
+    """
+    n = normals[triangles] * sides[..., None]
+    n[(np.einsum("kix,kix->ki", n, np.roll(n, 1, axis=1)) < 0.0).any(axis=1)] = 0.0
+    corners = [vector(points[triangles[:, k]]) for k in range(3)]
+    at_corners = [vector(n[:, k]) for k in range(3)]
+    middles = (
+        python_function(edge_over_surface)(corners[i], corners[j], at_corners[i], at_corners[j])
+        for i, j in ((0, 1), (0, 2), (1, 2))
+    )
+    patch = python_function(power_form)(*corners, *middles)
+    areas = np.zeros(triangles.shape)
+    for nodes in np.full((3, 3), NODE) + np.diag(np.full(3, 1.0 - 3.0 * NODE)):
+        _, _, N = python_function(tangents)(patch, nodes[0], nodes[1])
+        areas += np.linalg.norm(np.stack(N, axis=1), axis=1)[:, None] / 6.0 * nodes
+    return areas

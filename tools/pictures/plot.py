@@ -6,6 +6,7 @@ import textwrap
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,6 +22,7 @@ from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import named
 from ..cad.part import Part
+from ..files import paths
 from .colours import CURVATURE, checked_values, colours_of, draw_scale
 from .palette import PALE, STYLE
 from .scene import VIEW, Scene, scene_of_samples
@@ -32,7 +34,16 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["COUNT", "plot", "plot_part", "plot_samples", "style"]
+__all__ = [
+    "COUNT",
+    "SUFFIXES",
+    "check_target",
+    "plot",
+    "plot_part",
+    "plot_samples",
+    "style",
+    "write_figure",
+]
 
 COUNT = 2_000  # samples, if no number is given
 DOTS_PER_INCH = 200
@@ -40,6 +51,9 @@ LONGEST_LINE = 140  # letters of the summary
 # In inches: the size, the centres of both halves, and the heights of titles and legends.
 WIDTH, HEIGHT, MIDDLE, TITLES, LEGENDS = 9.0, 4.9, 2.45, 4.17, 0.56
 LEFT, RIGHT = 2.4, 6.8
+SUFFIXES = (".png", ".pdf", ".svg")
+FINE = 300  # dots per inch
+UNDATED = {".png": {}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
 
 
 def plot(
@@ -275,3 +289,22 @@ def _write(figure: Figure, x: float, y: float, text: str, **looks: Any) -> None:
 def _box(x: float, y: float, width: float, height: float) -> tuple[float, float, float, float]:
     """Return a rectangle, given by its centre and size in inches, in fractions of the figure."""
     return (x - width / 2) / WIDTH, (y - height / 2) / HEIGHT, width / WIDTH, height / HEIGHT
+
+
+def write_figure(figure: Figure, path: paths.PathLike) -> None:
+    """Write a figure to a .png, .pdf or .svg file, without its date: the same one, the same bytes.
+
+    Raises what `check_target` raises, and FileError if the file cannot be written.
+    """
+    check_target(path)
+    suffix = Path(path).suffix.lower()
+    with style(), paths.atomic_path(path) as temporary:
+        # In .pdf and .svg files, quadrangles are rasterized: finer than a screen shows them.
+        dots = figure.dpi if suffix == ".png" else FINE
+        figure.savefig(temporary, format=suffix[1:], metadata=UNDATED[suffix], dpi=dots)
+
+
+def check_target(path: paths.PathLike) -> None:
+    """Raise now what writing would raise later, for a path or if matplotlib is missing."""
+    paths.check_target(path, SUFFIXES)
+    check_extra("matplotlib", "plot", "a picture")

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from ...runtime.base.advice import CAD_SUFFIXES
 from ...runtime.base.errors import InputError
+from ..cad.inspection import is_part_file
 from ..cad.part import Part, read_part
-from ..cad.part_files import is_part_file
 from .named import Named
 
 __all__ = ["LIMITS", "read_part_file"]

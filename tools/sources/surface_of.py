@@ -11,8 +11,8 @@ from ...runtime.fitting.fit import fit
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import CATALOGUE, names, surface
+from ..cad.inspection import is_part_file
 from ..cad.part import Part
-from ..cad.part_files import is_part_file
 from ..files.numpy_files import array_file, is_array_file, read_array
 from .elevations import OF_TERRAIN, has_place, is_raster_file, read_raster_file, terrain_of_array
 from .named import Named

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...runtime.base import compiling  # noqa: F401 - announces compilation on terminals
+from ...generated import support as formulas
+from ...generated.vectors import Hessian
+from ...runtime.base.formula_calls import python_function, vector
 from ...runtime.base.scales import scales_to_one
-from ..kernels import support as kernels
 
 __all__ = ["Branches", "Sheets", "curvatures"]
 
@@ -109,8 +110,7 @@ class Sheets:
     def branches(self, normals: NDArray[np.float64]) -> Branches:
         """Return the branches at unit normals (S, 3)."""
         mine = normals[self.normal_index]
-        support = np.empty(len(mine))
-        kernels.support_values(mine, self.points, support)
+        support = python_function(formulas.tangent_plane)(vector(mine), vector(self.points))
         radii, _, _ = curvatures(mine, self.hessian)
         return Branches(
             self.normal_index, mine, support, self.points, self.hessian, radii,
@@ -122,10 +122,11 @@ def curvatures(
     normals: NDArray[np.float64], hessian: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Return principal radii (k, 2), Gaussian and mean curvature at unit normals (k, 3)."""
-    count = len(normals)
-    radii, gaussian, mean = np.empty((count, 2)), np.empty(count), np.empty(count)
     scale = scales_to_one(np.abs(hessian).max(axis=(1, 2)))  # whose determinants do not overflow
     scaled = hessian * scale[:, None, None]
-    kernels.curvatures_from_hessians(normals, scaled, radii, gaussian, mean)
-    with np.errstate(over="ignore", under="ignore"):
+    entries = Hessian(*scaled[:, [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]].T)
+    with np.errstate(all="ignore"):  # infinite curvatures and radii are valid
+        formula = python_function(formulas.curvature_from_hessian)
+        middle, _, square, gaussian, mean = formula(vector(normals), entries)
+        radii = np.stack([middle + np.sqrt(square), middle - np.sqrt(square)], axis=1)
         return radii / scale[:, None], gaussian * scale * scale, mean * scale

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from keyword import iskeyword
 from typing import TYPE_CHECKING, Any
 
@@ -14,19 +15,23 @@ from ...runtime.base import bridge
 from ...runtime.base.errors import InputError, clipped, shown
 from ...runtime.surface.expressions import as_condition, as_expression
 from .branches import Sheets, curvatures
-from .expression_kernel import kernel_of
 
 if TYPE_CHECKING:
     import sympy
 
 __all__ = ["ExpressionSource"]
 
+# Normals that are evaluated at a time: intermediate results stay in the cache.
+AT_A_TIME = 1 << 13
+# Where the entries of Hessians stand that functions return.
+ENTRIES = (0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)
+
 
 @dataclass(frozen=True, eq=False)
 class ExpressionSource:
     """A support function h in the real symbols n_x, n_y, n_z, where `condition` holds.
 
-    `source` is the Python source of its kernel.
+    `source` is the Python source of a function of NumPy, as `symbolic.expression` writes it.
     """
 
     h: sympy.Expr
@@ -44,7 +49,7 @@ class ExpressionSource:
                 f"h = {_short(expression)} is too long, or nested too deeply, to be differentiated."
             )
         try:
-            source = bridge.kernel_source(expression, condition)
+            source = bridge.array_function(expression, condition)
             compile(source, "<support function>", "exec")
         except (RecursionError, MemoryError, SyntaxError):  # SyntaxError: too many brackets
             raise InputError(
@@ -62,7 +67,14 @@ class ExpressionSource:
         count = len(normals)
         inside = np.empty(count, dtype=np.bool_)
         points, hessian = np.empty((count, 3)), np.empty((count, 3, 3))
-        kernel_of(self.source)(normals, inside, points, hessian)
+        for first in range(0, count, AT_A_TIME):
+            rows = slice(first, first + AT_A_TIME)
+            with np.errstate(all="ignore"):
+                inside[rows], *found = _function(self.source)(*normals[rows].T)
+            for k, values in enumerate(found[:3]):
+                points[rows, k] = values
+            for (i, j), values in zip(ENTRIES, found[3:], strict=True):
+                hessian[rows, i, j] = hessian[rows, j, i] = values
         rows = np.flatnonzero(inside & np.isfinite(points).all(axis=1))
         points, hessian = points[rows], hessian[rows]
         _, gaussian, mean = curvatures(normals[rows], hessian)
@@ -81,6 +93,13 @@ class ExpressionSource:
 
     def __str__(self) -> str:
         return f"h = {_short(self.h)}"
+
+
+@lru_cache(maxsize=128)
+def _function(source: str) -> Callable[..., Any]:
+    namespace: dict[str, Any] = {}
+    exec(compile(source, "<support function>", "exec"), namespace)
+    return namespace["evaluate"]
 
 
 def _names(normal: Sequence[Any]) -> list[str]:
@@ -136,7 +155,7 @@ def _culprits(*expressions: Any) -> str:  # noqa: ANN401 - SymPy has no types
 
     def is_unusable(part: Any) -> bool:  # noqa: ANN401
         try:
-            bridge.kernel_source(part)
+            bridge.array_function(part)
         except (NotImplementedError, ValueError, TypeError, AttributeError):
             return True
         return False

@@ -7,19 +7,20 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ...runtime.base import bridge
 from ...runtime.base.checks import finite_array, finite_number
-from ...runtime.base.errors import InputError
+from ...runtime.base.errors import InputError, shown
 from ...runtime.base.tolerances import ROTATION_ERROR
+from ...runtime.directions.unit import as_normals
 from ...runtime.fitting.fit import spline_of
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import named
-from .operations import Offset, Reversed, Rotated, Scaled, Sum, Translated
-from .sources import PatchSource, SplineSource
-from .values import SupportValues
+from .branches import Branches
+from .operations import Moved, Sum
+from .sources import PatchSource, Source, SplineSource
 
 if TYPE_CHECKING:
     import sympy
@@ -28,7 +29,7 @@ __all__ = ["SupportFunction"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SupportFunction(SupportValues):
+class SupportFunction:
     """A support function h(n): the distance from the origin of the tangent plane with normal n.
 
     Make one with `of_spline`, `of_patch` or `from_sympy`. Several points of a surface may have one
@@ -50,6 +51,15 @@ class SupportFunction(SupportValues):
     array([5.])
 
     """
+
+    _source: Source
+
+    def __post_init__(self) -> None:
+        if not hasattr(self._source, "sheets"):
+            raise InputError(
+                "make a SupportFunction by of_spline, of_patch or from_sympy, not of "
+                f"{shown(self._source)}."
+            )
 
     @classmethod
     def of_spline(
@@ -174,6 +184,143 @@ class SupportFunction(SupportValues):
 
         return cls(ExpressionSource.checked(h, normal, domain))
 
+    # --- values -----------------------------------------------------------------------------------
+
+    def branches(self, normals: ArrayLike) -> Branches:
+        """Return all branches at normals.
+
+        Parameters
+        ----------
+        normals : (S, 3) array_like
+            Directions of any length but 0.
+
+        Returns
+        -------
+        Branches
+            One row for each branch, by normal, then by patch.
+
+        Raises
+        ------
+        InputError
+            For normals that have another shape, are empty, zero, NaN or infinite.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.SupportFunction.of_spline("torus", (16, 16)).branches([[1, 0, 0], [0, 1, 1]])
+        Branches(2 elliptic, 2 hyperbolic)
+
+        """
+        return self._counted(normals)[0]
+
+    def sheets(self, normals: ArrayLike) -> NDArray[np.int64]:
+        """Return the number of branches at each normal.
+
+        Parameters
+        ----------
+        normals : (S, 3) array_like
+            Directions of any length but 0.
+
+        Returns
+        -------
+        (S,) int64 array
+            The numbers.
+
+        Raises
+        ------
+        InputError
+            As `branches`.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.SupportFunction.of_spline("sphere", (16, 16)).sheets([[1, 0, 0]])
+        array([1])
+
+        """
+        return self._counted(normals)[1]
+
+    def contains(self, normals: ArrayLike) -> NDArray[np.bool_]:
+        """Return which normals lie in the domain of h.
+
+        Parameters
+        ----------
+        normals : (S, 3) array_like
+            Directions of any length but 0.
+
+        Returns
+        -------
+        (S,) bool array
+            Whether a normal has a branch.
+
+        Raises
+        ------
+        InputError
+            As `branches`.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> h = gm.SupportFunction.from_sympy("1", domain="n_z > 0")
+        >>> h.contains([[0, 0, 1], [0, 0, -1]])
+        array([ True, False])
+
+        """
+        return self.sheets(normals) > 0
+
+    def envelope(self, normals: ArrayLike) -> NDArray[np.float64]:
+        """Return the points x(n) of the envelope (5) at normals with one branch or none.
+
+        Parameters
+        ----------
+        normals : (S, 3) array_like
+            Directions of any length but 0.
+
+        Returns
+        -------
+        (S, 3) float64 array
+            The points; NaN outside the domain.
+
+        Raises
+        ------
+        InputError
+            If a normal has several branches (`branches` returns all of them), and as `branches`.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> h = gm.SupportFunction.from_sympy("sqrt(4*n_x**2 + n_y**2 + n_z**2)")
+        >>> h.envelope([[3, 0, 0]])
+        array([[2., 0., 0.]])
+
+        """
+        return self._single_valued(normals, "points")
+
+    def __call__(self, normals: ArrayLike) -> NDArray[np.float64]:
+        """Return h(n/|n|), (S,), NaN outside the domain; errors as in `envelope`."""
+        return self._single_valued(normals, "support")
+
+    def _counted(self, normals: ArrayLike) -> tuple[Branches, NDArray[np.int64]]:
+        """Return all branches, and their number at each normal."""
+        directions = as_normals(normals)
+        with np.errstate(all="ignore"):  # infinite curvatures and radii are valid
+            sheets = self._source.sheets(directions)
+        counts = np.bincount(sheets.normal_index, minlength=len(directions))
+        return sheets.branches(directions), counts.astype(np.int64)
+
+    def _single_valued(self, normals: ArrayLike, field: str) -> NDArray[np.float64]:
+        """Return a field of the branches, NaN without one; InputError for several of a normal."""
+        branches, counts = self._counted(normals)
+        if counts.max() > 1:
+            worst = int(np.argmax(counts > 1))
+            raise InputError(
+                f"normals[{worst}] has {counts[worst]} branches; branches(normals) returns them."
+            )
+        found = getattr(branches, field)
+        values = np.full((len(counts), *found.shape[1:]), np.nan)
+        values[branches.normal_index] = found
+        return values
+
     # --- operations -------------------------------------------------------------------------------
 
     def __add__(self, other: SupportFunction) -> SupportFunction:
@@ -215,7 +362,8 @@ class SupportFunction(SupportValues):
         array([1.5])
 
         """
-        return SupportFunction(Offset(self._source, finite_number(distance, "distance")))
+        d = finite_number(distance, "distance")
+        return self._moved(f"offset by {d:g}", distance=d)
 
     def translated(self, shift: ArrayLike) -> SupportFunction:
         """Return h + n·t: the surface of the points x + t.
@@ -242,7 +390,8 @@ class SupportFunction(SupportValues):
         array([3., 1.])
 
         """
-        return SupportFunction(Translated(self._source, finite_array(shift, (3,), "shift")))
+        t = finite_array(shift, (3,), "shift")
+        return self._moved(f"translated by {tuple(t.tolist())}", shift=t)
 
     def rotated(self, rotation: ArrayLike) -> SupportFunction:
         """Return h(Rᵀn): the surface of the points R x.
@@ -277,7 +426,7 @@ class SupportFunction(SupportValues):
             raise InputError("rotation must be an orthogonal matrix: R Rᵀ is not the identity.")
         if np.linalg.det(R) < 0.0:
             raise InputError("rotation must have det R = 1; this one is a reflection.")
-        return SupportFunction(Rotated(self._source, R))
+        return self._moved("rotated", rotation=R)
 
     def scaled(self, factor: float) -> SupportFunction:
         """Return s h: the surface of the points s x.
@@ -310,7 +459,7 @@ class SupportFunction(SupportValues):
         s = finite_number(factor, "factor")
         if s == 0.0:
             raise InputError("factor must not be 0: the surface would shrink to a point.")
-        return SupportFunction(Scaled(self._source, s))
+        return self._moved(f"scaled by {s:g}", factor=s)
 
     def reversed(self) -> SupportFunction:
         """Return −h(−n): the same surface with the opposite orientation.
@@ -327,7 +476,10 @@ class SupportFunction(SupportValues):
         array([-1.])
 
         """
-        return SupportFunction(Reversed(self._source))
+        return self._moved("reversed", side=-1.0)
+
+    def _moved(self, text: str, **how: Any) -> SupportFunction:  # noqa: ANN401
+        return SupportFunction(Moved(self._source, text, **how))
 
     # --- how it is written ------------------------------------------------------------------------
 

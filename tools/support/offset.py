@@ -9,16 +9,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...generated import support as formulas
 from ...runtime.base.checks import finite_number
 from ...runtime.base.errors import GaussmapWarning, InputError
+from ...runtime.base.formula_calls import python_function
 from ...runtime.base.tolerances import CURVATURE_ERROR
 from ...runtime.samples.fields import missing_fields
 from ...runtime.samples.offset_of import OffsetOf
 from ...runtime.samples.report import count_infinite, have_large_squares
 from ...runtime.samples.samples import Samples
-from ..kernels import support as kernels
 
-__all__ = ["offset"]
+__all__ = ["offset", "size_of_terms"]
 
 Array = NDArray[np.float64]
 
@@ -58,16 +59,31 @@ def offset(samples: Samples, distance: float) -> Samples:
 
 
 def _curvatures(samples: Samples, d: float) -> dict[str, Array]:
-    """Return K and H of the offset, and warn if it is folded."""
+    """Return K and H of the offset, and warn if it is folded.
+
+    Where a radius becomes 0, up to the rounding of the sum that says so, Gaussian curvature is
+    infinite with its old sign (NaN if it was 0) and mean curvature NaN.
+    """
     K = samples.gaussian_curvature.astype(np.float64)
     H = samples.mean_curvature.astype(np.float64)
     _check_squares(samples, H)
-    folded = np.empty(len(samples), dtype=np.bool_)
+    _, K_offset, H_offset = python_function(formulas.offset_curvature)(K, H, d)
+    s, m = python_function(formulas.offset_growth)(K, H, d)
+    terms = size_of_terms(K, H, d)
     rounding = CURVATURE_ERROR * float(np.finfo(samples.dtype).eps)
-    kernels.offset_curvatures(d, rounding, K, H, folded)
+    vanishing = (terms < np.inf) & (np.abs(s) <= rounding * terms)
+    folded = vanishing | (s < 0.0) | (m < 0.0)
     if folded.any():
         _warn(samples, d, folded)
-    return {"gaussian_curvature": K, "mean_curvature": H}
+    return {
+        "gaussian_curvature": np.where(vanishing, K * np.inf, K_offset),
+        "mean_curvature": np.where(vanishing, np.nan, H_offset),
+    }
+
+
+def size_of_terms(K: Array, H: Array, d: float) -> Array:
+    """Return the sum of the moduli of the terms of 1 + 2 H d + K d²."""
+    return 1.0 + 2.0 * np.abs(d * H) + np.abs(d * d * K)
 
 
 def _check_squares(samples: Samples, H: Array) -> None:

@@ -2,26 +2,33 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...generated import support as formulas
 from ...runtime.base.bridge import normal_components
+from ...runtime.base.formula_calls import python_function, vector
 from ...runtime.base.tolerances import RADIUS_ERROR
 from ...runtime.directions.unit import as_normals
-from ..kernels import support as kernels
 from .branches import Sheets, curvatures
+from .offset import size_of_terms
 from .sources import Source
 
 if TYPE_CHECKING:
     import sympy
 
-__all__ = ["Offset", "Reversed", "Rotated", "Scaled", "Sum", "Translated", "pairs"]
+__all__ = ["Moved", "Sum", "pairs"]
 
 Vector = NDArray[np.float64]
+
+# A sum that is smaller than its terms by this factor suffers from cancellation.
+CANCELLED = math.ldexp(1.0, -20)
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,147 +68,79 @@ class Sum:
 
 
 @dataclass(frozen=True, eq=False)
-class Changed:
-    """What operations on one support function have in common: how they are written."""
+class Moved:
+    """That of the points s R x + t + d n: h becomes s h(Rᵀn) + n·t + d |n|.
+
+    If the side is −1 normals are reversed first: h is −h(−n) then. `text` says what was done.
+    """
 
     of: Source
+    text: str
+    rotation: Vector | None = None
+    side: float = 1.0
+    factor: float = 1.0
+    shift: Vector = field(default_factory=partial(np.zeros, 3))
+    distance: float = 0.0
+
+    def sheets(self, normals: Vector) -> Sheets:
+        """Return the branches; radii are multiplied by s and the side, and grow by d."""
+        R, growth = self.rotation, self.side * self.factor
+        turned = normals if R is None else as_normals(normals @ R)
+        sheets = self.of.sheets(self.side * turned)
+        points, hessian = sheets.points, growth * sheets.hessian
+        if R is not None:
+            points, hessian = points @ R.T, R @ hessian @ R.T
+        gaussian, mean = sheets.gaussian / growth / growth, sheets.mean / growth
+        points = self.factor * points + self.shift
+        moved = replace(sheets, points=points, hessian=hessian, gaussian=gaussian, mean=mean)
+        return _grown(moved, normals, self.distance) if self.distance else moved
 
     def expression(self) -> sympy.Expr | None:
         """Return the expression; None if that of the surface is none."""
         given = self.of.expression()
-        return None if given is None else self._written(self._moved(given), normal_components())
+        if given is None:
+            return None
+        n = normal_components()
+        h = _exact(self.side * self.factor) * self._at(given)
+        h = sum((s * _exact(t) for s, t in zip(n, self.shift.tolist(), strict=True)), start=h)
+        return h + _exact(self.distance) * _length(n)
 
     def domain(self) -> Any:  # noqa: ANN401 - a Boolean of SymPy
         """Return the domain; None if that of the surface is none."""
         given = self.of.domain()
-        return None if given is None else self._moved(given)
+        return None if given is None else self._at(given)
 
-    def _moved(self, given: Any) -> Any:  # noqa: ANN401
+    def _at(self, given: Any) -> Any:  # noqa: ANN401
         """Return what is said of the normals of the surface, for those that they become."""
-        return given
-
-    def _written(self, h: Any, n: Sequence[Any]) -> Any:  # noqa: ANN401
-        """Return the new expression, once the normal has moved."""
-        return h
-
-
-@dataclass(frozen=True, eq=False)
-class Offset(Changed):
-    """h + d |n|: the points x + d n."""
-
-    distance: float
-
-    def sheets(self, normals: Vector) -> Sheets:
-        """Return the branches; both radii grow by d."""
-        sheets = self.of.sheets(normals)
-        mine = normals[sheets.normal_index]
-        doubtful = np.empty(len(mine), dtype=np.bool_)
-        # Of large surfaces float64 does not hold K, about the square of H.
-        squares = np.maximum(np.abs(sheets.gaussian), sheets.mean * sheets.mean)
-        lost = (squares < np.finfo(np.float64).tiny) & (sheets.mean != 0.0)
-        kernels.add_offset(
-            self.distance, mine, sheets.points, sheets.hessian, sheets.gaussian, sheets.mean,
-            doubtful,
-        )  # fmt: skip
-        # Where a radius was 0, the old curvatures say nothing of the new ones; where one becomes 0,
-        # they say it with the rounding of 1 + 2 H d + K d².
-        rows = np.flatnonzero(doubtful | lost)
-        radii, gaussian, mean = curvatures(mine[rows], sheets.hessian[rows])
-        sizes = np.abs(radii)
-        vanishing = sizes.min(axis=1) <= RADIUS_ERROR * (sizes.max(axis=1) + abs(self.distance))
-        singular = ~np.isfinite(sheets.gaussian[rows]) | vanishing | lost[rows]
-        sheets.gaussian[rows[singular]] = gaussian[singular]
-        sheets.mean[rows[singular]] = mean[singular]
-        return sheets
+        n, rows = normal_components(), self.side * np.eye(3)
+        if self.rotation is not None:
+            rows = rows @ self.rotation.T
+        back = [sum(_exact(c) * s for c, s in zip(row, n, strict=True)) for row in rows.tolist()]
+        return given.subs(dict(zip(n, back, strict=True)), simultaneous=True)
 
     def __str__(self) -> str:
-        return f"({self.of}) offset by {self.distance:g}"
-
-    def _written(self, h: Any, n: Sequence[Any]) -> Any:  # noqa: ANN401
-        return h + _exact(self.distance) * _length(n)
+        return f"({self.of}) {self.text}"
 
 
-@dataclass(frozen=True, eq=False)
-class Translated(Changed):
-    """h + n·t: the points x + t."""
-
-    shift: Vector
-
-    def sheets(self, normals: Vector) -> Sheets:
-        """Return the branches; only the points change."""
-        sheets = self.of.sheets(normals)
-        return replace(sheets, points=sheets.points + self.shift)
-
-    def __str__(self) -> str:
-        return f"({self.of}) translated by {tuple(self.shift.tolist())}"
-
-    def _written(self, h: Any, n: Sequence[Any]) -> Any:  # noqa: ANN401
-        return sum((s * _exact(t) for s, t in zip(n, self.shift.tolist(), strict=True)), start=h)
-
-
-@dataclass(frozen=True, eq=False)
-class Rotated(Changed):
-    """h(Rᵀn): the points R x."""
-
-    rotation: Vector
-
-    def sheets(self, normals: Vector) -> Sheets:
-        """Return the branches at Rᵀn, rotated."""
-        sheets = self.of.sheets(as_normals(normals @ self.rotation))
-        R = self.rotation
-        return replace(sheets, points=sheets.points @ R.T, hessian=R @ sheets.hessian @ R.T)
-
-    def __str__(self) -> str:
-        return f"({self.of}) rotated"
-
-    def _moved(self, given: Any) -> Any:  # noqa: ANN401
-        n, columns = normal_components(), self.rotation.T.tolist()
-        back = [sum(_exact(c) * s for c, s in zip(column, n, strict=True)) for column in columns]
-        return _at(given, n, back)
-
-
-@dataclass(frozen=True, eq=False)
-class Scaled(Changed):
-    """s h: the points s x, with the same normals also for s < 0."""
-
-    factor: float
-
-    def sheets(self, normals: Vector) -> Sheets:
-        """Return the branches; radii are multiplied by s."""
-        sheets, s = self.of.sheets(normals), self.factor
-        return replace(
-            sheets,
-            points=s * sheets.points,
-            hessian=s * sheets.hessian,
-            gaussian=sheets.gaussian / s / s,
-            mean=sheets.mean / s,
-        )
-
-    def __str__(self) -> str:
-        return f"({self.of}) scaled by {self.factor:g}"
-
-    def _written(self, h: Any, n: Sequence[Any]) -> Any:  # noqa: ANN401
-        return _exact(self.factor) * h
-
-
-@dataclass(frozen=True, eq=False)
-class Reversed(Changed):
-    """−h(−n): the same points with the opposite normals."""
-
-    def sheets(self, normals: Vector) -> Sheets:
-        """Return the branches at −n; radii change their sign."""
-        sheets = self.of.sheets(-normals)
-        return replace(sheets, hessian=-sheets.hessian, mean=-sheets.mean)
-
-    def __str__(self) -> str:
-        return f"({self.of}) reversed"
-
-    def _moved(self, given: Any) -> Any:  # noqa: ANN401
-        n = normal_components()
-        return _at(given, n, [-s for s in n])
-
-    def _written(self, h: Any, n: Sequence[Any]) -> Any:  # noqa: ANN401
-        return -h
+def _grown(sheets: Sheets, normals: Vector, d: float) -> Sheets:
+    """Return the branches of the points x + d n: both radii grow by d."""
+    mine, (K, H) = normals[sheets.normal_index], (sheets.gaussian, sheets.mean)
+    x, of_sphere = python_function(formulas.offset)(d, vector(mine))
+    matrices = np.stack([of_sphere[k] for k in (0, 3, 4, 3, 1, 5, 4, 5, 2)], axis=1)
+    hessian = sheets.hessian + matrices.reshape(-1, 3, 3)
+    s, gaussian, mean = python_function(formulas.offset_curvature)(K, H, d)
+    # Where a radius was 0, the old curvatures say nothing of the new ones; where one becomes 0,
+    # they say it with the rounding of 1 + 2 H d + K d². Of large surfaces float64 does not hold K,
+    # about the square of H.
+    lost = (np.maximum(np.abs(K), H * H) < np.finfo(np.float64).tiny) & (H != 0.0)
+    rows = np.flatnonzero(lost | ~(np.abs(s) > CANCELLED * size_of_terms(K, H, d)))
+    radii, *own = curvatures(mine[rows], hessian[rows])
+    sizes = np.abs(radii)
+    vanishing = sizes.min(axis=1) <= RADIUS_ERROR * (sizes.max(axis=1) + abs(d))
+    singular = ~np.isfinite(gaussian[rows]) | vanishing | lost[rows]
+    gaussian[rows[singular]], mean[rows[singular]] = (x[singular] for x in own)
+    points = sheets.points + np.stack(x, axis=1)
+    return replace(sheets, points=points, hessian=hessian, gaussian=gaussian, mean=mean)
 
 
 def pairs(
@@ -214,10 +153,6 @@ def pairs(
     i = np.repeat(np.arange(len(first)), repeats)
     within = np.arange(len(i)) - np.repeat(np.cumsum(repeats) - repeats, repeats)
     return i, starts[first[i]] + within
-
-
-def _at(given: Any, n: Sequence[Any], place: Sequence[Any]) -> Any:  # noqa: ANN401
-    return given.subs(dict(zip(n, place, strict=True)), simultaneous=True)
 
 
 def _exact(value: float) -> Any:  # noqa: ANN401

@@ -5,7 +5,7 @@ from pathlib import Path
 import gaussmap as gm
 import numpy as np
 from gaussmap.runtime.samples.report import SamplingReport
-from gaussmap.tools.batch.arrow_tables import points_table
+from gaussmap.tools.batch.data_files import points_table
 from gaussmap.tools.batch.folder import Settings, create
 from gaussmap.tools.batch.manifest import FAILED, ManifestRow
 from gaussmap.tools.batch.shards import Shard

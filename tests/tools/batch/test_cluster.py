@@ -11,10 +11,10 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.tools.batch import making
 from gaussmap.tools.batch.making import make
 from gaussmap.tools.batch.plan import Asked
 from gaussmap.tools.batch.running import Tally
-from gaussmap.tools.batch.watching import Watch
 
 pytest.importorskip("pyarrow")
 distributed = pytest.importorskip("distributed")
@@ -82,31 +82,27 @@ def cluster(tmp_path: Path) -> Iterator[Cluster]:
     found.end()
 
 
-class Killer(Watch):
-    """Kills a worker when ten parts are done, and counts all."""
-
-    def __init__(self, cluster: Cluster) -> None:
-        super().__init__()
-        self.cluster, self.parts, self.killed = cluster, 0, False
-
-    def add(self, tally: Tally) -> None:
-        self.parts += tally.parts
-        if self.parts >= 10 and not self.killed:
-            self.killed = True
-            self.cluster.processes[1].kill()
-
-
 @pytest.mark.slow
-def test_a_worker_that_is_killed_loses_nothing(tmp_path, cluster):
-    parts = [waves(k) for k in range(PARTS)]
-    killer = Killer(cluster)
+def test_a_worker_that_is_killed_loses_nothing(tmp_path, cluster, monkeypatch):
+    """It is killed when ten parts are done."""
+    parts, killed, watched = [waves(k) for k in range(PARTS)], [], making.watched
+
+    def killing(*arguments: Any) -> Iterator[Tally]:
+        done = 0
+        for tally in watched(*arguments):
+            done += tally.parts
+            if done >= 10 and not killed:
+                killed.append(done)
+                cluster.processes[1].kill()
+            yield tally
+
+    monkeypatch.setattr(making, "watched", killing)
+    how = {"disable": True}
     tally = make(parts, tmp_path / "cluster", ASKED, STORED,
-                 workers=None, scheduler=cluster.address, watch=killer, **LIMITS)  # fmt: skip
-    assert killer.killed
+                 workers=None, scheduler=cluster.address, how=how, **LIMITS)  # fmt: skip
+    assert killed
     assert (tally.parts, tally.failed) == (PARTS, 0)
-    make(
-        parts, tmp_path / "here", ASKED, STORED, workers=2, scheduler=None, watch=Watch(), **LIMITS
-    )
+    make(parts, tmp_path / "here", ASKED, STORED, workers=2, scheduler=None, how=how, **LIMITS)
     assert data_of(tmp_path / "cluster") == data_of(tmp_path / "here")
     assert not list((tmp_path / "cluster" / "partial").iterdir())
 

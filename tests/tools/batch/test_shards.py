@@ -11,7 +11,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.samples.report import SamplingReport
-from gaussmap.tools.batch.arrow_tables import points_table
+from gaussmap.tools.batch.data_files import points_table
 from gaussmap.tools.batch.folder import (
     MANIFEST,
     PARTIAL,
@@ -26,8 +26,7 @@ from gaussmap.tools.batch.folder import (
     shard_path,
 )
 from gaussmap.tools.batch.manifest import FAILED, ManifestRow, manifest_table, rows_of
-from gaussmap.tools.batch.partial import part_path, read_part
-from gaussmap.tools.batch.shards import Shard
+from gaussmap.tools.batch.shards import Shard, part_path, read_part
 
 pytest.importorskip("pyarrow")
 FIELDS = ("points", "normals", "on_surface", "face_index")

@@ -1,7 +1,7 @@
 """What is shown of a run that takes long."""
 
 import pytest
-from gaussmap.tools.batch import watching
+from gaussmap.tools.batch import making
 from gaussmap.tools.batch.running import Tally
 
 
@@ -9,12 +9,10 @@ def test_a_log_has_few_lines(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for interval, count in ((10.0, 1), (0.0, 6)):
-        monkeypatch.setattr(watching, "INTERVAL", interval)
-        log = watching.progress()
-        log.begin(1000, "http://host:8787/status")
-        for failed in (0, 0, 1, 0):
-            log.add(Tally(ok=50 - failed, failed=failed))
-        log.end()
+        monkeypatch.setattr(making, "INTERVAL", interval)
+        tallies = [Tally(ok=50 - failed, failed=failed) for failed in (0, 0, 1, 0)]
+        log = making.progress()
+        assert list(making.watched(tallies, 1000, "http://host:8787/status", log)) == tallies
         lines = capsys.readouterr().err.splitlines()
         assert "gaussmap: Dask's dashboard: http://host:8787/status" in lines
         assert len(lines) == count

@@ -1,9 +1,8 @@
 """Files before they are read: their formats, whether they are whole, their damaged faces."""
 
 import pytest
-from gaussmap.tools.cad.damaged_step import without_damaged_faces
+from gaussmap.tools.cad.damaged_step import prepared, without_damaged_faces
 from gaussmap.tools.cad.inspection import BadFileError, checked_format
-from gaussmap.tools.cad.preparation import prepared
 
 STEP = b"""ISO-10303-21;
 HEADER;

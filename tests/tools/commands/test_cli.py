@@ -655,7 +655,7 @@ def test_an_old_terminal() -> None:
 @compiled
 def test_heavy_imports_are_lazy() -> None:
     code = (
-        "import sys, gaussmap.tools.commands.cli, gaussmap.tools.pictures.to_file\n"
+        "import sys, gaussmap.tools.commands.cli, gaussmap.tools.pictures.plot\n"
         "print({'matplotlib', 'sympy', 'pyvista', 'tqdm'} & set(sys.modules))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

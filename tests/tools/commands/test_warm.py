@@ -5,7 +5,9 @@ import subprocess
 import sys
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
+import numba
 import numpy as np
 import pytest
 from gaussmap.tools.commands import warm
@@ -62,7 +64,6 @@ def test_nothing_is_left_to_compile(tmp_path: Path, parts: ModuleType) -> None:
 def test_nothing_can_be_compiled(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(warm, "WORK", ())
     monkeypatch.setattr(warm.config, "DISABLE_JIT", 1)
     assert main(["warm"]) == 2
     assert "NUMBA_DISABLE_JIT is set" in capsys.readouterr().err
@@ -71,7 +72,6 @@ def test_nothing_can_be_compiled(
 def test_a_folder_that_cannot_be_written(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(warm, "WORK", ())
     monkeypatch.setattr(warm.config, "DISABLE_JIT", 0)
     monkeypatch.setattr(warm, "kept_folder", lambda: None)
     assert main(["warm"]) == 2
@@ -79,18 +79,20 @@ def test_a_folder_that_cannot_be_written(
 
 
 @pytest.mark.compiled
-def test_a_terminal_sees_what_is_done(
+def test_what_is_compiled_is_counted(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def some_work() -> None:
-        assert warm.NOTICE.quiet
-
-    monkeypatch.setattr(warm, "WORK", (some_work,))
-    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    """One compilation of a kernel whose machine code nobody has, for the types on the list."""
+    kernel: Any = numba.njit(lambda array: array.size)
+    monkeypatch.setattr(warm.signatures, "read", lambda: {"kernel": [["float64 1 C"]]})
+    monkeypatch.setattr(warm, "kernel_named", lambda name: kernel)
     assert main(["warm"]) == 0
-    out, err = capsys.readouterr()
-    assert out == f"kernels in {warm.kept_folder()}: all were compiled already\n"
-    assert "some_work" in err
-    assert not warm.NOTICE.quiet
+    out = capsys.readouterr().out
+    assert out.startswith(f"kernels in {warm.kept_folder()}: 1 compiled in ")
+    assert [str(x) for x in kernel.nopython_signatures] == [
+        "(Array(float64, 1, 'C', False, aligned=True),) -> int64"
+    ]
+    assert main(["warm"]) == 0
+    assert capsys.readouterr().out.endswith(": all were compiled already\n")
     assert main(["warm", "--quiet"]) == 0
     assert capsys.readouterr() == ("", "")

@@ -11,7 +11,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.samples.report import SamplingReport
-from gaussmap.tools.files import packed, tables
+from gaussmap.tools.files import ply, tables
 from gaussmap.tools.files.formats import check_samples_target
 
 BINARY = [".parquet", ".arrow", ".feather"]
@@ -147,7 +147,7 @@ def test_text_without_polars(monkeypatch):
     assert len(written(samples, monkeypatch, 0)) == 20
 
 
-def test_ply_by_several_threads(tmp_path, monkeypatch):
+def test_ply_of_several_blocks(tmp_path, monkeypatch):
     samples = gm.Samples(
         points=np.random.default_rng(0).random((10_007, 3)),
         normal_index=np.arange(10_007),
@@ -155,8 +155,7 @@ def test_ply_by_several_threads(tmp_path, monkeypatch):
         report=SamplingReport("noise", 0, 10_007, 1, 0.0, 0),
     )
     samples.write(tmp_path / "one.ply")
-    monkeypatch.setattr(packed, "FOR_A_THREAD", 1000)
-    monkeypatch.setattr(packed, "thread_count", lambda _: 3)
-    samples.write(tmp_path / "three.ply")
-    assert (tmp_path / "one.ply").read_bytes() == (tmp_path / "three.ply").read_bytes()
-    assert gm.read_samples(tmp_path / "three.ply").points.tobytes() == samples.points.tobytes()
+    monkeypatch.setattr(ply, "ROWS", 1000)
+    samples.write(tmp_path / "blocks.ply")
+    assert (tmp_path / "one.ply").read_bytes() == (tmp_path / "blocks.ply").read_bytes()
+    assert gm.read_samples(tmp_path / "blocks.ply").points.tobytes() == samples.points.tobytes()

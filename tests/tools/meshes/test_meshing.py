@@ -10,10 +10,9 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.samples.report import SamplingReport
-from gaussmap.tools.meshes.improvement import flip_edges
 from gaussmap.tools.meshes.links import neighbours
 from gaussmap.tools.meshes.meshing import triangulated
-from gaussmap.tools.meshes.triangulated import Triangulated
+from gaussmap.tools.meshes.triangulated import Triangulated, flip_edges
 
 pytestmark = pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
 compiled = pytest.mark.compiled

@@ -11,8 +11,8 @@ from types import ModuleType
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.tools.pictures.plot import write_figure
 from gaussmap.tools.pictures.scene import scene_of, view
-from gaussmap.tools.pictures.to_file import write_figure
 
 pytest.importorskip("matplotlib")
 from matplotlib import image

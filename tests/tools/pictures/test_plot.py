@@ -11,7 +11,8 @@ from xml.etree import ElementTree
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.pictures import palette, to_file
+from gaussmap.tools.pictures import palette
+from gaussmap.tools.pictures.plot import check_target, write_figure
 
 pytest.importorskip("matplotlib")
 from matplotlib import colors, image
@@ -32,7 +33,7 @@ def plotted(
 ) -> gm.Samples:
     """Draw samples of a surface into a file."""
     samples = gm.sample(surface, normals=normals, **asked)
-    to_file.write_figure(samples.plot(normals=normals), path)
+    write_figure(samples.plot(normals=normals), path)
     return samples
 
 
@@ -156,7 +157,7 @@ def test_no_global_state(torus: gm.Spline, tmp_path: Path) -> None:
 def test_no_pyplot(tmp_path: Path) -> None:
     code = (
         "import sys, gaussmap as gm\n"
-        "from gaussmap.tools.pictures.to_file import write_figure\n"
+        "from gaussmap.tools.pictures.plot import write_figure\n"
         "write_figure(gm.sample('torus', 50).plot(), sys.argv[1])\n"
         "print('matplotlib' in sys.modules, 'matplotlib.pyplot' in sys.modules)"
     )
@@ -248,7 +249,7 @@ def test_without_matplotlib(
 ) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     with pytest.raises(gm.errors.MissingExtraError, match=r'pip install "gaussmap\[plot\]"'):
-        to_file.check_target(tmp_path / "a.png")
+        check_target(tmp_path / "a.png")
     assert main(["plot", "torus", "-o", str(tmp_path / "a.png")]) == 2
     assert 'pip install "gaussmap[plot]"' in capsys.readouterr().err
 

@@ -21,7 +21,7 @@ from OCP.XCAFDoc import (
     XCAFDoc_ShapeTool,
 )
 
-from .shapes import Table, sequence
+from .shapes import Key, sequence
 
 __all__ = ["Document", "PlacedShape", "Style", "new_document", "pieces_of"]
 
@@ -53,7 +53,7 @@ class Document:
     """What a file holds; `styles` are those of parts of the pieces, wherever they are placed."""
 
     pieces: list[PlacedShape]
-    styles: Table[Style] = field(default_factory=lambda: Table(placed=False))
+    styles: dict[Key, Style] = field(default_factory=dict)
     unit: str = "mm"
     warnings: list[str] = field(default_factory=list)
 
@@ -81,7 +81,7 @@ def _walked(
     place: Any,  # noqa: ANN401
     names: tuple[str, ...],
     color: Color | None,
-    styles: Table[Style],
+    styles: dict[Key, Style],
 ) -> Iterator[PlacedShape]:
     """Yield the shapes of a label: itself, or those of its components."""
     own_color = _color(label)
@@ -102,7 +102,8 @@ def _walked(
     parts = _labels()
     XCAFDoc_ShapeTool.GetSubShapes_s(label, parts)
     for part in _each(parts):
-        styles.set(XCAFDoc_ShapeTool.GetShape_s(part), Style(_name(part), _color(part)))
+        key = Key(XCAFDoc_ShapeTool.GetShape_s(part), placed=False)
+        styles.setdefault(key, Style(_name(part), _color(part)))
     shape = XCAFDoc_ShapeTool.GetShape_s(label)
     if shape is not None and not shape.IsNull():
         yield PlacedShape(shape.Moved(place), "/".join(x for x in names if x), color)

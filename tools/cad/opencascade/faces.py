@@ -16,7 +16,7 @@ from OCP.TopAbs import TopAbs_Orientation
 from ..records import FaceRecord, Geometry
 from .curves import UnusableError
 from .loops import loops_of
-from .shapes import Table
+from .shapes import Key
 from .surfaces import basis_of, geometry_of, periods_of
 
 __all__ = ["FaceReader", "area_of"]
@@ -31,7 +31,7 @@ class FaceReader:
     """Faces to records; of a face that occurs in several places, trim and area are found once."""
 
     def __init__(self) -> None:
-        self._known: Table[tuple[list[Array], float]] = Table(placed=False)
+        self._known: dict[Key, tuple[list[Array], float]] = {}
 
     def record(self, face: Any) -> FaceRecord:  # noqa: ANN401
         """Return the record of a face, with a reason if it has failed."""
@@ -65,14 +65,15 @@ class FaceReader:
         )
 
     def _trim(self, face: Any) -> tuple[list[Array], float]:  # noqa: ANN401
-        known = self._known.get(face)
+        key = Key(face, placed=False)
+        known = self._known.get(key)
         if known is None:
             known = loops_of(face), area_of(face)
             if not np.isfinite(known[1]):
                 raise UnusableError("its area is not finite")
             if known[1] < LEAST_AREA:
                 raise UnusableError("its area is zero")
-            self._known.set(face, known)
+            self._known[key] = known
         return known
 
 

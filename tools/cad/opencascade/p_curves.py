@@ -74,8 +74,8 @@ def curve_of(edge: Any, face: Any) -> PCurve:  # noqa: ANN401
     if kind == Kinds.GeomAbs_Line:
         return PCurve(_any(curve), ends, 0, backwards)
     if kind == Kinds.GeomAbs_Circle:
-        circle = curve.Circle()
-        return PCurve(_circle(circle), ends, FIRST_PIECES, backwards, float(circle.Radius()))
+        radius = float(curve.Circle().Radius())
+        return PCurve(_any(curve), ends, FIRST_PIECES, backwards, radius)
     if kind == Kinds.GeomAbs_BSplineCurve:
         corners, spans = _corners(curve.BSpline(), ends)
         pieces = max(FIRST_PIECES, PIECES_A_SPAN * spans // (len(corners) - 1))
@@ -96,21 +96,6 @@ def _corners(spline: Any, ends: tuple[float, float]) -> tuple[tuple[float, ...],
     inside = [k for k in range(1, spline.NbKnots() + 1) if ends[0] < spline.Knot(k) < ends[1]]
     multiple = [k for k in inside if spline.Multiplicity(k) >= spline.Degree()]
     return (ends[0], *(spline.Knot(k) for k in multiple), ends[1]), len(inside) + 1
-
-
-def _circle(circle: Any) -> Callable[[Array], Array]:  # noqa: ANN401
-    centre, radius = circle.Location(), circle.Radius()
-    x, y = circle.XAxis().Direction(), circle.YAxis().Direction()
-    frame = radius * np.array([(x.X(), x.Y()), (y.X(), y.Y())])
-    origin = np.array([centre.X(), centre.Y(), 0.0, 0.0])
-
-    def evaluate(t: Array) -> Array:
-        c, s = np.cos(t), np.sin(t)
-        return origin + np.concatenate(
-            [np.stack([c, s], axis=1) @ frame, np.stack([-s, c], axis=1) @ frame], axis=1
-        )
-
-    return evaluate
 
 
 def _any(curve: Any) -> Callable[[Array], Array]:  # noqa: ANN401

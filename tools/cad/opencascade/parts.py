@@ -9,16 +9,14 @@ from dataclasses import replace
 from OCP.TopoDS import TopoDS
 
 from ...files.lengths import METRES
-from ..counts import faces_said
-from ..damaged_step import LostFace
-from ..inspection import BadFileError
-from ..preparation import Source
+from ..damaged_step import LostFace, Source
+from ..inspection import BadFileError, faces_said
 from ..records import FaceRecord, Geometry, PartRecord
 from ..units import with_unit
-from .edges import sharp_edges
+from .edges import shared_edges
 from .faces import FaceReader
 from .files import read_file
-from .shapes import Table
+from .shapes import Key
 from .solids import PlacedFace, gathered
 
 __all__ = ["part_record"]
@@ -49,7 +47,7 @@ def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
         )
     in_unit = unit or document.unit
     factor = METRES["mm"] / METRES[in_unit]
-    edges = sharp_edges(found.faces, faces, factor)
+    edges = shared_edges(found.faces, faces, factor)
     return PartRecord(
         name,
         in_unit,
@@ -69,10 +67,7 @@ def _face(face: PlacedFace, reader: FaceReader) -> FaceRecord:
 
 def _different(faces: list[PlacedFace]) -> int:
     """Return the number of faces, without copies in other places."""
-    known: Table[bool] = Table(placed=False)
-    for face in faces:
-        known.set(face.shape, True)
-    return len(known)
+    return len({Key(x.shape, placed=False) for x in faces})
 
 
 def _lost_face(face: LostFace) -> FaceRecord:

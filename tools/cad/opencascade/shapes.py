@@ -1,4 +1,4 @@
-"""Shapes of Open CASCADE: going through their parts, and tables that have them as keys.
+"""Shapes of Open CASCADE: going through their parts, and dictionaries that have them as keys.
 
 Only names that its versions 7.9 and 8.0 share are used.
 """
@@ -8,14 +8,12 @@ Only names that its versions 7.9 and 8.0 share are used.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, Generic, TypeVar
+from typing import Any
 
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopLoc import TopLoc_Location
 
-__all__ = ["Table", "direct_class", "parts_of", "sequence"]
-
-Value = TypeVar("Value")
+__all__ = ["Key", "direct_class", "parts_of", "sequence"]
 
 
 def parts_of(shape: Any, kind: Any, avoided: Any = None) -> Iterator[Any]:  # noqa: ANN401
@@ -28,35 +26,19 @@ def parts_of(shape: Any, kind: Any, avoided: Any = None) -> Iterator[Any]:  # no
         explorer.Next()
 
 
-class Table(Generic[Value]):
-    """Values by shape; a shape and its reverse are the same, and placements count or do not."""
+class Key:
+    """A shape as a key of dictionaries: its reverse is the same, and placements count or do not."""
 
-    def __init__(self, placed: bool = True) -> None:
-        self._placed = placed
-        self._rows: dict[int, list[tuple[Any, Value]]] = {}
-        self._count = 0
+    __slots__ = ("_shape",)
 
-    def __len__(self) -> int:
-        return self._count
+    def __init__(self, shape: Any, placed: bool = True) -> None:  # noqa: ANN401
+        self._shape = shape if placed else shape.Located(TopLoc_Location())
 
-    def set(self, shape: Any, value: Value) -> None:  # noqa: ANN401
-        """Set the value of a shape that has none; the first one stays."""
-        key = self._key(shape)
-        row = self._rows.setdefault(hash(key), [])
-        if not any(key.IsSame(x) for x, _ in row):
-            row.append((key, value))
-            self._count += 1
+    def __hash__(self) -> int:
+        return hash(self._shape)
 
-    def get(self, shape: Any) -> Value | None:  # noqa: ANN401
-        """Return the value of a shape, or None."""
-        key = self._key(shape)
-        for other, value in self._rows.get(hash(key), ()):
-            if key.IsSame(other):
-                return value
-        return None
-
-    def _key(self, shape: Any) -> Any:  # noqa: ANN401
-        return shape if self._placed else shape.Located(TopLoc_Location())
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Key) and self._shape.IsSame(other._shape)
 
 
 def sequence(old: str, new: str) -> Any:  # noqa: ANN401

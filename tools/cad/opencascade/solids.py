@@ -20,7 +20,7 @@ from OCP.TopAbs import TopAbs_State
 from OCP.TopoDS import TopoDS, TopoDS_Compound
 
 from .documents import Color, Document, Style
-from .shapes import Table, parts_of
+from .shapes import Key, parts_of
 
 __all__ = ["Gathered", "PlacedFace", "gathered"]
 
@@ -71,13 +71,13 @@ def _add_solid(
     solid: Any,  # noqa: ANN401
     name: str,
     color: Color | None,
-    styles: Table[Style],
+    styles: dict[Key, Style],
 ) -> None:
     closed = all(BRep_Tool.IsClosed_s(x) for x in parts_of(solid, Kinds.TopAbs_SHELL))
     if closed:
         BRepLib.OrientClosedSolid_s(solid)
     found.closed &= closed
-    own = styles.get(solid) or Style()
+    own = styles.get(Key(solid, placed=False)) or Style()
     style = Style(own.name or name, own.color or color)
     number = len(found.solid_names)
     found.solid_names.append(style.name)
@@ -86,8 +86,8 @@ def _add_solid(
         found.faces.append(PlacedFace(face, face, number, of_face.name, of_face.color))
 
 
-def _style(styles: Table[Style], face: Any, default: Style) -> Style:  # noqa: ANN401
-    own = styles.get(face)
+def _style(styles: dict[Key, Style], face: Any, default: Style) -> Style:  # noqa: ANN401
+    own = styles.get(Key(face, placed=False))
     return default if own is None else Style(own.name, own.color or default.color)
 
 
@@ -96,19 +96,19 @@ def _style(styles: Table[Style], face: Any, default: Style) -> Style:  # noqa: A
 
 def _add_loose(found: Gathered, loose: list[tuple[Any, Style]]) -> None:
     sewing = _sewn([face for face, _ in loose]) if len(loose) <= MOST_LOOSE else None
-    oriented: Table[tuple[Any, int]] = Table()
+    oriented: dict[Key, tuple[Any, int]] = {}
     if sewing is not None:
         closed = _closed_solids(sewing.SewedShape())
         for number, solid in enumerate(closed, len(found.solid_names)):
             for face in parts_of(solid, Kinds.TopAbs_FACE):
-                oriented.set(face, (face, number))
+                oriented.setdefault(Key(face), (face, number))
         found.solid_names.extend([""] * len(closed))
         for face in parts_of(sewing.SewedShape(), Kinds.TopAbs_FACE):
-            oriented.set(face, (face, -1))  # of an open shell: those of solids are known
+            oriented.setdefault(Key(face), (face, -1))  # unless it is of a solid
     for face, style in loose:
         known = None
         if sewing is not None:
-            known = oriented.get(sewing.Modified(face) if sewing.IsModified(face) else face)
+            known = oriented.get(Key(sewing.Modified(face) if sewing.IsModified(face) else face))
         copy, number = known or (face, -1)
         found.closed &= number >= 0
         shape = face.Oriented(copy.Orientation())

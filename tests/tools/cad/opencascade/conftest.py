@@ -9,8 +9,8 @@ import pytest
 
 pytest.importorskip("OCP")
 
+from gaussmap.tools.cad.damaged_step import prepared
 from gaussmap.tools.cad.opencascade.parts import part_record
-from gaussmap.tools.cad.preparation import prepared
 from OCP.BRep import BRep_Builder
 from OCP.BRepTools import BRepTools
 from OCP.IGESControl import IGESControl_Writer

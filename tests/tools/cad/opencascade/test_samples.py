@@ -8,11 +8,11 @@ import pytest
 
 pytest.importorskip("OCP")
 
+from gaussmap.tools.cad.damaged_step import prepared
 from gaussmap.tools.cad.faces import own_parameters
 from gaussmap.tools.cad.opencascade.parts import part_record
 from gaussmap.tools.cad.opencascade.shapes import parts_of
 from gaussmap.tools.cad.part import part_of
-from gaussmap.tools.cad.preparation import prepared
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut

@@ -2,15 +2,13 @@
 
 import numpy as np
 import pytest
-from gaussmap.tools.kernels.areas import corner_areas
+from gaussmap.tools.meshes.weights import corner_areas
 
 CORNERS = np.array([(0.0, 0.0, 0.0), (3.0, 0.0, 0.0), (0.0, 4.0, 0.0)])
 
 
 def areas_of(points: np.ndarray, normals: np.ndarray, sides: tuple[int, int, int]) -> np.ndarray:
-    areas = np.full((1, 3), np.nan)
-    corner_areas(points, normals, np.array([[0, 1, 2]]), np.array([sides]), areas)
-    return areas[0]
+    return corner_areas(points, normals, np.array([[0, 1, 2]]), np.array([sides]))[0]
 
 
 @pytest.mark.parametrize("sides", [(1, 1, 1), (1, -1, 1), (-1, -1, -1)])

@@ -1,7 +1,7 @@
 """The number of faces that a file says it has."""
 
 import pytest
-from gaussmap.tools.cad.counts import faces_said
+from gaussmap.tools.cad.inspection import faces_said
 
 STEP = b"""#1 = CLOSED_SHELL('a',(#2,#3,
   #4)); #5 = OPEN_SHELL ( '' , ( #4 ) );
