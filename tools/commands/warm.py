@@ -53,7 +53,7 @@ class _Counter(event.Listener):
 
 
 def run(options: SimpleNamespace) -> None:
-    """Compile all kernels that are not in the cache.
+    """Compile all kernels that neither came with the package nor were compiled here before.
 
     Raises InputError if NUMBA_DISABLE_JIT is set, FileError if there is no writable folder.
     """
@@ -79,8 +79,9 @@ def run(options: SimpleNamespace) -> None:
         NOTICE.quiet = quiet
         bar.close()
     if not options.quiet:
-        done = f"{counter.count} compiled in {time.monotonic() - start:.0f} s"
-        say(f"kernels in {folder}: {done if counter.count else 'all were compiled already'}")
+        seconds = time.monotonic() - start
+        done = f"{counter.count} kernels compiled in {seconds:.0f} s, into {folder}"
+        say(done if counter.count else "all kernels were compiled already")
 
 
 def _surfaces() -> None:
