@@ -30,7 +30,7 @@ $(DEMO): pyproject.toml
 	$(PIP) --editable '.[plot]'
 	touch $@
 
-# The package is installed, without them.
+# The package is there already: only what the extra names is installed.
 $(READY): $(DEMO)
 	$(PIP) 'gaussmap[dev]'
 	mkdir -p $(VENV)/typing
