@@ -30,8 +30,9 @@ $(DEMO): pyproject.toml
 	$(PIP) --editable '.[plot]'
 	touch $@
 
+# The package is there already: only what the extra names is installed.
 $(READY): $(DEMO)
-	$(PIP) --editable '.[dev]'
+	$(PIP) 'gaussmap[dev]'
 	mkdir -p $(VENV)/typing
 	ln -sfn ../.. $(VENV)/typing/gaussmap
 	touch $@

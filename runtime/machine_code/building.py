@@ -9,6 +9,7 @@ sources and versions stays as it is. With GAUSSMAP_KERNELS=0 nothing is compiled
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from collections import defaultdict
@@ -35,6 +36,10 @@ __all__ = ["build", "kernel_named"]
 
 # Intel's library of vectors may be on the machine that builds, and not on others.
 OPTIONS = {"NUMBA_CPU_FEATURES": "", "NUMBA_DISABLE_INTEL_SVML": "1"}
+# Numba numbers functions in the order in which a process compiles them, and machine code has these
+# numbers in it. So each process compiles one share, and shares are the same for any number of
+# cores: the same sources, in the same folder, give the same bytes.
+SHARES = 8
 
 
 class _Taken(NullCache):
@@ -54,8 +59,9 @@ def build(folder: Path = PACKAGE) -> Path | None:
         return path
     print(f"compiling the kernels of gaussmap into {path}", file=sys.stderr)
     entries: dict[str, bytes] = {}
-    with _options(level), ProcessPoolExecutor(mp_context=get_context("spawn")) as processes:
-        for compiled in processes.map(_compiled, _modules()):
+    processes = ProcessPoolExecutor(mp_context=get_context("spawn"), max_tasks_per_child=1)
+    with _options(level), processes:
+        for compiled in processes.map(_compiled, _shares()):
             entries.update(compiled)
     write_pack(path, dict(sorted(entries.items())), signatures=signatures.digest())
     return path
@@ -90,17 +96,21 @@ def _is_built(path: Path) -> bool:
     return made == (identity(), sources.digest(), signatures.digest())
 
 
-def _modules() -> list[dict[str, Any]]:
-    """Return the signatures of modules, whose kernels share parts; the longest sources first."""
+def _shares() -> list[dict[str, Any]]:
+    """Deal out the signatures of modules, whose kernels share parts; the longest sources first."""
     modules: dict[str, dict[str, Any]] = defaultdict(dict)
     for name, kinds in signatures.read().items():
         modules[name.rpartition(".")[0]][name] = kinds
-    longest_first = sorted(modules, key=lambda x: len(getsource(import_module(x))), reverse=True)
-    return [modules[name] for name in longest_first]
+    longest_first = sorted(modules, key=lambda x: -len(getsource(import_module(x))))
+    shares: list[dict[str, Any]] = [{} for _ in range(min(SHARES, len(modules)))]
+    for place, name in enumerate(longest_first):
+        shares[place % len(shares)].update(modules[name])
+    return shares
 
 
 def _compiled(listing: Mapping[str, Any]) -> dict[str, bytes]:
     """Compile kernels for their signatures; called in a process of its own."""
+    gc.disable()  # Numba numbers types, too, and again those that the collector has removed
     entries: dict[str, bytes] = {}
     for name, kinds in listing.items():
         kernel = kernel_named(name)

@@ -293,9 +293,9 @@ def _formulas() -> Command:
 def _warm() -> Command:
     return _command(
         "warm",
-        "Compile all kernels ahead of time: they are kept on disk, so that neither other commands "
-        "nor Python programs wait for the compiler on this computer. For Dockerfiles and CI. Takes "
-        "some minutes at first, and seconds when everything is compiled.",
+        "Compile the kernels that the installation lacks: they are kept on disk, so that neither "
+        "other commands nor Python programs wait for the compiler on this computer. Wheels have "
+        "all kernels compiled; where these do not fit, it takes minutes.",
         _quiet(),
     )
 

@@ -9,6 +9,7 @@ from numba.core import config, event
 
 from ...runtime.base.compiling import NOTICE
 from ...runtime.base.errors import FileError, InputError
+from ...runtime.base.wording import plural
 from ...runtime.machine_code import signatures
 from ...runtime.machine_code.building import kernel_named
 from ...runtime.machine_code.kept import kept_folder
@@ -50,5 +51,6 @@ def run(options: SimpleNamespace) -> None:
             for kind in kinds:
                 kernel_named(name).compile(tuple(map(signatures.as_types, kind)))
     if not options.quiet:
-        done = f"{counter.count} compiled in {time.monotonic() - start:.0f} s"
-        say(f"kernels in {folder}: {done if counter.count else 'all were compiled already'}")
+        seconds = time.monotonic() - start
+        done = f"{plural(counter.count, 'kernel')} compiled in {seconds:.0f} s, into {folder}"
+        say(done if counter.count else "all kernels were compiled already")

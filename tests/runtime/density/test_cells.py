@@ -33,7 +33,9 @@ def test_cells_make_up_the_surface(name):
 
 
 @pytest.mark.parametrize("on", ["surface", "spline"])
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(
+    "name", ["torus", *(pytest.param(name, marks=pytest.mark.compiled) for name in NAMES[1:])]
+)
 def test_no_point_of_a_cell_is_outside_of_its_radius(name, on):
     surface = gm.surfaces.surface(name)
     space = space_of(surface, on)
@@ -95,4 +97,5 @@ def test_derivatives_of_a_spline(name):
 
 
 def test_a_surface_within_a_predicate():
-    assert len(gm.sample(gm.surfaces.torus().trimmed(within=lambda u, v: u < 3), 500)) == 500
+    torus = gm.surfaces.torus().trimmed(within=lambda u, v: u < 3)
+    assert len(gm.sample(torus, 100, cells=(12, 8))) == 100

@@ -32,7 +32,9 @@ def all_normals(spline, count=60):
 
 
 @pytest.mark.parametrize("name", OPEN_NAMES)
-@pytest.mark.parametrize("seed", [None, 0, 1, 2])
+@pytest.mark.parametrize(
+    "seed", [None, *(pytest.param(seed, marks=pytest.mark.compiled) for seed in (0, 1, 2))]
+)
 def test_cap_holds_all_normals_and_little_more(name, seed):
     turned = np.eye(3) if seed is None else rotation(np.random.default_rng(seed))
     spline = spline_of(name, turned)

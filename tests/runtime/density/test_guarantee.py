@@ -376,9 +376,10 @@ def test_surfaces_whose_area_is_rounding(name, shift, asked):
         gm.sample(surface, cells=(6, 6), **asked)
 
 
-def test_long_and_narrow():
+@pytest.mark.parametrize("width", [1e-6, pytest.param(1e-9, marks=pytest.mark.slow)])
+def test_long_and_narrow(width: float):
     hair = gm.Surface.from_callable(
-        lambda u, v: np.stack([u, 1e-9 * v, 0.0 * u], axis=-1), ((0.0, 1.0), (0.0, 1.0))
+        lambda u, v: np.stack([u, width * v, 0.0 * u], axis=-1), ((0.0, 1.0), (0.0, 1.0))
     )
     assert len(gm.sample(hair, count=50, cells=(6, 6))) == 50
     assert len(gm.sample(hair, coverage=0.02, cells=(6, 6))) <= 60

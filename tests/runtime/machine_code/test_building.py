@@ -1,5 +1,6 @@
 """The list of signatures, and the kernels that are compiled for it without being called."""
 
+import os
 from collections import namedtuple
 from pathlib import Path
 from typing import Any
@@ -94,6 +95,24 @@ def test_a_file_is_built_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     assert building.build(tmp_path) == path
     assert path.stat().st_mtime_ns > built
     assert [*path.parent.iterdir()] == [path]
+
+
+@pytest.mark.compiled
+@pytest.mark.slow
+def test_the_bytes_of_a_file_are_those_of_its_sources(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """However many processes there are, and whichever of them compiles what."""
+    names = ("gaussmap.runtime.kernels.sort.merge_hits", "gaussmap.runtime.kernels.unit.are_unit")
+    listed = {name: signatures.read()[name] for name in names}
+    monkeypatch.setattr(signatures, "read", listed.copy)
+    built = []
+    for cores in (1, 2):
+        monkeypatch.setattr(os, "cpu_count", lambda cores=cores: cores)
+        path = building.build(tmp_path / str(cores))
+        assert path is not None
+        built.append(path.read_bytes())
+    assert built[0] == built[1]
 
 
 @pytest.mark.compiled

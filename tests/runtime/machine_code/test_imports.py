@@ -29,19 +29,21 @@ def test_the_import_loads_nothing() -> None:
 
 @pytest.mark.compiled
 @pytest.mark.parametrize(
-    ("call", "others"),
+    ("calls", "others"),
     [
-        ("gm.sample('torus', 500)", set()),
-        ("gm.sample('torus', normals=gm.fibonacci(50))", set()),
-        ("gm.sample('torus', 500, density='uniform')", set()),
+        (
+            "gm.sample('torus', 500); gm.sample('torus', normals=gm.fibonacci(50));"
+            " gm.sample('torus', 500, density='uniform')",
+            set(),
+        ),
         ("gm.sample('torus', angle=20)", {"scipy.linalg", "scipy.spatial"}),  # for nearest samples
         ("gm.sample('torus', 500).mesh()", {"scipy.linalg", "scipy.spatial"}),
     ],
 )
-def test_a_first_call_loads_numba_without_its_compiler(call: str, others: set[str]) -> None:
+def test_a_first_call_loads_numba_without_its_compiler(calls: str, others: set[str]) -> None:
     """Machine code of the package, or kept, is there: its types are known without compiling."""
     from gaussmap.runtime.machine_code import shipped
 
     if shipped.open_pack() is None:
         pytest.skip("there is no machine code of these sources: make compiled")
-    assert loaded_by(f"import gaussmap as gm; {call}") == EXPECTED | others
+    assert loaded_by(f"import gaussmap as gm; {calls}") == EXPECTED | others
