@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from ...generated.spline import SCALE
 from ..place.on_spline import OnSpline
 from .breaks import breaks_along
-from .cells import points_of
 from .grid import Grid
 from .lines import Axis
 from .space import Space
@@ -194,8 +193,8 @@ class AlignedGrid:
         piece, frame = self.space.pieces[self.piece], self.geometry.spline.frame
         uv = frame[:2] + frame[2:] * cells
         inside = piece.contains(uv)
-        made = points_of(self.space, np.full(int(inside.sum()), self.piece), uv[inside])
-        return Grid(self.space.known(made, keep=True), rows[inside], columns[inside], lines)
+        made = self.space.at(np.full(int(inside.sum()), self.piece), uv[inside], keep=True)
+        return Grid(made, rows[inside], columns[inside], lines)
 
 
 def axes_with(geometry: OnSpline, breaks: tuple[Array, Array]) -> tuple[Axis, Axis]:

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 
-from .along_borders import along_borders
 from .candidates import Candidates
 from .cells import Array, Cells, Indices
 from .grid import Grid
@@ -151,8 +149,8 @@ class Cover:
 
         Normals turn by about `turn` between these, in radians.
         """
-        first = replace(self.space.first, space=self.space)
-        return (self.space.evaluated(first) + along_borders(self.space, math.inf, turn)).sorted()
+        space = self.space
+        return (space.evaluated(space.first) + space.along_borders(math.inf, turn)).sorted()
 
     def missing(self, given: Indices) -> Cells:
         """Return a cell near the middle of each piece that has no sample, if it has a cell.
@@ -186,7 +184,7 @@ class Cover:
         space, added = self.space.exact, self.added
         if space is not self.space:
             self.space = space
-            self._replace_added(space.known(replace(added, space=space), keep=True))
+            self._replace_added(space.known(added, keep=True))
 
     def renew_distances(self, widest: float) -> None:
         """Compute the distances of all candidates from the samples again, within `widest`."""
@@ -263,7 +261,7 @@ class Cover:
             small.append(cells[smallest])
             far &= ~smallest
             self._refuse_more(4 * int(far.sum()))
-            cells = cells[far].halves.halves
+            cells = self.space.halves(self.space.halves(cells[far]))
             candidates = self._with_distances(cells.rows, radius, radius)
             self._choose(cells, candidates, radius, most)
         self._cover_small_cells(sum(small[1:], start=small[0]), radius, most)

@@ -43,7 +43,7 @@ def coverage(space: Space, points: Array, asked: float = math.inf) -> float:
         largest = max(largest, float(bounds[~far].max(initial=0.0)))
         if not far.any():
             break
-        radius, cells = float(bounds.max()), cells[far].halves.halves
+        radius, cells = float(bounds.max()), space.halves(space.halves(cells[far]))
     else:
         largest = max(largest, radius)
     return apart + largest

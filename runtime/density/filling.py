@@ -25,6 +25,7 @@ from .cover import Cover
 from .coverage import coverage
 from .deviation import widest_angle
 from .on_grid import cover_on_grid
+from .piece import Piece
 from .relaxation import relax
 from .space import Space
 
@@ -108,7 +109,8 @@ def fields_of(filled: Filled, fields: Sequence[str], dtype: DTypeLike) -> dict[s
     added = filled.cover.added
     order = np.argsort(added.pieces, kind="stable")
     added = added[order]
-    parts = [_of_piece(added[rows], k, fields, dtype) for k, rows in by_piece(added)]
+    pieces = filled.cover.space.pieces
+    parts = [_of_piece(pieces[k], added[rows], fields, dtype) for k, rows in by_piece(added)]
     found = {}
     for name in fields:
         given = filled.given.field(name, dtype)
@@ -120,12 +122,11 @@ def fields_of(filled: Filled, fields: Sequence[str], dtype: DTypeLike) -> dict[s
 
 
 def _of_piece(
-    cells: Cells, piece: int, fields: Sequence[str], dtype: DTypeLike
+    piece: Piece, cells: Cells, fields: Sequence[str], dtype: DTypeLike
 ) -> dict[str, NDArray[Any]]:
     """Return fields of samples at the places of cells of one piece."""
-    here = cells.space.pieces[piece]
-    found = here.fields_at(cells.places, cells.rows, fields, dtype)
-    for name, number in here.indices.items():
+    found = piece.fields_at(cells.places, cells.rows, fields, dtype)
+    for name, number in piece.indices.items():
         if name in fields:
             found[name] = found.get(name, np.zeros(len(cells), dtype=np.int64)) + number
     return found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from ..domain.domain import Domain
+from ..domain.domain import Domain, brought_inside
 from ..domain.trim import Trim
 from ..place.on_spline import OnSpline
 from .borders import Border
@@ -20,6 +20,9 @@ from .borders import Border
 __all__ = ["Piece", "boxes_between"]
 
 Array = NDArray[np.float64]
+
+# The distance from the border of places beside it, relative to the domain.
+BESIDE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,6 +128,45 @@ class Piece(ABC):
         return (
             np.ones(len(places), np.bool_) if self.trim is None else self.trim.contains(places, 1)
         )
+
+    def wrapped(self, places: Array) -> Array:
+        """Return places (k, 2) less whole periods, if there is a trim."""
+        assert self.trim is not None
+        u, v = places.T
+        return np.stack(brought_inside(u, v, self.domain, self.trim.boundary), axis=1)
+
+    def border_lines(self, step: float) -> Iterator[Array]:
+        """Yield the polygons, closed, with further places: steps are `step` of `sizes` at most."""
+        for polygon in self.polygons:
+            steps = np.diff(polygon, axis=0, append=polygon[:1])
+            parts = np.maximum(np.ceil(np.abs(steps / self.sizes).max(axis=1) / step), 1.0)
+            owner = np.repeat(np.arange(len(steps)), parts.astype(np.int64))
+            number = np.arange(len(owner)) - (np.cumsum(parts) - parts)[owner]
+            inner = polygon[owner] + (number / parts[owner])[:, None] * steps[owner]
+            yield np.concatenate([inner, polygon[:1]])
+
+    def beside_border(self, step: float) -> Array:
+        """Return places (k, 2) inside, close to the border, at distances `step` along it."""
+        found = [np.empty((0, 2))]
+        for line in self.border_lines(step):
+            steps = np.diff(line, axis=0)
+            found.append(self.beside(line[:-1] + steps / 2.0, steps)[0])
+        return np.concatenate(found)
+
+    def beside(self, places: Array, steps: Array) -> tuple[Array, NDArray[np.int64]]:
+        """Return which places are inside, of those left and right of places (k, 2) on a border.
+
+        And the numbers of these; the border runs along steps (k, 2).
+        """
+        along = steps / self.sizes
+        lengths = np.hypot(*along.T)
+        unit = along / np.where(lengths > 0.0, lengths, 1.0)[:, None]
+        across = BESIDE * self.sizes * np.stack([-unit[:, 1], unit[:, 0]], axis=1)
+        both = self.wrapped(np.concatenate([places + across, places - across]))
+        low, high = np.array(self.domain).T
+        inside = ((both > low) & (both < high)).all(axis=1)
+        inside[inside] = self.contains(both[inside])
+        return both[inside], np.tile(np.arange(len(places)), 2)[inside]
 
 
 def boxes_between(u: Array, v: Array) -> Array:
