@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -25,24 +24,30 @@ Array = NDArray[np.float64]
 BESIDE = 1e-6
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Piece(ABC):
-    """A smooth surface on a rectangle of parameters, or a part of it: a surface, or a face."""
+    """A smooth surface on a rectangle of parameters, or a part of it: a surface, or a face.
+
+    `label` is what it is called in messages, `trim` the part of the domain that belongs to it, None
+    if that is all of it. `indices` are fields that are the same for all of its samples, and the
+    number of its first patch. Points of what is sampled are farther than `distance` from those of
+    `jets` nowhere, in L. Below the lengths `finest` (2,) of parameters its curvature means nothing.
+    """
+
+    label: str
+    domain: Domain
+    trim: Trim | None
+    indices: Mapping[str, int]
+    distance: float = 0.0
+    finest: Array = field(default_factory=lambda: np.zeros(2))
 
     @property
-    @abstractmethod
-    def label(self) -> str:
-        """What it is called in messages."""
+    def polygons(self) -> Sequence[Array]:
+        """The closed polygons (k, 2) along which there are samples, if there is a trim.
 
-    @property
-    @abstractmethod
-    def domain(self) -> Domain:
-        """The rectangle of the parameters."""
-
-    @property
-    @abstractmethod
-    def trim(self) -> Trim | None:
-        """The part of the domain that belongs to it, None if that is all of it."""
+        The first point is not repeated.
+        """
+        return ()
 
     @cached_property
     @abstractmethod
@@ -53,11 +58,6 @@ class Piece(ABC):
     @abstractmethod
     def boxes(self) -> Array:
         """Boxes (M, 4) that the domain is made of, in each of which the surface is smooth."""
-
-    @property
-    @abstractmethod
-    def polygons(self) -> Sequence[Array]:
-        """The closed polygons (k, 2) of its trim, the first point of which is not repeated."""
 
     @abstractmethod
     def jets(self, u: Array, v: Array) -> Array:
@@ -81,24 +81,9 @@ class Piece(ABC):
         return None
 
     @property
-    def indices(self) -> Mapping[str, int]:
-        """Fields that are the same for all of its samples, and the number of its first patch."""
-        return MappingProxyType({})
-
-    @property
-    def distance(self) -> float:
-        """How far points of what is sampled are from those of `jets`, at most."""
-        return 0.0
-
-    @property
     def exact(self) -> Piece:
         """The piece with the derivatives of what is sampled, which may take longer."""
         return self
-
-    @property
-    def finest(self) -> Array:
-        """The lengths (2,) of parameters below which its curvature means nothing."""
-        return np.zeros(2)
 
     @property
     def sizes(self) -> Array:
