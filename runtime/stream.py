@@ -129,7 +129,9 @@ class _Stream:
         geometry, threads = self.geometry, self.geometry.threads
         chosen = choose(geometry, self.request.normals_or_count, self.progress)
         chosen, total = replace(chosen, found=None), len(chosen)  # frees the hits
-        report = sampling_report(geometry, total, 0, chosen.density, None)
+        report = sampling_report(
+            geometry.spline, total, 0, chosen.density, None, cells=geometry.cell_measure
+        )
         starts = range(0, total, NORMALS_AT_A_TIME)
         alone = len(starts) == 1
         came, unrefined, flat, nothing = 0, 0, Flat(), None

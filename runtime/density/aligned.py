@@ -199,8 +199,8 @@ class AlignedGrid:
 
 def axes_with(geometry: OnSpline, breaks: tuple[Array, Array]) -> tuple[Axis, Axis]:
     """Return the two parameters, cut at breaks."""
-    u, v = (Axis.of(float(n), PLACES, x) for n, x in zip(geometry.cells, breaks, strict=True))
-    return u, v
+    (m, n), (along_u, along_v) = geometry.spline.cells, breaks
+    return Axis.of(float(m), PLACES, along_u), Axis.of(float(n), PLACES, along_v)
 
 
 def forms_on(geometry: OnSpline, axes: tuple[Axis, Axis]) -> Array:

@@ -21,7 +21,6 @@ from ..samples.samples import Samples
 from ..search.bins import NormalBins
 from ..search.proved import ProvedIndex
 from ..search.search import developable_patches, find
-from ..spline.developable import curved_solid_angle
 from .chosen_normals import NORMALS_PER_SAMPLE, Chosen, choose
 from .fibonacci_lattice import Lattice
 from .space import Space
@@ -173,7 +172,7 @@ def _searched(
 
 def _at_lattice(geometry: OnSpline, density: float, progress: bool) -> tuple[Samples, Array] | None:
     lattice = Lattice.around(geometry.spline)
-    image = curved_solid_angle(geometry, density)
+    image = geometry.cell_measure.curved_solid_angle(density)
     if round(density * image) == 0:
         return None
     densest = lattice.density_of(NORMALS_PER_SAMPLE * max(round(density * image), 1000))
@@ -195,7 +194,13 @@ def samples_at(
         hits = find(geometry.spline, bins, threads, progress)
     found = geometry.at_hits(bins, hits, fields, dtype)
     report = sampling_report(
-        geometry, len(bins.normals), found.number, chosen.density, hits.developable, found.fields
+        geometry.spline,
+        len(bins.normals),
+        found.number,
+        chosen.density,
+        hits.developable,
+        found.fields,
+        geometry.cell_measure,
     )
     return geometry.samples(found.fields, report, found.unrefined), bins.normals
 
@@ -214,12 +219,13 @@ def _proved(
         geometry.surface, geometry.spline, index, normals, fields, dtype, threads
     )
     report = sampling_report(
-        geometry,
+        geometry.spline,
         len(normals),
         found.number,
         chosen.density,
         developable_patches(geometry.spline, threads),
         found.fields,
+        geometry.cell_measure,
     )
     report = replace(report, **proof._asdict())
     return geometry.samples(found.fields, report, found.unrefined), normals

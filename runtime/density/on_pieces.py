@@ -104,7 +104,15 @@ def report_of(
     """Return the report of all pieces: sums, the largest errors, and means over the area."""
     normals, samples = len(given.normals), len(next(iter(arrays.values())))
     reports = [
-        sampling_report(x.geometry, normals, samples, given.density, given.developable, arrays)
+        sampling_report(
+            x.geometry.spline,
+            normals,
+            samples,
+            given.density,
+            given.developable,
+            arrays,
+            x.geometry.cell_measure,
+        )
         for x in pieces
     ]
     sizes = np.array([x.size for x in pieces])

@@ -14,7 +14,6 @@ from numpy.typing import DTypeLike, NDArray
 from ..base.errors import SurfaceError
 from ..kernels.sizing import TargetDensity
 from ..place.on_spline import OnSpline
-from ..spline.developable import curved_solid_angle
 from .piece import Piece, boxes_between
 from .space import Space
 
@@ -71,7 +70,7 @@ class SurfacePiece(Piece):
         u0, v0, du, dv = self.geometry.spline.frame
         return boxes_between(*(
             low + step * np.unique(np.linspace(0, cells, BOXES + 1).round())
-            for low, step, cells in zip((u0, v0), (du, dv), self.geometry.cells, strict=True)
+            for low, step, cells in zip((u0, v0), (du, dv), self.geometry.spline.cells, strict=True)
         ))  # fmt: skip
 
     def jets(self, u: Array, v: Array) -> Array:
@@ -90,7 +89,7 @@ class SurfacePiece(Piece):
 
     def solid_angle(self, density: float) -> float:
         """Return the solid angle of the normals of what `density` normals per steradian sample."""
-        return curved_solid_angle(self.geometry, density)
+        return self.geometry.cell_measure.curved_solid_angle(density)
 
     @property
     def exact(self) -> Piece:
@@ -107,7 +106,7 @@ def space_of(
 
     Raises SurfaceError if none has.
     """
-    firsts = np.cumsum([0, *(x.patches for x in geometries)]).tolist()
+    firsts = np.cumsum([0, *(x.spline.patches for x in geometries)]).tolist()
     pieces = [SurfacePiece.of(x, first) for x, first in zip(geometries, firsts[:-1], strict=True)]
     label, sizes = pieces[0].label, np.array([_size_of(x, len(pieces) > 1) for x in pieces])
     real = sizes > NO_SIZE * sizes.max()

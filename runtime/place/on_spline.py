@@ -11,13 +11,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from ...generated.spline import SCALE
-from ..base.georeference import Georeference
 from ..base.memory import check_memory
 from ..base.threads import over_ranges
 from ..fitting.fit import check_range
@@ -33,9 +32,6 @@ from ..spline.developable import CellMeasure
 from ..spline.inside import count_of, samples_inside, with_uv
 from ..spline.spline import Spline
 from ..surface.surface import Surface
-
-if TYPE_CHECKING:
-    from ..spline.misfit import Misfit
 
 __all__ = ["Fields", "FieldsOfSamples", "OnSpline", "grouped"]
 
@@ -86,43 +82,13 @@ class OnSpline:
         check_range(self.spline, dtype)
         return replace(self, threads=threads, memory=memory)
 
-    @property
-    def name(self) -> str:
-        """Label of the surface."""
-        return self.spline.name
-
-    @property
-    def cells(self) -> tuple[int, int]:
-        """The numbers of cells of the spline."""
-        return self.spline.cells
-
-    @property
-    def patches(self) -> int:
-        """The number of patches of the spline."""
-        return self.spline.patches
-
-    @property
-    def apexes(self) -> int:
-        """The number of apexes of the spline."""
-        return self.spline.apexes
-
-    @property
-    def georeference(self) -> Georeference | None:
-        """Where the coordinates are on the Earth."""
-        return self.spline.georeference
-
-    @property
-    def misfit(self) -> Misfit | None:
-        """The misfit of the spline."""
-        return self.spline.misfit
-
     @cached_property
     def measure(self) -> tuple[Array, Array]:
         """Areas and signed solid angles of the patches, as `Spline.measure`."""
         return self.spline.measure
 
     @cached_property
-    def _cell_measure(self) -> CellMeasure:
+    def cell_measure(self) -> CellMeasure:
         """The same of the cells."""
         return self.spline._cell_measure
 
@@ -137,10 +103,10 @@ class OnSpline:
         self, bins: NormalBins, hits: Hits, fields: Sequence[str], dtype: DTypeLike
     ) -> FieldsOfSamples:
         """Return the samples at hits, with the fields that are requested."""
-        wanted = with_uv(self.spline, fields)
+        wanted = with_uv(self.spline.trim, fields)
         check_memory("stored", len(hits), bytes_of(set(wanted) - set(self.memory), dtype))
         arrays = fill(self.spline, bins, hits, self.threads, wanted, dtype, self.memory)
-        return FieldsOfSamples(samples_inside(self.spline, arrays, fields))
+        return FieldsOfSamples(samples_inside(self.spline.trim, arrays, fields))
 
     def at_hits_in_turn(
         self,

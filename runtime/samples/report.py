@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, SupportsIndex
+from typing import Any, NamedTuple, SupportsIndex
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,11 +16,8 @@ from numpy.typing import NDArray
 from ..base.checks import known_name
 from ..base.errors import GaussmapWarning, InputError, shown
 from ..base.georeference import checked_origin
-from ..spline.developable import Measured, developable_share
-
-if TYPE_CHECKING:
-    from ..base.georeference import Georeference
-    from ..spline.misfit import Misfit
+from ..spline.developable import CellMeasure
+from ..spline.spline import Spline
 
 __all__ = [
     "PLACES",
@@ -272,43 +269,32 @@ class SamplingReport:
                 object.__setattr__(self, name, check(name, value))
 
 
-class Sampled(Measured, Protocol):
-    """What is sampled: a spline, or a surface beside its spline."""
-
-    @property
-    def name(self) -> str: ...
-    @property
-    def patches(self) -> int: ...
-    @property
-    def apexes(self) -> int: ...
-    @property
-    def misfit(self) -> Misfit | None: ...
-    @property
-    def georeference(self) -> Georeference | None: ...
-
-
 def sampling_report(
-    sampled: Sampled,
+    spline: Spline,
     normals: int,
     samples: int,
     density: float,
     developable: int | None,
     arrays: Mapping[str, NDArray[Any]] = MappingProxyType({}),
+    cells: CellMeasure | None = None,
 ) -> SamplingReport:
-    """Return the report of a sampling with `density` normals per steradian and its `arrays`."""
-    misfit, place = sampled.misfit, sampled.georeference
+    """Return the report of a sampling with `density` normals per steradian and its `arrays`.
+
+    `cells` are those of the surface, if it was sampled beside its spline.
+    """
+    misfit, place = spline.misfit, spline.georeference
     return SamplingReport(
-        surface=sampled.name,
+        surface=spline.name,
         normals=normals,
         samples=samples,
-        patches=sampled.patches,
-        developable_share=developable_share(sampled, density),
+        patches=spline.patches,
+        developable_share=(cells or spline._cell_measure).developable_share(density),
         developable_patches=developable,
         infinite_curvatures=count_infinite(arrays),
         fit_distance=None if misfit is None else misfit.distance,
         fit_rms=None if misfit is None else misfit.rms,
         fit_angle=None if misfit is None else misfit.angle,
-        apexes=sampled.apexes,
+        apexes=spline.apexes,
         crs=None if place is None else place.crs,
         origin=None if place is None else place.origin,
     )

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from functools import cached_property
-from typing import Any, Literal, NamedTuple, Protocol
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["CellMeasure", "Measured", "curved_solid_angle", "developable_share", "widened"]
+__all__ = ["CellMeasure", "widened"]
 
 Array = NDArray[np.float64]
 # Regions that 10,000 normals would sample count as curved, even with fewer normals.
@@ -58,24 +57,11 @@ class CellMeasure(NamedTuple):
         """
         return self.curvatures * max(density, LEAST_DENSITY) >= 1.0
 
+    def developable_share(self, density: float) -> float:
+        """Return the share of the area that `density` normals per steradian do not sample."""
+        total = float(self.areas.sum())
+        return float(self.areas[~self.curved(density)].sum()) / total if total > 0.0 else 1.0
 
-class Measured(Protocol):
-    """A spline, or a surface beside its spline."""
-
-    @cached_property
-    def _cell_measure(self) -> CellMeasure:
-        """Areas, solid angles and curvatures of the cells."""
-        ...
-
-
-def developable_share(sampled: Measured, density: float) -> float:
-    """Return the share of the area that `density` normals per steradian do not sample."""
-    cells = sampled._cell_measure
-    total = float(cells.areas.sum())
-    return float(cells.areas[~cells.curved(density)].sum()) / total if total > 0.0 else 1.0
-
-
-def curved_solid_angle(sampled: Measured, density: float) -> float:
-    """Return the solid angle of the Gaussian image of curved cells, with multiplicity."""
-    cells = sampled._cell_measure
-    return float(cells.solid_angles[cells.curved(density)].sum())
+    def curved_solid_angle(self, density: float) -> float:
+        """Return the solid angle of the Gaussian image of curved cells, with multiplicity."""
+        return float(self.solid_angles[self.curved(density)].sum())

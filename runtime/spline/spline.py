@@ -241,7 +241,9 @@ class Spline(Immutable):
     @cached_property
     def inside(self) -> Inside | None:
         """The part of each patch inside the trim, None without one."""
-        return None if self.trim is None else Inside.of(self)
+        return (
+            None if self.trim is None else Inside.of(self.trim, self.frame, self.cells, self.name)
+        )
 
     def _evaluate(
         self, u: ArrayLike, v: ArrayLike
