@@ -34,7 +34,7 @@ __all__ = ["sample", "sample_and_normals", "unwarned"]
 
 
 def sample(
-    surface: Surface | Spline | Whole[Samples] | str,
+    surface: Surface | Spline | Whole | str,
     count: int | None = None,
     *,
     normals: ArrayLike | None = None,
@@ -210,7 +210,7 @@ def sample(
 
 
 def sample_and_normals(
-    surface: Surface | Spline | Whole[Samples] | str,
+    surface: Surface | Spline | Whole | str,
     request: Request,
     *,
     cells: Sequence[int] | None,
@@ -296,7 +296,7 @@ def unwarned(
 
 
 def _of_whole(
-    part: Whole[Samples],
+    part: Whole,
     request: Request,
     cells: Sequence[int] | None,
     on: str | None,

@@ -66,7 +66,7 @@ class SampleArrays:
     other_face_index: NDArray[np.int64] | None = None
     report: SamplingReport = field(kw_only=True)
     spline: Spline | None = field(default=None, kw_only=True)
-    surface: Surface | Whole[Any] | None = field(default=None, kw_only=True)
+    surface: Surface | Whole | None = field(default=None, kw_only=True)
     offset_of: OffsetOf | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
@@ -276,14 +276,14 @@ def _rebuilt(
     arrays: dict[str, NDArray[Any]],
     report: SamplingReport,
     spline: Spline | None,
-    surface: Surface | Whole[Any] | None = None,
+    surface: Surface | Whole | None = None,
     offset_of: OffsetOf | None = None,
 ) -> SampleArrays:
     """Return samples that were copied or pickled."""
     return cls(**arrays, report=report, spline=spline, surface=surface, offset_of=offset_of)
 
 
-def _if_it_pickles(surface: Whole[Any] | Surface | None) -> Any:  # noqa: ANN401 - of the same type
+def _if_it_pickles(surface: Whole | Surface | None) -> Any:  # noqa: ANN401 - of the same type
     """Return a surface, or None if it cannot be pickled: its function may be a lambda."""
     return surface if _pickles(surface) else None
 
