@@ -326,19 +326,18 @@ def _filled(
 ) -> tuple[Samples, NDArray[np.float64]]:
     """Return samples for any density of all pieces of a surface, and the normals searched."""
     space = space_of(geometries, geometries[0].threads, target_of(request))
-    filled = fill(space, request, progress)
+    cover = fill(space, request, progress)
     flags = FLAG_NAMES if geometries[0].on == "surface" else ()
-    given, cover = filled.given, filled.cover
     wanted = [x for x in dict.fromkeys([*fields, *flags]) if x not in GRID_NAMES]
-    arrays = fields_of(filled, wanted, dtype)
+    arrays = fields_of(cover, wanted, dtype)
     arrays |= lines_of(cover.grid, cover.count, fields)
     pieces = [x for x in space.pieces if isinstance(x, SurfacePiece)]
-    report = report_of(name, pieces, given, arrays)
+    report = report_of(name, pieces, cover.at_normals, arrays)
     is_on_grid = cover.grid is not None and bool((cover.grid.rows >= 0).any())
     density = "aligned" if is_on_grid else None
-    report = replace(report, coverage=filled.coverage, angle=filled.angle, density=density)
+    report = replace(report, coverage=cover.coverage, angle=cover.angle, density=density)
     spline = geometries[0].spline if len(geometries) == 1 else None
     held = {name: arrays[name] for name in fields}
     return Samples(
         **held, report=report, spline=spline, surface=surface, offset_of=None
-    ), given.normals
+    ), cover.at_normals.normals

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import Any, NamedTuple
 
@@ -25,7 +25,7 @@ from .chosen_normals import NORMALS_PER_SAMPLE, Chosen, choose
 from .fibonacci_lattice import Lattice
 from .space import Space
 
-__all__ = ["Given", "at_count", "at_lattices", "at_normals", "nothing_given", "samples_at"]
+__all__ = ["Given", "at_count", "at_lattices", "at_normals", "samples_at"]
 
 Array = NDArray[np.float64]
 
@@ -50,8 +50,8 @@ class Given:
     """
 
     space: Space
-    normals: Array
-    density: float
+    normals: Array = field(default_factory=lambda: np.empty((0, 3)))
+    density: float = 0.0
     found: tuple[Found, ...] = ()
     same_normals: bool = True
 
@@ -68,7 +68,7 @@ class Given:
     def rows(self) -> Array:
         """Scaled points, normals and K (N, 7)."""
         points, normals, K = (
-            self.field(x, np.float64) for x in ("points", "normals", "gaussian_curvature")
+            self.array(x, np.float64) for x in ("points", "normals", "gaussian_curvature")
         )
         return np.column_stack([self.space.scaled_points(points), normals, K])
 
@@ -84,7 +84,7 @@ class Given:
         numbers = [x.samples.report.developable_patches for x in self.found]
         return sum(x or 0 for x in numbers) if numbers else None
 
-    def field(self, name: str, dtype: DTypeLike) -> NDArray[Any]:
+    def array(self, name: str, dtype: DTypeLike) -> NDArray[Any]:
         """Return a field (N, …) of the samples."""
         dtype, parts, first = dtype_of(name, dtype), [np.empty((0, *row_shape(name)))], 0
         for piece, samples, normals in self.found:
@@ -99,11 +99,6 @@ class Given:
             parts.append(known)
             first += 0 if self.same_normals else len(normals)
         return np.concatenate([x.astype(dtype, copy=False) for x in parts])
-
-
-def nothing_given(space: Space) -> Given:
-    """Return the samples at no normals."""
-    return Given(space, np.empty((0, 3)), 0.0)
 
 
 def at_normals(space: Space, normals: Array, pieces: Iterable[int], progress: bool) -> Given:
