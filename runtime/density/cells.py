@@ -94,19 +94,7 @@ class Cells:
 
 def halved(cells: Cells, along_u: Flags) -> Cells:
     """Return the halves (2 M) of cells, along u or along v; they are not evaluated."""
-    check_memory("candidates", 2 * len(cells))
-    middle = (cells.boxes[:, :2] + cells.boxes[:, 2:]) / 2.0
-    lower, upper = cells.boxes.copy(), cells.boxes.copy()
-    lower[:, 2] = np.where(along_u, middle[:, 0], lower[:, 2])
-    lower[:, 3] = np.where(along_u, lower[:, 3], middle[:, 1])
-    upper[:, 0] = np.where(along_u, middle[:, 0], upper[:, 0])
-    upper[:, 1] = np.where(along_u, upper[:, 1], middle[:, 1])
-    boxes = np.stack([lower, upper], axis=1).reshape(-1, 4)
-    both = replace_boxes(cells, np.repeat(np.arange(len(cells)), 2), boxes)
-    factors = np.where(np.repeat(along_u, 2), 0.5, 1.0)
-    both.numbers[:, ALONG_U] *= factors
-    both.numbers[:, ALONG_V] *= 0.5 / factors
-    return both
+    return into_parts(cells, np.where(along_u[:, None], (2, 1), (1, 2)))
 
 
 def into_parts(cells: Cells, parts: Indices) -> Cells:
@@ -121,21 +109,8 @@ def into_parts(cells: Cells, parts: Indices) -> Cells:
     boxes = np.concatenate([low + place * steps, low + (place + 1) * steps], axis=1)
     last = place + 1 == parts[owner]
     boxes[:, 2:] = np.where(last, cells.boxes[owner, 2:], boxes[:, 2:])
-    return replace_boxes(cells, owner, boxes)
-
-
-def replace_boxes(cells: Cells, owner: Indices, boxes: Array) -> Cells:
-    """Return cells with other boxes, each a part of the cell that is its owner."""
-    rows = np.zeros((len(owner), 8))
-    return replace(
-        cells,
-        pieces=cells.pieces[owner],
-        boxes=boxes,
-        places=(boxes[:, :2] + boxes[:, 2:]) / 2.0,
-        whole=cells.whole[owner],
-        rows=rows,
-        numbers=cells.numbers[owner],
-    )
+    made = new_cells(cells.pieces[owner], boxes)
+    return replace(made, whole=cells.whole[owner], numbers=cells.numbers[owner])
 
 
 def by_piece(cells: Cells) -> Iterator[tuple[int, slice]]:

@@ -137,10 +137,8 @@ class Filling:
         if request.density in BY_CURVATURE:
             if request.count is None:
                 return self._by_radius()
-            cover, asked = (
-                self._by_count(self._balanced(capped=True), request.count),
-                request.coverage,
-            )
+            cover = self._by_count(self._balanced(capped=True), request.count)
+            asked = request.coverage
             if asked is None or self.reached(cover) <= asked * self.space.unit:
                 return cover
             return self._by_count_and_coverage(request.count)
