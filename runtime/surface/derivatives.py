@@ -35,6 +35,7 @@ __all__ = [
 Array = NDArray[np.float64]
 Function = Callable[[Array, Array], Array]
 Bounds = tuple[tuple[float, float], tuple[float, float]]
+Lines = tuple[tuple[float, ...], tuple[float, ...]]
 
 # The rows of a 2-jet.
 NAMES = ("x", "x_u", "x_v", "x_uu", "x_uv", "x_vv")
@@ -56,6 +57,11 @@ class Differentiable(ABC):
     """A function x(u,v) that knows its derivatives, and may be called by several threads."""
 
     has_gaps: ClassVar[bool] = False  # whether derivatives may be NaN at single places
+    creases: Lines = ((), ())  # values of u, and those of v, inside, where it is not smooth
+
+    def restricted(self, domain: Domain) -> Differentiable:
+        """Return it over a part of its domain, evaluated from inside at the ends."""
+        return self
 
     @property
     def differentiable(self) -> bool:

@@ -13,7 +13,7 @@ from ..base.errors import InputError
 from ..base.tolerances import SAME_PARAMETER
 from ..domain.domain import Domain
 from ..kernels import nurbs as kernels
-from .derivatives import Differentiable
+from .derivatives import Differentiable, Lines
 
 __all__ = ["Nurbs"]
 
@@ -36,7 +36,7 @@ class Nurbs(Differentiable):
     centre: Array
     domain: Domain
     periodic: tuple[bool, bool] = (False, False)
-    creases: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
+    creases: Lines = ((), ())
 
     def __repr__(self) -> str:
         m, n, _ = self.points.shape

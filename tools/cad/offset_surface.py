@@ -16,8 +16,12 @@ from numpy.typing import NDArray
 
 from ...generated.differences import FIRST
 from ...runtime.domain.domain import Domain
-from ...runtime.surface.cutting import Creased
-from ...runtime.surface.derivatives import Differentiable, nodes_between, shifts_inside, weighted
+from ...runtime.surface.derivatives import (
+    Differentiable,
+    nodes_between,
+    shifts_inside,
+    weighted,
+)
 from ...runtime.surface.moved import Moved
 from ...runtime.surface.nurbs import Nurbs
 from ..kernels import faces as kernels
@@ -43,6 +47,9 @@ class OffsetSurface(Differentiable):
     distance: float
     domain: Domain
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "creases", self.basis.creases)
+
     def __call__(self, u: Array, v: Array) -> Array:
         """Return the points (..., 3)."""
         places = u.ravel(), v.ravel()
@@ -59,15 +66,9 @@ class OffsetSurface(Differentiable):
         thirds = np.concatenate([along_u, along_v[:, 2:]], axis=1)
         return self._at_distance(jets, thirds)
 
-    @property
-    def creases(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """The values of u, and those of v, where the other surface is not smooth."""
-        return self.basis.creases if isinstance(self.basis, Creased) else ((), ())
-
     def restricted(self, domain: Domain) -> OffsetSurface:
         """Return a part of the surface, evaluated from inside where it is not smooth."""
-        part = self.basis.restricted(domain) if isinstance(self.basis, Creased) else self.basis
-        return replace(self, basis=part, domain=domain)
+        return replace(self, basis=self.basis.restricted(domain), domain=domain)
 
     def _at_distance(self, jets: Array, thirds: Array) -> Array:
         """Return positions and derivatives (k, 6, 3), of jets and third derivatives (k, 4, 3)."""
