@@ -257,7 +257,7 @@ class Cover:
         """Add samples until not only candidates are covered, but all points."""
         cells, candidates, small, first = self.cells, self._candidates, [], self.count
         while len(cells):
-            shares = cells.radii * np.sqrt(candidates.densities) / radius
+            shares = cells.radii * np.sqrt(cells.rows[:, 6]) / radius
             far = candidates.distances > (1.0 - shares) * radius
             smallest = far & (shares <= FINEST)
             small.append(cells[smallest])

@@ -7,6 +7,7 @@ import pickle
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, Self
 
 import numpy as np
@@ -100,8 +101,9 @@ class SampleArrays:
         spline = self.spline
         if spline is not None and spline.trim is not None and not _pickles(spline.trim):
             spline = None
-        state = self.arrays(), self.report, spline, _if_it_pickles(self.surface), base
-        return _rebuilt, (type(self), *state)
+        known = {"report": self.report, "spline": spline, "offset_of": base}
+        surface = _if_it_pickles(self.surface)
+        return partial(type(self), **self.arrays(), **known, surface=surface), ()
 
     @classmethod
     def concatenate(cls, parts: Iterable[Self]) -> Self:
@@ -269,18 +271,6 @@ class SampleArrays:
             **arrays, report=self.report,
             spline=self.spline, surface=self.surface, offset_of=self.offset_of,
         )  # fmt: skip
-
-
-def _rebuilt(
-    cls: type[SampleArrays],
-    arrays: dict[str, NDArray[Any]],
-    report: SamplingReport,
-    spline: Spline | None,
-    surface: Surface | Whole | None = None,
-    offset_of: OffsetOf | None = None,
-) -> SampleArrays:
-    """Return samples that were copied or pickled."""
-    return cls(**arrays, report=report, spline=spline, surface=surface, offset_of=offset_of)
 
 
 def _if_it_pickles(surface: Whole | Surface | None) -> Any:  # noqa: ANN401 - of the same type
