@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -55,8 +54,9 @@ DEEPEST = 2.0**-14
 MOST_CELLS = 2e9
 # The factor by which cells are made coarser if there were too many.
 COARSER = 1.2
-# Cells of small faces are evaluated together by one thread.
-CELLS_AT_A_TIME = 1 << 12
+# Of a piece, this number of cells is evaluated at a time, and about the RANGES-th part of all that
+# is evaluated by one thread.
+CELLS_AT_A_TIME, RANGES = 1 << 12, 32
 # Where |K| is below this part of 1/area, a part counts as developable.
 FLAT_CURVATURE = 1e-6
 
@@ -368,19 +368,21 @@ class Space:
         """
 
         def work(first: int, last: int) -> None:
-            for group in groups[first:last]:
-                for k, rows in group:
-                    jets = self.pieces[k].jets(*cells.places[rows].T.copy())
-                    evaluate_cells(
-                        jets, cells.boxes[rows], cells.places[rows], self.unit, self.centre,
-                        self.pieces[k].finest, self._target_of(k),
-                        cells.rows[rows], cells.numbers[rows],
-                    )  # fmt: skip
+            for k, rows in parts[first:last]:
+                jets = self.pieces[k].jets(*cells.places[rows].T.copy())
+                evaluate_cells(
+                    jets, cells.boxes[rows], cells.places[rows], self.unit, self.centre,
+                    self.pieces[k].finest, self._target_of(k),
+                    cells.rows[rows], cells.numbers[rows],
+                )  # fmt: skip
 
         cells = replace(cells, rows=np.empty_like(cells.rows), numbers=cells.numbers.copy())
-        groups = list(_groups(cells))
-        for _ in over_ranges(work, len(groups), 1, self.threads):
-            pass
+        parts = [
+            (k, slice(first, min(first + CELLS_AT_A_TIME, rows.stop)))
+            for k, rows in by_piece(cells)
+            for first in range(rows.start, rows.stop, CELLS_AT_A_TIME)
+        ]
+        list(over_ranges(work, len(parts), len(parts) // RANGES + 1, self.threads))
         known = np.concatenate([cells.rows, cells.numbers], axis=1)
         finite = np.asarray(np.isfinite(known).all(axis=1))
         if keep:
@@ -391,16 +393,3 @@ class Space:
     def _target_of(self, piece: int) -> TargetDensity:
         flat = piece in self.developable
         return self.target._replace(gauss_weight=0.0) if flat else self.target
-
-
-def _groups(cells: Cells) -> Iterator[list[tuple[int, slice]]]:
-    """Yield pieces and rows of cells, sorted by pieces: about CELLS_AT_A_TIME at a time."""
-    group, count = [], 0
-    for k, rows in by_piece(cells):
-        for first in range(rows.start, rows.stop, CELLS_AT_A_TIME):
-            last = min(first + CELLS_AT_A_TIME, rows.stop)
-            group, count = [*group, (k, slice(first, last))], count + last - first
-            if count >= CELLS_AT_A_TIME:
-                yield group
-                group, count = [], 0
-    yield group
