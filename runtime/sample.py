@@ -265,11 +265,17 @@ def unwarned(
     edges = yes_or_no(edges, "edges")
     if not isinstance(out, Samples | None):
         raise InputError(f"out must be Samples of an earlier call, not {shown(out)}.")
+    number = checked_dtype(dtype)
     if isinstance(surface, Whole):
-        return _of_whole(surface, request, cells, on, fields, dtype, threads, progress, edges)
+        wanted = checked_fields(fields, True, part=True, edges=edges)
+        if cells is not None:
+            raise InputError("cells=... are for splines; the faces of a part need none.")
+        if checked_place(on) == "spline":
+            raise InputError('on="spline" is for surfaces; samples of a part lie on its faces.')
+        return surface._sampled(request, wanted, number, threads, progress, edges)
     if edges:
         raise InputError("edges=True is for CAD parts; other surfaces have no sharp edges.")
-    asked, surface, number = surface, named(surface), checked_dtype(dtype)
+    asked, surface = surface, named(surface)
     place = place_of_samples(surface, on)
     may_be_proved = place == "surface" and request.density == "gauss" and request.count is None
     has = {"surface": place == "surface", "grid": request.density == "aligned"}
@@ -293,26 +299,6 @@ def unwarned(
         chosen = choose(geometries[0], request.normals_or_count, progress)
         samples, normals = samples_at(geometries[0], chosen, wanted, number, progress)
     return (without_lines(samples) if fields is None else samples), normals
-
-
-def _of_whole(
-    part: Whole,
-    request: Request,
-    cells: Sequence[int] | None,
-    on: str | None,
-    fields: Sequence[str] | None,
-    dtype: DTypeLike,
-    threads: int | None,
-    progress: bool,
-    edges: bool,
-) -> tuple[Samples, NDArray[np.float64]]:
-    """Return the samples of a CAD part; InputError for what it does not have."""
-    number, wanted = checked_dtype(dtype), checked_fields(fields, True, part=True, edges=edges)
-    if cells is not None:
-        raise InputError("cells=... are for splines; the faces of a part need none.")
-    if checked_place(on) == "spline":
-        raise InputError('on="spline" is for surfaces; samples of a part lie on its faces.')
-    return part._sampled(request, wanted, number, threads, progress, edges)
 
 
 def _filled(
