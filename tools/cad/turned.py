@@ -27,6 +27,9 @@ class Turned(Differentiable):
 
     curve: Nurbs
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "creases", ((), self.curve.creases[0]))
+
     def __call__(self, u: Array, v: Array) -> Array:
         """Return the points (..., 3)."""
         return self.jets(u.ravel(), v.ravel())[:, 0].reshape(*u.shape, 3)
@@ -36,11 +39,6 @@ class Turned(Differentiable):
         jets, along = np.empty((len(u), 6, 3)), self.curve.jets(v, np.zeros(len(v)))[:, [0, 1, 3]]
         kernels.revolve(np.ascontiguousarray(u), along, jets)
         return jets
-
-    @property
-    def creases(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """No values of u, and the values of v where the curve is not smooth."""
-        return (), self.curve.creases[0]
 
     def restricted(self, domain: Domain) -> Turned:
         """Return a part of the surface, evaluated from inside where the curve is not smooth."""
