@@ -10,9 +10,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...generated.spline import SCALE
+from ..base.aliases import Array, Indices
 from ..place.on_spline import OnSpline
 from .breaks import breaks_along
 from .grid import Grid
@@ -22,8 +22,6 @@ from .steps import Forms, Steps, equal_steps, steps_for_count
 
 __all__ = ["AlignedGrid"]
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 # The forms are known at about this number of places along u and v.
 PLACES = 64

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.aliases import Array, Indices
 from ..base.trees import tree_of
 from ..kernels.sizing import TargetDensity
-from .cells import LIMIT, Array, Cells, Indices, by_piece
+from .cells import LIMIT, Cells, by_piece
 from .piece import Piece
 
 __all__ = ["BorderLine", "places_along", "polygons_of"]

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
+from ..base.aliases import Array, Indices
 from ..base.threads import thread_count
 from ..base.trees import tree_of
 from .candidates import Candidates
-from .cells import Array, Indices
 from .cover import STEP, Cover
 
 # Normals at places are covered within an angle that is smaller by this part, which is left for

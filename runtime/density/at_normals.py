@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from ..base.aliases import Array, Indices
 from ..base.errors import GaussmapError, GaussmapWarning
 from ..place.on_spline import OnSpline
 from ..place.proved import proved_samples
@@ -27,7 +28,6 @@ from .space import Space
 
 __all__ = ["Given", "at_count", "at_lattices", "at_normals", "samples_at"]
 
-Array = NDArray[np.float64]
 
 # A lattice that gives too many samples is replaced by one with this part of the normals that would
 # give as many as allowed.
@@ -59,7 +59,7 @@ class Given:
         return sum(len(x.samples) for x in self.found)
 
     @cached_property
-    def pieces(self) -> NDArray[np.int64]:
+    def pieces(self) -> Indices:
         """The pieces (N,) on which they are."""
         numbers = np.array([x.piece for x in self.found], dtype=np.int64)
         return np.repeat(numbers, [len(x.samples) for x in self.found])
@@ -128,7 +128,7 @@ def at_lattices(
         density *= FEWER * most / len(given)
 
 
-def at_count(space: Space, counts: NDArray[np.int64], progress: bool) -> Given:
+def at_count(space: Space, counts: Indices, progress: bool) -> Given:
     """Return about as many samples of each piece as `counts` (P,) say, at normals of lattices."""
     parts, densities = list[Found](), [0.0]
     for piece in np.flatnonzero(counts).tolist():

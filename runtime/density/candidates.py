@@ -8,6 +8,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.aliases import Array, Indices
 from ..base.threads import over_ranges
 from ..kernels.centres import link_cells, move_to_centres
 from ..kernels.greedy import choose_far, update_distances
@@ -15,8 +16,6 @@ from ..kernels.hash_grids import LEVELS, SQUARE, HashGrids, measure, sort_candid
 
 __all__ = ["Candidates"]
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 Numbers = NDArray[np.int32]
 Result = TypeVar("Result")
 

@@ -13,13 +13,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.aliases import Array, Flags, Indices
 from ..base.memory import check_memory
 
 __all__ = [
-    "Array",
     "Cells",
-    "Flags",
-    "Indices",
     "by_piece",
     "halved",
     "into_parts",
@@ -27,9 +25,6 @@ __all__ = [
     "points_of",
 ]
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 # The columns of `numbers`, see kernels/cells.py.
 RADIUS, CHORD, ALONG_U, ALONG_V, BEND_U, BEND_V, AREA, LIMIT = range(8)

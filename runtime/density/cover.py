@@ -7,9 +7,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from ..base.aliases import Array, Indices
 from .at_normals import Given
 from .candidates import Candidates
-from .cells import Array, Cells, Indices
+from .cells import Cells
 from .grid import Grid
 from .space import Space
 

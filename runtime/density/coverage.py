@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
+from ..base.aliases import Array
 from ..base.threads import thread_count
 from ..base.trees import tree_of
-from .cells import Array
 from .space import Space
 
 __all__ = ["coverage"]

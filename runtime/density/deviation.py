@@ -7,10 +7,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from ..base.aliases import Array
 from ..base.threads import thread_count
 from ..base.trees import tree_of
 from ..samples.whole import NormalDeviation
-from .cells import Array
 from .space import Space
 
 __all__ = ["normal_deviation", "widest_angle"]

@@ -24,7 +24,6 @@ from .surface_piece import SurfacePiece
 
 __all__ = ["cells_of_piece", "geometries_of", "kept_geometries", "pieces_to_sample", "report_of"]
 
-Array = NDArray[np.float64]
 
 # Each piece is fitted and searched by itself, which takes 20 ms.
 MOST_PIECES = 2000

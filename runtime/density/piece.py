@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from ..base.aliases import Array, Flags, Indices
 from ..domain.domain import Domain, brought_inside
 from ..domain.trim import Trim
 from ..place.on_spline import OnSpline
@@ -18,7 +19,6 @@ from .borders import Border
 
 __all__ = ["Piece", "boxes_between"]
 
-Array = NDArray[np.float64]
 
 # The distance from the border of places beside it, relative to the domain.
 BESIDE = 1e-6
@@ -108,7 +108,7 @@ class Piece(ABC):
     def _borders(self) -> dict[int, Border]:
         return {}
 
-    def contains(self, places: Array) -> NDArray[np.bool_]:
+    def contains(self, places: Array) -> Flags:
         """Return which places (k, 2) are inside the trim."""
         return (
             np.ones(len(places), np.bool_) if self.trim is None else self.trim.contains(places, 1)
@@ -138,7 +138,7 @@ class Piece(ABC):
             found.append(self.beside(line[:-1] + steps / 2.0, steps)[0])
         return np.concatenate(found)
 
-    def beside(self, places: Array, steps: Array) -> tuple[Array, NDArray[np.int64]]:
+    def beside(self, places: Array, steps: Array) -> tuple[Array, Indices]:
         """Return which places are inside, of those left and right of places (k, 2) on a border.
 
         And the numbers of these; the border runs along steps (k, 2).

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from .cells import Array, Cells, Flags, Indices, by_piece
+from ..base.aliases import Array, Flags, Indices
+from .cells import Cells, by_piece
 from .piece import Piece
 
 __all__ = ["beside", "placed", "sifted"]

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.aliases import Array, Indices
 from ..base.checks import finite_array
 from ..base.errors import InputError
 from ..base.scales import scale_to_one
@@ -26,9 +27,7 @@ from .cells import (
     CHORD,
     LIMIT,
     RADIUS,
-    Array,
     Cells,
-    Indices,
     by_piece,
     halved,
     into_parts,

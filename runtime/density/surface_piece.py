@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from ..base.aliases import Array
 from ..base.errors import SurfaceError
 from ..kernels.sizing import TargetDensity
 from ..place.on_spline import OnSpline
@@ -19,7 +20,6 @@ from .space import Space
 
 __all__ = ["SurfacePiece", "space_of"]
 
-Array = NDArray[np.float64]
 
 # About this number of boxes along u and along v; their sides are lines between cells.
 BOXES = 32

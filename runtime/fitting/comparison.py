@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.aliases import Array
 from ..domain.domain import Boundary, cells_between
 from ..spline.misfit import Misfit
 from ..spline.spline import Spline
@@ -20,7 +20,6 @@ __all__ = [
     "squared_lengths",
 ]
 
-Array = NDArray[np.float64]
 
 POINTS_AT_A_TIME = 1 << 16
 

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from ...generated.spline import SCALE
+from ..base.aliases import Array
 from ..base.memory import check_memory
 from ..base.threads import over_ranges
 from ..fitting.fit import check_range
@@ -35,7 +36,6 @@ from ..surface.surface import Surface
 
 __all__ = ["Fields", "FieldsOfSamples", "OnSpline", "grouped"]
 
-Array = NDArray[np.float64]
 Fields = dict[str, NDArray[Any]]
 
 AT_A_TIME = 1 << 12

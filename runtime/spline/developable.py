@@ -8,9 +8,10 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.aliases import Array, Flags
+
 __all__ = ["CellMeasure", "widened"]
 
-Array = NDArray[np.float64]
 # Regions that 10,000 normals would sample count as curved, even with fewer normals.
 LEAST_DENSITY = 10_000 / (4 * math.pi)
 
@@ -49,7 +50,7 @@ class CellMeasure(NamedTuple):
         solid_angles = np.abs(measure[1]).reshape(-1, 4).sum(axis=1)
         return cls(measure[0].reshape(-1, 4).sum(axis=1), solid_angles, curvatures.ravel())
 
-    def curved(self, density: float) -> NDArray[np.bool_]:
+    def curved(self, density: float) -> Flags:
         """Return which cells are curved enough to be sampled, as booleans (m n,).
 
         A cell counts if |K| times the density is at least 1, in units of the diagonal of the

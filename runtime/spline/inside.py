@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.aliases import Array, Flags, Indices
 from ..base.errors import SurfaceError
 from ..domain.trim import Trim
 from ..kernels.trim import to_cells
@@ -23,7 +24,6 @@ __all__ = [
     "with_uv",
 ]
 
-Array = NDArray[np.float64]
 
 # A patch is tested at the centroids of this number of triangles squared: COARSE for all, where it
 # is not known which cells the border of the trim passes, and FINEST for those it may pass.
@@ -39,7 +39,7 @@ class Inside:
     """
 
     shares: Array
-    reached: NDArray[np.bool_]
+    reached: Flags
 
     @classmethod
     def of(cls, trim: Trim, frame: Array, cells: tuple[int, int], name: str) -> Inside:
@@ -47,7 +47,7 @@ class Inside:
         passed, all_known = trim.cells_of_border(trim.domain, cells)
         number = np.arange(4 * cells[0] * cells[1])
 
-        def shares_of(patches: NDArray[np.int64], parts: int) -> Array:
+        def shares_of(patches: Indices, parts: int) -> Array:
             return _shares(trim, frame, cells[1], patches, parts)
 
         shares = shares_of(number, 1 if all_known else COARSE)
@@ -96,9 +96,7 @@ def subcentroids(parts: int) -> Array:
     return np.concatenate(places) / parts
 
 
-def _shares(
-    trim: Trim, frame: Array, columns: int, patches: NDArray[np.int64], parts: int
-) -> Array:
+def _shares(trim: Trim, frame: Array, columns: int, patches: Indices, parts: int) -> Array:
     """Return the shares of patches (k,) by the centroids of their parts."""
     places, shares = subcentroids(parts), np.empty(len(patches))
     step = max(POINTS_AT_A_TIME // len(places), 1)

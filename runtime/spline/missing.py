@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.aliases import Array, Flags
 from ..base.checks import as_float
 from ..base.errors import GaussmapWarning, InputError, shown
 from ..domain.domain import Boundary, BoundaryPair, Domain
@@ -29,8 +30,6 @@ __all__ = [
     "without_nodata",
 ]
 
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 # What grids of elevations usually hold where there are none.
 USUAL_NODATA = (-9999.0, -99999.0, -32768.0, float(np.finfo(np.float32).min))

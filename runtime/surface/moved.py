@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..base.aliases import Array, Flags
 from ..base.checks import real_array
 from ..base.errors import InputError
 from ..base.evaluation import returned
@@ -18,8 +19,6 @@ from .surface_values import SurfaceValues
 from .tapes import moved_tape
 
 __all__ = ["IDENTITY", "AffineMap", "Moved", "affine_map", "moved_grid", "turned_trim"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,12 +164,12 @@ class Turned:
         """Return a condition after reversal, the original one after two."""
         return part.part if isinstance(part, Turned) else Turned(part, total)
 
-    def contains(self, uv: Array, threads: int | None = None) -> NDArray[np.bool_]:
+    def contains(self, uv: Array, threads: int | None = None) -> Flags:
         """Return whether points (k, 2) fulfil it."""
         own = np.stack([self.total - uv[:, 0], uv[:, 1]], axis=1)
         return self.part.contains(own, threads)
 
-    def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> NDArray[np.bool_] | None:
+    def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags | None:
         """Return the cells (m, n) of a grid that its border may pass."""
         (low, high), along_v = domain
         found = self.part.cells_of_border(((self.total - high, self.total - low), along_v), cells)

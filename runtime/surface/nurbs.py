@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base import compiling  # noqa: F401 - announces compilation on terminals
+from ..base.aliases import Array
 from ..base.errors import InputError
 from ..base.tolerances import SAME_PARAMETER
 from ..domain.domain import Domain
@@ -16,8 +16,6 @@ from ..kernels import nurbs as kernels
 from .derivatives import Differentiable, Lines
 
 __all__ = ["Nurbs"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -5,16 +5,16 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..base.advice import is_of_geomdl, is_of_splipy
+from ..base.aliases import Array
 from ..base.checks import real_array, whole_number
 from ..base.errors import InputError, shown
 from .nurbs import Nurbs
 
 __all__ = ["MOST_DEGREE", "nurbs_of"]
 
-Array = NDArray[np.float64]
 
 # No format for CAD data holds larger degrees.
 MOST_DEGREE = 25
