@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..base.aliases import Array, Flags
-from ..base.checks import listed, real_array
+from ..base.checks import finite_array, listed
 from ..base.errors import InputError, shown
 from ..base.scales import scale_to_one
 from ..base.threads import over_ranges
@@ -204,13 +204,7 @@ def _rings_of_geometry(geometry: Any) -> list[Any]:  # noqa: ANN401
 
 def _polygon(points: Any, number: int) -> Array:  # noqa: ANN401
     """Return the points (k, 2) of a polygon, the first one not repeated."""
-    array = real_array(points, f"loop {number}")
-    if array.ndim != 2 or array.shape[1] != 2:
-        raise InputError(
-            f"loop {number} must have the shape (k, 2), points u, v, not {array.shape}."
-        )
-    if not np.isfinite(array).all():
-        raise InputError(f"loop {number} holds NaN or infinity.")
+    array = finite_array(points, ("k", 2), f"loop {number}")
     if len(array) > 1 and (array[0] == array[-1]).all():
         array = array[:-1]
     if len(array) < 3:

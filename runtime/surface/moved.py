@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.aliases import Array, Flags
-from ..base.checks import real_array
+from ..base.checks import finite_array
 from ..base.errors import InputError
 from ..base.evaluation import returned
 from ..domain.domain import Boundary, Domain, Interval
@@ -53,11 +53,9 @@ IDENTITY = AffineMap(np.eye(3), np.zeros(3))
 
 def affine_map(matrix: ArrayLike) -> AffineMap:
     """Return the map of a matrix (3, 3) or (4, 4); InputError if it is none, or singular."""
-    array = real_array(matrix, "matrix")
+    array = finite_array(matrix, None, "matrix")
     if array.shape not in ((3, 3), (4, 4)):
         raise InputError(f"matrix must have the shape (3, 3) or (4, 4), not {array.shape}.")
-    if not np.isfinite(array).all():
-        raise InputError("matrix holds NaN or infinity.")
     if array.shape == (4, 4) and (array[3] != (0.0, 0.0, 0.0, 1.0)).any():
         raise InputError(
             f"the last row of matrix must be (0, 0, 0, 1), not {array[3]}: "
