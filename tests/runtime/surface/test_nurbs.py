@@ -391,7 +391,7 @@ SQUARE = [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]]
         (((1, 1), (LINE, [0, 0, np.nan, 1]), SQUARE), r"knots of v holds .*: nan at index \[2\]"),
         (((1, 1), (LINE, LINE), SQUARE, [[1, 0], [1, 1]]), "a NURBS with a zero weight"),
         (((1, 1), (LINE, LINE), SQUARE, [[1, 1], [-2, 1]]), r"weights\[1, 0\] is -2.0"),
-        (((1, 1), (LINE, LINE), SQUARE, [[1, np.nan], [1, 1]]), r"weights holds .*: nan at index \[0, 1"),
+        (((1, 1), (LINE, LINE), SQUARE, [[1, np.nan], [1, 1]]), r"weights .*nan at index \[0, 1"),
         (((1, 1), (LINE, LINE), SQUARE, [1, 1]), r"weights must have the shape \(2, 2\)"),
         (((0, 1), (LINE, LINE), SQUARE), "the degree of u must be a whole number of at least 1"),
         (((26, 1), (LINE, LINE), SQUARE), "the degree of u must be a whole number of at most 25"),
