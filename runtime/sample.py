@@ -245,7 +245,7 @@ def sample_and_normals(
 
 @in_memory
 def unwarned(
-    surface: Surface | Spline | Whole[Samples] | str,
+    surface: Surface | Spline | Whole | str,
     request: Request,
     *,
     cells: Sequence[int] | None,

@@ -17,7 +17,6 @@ from ..base.errors import GaussmapError, GaussmapWarning
 from ..place.on_spline import OnSpline
 from ..place.proved import proved_samples
 from ..samples.fields import ARRAY_NAMES_ON_SURFACE, dtype_of, row_shape
-from ..samples.report import sampling_report
 from ..samples.samples import Samples
 from ..search.bins import NormalBins
 from ..search.proved import ProvedIndex
@@ -188,15 +187,7 @@ def samples_at(
     if hits is None:
         hits = find(geometry.spline, bins, threads, progress)
     found = geometry.at_hits(bins, hits, fields, dtype)
-    report = sampling_report(
-        geometry.spline,
-        len(bins.normals),
-        found.number,
-        chosen.density,
-        hits.developable,
-        found.fields,
-        geometry.cell_measure,
-    )
+    report = geometry.report(len(bins.normals), chosen.density, hits.developable, found.fields)
     return geometry.samples(found.fields, report, found.unrefined), bins.normals
 
 
@@ -213,15 +204,8 @@ def _proved(
     found, proof = proved_samples(
         geometry.surface, geometry.spline, index, normals, fields, dtype, threads
     )
-    report = sampling_report(
-        geometry.spline,
-        len(normals),
-        found.number,
-        chosen.density,
-        developable_patches(geometry.spline, threads),
-        found.fields,
-        geometry.cell_measure,
-    )
+    developable = developable_patches(geometry.spline, threads)
+    report = geometry.report(len(normals), chosen.density, developable, found.fields)
     report = replace(report, **proof._asdict())
     return geometry.samples(found.fields, report, found.unrefined), normals
 

@@ -24,7 +24,7 @@ from ..fitting.fit import check_range
 from ..kernels.forms import forms_of_jets, jets_on_spline, patches_at
 from ..kernels.tile import fill_known
 from ..samples.fields import FLOAT_NAMES, bytes_of, new_field
-from ..samples.report import SamplingReport
+from ..samples.report import SamplingReport, sampling_report
 from ..samples.samples import Samples
 from ..search.bins import NormalBins
 from ..search.proved import ProvedIndex
@@ -119,6 +119,13 @@ class OnSpline:
         """Yield at most `size` samples at a time, those at `parts` of all hits of these normals."""
         for hits in grouped(parts, size):
             yield self.at_hits(bins, hits, fields, dtype)
+
+    def report(
+        self, normals: int, density: float, developable: int | None, arrays: Fields
+    ) -> SamplingReport:
+        """Return the report of samples with some fields; see `sampling_report`."""
+        count, cells = count_of(arrays) if arrays else 0, self.cell_measure
+        return sampling_report(self.spline, normals, count, density, developable, arrays, cells)
 
     def samples(self, fields: Fields, report: SamplingReport, unrefined: int | None) -> Samples:
         """Return samples of fields, with what is known of all of them."""

@@ -105,4 +105,4 @@ def _warn(part: Part, report: SamplingReport, failed: int, angle: float | None) 
             f"samples instead of the requested {angle:g}°; ask for a smaller angle"
         )
     for reason in reasons:
-        warnings.warn(f"part {part.name!r}: {reason}.", GaussmapWarning, stacklevel=6)
+        warnings.warn(f"part {part.name!r}: {reason}.", GaussmapWarning, stacklevel=7)
