@@ -63,7 +63,7 @@ class GaussMap(Methods):
 
     def __init__(
         self,
-        surface: Surface | Spline | Whole[Samples] | str,
+        surface: Surface | Spline | Whole | str,
         *,
         cells: Sequence[int] | None = None,
         on: str | None = None,
@@ -74,7 +74,7 @@ class GaussMap(Methods):
             self._geometries = geometries_of(self._surface, cells, on, indexed=True)
 
     @property
-    def surface(self) -> Surface | Spline | Whole[Samples]:
+    def surface(self) -> Surface | Spline | Whole:
         """The surface, spline or part."""
         return self._surface
 

@@ -34,7 +34,7 @@ __all__ = ["sample", "sample_and_normals", "unwarned"]
 
 
 def sample(
-    surface: Surface | Spline | Whole[Samples] | str,
+    surface: Surface | Spline | Whole | str,
     count: int | None = None,
     *,
     normals: ArrayLike | None = None,
@@ -221,7 +221,7 @@ def sample(
 
 
 def sample_and_normals(
-    surface: Surface | Spline | Whole[Samples] | str,
+    surface: Surface | Spline | Whole | str,
     request: Request,
     *,
     cells: Sequence[int] | None,
@@ -256,7 +256,7 @@ def sample_and_normals(
 
 @in_memory
 def unwarned(
-    surface: Surface | Spline | Whole[Samples] | str,
+    surface: Surface | Spline | Whole | str,
     request: Request,
     *,
     cells: Sequence[int] | None,
@@ -276,11 +276,17 @@ def unwarned(
     edges = yes_or_no(edges, "edges")
     if not isinstance(out, Samples | None):
         raise InputError(f"out must be Samples of an earlier call, not {shown(out)}.")
+    number = checked_dtype(dtype)
     if isinstance(surface, Whole):
-        return _of_whole(surface, request, cells, on, fields, dtype, threads, progress, edges)
+        wanted = checked_fields(fields, True, part=True, edges=edges)
+        if cells is not None:
+            raise InputError("cells=... are for splines; the faces of a part need none.")
+        if checked_place(on) == "spline":
+            raise InputError('on="spline" is for surfaces; samples of a part lie on its faces.')
+        return surface._sampled(request, wanted, number, threads, progress, edges)
     if edges:
         raise InputError("edges=True is for CAD parts; other surfaces have no sharp edges.")
-    asked, surface, number = surface, named(surface), checked_dtype(dtype)
+    asked, surface = surface, named(surface)
     place = place_of_samples(surface, on)
     may_be_proved = place == "surface" and request.density == "gauss" and request.count is None
     has = {"surface": place == "surface", "grid": request.density == "aligned"}
@@ -306,26 +312,6 @@ def unwarned(
     return (without_lines(samples) if fields is None else samples), normals
 
 
-def _of_whole(
-    part: Whole[Samples],
-    request: Request,
-    cells: Sequence[int] | None,
-    on: str | None,
-    fields: Sequence[str] | None,
-    dtype: DTypeLike,
-    threads: int | None,
-    progress: bool,
-    edges: bool,
-) -> tuple[Samples, NDArray[np.float64]]:
-    """Return the samples of a CAD part; InputError for what it does not have."""
-    number, wanted = checked_dtype(dtype), checked_fields(fields, True, part=True, edges=edges)
-    if cells is not None:
-        raise InputError("cells=... are for splines; the faces of a part need none.")
-    if checked_place(on) == "spline":
-        raise InputError('on="spline" is for surfaces; samples of a part lie on its faces.')
-    return part._sampled(request, wanted, number, threads, progress, edges)
-
-
 def _filled(
     name: str,
     geometries: Sequence[OnSpline],
@@ -337,19 +323,18 @@ def _filled(
 ) -> tuple[Samples, NDArray[np.float64]]:
     """Return samples for any density of all pieces of a surface, and the normals searched."""
     space = space_of(geometries, geometries[0].threads, target_of(request))
-    filled = fill(space, request, progress)
+    cover = fill(space, request, progress)
     flags = FLAG_NAMES if geometries[0].on == "surface" else ()
-    given, cover = filled.given, filled.cover
     wanted = [x for x in dict.fromkeys([*fields, *flags]) if x not in GRID_NAMES]
-    arrays = fields_of(filled, wanted, dtype)
+    arrays = fields_of(cover, wanted, dtype)
     arrays |= lines_of(cover.grid, cover.count, fields)
     pieces = [x for x in space.pieces if isinstance(x, SurfacePiece)]
-    report = report_of(name, pieces, given, arrays)
+    report = report_of(name, pieces, cover.at_normals, arrays)
     is_on_grid = cover.grid is not None and bool((cover.grid.rows >= 0).any())
     density = "aligned" if is_on_grid else None
-    report = replace(report, coverage=filled.coverage, angle=filled.angle, density=density)
+    report = replace(report, coverage=cover.coverage, angle=cover.angle, density=density)
     spline = geometries[0].spline if len(geometries) == 1 else None
     held = {name: arrays[name] for name in fields}
     return Samples(
         **held, report=report, spline=spline, surface=surface, offset_of=None
-    ), given.normals
+    ), cover.at_normals.normals

@@ -17,7 +17,7 @@ from .density.on_pieces import geometries_of, kept_geometries, pieces_to_sample
 from .place.on_spline import FieldsOfSamples, OnSpline
 from .place.on_surface import place_of_samples
 from .samples.fields import checked_dtype, checked_fields
-from .samples.report import SamplingReport, count_infinite, sampling_report, warn_of
+from .samples.report import SamplingReport, count_infinite, warn_of
 from .samples.request import Request, checked_request
 from .samples.samples import Samples
 from .search.bins import NormalBins
@@ -129,7 +129,7 @@ class _Stream:
         geometry, threads = self.geometry, self.geometry.threads
         chosen = choose(geometry, self.request.normals_or_count, self.progress)
         chosen, total = replace(chosen, found=None), len(chosen)  # frees the hits
-        report = sampling_report(geometry, total, 0, chosen.density, None)
+        report = geometry.report(total, chosen.density, None, {})
         starts = range(0, total, NORMALS_AT_A_TIME)
         alone = len(starts) == 1
         came, unrefined, flat, nothing = 0, 0, Flat(), None

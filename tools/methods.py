@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -235,7 +235,9 @@ def weights(
 
     with busy("computing weights", progress):
         if isinstance(self.surface, Whole):
-            return self.surface._weights_of(self)
+            from .cad.results import weights_of
+
+            return weights_of(cast("Part", self.surface), self)
         return area_weights(self, angle)
 
 

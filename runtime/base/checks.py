@@ -150,13 +150,20 @@ def positive_number(value: object, name: str, unit: str = "", most: float = math
     return number
 
 
-def finite_array(values: ArrayLike, shape: tuple[int, ...], name: str) -> NDArray[np.float64]:
-    """Return a finite float64 array of the given shape; InputError with its name otherwise."""
+def finite_array(
+    values: ArrayLike, shape: tuple[int | str, ...] | None, name: str
+) -> NDArray[np.float64]:
+    """Return a finite float64 array of the given shape, if any; InputError with its name otherwise.
+
+    In the shape a letter stands for any number.
+    """
     array = real_array(values, name)
-    if array.shape != shape:
-        raise InputError(f"{name} must have the shape {shape}, not {array.shape}.")
+    if shape is not None and not _fits(array, shape):
+        raise InputError(f"{name} must have the shape {_shown(shape)}, not {array.shape}.")
     if not np.isfinite(array).all():
-        raise InputError(f"{name} holds NaN or infinity.")
+        where = np.argwhere(~np.isfinite(array))[0].tolist()
+        value = float(array[tuple(where)])
+        raise InputError(f"{name} holds NaN or infinity: {value} at index {where}.")
     return array
 
 
@@ -224,15 +231,21 @@ def checked_array(
     """
     if not isinstance(array, np.ndarray):
         raise InputError(f"{name} must be a NumPy array, not {type(array).__name__}.")
-    pairs = zip(shape, array.shape, strict=False)
-    fits = len(shape) == array.ndim and all(isinstance(x, str) or x == y for x, y in pairs)
-    if array.dtype != np.dtype(dtype) or not fits:
-        wanted = str(shape).replace("'", "")
+    if array.dtype != np.dtype(dtype) or not _fits(array, shape):
         raise InputError(
-            f"{name} must be a {np.dtype(dtype)} array of shape {wanted}, "
+            f"{name} must be a {np.dtype(dtype)} array of shape {_shown(shape)}, "
             f"not a {array.dtype} array of shape {array.shape}."
         )
     return np.ascontiguousarray(array)
+
+
+def _fits(array: NDArray[Any], shape: tuple[int | str, ...]) -> bool:
+    pairs = zip(shape, array.shape, strict=False)
+    return len(shape) == array.ndim and all(isinstance(x, str) or x == y for x, y in pairs)
+
+
+def _shown(shape: tuple[int | str, ...]) -> str:
+    return str(shape).replace("'", "")
 
 
 def checked_rows(key: ArrayLike, count: int) -> NDArray[Any]:

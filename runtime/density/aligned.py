@@ -10,12 +10,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...generated.spline import SCALE
+from ..base.aliases import Array, Indices
 from ..place.on_spline import OnSpline
 from .breaks import breaks_along
-from .cells import points_of
 from .grid import Grid
 from .lines import Axis
 from .space import Space
@@ -23,8 +22,6 @@ from .steps import Forms, Steps, equal_steps, steps_for_count
 
 __all__ = ["AlignedGrid"]
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 # The forms are known at about this number of places along u and v.
 PLACES = 64
@@ -194,14 +191,14 @@ class AlignedGrid:
         piece, frame = self.space.pieces[self.piece], self.geometry.spline.frame
         uv = frame[:2] + frame[2:] * cells
         inside = piece.contains(uv)
-        made = points_of(self.space, np.full(int(inside.sum()), self.piece), uv[inside])
-        return Grid(self.space.known(made, keep=True), rows[inside], columns[inside], lines)
+        made = self.space.at(np.full(int(inside.sum()), self.piece), uv[inside], keep=True)
+        return Grid(made, rows[inside], columns[inside], lines)
 
 
 def axes_with(geometry: OnSpline, breaks: tuple[Array, Array]) -> tuple[Axis, Axis]:
     """Return the two parameters, cut at breaks."""
-    u, v = (Axis.of(float(n), PLACES, x) for n, x in zip(geometry.cells, breaks, strict=True))
-    return u, v
+    (m, n), (along_u, along_v) = geometry.spline.cells, breaks
+    return Axis.of(float(m), PLACES, along_u), Axis.of(float(n), PLACES, along_v)
 
 
 def forms_on(geometry: OnSpline, axes: tuple[Axis, Axis]) -> Array:

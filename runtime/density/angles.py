@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
+from ..base.aliases import Array, Indices
 from ..base.threads import thread_count
 from ..base.trees import tree_of
 from .candidates import Candidates
-from .cells import Array, Indices
 from .cover import STEP, Cover
 
 # Normals at places are covered within an angle that is smaller by this part, which is left for
@@ -47,9 +47,9 @@ def cover_normals(cover: Cover, angle: float) -> float:
             cover.add(cells[np.flatnonzero(far)[chosen]])
             distances[far] = _distances(cover, first, cells.rows[far])
         chords = distances + cells.chords
-        far = (chords > limit) & ~cells.deepest
+        far = (chords > limit) & ~cover.space.deepest(cells)
         largest = max(largest, float(chords[~far].max(initial=0.0)))
-        cells = cells[far].quarters
+        cells = cover.space.quarters(cells[far])
     return math.degrees(2.0 * math.asin(min(largest, limit) / 2.0))
 
 

@@ -5,30 +5,28 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from ..base.aliases import Array, Indices
 from ..base.errors import GaussmapError, GaussmapWarning
 from ..place.on_spline import OnSpline
 from ..place.proved import proved_samples
 from ..samples.fields import ARRAY_NAMES_ON_SURFACE, dtype_of, row_shape
-from ..samples.report import sampling_report
 from ..samples.samples import Samples
 from ..search.bins import NormalBins
 from ..search.proved import ProvedIndex
 from ..search.search import developable_patches, find
-from ..spline.developable import curved_solid_angle
 from .chosen_normals import NORMALS_PER_SAMPLE, Chosen, choose
 from .fibonacci_lattice import Lattice
 from .space import Space
 
-__all__ = ["Given", "at_count", "at_lattices", "at_normals", "nothing_given", "samples_at"]
+__all__ = ["Given", "at_count", "at_lattices", "at_normals", "samples_at"]
 
-Array = NDArray[np.float64]
 
 # A lattice that gives too many samples is replaced by one with this part of the normals that would
 # give as many as allowed.
@@ -51,8 +49,8 @@ class Given:
     """
 
     space: Space
-    normals: Array
-    density: float
+    normals: Array = field(default_factory=lambda: np.empty((0, 3)))
+    density: float = 0.0
     found: tuple[Found, ...] = ()
     same_normals: bool = True
 
@@ -60,7 +58,7 @@ class Given:
         return sum(len(x.samples) for x in self.found)
 
     @cached_property
-    def pieces(self) -> NDArray[np.int64]:
+    def pieces(self) -> Indices:
         """The pieces (N,) on which they are."""
         numbers = np.array([x.piece for x in self.found], dtype=np.int64)
         return np.repeat(numbers, [len(x.samples) for x in self.found])
@@ -69,7 +67,7 @@ class Given:
     def rows(self) -> Array:
         """Scaled points, normals and K (N, 7)."""
         points, normals, K = (
-            self.field(x, np.float64) for x in ("points", "normals", "gaussian_curvature")
+            self.array(x, np.float64) for x in ("points", "normals", "gaussian_curvature")
         )
         return np.column_stack([self.space.scaled_points(points), normals, K])
 
@@ -85,7 +83,7 @@ class Given:
         numbers = [x.samples.report.developable_patches for x in self.found]
         return sum(x or 0 for x in numbers) if numbers else None
 
-    def field(self, name: str, dtype: DTypeLike) -> NDArray[Any]:
+    def array(self, name: str, dtype: DTypeLike) -> NDArray[Any]:
         """Return a field (N, …) of the samples."""
         dtype, parts, first = dtype_of(name, dtype), [np.empty((0, *row_shape(name)))], 0
         for piece, samples, normals in self.found:
@@ -100,11 +98,6 @@ class Given:
             parts.append(known)
             first += 0 if self.same_normals else len(normals)
         return np.concatenate([x.astype(dtype, copy=False) for x in parts])
-
-
-def nothing_given(space: Space) -> Given:
-    """Return the samples at no normals."""
-    return Given(space, np.empty((0, 3)), 0.0)
 
 
 def at_normals(space: Space, normals: Array, pieces: Iterable[int], progress: bool) -> Given:
@@ -134,7 +127,7 @@ def at_lattices(
         density *= FEWER * most / len(given)
 
 
-def at_count(space: Space, counts: NDArray[np.int64], progress: bool) -> Given:
+def at_count(space: Space, counts: Indices, progress: bool) -> Given:
     """Return about as many samples of each piece as `counts` (P,) say, at normals of lattices."""
     parts, densities = list[Found](), [0.0]
     for piece in np.flatnonzero(counts).tolist():
@@ -173,7 +166,7 @@ def _searched(
 
 def _at_lattice(geometry: OnSpline, density: float, progress: bool) -> tuple[Samples, Array] | None:
     lattice = Lattice.around(geometry.spline)
-    image = curved_solid_angle(geometry, density)
+    image = geometry.cell_measure.curved_solid_angle(density)
     if round(density * image) == 0:
         return None
     densest = lattice.density_of(NORMALS_PER_SAMPLE * max(round(density * image), 1000))
@@ -194,9 +187,7 @@ def samples_at(
     if hits is None:
         hits = find(geometry.spline, bins, threads, progress)
     found = geometry.at_hits(bins, hits, fields, dtype)
-    report = sampling_report(
-        geometry, len(bins.normals), found.number, chosen.density, hits.developable, found.fields
-    )
+    report = geometry.report(len(bins.normals), chosen.density, hits.developable, found.fields)
     return geometry.samples(found.fields, report, found.unrefined), bins.normals
 
 
@@ -213,14 +204,8 @@ def _proved(
     found, proof = proved_samples(
         geometry.surface, geometry.spline, index, normals, fields, dtype, threads
     )
-    report = sampling_report(
-        geometry,
-        len(normals),
-        found.number,
-        chosen.density,
-        developable_patches(geometry.spline, threads),
-        found.fields,
-    )
+    developable = developable_patches(geometry.spline, threads)
+    report = geometry.report(len(normals), chosen.density, developable, found.fields)
     report = replace(report, **proof._asdict())
     return geometry.samples(found.fields, report, found.unrefined), normals
 

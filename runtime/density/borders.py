@@ -8,13 +8,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.aliases import Array, Flags, Indices
 from ..domain.domain import Domain
 from ..domain.trim import Trim
 
 __all__ = ["Border"]
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +42,7 @@ class Border:
         covered = marks.cumsum(axis=0).cumsum(axis=1) > 0
         return covered[self._pixels(places)]
 
-    def _pixels(self, places: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    def _pixels(self, places: Array) -> tuple[Indices, Indices]:
         low, high = np.array(self.domain).T
         found = np.floor((places - low) * (self.n / (high - low))).astype(np.int64)
         i, j = np.clip(found, 0, self.n - 1).T

@@ -7,14 +7,13 @@ parameters. The lines of a grid keep half a step away from them.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.aliases import Array
 from ..place.on_spline import OnSpline
 from .lines import Axis
 
 __all__ = ["breaks_along"]
 
-Array = NDArray[np.float64]
 
 # Forms are compared along this number of lines.
 ACROSS = 8

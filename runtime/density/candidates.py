@@ -8,15 +8,14 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.aliases import Array, Indices
 from ..base.threads import over_ranges
 from ..kernels.centres import link_cells, move_to_centres
 from ..kernels.greedy import choose_far, update_distances
-from ..kernels.hash_grids import DENSITY, LEVELS, SQUARE, HashGrids, measure, sort_candidates
+from ..kernels.hash_grids import LEVELS, SQUARE, HashGrids, measure, sort_candidates
 
 __all__ = ["Candidates"]
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 Numbers = NDArray[np.int32]
 Result = TypeVar("Result")
 
@@ -71,20 +70,6 @@ class Candidates:
         known, squares = np.empty(len(self._order)), self._sorted[:, SQUARE]
         known[self._order] = np.sqrt(np.where(squares < 0.0, np.inf, squares))
         return known
-
-    @property
-    def nearest(self) -> Indices:
-        """The numbers (M,) of the nearest samples; −1 where no sample has updated the distance."""
-        known = np.empty(len(self._order), dtype=np.int64)
-        known[self._order] = self._nearest
-        return known
-
-    @property
-    def densities(self) -> Array:
-        """The densities (M,) of the candidates."""
-        densities = np.empty(len(self._order))
-        densities[self._order] = self._sorted[:, DENSITY]
-        return densities
 
     def update_distances(self, samples: Array, radius: float) -> None:
         """Update the distances within a radius of samples (N, 6), point and unit normal."""

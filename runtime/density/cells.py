@@ -7,24 +7,17 @@ next to the border take their turn, as cells without an extent.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.aliases import Array, Flags, Indices
 from ..base.memory import check_memory
-from .piece import Piece
 
 __all__ = [
-    "Array",
     "Cells",
-    "Evaluator",
-    "Flags",
-    "Indices",
     "by_piece",
     "halved",
     "into_parts",
@@ -32,54 +25,21 @@ __all__ = [
     "points_of",
 ]
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 # The columns of `numbers`, see kernels/cells.py.
 RADIUS, CHORD, ALONG_U, ALONG_V, BEND_U, BEND_V, AREA, LIMIT = range(8)
-# Cells are not cut below this part of the domain of their piece, and of the size of the surface.
-DEEPEST = 2.0**-14
 # The extent of cells that stand for a place, relative to the domain of their piece.
 POINT = 1e-9
 
 
-class Evaluator(Protocol):
-    """What cells need of their space."""
-
-    @property
-    def pieces(self) -> tuple[Piece, ...]:
-        """The pieces (P,) of what is sampled."""
-        ...
-
-    @cached_property
-    def sizes(self) -> Array:
-        """The lengths (P, 2) of the domains of the pieces."""
-        ...
-
-    @property
-    def area(self) -> float:
-        """The area of all pieces, scaled."""
-        ...
-
-    def evaluated(self, cells: Cells) -> Cells:
-        """Return those of cells that have a place inside the trim, with their rows and numbers."""
-        ...
-
-    def known(self, cells: Cells, *, keep: bool = False) -> Cells:
-        """Return cells, sorted by their pieces, with rows and numbers."""
-        ...
-
-
 @dataclass(frozen=True, eq=False)
 class Cells:
-    """M cells of the pieces (M,) of a space: boxes (M, 4), u0, v0, u1, v1, and places (M, 2).
+    """M cells of `pieces` (M,), by number: boxes (M, 4), u0, v0, u1, v1, and places (M, 2).
 
     `whole` (M,) says that no border passes them. `rows` and `numbers` (M, 8) are those of
     kernels/cells.py, lengths and curvatures scaled as in `Space`.
     """
 
-    space: Evaluator
     pieces: Indices
     boxes: Array
     places: Array
@@ -92,12 +52,12 @@ class Cells:
 
     def __getitem__(self, chosen: Indices | Flags | slice) -> Cells:
         """Return some of the cells."""
-        return Cells(self.space, *(x[chosen] for x in self._arrays))
+        return Cells(*(x[chosen] for x in self._arrays))
 
     def __add__(self, other: Cells) -> Cells:
         """Return these cells, followed by others."""
         both = zip(self._arrays, other._arrays, strict=True)
-        return Cells(self.space, *(np.concatenate(x) for x in both))
+        return Cells(*(np.concatenate(x) for x in both))
 
     @property
     def _arrays(self) -> tuple[NDArray, ...]:
@@ -122,27 +82,6 @@ class Cells:
         return self.numbers[:, RADIUS]
 
     @property
-    def halves(self) -> Cells:
-        """The cells bisected across their longer sides, without those outside the trim."""
-        along_u = self.numbers[:, ALONG_U] >= self.numbers[:, ALONG_V]
-        return self.space.evaluated(halved(self, along_u))
-
-    @property
-    def quarters(self) -> Cells:
-        """The cells bisected along u and along v.
-
-        Where the surface is singular, normals turn most along the shorter side.
-        """
-        return self.space.evaluated(into_parts(self, np.full((len(self), 2), 2)))
-
-    @property
-    def deepest(self) -> Flags:
-        """Which cells are so small that they are not cut any more."""
-        sizes = self.boxes[:, 2:] - self.boxes[:, :2]
-        small = np.all(sizes <= DEEPEST * self.space.sizes[self.pieces], axis=1)
-        return small | (self.radii <= DEEPEST * math.sqrt(self.space.area))
-
-    @property
     def chords(self) -> Array:
         """How far normals of each cell (M,) are from that at its place, 2 if unknown."""
         return self.numbers[:, CHORD]
@@ -150,19 +89,7 @@ class Cells:
 
 def halved(cells: Cells, along_u: Flags) -> Cells:
     """Return the halves (2 M) of cells, along u or along v; they are not evaluated."""
-    check_memory("candidates", 2 * len(cells))
-    middle = (cells.boxes[:, :2] + cells.boxes[:, 2:]) / 2.0
-    lower, upper = cells.boxes.copy(), cells.boxes.copy()
-    lower[:, 2] = np.where(along_u, middle[:, 0], lower[:, 2])
-    lower[:, 3] = np.where(along_u, lower[:, 3], middle[:, 1])
-    upper[:, 0] = np.where(along_u, middle[:, 0], upper[:, 0])
-    upper[:, 1] = np.where(along_u, upper[:, 1], middle[:, 1])
-    boxes = np.stack([lower, upper], axis=1).reshape(-1, 4)
-    both = replace_boxes(cells, np.repeat(np.arange(len(cells)), 2), boxes)
-    factors = np.where(np.repeat(along_u, 2), 0.5, 1.0)
-    both.numbers[:, ALONG_U] *= factors
-    both.numbers[:, ALONG_V] *= 0.5 / factors
-    return both
+    return into_parts(cells, np.where(along_u[:, None], (2, 1), (1, 2)))
 
 
 def into_parts(cells: Cells, parts: Indices) -> Cells:
@@ -177,21 +104,8 @@ def into_parts(cells: Cells, parts: Indices) -> Cells:
     boxes = np.concatenate([low + place * steps, low + (place + 1) * steps], axis=1)
     last = place + 1 == parts[owner]
     boxes[:, 2:] = np.where(last, cells.boxes[owner, 2:], boxes[:, 2:])
-    return replace_boxes(cells, owner, boxes)
-
-
-def replace_boxes(cells: Cells, owner: Indices, boxes: Array) -> Cells:
-    """Return cells with other boxes, each a part of the cell that is its owner."""
-    rows = np.zeros((len(owner), 8))
-    return replace(
-        cells,
-        pieces=cells.pieces[owner],
-        boxes=boxes,
-        places=(boxes[:, :2] + boxes[:, 2:]) / 2.0,
-        whole=cells.whole[owner],
-        rows=rows,
-        numbers=cells.numbers[owner],
-    )
+    made = new_cells(cells.pieces[owner], boxes)
+    return replace(made, whole=cells.whole[owner], numbers=cells.numbers[owner])
 
 
 def by_piece(cells: Cells) -> Iterator[tuple[int, slice]]:
@@ -203,16 +117,18 @@ def by_piece(cells: Cells) -> Iterator[tuple[int, slice]]:
         first = last
 
 
-def new_cells(space: Evaluator, pieces: Indices, boxes: Array, whole: bool = False) -> Cells:
+def new_cells(pieces: Indices, boxes: Array, whole: bool = False) -> Cells:
     """Return cells of pieces (M,) that are not evaluated."""
     count = len(pieces)
     places = (boxes[:, :2] + boxes[:, 2:]) / 2.0
     flags = np.full(count, whole)
-    return Cells(space, pieces, boxes, places, flags, np.zeros((count, 8)), np.zeros((count, 8)))
+    return Cells(pieces, boxes, places, flags, np.zeros((count, 8)), np.zeros((count, 8)))
 
 
-def points_of(space: Evaluator, pieces: Indices, places: Array) -> Cells:
-    """Return cells without an extent at places (k, 2) of pieces (k,), not evaluated."""
-    extents = POINT * space.sizes[pieces]
-    boxes = np.concatenate([places - extents, places + extents], axis=1)
-    return new_cells(space, pieces, boxes, whole=True)
+def points_of(pieces: Indices, places: Array, sizes: Array) -> Cells:
+    """Return cells without an extent at places (k, 2) of pieces (k,), not evaluated.
+
+    `sizes` (k, 2) are the lengths of their domains.
+    """
+    boxes = np.concatenate([places - POINT * sizes, places + POINT * sizes], axis=1)
+    return new_cells(pieces, boxes, whole=True)

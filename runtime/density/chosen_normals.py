@@ -12,7 +12,6 @@ from ..base.limits import MOST
 from ..place.on_spline import OnSpline
 from ..search.bins import NormalBins
 from ..search.search import Hits, fill, find
-from ..spline.developable import curved_solid_angle
 from ..spline.inside import count_of, samples_inside
 from .fibonacci_lattice import Lattice
 
@@ -75,7 +74,7 @@ def _adapted(geometry: OnSpline, count: int, progress: bool) -> tuple[Chosen, in
     lattice = Lattice.around(spline)
     densest = lattice.density_of(NORMALS_PER_SAMPLE * max(count, 1000))
     total = float(np.abs(geometry.measure[1]).sum())
-    resolved = curved_solid_angle(geometry, min(count / max(total, 1e-300), densest))
+    resolved = geometry.cell_measure.curved_solid_angle(min(count / max(total, 1e-300), densest))
     if resolved == 0.0:
         lattice, density = Lattice.everywhere(), count / (4 * math.pi)
     else:
@@ -106,4 +105,4 @@ def _number_inside(geometry: OnSpline, bins: NormalBins, hits: Hits) -> int:
     if spline.trim is None:
         return len(hits)
     uv = fill(spline, bins, hits, geometry.threads, ("uv",))
-    return count_of(samples_inside(spline, uv, ("uv",)))
+    return count_of(samples_inside(spline.trim, uv, ("uv",)))

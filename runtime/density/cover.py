@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 
-from .along_borders import along_borders
+from ..base.aliases import Array, Indices
+from .at_normals import Given
 from .candidates import Candidates
-from .cells import Array, Cells, Indices
+from .cells import Cells
 from .grid import Grid
 from .space import Space
 
@@ -39,8 +39,8 @@ class Cover:
 
     A point is covered if a sample is within radius/√w, with the target density w of the space.
     Lengths are scaled as in `Space`. Rows of `points` (N, 6), point and unit normal, and
-    `curvatures` (N,), K, are the samples; the first `given` ones are those that were given, the
-    others lie at the places of the cells `added`, of which the first ones are those of the `grid`,
+    `curvatures` (N,), K, are the samples; the first `given` ones are those `at_normals`, the others
+    lie at the places of the cells `added`, of which the first ones are those of the `grid`,
     if there is one.
 
     Samples are chosen among the places of `cells`. `show_count` is called with the number of
@@ -49,22 +49,26 @@ class Cover:
     The first `fixed` samples, those given and those of the grid, are never removed.
 
     `radius_asked`, if it is not 0, and `count_asked`, if it is not None, are what the cover was
-    last asked for.
+    last asked for. `coverage`, in L, and `angle`, in degrees, are what it has reached, if that is
+    known.
     """
 
     radius_asked: float
     count_asked: int | None
+    coverage: float | None = None
+    angle: float | None = None
 
     def __init__(
         self,
         space: Space,
-        given: Array | None = None,
+        given: Given | None = None,
         show_count: Callable[[int], object] = lambda count: None,
         grid: Grid | None = None,
     ) -> None:
-        """Begin with given samples (N, 7), points, normals and K, and those of a grid."""
+        """Begin with samples at normals, and those of a grid."""
         self.space, self.show_count, self.grid = space, show_count, grid
-        rows = np.empty((0, 7)) if given is None else given
+        self.at_normals = Given(space) if given is None else given
+        rows = self.at_normals.rows
         self._points, self._curvatures = rows[:, :6], rows[:, 6]
         self._added, self._waiting = space.nothing(), list[Cells]()
         self.given = self.fixed = len(rows)
@@ -151,15 +155,12 @@ class Cover:
 
         Normals turn by about `turn` between these, in radians.
         """
-        first = replace(self.space.first, space=self.space)
-        return (self.space.evaluated(first) + along_borders(self.space, math.inf, turn)).sorted()
+        space = self.space
+        return (space.evaluated(space.first) + space.along_borders(math.inf, turn)).sorted()
 
-    def missing(self, given: Indices) -> Cells:
-        """Return a cell near the middle of each piece that has no sample, if it has a cell.
-
-        `given` are pieces that have some of those that were given.
-        """
-        held = np.concatenate([given, self.added.pieces])
+    def missing(self) -> Cells:
+        """Return a cell near the middle of each piece that has no sample, if it has a cell."""
+        held = np.concatenate([self.at_normals.pieces, self.added.pieces])
         return self.space.middles(np.setdiff1d(self.space.first.pieces, held))
 
     def remove_last(self, number: int) -> None:
@@ -186,7 +187,7 @@ class Cover:
         space, added = self.space.exact, self.added
         if space is not self.space:
             self.space = space
-            self._replace_added(space.known(replace(added, space=space), keep=True))
+            self._replace_added(space.known(added, keep=True))
 
     def renew_distances(self, widest: float) -> None:
         """Compute the distances of all candidates from the samples again, within `widest`."""
@@ -257,13 +258,13 @@ class Cover:
         """Add samples until not only candidates are covered, but all points."""
         cells, candidates, small, first = self.cells, self._candidates, [], self.count
         while len(cells):
-            shares = cells.radii * np.sqrt(candidates.densities) / radius
+            shares = cells.radii * np.sqrt(cells.rows[:, 6]) / radius
             far = candidates.distances > (1.0 - shares) * radius
             smallest = far & (shares <= FINEST)
             small.append(cells[smallest])
             far &= ~smallest
             self._refuse_more(4 * int(far.sum()))
-            cells = cells[far].halves.halves
+            cells = self.space.halves(self.space.halves(cells[far]))
             candidates = self._with_distances(cells.rows, radius, radius)
             self._choose(cells, candidates, radius, most)
         self._cover_small_cells(sum(small[1:], start=small[0]), radius, most)

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
+from ..base.aliases import Array
+from ..base.threads import thread_count
 from ..base.trees import tree_of
-from .candidates import Candidates
-from .cells import Array, Cells
 from .space import Space
 
 __all__ = ["coverage"]
@@ -16,8 +14,6 @@ __all__ = ["coverage"]
 # The search ends when the bound is within this factor of the largest distance found.
 TIGHT = 1.1
 MOST_CUTS = 40
-# The normal of all, so that samples count for both sides.
-UPWARD = np.array([0.0, 0.0, 1.0])
 
 
 def coverage(space: Space, points: Array, asked: float = math.inf) -> float:
@@ -33,33 +29,17 @@ def coverage(space: Space, points: Array, asked: float = math.inf) -> float:
         return math.inf
     apart, space = 2.0 * space.distance * space.unit, space.uniform
     asked -= apart
-    samples = np.column_stack([points, np.broadcast_to(UPWARD, points.shape)])
-    radius = math.sqrt(space.area / len(points)) or 1.0  # within which samples are searched first
-    cells, largest, found = space.cut(radius), 0.0, 0.0
+    tree, workers = tree_of(points), thread_count(space.threads)
+    cells = space.cut(math.sqrt(space.area / len(points)) or 1.0)
+    largest = found = widest = 0.0
     for _ in range(MOST_CUTS):
-        distances = _distances(cells, samples, radius)
+        distances = tree.query(cells.rows[:, :3], workers=workers)[0]
         bounds, found = distances + cells.radii, max(found, float(distances.max(initial=0.0)))
         far = bounds > (asked if found <= asked < TIGHT * found else TIGHT * found)
         largest = max(largest, float(bounds[~far].max(initial=0.0)))
         if not far.any():
             break
-        radius, cells = float(bounds.max()), cells[far].halves.halves
+        widest, cells = float(bounds.max()), space.halves(space.halves(cells[far]))
     else:
-        largest = max(largest, radius)
+        largest = max(largest, widest)
     return apart + largest
-
-
-def _distances(cells: Cells, samples: Array, radius: float) -> Array:
-    """Return the distances (M,) of places from the nearest of samples (N, 6), on any side.
-
-    That is fast where there is one within a radius.
-    """
-    rows = cells.rows.copy()
-    rows[:, 3:6], rows[:, 6] = UPWARD, 1.0  # for all, as the samples
-    candidates = Candidates(rows, radius)
-    candidates.update_distances(samples, radius)
-    distances = candidates.distances
-    unknown = distances > radius
-    if unknown.any():
-        distances[unknown] = tree_of(samples[:, :3]).query(rows[unknown, :3])[0]
-    return distances

@@ -7,10 +7,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from ..base.aliases import Array
 from ..base.threads import thread_count
 from ..base.trees import tree_of
 from ..samples.whole import NormalDeviation
-from .cells import Array, Cells
 from .space import Space
 
 __all__ = ["normal_deviation", "widest_angle"]
@@ -37,7 +37,7 @@ def normal_deviation(space: Space, points: Array, normals: Array) -> NormalDevia
         return np.linalg.norm(rows[:, 3:6] - normals[samples], axis=1)
 
     return NormalDeviation(
-        widest_angle(space, normals), _largest(_places(space, len(points)), nearest_point)
+        widest_angle(space, normals), _largest(space, len(points), nearest_point)
     )
 
 
@@ -52,23 +52,18 @@ def widest_angle(space: Space, normals: Array) -> float:
     def nearest_normal(rows: Array) -> Array:
         return tree.query(rows[:, 3:6], workers=workers)[0]
 
-    return _largest(_places(space, len(normals)), nearest_normal)
+    return _largest(space, len(normals), nearest_normal)
 
 
-def _places(space: Space, samples: int) -> Cells:
-    """Return cells at whose places normals are compared with those of samples first."""
-    even = space.uniform.exact
-    return even.cut(math.sqrt(even.area / max(PLACES * samples, FEWEST)))
-
-
-def _largest(cells: Cells, chord_of: Callable[[Array], Array]) -> float:
-    """Return the largest angle in degrees of chords at places on cells."""
-    found = 0.0
+def _largest(space: Space, samples: int, chord_of: Callable[[Array], Array]) -> float:
+    """Return the largest angle in degrees that is found of chords at places."""
+    even, found = space.uniform.exact, 0.0
+    cells = even.cut(math.sqrt(even.area / max(PLACES * samples, FEWEST)))
     for _ in range(CUTS):
         chords = np.where(cells.rows[:, 3:6].any(axis=1), chord_of(cells.rows), 0.0)
         found = max(found, float(chords.max(initial=0.0)))
         # Within a cell the normal turns by no more than this.
-        cells = cells[chords + cells.chords > found].quarters
+        cells = even.quarters(cells[chords + cells.chords > found])
         if len(cells) == 0:
             break
     return math.degrees(2.0 * math.asin(min(found, 2.0) / 2.0))

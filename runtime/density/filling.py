@@ -19,16 +19,17 @@ from ..kernels.sizing import TargetDensity
 from ..samples.fields import dtype_of
 from ..samples.request import BY_CURVATURE, Request
 from .angles import choose_apart, cover_normals
-from .at_normals import Given, at_count, at_lattices, at_normals, nothing_given
+from .at_normals import Given, at_count, at_lattices, at_normals
 from .cells import Cells, by_piece
 from .cover import Cover
 from .coverage import coverage
 from .deviation import widest_angle
 from .on_grid import cover_on_grid
+from .piece import Piece
 from .relaxation import relax
 from .space import Space
 
-__all__ = ["Filled", "fields_of", "fill", "spacing", "target_of"]
+__all__ = ["fields_of", "fill", "spacing", "target_of"]
 
 # Twice the area of a hexagon of circumradius 1.
 HEXAGON = 3.0 * math.sqrt(3.0)
@@ -74,44 +75,31 @@ def target_of(request: Request) -> TargetDensity:
     return TargetDensity(gauss_weight=1.0, exponent=float(request.density))
 
 
-@dataclass(frozen=True, eq=False)
-class Filled:
-    """The samples of a space: those given, and those of a cover; and what they have reached.
-
-    `coverage` is in L, `angle` in degrees; both are known if they were asked for.
-    """
-
-    cover: Cover
-    given: Given
-    coverage: float | None
-    angle: float | None
-
-
-def fill(space: Space, request: Request, progress: bool) -> Filled:
+def fill(space: Space, request: Request, progress: bool) -> Cover:
     """Sample a space, whose target density has no floor; raises what `sample` raises."""
-    angle = reached = None
     with counted(request.count, progress) as show_count:
         filling = Filling(space, request, progress, show_count)
-        cover, given = filling.cover()
+        cover = filling.cover()
         if request.angle is not None:
-            angle = cover_normals(cover, request.angle)
+            cover.angle = cover_normals(cover, request.angle)
             if any(x.trim is not None for x in space.pieces):
                 # Tips may be too narrow for cells.
-                angle = max(angle, widest_angle(space, cover.points[:, 3:]))
+                cover.angle = max(cover.angle, widest_angle(space, cover.points[:, 3:]))
         if request.coverage is not None:
-            reached = filling.reached(cover) / space.unit
-    return Filled(cover, given, reached, angle)
+            cover.coverage = filling.reached(cover) / space.unit
+    return cover
 
 
-def fields_of(filled: Filled, fields: Sequence[str], dtype: DTypeLike) -> dict[str, NDArray[Any]]:
-    """Return fields of the samples that are given, followed by those of the cover."""
-    added = filled.cover.added
+def fields_of(cover: Cover, fields: Sequence[str], dtype: DTypeLike) -> dict[str, NDArray[Any]]:
+    """Return fields of samples: those at normals, followed by the others."""
+    added = cover.added
     order = np.argsort(added.pieces, kind="stable")
     added = added[order]
-    parts = [_of_piece(added[rows], k, fields, dtype) for k, rows in by_piece(added)]
+    pieces = cover.space.pieces
+    parts = [_of_piece(pieces[k], added[rows], fields, dtype) for k, rows in by_piece(added)]
     found = {}
     for name in fields:
-        given = filled.given.field(name, dtype)
+        given = cover.at_normals.array(name, dtype)
         new = np.empty((len(order), *given.shape[1:]), dtype=dtype_of(name, dtype))
         if parts:
             new[order] = np.concatenate([x[name] for x in parts])
@@ -120,12 +108,11 @@ def fields_of(filled: Filled, fields: Sequence[str], dtype: DTypeLike) -> dict[s
 
 
 def _of_piece(
-    cells: Cells, piece: int, fields: Sequence[str], dtype: DTypeLike
+    piece: Piece, cells: Cells, fields: Sequence[str], dtype: DTypeLike
 ) -> dict[str, NDArray[Any]]:
     """Return fields of samples at the places of cells of one piece."""
-    here = cells.space.pieces[piece]
-    found = here.fields_at(cells.places, cells.rows, fields, dtype)
-    for name, number in here.indices.items():
+    found = piece.fields_at(cells.places, cells.rows, fields, dtype)
+    for name, number in piece.indices.items():
         if name in fields:
             found[name] = found.get(name, np.zeros(len(cells), dtype=np.int64)) + number
     return found
@@ -140,30 +127,26 @@ class Filling:
     progress: bool
     show_count: Callable[[int], object]
 
-    def cover(self) -> tuple[Cover, Given]:
-        """Return the cover that is asked for, and the samples at normals in it."""
+    def cover(self) -> Cover:
+        """Return the cover that is asked for."""
         request = self.request
         if request.density == "gauss":
-            given = self._at_normals()
-            return self._new(self.space, given), given
+            return self._new(self.space, self._at_normals())
         if request.density == "aligned":
-            return cover_on_grid(
-                self._balanced(), request, self._asked, self.show_count
-            ), self._none
+            return cover_on_grid(self._balanced(), request, self._asked, self.show_count)
         if request.density in BY_CURVATURE:
             if request.count is None:
                 return self._by_radius()
-            cover, given = self._by_count(self._balanced(capped=True), request.count)
-            if request.coverage is None:
-                return cover, given
-            if self.reached(cover) <= request.coverage * self.space.unit:
-                return cover, given
+            cover = self._by_count(self._balanced(capped=True), request.count)
+            asked = request.coverage
+            if asked is None or self.reached(cover) <= asked * self.space.unit:
+                return cover
             return self._by_count_and_coverage(request.count)
         space = self._by_power
         if request.count is not None:
             return self._by_count(space, request.count)
         assert self._asked is not None
-        return self._to_radius(space, self._none, self._asked)
+        return self._to_radius(space, Given(space), self._asked)
 
     def reached(self, cover: Cover) -> float:
         """Return a bound of the scaled distance of any point from the nearest sample."""
@@ -211,7 +194,7 @@ class Filling:
 
     # --- covers -----------------------------------------------------------------------------------
 
-    def _by_radius(self) -> tuple[Cover, Given]:
+    def _by_radius(self) -> Cover:
         """Sample at the normals asked for, or at as many as fit a coverage, and fill the gaps."""
         request, space, asked = self.request, self._balanced(), self._asked
         if request.angle is not None:
@@ -232,23 +215,23 @@ class Filling:
             space = space.between(floor, MOST_CURVED**2 * floor if is_free else math.inf)
         return self._to_radius(space, given, radius)
 
-    def _to_radius(self, space: Space, given: Given, radius: float) -> tuple[Cover, Given]:
+    def _to_radius(self, space: Space, given: Given, radius: float) -> Cover:
         """Cover a space within a radius, each piece by a sample if that is not too many."""
         cover = self._new(space, given)
         cover.to_radius(radius)
         cover = self._relaxed(cover)
-        missing = cover.missing(given.pieces)
+        missing = cover.missing()
         if SAMPLES_A_PIECE * len(space.pieces) <= cover.count + len(missing):
             cover.add(missing)
-        return cover, given
+        return cover
 
-    def _by_count(self, space: Space, count: int) -> tuple[Cover, Given]:
+    def _by_count(self, space: Space, count: int) -> Cover:
         """Divide a count between samples at normals and others, which fill gaps.
 
         A part of these is for pieces without any among several, and goes where normals are far
         from all.
         """
-        given, rest = self._none, 0
+        given, rest = Given(space), 0
         if self.request.density in BY_CURVATURE:
             given = self._for_count(space, count)
             if len(given.found) < len(space.pieces) > 1:
@@ -256,7 +239,7 @@ class Filling:
         cover = self._new(space, given)
         cover.to_count(max(count - rest, cover.count))
         cover = self._relaxed(cover)
-        missing = cover.missing(given.pieces)
+        missing = cover.missing()
         if SAMPLES_A_PIECE * len(space.pieces) <= count and len(missing):
             room = count - cover.count
             if len(missing) > room:
@@ -265,11 +248,11 @@ class Filling:
         if cover.count < count and rest:
             _fill_normals(cover, count - cover.count)
         cover.fill_up(count)
-        return cover, given
+        return cover
 
-    def _by_count_and_coverage(self, count: int) -> tuple[Cover, Given]:
+    def _by_count_and_coverage(self, count: int) -> Cover:
         """Find the smallest radius of a balanced cover that leaves enough for a coverage."""
-        asked, best, given = self._asked, None, self._none
+        asked, best = self._asked, None
         assert asked is not None
         high = math.log(count)
         low = high - WIDEST_RADIUS
@@ -277,21 +260,20 @@ class Filling:
             radius = WIDER * spacing(math.exp((low + high) / 2))
             floor = (radius / asked) ** 2
             space = self.space.between(floor, MOST_CURVED**2 * floor)
-            found = self._at_lattices(radius, space)
-            cover = self._new(space, found)
+            cover = self._new(space, self._at_lattices(radius, space))
             cover.to_radius(radius, count + 1)
             if cover.count > count:
                 high = (low + high) / 2
                 continue
-            low, best, given = (low + high) / 2, cover, found
+            low, best = (low + high) / 2, cover
             if cover.count > NEAR_ENOUGH * count:
                 break
         if best is None:  # not even without normals
-            best = self._new(self.space.uniform, given)
+            best = self._new(self.space.uniform, Given(self.space))
             best.to_count(count)
         best = self._relaxed(best)
         best.fill_up(count)
-        return best, given
+        return best
 
     def _relaxed(self, cover: Cover) -> Cover:
         """Return the relaxed cover, or the given one if relaxing would exceed the coverage."""
@@ -304,13 +286,9 @@ class Filling:
         return relaxed if self.reached(relaxed) <= asked * self.space.unit else cover
 
     def _new(self, space: Space, given: Given) -> Cover:
-        return Cover(space, given.rows, self.show_count)
+        return Cover(space, given, self.show_count)
 
     # --- samples at normals -----------------------------------------------------------------------
-
-    @property
-    def _none(self) -> Given:
-        return nothing_given(self.space)
 
     def _at_normals(self) -> Given:
         """Return the samples at the normals that are asked for."""

@@ -6,15 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.aliases import Indices
 from ..samples.fields import GRID_NAMES
 from ..samples.samples import Samples
 from .cells import Cells
 
 __all__ = ["Grid", "lines_of", "without_lines"]
-
-Indices = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)

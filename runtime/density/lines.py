@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from ..base.aliases import Array, Indices
 
 __all__ = ["Axis"]
 
-Array = NDArray[np.float64]
 
 # A part of an interval is cut into at least this number of pieces.
 FEWEST = 4.0
@@ -24,7 +24,7 @@ class Axis:
     """
 
     edges: Array
-    breaks: NDArray[np.int64]
+    breaks: Indices
 
     @classmethod
     def of(cls, length: float, number: int, breaks: Array) -> Axis:
@@ -51,7 +51,7 @@ class Axis:
         """Return the numbers of steps (parts,), whose lengths (k,) are given on the pieces."""
         return np.add.reduceat(self.widths / steps, self.breaks[:-1])
 
-    def lines(self, steps: Array, numbers: NDArray[np.int64]) -> Array:
+    def lines(self, steps: Array, numbers: Indices) -> Array:
         """Return the places of lines, `numbers` (parts,) in each part, spaced by steps (k,)."""
         found = []
         for first, last, number in zip(

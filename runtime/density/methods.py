@@ -4,14 +4,22 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..base.checks import finite_array
 from ..base.progress import busy
-from ..samples.samples import Samples, spline_if_one
+from ..fitting.fit import fit
+from ..place.on_spline import OnSpline
+from ..place.on_surface import OnSurface
+from ..samples.samples import Samples, spline_or
 from ..samples.whole import NormalDeviation, Whole
 from ..spline.spline import Spline
-from .of_samples import coverage_of, deviation_of
+from ..surface.surface import Surface
+from .coverage import coverage as bound
+from .deviation import normal_deviation as deviation
 from .progressive import progressive_order
+from .space import Space
+from .surface_piece import space_of
 
-__all__ = ["coverage", "normal_deviation", "progressive"]
+__all__ = ["coverage", "normal_deviation", "progressive", "space_on"]
 
 
 def progressive(self: Samples, *, progress: bool = False) -> Samples:
@@ -90,9 +98,8 @@ def coverage(
 
     """
     with busy("measuring the coverage", progress):
-        if isinstance(self.surface, Whole):
-            return self.surface._coverage_of(self.points, threads)
-        return coverage_of(self.points, spline_if_one(self, spline), self.surface, threads)
+        points, space = self.points, _space_of(self, spline, threads)
+        return bound(space, space.scaled_points(points)) / space.unit
 
 
 def normal_deviation(
@@ -139,7 +146,22 @@ def normal_deviation(
 
     """
     with busy("comparing normals", progress):
-        if isinstance(self.surface, Whole):
-            return self.surface._deviation_of(self.points, self.normals, threads)
-        one = spline_if_one(self, spline)
-        return deviation_of(self.points, self.normals, one, self.surface, threads)
+        points, normals = self.points, finite_array(self.normals, (len(self), 3), "normals")
+        space = _space_of(self, spline, threads)
+        return deviation(space, space.scaled_points(points), normals)
+
+
+def _space_of(samples: Samples, spline: Spline | None, threads: int | None) -> Space:
+    """Return what was sampled; without a spline, all pieces of the surface that have an area."""
+    surface = samples.surface
+    if isinstance(surface, Whole):
+        return surface._space(threads)
+    if spline is None and samples.spline is None and surface is not None:
+        return space_of([OnSurface(fit(x), threads, x) for x in surface.pieces()], threads)
+    return space_on(spline_or(samples, spline), surface, threads)
+
+
+def space_on(spline: Spline, surface: Surface | None, threads: int | None) -> Space:
+    """Return a spline, or the surface that it approximates, as what is sampled."""
+    on = OnSpline(spline, threads) if surface is None else OnSurface(spline, threads, surface)
+    return space_of([on], threads)

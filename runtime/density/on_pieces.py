@@ -15,7 +15,7 @@ from ..base.checks import pair_of_cells
 from ..base.errors import InputError
 from ..place.on_spline import OnSpline
 from ..place.on_surface import geometry_of, place_of_samples
-from ..samples.report import SamplingReport, count_unrefined, sampling_report
+from ..samples.report import SamplingReport, count_unrefined
 from ..spline.spline import Spline
 from ..surface.surface import Surface
 from ..surface.surfaces import named
@@ -24,7 +24,6 @@ from .surface_piece import SurfacePiece
 
 __all__ = ["cells_of_piece", "geometries_of", "kept_geometries", "pieces_to_sample", "report_of"]
 
-Array = NDArray[np.float64]
 
 # Each piece is fitted and searched by itself, which takes 20 ms.
 MOST_PIECES = 2000
@@ -102,11 +101,8 @@ def report_of(
     arrays: Mapping[str, NDArray[Any]],
 ) -> SamplingReport:
     """Return the report of all pieces: sums, the largest errors, and means over the area."""
-    normals, samples = len(given.normals), len(next(iter(arrays.values())))
-    reports = [
-        sampling_report(x.geometry, normals, samples, given.density, given.developable, arrays)
-        for x in pieces
-    ]
+    known = len(given.normals), given.density, given.developable, dict(arrays)
+    reports = [x.geometry.report(*known) for x in pieces]
     sizes = np.array([x.size for x in pieces])
     areas = (sizes / sizes.max()) ** 2
 

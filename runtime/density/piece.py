@@ -3,43 +3,51 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from ..domain.domain import Domain
+from ..base.aliases import Array, Flags, Indices
+from ..domain.domain import Domain, brought_inside
 from ..domain.trim import Trim
 from ..place.on_spline import OnSpline
 from .borders import Border
 
 __all__ = ["Piece", "boxes_between"]
 
-Array = NDArray[np.float64]
+
+# The distance from the border of places beside it, relative to the domain.
+BESIDE = 1e-6
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Piece(ABC):
-    """A smooth surface on a rectangle of parameters, or a part of it: a surface, or a face."""
+    """A smooth surface on a rectangle of parameters, or a part of it: a surface, or a face.
+
+    `label` is what it is called in messages, `trim` the part of the domain that belongs to it, None
+    if that is all of it. `indices` are fields that are the same for all of its samples, and the
+    number of its first patch. Points of what is sampled are farther than `distance` from those of
+    `jets` nowhere, in L. Below the lengths `finest` (2,) of parameters its curvature means nothing.
+    """
+
+    label: str
+    domain: Domain
+    trim: Trim | None
+    indices: Mapping[str, int]
+    distance: float = 0.0
+    finest: Array = field(default_factory=lambda: np.zeros(2))
 
     @property
-    @abstractmethod
-    def label(self) -> str:
-        """What it is called in messages."""
+    def polygons(self) -> Sequence[Array]:
+        """The closed polygons (k, 2) along which there are samples, if there is a trim.
 
-    @property
-    @abstractmethod
-    def domain(self) -> Domain:
-        """The rectangle of the parameters."""
-
-    @property
-    @abstractmethod
-    def trim(self) -> Trim | None:
-        """The part of the domain that belongs to it, None if that is all of it."""
+        The first point is not repeated.
+        """
+        return ()
 
     @cached_property
     @abstractmethod
@@ -50,11 +58,6 @@ class Piece(ABC):
     @abstractmethod
     def boxes(self) -> Array:
         """Boxes (M, 4) that the domain is made of, in each of which the surface is smooth."""
-
-    @property
-    @abstractmethod
-    def polygons(self) -> Sequence[Array]:
-        """The closed polygons (k, 2) of its trim, the first point of which is not repeated."""
 
     @abstractmethod
     def jets(self, u: Array, v: Array) -> Array:
@@ -78,24 +81,9 @@ class Piece(ABC):
         return None
 
     @property
-    def indices(self) -> Mapping[str, int]:
-        """Fields that are the same for all of its samples, and the number of its first patch."""
-        return MappingProxyType({})
-
-    @property
-    def distance(self) -> float:
-        """How far points of what is sampled are from those of `jets`, at most."""
-        return 0.0
-
-    @property
     def exact(self) -> Piece:
         """The piece with the derivatives of what is sampled, which may take longer."""
         return self
-
-    @property
-    def finest(self) -> Array:
-        """The lengths (2,) of parameters below which its curvature means nothing."""
-        return np.zeros(2)
 
     @property
     def sizes(self) -> Array:
@@ -120,11 +108,50 @@ class Piece(ABC):
     def _borders(self) -> dict[int, Border]:
         return {}
 
-    def contains(self, places: Array) -> NDArray[np.bool_]:
+    def contains(self, places: Array) -> Flags:
         """Return which places (k, 2) are inside the trim."""
         return (
             np.ones(len(places), np.bool_) if self.trim is None else self.trim.contains(places, 1)
         )
+
+    def wrapped(self, places: Array) -> Array:
+        """Return places (k, 2) less whole periods, if there is a trim."""
+        assert self.trim is not None
+        u, v = places.T
+        return np.stack(brought_inside(u, v, self.domain, self.trim.boundary), axis=1)
+
+    def border_lines(self, step: float) -> Iterator[Array]:
+        """Yield the polygons, closed, with further places: steps are `step` of `sizes` at most."""
+        for polygon in self.polygons:
+            steps = np.diff(polygon, axis=0, append=polygon[:1])
+            parts = np.maximum(np.ceil(np.abs(steps / self.sizes).max(axis=1) / step), 1.0)
+            owner = np.repeat(np.arange(len(steps)), parts.astype(np.int64))
+            number = np.arange(len(owner)) - (np.cumsum(parts) - parts)[owner]
+            inner = polygon[owner] + (number / parts[owner])[:, None] * steps[owner]
+            yield np.concatenate([inner, polygon[:1]])
+
+    def beside_border(self, step: float) -> Array:
+        """Return places (k, 2) inside, close to the border, at distances `step` along it."""
+        found = [np.empty((0, 2))]
+        for line in self.border_lines(step):
+            steps = np.diff(line, axis=0)
+            found.append(self.beside(line[:-1] + steps / 2.0, steps)[0])
+        return np.concatenate(found)
+
+    def beside(self, places: Array, steps: Array) -> tuple[Array, Indices]:
+        """Return which places are inside, of those left and right of places (k, 2) on a border.
+
+        And the numbers of these; the border runs along steps (k, 2).
+        """
+        along = steps / self.sizes
+        lengths = np.hypot(*along.T)
+        unit = along / np.where(lengths > 0.0, lengths, 1.0)[:, None]
+        across = BESIDE * self.sizes * np.stack([-unit[:, 1], unit[:, 0]], axis=1)
+        both = self.wrapped(np.concatenate([places + across, places - across]))
+        low, high = np.array(self.domain).T
+        inside = ((both > low) & (both < high)).all(axis=1)
+        inside[inside] = self.contains(both[inside])
+        return both[inside], np.tile(np.arange(len(places)), 2)[inside]
 
 
 def boxes_between(u: Array, v: Array) -> Array:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from .along_borders import beside_border
-from .cells import Array, Cells, Flags, Indices, by_piece, points_of
+from ..base.aliases import Array, Flags, Indices
+from .cells import Cells, by_piece
 from .piece import Piece
 
 __all__ = ["beside", "placed", "sifted"]
@@ -16,11 +17,13 @@ __all__ = ["beside", "placed", "sifted"]
 SUB = 4
 
 
-def sifted(cells: Cells, pixels: Indices, owner: Indices | None = None) -> tuple[Cells, Indices]:
+def sifted(
+    pieces: Sequence[Piece], cells: Cells, pixels: Indices, owner: Indices | None = None
+) -> tuple[Cells, Indices]:
     """Return cells without those outside, and which are whole; and the owners of these."""
     kept, whole = np.ones(len(cells), dtype=np.bool_), cells.whole.copy()
     for k, rows in by_piece(cells):
-        piece, open_ = cells.space.pieces[k], ~cells.whole[rows]
+        piece, open_ = pieces[k], ~cells.whole[rows]
         border = piece.border(int(pixels[k]))
         if border is None or not open_.any():
             whole[rows] = True
@@ -34,13 +37,13 @@ def sifted(cells: Cells, pixels: Indices, owner: Indices | None = None) -> tuple
     return (found, owner) if kept.all() else (found[kept], owner[kept])
 
 
-def placed(cells: Cells) -> tuple[Cells, Cells]:
+def placed(pieces: Sequence[Piece], cells: Cells) -> tuple[Cells, Cells]:
     """Return the cells that have a place inside, with it, and those without."""
     found, places = cells.whole.copy(), cells.places.copy()
     for k, rows in by_piece(cells):
         if cells.whole[rows].all():
             continue
-        piece, here = cells.space.pieces[k], np.arange(rows.start, rows.stop)[~cells.whole[rows]]
+        piece, here = pieces[k], np.arange(rows.start, rows.stop)[~cells.whole[rows]]
         inside = piece.contains(places[here])
         found[here] = inside
         here = here[~inside]
@@ -50,17 +53,17 @@ def placed(cells: Cells) -> tuple[Cells, Cells]:
     return (cells, cells[np.flatnonzero(~found)]) if found.all() else (cells[found], cells[~found])
 
 
-def beside(lost: Cells, pixels: Indices) -> Cells:
-    """Return cells without an extent next to the border, where cells have no place inside."""
-    pieces, places = [np.empty(0, dtype=np.int64)], [np.empty((0, 2))]
+def beside(pieces: Sequence[Piece], lost: Cells, pixels: Indices) -> tuple[Indices, Array]:
+    """Return places (k, 2) next to the border where cells have none inside, and their pieces."""
+    owners, places = [np.empty(0, dtype=np.int64)], [np.empty((0, 2))]
     for k, rows in by_piece(lost):
-        n, piece = int(pixels[k]), lost.space.pieces[k]
+        n, piece = int(pixels[k]), pieces[k]
         border = piece.border(n)
         assert border is not None
-        found = beside_border(piece, 0.5 / n)
+        found = piece.beside_border(0.5 / n)
         places.append(found[border.near(lost.boxes[rows], found)])
-        pieces.append(np.full(len(places[-1]), k))
-    return points_of(lost.space, np.concatenate(pieces), np.concatenate(places))
+        owners.append(np.full(len(places[-1]), k))
+    return np.concatenate(owners), np.concatenate(places)
 
 
 def _subplaces(piece: Piece, boxes: Array) -> tuple[Flags, Array]:

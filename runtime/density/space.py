@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -11,13 +10,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.aliases import Array, Indices
 from ..base.checks import finite_array
 from ..base.errors import InputError
 from ..base.scales import scale_to_one
 from ..base.threads import over_ranges
 from ..kernels.cells import evaluate_cells
 from ..kernels.sizing import TargetDensity
-from .along_borders import BorderLine, along_borders, border_lines
+from .along_borders import BorderLine, places_along, polygons_of
 from .cells import (
     ALONG_U,
     ALONG_V,
@@ -27,13 +27,12 @@ from .cells import (
     CHORD,
     LIMIT,
     RADIUS,
-    Array,
     Cells,
-    Indices,
     by_piece,
     halved,
     into_parts,
     new_cells,
+    points_of,
 )
 from .piece import Piece
 from .sifting import beside, placed, sifted
@@ -49,11 +48,14 @@ MOST_LOST = 4
 FEWEST_PIXELS, MOST_PIXELS = 64, 512
 # Cells with more parts than this, which the border passes, are cut in two steps.
 AT_ONCE = 64
+# Cells are not cut below this part of the domain of their piece, and of the size of the surface.
+DEEPEST = 2.0**-14
 MOST_CELLS = 2e9
 # The factor by which cells are made coarser if there were too many.
 COARSER = 1.2
-# Cells of small faces are evaluated together by one thread.
-CELLS_AT_A_TIME = 1 << 12
+# Of a piece, this number of cells is evaluated at a time, and about the RANGES-th part of all that
+# is evaluated by one thread.
+CELLS_AT_A_TIME, RANGES = 1 << 12, 32
 # Where |K| is below this part of 1/area, a part counts as developable.
 FLAT_CURVATURE = 1e-6
 
@@ -197,7 +199,7 @@ class Space:
 
     def nothing(self) -> Cells:
         """Return no cells."""
-        return new_cells(self, np.empty(0, dtype=np.int64), np.empty((0, 4)))
+        return new_cells(np.empty(0, dtype=np.int64), np.empty((0, 4)))
 
     @property
     def first(self) -> Cells:
@@ -210,8 +212,24 @@ class Space:
     def borders(self) -> list[BorderLine]:
         """The borders of all pieces, without the floor."""
         if "borders" not in self._held:
-            self._held["borders"] = border_lines(self.between(0.0))
+            space, found = self.between(0.0), []
+            for k, places, inside, limits in polygons_of(self.pieces, self.first):
+                cells = space.at(np.full(len(places), k), inside, limits, keep=True)
+                found.append(BorderLine(k, places, cells.rows, cells.numbers[:, LIMIT]))
+            self._held["borders"] = found
         return self._held["borders"]
+
+    def along_borders(self, step: float, turn: float = math.inf) -> Cells:
+        """Return places along borders as cells without an extent; see `places_along`."""
+        return self.at(*places_along(self.pieces, self.borders, self.target, step, turn))
+
+    def at(
+        self, pieces: Indices, places: Array, limits: Array | float = 0.0, *, keep: bool = False
+    ) -> Cells:
+        """Return cells without an extent at places (k, 2) of pieces (k,); see `known`."""
+        cells = points_of(pieces, places, self.sizes[pieces])
+        cells.numbers[:, LIMIT] = limits
+        return self.known(cells, keep=keep)
 
     def middles(self, pieces: Indices) -> Cells:
         """Return the cell nearest to the middle of each of some pieces."""
@@ -225,23 +243,20 @@ class Space:
                 distances = np.where(regular, ((points - middle) ** 2).sum(axis=1), np.inf)
                 if regular.any():
                     rows.append(found.start + int(distances.argmin()))
-        return replace(first, space=self)[np.array(rows, dtype=np.int64)]
+        return first[np.array(rows, dtype=np.int64)]
 
     def cut(self, radius: float) -> Cells:
         """Return cells that lie within radius/√w of their places, w the target density there.
 
         And places along borders, about as far apart, as cells without an extent.
         """
-        parts = self.parts(radius)
-        cells = replace(self.first, space=self)
-        pixels = self._pixels(radius)
+        cells, parts, pixels = self.first, self.parts(radius), self._pixels(radius)
         many = (parts.prod(axis=1) > AT_ONCE) & ~cells.whole
         steps = np.where(many[:, None], np.ceil(np.sqrt(parts)).astype(np.int64), 1)
-        cells, owner = sifted(
-            into_parts(cells, steps), pixels, np.repeat(np.arange(len(steps)), steps.prod(axis=1))
-        )
+        owner = np.repeat(np.arange(len(steps)), steps.prod(axis=1))
+        cells, owner = sifted(self.pieces, into_parts(cells, steps), pixels, owner)
         cells = into_parts(cells, -(-parts[owner] // steps[owner]))
-        return (self.evaluated(cells, pixels) + along_borders(self, radius)).sorted()
+        return (self.evaluated(cells, pixels) + self.along_borders(radius)).sorted()
 
     def parts(self, radius: float) -> Indices:
         """Return into how many parts (M, 2) `cut` divides the first cells along u and v.
@@ -274,13 +289,31 @@ class Space:
         while parts.prod(axis=1).sum() > most + len(first):
             chord *= COARSER
             parts = np.maximum(np.ceil(bends / (2.0 * chord)), 1.0)
-        return self.evaluated(into_parts(replace(first, space=self), parts.astype(np.int64)))
+        return self.evaluated(into_parts(first, parts.astype(np.int64)))
 
     def evaluated(self, cells: Cells, pixels: Indices | None = None) -> Cells:
         """Return those of cells that have a place inside the trim, with their rows and numbers."""
         pixels = self._fewest if pixels is None else pixels
-        cells, _ = sifted(cells.sorted(), pixels)
-        return self.known(placed(cells)[0])
+        cells, _ = sifted(self.pieces, cells.sorted(), pixels)
+        return self.known(placed(self.pieces, cells)[0])
+
+    def halves(self, cells: Cells) -> Cells:
+        """Return cells bisected across their longer sides, without those outside the trim."""
+        along_u = cells.numbers[:, ALONG_U] >= cells.numbers[:, ALONG_V]
+        return self.evaluated(halved(cells, along_u))
+
+    def quarters(self, cells: Cells) -> Cells:
+        """Return cells bisected along u and along v.
+
+        Where the surface is singular, normals turn most along the shorter side.
+        """
+        return self.evaluated(into_parts(cells, np.full((len(cells), 2), 2)))
+
+    def deepest(self, cells: Cells) -> NDArray[np.bool_]:
+        """Return which cells are so small that they are not cut any more."""
+        sizes = cells.boxes[:, 2:] - cells.boxes[:, :2]
+        small = np.all(sizes <= DEEPEST * self.sizes[cells.pieces], axis=1)
+        return small | (cells.radii <= DEEPEST * math.sqrt(self.area))
 
     # --- steps ------------------------------------------------------------------------------------
 
@@ -288,22 +321,22 @@ class Space:
         boxes = [x.boxes for x in self.pieces]
         pieces = np.repeat(np.arange(len(boxes)), [len(x) for x in boxes])
         space = self.between(0.0)
-        cells = new_cells(space, pieces, np.concatenate(boxes))
+        cells = new_cells(pieces, np.concatenate(boxes))
         done = [space.nothing()]
         for step in range(MOST_BENDS):
             cells.numbers[:, LIMIT] = 0.0
-            cells, _ = sifted(cells, self._fewest)
-            cells, lost = placed(cells)
+            cells, _ = sifted(self.pieces, cells, self._fewest)
+            cells, lost = placed(self.pieces, cells)
             cells = space.known(cells)
             bends = cells.numbers[:, [BEND_U, BEND_V]]
-            bent = (bends > FLAT).any(axis=1) & ~cells.deepest
+            bent = (bends > FLAT).any(axis=1) & ~self.deepest(cells)
             done.append(cells[~bent])
             cells = halved(cells[bent], bends[bent, 0] >= bends[bent, 1])
             if len(lost) and step < MOST_LOST:
                 cells += into_parts(lost, np.full((len(lost), 2), 2))
                 cells = cells.sorted()
             elif len(lost):
-                done.append(space.known(beside(lost, self._fewest)))
+                done.append(space.at(*beside(self.pieces, lost, self._fewest)))
             if not len(cells):
                 break
         return sum(done[1:], start=done[0]).sorted()
@@ -334,19 +367,21 @@ class Space:
         """
 
         def work(first: int, last: int) -> None:
-            for group in groups[first:last]:
-                for k, rows in group:
-                    jets = self.pieces[k].jets(*cells.places[rows].T.copy())
-                    evaluate_cells(
-                        jets, cells.boxes[rows], cells.places[rows], self.unit, self.centre,
-                        self.pieces[k].finest, self._target_of(k),
-                        cells.rows[rows], cells.numbers[rows],
-                    )  # fmt: skip
+            for k, rows in parts[first:last]:
+                jets = self.pieces[k].jets(*cells.places[rows].T.copy())
+                evaluate_cells(
+                    jets, cells.boxes[rows], cells.places[rows], self.unit, self.centre,
+                    self.pieces[k].finest, self._target_of(k),
+                    cells.rows[rows], cells.numbers[rows],
+                )  # fmt: skip
 
         cells = replace(cells, rows=np.empty_like(cells.rows), numbers=cells.numbers.copy())
-        groups = list(_groups(cells))
-        for _ in over_ranges(work, len(groups), 1, self.threads):
-            pass
+        parts = [
+            (k, slice(first, min(first + CELLS_AT_A_TIME, rows.stop)))
+            for k, rows in by_piece(cells)
+            for first in range(rows.start, rows.stop, CELLS_AT_A_TIME)
+        ]
+        list(over_ranges(work, len(parts), len(parts) // RANGES + 1, self.threads))
         known = np.concatenate([cells.rows, cells.numbers], axis=1)
         finite = np.asarray(np.isfinite(known).all(axis=1))
         if keep:
@@ -357,16 +392,3 @@ class Space:
     def _target_of(self, piece: int) -> TargetDensity:
         flat = piece in self.developable
         return self.target._replace(gauss_weight=0.0) if flat else self.target
-
-
-def _groups(cells: Cells) -> Iterator[list[tuple[int, slice]]]:
-    """Yield pieces and rows of cells, sorted by pieces: about CELLS_AT_A_TIME at a time."""
-    group, count = [], 0
-    for k, rows in by_piece(cells):
-        for first in range(rows.start, rows.stop, CELLS_AT_A_TIME):
-            last = min(first + CELLS_AT_A_TIME, rows.stop)
-            group, count = [*group, (k, slice(first, last))], count + last - first
-            if count >= CELLS_AT_A_TIME:
-                yield group
-                group, count = [], 0
-    yield group

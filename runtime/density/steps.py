@@ -16,13 +16,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.aliases import Array
 from ..kernels.steps import shared_steps
 
 __all__ = ["Forms", "Steps", "equal_steps", "steps_for_count"]
 
-Array = NDArray[np.float64]
 _Arrays = tuple[Array, Array, Array, Array, float]
 
 # The part of the limits that steps along u are given first: the best one of these, and then of

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -11,18 +11,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from ..base.aliases import Array
 from ..base.errors import SurfaceError
-from ..domain.domain import Domain
-from ..domain.trim import Trim
 from ..kernels.sizing import TargetDensity
 from ..place.on_spline import OnSpline
-from ..spline.developable import curved_solid_angle
 from .piece import Piece, boxes_between
 from .space import Space
 
 __all__ = ["SurfacePiece", "space_of"]
 
-Array = NDArray[np.float64]
 
 # About this number of boxes along u and along v; their sides are lines between cells.
 BOXES = 32
@@ -30,32 +27,34 @@ BOXES = 32
 NO_SIZE = 1e-6
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class SurfacePiece(Piece):
-    """What is sampled, with its spline; patches are numbered from `first_patch` on.
+    """What is sampled, with its spline.
 
     Candidates follow from the derivatives of the surface where it knows them, otherwise from those
-    of the spline; with `exactly`, from differences of the surface.
+    of the spline; with `exactly`, from differences of the surface. There are no polygons: samples
+    beside borders would be in the way of the vertices of meshes.
     """
 
     geometry: OnSpline
-    first_patch: int = 0
-    exactly: bool = False
+    exactly: bool
 
-    @property
-    def label(self) -> str:
-        """What it is called in messages."""
-        return f"surface {self.geometry.name!r}"
-
-    @property
-    def domain(self) -> Domain:
-        """The rectangle of the parameters."""
-        return self.geometry.spline.domain
-
-    @property
-    def trim(self) -> Trim | None:
-        """The part of the domain that belongs to it."""
-        return self.geometry.spline.trim
+    @classmethod
+    def of(cls, geometry: OnSpline, first_patch: int) -> SurfacePiece:
+        """Return what is sampled as a piece, with patches that are numbered from a number on."""
+        spline = geometry.spline
+        # At poles the curvature of splines is far from that of the surface.
+        exactly = geometry.knows_jets or any("pole" in ends for ends in spline.boundary)
+        return cls(
+            label=f"surface {spline.name!r}",
+            domain=spline.domain,
+            trim=spline.trim,
+            indices={"patch_index": first_patch},
+            distance=0.0 if exactly else geometry.distance,
+            finest=spline.frame[2:],
+            geometry=geometry,
+            exactly=exactly,
+        )
 
     @cached_property
     def size(self) -> float:
@@ -71,19 +70,12 @@ class SurfacePiece(Piece):
         u0, v0, du, dv = self.geometry.spline.frame
         return boxes_between(*(
             low + step * np.unique(np.linspace(0, cells, BOXES + 1).round())
-            for low, step, cells in zip((u0, v0), (du, dv), self.geometry.cells, strict=True)
+            for low, step, cells in zip((u0, v0), (du, dv), self.geometry.spline.cells, strict=True)
         ))  # fmt: skip
-
-    @property
-    def polygons(self) -> Sequence[Array]:
-        """No polygons: samples beside borders would be in the way of the vertices of meshes."""
-        return ()
 
     def jets(self, u: Array, v: Array) -> Array:
         """Return 2-jets (k, 6, 3) at parameters."""
-        if self._is_exact:
-            return self.geometry.jets(u, v)
-        return self.geometry.jets_of_spline(u, v)
+        return (self.geometry.jets if self.exactly else self.geometry.jets_of_spline)(u, v)
 
     def geometries(self, threads: int | None) -> list[OnSpline]:
         """Return what is searched for points with a normal."""
@@ -95,35 +87,14 @@ class SurfacePiece(Piece):
         """Return fields of samples at parameters (k, 2); rows (k, 8) are those of candidates."""
         return self.geometry.at_parameters(uv, rows[:, 3:6], rows[:, 7], fields, dtype)
 
-    @property
-    def indices(self) -> Mapping[str, int]:
-        """The number of its first patch."""
-        return {"patch_index": self.first_patch}
-
     def solid_angle(self, density: float) -> float:
         """Return the solid angle of the normals of what `density` normals per steradian sample."""
-        return curved_solid_angle(self.geometry, density)
-
-    @property
-    def distance(self) -> float:
-        """How far points of what is sampled are from those of `jets`, at most."""
-        return 0.0 if self._is_exact else self.geometry.distance
+        return self.geometry.cell_measure.curved_solid_angle(density)
 
     @property
     def exact(self) -> Piece:
         """The piece with the derivatives of what is sampled."""
-        return self if self._is_exact else replace(self, exactly=True)
-
-    @property
-    def finest(self) -> Array:
-        """The lengths (2,) of the cells of the spline."""
-        return self.geometry.spline.frame[2:]
-
-    @property
-    def _is_exact(self) -> bool:
-        # At poles the curvature of splines is far from that of the surface.
-        has_pole = any("pole" in ends for ends in self.geometry.spline.boundary)
-        return self.exactly or self.geometry.knows_jets or has_pole
+        return self if self.exactly else replace(self, exactly=True, distance=0.0)
 
 
 def space_of(
@@ -135,8 +106,8 @@ def space_of(
 
     Raises SurfaceError if none has.
     """
-    firsts = np.cumsum([0, *(x.patches for x in geometries)]).tolist()
-    pieces = [SurfacePiece(x, first) for x, first in zip(geometries, firsts[:-1], strict=True)]
+    firsts = np.cumsum([0, *(x.spline.patches for x in geometries)]).tolist()
+    pieces = [SurfacePiece.of(x, first) for x, first in zip(geometries, firsts[:-1], strict=True)]
     label, sizes = pieces[0].label, np.array([_size_of(x, len(pieces) > 1) for x in pieces])
     real = sizes > NO_SIZE * sizes.max()
     if not real.any():

@@ -5,15 +5,14 @@ from __future__ import annotations
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..base.aliases import Array
 from ..base.tolerances import CAP_RADIUS_ERROR
 from .regions import angles_between
 from .unit import as_normals
 
 __all__ = ["covering_radius"]
-
-Array = NDArray[np.float64]
 
 
 def covering_radius(normals: ArrayLike) -> float:

@@ -43,25 +43,26 @@ Periodic = bool | Sequence[Periodicity]  # of both, or of u and of v
 
 def checked_domain(domain: Sequence[Sequence[float]]) -> Domain:
     """Return a domain as floats; InputError unless it is a bounded rectangle with an inside."""
-    try:
-        (u0, u1), (v0, v1) = ((as_float(low), as_float(high)) for low, high in domain)
-    except (TypeError, ValueError):
-        raise InputError(f"domain must be ((u0, u1), (v0, v1)), not {shown(domain)}.") from None
-    for name, low, high in (("u", u0, u1), ("v", v0, v1)):
-        if not 0.0 < high - low < np.inf:
-            raise InputError(f"the domain of {name} is empty or infinite: ({low}, {high}).")
-    return (u0, u1), (v0, v1)
+    u, v = _checked(domain, "uv", "((u0, u1), (v0, v1))")
+    return u, v
 
 
 def checked_interval(domain: Sequence[float]) -> Interval:
     """Return the domain of a curve as floats; InputError unless it is bounded, with an inside."""
+    return _checked((domain,), "t", "(t0, t1)")[0]
+
+
+def _checked(domain: Sequence[Sequence[float]], names: str, form: str) -> list[Interval]:
     try:
-        low, high = (as_float(x) for x in domain)
+        ends = [(as_float(low), as_float(high)) for low, high in domain]
+        named = list(zip(names, ends, strict=True))
     except (TypeError, ValueError):
-        raise InputError(f"domain must be (t0, t1), not {shown(domain)}.") from None
-    if not 0.0 < high - low < np.inf:
-        raise InputError(f"the domain of t is empty or infinite: ({low}, {high}).")
-    return low, high
+        given = domain if len(names) > 1 else domain[0]
+        raise InputError(f"domain must be {form}, not {shown(given)}.") from None
+    for name, (low, high) in named:
+        if not 0.0 < high - low < np.inf:
+            raise InputError(f"the domain of {name} is empty or infinite: ({low}, {high}).")
+    return ends
 
 
 def checked_boundary(periodic: Periodic) -> tuple[Boundary, Assumed]:

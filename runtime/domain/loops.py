@@ -8,9 +8,9 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..base.checks import listed, real_array
+from ..base.aliases import Array, Flags
+from ..base.checks import finite_array, listed
 from ..base.errors import InputError, shown
 from ..base.scales import scale_to_one
 from ..base.threads import over_ranges
@@ -19,7 +19,6 @@ from .domain import Boundary, Domain, closes
 
 __all__ = ["Loops", "checked_loops"]
 
-Array = NDArray[np.float64]
 
 # A closed polygon of n segments is sorted into about this number of cells for each of them.
 CELLS_A_SEGMENT, MOST_ROWS = 8, 2048
@@ -47,7 +46,7 @@ class Loops:
     domain: Domain
     boundary: Boundary
 
-    def contains(self, uv: Array, threads: int | None = None) -> NDArray[np.bool_]:
+    def contains(self, uv: Array, threads: int | None = None) -> Flags:
         """Return whether points (k, 2) of the domain are inside, as booleans (k,)."""
         cells, shifts = self._cells
         places, inside = np.ascontiguousarray(self._inwards(uv)), np.empty(len(uv), dtype=np.bool_)
@@ -58,7 +57,7 @@ class Loops:
         list(over_ranges(work, len(uv), POINTS_AT_A_TIME, threads))
         return inside
 
-    def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> NDArray[np.bool_]:
+    def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags:
         """Return the cells (m, n) of a grid on the domain that the polygons may pass."""
         low, high = np.array(domain).T
         steps = (high - low) / cells
@@ -205,13 +204,7 @@ def _rings_of_geometry(geometry: Any) -> list[Any]:  # noqa: ANN401
 
 def _polygon(points: Any, number: int) -> Array:  # noqa: ANN401
     """Return the points (k, 2) of a polygon, the first one not repeated."""
-    array = real_array(points, f"loop {number}")
-    if array.ndim != 2 or array.shape[1] != 2:
-        raise InputError(
-            f"loop {number} must have the shape (k, 2), points u, v, not {array.shape}."
-        )
-    if not np.isfinite(array).all():
-        raise InputError(f"loop {number} holds NaN or infinity.")
+    array = finite_array(points, ("k", 2), f"loop {number}")
     if len(array) > 1 and (array[0] == array[-1]).all():
         array = array[:-1]
     if len(array) < 3:

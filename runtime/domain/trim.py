@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.aliases import Array, Flags
 from ..base.errors import InputError, SurfaceError, shown
 from ..base.evaluation import called
 from .domain import Boundary, Domain, brought_inside, domain_text
@@ -16,7 +16,6 @@ from .loops import Loops, checked_loops
 
 __all__ = ["Predicate", "Trim", "TrimPart", "trimmed_by"]
 
-Array = NDArray[np.float64]
 
 POINTS_AT_A_TIME = 1 << 20
 
@@ -24,11 +23,11 @@ POINTS_AT_A_TIME = 1 << 20
 class TrimPart(Protocol):
     """One condition of a trim."""
 
-    def contains(self, uv: Array, threads: int | None = None) -> NDArray[np.bool_]:
+    def contains(self, uv: Array, threads: int | None = None) -> Flags:
         """Return whether points (k, 2) of the domain fulfil it, as booleans (k,)."""
         ...
 
-    def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> NDArray[np.bool_] | None:
+    def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags | None:
         """Return the cells (m, n) of a grid that its border may pass, None if that is unknown."""
         ...
 
@@ -65,7 +64,7 @@ class Trim:
         kinds = ", ".join(type(part).__name__ for part in self.parts)
         return f"Trim({kinds} in {domain_text(self.domain, self.boundary)})"
 
-    def contains(self, uv: Array, threads: int | None = None) -> NDArray[np.bool_]:
+    def contains(self, uv: Array, threads: int | None = None) -> Flags:
         """Return whether points belong to the surface.
 
         Parameters
@@ -102,9 +101,7 @@ class Trim:
                 inside[inside] = part.contains(wrapped[inside], threads)
         return inside
 
-    def cells_of_border(
-        self, domain: Domain, cells: tuple[int, int]
-    ) -> tuple[NDArray[np.bool_], bool]:
+    def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> tuple[Flags, bool]:
         """Return the cells (m, n) that the border is known to pass, and whether these are all.
 
         Parameters
@@ -158,7 +155,7 @@ class Predicate:
     function: Callable[[Array, Array], Any]
     name: str
 
-    def contains(self, uv: Array, threads: int | None = None) -> NDArray[np.bool_]:
+    def contains(self, uv: Array, threads: int | None = None) -> Flags:
         """Return what the callable says of points (k, 2)."""
         starts = range(0, len(uv), POINTS_AT_A_TIME)
         found = [self._part(uv[first : first + POINTS_AT_A_TIME]) for first in starts]
@@ -167,7 +164,7 @@ class Predicate:
     def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> None:
         """Return None: where the callable changes is not known."""
 
-    def _part(self, uv: Array) -> NDArray[np.bool_]:
+    def _part(self, uv: Array) -> Flags:
         label = f"the predicate within=... of surface {self.name!r}"
         found = called(self.function, (uv[:, 0], uv[:, 1]), label)
         if not isinstance(found, np.ndarray) or found.dtype != np.bool_:

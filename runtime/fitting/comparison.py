@@ -6,10 +6,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.aliases import Array
 from ..domain.domain import Boundary, cells_between
-from ..kernels import spline as kernels
 from ..spline.misfit import Misfit
 from ..spline.spline import Spline
 
@@ -21,7 +20,6 @@ __all__ = [
     "squared_lengths",
 ]
 
-Array = NDArray[np.float64]
 
 POINTS_AT_A_TIME = 1 << 16
 
@@ -74,10 +72,7 @@ def compare_with_data(spline: Spline, data: Array, boundary: Boundary) -> Compar
 
 def evaluated(spline: Spline, u: Array, v: Array) -> tuple[Array, Array]:
     """Return points and unnormalized normals of a spline at places as parts of the domain."""
-    cells = np.stack([u * spline.cells[0], v * spline.cells[1]], axis=1)
-    points, normals = np.empty((len(cells), 3)), np.empty((len(cells), 3))
-    kernels.evaluate(spline.coefficients, spline.scale, cells, points, normals)
-    return points, normals
+    return spline._evaluated(np.stack([u * spline.cells[0], v * spline.cells[1]], axis=1))
 
 
 def squared_lengths(differences: Array, scale: float) -> Array:

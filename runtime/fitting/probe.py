@@ -8,16 +8,14 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.aliases import Array, Flags, Indices
 from ..domain.domain import Domain
 from ..spline.spline import Spline
 from ..surface.surface import Surface
 from .comparison import Comparison, Misfit, angles_between, evaluated, squared_lengths
 
 __all__ = ["Probe", "probe_of", "variation"]
-
-Array = NDArray[np.float64]
 
 
 class Counts(NamedTuple):
@@ -72,7 +70,7 @@ class Known:
 
     parts: Array
     points: Array
-    with_normals: NDArray[np.int64]
+    with_normals: Indices
     normals: Array
 
     def errors(self, spline: Spline) -> tuple[Array, Array]:
@@ -144,7 +142,7 @@ class Probe:
         some = np.arange(0, len(points), EACH_AROUND)
         return _known(self.surface, parts, points, some, (self.extent, self.largest))
 
-    def _away(self, parts: Array) -> NDArray[np.bool_]:
+    def _away(self, parts: Array) -> Flags:
         """Return which places are away from sides of the domain that are one point."""
         away = np.ones(parts.shape[1], dtype=np.bool_)
         for axis, end in self.sides:
@@ -226,7 +224,7 @@ def _even(count: int) -> Array:
     return np.stack([k * PLASTIC % 1.0, k * PLASTIC**2 % 1.0])
 
 
-def worst_of(errors: Array) -> NDArray[np.int64]:
+def worst_of(errors: Array) -> Indices:
     """Return the numbers of WORST of the largest errors, no two of one of GROUPS of neighbours."""
     length = max(-(-len(errors) // GROUPS), 1)
     starts = range(0, len(errors), length)
@@ -242,7 +240,7 @@ def _points(surface: Surface, parts: Array) -> Array:
     return surface.evaluate(*_in_domain(parts, surface.domain))
 
 
-def _belonging(surface: Surface, parts: Array) -> NDArray[np.int64]:
+def _belonging(surface: Surface, parts: Array) -> Indices:
     """Return the numbers of the places that belong to the surface; of all, if none does."""
     if surface.trim is None:
         return np.arange(parts.shape[1])
@@ -254,7 +252,7 @@ def _known(
     surface: Surface,
     parts: Array,
     points: Array,
-    some: NDArray[np.int64],
+    some: Indices,
     size: tuple[float, float],
 ) -> Known:
     """Return a surface of an extent and a largest coordinate at places, some with normals."""

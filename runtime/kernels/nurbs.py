@@ -98,20 +98,6 @@ def basis_functions(knots, degree, span, x, basis):
 
 
 @loop
-def basis_values(knots, degree, span, x, basis):
-    """Write the basis functions that do not vanish."""
-    basis[0, 0] = 1.0
-    for j in range(1, degree + 1):
-        left = 0.0
-        for r in range(j):
-            low, high = knots[span + 1 - j + r], knots[span + 1 + r]
-            value = basis[0, r] / (high - low)
-            basis[0, r] = left + (high - x) * value
-            left = (x - low) * value
-        basis[0, j] = left
-
-
-@loop
 def sum_derivatives(net, i, j, scratch):
     """Write the sums of the coordinates and their derivatives: 1, u, v, uu, uv, vv."""
     p, q = net.degrees[0], net.degrees[1]
@@ -174,8 +160,8 @@ def positions(net, u, v, scratch, out):
         y = in_period(v[k], net.periods[1, 0], net.periods[1, 1])
         i = span_of(net.knots_u, net.spans[0, 0], net.spans[0, 1], i, x)
         j = span_of(net.knots_v, net.spans[1, 0], net.spans[1, 1], j, y)
-        basis_values(net.knots_u, p, i, x, basis_u)
-        basis_values(net.knots_v, q, j, y, basis_v)
+        basis_functions(net.knots_u, p, i, x, basis_u)
+        basis_functions(net.knots_v, q, j, y, basis_v)
         sums[0, 3] = 1.0
         for c in range(net.points.shape[2]):
             x = 0.0

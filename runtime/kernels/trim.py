@@ -21,9 +21,8 @@ from numpy.typing import NDArray
 from ...generated.spline import CORNERS
 from ..machine_code.jit import inline, jit, loop
 from .patch import place_of
-from .spline import patch_at
 
-__all__ = ["Cells", "find_inside", "find_parities", "find_patches", "list_segments", "to_cells"]
+__all__ = ["Cells", "find_inside", "find_parities", "list_segments", "to_cells"]
 
 
 class Cells(NamedTuple):
@@ -194,14 +193,6 @@ def list_segments(cells, margins, stores):
                     cells.starts[cell] += 1
                 else:
                     cells.starts[cell + 1] += 1
-
-
-@jit
-def find_patches(cells, rows, columns, patches):
-    """Write the numbers (k,) of the patches at places (k, 2) in cells of a grid."""
-    for k in range(cells.shape[0]):
-        i, j, turn, _, _ = patch_at(cells[k, 0], cells[k, 1], rows, columns)
-        patches[k] = 4 * (i * columns + j) + turn
 
 
 @jit

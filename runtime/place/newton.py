@@ -10,8 +10,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.aliases import Array, Indices
 from ..base.threads import over_ranges
 from ..base.tolerances import NORMAL_ERROR, NORMAL_NOISE
 from ..kernels.refine import (
@@ -33,8 +33,6 @@ from .pole_charts import PoleChart, pole_charts
 
 __all__ = ["FOUND", "Target", "evaluate_on_surface", "refine"]
 
-Array = NDArray[np.float64]
-Numbers = NDArray[np.int64]
 Jets = Callable[[Array, Array], Array]
 
 ROWS_AT_A_TIME = 4096
@@ -76,7 +74,7 @@ class Parameters:
         box = Box(ends, (FREE, FREE), (chart.cell, chart.cell))
         return cls(chart.jets, box, spline.scale, max(NORMAL_NOISE, spline.noise))
 
-    def solve(self, target: Target, numbers: Numbers, few: int) -> Numbers:
+    def solve(self, target: Target, numbers: Indices, few: int) -> Indices:
         """Move rows from target.uv on; return the numbers of the last ones, at most `few`."""
         count, rows = len(numbers), Rows.new(numbers)
         begin(target.uv, count, rows, self.box)
@@ -112,11 +110,11 @@ def _refine_away(
     charts: list[PoleChart],
     target: Target,
     threads: int | None,
-) -> list[Numbers]:
+) -> list[Indices]:
     """Move the samples that are not next to a pole; return the others, for each chart."""
     domain = Parameters.of_domain(surface, spline)
 
-    def work(first: int, last: int) -> tuple[Numbers, list[Numbers]]:
+    def work(first: int, last: int) -> tuple[Indices, list[Indices]]:
         part = Target._make(x[first:last] for x in target)
         at_poles = [np.flatnonzero(x.near(part.uv)) for x in charts]
         numbers = np.arange(last - first)
@@ -134,7 +132,7 @@ def _refine_away(
 
 
 def _on_rows(
-    target: Target, numbers: Numbers, solve: Callable[[Target], object], threads: int | None
+    target: Target, numbers: Indices, solve: Callable[[Target], object], threads: int | None
 ) -> None:
     """Call `solve` with copies of some rows; write what it finds into the arrays of all samples."""
 
@@ -151,7 +149,7 @@ def _on_rows(
 
 
 def _refine_at_pole(
-    chart: PoleChart, spline: Spline, target: Target, numbers: Numbers, threads: int | None
+    chart: PoleChart, spline: Spline, target: Target, numbers: Indices, threads: int | None
 ) -> None:
     """Move rows next to a pole in its chart, whatever the sign of K."""
     parameters = Parameters.of_chart(chart, spline)

@@ -11,20 +11,20 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from ...generated.spline import SCALE
-from ..base.georeference import Georeference
+from ..base.aliases import Array
 from ..base.memory import check_memory
 from ..base.threads import over_ranges
 from ..fitting.fit import check_range
 from ..kernels.forms import forms_of_jets, jets_on_spline, patches_at
 from ..kernels.tile import fill_known
 from ..samples.fields import FLOAT_NAMES, bytes_of, new_field
-from ..samples.report import SamplingReport
+from ..samples.report import SamplingReport, sampling_report
 from ..samples.samples import Samples
 from ..search.bins import NormalBins
 from ..search.proved import ProvedIndex
@@ -34,12 +34,8 @@ from ..spline.inside import count_of, samples_inside, with_uv
 from ..spline.spline import Spline
 from ..surface.surface import Surface
 
-if TYPE_CHECKING:
-    from ..spline.misfit import Misfit
-
 __all__ = ["Fields", "FieldsOfSamples", "OnSpline", "grouped"]
 
-Array = NDArray[np.float64]
 Fields = dict[str, NDArray[Any]]
 
 AT_A_TIME = 1 << 12
@@ -86,43 +82,13 @@ class OnSpline:
         check_range(self.spline, dtype)
         return replace(self, threads=threads, memory=memory)
 
-    @property
-    def name(self) -> str:
-        """Label of the surface."""
-        return self.spline.name
-
-    @property
-    def cells(self) -> tuple[int, int]:
-        """The numbers of cells of the spline."""
-        return self.spline.cells
-
-    @property
-    def patches(self) -> int:
-        """The number of patches of the spline."""
-        return self.spline.patches
-
-    @property
-    def apexes(self) -> int:
-        """The number of apexes of the spline."""
-        return self.spline.apexes
-
-    @property
-    def georeference(self) -> Georeference | None:
-        """Where the coordinates are on the Earth."""
-        return self.spline.georeference
-
-    @property
-    def misfit(self) -> Misfit | None:
-        """The misfit of the spline."""
-        return self.spline.misfit
-
     @cached_property
     def measure(self) -> tuple[Array, Array]:
         """Areas and signed solid angles of the patches, as `Spline.measure`."""
         return self.spline.measure
 
     @cached_property
-    def _cell_measure(self) -> CellMeasure:
+    def cell_measure(self) -> CellMeasure:
         """The same of the cells."""
         return self.spline._cell_measure
 
@@ -137,10 +103,10 @@ class OnSpline:
         self, bins: NormalBins, hits: Hits, fields: Sequence[str], dtype: DTypeLike
     ) -> FieldsOfSamples:
         """Return the samples at hits, with the fields that are requested."""
-        wanted = with_uv(self.spline, fields)
+        wanted = with_uv(self.spline.trim, fields)
         check_memory("stored", len(hits), bytes_of(set(wanted) - set(self.memory), dtype))
         arrays = fill(self.spline, bins, hits, self.threads, wanted, dtype, self.memory)
-        return FieldsOfSamples(samples_inside(self.spline, arrays, fields))
+        return FieldsOfSamples(samples_inside(self.spline.trim, arrays, fields))
 
     def at_hits_in_turn(
         self,
@@ -153,6 +119,13 @@ class OnSpline:
         """Yield at most `size` samples at a time, those at `parts` of all hits of these normals."""
         for hits in grouped(parts, size):
             yield self.at_hits(bins, hits, fields, dtype)
+
+    def report(
+        self, normals: int, density: float, developable: int | None, arrays: Fields
+    ) -> SamplingReport:
+        """Return the report of samples with some fields; see `sampling_report`."""
+        count, cells = count_of(arrays) if arrays else 0, self.cell_measure
+        return sampling_report(self.spline, normals, count, density, developable, arrays, cells)
 
     def samples(self, fields: Fields, report: SamplingReport, unrefined: int | None) -> Samples:
         """Return samples of fields, with what is known of all of them."""

@@ -89,7 +89,8 @@ class OnSurface(OnSpline):
     @property
     def distance(self) -> float:
         """How far the points of the surface are from those of the spline, at most: measured."""
-        return 0.0 if self.misfit is None else self.misfit.distance
+        misfit = self.spline.misfit
+        return 0.0 if misfit is None else misfit.distance
 
     @cached_property
     def measure(self) -> tuple[Array, Array]:
@@ -102,14 +103,14 @@ class OnSurface(OnSpline):
         return areas, solid_angles if inside is None else solid_angles * inside.shares
 
     @cached_property
-    def _cell_measure(self) -> CellMeasure:
+    def cell_measure(self) -> CellMeasure:
         """The same of the cells."""
         return CellMeasure.of(self.measure, self.spline.cells)
 
     @property
     def _at_gauss_points(self) -> Array:
         """K times the area of the cell (4 cells,) at its Gauss points; 0 at singular points."""
-        found, columns = np.empty(self.patches), self.cells[1]
+        found, columns = np.empty(self.spline.patches), self.spline.cells[1]
         ends = 0.5 + kernels.GAUSS * np.array([-0.5, 0.5])
         u0, v0, du, dv = self.spline.frame
 
@@ -121,7 +122,7 @@ class OnSurface(OnSpline):
                 self.jets(u, v), self._size, self.spline.frame, found[first:last]
             )
 
-        self._in_parts(work, self.patches)
+        self._in_parts(work, len(found))
         return found
 
     # --- samples at normals -----------------------------------------------------------------------
@@ -165,15 +166,16 @@ class OnSurface(OnSpline):
         again = NormalBins(bins.normals[numbers], self.threads)
         whole = self._moved(again, find(self.spline, again, self.threads))
         whole = part_of(whole, ~self._kept_once(whole))
-        left_out = whole["normal_index"] * self.patches + whole["patch_index"]
-        may_be[may_be] = np.isin(normal * self.patches + arrays["patch_index"][may_be], left_out)
+        count = self.spline.patches
+        left_out = whole["normal_index"] * count + whole["patch_index"]
+        may_be[may_be] = np.isin(normal * count + arrays["patch_index"][may_be], left_out)
         return may_be
 
     def _moved(self, bins: NormalBins, hits: Hits) -> Fields:
         """Return all fields but the support of the samples at hits, those inside the trim."""
         assert self.surface is not None
         arrays = moved_samples(self.surface, self.spline, bins, hits, self.threads)
-        return samples_inside(self.spline, arrays, tuple(arrays))
+        return samples_inside(self.spline.trim, arrays, tuple(arrays))
 
     def _at_poles(self, arrays: Fields) -> NDArray[np.bool_]:
         """Return which samples are next to a pole."""

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.aliases import Array, Flags
 from ..kernels.refine import chart_jets, jet_of_pole
 from ..spline.spline import Spline
 from ..surface.derivatives import differences, power_of_two
@@ -20,7 +20,6 @@ from ..surface.surface import Surface
 
 __all__ = ["PoleChart", "pole_charts"]
 
-Array = NDArray[np.float64]
 
 # The spline is inaccurate, and may have folds, within four cells of a pole; its samples are up to a
 # cell away from those of the surface.
@@ -65,12 +64,12 @@ class PoleChart:
         low, high = self.surface.domain[self.angle]
         return 2.0 * math.pi / (high - low)
 
-    def near(self, uv: Array) -> NDArray[np.bool_]:
+    def near(self, uv: Array) -> Flags:
         """Return which parameters (k, 2) lie in the cells around the pole."""
         cells = min(POLE_CELLS, self.cells // 2)
         return self._distances(uv) < cells * self.cell
 
-    def next_to(self, uv: Array) -> NDArray[np.bool_]:
+    def next_to(self, uv: Array) -> Flags:
         """Return which parameters (k, 2) are so near to the pole that the chart is needed.
 
         Differences along a small circle around a pole are inaccurate, relative to its radius.

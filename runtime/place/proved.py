@@ -54,7 +54,7 @@ def proved_samples(
     found = index.query(normals, threads)
     check_memory("stored", len(found.numbers), bytes_of(fields, dtype))
     arrays = _arrays(surface, spline, normals, found, set(fields), threads)
-    arrays = samples_inside(spline, arrays, tuple(arrays))
+    arrays = samples_inside(spline.trim, arrays, tuple(arrays))
     kept = {x: arrays[x].astype(dtype_of(x, dtype), copy=False) for x in fields}
     return FieldsOfSamples(kept, 0), _proof(len(normals), found.undecided)
 

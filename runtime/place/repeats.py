@@ -9,8 +9,8 @@ left its patch, and only normals of such samples are looked at.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.aliases import Flags, Indices
 from ..base.tolerances import MEETING
 from ..kernels.spline import mark_left
 from ..samples.fields import FLAG_NAMES
@@ -19,12 +19,8 @@ from .on_spline import Fields
 
 __all__ = ["kept_once", "left_patch"]
 
-Array = NDArray[np.float64]
-Numbers = NDArray[np.int64]
-Mask = NDArray[np.bool_]
 
-
-def kept_once(spline: Spline, arrays: Fields, at_pole: Mask) -> Mask:
+def kept_once(spline: Spline, arrays: Fields, at_pole: Flags) -> Flags:
     """Return which samples (k,) to keep, such that none on the surface is repeated.
 
     It is repeated where one with the same normal and the same sign of K is at the same point and
@@ -50,12 +46,12 @@ def kept_once(spline: Spline, arrays: Fields, at_pole: Mask) -> Mask:
     return kept
 
 
-def _keys(arrays: Fields, rows: Numbers) -> Numbers:
+def _keys(arrays: Fields, rows: Indices) -> Indices:
     """Return numbers that rows share if they have the same normal and the same sign of K."""
     return 2 * arrays["normal_index"][rows] + np.signbit(arrays["gaussian_curvature"][rows])
 
 
-def left_patch(spline: Spline, arrays: Fields) -> Mask:
+def left_patch(spline: Spline, arrays: Fields) -> Flags:
     """Return which samples are not in their patches, or so close to the sides that they meet."""
     left = np.empty(len(arrays["uv"]), dtype=np.bool_)
     mark_left(arrays["uv"], arrays["patch_index"], spline.frame, spline.cells[1], MEETING, left)
@@ -63,8 +59,8 @@ def left_patch(spline: Spline, arrays: Fields) -> Mask:
 
 
 def _repeats(
-    spline: Spline, arrays: Fields, at_pole: Mask, rows: Numbers
-) -> tuple[Numbers, Numbers]:
+    spline: Spline, arrays: Fields, at_pole: Flags, rows: Indices
+) -> tuple[Indices, Indices]:
     """Return which of some rows, sorted by normal, repeat another one of them, and these.
 
     They do where points and parameters, in cells, are the same, and the sign of K; at poles the
@@ -75,7 +71,7 @@ def _repeats(
     is_hyperbolic, poles = np.signbit(arrays["gaussian_curvature"][rows]), at_pole[rows]
     periods = np.where([ends[0] == "periodic" for ends in spline.boundary], spline.cells, np.inf)
     left = np.arange(len(rows))
-    found: list[tuple[Numbers, Numbers]] = [(rows[:0], rows[:0])]
+    found: list[tuple[Indices, Indices]] = [(rows[:0], rows[:0])]
     while len(left):
         first = left[_starts(normals[left])]
         away = np.abs(places[left] - places[first])
@@ -88,13 +84,13 @@ def _repeats(
     return np.concatenate([x for x, _ in found]), np.concatenate([x for _, x in found])
 
 
-def _starts(values: Numbers) -> Numbers:
+def _starts(values: Indices) -> Indices:
     """Return for each of the sorted values the place of the first one that is equal."""
     new = np.r_[True, values[1:] != values[:-1]]
     return np.maximum.accumulate(np.where(new, np.arange(len(values)), 0))
 
 
-def _paired(rows: Numbers, keys: Numbers, others: Numbers) -> Numbers:
+def _paired(rows: Indices, keys: Indices, others: Indices) -> Indices:
     """Return rows with `keys` (k,): of each key as many as it has among others, or all of fewer."""
     if len(rows) == 0 or len(others) == 0:
         return rows[:0]

@@ -7,6 +7,7 @@ import pickle
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, Self
 
 import numpy as np
@@ -66,7 +67,7 @@ class SampleArrays:
     other_face_index: NDArray[np.int64] | None = None
     report: SamplingReport = field(kw_only=True)
     spline: Spline | None = field(default=None, kw_only=True)
-    surface: Surface | Whole[Any] | None = field(default=None, kw_only=True)
+    surface: Surface | Whole | None = field(default=None, kw_only=True)
     offset_of: OffsetOf | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
@@ -100,8 +101,9 @@ class SampleArrays:
         spline = self.spline
         if spline is not None and spline.trim is not None and not _pickles(spline.trim):
             spline = None
-        state = self.arrays(), self.report, spline, _if_it_pickles(self.surface), base
-        return _rebuilt, (type(self), *state)
+        known = {"report": self.report, "spline": spline, "offset_of": base}
+        surface = _if_it_pickles(self.surface)
+        return partial(type(self), **self.arrays(), **known, surface=surface), ()
 
     @classmethod
     def concatenate(cls, parts: Iterable[Self]) -> Self:
@@ -271,19 +273,7 @@ class SampleArrays:
         )  # fmt: skip
 
 
-def _rebuilt(
-    cls: type[SampleArrays],
-    arrays: dict[str, NDArray[Any]],
-    report: SamplingReport,
-    spline: Spline | None,
-    surface: Surface | Whole[Any] | None = None,
-    offset_of: OffsetOf | None = None,
-) -> SampleArrays:
-    """Return samples that were copied or pickled."""
-    return cls(**arrays, report=report, spline=spline, surface=surface, offset_of=offset_of)
-
-
-def _if_it_pickles(surface: Whole[Any] | Surface | None) -> Any:  # noqa: ANN401 - of the same type
+def _if_it_pickles(surface: Whole | Surface | None) -> Any:  # noqa: ANN401 - of the same type
     """Return a surface, or None if it cannot be pickled: its function may be a lambda."""
     return surface if _pickles(surface) else None
 

@@ -175,11 +175,8 @@ def checked_fields(
     has = {
         "": True, "surface": surface, "proved": proved, "grid": grid, "part": part, "edges": edges
     }  # fmt: skip
-    known = ARRAY_NAMES_ON_SURFACE if surface else ARRAY_NAMES
-    known += PROVED_NAMES if proved else ()
-    known += GRID_NAMES if grid else ()
-    if part:
-        known = ARRAY_NAMES_OF_PART + (EDGE_NAMES if edges else ())
+    without = ("patch_index",) if part else ()
+    known = tuple(x for x in FIELDS if has[FIELDS[x].only] and x not in without)
     if fields is None:
         return known
     if isinstance(fields, str):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 from ..spline.spline import Spline
 from ..surface.surface import Surface
@@ -36,4 +35,4 @@ class OffsetOf:
 
     distance: float
     spline: Spline | None = None
-    surface: Surface | Whole[Any] | None = None
+    surface: Surface | Whole | None = None

@@ -3,24 +3,20 @@
 from __future__ import annotations
 
 import math
-import operator
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, SupportsIndex
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.checks import known_name
+from ..base.checks import as_float, known_name, text, whole_number
 from ..base.errors import GaussmapWarning, InputError, shown
 from ..base.georeference import checked_origin
-from ..spline.developable import Measured, developable_share
-
-if TYPE_CHECKING:
-    from ..base.georeference import Georeference
-    from ..spline.misfit import Misfit
+from ..spline.developable import CellMeasure
+from ..spline.spline import Spline
 
 __all__ = [
     "PLACES",
@@ -39,7 +35,8 @@ WORTH_A_WARNING = 0.01
 # symmetric surface several appear or vanish at once.
 COUNT_TOLERANCE, FEW = 0.02, 5
 # A share is a quotient of sums, so rounding may carry it this far beyond 0 or 1.
-SHARE_ROUNDING = 1e-9
+ROUNDING = 1e-9
+MOST_COUNT = 2**63 - 1
 # Where samples lie.
 PLACES = ("surface", "spline")
 COUNTS = (
@@ -49,43 +46,20 @@ COUNTS = (
 DISTANCES = ("coverage", "angle", "fit_distance", "fit_rms", "fit_angle")
 
 
-def _text(name: str, value: str) -> str:
-    if not isinstance(value, str):
-        raise InputError(f"{name} must be a string, not {type(value).__name__}.")
-    return value
+def _count(value: object, name: str) -> int:
+    return whole_number(value, name, least=0, most=MOST_COUNT)
 
 
-def _count(name: str, value: SupportsIndex) -> int:
-    """Return `value` as a plain int ≥ 0: a NumPy integer would not go into JSON."""
+def _number(value: Any, name: str, most: float = math.inf) -> float:  # noqa: ANN401
+    """Return a number from 0 to `most`, up to rounding, as a plain float."""
     try:
-        count = operator.index(value)
+        number = as_float(value)
     except TypeError:
-        raise InputError(f"{name} must be an integer, not {shown(value)}.") from None
-    if count < 0:
-        raise InputError(f"{name} must not be negative, and is {count}.")
-    return count
-
-
-def _distance(name: str, value: float) -> float:
-    """Return `value` as a plain float ≥ 0."""
-    number = _number(name, value)
-    if not number >= 0.0:
-        raise InputError(f"{name} must not be negative, and is {number!r}.")
-    return number
-
-
-def _share(name: str, value: float) -> float:
-    share = _number(name, value)
-    if not -SHARE_ROUNDING <= share <= 1.0 + SHARE_ROUNDING:
-        raise InputError(f"{name} must lie between 0 and 1, and is {share!r}.")
-    return min(max(share, 0.0), 1.0)
-
-
-def _number(name: str, value: float) -> float:
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        raise InputError(f"{name} must be a number, not {shown(value)}.") from None
+        number = math.nan
+    if not -ROUNDING <= number <= most + ROUNDING:
+        limit = "of at least 0" if math.isinf(most) else f"from 0 to {most:g}"
+        raise InputError(f"{name} must be a number {limit}, not {shown(value)}.")
+    return min(max(number, 0.0), most)
 
 
 class UndecidedNormal(NamedTuple):
@@ -128,13 +102,13 @@ class UndecidedNormal(NamedTuple):
 
 # What makes plain values of the entries, and refuses others; only those of KNOWN are never None.
 KNOWN = ("surface", "samples")
-CHECKS: dict[str, Callable[[str, Any], Any]] = {
-    **dict.fromkeys(("surface", "crs"), _text),
+CHECKS: dict[str, Callable[[Any, str], Any]] = {
+    **dict.fromkeys(("surface", "crs"), text),
     **dict.fromkeys(("samples", *COUNTS), _count),
-    **dict.fromkeys(DISTANCES, _distance),
-    "developable_share": _share,
-    "origin": lambda _, origin: checked_origin(origin),
-    "undecided": lambda _, places: tuple(UndecidedNormal.of(x) for x in places),
+    **dict.fromkeys(DISTANCES, _number),
+    "developable_share": lambda share, name: _number(share, name, 1.0),
+    "origin": lambda origin, _: checked_origin(origin),
+    "undecided": lambda places, _: tuple(UndecidedNormal.of(x) for x in places),
 }
 
 
@@ -270,46 +244,35 @@ class SamplingReport:
         for name, check in CHECKS.items():
             value = getattr(self, name)
             if value is not None or name in KNOWN:
-                object.__setattr__(self, name, check(name, value))
-
-
-class Sampled(Measured, Protocol):
-    """What is sampled: a spline, or a surface beside its spline."""
-
-    @property
-    def name(self) -> str: ...
-    @property
-    def patches(self) -> int: ...
-    @property
-    def apexes(self) -> int: ...
-    @property
-    def misfit(self) -> Misfit | None: ...
-    @property
-    def georeference(self) -> Georeference | None: ...
+                object.__setattr__(self, name, check(value, name))
 
 
 def sampling_report(
-    sampled: Sampled,
+    spline: Spline,
     normals: int,
     samples: int,
     density: float,
     developable: int | None,
     arrays: Mapping[str, NDArray[Any]] = MappingProxyType({}),
+    cells: CellMeasure | None = None,
 ) -> SamplingReport:
-    """Return the report of a sampling with `density` normals per steradian and its `arrays`."""
-    misfit, place = sampled.misfit, sampled.georeference
+    """Return the report of a sampling with `density` normals per steradian and its `arrays`.
+
+    `cells` are those of the surface, if it was sampled beside its spline.
+    """
+    misfit, place = spline.misfit, spline.georeference
     return SamplingReport(
-        surface=sampled.name,
+        surface=spline.name,
         normals=normals,
         samples=samples,
-        patches=sampled.patches,
-        developable_share=developable_share(sampled, density),
+        patches=spline.patches,
+        developable_share=(cells or spline._cell_measure).developable_share(density),
         developable_patches=developable,
         infinite_curvatures=count_infinite(arrays),
         fit_distance=None if misfit is None else misfit.distance,
         fit_rms=None if misfit is None else misfit.rms,
         fit_angle=None if misfit is None else misfit.angle,
-        apexes=sampled.apexes,
+        apexes=spline.apexes,
         crs=None if place is None else place.crs,
         origin=None if place is None else place.origin,
     )

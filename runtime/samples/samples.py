@@ -12,7 +12,7 @@ from .methods import Methods
 from .summary import kinds_of_points, summary_of
 from .whole import Whole
 
-__all__ = ["Samples", "spline_if_one", "spline_or"]
+__all__ = ["Samples", "spline_or"]
 
 
 @dataclass(frozen=True, eq=False, slots=True, repr=False)
@@ -159,12 +159,6 @@ class Samples(SampleArrays, Methods):
         label = short_label(self.report.surface)
         points = plural(len(self), "point")
         return f"Samples({points} on {label}{kinds_of_points(self)})"
-
-
-def spline_if_one(samples: Samples, spline: Spline | None) -> Spline | None:
-    """Return what `spline_or` returns, but None for samples on several pieces."""
-    on_pieces = spline is None and samples.spline is None and samples.surface is not None
-    return None if on_pieces else spline_or(samples, spline)
 
 
 def spline_or(samples: Samples, spline: Spline | None) -> Spline:

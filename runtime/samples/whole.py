@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
@@ -12,8 +12,6 @@ if TYPE_CHECKING:
     from .request import Request
 
 __all__ = ["NormalDeviation", "Whole"]
-
-Samples = TypeVar("Samples")  # gm.Samples, which stand on this
 
 
 class NormalDeviation(NamedTuple):
@@ -40,31 +38,16 @@ class NormalDeviation(NamedTuple):
     space: float
 
 
-class Whole(Generic[Samples]):
+class Whole:
     """A surface that is no `Surface`: a CAD part, which defines these methods."""
 
     def _sampled(
-        self,
-        request: Request,
-        fields: Sequence[str],
-        dtype: DTypeLike,
-        threads: int | None,
-        progress: bool,
-        edges: bool,
-    ) -> tuple[Samples, NDArray[np.float64]]:
+        self, request: Request, fields: Sequence[str], dtype: DTypeLike, threads: int | None,
+        progress: bool, edges: bool,
+    ) -> tuple[Any, NDArray[np.float64]]:  # fmt: skip
         """Return what `sample` returns, and the unit normals that were asked."""
         raise NotImplementedError
 
-    def _coverage_of(self, points: NDArray[np.floating], threads: int | None) -> float:
-        """Return what `Samples.coverage` returns, for points (N, 3)."""
-        raise NotImplementedError
-
-    def _deviation_of(
-        self, points: NDArray[np.floating], normals: NDArray[np.floating], threads: int | None
-    ) -> NormalDeviation:
-        """Return what `Samples.normal_deviation` returns, for points and normals (N, 3)."""
-        raise NotImplementedError
-
-    def _weights_of(self, samples: Samples) -> NDArray[np.float64]:
-        """Return what `Samples.weights` returns."""
+    def _space(self, threads: int | None) -> Any:  # noqa: ANN401
+        """Return the `Space` of what is sampled."""
         raise NotImplementedError

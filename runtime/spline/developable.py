@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from functools import cached_property
-from typing import Any, Literal, NamedTuple, Protocol
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["CellMeasure", "Measured", "curved_solid_angle", "developable_share", "widened"]
+from ..base.aliases import Array, Flags
 
-Array = NDArray[np.float64]
+__all__ = ["CellMeasure", "widened"]
+
 # Regions that 10,000 normals would sample count as curved, even with fewer normals.
 LEAST_DENSITY = 10_000 / (4 * math.pi)
 
@@ -50,7 +50,7 @@ class CellMeasure(NamedTuple):
         solid_angles = np.abs(measure[1]).reshape(-1, 4).sum(axis=1)
         return cls(measure[0].reshape(-1, 4).sum(axis=1), solid_angles, curvatures.ravel())
 
-    def curved(self, density: float) -> NDArray[np.bool_]:
+    def curved(self, density: float) -> Flags:
         """Return which cells are curved enough to be sampled, as booleans (m n,).
 
         A cell counts if |K| times the density is at least 1, in units of the diagonal of the
@@ -58,24 +58,11 @@ class CellMeasure(NamedTuple):
         """
         return self.curvatures * max(density, LEAST_DENSITY) >= 1.0
 
+    def developable_share(self, density: float) -> float:
+        """Return the share of the area that `density` normals per steradian do not sample."""
+        total = float(self.areas.sum())
+        return float(self.areas[~self.curved(density)].sum()) / total if total > 0.0 else 1.0
 
-class Measured(Protocol):
-    """A spline, or a surface beside its spline."""
-
-    @cached_property
-    def _cell_measure(self) -> CellMeasure:
-        """Areas, solid angles and curvatures of the cells."""
-        ...
-
-
-def developable_share(sampled: Measured, density: float) -> float:
-    """Return the share of the area that `density` normals per steradian do not sample."""
-    cells = sampled._cell_measure
-    total = float(cells.areas.sum())
-    return float(cells.areas[~cells.curved(density)].sum()) / total if total > 0.0 else 1.0
-
-
-def curved_solid_angle(sampled: Measured, density: float) -> float:
-    """Return the solid angle of the Gaussian image of curved cells, with multiplicity."""
-    cells = sampled._cell_measure
-    return float(cells.solid_angles[cells.curved(density)].sum())
+    def curved_solid_angle(self, density: float) -> float:
+        """Return the solid angle of the Gaussian image of curved cells, with multiplicity."""
+        return float(self.solid_angles[self.curved(density)].sum())

@@ -5,16 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...generated import spline as formulas
+from ..base.aliases import Array
 from ..base.formula_calls import python_function
 from ..domain.domain import Boundary, BoundaryPair, closes
 from .planar_ring import ring_around
 
 __all__ = ["Border", "Sides", "coefficients_with_ring", "vertices_with_ring"]
 
-Array = NDArray[np.float64]
 Sides = tuple[Array, Array, Array, Array]
 
 

@@ -6,16 +6,14 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.aliases import Array
 from ..base.errors import InputError
 from ..domain.domain import Boundary, Domain
 from ..kernels import spline as kernels
 from .ghosts import Border, Sides, vertices_with_ring
 
 __all__ = ["Values", "from_grid", "from_values", "values_at"]
-
-Array = NDArray[np.float64]
 
 
 class Values(NamedTuple):

@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.aliases import Array, Flags
 from ..base.checks import as_float
 from ..base.errors import GaussmapWarning, InputError, shown
 from ..domain.domain import Boundary, BoundaryPair, Domain
 from ..kernels import spline as kernels
-from ..kernels.trim import find_patches
+from ..kernels.forms import patches_at
 from .developable import widened
 from .ghosts import Border, coefficients_with_ring
 from .inner_coefficients import from_grid, from_values, values_at
@@ -29,8 +30,6 @@ __all__ = [
     "without_nodata",
 ]
 
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 # What grids of elevations usually hold where there are none.
 USUAL_NODATA = (-9999.0, -99999.0, -32768.0, float(np.finfo(np.float32).min))
@@ -53,9 +52,8 @@ class Known:
     def contains(self, uv: Array, threads: int | None = None) -> Flags:
         """Return whether points (k, 2) of the domain are in such patches, as booleans (k,)."""
         low, high = np.array(self.domain).T
-        places = (uv - low) / (high - low) * self.cells
-        found = np.empty(len(uv), dtype=np.int64)
-        find_patches(places, *self.cells, found)
+        cells, found = (uv - low) / (high - low) * self.cells, np.empty(len(uv), dtype=np.int64)
+        patches_at(*self.cells, cells, found, np.empty((len(uv), 2)))
         return self.patches[found]
 
     def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags | None:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from ..base.aliases import Array, Flags
 
 __all__ = ["suspicious_block"]
 
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 # A block has at least this number of heights, and this part of all.
 FEWEST, SMALLEST = 16, 1e-3

@@ -13,11 +13,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
+
+from ..base.aliases import Array
 
 __all__ = ["ring_around"]
 
-Array = NDArray[np.float64]
 
 # The plane is the closest of those of this number of pairs a, b.
 CANDIDATES = 4096

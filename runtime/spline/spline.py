@@ -16,7 +16,7 @@ from ..base.kept import Immutable
 from ..base.scales import scale_to_one
 from ..base.threads import over_ranges
 from ..base.tolerances import DATA_ERROR, SAME_PARAMETER
-from ..domain.domain import Boundary, Domain, checked_boundary, checked_domain
+from ..domain.domain import Boundary, Domain, brought_inside, checked_boundary, checked_domain
 from ..kernels import spline as kernels
 from .developable import CellMeasure
 from .inside import Inside
@@ -241,7 +241,9 @@ class Spline(Immutable):
     @cached_property
     def inside(self) -> Inside | None:
         """The part of each patch inside the trim, None without one."""
-        return None if self.trim is None else Inside.of(self)
+        return (
+            None if self.trim is None else Inside.of(self.trim, self.frame, self.cells, self.name)
+        )
 
     def _evaluate(
         self, u: ArrayLike, v: ArrayLike
@@ -318,28 +320,15 @@ class Spline(Immutable):
 
         """
         places = checked_array("places", places, ("k", 2), np.float64)
-        return self._wrapped((places - self.frame[:2]) / self.frame[2:], places)
-
-    def _wrapped(
-        self, cells: NDArray[np.float64], places: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
-        """Bring periodic coordinates (in cells) back into the domain; refuse others outside it."""
-        for axis, name in enumerate("uv"):
-            count = self.cells[axis]
-            if self.boundary[axis][0] in ("periodic", "mirrored"):
-                with np.errstate(invalid="ignore"):
-                    turns = np.where(cells[:, axis] == count, 0.0, np.floor(cells[:, axis] / count))
-                    cells[:, axis] -= turns * count
-                if self.boundary[axis][0] == "mirrored":
-                    other = 1 - axis
-                    odd = np.mod(turns, 2.0) == 1.0
-                    cells[odd, other] = self.cells[other] - cells[odd, other]
-            slack = 1e-9 * count
-            inside = (cells[:, axis] >= -slack) & (cells[:, axis] <= count + slack)
-            if not inside.all():
-                worst = int(np.argmin(inside))
-                raise InputError(
-                    f"{name} = {places[worst, axis]} lies outside the domain {self.domain[axis]} "
-                    f"of {self.name!r}."
-                )
+        with np.errstate(invalid="ignore"):
+            u, v = brought_inside(places[:, 0], places[:, 1], self.domain, self.boundary)
+        cells = (np.stack([u, v], axis=1) - self.frame[:2]) / self.frame[2:]
+        slack = 1e-9 * np.array(self.cells)
+        outside = ~((cells >= -slack) & (cells <= self.cells + slack))
+        if outside.any():
+            k, axis = np.argwhere(outside)[0]
+            raise InputError(
+                f"{'uv'[axis]} = {places[k, axis]} lies outside the domain {self.domain[axis]} "
+                f"of {self.name!r}."
+            )
         return cells

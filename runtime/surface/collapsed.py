@@ -14,9 +14,9 @@ from dataclasses import dataclass
 from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...generated import spline as formulas
+from ..base.aliases import Array
 from ..base.errors import SurfaceError
 from ..base.formula_calls import python_function
 from ..domain.domain import Assumed, Boundary
@@ -25,7 +25,6 @@ from .surface_values import SurfaceValues
 
 __all__ = ["closed_grid", "found_sides"]
 
-Array = NDArray[np.float64]
 
 # A line along a side has this number of steps, an even one.
 STEPS = 16

@@ -8,15 +8,14 @@ so much that a spline would fold.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.aliases import Array
 from ..directions.regions import angles_between
 from ..spline.quasi_interpolant import apart
 from .nurbs import Nurbs
 
 __all__ = ["CREASE_ANGLE", "creases", "smoothly_closed"]
 
-Array = NDArray[np.float64]
 
 # Degrees: a line where normals turn by less is no crease. Data for CAD are this smooth at best.
 CREASE_ANGLE = 0.1

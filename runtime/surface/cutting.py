@@ -4,30 +4,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import pairwise
-from typing import Protocol, TypeVar, runtime_checkable
+from typing import TypeVar
 
 from ..domain.domain import Boundary, BoundaryPair, Domain, Interval
 from .derivatives import Differentiable
 from .moved import Moved
 from .surface_values import SurfaceValues
 
-__all__ = ["Creased", "pieces_of"]
+__all__ = ["pieces_of"]
 
 Surface = TypeVar("Surface", bound=SurfaceValues)
-
-
-@runtime_checkable
-class Creased(Protocol):
-    """A function x(u,v) that may have lines where it is not smooth, such as a NURBS."""
-
-    @property
-    def creases(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """The values of u, and those of v, inside the domain where it is not smooth."""
-        ...
-
-    def restricted(self, domain: Domain) -> Differentiable:
-        """Return it over a part of its domain, evaluated from inside at the ends."""
-        ...
 
 
 def pieces_of(surface: Surface) -> tuple[Surface, ...]:
@@ -35,7 +21,7 @@ def pieces_of(surface: Surface) -> tuple[Surface, ...]:
     function = surface.function
     if isinstance(function, Moved):
         return _moved_pieces(surface, function)
-    if not isinstance(function, Creased) or not any(function.creases):
+    if not isinstance(function, Differentiable) or not any(function.creases):
         return (surface,)
     along_u, along_v = (
         list(pairwise((low, *lines, high)))
@@ -69,7 +55,7 @@ def _moved(surface: Surface, moved: Moved, piece: SurfaceValues) -> Surface:
     )
 
 
-def _piece(surface: Surface, function: Creased, number: int, domain: Domain) -> Surface:
+def _piece(surface: Surface, function: Differentiable, number: int, domain: Domain) -> Surface:
     """Return the part of a surface over a part of its domain."""
     return replace(
         surface,

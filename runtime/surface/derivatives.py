@@ -14,9 +14,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...generated.differences import FIRST, FIRST_CHANGE, SECOND, SECOND_CHANGE
+from ..base.aliases import Array, Indices
 from ..domain.domain import Boundary, BoundaryPair, Domain, Interval, brought_inside
 from ..kernels.tape import Tape
 
@@ -32,9 +32,9 @@ __all__ = [
     "weighted",
 ]
 
-Array = NDArray[np.float64]
 Function = Callable[[Array, Array], Array]
 Bounds = tuple[tuple[float, float], tuple[float, float]]
+Lines = tuple[tuple[float, ...], tuple[float, ...]]
 
 # The rows of a 2-jet.
 NAMES = ("x", "x_u", "x_v", "x_uu", "x_uv", "x_vv")
@@ -56,6 +56,11 @@ class Differentiable(ABC):
     """A function x(u,v) that knows its derivatives, and may be called by several threads."""
 
     has_gaps: ClassVar[bool] = False  # whether derivatives may be NaN at single places
+    creases: Lines = ((), ())  # values of u, and those of v, inside, where it is not smooth
+
+    def restricted(self, domain: Domain) -> Differentiable:
+        """Return it over a part of its domain, evaluated from inside at the ends."""
+        return self
 
     @property
     def differentiable(self) -> bool:
@@ -213,7 +218,7 @@ def differences(
     return jets, doubts
 
 
-def _doubts(values: Array, shifts: NDArray[np.int64], least: Array) -> Array:
+def _doubts(values: Array, shifts: Indices, least: Array) -> Array:
     """Return what two points less change, relative to the differences (9, k, 3) of values."""
     changes = np.array([weighted(x, shifts, values) for x in (FIRST_CHANGE, SECOND_CHANGE)])
     size, change = (np.abs(x).max(axis=0).max(axis=1) for x in (values, changes))
@@ -223,7 +228,7 @@ def _doubts(values: Array, shifts: NDArray[np.int64], least: Array) -> Array:
 
 def shifts_inside(
     values: Array, step: float | Array, low: float | Array, high: float | Array
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+) -> tuple[Indices, Indices]:
     """Return the steps by which points are shifted to stay inside, and the sign of the way in.
 
     Step and ends are those of all values (k,), or arrays (k,).
@@ -236,7 +241,7 @@ def shifts_inside(
 
 def nodes_between(
     values: Array,
-    offsets: NDArray[np.int64],
+    offsets: Indices,
     step: float | Array,
     low: float | Array,
     high: float | Array,
@@ -245,6 +250,6 @@ def nodes_between(
     return np.clip(values + offsets * step, np.minimum(low, values), np.maximum(high, values))
 
 
-def weighted(weights: Array, shifts: NDArray[np.int64], values: Array) -> Array:
+def weighted(weights: Array, shifts: Indices, values: Array) -> Array:
     """Return the sums (k, 3) of values (9, k, 3) with the weights of their shifts."""
     return np.einsum("kj,jkc->kc", weights[shifts + HALF], values)

@@ -7,8 +7,9 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..base.aliases import Array, Flags
 from ..base.errors import SurfaceError
 from ..base.evaluation import returned
 from ..domain.domain import Boundary, Domain
@@ -16,7 +17,6 @@ from .derivatives import NAMES, Differences, Differentiable, Function
 
 __all__ = ["jet_function"]
 
-Array = NDArray[np.float64]
 Evaluation = Callable[[Array, Array], ArrayLike]
 
 # Given derivatives are compared with numerical ones at points (i/√2, i/√3) modulo 1 of the domain.
@@ -90,7 +90,7 @@ def compare(derivatives: Function, numerical: Differences, label: str) -> None:
     with np.errstate(invalid="ignore"):
         error: Array = np.abs(given - found).max(axis=-1)
         allowed = TOLERANCE * sizes + DOUBT * np.abs(found - coarse).max(axis=-1)
-        wrong: NDArray[np.bool_] = known & ~(error <= allowed)
+        wrong: Flags = known & ~(error <= allowed)
     if wrong.any():
         order = int(np.argmax(wrong.any(axis=0)))  # the first that is wrong explains the others
         place = int(np.argmax(np.where(wrong, error, -1.0)[:, order]))

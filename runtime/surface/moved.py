@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ..base.checks import real_array
+from ..base.aliases import Array, Flags
+from ..base.checks import finite_array
 from ..base.errors import InputError
 from ..base.evaluation import returned
 from ..domain.domain import Boundary, Domain, Interval
@@ -18,8 +19,6 @@ from .surface_values import SurfaceValues
 from .tapes import moved_tape
 
 __all__ = ["IDENTITY", "AffineMap", "Moved", "affine_map", "moved_grid", "turned_trim"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,11 +53,9 @@ IDENTITY = AffineMap(np.eye(3), np.zeros(3))
 
 def affine_map(matrix: ArrayLike) -> AffineMap:
     """Return the map of a matrix (3, 3) or (4, 4); InputError if it is none, or singular."""
-    array = real_array(matrix, "matrix")
+    array = finite_array(matrix, None, "matrix")
     if array.shape not in ((3, 3), (4, 4)):
         raise InputError(f"matrix must have the shape (3, 3) or (4, 4), not {array.shape}.")
-    if not np.isfinite(array).all():
-        raise InputError("matrix holds NaN or infinity.")
     if array.shape == (4, 4) and (array[3] != (0.0, 0.0, 0.0, 1.0)).any():
         raise InputError(
             f"the last row of matrix must be (0, 0, 0, 1), not {array[3]}: "
@@ -165,12 +162,12 @@ class Turned:
         """Return a condition after reversal, the original one after two."""
         return part.part if isinstance(part, Turned) else Turned(part, total)
 
-    def contains(self, uv: Array, threads: int | None = None) -> NDArray[np.bool_]:
+    def contains(self, uv: Array, threads: int | None = None) -> Flags:
         """Return whether points (k, 2) fulfil it."""
         own = np.stack([self.total - uv[:, 0], uv[:, 1]], axis=1)
         return self.part.contains(own, threads)
 
-    def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> NDArray[np.bool_] | None:
+    def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags | None:
         """Return the cells (m, n) of a grid that its border may pass."""
         (low, high), along_v = domain
         found = self.part.cells_of_border(((self.total - high, self.total - low), along_v), cells)

@@ -6,20 +6,18 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base import compiling  # noqa: F401 - announces compilation on terminals
+from ..base.aliases import Array
 from ..base.errors import InputError
 from ..base.tolerances import SAME_PARAMETER
 from ..domain.domain import Domain
 from ..kernels import nurbs as kernels
 from ..kernels.tape import Tape
-from .derivatives import Differentiable
+from .derivatives import Differentiable, Lines
 from .nurbs_tape import nurbs_tape
 
 __all__ = ["Nurbs"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -38,7 +36,7 @@ class Nurbs(Differentiable):
     centre: Array
     domain: Domain
     periodic: tuple[bool, bool] = (False, False)
-    creases: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
+    creases: Lines = ((), ())
 
     def __repr__(self) -> str:
         m, n, _ = self.points.shape

@@ -5,16 +5,16 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..base.advice import is_of_geomdl, is_of_splipy
-from ..base.checks import real_array, whole_number
+from ..base.aliases import Array
+from ..base.checks import finite_array, real_array, whole_number
 from ..base.errors import InputError, shown
 from .nurbs import Nurbs
 
 __all__ = ["MOST_DEGREE", "nurbs_of"]
 
-Array = NDArray[np.float64]
 
 # No format for CAD data holds larger degrees.
 MOST_DEGREE = 25
@@ -29,10 +29,11 @@ def nurbs_of(degrees: Any, knots: Any, control_points: Any, weights: Any) -> Nur
     if knots is None and control_points is None and weights is None:
         definition = _definition_of(degrees)
     degrees, knots, control_points, weights = definition
-    p, q = (_degree(x, name) for x, name in zip(_pair(degrees, "degrees"), "uv", strict=True))
-    points = _finite(control_points, "control_points")
-    if points.ndim != 3 or points.shape[2] != 3 or 0 in points.shape:
-        raise InputError(f"control_points must have the shape (m, n, 3), not {points.shape}.")
+    p, q = (
+        whole_number(x, f"the degree of {name}", most=MOST_DEGREE)
+        for x, name in zip(_pair(degrees, "degrees"), "uv", strict=True)
+    )
+    points = finite_array(control_points, ("m", "n", 3), "control_points")
     knots_u, knots_v = (
         _knots(x, degree, count, name)
         for x, degree, count, name in zip(
@@ -59,25 +60,9 @@ def _pair(values: Any, name: str) -> tuple[Any, Any]:  # noqa: ANN401 - what a u
     return u, v
 
 
-def _degree(value: object, name: str) -> int:
-    degree = whole_number(value, f"the degree of {name}")
-    if degree > MOST_DEGREE:
-        raise InputError(f"the degree of {name} must be at most {MOST_DEGREE}, not {degree}.")
-    return degree
-
-
-def _finite(values: ArrayLike, name: str) -> Array:
-    """Return a float64 array; InputError if it holds anything but finite numbers, and where."""
-    array = real_array(values, name)
-    if not np.isfinite(array).all():
-        where = np.argwhere(~np.isfinite(array))[0].tolist()
-        raise InputError(f"{name} has {array[tuple(where)]} at index {where}.")
-    return array
-
-
 def _knots(values: ArrayLike, degree: int, count: int, name: str) -> Array:
     """Return the knots for `count` control points; InputError if they do not fit."""
-    knots = _finite(values, f"the knots of {name}")
+    knots = finite_array(values, None, f"the knots of {name}")
     if count <= degree:
         raise InputError(
             f"degree {degree} in {name} needs at least {degree + 1} control points along {name}, "
@@ -120,11 +105,7 @@ def _check_multiplicities(knots: Array, degree: int, name: str) -> None:
 
 def _weights(values: ArrayLike, shape: tuple[int, ...]) -> Array:
     """Return weights of which the largest is about 1; InputError unless all are positive."""
-    weights = _finite(values, "weights")
-    if weights.shape != shape:
-        raise InputError(
-            f"weights must have the shape {shape}, one for each control point, not {weights.shape}."
-        )
+    weights = finite_array(values, shape, "weights")
     if not (weights > 0.0).all():
         i, j = np.argwhere(~(weights > 0.0))[0].tolist()
         kind = "zero" if weights[i, j] == 0.0 else "negative"

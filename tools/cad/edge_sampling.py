@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from ...runtime.base.aliases import Array, Flags, Indices
 from ...runtime.base.trees import tree_of
-from ...runtime.density.cells import Array, Flags, Indices
 from ...runtime.density.filling import spacing
 from ...runtime.samples.fields import EDGE_NAMES, INTEGER_NAMES, dtype_of, row_shape
 from .edges import Edges, Sides, edges_of, exact_places, sides_at

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...runtime.density.cells import Array, Flags, Indices
+from ...runtime.base.aliases import Array, Flags, Indices
 from ...runtime.kernels.refine import evaluate_jets
 from .faces import own_parameters
 from .results import PartSpace

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -18,7 +18,6 @@ from ...runtime.base.kept import kept
 from ...runtime.base.scales import scale_to_one
 from ...runtime.density.piece import Piece, boxes_between
 from ...runtime.domain.domain import Domain
-from ...runtime.domain.trim import Trim
 from ...runtime.kernels.refine import evaluate_jets
 from ...runtime.place.on_spline import OnSpline
 from ...runtime.place.on_surface import geometry_of
@@ -51,27 +50,21 @@ ANGLES = {
 }
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class FacePiece(Piece):
     """A face, and its surface, whose normals point outward."""
 
     face: Face
     surface: Surface
 
-    @property
-    def label(self) -> str:
-        """What it is called in messages."""
-        return self.face.label
-
-    @property
-    def domain(self) -> Domain:
-        """The rectangle of the parameters."""
-        return self.surface.domain
-
-    @property
-    def trim(self) -> Trim | None:
-        """The part of the domain that belongs to it, None if that is all of it."""
-        return self.surface.trim
+    @classmethod
+    def of(cls, face: Face) -> FacePiece:
+        """Return a face as a piece; GaussmapError if it has no surface."""
+        surface, indices = face.surface, {"face_index": face.index, "solid_index": face.solid_index}
+        return cls(
+            label=face.label, domain=surface.domain, trim=surface.trim, indices=indices,
+            face=face, surface=surface,
+        )  # fmt: skip
 
     @cached_property
     def size(self) -> float:
@@ -100,11 +93,6 @@ class FacePiece(Piece):
         is_reversed = self.face.reversed
         loops = [own_parameters(self.surface, x, is_reversed=is_reversed) for x in self.face.loops]
         return [np.clip(x, low, high) for x in loops]
-
-    @property
-    def indices(self) -> Mapping[str, int]:
-        """The numbers of the face and of its solid."""
-        return {"face_index": self.face.index, "solid_index": self.face.solid_index}
 
     def jets(self, u: Array, v: Array) -> Array:
         """Return 2-jets (k, 6, 3) at parameters."""
@@ -160,7 +148,7 @@ def pieces_of(faces: tuple[Face, ...]) -> tuple[list[FacePiece], dict[int, str]]
     pieces, reasons = [], {}
     for face in faces:
         try:
-            piece = FacePiece(face, face.surface)
+            piece = FacePiece.of(face)
             usable = np.isfinite(piece.surface.jets(*piece.middle)).all()
         except GaussmapError as error:
             reasons[face.index] = str(error)

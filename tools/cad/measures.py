@@ -6,8 +6,9 @@ import itertools
 
 import numpy as np
 
+from ...runtime.base.aliases import Array
 from ...runtime.base.errors import SurfaceError
-from ...runtime.density.cells import RADIUS, Array, by_piece
+from ...runtime.density.cells import RADIUS, by_piece
 from .face_pieces import FacePiece
 from .part import Part
 from .results import space_of

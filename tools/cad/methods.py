@@ -21,7 +21,5 @@ class Methods:
     _bounds_of = Later(MEASURES, "bounds_of")
     _volume_of = Later(MEASURES, "volume_of")
 
-    _coverage_of = Later(RESULTS, "coverage_of")
-    _deviation_of = Later(RESULTS, "deviation_of")
     _sampled = Later(SAMPLING, "sample_part")
-    _weights_of = Later(RESULTS, "weights_of")
+    _space = Later(RESULTS, "space_of")

@@ -17,8 +17,12 @@ from numpy.typing import NDArray
 from ...generated.differences import FIRST
 from ...runtime.base import compiling  # noqa: F401 - announces compilation on terminals
 from ...runtime.domain.domain import Domain
-from ...runtime.surface.cutting import Creased
-from ...runtime.surface.derivatives import Differentiable, nodes_between, shifts_inside, weighted
+from ...runtime.surface.derivatives import (
+    Differentiable,
+    nodes_between,
+    shifts_inside,
+    weighted,
+)
 from ...runtime.surface.moved import Moved
 from ...runtime.surface.nurbs import Nurbs
 from ..kernels import faces as kernels
@@ -44,6 +48,9 @@ class Turned(Differentiable):
 
     curve: Nurbs
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "creases", ((), self.curve.creases[0]))
+
     def __call__(self, u: Array, v: Array) -> Array:
         """Return the points (..., 3)."""
         return self.jets(u.ravel(), v.ravel())[:, 0].reshape(*u.shape, 3)
@@ -53,11 +60,6 @@ class Turned(Differentiable):
         jets, along = np.empty((len(u), 6, 3)), self.curve.jets(v, np.zeros(len(v)))[:, [0, 1, 3]]
         kernels.revolve(np.ascontiguousarray(u), along, jets)
         return jets
-
-    @property
-    def creases(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """No values of u, and the values of v where the curve is not smooth."""
-        return (), self.curve.creases[0]
 
     def restricted(self, domain: Domain) -> Turned:
         """Return a part of the surface, evaluated from inside where the curve is not smooth."""
@@ -71,6 +73,9 @@ class OffsetSurface(Differentiable):
     basis: Differentiable
     distance: float
     domain: Domain
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "creases", self.basis.creases)
 
     def __call__(self, u: Array, v: Array) -> Array:
         """Return the points (..., 3)."""
@@ -88,15 +93,9 @@ class OffsetSurface(Differentiable):
         thirds = np.concatenate([along_u, along_v[:, 2:]], axis=1)
         return self._at_distance(jets, thirds)
 
-    @property
-    def creases(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """The values of u, and those of v, where the other surface is not smooth."""
-        return self.basis.creases if isinstance(self.basis, Creased) else ((), ())
-
     def restricted(self, domain: Domain) -> OffsetSurface:
         """Return a part of the surface, evaluated from inside where it is not smooth."""
-        part = self.basis.restricted(domain) if isinstance(self.basis, Creased) else self.basis
-        return replace(self, basis=part, domain=domain)
+        return replace(self, basis=self.basis.restricted(domain), domain=domain)
 
     def _at_distance(self, jets: Array, thirds: Array) -> Array:
         """Return positions and derivatives (k, 6, 3), of jets and third derivatives (k, 4, 3)."""

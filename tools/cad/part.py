@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Part(Methods, Whole[Any]):
+class Part(Methods, Whole):
     """A CAD part, as `read_cad` and `read_part` return it.
 
     It holds arrays only: it can be pickled and saved, and needs no CAD library. Lengths are in the

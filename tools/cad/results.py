@@ -1,4 +1,4 @@
-"""What is known of samples of a part: their weights, coverage and deviation."""
+"""The space of a part, and the weights of its samples."""
 
 from __future__ import annotations
 
@@ -9,20 +9,16 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from ...runtime.base.checks import finite_array
 from ...runtime.base.errors import MissingFieldError, SurfaceError
 from ...runtime.base.trees import tree_of
 from ...runtime.density.cells import AREA, by_piece
-from ...runtime.density.coverage import coverage
-from ...runtime.density.deviation import normal_deviation
 from ...runtime.density.space import Space
 from ...runtime.kernels.sizing import TargetDensity
 from ...runtime.samples.samples import Samples
-from ...runtime.samples.whole import NormalDeviation
 from .face_pieces import FacePiece, pieces_of
 from .part import Part
 
-__all__ = ["PartSpace", "coverage_of", "deviation_of", "space_of", "weights_of"]
+__all__ = ["PartSpace", "space_of", "weights_of"]
 
 Array = NDArray[np.float64]
 
@@ -48,20 +44,6 @@ def space_of(part: Part, threads: int | None, target: TargetDensity | None = Non
     return PartSpace(
         label, tuple(pieces), target or TargetDensity(floor=1.0), threads, failed=failed
     )
-
-
-def coverage_of(part: Part, points: NDArray[np.floating], threads: int | None) -> float:
-    """Return what `Samples.coverage` returns, for points (N, 3)."""
-    space = space_of(part, threads)
-    return coverage(space, space.scaled_points(points)) / space.unit
-
-
-def deviation_of(
-    part: Part, points: NDArray[np.floating], normals: NDArray[np.floating], threads: int | None
-) -> NormalDeviation:
-    """Return what `Samples.normal_deviation` returns, for points and normals (N, 3)."""
-    normals, space = finite_array(normals, (len(points), 3), "normals"), space_of(part, threads)
-    return normal_deviation(space, space.scaled_points(points), normals)
 
 
 def weights_of(part: Part, samples: Samples) -> Array:

@@ -12,7 +12,8 @@ from numpy.typing import DTypeLike, NDArray
 
 from ...runtime.base.errors import GaussmapWarning, InputError
 from ...runtime.base.memory import check_memory
-from ...runtime.density.filling import Filled, fields_of, fill, target_of
+from ...runtime.density.cover import Cover
+from ...runtime.density.filling import fields_of, fill, target_of
 from ...runtime.samples.fields import EDGE_NAMES, FLAG_NAMES
 from ...runtime.samples.report import SamplingReport, count_unrefined
 from ...runtime.samples.request import Request
@@ -42,18 +43,18 @@ def sample_part(
     if request.count is not None:
         check_memory("relaxed part" if request.relax else "part", request.count)
     space = space_of(part, threads, target_of(request))
-    filled = fill(space, request, progress)
+    cover = fill(space, request, progress)
     on_faces = [x for x in fields if x not in EDGE_NAMES]
-    found = fields_of(filled, list(dict.fromkeys([*on_faces, *FLAG_NAMES])), dtype)
-    report = _report(part, space, filled, found)
+    found = fields_of(cover, list(dict.fromkeys([*on_faces, *FLAG_NAMES])), dtype)
+    report = _report(part, space, cover, found)
     arrays: dict[str, Any] = {name: found[name] for name in on_faces}
     if edges:
-        assert isinstance(filled.cover.space, PartSpace)
-        arrays = with_edges(filled.cover.space, filled.cover.count, arrays, fields, dtype)
+        assert isinstance(cover.space, PartSpace)
+        arrays = with_edges(cover.space, cover.count, arrays, fields, dtype)
         total = len(next(iter(arrays.values())))
-        report = replace(report, samples=total, edge_samples=total - filled.cover.count)
+        report = replace(report, samples=total, edge_samples=total - cover.count)
     _warn(part, report, len(space.failed), request.angle)
-    return Samples(**arrays, report=report, surface=part), filled.given.normals
+    return Samples(**arrays, report=report, surface=part), cover.at_normals.normals
 
 
 def _check(request: Request) -> None:
@@ -70,18 +71,18 @@ def _check(request: Request) -> None:
 
 
 def _report(
-    part: Part, space: PartSpace, filled: Filled, arrays: Mapping[str, NDArray[Any]]
+    part: Part, space: PartSpace, cover: Cover, arrays: Mapping[str, NDArray[Any]]
 ) -> SamplingReport:
-    held = np.union1d(filled.cover.added.pieces, filled.given.pieces)
+    held = np.union1d(cover.added.pieces, cover.at_normals.pieces)
     return SamplingReport(
         surface=part.name,
-        normals=len(filled.given.normals),
-        samples=filled.cover.count,
+        normals=len(cover.at_normals.normals),
+        samples=cover.count,
         patches=None,
         developable_share=space.developable_share,
         developable_patches=None,
-        coverage=filled.coverage,
-        angle=filled.angle,
+        coverage=cover.coverage,
+        angle=cover.angle,
         on="surface",
         unrefined=count_unrefined(arrays),
         faces=len(part),
@@ -104,4 +105,4 @@ def _warn(part: Part, report: SamplingReport, failed: int, angle: float | None) 
             f"samples instead of the requested {angle:g}°; ask for a smaller angle"
         )
     for reason in reasons:
-        warnings.warn(f"part {part.name!r}: {reason}.", GaussmapWarning, stacklevel=6)
+        warnings.warn(f"part {part.name!r}: {reason}.", GaussmapWarning, stacklevel=7)

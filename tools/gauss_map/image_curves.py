@@ -348,8 +348,8 @@ def _loops(geometry: OnSpline) -> Iterator[Array]:
     for part in () if trim is None else trim.parts:
         if not isinstance(part, Loops):
             raise InputError(
-                f"the border of {geometry.name!r} is not known: its trim is a predicate, or leaves "
-                "out missing points; trim it by loops."
+                f"the border of {geometry.spline.name!r} is not known: its trim is a predicate, or "
+                "leaves out missing points; trim it by loops."
             )
         for polygon in part.polygons:
             yield np.concatenate([polygon, polygon[:1]])

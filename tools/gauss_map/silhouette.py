@@ -146,7 +146,7 @@ def silhouette(
     bins, hits = _by_count(spline, axis, asked, threads, progress)
     needed = {*names, "uv", "normal_index"}
     arrays = fill(spline, bins, hits, threads, [x for x in ARRAY_NAMES if x in needed], number)
-    arrays = samples_inside(spline, arrays, list(arrays))
+    arrays = samples_inside(spline.trim, arrays, list(arrays))
     order = np.argsort(arrays["normal_index"], kind="stable")
     arrays = {name: x[order] for name, x in arrays.items()}
     lines = polylines_of(spline, axis, arrays["uv"].astype(np.float64))
@@ -178,7 +178,7 @@ def _by_count(
         number = len(hits)
         if spline.trim is not None and number:
             uv = fill(spline, bins, hits, threads, ("uv",))
-            number = count_of(samples_inside(spline, uv, ("uv",)))
+            number = count_of(samples_inside(spline.trim, uv, ("uv",)))
         if best is None or abs(number - count) < nearest:
             best, nearest = (bins, hits), abs(number - count)
         if nearest <= NEAR_ENOUGH * count or hits.developable == spline.patches:

@@ -4,7 +4,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.density.cells import Cells
-from gaussmap.runtime.density.of_samples import space_on
+from gaussmap.runtime.density.methods import space_on
 
 NAMES = ("torus", "wavy_graph", "ellipsoid", "cone")
 
@@ -28,7 +28,7 @@ def test_cells_make_up_the_surface(name):
         assert cells.numbers[:, 6].sum() == pytest.approx(space.area, rel=4e-3)
         boxes = cells.boxes[:, 2:] - cells.boxes[:, :2]
         assert boxes.prod(axis=1).sum() == pytest.approx(space.sizes.prod(), rel=1e-12)
-    halves = space.first.halves
+    halves = space.halves(space.first)
     np.testing.assert_array_equal(halves.pieces, np.repeat(space.first.pieces, 2))
 
 

@@ -4,7 +4,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.density.cover import Cover
-from gaussmap.runtime.density.of_samples import space_on
+from gaussmap.runtime.density.methods import space_on
 from gaussmap.runtime.density.space import Space
 
 

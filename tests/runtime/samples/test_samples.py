@@ -224,7 +224,7 @@ class TestReport:
         assert replace(REPORT, developable_share=1.0 + 1e-15).developable_share == 1.0
 
     def test_the_label_must_be_text(self):
-        with pytest.raises(gm.errors.InputError, match=r"^surface must be a string, not bytes"):
+        with pytest.raises(gm.errors.InputError, match=r"^surface must be a text, not b'torus'"):
             replace(REPORT, surface=b"torus")  # pyright: ignore[reportArgumentType]
 
     def test_unknown_numbers(self):
@@ -232,7 +232,7 @@ class TestReport:
         assert report.normals is report.patches is report.developable_share is None
 
     def test_the_number_of_samples_is_always_known(self):
-        with pytest.raises(gm.errors.InputError, match=r"^samples must be an integer"):
+        with pytest.raises(gm.errors.InputError, match=r"^samples must be a whole number"):
             replace(REPORT, samples=None)  # pyright: ignore[reportArgumentType]
 
 

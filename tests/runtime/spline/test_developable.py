@@ -5,9 +5,16 @@ import math
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.spline.developable import curved_solid_angle, developable_share
 
 DENSE = 1e5 / (4 * math.pi)
+
+
+def developable_share(spline: gm.Spline, density: float) -> float:
+    return spline._cell_measure.developable_share(density)
+
+
+def curved_solid_angle(spline: gm.Spline, density: float) -> float:
+    return spline._cell_measure.curved_solid_angle(density)
 
 
 def moved(surface, factor=1.0, shift=0.0):
