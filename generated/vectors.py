@@ -26,6 +26,32 @@ class PlaneVector(NamedTuple):
     y: float
 
 
+class Taylor(NamedTuple):
+    """The Taylor coefficients of a function of u and v up to order 2."""
+
+    value: float
+    u: float
+    v: float
+    uu: float
+    uv: float
+    vv: float
+
+
+class CubicTaylor(NamedTuple):
+    """The Taylor coefficients of a function up to order 3."""
+
+    value: float
+    u: float
+    v: float
+    uu: float
+    uv: float
+    vv: float
+    uuu: float
+    uuv: float
+    uvv: float
+    vvv: float
+
+
 class Patch(NamedTuple):
     """The vectors of a quadratic patch, eq. (8)."""
 

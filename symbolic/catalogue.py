@@ -3,7 +3,19 @@
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from . import curve, faces, gaussian_image, jet, mesh, offset, patch, rational, spline, support
+from . import (
+    curve,
+    faces,
+    gaussian_image,
+    jet,
+    mesh,
+    offset,
+    patch,
+    rational,
+    spline,
+    support,
+    taylor,
+)
 from .formula import Formula
 
 __all__ = ["formulas"]
@@ -19,6 +31,7 @@ formulas: Mapping[str, Formula] = MappingProxyType(
             support,
             jet,
             rational,
+            taylor,
             faces,
             mesh,
             curve,

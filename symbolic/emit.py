@@ -10,7 +10,15 @@ from pathlib import Path
 import sympy as sp
 
 from .formula import Formula
-from .notation import PlaneVector, VectorSymbol, plane_vectors, scalar, vectors
+from .notation import (
+    CubicTaylorSymbol,
+    PlaneVector,
+    TaylorSymbol,
+    VectorSymbol,
+    plane_vectors,
+    scalar,
+    vectors,
+)
 from .printer import source_of
 from .simplify import straight_line
 
@@ -43,6 +51,15 @@ NEEDED = {
     "patch": set(vectors("abcde")),
     "arc": set(plane_vectors("ab")),
     "hessian": set(HESSIAN),
+}
+
+
+# The tuples of numbers: what they are called for each kind of symbol.
+KINDS = {
+    VectorSymbol: ("Vector", "A vector of R³."),
+    PlaneVector: ("PlaneVector", "A vector of R²."),
+    TaylorSymbol: ("Taylor", "The Taylor coefficients of a function of u and v up to order 2."),
+    CubicTaylorSymbol: ("CubicTaylor", "The Taylor coefficients of a function up to order 3."),
 }
 
 
@@ -136,7 +153,12 @@ def _constructed(symbol: sp.Symbol) -> str:
 def _kind(symbol: sp.Symbol) -> str:
     if not isinstance(symbol, VectorSymbol):
         return "float"
-    return "PlaneVector" if isinstance(symbol, PlaneVector) else "Vector"
+    return KINDS[type(symbol)][0]
+
+
+def field(axis: str) -> str:
+    """Return a component as a name, which begins with no digit."""
+    return "value" if axis == "0" else axis
 
 
 def functions(formulas: Iterable[Formula]) -> str:
@@ -147,8 +169,8 @@ def functions(formulas: Iterable[Formula]) -> str:
 def named_tuples() -> str:
     """Return the types of vectors, and of the tuples of vectors that formulas take."""
     types = [
-        ("Vector", "A vector of R³.", [(x, "float") for x in VectorSymbol.AXES]),
-        ("PlaneVector", "A vector of R².", [(x, "float") for x in PlaneVector.AXES]),
+        (name, sentence, [(field(x), "float") for x in kind.AXES])
+        for kind, (name, sentence) in KINDS.items()
     ]
     for _, name, sentence, fields in GROUPS:
         types.append((name, sentence, [(x.name, _kind(x)) for x in fields]))

@@ -25,6 +25,7 @@ from . import (
     support,
     surfaces,
     tables,
+    taylor,
 )
 from .emit import functions, named_tuples, render
 from .loops import array_function, jet_function
@@ -57,6 +58,7 @@ def derive() -> dict[str, str]:
         "surface_jets.py": surface_jets_source(),
         "surfaces.py": surfaces_source(),
         "surfaces_signatures.pyi": signatures_source(),
+        "taylor.py": taylor_source(),
         "vectors.py": vectors_source(),
     }
     modules = {name: formatted(text, name) for name, text in sources.items()}
@@ -248,6 +250,12 @@ def surface_jets_source() -> str:
         *(jet_function(surface_jet(x)) for x in catalogue),
         f"JETS = {{{', '.join(f'{x.name!r}: {x.name}' for x in catalogue)}}}",
     )
+
+
+def taylor_source() -> str:
+    """Return generated/taylor.py: products and compositions of Taylor polynomials."""
+    title = "Taylor polynomials in two variables: the formulas of symbolic/taylor.py."
+    return mathematics(title, taylor.constants(), functions(taylor.FORMULAS))
 
 
 def signatures_source() -> str:

@@ -10,10 +10,12 @@ from sympy.printing.precedence import PRECEDENCE
 
 __all__ = [
     "Cross",
+    "CubicTaylorSymbol",
     "Definition",
     "Det",
     "Dot",
     "PlaneVector",
+    "TaylorSymbol",
     "VectorSymbol",
     "components",
     "dot",
@@ -53,6 +55,18 @@ class PlaneVector(VectorSymbol):
     """The name of a vector of R²."""
 
     AXES = ("x", "y")
+
+
+class TaylorSymbol(VectorSymbol):
+    """The name of a polynomial in two variables of degree 2, whose components are coefficients."""
+
+    AXES = ("0", "u", "v", "uu", "uv", "vv")
+
+
+class CubicTaylorSymbol(TaylorSymbol):
+    """The name of a polynomial in two variables of degree 3."""
+
+    AXES = (*TaylorSymbol.AXES, "uuu", "uuv", "uvv", "vvv")
 
 
 class VectorProduct(sp.Expr):

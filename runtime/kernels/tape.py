@@ -1,0 +1,187 @@
+"""Tapes: the operations that compute a surface, and the 2-jets of many points by them.
+
+Points are evaluated in tiles of LANES: each operation is a loop over the lanes, so that the time of
+interpretation is shared. Results of operations, the registers, are Taylor polynomials in u and v of
+degree 2: numbers 1, u, v, uu, uv, vv for each row of the tape, each with LANES lanes.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...generated import taylor as formulas
+from ...generated.vectors import Taylor
+from ..machine_code.jit import jit, loop
+from .tape_functions import coefficients
+
+__all__ = ["LANES", "POINT", "Tape", "evaluate_points", "points_jets"]
+
+LANES = 32
+# The numbers of a row of registers, and where the coefficients of one begin.
+POINT = np.int64(6 * LANES)
+U, V, UU, UV, VV = (np.uint64(k * LANES) for k in range(1, 6))
+
+
+class Tape(NamedTuple):
+    """Three functions of u and v as operations, each on results of earlier ones.
+
+    Operations (k, 4) int64 are a code of `generated.taylor` and the rows of arguments. Numbers
+    (k, 2) are constants, and how far the exact ones may be from them. Outputs (3,) int64 are the
+    rows of x, y and z.
+    """
+
+    operations: NDArray[np.int64]
+    numbers: NDArray[np.float64]
+    outputs: NDArray[np.int64]
+
+
+@loop
+def taylor_at(registers, at, k):
+    """Return the polynomial of lane k of the register that begins at `at`."""
+    i = np.uint64(at + k)
+    return Taylor(
+        registers[i], registers[i + U], registers[i + V],
+        registers[i + UU], registers[i + UV], registers[i + VV],
+    )  # fmt: skip
+
+
+@loop
+def put(registers, at, k, value, u, v, uu, uv, vv):
+    """Write the polynomial of lane k of the register that begins at `at`."""
+    i = np.uint64(at + k)
+    registers[i] = value
+    registers[i + U] = u
+    registers[i + V] = v
+    registers[i + UU] = uu
+    registers[i + UV] = uv
+    registers[i + VV] = vv
+
+
+@loop
+def write_variables(code, number, u, v, registers, at, count):
+    """Write u, v or a constant."""
+    for k in range(count):
+        if code == formulas.U:
+            put(registers, at, k, u[k], 1.0, 0.0, 0.0, 0.0, 0.0)
+        elif code == formulas.V:
+            put(registers, at, k, v[k], 0.0, 1.0, 0.0, 0.0, 0.0)
+        else:
+            put(registers, at, k, number, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@loop
+def add(registers, a, b, at, count):
+    """Write the sum of two registers."""
+    for k in range(count):
+        x, y = taylor_at(registers, a, k), taylor_at(registers, b, k)
+        put(
+            registers, at, k, x.value + y.value, x.u + y.u, x.v + y.v,
+            x.uu + y.uu, x.uv + y.uv, x.vv + y.vv,
+        )  # fmt: skip
+
+
+@loop
+def scale(registers, a, factor, at, count):
+    """Write a multiple of a register."""
+    for k in range(count):
+        x = taylor_at(registers, a, k)
+        put(
+            registers, at, k, x.value * factor, x.u * factor, x.v * factor,
+            x.uu * factor, x.uv * factor, x.vv * factor,
+        )  # fmt: skip
+
+
+@loop
+def shift(registers, a, number, at, count):
+    """Write the sum of a register and a number."""
+    for k in range(count):
+        x = taylor_at(registers, a, k)
+        put(registers, at, k, x.value + number, x.u, x.v, x.uu, x.uv, x.vv)
+
+
+@loop
+def multiply(registers, a, b, at, count):
+    """Write the product of two registers."""
+    for k in range(count):
+        x, y = taylor_at(registers, a, k), taylor_at(registers, b, k)
+        value, u, v, uu, uv, vv = formulas.product_2(x, y)
+        put(registers, at, k, value, u, v, uu, uv, vv)
+
+
+@loop
+def compose(registers, a, at, count):
+    """Write a function of a register, whose value, f1 and f2 are in the places of 1, u and v."""
+    for k in range(count):
+        x = taylor_at(registers, a, k)
+        i = np.uint64(at + k)
+        value, f1, f2 = registers[i], registers[i + U], registers[i + V]
+        u, v, uu, uv, vv = formulas.composition_2(f1, f2, x)
+        put(registers, at, k, value, u, v, uu, uv, vv)
+
+
+@loop
+def write_coefficients(code, registers, a, at, count):
+    """Write the value, f1 and f2 of a function of a register to the places of 1, u and v."""
+    for k in range(count):
+        value, f1, f2, _ = coefficients(code, registers[np.uint64(a + k)])
+        i = np.uint64(at + k)
+        registers[i], registers[i + U], registers[i + V] = value, f1, f2
+
+
+@loop
+def write_cofunction(code, registers, at, count):
+    """Write value, f1 and f2 of the cosine to the row after those of the sine."""
+    for k in range(count):
+        i, j = np.uint64(at + k), np.uint64(at + POINT + k)
+        sine, cosine = registers[i], registers[i + U]
+        if code == formulas.SIN:
+            f1, f2, _ = formulas.cos_taylor(cosine, sine)
+        else:
+            f1, f2, _ = formulas.cosh_taylor(cosine, sine)
+        registers[j], registers[j + U], registers[j + V] = cosine, f1, f2
+
+
+@loop
+def evaluate_points(tape, u, v, count, registers):
+    """Write the registers of all rows of a tape for `count` points u, v, at most LANES."""
+    for row in range(tape.operations.shape[0]):
+        code = tape.operations[row, 0]
+        a, b = POINT * tape.operations[row, 1], POINT * tape.operations[row, 2]
+        at = POINT * row
+        if code == formulas.PRODUCT:
+            multiply(registers, a, b, at, count)
+        elif code == formulas.SUM:
+            add(registers, a, b, at, count)
+        elif code == formulas.SCALE:
+            scale(registers, a, tape.numbers[row, 0], at, count)
+        elif code == formulas.SHIFT:
+            shift(registers, a, tape.numbers[row, 0], at, count)
+        elif code == formulas.NEGATIVE:
+            scale(registers, a, -1.0, at, count)
+        elif code <= formulas.CONSTANT:
+            write_variables(code, tape.numbers[row, 0], u, v, registers, at, count)
+        elif code != formulas.COS and code != formulas.COSH:
+            write_coefficients(code, registers, a, at, count)
+            if code == formulas.SIN or code == formulas.SINH:
+                write_cofunction(code, registers, at, count)
+                compose(registers, a, at + POINT, count)
+            compose(registers, a, at, count)
+
+
+@jit
+def points_jets(tape, u, v, registers, jets):
+    """Write x, x_u, x_v, x_uu, x_uv, x_vv (k, 6, 3) at u (k,) and v (k,)."""
+    for start in range(0, len(u), LANES):
+        count = min(LANES, len(u) - start)
+        evaluate_points(tape, u[start:], v[start:], count, registers)
+        for axis in range(3):
+            at = POINT * tape.outputs[axis]
+            for k in range(count):
+                x = taylor_at(registers, at, k)
+                i = np.uint64(start + k)
+                jets[i, 0, axis], jets[i, 1, axis], jets[i, 2, axis] = x.value, x.u, x.v
+                jets[i, 3, axis], jets[i, 5, axis] = 2.0 * x.uu, 2.0 * x.vv
+                jets[i, 4, axis] = x.uv

@@ -1,0 +1,122 @@
+"""The functions of one variable that tapes have: Taylor coefficients at a number, and ranges."""
+
+from __future__ import annotations
+
+import math
+
+from ...generated import taylor as formulas
+from ..machine_code.jit import loop
+
+__all__ = ["UNIT", "coefficients", "error_of_rounding", "ranges"]
+
+UNIT = 2.0**-53  # the unit of rounding
+QUARTER = 0.5 * math.pi
+FAR = 1e8  # where multiples of π/2 are not looked for
+
+
+@loop
+def coefficients(code, x):
+    """Return the value of the function with this code at x, and its Taylor coefficients after it.
+
+    They are NaN or infinite where there are none.
+    """
+    if code == formulas.RECIPROCAL:
+        y = 1.0 / x
+        f1, f2, f3 = formulas.reciprocal_taylor(y)
+        return y, f1, f2, f3
+    if code == formulas.SQUARE:
+        f1, f2, f3 = formulas.square_taylor(x)
+        return x * x, f1, 1.0, 0.0
+    if code == formulas.CUBE:
+        f1, f2, f3 = formulas.cube_taylor(x)
+        return x * x * x, f1, f2, 1.0
+    if code == formulas.SQRT:
+        y = math.sqrt(x)
+        f1, f2, f3 = formulas.sqrt_taylor(y)
+        return y, f1, f2, f3
+    if code == formulas.EXP:
+        y = math.exp(x)
+        f1, f2, f3 = formulas.exp_taylor(y)
+        return y, f1, f2, f3
+    if code == formulas.LOG:
+        f1, f2, f3 = formulas.log_taylor(x)
+        return math.log(x), f1, f2, f3
+    if code == formulas.SIN or code == formulas.COS:
+        y, w = math.sin(x), math.cos(x)
+        if code == formulas.SIN:
+            f1, f2, f3 = formulas.sin_taylor(y, w)
+            return y, f1, f2, f3
+        f1, f2, f3 = formulas.cos_taylor(w, y)
+        return w, f1, f2, f3
+    if code == formulas.SINH or code == formulas.COSH:
+        y, w = math.sinh(x), math.cosh(x)
+        if code == formulas.SINH:
+            f1, f2, f3 = formulas.sinh_taylor(y, w)
+            return y, f1, f2, f3
+        f1, f2, f3 = formulas.cosh_taylor(w, y)
+        return w, f1, f2, f3
+    if code == formulas.TANH:
+        y = math.tanh(x)
+        f1, f2, f3 = formulas.tanh_taylor(y)
+        return y, f1, f2, f3
+    if code == formulas.ASIN:
+        f1, f2, f3 = formulas.asin_taylor(x)
+        return math.asin(x), f1, f2, f3
+    f1, f2, f3 = formulas.atan_taylor(x)
+    return math.atan(x), f1, f2, f3
+
+
+@loop
+def error_of_rounding(code, order, size):
+    """Return a bound of the error of a coefficient of this order whose absolute value is `size`."""
+    function = code - formulas.RECIPROCAL
+    roundings = formulas.ROUNDINGS[function, order] * UNIT
+    return roundings * (size + formulas.CANCELLING[function])
+
+
+@loop
+def include(code, x, f):
+    """Extend the lowest and highest coefficients f (2, 4) by those at x."""
+    found = coefficients(code, x)
+    if not abs(found[0]) + abs(found[1]) + abs(found[2]) + abs(found[3]) < math.inf:
+        for k in range(4):
+            f[0, k], f[1, k] = -math.inf, math.inf
+    for k, y in enumerate(found):
+        f[0, k] = min(f[0, k], y)
+        f[1, k] = max(f[1, k], y)
+
+
+@loop
+def ranges(code, low, high, f):
+    """Write midpoints and radii (2, 4) of the Taylor coefficients on an interval.
+
+    Between their extremes they are monotone, so that the values there, and at the ends, bound them.
+    Radii are infinite where the function has a singularity, or nothing is known.
+    """
+    function = code - formulas.RECIPROCAL
+    for k in range(4):
+        f[0, k], f[1, k] = math.inf, -math.inf
+    include(code, low, f)
+    include(code, high, f)
+    for k in range(formulas.CRITICAL.shape[1]):
+        x = formulas.CRITICAL[function, k]
+        if low < x < high:
+            include(code, x, f)
+    if formulas.SPACING[function] > 0.0:
+        if not max(abs(low), abs(high)) < FAR:
+            for k in range(4):
+                f[0, k], f[1, k] = -1.0, 1.0
+        else:
+            slack = 8.0 * UNIT * (abs(low) + abs(high))
+            first = math.ceil((low - slack) / QUARTER)
+            for k in range(4):
+                if (first + k) * QUARTER <= high + slack:
+                    include(code, (first + k) * QUARTER, f)
+    for k in range(4):
+        y, z = f[0, k], f[1, k]
+        if math.isfinite(y) and math.isfinite(z):
+            f[0, k] = 0.5 * y + 0.5 * z
+            size = max(abs(y), abs(z))
+            f[1, k] = (0.5 * (z - y) + 2.0 * UNIT * size) + error_of_rounding(code, k, size)
+        else:
+            f[0, k], f[1, k] = 0.0, math.inf
