@@ -12,25 +12,24 @@ from .vectors import inline
 U = 0
 V = 1
 CONSTANT = 2
-PARAMETER = 3
-SUM = 4
-NEGATIVE = 5
-SHIFT = 6
-SCALE = 7
-PRODUCT = 8
-RECIPROCAL = 9
-SQUARE = 10
-CUBE = 11
-SQRT = 12
-EXP = 13
-LOG = 14
-SIN = 15
-COS = 16
-SINH = 17
-COSH = 18
-TANH = 19
-ASIN = 20
-ATAN = 21
+SUM = 3
+NEGATIVE = 4
+SHIFT = 5
+SCALE = 6
+PRODUCT = 7
+RECIPROCAL = 8
+SQUARE = 9
+CUBE = 10
+SQRT = 11
+EXP = 12
+LOG = 13
+SIN = 14
+COS = 15
+SINH = 16
+COSH = 17
+TANH = 18
+ASIN = 19
+ATAN = 20
 ROUNDINGS = np.array(
     [
         [1, 4, 5, 8],
@@ -171,8 +170,8 @@ def product_radius_2(a, d, b, e, u):
 
 @inline
 def composition_2(f1, f2, a):
-    """The Taylor coefficients c of a function of a function with coefficients a, up to order 2
-    and but for the value; f1, f2, … are those of the outer one at the value of the inner one.
+    """The Taylor coefficients c of a function of a function with coefficients a, up to order 2,
+    without the value; f1, f2, … are those of the outer one at the value of the inner one.
 
         c_u = a_u*f1
         c_v = a_v*f1
@@ -426,8 +425,8 @@ def product_radius_3(a, d, b, e, u):
 
 @inline
 def composition_3(f1, f2, f3, a):
-    """The Taylor coefficients c of a function of a function with coefficients a, up to order 3
-    and but for the value; f1, f2, … are those of the outer one at the value of the inner one.
+    """The Taylor coefficients c of a function of a function with coefficients a, up to order 3,
+    without the value; f1, f2, … are those of the outer one at the value of the inner one.
 
         c_u = a_u*f1
         c_v = a_v*f1

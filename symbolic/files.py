@@ -20,6 +20,7 @@ from . import (
     mesh,
     offset,
     patch,
+    proved,
     rational,
     spline,
     support,
@@ -31,6 +32,7 @@ from .emit import functions, named_tuples, render
 from .loops import array_function, jet_function
 from .positions import position, surface_jet
 from .printer import source_of
+from .tape import tape_steps
 
 __all__ = ["GENERATED", "derive", "differences", "existing", "write"]
 
@@ -51,11 +53,13 @@ def derive() -> dict[str, str]:
         "mesh.py": mesh_source(),
         "offset.py": offset_source(),
         "patch.py": patch_source(),
+        "proved.py": proved_source(),
         "rational.py": rational_source(),
         "spline.py": spline_source(),
         "support.py": support_source(),
         "support_function.py": support_function_source(),
         "surface_jets.py": surface_jets_source(),
+        "surface_tapes.py": surface_tapes_source(),
         "surfaces.py": surfaces_source(),
         "surfaces_signatures.pyi": signatures_source(),
         "taylor.py": taylor_source(),
@@ -252,10 +256,26 @@ def surface_jets_source() -> str:
     )
 
 
+def proved_source() -> str:
+    """Return generated/proved.py: bounds over cells of the parameters of a surface."""
+    title = "Points with a given normal, proved: the formulas of symbolic/proved.py."
+    return mathematics(title, functions(proved.FORMULAS))
+
+
 def taylor_source() -> str:
     """Return generated/taylor.py: products and compositions of Taylor polynomials."""
     title = "Taylor polynomials in two variables: the formulas of symbolic/taylor.py."
     return mathematics(title, taylor.constants(), functions(taylor.FORMULAS))
+
+
+def surface_tapes_source() -> str:
+    """Return generated/surface_tapes.py: positions as the steps that compute them."""
+    title = "The catalogue of parametric surfaces: positions as steps of `symbolic/tape.py`."
+    catalogue = surfaces.CATALOGUE.values()
+    entries = (
+        f"    {x.name!r}: {tape_steps(x.position, x.u, x.v, [*x.defaults])!r},\n" for x in catalogue
+    )
+    return f"{_docstring(title)}\n\nTAPES = {{\n{''.join(entries)}}}\n"
 
 
 def signatures_source() -> str:

@@ -4,14 +4,12 @@ A function of u and v near a point has the Taylor polynomial
 
     a_0 + a_u s + a_v t + a_uu s² + a_uv s t + a_vv t² + …,
 
-whose coefficients are derivatives divided by factorials. Formulas with `radius` in their names bound
-how far the results may be from those for a polynomial whose coefficients are only known up to radii,
-with the rounding of the computation itself: the results are sums of products with positive
-coefficients, so that bounds of a product x y …, |x| <= X, with errors |δx| <= D,
+whose coefficients are derivatives divided by factorials. Formulas with `radius` in their names
+bound the errors of those results if the coefficients of the arguments have errors, with the rounding
+of the computation itself. Results are sums of products with positive coefficients. The change of a
+product x y …, |x| <= X, by errors |δx| <= D_x is bounded by terms that are added up,
 
-    |(x + δx)(y + δy) … − x y …| <= D_x Y … + (X + D_x) D_y … + …,
-
-can be added up without differences.
+    |(x + δx)(y + δy) … − x y …| <= D_x Y … + (X + D_x) D_y … + …
 """
 
 from __future__ import annotations
@@ -103,9 +101,9 @@ def _formulas(kind: type[TaylorSymbol], order: int) -> list[Formula]:
         ),
         Formula.build(
             f"composition_{order}",
-            f"The Taylor coefficients $c$ of a function of a function with coefficients $a$, {known} "
-            "and but for the value; $f1$, $f2$, … are those of the outer one at the value of the "
-            "inner one.",
+            f"The Taylor coefficients $c$ of a function of a function with coefficients $a$, {known}, "
+            "without the value; $f1$, $f2$, … are those of the outer one at the value of the inner "
+            "one.",
             inputs=[*f, a],
             outputs=[(f"c_{k}", x) for k, x in composition.items()],
         ),
@@ -160,7 +158,7 @@ FUNCTIONS = {
     ),
 }
 # The operations of a tape, by the numbers that stand for them: those of all functions follow.
-BASIC = ("u", "v", "constant", "parameter", "sum", "negative", "shift", "scale", "product")
+BASIC = ("u", "v", "constant", "sum", "negative", "shift", "scale", "product")
 CODES = {name: code for code, name in enumerate((*BASIC, *FUNCTIONS))}
 
 

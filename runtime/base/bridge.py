@@ -20,6 +20,7 @@ __all__ = [
     "latex_of",
     "normal_components",
     "reading",
+    "tape_steps",
 ]
 
 
@@ -70,3 +71,15 @@ def reading() -> ModuleType:
     from ...symbolic import reading
 
     return reading
+
+
+def tape_steps(
+    position: Sequence[Any], symbols: Sequence[Any]
+) -> tuple[list[Any], list[int]] | None:
+    """Return the steps of three expressions in two symbols, see `symbolic.tape`; None without."""
+    from ...symbolic.tape import NoTapeError, tape_steps
+
+    try:
+        return tape_steps(position, *symbols)
+    except NoTapeError:
+        return None

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from ...generated.differences import FIRST, FIRST_CHANGE, SECOND, SECOND_CHANGE
 from ..domain.domain import Boundary, BoundaryPair, Domain, Interval, brought_inside
+from ..kernels.tape import Tape
 
 __all__ = [
     "NAMES",
@@ -68,6 +69,10 @@ class Differentiable(ABC):
     @abstractmethod
     def jets(self, u: Array, v: Array) -> Array:
         """Return x, x_u, x_v, x_uu, x_uv, x_vv (k, 6, 3) for u (k,) and v (k,)."""
+
+    def tape(self) -> Tape | None:
+        """Return the operations of the function; None if these are not known."""
+        return None
 
     def differences(self, boundary: Boundary) -> Differences | None:
         """Return the differences that the derivatives are, if they are; for boundary conditions."""

@@ -12,8 +12,10 @@ from numpy.typing import NDArray
 
 from ..base import bridge
 from ..base.errors import InputError
+from ..kernels.tape import Tape
 from .derivatives import NAMES, Differentiable
 from .expressions import as_position
+from .tapes import tape_of_steps
 
 if TYPE_CHECKING:
     import sympy
@@ -50,6 +52,11 @@ class Expressions(Differentiable):
             for column, values in enumerate(self._derivatives(u, v)):
                 result[:, column] = values
         return result.reshape(-1, len(NAMES), 3)
+
+    def tape(self) -> Tape | None:
+        """Return the operations of a surface; None if the expressions hold what tapes have not."""
+        steps = bridge.tape_steps(self.expressions, self.symbols)
+        return None if steps is None else tape_of_steps(*steps, {})
 
     def __getstate__(self) -> dict[str, object]:
         """Return what is pickled: the expressions without the functions made of them."""

@@ -12,8 +12,10 @@ from ..base.errors import InputError
 from ..base.evaluation import returned
 from ..domain.domain import Boundary, Domain, Interval
 from ..domain.trim import Trim, TrimPart
+from ..kernels.tape import Tape
 from .derivatives import Differences, Differentiable
 from .surface_values import SurfaceValues
+from .tapes import moved_tape
 
 __all__ = ["IDENTITY", "AffineMap", "Moved", "affine_map", "moved_grid", "turned_trim"]
 
@@ -102,6 +104,14 @@ class Moved(Differentiable):
         if self.turned:
             jets[:, [1, 4]] *= -1.0  # x_u and x_uv
         return jets
+
+    def tape(self) -> Tape | None:
+        """Return the operations of the surface, and those of the map after them."""
+        own = self.surface.tape
+        if own is None:
+            return None
+        ends = self.ends if self.turned else None
+        return moved_tape(own, self.map.matrix, self.map.shift, ends)
 
     def differences(self, boundary: Boundary) -> Differences | None:
         """Return the differences of the moved function, if the surface has differences."""

@@ -16,6 +16,7 @@ from ..base.georeference import Georeference
 from ..base.scales import scale_to_one
 from ..domain.domain import Assumed, Boundary, Domain, checked_boundary, checked_domain, domain_text
 from ..domain.trim import Trim
+from ..kernels.tape import Tape
 from ..spline.spline import short_label
 from .derivatives import NAMES, Differences, Differentiable, Function
 from .jet_functions import jet_function
@@ -251,6 +252,26 @@ class SurfaceValues:
         if isinstance(owner, Differentiable):
             return owner.differences(self.boundary)
         return owner if isinstance(owner, Differences) else None
+
+    @cached_property
+    def tape(self) -> Tape | None:
+        """The operations that compute the surface, from which its derivatives are bounded.
+
+        They are known for the catalogue, and for SymPy expressions of elementary functions without
+        kinks; None where they are not.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> def f(u, v):
+        ...     return np.stack([u, v, np.abs(u)], axis=-1)
+        >>> gm.surfaces.torus().tape is None
+        False
+
+        """
+        if isinstance(self.function, Differentiable) and self.grid is None:
+            return self.function.tape()
+        return None
 
     @cached_property
     def _jets(self) -> Function:

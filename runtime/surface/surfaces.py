@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from ...generated.surface_tapes import TAPES
 from ...generated.surfaces import CATALOGUE as _GENERATED
 from ..base import compiling  # noqa: F401 - announces compilation on terminals
 from ..base.advice import file_advice
@@ -19,8 +20,10 @@ from ..base.checks import as_float, known_name
 from ..base.errors import InputError, UnknownNameError, shown
 from ..domain.domain import Boundary, Domain
 from ..kernels.surfaces import jets, positions
+from ..kernels.tape import Tape
 from .derivatives import Differentiable
 from .surface import Surface
+from .tapes import tape_of_steps
 
 if TYPE_CHECKING:
     from ...generated.surfaces_signatures import *  # noqa: F403  # pyright: ignore[reportMissingModuleSource]
@@ -50,6 +53,11 @@ class CatalogueFunction(Differentiable):
         result = np.empty((u.size, 6, 3))
         jets(self.name)(*self.values, u, v, result)
         return result
+
+    def tape(self) -> Tape | None:
+        """Return the operations of the function."""
+        values = dict(zip(CATALOGUE[self.name]["parameters"], self.values, strict=True))
+        return tape_of_steps(*TAPES[self.name], values)
 
 
 def names() -> tuple[str, ...]:

@@ -1,0 +1,199 @@
+"""The tapes of surfaces: the operations that compute x(u,v), for bounds of its derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...generated import taylor as codes
+from ..base import compiling  # noqa: F401 - announces compilation on terminals
+from ..domain.domain import Interval
+from ..kernels.tape import Tape
+from ..kernels.tape_balls import BALL, bounds_of_boxes
+
+__all__ = ["TapeWriter", "moved_tape", "tape_of_steps"]
+
+Array = NDArray[np.float64]
+LEAVES = (codes.U, codes.V, codes.CONSTANT)
+BINARY = (codes.SUM, codes.PRODUCT)
+NEUTRAL = {codes.SHIFT: (0.0, 0.0), codes.SCALE: (1.0, 0.0)}  # exact numbers that change nothing
+# Functions that are computed together: the second one is in the row after the first.
+PAIRS = {codes.COS: codes.SIN, codes.COSH: codes.SINH}
+
+
+class TapeWriter:
+    """Writes the operations of a tape, and none of them twice."""
+
+    def __init__(self) -> None:
+        self._operations: list[tuple[int, int, int, int]] = []
+        self._numbers: list[tuple[float, float]] = []
+        self._rows: dict[object, int] = {}
+
+    def write(self, name: str, *arguments: int) -> int:
+        """Return the row of an operation, by its name in `generated.taylor`, on other rows."""
+        code = getattr(codes, name.upper())
+        first = PAIRS.get(code, code)
+        row = self._row(first, *arguments)
+        for second in (x for x, y in PAIRS.items() if y == first):
+            other = self._row(second, *arguments)
+            row = row if code == first else other
+        return row
+
+    def constant(self, value: float, distance: float = 0.0) -> int:
+        """Return the row of a number that is exact up to a distance."""
+        return self._row(codes.CONSTANT, number=(value, distance))
+
+    def power(self, row: int, halves: int) -> int:
+        """Return the row of a power whose exponent is a number of halves, not 0."""
+        if halves < 0:
+            return self.power(self.write("reciprocal", row), -halves)
+        if halves % 2:
+            return self._whole_power(self.write("sqrt", row), halves)
+        return self._whole_power(row, halves // 2)
+
+    def _whole_power(self, row: int, exponent: int) -> int:
+        if exponent == 1:
+            return row
+        if exponent % 2 == 0:
+            return self.write("square", self._whole_power(row, exponent // 2))
+        if exponent % 3 == 0:
+            return self.write("cube", self._whole_power(row, exponent // 3))
+        return self.write("product", self._whole_power(row, exponent - 1), row)
+
+    def replay(self, tape: Tape, u: int | None = None) -> list[int]:
+        """Write the operations of a tape, for another u if it is given; return its outputs."""
+        rows: list[int] = []
+        for (code, a, b, _), number in zip(
+            tape.operations.tolist(), tape.numbers.tolist(), strict=True
+        ):
+            if code == codes.U and u is not None:
+                rows.append(u)
+            elif code in LEAVES:
+                rows.append(self._row(code, number=tuple(number)))
+            else:
+                other = rows[b] if code in BINARY else 0
+                rows.append(self._row(code, rows[a], other, tuple(number)))
+        return [rows[x] for x in tape.outputs]
+
+    def tape(self, outputs: Sequence[int]) -> Tape | None:
+        """Return the tape of three rows; None if it holds a constant that is not finite."""
+        tape = Tape(
+            np.array(self._operations, dtype=np.int64),
+            np.array(self._numbers),
+            np.array(outputs, dtype=np.int64),
+        )
+        return _folded(tape)
+
+    def _row(
+        self, code: int, a: int = 0, b: int = 0, number: tuple[float, float] = (0.0, 0.0)
+    ) -> int:
+        operation = code, a, b, 0
+        row = self._rows.setdefault((operation, number), len(self._operations))
+        if row == len(self._operations):
+            self._operations.append(operation)
+            self._numbers.append(number)
+        return row
+
+
+def tape_of_steps(
+    steps: Sequence[tuple[Any, ...]], outputs: Sequence[int], values: Mapping[str, float]
+) -> Tape | None:
+    """Return the tape of steps of `symbolic.tape`, for values of the parameters."""
+    writer, rows = TapeWriter(), []
+    for name, *arguments in steps:
+        if name == "constant":
+            row = writer.constant(*arguments)
+        elif name == "parameter":
+            row = writer.constant(values[arguments[0]])
+        elif name == "power":
+            row = writer.power(rows[arguments[0]], arguments[1])
+        else:
+            row = writer.write(name, *(rows[x] for x in arguments))
+        rows.append(row)
+    return writer.tape([rows[x] for x in outputs])
+
+
+def moved_tape(tape: Tape, matrix: Array, shift: Array, ends: Interval | None) -> Tape | None:
+    """Return the tape of matrix x + shift; u is reversed between `ends`, if these are given."""
+    writer, u = TapeWriter(), None
+    if ends is not None:
+        total = sum(ends)
+        distance = abs(sum(map(Fraction, ends)) - Fraction(total))
+        u = writer.write(
+            "sum",
+            writer.write("negative", writer.write("u")),
+            writer.constant(total, float(distance)),
+        )
+    position = writer.replay(tape, u)
+    outputs = []
+    for factors, number in zip(matrix.tolist(), shift.tolist(), strict=True):
+        row = writer.constant(number)
+        for factor, x in zip(factors, position, strict=True):
+            if factor != 0.0:
+                row = writer.write("sum", row, writer.write("product", writer.constant(factor), x))
+        outputs.append(row)
+    return writer.tape(outputs)
+
+
+def _folded(tape: Tape) -> Tape | None:
+    """Return a tape whose constants are computed, and without the rows that nothing needs."""
+    constant = _constant_rows(tape)
+    numbers = np.where(constant[:, None], _values(tape), tape.numbers)
+    if not np.isfinite(numbers).all():
+        return None
+    operations = tape.operations.copy()
+    same = np.arange(len(operations))  # the rows that have the same values
+    for row in range(len(operations)):
+        operations[row, 1:3] = same[operations[row, 1:3]]
+        code, a, b, _ = operations[row]
+        if constant[row]:
+            operations[row] = codes.CONSTANT, 0, 0, 0
+        elif code in BINARY and (constant[a] or constant[b]):
+            variable, number = (b, a) if constant[a] else (a, b)
+            kind = codes.SHIFT if code == codes.SUM else codes.SCALE
+            operations[row], numbers[row] = (kind, variable, 0, 0), numbers[number]
+            if tuple(numbers[number]) == NEUTRAL[kind]:
+                same[row] = variable
+    return _needed(Tape(operations, numbers, same[tape.outputs]))
+
+
+def _constant_rows(tape: Tape) -> NDArray[np.bool_]:
+    """Return which rows (k,) depend on neither u nor v."""
+    constant = np.zeros(len(tape.operations), dtype=np.bool_)
+    for row, (code, a, b, _) in enumerate(tape.operations):
+        constant[row] = code == codes.CONSTANT or (
+            code not in LEAVES and constant[a] and (code not in BINARY or constant[b])
+        )
+    return constant
+
+
+def _values(tape: Tape) -> Array:
+    """Return midpoints and radii (k, 2) of the values of all rows, at an arbitrary place."""
+    registers = np.empty((2, BALL * (len(tape.operations) + 1)))
+    place = np.zeros((1, 2))
+    bounds_of_boxes(tape, 2, place, place, *registers, np.empty((2, 4)), np.empty((1, 2, 10, 3)))
+    return registers[:, : -int(BALL) : int(BALL)].T
+
+
+def _needed(tape: Tape) -> Tape:
+    """Return a tape without the rows that its outputs do not need."""
+    operations = tape.operations.copy()
+    needed = np.zeros(len(operations), dtype=np.bool_)
+    needed[tape.outputs] = True
+    for row in range(len(operations) - 1, -1, -1):
+        code, a, b, _ = operations[row]
+        if code in PAIRS and needed[row]:
+            needed[row - 1] = True
+        if code in PAIRS.values():
+            needed[row + 1] = needed[row] = needed[row] or needed[row + 1]
+        if needed[row] and code not in LEAVES:
+            needed[a] = True
+            needed[b] |= code in BINARY
+    new = np.maximum(np.cumsum(needed) - 1, 0)
+    operations[:, 1:3] = new[operations[:, 1:3]]
+    operations[np.isin(operations[:, 0], LEAVES), 1:3] = 0
+    return Tape(operations[needed].copy(), tape.numbers[needed].copy(), new[tape.outputs])
