@@ -20,6 +20,7 @@ from ..kernels.tape import Tape
 from ..spline.spline import short_label
 from .derivatives import NAMES, Differences, Differentiable, Function
 from .jet_functions import jet_function
+from .traced import traced_tape
 
 __all__ = ["Evaluation", "SurfaceValues"]
 
@@ -257,8 +258,9 @@ class SurfaceValues:
     def tape(self) -> Tape | None:
         """The operations that compute the surface, from which its derivatives are bounded.
 
-        They are known for the catalogue, and for SymPy expressions of elementary functions without
-        kinks; None where they are not.
+        They are known for the catalogue, for SymPy expressions, and for callables made of NumPy
+        functions, if these are smooth elementary functions; None where they are not. A callable is
+        called once with arrays of objects.
 
         Examples
         --------
@@ -269,9 +271,11 @@ class SurfaceValues:
         False
 
         """
-        if isinstance(self.function, Differentiable) and self.grid is None:
+        if self.grid is not None:
+            return None
+        if isinstance(self.function, Differentiable):
             return self.function.tape()
-        return None
+        return traced_tape(self.function, self.domain)
 
     @cached_property
     def _jets(self) -> Function:

@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 from ...generated import taylor as codes
 from ..base import compiling  # noqa: F401 - announces compilation on terminals
 from ..domain.domain import Interval
-from ..kernels.tape import Tape
+from ..kernels.tape import Tape, points_jets
 from ..kernels.tape_balls import BALL, bounds_of_boxes
+from ..kernels.tape_rounding import rounding_of_boxes
 
-__all__ = ["TapeWriter", "moved_tape", "tape_of_steps"]
+__all__ = ["TapeWriter", "moved_tape", "tape_of_steps", "values_of"]
 
 Array = NDArray[np.float64]
 LEAVES = (codes.U, codes.V, codes.CONSTANT)
@@ -197,3 +198,13 @@ def _needed(tape: Tape) -> Tape:
     operations[:, 1:3] = new[operations[:, 1:3]]
     operations[np.isin(operations[:, 0], LEAVES), 1:3] = 0
     return Tape(operations[needed].copy(), tape.numbers[needed].copy(), new[tape.outputs])
+
+
+def values_of(tape: Tape, u: Array, v: Array) -> tuple[Array, Array]:
+    """Return the points (k, 3) of a tape, and bounds (k, 3) of their rounding errors."""
+    jets, errors = np.empty((len(u), 6, 3)), np.empty((len(u), 6, 3))
+    registers = np.empty((3, BALL * (len(tape.operations) + 1)))
+    points_jets(tape, u, v, registers[0], jets)
+    places = np.stack([u, v], axis=1)
+    rounding_of_boxes(tape, places, np.zeros_like(places), *registers, np.empty((2, 4)), errors)
+    return jets[:, 0], errors[:, 0]
