@@ -1,0 +1,285 @@
+"""The points of a surface with a given normal, proved: bounds over a cell of its parameters.
+
+Over a cell, with parameters s and t that are scaled to −1 … 1, the derivatives of n·x by s and t are
+
+    P + A s + B t + ½ (T0 s² + 2 T1 s t + T2 t²)   and   Q + B s + C t + ½ (T1 s² + 2 T2 s t + T3 t²)
+
+with the linear forms A, B, C, P, Q in n of the patch that osculates at the centre of the cell, and
+T0 = n·x_sss, T1 = n·x_sst, T2 = n·x_stt, T3 = n·x_ttt at places between the centre and (s, t). The
+points with the normals n and −n are the common zeros of both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import product
+
+import sympy as sp
+
+from .formula import Formula
+from .notation import Cross, scalar, substitute
+from .patch import LINEAR_FORMS, SOLUTION, VECTORS, A, B, C, D, P, Q, a, b, c, d, e
+
+__all__ = ["FORMULAS"]
+
+s, t, x, y, p, w = (scalar(name) for name in "stxypw")
+CELL_SIDES = {sp.S.NegativeOne: "low", sp.S.Zero: "middle", sp.S.One: "high"}
+
+
+def _names(letter: str) -> tuple[sp.Symbol, ...]:
+    return tuple(scalar(f"{letter}{k}") for k in range(4))
+
+
+THIRDS, RADII = _names("T"), _names("R")
+R, S = scalar("R"), scalar("S")
+y11, y12, y22 = (scalar(f"y{k}") for k in ("11", "12", "22"))
+
+
+def _cubic(thirds: Iterable[sp.Expr], along: sp.Expr, across: sp.Expr) -> sp.Expr:
+    """Return the form with these third derivatives."""
+    terms = (sp.binomial(3, k) * z * along ** (3 - k) * across**k / 6 for k, z in enumerate(thirds))
+    return sum(terms, start=sp.S.Zero)
+
+
+# The cubic model of n·x, less its value, and its derivatives.
+MODEL = P * s + Q * t + (A * s**2 + 2 * B * s * t + C * t**2) / 2 + _cubic(THIRDS, s, t)
+MODEL_AT = Formula.build(
+    "model_at",
+    "The linear forms at $s$, $t$ of the cubic polynomial with those at the origin and the third "
+    "derivatives $T0$, …, $T3$.",
+    inputs=[*LINEAR_FORMS, *THIRDS, s, t],
+    outputs=[
+        (f"{form.name}_m", sp.expand(sp.diff(MODEL, *by)))
+        for form, by in zip(LINEAR_FORMS, ((s, s), (s, t), (t, t), (s,), (t,)), strict=True)
+    ],
+)
+
+# --- no point -------------------------------------------------------------------------------------
+
+
+def _largest(form: sp.Expr) -> sp.Expr:
+    """Return the bound of a polynomial in s and t over the cell: the sum of its coefficients."""
+    return sum((sp.Abs(z) for z in sp.Poly(form, s, t).coeffs()), start=sp.S.Zero)
+
+
+REMAINDERS = Formula.build(
+    "remainders",
+    "Bounds $R$ and $S$ over the cell of what a quadratic patch leaves out of the derivatives of "
+    "$n·x$ by $s$ and $t$, from bounds $T0$, …, $T3$ of the third derivatives.",
+    inputs=THIRDS,
+    outputs=[
+        (
+            z.name,
+            _largest(sp.diff(_cubic(THIRDS, s, t), by)).xreplace({sp.Abs(k): k for k in THIRDS}),
+        )
+        for z, by in ((R, s), (S, t))
+    ],
+)
+
+
+def _excesses() -> Formula:
+    """Bound both derivatives over the cell, and the combinations of them that are s and t."""
+    along, across = P + A * s + B * t, Q + B * s + C * t
+    linear = {"p": along, "q": across, "u": C * along - B * across, "v": A * across - B * along}
+    outputs = []
+    for name, form in linear.items():
+        value = substitute(form, {s: sp.S.Zero, t: sp.S.Zero})
+        rest = sum(
+            (sp.Abs(sp.diff(form, z)) * bound for z, bound in ((P, R), (Q, S))), start=sp.S.Zero
+        )
+        slope = _largest(sp.expand(form - value)).xreplace(
+            {sp.Abs(sign * SOLUTION.D): sp.Abs(D) for sign in (-1, 1)}
+        )
+        outputs.append((name, sp.Abs(sp.expand(value)) - slope - rest))
+    return Formula.build(
+        "excesses",
+        "If one of these four numbers is positive then no point of the cell has the normal $n$: the "
+        "derivatives of $n·x$ by $s$ and $t$, or the combinations of them from which one parameter "
+        "is eliminated, exceed what they change over the cell. $R$ and $S$ are bounds of what a "
+        "quadratic patch leaves out of the derivatives.",
+        inputs=[*LINEAR_FORMS, R, S],
+        terms=[("D", SOLUTION.D)],
+        outputs=outputs,
+    )
+
+
+EXCESSES = _excesses()
+
+# --- one point ------------------------------------------------------------------------------------
+
+
+def _contraction() -> Formula:
+    """Multiply the change of the Hessian over the cell by the inverse of the Hessian."""
+    hessian = sp.hessian(_cubic(THIRDS, s, t), (s, t))
+    inverse = sp.Matrix([[y11, y12], [y12, y22]])
+    change = inverse * hessian
+    radii = inverse.applyfunc(sp.Abs) * sp.hessian(_cubic(RADII, s, t), (s, t))
+    rows = [
+        sum((_largest(sp.expand(change[k, j])) for j in (0, 1)), start=sp.S.Zero)
+        + sum((sp.expand(radii[k, j]).subs({s: 1, t: 1}) for j in (0, 1)), start=sp.S.Zero)
+        for k in (0, 1)
+    ]
+    entries = sp.Matrix([[C, -B], [-B, A]]) / D
+    return Formula.build(
+        "contraction",
+        "The inverse $y11$, $y12$, $y22$ of the Hessian $A$, $B$, $C$ at the centre, and bounds "
+        "$q1$ and $q2$ of the rows of its product with the change of the Hessian over the cell; the "
+        "third derivatives are $T0$, …, $T3$ up to $R0$, …, $R3$. If both are below 1 then at most "
+        "one point of the cell has the normal $n$ or $−n$.",
+        inputs=[A, B, C, *THIRDS, *RADII],
+        terms=[("D", SOLUTION.D)],
+        outputs=[
+            ("y11", entries[0, 0]),
+            ("y12", entries[0, 1]),
+            ("y22", entries[1, 1]),
+            ("q1", rows[0]),
+            ("q2", rows[1]),
+        ],
+    )
+
+
+CONTRACTION = _contraction()
+
+# --- normals --------------------------------------------------------------------------------------
+
+
+def _ordinate(polynomial: sp.Expr, places: dict[sp.Symbol, sp.Expr]) -> sp.Expr:
+    """Return a Bernstein ordinate over −1 … 1 of a polynomial of degree 2 in each parameter."""
+    for z, place in places.items():
+        low, middle, high = (polynomial.subs(z, k) for k in (-1, 0, 1))
+        polynomial = {-1: low, 0: 2 * middle - (low + high) / 2, 1: high}[int(place)]
+    return polynomial
+
+
+def _normal_ordinates() -> Formula:
+    """Expand x_s × x_t of the patch by s and t; products of vectors stand for themselves."""
+    along, across = (d, a, b), (e, b, c)
+    powers = (sp.S.One, s, t)
+    normal = sum(
+        (
+            Cross(m, k) * i * j
+            for (m, i), (k, j) in product(
+                zip(along, powers, strict=True), zip(across, powers, strict=True)
+            )
+            if m != k
+        ),
+        start=sp.S.Zero,
+    )
+    names = (sp.S.NegativeOne, sp.S.Zero, sp.S.One)
+    return Formula.build(
+        "normal_ordinates",
+        "The Bernstein ordinates over the cell of $x_s × x_t$ of a patch: its normals lie in the "
+        "cone that they span.",
+        inputs=VECTORS,
+        outputs=[
+            (f"N{k}", sp.expand(_ordinate(normal, {s: i, t: j})))
+            for k, (i, j) in enumerate(product(names, names))
+        ],
+    )
+
+
+NORMAL_ORDINATES = _normal_ordinates()
+
+# --- no point, two, or a double one ---------------------------------------------------------------
+#
+# Where the Hessian has one small eigenvalue, parameters p along the other eigenvector (x, y) and w
+# across it are used: s = x p − y w, t = y p + x w. The derivative by p of n·x vanishes on one curve
+# p(w), along which the other derivative, φ(w), is strictly convex or concave.
+
+
+def _turned(thirds: Iterable[sp.Expr]) -> list[sp.Expr]:
+    """Return the third derivatives by p and w from those by s and t."""
+    form = _cubic(thirds, x * p - y * w, y * p + x * w)
+    orders = [(3, 0), (2, 1), (1, 2), (0, 3)]
+    return [sp.expand(sp.diff(form, p, i, w, j)) for i, j in orders]
+
+
+def _without_signs(expression: sp.Expr) -> sp.Expr:
+    terms = (term.as_coeff_Mul() for term in sp.Add.make_args(expression))
+    size = {x: sp.Abs(x), y: sp.Abs(y)}
+    return sum((abs(k) * rest.xreplace(size) for k, rest in terms), start=sp.S.Zero)
+
+
+TURNED = Formula.build(
+    "turned",
+    "The third derivatives $T0$, …, $T3$ by $s$ and $t$, up to $R0$, …, $R3$, as those by $p$ and "
+    "$w$ in turned coordinates, $s = x p - y w$, $t = y p + x w$.",
+    inputs=[*THIRDS, *RADII, x, y],
+    outputs=[
+        *((f"M{k}", z) for k, z in enumerate(_turned(THIRDS))),
+        *((f"S{k}", _without_signs(z)) for k, z in enumerate(_turned(RADII))),
+    ],
+)
+
+TURNED_FORMS = Formula.build(
+    "turned_forms",
+    "The linear forms by $p$ and $w$ in turned coordinates, $s = x p - y w$, $t = y p + x w$.",
+    inputs=[*LINEAR_FORMS, x, y],
+    outputs=[
+        (
+            f"{form.name}_m",
+            sp.expand(sp.diff(substitute(MODEL, {s: x * p - y * w, t: y * p + x * w}), *by)).subs(
+                {p: 0, w: 0}
+            ),
+        )
+        for form, by in zip(LINEAR_FORMS, ((p, p), (p, w), (w, w), (p,), (w,)), strict=True)
+    ],
+)
+
+G0, G1, G2, W, c2, g, h, k, m, r, z = (
+    scalar(name) for name in ("G0", "G1", "G2", "W", "c2", "g", "h", "k", "m", "r", "z")
+)
+first, second = scalar("o1"), scalar("o2")
+
+FOLD_CURVE = Formula.build(
+    "fold_curve",
+    "The curve $p(w)$ on which the derivative of $n·x$ by $p$ vanishes, for $|p| ≤ h$, $|w| ≤ W$: "
+    "$m > 0$ bounds the second derivative by $p$ from below, $k$ bounds $|p'|$, and $g$ how much "
+    "the second derivative of the other equation along the curve differs from the third derivative "
+    "by $w$. The curve reaches from $-W$ to $W$ if $z < 0$. $A$ and $P$ are derivatives by $p$ at "
+    "the centre, where that by $p$ and $w$ vanishes; $G0$, $G1$, $G2$ bound third derivatives, and "
+    "$o1$, $o2$ the rounding of first and second ones.",
+    inputs=[A, P, G0, G1, G2, h, W, first, second],
+    outputs=[
+        ("m", sp.Abs(A) - G0 * h - G1 * W - second),
+        ("k", (G1 * h + G2 * W + second) / m),
+        ("g", 3 * G2 * k + 3 * G1 * k**2 + G0 * k**3),
+        ("z", sp.Abs(P) + first + second * W + G2 * W**2 / 2 - m * h),
+    ],
+)
+
+FOLD_EXTREME = Formula.build(
+    "fold_extreme",
+    "At a place near the extreme of the other equation along the curve of `fold_curve`: if $|Q| > "
+    "r$ and $Q$ has the sign of its second derivative, at least $c2$ in absolute value, then it has "
+    "no zero. Zeros are at most $y$ and $z$ away by $w$ and $p$ if $|Q| ≤ r$, and if $Q$ has the "
+    "other sign.",
+    inputs=[*LINEAR_FORMS, G0, G1, G2, k, m, c2, first, second],
+    terms=[
+        ("d", (sp.Abs(P) + first) / m),
+        (
+            "g",
+            sp.Abs(C - B**2 / A)
+            + (G2 + 2 * k * G1 + k**2 * G0) * scalar("d")
+            + second * (1 + k) ** 2,
+        ),
+        ("h", first + k * (sp.Abs(P) + first)),
+    ],
+    outputs=[
+        ("r", h + g**2 / (2 * c2)),
+        ("y", (g + sp.sqrt(g**2 + 2 * c2 * (sp.Abs(Q) + h))) / c2),
+        ("z", scalar("d") + k * y),
+    ],
+)
+
+FORMULAS = (
+    MODEL_AT,
+    REMAINDERS,
+    EXCESSES,
+    CONTRACTION,
+    NORMAL_ORDINATES,
+    TURNED,
+    TURNED_FORMS,
+    FOLD_CURVE,
+    FOLD_EXTREME,
+)
