@@ -13,6 +13,7 @@ import sympy as sp
 
 from . import (
     curve,
+    elementary,
     faces,
     gaussian_image,
     jet,
@@ -46,6 +47,7 @@ def derive() -> dict[str, str]:
         "__init__.py": '"""Kernels and formulas written by `make generate`: never edit these."""\n',
         "curve.py": curve_source(),
         "differences.py": differences_source(),
+        "elementary.py": elementary_source(),
         "faces.py": faces_source(),
         "gaussian_image.py": gaussian_image_source(),
         "icosahedron.py": icosahedron_source(),
@@ -160,6 +162,12 @@ def differences_source() -> str:
     return mathematics(title, tables.differences())
 
 
+def elementary_source() -> str:
+    """Return generated/elementary.py: the functions of tapes, and the codes of operations."""
+    title = "Elementary functions: the formulas and tables of symbolic/elementary.py."
+    return mathematics(title, elementary.constants(), functions(elementary.FORMULAS))
+
+
 def faces_source() -> str:
     """Return generated/faces.py: surfaces of revolution and offsets, from derivatives."""
     title = "Faces of CAD parts: the formulas of symbolic/faces.py as functions of vectors."
@@ -265,7 +273,7 @@ def proved_source() -> str:
 def taylor_source() -> str:
     """Return generated/taylor.py: products and compositions of Taylor polynomials."""
     title = "Taylor polynomials in two variables: the formulas of symbolic/taylor.py."
-    return mathematics(title, taylor.constants(), functions(taylor.FORMULAS))
+    return mathematics(title, functions(taylor.FORMULAS))
 
 
 def surface_tapes_source() -> str:

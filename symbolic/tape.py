@@ -11,7 +11,7 @@ from typing import Any, cast
 
 import sympy as sp
 
-from .taylor import FUNCTIONS
+from .elementary import FUNCTIONS
 
 __all__ = ["NoTapeError", "Step", "tape_steps"]
 
@@ -68,7 +68,7 @@ class _Steps:
     def __init__(self, symbols: Mapping[sp.Symbol, Step]) -> None:
         self.steps: list[Step] = []
         self._numbers: dict[Step, int] = {}
-        self._found = {x: self._write(*step) for x, step in symbols.items()}
+        self._found: dict[sp.Expr, int] = {x: self._write(*y) for x, y in symbols.items()}
 
     def define(self, symbol: sp.Symbol, expression: sp.Expr) -> None:
         """Write the steps of an expression that a symbol stands for."""

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...generated import elementary
 from ...generated import taylor as formulas
 from ...generated.vectors import Taylor
 from ..machine_code.jit import jit, loop
@@ -28,7 +29,7 @@ U, V, UU, UV, VV = (np.uint64(k * LANES) for k in range(1, 6))
 class Tape(NamedTuple):
     """Three functions of u and v as operations, each on results of earlier ones.
 
-    Operations (k, 4) int64 are a code of `generated.taylor` and the rows of arguments. Numbers
+    Operations (k, 4) int64 are a code of `generated.elementary` and the rows of arguments. Numbers
     (k, 2) are constants, and how far the exact ones may be from them. Outputs (3,) int64 are the
     rows of x, y and z.
     """
@@ -64,9 +65,9 @@ def put(registers, at, k, value, u, v, uu, uv, vv):
 def write_variables(code, number, u, v, registers, at, count):
     """Write u, v or a constant."""
     for k in range(count):
-        if code == formulas.U:
+        if code == elementary.U:
             put(registers, at, k, u[k], 1.0, 0.0, 0.0, 0.0, 0.0)
-        elif code == formulas.V:
+        elif code == elementary.V:
             put(registers, at, k, v[k], 0.0, 1.0, 0.0, 0.0, 0.0)
         else:
             put(registers, at, k, number, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -137,10 +138,10 @@ def write_cofunction(code, registers, at, count):
     for k in range(count):
         i, j = np.uint64(at + k), np.uint64(at + POINT + k)
         sine, cosine = registers[i], registers[i + U]
-        if code == formulas.SIN:
-            f1, f2, _ = formulas.cos_taylor(cosine, sine)
+        if code == elementary.SIN:
+            f1, f2, _ = elementary.cos_taylor(cosine, sine)
         else:
-            f1, f2, _ = formulas.cosh_taylor(cosine, sine)
+            f1, f2, _ = elementary.cosh_taylor(cosine, sine)
         registers[j], registers[j + U], registers[j + V] = cosine, f1, f2
 
 
@@ -151,21 +152,21 @@ def evaluate_points(tape, u, v, count, registers):
         code = tape.operations[row, 0]
         a, b = POINT * tape.operations[row, 1], POINT * tape.operations[row, 2]
         at = POINT * row
-        if code == formulas.PRODUCT:
+        if code == elementary.PRODUCT:
             multiply(registers, a, b, at, count)
-        elif code == formulas.SUM:
+        elif code == elementary.SUM:
             add(registers, a, b, at, count)
-        elif code == formulas.SCALE:
+        elif code == elementary.SCALE:
             scale(registers, a, tape.numbers[row, 0], at, count)
-        elif code == formulas.SHIFT:
+        elif code == elementary.SHIFT:
             shift(registers, a, tape.numbers[row, 0], at, count)
-        elif code == formulas.NEGATIVE:
+        elif code == elementary.NEGATIVE:
             scale(registers, a, -1.0, at, count)
-        elif code <= formulas.CONSTANT:
+        elif code <= elementary.CONSTANT:
             write_variables(code, tape.numbers[row, 0], u, v, registers, at, count)
-        elif code != formulas.COS and code != formulas.COSH:
+        elif code != elementary.COS and code != elementary.COSH:
             write_coefficients(code, registers, a, at, count)
-            if code == formulas.SIN or code == formulas.SINH:
+            if code == elementary.SIN or code == elementary.SINH:
                 write_cofunction(code, registers, at, count)
                 compose(registers, a, at + POINT, count)
             compose(registers, a, at, count)

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...generated import elementary
 from ...generated import taylor as formulas
 from ...generated.vectors import CubicTaylor, Taylor
 from ..machine_code.jit import jit, loop
@@ -99,11 +100,11 @@ def write_variables(code, numbers, centres, half_widths, terms, middles, radii, 
             middles[i], radii[i] = 0.0, 0.0
     for k in range(count):
         i = np.uint64(at + k)
-        if code == formulas.CONSTANT:
+        if code == elementary.CONSTANT:
             middles[i], radii[i] = numbers[0], numbers[1]
         else:
             middles[i], radii[i] = centres[k, code], half_widths[k, code]
-            middles[i + (U if code == formulas.U else V)] = 1.0
+            middles[i + (U if code == elementary.U else V)] = 1.0
 
 
 @loop
@@ -194,12 +195,12 @@ def write_coranges(code, middles, radii, f, count):
     for k in range(count):
         i = np.uint64(f + k)
         y, w = middles[i], middles[i + U]
-        if code == formulas.SIN:
-            f1, f2, f3 = formulas.cos_taylor(w, y)
+        if code == elementary.SIN:
+            f1, f2, f3 = elementary.cos_taylor(w, y)
         else:
-            f1, f2, f3 = formulas.cosh_taylor(w, y)
+            f1, f2, f3 = elementary.cosh_taylor(w, y)
         d, e = radii[i], radii[i + U]
-        _, g2, g3 = formulas.cosh_taylor(e, d)
+        _, g2, g3 = elementary.cosh_taylor(e, d)
         middles[i], middles[i + U], middles[i + V], middles[i + UU] = w, f1, f2, f3
         radii[i], radii[i + U] = e, d
         radii[i + V], radii[i + UU] = g2 + 3.0 * UNIT * abs(f2), g3 + 3.0 * UNIT * abs(f3)
@@ -253,24 +254,24 @@ def evaluate_boxes(tape, order, centres, half_widths, count, middles, radii, end
         a, b = BALL * tape.operations[row, 1], BALL * tape.operations[row, 2]
         number, distance = tape.numbers[row, 0], tape.numbers[row, 1]
         at = BALL * row
-        if code == formulas.PRODUCT:
+        if code == elementary.PRODUCT:
             multiply(terms, middles, radii, a, b, at, count)
-        elif code == formulas.SUM:
+        elif code == elementary.SUM:
             add(terms, middles, radii, a, b, at, count)
-        elif code == formulas.SCALE:
+        elif code == elementary.SCALE:
             scale(number, distance, terms, middles, radii, a, at, count)
-        elif code == formulas.NEGATIVE:
+        elif code == elementary.NEGATIVE:
             scale(-1.0, 0.0, terms, middles, radii, a, at, count)
-        elif code == formulas.SHIFT:
+        elif code == elementary.SHIFT:
             shift(number, distance, terms, middles, radii, a, at, count)
-        elif code <= formulas.CONSTANT:
+        elif code <= elementary.CONSTANT:
             write_variables(
                 code, tape.numbers[row], centres, half_widths, terms, middles, radii, at, count
             )
-        elif code != formulas.COS and code != formulas.COSH:
+        elif code != elementary.COS and code != elementary.COSH:
             write_ranges(code, middles, radii, a, f, ends, count)
             compose(terms, middles, radii, a, f, at, count)
-            if code == formulas.SIN or code == formulas.SINH:
+            if code == elementary.SIN or code == elementary.SINH:
                 write_coranges(code, middles, radii, f, count)
                 compose(terms, middles, radii, a, f, at + BALL, count)
     hide_unknown(tape, terms, middles, radii, count)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ...generated import taylor as formulas
+from ...generated import elementary
 from ..machine_code.jit import loop
 
 __all__ = ["UNIT", "coefficients", "error_of_rounding", "ranges"]
@@ -20,58 +20,58 @@ def coefficients(code, x):
 
     They are NaN or infinite where there are none.
     """
-    if code == formulas.RECIPROCAL:
+    if code == elementary.RECIPROCAL:
         y = 1.0 / x
-        f1, f2, f3 = formulas.reciprocal_taylor(y)
+        f1, f2, f3 = elementary.reciprocal_taylor(y)
         return y, f1, f2, f3
-    if code == formulas.SQUARE:
-        f1, f2, f3 = formulas.square_taylor(x)
+    if code == elementary.SQUARE:
+        f1, f2, f3 = elementary.square_taylor(x)
         return x * x, f1, 1.0, 0.0
-    if code == formulas.CUBE:
-        f1, f2, f3 = formulas.cube_taylor(x)
+    if code == elementary.CUBE:
+        f1, f2, f3 = elementary.cube_taylor(x)
         return x * x * x, f1, f2, 1.0
-    if code == formulas.SQRT:
+    if code == elementary.SQRT:
         y = math.sqrt(x)
-        f1, f2, f3 = formulas.sqrt_taylor(y)
+        f1, f2, f3 = elementary.sqrt_taylor(y)
         return y, f1, f2, f3
-    if code == formulas.EXP:
+    if code == elementary.EXP:
         y = math.exp(x)
-        f1, f2, f3 = formulas.exp_taylor(y)
+        f1, f2, f3 = elementary.exp_taylor(y)
         return y, f1, f2, f3
-    if code == formulas.LOG:
-        f1, f2, f3 = formulas.log_taylor(x)
+    if code == elementary.LOG:
+        f1, f2, f3 = elementary.log_taylor(x)
         return math.log(x), f1, f2, f3
-    if code == formulas.SIN or code == formulas.COS:
+    if code == elementary.SIN or code == elementary.COS:
         y, w = math.sin(x), math.cos(x)
-        if code == formulas.SIN:
-            f1, f2, f3 = formulas.sin_taylor(y, w)
+        if code == elementary.SIN:
+            f1, f2, f3 = elementary.sin_taylor(y, w)
             return y, f1, f2, f3
-        f1, f2, f3 = formulas.cos_taylor(w, y)
+        f1, f2, f3 = elementary.cos_taylor(w, y)
         return w, f1, f2, f3
-    if code == formulas.SINH or code == formulas.COSH:
+    if code == elementary.SINH or code == elementary.COSH:
         y, w = math.sinh(x), math.cosh(x)
-        if code == formulas.SINH:
-            f1, f2, f3 = formulas.sinh_taylor(y, w)
+        if code == elementary.SINH:
+            f1, f2, f3 = elementary.sinh_taylor(y, w)
             return y, f1, f2, f3
-        f1, f2, f3 = formulas.cosh_taylor(w, y)
+        f1, f2, f3 = elementary.cosh_taylor(w, y)
         return w, f1, f2, f3
-    if code == formulas.TANH:
+    if code == elementary.TANH:
         y = math.tanh(x)
-        f1, f2, f3 = formulas.tanh_taylor(y)
+        f1, f2, f3 = elementary.tanh_taylor(y)
         return y, f1, f2, f3
-    if code == formulas.ASIN:
-        f1, f2, f3 = formulas.asin_taylor(x)
+    if code == elementary.ASIN:
+        f1, f2, f3 = elementary.asin_taylor(x)
         return math.asin(x), f1, f2, f3
-    f1, f2, f3 = formulas.atan_taylor(x)
+    f1, f2, f3 = elementary.atan_taylor(x)
     return math.atan(x), f1, f2, f3
 
 
 @loop
 def error_of_rounding(code, order, size):
     """Return a bound of the error of a coefficient of this order whose absolute value is `size`."""
-    function = code - formulas.RECIPROCAL
-    roundings = formulas.ROUNDINGS[function, order] * UNIT
-    return roundings * (size + formulas.CANCELLING[function])
+    function = code - elementary.RECIPROCAL
+    roundings = elementary.ROUNDINGS[function, order] * UNIT
+    return roundings * (size + elementary.CANCELLING[function])
 
 
 @loop
@@ -93,16 +93,16 @@ def ranges(code, low, high, f):
     Between their extremes they are monotone, so that the values there, and at the ends, bound them.
     Radii are infinite where the function has a singularity, or nothing is known.
     """
-    function = code - formulas.RECIPROCAL
+    function = code - elementary.RECIPROCAL
     for k in range(4):
         f[0, k], f[1, k] = math.inf, -math.inf
     include(code, low, f)
     include(code, high, f)
-    for k in range(formulas.CRITICAL.shape[1]):
-        x = formulas.CRITICAL[function, k]
+    for k in range(elementary.EXTREMES.shape[1]):
+        x = elementary.EXTREMES[function, k]
         if low < x < high:
             include(code, x, f)
-    if formulas.SPACING[function] > 0.0:
+    if elementary.SPACING[function] > 0.0:
         if not max(abs(low), abs(high)) < FAR:
             for k in range(4):
                 f[0, k], f[1, k] = -1.0, 1.0

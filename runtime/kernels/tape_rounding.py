@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...generated import elementary
 from ...generated import taylor as formulas
 from ...generated.vectors import Taylor
 from ..machine_code.jit import jit, loop
@@ -59,9 +60,9 @@ def of_sum(code, factor, distance, middles, radii, errors, a, b, at, count):
             lane = j * LANES + k
             x, y, z = np.uint64(a + lane), np.uint64(b + lane), np.uint64(at + lane)
             size = size_at(middles, radii, z)
-            if code == formulas.SUM:
+            if code == elementary.SUM:
                 error = errors[x] + errors[y] + UNIT * size
-            elif code == formulas.SHIFT:
+            elif code == elementary.SHIFT:
                 error = errors[x] + (distance + UNIT * size if j == 0 else 0.0)
             else:
                 largest = size_at(middles, radii, x) + errors[x]
@@ -127,15 +128,15 @@ def rounding_of_points(tape, centres, half_widths, count, middles, radii, errors
         a, b = BALL * tape.operations[row, 1], BALL * tape.operations[row, 2]
         factor, distance = tape.numbers[row, 0], tape.numbers[row, 1]
         at = BALL * row
-        if code <= formulas.CONSTANT:
+        if code <= elementary.CONSTANT:
             for j in range(TERMS):
                 for k in range(count):
-                    value = distance if code == formulas.CONSTANT and j == 0 else 0.0
+                    value = distance if code == elementary.CONSTANT and j == 0 else 0.0
                     errors[np.uint64(at + j * LANES + k)] = value
-        elif code == formulas.PRODUCT:
+        elif code == elementary.PRODUCT:
             of_product(middles, radii, errors, a, b, at, count)
-        elif code < formulas.PRODUCT:
-            if code == formulas.NEGATIVE:
+        elif code < elementary.PRODUCT:
+            if code == elementary.NEGATIVE:
                 factor, distance = -1.0, 0.0
             of_sum(code, factor, distance, middles, radii, errors, a, b, at, count)
         else:

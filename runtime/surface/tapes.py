@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...generated import taylor as codes
+from ...generated import elementary as codes
 from ..base import compiling  # noqa: F401 - announces compilation on terminals
 from ..domain.domain import Interval
 from ..kernels.tape import Tape, points_jets
@@ -35,12 +35,13 @@ class TapeWriter:
         self._rows: dict[object, int] = {}
 
     def write(self, name: str, *arguments: int) -> int:
-        """Return the row of an operation, by its name in `generated.taylor`, on other rows."""
-        code = getattr(codes, name.upper())
+        """Return the row of an operation, by its name in `generated.elementary`, on other rows."""
+        code: int = getattr(codes, name.upper())
         first = PAIRS.get(code, code)
-        row = self._row(first, *arguments)
+        a, b = (*arguments, 0, 0)[:2]
+        row = self._row(first, a, b)
         for second in (x for x, y in PAIRS.items() if y == first):
-            other = self._row(second, *arguments)
+            other = self._row(second, a, b)
             row = row if code == first else other
         return row
 
@@ -174,10 +175,12 @@ def _constant_rows(tape: Tape) -> NDArray[np.bool_]:
 
 def _values(tape: Tape) -> Array:
     """Return midpoints and radii (k, 2) of the values of all rows, at an arbitrary place."""
-    registers = np.empty((2, BALL * (len(tape.operations) + 1)))
+    middles, radii = np.empty((2, BALL * (len(tape.operations) + 1)))
     place = np.zeros((1, 2))
-    bounds_of_boxes(tape, 2, place, place, *registers, np.empty((2, 4)), np.empty((1, 2, 10, 3)))
-    return registers[:, : -int(BALL) : int(BALL)].T
+    bounds = np.empty((1, 2, 10, 3))
+    bounds_of_boxes(tape, 2, place, place, middles, radii, np.empty((2, 4)), bounds)
+    first = slice(0, -int(BALL), int(BALL))  # the first lane of each row
+    return np.stack([middles[first], radii[first]], axis=1)
 
 
 def _needed(tape: Tape) -> Tape:
@@ -203,8 +206,9 @@ def _needed(tape: Tape) -> Tape:
 def values_of(tape: Tape, u: Array, v: Array) -> tuple[Array, Array]:
     """Return the points (k, 3) of a tape, and bounds (k, 3) of their rounding errors."""
     jets, errors = np.empty((len(u), 6, 3)), np.empty((len(u), 6, 3))
-    registers = np.empty((3, BALL * (len(tape.operations) + 1)))
-    points_jets(tape, u, v, registers[0], jets)
+    middles, radii, changes = np.empty((3, BALL * (len(tape.operations) + 1)))
+    points_jets(tape, u, v, middles, jets)
     places = np.stack([u, v], axis=1)
-    rounding_of_boxes(tape, places, np.zeros_like(places), *registers, np.empty((2, 4)), errors)
+    points = np.zeros_like(places)
+    rounding_of_boxes(tape, places, points, middles, radii, changes, np.empty((2, 4)), errors)
     return jets[:, 0], errors[:, 0]

@@ -139,8 +139,9 @@ class Traced:
         return self.written("reciprocal", self) * other
 
     def __pow__(self, other: object) -> Traced:
-        if isinstance(other, Real) and float(2 * other).is_integer() and other != 0:
-            return Traced(self.writer, self.writer.power(self.row, int(2 * other)))
+        halves = 2.0 * float(other) if isinstance(other, Real) else math.nan
+        if halves.is_integer() and halves != 0.0:
+            return Traced(self.writer, self.writer.power(self.row, int(halves)))
         return self.written("exp", self.log() * other)
 
     def __rpow__(self, other: object) -> Traced:

@@ -1,0 +1,296 @@
+"""Elementary functions: the formulas and tables of symbolic/elementary.py.
+
+Written by `make generate`, SymPy 1.14.0, float64, no fast-math: do not edit, change symbolic/.
+"""
+
+import math
+
+import numpy as np
+
+from .vectors import inline
+
+# The operations of tapes; from RECIPROCAL on, they are functions.
+U = 0
+V = 1
+CONSTANT = 2
+SUM = 3
+NEGATIVE = 4
+SHIFT = 5
+SCALE = 6
+PRODUCT = 7
+RECIPROCAL = 8
+SQUARE = 9
+CUBE = 10
+SQRT = 11
+EXP = 12
+LOG = 13
+SIN = 14
+COS = 15
+SINH = 16
+COSH = 17
+TANH = 18
+ASIN = 19
+ATAN = 20
+# For each function: how often value, f1, f2 and f3 are rounded,
+ROUNDINGS = np.array(
+    [
+        [1, 4, 5, 8],
+        [1, 1, 0, 0],
+        [2, 2, 1, 0],
+        [1, 4, 10, 16],
+        [4, 4, 6, 6],
+        [4, 1, 5, 7],
+        [4, 4, 6, 6],
+        [4, 5, 6, 6],
+        [4, 4, 6, 6],
+        [4, 4, 6, 6],
+        [4, 12, 16, 25],
+        [4, 6, 23, 40],
+        [4, 3, 9, 17],
+    ]
+)
+# bounds of the sums of absolute values where terms cancel,
+CANCELLING = np.array(
+    [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 5.333333333333333, 0.0, 1.6666666666666667]
+)
+# and where there are extremes: at multiples of this distance, and at these places.
+SPACING = np.array(
+    [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.5707963267948966, 1.5707963267948966, 0.0, 0.0, 0.0, 0.0, 0.0]
+)
+EXTREMES = np.array(
+    [
+        [0.0, np.nan, np.nan, np.nan, np.nan],
+        [0.0, np.nan, np.nan, np.nan, np.nan],
+        [0.0, np.nan, np.nan, np.nan, np.nan],
+        [np.nan, np.nan, np.nan, np.nan, np.nan],
+        [np.nan, np.nan, np.nan, np.nan, np.nan],
+        [0.0, np.nan, np.nan, np.nan, np.nan],
+        [np.nan, np.nan, np.nan, np.nan, np.nan],
+        [np.nan, np.nan, np.nan, np.nan, np.nan],
+        [0.0, np.nan, np.nan, np.nan, np.nan],
+        [0.0, np.nan, np.nan, np.nan, np.nan],
+        [-1.1462158347805889, -0.6584789484624084, 0.0, 0.6584789484624084, 1.1462158347805889],
+        [0.0, np.nan, np.nan, np.nan, np.nan],
+        [-1.0, -0.5773502691896257, 0.0, 0.5773502691896257, 1.0],
+    ]
+)
+
+
+@inline
+def reciprocal_taylor(y):
+    """The Taylor coefficients f1, f2, f3 of reciprocal at x, from x or values there.
+
+        f1 = - y**2
+        f2 = y**3
+        f3 = - y**4
+
+    Source: beyond the paper; 8 operations as written, 8 here.
+    """
+    f1 = -y * y
+    f2 = y * y * y
+    f3 = -y * y * y * y
+    return f1, f2, f3
+
+
+@inline
+def square_taylor(x):
+    """The Taylor coefficients f1, f2, f3 of square at x, from x or values there.
+
+        f1 = 2*x
+        f2 = 1
+        f3 = 0
+
+    Source: beyond the paper; 1 operations as written, 1 here.
+    """
+    f1 = 2 * x
+    f2 = 1
+    f3 = 0
+    return f1, f2, f3
+
+
+@inline
+def cube_taylor(x):
+    """The Taylor coefficients f1, f2, f3 of cube at x, from x or values there.
+
+        f1 = 3*x**2
+        f2 = 3*x
+        f3 = 1
+
+    Source: beyond the paper; 3 operations as written, 3 here.
+    """
+    f1 = 3 * x * x
+    f2 = 3 * x
+    f3 = 1
+    return f1, f2, f3
+
+
+@inline
+def sqrt_taylor(y):
+    """The Taylor coefficients f1, f2, f3 of sqrt at x, from x or values there.
+
+        w = 1/y
+        f1 = w/2
+        f2 = - w**3/8
+        f3 = w**5/16
+
+    Source: beyond the paper; 10 operations as written, 10 here.
+    """
+    w = 1.0 / y
+    f1 = 0.5 * w
+    f2 = -0.125 * w * w * w
+    f3 = 0.0625 * w * w * w * w * w
+    return f1, f2, f3
+
+
+@inline
+def exp_taylor(y):
+    """The Taylor coefficients f1, f2, f3 of exp at x, from x or values there.
+
+        f1 = y
+        f2 = y/2
+        f3 = y/6
+
+    Source: beyond the paper; 2 operations as written, 2 here.
+    """
+    f1 = y
+    f2 = 0.5 * y
+    f3 = (1.0 / 6.0) * y
+    return f1, f2, f3
+
+
+@inline
+def log_taylor(x):
+    """The Taylor coefficients f1, f2, f3 of log at x, from x or values there.
+
+        w = 1/x
+        f1 = w
+        f2 = - w**2/2
+        f3 = w**3/3
+
+    Source: beyond the paper; 6 operations as written, 6 here.
+    """
+    w = 1.0 / x
+    f1 = w
+    f2 = -0.5 * w * w
+    f3 = (1.0 / 3.0) * w * w * w
+    return f1, f2, f3
+
+
+@inline
+def sin_taylor(y, w):
+    """The Taylor coefficients f1, f2, f3 of sin at x, from x or values there.
+
+        f1 = w
+        f2 = - y/2
+        f3 = - w/6
+
+    Source: beyond the paper; 2 operations as written, 2 here.
+    """
+    f1 = w
+    f2 = -0.5 * y
+    f3 = -(1.0 / 6.0) * w
+    return f1, f2, f3
+
+
+@inline
+def cos_taylor(y, w):
+    """The Taylor coefficients f1, f2, f3 of cos at x, from x or values there.
+
+        f1 = - w
+        f2 = - y/2
+        f3 = w/6
+
+    Source: beyond the paper; 3 operations as written, 3 here.
+    """
+    f1 = -w
+    f2 = -0.5 * y
+    f3 = (1.0 / 6.0) * w
+    return f1, f2, f3
+
+
+@inline
+def sinh_taylor(y, w):
+    """The Taylor coefficients f1, f2, f3 of sinh at x, from x or values there.
+
+        f1 = w
+        f2 = y/2
+        f3 = w/6
+
+    Source: beyond the paper; 2 operations as written, 2 here.
+    """
+    f1 = w
+    f2 = 0.5 * y
+    f3 = (1.0 / 6.0) * w
+    return f1, f2, f3
+
+
+@inline
+def cosh_taylor(y, w):
+    """The Taylor coefficients f1, f2, f3 of cosh at x, from x or values there.
+
+        f1 = w
+        f2 = y/2
+        f3 = w/6
+
+    Source: beyond the paper; 2 operations as written, 2 here.
+    """
+    f1 = w
+    f2 = 0.5 * y
+    f3 = (1.0 / 6.0) * w
+    return f1, f2, f3
+
+
+@inline
+def tanh_taylor(y):
+    """The Taylor coefficients f1, f2, f3 of tanh at x, from x or values there.
+
+        f1 = - (y - 1)*(y + 1)
+        f2 = y*(y - 1)*(y + 1)
+        f3 = - (y - 1)*(y + 1)*(3*y**2 - 1)/3
+
+    Source: beyond the paper; 16 operations as written, 10 here.
+    """
+    t0 = (y - 1) * (y + 1)
+    f1 = -t0
+    f2 = t0 * y
+    f3 = -(1.0 / 3.0) * t0 * (3 * y * y - 1)
+    return f1, f2, f3
+
+
+@inline
+def asin_taylor(x):
+    """The Taylor coefficients f1, f2, f3 of asin at x, from x or values there.
+
+        w = 1/sqrt((1 - x)*(x + 1))
+        f1 = w
+        f2 = w**3*x/2
+        f3 = w**3*(3*w**2*x**2 + 1)/6
+
+    Source: beyond the paper; 18 operations as written, 16 here.
+    """
+    w = 1.0 / math.sqrt((1 - x) * (x + 1))
+    f1 = w
+    t0 = w * w * w
+    f2 = 0.5 * t0 * x
+    f3 = (1.0 / 6.0) * t0 * (3 * w * w * x * x + 1)
+    return f1, f2, f3
+
+
+@inline
+def atan_taylor(x):
+    """The Taylor coefficients f1, f2, f3 of atan at x, from x or values there.
+
+        w = 1/(x**2 + 1)
+        f1 = w
+        f2 = - w**2*x
+        f3 = w**2*(4*w*x**2 - 1)/3
+
+    Source: beyond the paper; 13 operations as written, 11 here.
+    """
+    t0 = x * x
+    w = 1.0 / (t0 + 1)
+    f1 = w
+    t1 = w * w
+    f2 = -t1 * x
+    f3 = (1.0 / 3.0) * t1 * (4 * t0 * w - 1)
+    return f1, f2, f3

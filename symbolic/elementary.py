@@ -1,0 +1,156 @@
+"""The elementary functions that tapes have: Taylor coefficients, their extremes and roundings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import sympy as sp
+
+from .formula import Formula
+from .notation import scalar
+
+__all__ = ["FORMULAS", "FUNCTIONS", "constants"]
+
+x, y, w = scalar("x"), scalar("y"), scalar("w")
+HIGHEST = 3  # order of Taylor coefficients
+# Errors of functions of the C library, in units of 2⁻⁵³: two units of the last place, which is
+# assumed, and more than what glibc states.
+LIBRARY = 4
+
+
+class Function(NamedTuple):
+    """A function of x, and what its derivatives are written in.
+
+    Their `values` are the value y of the function and, for some, a second one, w; `named` are terms
+    that several of them share. Where terms of derivatives cancel, the sums of their absolute values
+    are at most `cancelling`.
+    """
+
+    of: Any
+    values: Mapping[Any, Any] = {}
+    named: Mapping[str, Any] = {}
+    cancelling: Any = sp.S.Zero
+
+    @property
+    def coefficients(self) -> list[Any]:
+        """The function and its Taylor coefficients f1, f2, f3 at x."""
+        return [sp.diff(self.of, x, k) / sp.factorial(k) for k in range(HIGHEST + 1)]
+
+
+FUNCTIONS = {
+    "reciprocal": Function(1 / x, {x: 1 / y}),
+    "square": Function(x**2),
+    "cube": Function(x**3),
+    "sqrt": Function(sp.sqrt(x), {x: 1 / w**2}, {"w": 1 / y}),
+    "exp": Function(sp.exp(x), {sp.exp(x): y}),
+    "log": Function(sp.log(x), {x: 1 / w}, {"w": 1 / x}),
+    "sin": Function(sp.sin(x), {sp.sin(x): y, sp.cos(x): w}),
+    "cos": Function(sp.cos(x), {sp.cos(x): y, sp.sin(x): w}),
+    "sinh": Function(sp.sinh(x), {sp.sinh(x): y, sp.cosh(x): w}),
+    "cosh": Function(sp.cosh(x), {sp.cosh(x): y, sp.sinh(x): w}),
+    "tanh": Function(sp.tanh(x), {sp.tanh(x): y}, cancelling=sp.Rational(16, 3)),
+    "asin": Function(sp.asin(x), {1 - x**2: 1 / w**2}, {"w": 1 / sp.sqrt((1 - x) * (1 + x))}),
+    "atan": Function(
+        sp.atan(x), {1 + x**2: 1 / w}, {"w": 1 / (1 + x**2)}, cancelling=sp.Rational(5, 3)
+    ),
+}
+# The numbers that stand for operations of tapes.
+BASIC = ("u", "v", "constant", "sum", "negative", "shift", "scale", "product")
+CODES = {name: code for code, name in enumerate((*BASIC, *FUNCTIONS))}
+
+
+def _formula(name: str, function: Function) -> Formula:
+    positive = sp.Dummy(positive=True)
+    values = {key: value.xreplace({w: positive}) for key, value in function.values.items()}
+    outputs: list[Any] = [
+        sp.factor(sp.powdenest(f.subs(values), force=True)).xreplace({positive: w})
+        for f in function.coefficients[1:]
+    ]
+    given = sp.Tuple(*function.named.values(), *function.values.values(), *outputs).free_symbols
+    return Formula.build(
+        f"{name}_taylor",
+        f"The Taylor coefficients $f1$, $f2$, $f3$ of {name} at $x$, from $x$ or values there.",
+        inputs=[z for z in (x, y, w) if z in given and z.name not in function.named],
+        terms=[*function.named.items()],
+        outputs=[(f"f{k + 1}", f) for k, f in enumerate(outputs)],
+    )
+
+
+# --- where coefficients have extremes, and how they are rounded -----------------------------------
+
+
+def _critical(function: Function) -> tuple[float, list[float]]:
+    """Return the distance of places where Taylor coefficients may have extremes, or 0, and places.
+
+    The distance is that of the zeros of sin and cos. Singularities are places, too.
+    """
+    if function.of.has(sp.sin, sp.cos):
+        return float(sp.pi / 2), []
+    domain = sp.calculus.util.continuous_domain(function.of, x, sp.S.Reals).interior
+    slopes = [sp.diff(f, x) for f in function.coefficients]
+    singular: Any = sp.calculus.singularities(function.of, x)
+    found = [singular, *(_zeros(f, domain) for f in slopes if f.free_symbols)]
+    return 0.0, sorted({float(place) for places in found for place in places})
+
+
+def _zeros(slope: Any, domain: Any) -> Any:  # noqa: ANN401 - SymPy has no types
+    """Return the zeros of a derivative; in exponentials SymPy finds them."""
+    quotient: Any = sp.together(slope.rewrite(sp.exp))
+    return sp.solveset(quotient.as_numer_denom()[0], x, domain)
+
+
+def _roundings(expression: Any, known: Mapping[Any, int]) -> int:  # noqa: ANN401
+    """Return how many roundings a term of an expression goes through, with those of symbols."""
+    if expression in known:
+        return known[expression]
+    if expression.is_number:
+        return int(not expression.is_Integer)
+    base, exponent = expression.as_base_exp()
+    if exponent == 1:
+        counts = [_roundings(z, known) for z in expression.args]
+        return (sum(counts) if expression.is_Mul else max(counts)) + len(counts) - 1
+    if exponent.is_negative:
+        return _roundings(base**-exponent, known) + 1
+    if exponent == sp.S.Half:
+        return _roundings(base, known) + 1
+    return int(exponent) * (_roundings(base, known) + 1) - 1
+
+
+def _roundings_of(function: Function, formula: Formula) -> list[int]:
+    """Return the roundings of the value of a function and of its Taylor coefficients."""
+    exact = function.of.is_Pow  # up to the roundings of products, quotients and roots
+    value = _roundings(function.of, {x: 0}) if exact else LIBRARY
+    known = {x: 0, y: value, w: value}
+    for symbol, term in formula.definitions:
+        known[symbol] = _roundings(term, known)
+    return [value, *(known[z] for z in formula.outputs)]
+
+
+def constants() -> str:
+    """Return the codes of operations, and tables with a row for each function.
+
+    The tables hold the roundings of the value and of f1, f2, f3, each an error of 2⁻⁵³ relative to
+    the sum of the absolute values of their terms; the bounds of these sums where terms cancel; and
+    where values and coefficients have extremes.
+    """
+    critical = [_critical(function) for function in FUNCTIONS.values()]
+    width = max(len(places) for _, places in critical)
+    rows = (", ".join([*map(str, z), *["np.nan"] * (width - len(z))]) for _, z in critical)
+    roundings = [_roundings_of(*z) for z in zip(FUNCTIONS.values(), FORMULAS, strict=True)]
+    return "\n".join(
+        [
+            "# The operations of tapes; from RECIPROCAL on, they are functions.",
+            *(f"{name.upper()} = {code}" for name, code in CODES.items()),
+            "# For each function: how often value, f1, f2 and f3 are rounded,",
+            f"ROUNDINGS = np.array({roundings})",
+            "# bounds of the sums of absolute values where terms cancel,",
+            f"CANCELLING = np.array({[float(z.cancelling) for z in FUNCTIONS.values()]})",
+            "# and where there are extremes: at multiples of this distance, and at these places.",
+            f"SPACING = np.array({[distance for distance, _ in critical]})",
+            f"EXTREMES = np.array([{', '.join(f'[{z}]' for z in rows)}])",
+        ]
+    )
+
+
+FORMULAS = tuple(_formula(*item) for item in FUNCTIONS.items())
