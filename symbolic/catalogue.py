@@ -5,12 +5,14 @@ from types import MappingProxyType
 
 from . import (
     curve,
+    elementary,
     faces,
     gaussian_image,
     jet,
     mesh,
     offset,
     patch,
+    proved,
     rational,
     spline,
     support,
@@ -32,6 +34,8 @@ formulas: Mapping[str, Formula] = MappingProxyType(
             jet,
             rational,
             taylor,
+            elementary,
+            proved,
             faces,
             mesh,
             curve,
