@@ -19,7 +19,7 @@ from ..kernels.icosphere import is_icosphere, new_line
 from ..kernels.runs import MOST_FREQUENT
 from ..kernels.strips import Polyhedron
 
-__all__ = ["NormalBins", "icosahedron"]
+__all__ = ["NormalBins", "icosahedron", "sorted_normals"]
 
 NORMALS_PER_BIN = 2
 # The least and the largest number of squares along an edge: few normals may be close together.
@@ -117,22 +117,30 @@ class NormalBins:
     @cached_property
     def sorted(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         """The starts of bins (B + 1,); normals and their numbers (S, 4), in the order of bins."""
-        total, count = len(self.normals), 6 * self.grid**2
-        check_memory("search", total)
-        size = max(FEWEST_NORMALS, -(-total // min(thread_count(self.threads), MOST_COUNTS)))
-        bins = np.empty(total, dtype=np.int32)
-        counts = np.empty((-(-total // size), count), dtype=np.int64)
-        starts, ordered = np.empty(count + 1, dtype=np.int64), np.empty((total, 4))
+        check_memory("search", len(self.normals))
+        return sorted_normals(self.normals, self.frame, self.grid, self.threads)
 
-        def count_bins(first: int, last: int) -> None:
-            kernels.count_bins(
-                self.normals, self.frame, self.grid, first, last, bins, counts[first // size]
-            )
 
-        def place(first: int, last: int) -> None:
-            kernels.place_normals(self.normals, bins, first, last, counts[first // size], ordered)
+def sorted_normals(
+    normals: NDArray[np.float64], frame: NDArray[np.float64], grid: int, threads: int | None
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Return the starts of bins (6 grid² + 1,); normals and their numbers (S, 4), in their order.
 
-        list(over_ranges(count_bins, total, size, self.threads))
-        kernels.start_bins(counts, starts)
-        list(over_ranges(place, total, size, self.threads))
-        return starts, ordered
+    The bins are those of a linear map (3, 3), the frame, on the faces of a cube.
+    """
+    total, count = len(normals), 6 * grid**2
+    size = max(FEWEST_NORMALS, -(-total // min(thread_count(threads), MOST_COUNTS)))
+    bins = np.empty(total, dtype=np.int32)
+    counts = np.empty((-(-total // size), count), dtype=np.int64)
+    starts, ordered = np.empty(count + 1, dtype=np.int64), np.empty((total, 4))
+
+    def count_bins(first: int, last: int) -> None:
+        kernels.count_bins(normals, frame, grid, first, last, bins, counts[first // size])
+
+    def place(first: int, last: int) -> None:
+        kernels.place_normals(normals, bins, first, last, counts[first // size], ordered)
+
+    list(over_ranges(count_bins, total, size, threads))
+    kernels.start_bins(counts, starts)
+    list(over_ranges(place, total, size, threads))
+    return starts, ordered
