@@ -84,14 +84,12 @@ def boxes(surface: gm.Surface, count: int, width: float, seed: int) -> tuple[np.
     widths = np.broadcast_to(width * (high - low), (count, 2)).copy()
     shares = generator.uniform(-1.0, 1.0, (count, 2))
     shares = np.where(generator.random((count, 2)) < 0.5, np.sign(shares), shares)
-    # A rounding error could take a place out of its box.
-    inside = np.clip(centres + shares * widths, centres - widths, centres + widths)
-    exactly = np.abs(inside - centres) <= widths
-    return centres, widths, np.where(exactly, inside, centres)
+    # One unit of the last place inwards, as rounding could take a place out of its box.
+    return centres, widths, np.nextafter(centres + shares * widths, centres)
 
 
 def check(tape: Tape, exact: Callable[..., Any], found: tuple[np.ndarray, ...]) -> None:
-    """Assert that bounds hold at places of boxes, and return how much of the radii is used."""
+    """Assert that bounds hold at places of boxes."""
     centres, widths, places = found
     balls, errors = balls_on(tape, centres, widths), errors_on(tape, centres, widths)
     jets = jets_at(tape, places)
@@ -229,14 +227,14 @@ def is_bounded(x: Any) -> bool:
 )
 def test_bounds_contain_exact_values_of_any_expression(position, s, t, width):
     assume(all(is_bounded(x) for x in position))
-    surface = gm.Surface.from_sympy(position, (u, v), ((-1, 1), (0.25, 1.75)))
-    tape = surface.tape
+    try:
+        tape = gm.Surface.from_sympy(position, (u, v), ((-1, 1), (0.25, 1.75))).tape
+    except gm.InputError:  # 1/(u - u)
+        tape = None
     assume(tape is not None)
-    centre = np.array([[s, t]])
-    widths = np.full((1, 2), width)
-    places = np.array(
-        [[s, t], *(np.array([s, t]) + width * np.array(x) for x in product((-1, 1), repeat=2))]
-    )
+    centre, widths = np.array([[s, t]]), np.full((1, 2), width)
+    signs = np.array([(0, 0), (1, 1), (1, -1), (-1, 1), (-1, -1)])
+    places = np.nextafter(centre + signs * widths, centre)
     exact = exact_coefficients(position, u, v)
     balls, errors = balls_on(tape, centre, widths)[0], errors_on(tape, centre, widths)[0]
     jets = jets_at(tape, places)
