@@ -23,6 +23,7 @@ from .printer import source_of
 from .simplify import straight_line
 
 __all__ = [
+    "KINDS",
     "arguments",
     "assignments",
     "counts",

@@ -11,16 +11,19 @@ import sympy as sp
 
 from . import (
     curve,
+    elementary,
     faces,
     gaussian_image,
     jet,
     mesh,
     offset,
     patch,
+    proved,
     rational,
     spline,
     support,
     surfaces,
+    taylor,
 )
 from .display import latex_name, latex_of
 from .emit import render
@@ -41,6 +44,9 @@ FORMULAS = {
     "Support functions": support.FORMULAS,
     "Surfaces at a point": jet.FORMULAS,
     "Rational surfaces": rational.FORMULAS,
+    "Taylor polynomials": taylor.FORMULAS,
+    "Elementary functions": elementary.FORMULAS,
+    "Points with a given normal, proved": proved.FORMULAS,
     "Faces of CAD parts": faces.FORMULAS,
     "Meshes": mesh.FORMULAS,
     "Planar curves": curve.FORMULAS,

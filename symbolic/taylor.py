@@ -24,8 +24,12 @@ from .notation import CubicTaylorSymbol, TaylorSymbol, scalar
 __all__ = ["FORMULAS"]
 
 Coefficients = dict[str, Any]
+Symbols = Mapping[sp.Symbol, sp.Symbol]
 
-s, t = sp.symbols("s t")
+# What sizes with their errors are called.
+LARGEST = str.maketrans("abf", "stF")
+
+s, t = sp.symbols("s t")  # u and v, from the point on
 u = scalar("u")  # the unit of rounding
 
 
@@ -62,21 +66,50 @@ def _factors(product: sp.Expr) -> list[Any]:
     return [base for base, exponent in powers for _ in range(int(exponent))]
 
 
-def _radius(value: sp.Expr, errors: Mapping[sp.Symbol, sp.Symbol]) -> sp.Expr:
-    """Return a bound of the error of a sum of products: of its symbols, and of its rounding."""
-    terms = [(number, _factors(rest)) for number, rest in map(_parted, sp.Add.make_args(value))]
-    changes = [
-        number * sp.Mul(*(x + errors[x] for x in row[:k]), errors[row[k]], *row[k + 1 :])
-        for number, row in terms
+def _parted(term: Any) -> tuple[Any, list[Any]]:  # noqa: ANN401 - SymPy has no types
+    """Return the number in a product, and the other factors."""
+    number, rest = term.as_coeff_Mul()
+    return number, _factors(rest)
+
+
+def _change(value: sp.Expr, errors: Symbols, largest: Symbols) -> sp.Expr:
+    """Return a bound of the change of a sum of products by errors of its symbols."""
+    terms = [
+        number * sp.Mul(*(largest[x] for x in row[:k]), errors[row[k]], *row[k + 1 :])
+        for number, row in map(_parted, sp.Add.make_args(value))
         for k in range(len(row))
     ]
-    roundings = len(terms) - 1 + max(len(row) - (number == 1) for number, row in terms)
-    largest = value.xreplace({x: x + error for x, error in errors.items()})
-    return sp.Add(*changes) + roundings * u * largest
+    return sp.Add(*terms)
 
 
-def _parted(term: Any) -> tuple[Any, Any]:  # noqa: ANN401 - SymPy has no types
-    return term.as_coeff_Mul()
+def _roundings(value: sp.Expr) -> int:
+    """Return how many roundings a term of a sum of products goes through."""
+    terms = [_parted(term) for term in sp.Add.make_args(value)]
+    return len(terms) - 1 + max(len(row) - (number == 1) for number, row in terms)
+
+
+def _of_radii(
+    name: str, sentence: str, of: Coefficients, inputs: Sequence[sp.Symbol], errors: Symbols
+) -> Formula:
+    """Return the formula of bounds for coefficients that are sums of products.
+
+    Named terms are sizes with their errors, and the coefficients for these.
+    """
+    symbols = {x for value in of.values() for x in value.free_symbols}
+    largest = {x: scalar(x.name.translate(LARGEST)) for x in errors if x in symbols}
+    sums = [(largest[x].name, x + errors[x]) for x in largest]
+    sizes = {k: value.xreplace(largest) for k, value in of.items()}
+    radii = {
+        k: _change(value, errors, largest) + _roundings(value) * u * scalar(f"L_{k}")
+        for k, value in of.items()
+    }
+    return Formula.build(
+        name,
+        sentence,
+        inputs=[*inputs, u],
+        terms=[*sums, *_named("L", sizes)],
+        outputs=_named("r", radii),
+    )
 
 
 def _named(letter: str, values: Coefficients) -> list[tuple[str, Any]]:
@@ -96,12 +129,13 @@ def _formulas(kind: type[TaylorSymbol], order: int) -> list[Formula]:
             inputs=[a, b],
             outputs=_named("c", product),
         ),
-        Formula.build(
+        _of_radii(
             f"product_radius_{order}",
             f"Bounds $r$ of the errors of `product_{order}` if coefficients of absolute values up "
             "to $a$ and $b$ have errors up to $d$ and $e$; $u$ is the unit of rounding.",
-            inputs=[a, d, b, e, u],
-            outputs=_named("r", {k: _radius(x, errors) for k, x in product.items()}),
+            product,
+            [a, d, b, e],
+            errors,
         ),
         Formula.build(
             f"composition_{order}",
@@ -111,12 +145,13 @@ def _formulas(kind: type[TaylorSymbol], order: int) -> list[Formula]:
             inputs=[*f, a],
             outputs=_named("c", composition),
         ),
-        Formula.build(
+        _of_radii(
             f"composition_radius_{order}",
             f"Bounds $r$ of the errors of `composition_{order}` if coefficients of absolute values "
             "up to $f$ and $a$ have errors up to $g$ and $d$; $u$ is the unit of rounding.",
-            inputs=[*f, *g, a, d, u],
-            outputs=_named("r", {k: _radius(x, errors) for k, x in composition.items()}),
+            composition,
+            [*f, *g, a, d],
+            errors,
         ),
     ]
 

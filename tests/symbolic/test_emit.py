@@ -29,7 +29,7 @@ from gaussmap.symbolic import (
 )
 from gaussmap.symbolic.__main__ import main
 from gaussmap.symbolic.formula import Formula
-from gaussmap.symbolic.notation import PlaneVector, VectorSymbol, scalar
+from gaussmap.symbolic.notation import VectorSymbol, scalar
 from gaussmap.symbolic.positions import position
 
 LOOPS = "support_function.py"
@@ -67,10 +67,8 @@ def exact_root(value: Fraction) -> Fraction:
 
 
 PI = Fraction(22, 7)  # stands for π
-TYPES = {
-    x.__name__: x
-    for x in (vectors.Arc, vectors.Hessian, vectors.Patch, vectors.PlaneVector, vectors.Vector)
-}
+TYPES = {name: getattr(vectors, name) for name, _ in emit.KINDS.values()}
+TYPES |= {x.__name__: x for x in (vectors.Arc, vectors.Hessian, vectors.Patch)}
 EXACT = {"Number": Fraction, "math": SimpleNamespace(sqrt=exact_root, pi=PI), **TYPES}
 
 
@@ -115,6 +113,9 @@ def exact_inputs(formula, seed: int) -> dict[str, Fraction]:
     # triangles in a plane with a rational normal
     if formula in (mesh.CORNER_PRODUCTS, mesh.CORNER_COTANGENTS):
         return inputs | in_a_plane(inputs)
+    if formula.name == "asin_taylor":  # 1 − x² is a square
+        q = abs(inputs["x"])
+        return inputs | {"x": (1 - q**2) / (1 + q**2)}
     if formula is mesh.BORDER_SPACING:  # ρ = 2 k/(π r²) = (7/r)²
         return inputs | {"k": Fraction(77)}
     return inputs | rational_length(inputs) if formula is patch.MEASURE else inputs
@@ -156,7 +157,7 @@ def grouped(formula, inputs: dict[str, Fraction]) -> dict[str, Any]:
     def value(symbol: sp.Symbol) -> Any:
         if not isinstance(symbol, VectorSymbol):
             return inputs[symbol.name]
-        kind = vectors.PlaneVector if isinstance(symbol, PlaneVector) else vectors.Vector
+        kind = getattr(vectors, emit.KINDS[type(symbol)][0])
         components: list[Any] = [inputs[x.name] for x in symbol.components]
         return kind(*components)
 

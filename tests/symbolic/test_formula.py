@@ -7,6 +7,7 @@ import sympy as sp
 from gaussmap.symbolic import (
     Formula,
     curve,
+    elementary,
     faces,
     formulas,
     gaussian_image,
@@ -14,9 +15,11 @@ from gaussmap.symbolic import (
     mesh,
     offset,
     patch,
+    proved,
     rational,
     spline,
     support,
+    taylor,
 )
 from gaussmap.symbolic.formula import BEYOND_THE_PAPER, compose
 from gaussmap.symbolic.notation import (
@@ -212,7 +215,10 @@ def test_a_sample_is_its_parts():
 
 
 def test_all_formulas_by_name_in_order():
-    modules = (patch, offset, gaussian_image, spline, support, jet, rational, faces, mesh, curve)
+    modules = (
+        patch, offset, gaussian_image, spline, support, jet, rational, taylor, elementary, proved,
+        faces, mesh, curve,
+    )  # fmt: skip
     assert list(formulas) == [x.name for module in modules for x in module.FORMULAS]
     assert all(formula.name == name for name, formula in formulas.items())
     assert not hasattr(formulas, "__setitem__")
