@@ -38,6 +38,7 @@ __all__ = [
     "patch_of",
     "thirds_of",
     "write_cells",
+    "write_one_cone",
 ]  # fmt: skip
 
 # Twice the unit of rounding.
@@ -373,6 +374,12 @@ def write_cone(cells, j):
     # 2 − 2 cos = 2 tan² cos² / (1 + cos); and the rounding of a squared distance of unit vectors.
     square = 2.0 * (tangent * cosine) ** 2 / (1.0 + cosine)
     cone[j, 3] = math.sqrt(square * (1.0 + 16.0 * EPS) + 32.0 * EPS)
+
+
+@jit
+def write_one_cone(cells):
+    """Write the cone of the normals of the first cell."""
+    write_cone(cells, np.int64(0))
 
 
 @loop

@@ -24,7 +24,8 @@ from .proved_cells import (
     third_sizes,
     write_patch,
 )  # fmt: skip
-from .proved_clusters import cluster, shift_to
+from .proved_answers import BORDER, COLUMNS, CONTINUUM, DOUBLE_KIND, MULTIPLE, SINGULAR, add_open, add_place
+from .proved_clusters import cluster
 from .proved_folds import DOUBLE, NO_PLACE, at_fold
 from .proved_pairs import (
     DETERMINANT,
@@ -49,19 +50,14 @@ from .proved_pairs import (
 from .tape import LANES, evaluate_points
 from .vectors import row_vector
 
-__all__ = ["BORDER", "BOX", "KINDS", "Answers", "Boxes", "decide_normals"]
+__all__ = ["Boxes", "decide_normals"]
 
-# What is not decided: none or two places in a box, several or none, a curve or more of them, or
-# places where the surface may have no normal.
-KINDS = ("double", "multiple", "continuum", "singular")
-DOUBLE_KIND, MULTIPLE, CONTINUUM, SINGULAR = range(4)
-# The columns of places: u, v, how far they may be off, D; then the box in which there is no other
-# place, u₀, u₁, v₀, v₁; and whether the border of the domain is so near.
-BOX, BORDER, COLUMNS = 5, 9, 10
 # Boxes are cut so often; after each of some levels folds are looked for.
 DEEPEST, FOLDS = 24, (4, 8, 14, 19)
 # More open boxes than these, or than these and twice the cells of a normal, are a continuum.
 MOST, FEW = 1024, 64
+# From this level on, more than twice as many open boxes as on the one before are due to rounding.
+FINE = 10
 
 
 class Boxes(NamedTuple):
@@ -86,55 +82,6 @@ class Boxes(NamedTuple):
             np.empty(most, np.int64), np.zeros(ROWS * LANES), np.zeros(LANES, np.int64),
             np.array(FOLDS), Cells.new(LANES),
         )  # fmt: skip
-
-
-class Answers(NamedTuple):
-    """Room for places (k, 10), undecided boxes (k, 5) with their kinds, and the normals of both.
-
-    `counts` are the numbers of both.
-    """
-
-    places: NDArray[np.float64]
-    numbers: NDArray[np.int64]
-    open_boxes: NDArray[np.float64]
-    kinds: NDArray[np.int64]
-    open_numbers: NDArray[np.int64]
-    counts: NDArray[np.int64]
-
-    @classmethod
-    def new(cls, room: int) -> Answers:
-        """Return some room."""
-        return cls(
-            np.empty((room, COLUMNS)), np.empty(room, np.int64), np.empty((room, 5)),
-            np.empty(room, np.int64), np.empty(room, np.int64), np.zeros(2, np.int64),
-        )  # fmt: skip
-
-
-@loop
-def add_open(answers, number, u0, u1, v0, v1, kind, domain):
-    """List a box that is not decided, less what is outside of the domain; say if there was room.
-
-    A box outside is not listed.
-    """
-    at = answers.counts[1]
-    if at == answers.kinds.shape[0]:
-        return False
-    border = 0.0
-    if domain[4] == 0.0:  # no period
-        if u1 < domain[0] or u0 > domain[1]:
-            return True
-        border = 1.0 if u0 <= domain[0] or u1 >= domain[1] else border
-        u0, u1 = max(u0, domain[0]), min(u1, domain[1])
-    if domain[5] == 0.0:
-        if v1 < domain[2] or v0 > domain[3]:
-            return True
-        border = 1.0 if v0 <= domain[2] or v1 >= domain[3] else border
-        v0, v1 = max(v0, domain[2]), min(v1, domain[3])
-    row = answers.open_boxes[at]
-    row[0], row[1], row[2], row[3], row[4] = u0, u1, v0, v1, border
-    answers.kinds[at], answers.open_numbers[at] = kind, number
-    answers.counts[1] = at + 1
-    return True
 
 
 @loop
@@ -300,7 +247,7 @@ def bisect(tape, work, index, boxes, count, domain, number, n, answers):
         size *= 0.5
         if following < 0:
             return False
-        last = level == DEEPEST
+        last = level == DEEPEST or (level >= FINE and following > 2 * count)
         if following > 0 and (last or (fold < boxes.levels.size and level == boxes.levels[fold])):
             fold += 1
             following = use_folds(
@@ -332,16 +279,7 @@ def orient(tape, work, index, boxes, first, domain, number, n, answers):
         if cells.cone[j, 3] >= WIDE:
             r_u, r_v = row[2] + 4.0 * EPS * abs(row[0]), row[3] + 4.0 * EPS * abs(row[1])
             side = side_at(tape, work, boxes.tile, cells, j, row[0], row[1], r_u, r_v, n)
-        if side == 0 and not add_open(
-            answers,
-            number,
-            row[0] - row[2],
-            row[0] + row[2],
-            row[1] - row[3],
-            row[1] + row[3],
-            SINGULAR,
-            domain,
-        ):
+        if side == 0 and not add_place(answers, number, row, SINGULAR, domain):
             return False
         if side > 0:
             for x in range(COLUMNS):
@@ -351,107 +289,13 @@ def orient(tape, work, index, boxes, first, domain, number, n, answers):
     return True
 
 
-@loop
-def relation(row, other, period):
-    """Return 1 if another place is that of a row, 0 if it is another one, −1 if this is not known."""
-    du = shift_to(other[0], 0.5 * (row[5] + row[6]), period[0])
-    dv = shift_to(other[1], 0.5 * (row[7] + row[8]), period[1])
-    u, v = other[0] + du, other[1] + dv
-    if (
-        u - other[2] >= row[5]
-        and u + other[2] <= row[6]
-        and v - other[3] >= row[7]
-        and v + other[3] <= row[8]
-    ):
-        return 1
-    du = shift_to(other[0], row[0], period[0])
-    dv = shift_to(other[1], row[1], period[1])
-    # More than the rounding of shifts.
-    slack_u, slack_v = 4.0 * EPS * (abs(du) + abs(row[0])), 4.0 * EPS * (abs(dv) + abs(row[1]))
-    apart_u = abs(other[0] + du - row[0]) > other[2] + row[2] + slack_u
-    apart_v = abs(other[1] + dv - row[1]) > other[3] + row[3] + slack_v
-    return 0 if apart_u or apart_v else -1
-
-
-@loop
-def merge(answers, first, fast, fast_first, fast_last, number, domain):
-    """Keep each place once, and those in the domain; say whether there was room."""
-    period = domain[4:]
-    kept = first
-    for at in range(first, answers.counts[0]):
-        row = answers.places[at]
-        if not is_inside(row, domain):
-            continue
-        same = 0
-        for k in range(fast_first, fast_last):
-            same = worse(same, relation(row, fast[k], period))
-        for k in range(first, kept):
-            same = worse(
-                same,
-                max(
-                    relation(row, answers.places[k], period),
-                    relation(answers.places[k], row, period),
-                ),
-            )
-        if same == -1:
-            if not add_open(
-                answers,
-                number,
-                row[0] - row[2],
-                row[0] + row[2],
-                row[1] - row[3],
-                row[1] + row[3],
-                MULTIPLE,
-                domain,
-            ):
-                return False
-        elif same == 0:
-            for x in range(COLUMNS):
-                answers.places[kept, x] = row[x]
-            answers.numbers[kept] = number
-            kept += 1
-    answers.counts[0] = kept
-    return True
-
-
-@loop
-def worse(one, other):
-    """Return the relation to two places from those to each: the same as one, or not known."""
-    return 1 if one == 1 or other == 1 else -1 if one == -1 or other == -1 else 0
-
-
-@loop
-def is_inside(row, domain):
-    """Say whether a place may be in the domain, and write whether its border is as near as that.
-
-    Places are brought into the domain.
-    """
-    border = 0.0
-    for axis in range(2):
-        low, high, period = domain[2 * axis], domain[2 * axis + 1], domain[4 + axis]
-        x, radius = row[axis], row[2 + axis]
-        if period > 0.0:
-            row[axis] = x + period if x < low else x - period if x > high else x
-            continue
-        if x + radius < low or x - radius > high:
-            return False
-        if x - radius < low or x + radius > high:
-            border = 1.0
-            row[axis] = min(max(x, low), high)
-    row[BORDER] = border
-    return True
-
-
 @jit
-def decide_normals(
-    index, tape, work, normals, hard, groups, first, last, fast, fast_starts, domain, boxes, answers
-):
+def decide_normals(tape, work, index, normals, hard, groups, first, last, domain, boxes, answers):
     """Decide the hard pairs of the groups first, …, last − 1, each of one normal.
 
-    hard (…, 2) are numbers of normals (S, 3) and of cells; groups[g] is the start of a group. Its
-    places that are known already are fast[fast_starts[g]:fast_starts[g + 1]], (…, 5). `domain` (6)
-    is u₀, u₁, v₀, v₁, and the periods of u and v or 0. Returns the next group,
-    `last` unless there was no more room for answers.
+    hard (…, 2) are numbers of normals (S, 3) and of cells; groups[g] is the start of a group.
+    `domain` (6) is u₀, u₁, v₀, v₁, and the periods of u and v or 0. Returns the next group, `last`
+    unless there was no more room for answers.
     """
     answers.counts[0] = answers.counts[1] = 0
     for g in range(first, last):
@@ -461,16 +305,10 @@ def decide_normals(
         count = groups[g + 1] - groups[g]
         for k in range(count):
             j = hard[groups[g] + k, 1]
-            boxes.now[k, 0], boxes.now[k, 1], boxes.now[k, 2] = (
-                index.cells.place[j, 0],
-                index.cells.place[j, 1],
-                j,
-            )
+            place = index.cells.place
+            boxes.now[k, 0], boxes.now[k, 1], boxes.now[k, 2] = place[j, 0], place[j, 1], j
         room = bisect(tape, work, index, boxes, count, domain, number, n, answers)
         room = room and orient(tape, work, index, boxes, start, domain, number, n, answers)
-        room = room and merge(
-            answers, start, fast, fast_starts[g], fast_starts[g + 1], number, domain
-        )
         if not room:
             answers.counts[0], answers.counts[1] = start, open_start
             return np.int64(g)

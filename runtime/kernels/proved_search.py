@@ -44,10 +44,12 @@ Y, Z, EXCESS = (np.uint64(k * LANES) for k in range(1, 4))
 class Index(NamedTuple):
     """Cells, and those of them that may have the normals of each bin of the sphere.
 
-    `starts` (6 grid² + 1,) are the starts of the bins in `members`, the numbers of cells.
+    `starts` (6 grid² + 1,) are the starts of the bins in `members`, the numbers of cells. From
+    number `discs` on, cells are discs around poles.
     """
 
     cells: Cells
+    discs: int
     starts: NDArray[np.int64]
     members: NDArray[np.int32]
 
@@ -204,7 +206,7 @@ def search_normals(index, tape, work, normals, grid, first, last, tiles, found):
             for k in range(end - at):
                 if tile[np.uint64(k) + EXCESS] > 0.0:
                     continue
-                if cells.cone[j, 3] >= WIDE:
+                if cells.cone[j, 3] >= WIDE or j >= index.discs:
                     hard = found.counts[1]
                     if hard >= found.hard.shape[0]:
                         return False

@@ -21,11 +21,14 @@ from ..base.threads import over_ranges
 from ..domain.domain import Boundary, Domain
 from ..kernels.proved_bins import count_members, list_members
 from ..kernels.proved_cells import Cells, Work, cut_cells
-from ..kernels.proved_places import BORDER, BOX, KINDS, Answers, Boxes, decide_normals
+from ..kernels.proved_answers import BORDER, BOX, KINDS, Answers, merge_places
+from ..kernels.proved_discs import decide_discs
+from ..kernels.proved_places import Boxes, decide_normals
 from ..kernels.proved_search import PLACE, Found, Index, Tiles, search_normals
 from ..kernels.proved_sorting import sort_places
 from ..kernels.tape import LANES, Tape
 from .bins import sorted_normals
+from .proved_discs import PoleDisc, pole_disc
 
 __all__ = ["KINDS", "ProvedIndex", "ProvedPlaces", "Undecided"]
 
@@ -93,6 +96,7 @@ class ProvedIndex:
     domain: NDArray[np.float64]
     index: Index
     grid: int  # of the bins
+    discs: tuple[PoleDisc, ...]
     _rooms: deque[Rooms] = field(default_factory=deque, repr=False)
 
     @classmethod
@@ -131,10 +135,11 @@ class ProvedIndex:
             for (low, high), ends in zip(domain, boundary, strict=True)
         )
         box = np.array([*domain[0], *domain[1], *periods])
-        cut = _cut(tape, box, cells, threads)
-        # Cells of a bin are near one another in memory.
-        levels = max(2, round(np.log2(np.sqrt(len(cut.place) / 24.0))))
-        return cls(tape, box, _listed(cut, levels), 1 << levels)
+        discs, inside = _discs(tape, domain, boundary, cells)
+        cut = _cut(tape, inside, cells, threads)
+        both = Cells(*map(np.concatenate, zip(cut, *(x.cell for x in discs), strict=True)))
+        levels = max(2, round(np.log2(np.sqrt(len(both.place) / 24.0))))
+        return cls(tape, box, _listed(both, len(cut.place), levels), 1 << levels, discs)
 
     def query(self, normals: NDArray[np.float64], threads: int | None = None) -> ProvedPlaces:
         """Return all points with unit normals (S, 3).
@@ -143,17 +148,15 @@ class ProvedIndex:
         """
         normals = np.ascontiguousarray(normals, np.float64)
         places, numbers, hard = self._search(normals, threads)
-        if len(hard) == 0:
-            rows = np.zeros((len(places), PLACE + 1))
-            rows[:, :PLACE] = places
-            return _result(rows, numbers, len(normals), [])
-        answers = self._decide(normals, places, numbers, hard, threads)
-        rows = np.zeros((len(places) + sum(len(x.places) for x in answers), PLACE + 1))
-        rows[: len(places), :PLACE] = places
-        found = [np.column_stack([x.places[:, :BOX], x.places[:, BORDER]]) for x in answers]
-        rows[len(places) :] = np.concatenate(found)
-        all_numbers = np.concatenate([numbers, *(x.numbers for x in answers)])
-        return _result(rows, all_numbers, len(normals), answers)
+        rows = np.zeros((len(places), PLACE + 1))
+        rows[:, :PLACE] = places
+        answers: list[Answers] = []
+        if len(hard) > 0:
+            answers = self._decide(normals, hard, threads)
+            slow, slow_numbers, unknown = self._merged(answers, places, numbers, len(normals))
+            answers.extend(unknown)
+            rows, numbers = np.concatenate([rows, slow]), np.concatenate([numbers, slow_numbers])
+        return _result(rows, numbers, len(normals), answers)
 
     def _search(
         self, normals: NDArray[np.float64], threads: int | None
@@ -197,32 +200,82 @@ class ProvedIndex:
         return sorted_normals(normals, np.eye(3), grid, threads)[1]
 
     def _decide(
-        self,
-        normals: NDArray[np.float64],
-        places: NDArray[np.float64],
-        numbers: NDArray[np.int64],
-        hard: NDArray[np.int64],
-        threads: int | None,
+        self, normals: NDArray[np.float64], hard: NDArray[np.int64], threads: int | None
     ) -> list[Answers]:
-        """Return what is found about normals with hard pairs."""
+        """Return what is found in hard pairs of normals and cells."""
         hard = hard[np.lexsort((hard[:, 1], hard[:, 0]))]
+        in_discs = hard[hard[:, 1] >= self.index.discs]
+        hard = hard[hard[:, 1] < self.index.discs]
         which, groups = np.unique(hard[:, 0], return_index=True)
         groups = np.append(groups, len(hard))
-        asked = np.zeros(len(normals), np.bool_)
+
+        def decide(room: Answers, rooms: Rooms, first: int, last: int) -> int:
+            return decide_normals(
+                self.tape, rooms.work, self.index, normals, hard, groups, first, last,
+                self.domain, rooms.boxes, room,
+            )  # fmt: skip
+
+        answers = self._answered(decide, len(which), threads)
+        for k, pole in enumerate(self.discs):
+            numbers = in_discs[in_discs[:, 1] == self.index.discs + k, 0]
+            work = Work.new(len(pole.tape.operations))
+
+            def of_disc(
+                room: Answers, _: Rooms, first: int, last: int, pole: PoleDisc = pole,
+                work: Work = work, numbers: NDArray[np.int64] = numbers,
+            ) -> int:  # fmt: skip
+                return decide_discs(
+                    pole.tape, work, pole.disc, normals, numbers, first, last, self.domain, room
+                )
+
+            answers += self._answered(of_disc, len(numbers), 1)
+        return answers
+
+    def _merged(
+        self,
+        answers: list[Answers],
+        places: NDArray[np.float64],
+        numbers: NDArray[np.int64],
+        count: int,
+    ) -> tuple[NDArray[np.float64], NDArray[np.int64], list[Answers]]:
+        """Return places (k, 6) of answers without those that are found twice, their normals, and
+        boxes in which there may be two.
+
+        `places` and `numbers` are those that were found at once, with `count` normals.
+        """
+        slow = np.concatenate([x.places for x in answers])
+        of_slow = np.concatenate([x.numbers for x in answers])
+        order = np.lexsort((slow[:, 1], slow[:, 0], of_slow))
+        slow, of_slow = slow[order], of_slow[order]
+        which, groups = np.unique(of_slow, return_index=True)
+        groups = np.append(groups, len(slow))
+        asked = np.zeros(count, np.bool_)
         asked[which] = True
         near = np.flatnonzero(asked[numbers])
         near = near[np.argsort(numbers[near], kind="stable")]
         fast, starts = places[near], np.append(np.searchsorted(numbers[near], which), len(near))
+        keep = np.zeros(len(slow), np.bool_)
+
+        def merge(room: Answers, _: Rooms, first: int, last: int) -> int:
+            return merge_places(
+                slow, of_slow, groups, first, last, fast, starts, self.domain, keep, room
+            )
+
+        unknown = self._answered(merge, len(which), 1)
+        columns = np.append(np.arange(BOX), BORDER)
+        return slow[keep][:, columns], of_slow[keep], unknown
+
+    def _answered(
+        self, step: Callable[[Answers, Rooms, int, int], int], count: int, threads: int | None
+    ) -> list[Answers]:
+        """Return the answers of a step that takes a range, and returns how far it had room."""
 
         def work(first: int, last: int) -> list[Answers]:
             answers = []
             with self._room() as rooms:
                 while first < last:
                     room = rooms.answers[0]
-                    after = decide_normals(
-                        self.index, self.tape, rooms.work, normals, hard, groups, first, last,
-                        fast, starts, self.domain, rooms.boxes, room,
-                    )  # fmt: skip
+                    after = int(step(room, rooms, first, last))
                     if after == first:
                         rooms.answers[0] = Answers.new(2 * len(room.kinds))
                     else:
@@ -230,7 +283,7 @@ class ProvedIndex:
                     first = after
             return answers
 
-        return [x for part in over_ranges(work, len(which), HARD_AT_A_TIME, threads) for x in part]
+        return [x for part in over_ranges(work, count, HARD_AT_A_TIME, threads) for x in part]
 
     @contextmanager
     def _room(self) -> Iterator[Rooms]:
@@ -244,6 +297,21 @@ class ProvedIndex:
             )  # fmt: skip
         yield rooms
         self._rooms.append(rooms)
+
+
+def _discs(
+    tape: Tape, domain: Domain, boundary: Boundary, cells: tuple[int, int]
+) -> tuple[tuple[PoleDisc, ...], NDArray[np.float64]]:
+    """Return discs around poles, and the rest of the domain, u₀, u₁, v₀, v₁."""
+    discs, inside = [], np.array(domain, dtype=np.float64)
+    for axis, ends in enumerate(boundary):
+        row = (domain[axis][1] - domain[axis][0]) / cells[axis]
+        for k, end in enumerate(ends):
+            disc = pole_disc(tape, domain, 1 - axis, domain[axis][k], row) if end == "pole" else None
+            if disc is not None:
+                discs.append(disc)
+                inside[axis, k] += disc.radius if k == 0 else -disc.radius
+    return tuple(discs), inside.ravel()
 
 
 def _cut(
@@ -266,13 +334,13 @@ def _cut(
     return Cells(*(np.concatenate(x) for x in zip(*parts, strict=True)))
 
 
-def _listed(cells: Cells, levels: int) -> Index:
+def _listed(cells: Cells, discs: int, levels: int) -> Index:
     """Return the cells with the lists of those that may have the normals of bins."""
     starts, stack = np.zeros(6 * 4**levels + 1, np.int64), np.empty((4 + 3 * levels, 3), np.int64)
     count_members(cells.cone, levels, stack, starts, np.empty(0, np.int32))
     members = np.empty(starts.sum(), np.int32)
     list_members(cells.cone, levels, stack, starts, members)
-    return Index(cells, starts, members)
+    return Index(cells, discs, starts, members)
 
 
 def _taken(room: Answers) -> Answers:

@@ -1,0 +1,163 @@
+"""What a search answers: places, each once, and boxes that are not decided."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..machine_code.jit import jit, loop
+from .proved_cells import EPS
+from .proved_clusters import shift_to
+
+__all__ = ["BORDER", "BOX", "COLUMNS", "CONTINUUM", "DOUBLE_KIND", "KINDS", "MULTIPLE", "SINGULAR", "Answers", "add_open", "add_place", "merge_places"]
+
+# What is not decided: none or two places in a box, several or none, a curve or more of them, or
+# places where the surface may have no normal.
+KINDS = ("double", "multiple", "continuum", "singular")
+DOUBLE_KIND, MULTIPLE, CONTINUUM, SINGULAR = range(4)
+# The columns of places: u, v, how far they may be off, D; then the box in which there is no other
+# place, u₀, u₁, v₀, v₁; and whether the border of the domain is so near.
+BOX, BORDER, COLUMNS = 5, 9, 10
+
+class Answers(NamedTuple):
+    """Room for places (k, 10), undecided boxes (k, 5) with their kinds, and the normals of both.
+
+    `counts` are the numbers of both.
+    """
+
+    places: NDArray[np.float64]
+    numbers: NDArray[np.int64]
+    open_boxes: NDArray[np.float64]
+    kinds: NDArray[np.int64]
+    open_numbers: NDArray[np.int64]
+    counts: NDArray[np.int64]
+
+    @classmethod
+    def new(cls, room: int) -> Answers:
+        """Return some room."""
+        return cls(
+            np.empty((room, COLUMNS)), np.empty(room, np.int64), np.empty((room, 5)),
+            np.empty(room, np.int64), np.empty(room, np.int64), np.zeros(2, np.int64),
+        )  # fmt: skip
+
+
+@loop
+def add_open(answers, number, u0, u1, v0, v1, kind, domain):
+    """List a box that is not decided, less what is outside of the domain; say if there was room.
+
+    A box outside is not listed.
+    """
+    at = answers.counts[1]
+    if at == answers.kinds.shape[0]:
+        return False
+    border = 0.0
+    if domain[4] == 0.0:  # no period
+        if u1 < domain[0] or u0 > domain[1]:
+            return True
+        border = 1.0 if u0 <= domain[0] or u1 >= domain[1] else border
+        u0, u1 = max(u0, domain[0]), min(u1, domain[1])
+    if domain[5] == 0.0:
+        if v1 < domain[2] or v0 > domain[3]:
+            return True
+        border = 1.0 if v0 <= domain[2] or v1 >= domain[3] else border
+        v0, v1 = max(v0, domain[2]), min(v1, domain[3])
+    row = answers.open_boxes[at]
+    row[0], row[1], row[2], row[3], row[4] = u0, u1, v0, v1, border
+    answers.kinds[at], answers.open_numbers[at] = kind, number
+    answers.counts[1] = at + 1
+    return True
+
+
+@loop
+def add_place(answers, number, row, kind, domain):
+    """List where a place may be as not decided; say if there was room."""
+    u, v, r_u, r_v = row[0], row[1], row[2], row[3]
+    return add_open(answers, number, u - r_u, u + r_u, v - r_v, v + r_v, kind, domain)
+
+
+@jit
+def merge_places(places, numbers, groups, first, last, fast, fast_starts, domain, keep, answers):
+    """Say which places to keep: each once, and those in the domain; list what is not known.
+
+    Places (k, 10) of the groups first, …, last − 1 have one normal each, of these numbers (k,);
+    other places with it, fast[fast_starts[g]:fast_starts[g + 1]], are kept anyway. Returns the
+    next group, `last` unless there was no more room for boxes.
+    """
+    answers.counts[0] = answers.counts[1] = 0
+    for g in range(first, last):
+        start = answers.counts[1]
+        for at in range(groups[g], groups[g + 1]):
+            keep[at] = is_inside(places[at], domain)
+        for at in range(groups[g], groups[g + 1]):
+            if not keep[at]:
+                continue
+            same = 0
+            for k in range(fast_starts[g], fast_starts[g + 1]):
+                same = worse(same, relation(places[at], fast[k], domain[4:]))
+            for k in range(groups[g], at):
+                if keep[k]:
+                    same = worse(same, either(places[at], places[k], domain[4:]))
+            keep[at] = same == 0
+            if same == -1 and not add_place(answers, numbers[at], places[at], MULTIPLE, domain):
+                answers.counts[1] = start
+                return np.int64(g)
+    return np.int64(last)
+
+
+@loop
+def either(row, other, period):
+    """Return the relation of two places by the box of either."""
+    one, two = relation(row, other, period), relation(other, row, period)
+    return 1 if one == 1 or two == 1 else one
+
+
+@loop
+def relation(row, other, period):
+    """Return 1 if another place is that of a row, 0 if it is another one, −1 if this is not known."""
+    du = shift_to(other[0], 0.5 * (row[5] + row[6]), period[0])
+    dv = shift_to(other[1], 0.5 * (row[7] + row[8]), period[1])
+    u, v = other[0] + du, other[1] + dv
+    if (
+        u - other[2] >= row[5]
+        and u + other[2] <= row[6]
+        and v - other[3] >= row[7]
+        and v + other[3] <= row[8]
+    ):
+        return 1
+    du = shift_to(other[0], row[0], period[0])
+    dv = shift_to(other[1], row[1], period[1])
+    # More than the rounding of shifts.
+    slack_u, slack_v = 4.0 * EPS * (abs(du) + abs(row[0])), 4.0 * EPS * (abs(dv) + abs(row[1]))
+    apart_u = abs(other[0] + du - row[0]) > other[2] + row[2] + slack_u
+    apart_v = abs(other[1] + dv - row[1]) > other[3] + row[3] + slack_v
+    return 0 if apart_u or apart_v else -1
+
+
+@loop
+def worse(one, other):
+    """Return the relation to two places from those to each: the same as one, or not known."""
+    return 1 if one == 1 or other == 1 else -1 if one == -1 or other == -1 else 0
+
+
+@loop
+def is_inside(row, domain):
+    """Say whether a place may be in the domain, and write whether its border is as near as that.
+
+    Places are brought into the domain.
+    """
+    border = 0.0
+    for axis in range(2):
+        low, high, period = domain[2 * axis], domain[2 * axis + 1], domain[4 + axis]
+        x, radius = row[axis], row[2 + axis]
+        if period > 0.0:
+            row[axis] = x + period if x < low else x - period if x > high else x
+            continue
+        if x + radius < low or x - radius > high:
+            return False
+        if x - radius < low or x + radius > high:
+            border = 1.0
+            row[axis] = min(max(x, low), high)
+    row[BORDER] = border
+    return True
