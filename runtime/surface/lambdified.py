@@ -1,4 +1,7 @@
-"""Callables of SymPy expressions: points, and symbolic derivatives; pickled as the expressions."""
+"""Callables of SymPy expressions: points, and derivatives; pickled as the expressions.
+
+Derivatives are those of a tape where there is one; else they are symbolic, as for |u|.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,7 @@ from ..base.errors import InputError
 from ..kernels.tape import Tape
 from .derivatives import NAMES, Differentiable
 from .expressions import as_position
-from .tapes import tape_of_steps
+from .tapes import jets_of, tape_of_steps
 
 if TYPE_CHECKING:
     import sympy
@@ -36,8 +39,8 @@ class Expressions(Differentiable):
 
     @property
     def differentiable(self) -> bool:
-        """Whether SymPy has the derivatives, and NumPy their functions."""
-        return self._derivatives is not None
+        """Whether there is a tape, or SymPy has the derivatives, and NumPy their functions."""
+        return self._tape is not None or self._derivatives is not None
 
     def __call__(self, *values: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the points (..., 3) or (..., 2) for parameters of one shape."""
@@ -46,6 +49,8 @@ class Expressions(Differentiable):
 
     def jets(self, u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return positions and derivatives (k, 6, 3)."""
+        if self._tape is not None:
+            return jets_of(self._tape, u, v)
         assert self._derivatives is not None
         result = np.empty((u.size, 3 * len(NAMES)))
         with np.errstate(all="ignore"):
@@ -55,8 +60,7 @@ class Expressions(Differentiable):
 
     def tape(self) -> Tape | None:
         """Return the operations of a surface; None if the expressions hold what tapes have not."""
-        steps = bridge.tape_steps(self.expressions, self.symbols)
-        return None if steps is None else tape_of_steps(*steps, {})
+        return self._tape
 
     def __getstate__(self) -> dict[str, object]:
         """Return what is pickled: the expressions without the functions made of them."""
@@ -65,6 +69,11 @@ class Expressions(Differentiable):
     @cached_property
     def _position(self) -> Callable[..., Any]:
         return _lambdified(self.symbols, self.expressions)
+
+    @cached_property
+    def _tape(self) -> Tape | None:
+        steps = bridge.tape_steps(self.expressions, self.symbols)
+        return None if steps is None else tape_of_steps(*steps, {})
 
     @cached_property
     def _derivatives(self) -> Callable[..., Any] | None:

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from ...generated import elementary as codes
 from ..base import compiling  # noqa: F401 - announces compilation on terminals
 from ..domain.domain import Interval
-from ..kernels.tape import Tape, points_jets
+from ..kernels.tape import POINT, Tape, points_jets
 from ..kernels.tape_balls import BALL, bounds_of_boxes
 from ..kernels.tape_rounding import rounding_of_boxes
 
-__all__ = ["TapeWriter", "moved_tape", "tape_of_steps", "values_of"]
+__all__ = ["TapeWriter", "jets_of", "moved_tape", "tape_of_steps", "values_of"]
 
 Array = NDArray[np.float64]
 LEAVES = (codes.U, codes.V, codes.CONSTANT)
@@ -203,12 +203,18 @@ def _needed(tape: Tape) -> Tape:
     return Tape(operations[needed].copy(), tape.numbers[needed].copy(), new[tape.outputs])
 
 
+def jets_of(tape: Tape, u: Array, v: Array) -> Array:
+    """Return x, x_u, x_v, x_uu, x_uv, x_vv (k, 6, 3) at u (k,) and v (k,)."""
+    jets = np.empty((len(u), 6, 3))
+    u, v = np.array(u), np.array(v)  # other memory layouts would be compiled for
+    points_jets(tape, u, v, np.empty(POINT * len(tape.operations)), jets)
+    return jets
+
+
 def values_of(tape: Tape, u: Array, v: Array) -> tuple[Array, Array]:
     """Return the points (k, 3) of a tape, and bounds (k, 3) of their rounding errors."""
-    jets, errors = np.empty((len(u), 6, 3)), np.empty((len(u), 6, 3))
+    places, errors = np.stack([u, v], axis=1), np.empty((len(u), 6, 3))
     middles, radii, changes = np.empty((3, BALL * (len(tape.operations) + 1)))
-    points_jets(tape, u, v, middles, jets)
-    places = np.stack([u, v], axis=1)
     points = np.zeros_like(places)
     rounding_of_boxes(tape, places, points, middles, radii, changes, np.empty((2, 4)), errors)
-    return jets[:, 0], errors[:, 0]
+    return jets_of(tape, u, v)[:, 0], errors[:, 0]
