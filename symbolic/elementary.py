@@ -56,7 +56,19 @@ FUNCTIONS = {
     ),
 }
 # The numbers that stand for operations of tapes.
-BASIC = ("u", "v", "constant", "sum", "negative", "shift", "scale", "product")
+# A spline writes four rows, its own and those of three coordinates after it.
+BASIC = (
+    "u",
+    "v",
+    "constant",
+    "sum",
+    "negative",
+    "shift",
+    "scale",
+    "spline",
+    "coordinate",
+    "product",
+)
 CODES = {name: code for code, name in enumerate((*BASIC, *FUNCTIONS))}
 
 

@@ -17,6 +17,7 @@ from ...generated import taylor as formulas
 from ...generated.vectors import Taylor
 from ..machine_code.jit import jit, loop
 from .tape_functions import coefficients
+from .tape_splines import COORDINATES, NO_SPLINE, Polynomials, own_parameter, span_at, spline_at
 
 __all__ = ["LANES", "POINT", "Tape", "evaluate_points", "points_jets"]
 
@@ -31,12 +32,13 @@ class Tape(NamedTuple):
 
     Operations (k, 4) int64 are a code of `generated.elementary` and the rows of arguments. Numbers
     (k, 2) are constants, and how far the exact ones may be from them. Outputs (3,) int64 are the
-    rows of x, y and z.
+    rows of x, y and z. A spline is read by the operation of that name.
     """
 
     operations: NDArray[np.int64]
     numbers: NDArray[np.float64]
     outputs: NDArray[np.int64]
+    spline: Polynomials = NO_SPLINE
 
 
 @loop
@@ -71,6 +73,25 @@ def write_variables(code, number, u, v, registers, at, count):
             put(registers, at, k, v[k], 0.0, 1.0, 0.0, 0.0, 0.0)
         else:
             put(registers, at, k, number, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@loop
+def write_spline(spline, turned, total, u, v, registers, at, count):
+    """Write the coordinates of a spline to four rows."""
+    i, j, periods = 0, 0, spline.periods
+    for k in range(count):
+        x = own_parameter(turned, total, u[k])
+        i, s = span_at(spline.breaks_u, spline.frames_u, periods[0, 0], periods[0, 1], i, x)
+        j, t = span_at(spline.breaks_v, spline.frames_v, periods[1, 0], periods[1, 1], j, v[k])
+        along_u, along_v = spline.frames_u[i, 1], spline.frames_v[j, 1]
+        if turned == 1:
+            along_u = -along_u
+        for c in range(COORDINATES):
+            y, ys, yt, yss, yst, ytt = spline_at(spline, i, j, s, t, c)
+            put(
+                registers, at + c * POINT, k, y, ys * along_u, yt * along_v,
+                yss * along_u * along_u, yst * along_u * along_v, ytt * along_v * along_v,
+            )  # fmt: skip
 
 
 @loop
@@ -164,7 +185,18 @@ def evaluate_points(tape, u, v, count, registers):
             scale(registers, a, -1.0, at, count)
         elif code <= elementary.CONSTANT:
             write_variables(code, tape.numbers[row, 0], u, v, registers, at, count)
-        elif code != elementary.COS and code != elementary.COSH:
+        elif code == elementary.SPLINE:
+            write_spline(
+                tape.spline,
+                tape.operations[row, 3],
+                tape.numbers[row, 0],
+                u,
+                v,
+                registers,
+                at,
+                count,
+            )
+        elif code > elementary.PRODUCT and code != elementary.COS and code != elementary.COSH:
             write_coefficients(code, registers, a, at, count)
             if code == elementary.SIN or code == elementary.SINH:
                 write_cofunction(code, registers, at, count)

@@ -19,6 +19,7 @@ from ...generated.vectors import CubicTaylor, Taylor
 from ..machine_code.jit import jit, loop
 from .tape import LANES
 from .tape_functions import UNIT, ranges
+from .tape_spline_bounds import write_spline_balls
 
 __all__ = ["BALL", "bounds_of_boxes", "evaluate_boxes"]
 
@@ -268,7 +269,14 @@ def evaluate_boxes(tape, order, centres, half_widths, count, middles, radii, end
             write_variables(
                 code, tape.numbers[row], centres, half_widths, terms, middles, radii, at, count
             )
-        elif code != elementary.COS and code != elementary.COSH:
+        elif code == elementary.SPLINE:
+            for k in range(count):
+                write_spline_balls(
+                    tape.spline, tape.operations[row, 3], number, distance, terms,
+                    centres[k, 0], centres[k, 1], half_widths[k, 0], half_widths[k, 1],
+                    middles, radii, at + k, f,
+                )  # fmt: skip
+        elif code > elementary.PRODUCT and code != elementary.COS and code != elementary.COSH:
             write_ranges(code, middles, radii, a, f, ends, count)
             compose(terms, middles, radii, a, f, at, count)
             if code == elementary.SIN or code == elementary.SINH:

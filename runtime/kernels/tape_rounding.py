@@ -29,6 +29,7 @@ from .tape_balls import (
     quadratic_at,
 )
 from .tape_functions import UNIT, error_of_rounding, ranges
+from .tape_spline_bounds import write_spline_errors
 
 __all__ = ["rounding_of_boxes", "rounding_of_points"]
 
@@ -133,13 +134,20 @@ def rounding_of_points(tape, centres, half_widths, count, middles, radii, errors
                 for k in range(count):
                     value = distance if code == elementary.CONSTANT and j == 0 else 0.0
                     errors[np.uint64(at + j * LANES + k)] = value
+        elif code == elementary.SPLINE:
+            for k in range(count):
+                write_spline_errors(
+                    tape.spline, tape.operations[row, 3], factor, distance,
+                    centres[k, 0], centres[k, 1], half_widths[k, 0], half_widths[k, 1],
+                    middles, radii, errors, at + k, f,
+                )  # fmt: skip
         elif code == elementary.PRODUCT:
             of_product(middles, radii, errors, a, b, at, count)
-        elif code < elementary.PRODUCT:
+        elif code < elementary.SPLINE:
             if code == elementary.NEGATIVE:
                 factor, distance = -1.0, 0.0
             of_sum(code, factor, distance, middles, radii, errors, a, b, at, count)
-        else:
+        elif code > elementary.PRODUCT:
             of_coefficients(code, middles, radii, errors, a, f, ends, count)
             compose_errors(middles, radii, errors, a, f, at, count)
 

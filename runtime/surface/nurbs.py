@@ -13,7 +13,9 @@ from ..base.errors import InputError
 from ..base.tolerances import SAME_PARAMETER
 from ..domain.domain import Domain
 from ..kernels import nurbs as kernels
+from ..kernels.tape import Tape
 from .derivatives import Differentiable
+from .nurbs_tape import nurbs_tape
 
 __all__ = ["Nurbs"]
 
@@ -65,6 +67,10 @@ class Nurbs(Differentiable):
         u, v = np.array(u), np.array(v)  # other memory layouts would be compiled for
         kernels.jets(self._net, u, v, self._scratch(), jets)
         return jets
+
+    def tape(self) -> Tape | None:
+        """Return the operations of the surface; None for large degrees or nets."""
+        return nurbs_tape(self._net)
 
     def restricted(self, domain: Domain) -> Nurbs:
         """Return the same surface over a part of its domain; it is periodic where that is whole."""

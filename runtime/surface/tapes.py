@@ -15,11 +15,13 @@ from ..domain.domain import Interval
 from ..kernels.tape import POINT, Tape, points_jets
 from ..kernels.tape_balls import BALL, bounds_of_boxes
 from ..kernels.tape_rounding import rounding_of_boxes
+from ..kernels.tape_splines import COORDINATES, NO_SPLINE, Polynomials
 
 __all__ = ["TapeWriter", "jets_of", "moved_tape", "tape_of_steps", "values_of"]
 
 Array = NDArray[np.float64]
-LEAVES = (codes.U, codes.V, codes.CONSTANT)
+Number = tuple[float, float]  # a value, and how far the exact one may be from it
+LEAVES = (codes.U, codes.V, codes.CONSTANT, codes.SPLINE, codes.COORDINATE)
 BINARY = (codes.SUM, codes.PRODUCT)
 NEUTRAL = {codes.SHIFT: (0.0, 0.0), codes.SCALE: (1.0, 0.0)}  # exact numbers that change nothing
 # Functions that are computed together: the second one is in the row after the first.
@@ -33,6 +35,7 @@ class TapeWriter:
         self._operations: list[tuple[int, int, int, int]] = []
         self._numbers: list[tuple[float, float]] = []
         self._rows: dict[object, int] = {}
+        self._spline = NO_SPLINE
 
     def write(self, name: str, *arguments: int) -> int:
         """Return the row of an operation, by its name in `generated.elementary`, on other rows."""
@@ -48,6 +51,17 @@ class TapeWriter:
     def constant(self, value: float, distance: float = 0.0) -> int:
         """Return the row of a number that is exact up to a distance."""
         return self._row(codes.CONSTANT, number=(value, distance))
+
+    def spline(self, polynomials: Polynomials, turned: int = 0, number: Number = (0.0, 0.0)) -> int:
+        """Return the first of the four rows of a spline.
+
+        If it is turned then the number in the place of u is total − u, with the error of the total.
+        """
+        self._spline = polynomials
+        row = self._row(codes.SPLINE, last=turned, number=number)
+        for coordinate in range(1, COORDINATES):
+            self._row(codes.COORDINATE, last=coordinate)
+        return row
 
     def power(self, row: int, halves: int) -> int:
         """Return the row of a power whose exponent is a number of halves, not 0."""
@@ -66,19 +80,26 @@ class TapeWriter:
             return self.write("cube", self._whole_power(row, exponent // 3))
         return self.write("product", self._whole_power(row, exponent - 1), row)
 
-    def replay(self, tape: Tape, u: int | None = None) -> list[int]:
-        """Write the operations of a tape, for another u if it is given; return its outputs."""
+    def replay(self, tape: Tape, total: Number | None = None) -> list[int]:
+        """Write the operations of a tape, for total − u if that is given; return its outputs."""
         rows: list[int] = []
-        for (code, a, b, _), number in zip(
-            tape.operations.tolist(), tape.numbers.tolist(), strict=True
+        self._spline = tape.spline
+        for (code, a, b, last), number in zip(
+            tape.operations.tolist(), map(tuple, tape.numbers.tolist()), strict=True
         ):
-            if code == codes.U and u is not None:
-                rows.append(u)
+            if code == codes.U and total is not None:
+                rows.append(
+                    self.write(
+                        "sum", self.write("negative", self.write("u")), self.constant(*total)
+                    )
+                )
+            elif code == codes.SPLINE and total is not None:
+                rows.append(self._row(code, last=1, number=total))
             elif code in LEAVES:
-                rows.append(self._row(code, number=tuple(number)))
+                rows.append(self._row(code, last=last, number=number))
             else:
                 other = rows[b] if code in BINARY else 0
-                rows.append(self._row(code, rows[a], other, tuple(number)))
+                rows.append(self._row(code, rows[a], other, number=number))
         return [rows[x] for x in tape.outputs]
 
     def tape(self, outputs: Sequence[int]) -> Tape | None:
@@ -87,13 +108,14 @@ class TapeWriter:
             np.array(self._operations, dtype=np.int64),
             np.array(self._numbers),
             np.array(outputs, dtype=np.int64),
+            self._spline,
         )
         return _folded(tape)
 
     def _row(
-        self, code: int, a: int = 0, b: int = 0, number: tuple[float, float] = (0.0, 0.0)
+        self, code: int, a: int = 0, b: int = 0, last: int = 0, number: Number = (0.0, 0.0)
     ) -> int:
-        operation = code, a, b, 0
+        operation = code, a, b, last
         row = self._rows.setdefault((operation, number), len(self._operations))
         if row == len(self._operations):
             self._operations.append(operation)
@@ -121,16 +143,10 @@ def tape_of_steps(
 
 def moved_tape(tape: Tape, matrix: Array, shift: Array, ends: Interval | None) -> Tape | None:
     """Return the tape of matrix x + shift; u is reversed between `ends`, if these are given."""
-    writer, u = TapeWriter(), None
+    writer, total = TapeWriter(), None
     if ends is not None:
-        total = sum(ends)
-        distance = abs(sum(map(Fraction, ends)) - Fraction(total))
-        u = writer.write(
-            "sum",
-            writer.write("negative", writer.write("u")),
-            writer.constant(total, float(distance)),
-        )
-    position = writer.replay(tape, u)
+        total = sum(ends), float(abs(sum(map(Fraction, ends)) - Fraction(sum(ends))))
+    position = writer.replay(tape, total)
     outputs = []
     for factors, number in zip(matrix.tolist(), shift.tolist(), strict=True):
         row = writer.constant(number)
@@ -160,7 +176,9 @@ def _folded(tape: Tape) -> Tape | None:
             operations[row], numbers[row] = (kind, variable, 0, 0), numbers[number]
             if tuple(numbers[number]) == NEUTRAL[kind]:
                 same[row] = variable
-    return _needed(Tape(operations, numbers, same[tape.outputs]))
+    return _needed(
+        tape._replace(operations=operations, numbers=numbers, outputs=same[tape.outputs])
+    )
 
 
 def _constant_rows(tape: Tape) -> NDArray[np.bool_]:
@@ -194,13 +212,21 @@ def _needed(tape: Tape) -> Tape:
             needed[row - 1] = True
         if code in PAIRS.values():
             needed[row + 1] = needed[row] = needed[row] or needed[row + 1]
+        if code == codes.COORDINATE and needed[row]:
+            needed[row - 1] = True
+        if code == codes.SPLINE:
+            needed[row : row + COORDINATES] = needed[row]
         if needed[row] and code not in LEAVES:
             needed[a] = True
             needed[b] |= code in BINARY
     new = np.maximum(np.cumsum(needed) - 1, 0)
     operations[:, 1:3] = new[operations[:, 1:3]]
     operations[np.isin(operations[:, 0], LEAVES), 1:3] = 0
-    return Tape(operations[needed].copy(), tape.numbers[needed].copy(), new[tape.outputs])
+    return tape._replace(
+        operations=operations[needed].copy(),
+        numbers=tape.numbers[needed].copy(),
+        outputs=new[tape.outputs],
+    )
 
 
 def jets_of(tape: Tape, u: Array, v: Array) -> Array:
