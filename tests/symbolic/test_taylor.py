@@ -1,0 +1,164 @@
+"""Taylor polynomials: products and compositions, and bounds of their errors, exactly."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import pytest
+import sympy as sp
+from gaussmap.symbolic import formulas, taylor
+from gaussmap.symbolic.emit import arguments
+from gaussmap.symbolic.notation import VectorSymbol
+from gaussmap.symbolic.printer import source_of
+from gaussmap.symbolic.simplify import straight_line
+from hypothesis import given
+from hypothesis import strategies as st
+
+u, v = sp.symbols("u v")
+ORDERS = ("0", "u", "v", "uu", "uv", "vv", "uuu", "uuv", "uvv", "vvv")
+EACH = pytest.mark.parametrize("name", [x.name for x in taylor.FORMULAS if "radius" not in x.name])
+RADII = {f"{x.name}": f"{x.name[:-1]}radius_{x.name[-1]}" for x in taylor.FORMULAS}
+
+
+def coefficients(f: Any, order: int) -> dict[str, Any]:
+    """Return the Taylor coefficients of a function at (1, 2) up to an order."""
+    result = {}
+    for axis in ORDERS:
+        i, j = axis.count("u"), axis.count("v")
+        if i + j <= order:
+            derivative = sp.diff(f, u, i, v, j) / sp.factorial(i) / sp.factorial(j)
+            result[axis] = derivative.subs({u: 1, v: 2}).evalf(40)
+    return result
+
+
+def of_symbol(letter: str, values: dict[str, Any]) -> dict[str, Any]:
+    return {f"{letter}_{axis}": value for axis, value in values.items()}
+
+
+def run(name: str, values: dict[str, Any]) -> dict[str, Any]:
+    """Return the outputs of a formula, from the code that is printed, for any kind of number."""
+    formula, names = formulas[name], dict(values)
+    for symbol, value in straight_line(formula).assignments:
+        names[symbol.name] = eval(source_of(value), {"math": math}, names)
+    return {x.name: names[x.name] for x in formula.outputs}
+
+
+A, B = sp.sin(u * v) + u**3, sp.exp(u - v) + v**2 * u
+
+
+@pytest.mark.parametrize("order", [2, 3])
+def test_products_are_those_of_functions(order):
+    values = of_symbol("a", coefficients(A, order)) | of_symbol("b", coefficients(B, order))
+    expected = of_symbol("c", coefficients(A * B, order))
+    found = run(f"product_{order}", values)
+    assert found.keys() == expected.keys()
+    assert all(abs(found[key] - value) < 1e-25 for key, value in expected.items())
+
+
+@pytest.mark.parametrize("order", [2, 3])
+def test_compositions_are_those_of_functions(order):
+    z = sp.Symbol("z")
+    value = A.subs({u: 1, v: 2})
+    outer = {
+        f"f{k}": (sp.diff(sp.tan(z), z, k) / sp.factorial(k)).subs(z, value).evalf(40)
+        for k in range(1, order + 1)
+    }
+    expected = of_symbol("c", coefficients(sp.tan(A), order))
+    found = run(f"composition_{order}", of_symbol("a", coefficients(A, order)) | outer)
+    assert found.keys() == expected.keys() - {"c_0"}
+    assert all(abs(x - expected[key]) < 1e-25 for key, x in found.items())
+
+
+# --- errors ---------------------------------------------------------------------------------------
+
+fractions = st.fractions(-4, 4, max_denominator=50)
+
+
+def names_of(name: str) -> list[str]:
+    return [x.name for x in formulas[name].in_components().inputs]
+
+
+@EACH
+@given(data=st.data())
+def test_radii_bound_the_change_by_errors(name, data):
+    """Without rounding: values change within their errors, results within the radii."""
+    letters = {"a": "d", "b": "e", "f": "g"}
+    values = {x: data.draw(fractions) for x in names_of(name)}
+    errors = {letters[x[0]] + x[1:]: abs(data.draw(fractions)) for x in values}
+    shares = data.draw(
+        st.lists(st.fractions(-1, 1, max_denominator=9), min_size=len(values), max_size=len(values))
+    )
+    changed = {
+        x: y + share * errors[letters[x[0]] + x[1:]]
+        for (x, y), share in zip(values.items(), shares, strict=True)
+    }
+    sizes = {x: abs(y) for x, y in values.items()}
+    radii = run(RADII[name], sizes | errors | {"u": Fraction(0)})
+    before, after = run(name, values), run(name, changed)
+    for key, value in before.items():
+        assert abs(after[key] - value) <= radii[f"r{key[1:]}"]
+
+
+@EACH
+def test_radii_are_attained(name):
+    """Where all is positive and as large as it may be, the change is the radius."""
+    letters = {"a": "d", "b": "e", "f": "g"}
+    values = {x: Fraction(k + 2, 7) for k, x in enumerate(names_of(name))}
+    errors = {letters[x[0]] + x[1:]: Fraction(1, k + 3) for k, x in enumerate(values)}
+    changed = {x: y + errors[letters[x[0]] + x[1:]] for x, y in values.items()}
+    radii = run(RADII[name], values | errors | {"u": Fraction(0)})
+    before, after = run(name, values), run(name, changed)
+    assert {f"r{x[1:]}": after[x] - before[x] for x in before} == radii
+
+
+@dataclass(frozen=True)
+class Counted:
+    """A positive number, and the largest number of roundings of the terms it is the sum of."""
+
+    value: Fraction
+    roundings: int = 0
+
+    def _with(self, other: Any, value: Fraction, both: bool) -> Counted:
+        mine, theirs = self.roundings, other.roundings
+        return Counted(value, (mine + theirs if both else max(mine, theirs)) + 1)
+
+    def __add__(self, other: Any) -> Counted:
+        other = other if isinstance(other, Counted) else Counted(Fraction(other))
+        return self._with(other, self.value + other.value, both=False)
+
+    def __mul__(self, other: Any) -> Counted:
+        other = other if isinstance(other, Counted) else Counted(Fraction(other))
+        return self._with(other, self.value * other.value, both=True)
+
+    def __neg__(self) -> Counted:
+        return Counted(-self.value, self.roundings)
+
+    def __sub__(self, other: Any) -> Counted:
+        return self + -1 * other if not isinstance(other, Counted) else self + -other
+
+    def __truediv__(self, other: Any) -> Counted:
+        other = other if isinstance(other, Counted) else Counted(Fraction(other))
+        return self._with(other, self.value / other.value, both=True)
+
+    def __rtruediv__(self, other: Any) -> Counted:
+        return Counted(Fraction(other)) / self
+
+    __radd__, __rmul__ = __add__, __mul__
+
+
+@EACH
+def test_radii_count_the_roundings_of_results(name):
+    values = {x: Counted(Fraction(k + 2, 7)) for k, x in enumerate(names_of(name))}
+    zero = {x.name: 0 for x in formulas[RADII[name]].in_components().inputs}
+    radii = run(RADII[name], zero | {x: y.value for x, y in values.items()} | {"u": Fraction(1)})
+    for key, found in run(name, values).items():
+        stated = radii[f"r{key[1:]}"] / found.value
+        assert found.roundings <= stated <= found.roundings + 1, key
+
+
+def test_arguments_are_polynomials():
+    assert [*arguments(formulas["product_3"])] == ["a", "b"]
+    assert all(isinstance(x, VectorSymbol) for x in formulas["product_3"].inputs)
