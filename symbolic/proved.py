@@ -1,8 +1,10 @@
 """The points of a surface with a given normal, proved: bounds over a cell of its parameters.
 
-Over a cell, with parameters s and t that are scaled to −1 … 1, the derivatives of n·x by s and t are
+Over a cell, with parameters s and t that are scaled to −1 … 1, the derivatives of n·x by s and t
+are
 
-    P + A s + B t + ½ (T0 s² + 2 T1 s t + T2 t²)   and   Q + B s + C t + ½ (T1 s² + 2 T2 s t + T3 t²)
+    P + A s + B t + ½ (T0 s² + 2 T1 s t + T2 t²),
+    Q + B s + C t + ½ (T1 s² + 2 T2 s t + T3 t²)
 
 with the linear forms A, B, C, P, Q in n of the patch that osculates at the centre of the cell, and
 T0 = n·x_sss, T1 = n·x_sst, T2 = n·x_stt, T3 = n·x_ttt at places between the centre and (s, t). The
@@ -70,7 +72,7 @@ REMAINDERS = Formula.build(
     outputs=[
         (
             z.name,
-            _largest(sp.diff(_cubic(THIRDS, s, t), by)).xreplace({sp.Abs(k): k for k in THIRDS}),
+            substitute(_largest(sp.diff(_cubic(THIRDS, s, t), by)), {sp.Abs(k): k for k in THIRDS}),
         )
         for z, by in ((R, s), (S, t))
     ],
@@ -93,10 +95,10 @@ def _excesses() -> Formula:
         outputs.append((name, sp.Abs(sp.expand(value)) - slope - rest))
     return Formula.build(
         "excesses",
-        "If one of these four numbers is positive then no point of the cell has the normal $n$: the "
-        "derivatives of $n·x$ by $s$ and $t$, or the combinations of them from which one parameter "
-        "is eliminated, exceed what they change over the cell. $R$ and $S$ are bounds of what a "
-        "quadratic patch leaves out of the derivatives.",
+        "If one of these four numbers is positive then no point of the cell has the normal $n$: "
+        "the derivatives of $n·x$ by $s$ and $t$, or the combinations of them from which one "
+        "parameter is eliminated, exceed what they change over the cell. $R$ and $S$ are bounds of "
+        "what a quadratic patch leaves out of the derivatives.",
         inputs=[*LINEAR_FORMS, R, S],
         terms=[("D", SOLUTION.D)],
         outputs=outputs,
@@ -123,9 +125,9 @@ def _contraction() -> Formula:
     return Formula.build(
         "contraction",
         "The inverse $y11$, $y12$, $y22$ of the Hessian $A$, $B$, $C$ at the centre, and bounds "
-        "$q1$ and $q2$ of the rows of its product with the change of the Hessian over the cell; the "
-        "third derivatives are $T0$, …, $T3$ up to $R0$, …, $R3$. If both are below 1 then at most "
-        "one point of the cell has the normal $n$ or $−n$.",
+        "$q1$ and $q2$ of the rows of its product with the change of the Hessian over the cell; "
+        "the third derivatives are $T0$, …, $T3$ up to $R0$, …, $R3$. If both are below 1 then at "
+        "most one point of the cell has the normal $n$ or $−n$.",
         inputs=[A, B, C, *THIRDS, *RADII],
         terms=[("D", SOLUTION.D)],
         outputs=[
@@ -251,9 +253,9 @@ FOLD_CURVE = Formula.build(
 FOLD_EXTREME = Formula.build(
     "fold_extreme",
     "At a place near the extreme of the other equation along the curve of `fold_curve`: if $|Q| > "
-    "r$ and $Q$ has the sign of its second derivative, at least $c2$ in absolute value, then it has "
-    "no zero. Zeros are at most $y$ and $z$ away by $w$ and $p$ if $|Q| ≤ r$, and if $Q$ has the "
-    "other sign.",
+    "r$ and $Q$ has the sign of its second derivative, at least $c2$ in absolute value, then it "
+    "has no zero. Zeros are at most $y$ and $z$ away by $w$ and $p$ if $|Q| ≤ r$, and if $Q$ has "
+    "the other sign.",
     inputs=[*LINEAR_FORMS, G0, G1, G2, k, m, c2, first, second],
     terms=[
         ("d", (sp.Abs(P) + first) / m),

@@ -11,7 +11,20 @@ from ..machine_code.jit import jit, loop
 from .proved_cells import EPS
 from .proved_clusters import shift_to
 
-__all__ = ["BORDER", "BOX", "COLUMNS", "CONTINUUM", "DOUBLE_KIND", "KINDS", "MULTIPLE", "SINGULAR", "Answers", "add_open", "add_place", "merge_places"]
+__all__ = [
+    "BORDER",
+    "BOX",
+    "COLUMNS",
+    "CONTINUUM",
+    "DOUBLE_KIND",
+    "KINDS",
+    "MULTIPLE",
+    "SINGULAR",
+    "Answers",
+    "add_open",
+    "add_place",
+    "merge_places",
+]
 
 # What is not decided: none or two places in a box, several or none, a curve or more of them, or
 # places where the surface may have no normal.
@@ -20,6 +33,7 @@ DOUBLE_KIND, MULTIPLE, CONTINUUM, SINGULAR = range(4)
 # The columns of places: u, v, how far they may be off, D; then the box in which there is no other
 # place, u₀, u₁, v₀, v₁; and whether the border of the domain is so near.
 BOX, BORDER, COLUMNS = 5, 9, 10
+
 
 class Answers(NamedTuple):
     """Room for places (k, 10), undecided boxes (k, 5) with their kinds, and the normals of both.
@@ -115,7 +129,7 @@ def either(row, other, period):
 
 @loop
 def relation(row, other, period):
-    """Return 1 if another place is that of a row, 0 if it is another one, −1 if this is not known."""
+    """Return 1 if another place is that of a row, 0 if it is not, −1 if this is not known."""
     du = shift_to(other[0], 0.5 * (row[5] + row[6]), period[0])
     dv = shift_to(other[1], 0.5 * (row[7] + row[8]), period[1])
     u, v = other[0] + du, other[1] + dv

@@ -47,7 +47,7 @@ EPS = 2.0**-52
 INFLATED = 1.0 + 1.0 / 16.0
 # The columns of `hot`: five vectors of the patch, then what it leaves out.
 REST_S, REST_T, HOT = 15, 16, 17
-# The columns of `rounding`: of first derivatives by s and t, of second ones; then how far bounds go.
+# The columns of `noise`: of derivatives by s and t, of second derivatives; then how far bounds go.
 FIRST_S, FIRST_T, SECOND, REACH = range(4)
 # The chord of a cone: from here on its half angle is too wide to tell n from −n; no bound at all.
 WIDE, OPEN = 1.3, 2.1
@@ -99,10 +99,11 @@ class Work(NamedTuple):
     @classmethod
     def new(cls, rows: int) -> Work:
         """Return work arrays for tapes of some rows."""
-        balls, pairs, lanes = (
-            np.zeros((3, BALL * (rows + 1))), np.zeros((2, LANES, 2)), np.zeros((3, LANES))
-        )  # fmt: skip
-        return cls(np.zeros(POINT * rows), *balls, np.zeros((2, 4)), *pairs, *lanes)
+        middles, radii, errors = np.zeros((3, BALL * (rows + 1)))
+        centres, half_widths = np.zeros((2, LANES, 2))
+        u, v, levels = np.zeros((3, LANES))
+        registers, ends = np.zeros(POINT * rows), np.zeros((2, 4))
+        return cls(registers, middles, radii, errors, ends, centres, half_widths, u, v, levels)
 
 
 @inline
@@ -231,9 +232,9 @@ def third_size(thirds, j, k):
 
 @loop
 def write_bounds(tape, work, reach, cells, count):
-    """Write derivatives at centres, bounds as far as `reach`, and rounding; 0 as reach if there are none.
+    """Write derivatives at centres, bounds as far as `reach`, and rounding.
 
-    Cells that have bounds are left as they are if `reach` is 1.
+    Cells without bounds get the reach 0. Cells that have some stay as they are if `reach` is 1.
     """
     place = cells.place
     wide = reach * (1.0 + 8.0 * EPS)
@@ -296,7 +297,7 @@ def write_thirds(tape, work, cells, j):
 
 @loop
 def write_noise(tape, errors, reach, cells, j):
-    """Write the rounding in cell j, lane j of registers: of derivatives, their scaling and products."""
+    """Write the rounding of derivatives, their scaling and products in cell j, lane j of errors."""
     hot, noise = cells.hot, cells.noise
     h_u, h_v = cells.place[j, 2], cells.place[j, 3]
     first_s = first_t = second = 0.0
@@ -384,7 +385,7 @@ def write_one_cone(cells):
 
 @loop
 def is_done(cells, j):
-    """Say whether a cell has one place at most for normals like its own, or is singular all over."""
+    """Say whether a cell has at most one place for normals like its own, or is flat."""
     if cells.noise[j, REACH] == 0.0 or cells.cone[j, 3] >= WIDE:
         return False
     patch = patch_of(cells.hot, j)
@@ -420,10 +421,10 @@ def copy_cell(cells, j, target, k):
 def cut_cells(tape, work, domain, grid, state, last, levels, stack, tile, cells):
     """Write the cells of the base cells of a grid, each cut into four until it is regular.
 
-    `domain` is u₀, u₁, v₀, v₁, `grid` the number of base cells along u and v. `levels` are how often
-    cells are cut, and those that have no narrow cone of normals. `state` holds the next base cell,
-    the number of cells on the `stack` (…, 5), and the number of cells written; it ends at base cell
-    `last` unless there is no more room. `tile` are work arrays, of LANES cells.
+    `domain` is u₀, u₁, v₀, v₁, `grid` the number of base cells along u and v. `levels` are how
+    often cells are cut, and those that have no narrow cone of normals. `state` holds the next base
+    cell, the number of cells on the `stack` (…, 5), and the number of cells written; it ends at
+    base cell `last` unless there is no more room. `tile` are work arrays, of LANES cells.
     """
     count = 0
     size_u, size_v = (
@@ -464,8 +465,8 @@ def cut_cells(tape, work, domain, grid, state, last, levels, stack, tile, cells)
             )
             for part in range(4):
                 put_on_stack(
-                    stack, state, u + (h_u if part & 1 else -h_u), v + (h_v if part & 2 else -h_v), h_u, h_v,
-                    work.levels[j] + 1.0,
+                    stack, state, u + (h_u if part & 1 else -h_u),
+                    v + (h_v if part & 2 else -h_v), h_u, h_v, work.levels[j] + 1.0,
                 )  # fmt: skip
     state[2] = count
 

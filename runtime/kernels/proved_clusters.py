@@ -41,8 +41,8 @@ def join(hull, u0, u1, v0, v1, period):
 def cluster(boxes, count, cells, size, period, hulls, owner):
     """Write the hulls (…, 4) of clusters, u₀, u₁, v₀, v₁, and of which one each box is a part.
 
-    Boxes (count, 3) are parts of cells: u, v and the number of the cell; half their widths is `size`
-    times that of the cell. Returns the number of hulls.
+    Boxes (count, 3) are parts of cells: u, v and the number of the cell; half their widths is
+    `size` times that of the cell. Returns the number of hulls.
     """
     hull_count = 0
     for k in range(count):

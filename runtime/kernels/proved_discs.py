@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from ...generated.patch import eliminated_forms
 from ..machine_code.jit import inline, jit, loop
-from .proved_answers import BORDER, COLUMNS, MULTIPLE, add_open
+from .proved_answers import BORDER, MULTIPLE, add_open
 from .proved_cells import EPS, linear_forms_of, patch_of
 from .proved_pairs import CLOSE, CONTRACTING
-from .tape import LANES, POINT, U, V, evaluate_points
+from .tape import POINT, U, V, evaluate_points
 from .vectors import row_vector
 
 __all__ = ["RINGS", "WHOLE", "Disc", "decide_discs"]
@@ -169,7 +169,9 @@ def decide_discs(tape, work, disc, normals, numbers, first, last, domain, answer
         half = math.pi if error >= r else 1.58 * error / r + 4.0 * EPS * phi
         row = answers.places[at]
         row[angle], row[1 - angle] = start + turn * (phi / (2.0 * math.pi)), other
-        row[2 + angle] = min(turn * half / (2.0 * math.pi), 0.5 * turn) + 4.0 * EPS * (abs(start) + turn)
+        row[2 + angle] = min(turn * half / (2.0 * math.pi), 0.5 * turn) + 4.0 * EPS * (
+            abs(start) + turn
+        )
         row[3 - angle] = error * size + rest
         row[4] = d
         # The disc, with all angles.

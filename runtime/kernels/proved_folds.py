@@ -1,4 +1,4 @@
-"""Folds: whether a small box without a regular Hessian has no place with a normal, or a double one."""
+"""Folds: whether a small box with a singular Hessian has no place with a normal, or a double."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def at_fold(tape, work, tile, n):
     if not (least > 0.0 and excess < 0.0 and bend > 0.0):
         return UNKNOWN
     u, v, h_u, h_v = tile.place[0, 0], tile.place[0, 1], tile.place[0, 2], tile.place[0, 3]
-    along = across = step = 0.0
+    along = across = step = q1 = 0.0
     for _ in range(STEPS):
         work.u[0] = u + h_u * (x * along - y * across)
         work.v[0] = v + h_v * (y * along + x * across)

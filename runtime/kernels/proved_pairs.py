@@ -1,8 +1,8 @@
 """Pairs of a cell and a normal: those that bounds exclude, and the one place that the others have.
 
-Pairs are worked on in tiles of LANES: each step is a vectorized loop over the lanes. Pairs that take
-another evaluation of the surface stay in the tile, and others take the lanes of those that are done.
-What is not decided in a few evaluations is left to `proved_places`.
+Pairs are worked on in tiles of LANES: each step is a vectorized loop over the lanes. Pairs that
+take another evaluation of the surface stay in the tile, and others take the lanes of those that are
+done. What is not decided in a few evaluations is left to `proved_places`.
 """
 
 from __future__ import annotations
@@ -51,10 +51,12 @@ __all__ = [
     "write_forms",
 ]
 
-# The rows of a tile of pairs, of LANES numbers: the normal, the cell, the forms of the pair, bounds,
-# and the place: s, t and its largest distance from the exact one, in the unit of the cell.
+# The rows of a tile of pairs, of LANES numbers: the normal, the cell, the forms of the pair, bounds
+# (see `Cells`), the inverse of the Hessian and bounds of its product with it (see `inverse_of`),
+# and the place: s, t, how far it may be from the exact one, D, the number of evaluations, a state.
 (
-    NX, NY, NZ, U0, V0, HU, HV, A, B, C, P, Q, T0, T1, T2, T3, R0, R1, R2, R3, ROUND_S, ROUND_T, ROUND_2, REACHED,
+    NX, NY, NZ, U0, V0, HU, HV, A, B, C, P, Q, T0, T1, T2, T3, R0, R1, R2, R3,
+    ROUND_S, ROUND_T, ROUND_2, REACHED,
     Y11, Y12, Y22, CHANGE, NOISE, BASE, S, T, RADIUS, DETERMINANT, ROUND, STATE,
 ) = (np.uint64(k * LANES) for k in range(36))  # fmt: skip
 ROWS = 36
@@ -87,7 +89,7 @@ def load_pair(t, k, cells, j, n):
 
 @loop
 def load_box(t, k, cells, j, n, u, v, size):
-    """Write a part of cell j, around (u, v), and a normal to lane k; its forms are written later."""
+    """Write a part of cell j, around (u, v), and a normal to lane k, without the forms."""
     i = np.uint64(k)
     t[i + NX], t[i + NY], t[i + NZ] = n
     t[i + U0], t[i + V0] = u, v
@@ -152,7 +154,7 @@ def is_beyond(s, t, g1, g2, error, change):
 
 @loop
 def bound_pairs(t, first, count):
-    """Write the states of pairs, and the inverse, its bounds and the start of those with a place."""
+    """Write the states of pairs; inverse, bounds and start of those that may have a place."""
     long_vectors()
     for k in range(first, count):
         i = np.uint64(k)
@@ -207,7 +209,7 @@ def compact(t, count, cells, numbers, u, v):
 
 @loop
 def improve_pairs(t, count, registers, outputs, u, v):
-    """Do a step of Newton's method from the 2-jets at u, v; write states and how far the place may be."""
+    """Do a step of Newton's method from the 2-jets at u, v; write states, and bounds of errors."""
     long_vectors()
     x, y, z = (
         np.uint64(POINT * outputs[0]), np.uint64(POINT * outputs[1]), np.uint64(POINT * outputs[2])

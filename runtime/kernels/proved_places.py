@@ -12,6 +12,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..machine_code.jit import jit, loop
+from .proved_answers import (
+    BORDER,
+    COLUMNS,
+    CONTINUUM,
+    DOUBLE_KIND,
+    MULTIPLE,
+    SINGULAR,
+    add_open,
+    add_place,
+)
 from .proved_cells import (
     EPS,
     FIRST_S,
@@ -24,7 +34,6 @@ from .proved_cells import (
     third_sizes,
     write_patch,
 )  # fmt: skip
-from .proved_answers import BORDER, COLUMNS, CONTINUUM, DOUBLE_KIND, MULTIPLE, SINGULAR, add_open, add_place
 from .proved_clusters import cluster
 from .proved_folds import DOUBLE, NO_PLACE, at_fold
 from .proved_pairs import (
@@ -54,14 +63,16 @@ __all__ = ["Boxes", "decide_normals"]
 
 # Boxes are cut so often; after each of some levels folds are looked for.
 DEEPEST, FOLDS = 24, (4, 8, 14, 19)
-# More open boxes than these, or than these and twice the cells of a normal, are a continuum.
-MOST, FEW = 1024, 64
+# A curve of places has about twice as many boxes on each level. More boxes than MANY are a curve if
+# their number grows by GROWTH for several levels; at most so many cells, or a quarter of so many
+# boxes, are looked at.
+MANY, GROWTH, TIMES, MOST = 256, 1.6, 3, 1024
 # From this level on, more than twice as many open boxes as on the one before are due to rounding.
 FINE = 10
 
 
 class Boxes(NamedTuple):
-    """Work arrays: boxes of a level and of the next one, clusters of them, and what becomes of these."""
+    """Work arrays: boxes of a level, of the next one, their clusters, and the fates of these."""
 
     now: NDArray[np.float64]
     following: NDArray[np.float64]
@@ -76,7 +87,7 @@ class Boxes(NamedTuple):
     @classmethod
     def new(cls, cells: int) -> Boxes:
         """Return work arrays for an index with so many cells."""
-        most = 4 * MOST + cells
+        most = 16 * MOST + cells
         return cls(
             np.empty((most, 3)), np.empty((most, 3)), np.empty((most, 4)), np.empty(most, np.int64),
             np.empty(most, np.int64), np.zeros(ROWS * LANES), np.zeros(LANES, np.int64),
@@ -86,7 +97,7 @@ class Boxes(NamedTuple):
 
 @loop
 def side_at(tape, work, tile, cells, j, u, v, r_u, r_v, n):
-    """Return the sign of the product of n and the normals in a small box of cell j, 0 if unknown."""
+    """Return the sign of the products of n and the normals in a part of cell j, 0 if unknown."""
     work.u[0], work.v[0] = u, v
     evaluate_points(tape, work.u, work.v, 1, work.registers)
     tile.place[0, 0], tile.place[0, 1], tile.place[0, 2], tile.place[0, 3] = u, v, r_u, r_v
@@ -109,7 +120,7 @@ def rest_in(cells, j, size_u, size_v):
 
 @loop
 def cut_boxes(tape, work, index, boxes, count, size, number, n, answers):
-    """Decide boxes of a level; write those of the next one. Returns their number, −1 without room."""
+    """Decide boxes of a level, write the next ones; return their number, −1 without room."""
     cells, t = index.cells, boxes.pairs
     following = 0
     for first in range(0, count, LANES):
@@ -184,7 +195,7 @@ def store_places(t, lanes, work, boxes, number, answers):
 
 @loop
 def use_folds(tape, work, index, boxes, count, size, domain, number, n, last, answers):
-    """Drop the clusters of boxes that are decided by folds; the others, too, after the `last` level.
+    """Drop the clusters of boxes that folds decide; the others, too, after the `last` level.
 
     Returns the number of boxes that are left, −1 if there was no room.
     """
@@ -236,12 +247,13 @@ def give_up(index, boxes, rows, count, size, domain, number, answers):
 
 @loop
 def bisect(tape, work, index, boxes, count, domain, number, n, answers):
-    """Find the places of a normal in the first boxes, which are whole cells; say if there was room."""
+    """Find the places of a normal in boxes that are whole cells; say if there was room."""
     size = 1.0
-    fold = 0
-    limit = min(MOST, FEW + 2 * count)
+    fold = growing = 0
+    if count > MOST:
+        return give_up(index, boxes, boxes.now, count, size, domain, number, answers)
     for level in range(DEEPEST + 1):
-        if count > 4 * limit or (level == 0 and count > MOST):
+        if count > 4 * MOST or (count > MANY and growing >= TIMES):
             return give_up(index, boxes, boxes.now, count, size, domain, number, answers)
         following = cut_boxes(tape, work, index, boxes, count, size, number, n, answers)
         size *= 0.5
@@ -257,6 +269,7 @@ def bisect(tape, work, index, boxes, count, domain, number, n, answers):
                 return False
         if following == 0:
             return True
+        growing = growing + 1 if following > GROWTH * count else 0
         count = following
         for k in range(count):
             for x in range(3):

@@ -67,8 +67,9 @@ class Tiles(NamedTuple):
     @classmethod
     def new(cls) -> Tiles:
         """Return new work arrays."""
-        integers = np.zeros((2, LANES), np.int64)
-        return cls(np.zeros(4 * LANES), np.zeros(ROWS * LANES), *integers, *np.zeros((2, LANES)))
+        cells, numbers = np.zeros((2, LANES), np.int64)
+        u, v = np.zeros((2, LANES))
+        return cls(np.zeros(4 * LANES), np.zeros(ROWS * LANES), cells, numbers, u, v)
 
 
 class Found(NamedTuple):
@@ -100,7 +101,7 @@ def bin_of(normals, k, grid):
 
 @loop
 def exclude(tile, count, cells, j):
-    """Write for each normal of a tile a positive number if cell j is far from it by simple bounds."""
+    """Write a positive number for each normal of a tile that cell j does not have by its bounds."""
     long_vectors()
     patch = patch_of(cells.hot, j)
     rest_s, rest_t = cells.hot[j, REST_S], cells.hot[j, REST_T]

@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 
 from ..base.threads import over_ranges
 from ..domain.domain import Boundary, Domain
+from ..kernels.proved_answers import BORDER, BOX, KINDS, Answers, merge_places
 from ..kernels.proved_bins import count_members, list_members
 from ..kernels.proved_cells import Cells, Work, cut_cells
-from ..kernels.proved_answers import BORDER, BOX, KINDS, Answers, merge_places
 from ..kernels.proved_discs import decide_discs
 from ..kernels.proved_places import Boxes, decide_normals
 from ..kernels.proved_search import PLACE, Found, Index, Tiles, search_normals
@@ -193,7 +193,7 @@ class ProvedIndex:
     def _ordered(self, normals: NDArray[np.float64], threads: int | None) -> NDArray[np.float64]:
         """Return normals with their numbers (S, 4), those of a bin together."""
         if len(normals) < SORTED:
-            return np.column_stack([normals, np.arange(len(normals))])
+            return np.column_stack([normals, np.arange(len(normals), dtype=np.float64)])
         grid = self.grid
         while 6 * (2 * grid) ** 2 * NORMALS_PER_BIN <= len(normals) and grid < FINEST:
             grid *= 2
@@ -209,7 +209,7 @@ class ProvedIndex:
         which, groups = np.unique(hard[:, 0], return_index=True)
         groups = np.append(groups, len(hard))
 
-        def decide(room: Answers, rooms: Rooms, first: int, last: int) -> int:
+        def decide(room: Answers, rooms: Rooms, first: int, last: int) -> np.int64:
             return decide_normals(
                 self.tape, rooms.work, self.index, normals, hard, groups, first, last,
                 self.domain, rooms.boxes, room,
@@ -223,7 +223,7 @@ class ProvedIndex:
             def of_disc(
                 room: Answers, _: Rooms, first: int, last: int, pole: PoleDisc = pole,
                 work: Work = work, numbers: NDArray[np.int64] = numbers,
-            ) -> int:  # fmt: skip
+            ) -> np.int64:  # fmt: skip
                 return decide_discs(
                     pole.tape, work, pole.disc, normals, numbers, first, last, self.domain, room
                 )
@@ -238,8 +238,7 @@ class ProvedIndex:
         numbers: NDArray[np.int64],
         count: int,
     ) -> tuple[NDArray[np.float64], NDArray[np.int64], list[Answers]]:
-        """Return places (k, 6) of answers without those that are found twice, their normals, and
-        boxes in which there may be two.
+        """Return places (k, 6) of answers, once each, their normals, and boxes that may have two.
 
         `places` and `numbers` are those that were found at once, with `count` normals.
         """
@@ -256,7 +255,7 @@ class ProvedIndex:
         fast, starts = places[near], np.append(np.searchsorted(numbers[near], which), len(near))
         keep = np.zeros(len(slow), np.bool_)
 
-        def merge(room: Answers, _: Rooms, first: int, last: int) -> int:
+        def merge(room: Answers, _: Rooms, first: int, last: int) -> np.int64:
             return merge_places(
                 slow, of_slow, groups, first, last, fast, starts, self.domain, keep, room
             )
@@ -266,7 +265,7 @@ class ProvedIndex:
         return slow[keep][:, columns], of_slow[keep], unknown
 
     def _answered(
-        self, step: Callable[[Answers, Rooms, int, int], int], count: int, threads: int | None
+        self, step: Callable[[Answers, Rooms, int, int], np.int64], count: int, threads: int | None
     ) -> list[Answers]:
         """Return the answers of a step that takes a range, and returns how far it had room."""
 
@@ -292,8 +291,9 @@ class ProvedIndex:
             rooms = self._rooms.pop()
         except IndexError:
             rooms = Rooms(
-                Work.new(len(self.tape.operations)), Tiles.new(), Boxes.new(len(self.index.cells.place)),
-                [Found.new(ROOM, ROOM)], [Answers.new(ROOM)],
+                Work.new(len(self.tape.operations)), Tiles.new(),
+                Boxes.new(len(self.index.cells.place)), [Found.new(ROOM, ROOM)],
+                [Answers.new(ROOM)],
             )  # fmt: skip
         yield rooms
         self._rooms.append(rooms)
@@ -307,7 +307,9 @@ def _discs(
     for axis, ends in enumerate(boundary):
         row = (domain[axis][1] - domain[axis][0]) / cells[axis]
         for k, end in enumerate(ends):
-            disc = pole_disc(tape, domain, 1 - axis, domain[axis][k], row) if end == "pole" else None
+            disc = (
+                pole_disc(tape, domain, 1 - axis, domain[axis][k], row) if end == "pole" else None
+            )
             if disc is not None:
                 discs.append(disc)
                 inside[axis, k] += disc.radius if k == 0 else -disc.radius

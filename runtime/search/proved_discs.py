@@ -1,9 +1,10 @@
 """The discs around the poles of a surface: bounds in charts without a singularity.
 
-In polar coordinates φ, r at a pole the derivatives by s = r cos φ, t = r sin φ hold quotients by r. By
-Taylor's theorem these are derivatives, too: x_φ is 0 for r = 0, so that
+In polar coordinates φ, r at a pole the derivatives by s = r cos φ, t = r sin φ hold quotients by r.
+By Taylor's theorem these are derivatives, too: x_φ is 0 for r = 0, so that
 
-    (x_φr − x_φ / r) / r = x_φrr(r₁) − ½ x_φrr(r₂),     (x_φφ / r + x_r) / r = ½ x_φφrr(r₃) + x_rr(r₄)
+    (x_φr − x_φ / r) / r = x_φrr(r₁) − ½ x_φrr(r₂),
+    (x_φφ / r + x_r) / r = ½ x_φφrr(r₃) + x_rr(r₄)
 
 at some r₁, …, r₄ between 0 and r, for each coordinate; for the second one, x_φφr = −x_r for r = 0.
 Both are consequences of the smoothness of the surface at the pole.
@@ -95,17 +96,8 @@ def _bounds(tapes: PolarTapes, size: float) -> tuple[Array, Array, Array]:
     """Return `hot`, `changes` and the rounding of x_r and x_φ of a disc; see `Disc`."""
     jets, registers = np.empty((3, 6, 3)), np.empty(BALL * (len(tapes.position.operations) + 1))
     points_jets(tapes.position, np.array([0.0, 0.25, 0.5]) * math.pi, np.zeros(3), registers, jets)
-    first, second = vector(jets[:, 2]), vector(jets[:, 5])
-
-    def at(x: Vector, k: int) -> Vector:
-        return Vector(*(y[k] for y in x))
-
-    a, b, c, d, e = (
-        np.array(x)
-        for x in python_function(at_pole)(
-            at(first, 0), at(second, 0), at(second, 1), at(first, 2), at(second, 2)
-        )
-    )
+    along = (vector(jets[k, order]) for k, order in ((0, 2), (0, 5), (1, 5), (2, 2), (2, 5)))
+    a, b, c, d, e = (np.array(x) for x in python_function(at_pole)(*along))
     hessian = np.stack([a, b, c])
     changes = np.stack([_changes(tapes, WHOLE * size * 0.5**k, hessian) for k in range(RINGS)])
     middles, radii, errors = np.empty((3, len(registers)))
@@ -145,7 +137,7 @@ def _changes(tapes: PolarTapes, reach: float, hessian: Array) -> Array:
 
 
 def _cell(hot: Array, changes: Array, noise: Array, turned: float, size: float) -> Cells | None:
-    """Return a disc as a cell with a cone of normals; None if that is wide, or the Hessian changes."""
+    """Return a disc as a cell with a cone of normals; None if that is wide or K may be 0."""
     if not np.isfinite(changes).all() or not np.isfinite(noise).all():
         return None
     cell = Cells.new(1)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import inspect
 import math
 from dataclasses import dataclass
-from typing import Any
 
 from ...generated import elementary
 from ..base.formula_calls import python_function
@@ -18,6 +17,8 @@ __all__ = ["PolarTapes", "polar_tapes"]
 
 NAMES = {code: name.lower() for name, code in vars(elementary).items() if isinstance(code, int)}
 PARTNERS = {"sin": "cos", "cos": "sin", "sinh": "cosh", "cosh": "sinh"}
+
+Slope = Traced | float  # the number 0.0 where a row does not depend on the angle
 
 
 @dataclass(frozen=True)
@@ -50,10 +51,10 @@ def polar_tapes(tape: Tape, domain: Domain, angle: int, end: float) -> PolarTape
 
 
 def _with_slopes(
-    writer: TapeWriter, tape: Tape, variables: list[Traced], slopes: list[Any]
-) -> list[tuple[Traced, Any]]:
+    writer: TapeWriter, tape: Tape, variables: list[Traced], slopes: list[Slope]
+) -> list[tuple[Traced, Slope]]:
     """Return the values of the rows of a tape and their derivatives, 0.0 for those of constants."""
-    rows: list[tuple[Traced, Any]] = []
+    rows: list[tuple[Traced, Slope]] = []
     for (code, a, b, _), (number, distance) in zip(
         tape.operations.tolist(), tape.numbers.tolist(), strict=True
     ):
@@ -79,7 +80,7 @@ def _with_slopes(
     return rows
 
 
-def _applied(writer: TapeWriter, name: str, x: Traced, slope: Any) -> tuple[Traced, Any]:
+def _applied(writer: TapeWriter, name: str, x: Traced, slope: Slope) -> tuple[Traced, Slope]:
     """Return a function of a row, and its derivative by the chain rule."""
     value = Traced(writer, writer.write(name, x.row))
     if isinstance(slope, float):
