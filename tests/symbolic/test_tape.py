@@ -56,7 +56,8 @@ def test_steps_of_the_catalogue_compute_positions(name):
         u**7, 1 / u**3, u ** sp.Rational(5, 2), u ** sp.Rational(-1, 2), u ** sp.Rational(1, 3),
         u**v, sp.Float(2.5) ** u, u ** sp.Float(0.5), sp.exp(u) - 2 * v, sp.tan(u), sp.cot(u),
         sp.sec(u), sp.csc(u), sp.coth(u), sp.sech(u), sp.csch(u), sp.acos(u), sp.acot(u),
-        sp.asinh(u), sp.acosh(u + 2), sp.atanh(u), sp.log(u, 3), sp.sqrt(2) * u / sp.pi, sp.Integer(3),
+        sp.asinh(u), sp.acosh(u + 2), sp.atanh(u), sp.log(u, 3), sp.sqrt(2) * u / sp.pi,
+        sp.Integer(3),
     ],
 )  # fmt: skip
 def test_steps_compute_expressions(expression):
