@@ -237,7 +237,8 @@ def write_bounds(tape, work, reach, cells, count):
     Cells without bounds get the reach 0. Cells that have some stay as they are if `reach` is 1.
     """
     place = cells.place
-    wide = reach * (1.0 + 8.0 * EPS)
+    # Where bounds end at the sides of cells, derivatives may jump there.
+    wide = reach + 8.0 * EPS if reach > 1.0 else 1.0 - 8.0 * EPS
     for j in range(count):
         for k in range(2):
             work.centres[j, k], work.half_widths[j, k] = place[j, k], wide * place[j, 2 + k]
@@ -418,31 +419,21 @@ def copy_cell(cells, j, target, k):
 
 
 @jit
-def cut_cells(tape, work, domain, grid, state, last, levels, stack, tile, cells):
+def cut_cells(tape, work, lines_u, lines_v, state, last, levels, stack, tile, cells):
     """Write the cells of the base cells of a grid, each cut into four until it is regular.
 
-    `domain` is u₀, u₁, v₀, v₁, `grid` the number of base cells along u and v. `levels` are how
-    often cells are cut, and those that have no narrow cone of normals. `state` holds the next base
-    cell, the number of cells on the `stack` (…, 5), and the number of cells written; it ends at
-    base cell `last` unless there is no more room. `tile` are work arrays, of LANES cells.
+    The lines of the grid are at these u (m,) and v (n,). `levels` are how often cells are cut, and
+    those that have no narrow cone of normals. `state` holds the next base cell, the number of cells
+    on the `stack` (…, 5), and the number of cells written; it ends at base cell `last` unless there
+    is no more room. `tile` are work arrays, of LANES cells.
     """
     count = 0
-    size_u, size_v = (
-        (domain[1] - domain[0]) / (2 * grid[0]),
-        (domain[3] - domain[2]) / (2 * grid[1]),
-    )
     while count + LANES <= cells.place.shape[0] and (state[0] < last or state[1] > 0):
         while state[1] < LANES and state[0] < last:
-            i, k = state[0] // grid[1], state[0] % grid[1]
-            put_on_stack(
-                stack,
-                state,
-                domain[0] + size_u * (2 * i + 1),
-                domain[2] + size_v * (2 * k + 1),
-                size_u,
-                size_v,
-                0.0,
-            )
+            i, k = state[0] // (lines_v.size - 1), state[0] % (lines_v.size - 1)
+            u0, u1, v0, v1 = lines_u[i], lines_u[i + 1], lines_v[k], lines_v[k + 1]
+            u, v, h_u, h_v = 0.5 * (u0 + u1), 0.5 * (v0 + v1), 0.5 * (u1 - u0), 0.5 * (v1 - v0)
+            put_on_stack(stack, state, u, v, h_u, h_v, 0.0)
             state[0] += 1
         taken = min(state[1], LANES)
         state[1] -= taken

@@ -35,8 +35,9 @@ from .vectors import dot, row_vector
 
 __all__ = ["PLACE", "Found", "Index", "Tiles", "search_normals"]
 
-# The columns of places: u, v, how far each may be from the exact one, and D.
-PLACE = 5
+# The columns of places: u, v, how far each may be from the exact one, D, and whether the border of
+# the domain is so near.
+PLACE = 6
 # Rows of a tile of normals: x, y, z, and the largest of what excludes a cell.
 Y, Z, EXCESS = (np.uint64(k * LANES) for k in range(1, 4))
 
@@ -73,7 +74,7 @@ class Tiles(NamedTuple):
 
 
 class Found(NamedTuple):
-    """What a search finds: places (k, 5) and their normals; hard pairs (k, 2) of normal and cell.
+    """What a search finds: places (k, 6) and their normals; hard pairs (k, 2) of normal and cell.
 
     `counts` are the numbers of both.
     """
@@ -162,7 +163,7 @@ def flush(tape, work, cells, tiles, first, count, found):
                 t[i + RADIUS] * t[i + HU],
                 t[i + RADIUS] * t[i + HV],
             )
-            found.places[at, 4] = t[i + DETERMINANT]
+            found.places[at, 4], found.places[at, 5] = t[i + DETERMINANT], 0.0
             found.numbers[at] = tiles.numbers[k]
             at += 1
     found.counts[0] = at

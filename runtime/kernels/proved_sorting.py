@@ -1,51 +1,83 @@
-"""Places in the order of their normals, those of a normal by u and v."""
+"""Places in the order of their normals, those of a normal by u and v: a counting sort."""
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
 from ..machine_code.jit import jit, loop
 
-__all__ = ["sort_places"]
+__all__ = ["Sorted", "count_places", "order_places", "put_places", "start_normals"]
 
 
-@loop
-def is_before(rows, a, b):
-    """Say whether place a is before place b."""
-    return rows[a, 0] < rows[b, 0] or (rows[a, 0] == rows[b, 0] and rows[a, 1] < rows[b, 1])
+class Sorted(NamedTuple):
+    """Room for sorted places: numbers of normals (k,), parameters, radii (k, 2), signs, borders."""
+
+    numbers: NDArray[np.int64]
+    uv: NDArray[np.float64]
+    radius: NDArray[np.float64]
+    sign: NDArray[np.int8]
+    border: NDArray[np.bool_]
+
+    @classmethod
+    def new(cls, count: int) -> Sorted:
+        """Return room for some places."""
+        return cls(
+            np.empty(count, np.int64), np.empty((count, 2)), np.empty((count, 2)),
+            np.empty(count, np.int8), np.empty(count, np.bool_),
+        )  # fmt: skip
 
 
 @jit
-def sort_places(rows, numbers, starts, order, uv, radius, sign, border):
-    """Write the fields of places, rows (k, 6) of u, v, two radii, D, and whether on the border.
-
-    `numbers` (k,) are those of normals; `starts` (S + 1,), zeros, become the starts of normals in
-    the result, and order (k,) their numbers.
-    """
-    count = numbers.size
-    for k in range(count):
+def count_places(numbers, starts):
+    """Add the numbers of places with each normal to `starts` (S + 1,), shifted by one."""
+    for k in range(numbers.size):
         starts[numbers[k] + 1] += 1
+
+
+@jit
+def start_normals(starts):
+    """Change the numbers of places into their starts."""
     for n in range(starts.size - 1):
         starts[n + 1] += starts[n]
-    for k in range(count):
-        order[starts[numbers[k]]] = k
-        starts[numbers[k]] += 1
-    for n in range(starts.size - 1, 0, -1):
-        starts[n] = starts[n - 1]
-    starts[0] = 0
-    for n in range(starts.size - 1):
-        for at in range(starts[n], starts[n + 1]):
-            place, to = order[at], at
-            while to > starts[n] and is_before(rows, place, order[to - 1]):
-                order[to] = order[to - 1]
-                to -= 1
-            order[to] = place
-        for at in range(starts[n], starts[n + 1]):
-            k = order[at]
-            uv[at, 0], uv[at, 1], radius[at, 0], radius[at, 1] = (
-                rows[k, 0],
-                rows[k, 1],
-                rows[k, 2],
-                rows[k, 3],
-            )
-            sign[at] = 1 if rows[k, 4] > 0.0 else -1
-            border[at] = rows[k, 5] > 0.0
-            order[at] = n
+
+
+@jit
+def put_places(places, numbers, starts, room):
+    """Write places (k, 6) where those with their normals start, and move the starts on."""
+    for k in range(numbers.size):
+        at = starts[numbers[k]]
+        starts[numbers[k]] = at + 1
+        room.numbers[at] = numbers[k]
+        room.uv[at, 0], room.uv[at, 1] = places[k, 0], places[k, 1]
+        room.radius[at, 0], room.radius[at, 1] = places[k, 2], places[k, 3]
+        room.sign[at] = 1 if places[k, 4] > 0.0 else -1
+        room.border[at] = places[k, 5] > 0.0
+
+
+@jit
+def order_places(room):
+    """Sort the places with each normal by u, then v."""
+    for first in range(1, room.numbers.size):
+        k = first
+        while k > 0 and room.numbers[k - 1] == room.numbers[k] and is_before(room.uv, k, k - 1):
+            swap(room, k, k - 1)
+            k -= 1
+
+
+@loop
+def is_before(uv, i, k):
+    """Say whether parameters i are before parameters k."""
+    return uv[i, 0] < uv[k, 0] or (uv[i, 0] == uv[k, 0] and uv[i, 1] < uv[k, 1])
+
+
+@loop
+def swap(room, i, k):
+    """Exchange two places."""
+    for x in range(2):
+        room.uv[i, x], room.uv[k, x] = room.uv[k, x], room.uv[i, x]
+        room.radius[i, x], room.radius[k, x] = room.radius[k, x], room.radius[i, x]
+    room.sign[i], room.sign[k] = room.sign[k], room.sign[i]
+    room.border[i], room.border[k] = room.border[k], room.border[i]

@@ -17,15 +17,22 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...generated.elementary import SPLINE
 from ..base.threads import over_ranges
 from ..domain.domain import Boundary, Domain
 from ..kernels.proved_answers import BORDER, BOX, KINDS, Answers, merge_places
 from ..kernels.proved_bins import count_members, list_members
-from ..kernels.proved_cells import Cells, Work, cut_cells
+from ..kernels.proved_cells import REACH, Cells, Work, cut_cells
 from ..kernels.proved_discs import decide_discs
 from ..kernels.proved_places import Boxes, decide_normals
-from ..kernels.proved_search import PLACE, Found, Index, Tiles, search_normals
-from ..kernels.proved_sorting import sort_places
+from ..kernels.proved_search import Found, Index, Tiles, search_normals
+from ..kernels.proved_sorting import (
+    Sorted,
+    count_places,
+    order_places,
+    put_places,
+    start_normals,
+)
 from ..kernels.tape import LANES, Tape
 from .bins import sorted_normals
 from .proved_discs import PoleDisc, pole_disc
@@ -63,7 +70,8 @@ class ProvedPlaces(NamedTuple):
     numbers (k,) int64 are those of normals; uv (k, 2) the parameters, and radius (k, 2) how far the
     exact ones may be from them, each; sign (k,) int8 that of the Gaussian curvature; border (k,)
     bool says whether the exact parameters may be outside of the domain, by at most the radius. All
-    other points with these normals are in the boxes of `undecided`.
+    other points with these normals are in the boxes of `undecided`, or in the boxes of the index
+    that are `unbounded`.
     """
 
     numbers: NDArray[np.int64]
@@ -72,6 +80,13 @@ class ProvedPlaces(NamedTuple):
     sign: NDArray[np.int8]
     border: NDArray[np.bool_]
     undecided: Undecided
+
+
+class Places(NamedTuple):
+    """Places in no order: rows (k, 6), and the numbers (k,) of their normals."""
+
+    rows: NDArray[np.float64]
+    numbers: NDArray[np.int64]
 
 
 class Rooms(NamedTuple):
@@ -89,7 +104,8 @@ class ProvedIndex:
     """The index of a surface: immutable, and shared by threads.
 
     `domain` (6,) is u₀, u₁, v₀, v₁, and the periods of u and v, 0 if there is none. A mirrored
-    parameter has no period here: normals change their sides at its ends.
+    parameter has no period here: normals change their sides at its ends. Boxes (m, 4) of parameters
+    in `unbounded`, u₀, u₁, v₀, v₁, are where nothing is known: derivatives have no bounds there.
     """
 
     tape: Tape
@@ -97,6 +113,7 @@ class ProvedIndex:
     index: Index
     grid: int  # of the bins
     discs: tuple[PoleDisc, ...]
+    unbounded: NDArray[np.float64]
     _rooms: deque[Rooms] = field(default_factory=deque, repr=False)
 
     @classmethod
@@ -136,10 +153,16 @@ class ProvedIndex:
         )
         box = np.array([*domain[0], *domain[1], *periods])
         discs, inside = _discs(tape, domain, boundary, cells)
-        cut = _cut(tape, inside, cells, threads)
+        lines = [_lines(tape, k, inside[k], cells[k]) for k in (0, 1)]
+        cut = _cut(tape, lines, threads)
+        blind = cut.noise[:, REACH] == 0.0
+        u, v, h_u, h_v = cut.place[blind].T
+        unbounded = np.column_stack([u - h_u, u + h_u, v - h_v, v + h_v])
+        cut = Cells(*(x[~blind] for x in cut))
         both = Cells(*map(np.concatenate, zip(cut, *(x.cell for x in discs), strict=True)))
-        levels = max(2, round(np.log2(np.sqrt(len(both.place) / 24.0))))
-        return cls(tape, box, _listed(both, len(cut.place), levels), 1 << levels, discs)
+        levels = max(2, round(np.log2(np.sqrt(len(both.place) / 24.0 + 1.0))))
+        index = _listed(both, len(cut.place), levels)
+        return cls(tape, box, index, 1 << levels, discs, unbounded)
 
     def query(self, normals: NDArray[np.float64], threads: int | None = None) -> ProvedPlaces:
         """Return all points with unit normals (S, 3).
@@ -147,26 +170,22 @@ class ProvedIndex:
         The answer for a normal depends neither on the other ones nor on the number of threads.
         """
         normals = np.ascontiguousarray(normals, np.float64)
-        places, numbers, hard = self._search(normals, threads)
-        rows = np.zeros((len(places), PLACE + 1))
-        rows[:, :PLACE] = places
+        parts, hard = self._search(normals, threads)
         answers: list[Answers] = []
         if len(hard) > 0:
             answers = self._decide(normals, hard, threads)
-            slow, slow_numbers, unknown = self._merged(answers, places, numbers, len(normals))
+            slow, unknown = self._merged(answers, parts, len(normals))
+            parts.append(slow)
             answers.extend(unknown)
-            rows, numbers = np.concatenate([rows, slow]), np.concatenate([numbers, slow_numbers])
-        return _result(rows, numbers, len(normals), answers)
+        return ProvedPlaces(*_sorted(parts, len(normals)), _undecided(answers))
 
     def _search(
         self, normals: NDArray[np.float64], threads: int | None
-    ) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
-        """Return places (k, 5), the numbers of their normals, and hard pairs (m, 2)."""
+    ) -> tuple[list[Places], NDArray[np.int64]]:
+        """Return what is found at once, and hard pairs (k, 2) of normals and cells."""
         ordered = self._ordered(normals, threads)
 
-        def work(
-            first: int, last: int
-        ) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
+        def work(first: int, last: int) -> tuple[Places, NDArray[np.int64]]:
             with self._room() as rooms:
                 while not search_normals(
                     self.index, self.tape, rooms.work, ordered, self.grid, first, last,
@@ -176,19 +195,12 @@ class ProvedIndex:
                     rooms.found[0] = Found.new(2 * len(room.numbers), 2 * len(room.hard))
                 found = rooms.found[0]
                 places, hard = found.counts
-                return (
-                    found.places[:places].copy(),
-                    found.numbers[:places].copy(),
-                    found.hard[:hard].copy(),
-                )
+                taken = Places(found.places[:places].copy(), found.numbers[:places].copy())
+                return taken, found.hard[:hard].copy()
 
-        parts = list(over_ranges(work, len(normals), NORMALS_AT_A_TIME, threads))
-        if len(parts) == 1:
-            return parts[0]
-        if not parts:
-            return np.empty((0, PLACE)), np.empty(0, np.int64), np.empty((0, 2), np.int64)
-        places, numbers, hard = (np.concatenate(x) for x in zip(*parts, strict=True))
-        return places, numbers, hard
+        results = list(over_ranges(work, len(normals), NORMALS_AT_A_TIME, threads))
+        pairs = [np.empty((0, 2), np.int64), *(hard for _, hard in results)]
+        return [places for places, _ in results], np.concatenate(pairs)
 
     def _ordered(self, normals: NDArray[np.float64], threads: int | None) -> NDArray[np.float64]:
         """Return normals with their numbers (S, 4), those of a bin together."""
@@ -234,13 +246,12 @@ class ProvedIndex:
     def _merged(
         self,
         answers: list[Answers],
-        places: NDArray[np.float64],
-        numbers: NDArray[np.int64],
+        parts: list[Places],
         count: int,
-    ) -> tuple[NDArray[np.float64], NDArray[np.int64], list[Answers]]:
-        """Return places (k, 6) of answers, once each, their normals, and boxes that may have two.
+    ) -> tuple[Places, list[Answers]]:
+        """Return the places of answers, each once, and boxes that may have two.
 
-        `places` and `numbers` are those that were found at once, with `count` normals.
+        `parts` are those that were found at once; there are `count` normals.
         """
         slow = np.concatenate([x.places for x in answers])
         of_slow = np.concatenate([x.numbers for x in answers])
@@ -250,9 +261,11 @@ class ProvedIndex:
         groups = np.append(groups, len(slow))
         asked = np.zeros(count, np.bool_)
         asked[which] = True
-        near = np.flatnonzero(asked[numbers])
-        near = near[np.argsort(numbers[near], kind="stable")]
-        fast, starts = places[near], np.append(np.searchsorted(numbers[near], which), len(near))
+        near = [Places(x.rows[asked[x.numbers]], x.numbers[asked[x.numbers]]) for x in parts]
+        fast, of_fast = (np.concatenate(x) for x in zip(*near, strict=True))
+        order = np.argsort(of_fast, kind="stable")
+        fast, of_fast = fast[order], of_fast[order]
+        starts = np.append(np.searchsorted(of_fast, which), len(fast))
         keep = np.zeros(len(slow), np.bool_)
 
         def merge(room: Answers, _: Rooms, first: int, last: int) -> np.int64:
@@ -262,7 +275,7 @@ class ProvedIndex:
 
         unknown = self._answered(merge, len(which), 1)
         columns = np.append(np.arange(BOX), BORDER)
-        return slow[keep][:, columns], of_slow[keep], unknown
+        return Places(slow[keep][:, columns], of_slow[keep]), unknown
 
     def _answered(
         self, step: Callable[[Answers, Rooms, int, int], np.int64], count: int, threads: int | None
@@ -302,7 +315,7 @@ class ProvedIndex:
 def _discs(
     tape: Tape, domain: Domain, boundary: Boundary, cells: tuple[int, int]
 ) -> tuple[tuple[PoleDisc, ...], NDArray[np.float64]]:
-    """Return discs around poles, and the rest of the domain, u₀, u₁, v₀, v₁."""
+    """Return discs around poles, and the rest of the domain (2, 2)."""
     discs, inside = [], np.array(domain, dtype=np.float64)
     for axis, ends in enumerate(boundary):
         row = (domain[axis][1] - domain[axis][0]) / cells[axis]
@@ -313,26 +326,41 @@ def _discs(
             if disc is not None:
                 discs.append(disc)
                 inside[axis, k] += disc.radius if k == 0 else -disc.radius
-    return tuple(discs), inside.ravel()
+    return tuple(discs), inside
 
 
-def _cut(
-    tape: Tape, box: NDArray[np.float64], cells: tuple[int, int], threads: int | None
-) -> Cells:
-    """Return the cells of a domain."""
-    base, levels = np.array(cells), np.array(LEVELS)
-    deepest = 3 * max(LEVELS) + 2
+def _lines(tape: Tape, axis: int, ends: NDArray[np.float64], count: int) -> NDArray[np.float64]:
+    """Return the lines of a grid, about `count`, and where second derivatives of a spline jump."""
+    breaks, smooth = tape.spline[axis], tape.spline[2 + axis]
+    jumps = breaks[smooth < 2]
+    (rows,) = np.nonzero(tape.operations[:, 0] == SPLINE)
+    if axis == 0 and len(rows) > 0 and tape.operations[rows[0], 3] == 1:
+        jumps = tape.numbers[rows[0], 0] - jumps  # u is reversed
+    jumps = jumps[(jumps > ends[0]) & (jumps < ends[1])]
+    pieces = np.unique([*ends, *jumps])
+    counts = np.maximum(1, np.round(count * np.diff(pieces) / (ends[1] - ends[0]))).astype(int)
+    parts = [
+        np.linspace(low, high, k + 1)[:-1]
+        for low, high, k in zip(pieces[:-1], pieces[1:], counts, strict=True)
+    ]
+    return np.append(np.concatenate(parts), ends[1])
+
+
+def _cut(tape: Tape, lines: list[NDArray[np.float64]], threads: int | None) -> Cells:
+    """Return the cells of a grid."""
+    levels, deepest = np.array(LEVELS), 3 * max(LEVELS) + 2
+    count = (len(lines[0]) - 1) * (len(lines[1]) - 1)
 
     def work(first: int, last: int) -> list[Cells]:
         state = np.array([first, 0, 0])
         stack, tile, room = np.empty((LANES * deepest, 5)), Cells.new(LANES), Cells.new(CELL_ROOM)
         arrays, parts = Work.new(len(tape.operations)), []
         while state[0] < last or state[1] > 0:
-            cut_cells(tape, arrays, box, base, state, last, levels, stack, tile, room)
+            cut_cells(tape, arrays, lines[0], lines[1], state, last, levels, stack, tile, room)
             parts.append(Cells(*(x[: state[2]].copy() for x in room)))
         return parts
 
-    parts = [x for y in over_ranges(work, cells[0] * cells[1], CELLS_AT_A_TIME, threads) for x in y]
+    parts = [x for y in over_ranges(work, count, CELLS_AT_A_TIME, threads) for x in y]
     return Cells(*(np.concatenate(x) for x in zip(*parts, strict=True)))
 
 
@@ -354,21 +382,28 @@ def _taken(room: Answers) -> Answers:
     )  # fmt: skip
 
 
-def _result(
-    rows: NDArray[np.float64], numbers: NDArray[np.int64], count: int, answers: list[Answers]
-) -> ProvedPlaces:
-    """Return places (k, 6) and undecided boxes, sorted by their normals."""
+def _sorted(parts: list[Places], count: int) -> Sorted:
+    """Return places in the order of `count` normals."""
     starts = np.zeros(count + 1, np.int64)
-    uv, radius = np.empty((len(rows), 2)), np.empty((len(rows), 2))
-    sign, border = np.empty(len(rows), np.int8), np.empty(len(rows), np.bool_)
-    in_order = np.empty(len(rows), np.int64)
-    sort_places(rows, numbers, starts, in_order, uv, radius, sign, border)
+    room = Sorted.new(sum(len(x.numbers) for x in parts))
+    for part in parts:
+        count_places(part.numbers, starts)
+    start_normals(starts)
+    for part in parts:
+        put_places(part.rows, part.numbers, starts, room)
+    order_places(room)
+    return room
 
-    def joined(values: Callable[[Answers], NDArray], empty: NDArray) -> NDArray:
-        return np.concatenate([empty, *map(values, answers)])
 
-    integers = np.empty(0, np.int64)
-    of, kinds = joined(lambda x: x.open_numbers, integers), joined(lambda x: x.kinds, integers)
-    boxes = joined(lambda x: x.open_boxes, np.empty((0, 5)))
-    undecided = Undecided(of, boxes[:, :4].copy(), kinds, boxes[:, 4] > 0.0)
-    return ProvedPlaces(in_order, uv, radius, sign, border, undecided)
+def _undecided(answers: list[Answers]) -> Undecided:
+    """Return the undecided boxes of answers, in the order of their normals."""
+    if not answers:
+        none = np.empty(0, np.int64)
+        return Undecided(none, np.empty((0, 4)), none, np.empty(0, np.bool_))
+    numbers = np.concatenate([x.open_numbers for x in answers])
+    boxes, kinds = (
+        np.concatenate(x) for x in zip(*((y.open_boxes, y.kinds) for y in answers), strict=True)
+    )
+    order = np.lexsort((boxes[:, 2], boxes[:, 0], numbers))
+    boxes = boxes[order]
+    return Undecided(numbers[order], boxes[:, :4].copy(), kinds[order], boxes[:, 4] > 0.0)

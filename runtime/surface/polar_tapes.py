@@ -30,10 +30,12 @@ class PolarTapes:
 
 
 def polar_tapes(tape: Tape, domain: Domain, angle: int, end: float) -> PolarTapes | None:
-    """Return the tapes at a pole; None if they hold numbers that are not finite.
+    """Return the tapes at a pole; None for splines, and for numbers that are not finite.
 
     Parameter number `angle` runs around it, the other one is `end` there: φ = 0 … 2π, r = 0 … .
     """
+    if (tape.operations[:, 0] == elementary.SPLINE).any():
+        return None
     writer = TapeWriter()
     phi, r = (Traced(writer, writer.write(x)) for x in "uv")
     low, high = domain[angle]
