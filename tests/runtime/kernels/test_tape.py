@@ -111,7 +111,6 @@ def tape_of(name: str) -> Tape:
 
 
 @EACH
-@pytest.mark.compiled
 @pytest.mark.parametrize("width", WIDTHS)
 def test_bounds_contain_exact_values(name, width):
     surface = gm.surfaces.surface(name)
@@ -127,7 +126,6 @@ def test_bounds_contain_many_exact_values(name, width):
 
 
 @EACH
-@pytest.mark.compiled
 def test_tapes_compute_the_derivatives_of_the_surface(name):
     surface = gm.surfaces.surface(name)
     _, _, places = boxes(surface, 3 * LANES + 1, 0.0, 3)
@@ -136,7 +134,6 @@ def test_tapes_compute_the_derivatives_of_the_surface(name):
     np.testing.assert_allclose(jets_at(tape_of(name), places), jets, rtol=0.0, atol=1e-14)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("name", ["torus", "sphere", "catenoid", "wavy_graph", "moebius_band"])
 def test_bounds_of_third_derivatives_are_attained(name):
     """A tenth less would be wrong: the largest error at corners of boxes is the radius."""
@@ -152,7 +149,6 @@ def test_bounds_of_third_derivatives_are_attained(name):
 
 
 @EACH
-@pytest.mark.compiled
 def test_bounds_of_rounding_are_a_few_units_for_each_operation(name):
     surface = gm.surfaces.surface(name)
     centres, widths, _ = boxes(surface, 40, 1 / 32, 5)
@@ -161,7 +157,6 @@ def test_bounds_of_rounding_are_a_few_units_for_each_operation(name):
     assert (errors_on(tape_of(name), centres, widths) <= few * sizes.max()).all()
 
 
-@pytest.mark.compiled
 def test_a_tile_has_the_bits_of_its_boxes():
     """What is computed for a box does not depend on what is computed with it."""
     surface = gm.surfaces.dupin_cyclide()
@@ -176,7 +171,6 @@ def test_a_tile_has_the_bits_of_its_boxes():
         assert (jets_at(tape, places[one])[0] == jets[k]).all()
 
 
-@pytest.mark.compiled
 def test_bounds_of_order_two_are_those_of_order_three():
     centres, widths, _ = boxes(gm.surfaces.torus(), 50, 1 / 32, 7)
     second, third = (balls_on(tape_of("torus"), centres, widths, order) for order in (2, 3))
@@ -218,7 +212,7 @@ def is_bounded(x: Any) -> bool:
     return not x.has(sp.zoo, sp.nan, sp.oo, sp.I, sp.Abs) and x.count_ops() < 60
 
 
-@pytest.mark.compiled
+@pytest.mark.compiled  # singularities raise without compilation
 @given(
     st.tuples(expressions, expressions, expressions),
     st.floats(-1.0, 1.0),

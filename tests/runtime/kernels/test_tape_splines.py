@@ -13,8 +13,6 @@ from gaussmap.runtime.kernels.tape_rounding import rounding_of_boxes
 ORDERS = ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3))
 KNOTS = (0.25, 0.6, 1.1, 1.3)
 
-pytestmark = pytest.mark.compiled
-
 
 # --- exact values ---------------------------------------------------------------------------------
 
