@@ -112,8 +112,8 @@ def bounds(tape: Tape, centres: np.ndarray, widths: np.ndarray) -> tuple[np.ndar
 def jets(tape: Tape, places: np.ndarray) -> np.ndarray:
     """Return the Taylor coefficients (k, 6, 3) at places (k, 2)."""
     found = np.empty((len(places), 6, 3))
-    columns = (np.ascontiguousarray(x) for x in places.T)
-    points_jets(tape, *columns, np.empty(POINT * len(tape.operations)), found)
+    u, v = (np.ascontiguousarray(x) for x in places.T)
+    points_jets(tape, u, v, np.empty(POINT * len(tape.operations)), found)
     return found / np.array([1, 1, 1, 2, 1, 2])[:, None]
 
 
