@@ -36,7 +36,7 @@ def model_at(A, B, C, P, Q, T0, T1, T2, T3, s, t):
 @inline
 def remainders(T0, T1, T2, T3):
     """Bounds R and S over the cell of what a quadratic patch leaves out of the derivatives of
-    n·x by s and t, from bounds T0, …, T3 of the third derivatives.
+    heights by s and t, from bounds T0, …, T3 of the third derivatives.
 
         R = T0/2 + T1 + T2/2
         S = T1/2 + T2 + T3/2
@@ -51,28 +51,28 @@ def remainders(T0, T1, T2, T3):
 @inline
 def excesses(A, B, C, P, Q, R, S):
     """If one of these four numbers is positive then no point of the cell has the normal n: the
-    derivatives of n·x by s and t, or the combinations of them from which one parameter is
+    derivatives of the height along n, or the combinations of them from which one parameter is
     eliminated, exceed what they change over the cell. R and S are bounds of what a quadratic
     patch leaves out of the derivatives.
 
         D = A*C - B**2
-        p = Abs(P) - R - Abs(A) - Abs(B)
-        q = Abs(Q) - S - Abs(B) - Abs(C)
-        u = Abs(B*Q - C*P) - R*Abs(C) - S*Abs(B) - Abs(D)
-        v = Abs(A*Q - B*P) - R*Abs(B) - S*Abs(A) - Abs(D)
+        e1 = Abs(P) - R - Abs(A) - Abs(B)
+        e2 = Abs(Q) - S - Abs(B) - Abs(C)
+        e3 = Abs(B*Q - C*P) - R*Abs(C) - S*Abs(B) - Abs(D)
+        e4 = Abs(A*Q - B*P) - R*Abs(B) - S*Abs(A) - Abs(D)
 
     Source: beyond the paper; 39 operations as written, 33 here.
     """
     D = A * C - B * B
     t0 = abs(A)
     t1 = abs(B)
-    p = abs(P) - R - t0 - t1
+    e1 = abs(P) - R - t0 - t1
     t2 = abs(C)
-    q = abs(Q) - S - t1 - t2
+    e2 = abs(Q) - S - t1 - t2
     t3 = abs(D)
-    u = abs(B * Q - C * P) - R * t2 - S * t1 - t3
-    v = abs(A * Q - B * P) - R * t1 - S * t0 - t3
-    return p, q, u, v
+    e3 = abs(B * Q - C * P) - R * t2 - S * t1 - t3
+    e4 = abs(A * Q - B * P) - R * t1 - S * t0 - t3
+    return e1, e2, e3, e4
 
 
 @inline
@@ -80,7 +80,7 @@ def contraction(A, B, C, T0, T1, T2, T3, R0, R1, R2, R3):
     """The inverse y11, y12, y22 of the Hessian A, B, C at the centre, and bounds q1 and q2 of
     the rows of its product with the change of the Hessian over the cell; the third derivatives
     are T0, …, T3 up to R0, …, R3. If both are below 1 then at most one point of the cell has
-    the normal n or −n.
+    the normal n or -n.
 
         D = A*C - B**2
         y11 = C/D
@@ -278,8 +278,8 @@ def normal_ordinates(patch):
 
 @inline
 def turned(T0, T1, T2, T3, R0, R1, R2, R3, x, y):
-    """The third derivatives T0, …, T3 by s and t, up to R0, …, R3, as those by p and w in
-    turned coordinates, s = x p - y w, t = y p + x w.
+    """The third derivatives T0, …, T3 by s and t, up to R0, …, R3, as those by i and j in
+    turned coordinates, s = x i - y j, t = y i + x j.
 
         M0 = T0*x**3 + 3*T1*x**2*y + 3*T2*x*y**2 + T3*y**3
         M1 = T1*x**3 - T0*x**2*y - 2*T1*x*y**2 + 2*T2*x**2*y - T2*y**3 + T3*x*y**2
@@ -326,7 +326,7 @@ def turned(T0, T1, T2, T3, R0, R1, R2, R3, x, y):
 
 @inline
 def turned_forms(A, B, C, P, Q, x, y):
-    """The linear forms by p and w in turned coordinates, s = x p - y w, t = y p + x w.
+    """The linear forms by i and j in turned coordinates, s = x i - y j, t = y i + x j.
 
         A_m = A*x**2 + 2*B*x*y + C*y**2
         B_m = B*x**2 - A*x*y - B*y**2 + C*x*y
@@ -350,12 +350,12 @@ def turned_forms(A, B, C, P, Q, x, y):
 
 @inline
 def fold_curve(A, P, G0, G1, G2, h, W, o1, o2):
-    """The curve p(w) on which the derivative of n·x by p vanishes, for |p| ≤ h, |w| ≤ W: m > 0
-    bounds the second derivative by p from below, k bounds |p'|, and g how much the second
-    derivative of the other equation along the curve differs from the third derivative by w. The
-    curve reaches from -W to W if z < 0. A and P are derivatives by p at the centre, where that
-    by p and w vanishes; G0, G1, G2 bound third derivatives, and o1, o2 the rounding of first
-    and second ones.
+    """The curve i(j) on which the derivative by i of the height along n vanishes, in a
+    rectangle with the half widths h and W: m > 0 bounds the second derivative by i from below,
+    k bounds the slope of the curve, and g how much the second derivative of the other equation
+    along the curve differs from the third derivative by j. The curve reaches from -W to W if z
+    < 0. A and P are derivatives by i at the centre, where that by i and j vanishes; G0, G1, G2
+    bound third derivatives, and o1, o2 the rounding of first and second ones.
 
         m = Abs(A) - G0*h - G1*W - o2
         k = (G1*h + G2*W + o2)/m
@@ -375,24 +375,24 @@ def fold_curve(A, P, G0, G1, G2, h, W, o1, o2):
 def fold_extreme(A, B, C, P, Q, G0, G1, G2, k, m, c2, o1, o2):
     """At a place near the extreme of the other equation along the curve of `fold_curve`: if |Q|
     > r and Q has the sign of its second derivative, at least c2 in absolute value, then it has
-    no zero. Zeros are at most y and z away by w and p if |Q| ≤ r, and if Q has the other sign.
+    no zero. Else zeros are at most y away by j, and z by i.
 
-        d = (o1 + Abs(P))/m
-        g = d*(G0*k**2 + 2*G1*k + G2) + o2*(k + 1)**2 + Abs(C - B**2/A)
+        o3 = (o1 + Abs(P))/m
+        g = o2*(k + 1)**2 + o3*(G0*k**2 + 2*G1*k + G2) + Abs(C - B**2/A)
         h = k*(o1 + Abs(P)) + o1
         r = h + g**2/(2*c2)
         y = (g + sqrt(2*c2*(h + Abs(Q)) + g**2))/c2
-        z = d + k*y
+        z = k*y + o3
 
     Source: beyond the paper; 39 operations as written, 37 here.
     """
     t0 = o1 + abs(P)
-    d = t0 / m
-    g = d * (G0 * k * k + 2 * G1 * k + G2) + o2 * (k + 1) * (k + 1) + abs(C - B * B / A)
+    o3 = t0 / m
+    g = o2 * (k + 1) * (k + 1) + o3 * (G0 * k * k + 2 * G1 * k + G2) + abs(C - B * B / A)
     h = k * t0 + o1
     t1 = 1.0 / c2
     t2 = g * g
     r = h + 0.5 * t1 * t2
     y = t1 * (g + math.sqrt(2 * c2 * (h + abs(Q)) + t2))
-    z = d + k * y
+    z = k * y + o3
     return r, y, z

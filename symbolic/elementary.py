@@ -10,7 +10,7 @@ import sympy as sp
 from .formula import Formula
 from .notation import scalar
 
-__all__ = ["FORMULAS", "FUNCTIONS", "constants"]
+__all__ = ["CODES", "FORMULAS", "FUNCTIONS", "LIBRARY", "constants"]
 
 x, y, w = scalar("x"), scalar("y"), scalar("w")
 HIGHEST = 3  # order of Taylor coefficients

@@ -24,7 +24,7 @@ from .patch import LINEAR_FORMS, SOLUTION, VECTORS, A, B, C, D, P, Q, a, b, c, d
 
 __all__ = ["FORMULAS"]
 
-s, t, x, y, p, w = (scalar(name) for name in "stxypw")
+s, t, x, y, i, j = (scalar(name) for name in "stxyij")
 CELL_SIDES = {sp.S.NegativeOne: "low", sp.S.Zero: "middle", sp.S.One: "high"}
 
 
@@ -67,7 +67,7 @@ def _largest(form: sp.Expr) -> sp.Expr:
 REMAINDERS = Formula.build(
     "remainders",
     "Bounds $R$ and $S$ over the cell of what a quadratic patch leaves out of the derivatives of "
-    "$n·x$ by $s$ and $t$, from bounds $T0$, …, $T3$ of the third derivatives.",
+    "heights by $s$ and $t$, from bounds $T0$, …, $T3$ of the third derivatives.",
     inputs=THIRDS,
     outputs=[
         (
@@ -82,7 +82,12 @@ REMAINDERS = Formula.build(
 def _excesses() -> Formula:
     """Bound both derivatives over the cell, and the combinations of them that are s and t."""
     along, across = P + A * s + B * t, Q + B * s + C * t
-    linear = {"p": along, "q": across, "u": C * along - B * across, "v": A * across - B * along}
+    linear = {
+        "e1": along,
+        "e2": across,
+        "e3": C * along - B * across,
+        "e4": A * across - B * along,
+    }
     outputs = []
     for name, form in linear.items():
         value = substitute(form, {s: sp.S.Zero, t: sp.S.Zero})
@@ -96,7 +101,7 @@ def _excesses() -> Formula:
     return Formula.build(
         "excesses",
         "If one of these four numbers is positive then no point of the cell has the normal $n$: "
-        "the derivatives of $n·x$ by $s$ and $t$, or the combinations of them from which one "
+        "the derivatives of the height along $n$, or the combinations of them from which one "
         "parameter is eliminated, exceed what they change over the cell. $R$ and $S$ are bounds of "
         "what a quadratic patch leaves out of the derivatives.",
         inputs=[*LINEAR_FORMS, R, S],
@@ -127,7 +132,7 @@ def _contraction() -> Formula:
         "The inverse $y11$, $y12$, $y22$ of the Hessian $A$, $B$, $C$ at the centre, and bounds "
         "$q1$ and $q2$ of the rows of its product with the change of the Hessian over the cell; "
         "the third derivatives are $T0$, …, $T3$ up to $R0$, …, $R3$. If both are below 1 then at "
-        "most one point of the cell has the normal $n$ or $−n$.",
+        "most one point of the cell has the normal $n$ or $-n$.",
         inputs=[A, B, C, *THIRDS, *RADII],
         terms=[("D", SOLUTION.D)],
         outputs=[
@@ -184,16 +189,15 @@ NORMAL_ORDINATES = _normal_ordinates()
 
 # --- no point, two, or a double one ---------------------------------------------------------------
 #
-# Where the Hessian has one small eigenvalue, parameters p along the other eigenvector (x, y) and w
-# across it are used: s = x p − y w, t = y p + x w. The derivative by p of n·x vanishes on one curve
-# p(w), along which the other derivative, φ(w), is strictly convex or concave.
+# Where the Hessian has one small eigenvalue, parameters i along the other eigenvector (x, y) and j
+# across it are used: s = x i − y j, t = y i + x j. The derivative by i of the height along n is 0
+# on one curve i(j), along which the other derivative is strictly convex or concave.
 
 
 def _turned(thirds: Iterable[sp.Expr]) -> list[sp.Expr]:
-    """Return the third derivatives by p and w from those by s and t."""
-    form = _cubic(thirds, x * p - y * w, y * p + x * w)
-    orders = [(3, 0), (2, 1), (1, 2), (0, 3)]
-    return [sp.expand(sp.diff(form, p, i, w, j)) for i, j in orders]
+    """Return the third derivatives by i and j from those by s and t."""
+    form = _cubic(thirds, x * i - y * j, y * i + x * j)
+    return [sp.expand(sp.diff(form, *by)) for by in ((i, i, i), (i, i, j), (i, j, j), (j, j, j))]
 
 
 def _without_signs(expression: sp.Expr) -> sp.Expr:
@@ -204,8 +208,8 @@ def _without_signs(expression: sp.Expr) -> sp.Expr:
 
 TURNED = Formula.build(
     "turned",
-    "The third derivatives $T0$, …, $T3$ by $s$ and $t$, up to $R0$, …, $R3$, as those by $p$ and "
-    "$w$ in turned coordinates, $s = x p - y w$, $t = y p + x w$.",
+    "The third derivatives $T0$, …, $T3$ by $s$ and $t$, up to $R0$, …, $R3$, as those by $i$ and "
+    "$j$ in turned coordinates, $s = x i - y j$, $t = y i + x j$.",
     inputs=[*THIRDS, *RADII, x, y],
     outputs=[
         *((f"M{k}", z) for k, z in enumerate(_turned(THIRDS))),
@@ -215,32 +219,33 @@ TURNED = Formula.build(
 
 TURNED_FORMS = Formula.build(
     "turned_forms",
-    "The linear forms by $p$ and $w$ in turned coordinates, $s = x p - y w$, $t = y p + x w$.",
+    "The linear forms by $i$ and $j$ in turned coordinates, $s = x i - y j$, $t = y i + x j$.",
     inputs=[*LINEAR_FORMS, x, y],
     outputs=[
         (
             f"{form.name}_m",
-            sp.expand(sp.diff(substitute(MODEL, {s: x * p - y * w, t: y * p + x * w}), *by)).subs(
-                {p: 0, w: 0}
+            sp.expand(sp.diff(substitute(MODEL, {s: x * i - y * j, t: y * i + x * j}), *by)).subs(
+                {i: 0, j: 0}
             ),
         )
-        for form, by in zip(LINEAR_FORMS, ((p, p), (p, w), (w, w), (p,), (w,)), strict=True)
+        for form, by in zip(LINEAR_FORMS, ((i, i), (i, j), (j, j), (i,), (j,)), strict=True)
     ],
 )
 
 G0, G1, G2, W, c2, g, h, k, m, r, z = (
     scalar(name) for name in ("G0", "G1", "G2", "W", "c2", "g", "h", "k", "m", "r", "z")
 )
-first, second = scalar("o1"), scalar("o2")
+first, second, off = scalar("o1"), scalar("o2"), scalar("o3")
 
 FOLD_CURVE = Formula.build(
     "fold_curve",
-    "The curve $p(w)$ on which the derivative of $n·x$ by $p$ vanishes, for $|p| ≤ h$, $|w| ≤ W$: "
-    "$m > 0$ bounds the second derivative by $p$ from below, $k$ bounds $|p'|$, and $g$ how much "
-    "the second derivative of the other equation along the curve differs from the third derivative "
-    "by $w$. The curve reaches from $-W$ to $W$ if $z < 0$. $A$ and $P$ are derivatives by $p$ at "
-    "the centre, where that by $p$ and $w$ vanishes; $G0$, $G1$, $G2$ bound third derivatives, and "
-    "$o1$, $o2$ the rounding of first and second ones.",
+    "The curve $i(j)$ on which the derivative by $i$ of the height along $n$ vanishes, in a "
+    "rectangle with the half widths $h$ and $W$: $m > 0$ bounds the second derivative by $i$ from "
+    "below, $k$ bounds the slope of the curve, and $g$ how much the second derivative of the other "
+    "equation along the curve differs from the third derivative by $j$. The curve reaches from "
+    "$-W$ to $W$ if $z < 0$. $A$ and $P$ are derivatives by $i$ at the centre, where that by $i$ "
+    "and $j$ vanishes; $G0$, $G1$, $G2$ bound third derivatives, and $o1$, $o2$ the rounding of "
+    "first and second ones.",
     inputs=[A, P, G0, G1, G2, h, W, first, second],
     outputs=[
         ("m", sp.Abs(A) - G0 * h - G1 * W - second),
@@ -254,23 +259,20 @@ FOLD_EXTREME = Formula.build(
     "fold_extreme",
     "At a place near the extreme of the other equation along the curve of `fold_curve`: if $|Q| > "
     "r$ and $Q$ has the sign of its second derivative, at least $c2$ in absolute value, then it "
-    "has no zero. Zeros are at most $y$ and $z$ away by $w$ and $p$ if $|Q| ≤ r$, and if $Q$ has "
-    "the other sign.",
+    "has no zero. Else zeros are at most $y$ away by $j$, and $z$ by $i$.",
     inputs=[*LINEAR_FORMS, G0, G1, G2, k, m, c2, first, second],
     terms=[
-        ("d", (sp.Abs(P) + first) / m),
+        ("o3", (sp.Abs(P) + first) / m),
         (
             "g",
-            sp.Abs(C - B**2 / A)
-            + (G2 + 2 * k * G1 + k**2 * G0) * scalar("d")
-            + second * (1 + k) ** 2,
+            sp.Abs(C - B**2 / A) + (G2 + 2 * k * G1 + k**2 * G0) * off + second * (1 + k) ** 2,
         ),
         ("h", first + k * (sp.Abs(P) + first)),
     ],
     outputs=[
         ("r", h + g**2 / (2 * c2)),
         ("y", (g + sp.sqrt(g**2 + 2 * c2 * (sp.Abs(Q) + h))) / c2),
-        ("z", scalar("d") + k * y),
+        ("z", off + k * y),
     ],
 )
 

@@ -27,6 +27,7 @@ OF_KERNELS = (
     "tools/meshes",
     "tools/support",
     "runtime/search/test_exact.py",
+    "runtime/search/test_proved_small.py",
     "runtime/place/test_refinement.py",
     "runtime/surface/test_nurbs.py",
     "runtime/spline/test_spline.py",

@@ -23,7 +23,7 @@ from .vectors import row_vector
 __all__ = ["RINGS", "WHOLE", "Disc", "decide_discs"]
 
 # Bounds hold up to this distance, and smaller ones up to halves of it, quarters, …
-WHOLE, RINGS = 2.0, 40
+WHOLE, RINGS = 2.0, 8
 # Steps towards a place.
 STEPS = 60
 

@@ -38,7 +38,8 @@ def index_of(surface: Surface, threads: int | None = None) -> ProvedIndex | None
         return None
     index = ProvedIndex.of(surface.tape, surface.domain, surface.boundary, threads=threads)
     poles = sum(end == "pole" for ends in surface.boundary for end in ends)
-    return index if len(index.discs) == poles else None
+    whole = len(index.discs) == poles and len(index.unbounded) == 0
+    return index if whole else None
 
 
 def proved_samples(

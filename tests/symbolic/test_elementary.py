@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import sympy as sp
 from gaussmap.generated import elementary as generated
-from gaussmap.symbolic.elementary import CODES, FORMULAS, FUNCTIONS, x
+from gaussmap.symbolic.elementary import CODES, FORMULAS, FUNCTIONS, LIBRARY, x
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -131,6 +131,15 @@ def test_other_functions_have_no_cancelling_terms():
             continue
         for _, term in FORMULAS[row(name)].definitions:
             assert not term.is_Add or all(not z.could_extract_minus_sign() for z in term.args), name
+
+
+@pytest.mark.parametrize("name", [k for k, f in FUNCTIONS.items() if not f.of.is_Pow])
+def test_the_c_library_is_as_exact_as_is_assumed(name):
+    low, high = INTERVALS.get(name, (-7.0, 7.0))
+    for place in np.random.default_rng(0).uniform(low, high, 500).tolist():
+        with mp.workdps(40):
+            value = function(name)(mp.mpf(place))
+            assert abs(getattr(math, name)(place) - value) <= LIBRARY * 2.0**-53 * abs(value)
 
 
 def test_codes_are_those_of_the_table():

@@ -24,6 +24,7 @@ from gaussmap.symbolic import (
     loops,
     mesh,
     patch,
+    proved,
     support,
     surfaces,
 )
@@ -118,7 +119,20 @@ def exact_inputs(formula, seed: int) -> dict[str, Fraction]:
         return inputs | {"x": (1 - q**2) / (1 + q**2)}
     if formula is mesh.BORDER_SPACING:  # ρ = 2 k/(π r²) = (7/r)²
         return inputs | {"k": Fraction(77)}
+    if formula is proved.FOLD_EXTREME:
+        return inputs | with_rational_root(formula, inputs)
     return inputs | rational_length(inputs) if formula is patch.MEASURE else inputs
+
+
+def with_rational_root(formula, inputs: dict[str, Fraction]) -> dict[str, Fraction]:
+    """Return Q and c2 > 0 for which g² + 2 c2 (|Q| + h) is the square of g + t."""
+    values = {scalar(x): sp.Rational(y.numerator, y.denominator) for x, y in inputs.items()}
+    for symbol, value in formula.definitions[:3]:
+        values[symbol] = value.xreplace(values)
+    g, h = (Fraction(int(x.p), int(x.q)) for x in (values[scalar("g")], values[scalar("h")]))
+    c2 = abs(inputs["c2"])
+    t = 4 * (abs(g) + (c2 + 1) * (abs(h) + 1))
+    return {"c2": c2, "Q": (2 * g * t + t**2) / (2 * c2) - h}
 
 
 def rational_length(inputs: dict[str, Fraction]) -> dict[str, Fraction]:

@@ -43,7 +43,7 @@ def test_steps_of_the_catalogue_compute_positions(name):
     surface = CATALOGUE[name]
     generator = random.Random(name)
     places = {surface.u: generator.uniform(0.1, 1.0), surface.v: generator.uniform(0.1, 1.0)}
-    numbers = places | {x: float(y) for x, y in surface.defaults.items()}
+    numbers: Any = places | {x: float(y) for x, y in surface.defaults.items()}
     steps, outputs = TAPES[name]
     found = values(steps, {x.name: y for x, y in numbers.items()})
     for row, x in zip(outputs, surface.position, strict=True):

@@ -156,6 +156,62 @@ def test_seams_of_mirrored_surfaces_once() -> None:
         np.testing.assert_array_equal(near(surface, found, *places, 1e-9), 1)
 
 
+# --- splines --------------------------------------------------------------------------------------
+
+
+@cache
+def nurbs(degree: int, repeated: int) -> gm.Surface:
+    """Return a graph over the unit square, whose inner knots 1/4, 1/2, 3/4 are repeated."""
+    inner = np.repeat([0.25, 0.5, 0.75], repeated)
+    knots = np.concatenate([np.zeros(degree + 1), inner, np.ones(degree + 1)])
+    count = len(knots) - degree - 1
+    places = np.array([knots[k + 1 : k + degree + 1].mean() for k in range(count)])
+    x, y = np.meshgrid(places, places, indexing="ij")
+    z = 0.15 * np.random.default_rng(13).normal(size=x.shape)
+    return gm.Surface.from_nurbs((degree, degree), (knots, knots), np.stack([x, y, z], axis=-1))
+
+
+# The second derivatives of the last two jump at knots.
+@pytest.mark.parametrize(("degree", "repeated"), [(3, 1), (2, 1), (3, 2)])
+def test_points_of_splines_once(degree: int, repeated: int) -> None:
+    surface = nurbs(degree, repeated)
+    index, rng = new_index(surface, cells=(32, 32)), np.random.default_rng(14)
+    u, v = rng.uniform(0.01, 0.99, (2, 300))
+    u[100:] = rng.choice([0.25, 0.5, 0.75], 200) + np.tile([1e-4, -1e-4], 100)
+    found = index.query(normals_at(surface, u, v))
+    assert len(index.unbounded) == len(found.undecided.numbers) == 0
+    np.testing.assert_array_equal(near(surface, found, u, v, 1e-9), 1)
+
+
+@pytest.mark.parametrize(("degree", "repeated"), [(3, 1), (2, 1), (3, 2)])
+def test_points_on_knots_of_splines(degree: int, repeated: int) -> None:
+    surface = nurbs(degree, repeated)
+    index, rng = new_index(surface, cells=(32, 32)), np.random.default_rng(15)
+    u, v = rng.choice([0.25, 0.5, 0.75], 100), rng.uniform(0.01, 0.99, 100)
+    found = index.query(normals_at(surface, u, v))
+    if degree - repeated >= 2:
+        np.testing.assert_array_equal(near(surface, found, u, v, 1e-9), 1)
+        return
+    assert kinds(found) == {"multiple"}
+    u_low, u_high, v_low, v_high = found.undecided.boxes.T
+    here = found.undecided.numbers
+    holds = (u_low <= u[here]) & (u[here] <= u_high) & (v_low <= v[here]) & (v[here] <= v_high)
+    assert set(here[holds]) == set(range(100))
+    assert (np.maximum(u_high - u_low, v_high - v_low) < 1e-6).all()
+
+
+def test_where_derivatives_have_no_bounds_is_said() -> None:
+    root = gm.Surface.from_sympy(("u", "v", "sqrt(u)/3 + v**2"), ("u", "v"), ((0, 1), (0, 1)))
+    index = new_index(root, cells=(8, 8))
+    u_low, u_high, v_low, v_high = index.unbounded.T
+    assert (u_low == 0.0).all()
+    assert (u_high < 0.01).all()
+    assert np.sum(v_high - v_low) == pytest.approx(1.0)
+    u, v = np.array([0.5, 0.02]), np.array([0.3, 0.7])
+    found = index.query(normals_at(root, u, v))
+    np.testing.assert_array_equal(near(root, found, u, v, 1e-9), 1)
+
+
 # --- accuracy -------------------------------------------------------------------------------------
 
 

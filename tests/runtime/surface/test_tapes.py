@@ -2,6 +2,7 @@
 
 import pickle
 from collections.abc import Callable
+from typing import Any
 
 import gaussmap as gm
 import numpy as np
@@ -121,7 +122,7 @@ def of_functions(u: np.ndarray, v: np.ndarray) -> np.ndarray:
     return np.stack([x, y, np.sqrt(u * u + v * v)], axis=-1)
 
 
-TRACED: list[Callable[..., np.ndarray]] = [
+TRACED: list[Callable[..., Any]] = [
     in_place,
     of_powers,
     of_functions,
@@ -154,7 +155,7 @@ def that_fills(u: np.ndarray, v: np.ndarray) -> np.ndarray:
     return points
 
 
-UNTRACED: list[Callable[..., np.ndarray]] = [
+UNTRACED: list[Callable[..., Any]] = [
     with_a_state,
     that_fills,
     lambda u, v: np.stack([u, v, np.where(u < 0, u, v)], axis=-1),
