@@ -22,7 +22,7 @@ from ..base.threads import over_ranges
 from ..domain.domain import Boundary, Domain
 from ..kernels.proved_answers import BORDER, BOX, KINDS, Answers, merge_places
 from ..kernels.proved_bins import count_members, list_members
-from ..kernels.proved_cells import REACH, Cells, Work, cut_cells
+from ..kernels.proved_cells import OPEN, REACH, Cells, Work, cut_cells
 from ..kernels.proved_discs import decide_discs
 from ..kernels.proved_places import Boxes, decide_normals
 from ..kernels.proved_search import Found, Index, Tiles, search_normals
@@ -49,6 +49,8 @@ CELL_ROOM, ROOM = 2048, 1 << 12
 # Normals of a tile are close to one another if there are so many in a bin; fewer are not sorted.
 NORMALS_PER_BIN, SORTED = 24, 64
 FINEST = 1024
+# Cells without a cone of normals are in all bins.
+MOST_OPEN = 0.25
 
 
 class Undecided(NamedTuple):
@@ -124,8 +126,8 @@ class ProvedIndex:
         boundary: Boundary,
         cells: tuple[int, int] = CELLS,
         threads: int | None = None,
-    ) -> ProvedIndex:
-        """Return the index of a surface.
+    ) -> ProvedIndex | None:
+        """Return the index of a surface; None if it has no normals, as a line has none.
 
         Parameters
         ----------
@@ -143,8 +145,8 @@ class ProvedIndex:
 
         Returns
         -------
-        ProvedIndex
-            The index.
+        ProvedIndex or None
+            The index; None if more than a share MOST_OPEN of the cells has no cone of normals.
 
         """
         periods = (
@@ -159,6 +161,8 @@ class ProvedIndex:
         u, v, h_u, h_v = cut.place[blind].T
         unbounded = np.column_stack([u - h_u, u + h_u, v - h_v, v + h_v])
         cut = Cells(*(x[~blind] for x in cut))
+        if np.count_nonzero(cut.cone[:, 3] >= OPEN) > MOST_OPEN * len(cut.place):
+            return None
         both = Cells(*map(np.concatenate, zip(cut, *(x.cell for x in discs), strict=True)))
         levels = max(2, round(np.log2(np.sqrt(len(both.place) / 24.0 + 1.0))))
         index = _listed(both, len(cut.place), levels)
