@@ -37,6 +37,8 @@ def index_of(surface: Surface, threads: int | None = None) -> ProvedIndex | None
     if surface.tape is None:
         return None
     index = ProvedIndex.of(surface.tape, surface.domain, surface.boundary, threads=threads)
+    if index is None:
+        return None
     poles = sum(end == "pole" for ends in surface.boundary for end in ends)
     whole = len(index.discs) == poles and len(index.unbounded) == 0
     return index if whole else None
