@@ -56,8 +56,10 @@ class GaussMap(Methods):
     >>> samples = torus.points([[0, 0.6, 0.8]])
     >>> samples.points.shape, samples.normals.shape
     ((2, 3), (2, 3))
-    >>> torus.surface.name
-    'torus'
+    >>> torus.surface.name, torus.spline
+    ('torus', Spline(64 × 64 cells of torus))
+    >>> gm.silhouette(torus.spline, (1, 2, 3), count=100).points.shape
+    (100, 3)
 
     """
 
@@ -77,6 +79,15 @@ class GaussMap(Methods):
     def surface(self) -> Surface | Spline | Whole:
         """The surface, spline or part."""
         return self._surface
+
+    @property
+    def spline(self) -> Spline | None:
+        """The spline of the surface, None for parts and several pieces.
+
+        `silhouette`, `SupportFunction.of_spline` and `gauss_map.GaussianImages` take it.
+        """
+        known = self._geometries or ()
+        return known[0].spline if len(known) == 1 else None
 
     def __repr__(self) -> str:
         return f"GaussMap({getattr(self.surface, 'name', self.surface)})"
