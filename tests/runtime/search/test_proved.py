@@ -46,7 +46,9 @@ def index_of(name: str) -> ProvedIndex:
 
 def new_index(surface: gm.Surface, **options: Any) -> ProvedIndex:
     assert surface.tape is not None
-    return ProvedIndex.of(surface.tape, surface.domain, surface.boundary, **options)
+    index = ProvedIndex.of(surface.tape, surface.domain, surface.boundary, **options)
+    assert index is not None
+    return index
 
 
 def unit(vectors: Any) -> Array:
@@ -485,6 +487,12 @@ def test_small_rooms_grow(monkeypatch: pytest.MonkeyPatch) -> None:
     found = new_index(surface_of("waves")).query(normals)
     for one, two in zip((*expected[:5], *expected[5]), (*found[:5], *found[5]), strict=True):
         np.testing.assert_array_equal(one, two)
+
+
+def test_a_line_has_no_index() -> None:
+    line = gm.Surface.from_sympy(("u + v", "u + v", "0"), ("u", "v"), ((0, 1), (0, 1)))
+    assert line.tape is not None
+    assert ProvedIndex.of(line.tape, line.domain, line.boundary, cells=(4, 4)) is None
 
 
 def test_no_normals() -> None:

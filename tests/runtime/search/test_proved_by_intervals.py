@@ -202,7 +202,9 @@ def surface_of(name: str) -> gm.Surface:
 def index_of(name: str) -> ProvedIndex:
     surface = surface_of(name)
     assert surface.tape is not None
-    return ProvedIndex.of(surface.tape, surface.domain, surface.boundary)
+    index = ProvedIndex.of(surface.tape, surface.domain, surface.boundary)
+    assert index is not None
+    return index
 
 
 @cache

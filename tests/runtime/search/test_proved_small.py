@@ -17,6 +17,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::RuntimeWarning")
 def query(surface: gm.Surface, normals: Any, cells: tuple[int, int]) -> ProvedPlaces:
     assert surface.tape is not None
     index = ProvedIndex.of(surface.tape, surface.domain, surface.boundary, cells, threads=1)
+    assert index is not None
     vectors = np.array(normals, dtype=np.float64)
     return index.query(vectors / np.linalg.norm(vectors, axis=1, keepdims=True), threads=1)
 
