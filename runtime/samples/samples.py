@@ -126,6 +126,9 @@ class Samples(SampleArrays, Methods):
     (dtype('float64'), Spline(16 × 16 cells of torus), 200)
     >>> samples.on_surface.all(), samples.surface.name
     (np.True_, 'torus')
+    >>> proved = gm.sample("torus", normals=[[1, 0, 0]])
+    >>> proved.uv_radius.shape, bool(proved.uv_radius.max() < 1e-12)
+    ((2, 2), True)
     >>> on_grid = gm.sample("torus", 200, density="aligned", cells=(16, 16))
     >>> bool((on_grid.row >= -1).all()), bool((on_grid.column >= -1).all())
     (True, True)
@@ -150,7 +153,7 @@ class Samples(SampleArrays, Methods):
         --------
         >>> import gaussmap as gm
         >>> gm.sample("torus", normals=[[1, 0, 0], [0, 1, 1]], cells=(16, 16)).summary()
-        '4 samples found by 2 normals (2 dome-shaped, 2 saddle-shaped)'
+        '4 samples found by 2 normals (2 dome-shaped, ...); complete: proved for 2 of 2 normals'
 
         """
         return summary_of(self)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import gaussmap as gm
 import pytest
-from gaussmap.runtime.samples.fields import COLUMNS, EDGE_NAMES, FLOAT_NAMES, UNITS
+from gaussmap.runtime.samples.fields import COLUMNS, EDGE_NAMES, FLOAT_NAMES, PROVED_NAMES, UNITS
 from gaussmap.tools.batch.data_files import points_schema, points_table
 from gaussmap.tools.batch.folder import Settings, create, parts_per_shard
 from gaussmap.tools.batch.manifest import COLUMNS as MANIFEST
@@ -28,7 +28,10 @@ def test_the_columns_of_points():
                  "without the field" if field.nullable else "never"]  # fmt: skip
         lines.append(re.sub("  +", " ", f"| {' | '.join(cells)} |"))
     assert "\n".join(lines) in PAGE
-    assert [*re.findall(r"^\| \w.*? \| (\w+) \| real", PAGE, re.MULTILINE)] == list(FLOAT_NAMES)
+    assert [*re.findall(r"^\| \w.*? \| (\w+) \| real", PAGE, re.MULTILINE)] == [
+        *FLOAT_NAMES,
+        *PROVED_NAMES,
+    ]
 
 
 def test_the_columns_of_the_manifest():

@@ -26,7 +26,7 @@ def test_the_page_loads_nothing(samples: gm.Samples) -> None:
     assert not re.search(r"https?://|//cdn|@import|url\(", own)
     assert "<link" not in own
     assert not re.search(r"<(script|img|iframe)[^>]* src=", text)
-    assert "324 samples" in own
+    assert "320 samples" in own
 
 
 def test_text_of_users_is_text(samples: gm.Samples) -> None:
@@ -58,7 +58,7 @@ def test_what_is_refused(
         samples.view(tmp_path / "torus.png")
     with pytest.raises(gm.errors.InputError, match="no samples to view"):
         samples[:0].view(tmp_path / "none.html")
-    with pytest.raises(gm.errors.InputError, match=r"at most 50,000 samples, not 64,800"):
+    with pytest.raises(gm.errors.InputError, match=r"at most 50,000 samples, not 64,000"):
         samples[np.arange(len(samples)).repeat(200)].view(tmp_path / "many.html")
     monkeypatch.setitem(sys.modules, "plotly", None)
     with pytest.raises(gm.errors.MissingExtraError, match=r"gaussmap\[view\]"):
