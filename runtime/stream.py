@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -180,7 +181,8 @@ class _Stream:
 
 def _chunk(found: Samples, start: int, total: int, is_first: bool) -> Samples:
     """Return a chunk of a block of normals from `start` on; the proof is in the first one."""
-    arrays, report = found.arrays(), found.report
+    arrays: dict[str, Any] = found.arrays()
+    report = found.report
     if start and "normal_index" in arrays:
         arrays["normal_index"] = arrays["normal_index"] + start
     undecided = [x._replace(normal=x.normal + start) for x in report.undecided or ()]
