@@ -30,6 +30,10 @@ def _files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
             {"surface": "heights.npy", "spacing": (1.0, 1.0)},
             gm.Surface.from_grid(HEIGHTS, spacing=(1.0, 1.0)),
         ),
+        (
+            {"surface": "heights.npy", "spacing": (2.0, -1.0), "nodata": 7.0},
+            gm.Surface.from_grid(HEIGHTS, spacing=(2.0, -1.0), nodata=7.0),
+        ),
         ({"surface": "two.npz:points"}, gm.Surface.from_grid(POINTS)),
         (
             {"surface": "two.npz:heights", "x": "x", "y": "y"},
