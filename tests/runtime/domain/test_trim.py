@@ -9,6 +9,7 @@ import shapely
 from gaussmap.runtime.domain.domain import Boundary
 from gaussmap.runtime.domain.loops import checked_loops
 from gaussmap.runtime.domain.trim import Trim
+from scipy.ndimage import binary_dilation
 from scipy.spatial import KDTree
 
 UNIT = ((0.0, 1.0), (0.0, 1.0))
@@ -53,6 +54,29 @@ def graph():
 
 def torus():
     return gm.surfaces.torus()
+
+
+@pytest.mark.parametrize("count", [3, 8, 60])
+def test_cells_of_a_border(count):
+    """All that it passes, also those of which it cuts a corner, and none two cells away."""
+    polygon = np.random.default_rng(count).uniform(0.0, 1.0, (count, 2))
+    found = checked_loops([polygon], UNIT, OPEN).cells_of_border(UNIT, (40, 30))
+    along = np.linspace(0.0, 1.0, 20_000, endpoint=False)[:, None, None]
+    border = (polygon + along * (np.roll(polygon, -1, axis=0) - polygon)).reshape(-1, 2)
+    passed = np.zeros((40, 30), dtype=bool)
+    passed[tuple((border * (40, 30)).astype(int).T)] = True
+    assert found[passed].all()
+    assert not found[~binary_dilation(passed, np.ones((3, 3), dtype=bool))].any()
+
+
+def test_an_open_side_is_outside_a_loop_beside_it():
+    """Such points stand for points inside the domain, but for much nearer ones than these."""
+    for gap, inside in ((0.0, True), (1e-9, False)):
+        ends = gap, 1.0 - gap
+        loop = np.array([(ends[k], ends[m]) for k, m in ((0, 0), (1, 0), (1, 1), (0, 1))])
+        sides = np.array([(0.0, 0.5), (1.0, 0.5), (0.5, 0.0), (0.5, 1.0)])
+        found = checked_loops([loop], UNIT, OPEN).contains(sides)
+        assert (found == inside).all()
 
 
 @pytest.mark.kernels

@@ -63,6 +63,14 @@ def test_relative_tolerance_scales(scale: float) -> None:
     assert misfit_of(spline).distance <= 1e-5 * scale * np.hypot(np.hypot(1, 1), fillet(1.0, 0.0))
 
 
+@pytest.mark.parametrize(("ratio", "cells"), [(3.0, (16, 16)), (6.0, (16, 8))])
+def test_cells_are_halved_along_both_unless_one_error_is_much_larger(
+    ratio: float, cells: tuple[int, int]
+) -> None:
+    surface = graph(lambda u, v: 0.05 * (ratio * np.sin(5 * u) + np.sin(5 * v)))
+    assert gm.fit(surface, tolerance=5e-4).cells == cells
+
+
 def test_cells_are_chosen_along_u_and_v_apart() -> None:
     m, n = gm.fit(graph(fillet), tolerance=1e-5).cells
     assert m >= 32 * n

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import copy
 import pickle
+import warnings
 from dataclasses import FrozenInstanceError, fields, replace
 from typing import Any
 
@@ -16,7 +17,7 @@ from gaussmap.runtime.samples.fields import (
     PART_NAMES,
     PROVED_NAMES,
 )
-from gaussmap.runtime.samples.report import SamplingReport
+from gaussmap.runtime.samples.report import SamplingReport, warn_of
 from gaussmap.runtime.samples.samples import Samples
 from hypothesis import given
 from hypothesis import strategies as st
@@ -423,6 +424,23 @@ class TestText:
         )
         without = replace(samples, report=replace(samples.report, normals=0))
         assert without[:10].summary() == "10 of 10,012 samples (10 saddle-shaped)"
+
+    @pytest.mark.parametrize(
+        ("changes", "text"),
+        [
+            ({"developable_share": 0.009}, None),
+            ({"developable_share": 0.011}, "1 % of its area is flat or developable"),
+            ({"unrefined": 10}, None),
+            ({"unrefined": 11}, "11 of 1000 samples could not be moved to the surface"),
+        ],
+    )
+    def test_a_hundredth_is_worth_a_warning(self, changes, text):
+        report = SamplingReport("torus", 500, 1000, 64, 0.0, 0)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            warn_of(replace(report, **changes), None, 1)
+        assert len(caught) == (text is not None)
+        assert text is None or text in str(caught[0].message)
 
     def test_summary_of_samples_that_are_not_on_the_surface(self):
         report = replace(self.samples().report, developable_share=0.0, unrefined=1234)

@@ -387,6 +387,19 @@ def test_points_too_large_to_compute_with(periodic):
         gm.Surface.from_grid(1.7e308 * (2 * POINTS[:4] - 1), periodic=periodic)
 
 
+@pytest.mark.parametrize(("part", "repeats"), [(0.5e-3, True), (2e-3, False)])
+def test_first_points_nearly_repeated_at_the_end(part, repeats):
+    """They are, if they are as near as a thousandth of the distance of two rows."""
+    angles = np.linspace(0.0, 2.0 * np.pi, 13)
+    angles[-1] -= part * angles[1]
+    rings = np.stack([np.cos(angles), np.sin(angles)], axis=-1)[:, None]
+    points = np.concatenate([rings + np.zeros((1, 5, 1)), np.ones((13, 1, 1)) * np.c_[:5][None]], 2)
+    if repeats:
+        refused("repeats its first points at the end of axis 0", points, periodic=(True, False))
+    else:
+        assert gm.Surface.from_grid(points, periodic=(True, False)).grid is not None
+
+
 @pytest.mark.parametrize("name", ["torus", "tube", "tube_swapped", "moebius", "moebius_swapped"])
 def test_first_points_repeated_at_the_end(name):
     f, periodic, cells = CLOSED[name]

@@ -278,6 +278,8 @@ def test_control_points_that_coincide_make_an_edge_on_a_simple_knot():
     assert nurbs_of(extruded(rounded, 3, knots)).creases == ((), ())
     straight = [(0, 0), (1, 0), (2, 0), (2, 0), (2, 0), (3, 0), (4, 0)]
     assert nurbs_of(extruded(straight, 3, knots)).creases == ((), ())
+    corner[3] = (math.nextafter(2.0, 3.0), 0)
+    assert nurbs_of(extruded(corner, 3, knots)).creases == ((2.0,), ())
 
 
 @pytest.mark.parametrize(("speed", "pieces"), [(2.9, 1), (3.1, 2)])

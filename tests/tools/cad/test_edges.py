@@ -34,6 +34,11 @@ def on_edges(samples: gm.Samples) -> gm.Samples:
     return samples[samples.kind == "edge"]
 
 
+def faces_of(samples: gm.Samples) -> np.ndarray:
+    """Return the two faces (k, 2) of samples on edges."""
+    return np.sort(np.stack([samples.face_index, samples.other_face_index], axis=1), axis=1)
+
+
 def both_ways(samples: gm.Samples, part: Part) -> None:
     """Compare samples on edges with both faces at their own parameters."""
     for points, normals, uv, faces in (
@@ -156,8 +161,9 @@ def test_gaps_of_the_file_are_closed_and_wide_ones_have_no_samples(made):
     assert edges[1].faces not in pairs
 
 
-def test_tangent_faces_have_no_sharp_edge(made):
-    """A plane that goes on in a quarter of a cylinder, and meets another plane at 0.9 degrees."""
+@pytest.mark.parametrize(("angle", "sharp"), [(0.9, False), (1.1, True)])
+def test_tangent_faces_have_no_sharp_edge(made, angle, sharp):
+    """A plane that goes on in a quarter of a cylinder, and meets another plane at an angle."""
     plane = made.face("plane", made.placement(), (-1.0, 0.0), (0.0, 1.0), 1.0)
     round_ = made.face(
         "cylinder",
@@ -166,7 +172,7 @@ def test_tangent_faces_have_no_sharp_edge(made):
         (0.0, 1.0),
         np.pi / 2,
     )
-    slope = np.radians(0.9)
+    slope = np.radians(angle)
     along = (np.cos(slope), 0.0, np.sin(slope))
     bent = made.face(
         "plane", made.placement(z=(-along[2], 0.0, along[0]), x=along), (0.0, 1.0), (0.0, 1.0), 1.0
@@ -177,7 +183,8 @@ def test_tangent_faces_have_no_sharp_edge(made):
         EdgeRecord((0, 2), np.stack([0 * ends, ends, 0 * ends, ends], axis=1)),
     ]
     samples = gm.sample(made.part([plane, round_, bent], edges=edges), 30, edges=True)
-    assert samples.report.edge_samples == 0
+    assert (samples.report.edge_samples > 0) == sharp
+    assert {tuple(x) for x in faces_of(on_edges(samples))} == ({(0, 2)} if sharp else set())
 
 
 def test_failed_faces_and_bad_numbers_cost_their_edges(made):

@@ -151,6 +151,22 @@ def test_unusable_points(points, complaint):
     refused(gm.errors.InputError, complaint, gm.curves.Curve.from_points, points)
 
 
+@pytest.mark.parametrize(("part", "repeats"), [(0.5e-3, True), (2e-3, False)])
+def test_closed_points_that_nearly_repeat_the_first(part, repeats):
+    """They do if they are as near as a thousandth of the distance of two points."""
+    points = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, part]])
+    if repeats:
+        with pytest.raises(gm.errors.InputError, match="repeats its first point"):
+            gm.curves.Curve.from_points(points, closed=True)
+    else:
+        assert gm.curves.fit(gm.curves.Curve.from_points(points, closed=True)).pieces == 5
+
+
+def test_a_curve_has_64_pieces_unless_told():
+    circle = gm.curves.Curve.from_sympy(("cos(t)", "sin(t)"), "t", (0, "2*pi"), True)
+    assert gm.curves.fit(circle).pieces == 64
+
+
 def test_closed_points_do_not_repeat_the_first():
     points = ellipse(np.linspace(0, 2 * np.pi, 20))
     refused(

@@ -30,6 +30,10 @@ def _files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
             {"surface": "heights.npy", "spacing": (1.0, 1.0)},
             gm.Surface.from_grid(HEIGHTS, spacing=(1.0, 1.0)),
         ),
+        (
+            {"surface": "heights.npy", "spacing": (2.0, -1.0), "nodata": 7.0},
+            gm.Surface.from_grid(HEIGHTS, spacing=(2.0, -1.0), nodata=7.0),
+        ),
         ({"surface": "two.npz:points"}, gm.Surface.from_grid(POINTS)),
         (
             {"surface": "two.npz:heights", "x": "x", "y": "y"},
@@ -56,6 +60,7 @@ def test_surfaces(known: dict[str, Any], expected: gm.Surface) -> None:
     [
         ({"surface": "torsu"}, "did you mean torus"),
         ({"surface": "torus", "spacing": (1, 1)}, "--spacing is for elevations"),
+        ({"surface": "torus", "set": (("minor", 0.2), ("minor", 0.3))}, "same parameter twice"),
         ({"surface": "torus", "unit": "mm"}, "--unit is for CAD files, and 'torus' is none"),
         ({"surface": "torus", "crs": "EPSG:32617"}, "--crs is for elevations"),
         ({"surface": "heights.npy"}, r"add --spacing DX DY.*in Python: Surface.from_grid\("),

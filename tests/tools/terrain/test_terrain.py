@@ -110,6 +110,36 @@ def test_arrays_of_degrees_are_refused_or_projected() -> None:
     assert 1440 < dy < 1490
 
 
+@pytest.mark.parametrize(("slope", "refused"), [(8.0, False), (12.0, True)])
+def test_heights_over_degrees_are_steep(slope: float, refused: bool) -> None:
+    """Coordinates below 90 may be lengths, over which heights vary less."""
+    x, y = np.arange(SHAPE[1]) / 4.0, np.arange(SHAPE[0]) / 4.0
+    heights = slope * x[-1] * (HEIGHTS - HEIGHTS.min()) / np.ptp(HEIGHTS)
+    if not refused:
+        assert gm.terrain(heights, x=x, y=y).grid is not None
+        return
+    with pytest.raises(gm.errors.InputError, match="look like degrees"):
+        gm.terrain(heights, x=x, y=y)
+
+
+@pytest.mark.parametrize(("width", "fits"), [(11.5, True), (12.5, False)])
+def test_degrees_too_wide_for_a_zone(width: float, fits: bool) -> None:
+    x, y = np.linspace(3.0, 3.0 + width, SHAPE[1]), 48.0 - np.arange(SHAPE[0]) / 4.0
+    if fits:
+        assert gm.terrain(HEIGHTS, x=x, y=y, source_crs=4326).georeference is not None
+        return
+    with pytest.raises(gm.errors.InputError, match="degrees of longitude, too many for UTM"):
+        gm.terrain(HEIGHTS, x=x, y=y, source_crs=4326)
+
+
+@pytest.mark.parametrize(("error", "even"), [(0.8e-3, True), (1.2e-3, False)])
+def test_even_coordinates_are_the_parameters(error: float, even: bool) -> None:
+    x, y = 30.0 * np.arange(SHAPE[1]), 30.0 * np.arange(SHAPE[0])
+    x[8] += 30.0 * error
+    (low, high), _ = gm.terrain(HEIGHTS, x=x, y=y).domain
+    assert (low, high) == ((0.0, 30.0 * 16) if even else (0.0, 16.0))
+
+
 def test_uneven_and_curved_coordinates() -> None:
     x = np.cumsum(1.0 + 0.2 * np.sin(np.arange(SHAPE[1])))
     y = 10.0 * np.sqrt(1.0 + np.arange(SHAPE[0]))[::-1]

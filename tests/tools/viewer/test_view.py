@@ -1,10 +1,13 @@
 """The page of `samples.view`: what it holds, and what is refused."""
 
+import base64
+import json
 import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import gaussmap as gm
 import numpy as np
@@ -18,6 +21,54 @@ pytestmark = pytest.mark.compiled
 @pytest.fixture(scope="module")
 def samples() -> gm.Samples:
     return gm.sample("torus", normals=gm.icosphere(4), cells=(16, 16))
+
+
+def read_page(text: str) -> dict[str, Any]:
+    """Return the data of a page, with arrays (k,) in place of their texts."""
+    found = re.search(r'<script type="application/json"[^>]*>(.*?)</script>', text, re.DOTALL)
+    assert found is not None
+    data = json.loads(found[1])
+    kinds = {"points": "<f4", "normals": "<f4", "vertices": "<f4", "kind": "u1", "prescribed": "u1"}
+    for name in (*kinds, "neighbours", "triangles"):
+        array = np.frombuffer(base64.b64decode(data[name]), kinds.get(name, "<i4"))
+        data[name] = array
+    return data
+
+
+def test_what_the_page_holds_is_that_of_the_samples(samples: gm.Samples) -> None:
+    data = read_page(module.page(samples))
+    points = data["points"].reshape(-1, 3) * data["diameter"] + data["centre"]
+    np.testing.assert_allclose(points, samples.points, atol=1e-6)
+    np.testing.assert_allclose(data["normals"].reshape(-1, 3), samples.normals, atol=1e-7)
+    assert set(data["prescribed"]) == {1}
+    kinds = np.where(samples.parabolic, 2, samples.hyperbolic)
+    np.testing.assert_array_equal(data["kind"], kinds)
+    others = data["neighbours"].reshape(len(samples), -1)
+    apart = np.linalg.norm(samples.points[:, None] - samples.points, axis=-1)
+    np.fill_diagonal(apart, np.inf)
+    nearest = np.sort(apart, axis=1)[:, : others.shape[1]]
+    found = np.sort(np.take_along_axis(apart, others, axis=1), axis=1)
+    np.testing.assert_allclose(found, nearest, atol=1e-12)
+
+
+def test_the_page_shows_the_whole_surface(samples: gm.Samples) -> None:
+    data = read_page(module.page(samples))
+    triangles = data["triangles"].reshape(-1, 3)
+    sides = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    counts = np.unique(sides, axis=0, return_counts=True)[1]
+    assert set(counts) <= {1, 2}
+    assert (counts == 1).mean() < 0.05  # at the seams, where vertices differ by rounding
+    a, b, c = np.moveaxis(data["vertices"].reshape(-1, 3)[triangles], 1, 0)
+    area = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2 * data["diameter"] ** 2
+    assert area == pytest.approx(4.0 * np.pi**2 * 0.35, rel=0.01)
+
+
+def test_the_cap_is_as_wide_as_normals_are_apart(samples: gm.Samples) -> None:
+    assert 15.0 < read_page(module.page(samples))["angle"] < 20.0
+    few = read_page(module.page(gm.sample("torus", normals=gm.icosphere(1), cells=(8, 8))))
+    dense = gm.directions.cap(gm.icosphere(128), axis=(1, 0, 1), angle=10)
+    many = read_page(module.page(gm.sample("torus", normals=dense, cells=(16, 16))))
+    assert (many["angle"], few["angle"]) == (1.0, 20.0)
 
 
 def test_the_page_loads_nothing(samples: gm.Samples) -> None:
