@@ -50,6 +50,12 @@ def test_one_patch_with_more_samples_than_a_chunk():
     same(gm.Samples.concatenate(chunks), whole)
 
 
+def test_many_normals_are_one_block():
+    normals = gm.fibonacci(100_000)
+    chunks = gm.sample_stream(TORUS, normals=normals, chunk=30_000, fields=("points",))
+    same(gm.Samples.concatenate(chunks), gm.sample(TORUS, normals=normals, fields=("points",)))
+
+
 @pytest.mark.parametrize("size", [10, 64, 333])
 @pytest.mark.parametrize("asked", [{"normals": gm.icosphere(6)}, {"count": 700}])
 def test_blocks_of_normals(size, asked, monkeypatch):
