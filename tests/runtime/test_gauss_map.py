@@ -146,3 +146,11 @@ def test_unusable_normals_are_refused():
     for normals in ([], [[0, 0, 0]], [[np.nan, 0, 1]], "x", [[1, 2]]):
         with pytest.raises(gm.GaussmapError):
             known.count(normals)
+
+
+def test_a_point_of_no_curvature_counts_with_its_sign_bit() -> None:
+    """On the circles where K = 0 a spline has K = −0.0 at some samples of the axes."""
+    axes = np.concatenate([np.eye(3), -np.eye(3)])
+    gauss_map = gm.GaussMap("torus", cells=(16, 16), on="spline")
+    assert (gauss_map.points(axes).gaussian_curvature == 0.0).any()
+    assert (gauss_map.degree(axes) == 0).all()

@@ -50,6 +50,24 @@ def test_one_patch_with_more_samples_than_a_chunk():
     same(gm.Samples.concatenate(chunks), whole)
 
 
+@pytest.mark.compiled
+def test_the_proof_of_a_block_is_counted_once(monkeypatch):
+    normals = np.concatenate([gm.fibonacci(100), [[0.0, 0.0, 1.0]]])
+    whole = gm.sample("torus", normals=normals)
+    monkeypatch.setattr(stream, "NORMALS_AT_A_TIME", 40)
+    reports = [x.report for x in gm.sample_stream("torus", normals=normals, chunk=7)]
+    assert len(reports) > 10
+    assert sum(x.proved or 0 for x in reports) == whole.report.proved == 100
+    undecided = [x for report in reports for x in report.undecided or ()]
+    assert [x.normal for x in undecided] == [100]
+
+
+def test_many_normals_are_one_block():
+    normals = gm.fibonacci(100_000)
+    chunks = gm.sample_stream(TORUS, normals=normals, chunk=30_000, fields=("points",))
+    same(gm.Samples.concatenate(chunks), gm.sample(TORUS, normals=normals, fields=("points",)))
+
+
 @pytest.mark.parametrize("size", [10, 64, 333])
 @pytest.mark.parametrize("asked", [{"normals": gm.icosphere(6)}, {"count": 700}])
 def test_blocks_of_normals(size, asked, monkeypatch):

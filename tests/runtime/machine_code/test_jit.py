@@ -195,8 +195,8 @@ def test_folders_that_were_not_used_for_long_are_removed(tmp_path: Path) -> None
     now = time.time()
     for folder, days in (
         (ours, 90),
-        (recent, kept.DAYS_KEPT - 1),
-        (old, kept.DAYS_KEPT + 1),
+        (recent, 29),
+        (old, 31),
         (others, 90),
     ):
         folder.mkdir()

@@ -58,7 +58,9 @@ def normals_of(spline: gm.Spline) -> Array:
     b200, b020, b002, b110, b101, b011 = np.moveaxis(spline.control_nets, 1, 0)
     along_u = np.stack([b200 - b101, b110 - b011, b101 - b002])
     along_v = np.stack([b110 - b101, b020 - b011, b011 - b002])
-    places = np.random.default_rng(0).dirichlet([0.5] * 3, 20)
+    inside = np.random.default_rng(0).dirichlet([0.5] * 3, 20)
+    corners = (1.0 - 3e-6) * np.eye(3) + 1e-6  # not of collapsed sides, where lengths vanish
+    places = np.concatenate([inside, corners])
     normals = np.cross(*(np.einsum("ki,ipx->pkx", places, x) for x in (along_u, along_v)))
     return normals / np.linalg.norm(normals, axis=-1, keepdims=True)
 
