@@ -201,7 +201,8 @@ class TestReport:
             float, float, float, int, int, str, int, int, bool, int, str, tuple,
         ]  # fmt: skip
         assert report.undecided == ((0, (0.0, 1.0, 2.0, 3.0), "double", True),)
-        assert [type(x) for x in report.undecided[0]] == [int, tuple, str, bool]
+        (place,) = report.undecided or ()
+        assert [type(x) for x in place] == [int, tuple, str, bool]
 
     @pytest.mark.parametrize("name", ["normals", "samples", "patches", "developable_patches"])
     @pytest.mark.parametrize("bad", [-1, 1.5, "3"])

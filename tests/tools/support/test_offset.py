@@ -264,3 +264,6 @@ def test_offsets_add_up_in_meshes() -> None:
     once, twice = samples.offset(0.3).mesh(), samples.offset(0.1).offset(0.2).mesh()
     np.testing.assert_array_equal(once.triangles, twice.triangles)
     np.testing.assert_allclose(once.vertices, twice.vertices, atol=1e-14)
+    of = samples.offset(0.1).offset(0.2).offset_of
+    assert of is not None
+    assert abs(of.distance - 0.3) < 1e-15
