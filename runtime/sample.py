@@ -155,8 +155,8 @@ def sample(
     about r, twice the angle. λ is 0.8 times the mean of κ²,
     or follows from `coverage`; with a count or a coverage, κ counts up to 20 √λ.
 
-    For prescribed normals the derivatives can be bounded of surfaces of the catalogue, of SymPy
-    expressions, of callables made of NumPy functions, and of affine images of these. The report
+    Derivatives can be bounded of surfaces of the catalogue, of SymPy expressions, of callables made
+    of NumPy functions, of NURBS without poles, and of affine images of these. The report
     says for how many normals the points are `proved` to be all, and lists the others in
     `undecided`; see `SamplingReport`. What is found out about the last eight surfaces is kept, so
     that the function of a surface must return the same points each time; `GaussMap` keeps it as

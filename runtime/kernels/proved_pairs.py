@@ -66,7 +66,7 @@ NONE, ONE, MORE, HARD, EDGE = 0.0, 1.0, 2.0, 3.0, 4.0
 CONTRACTING = 0.95
 # A place is good enough if it is known up to this multiple of what rounding leaves.
 CLOSE = 4.0
-# So many evaluations are tried.
+# The largest number of evaluations for a pair.
 ROUNDS = 6.0
 # The model may lead out of the cell by this much.
 OUTSIDE = 1.5

@@ -45,8 +45,8 @@ RANGES_PER_THREAD = 4
 SAMPLES_AT_A_TIME = 1 << 16
 # The initial and the largest capacity for packed hits; a patch that needs more gets it.
 ROOM, MOST_ROOM = 1 << 15, 1 << 20
-# With fewer normals than a patch for each so many, cells are looked up in the tree of cones.
-NORMALS_FOR_ALL_CELLS = 4
+# With more patches than this number for each normal, patches are looked up in the tree of cones.
+PATCHES_PER_NORMAL = 4
 # A key is number of a patch << 32 | number of a normal; a packed hit has the latter in both places.
 NUMBER, REPEATED = (1 << 32) - 1, (1 << 32) + 1
 
@@ -204,8 +204,8 @@ class Search:
 
     @cached_property
     def in_tree(self) -> bool:
-        """Whether the normals are so few that the cells are looked up in a tree of their cones."""
-        return NORMALS_FOR_ALL_CELLS * len(self.bins.normals) < self.spline.patches
+        """Whether the normals are few, and patches are looked up in the tree of their cones."""
+        return PATCHES_PER_NORMAL * len(self.bins.normals) < self.spline.patches
 
     @property
     def order(self) -> NDArray[np.float64] | None:

@@ -43,7 +43,7 @@ def tree_of(spline: gm.Spline) -> ConeTree:
 def test_hits_are_those_of_all_patches(name, monkeypatch):
     spline, found = SPLINES[name], []
     for share in (1 << 40, 0):  # in all patches, in the tree
-        monkeypatch.setattr(search, "NORMALS_FOR_ALL_CELLS", share)
+        monkeypatch.setattr(search, "PATCHES_PER_NORMAL", share)
         found.append(find(spline, NormalBins(NORMALS)))
     every, few = found
     assert (every.patch_index == few.patch_index).all()
