@@ -10,6 +10,7 @@ from ...runtime.base.later import Later
 __all__ = ["Methods"]
 
 MEASURES, PLOT = "gaussmap.tools.cad.measures", "gaussmap.tools.pictures.plot"
+SELECTION = "gaussmap.tools.cad.selection"
 RESULTS, SAMPLING = "gaussmap.tools.cad.results", "gaussmap.tools.cad.sampling"
 
 
@@ -17,6 +18,7 @@ class Methods:
     """What `Whole` asks of a part, and what is made of parts."""
 
     plot = Later(PLOT, "plot_part")
+    select = Later(SELECTION)
 
     _bounds_of = Later(MEASURES, "bounds_of")
     _volume_of = Later(MEASURES, "volume_of")

@@ -6,3 +6,4 @@ class Methods:
     from .measures import volume_of as _volume_of
     from .results import space_of as _space
     from .sampling import sample_part as _sampled
+    from .selection import select as select

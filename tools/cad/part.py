@@ -13,6 +13,7 @@ from ...runtime.base.errors import SurfaceError
 from ...runtime.base.wording import plural
 from ...runtime.samples.whole import Whole
 from ..files.paths import PathLike
+from .dimensions import dimensions_of
 from .methods import Methods
 from .part_arrays import geometry_of, packed
 from .records import Geometry, PartRecord
@@ -238,6 +239,12 @@ class Face:
         return None if np.isnan(red) else (red, green, blue)
 
     @property
+    def source_index(self) -> int:
+        """The place in the faces of the part that was read; `index` unless that was selected."""
+        places = self.part.about.get("source_indices")
+        return int(places[self.index]) if places else self.index
+
+    @property
     def solid_index(self) -> int:
         """The place in `part.solids` of the solid that it belongs to; −1 for none."""
         return int(self._row("solid_index"))
@@ -268,6 +275,24 @@ class Face:
     def geometry(self) -> Geometry:
         """The surface without its trim, as numbers: views of the arrays of the part."""
         return geometry_of(self.part.arrays, self.index)
+
+    @cached_property
+    def dimensions(self) -> dict[str, Any]:
+        """What planes, cylinders, cones, spheres and tori are given by; empty for other faces.
+
+        plane: `point`, `normal`. cylinder: `point` on its `axis`, `radius`. cone: `apex`, `axis`
+        (the way in which it widens), `half_angle` in degrees. sphere: `centre`, `radius`. torus:
+        `centre`, `axis`, `major_radius`, `minor_radius`. Directions have unit length, lengths are
+        in L. `hollow` says whether normals point inward, to the axis or centre, as in a hole.
+
+        Examples
+        --------
+        >>> from gaussmap.tools.cad.examples import all_kinds
+        >>> all_kinds().faces[1].dimensions
+        {'point': array([0., 0., 0.]), 'axis': array([0., 0., 1.]), 'radius': 1.0, 'hollow': False}
+
+        """
+        return {} if self.reason else dimensions_of(self.geometry, self.domain, self.reversed)
 
     @property
     def loops(self) -> tuple[Array, ...]:

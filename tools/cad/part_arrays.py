@@ -85,6 +85,7 @@ def _about(part: PartRecord) -> dict[str, Any]:
         "face_names": names,
         "reasons": reasons,
         "warnings": list(part.warnings),
+        "source_indices": list(part.source_indices),
     }
 
 

@@ -89,7 +89,10 @@ class EdgeRecord:
 
 @dataclass(frozen=True, eq=False)
 class PartRecord:
-    """A part; `metres` is the length of its unit, `oriented` whether all normals point outward."""
+    """A part; `metres` is the length of its unit, `oriented` whether all normals point outward.
+
+    `source_indices` are the places of the faces in the part that they were selected from.
+    """
 
     name: str
     unit: str
@@ -99,3 +102,4 @@ class PartRecord:
     solid_names: Sequence[str] = ()
     edges: Sequence[EdgeRecord] = ()
     warnings: Sequence[str] = ()
+    source_indices: Sequence[int] = ()

@@ -5,7 +5,8 @@ Nothing is pickled. For F faces, and S ≥ F surfaces of which the first F are t
 about (uint8)
     UTF-8 text, JSON: format, version, name, unit ("mm", "in", ...), metres (the length of the
     unit), oriented, solid_names (a list), face_names and reasons (by the index of the face, as
-    text; a face with a reason has failed), warnings (a list of sentences).
+    text; a face with a reason has failed), warnings (a list of sentences), source_indices (the
+    places of the faces in the part that they were selected from, or an empty list).
 reversed (F,) bool, area (F,), solid_index (F,) int64, color (F, 3)
     Whether normals point along −(x_u × x_v); the area inside the trim, in L²; the solid, −1 for
     none; red, green and blue from 0 to 1, NaN for none.
@@ -174,6 +175,7 @@ def checked_arrays(arrays: Arrays) -> tuple[Arrays, dict[str, Any]]:
     solids = max(len(about.get("solid_names", ())), 1) if faces else 0
     _require(_within(found["solid_index"], -1, max(faces, solids)), "solid_index")
     _require(_within(found["edge_faces"], 0, faces), "edge_faces")
+    _require(_are_indices(about.get("source_indices", []), faces), "about")
     return found, {**about, "reasons": {**_not_finite(found), **_texts(about, "reasons")}}
 
 
@@ -264,6 +266,13 @@ def _texts(about: dict[str, Any], name: str) -> dict[str, str]:
     found = about.get(name, {})
     _require(isinstance(found, dict), "about")
     return {str(key): str(value) for key, value in found.items()}
+
+
+def _are_indices(values: object, count: int) -> bool:
+    """Return whether values are none, or as many whole numbers."""
+    if not isinstance(values, list) or len(values) not in (0, count):
+        return False
+    return all(type(x) is int for x in values)
 
 
 def _within(array: NDArray[Any], low: int, high: int) -> bool:

@@ -1,0 +1,53 @@
+"""What planes, cylinders, cones, spheres and tori are given by: axes, centres, radii."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ...runtime.base.aliases import Array
+from .records import Geometry
+
+__all__ = ["dimensions_of"]
+
+Dimensions = dict[str, Any]
+
+
+def dimensions_of(
+    geometry: Geometry, domain: Sequence[Sequence[float]], is_reversed: bool
+) -> Dimensions:
+    """Return what `Face.dimensions` is, from the numbers that `saving` describes."""
+    if geometry.kind not in ("plane", "cylinder", "cone", "sphere", "torus"):
+        return {}
+    origin, x, y, z = geometry.numbers[:12].reshape(4, 3).copy()
+    sizes = geometry.numbers[12:].tolist()
+    # x_u × x_v points outward, or along z, if the frame is right-handed.
+    outward = is_reversed == bool(np.cross(x, y) @ z < 0.0)
+    if geometry.kind == "plane":
+        return {"point": origin, "normal": z if outward else -z}
+    if geometry.kind == "cone":
+        found = _cone(origin, z, sizes, sum(domain[1]) / 2.0)
+    elif geometry.kind == "cylinder":
+        found = {"point": origin, "axis": z, "radius": sizes[0]}
+    elif geometry.kind == "sphere":
+        found = {"centre": origin, "radius": sizes[0]}
+    else:
+        major, minor = sizes
+        found = {"centre": origin, "axis": z, "major_radius": major, "minor_radius": minor}
+    return {**found, "hollow": not outward} if found else {}
+
+
+def _cone(origin: Array, z: Array, sizes: Sequence[float], v: float) -> Dimensions:
+    """Return the dimensions of a cone, the middle of which is at v; none if it does not widen."""
+    radius, angle = sizes
+    if angle == 0.0:
+        return {}
+    wider = math.copysign(1.0, angle) * math.copysign(1.0, radius + v * math.sin(angle))
+    return {
+        "apex": origin - radius / math.tan(angle) * z,
+        "axis": wider * z,
+        "half_angle": math.degrees(abs(angle)),
+    }

@@ -1,0 +1,198 @@
+"""Some faces of a part as a part."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from fnmatch import fnmatchcase
+from typing import SupportsFloat
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...runtime.base.aliases import Array, Flags
+from ...runtime.base.checks import finite_array, known_name, listed, positive_number, text
+from ...runtime.base.errors import InputError, shown
+from ...runtime.directions.unit import normalized, unit_vector
+from .face_pieces import FacePiece, pieces_of
+from .part import Face, Part, part_of
+from .records import KINDS, EdgeRecord, FaceRecord, PartRecord
+
+__all__ = ["select"]
+
+Axis = tuple[ArrayLike, SupportsFloat]
+
+# Colours may be rounded to 8 bits, by whoever wrote them down.
+SAME_COLOUR = 0.75 / 255.0
+
+
+def select(
+    self: Part,
+    *,
+    kind: str | Sequence[str] | None = None,
+    name: str | None = None,
+    color: str | ArrayLike | None = None,
+    index: ArrayLike | None = None,
+    normal: Axis | None = None,
+) -> Part:
+    """Return the faces that fulfil all of some conditions, as a part.
+
+    Parameters
+    ----------
+    kind : str or sequence of str, optional
+        One of the kinds of `Face.kind`, or several.
+    name : str, optional
+        The name of the face, or a pattern such as "slot*", in which upper and lower case differ.
+    color : str or (3,) array_like, optional
+        The colour: "#ff8000", or red, green and blue from 0 to 1.
+    index : array_like of int, optional
+        Places in `faces`, each of them once, in any order.
+    normal : ((3,) array_like, float), optional
+        A direction of any length but 0, and an angle in degrees: all normals of the face, looked at
+        on a grid in it and along its border, are within this angle of the direction.
+
+    Returns
+    -------
+    Part
+        The faces, in their order, with their solids and the edges between them. `Face.source_index`
+        says where each of them is in this part.
+
+    Raises
+    ------
+    InputError, UnknownNameError
+        If no face fulfils all conditions, or one of these cannot be used.
+
+    Examples
+    --------
+    >>> from gaussmap.tools.cad.examples import box
+    >>> part = box(1.0, 2.0, 3.0)
+    >>> top = part.select(kind="plane", normal=([0, 0, 1], 5.0))
+    >>> top, top.faces[0].source_index, top.area
+    (Part(box: 1 face, 1 solid, mm), 5, 2.0)
+
+    """
+    chosen = np.ones(len(self), dtype=np.bool_)
+    for condition in _conditions(self, kind, name, color, index):
+        chosen &= condition
+    if normal is not None:
+        chosen &= _facing(self, normal, chosen)
+    if not chosen.any():
+        raise InputError(f"part {self.name!r} has no face that fulfils all conditions.")
+    return _part(self, np.flatnonzero(chosen).tolist())
+
+
+def _conditions(
+    part: Part,
+    kind: str | Sequence[str] | None,
+    name: str | None,
+    color: str | ArrayLike | None,
+    index: ArrayLike | None,
+) -> list[Flags]:
+    """Return which faces (F,) fulfil each condition that is given, but for that of normals."""
+    found = []
+    if kind is not None:
+        kinds = [kind] if isinstance(kind, str) else listed(kind)
+        if kinds is None:
+            raise InputError(f"kind must be a name or a list of names, not {shown(kind)}.")
+        known = {known_name(x, tuple(KINDS), "kind of face") for x in kinds}
+        found.append([x.kind in known for x in part.faces])
+    if name is not None:
+        pattern = text(name, "name")
+        found.append([fnmatchcase(x.name, pattern) for x in part.faces])
+    if color is not None:
+        away = np.abs(part.arrays["color"] - _colour(color)).max(axis=1)
+        found.append(away <= SAME_COLOUR)  # NaN is not
+    if index is not None:
+        found.append(_at(index, len(part)))
+    return [np.asarray(x, dtype=np.bool_) for x in found]
+
+
+def _colour(color: str | ArrayLike) -> Array:
+    """Return red, green and blue (3,) from 0 to 1."""
+    if not isinstance(color, str):
+        return finite_array(color, (3,), "color")
+    if not re.fullmatch("#[0-9a-fA-F]{6}", color):
+        raise InputError(f'color must be as "#ff8000", or three numbers, not {shown(color)}.')
+    return np.array(list(bytes.fromhex(color[1:]))) / 255.0
+
+
+def _at(index: ArrayLike, count: int) -> Flags:
+    """Return which of so many faces are at some places; InputError for others."""
+    places, chosen = np.atleast_1d(np.asarray(index)), np.zeros(count, dtype=np.bool_)
+    if places.dtype.kind not in "iu" or places.ndim != 1:
+        raise InputError(f"index must be places of faces, whole numbers, not {shown(index)}.")
+    bad = places[(places < 0) | (places >= count)]
+    if len(bad):
+        raise InputError(f"index holds {bad[0]}, and the faces are 0 to {count - 1:,}.")
+    chosen[places] = True
+    return chosen
+
+
+def _facing(part: Part, normal: Axis, asked: Flags) -> Flags:
+    """Return which of the faces that are asked for have all normals within an angle of an axis."""
+    pair = listed(normal)
+    if pair is None or len(pair) != 2:
+        raise InputError(f"normal must be (direction, angle in degrees), not {shown(normal)}.")
+    axis = unit_vector(pair[0], "the direction of normal")
+    angle = positive_number(pair[1], "the angle of normal", "degrees", 180.0)
+    least, facing = np.cos(np.radians(angle)), np.zeros(len(part), dtype=np.bool_)
+    for piece in pieces_of(tuple(part.faces[k] for k in np.flatnonzero(asked)))[0]:
+        facing[piece.face.index] = (_normals(piece) @ axis >= least).all()
+    return facing
+
+
+def _normals(piece: FacePiece) -> Array:
+    """Return unit normals (k, 3) of a face: at corners and middles of its boxes, and its border."""
+    u0, v0, u1, v1 = piece.boxes.T
+    middle = np.stack([u0 + u1, v0 + v1], axis=1) / 2.0
+    corners = [np.stack(x, axis=1) for x in ((u0, v0), (u1, v0), (u0, v1), (u1, v1))]
+    places = np.concatenate([middle, *corners])
+    if piece.surface.trim is not None:
+        places = places[piece.surface.trim.contains(places)]
+    places = np.concatenate([places, *piece.polygons])
+    jets = piece.jets(*places.T.copy())
+    along_u, along_v = (normalized(jets[:, k]) for k in (1, 2))
+    normals = np.cross(along_u, along_v)
+    return normalized(normals[np.abs(normals).max(axis=1) > np.finfo(np.float64).eps])
+
+
+# --- the part -------------------------------------------------------------------------------------
+
+
+def _part(part: Part, chosen: list[int]) -> Part:
+    """Return the part of some of the faces, in this order."""
+    faces = [part.faces[k] for k in chosen]
+    solids = sorted({x.solid_index for x in faces} - {-1})
+    new = {old: k for k, old in enumerate(solids)}
+    return part_of(
+        PartRecord(
+            part.name,
+            part.unit,
+            part.metres,
+            part.oriented,
+            [_record(x, new.get(x.solid_index, -1)) for x in faces],
+            [part.solids[k].name for k in solids],
+            _edges(part, chosen),
+            part.warnings,
+            [x.source_index for x in faces],
+        )
+    )
+
+
+def _record(face: Face, solid: int) -> FaceRecord:
+    return FaceRecord(
+        face.geometry, face.domain, face.periods, face.loops, face.reversed, face.area, face.name,
+        face.color, solid, face.reason,
+    )  # fmt: skip
+
+
+def _edges(part: Part, chosen: list[int]) -> list[EdgeRecord]:
+    """Return the edges between two of the faces, which are numbered anew."""
+    new = np.full(len(part), -1)
+    new[chosen] = np.arange(len(chosen))
+    faces, starts = new[part.arrays["edge_faces"]], part.arrays["edge_point_starts"]
+    return [
+        EdgeRecord((first, second), part.arrays["edge_points"][starts[k] : starts[k + 1]])
+        for k, (first, second) in enumerate(faces.tolist())
+        if first >= 0 and second >= 0
+    ]
