@@ -23,6 +23,10 @@ WANTED = os.environ.get("GAUSSMAP_KERNELS") != "0"
 class BuildKernels(build_py):
     """Compile kernels in the folder of which the wheel is made; an editable package has none."""
 
+    def find_package_modules(self, package: str, package_dir: str) -> list[tuple[str, str, str]]:
+        """Return the modules of a package: this one is none of them."""
+        return [x for x in super().find_package_modules(package, package_dir) if x[1] != "setup"]
+
     def run(self) -> None:
         """Copy modules, then compile what is not up to date in compiled/."""
         folder = Path(self.build_lib).resolve()

@@ -61,7 +61,7 @@ class Task:
 def main(memory: float, parent: int) -> None:
     """Answer tasks until there are no more, with at most so many GiB of memory."""
     tasks, answers = _streams()
-    end_with_parent(signal.SIGKILL, parent)
+    end_with_parent("SIGKILL", parent)
     limit(RLIMIT_DATA=int(memory * GIB))
     from ...runtime.sample import sample  # noqa: F401 - which takes its time, and that is not a part's
 

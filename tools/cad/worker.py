@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 import sys
 from pathlib import Path
 
@@ -24,7 +23,7 @@ def main(text: str) -> None:
     """Read a file into a part: what to read, and the limits, are a JSON object."""
     request = json.loads(text)
     folder = Path(request["folder"])
-    end_with_parent(signal.SIGTERM)
+    end_with_parent("SIGTERM")
     # Of processor time, for the case that nobody waits any more.
     limit(RLIMIT_AS=int(request["memory"]), RLIMIT_CPU=int(request["seconds"]) + 5)
     try:

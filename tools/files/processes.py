@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 from contextlib import suppress
 
 __all__ = ["end_with_parent", "limit"]
@@ -11,15 +12,15 @@ __all__ = ["end_with_parent", "limit"]
 PR_SET_PDEATHSIG = 1
 
 
-def end_with_parent(by: int, parent: int | None = None) -> None:
-    """Let the system end this process by a signal when its parent is killed, where it can.
+def end_with_parent(by: str, parent: int | None = None) -> None:
+    """Let the system end this process by a signal when its parent is killed, if it can.
 
     With the number of the parent, it ends at once if that is gone already.
     """
     with suppress(AttributeError, OSError, TypeError):
         import ctypes
 
-        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, by)
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, getattr(signal, by))
         if parent is not None and os.getppid() != parent:
             os._exit(1)
 
