@@ -58,7 +58,7 @@ def numbers(domain: Sequence[Any], form: str) -> Any:  # noqa: ANN401
 
     try:
         return number(domain)
-    except (TypeError, ValueError, OverflowError):
+    except (TypeError, ValueError, OverflowError, RecursionError):  # of a list that holds itself
         raise InputError(f"domain must be {form} in numbers, not {shown(domain)}.") from None
 
 

@@ -413,6 +413,10 @@ def test_parameters_of_expressions_that_are_none(parameters):
     )
 
 
+HOLDS_ITSELF: list[object] = []
+HOLDS_ITSELF.append(HOLDS_ITSELF)
+
+
 @pytest.mark.parametrize(
     ("domain", "complaint"),
     [
@@ -430,6 +434,7 @@ def test_parameters_of_expressions_that_are_none(parameters):
         (((0, "acsch(2 < 3)"), (0, 1)), "domain must be"),
         (((0, "atan2(E, 10**50) + (3 < 3)"), (0, 1)), "domain must be"),
         (((0, "pi"), ("pi", "pi")), "domain of v is empty or infinite"),
+        (HOLDS_ITSELF, "domain must be"),
     ],
 )
 def test_domains_of_expressions_that_are_none(domain, complaint):
