@@ -153,7 +153,7 @@ class Samples(SampleArrays, Methods):
         --------
         >>> import gaussmap as gm
         >>> gm.sample("torus", normals=[[1, 0, 0], [0, 1, 1]], cells=(16, 16)).summary()
-        '4 samples found by 2 normals (2 dome-shaped, ...); complete: proved for 2 of 2 normals'
+        '4 samples at 2 prescribed normals, exactly 2 each (2 dome-shaped, ...); complete: ...'
 
         """
         return summary_of(self)

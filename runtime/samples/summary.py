@@ -93,7 +93,7 @@ def _on_grid(samples: SampleArrays) -> str:
     if count == 0:
         return f" of {GRID}" if samples.report.density == "aligned" else ""
     rest = len(samples) - count
-    return f": {count:,} on {GRID}" + (f", {rest:,} in its gaps" if rest else "")
+    return f": {count:,} on {GRID}" + (f", {rest:,} filling gaps" if rest else "")
 
 
 def _origin(samples: SampleArrays) -> str:
@@ -102,13 +102,22 @@ def _origin(samples: SampleArrays) -> str:
     if grid := _on_grid(samples):
         return grid
     if filling == len(samples) > 0:
-        return " in the gaps between normals" if normals else ""
+        return " filling gaps" if normals else ""
     if not normals:
         return ""
-    given = f"found by {plural(normals, 'normal')}"
+    given = f"at {plural(normals, 'prescribed normal')}"
     if not filling:
-        return f" {given}"
-    return f": {len(samples) - filling:,} {given}, {filling:,} in the gaps between these"
+        return f" {given}{_each(samples, normals)}"
+    return f": {len(samples) - filling:,} {given}, {filling:,} filling gaps"
+
+
+def _each(samples: SampleArrays, normals: int) -> str:
+    """Say how many samples each of several prescribed normals has, if all have equally many."""
+    each, rest = divmod(len(samples), normals)
+    if normals == 1 or each == 0 or rest or "normal_index" not in samples.fields:
+        return ""
+    same = (np.bincount(samples.normal_index, minlength=normals) == each).all()
+    return f", exactly {each:,} each" if same else ""
 
 
 def _infinite(samples: SampleArrays) -> str:

@@ -113,7 +113,7 @@ def test_reports_count_their_chunk():
         assert chunk.report.samples == len(chunk)
         assert chunk.report.developable_patches is None
         assert (chunk.report.normals, chunk.report.patches) == (162, TORUS.patches)
-    assert "50 samples found by 162 normals (" in chunks[0].summary()
+    assert "50 samples at 162 prescribed normals (" in chunks[0].summary()
 
 
 def broken(u, v):

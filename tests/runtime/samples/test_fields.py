@@ -139,7 +139,7 @@ def test_text():
     samples = narrow(("points", "uv"))
     assert repr(samples) == f"Samples({len(FULL):,} points on torus (points, uv only))"
     assert samples.summary().split(";")[0] == (
-        f"{len(FULL):,} samples found by {len(NORMALS):,} normals (points, uv only)"
+        f"{len(FULL):,} samples at {len(NORMALS):,} prescribed normals (points, uv only)"
     )
 
 

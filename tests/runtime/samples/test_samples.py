@@ -387,8 +387,9 @@ class TestText:
 
     def test_summary(self):
         assert self.samples().summary() == (
-            "10,012 samples found by 1,234,567 normals (5,012 dome-shaped, 5,000 saddle-shaped); "
-            "3.12 % of the surface is flat or curved one way only, where normals find no samples"
+            "10,012 samples at 1,234,567 prescribed normals (5,012 dome-shaped, "
+            "5,000 saddle-shaped); 3.12 % of the surface is flat or curved one way only, "
+            "where normals find no samples"
         )
 
     @pytest.mark.parametrize(
@@ -409,19 +410,40 @@ class TestText:
     def test_summary_of_the_developable_share(self, share, end):
         samples = self.samples()
         samples = replace(samples, report=replace(samples.report, developable_share=share))
-        start = "10,012 samples found by 1,234,567 normals (5,012 dome-shaped, 5,000 saddle-shaped)"
+        start = (
+            "10,012 samples at 1,234,567 prescribed normals "
+            "(5,012 dome-shaped, 5,000 saddle-shaped)"
+        )
         assert samples.summary() == start + end
+
+    @pytest.mark.parametrize(
+        ("index", "words"),
+        [
+            ([0, 1, 1, 0], "4 samples at 2 prescribed normals, exactly 2 each ("),
+            ([1, 0], "2 samples at 2 prescribed normals, exactly 1 each ("),
+            ([1, 1, 1, 0], "4 samples at 2 prescribed normals ("),
+            ([1, 1], "2 samples at 2 prescribed normals ("),
+            ([0, 1, 1], "3 samples at 2 prescribed normals ("),
+            ([0, 1, -1], "3 samples: 2 at 2 prescribed normals, 1 filling gaps ("),
+        ],
+    )
+    def test_summary_says_if_all_normals_have_equally_many_samples(self, index, words):
+        samples = replace(self.samples()[: len(index)], normal_index=np.array(index))
+        report = replace(samples.report, normals=2, samples=len(index))
+        assert replace(samples, report=report).summary().startswith(words)
+        one = replace(report, normals=1)
+        first = replace(samples, normal_index=np.zeros(len(index), int), report=one)
+        assert first.summary().startswith(f"{len(index)} samples at 1 prescribed normal (")
 
     def test_summary_of_samples_that_fill_gaps(self):
         indices = np.arange(10012) - 5012
         samples = replace(self.samples(), normal_index=np.maximum(indices, -1))
         assert samples.summary() == (
-            "10,012 samples: 5,000 found by 1,234,567 normals, 5,012 in the gaps between these "
+            "10,012 samples: 5,000 at 1,234,567 prescribed normals, 5,012 filling gaps "
             "(5,012 dome-shaped, 5,000 saddle-shaped)"
         )
         assert samples[:5012].summary() == (
-            "5,012 of 10,012 samples in the gaps between normals "
-            "(12 dome-shaped, 5,000 saddle-shaped)"
+            "5,012 of 10,012 samples filling gaps (12 dome-shaped, 5,000 saddle-shaped)"
         )
         without = replace(samples, report=replace(samples.report, normals=0))
         assert without[:10].summary() == "10 of 10,012 samples (10 saddle-shaped)"
@@ -478,7 +500,7 @@ class TestText:
 
     def test_summary_of_a_part(self):
         assert self.samples()[:10].summary() == (
-            "10 of 10,012 samples found by 1,234,567 normals (10 saddle-shaped); "
+            "10 of 10,012 samples at 1,234,567 prescribed normals (10 saddle-shaped); "
             "3.12 % of the surface is flat or curved one way only, where normals find no samples"
         )
 

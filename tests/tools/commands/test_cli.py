@@ -77,8 +77,8 @@ def test_sample_a_surface_by_name() -> None:
     done = gaussmap("sample", "torus", "--count", "10000", "-o", "torus.ply")
     assert (done.returncode, done.stderr) == (0, "")
     assert re.fullmatch(
-        r"torus\.ply: 10,000 samples: [\d,]+ found by [\d,]+ normals, [\d,]+ in the gaps between "
-        r"these \([\d,]+ dome-shaped, [\d,]+ saddle-shaped\)\n",
+        r"torus\.ply: 10,000 samples: [\d,]+ at [\d,]+ prescribed normals, [\d,]+ filling gaps "
+        r"\([\d,]+ dome-shaped, [\d,]+ saddle-shaped\)\n",
         done.stdout,
     )
     samples = gm.read_samples("torus.ply")
@@ -255,7 +255,7 @@ def test_every_file_type(suffix: str, capsys: pytest.CaptureFixture[str]) -> Non
     assert main(["sample", "torus", *FEW, "-o", f"a{suffix}"]) == 0
     out, err = capsys.readouterr()
     assert re.fullmatch(
-        rf"a{suffix}: 60 samples: \d+ found by \d+ normals, \d+ in the gaps between these .*\n", out
+        rf"a{suffix}: 60 samples: \d+ at \d+ prescribed normals, \d+ filling gaps .*\n", out
     )
     assert err == ""
     assert Path(f"a{suffix}").stat().st_size > 1000
