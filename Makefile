@@ -8,11 +8,11 @@ READY := $(VENV)/.ready
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 GAUSSMAP := $(BIN)/gaussmap
 # Matplotlib's elevation model of the Jacksboro fault: 344 x 403 heights in metres, 3 arc seconds
-# apart, rows from north to south. The spline has one cell between any four heights, and is within
-# 13.5 m of them.
+# apart, rows from north to south. A spline with a cell for every fourth height leaves out what is
+# smaller: otherwise each normal has a thousand points.
 DEM = from matplotlib.cbook import get_sample_data as f; \
 	print(f("jacksboro_fault_dem.npz", asfileobj=False))
-TERRAIN = "$$($(BIN)/python -c '$(DEM)'):elevation" --spacing 74.5 -92.5
+TERRAIN = "$$($(BIN)/python -c '$(DEM)'):elevation" --spacing 74.5 -92.5 --cells 100 86
 
 .DEFAULT_GOAL := help
 .PHONY: help install demo generate check-generated compiled kernels check-kernels test coverage cad-tests verify bench bench-guard bench-record bench-peers \
@@ -39,12 +39,12 @@ $(READY): $(DEMO)
 
 install: $(READY) ## make .venv with all that developers need
 
-demo: $(DEMO) compiled ## sample a torus and real terrain: a PLY and a PNG of each in out/
+demo: $(DEMO) compiled ## sample a torus and real terrain by normals: a PLY and a PNG of each in out/
 	@mkdir -p out
-	$(GAUSSMAP) sample torus --count 10000 -o out/torus.ply
-	$(GAUSSMAP) plot torus --count 2000 -o out/torus.png
-	$(GAUSSMAP) sample $(TERRAIN) --count 50000 -o out/terrain.ply
-	$(GAUSSMAP) plot $(TERRAIN) --count 8000 -o out/terrain.png
+	$(GAUSSMAP) sample torus --density gauss --count 4000 -o out/torus.ply
+	$(GAUSSMAP) plot torus --density gauss --count 4000 -o out/torus.png
+	$(GAUSSMAP) sample $(TERRAIN) --density gauss --count 20000 -o out/terrain.ply
+	$(GAUSSMAP) plot $(TERRAIN) --density gauss --count 20000 -o out/terrain.png
 
 generate: $(READY) ## derive all formulas and write generated/
 	$(BIN)/python -m gaussmap.symbolic

@@ -1,4 +1,4 @@
-"""One picture of a sampling: the surface with its samples, the unit sphere with their normals."""
+"""One picture of a sampling: normals on the unit sphere, the support function, the samples."""
 
 from __future__ import annotations
 
@@ -24,10 +24,13 @@ from ...runtime.surface.surfaces import named
 from ..cad.part import Part
 from ..files import paths
 from .colours import CURVATURE, checked_values, colours_of, draw_scale
+from .marked import Marked, marked
 from .palette import PALE, STYLE
 from .scene import VIEW, Scene, scene_of_samples
 from .scene import view as rows_of_view
-from .sphere_half import RADIUS, draw_sphere
+from .sphere_half import RADIUS, draw_sphere, view_of
+from .support_globes import ROOM as BRANCH_ROOM
+from .support_globes import Branch, branches_of, draw_branch
 from .surface_half import View, draw_surface
 
 if TYPE_CHECKING:
@@ -48,9 +51,13 @@ __all__ = [
 COUNT = 2_000  # samples, if no number is given
 DOTS_PER_INCH = 200
 LONGEST_LINE = 140  # letters of the summary
-# In inches: the size, the centres of both halves, and the heights of titles and legends.
-WIDTH, HEIGHT, MIDDLE, TITLES, LEGENDS = 9.0, 4.9, 2.45, 4.17, 0.56
-LEFT, RIGHT = 2.4, 6.8
+# In inches: the size, and the heights of the middle, of titles and of legends.
+WIDTH, HEIGHT, MIDDLE, TITLES, LEGENDS = 9.0, 4.6, 2.28, 3.8, 0.48
+# The centres of the panels, with and without those of the support function.
+SPHERE, SUPPORT, SURFACE = 1.4, 3.6, 6.5
+WIDE_SPHERE, WIDE_SURFACE = 1.7, 6.0
+ROOM, WIDE_ROOM = (3.7, 2.75), (4.7, 2.75)  # of the surface
+GLOBE = 0.64  # the radius of a globe of the support function
 SUFFIXES = (".png", ".pdf", ".svg")
 FINE = 300  # dots per inch
 UNDATED = {".png": {}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
@@ -67,10 +74,13 @@ def plot(
 ) -> Figure:
     """Draw a surface or CAD part with samples, and the unit sphere with their normals.
 
-    On the left are the visible samples in colour. On the right is the unit sphere with the normals,
-    seen from the same direction, or turned towards their mean if they are concentrated. The heights
-    of a surface that are very small or large relative to its width are rescaled, and the label of
-    the axis gives the factor.
+    On the left is the unit sphere with the normals, seen from the same direction as the surface, or
+    turned towards their mean if they are concentrated. On the right are the visible samples in
+    colour; those that fill gaps are smaller, and their normals have another colour. One prescribed
+    normal and its samples are marked. Between both is the support function at the prescribed
+    normals, where it has at most two branches: one for K > 0 and one for K < 0. The heights of a
+    surface that are very small or large relative to its width are rescaled, and the label of the
+    axis gives the factor.
 
     Parameters
     ----------
@@ -79,7 +89,7 @@ def plot(
     samples : Samples, optional
         Samples of it; by default 2,000 are made.
     color : str or (N,) array_like, default "gaussian_curvature"
-        What the colours on the left show: the name of a column, as in tables ("support", "z",
+        What the colours of the samples show: the name of a column, as in tables ("support", "z",
         "nx", "mean_curvature", "face_index" …), or a number for each sample.
     view : (float, float), default (28, -55)
         Elevation and azimuth of the viewer, in degrees.
@@ -229,10 +239,11 @@ def _drawn(
     axes: Sequence[Any],
 ) -> Figure:
     """Draw samples on a scene, and the prescribed normals, into a new figure or into axes."""
+    visible = scene.visible(samples.points.astype(np.float64))
     with style():
         colours = colours_of(samples, color)
         if axes:
-            draw_surface(axes[0], samples, scene, colours, view, zoomed=False)
+            draw_surface(axes[0], samples, scene, colours, view, visible)
             for sphere in axes[1:]:
                 draw_sphere(sphere, samples, normals, scene.view)
             return axes[0].figure
@@ -240,21 +251,43 @@ def _drawn(
 
         figure = Picture(figsize=(WIDTH, HEIGHT), dpi=DOTS_PER_INCH)
         _write_titles(figure, samples)
-        left: Any = figure.add_axes(_box(LEFT, MIDDLE, 4.5, 4.5), projection="3d")
-        visible = draw_surface(left, samples, scene, colours, view, zoomed=True)
-        right = figure.add_axes(_box(RIGHT, MIDDLE, 2.6 * RADIUS, 2.6 * RADIUS))
-        handles = draw_sphere(right, samples, normals, scene.view)
-        title, whose = "no samples", "the prescribed normals"
+        mark, branches = marked(samples, visible, scene.view), branches_of(samples)
+        sphere, surface, room = SPHERE, SURFACE, ROOM
+        if not branches:
+            sphere, surface, room = WIDE_SPHERE, WIDE_SURFACE, WIDE_ROOM
+        right: Any = figure.add_axes(_box(surface, MIDDLE, 5.0, 5.0), projection="3d")
+        draw_surface(right, samples, scene, colours, view, visible, mark, room)
+        left = figure.add_axes(_box(sphere, MIDDLE, 2.6 * RADIUS, 2.6 * RADIUS))
+        handles = draw_sphere(left, samples, normals, scene.view, mark)
+        if branches:
+            _draw_support(figure, samples, branches, scene, mark)
+        title = "no samples"
         if len(samples):
-            draw_scale(figure.add_axes(_box(LEFT, LEGENDS + 0.06, 2.7, 0.1)), colours)
-            title, whose = f"{visible:,} of {len(samples):,} samples visible", "their normals"
-        _write(figure, LEFT, TITLES, title)
-        _write(figure, RIGHT, TITLES, f"{whose}, on the unit sphere")
+            draw_scale(figure.add_axes(_box(surface, LEGENDS + 0.06, 2.7, 0.1)), colours)
+            shown = int(np.count_nonzero(visible))
+            title = "points $x = \\nabla h(n)$" if branches else "points"
+            title += f": {shown:,} of {len(samples):,} samples visible"
+        _write(figure, sphere, TITLES, "normals $n$ on the unit sphere", parse_math=True)
+        _write(figure, surface, TITLES, title, parse_math=True)
         figure.legend(
-            handles=handles, loc="center", bbox_to_anchor=(RIGHT / WIDTH, LEGENDS / HEIGHT),
-            ncols=3, frameon=False, handletextpad=0.1, columnspacing=1.4,
+            handles=handles, loc="center", bbox_to_anchor=(sphere / WIDTH, LEGENDS / HEIGHT),
+            ncols=1 if len(handles) < 4 else 2, frameon=False, handletextpad=0.1, columnspacing=1.4,
         )  # fmt: skip
     return figure
+
+
+def _draw_support(
+    figure: Figure, samples: Samples, branches: list[Branch], scene: Scene, mark: Marked | None
+) -> None:
+    """Draw the branches of the support function, one above the other, and their scale."""
+    colours = colours_of(samples, "support")
+    view = view_of(samples.normals, scene.view)
+    for k, branch in enumerate(branches):
+        height = MIDDLE + GLOBE * BRANCH_ROOM * (len(branches) - 1 - 2 * k)
+        axes = figure.add_axes(_box(SUPPORT, height, *2 * [2 * BRANCH_ROOM * GLOBE]))
+        draw_branch(axes, samples, branch, colours, view, mark)
+    draw_scale(figure.add_axes(_box(SUPPORT, LEGENDS + 0.06, 1.4, 0.1)), colours)
+    _write(figure, SUPPORT, TITLES, "support function $h(n)$", parse_math=True)
 
 
 @contextmanager
@@ -274,16 +307,18 @@ def style() -> Iterator[None]:
 def _write_titles(figure: Figure, samples: Samples) -> None:
     """Write the name of the surface and the summary of the samples."""
     name = " ".join(samples.report.surface.split())
-    _write(figure, WIDTH / 2, 4.64, name if len(name) <= 80 else name[:79] + "…", fontsize=11)
+    _write(
+        figure, WIDTH / 2, HEIGHT - 0.26, name if len(name) <= 80 else name[:79] + "…", fontsize=11
+    )
     lines = textwrap.wrap(samples.summary(), LONGEST_LINE)
     for k, line in enumerate(lines):
-        place = 4.43 + 0.03 * (len(lines) - 1) - 0.12 * k
+        place = HEIGHT - 0.47 + 0.03 * (len(lines) - 1) - 0.12 * k
         _write(figure, WIDTH / 2, place, line, fontsize=7.5, color=PALE)
 
 
 def _write(figure: Figure, x: float, y: float, text: str, **looks: Any) -> None:  # noqa: ANN401
     """Write a text at a position in inches; dollar signs in it are not mathematics."""
-    figure.text(x / WIDTH, y / HEIGHT, text, ha="center", parse_math=False, **looks)
+    figure.text(x / WIDTH, y / HEIGHT, text, ha="center", **{"parse_math": False, **looks})
 
 
 def _box(x: float, y: float, width: float, height: float) -> tuple[float, float, float, float]:

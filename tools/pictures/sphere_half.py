@@ -1,15 +1,16 @@
-"""The right half of a picture: the unit sphere with the normals, a translucent globe."""
+"""The left of a picture: the unit sphere with the normals, a translucent globe."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.samples.samples import Samples
-from .palette import ELLIPTIC, GLOBE, HYPERBOLIC, INK, NO_SAMPLE, PALE, PARABOLIC
+from .marked import Marked
+from .palette import FILLING, GLOBE, GRID, INK, MARK, NO_SAMPLE, PALE
 from .scene import view
 
 if TYPE_CHECKING:
@@ -18,78 +19,102 @@ if TYPE_CHECKING:
 
 __all__ = ["RADIUS", "draw_globe", "draw_sphere", "view_of"]
 
-RADIUS = 1.35  # in inches
+RADIUS = 1.15  # in inches
 
 
 class _Kind(NamedTuple):
-    """Normals that are drawn in the same way: in a colour, as rings or as discs."""
+    """Unit vectors that are drawn in the same way: in a colour, with an area relative to others.
+
+    There are `number` normals of the kind; equal ones are drawn once.
+    """
 
     label: str
-    normals: NDArray[np.float64]
+    number: int
+    normals: NDArray[Any]
     colour: str
-    ring: bool
+    area: float
+
+    @classmethod
+    def of(cls, label: str, normals: NDArray[Any], colour: str, area: float = 1.0) -> _Kind:
+        return cls(label, len(normals), np.unique(np.round(normals, 4), axis=0), colour, area)
 
 
 def draw_sphere(
-    axes: Axes, samples: Samples, normals: NDArray[np.float64], view: NDArray[np.float64]
+    axes: Axes,
+    samples: Samples,
+    normals: NDArray[np.float64],
+    view: NDArray[np.float64],
+    marked: Marked | None = None,
 ) -> list[Line2D]:
-    """Draw the unit sphere with normals into axes; return what their legend shows."""
-    from matplotlib.lines import Line2D
+    """Draw the unit sphere with normals into axes; return what their legend shows.
 
-    index, missed = samples.normal_index, np.ones(len(normals), dtype=bool)
-    if len(normals):
-        missed[index[index >= 0]] = False
-    curved = ~samples.parabolic
-    # One normal may have samples of several kinds: a disc with a ring round it.
-    kinds = [
-        _Kind("no sample", normals[missed], NO_SAMPLE, False),
-        _Kind("elliptic", samples.normals[samples.elliptic & curved], ELLIPTIC, True),
-        _Kind("hyperbolic", samples.normals[samples.hyperbolic & curved], HYPERBOLIC, False),
-        _Kind("parabolic", samples.normals[~curved], PARABOLIC, False),
-    ]
+    Prescribed normals are distinguished from those of samples that fill gaps, or are on a grid.
+    """
     axes.set(xlim=(-1.3, 1.3), ylim=(-1.3, 1.3), aspect="equal")
     axes.set_axis_off()
     view = view_of(samples.normals if len(samples) else normals, view)
     draw_globe(axes, view)
-    area = _marker_area(normals if len(normals) else samples.normals)
+    kinds = _kinds(samples, normals)
+    area = _marker_area(np.concatenate([kind.normals for kind in kinds]))
     handles = []
     for height, kind in enumerate(kinds):
-        size = area * (2.4 if kind.ring else 1.0)
-        line = min(0.6, 0.3 * math.sqrt(size)) if kind.ring else 0.0
-        face = "none" if kind.ring else kind.colour
-        seen = np.unique(kind.normals, axis=0) @ view.T
+        seen = kind.normals @ view.T
         front, back = seen[seen[:, 2] >= 0.0], seen[seen[:, 2] < 0.0]
-        axes.scatter(
-            front[:, 0], front[:, 1], s=size, zorder=6 + 0.1 * height,
-            facecolors=face, edgecolors=kind.colour, linewidths=line,
-        )  # fmt: skip
         # Normals on the far side are seen through the globe.
-        axes.scatter(
-            back[:, 0], back[:, 1], s=0.7 * area, zorder=1 + 0.1 * height,
-            color=kind.colour, linewidths=0.0,
-        )  # fmt: skip
-        if len(kind.normals):
-            handles.append(
-                Line2D(
-                    [], [], marker="o", markersize=5.0 if kind.ring else 3.5, linestyle="",
-                    markeredgecolor=kind.colour, markerfacecolor=face,
-                    label=f"{kind.label} ({len(kind.normals):,})",
-                )
+        for some, order, size in ((front, 6, kind.area), (back, 1, 0.4 * kind.area)):
+            axes.scatter(
+                some[:, 0], some[:, 1], s=size * area, zorder=order + 0.1 * height,
+                color=kind.colour, linewidths=0.0,
             )  # fmt: skip
-    return [*handles[1:], handles[0]] if missed.any() else handles
+        if len(seen):
+            handles.append(_handle(kind.colour, f"{kind.label} ({kind.number:,})"))
+    if marked is not None:
+        x, y, _ = (view @ marked.normal).tolist()
+        axes.annotate(
+            "", (1.3 * x, 1.3 * y), (x, y), zorder=7,
+            arrowprops={"arrowstyle": "-|>", "color": INK, "linewidth": 1.0, "shrinkA": 0.0},
+        )  # fmt: skip
+        axes.scatter(x, y, s=34, color=MARK, edgecolors=INK, linewidths=0.9, zorder=8)
+        handles.append(_handle(MARK, marked.label, INK))
+    return handles
 
 
-def _marker_area(normals: NDArray[np.float64]) -> float:
+def _kinds(samples: Samples, normals: NDArray[np.float64]) -> list[_Kind]:
+    """Return the normals of each kind: those of filling samples, and each prescribed one once."""
+    index, kind = samples.normal_index, samples.kind
+    found, first = np.unique(index[index >= 0], return_index=True)
+    missed = np.ones(len(normals), dtype=bool)
+    if len(normals):
+        missed[found] = False
+    return [
+        _Kind.of("filling gaps", samples.normals[kind == "filling"], FILLING, 0.6),
+        _Kind.of("on a grid", samples.normals[kind == "grid"], GRID),
+        _Kind.of("prescribed, no sample", normals[missed], NO_SAMPLE),
+        _Kind.of("prescribed", samples.normals[index >= 0][first], INK),
+    ]
+
+
+def _handle(colour: str, label: str, edge: str = "none") -> Line2D:
+    """Return what a legend shows: a disc and a label."""
+    from matplotlib.lines import Line2D
+
+    return Line2D(
+        [], [], marker="o", markersize=4.5, linestyle="", markerfacecolor=colour,
+        markeredgecolor=edge, label=label,
+    )  # fmt: skip
+
+
+def _marker_area(normals: NDArray[Any]) -> float:
     """Return the area of a marker in points², such that markers do not overlap on the sphere."""
     mean = normals.mean(axis=0)
     length = float(np.linalg.norm(mean))
     depth = 1.0 - float((normals @ mean).min()) / length if length > 1e-3 else 2.0
     room = 2 * math.pi * max(depth, 0.01) * (72 * RADIUS) ** 2
-    return float(np.clip(0.12 * room / len(normals), 0.6, 8.0))
+    return float(np.clip(0.09 * room / len(normals), 0.6, 8.0))
 
 
-def draw_globe(axes: Axes, view: NDArray[np.float64]) -> None:
-    """Draw a translucent globe with meridians and parallels every 30°, and the three axes."""
+def draw_globe(axes: Axes, view: NDArray[np.float64], labelled: bool = True) -> None:
+    """Draw a translucent globe with meridians and parallels every 30°, `labelled` with the axes."""
     from matplotlib.collections import LineCollection
     from matplotlib.patches import Circle
     from matplotlib.patheffects import withStroke
@@ -110,7 +135,7 @@ def draw_globe(axes: Axes, view: NDArray[np.float64]) -> None:
     axes.add_collection(LineCollection(list(front), colors="white", linewidths=0.8, zorder=3))
     axes.add_patch(Circle((0, 0), 1.0, facecolor="none", edgecolor=PALE, linewidth=0.6, zorder=4))
     halo = [withStroke(linewidth=2.0, foreground="white")]
-    for direction, name in zip(view.T, "xyz", strict=True):
+    for direction, name in zip(view.T, "xyz" if labelled else "", strict=labelled):
         across = float(np.linalg.norm(direction[:2]))
         if direction[2] < -0.3:  # behind the globe
             continue
@@ -121,7 +146,7 @@ def draw_globe(axes: Axes, view: NDArray[np.float64]) -> None:
 
 
 def view_of(
-    normals: NDArray[np.float64], old: NDArray[np.float64] | None = None
+    normals: NDArray[np.floating], old: NDArray[np.float64] | None = None
 ) -> NDArray[np.float64]:
     """Return the rows (3, 3) right, up, and towards a viewer who sees most of the normals.
 

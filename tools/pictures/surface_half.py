@@ -1,8 +1,7 @@
-"""The left half of a picture: the surface with its visible samples."""
+"""The right of a picture: the surface with its visible samples."""
 
 from __future__ import annotations
 
-import math
 from itertools import product
 from typing import Any
 
@@ -11,13 +10,15 @@ from numpy.typing import NDArray
 
 from ...runtime.samples.samples import Samples
 from .colours import Colours
-from .palette import INK
+from .marked import Marked
+from .palette import INK, MARK
 from .scene import Scene
 
-__all__ = ["View", "draw_surface"]
+__all__ = ["Room", "View", "draw_surface"]
 
-ROOM_WIDTH, ROOM_HEIGHT = 4.1, 3.1  # in inches
+ARROWS, ARROW = 6, 0.16  # at most this many, with a length relative to the size of the surface
 View = tuple[float, float]  # elevation and azimuth of the viewer, in degrees
+Room = tuple[float, float]  # width and height in inches
 
 
 def draw_surface(
@@ -26,13 +27,18 @@ def draw_surface(
     scene: Scene,
     colours: Colours,
     view: View,
-    zoomed: bool,
-) -> int:
-    """Draw the surface and its visible samples into three-dimensional axes; return their number."""
+    visible: NDArray[np.bool_],
+    marked: Marked | None = None,
+    room: Room | None = None,
+) -> None:
+    """Draw the surface and its visible samples (N,) into three-dimensional axes.
+
+    The surface fills a room, if there is one. Samples that fill gaps are smaller than others.
+    """
     from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
     axes.computed_zorder = False
-    _frame(axes, scene, view, zoomed)
+    _frame(axes, scene, view, room)
     greys = (0.60 + 0.33 * scene.brightness)[:, None] * [0.98, 0.99, 1.0]
     # Quadrangles are rasterized, also in .pdf and .svg files: seams would show between them.
     axes.add_collection3d(
@@ -44,19 +50,34 @@ def draw_surface(
     axes.add_collection3d(
         Line3DCollection(scene.visible_lines, colors="white", linewidths=0.4, zorder=2)
     )
-    if len(samples) == 0:
-        return 0
-    visible = scene.visible(samples.points.astype(np.float64))
-    area = min(max(12_000 / len(samples), 0.5), 16.0)
+    area = min(max(12_000 / max(len(samples), 1), 0.5), 16.0)
+    areas = np.where(samples.kind[visible] == "filling", 0.5 * area, area)
     axes.scatter(
         *samples.points[visible].T, c=colours.values[visible], cmap=colours.scale,
-        norm=colours.norm, s=area, depthshade=False, edgecolors=INK,
-        linewidths=min(0.2, 0.09 * math.sqrt(area)), zorder=3,
+        norm=colours.norm, s=areas, depthshade=False, edgecolors=INK,
+        linewidths=np.minimum(0.2, 0.09 * np.sqrt(areas)), zorder=3,
     )  # fmt: skip
-    return int(np.count_nonzero(visible))
+    if marked is not None:
+        _mark(axes, samples.points[marked.visible], marked.normal, scene)
 
 
-def _frame(axes: Any, scene: Scene, view: View, zoomed: bool) -> None:  # noqa: ANN401
+def _mark(axes: Any, points: NDArray[Any], normal: NDArray[np.float64], scene: Scene) -> None:  # noqa: ANN401
+    """Mark points with their normal; few have arrows, which exaggerated heights would distort."""
+    few = len(points) <= ARROWS
+    if few and scene.factor == 1.0:
+        length = ARROW * float(np.ptp(scene.quadrangles.reshape(-1, 3), axis=0).max())
+        for point in points:
+            axes.quiver(
+                *point, *(length * normal), color=INK, linewidth=1.0, arrow_length_ratio=0.3,
+                zorder=4,
+            )  # fmt: skip
+    axes.plot(
+        *points.T, linestyle="", marker="o", markersize=5.8 if few else 3.5, color=MARK,
+        markeredgecolor=INK, markeredgewidth=0.9 if few else 0.5, zorder=5,
+    )  # fmt: skip
+
+
+def _frame(axes: Any, scene: Scene, view: View, room: Room | None) -> None:  # noqa: ANN401
     """Set the viewer, the limits, the same scale along all axes, and the labels."""
     from matplotlib.ticker import FixedLocator, MaxNLocator
 
@@ -69,7 +90,7 @@ def _frame(axes: Any, scene: Scene, view: View, zoomed: bool) -> None:  # noqa: 
     axes.view_init(*view)
     axes.set(xlim=limits[:, 0], ylim=limits[:, 1], zlim=limits[:, 2])
     aspect = 2 * margin * factors
-    axes.set_box_aspect(aspect, zoom=_zoom(axes, aspect) if zoomed else 1.0)
+    axes.set_box_aspect(aspect, zoom=_zoom(axes, aspect, room) if room else 1.0)
     axes.patch.set_visible(False)
 
     label = "z"
@@ -87,7 +108,7 @@ def _frame(axes: Any, scene: Scene, view: View, zoomed: bool) -> None:  # noqa: 
     axes.tick_params(labelsize=6.5, pad=-1, colors=INK)
 
 
-def _zoom(axes: Any, aspect: NDArray[np.float64]) -> float:  # noqa: ANN401
+def _zoom(axes: Any, aspect: NDArray[np.float64], room: Room) -> float:  # noqa: ANN401
     """Return the zoom at which the box fills its part of the figure."""
     from mpl_toolkits.mplot3d.proj3d import proj_transform
 
@@ -97,4 +118,4 @@ def _zoom(axes: Any, aspect: NDArray[np.float64]) -> float:  # noqa: ANN401
     across, along, _ = proj_transform(x, y, z, axes.get_proj())
     pixels = axes.transData.transform(np.stack([across, along], axis=1))
     width, height = np.ptp(pixels, axis=0) / axes.figure.dpi
-    return float(min(ROOM_WIDTH / width, ROOM_HEIGHT / height))
+    return float(min(room[0] / width, room[1] / height))

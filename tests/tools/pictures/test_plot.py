@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 
 pytestmark = pytest.mark.compiled  # every picture evaluates a fine mesh
 
-SIZE = (980, 1800, 4)
+SIZE = (920, 1800, 4)
 
 
 @pytest.fixture(scope="module")
@@ -55,13 +55,18 @@ def test_png(torus: gm.Spline, tmp_path: Path) -> None:
     assert abs(len(samples) - 600) < 30
     pixels = picture(path)
     assert pixels.shape == SIZE
-    left, right = np.split(pixels, 2, axis=1)
-    for half in (left, right):
-        assert 0.3 < np.mean(half[..., :3].min(axis=2) > 0.99) < 0.9  # neither blank nor full
-    assert share(right, palette.ELLIPTIC) > 0.002
-    assert share(right, palette.HYPERBOLIC) > 0.002
-    assert share(left, palette.HYPERBOLIC) > 0.001
-    assert not np.all(left[..., 0] == left[..., 2])
+    sphere, support, surface = np.split(pixels, [560, 920], axis=1)
+    for panel in (sphere, support, surface):
+        assert 0.3 < np.mean(panel[..., :3].min(axis=2) > 0.99) < 0.9  # neither blank nor full
+    assert share(sphere, palette.FILLING) > 0.002
+    assert share(sphere, palette.INK) > 0.002
+    assert share(sphere, palette.HYPERBOLIC) < 0.0001
+    assert share(surface, palette.HYPERBOLIC) > 0.001
+    for panel in (sphere, support, surface):
+        assert share(panel, palette.MARK) > 0.0003
+    for h in ("#440154", "#fde725"):  # the ends of viridis
+        assert share(support, h) > 0.005
+    assert not np.all(surface[..., 0] == surface[..., 2])
 
 
 def test_the_samples_are_those_of_sample(tmp_path: Path) -> None:
@@ -74,9 +79,9 @@ def test_normals_without_samples_are_grey(tmp_path: Path) -> None:
     surface = gm.surfaces.elliptic_paraboloid()
     samples = plotted(surface, tmp_path / "a.png", gm.fibonacci(300), cells=(16, 16))
     assert 0 < len(samples) < 150
-    right = np.split(picture(tmp_path / "a.png"), 2, axis=1)[1]
-    assert share(right, palette.NO_SAMPLE) > 0.005
-    assert share(right, palette.HYPERBOLIC) < 0.0001
+    left = picture(tmp_path / "a.png")[:, :560]
+    assert share(left, palette.NO_SAMPLE) > 0.005
+    assert share(left, palette.HYPERBOLIC) < 0.0001
 
 
 @pytest.mark.parametrize("name", ["sphere", "moebius_band", "helicoid", "cylinder", "plane"])
@@ -107,7 +112,8 @@ def test_what_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     assert any(label.startswith("$x$ and some 中文xxx") and len(label) == 80 for label in labels)
     assert any("on the unit sphere" in label for label in labels)
     assert any("samples visible" in label for label in labels)
-    assert any(label.startswith("hyperbolic (") for label in labels)
+    assert any(label.startswith("filling gaps (") for label in labels)
+    assert any(label.startswith("prescribed (") for label in labels)
     assert "Gaussian curvature $K$ (1/length²)" in labels
 
 

@@ -1,0 +1,50 @@
+"""One normal and its samples, which a picture marks in all its panels."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.samples.samples import Samples
+
+__all__ = ["Marked", "marked"]
+
+BETWEEN = np.array([0.6, 0.35, 0.8])  # so that the arrow of the normal is seen from the side
+
+
+class Marked(NamedTuple):
+    """A prescribed normal (3,), its samples, and which of these are visible, as booleans (N,)."""
+
+    normal: NDArray[np.float64]
+    samples: NDArray[np.bool_]
+    visible: NDArray[np.bool_]
+
+    @property
+    def label(self) -> str:
+        """What the legend says."""
+        count, seen = (int(np.count_nonzero(x)) for x in (self.samples, self.visible))
+        points = "one normal and its point" + ("" if count == 1 else f"s ({count:,}")
+        return points if count == 1 else points + (")" if seen == count else f", {seen:,} visible)")
+
+
+def marked(
+    samples: Samples, visible: NDArray[np.bool_], view: NDArray[np.float64]
+) -> Marked | None:
+    """Return a normal with many visible samples, or None if no visible sample is at a normal.
+
+    Of the normals with at least as many visible samples as the mean, it is the one nearest to a
+    direction between the rows of `view`: right, up, and towards the viewer.
+    """
+    index = samples.normal_index
+    chosen = visible & (index >= 0)
+    if not chosen.any():
+        return None
+    shown = np.bincount(index[chosen])
+    mean = np.count_nonzero(chosen) / len(np.unique(index[index >= 0]))
+    rows = np.flatnonzero(chosen)
+    rows = rows[shown[index[rows]] >= mean]
+    row = rows[np.argmax(samples.normals[rows] @ (BETWEEN @ view))]
+    same = index == index[row]
+    return Marked(samples.normals[row].astype(np.float64), same, same & visible)

@@ -1,0 +1,104 @@
+"""The middle of a picture: the support function, as colours on a unit sphere for each branch."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.base.trees import tree_of
+from ...runtime.samples.samples import Samples
+from .colours import Colours
+from .marked import Marked
+from .palette import INK, MARK
+from .sphere_half import draw_globe
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["Branch", "branches_of", "draw_branch", "values_on_globe"]
+
+ROOM = 1.13  # half of the side of the axes; the globe has the radius 1
+PIXELS = 256  # along the diameter of the globe
+FAR = 1.5  # beyond this, relative to the distance between normals, a branch is not drawn
+BEHIND = {"facecolor": "white", "edgecolor": "none", "pad": 1.2, "alpha": 0.85}  # a text
+
+
+class Branch(NamedTuple):
+    """The samples of a branch of the support function, as booleans (N,), and its name."""
+
+    name: str
+    samples: NDArray[np.bool_]
+
+
+def branches_of(samples: Samples) -> list[Branch]:
+    """Return the branches of the support function at prescribed normals, if there are at most two.
+
+    These are the elliptic and the hyperbolic samples: none or one of each kind for each normal.
+    """
+    if "support" not in samples.fields:
+        return []
+    index = samples.normal_index
+    found = []
+    for name, kind in (("K > 0", samples.elliptic), ("K < 0", samples.hyperbolic)):
+        chosen = kind & (index >= 0)
+        if chosen.any():
+            if np.bincount(index[chosen]).max() > 1:
+                return []
+            found.append(Branch(name, chosen))
+    return found
+
+
+def draw_branch(
+    axes: Axes,
+    samples: Samples,
+    branch: Branch,
+    colours: Colours,
+    view: NDArray[np.float64],
+    marked: Marked | None,
+) -> None:
+    """Draw a branch as colours of the globe, and its value at the marked normal."""
+    from matplotlib.patches import Circle
+
+    axes.set(xlim=(-ROOM, ROOM), ylim=(-ROOM, ROOM), aspect="equal")
+    axes.set_axis_off()
+    draw_globe(axes, view, labelled=False)
+    normals, points = (
+        x[branch.samples].astype(np.float64) for x in (samples.normals, samples.points)
+    )
+    axes.imshow(
+        colours.scale(colours.norm(values_on_globe(normals, points, view))), zorder=2.5,
+        extent=(-1.0, 1.0, -1.0, 1.0), origin="lower", interpolation="bilinear",
+    ).set_clip_path(Circle((0.0, 0.0), 1.0, transform=axes.transData))  # fmt: skip
+    axes.set(xlim=(-ROOM, ROOM), ylim=(-ROOM, ROOM))
+    axes.text(-ROOM, 0.98, branch.name, ha="left", va="center", color=INK)
+    if marked is None or not (marked.samples & branch.samples).any():
+        return
+    x, y, _ = view @ marked.normal
+    axes.scatter(x, y, s=34, facecolors=MARK, edgecolors=INK, linewidths=0.9, zorder=8)
+    value = float(samples.support[marked.samples & branch.samples][0])
+    axes.annotate(
+        f"$h = {value:.3g}$", (x, y), xytext=(-7, -6), textcoords="offset points",
+        ha="right", va="top", zorder=9, bbox=BEHIND,
+    )  # fmt: skip
+
+
+def values_on_globe(
+    normals: NDArray[np.float64], points: NDArray[np.float64], view: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return h (PIXELS, PIXELS) on the front of the globe; NaN far from all normals.
+
+    The points are the gradients of h at the normals, so that n·x is h(n) up to the square of the
+    angle between n and the nearest one of these.
+    """
+    x, y = np.meshgrid(*2 * [np.linspace(-1.0, 1.0, PIXELS)])
+    across = np.maximum(np.hypot(x, y), 1.0)  # what is outside is clipped
+    x, y = x / across, y / across
+    z = np.sqrt(np.maximum(1.0 - x * x - y * y, 0.0))
+    directions = np.stack([x, y, z], axis=2) @ view
+    tree = tree_of(normals)
+    distance, nearest = tree.query(directions)
+    spacing = np.median(tree.query(normals, 2)[0][:, 1]) if len(normals) > 1 else 0.0
+    values = np.einsum("ijk,ijk->ij", directions, points[nearest])
+    return np.where(distance <= FAR * spacing, values, np.nan)
