@@ -1,23 +1,35 @@
-"""Every example of the README runs."""
+"""Every example of the README runs, and those of the guide with what else there is."""
 
 import re
 import shlex
 from collections.abc import Callable
 from pathlib import Path
 
+import gaussmap as gm
 import numpy as np
 import pytest
+import sympy as sp
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
+MORE = (ROOT / "docs" / "guides" / "more.md").read_text(encoding="utf-8")
 
 
-def blocks(language: str) -> list[str]:
-    return re.findall(rf"^```{language}\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
+def blocks(language: str, page: str = README) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
+
+
+CELLS = blocks("{code-cell} ipython3", MORE)
+
+
+def test_the_readme_is_short() -> None:
+    assert len(README.splitlines()) <= 180
+    assert len(blocks("python")) == 4
+    assert len(CELLS) == 8
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("source", blocks("python"))
+@pytest.mark.parametrize("source", [*blocks("python"), *CELLS])
 def test_python(source: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     exec(compile(source, "README.md", "exec"), {"__name__": "__main__"})
@@ -50,3 +62,27 @@ def test_the_two_commands_are_targets() -> None:
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
     for line in blocks("console")[0].splitlines():
         assert re.search(rf"^{line.removeprefix('make ')}:", makefile, re.MULTILINE)
+
+
+def test_the_formula_is_that_of_the_patch() -> None:
+    """The one in LaTeX, read by SymPy, against the derived one."""
+    (shown,) = blocks("math")
+    left, right = r"h(n) = n \cdot p - ", r", \qquad x = \nabla h(n)"
+    numerator, denominator = re.fullmatch(
+        re.escape(left) + r"\\frac\{(.*)\}\{(.*)\}" + re.escape(right), shown.strip()
+    ).groups()  # pyright: ignore[reportOptionalMemberAccess]
+    text = f"({numerator})/({denominator})".replace("^", "**")
+    names = sp.symbols("A B C P Q")
+    text = re.sub(r"(?<=[A-Q0-9])\\,(?=[A-Q(])", "*", text)
+    A, B, C, P, Q = names
+    D = A * C - B**2
+    U, V = B * Q - C * P, B * P - A * Q
+    assert (
+        sp.simplify(
+            sp.sympify(text, dict(zip("ABCPQ", names, strict=True))) + (P * U + Q * V) / (2 * D)
+        )
+        == 0
+    )
+    derived = str(gm.formulas["support_function"])
+    for line in ("D = A*C - B**2", "U = B*Q - C*P", "V = B*P - A*Q", "h = n·p + (P*U + Q*V)/(2*D)"):
+        assert line in derived
