@@ -66,23 +66,15 @@ def test_the_two_commands_are_targets() -> None:
 
 def test_the_formula_is_that_of_the_patch() -> None:
     """The one in LaTeX, read by SymPy, against the derived one."""
-    (shown,) = blocks("math")
-    left, right = r"h(n) = n \cdot p - ", r", \qquad x = \nabla h(n)"
-    numerator, denominator = re.fullmatch(
-        re.escape(left) + r"\\frac\{(.*)\}\{(.*)\}" + re.escape(right), shown.strip()
-    ).groups()  # pyright: ignore[reportOptionalMemberAccess]
-    text = f"({numerator})/({denominator})".replace("^", "**")
-    names = sp.symbols("A B C P Q")
-    text = re.sub(r"(?<=[A-Q0-9])\\,(?=[A-Q(])", "*", text)
-    A, B, C, P, Q = names
-    D = A * C - B**2
-    U, V = B * Q - C * P, B * P - A * Q
-    assert (
-        sp.simplify(
-            sp.sympify(text, dict(zip("ABCPQ", names, strict=True))) + (P * U + Q * V) / (2 * D)
-        )
-        == 0
+    shown = re.fullmatch(r"h\(n\) = n \\cdot p - \\frac\{(.*)\}\{(.*)\}, .*\n", *blocks("math"))
+    assert shown is not None
+    definitions = gm.formulas["support_function"].definitions
+    symbols = {str(symbol): symbol for symbol, _ in definitions}
+    numerator, denominator = (
+        sp.sympify(text.replace(r"\,", "*").replace("^", "**"), symbols) for text in shown.groups()
     )
-    derived = str(gm.formulas["support_function"])
-    for line in ("D = A*C - B**2", "U = B*Q - C*P", "V = B*P - A*Q", "h = n·p + (P*U + Q*V)/(2*D)"):
-        assert line in derived
+    *earlier, (_, h) = definitions
+    for symbol, value in reversed(earlier[5:]):  # D, U and V, in terms of A, …, Q
+        h = h.subs(symbol, value)
+    of_a_point = h.subs({symbols["P"]: 0, symbols["Q"]: 0})
+    assert sp.simplify(h - of_a_point + numerator / denominator) == 0
