@@ -162,7 +162,7 @@ errata: $(READY) ## write the errata of the paper (docs/errata.md)
 	$(BIN)/python docs/errata.py > docs/errata.tmp
 	mv docs/errata.tmp docs/errata.md
 
-figures: $(READY) ## draw Figs. 2-7 of the paper again (docs/figures.md)
+figures: $(READY) ## draw the animation, and Figs. 2-7 of the paper, again (docs/figures.md)
 	$(BIN)/python docs/figures.py > docs/figures.tmp
 	mv docs/figures.tmp docs/figures.md
 

@@ -178,7 +178,7 @@ def moved(actors: Actors, moment: float) -> tuple[Floats, Floats]:
     return places, np.hstack([colours, (1.0 - way) * before[:, None] + way * after[:, None]])
 
 
-def palette_of(pictures: list[Image.Image]) -> NDArray[np.uint8]:
+def palette_of(pictures: list[Image.Image]) -> NDArray[Any]:
     """Return the colours (k, 3) for all pictures, some of them exact."""
     together = np.concatenate([np.asarray(picture) for picture in pictures])
     chosen = Image.fromarray(together).quantize(COLOURS, method=Image.Quantize.MEDIANCUT)
@@ -187,15 +187,11 @@ def palette_of(pictures: list[Image.Image]) -> NDArray[np.uint8]:
     return np.concatenate([np.round(255 * np.array(exact)).astype(np.uint8), rest])
 
 
-def reduced(picture: Image.Image, palette: NDArray[np.uint8]) -> Image.Image:
+def reduced(picture: Image.Image, palette: NDArray[Any]) -> Image.Image:
     """Return a picture with the nearest colours of a palette; Pillow takes other ones."""
     pixels = np.asarray(picture)
     found, which = np.unique(pixels.reshape(-1, 3), axis=0, return_inverse=True)
-    nearest = KDTree(palette).query(found)[1].astype(np.uint8)
+    nearest = np.asarray(KDTree(palette).query(found)[1]).astype(np.uint8)
     image = Image.fromarray(nearest[which].reshape(pixels.shape[:2]), mode="P")
     image.putpalette(palette.ravel().tolist())
     return image
-
-
-if __name__ == "__main__":
-    draw(FILE)

@@ -1,4 +1,4 @@
-"""Draw Figs. 2-7 of the paper into docs/figures/, and print docs/figures.md, the page of them.
+"""Draw Figs. 2-7 of the paper and the animation into docs/figures/; print docs/figures.md.
 
 Every number on the page is measured here.
 """
@@ -11,6 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import matplotlib.style
+from gaussmap.docs import animation
 from gaussmap.docs.curve_figures import figure_4, figure_5
 from gaussmap.docs.patch_figures import figure_2, figure_3
 from gaussmap.docs.surface_figures import figure_6, figure_7
@@ -56,4 +57,5 @@ def filled(text: str) -> str:
 
 
 if __name__ == "__main__":
+    animation.draw(animation.FILE)
     print(page(FOLDER), end="")

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from gaussmap.docs.orders import markdown, wrapped
 
+from ..quality.opening import beside_gmsh
 from ..scale import LAST, STREAM, STREAMED, Series
 from .catalogue import GMSH, RECIPE, SPLIPY_RECIPE, K
 from .durations import Duration, durations
@@ -23,6 +25,7 @@ __all__ = ["OnSurface", "page"]
 # The least speed of gaussmap at 10⁶ points, relative to others.
 TARGETS: tuple[tuple[Peer, int], ...] = ((RECIPE, 20), (SPLIPY_RECIPE, 200), (GMSH, 1000))
 STEEPEST = 1.05
+QUALITY = Path(__file__).parents[2] / "docs" / "quality.md"
 
 
 @dataclass(frozen=True)
@@ -73,6 +76,12 @@ parameters, and so have those of NumPy's recipe. Each package uses its default n
 that of gaussmap is one for each core.
 """
 
+DENSITIES = """\
+## The densities, and Gmsh
+
+From [docs/quality.md](quality.md), which has more surfaces and tools.
+"""
+
 SCALE = """\
 ## Scale
 
@@ -87,12 +96,18 @@ def page(surfaces: Sequence[OnSurface], series: Sequence[Series], taken: Duratio
     parts = [head(surfaces)]
     for measured in surfaces:
         parts += [f"### {measured.form.label}\n", table(measured)]
-    parts.insert(0, TOP + durations(taken) + "\n" + opening("\n".join(parts)))
+    first = [TOP + durations(taken), opening("\n".join(parts)), DENSITIES, densities()]
+    parts.insert(0, "\n".join(first))
     parts.append(wrapped(SCALE.format(last=LAST, steepest=STEEPEST, streamed=streamed())))
     parts += [scale_table(x) for x in series]
     parts += [slopes(series), "## The machine\n", wrapped("\n".join(machine()))]
     parts += ["## Targets\n", targets(surfaces)]
     return "\n".join(parts)
+
+
+def densities() -> str:
+    """Return what docs/quality.md says of the densities."""
+    return beside_gmsh(QUALITY.read_text(encoding="utf-8"))
 
 
 def head(surfaces: Sequence[OnSurface]) -> str:

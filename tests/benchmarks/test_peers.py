@@ -14,6 +14,7 @@ from gaussmap.benchmarks.peers.durations import Duration
 from gaussmap.benchmarks.peers.forms import FORMS, Torus, Waves
 from gaussmap.benchmarks.peers.measure import Measured, Own
 from gaussmap.benchmarks.peers.opening import opening
+from gaussmap.benchmarks.peers.page import densities
 from gaussmap.benchmarks.peers.peer import Peer
 from gaussmap.benchmarks.peers.untuned import UNTUNED, Boss
 from gaussmap.benchmarks.quality.surfaces import JUDGED
@@ -329,7 +330,7 @@ def test_the_page_says_first_how_long_it_takes(text):
 
 def test_tables_are_whole(text):
     tables = text.split("\n| :--")[1:]
-    assert len(tables) == 1 + 1 + 2 + 2 + 1 + 1
+    assert len(tables) == 1 + 2 + 2 + 2 + 1 + 1
     width = 0
     for line, after in pairwise(text.replace("\\|", "").splitlines()):
         if after.startswith("| :--"):
@@ -364,6 +365,7 @@ def test_the_page_opens_with_what_others_do_better(text):
 def test_the_page_in_docs_opens_with_its_own_figures():
     text = (ROOT / "docs" / "performance.md").read_text(encoding="utf-8")
     assert opening(text) in text
+    assert densities() in text
 
 
 def test_slopes_are_judged(text):

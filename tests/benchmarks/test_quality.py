@@ -17,7 +17,7 @@ from gaussmap.benchmarks.peers.peer import Peer, Turns
 from gaussmap.benchmarks.peers.untuned import UNTUNED
 from gaussmap.benchmarks.quality import criteria, measure, meshers, page, surfaces, tasks, ways
 from gaussmap.benchmarks.quality.measure import Found, OnSurface
-from gaussmap.benchmarks.quality.opening import opening
+from gaussmap.benchmarks.quality.opening import beside_gmsh, opening
 
 ROOT = Path(__file__).parents[2]
 FORM = pytest.mark.parametrize("form", [*FORMS, *UNTUNED], ids=lambda x: x.name)
@@ -319,7 +319,7 @@ def text():
 
 
 def test_tables_are_whole(text):
-    assert text.count("\n| :--") == 1 + 1 + 2 * 2 + 1
+    assert text.count("\n| :--") == 2 + 1 + 2 * 2 + 1
     width = 0
     for line, after in pairwise(text.splitlines()):
         if after.startswith("| :--"):
@@ -357,6 +357,25 @@ def test_the_opening_counts_who_is_best():
     assert "| worst angle | 2 of 2 | 0.50 to 0.50 | 0 of 2 | 1.50 to 1.50 | – |" in found
     assert "others in 4 of 6 comparisons, **aligned** in 0 of 6" in found
     assert "**balanced** is 0.5 times as fast" in found
+    assert beside_gmsh(text.replace("| a |", "|  |")) == ""  # not by the size of curvature
+
+
+def test_densities_beside_gmsh():
+    def table(gauss: str, balanced: str, aligned: str) -> str:
+        return (
+            "|  | E | mean E | G |\n| :-- | --: |\n"
+            f"| **balanced** | {balanced} |\n| **aligned** | {aligned} |\n"
+            f"| **gauss** | {gauss} |\n| Gmsh, curvature size | 2 | 1 | 2 |\n"
+        )
+
+    text = f"## a\n\n{table('4 | 1 | 1', '3 | 1 | 2', '1 | 1 | 1.5')}\n"
+    text += f"## b\n\n{table('5 | 1 | 4', '2.2 | 1 | 3', '6 | 1 | 3')}\n"
+    found = " ".join(beside_gmsh(text).split())
+    assert "its E is 0.50 to 0.50 times that of Gmsh on 1 of 2 surfaces" in found
+    assert "E of **balanced**, the default, is 10 to 50 % larger" in found
+    assert "over all surfaces it is 1.10 to 1.50 times" in found
+    assert "**gauss** has the smallest G on 1 of 2 surfaces" in found
+    assert "| a | 4.00 / 1.00 | 3.00 / 2.00 | 1.00 / 1.50 | 2.00 / 2.00 |" in found
 
 
 def test_the_page_in_docs_opens_with_its_own_figures():

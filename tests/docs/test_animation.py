@@ -1,0 +1,59 @@
+"""The animation of the README: what it shows, how long it takes, and who draws it."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from gaussmap.docs import animation
+from gaussmap.tools.pictures.palette import ELLIPTIC, HYPERBOLIC, INK, MARK
+from matplotlib.colors import to_rgb
+from PIL import Image
+
+
+def frames(path: Path) -> tuple[list[np.ndarray], list[int]]:
+    """Return the pixels of all pictures, and their times in milliseconds."""
+    pictures, times = [], []
+    with Image.open(path) as image:
+        for k in range(getattr(image, "n_frames", 1)):
+            image.seek(k)
+            pictures.append(np.asarray(image.convert("RGB")))
+            times.append(image.info["duration"])
+    return pictures, times
+
+
+def count(picture: np.ndarray, colour: str) -> int:
+    """Return how many pixels have exactly a colour."""
+    return int((picture == np.round(255 * np.array(to_rgb(colour)))).all(axis=2).sum())
+
+
+def test_a_dozen_seconds_in_two_megabytes() -> None:
+    assert animation.FILE.stat().st_size <= 2_000_000
+    pictures, times = frames(animation.FILE)
+    assert 10_000 < sum(times) < 14_000
+    assert pictures[0].shape == (360, 820, 3)
+    assert (pictures[0][:2] == 255).all()  # white, also beside the text
+
+
+def test_normals_leave_the_sphere_and_land_on_the_torus() -> None:
+    pictures, _ = frames(animation.FILE)
+    left, right = np.s_[40:, :280], np.s_[40:, 400:]
+    assert count(pictures[0][left], INK) > 5_000
+    assert count(pictures[-2][left], INK) < 500
+    for colour in (ELLIPTIC, HYPERBOLIC):
+        assert count(pictures[0], colour) == 0
+        assert count(pictures[-2][right], colour) > 4_000
+    before, after = (count(picture[right], MARK) for picture in pictures[-2:])
+    assert count(pictures[-2][left], MARK) == 0
+    assert count(pictures[-1][left], MARK) > 40
+    assert after - before > 80  # two points
+
+
+@pytest.mark.slow
+@pytest.mark.compiled
+def test_the_committed_one_is_that_of_a_fresh_run(tmp_path: Path) -> None:
+    animation.draw(tmp_path / "a.gif")
+    fresh, committed = (frames(x) for x in (tmp_path / "a.gif", animation.FILE))
+    assert fresh[1] == committed[1]
+    for left, right in zip(fresh[0], committed[0], strict=True):
+        # another version of Matplotlib may draw letters and discs a little differently
+        assert np.abs(left.astype(float) - right).mean() < 2.0
