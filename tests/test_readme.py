@@ -71,7 +71,7 @@ def test_the_formula_is_that_of_the_patch() -> None:
     definitions = gm.formulas["support_function"].definitions
     symbols = {str(symbol): symbol for symbol, _ in definitions}
     numerator, denominator = (
-        sp.sympify(str(text).replace(r"\,", "*").replace("^", "**"), locals=symbols)
+        sp.parse_expr(str(text).replace(r"\,", "*").replace("^", "**"), symbols)
         for text in shown.groups()
     )
     *earlier, (_, h) = definitions

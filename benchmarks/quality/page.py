@@ -16,6 +16,7 @@ from .criteria import CRITERIA, Verdict, verdicts, worst
 from .measure import COUNTS, LAST, Found, OnSurface
 from .meshers import MESHERS
 from .opening import opening
+from .small import Few, section
 from .ways import ROUNDS, STEPS, WAYS
 
 __all__ = ["page"]
@@ -93,7 +94,9 @@ vanish, or change the sign of K, because of the spline.
 """
 
 
-def page(surfaces: Sequence[OnSurface], load: float | None = None) -> str:
+def page(
+    surfaces: Sequence[OnSurface], load: float | None = None, small: Sequence[Few] = ()
+) -> str:
     """Return the page; `load` is the load of the machine before the measurement."""
     counts = " and ".join(f"{x:,}" for x in COUNTS)
     columns = COLUMNS.format(places=PLACES, last=LAST, clouds=ROUNDS)
@@ -105,6 +108,7 @@ def page(surfaces: Sequence[OnSurface], load: float | None = None) -> str:
     for on in surfaces:
         title = f"## {on.form.label}\n\nNamed `{on.form.name}` in other tables.\n"
         parts += [title, points_table(on), mesh_table(on)]
+    parts += [section(small)] if small else []
     parts += ["## The machine\n", wrapped("\n".join([*machine(), *busy(load)]))]
     parts += [wrapped(TARGETS.format(counts=counts, steps=STEPS)), targets(surfaces)]
     text = "\n".join(parts)

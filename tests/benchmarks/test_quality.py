@@ -15,7 +15,16 @@ from gaussmap.benchmarks.peers.mesh_metrics import Quality
 from gaussmap.benchmarks.peers.metrics import Errors, Places
 from gaussmap.benchmarks.peers.peer import Peer, Turns
 from gaussmap.benchmarks.peers.untuned import UNTUNED
-from gaussmap.benchmarks.quality import criteria, measure, meshers, page, surfaces, tasks, ways
+from gaussmap.benchmarks.quality import (
+    criteria,
+    measure,
+    meshers,
+    page,
+    small,
+    surfaces,
+    tasks,
+    ways,
+)
 from gaussmap.benchmarks.quality.measure import Found, OnSurface
 from gaussmap.benchmarks.quality.opening import beside_gmsh, opening
 
@@ -402,3 +411,27 @@ def test_every_way_is_shown_and_the_missing_ones_say_why(text):
 def test_the_page_says_that_others_were_computing(text):
     assert "a load of 0.9" in text
     assert page.busy(0.1) == page.busy(None) == []
+
+
+def test_few_points():
+    """The words count who has the smaller E; the table has each surface and count."""
+
+    def judged(form, count, *E):
+        return small.Few(form, count, {
+            way: Errors(E=x, mean=x / 2, G=x / 4, gap=1.0, plane=1.0)
+            for way, x in zip(small.WAYS, E, strict=True)
+        })  # fmt: skip
+
+    found = small.section([judged(FORMS[0], 200, 9, 8, 4, 5), judged(FORMS[1], 500, 9, 4, 6, 5)])
+    assert "smaller E than **balanced** in 1 of 2 comparisons" in " ".join(found.split())
+    assert "than the grid in 1 of 2." in " ".join(found.split())
+    assert "| torus | 200 | 9.00 / 4.50 / 2.25 | 8.00 / 4.00 / 2.00 | 4.00 / 2.00" in found
+    assert "| ellipsoid_patch | 500 |" in found
+
+
+@pytest.mark.compiled
+def test_grids_have_few_points():
+    for form in FORMS:
+        points, normals = small.by_grid(form, 200)()
+        assert len(points) == pytest.approx(200, rel=0.1)
+        assert points.shape == normals.shape
