@@ -4,7 +4,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.tools.pictures.scene import view
-from gaussmap.tools.pictures.support_globes import PIXELS, branches_of, values_on_globe
+from gaussmap.tools.pictures.support_globes import branches_of, values_on_globe
 
 pytestmark = pytest.mark.compiled
 
@@ -31,7 +31,7 @@ def test_colours_are_the_support_function() -> None:
     samples = gm.sample("torus", normals=gm.fibonacci(2000))
     branch = branches_of(samples)[0].samples
     values = values_on_globe(samples.normals[branch], samples.points[branch], view())
-    x, y = np.meshgrid(*2 * [np.linspace(-1.0, 1.0, PIXELS)])
+    x, y = np.meshgrid(*2 * [np.linspace(-1.0, 1.0, len(values))])
     inside = np.hypot(x, y) < 1.0
     z = np.sqrt(np.where(inside, 1.0 - x * x - y * y, 0.0))
     across = np.linalg.norm((np.stack([x, y, z], axis=2) @ view())[..., :2], axis=2)
@@ -44,7 +44,7 @@ def test_far_from_all_normals_nothing_is_drawn() -> None:
     samples = gm.sample("torus", normals=gm.directions.cap(gm.fibonacci(2000), view()[2], 30))
     branch = branches_of(samples)[0].samples
     values = values_on_globe(samples.normals[branch], samples.points[branch], view())
-    x, y = np.meshgrid(*2 * [np.linspace(-1.0, 1.0, PIXELS)])
+    x, y = np.meshgrid(*2 * [np.linspace(-1.0, 1.0, len(values))])
     r = np.hypot(x, y)
     assert np.isfinite(values[r < 0.45]).all()
     assert np.isnan(values[(r > 0.65) & (r < 1.0)]).all()
