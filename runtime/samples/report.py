@@ -20,6 +20,7 @@ from ..spline.spline import Spline
 
 __all__ = [
     "PLACES",
+    "WORTH_A_WARNING",
     "SamplingReport",
     "UndecidedNormal",
     "common_report",
@@ -30,6 +31,7 @@ __all__ = [
     "warn_of",
 ]
 
+# A share of the area, of the length of a curve, or of samples, that is larger is worth a warning.
 WORTH_A_WARNING = 0.01
 # A count is missed if the difference exceeds this share of it plus this number of samples: on a
 # symmetric surface several appear or vanish at once.

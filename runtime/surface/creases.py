@@ -11,7 +11,7 @@ import numpy as np
 
 from ..base.aliases import Array
 from ..directions.regions import angles_between
-from ..spline.quasi_interpolant import apart
+from ..spline.quasi_interpolant import SAME_POINT, apart
 from .nurbs import Nurbs
 
 __all__ = ["CREASE_ANGLE", "creases", "smoothly_closed"]
@@ -24,8 +24,6 @@ LARGEST_JUMP = 3.0
 # Where |x_u × x_v| on a line is below SINGULAR times the largest |x_u| |x_v|, x_u or x_v vanishes;
 # the normal is then taken beside the line, at BESIDE times the knot span.
 BESIDE, SINGULAR = 1e-4, 1e-9
-# Control points coincide that are closer than this, relative to the size of the surface.
-SAME_POINT = 1e-12
 
 
 def creases(nurbs: Nurbs) -> tuple[tuple[float, ...], tuple[float, ...]]:

@@ -20,8 +20,6 @@ NODES, WEIGHTS = (x / 2.0 for x in np.polynomial.legendre.leggauss(5))
 NODES = NODES + 0.5
 # Newton's method takes so many steps.
 STEPS = 8
-# A part of a border is within this multiple of its chord of where it starts.
-BEYOND_CHORD = 1.5
 # A place this far left of a border, relative to the domain, tells on which side of it the face is.
 BESIDE = 1e-6
 
@@ -127,7 +125,8 @@ def bounds_of(part: Part) -> Array:
         for polygon in piece.polygons:
             starts, steps = _divided(polygon, lines)
             points, ends = _points(piece, starts), _points(piece, starts + steps)
-            reach = BEYOND_CHORD * np.linalg.norm(ends - points, axis=1)
+            # A part that turns by less than half a turn is nowhere farther than its other end.
+            reach = np.linalg.norm(ends - points, axis=1)
             found.append((piece, starts, steps, points, reach))
     directions = np.concatenate([-np.eye(3), np.eye(3)])
     best = np.max([(x[3] @ directions.T).max(axis=0) for x in found], axis=0)

@@ -27,6 +27,7 @@ from ...runtime.base.formula_calls import plane_vector, python_function
 from ...runtime.base.memory import check_memory
 from ...runtime.directions.circle import arc_of_normals, circle
 from ...runtime.directions.unit import as_normals
+from ...runtime.samples.report import WORTH_A_WARNING
 from .curve import Curve
 from .curve_spline import CurveSpline, angles_of
 from .fitting import fit
@@ -39,7 +40,6 @@ Array = NDArray[np.float64]
 TRIES = 6
 # Arcs that this many uniform normals would sample are not straight, even with fewer normals.
 LEAST_NORMALS = 1_000
-WORTH_A_WARNING = 0.01
 
 
 @dataclass(frozen=True, slots=True)

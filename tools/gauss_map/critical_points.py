@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,9 +19,6 @@ NEWTON_STEPS = 20
 FARTHEST = 2.0
 # Saddles whose distance is less than this, in cells, are the same.
 SAME = 1e-2
-# Curves are close to each other if half their distance is less than this, in cells: a circle of
-# this radius always has a corner inside.
-CLOSE = 0.75
 # Where K grows slower in one direction by this factor, it is constant there.
 CONSTANT = 1e-5
 # Places along a side of a cell at which a sign is sought that its corners do not have.
@@ -54,7 +53,8 @@ def critical_zeros(grid: SignGrid, size: Array) -> tuple[Array, Array, bool]:
     K, noise = field.evaluate(places), SURE * field.noise_at(places)
     hessian = field.hessian(places)
     near = _half_distance_is_less(size[None], K, hessian) | (np.abs(K) <= noise)
-    close = _half_distance_is_less(CLOSE * cell, K, hessian) & grid.mask[cells]
+    # A circle whose radius is half the diagonal of a cell always has a corner inside.
+    close = _half_distance_is_less(math.sqrt(0.5) * cell, K, hessian) & grid.mask[cells]
     down, up = np.linalg.eigvalsh(hessian * (size[:, None] * size)).T * [[-1], [1]]
     saddle = np.minimum(down, up) > CONSTANT * np.maximum(down, up)
     ring = (np.abs(K) > noise) & (K * grid.values[cells] < 0.0)

@@ -44,7 +44,6 @@ LOW, LOW_WANTED = 0.1, 0.25
 HIGH, HIGH_WANTED = 10.0, 2.0
 # Of parts: grid lines across a plane, across other faces, and across those of parts with many.
 FLAT, CURVED, SMALL, MANY = 2, 40, 12, 60
-PIECES = 160  # into which the border of a face is divided, about
 
 
 def view(elevation: float = ELEVATION, azimuth: float = AZIMUTH) -> Array:
@@ -189,10 +188,13 @@ def _of_face(piece: FacePiece, fine: int) -> tuple[Array, list[Array]]:
 
 
 def _divided(loop: Array) -> Array:
-    """Return a closed polygon in the unit square with more points; the first one is repeated."""
+    """Return a closed polygon in the unit square with more points; the first one is repeated.
+
+    They are about as close as lines across a face on all four sides of the square.
+    """
     closed = np.concatenate([loop, loop[:1]])
     lengths = np.linalg.norm(np.diff(closed, axis=0), axis=1)
-    counts = np.maximum(np.ceil(lengths * PIECES / max(lengths.sum(), 1e-300)), 1)
+    counts = np.maximum(np.ceil(lengths * 4 * CURVED / max(lengths.sum(), 1e-300)), 1)
     corners = np.concatenate([[0.0], np.cumsum(counts)])
     return np.stack([np.interp(np.arange(corners[-1] + 1), corners, x) for x in closed.T], axis=1)
 

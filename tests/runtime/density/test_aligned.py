@@ -168,6 +168,14 @@ def test_a_trimmed_grid_keeps_the_count_and_the_trim():
 
 
 @pytest.mark.compiled
+def test_samples_between_the_lines_of_a_grid_do_not_make_it_another_density():
+    samples = gm.sample("torus", 27, density="aligned", cells=CELLS)
+    assert samples.row is not None
+    assert 0 < np.count_nonzero(samples.row < 0) < len(samples)
+    assert samples.report.density == "aligned"
+
+
+@pytest.mark.compiled
 def test_only_aligned_samples_are_on_a_grid():
     """Parameters of a torus are lines of curvature: there a grid has smaller angles."""
     aligned, balanced = (gm.sample("torus", 1000, density=x) for x in ("aligned", "balanced"))

@@ -133,12 +133,14 @@ def test_all_kinds_of_surfaces() -> None:
 
 
 def test_lists() -> None:
-    for name in ("a/2.STEP", "a/b/1.npz", "a/b/dem.TIF", "a/notes.txt", "a/10.iges", "x[1].step"):
+    names = ("a/2.STEP", "a/b/1.npz", "a/b/c/3.obj", "a/b/dem.TIF", "a/notes.txt", "a/10.iges")
+    for name in (*names, "x[1].step"):
         Path(name).parent.mkdir(parents=True, exist_ok=True)
         Path(name).touch()
     assert listed(["a"], None) == ["a/10.iges", "a/2.STEP", "a/b/1.npz", "a/b/dem.TIF"]
     assert listed(["a/*.*s*"], None) == ["a/10.iges"]
     assert listed(["a/**/*.npz", "x[1].step"], None) == ["a/b/1.npz", "x[1].step"]
+    assert listed(["a/**/*.i*", "**/*.obj"], None) == ["a/10.iges", "a/b/c/3.obj"]
     Path("list").write_text("torus\n # no\n../../etc/passwd\n", "utf-8")
     assert listed([], "list") == ["torus", "../../etc/passwd"]
     Path("list").write_bytes(b"\xff\xfe")

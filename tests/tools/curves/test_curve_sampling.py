@@ -278,16 +278,18 @@ def test_polygon() -> None:
 # --- straight pieces ------------------------------------------------------------------------------
 
 
-def stadium(turn: Array, shift: float = 0.0, start: float = 0.0) -> gm.curves.Curve:
-    """Two straight sides of length 2 and two half circles of radius 1, each a quarter of it."""
+def stadium(
+    turn: Array, shift: float = 0.0, start: float = 0.0, side: float = 2.0
+) -> gm.curves.Curve:
+    """Two straight sides and two half circles of radius 1, each a quarter of the parameters."""
 
     def f(t: Array) -> Array:
         quarter, s = np.divmod(np.mod(t, 4.0), 1.0)
         angle = np.pi * s
-        straight = np.stack([2 * s - 1, -np.ones_like(s)], axis=-1)
-        bend = np.stack([1 + np.sin(angle), -np.cos(angle)], axis=-1)
-        side = np.where((quarter % 2 == 0)[..., None], straight, bend)
-        return np.where((quarter < 2)[..., None], side, -side) @ turn.T + shift
+        straight = np.stack([side * (s - 0.5), -np.ones_like(s)], axis=-1)
+        bend = np.stack([side / 2 + np.sin(angle), -np.cos(angle)], axis=-1)
+        half = np.where((quarter % 2 == 0)[..., None], straight, bend)
+        return np.where((quarter < 2)[..., None], half, -half) @ turn.T + shift
 
     return gm.curves.Curve.from_callable(f, (start, start + 4.0), True, name="stadium")
 
@@ -310,6 +312,17 @@ def test_stadium(angle: float, shift: float, start: float, normals: Array) -> No
     share = samples.report.straight_share
     assert (4 - 4 * 2 / 16) / length - 1e-3 < share < 4 / length + 1e-3
     assert samples.report.turning_number == 1
+
+
+@pytest.mark.parametrize(("share", "is_said"), [(0.007, False), (0.015, True)])
+def test_a_straight_part_is_said_if_it_is_more_than_a_hundredth(share: float, is_said: bool):
+    """The spline bends the last piece of each of the sides, which have 16."""
+    side = 16.0 / 14.0 * share / (1.0 - share) * np.pi
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        samples = gm.curves.sample(stadium(np.eye(2), side=side), normals=AXES, pieces=64)
+    assert samples.report.straight_share == pytest.approx(share, rel=0.1)
+    assert len(caught) == is_said
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.7, 2.0])

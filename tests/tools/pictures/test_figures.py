@@ -130,6 +130,14 @@ def test_samples_of_parts(parts: ModuleType) -> None:
     assert len(drawn(gm.plot(part, found))) == len(drawn(figure))
 
 
+def test_borders_of_faces_are_as_fine_as_their_meshes(parts: ModuleType) -> None:
+    """The second face is a cylinder of radius 1, on which parameters are lengths."""
+    scene = scene_of(parts.all_kinds())
+    steps = np.linalg.norm(np.diff(scene.lines[1], axis=0), axis=1)
+    mesh = 0.8 / 40  # of the parameters
+    assert 0.5 * mesh < steps.max() < mesh
+
+
 @pytest.mark.slow
 def test_faces_of_all_kinds_and_their_trims(parts: ModuleType) -> None:
     scene = scene_of(parts.all_kinds())

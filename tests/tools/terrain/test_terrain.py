@@ -192,6 +192,24 @@ def test_bands_masks_and_units(tmp_path: Path) -> None:
         gm.terrain(path, band=3)
 
 
+@pytest.mark.parametrize(
+    ("crs", "unit", "is_one"),
+    [(2314, "foot", True), (2229, "foot", True), (29371, "metre", False)],
+    ids=["Clarke's foot", "US survey foot", "German legal metre"],
+)
+def test_units_that_differ_by_more_than_digits_are_two(
+    crs: int, unit: str, is_one: bool, tmp_path: Path
+) -> None:
+    """They are 9e-6, 2e-6 and 14e-6 away from a foot and a metre."""
+    placed = PLACED | {"crs": f"EPSG:{crs}"}
+    path = write(tmp_path / "dem.tif", HEIGHTS[None], tags={"units": (unit,)}, **placed)
+    if is_one:
+        assert gm.terrain(path).grid is not None
+        return
+    with pytest.raises(gm.errors.InputError, match="in metre and x, y in German legal metre"):
+        gm.terrain(path)
+
+
 def test_open_datasets_are_taken(tmp_path: Path) -> None:
     path = write(tmp_path / "dem.tif", np.stack([HEIGHTS, HEIGHTS + 1.0]), **PLACED)
     for band in 1, 2:

@@ -71,6 +71,13 @@ def test_the_cap_is_as_wide_as_normals_are_apart(samples: gm.Samples) -> None:
     assert (many["angle"], few["angle"]) == (1.0, 20.0)
 
 
+def test_the_region_is_a_few_per_cent_of_a_sphere_at_first() -> None:
+    sphere = gm.sample("sphere", 4000, density="uniform", cells=(16, 16))
+    data = read_page(module.page(sphere))
+    apart = np.linalg.norm(sphere.points - sphere.points[0], axis=1) / data["diameter"]
+    assert 0.02 < np.mean(apart < data["radius"] / 100.0) < 0.05
+
+
 def test_the_page_loads_nothing(samples: gm.Samples) -> None:
     text = module.page(samples)
     own = text[: text.index("<script>")] + text[text.index('<script type="application/json"') :]
