@@ -214,3 +214,44 @@ def test_lines_keep_away_from_jumps_of_curvature():
         assert joint - low[-1] == pytest.approx((low[-1] - low[-2]) / 2.0, rel=0.05)
         assert high[0] - joint == pytest.approx((high[1] - high[0]) / 2.0, rel=0.05)
         assert steps.max() > 1.5 * steps.min()
+
+
+def is_half_a_step_away(surface: gm.Surface, u: float, cells: tuple[int, int]) -> bool:
+    """Say whether the lines of a grid on both sides of u are half a step away from it."""
+    samples = gm.sample(surface, 400, density="aligned", cells=cells)
+    assert samples.column is not None
+    columns = np.unique(samples.uv[samples.column >= 0, 0].round(9))
+    low, high = columns[columns < u], columns[columns > u]
+    near = np.array([u - low[-1], high[0] - u])
+    return bool((abs(near / [low[-1] - low[-2], high[1] - high[0]] - 0.5) < 0.03).all())
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize(("jump", "is_joint"), [(0.07, False), (0.15, True)])
+def test_curvature_that_changes_little_makes_no_joint(jump: float, is_joint: bool):
+    """Two arcs of a profile, of curvature 1 and 1 − jump."""
+
+    def revolved(u: Any, v: Any) -> Any:
+        bend = 1.0 - jump
+        first, second = np.minimum(u, 1.0) - 1.0, bend * np.maximum(u - 1.0, 0.0)
+        r = 2.0 + np.cos(first) + (np.cos(second) - 1.0) / bend
+        z = np.sin(first) + np.sin(second) / bend
+        return np.stack([r * np.cos(v), r * np.sin(v), z], axis=-1)
+
+    surface = gm.Surface.from_callable(revolved, ((0.0, 2.2), (0.0, 1.0)))
+    assert is_half_a_step_away(surface, 1.0, (64, 8)) == is_joint
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize(("share", "is_joint"), [(0.55, False), (0.8, True)])
+def test_a_line_is_a_joint_if_the_sign_changes_along_most_of_it(share: float, is_joint: bool):
+    """The two sides of u = 0 curve to opposite sides for v < share, to the same side beyond."""
+
+    def folded(u: Any, v: Any) -> Any:
+        x = np.clip(10.0 * (v - share), 0.0, 1.0)
+        opposite = 1.0 - x**3 * (10.0 - 15.0 * x + 6.0 * x * x)
+        height = opposite * u * np.abs(u) + (1.0 - opposite) * u * u
+        return np.stack([u, v, 4.0 * v * v + 0.1 * height], axis=-1)
+
+    surface = gm.Surface.from_callable(folded, ((-1.0, 1.3), (0.0, 1.0)))
+    assert is_half_a_step_away(surface, 0.0, (64, 64)) == is_joint
