@@ -22,7 +22,8 @@ __all__ = ["PoleChart", "pole_charts"]
 
 
 # The spline is inaccurate, and may have folds, within four cells of a pole; its samples are up to a
-# cell away from those of the surface.
+# cell away from those of the surface. With one cell samples are lost; more than three change
+# roundings only.
 POLE_CELLS = 6
 # Nearer to a pole than this part of the domain the 2-jet of the pole is continued: there the error
 # of that is as small as the rounding of derivatives by the angle, divided by the distance.

@@ -117,6 +117,27 @@ def test_a_surface_is_fitted_once(monkeypatch):
     assert len(calls) > fitted
 
 
+def test_a_map_fits_its_surface_when_it_is_made_and_never_again():
+    calls = []
+
+    def f(u: Array, v: Array) -> Array:
+        calls.append(u.size)
+        return np.stack([u, v, u * u - v * v], axis=-1)
+
+    surface = gm.Surface.from_callable(f, ((-1, 1), (-1, 1)))
+    known = gm.GaussMap(surface, on="spline")
+    fitted = len(calls)
+    assert len(known.points(NORMALS)) > 0
+    assert len(calls) == fitted
+
+
+def test_numbers_of_a_map_may_be_rounded():
+    known = gm.GaussMap("torus")
+    single = known.points(NORMALS, dtype=np.float32, fields=("points", "normal_index"))
+    assert single.points.dtype == np.float32
+    np.testing.assert_array_equal(single.points, known.points(NORMALS).points.astype(np.float32))
+
+
 def test_surfaces_of_several_pieces_have_maps():
     knots = [0, 0, 0, 0.5, 0.5, 1, 1, 1]  # double inside: a crease
     u, v = np.meshgrid(range(5), range(5), indexing="ij")

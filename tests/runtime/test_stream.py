@@ -82,6 +82,16 @@ def test_blocks_of_normals(size, asked, monkeypatch):
     assert joined.report.normals == whole.report.normals
 
 
+def test_normals_may_be_changed_before_the_last_chunk(monkeypatch):
+    monkeypatch.setattr(stream, "NORMALS_AT_A_TIME", 40)
+    normals = gm.fibonacci(200)
+    whole = gm.Samples.concatenate(gm.sample_stream(TORUS, normals=normals, chunk=20))
+    chunks = gm.sample_stream(TORUS, normals=normals, chunk=20)
+    first = next(chunks)
+    normals[:] = [0.0, 0.0, 1.0]
+    same(gm.Samples.concatenate([first, *chunks]), whole)
+
+
 # --- what there is to say -------------------------------------------------------------------------
 
 

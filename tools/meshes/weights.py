@@ -22,9 +22,6 @@ __all__ = ["area_weights", "corner_areas"]
 
 Array = NDArray[np.float64]
 
-# Areas that are smaller than the mean one by this factor need not be accurate.
-SMALLEST = 1e-6
-
 
 def area_weights(samples: Samples, angle: float | None) -> Array:
     """Return what `Samples.weights` returns; areas at added vertices are of the nearest sample."""
@@ -41,7 +38,9 @@ def _areas(mesh: Mesh) -> Array:
     """Return the parts (T, 3) of the areas over triangles that belong to their corners."""
     points, scale = centred(mesh.vertices)
     areas = corner_areas(points * scale, mesh.normals, mesh.triangles, mesh.sides)
-    least, limits = SMALLEST * float(areas.sum()) / len(areas), np.finfo(np.float64)
+    limits = np.finfo(np.float64)
+    # Areas below the rounding of the mean one need not be accurate.
+    least = float(limits.eps * areas.sum()) / len(areas)
     with np.errstate(over="ignore", under="ignore"):
         smallest, total = least / scale / scale, float(areas.sum()) / scale / scale
     if (total > limits.max or smallest < limits.tiny) and least > 0.0:

@@ -93,6 +93,36 @@ def test_normals_become_the_prescribed_ones(shift: float, factor: float) -> None
 
 
 @pytest.mark.compiled
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_samples_of_a_coarse_spline_go_on_across_the_ends_of_a_period(sign: float) -> None:
+    """The parameters of this torus are uneven: those of its spline are up to a quarter cell off."""
+    torus = gm.surfaces.torus()
+
+    def uneven(u: Array, v: Array) -> Array:
+        u, v = (sign * x + 0.5 * np.sin(sign * x + 1.0) + 0.3 for x in (u, v))
+        return torus.function(u, v)
+
+    surface = gm.Surface.from_callable(uneven, (FULL, FULL), (True, True))
+    samples, numbers = refined(surface, (7, 7), gm.fibonacci(2000))
+    assert (np.bincount(numbers) == 2).all()
+    assert (samples.state == FOUND).all()
+    assert ((samples.uv >= 0.0) & (samples.uv <= 2.0 * np.pi)).all()
+    assert np.abs(normals_of(surface, samples.uv) - samples.normals).max() < 2.0 * NORMAL_ERROR
+
+
+@pytest.mark.compiled
+def test_most_samples_of_a_spline_that_is_much_too_coarse_are_moved() -> None:
+    """Of 2,392 points of the spline, some have no place on the surface that is near."""
+    surface = gm.Surface.from_callable(blob, (FULL, LATITUDES), (True, "pole"))
+    samples, _ = refined(surface, (8, 6), gm.fibonacci(2000))
+    found = samples.state == FOUND
+    assert 0.95 < found.mean() < 1.0
+    there = found & (np.abs(samples.uv[:, 1]) < 1.4)
+    off = normals_of(surface, samples.uv[there]) - samples.normals[there]
+    assert np.abs(off).max() < 2.0 * NORMAL_ERROR
+
+
+@pytest.mark.compiled
 @pytest.mark.filterwarnings("ignore:.*could not be moved")
 @pytest.mark.parametrize(("amplitude", "frequency"), [(0.2, 3.0), (0.1, 8.0)])
 def test_curvatures_are_those_of_the_stored_parameters(amplitude: float, frequency: float) -> None:

@@ -465,6 +465,26 @@ class TestText:
         assert len(caught) == (text is not None)
         assert text is None or text in str(caught[0].message)
 
+    @pytest.mark.parametrize(
+        ("samples", "count", "is_missed"),
+        [
+            (13, 8, False),
+            (15, 8, True),
+            (1024, 1000, False),
+            (1026, 1000, True),
+            (976, 1000, False),
+        ],
+    )
+    def test_a_count_is_missed_by_more_than_two_per_cent_and_a_few(self, samples, count, is_missed):
+        """On a symmetric surface several samples appear at once."""
+        report = SamplingReport("torus", 500, samples, 64, 0.0, 0)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            warn_of(report, count, 1)
+        assert [
+            f"{samples} samples instead of the requested" in str(x.message) for x in caught
+        ] == [True] * is_missed
+
     def test_summary_of_samples_that_are_not_on_the_surface(self):
         report = replace(self.samples().report, developable_share=0.0, unrefined=1234)
         assert (

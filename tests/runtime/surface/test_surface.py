@@ -264,6 +264,22 @@ def test_ends_that_the_surface_does_not_have(f, domain, periodic, complaint):
     refused(gm.errors.SurfaceError, complaint, gm.fit, surface, (8, 9))
 
 
+@pytest.mark.parametrize(("gap", "closes"), [(0.7e-6, True), (1.5e-6, False)])
+def test_ends_close_up_to_a_millionth_of_the_size(gap, closes):
+    torus = gm.surfaces.torus()
+
+    def cut(u, v):
+        points = torus.function(u, v)
+        points[..., 0] += 2.7 * gap * (u / (2 * np.pi) - 0.5)
+        return points
+
+    surface = gm.Surface.from_callable(cut, torus.domain, (True, True))
+    if closes:
+        assert gm.fit(surface, (8, 9)).boundary[0] == ("periodic", "periodic")
+    else:
+        refused(gm.errors.SurfaceError, "does not close along u", gm.fit, surface, (8, 9))
+
+
 @pytest.mark.parametrize("factor", [1.0, 1e-200, 1e200])
 @pytest.mark.parametrize("shift", [0.0, 1e6, 1e12])
 def test_ends_close_up_to_rounding(factor, shift):

@@ -340,6 +340,22 @@ class TestShape:
         assert normals.angles.mean() < shape.angles.mean() or name == "sphere"
         assert shape.euler_characteristic == normals.euler_characteristic
 
+    def test_triangles_turn_by_30_degrees_for_better_angles_and_not_more(self):
+        mesh = gm.sample("dupin_cyclide", 600, cells=(32, 32)).mesh()
+        assert mesh.left_out == 0
+        assert mesh.smallest_angles.min() > 25.0
+        assert mesh.angles.max() < 30.0
+
+    def test_samples_are_left_out_until_few_angles_are_small(self):
+        saddle, helicoid = (
+            gm.sample(name, count, cells=(32, 32)).mesh()
+            for name, count in (("monkey_saddle", 150), ("helicoid", 200))
+        )
+        for mesh in (saddle, helicoid):
+            border = np.isin(mesh.triangles, np.unique(mesh.boundary_edges)).any(axis=1)
+            assert np.quantile(mesh.smallest_angles[~border], 0.05) >= 25.0
+        assert 0 < helicoid.left_out < 15
+
     def test_flips_make_triangles_delaunay(self):
         """No point of a pair of triangles lies in the circle of the other: angles sum up to π."""
         mesh = gm.sample(gm.surfaces.torus(), count=500).mesh()

@@ -66,6 +66,18 @@ def test_a_plane_is_exact(scale: float) -> None:
 
 
 @pytest.mark.compiled
+def test_areas_that_numbers_do_not_hold_are_refused() -> None:
+    usual = gm.sample(TORUS, 300, cells=(16, 16)).weights()
+    for scale, said in ((2.0**540, "too large"), (2.0**-540, "too small"), (2.0**-450, "")):
+        samples = gm.sample(gm.surfaces.torus(major=scale, minor=0.35 * scale), 300, cells=(16, 16))
+        if said:
+            with pytest.raises(gm.errors.SurfaceError, match=f"are {said} for float64"):
+                samples.weights()
+        else:
+            np.testing.assert_allclose(samples.weights() / scale / scale, usual, rtol=1e-9)
+
+
+@pytest.mark.compiled
 @pytest.mark.parametrize("name", ["moebius_band", "catenoid", "sphere", "cone"])
 def test_all_kinds_of_surfaces(name: str) -> None:
     spline = gm.fit(getattr(gm.surfaces, name)())
