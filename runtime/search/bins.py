@@ -21,6 +21,7 @@ from ..kernels.strips import Polyhedron
 
 __all__ = ["NormalBins", "icosahedron", "sorted_normals"]
 
+# On average, for speed only: samples do not depend on it.
 NORMALS_PER_BIN = 2
 # The least and the largest number of squares along an edge: few normals may be close together.
 COARSEST, FINEST = 32, 2048

@@ -29,7 +29,8 @@ __all__ = ["Decision", "decide", "decided_forms"]
 PAIRS_AT_A_TIME = 1 << 10
 # Fewer at a time on Python integers: a pair has many of them, of about a hundred bytes each.
 LONG_PAIRS_AT_A_TIME = 1 << 14
-# Two hits of one normal at the open border are the same if they are closer than this, in cells.
+# Two hits of one normal at the open border are the same if they are closer than this, in cells: far
+# more than rounding, which is below 1e-14, and far less than a cell.
 SAME_PLACE = 1e-6
 
 

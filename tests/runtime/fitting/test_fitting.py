@@ -149,6 +149,18 @@ def test_default_sees_small_features() -> None:
         assert misfit_of(spline).distance < 1e-4
 
 
+def test_a_cusp_is_fitted_while_that_makes_the_error_smaller() -> None:
+    """Half the cells leave 2^-0.3 = 0.81 of the error along u; steps along v less."""
+    cusp = graph(lambda u, v: 0.2 * np.abs(u - 0.123) ** 0.3 + 0.01 * np.sin(90 * v))
+    with pytest.warns(gm.GaussmapWarning, match="accuracy of the default is not reached"):
+        assert misfit_of(gm.fit(cusp)).distance < 0.03
+
+
+def test_the_search_ends_where_errors_hardly_fall() -> None:
+    """Next to the flat point of a monkey saddle more cells do not help the angle."""
+    assert max(gm.fit("monkey_saddle", normal_tolerance=0.3).cells) <= 512
+
+
 def test_default_wastes_no_cells_on_folds_and_poles() -> None:
     egg = gm.Surface.from_callable(
         lambda u, v: np.stack(

@@ -117,6 +117,14 @@ def test_misfit_far_from_the_origin(shift: float) -> None:
     assert moved.angle == pytest.approx(unit.angle, abs=0.01)  # the error of normals is 1e-4 rad
 
 
+def test_angles_are_measured_as_long_as_coordinates_tell_normals() -> None:
+    """Normals of differences are known up to 1e-4 radians where the shift is 1e8, not beyond."""
+    unit = misfit_of(gm.fit(torus(), (16, 16)))
+    known, unknown = (misfit_of(gm.fit(torus(1.0, x), (16, 16))).angle for x in (1e8, 2e8))
+    assert known == pytest.approx(unit.angle, rel=0.2)
+    assert unknown is None
+
+
 def test_quadratics_have_no_misfit() -> None:
     misfit = misfit_of(gm.fit("hyperbolic_paraboloid", (16, 16)))
     assert misfit.distance < 1e-15

@@ -164,6 +164,8 @@ def test_concatenation():
     report = Samples.concatenate([FULL, other]).report
     assert (report.surface, report.normals) == ("several surfaces", None)
     assert (report.samples, report.patches) == (2 * len(FULL), FULL.report.patches)
+    proofs = [replace(FULL, report=replace(FULL.report, proved=k, undecided=())) for k in (2, 3)]
+    assert Samples.concatenate(proofs).report.proved == 5
     for unusable in ([], [FULL, narrow()], [FULL, narrow(None, dtype="f4")], [1], [FULL, None]):
         with pytest.raises(gm.errors.InputError):
             Samples.concatenate(unusable)  # pyright: ignore[reportArgumentType]

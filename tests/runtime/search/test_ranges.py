@@ -7,7 +7,7 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.search import search
+from gaussmap.runtime.search import bins, exact, search
 from gaussmap.runtime.search.bins import NormalBins
 from gaussmap.runtime.search.search import Search, fill, find
 
@@ -32,9 +32,9 @@ def test_some_samples_are_decided_exactly():
 
 
 def test_nothing_is_filled_that_is_not_wanted(monkeypatch):
-    bins = NormalBins(NORMALS)
-    hits = find(SPLINE, bins)
-    assert set(fill(SPLINE, bins, hits, fields=("uv", "patch_index"))) == {"uv", "patch_index"}
+    sorted_ = NormalBins(NORMALS)
+    hits = find(SPLINE, sorted_)
+    assert set(fill(SPLINE, sorted_, hits, fields=("uv", "patch_index"))) == {"uv", "patch_index"}
 
     def filled(*arguments):
         raise AssertionError("what was decided exactly has its indices already")
@@ -42,6 +42,28 @@ def test_nothing_is_filled_that_is_not_wanted(monkeypatch):
     monkeypatch.setattr(search, "fill_known", filled)
     samples = gm.sample(SPLINE, normals=NORMALS, fields=("patch_index",))
     assert samples.fields == ("patch_index",)
+
+
+@pytest.mark.parametrize("size", [0.25, 64])
+def test_how_many_normals_share_a_bin_does_not_matter(size, monkeypatch):
+    for normals in (gm.fibonacci(20_000), gm.directions.cap(gm.icosphere(60), (1, 0, 1), 20)):
+        usual = gm.sample(SPLINE, normals=normals)
+        with monkeypatch.context() as patch:
+            patch.setattr(bins, "NORMALS_PER_BIN", size)
+            same(gm.sample(SPLINE, normals=normals), usual)
+
+
+@pytest.mark.parametrize("apart", [1e-12, 0.1])
+def test_one_point_of_the_border_is_one_sample(apart, monkeypatch):
+    """Points of the border are found from both sides up to rounding, and no others are near."""
+    helicoid = gm.fit(gm.surfaces.helicoid(), (16, 16))
+    usual = gm.sample(helicoid, normals=gm.icosphere(12))
+    places = np.column_stack([usual.normal_index, usual.uv.round(6)])
+    assert len(np.unique(places, axis=0)) == len(usual)
+    monkeypatch.setattr(exact, "SAME_PLACE", apart)
+    same(gm.sample(helicoid, normals=gm.icosphere(12)), usual)
+    monkeypatch.setattr(exact, "SAME_PLACE", 0.0)
+    assert len(gm.sample(helicoid, normals=gm.icosphere(12))) > len(usual)
 
 
 # --- the same samples in the same order -----------------------------------------------------------
