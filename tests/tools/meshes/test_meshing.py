@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import warnings
 from collections.abc import Callable
 from typing import Any, Literal
 
@@ -347,14 +348,27 @@ class TestShape:
         assert mesh.angles.max() < 30.0
 
     def test_samples_are_left_out_until_few_angles_are_small(self):
-        saddle, helicoid = (
-            gm.sample(name, count, cells=(32, 32)).mesh()
-            for name, count in (("monkey_saddle", 150), ("helicoid", 200))
+        """Samples of density |K| are uneven."""
+        cyclide, helicoid = (
+            gm.sample(name, count, density=density, cells=(32, 32)).mesh()
+            for name, count, density in (
+                ("dupin_cyclide", 600, "gauss"),
+                ("helicoid", 200, "balanced"),
+            )
         )
-        for mesh in (saddle, helicoid):
+        for mesh in (cyclide, helicoid):
             border = np.isin(mesh.triangles, np.unique(mesh.boundary_edges)).any(axis=1)
             assert np.quantile(mesh.smallest_angles[~border], 0.05) >= 25.0
+        assert 0 < cyclide.left_out < 40
         assert 0 < helicoid.left_out < 15
+
+    def test_triangles_of_a_one_sided_surface_keep_their_sides_where_samples_are_left_out(self):
+        surface = gm.Surface.from_callable(klein, (TURN, (-np.pi, np.pi)), ("mirrored", True))
+        with warnings.catch_warnings(action="ignore"):
+            mesh = gm.sample(surface, 1200, density="gauss", cells=(32, 32)).mesh()
+        assert mesh.left_out > 100
+        assert mesh.euler_characteristic == 0
+        assert mesh.angles.max() < 120.0
 
     def test_flips_make_triangles_delaunay(self):
         """No point of a pair of triangles lies in the circle of the other: angles sum up to π."""
