@@ -100,7 +100,7 @@ def test_samples_of_a_coarse_spline_go_on_across_the_ends_of_a_period(sign: floa
 
     def uneven(u: Array, v: Array) -> Array:
         u, v = (sign * x + 0.5 * np.sin(sign * x + 1.0) + 0.3 for x in (u, v))
-        return torus.function(u, v)
+        return np.asarray(torus.function(u, v))
 
     surface = gm.Surface.from_callable(uneven, (FULL, FULL), (True, True))
     samples, numbers = refined(surface, (7, 7), gm.fibonacci(2000))

@@ -269,7 +269,7 @@ def test_ends_close_up_to_a_millionth_of_the_size(gap, closes):
     torus = gm.surfaces.torus()
 
     def cut(u, v):
-        points = torus.function(u, v)
+        points = np.array(torus.function(u, v))
         points[..., 0] += 2.7 * gap * (u / (2 * np.pi) - 0.5)
         return points
 
