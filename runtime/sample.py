@@ -21,6 +21,7 @@ from .density.on_pieces import geometries_of, kept_geometries, report_of
 from .density.surface_piece import SurfacePiece, space_of
 from .place.on_spline import OnSpline
 from .place.on_surface import checked_place, place_of_samples
+from .place.reach import in_reach
 from .samples.fields import FLAG_NAMES, GRID_NAMES, bytes_of, checked_dtype, checked_fields
 from .samples.report import warn_of
 from .samples.request import Request, checked_request
@@ -41,6 +42,7 @@ def sample(
     angle: float | None = None,
     coverage: float | None = None,
     density: str | float | None = None,
+    reach: tuple[ArrayLike, float] | None = None,
     relax: int = 0,
     cells: Sequence[int] | None = None,
     on: str | None = None,
@@ -87,6 +89,10 @@ def sample(
         and more where they do not. "uniform": the same everywhere, for `count` or
         `coverage`. A number α, 0 < α ≤ 8: |K|^α, for `count`; uniform where the curvature is below
         the error of the spline.
+    reach : (axis, angle), optional
+        Only points whose normal is within an angle, in degrees, of a direction (3,): those that a
+        probe, a camera or a printer can come to from there. Count, coverage and angle hold for
+        these. Not with ``density="aligned"``.
     relax : int, default 0
         Steps, at most 10, that move the samples that fill gaps to better places. Two or three are
         enough; they take 20 to 40 times as long as the sampling and 20 kB of memory for each sample
@@ -204,7 +210,7 @@ def sample(
     (100, 40, 40)
 
     """
-    request = checked_request(normals, count, angle, coverage, density, relax, threads)
+    request = checked_request(normals, count, angle, coverage, density, relax, threads, reach)
     with busy("sampling", progress):
         return sample_and_normals(
             surface,
@@ -297,12 +303,13 @@ def unwarned(
     if geometries is None:
         make = geometries_of if request.normals is None else kept_geometries
         geometries = make(asked, cells, on)
-    geometries = [x.used(number, threads, memory) for x in geometries]
+    geometries = [x.used(number, threads, memory).within(request.reach) for x in geometries]
     if may_be_proved and (len(geometries) > 1 or geometries[0].index is None):
         wanted = checked_fields(fields, **has)
     if request.density != "gauss" or len(geometries) > 1:
         known = geometries[0].surface if len(geometries) == 1 else surface
         known = known if isinstance(known, Surface) and place == "surface" else None
+        known = known if len(geometries) == 1 else in_reach(known, request.reach)
         samples, normals = _filled(
             surface.name, geometries, known, request, wanted, number, progress
         )

@@ -42,7 +42,7 @@ def sample_part(
     _check(request)
     if request.count is not None:
         check_memory("relaxed part" if request.relax else "part", request.count)
-    space = space_of(part, threads, target_of(request))
+    space = space_of(part, threads, target_of(request), request.reach)
     cover = fill(space, request, progress)
     on_faces = [x for x in fields if x not in EDGE_NAMES]
     found = fields_of(cover, list(dict.fromkeys([*on_faces, *FLAG_NAMES])), dtype)
