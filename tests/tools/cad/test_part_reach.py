@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+import gaussmap as gm
 import numpy as np
 import pytest
-
-import gaussmap as gm
 from gaussmap.tools.cad.examples import all_kinds, box
 
 ROUNDING = 1e-9
