@@ -41,6 +41,11 @@ class NormalDeviation(NamedTuple):
 class Whole:
     """A surface that is no `Surface`: a CAD part, which defines these methods."""
 
+    @property
+    def unit(self) -> str:
+        """The unit L of all lengths, as "mm" or "in"; empty if it is not known."""
+        raise NotImplementedError
+
     def _sampled(
         self, request: Request, fields: Sequence[str], dtype: DTypeLike, threads: int | None,
         progress: bool, edges: bool,

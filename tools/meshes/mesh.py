@@ -161,6 +161,14 @@ class Mesh(Methods):
         They are the parameters, the domain scaled to 1 × 1, and do not jump: across a seam they
         are continued beyond 1, for textures that repeat. A pole has a place of its own in each
         triangle. `.glb` and `.obj` files have them.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> mesh = gm.sample("torus", 200, cells=(16, 16)).mesh()
+        >>> mesh.corner_uv.shape, bool(mesh.corner_uv.max() > 1)  # across a seam
+        ((400, 3, 2), True)
+
         """
         return corner_places(self.uv, self.triangles, self.domain, self.boundary)
 

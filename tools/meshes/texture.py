@@ -68,7 +68,7 @@ def split_at_seams(
     corners = triangles.copy()
     corners[moved] = len(uv) + number.ravel()
     vertex = np.concatenate([np.arange(len(uv)), new[:, 0].astype(np.int64)])
-    return Texture(np.concatenate([places, new[:, 1:]]), vertex, corners)
+    return Texture(np.concatenate([places, new[:, 1:].astype(np.float64)]), vertex, corners)
 
 
 def _scaled(uv: Array, domain: Domain) -> Array:
