@@ -77,7 +77,7 @@ def write(
         The fields that are written, such as ``("points", "normals")``; by default all that the
         samples hold.
     progress : bool, default False
-        Show on a terminal what is done, from a second on.
+        Show on a terminal what is done, after the first second.
 
     Raises
     ------
@@ -152,7 +152,7 @@ def mesh(
           samples allow. They are long and thin where the surface is curved in one direction
           only, and one sample is left out where a triangle would have no area.
     progress : bool, default False
-        Show on a terminal what is done, from a second on.
+        Show on a terminal what is done, after the first second.
 
     Returns
     -------
@@ -268,7 +268,7 @@ def weights(
     angle : float, optional
         In degrees, as in `mesh`.
     progress : bool, default False
-        Show on a terminal what is done, from a second on.
+        Show on a terminal what is done, after the first second.
 
     Returns
     -------

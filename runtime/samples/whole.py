@@ -50,7 +50,7 @@ class Whole:
         self, request: Request, fields: Sequence[str], dtype: DTypeLike, threads: int | None,
         progress: bool, edges: bool,
     ) -> tuple[Any, NDArray[np.float64]]:  # fmt: skip
-        """Return what `sample` returns, and the unit normals that were asked."""
+        """Return what `sample` returns, and the unit normals that were searched."""
         raise NotImplementedError
 
     def _space(self, threads: int | None) -> Any:  # noqa: ANN401

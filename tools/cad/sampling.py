@@ -38,7 +38,7 @@ def sample_part(
     progress: bool,
     edges: bool = False,
 ) -> tuple[Samples, Array]:
-    """Return samples of a part, and the normals that were asked. Raises what `sample` raises."""
+    """Return samples of a part, and the normals that were searched. Raises what `sample` raises."""
     _check(request)
     if request.count is not None:
         check_memory("relaxed part" if request.relax else "part", request.count)

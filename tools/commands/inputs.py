@@ -31,7 +31,7 @@ def sampled(
     default_count: int,
     **how: Any,  # noqa: ANN401
 ) -> tuple[Samples, NDArray[np.float64]]:
-    """Return the samples that a command asks for, and the unit normals that were asked."""
+    """Return the samples that a command asks for, and the unit normals that were searched."""
     NOTICE.quiet = options.quiet
     progress = not options.quiet
     _spare_inputs(options)
