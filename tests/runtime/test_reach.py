@@ -64,6 +64,12 @@ def test_prescribed_normals_have_the_same_points_as_without_a_reach() -> None:
     assert np.array_equal(some.normal_index, whole.normal_index[inside])
 
 
+def test_many_surfaces_in_reach() -> None:
+    for samples in gm.sample_many(["torus", "sphere"], 50, reach=(AXIS, ANGLE)):
+        assert len(samples) == 50
+        assert angles(samples.normals).max() <= ANGLE + ROUNDING
+
+
 def test_small_reaches_have_few_samples_for_an_angle() -> None:
     samples = gm.sample("sphere", angle=3.0, reach=(AXIS, 6.0))
     assert 4 <= len(samples) <= 40
