@@ -243,7 +243,10 @@ def levels(
     (Mesh(125 vertices, ...), Mesh(500 vertices, ...), Mesh(2,000 vertices, ...))
 
     """
-    numbers = [whole_number(x, "a count of levels") for x in counts]
+    asked = listed(counts)
+    if asked is None:
+        raise InputError(f"levels takes a list of counts, not {shown(counts)}.")
+    numbers = [whole_number(x, "a count of levels") for x in asked]
     if numbers and max(numbers) > len(self):
         raise InputError(f"a level has at most as many samples as there are: {len(self):,}.")
     ordered = self.progressive(progress=progress)
