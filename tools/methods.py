@@ -249,10 +249,8 @@ def levels(
     numbers = [whole_number(x, "a count of levels") for x in asked]
     if numbers and max(numbers) > len(self):
         raise InputError(f"a level has at most as many samples as there are: {len(self):,}.")
-    ordered = self.progressive(progress=progress)
-    return tuple(
-        ordered[:x].mesh(spline or self.spline, prefer=prefer, progress=progress) for x in numbers
-    )
+    ordered, spline = self.progressive(progress=progress), spline_or(self, spline)
+    return tuple(ordered[:x].mesh(spline, prefer=prefer, progress=progress) for x in numbers)
 
 
 def weights(
