@@ -10,6 +10,7 @@ import gaussmap
 from numpydoc.xref import DEFAULT_LINKS
 from sphinx.application import Sphinx
 from sphinx.errors import ConfigError
+from sphinx.ext import autosummary
 
 HERE = Path(__file__).parent
 # Cells of pages call these; without one, a cell would wait for what never comes.
@@ -72,6 +73,8 @@ nb_execution_in_temp = True
 nb_merge_streams = True
 
 # --- the reference ---
+# Sentences do not end there.
+autosummary.WELL_KNOWN_ABBREVIATIONS += ("Sect.", "Sects.", "eq.", "eqs.", "Fig.", "Figs.")
 autosummary_ignore_module_all = False  # the public names are those of __all__ …
 autosummary_imported_members = True  # … and are imported from where they are defined
 autodoc_preserve_defaults = True

@@ -21,6 +21,7 @@ from .density.on_pieces import geometries_of, kept_geometries, report_of
 from .density.surface_piece import SurfacePiece, space_of
 from .place.on_spline import OnSpline
 from .place.on_surface import checked_place, place_of_samples
+from .place.reach import in_reach
 from .samples.fields import FLAG_NAMES, GRID_NAMES, bytes_of, checked_dtype, checked_fields
 from .samples.report import warn_of
 from .samples.request import Request, checked_request
@@ -41,6 +42,7 @@ def sample(
     angle: float | None = None,
     coverage: float | None = None,
     density: str | float | None = None,
+    reach: tuple[ArrayLike, float] | None = None,
     relax: int = 0,
     cells: Sequence[int] | None = None,
     on: str | None = None,
@@ -53,80 +55,66 @@ def sample(
 ) -> Samples:
     """Return points of a surface with their normals, dense where it is curved.
 
-    The number of samples follows from one of `count`, `normals`, `angle` and `coverage`; the
-    surface is first approximated by a spline (see `fit`).
+    Say how many by one of `count`, `normals`, `angle` and `coverage`.
 
     Parameters
     ----------
     surface : Surface, Spline, Part or str
-        The surface, or its name in the catalogue (see `gaussmap.surfaces`). A spline is taken as it
-        is. Of a NURBS with lines where its normal turns the pieces are sampled, with one target
-        density for all (see `Surface.pieces`); then `spline` of the samples is None. Of a CAD part
-        (see `read_part`) all faces are sampled as one surface, see Notes.
+        The surface, or its name in the catalogue (see `gaussmap.surfaces`). All faces of a CAD part
+        (see `read_part`), and all smooth pieces of a NURBS (see `Surface.pieces`), are sampled as
+        one surface.
     count : int, optional
-        The number of samples. It is met exactly, but for ``density="gauss"``: within 2 % (or 5
-        samples) where the Gaussian image is resolved.
+        The number of samples. It is met exactly; with ``density="gauss"`` within 2 % or 5 samples.
     normals : (S, 3) array_like, optional
         Directions of any length but 0, such as ``icosphere(32)``: every point that has one of these
         normals, each exactly once.
     angle : float, optional
         The largest angle, in degrees and at most 90, between the normal of any point of the surface
-        and that of the sample nearest in normal. Next to singular points of the spline, such as
-        cusps, it holds as far as cells of 2⁻¹⁴ of its size resolve them. Not with
-        ``density="gauss"``: next to open borders, normals alone leave up to half as much again.
+        and that of the sample nearest in normal. Not with ``density="gauss"``.
     coverage : float, optional
         The largest distance, in the unit L of the surface, from any point of it to the nearest
-        sample. Alone, or beside one of the others.
+        sample. Alone, or together with one of the others.
     density : {"gauss", "balanced", "aligned", "uniform"} or float, optional
-        The target density. "gauss", the default with `normals` alone: |K|, from normals alone
-        (paper, Sect. 4.2); developable regions get no samples. "balanced", the default otherwise:
-        the same from fewer normals, and samples that fill the gaps, so that no point is farther
-        from a sample than r/κ, nor than r/√λ (see Notes). "aligned": on a grid of lines u = const
-        and v = const, spaced by how fast the normal turns along them, for `count`, `angle` and
-        `coverage`: fewer samples for the same angles where parameters run along lines of curvature,
-        and more where they do not. "uniform": the same everywhere, for `count` or
-        `coverage`. A number α, 0 < α ≤ 8: |K|^α, for `count`; uniform where the curvature is below
-        the error of the spline.
+        The target density. "gauss", the default with `normals` alone, is |K|, by samples at
+        prescribed normals only; "balanced", the default otherwise, fills the gaps between these.
+        "aligned" is a grid along parameter lines, "uniform" the same density everywhere, and a
+        number α that of |K|^α; see Notes.
+    reach : (axis, angle), optional
+        Only points whose normal is within an angle, in degrees, of a direction (3,): a probe, a
+        camera or a printer comes from there. Count, angle and coverage hold for these points. Not
+        with ``density="aligned"``.
     relax : int, default 0
         Steps, at most 10, that move the samples that fill gaps to better places. Two or three are
-        enough; they take 20 to 40 times as long as the sampling and 20 kB of memory for each sample
-        instead of 3 kB.
+        enough, and take 20 to 40 times as long as the sampling.
     cells : (int, int), optional
-        The numbers of cells of the spline along u and v, see `fit`. Pieces of a surface share them,
-        in proportion to their parameters.
+        The numbers of cells along u and v of the spline that approximates the surface, see `fit`.
     on : {"surface", "spline"}, optional
-        Where samples are to lie. "surface": on the surface itself. All points with prescribed
-        normals are found, with a proof, where the derivatives of the surface can be bounded;
-        elsewhere samples are moved from the spline by Newton's method, see Notes. "spline": on the
-        spline. By default on the surface, unless it is given by points or as a spline.
+        Where samples are to lie: on the surface itself, or on its spline. By default on the
+        surface, unless it is given by points or as a spline.
     fields : sequence of str, optional
         The arrays of `Samples` that are computed and stored, such as ``("points", "normals")``; all
         by default.
     dtype : dtype_like, default numpy.float64
-        With numpy.float32, all numbers but the indices are rounded when they are stored; they are
-        computed in float64.
+        With numpy.float32, real numbers are computed in float64, and rounded when they are stored.
     threads : int, optional
         The number of threads, by default one for each core. The samples do not depend on it.
     progress : bool, default False
-        Show on a terminal what is done, from a second on.
+        Show on a terminal what is done, after the first second.
     edges : bool, default False
-        Of a CAD part: add samples on its sharp edges, where the normals of two faces differ by more
-        than 1°. They come last and in addition: the others, and the count, angle and coverage that
-        these meet, stay the same. See Notes.
+        Add samples on the sharp edges of a CAD part, where the normals of two faces differ by more
+        than 1°. They come last, and in addition to the others.
     out : Samples, optional
         Samples of an earlier call that are no longer needed: their memory is used again for samples
-        of a spline at normals, where it is large enough. That is faster for millions of samples,
-        since the system clears new memory. What is read from `out` afterwards, and from other
-        samples with the same arrays, is not defined.
+        of a spline at normals. That is faster for millions of samples. What is read from `out`
+        afterwards, and from other samples with the same arrays, is not defined.
 
     Returns
     -------
     Samples
-        The samples at normals, and after them those that fill gaps: their `kind` is "filling" and
-        their `normal_index` −1. Those on a grid, of `kind` "grid", come first. Samples at normals
-        are in the order of their normals if they are proved to be all, else by patch and then by
-        normal. The report gives the angle and the
-        coverage that were reached, if they were asked for.
+        The samples at normals, followed by those that fill gaps, of `kind` "filling", whose
+        `normal_index` is −1. Samples at normals are in the order of these if they are proved to be
+        all, else by patch and then by normal. The report has the angle and the coverage that were
+        reached, if they were asked for.
 
     Raises
     ------
@@ -151,29 +139,47 @@ def sample(
 
     Notes
     -----
-    For ``density="balanced"``, κ is the larger principal curvature: neighbouring normals differ by
-    about r, twice the angle. λ is 0.8 times the mean of κ²,
-    or follows from `coverage`; with a count or a coverage, κ counts up to 20 √λ.
+    **Densities.** "gauss" is the method of the paper (Sect. 4.2): normals are uniform on the
+    sphere, so that samples have the density |K|. Developable regions get none, and next to open
+    borders gaps between normals are up to half as wide again.
 
-    Derivatives can be bounded of surfaces of the catalogue, of SymPy expressions, of callables made
-    of NumPy functions, of NURBS without poles, and of affine images of these. The report
-    says for how many normals the points are `proved` to be all, and lists the others in
+    "balanced" has fewer normals, and samples that fill the gaps: no point is farther from a sample
+    than r/κ, nor than r/√λ. κ is the larger principal curvature, so that normals of neighbours
+    differ by about r, which is twice the angle. λ is 0.8 times the mean of κ², or follows from
+    `coverage`; with a count or a coverage, κ counts up to 20 √λ.
+
+    "aligned" is for `count`, `angle` and `coverage`. Its lines u = const and v = const are spaced
+    by how fast the normal turns across them. That takes fewer samples for the same angles where
+    parameters run along lines of curvature, and more where they do not. Samples of the grid, of
+    `kind` "grid", come first.
+
+    "uniform" is for `count` or `coverage`, a number α, 0 < α ≤ 8, for `count`. Where the curvature
+    is below the error of the spline, |K|^α is taken to be uniform.
+
+    **Angles** next to singular points of the spline, such as cusps, hold as far as cells of 2⁻¹⁴ of
+    its size resolve them. **Relaxing** takes 20 kB of memory for each sample instead of 3 kB.
+
+    **On the surface.** All points with prescribed normals are found, with a proof, where the
+    derivatives of the surface can be bounded: those of the catalogue, of SymPy expressions, of
+    callables made of NumPy functions, of NURBS without poles, and of affine images of these. The
+    report says for how many normals the points are `proved` to be all, and lists the others in
     `undecided`; see `SamplingReport`. What is found out about the last eight surfaces is kept, so
     that the function of a surface must return the same points each time; `GaussMap` keeps it as
     long as it is wanted. On other surfaces, and at normals that were not prescribed, a sample is
-    moved from the spline to the point with its normal; where there is none near by, it stays on the
-    spline and is marked, see `Samples.on_surface`. Samples that fill gaps are evaluated at their
-    parameters.
+    moved by Newton's method from the spline to the point with its normal. Where there is none near
+    by, it stays on the spline and is marked, see `Samples.on_surface`. Samples that fill gaps are
+    evaluated at their parameters.
 
-    All faces of a part, and all smooth pieces of a surface, have one target density, and one count;
-    angle and coverage hold for the whole. Pieces that are to have a tenth of all samples at normals
-    or more have a lattice of normals; if any of several has none, 5 % of a count go where normals
-    are farthest from those of all samples. Every face has a sample if there are twice as many
-    samples as faces. A sample represents places only whose normals are within 60° of its own. Of
-    parts, `density` is "balanced", "uniform", a number, or "gauss" with `normals`; `cells` and `on`
-    are not for parts.
+    **Parts and pieces.** All faces of a part, and all smooth pieces of a surface, have one target
+    density, and one count; angle and coverage hold for the whole. Pieces that are to have a tenth
+    of all samples at normals or more have a lattice of normals; if any of several has none, 5 % of
+    a count go where normals are farthest from those of all samples. Every face has a sample if
+    there are at least twice as many samples as faces. A sample represents only places whose normals
+    are within 60° of its own. Pieces share `cells` in proportion to their parameters, and `spline`
+    of the samples is None. Of parts, `density` is "balanced", "uniform", a number, or "gauss" with
+    `normals`; `cells` and `on` are not for parts.
 
-    Samples on edges have the `kind` "edge" and the normals of both faces, `normals` and
+    **Edges.** Samples on edges have the `kind` "edge" and the normals of both faces, `normals` and
     `other_normals`. They are on both faces exactly, or, where the faces of the file do not meet, on
     the first one and as near to the other as in the file. However few samples there are, each edge
     has some at both ends and one or more in between, such that the normals of neither face turn by
@@ -198,13 +204,16 @@ def sample(
     >>> again = gm.sample(spline, normals=gm.icosphere(20), out=samples)
     >>> again.points.base is samples.points
     True
+    >>> tilted = gm.sample(torus, 200, reach=((0, 0, 1), 30.0))  # within 30° of upwards
+    >>> len(tilted), bool(tilted.normals[:, 2].min() >= 0.866)
+    (200, True)
     >>> from gaussmap.tools.cad.examples import box
     >>> samples = gm.sample(box(), 60, edges=True)
     >>> len(samples), samples.report.edge_samples, int((samples.kind == "edge").sum())
     (100, 40, 40)
 
     """
-    request = checked_request(normals, count, angle, coverage, density, relax, threads)
+    request = checked_request(normals, count, angle, coverage, density, relax, threads, reach)
     with busy("sampling", progress):
         return sample_and_normals(
             surface,
@@ -233,7 +242,7 @@ def sample_and_normals(
     edges: bool = False,
     out: Samples | None = None,
 ) -> tuple[Samples, NDArray[np.float64]]:
-    """Return what `sample` returns, and the unit normals that were asked."""
+    """Return what `sample` returns, and the unit normals that were searched."""
     samples, normals = unwarned(
         surface,
         request,
@@ -297,12 +306,13 @@ def unwarned(
     if geometries is None:
         make = geometries_of if request.normals is None else kept_geometries
         geometries = make(asked, cells, on)
-    geometries = [x.used(number, threads, memory) for x in geometries]
+    geometries = [x.used(number, threads, memory).within(request.reach) for x in geometries]
     if may_be_proved and (len(geometries) > 1 or geometries[0].index is None):
         wanted = checked_fields(fields, **has)
     if request.density != "gauss" or len(geometries) > 1:
         known = geometries[0].surface if len(geometries) == 1 else surface
         known = known if isinstance(known, Surface) and place == "surface" else None
+        known = known if len(geometries) == 1 else in_reach(known, request.reach)
         samples, normals = _filled(
             surface.name, geometries, known, request, wanted, number, progress
         )

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Literal, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..runtime.base.checks import known_name, listed
+from ..runtime.base.checks import known_name, listed, whole_number
 from ..runtime.base.errors import InputError, shown
 from ..runtime.base.progress import busy
 from ..runtime.samples.samples import spline_or
@@ -27,8 +27,10 @@ if TYPE_CHECKING:
     from ..runtime.surface.surface import Surface
     from .cad.part import Part
     from .meshes.mesh import Mesh
+    from .meshes.triangulated import Prefer
 
 __all__ = [
+    "levels",
     "mesh",
     "offset",
     "plot",
@@ -59,7 +61,9 @@ def write(
         - `.ply`: binary, one vertex a sample, all columns and the report (in comments); reads
           back bit for bit. Indices are 32-bit. Needs the field `points`.
         - `.csv`: a header row and one row a sample; as many digits as it takes to read the same
-          numbers again. With the extra "tables" Polars writes it, ten times as fast.
+          numbers again. Where the unit of length is known, of parts and of terrain with a
+          reference system, columns of lengths and curvatures name it: `x [mm]`. With the extra
+          "tables" Polars writes the file, ten times as fast.
         - `.xyz`: rows `x y z nx ny nz`, digits as in `.csv`, no header. Needs `points` and
           `normals`.
         - `.vtp`: VTK PolyData with all arrays, and the report as field data; needs `points`.
@@ -73,7 +77,7 @@ def write(
         The fields that are written, such as ``("points", "normals")``; by default all that the
         samples hold.
     progress : bool, default False
-        Show on a terminal what is done, from a second on.
+        Show on a terminal what is done, after the first second.
 
     Raises
     ------
@@ -148,7 +152,7 @@ def mesh(
           samples allow. They are long and thin where the surface is curved in one direction
           only, and one sample is left out where a triangle would have no area.
     progress : bool, default False
-        Show on a terminal what is done, from a second on.
+        Show on a terminal what is done, after the first second.
 
     Returns
     -------
@@ -192,6 +196,63 @@ def mesh(
         return mesh_of(self, spline_or(self, spline), angle, prefer)
 
 
+def levels(
+    self: Samples,
+    counts: Sequence[int],
+    spline: Spline | None = None,
+    *,
+    prefer: Prefer = "shape",
+    progress: bool = False,
+) -> tuple[Mesh, ...]:
+    """Return nested levels of detail: meshes of prefixes of the samples in progressive order.
+
+    Every sample of a level is one of all finer levels, too.
+
+    Parameters
+    ----------
+    counts : sequence of int
+        The numbers of samples of the levels, each from 1 to that of all.
+    spline : Spline, optional
+        As in `mesh`.
+    prefer : {"shape", "normals"}, default "shape"
+        As in `mesh`.
+    progress : bool, default False
+        Show on a terminal what is done, if it takes more than a second.
+
+    Returns
+    -------
+    tuple of Mesh
+        A mesh for each count. Its `sample_index` numbers the rows of ``samples.progressive()``, so
+        that a vertex has the same number in all levels.
+
+    Raises
+    ------
+    InputError
+        For other counts, and as `mesh`: the coarsest level may have too few samples.
+    MissingFieldError
+        As `mesh`.
+
+    See Also
+    --------
+    progressive : the order.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> gm.sample("torus", 2000, cells=(16, 16)).levels([125, 500, 2000])
+    (Mesh(125 vertices, ...), Mesh(500 vertices, ...), Mesh(2,000 vertices, ...))
+
+    """
+    asked = listed(counts)
+    if asked is None:
+        raise InputError(f"levels takes a list of counts, not {shown(counts)}.")
+    numbers = [whole_number(x, "a count of levels") for x in asked]
+    if numbers and max(numbers) > len(self):
+        raise InputError(f"a level has at most as many samples as there are: {len(self):,}.")
+    ordered, spline = self.progressive(progress=progress), spline_or(self, spline)
+    return tuple(ordered[:x].mesh(spline, prefer=prefer, progress=progress) for x in numbers)
+
+
 def weights(
     self: Samples, *, angle: float | None = None, progress: bool = False
 ) -> NDArray[np.float64]:
@@ -208,7 +269,7 @@ def weights(
     angle : float, optional
         In degrees, as in `mesh`.
     progress : bool, default False
-        Show on a terminal what is done, from a second on.
+        Show on a terminal what is done, after the first second.
 
     Returns
     -------

@@ -107,12 +107,18 @@ def page(
     ]
     for on in surfaces:
         title = f"## {on.form.label}\n\nNamed `{on.form.name}` in other tables.\n"
-        parts += [title, points_table(on), mesh_table(on)]
+        parts += [title, folded("Points and meshes", points_table(on), mesh_table(on))]
     parts += [section(small)] if small else []
     parts += ["## The machine\n", wrapped("\n".join([*machine(), *busy(load)]))]
     parts += [wrapped(TARGETS.format(counts=counts, steps=STEPS)), targets(surfaces)]
     text = "\n".join(parts)
     return "\n".join([wrapped(HEAD.format(surfaces=len(surfaces))), opening(text), text])
+
+
+def folded(title: str, *tables: str) -> str:
+    """Return tables that are seen after a click on a title; browsers search in them, too."""
+    inner = "\n".join(tables)
+    return f"<details>\n<summary>{title}</summary>\n\n{inner}\n</details>\n"
 
 
 def busy(load: float | None) -> list[str]:

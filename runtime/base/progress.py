@@ -18,7 +18,7 @@ PATIENCE, INTERVAL = 1.0, 0.5
 
 @contextmanager
 def busy(what: str, progress: bool) -> Iterator[None]:
-    """With `progress`, a terminal shows what is done for how long, from a second on."""
+    """With `progress`, a terminal shows what is done for how long, after the first second."""
     if not seen(progress):
         yield
         return

@@ -165,7 +165,7 @@ def _searched(
 
 
 def _at_lattice(geometry: OnSpline, density: float, progress: bool) -> tuple[Samples, Array] | None:
-    lattice = Lattice.around(geometry.spline)
+    lattice = Lattice.around(geometry.spline, geometry.reach)
     image = geometry.cell_measure.curved_solid_angle(density)
     if round(density * image) == 0:
         return None

@@ -71,7 +71,7 @@ def choose(geometry: OnSpline, request: NDArray[np.float64] | int, progress: boo
 def _adapted(geometry: OnSpline, count: int, progress: bool) -> tuple[Chosen, int]:
     """Adapt the density of a lattice to `count` samples; return it and the number of samples."""
     spline, threads = geometry.spline, geometry.threads
-    lattice = Lattice.around(spline)
+    lattice = Lattice.around(spline, geometry.reach)
     densest = lattice.density_of(NORMALS_PER_SAMPLE * max(count, 1000))
     total = float(np.abs(geometry.measure[1]).sum())
     resolved = geometry.cell_measure.curved_solid_angle(min(count / max(total, 1e-300), densest))

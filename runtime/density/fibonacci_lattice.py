@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..directions.regions import Cap
 from ..directions.sets import part_of_fibonacci, spiral_angle
 from ..directions.unit import in_pieces, perpendicular
 from ..kernels.cone import least_cosine
@@ -27,8 +28,19 @@ class Lattice:
     cosine: float
 
     @classmethod
-    def around(cls, spline: Spline) -> Lattice:
-        """Return the lattice on the smallest cap round the mean normal that holds every normal."""
+    def around(cls, spline: Spline, reach: Cap | None = None) -> Lattice:
+        """Return the lattice on the smallest cap round the mean normal that holds every normal.
+
+        Or on the `reach` if that is smaller.
+        """
+        found = cls._around_all(spline)
+        if reach is not None and reach.angle < 90.0:
+            cosine = math.cos(math.radians(reach.angle)) - 1e-12
+            return cls(reach.axis, cosine) if cosine > found.cosine else found
+        return found
+
+    @classmethod
+    def _around_all(cls, spline: Spline) -> Lattice:
         u, v = (
             low + (high - low) * (np.arange(count) + 0.5) / count
             for (low, high), count in zip(spline.domain, spline.cells, strict=True)

@@ -160,7 +160,7 @@ class Filling:
         request = self.request
         # Normals and angles are absolute: flat parts then count as parts of a sphere.
         absolute = request.normals is not None or request.angle is not None
-        least = 4 * math.pi if absolute else FLAT_SURFACE
+        least = self.request.solid_angle if absolute else FLAT_SURFACE
         floor = FLOOR * max(self.space.integral, least) / self.space.area
         return self.space.between(floor, MOST_CURVED**2 * floor if capped else math.inf)
 

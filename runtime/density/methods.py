@@ -31,7 +31,7 @@ def progressive(self: Samples, *, progress: bool = False) -> Samples:
     Parameters
     ----------
     progress : bool, default False
-        Show on a terminal what is done, from a second on.
+        Show on a terminal what is done, after the first second.
 
     Returns
     -------
@@ -73,7 +73,7 @@ def coverage(
     threads : int, optional
         The number of threads; by default all cores.
     progress : bool, default False
-        Show on a terminal what is done, from a second on.
+        Show on a terminal what is done, after the first second.
 
     Returns
     -------
@@ -121,7 +121,7 @@ def normal_deviation(
     threads : int, optional
         The number of threads; by default all cores.
     progress : bool, default False
-        Show on a terminal what is done, from a second on.
+        Show on a terminal what is done, after the first second.
 
     Returns
     -------

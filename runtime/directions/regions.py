@@ -2,16 +2,50 @@
 
 from __future__ import annotations
 
+import math
+from typing import Any, NamedTuple
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..base.checks import finite_number
-from ..base.errors import InputError
+from ..base.checks import finite_number, positive_number
+from ..base.errors import InputError, shown
 from ..base.memory import check_memory
 from ..base.tolerances import TRIPLE_PRODUCT_ERROR
 from .unit import as_normals, unit_vector
 
-__all__ = ["angles_between", "cap", "polygon"]
+__all__ = ["Cap", "angles_between", "cap", "checked_reach", "polygon"]
+
+
+class Cap(NamedTuple):
+    """The directions within an angle, in degrees, of a unit vector."""
+
+    axis: NDArray[np.float64]
+    angle: float
+
+    @property
+    def solid_angle(self) -> float:
+        """The solid angle of the cap."""
+        return 4.0 * math.pi * math.sin(math.radians(self.angle) / 2.0) ** 2
+
+    def contains(self, normals: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Return which unit normals (N, 3) are in it; what is NaN or 0 is not."""
+        return normals.any(axis=1) & (angles_between(normals, self.axis) <= self.angle)
+
+
+def checked_reach(reach: Any) -> Cap | None:  # noqa: ANN401
+    """Return a pair of an axis and an angle as a cap; InputError if it is none."""
+    if reach is None:
+        return None
+    try:
+        axis, angle = reach
+    except (TypeError, ValueError):
+        raise InputError(
+            f"reach must be an axis and an angle in degrees, such as ((0, 0, 1), 60.0), not "
+            f"{shown(reach)}."
+        ) from None
+    degrees = positive_number(angle, "the angle of reach", " degrees", most=180.0)
+    return Cap(unit_vector(axis, "the axis of reach"), degrees)
 
 
 def cap(normals: ArrayLike, axis: ArrayLike, angle: float) -> NDArray[np.float64]:
@@ -59,7 +93,7 @@ def cap(normals: ArrayLike, axis: ArrayLike, angle: float) -> NDArray[np.float64
     if not 0.0 <= degrees <= 180.0:
         raise InputError(f"angle must lie between 0 and 180 degrees, and is {degrees:g}.")
     check_memory("cap", len(directions))
-    return directions[angles_between(directions, middle) <= degrees]
+    return directions[Cap(middle, degrees).contains(directions)]
 
 
 def polygon(normals: ArrayLike, corners: ArrayLike) -> NDArray[np.float64]:

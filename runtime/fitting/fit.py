@@ -96,7 +96,7 @@ def fit(
         The largest angle between the normals of surface and spline, in degrees, from 0.0001 to 90.
         Alone, it goes with a relative tolerance of 1e-4.
     progress : bool, default False
-        Show on a terminal what is done, from a second on.
+        Show on a terminal what is done, after the first second.
 
     Returns
     -------

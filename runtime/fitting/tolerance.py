@@ -62,7 +62,7 @@ class Goal:
         )
 
     def reached(self, comparison: Comparison) -> bool:
-        """Say whether a spline has this goal."""
+        """Return whether a spline is as accurate as asked for."""
         return max(self.excess(comparison)) <= 1.0
 
 

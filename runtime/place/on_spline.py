@@ -20,6 +20,7 @@ from ...generated.spline import SCALE
 from ..base.aliases import Array
 from ..base.memory import check_memory
 from ..base.threads import over_ranges
+from ..directions.regions import Cap
 from ..fitting.fit import check_range
 from ..kernels.forms import forms_of_jets, jets_on_spline, patches_at
 from ..kernels.tile import fill_known
@@ -33,12 +34,15 @@ from ..spline.developable import CellMeasure
 from ..spline.inside import count_of, samples_inside, with_uv
 from ..spline.spline import Spline
 from ..surface.surface import Surface
+from .reach import InReach, reached
 
 __all__ = ["Fields", "FieldsOfSamples", "OnSpline", "grouped"]
 
 Fields = dict[str, NDArray[Any]]
 
 AT_A_TIME = 1 << 12
+# Normals of a spline at a pole are taken this part of the domain away from it.
+BESIDE_POLE = 1e-6
 
 
 class FieldsOfSamples(NamedTuple):
@@ -58,7 +62,8 @@ class OnSpline:
     """A spline as what is sampled; `surface` is for `OnSurface`.
 
     Samples at normals are written to the fields in `memory` that are large enough. With an `index`
-    of the surface, all points with prescribed normals are found there.
+    of the surface, all points with prescribed normals are found there. With a `reach`, the trim
+    leaves normals in it only.
     """
 
     on: ClassVar[str] = "spline"
@@ -68,6 +73,7 @@ class OnSpline:
     surface: Surface | None = None
     memory: Mapping[str, NDArray[Any]] = field(default_factory=dict)
     index: ProvedIndex | None = None
+    reach: Cap | None = None
 
     def used(
         self,
@@ -81,6 +87,25 @@ class OnSpline:
         """
         check_range(self.spline, dtype)
         return replace(self, threads=threads, memory=memory)
+
+    def within(self, reach: Cap | None) -> Self:
+        """Return the part whose normals are in a cap, or all of it."""
+        if reach is None:
+            return self
+        x = self.spline
+        trim = reached(x.trim, x.domain, x.boundary, InReach(self.normals, reach))
+        surface = None if self.surface is None else replace(self.surface, trim=trim)
+        return replace(self, spline=replace(x, trim=trim), surface=surface, reach=reach)
+
+    def normals(self, places: Array) -> Array:
+        """Return the unit normals (k, 3) at parameters (k, 2); 0 or NaN where there is none."""
+        places = places.copy()
+        for axis, ends in enumerate(self.spline.boundary):
+            low, high = self.spline.domain[axis]
+            off = BESIDE_POLE * (high - low)
+            low, high = low + off * (ends[0] == "pole"), high - off * (ends[1] == "pole")
+            places[:, axis] = np.clip(places[:, axis], low, high)
+        return self.spline.normals(*places.T)
 
     @cached_property
     def measure(self) -> tuple[Array, Array]:

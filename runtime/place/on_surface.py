@@ -92,6 +92,11 @@ class OnSurface(OnSpline):
         misfit = self.spline.misfit
         return 0.0 if misfit is None else misfit.distance
 
+    def normals(self, places: Array) -> Array:
+        """Return the unit normals (k, 3) at parameters (k, 2); 0 where there is none."""
+        assert self.surface is not None
+        return evaluate_on_surface(self.surface, self.spline, places.copy(), threads=1)[1]
+
     @cached_property
     def measure(self) -> tuple[Array, Array]:
         """Areas and signed solid angles of the patches, as `Spline.measure`.

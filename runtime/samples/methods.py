@@ -23,6 +23,7 @@ class Methods:
     normal_deviation = Later(DENSITY)
     progressive = Later(DENSITY)
 
+    levels = Later(TOOLS)
     mesh = Later(TOOLS)
     offset = Later(TOOLS)
     plot = Later(TOOLS)

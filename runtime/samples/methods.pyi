@@ -5,6 +5,7 @@ class Methods:
     from ...tools.files.of_samples import to_open3d as to_open3d
     from ...tools.files.of_samples import to_pyvista as to_pyvista
     from ...tools.files.of_samples import to_trimesh as to_trimesh
+    from ...tools.methods import levels as levels
     from ...tools.methods import mesh as mesh
     from ...tools.methods import offset as offset
     from ...tools.methods import plot as plot

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,6 +13,7 @@ from ..base.checks import checked_count, known_name, positive_number, whole_numb
 from ..base.errors import InputError, UnknownNameError
 from ..base.limits import MOST_STEPS
 from ..base.threads import thread_count
+from ..directions.regions import Cap, checked_reach
 from ..directions.sets import frequency_within, icosphere
 from ..directions.unit import as_normals
 
@@ -31,7 +34,7 @@ class Request:
     """What to sample: one of normals (S, 3), a count, an angle in degrees and a coverage.
 
     A coverage may also be given with one of the others. `density` is one of `DENSITIES`, or α for
-    |K|^α; `relax` is the number of steps of relaxation.
+    |K|^α; `relax` is the number of steps of relaxation. Normals outside of `reach` get no samples.
     """
 
     normals: NDArray[np.float64] | None
@@ -40,6 +43,7 @@ class Request:
     coverage: float | None
     density: str | float
     relax: int
+    reach: Cap | None = None
 
     @property
     def normals_or_count(self) -> NDArray[np.float64] | int:
@@ -52,6 +56,11 @@ class Request:
         if self.relax:
             return "relaxed"
         return self.density if isinstance(self.density, str) else "uniform"
+
+    @property
+    def solid_angle(self) -> float:
+        """The solid angle of the normals that may have samples."""
+        return 4 * math.pi if self.reach is None else self.reach.solid_angle
 
     @property
     def directions(self) -> NDArray[np.float64]:
@@ -70,6 +79,7 @@ def checked_request(
     density: str | float | None,
     relax: int,
     threads: int | None,
+    reach: Any = None,  # noqa: ANN401
 ) -> Request:
     """Return a request; InputError (or UnknownNameError) if the arguments are invalid."""
     thread_count(threads)
@@ -90,6 +100,11 @@ def checked_request(
         raise InputError(
             'relax moves samples that normals did not ask for; density="gauss" has none.'
         )
+    cap = checked_reach(reach)
+    if cap is not None and kind == "aligned":
+        raise InputError(
+            'density="aligned" is a grid on all of a surface; with reach=... use "balanced".'
+        )
     return Request(
         None if normals is None else as_normals(normals, threads=threads),
         number,
@@ -97,6 +112,7 @@ def checked_request(
         None if coverage is None else positive_number(coverage, "coverage"),
         kind,
         steps,
+        cap,
     )
 
 

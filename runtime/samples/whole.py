@@ -41,11 +41,16 @@ class NormalDeviation(NamedTuple):
 class Whole:
     """A surface that is no `Surface`: a CAD part, which defines these methods."""
 
+    @property
+    def unit(self) -> str:
+        """The unit L of all lengths, as "mm" or "in"; empty if it is not known."""
+        raise NotImplementedError
+
     def _sampled(
         self, request: Request, fields: Sequence[str], dtype: DTypeLike, threads: int | None,
         progress: bool, edges: bool,
     ) -> tuple[Any, NDArray[np.float64]]:  # fmt: skip
-        """Return what `sample` returns, and the unit normals that were asked."""
+        """Return what `sample` returns, and the unit normals that were searched."""
         raise NotImplementedError
 
     def _space(self, threads: int | None) -> Any:  # noqa: ANN401

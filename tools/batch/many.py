@@ -40,6 +40,7 @@ class _How(TypedDict, total=False):
     angle: float | None
     coverage: float | None
     density: str | float | None
+    reach: tuple[ArrayLike, float] | None
     relax: int
     cells: Sequence[int] | None
     on: str | None
@@ -114,6 +115,7 @@ def sample_many(
     angle: float | None = None,
     coverage: float | None = None,
     density: str | float | None = None,
+    reach: tuple[ArrayLike, float] | None = None,
     relax: int = 0,
     cells: Sequence[int] | None = None,
     on: str | None = None,
@@ -146,6 +148,8 @@ def sample_many(
     count, normals, angle, coverage, density, relax, cells, on, fields, dtype, threads : optional
         As in `sample`. With `out`, the fields are those without indices by default, and each
         process has one thread.
+    reach : (axis, angle), optional
+        As in `sample`.
     progress : bool, default True
         Show a bar on standard error, if that is a terminal.
     on_error : {"raise", "skip", "none", "return"}, default "raise"
@@ -227,7 +231,7 @@ def sample_many(
     ['ok', 'failed']
 
     """
-    request = checked_request(normals, count, angle, coverage, density, relax, threads)
+    request = checked_request(normals, count, angle, coverage, density, relax, threads, reach)
     shows = yes_or_no(progress, "progress")
     if isinstance(surfaces, str | bytes) or not _iterates(surfaces):
         raise InputError(f"sample_many takes surfaces to go through, not {shown(surfaces)}.")

@@ -66,7 +66,7 @@ class Asked:
     Attributes
     ----------
     arguments : dict
-        Numbers and names: count, angle, coverage, density, relax, cells, on.
+        Numbers and names: count, angle, coverage, density, reach, relax, cells, on.
     normals : (S, 3) float64 array, str or None
         Directions, or the file that holds them.
     named : Named
@@ -153,11 +153,13 @@ def asked_of(
     named: Named | None = None,
 ) -> Asked:
     """Return what is asked of each part; `named` has the options with which files are read."""
+    reach = request.reach
     arguments = {
         "count": request.count,
         "angle": request.angle,
         "coverage": request.coverage,
         "density": request.density,
+        "reach": None if reach is None else [reach.axis.tolist(), reach.angle],
         "relax": request.relax,
         "cells": None if cells is None else list(pair_of_cells(cells)),
         "on": checked_place(on),

@@ -52,13 +52,20 @@ def with_edges(
 
 
 def _on_edges(space: PartSpace, count: int) -> dict[str, NDArray[Any]]:
-    """Return all fields of the samples on edges of a part that has `count` others."""
+    """Return all fields of the samples on edges of a part that has `count` others.
+
+    If the part has a reach, both normals of each are in it.
+    """
     edges = edges_of(space)
     owner, places, ends = _spaced(edges, _step(space, count), max(count, 1))
     sides, rows = exact_places(edges, owner, places)
     size = space.size / space.unit
     solids = np.array([x.face.solid_index for x in space.pieces])[sides.pieces[:, 0]]
     kept = _one_a_corner(sides, solids, ends[rows], SAME_CORNER * size)
+    reach = space.pieces[0].reach
+    if reach is not None:
+        both = [reach.contains(sides.normals[kept, side]) for side in (0, 1)]
+        kept = kept[both[0] & both[1]]
     return _arrays(space, sides[kept])
 
 

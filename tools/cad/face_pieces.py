@@ -17,10 +17,12 @@ from ...runtime.base.errors import GaussmapError, GaussmapWarning
 from ...runtime.base.kept import kept
 from ...runtime.base.scales import scale_to_one
 from ...runtime.density.piece import Piece, boxes_between
+from ...runtime.directions.regions import Cap
 from ...runtime.domain.domain import Domain
 from ...runtime.kernels.refine import evaluate_jets
 from ...runtime.place.on_spline import OnSpline
 from ...runtime.place.on_surface import geometry_of
+from ...runtime.place.reach import in_reach, normals_of_jets
 from ...runtime.samples.fields import dtype_of
 from ...runtime.surface.surface import Surface
 from .faces import own_parameters
@@ -40,6 +42,8 @@ SAME_LINE = 1e-9
 # Points with a normal are searched on a spline: its cells for each part of a span, and their least
 # and largest number. At the border, points are lost by the error of the spline.
 CELLS_A_PART, FEWEST, MOST = 3, 64, 256
+# The part of a face that can be reached is measured at about this number of places squared.
+RASTER = 64
 # Which parameters of a kind of face are angles.
 ANGLES = {
     "cylinder": (True, False),
@@ -52,24 +56,42 @@ ANGLES = {
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FacePiece(Piece):
-    """A face, and its surface, whose normals point outward."""
+    """A face, and its surface, whose normals point outward; of these, those in a `reach`."""
 
     face: Face
     surface: Surface
+    reach: Cap | None = None
 
     @classmethod
-    def of(cls, face: Face) -> FacePiece:
+    def of(cls, face: Face, reach: Cap | None = None) -> FacePiece:
         """Return a face as a piece; GaussmapError if it has no surface."""
         surface, indices = face.surface, {"face_index": face.index, "solid_index": face.solid_index}
+        trim = (in_reach(surface, reach) or surface).trim
         return cls(
-            label=face.label, domain=surface.domain, trim=surface.trim, indices=indices,
-            face=face, surface=surface,
+            label=face.label, domain=surface.domain, trim=trim, indices=indices,
+            face=face, surface=surface, reach=reach,
         )  # fmt: skip
 
     @cached_property
     def size(self) -> float:
         """The root of the area, in L."""
-        return math.sqrt(self.face.area)
+        return math.sqrt(self.face.area * self._share)
+
+    @cached_property
+    def _share(self) -> float:
+        """The part of the face whose normals are in the reach, as a raster tells it."""
+        if self.reach is None:
+            return 1.0
+        n = max(2, math.ceil(RASTER / math.sqrt(len(self.boxes))))
+        shares = (np.indices((n, n)).reshape(2, -1).T + 0.5) / n
+        low, sizes = self.boxes[:, None, :2], self.boxes[:, None, 2:] - self.boxes[:, None, :2]
+        places = (low + shares * sizes).reshape(-1, 2)
+        trim = self.surface.trim
+        places = places if trim is None else places[trim.contains(places)]
+        jets = self.surface.jets(*places.T.copy())
+        areas = np.linalg.norm(np.cross(jets[:, 1], jets[:, 2]), axis=1)
+        inside = self.reach.contains(normals_of_jets(jets))
+        return float(areas[inside].sum() / areas.sum()) if inside.any() else 0.0
 
     @cached_property
     def boxes(self) -> Array:
@@ -101,7 +123,7 @@ class FacePiece(Piece):
     def geometries(self, threads: int | None) -> list[OnSpline]:
         """Return what is searched for points with a normal; GaussmapError if it has no spline."""
         found = kept(self.surface, FacePiece, self._geometries)
-        return [x.used(np.float64, threads) for x in found]
+        return [x.used(np.float64, threads).within(self.reach) for x in found]
 
     def _geometries(self) -> list[OnSpline]:
         with warnings.catch_warnings():
@@ -143,18 +165,23 @@ class FacePiece(Piece):
         }
 
 
-def pieces_of(faces: tuple[Face, ...]) -> tuple[list[FacePiece], dict[int, str]]:
-    """Return the faces that can be sampled, and by their index why others cannot."""
+def pieces_of(
+    faces: tuple[Face, ...], reach: Cap | None = None
+) -> tuple[list[FacePiece], dict[int, str]]:
+    """Return the faces that can be sampled, and by their index why others cannot.
+
+    Those without normals in a `reach` are in neither.
+    """
     pieces, reasons = [], {}
     for face in faces:
         try:
-            piece = FacePiece.of(face)
+            piece = FacePiece.of(face, reach)
             usable = np.isfinite(piece.surface.jets(*piece.middle)).all()
         except GaussmapError as error:
             reasons[face.index] = str(error)
         else:
             if usable and face.area > 0.0:
-                pieces.append(piece)
+                pieces += [piece] if piece.size > 0.0 else []
             else:
                 lack = "it has no area" if usable else "its surface is not finite"
                 reasons[face.index] = f"{face.label} cannot be used: {lack}."

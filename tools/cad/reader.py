@@ -63,7 +63,7 @@ def read_cad(
     memory_limit : float
         The most memory for reading, in GiB.
     progress : bool, default False
-        Show on a terminal what is done, from a second on.
+        Show on a terminal what is done, after the first second.
 
     Returns
     -------

@@ -13,6 +13,7 @@ from ...runtime.base.errors import MissingFieldError, SurfaceError
 from ...runtime.base.trees import tree_of
 from ...runtime.density.cells import AREA, by_piece
 from ...runtime.density.space import Space
+from ...runtime.directions.regions import Cap
 from ...runtime.kernels.sizing import TargetDensity
 from ...runtime.samples.samples import Samples
 from .face_pieces import FacePiece, pieces_of
@@ -34,10 +35,14 @@ class PartSpace(Space):
     failed: Mapping[int, str] = field(default_factory=dict)
 
 
-def space_of(part: Part, threads: int | None, target: TargetDensity | None = None) -> PartSpace:
-    """Return the space of a part; SurfaceError if no face can be sampled."""
-    pieces, failed = pieces_of(part.faces)
+def space_of(
+    part: Part, threads: int | None, target: TargetDensity | None = None, reach: Cap | None = None
+) -> PartSpace:
+    """Return the space of a part, or of what is in a `reach`; SurfaceError if that is nothing."""
+    pieces, failed = pieces_of(part.faces, reach)
     if not pieces:
+        if reach is not None and len(failed) < len(part.faces):
+            raise SurfaceError(f"no normal of part {part.name!r} is within the reach.")
         reason = f": {next(iter(failed.values()))}" if failed else "."
         raise SurfaceError(f"part {part.name!r} has no face that can be sampled{reason}")
     label = f"part {part.name!r}"

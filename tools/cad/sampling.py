@@ -38,11 +38,11 @@ def sample_part(
     progress: bool,
     edges: bool = False,
 ) -> tuple[Samples, Array]:
-    """Return samples of a part, and the normals that were asked. Raises what `sample` raises."""
+    """Return samples of a part, and the normals that were searched. Raises what `sample` raises."""
     _check(request)
     if request.count is not None:
         check_memory("relaxed part" if request.relax else "part", request.count)
-    space = space_of(part, threads, target_of(request))
+    space = space_of(part, threads, target_of(request), request.reach)
     cover = fill(space, request, progress)
     on_faces = [x for x in fields if x not in EDGE_NAMES]
     found = fields_of(cover, list(dict.fromkeys([*on_faces, *FLAG_NAMES])), dtype)

@@ -31,7 +31,7 @@ def sampled(
     default_count: int,
     **how: Any,  # noqa: ANN401
 ) -> tuple[Samples, NDArray[np.float64]]:
-    """Return the samples that a command asks for, and the unit normals that were asked."""
+    """Return the samples that a command asks for, and the unit normals that were searched."""
     NOTICE.quiet = options.quiet
     progress = not options.quiet
     _spare_inputs(options)
@@ -50,7 +50,8 @@ def request_of(options: SimpleNamespace, default_count: int) -> Request:
     normals = _named_normals(options)
     asked = normals, options.count, options.angle, options.coverage
     count = default_count if all(x is None for x in asked) else options.count
-    how = options.density, options.relax, vars(options).get("threads")
+    reach = None if options.reach is None else (options.reach[:3], options.reach[3])
+    how = options.density, options.relax, vars(options).get("threads"), reach
     return checked_request(normals, count, options.angle, options.coverage, *how)
 
 

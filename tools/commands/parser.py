@@ -387,6 +387,13 @@ def _distribution() -> list[Option]:
             shell_complete=densities,
         ),
         Option(
+            "--reach X Y Z ANGLE",
+            "Only where the normal is within ANGLE degrees of the direction X Y Z, from which a "
+            "probe, a camera or a printer comes.",
+            number,
+            group="how dense",
+        ),
+        Option(
             "--relax STEPS",
             "Distribute the samples that fill gaps more evenly, in 2 or 3 steps, at more cost "
             "(default: 0).",

@@ -9,9 +9,10 @@ import numpy as np
 
 from ... import __version__
 from ...runtime.base.extras import from_extra
-from ...runtime.samples.fields import COLUMNS, UNITS, columns_of
+from ...runtime.samples.fields import COLUMNS, columns_of
 from ...runtime.samples.samples import Samples
 from .content import report_to_json
+from .lengths import unit_of, units_of
 
 __all__ = ["write_arrow", "write_parquet"]
 
@@ -35,13 +36,15 @@ def write_arrow(samples: Samples, path: Path) -> None:
 
 def _table(samples: Samples, path: Path) -> Any:  # noqa: ANN401
     arrow = from_extra("pyarrow", "tables", f"a {path.suffix} file")
+    units, unit = units_of(samples), unit_of(samples)
     fields = [
         arrow.field(column, arrow.from_numpy_dtype(array.dtype), nullable=False).with_metadata(
-            {"field": name} | ({"unit": UNITS[name]} if name in UNITS else {})
+            {"field": name} | ({"unit": units[name]} if name in units else {})
         )
         for name, array in samples.arrays().items()
         for column in COLUMNS[name]
     ]
     about = {"gaussmap": __version__, "report": report_to_json(samples.report)}
+    about |= {} if unit is None else {"unit_of_length": unit}
     columns = [arrow.array(np.ascontiguousarray(x)) for x in columns_of(samples.arrays()).values()]
     return arrow.table(columns, schema=arrow.schema(fields, metadata=about))

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
-__all__ = ["METRES", "unit_named"]
+from ...runtime.base.extras import if_installed
+from ...runtime.samples.fields import COLUMNS, UNITS
+from ...runtime.samples.samples import Samples
+from ...runtime.samples.whole import Whole
+
+__all__ = ["METRES", "names_with_units", "unit_named", "unit_of", "units_of"]
 
 # The length of each unit in metres.
 METRES: dict[str, float] = {
@@ -42,3 +47,36 @@ NAMES = {**{x: x for x in METRES}, **{x: unit for unit, every in SYNONYMS.items(
 def unit_named(name: str) -> str | None:
     """Return the unit that a file or a user calls so; None if there is no such unit."""
     return NAMES.get(name.strip().lower())
+
+
+def unit_of(samples: Samples) -> str | None:
+    """Return the unit of length of samples: that of their part, or of their reference system.
+
+    None if it is not known. Reference systems are read by rasterio, if it is installed.
+    """
+    if isinstance(samples.surface, Whole):
+        return samples.surface.unit or None
+    crs = samples.report.crs
+    rasterio = None if crs is None else if_installed("rasterio.crs")
+    if rasterio is None:
+        return None
+    try:
+        return unit_named(rasterio.CRS.from_user_input(crs).linear_units)
+    except ValueError:
+        return None
+
+
+def units_of(samples: Samples) -> dict[str, str]:
+    """Return the units of fields; L is replaced by the unit of length if that is known."""
+    unit = unit_of(samples)
+    return {name: x if unit is None else x.replace("L", unit) for name, x in UNITS.items()}
+
+
+def names_with_units(samples: Samples) -> list[str]:
+    """Return the columns of samples, of lengths and curvatures with their unit if it is known."""
+    units, known = units_of(samples), unit_of(samples) is not None
+    return [
+        f"{column} [{units[name]}]" if known and "L" in UNITS.get(name, "") else column
+        for name in samples.arrays()
+        for column in COLUMNS[name]
+    ]

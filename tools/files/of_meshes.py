@@ -33,12 +33,14 @@ def write(self: Mesh, path: str | os.PathLike[str]) -> None:
         Name of the file. The suffix is one of
 
         - `.ply`: binary; vertices with normals and u, v.
-        - `.obj`: text of 17 digits; vertices with normals.
+        - `.obj`: text of 17 digits; vertices with normals, and texture coordinates, see
+          `Mesh.corner_uv`.
         - `.stl`: binary, float32; triangles alone.
         - `.vtk`, `.vtu`: VTK's unstructured grid with normals, u, v and `sample_index`.
         - `.vtp`: VTK's PolyData with normals, uv and `sample_index`.
-        - `.glb`: binary glTF with normals, float32; needs the extra `trimesh`. Coordinates stay
-          as they are, while viewers show y upwards.
+        - `.glb`: binary glTF with normals and texture coordinates, float32; needs the extra
+          `trimesh`. Vertices at seams and poles are several there, behind those of the mesh.
+          Coordinates stay as they are, while viewers show y upwards.
 
     Raises
     ------

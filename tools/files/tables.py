@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from ...runtime.base.extras import if_installed
 from ...runtime.samples.fields import columns_of
 from ...runtime.samples.samples import Samples
+from .lengths import names_with_units
 
 __all__ = ["write_csv", "write_rows", "write_xyz"]
 
@@ -25,10 +26,10 @@ WORTH_AN_IMPORT, ROWS_OF_POLARS = 20_000, 1 << 18
 
 
 def write_csv(samples: Samples, path: Path) -> None:
-    """Write a line of names, and one for each sample."""
+    """Write a line of names, with units of length where these are known; one for each sample."""
     columns = columns_of(samples.arrays())
     with open(path, "wb") as file:
-        file.write((",".join(columns) + "\n").encode("ascii"))
+        file.write((",".join(names_with_units(samples)) + "\n").encode("ascii"))
         write_rows(file, ",".join(["{}"] * len(columns)) + "\n", list(columns.values()))
 
 

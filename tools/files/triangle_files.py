@@ -10,6 +10,7 @@ import numpy as np
 from ...runtime.base.errors import InputError
 from ...runtime.base.extras import from_extra
 from ...runtime.base.scales import scales_to_one
+from ..meshes.texture import split_at_seams
 from .tables import write_rows
 
 if TYPE_CHECKING:
@@ -21,14 +22,16 @@ _STL_ROW = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribu
 
 
 def write_obj(mesh: Mesh, path: Path) -> None:
-    """Write text: vertices, their normals, and triangles that name both."""
+    """Write text: vertices, texture coordinates, normals, and triangles that name all three."""
     # Not trimesh: it writes a fixed number of digits behind the point, none of small numbers.
+    texture = split_at_seams(mesh.uv, mesh.triangles, mesh.domain, mesh.boundary)
     with open(path, "wb") as file:
         file.write(b"# written by gaussmap\n")
         write_rows(file, "v {} {} {}\n", [*mesh.vertices.T])
+        write_rows(file, "vt {} {}\n", [*texture.places.T])
         write_rows(file, "vn {} {} {}\n", [*mesh.normals.T])
-        corners = np.repeat(mesh.triangles.T + 1, 2, axis=0)
-        write_rows(file, "f {}//{} {}//{} {}//{}\n", [*corners])
+        corners = np.stack([mesh.triangles, texture.corners, mesh.triangles], axis=2) + 1
+        write_rows(file, "f {}/{}/{} {}/{}/{} {}/{}/{}\n", [*corners.reshape(-1, 9).T])
 
 
 def write_stl(mesh: Mesh, path: Path) -> None:
@@ -49,14 +52,23 @@ def write_stl(mesh: Mesh, path: Path) -> None:
 
 
 def write_glb(mesh: Mesh, path: Path) -> None:
-    """Write triangles, vertices and their normals, in single precision."""
+    """Write triangles, vertices, normals and texture coordinates, in single precision.
+
+    The first vertices are those of the mesh. Others have the same points and normals as one of
+    them, and texture coordinates for triangles across a seam or at a pole.
+    """
     trimesh = from_extra("trimesh", "trimesh", "a .glb file")
     if np.abs(mesh.vertices).max() > np.finfo(np.float32).max:
         raise InputError(
             "a .glb file holds single precision, for which these vertices are too large; choose "
             "another unit of length, or write a .ply file."
         )
+    texture = split_at_seams(mesh.uv, mesh.triangles, mesh.domain, mesh.boundary)
     made = trimesh.Trimesh(
-        mesh.vertices, mesh.triangles, vertex_normals=mesh.normals, process=False
+        mesh.vertices[texture.vertex],
+        texture.corners,
+        vertex_normals=mesh.normals[texture.vertex],
+        visual=trimesh.visual.TextureVisuals(uv=texture.places),
+        process=False,
     )
     path.write_bytes(made.export(file_type="glb", include_normals=True))

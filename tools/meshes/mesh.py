@@ -12,10 +12,12 @@ from numpy.typing import NDArray
 from ...runtime.base.checks import checked_array, text, whole_number
 from ...runtime.base.errors import InputError
 from ...runtime.base.scales import scale_to_one
+from ...runtime.domain.domain import Boundary, Domain, checked_boundary, checked_domain
 from ...runtime.spline.spline import short_label
 from ..kernels.flips import smallest_cosines, smallest_tangents
 from .links import edge_numbers
 from .methods import Methods
+from .texture import corner_places
 
 __all__ = ["Mesh", "centred", "cosines_of", "scaled", "tangents_of"]
 
@@ -50,6 +52,10 @@ class Mesh(Methods):
     left_out : int
         The number of samples that are no vertex: too close to others or, with an `angle`, in no
         triangle that is left.
+    domain : ((u0, u1), (v0, v1)) of float or None
+        The rectangle of the parameters, if it is known.
+    boundary : pair of pairs of str or None
+        The boundary conditions there, see `Surface`; "pole" for any side that is one point.
 
     Raises
     ------
@@ -70,8 +76,8 @@ class Mesh(Methods):
     True
     >>> len(mesh.edges), len(mesh.boundary_edges), mesh.euler_characteristic
     (600, 0, 0)
-    >>> mesh.left_out
-    0
+    >>> mesh.left_out, mesh.domain == gm.surfaces.torus().domain, mesh.boundary[0]
+    (0, True, ('periodic', 'periodic'))
     >>> bool(mesh.angles.mean() < 30), bool(mesh.smallest_angles.min() > 5)
     (True, True)
 
@@ -85,6 +91,8 @@ class Mesh(Methods):
     name: str = "surface"
     sides: NDArray[np.int64] = _ALL_ALIKE
     left_out: int = 0
+    domain: Domain | None = None
+    boundary: Boundary | None = None
 
     def __post_init__(self) -> None:
         text(self.name, "name")
@@ -107,6 +115,10 @@ class Mesh(Methods):
         if faces and not 0 <= self.triangles.min() <= self.triangles.max() < count:
             raise InputError(f"triangles have vertices that are not there: there are {count}.")
         object.__setattr__(self, "left_out", whole_number(self.left_out, "left_out", 0))
+        if self.domain is not None:
+            object.__setattr__(self, "domain", checked_domain(self.domain))
+        if self.boundary is not None:
+            object.__setattr__(self, "boundary", checked_boundary(self.boundary)[0])
 
     def __repr__(self) -> str:
         return (
@@ -141,6 +153,24 @@ class Mesh(Methods):
     def euler_characteristic(self) -> int:
         """M − E + T: 2 for a sphere, 1 for a disk, 0 for a torus, a band or a Klein bottle."""
         return len(self.vertices) - len(self.edges) + len(self.triangles)
+
+    @cached_property
+    def corner_uv(self) -> NDArray[np.float64]:
+        """(T, 3, 2) float64 array: texture coordinates at the corners of each triangle.
+
+        They are the parameters, the domain scaled to 1 × 1, and do not jump: across a seam they
+        are continued beyond 1, for textures that repeat. A pole has a place of its own in each
+        triangle. `.glb` and `.obj` files have them.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> mesh = gm.sample("torus", 200, cells=(16, 16)).mesh()
+        >>> mesh.corner_uv.shape, bool(mesh.corner_uv.max() > 1)  # across a seam
+        ((400, 3, 2), True)
+
+        """
+        return corner_places(self.uv, self.triangles, self.domain, self.boundary)
 
     @cached_property
     def angles(self) -> NDArray[np.float64]:

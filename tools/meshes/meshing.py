@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ...runtime.base.errors import InputError, shown
 from ...runtime.base.memory import check_memory
-from ...runtime.domain.domain import Boundary
+from ...runtime.domain.domain import Boundary, BoundaryCondition
 from ...runtime.place.newton import evaluate_on_surface
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
@@ -81,7 +81,16 @@ def triangulated(samples: Samples, spline: Spline, must_be_whole: bool = True) -
     return Triangulated(
         spline.name, uv, vertices.sample, vertices.is_free,
         points, normals, triangles, sides, adjacent, vertices.is_node(samples),
+        spline.domain, _with_points_as_poles(spline, boundary),
     )  # fmt: skip
+
+
+def _with_points_as_poles(spline: Spline, boundary: Boundary) -> Boundary:
+    """Return boundary conditions that call every side that is one point a pole."""
+    ends: list[list[BoundaryCondition]] = [[*kinds] for kinds in boundary]
+    for axis, place in apexes_of(spline):
+        ends[axis][place] = "pole"
+    return (ends[0][0], ends[0][1]), (ends[1][0], ends[1][1])
 
 
 def _triangles(

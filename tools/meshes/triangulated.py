@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ...runtime.base.errors import InputError, shown
 from ...runtime.base.tolerances import NO_AREA
+from ...runtime.domain.domain import Boundary, Domain
 from ..kernels import collapses
 from ..kernels import flips as kernels
 from .links import neighbours
@@ -55,6 +56,8 @@ class Triangulated:
     sides: Indices
     neighbours: Indices
     is_node: NDArray[np.bool_]
+    domain: Domain
+    boundary: Boundary
 
     def cosines(self) -> Array:
         """Return the smallest cosine of each triangle and the normals at its corners."""
@@ -113,6 +116,8 @@ class Triangulated:
             name=self.name,
             sides=sides,
             left_out=samples - int(np.count_nonzero(self.sample[used] >= 0)),
+            domain=self.domain,
+            boundary=self.boundary,
         )
 
 

@@ -39,7 +39,7 @@ class Source(Protocol):
         ...
 
     def expression(self) -> sympy.Expr | None:
-        """Return h in n_x, n_y, n_z, on the unit sphere; None if no one expression says it."""
+        """Return h in n_x, n_y, n_z, on the unit sphere; None if that is no single expression."""
         ...
 
     def domain(self) -> Any:  # noqa: ANN401 - a Boolean of SymPy

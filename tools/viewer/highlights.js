@@ -55,7 +55,7 @@ function paintDisc(pen, x, y, size, colour, isInFront) {
 /** The normals that are within an angle of another one. */
 function paintCircle(pen, matrix, box, viewer, { normal, degrees }) {
     const [e, f] = frame(normal), r = degrees * Math.PI / 180;
-    pen.strokeStyle = "#1f2933";
+    pen.strokeStyle = theme.ink;
     let last = null;
     for (let t = 0; t <= 64; t++) {
         const [a, b] = [Math.sin(r) * Math.cos(t * Math.PI / 32), Math.sin(r) * Math.sin(t * Math.PI / 32)];

@@ -77,6 +77,7 @@ function onPick(plot, action) {
     }, true);
 }
 
+const ROUND = [1.75, 1.75, 1.75];
 let waiting = false;
 function soon() { // at most once a frame
     if (!waiting) requestAnimationFrame(() => { waiting = false; update(); });
@@ -90,8 +91,17 @@ byId("radius").addEventListener("input", soon);
 byId("clear").addEventListener("click", () => { state = null; update(); });
 Promise.all([
     Plotly.newPlot("surface", layers.surface, layout(data.aspect, data.range, EYE), config),
-    Plotly.newPlot("sphere", layers.sphere, layout([1.75, 1.75, 1.75], unit, EYE), config),
-]).then(() => {
+    Plotly.newPlot("sphere", layers.sphere, layout(ROUND, unit, EYE), config),
+]).then(() => Promise.all([
+    fitted(byId("surface"), decoded(data.vertices, Float32Array), data.aspect),
+    fitted(byId("sphere"), normals, ROUND),
+])).then(() => {
+    onTheme(() => {
+        Plotly.restyle("surface", { color: theme.mesh }, [0]);
+        Plotly.restyle("sphere", { color: theme.ball }, [0]);
+        Plotly.restyle("sphere", { "line.color": theme.lines }, [1]);
+        version += 1;
+    });
     onPick(byId("surface"), pickSample);
     onPick(byId("sphere"), pickNormal);
     update();

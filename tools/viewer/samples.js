@@ -1,4 +1,3 @@
-"use strict";
 // Samples and their normals, linked. Picking is done here: Plotly's clicks in three dimensions come
 // when a button goes down, before it is known whether the user turns the picture, and not at all on
 // touch screens.

@@ -21,7 +21,7 @@ function mesh() {
     return {
         type: "mesh3d", x: column(vertices, 0), y: column(vertices, 1), z: column(vertices, 2),
         i: column(triangles, 0), j: column(triangles, 1), k: column(triangles, 2),
-        color: "#d9dee2", flatshading: data.flat, hoverinfo: "skip", showlegend: false,
+        color: theme.mesh, flatshading: data.flat, hoverinfo: "skip", showlegend: false,
         lighting: { ambient: 0.65, diffuse: 0.55, specular: 0.05, roughness: 0.9 },
     };
 }
@@ -41,7 +41,7 @@ function globe() {
         add(null, null, null);
     }
     return { type: "scatter3d", mode: "lines", x, y, z, hoverinfo: "skip", showlegend: false,
-        line: { color: "#c3ccd4", width: 1.5 } };
+        line: { color: theme.lines, width: 1.5 } };
 }
 
 function ball() {
@@ -56,11 +56,13 @@ function ball() {
             }
         }
     }
-    return { type: "mesh3d", x, y, z, i, j, k, color: "#eef1f3", hoverinfo: "skip", showlegend: false,
+    return { type: "mesh3d", x, y, z, i, j, k, color: theme.ball, hoverinfo: "skip", showlegend: false,
         lighting: { ambient: 0.85, diffuse: 0.2, specular: 0 } };
 }
 
-const size = Math.min(Math.max(Math.sqrt(30000 / count), 1.4), 4);
+// Smaller ones in small frames, where they would hide one another.
+const share = Math.min(byId("surface").clientWidth, byId("surface").clientHeight) / 450;
+const size = Math.min(Math.max(Math.sqrt(30000 / count), 1.4), 4) * Math.min(Math.max(share, 0.45), 1);
 const kinds = EACH.map(ofKind);
 // These traces stay as they are; what is picked is drawn over them, see highlights.js.
 const LIFT = 0.004; // samples are drawn above the triangles, which would hide halves of them
@@ -74,7 +76,7 @@ const layers = {
 function layout(aspect, range, eye) {
     const axis = (k) => ({ visible: false, range: range[k], autorange: false });
     return {
-        margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: "white", hovermode: false, uirevision: "same",
+        margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: "rgba(0,0,0,0)", hovermode: false, uirevision: "same",
         scene: {
             xaxis: axis(0), yaxis: axis(1), zaxis: axis(2), aspectmode: "manual",
             aspectratio: { x: aspect[0], y: aspect[1], z: aspect[2] }, hovermode: false,
@@ -87,3 +89,24 @@ const EYE = { x: 1.0, y: -1.45, z: 0.95 };
 // Plotly draws four times as many pixels by default, which many samples do not need.
 const config = { displayModeBar: false, responsive: true, scrollZoom: true, plotGlPixelRatio: count > 10000 ? 1 : 2 };
 const unit = [[-1.05, 1.05], [-1.05, 1.05], [-1.05, 1.05]];
+
+// What is left free around a picture, and the part of it that counts as none.
+const FILLED = 0.94, ENOUGH = 0.01;
+
+/** Scale a scene so that points, rows of three numbers, fill its frame as they are first seen. */
+function fitted(plot, rows, aspect) {
+    const box = plot.getBoundingClientRect(), matrix = camera(plot);
+    let low = [Infinity, Infinity], high = [-Infinity, -Infinity];
+    for (let i = 0; i < rows.length; i += 3) {
+        const at = onScreen(matrix, box, rows[i], rows[i + 1], rows[i + 2]);
+        low = low.map((x, k) => Math.min(x, at[k]));
+        high = high.map((x, k) => Math.max(x, at[k]));
+    }
+    // About the middle of the frame, which the picture is turned about.
+    const half = [box.width / 2, box.height / 2];
+    const reach = half.map((h, k) => Math.max(h - low[k], high[k] - h) / h);
+    const factor = FILLED / Math.max(...reach);
+    if (!(Math.abs(factor - 1) > ENOUGH) || !isFinite(factor)) return Promise.resolve();
+    const [x, y, z] = aspect.map((a) => a * factor);
+    return Plotly.relayout(plot, { "scene.aspectratio": { x, y, z } });
+}

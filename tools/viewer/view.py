@@ -32,13 +32,14 @@ from ..pictures.scene import Scene, scene_of_samples
 __all__ = ["COUNT", "MOST", "SUFFIXES", "check_count", "check_target", "page", "view"]
 
 SUFFIXES = (".html", ".htm")
-SCRIPTS = ("samples", "scene", "camera", "picking", "selection", "highlights", "link")
+SCRIPTS = ("theme", "samples", "scene", "camera", "picking", "selection", "highlights", "link")
 COUNT = 5_000  # samples, if no number is given
 MOST = 50_000  # samples in a page, which stays fluid
 NEIGHBOURS = 8  # of each sample, for connected groups
 LEAST_ANGLE, MOST_ANGLE = 1.0, 20.0  # of the cap around a normal at first, in degrees
 PARABOLIC_LEGEND = (
-    f'<span class="dot" style="background:{PARABOLIC}"></span>parabolic (K = 0)'  # flat, too
+    f'<span class="legend"><span class="dot" style="background:{PARABOLIC}"></span>'
+    "parabolic (K = 0)</span>"  # flat, too
 )
 PALE_PARABOLIC = "#b9b9b9"
 RADIUS = 10.0  # of the region around a place at first, in per cent of the diameter

@@ -88,6 +88,19 @@ def test_sample_a_surface_by_name() -> None:
 
 
 @compiled
+def test_only_what_is_in_reach_is_sampled() -> None:
+    arguments = ["--count", "300", "--reach", "0", "0", "-2", "25", "-o", "a.npz"]
+    done = gaussmap("sample", "torus", *arguments)
+    assert (done.returncode, done.stderr) == (0, "")
+    samples = gm.read_samples("a.npz")
+    assert len(samples) == 300
+    assert samples.normals[:, 2].max() <= -np.cos(np.radians(25.0)) + 1e-12
+    done = gaussmap("sample", "torus", "--reach", "0", "0", "0", "25", "-o", "b.npz")
+    assert done.returncode == 2
+    assert "the axis of reach" in done.stderr
+
+
+@compiled
 def test_sample_elevations() -> None:
     x, y = np.meshgrid(np.linspace(-1, 1, 50), np.linspace(-1, 1, 40))
     np.save("heights.npy", 100 * np.exp(-3 * (x * x + y * y)))

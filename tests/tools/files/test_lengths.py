@@ -1,5 +1,7 @@
 """Units of length, and their names."""
 
+import gaussmap as gm
+import numpy as np
 import pytest
 from gaussmap.tools.files.lengths import METRES, unit_named
 
@@ -30,3 +32,44 @@ def test_lengths_are_those_of_the_standards():
     assert METRES["ft"] / METRES["us-ft"] == pytest.approx(1 - 2e-6, rel=1e-12)
     metric = [METRES[x] for x in ("nm", "um", "mm", "cm", "dm", "m", "km")]
     assert metric == [1e-9, 1e-6, 1e-3, 1e-2, 1e-1, 1.0, 1e3]
+
+
+def header(samples, folder):
+    samples.write(folder / "a.csv")
+    return (folder / "a.csv").read_text().partition("\n")[0].split(",")
+
+
+def terrain(crs):
+    x = np.arange(12.0)
+    return gm.terrain(np.sin(x)[:, None] * np.cos(x), spacing=(1.0, 1.0), crs=crs)
+
+
+def test_tables_of_parts_name_the_unit(tmp_path):
+    from gaussmap.tools.cad.examples import box
+
+    samples = gm.sample(box(), 20)
+    names = header(samples, tmp_path)
+    assert names[:4] == ["x [mm]", "y [mm]", "z [mm]", "nx"]
+    assert {"support [mm]", "gaussian_curvature [1/mm^2]", "mean_curvature [1/mm]"} <= {*names}
+    parquet = pytest.importorskip("pyarrow.parquet")
+    samples.write(tmp_path / "a.parquet")
+    schema = parquet.read_schema(tmp_path / "a.parquet")
+    assert schema.metadata[b"unit_of_length"] == b"mm"
+    assert schema.field("x").metadata[b"unit"] == b"mm"
+    assert schema.field("gaussian_curvature").metadata[b"unit"] == b"1/mm^2"
+    assert schema.field("nx").metadata[b"unit"] == b"1"
+
+
+@pytest.mark.parametrize(("crs", "name"), [("EPSG:32617", "x [m]"), ("EPSG:2263", "x [us-ft]")])
+def test_tables_of_terrain_name_the_unit_of_the_reference_system(crs, name, tmp_path):
+    pytest.importorskip("rasterio")
+    assert header(gm.sample(terrain(crs), 20), tmp_path)[0] == name
+
+
+def test_no_unit_is_named_that_is_not_known(tmp_path):
+    for surface in ("torus", terrain(None)):
+        samples = gm.sample(surface, 20)
+        assert header(samples, tmp_path)[:3] == ["x", "y", "z"]
+        parquet = pytest.importorskip("pyarrow.parquet")
+        samples.write(tmp_path / "a.parquet")
+        assert b"unit_of_length" not in parquet.read_schema(tmp_path / "a.parquet").metadata

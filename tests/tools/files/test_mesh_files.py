@@ -24,7 +24,7 @@ def noise(count: int = 5000) -> gm.Mesh:
 
 def rows(path: Path, first: str) -> np.ndarray:
     """Return the numbers of the lines of a text that begin with a word."""
-    lines = [line.replace("//", " ").split() for line in path.read_text().splitlines()]
+    lines = [line.replace("/", " ").split() for line in path.read_text().splitlines()]
     return np.array([[float(x) for x in line[1:]] for line in lines if line[0] == first])
 
 
@@ -34,8 +34,9 @@ def test_obj_holds_every_bit(tmp_path):
     assert rows(tmp_path / "a.obj", "v").tobytes() == mesh.vertices.tobytes()
     assert rows(tmp_path / "a.obj", "vn").tobytes() == mesh.normals.tobytes()
     corners = rows(tmp_path / "a.obj", "f")
-    np.testing.assert_array_equal(corners[:, ::2], mesh.triangles + 1)
-    np.testing.assert_array_equal(corners[:, 1::2], mesh.triangles + 1)
+    for number in range(3):  # of the point, the texture coordinates and the normal
+        np.testing.assert_array_equal(corners[:, number::3], mesh.triangles + 1)
+    assert rows(tmp_path / "a.obj", "vt").tobytes() == mesh.uv.tobytes()
 
 
 def test_ply_holds_every_bit(tmp_path):

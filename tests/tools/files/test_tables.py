@@ -135,7 +135,7 @@ def test_polars_writes_meshes(tmp_path, monkeypatch):
         texts.append((tmp_path / "a.obj").read_text().splitlines())
     one, other = texts
     assert one[0] == other[0]
-    assert one[-2:] == other[-2:] == ["f 1//1 2//2 3//3", "f 5//5 4//4 3//3"]
+    assert one[-2:] == other[-2:] == ["f 1/1/1 2/2/2 3/3/3", "f 5/5/5 4/4/4 3/3/3"]
     for a, b in zip(one[1:-2], other[1:-2], strict=True):
         assert a.split()[0] == b.split()[0]
         assert [*map(float, a.split()[1:])] == [*map(float, b.split()[1:])]

@@ -1,0 +1,79 @@
+"""The part of what is sampled whose normals are within an angle of an axis: a part of its trim."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..base.aliases import Array, Flags
+from ..directions.regions import Cap
+from ..domain.domain import Boundary, Domain
+from ..domain.trim import Trim
+from ..surface.surface import Surface
+
+__all__ = ["InReach", "in_reach", "normals_of_jets", "reached"]
+
+
+@dataclass(frozen=True, eq=False)
+class InReach:
+    """The condition that the normal is in a cap.
+
+    `normals` returns unit normals (k, 3) at parameters (k, 2); 0 or NaN where there is none.
+    """
+
+    normals: Callable[[Array], Array]
+    cap: Cap
+
+    def contains(self, uv: Array, threads: int | None = None) -> Flags:
+        """Return whether the normals at points (k, 2) are in the cap."""
+        return self.cap.contains(self.normals(uv))
+
+    def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags:
+        """Return the cells (m, n) whose normals may enter the cap, or leave it.
+
+        The cosine of the angle is known at the corners and the middle of each. It is taken to
+        exceed these by no more than they differ.
+        """
+        nodes, middles = (self._cosines(domain, cells, shift) for shift in (0.0, 0.5))
+        nodes = [nodes[i : i + cells[0], j : j + cells[1]] for i in (0, 1) for j in (0, 1)]
+        known = np.stack([*nodes, middles[: cells[0], : cells[1]]])
+        low, high = known.min(axis=0), known.max(axis=0)
+        limit = math.cos(math.radians(self.cap.angle))
+        # Also where there is a place without a normal.
+        return ~((2.0 * low - high > limit) | (2.0 * high - low < limit))
+
+    def _cosines(self, domain: Domain, cells: tuple[int, int], shift: float) -> Array:
+        """Return cosines (m + 1, n + 1), or (m, n) with a shift; NaN where there is no normal."""
+        u, v = (
+            low + (high - low) * ((np.arange(count + (shift == 0.0)) + shift) / count)
+            for (low, high), count in zip(domain, cells, strict=True)
+        )
+        places = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1)
+        normals = self.normals(places.reshape(-1, 2))
+        normals[~normals.any(axis=1)] = np.nan
+        return (normals @ self.cap.axis).reshape(len(u), len(v))
+
+
+def reached(trim: Trim | None, domain: Domain, boundary: Boundary, condition: InReach) -> Trim:
+    """Return a trim, or that of a whole domain, with a condition on normals."""
+    whole = Trim(domain, boundary, ()) if trim is None else trim
+    return whole.and_(condition)
+
+
+def in_reach(surface: Surface | None, reach: Cap | None) -> Surface | None:
+    """Return a surface of several pieces without the normals outside of a cap."""
+    if surface is None or reach is None:
+        return surface
+    x = surface
+    condition = InReach(lambda places: normals_of_jets(x.jets(*places.T.copy())), reach)
+    return replace(x, trim=reached(x.trim, x.domain, x.boundary, condition))
+
+
+def normals_of_jets(jets: Array) -> Array:
+    """Return the unit normals (k, 3) of 2-jets (k, 6, 3); 0 where there is none."""
+    normals = np.cross(jets[:, 1], jets[:, 2])
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    return np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0)

@@ -1,0 +1,133 @@
+"""`reach`: samples whose normals are within an angle of an axis, with everything guaranteed."""
+
+from __future__ import annotations
+
+import pickle
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from scipy.spatial import KDTree
+
+AXIS, ANGLE = (1.0, 2.0, 0.5), 35.0
+ROUNDING = 1e-9
+
+
+def angles(normals: np.ndarray, axis: object = AXIS) -> np.ndarray:
+    unit = np.asarray(axis) / np.linalg.norm(np.asarray(axis))
+    return np.degrees(np.arccos(np.clip(normals @ unit, -1.0, 1.0)))
+
+
+def places_in_reach(surface: gm.Surface) -> tuple[np.ndarray, np.ndarray]:
+    """Return many points in the reach, and their normals."""
+    u, v = (low + (high - low) * (np.arange(400) + 0.5) / 400 for low, high in surface.domain)
+    u, v = np.meshgrid(u, v)
+    points, normals = (f(u, v).reshape(-1, 3) for f in (surface.evaluate, surface.normals))
+    inside = angles(normals) <= ANGLE
+    return points[inside], normals[inside]
+
+
+@pytest.mark.parametrize("name", ["torus", "ellipsoid"])
+def test_every_request_keeps_to_the_reach_and_its_guarantee(name: str) -> None:
+    surface = gm.surfaces.torus() if name == "torus" else gm.surfaces.ellipsoid()
+    points, normals = places_in_reach(surface)
+    requests: list[dict[str, Any]] = [
+        {"count": 300},
+        {"count": 300, "density": "uniform"},
+        {"count": 300, "density": 0.5},
+        {"count": 300, "density": "gauss"},
+        {"coverage": 0.06},
+        {"angle": 4.0},
+        {"angle": 6.0, "coverage": 0.1},
+    ]
+    for how in requests:
+        samples = gm.sample(surface, reach=(AXIS, ANGLE), **how)
+        assert angles(samples.normals).max() <= ANGLE + ROUNDING
+        if "count" in how:
+            slack = 6 if how.get("density") == "gauss" else 0
+            assert abs(len(samples) - 300) <= slack
+        if "coverage" in how:
+            farthest = KDTree(samples.points).query(points)[0].max()
+            assert farthest <= (samples.report.coverage or 0.0) <= how["coverage"]
+        if "angle" in how:
+            chord = KDTree(samples.normals).query(normals)[0].max()
+            assert np.degrees(2.0 * np.arcsin(chord / 2.0)) <= how["angle"]
+
+
+def test_prescribed_normals_have_the_same_points_as_without_a_reach() -> None:
+    normals = gm.icosphere(12)
+    whole = gm.sample("torus", normals=normals)
+    some = gm.sample("torus", normals=normals, reach=(AXIS, ANGLE))
+    inside = angles(whole.normals) <= ANGLE
+    assert np.array_equal(some.points, whole.points[inside])
+    assert np.array_equal(some.normal_index, whole.normal_index[inside])
+
+
+def test_many_surfaces_in_reach() -> None:
+    for samples in gm.sample_many(["torus", "sphere"], 50, reach=(AXIS, ANGLE)):
+        assert len(samples) == 50
+        assert angles(samples.normals).max() <= ANGLE + ROUNDING
+
+
+def test_small_reaches_have_few_samples_for_an_angle() -> None:
+    samples = gm.sample("sphere", angle=3.0, reach=(AXIS, 6.0))
+    assert 4 <= len(samples) <= 40
+
+
+def test_poles_are_reached() -> None:
+    north = [[0.0, 0.0, 1.0]]
+    for on in ("surface", "spline"):
+        assert len(gm.sample("sphere", normals=north, reach=((0, 0, 1), 20.0), on=on)) == 1
+
+
+def test_a_reach_of_everything_leaves_nothing_out() -> None:
+    whole, reached = (gm.sample("torus", 200, reach=x) for x in (None, (AXIS, 180.0)))
+    assert len(whole) == len(reached) == 200
+    assert reached.coverage() < 1.3 * whole.coverage()
+
+
+def test_terrain_meshes_and_pickles() -> None:
+    x = np.linspace(0.0, 6.0, 60)
+    heights = gm.terrain(2.0 * np.sin(x)[:, None] * np.cos(x), spacing=(0.1, 0.1))
+    samples = gm.sample(heights, 400, reach=((0, 0, 1), 25.0))
+    assert len(samples) == 400
+    assert angles(samples.normals, (0, 0, 1)).max() <= 25.0 + ROUNDING
+    assert len(samples.mesh().boundary_edges) > 0
+    assert samples.coverage() < gm.sample(heights, 400).coverage()
+    assert len(pickle.loads(pickle.dumps(samples))) == 400
+
+
+def test_pieces_of_a_nurbs_keep_to_the_reach() -> None:
+    knots = np.array([0.0, 0.0, 0.5, 1.0, 1.0])
+    net = np.array([[[0, y, 0], [1, y, 1], [2, y, 0]] for y in (0.0, 1.0)]).transpose(1, 0, 2)
+    roof = gm.Surface.from_nurbs((1, 1), (knots, np.array([0.0, 0.0, 1.0, 1.0])), net)
+    one_side = gm.sample(roof, 50, density="uniform", reach=((-1, 0, 1), 10.0))
+    assert (one_side.points[:, 0] <= 1.0).all()
+    assert len(one_side) == 50
+    assert one_side.coverage() < 0.5
+
+
+@pytest.mark.parametrize(
+    ("reach", "message"),
+    [
+        ((0, 0, 1), "reach must be an axis and an angle"),
+        (5, "reach must be an axis and an angle"),
+        (((0, 0, 0), 30), "axis of reach"),
+        (((0, 0, 1), 0.0), "angle of reach"),
+        (((0, 0, 1), 181.0), "angle of reach"),
+    ],
+)
+def test_unusable_reaches(reach: Any, message: str) -> None:
+    with pytest.raises(gm.errors.InputError, match=message):
+        gm.sample("torus", 100, reach=reach)
+
+
+def test_nothing_in_reach() -> None:
+    with pytest.raises(gm.errors.SurfaceError, match="reach"):
+        gm.sample("wavy_graph", 100, reach=((0, 0, -1), 10.0))
+
+
+def test_grids_have_no_reach() -> None:
+    with pytest.raises(gm.errors.InputError, match='use "balanced"'):
+        gm.sample("torus", 100, density="aligned", reach=((0, 0, 1), 30.0))

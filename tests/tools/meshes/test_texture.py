@@ -1,0 +1,73 @@
+"""Texture coordinates: continuous in each triangle, and the parameters of each corner."""
+
+from __future__ import annotations
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from scipy.spatial import KDTree
+
+# The largest extent of the texture coordinates of a triangle, of about 1,500 of them.
+WIDEST = 0.35
+
+
+def klein_bottle() -> gm.Surface:
+    def function(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        r = 2.0 + np.cos(u / 2) * np.sin(v) - np.sin(u / 2) * np.sin(2 * v)
+        z = np.sin(u / 2) * np.sin(v) + np.cos(u / 2) * np.sin(2 * v)
+        return np.stack([r * np.cos(u), r * np.sin(u), z], axis=-1)
+
+    turn = (0.0, 2.0 * np.pi)
+    ends = ("mirrored", True)
+    return gm.Surface.from_callable(function, (turn, turn), periodic=ends)
+
+
+SURFACES = ["torus", "sphere", "moebius_band", "cylinder", "wavy_graph", "cone", klein_bottle()]
+
+
+@pytest.mark.parametrize("surface", SURFACES, ids=lambda x: getattr(x, "name", x))
+def test_texture_coordinates_do_not_jump(surface: gm.Surface | str) -> None:
+    mesh = gm.sample(surface, 1500, cells=(24, 24)).mesh()
+    found = mesh.corner_uv
+    assert found.shape == (len(mesh.triangles), 3, 2)
+    assert np.ptp(found, axis=1).max() < WIDEST
+    assert found.min() > -0.5
+    assert found.max() < 1.5
+
+
+@pytest.mark.parametrize("name", ["torus", "sphere", "cylinder"])
+def test_they_are_the_parameters_less_whole_periods(name: str) -> None:
+    mesh = gm.sample(name, 1500, cells=(24, 24)).mesh()
+    assert mesh.domain is not None
+    low, high = np.array(mesh.domain).T
+    away = mesh.corner_uv - ((mesh.uv - low) / (high - low))[mesh.triangles]
+    at_pole = (mesh.sample_index < 0)[mesh.triangles] if name == "sphere" else False
+    assert np.abs(away - np.rint(away))[~np.broadcast_to(at_pole, away.shape[:2])].max() < 1e-12
+    crossing = (np.rint(away) != 0).any(axis=(1, 2))
+    assert 0.0 < crossing.mean() < 0.3
+
+
+def test_without_a_domain_they_are_the_parameters() -> None:
+    corners = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0]])
+    triangle, index = np.array([[0, 1, 2]]), np.arange(3)
+    mesh = gm.Mesh(corners, corners, corners[:, :2] * 7.0, triangle, index)
+    assert np.array_equal(mesh.corner_uv, mesh.uv[triangle])
+
+
+@pytest.mark.parametrize("suffix", [".glb", ".obj"])
+def test_files_have_them(suffix: str, tmp_path) -> None:
+    trimesh = pytest.importorskip("trimesh")
+    mesh = gm.sample("sphere", 500, cells=(16, 16)).mesh()
+    mesh.write(tmp_path / f"sphere{suffix}")
+    scene = trimesh.load_scene(tmp_path / f"sphere{suffix}", process=False)
+    (again,) = scene.geometry.values()
+    found, expected = (
+        np.concatenate([uv, points], axis=2).reshape(len(uv), -1)
+        for uv, points in (
+            (again.visual.uv[again.faces], again.vertices[again.faces]),
+            (mesh.corner_uv, mesh.vertices[mesh.triangles]),
+        )
+    )  # trimesh orders the triangles of .obj files anew
+    distances, number = KDTree(found).query(expected)
+    assert distances.max() < 1e-6
+    assert len(np.unique(number)) == len(expected) == len(found)
