@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ..directions.sets import part_of_fibonacci, spiral_angle
 from ..directions.unit import in_pieces, perpendicular
 from ..kernels.cone import least_cosine
+from ..spline.nets import NetSpline
 from ..spline.spline import Spline
 
 __all__ = ["Lattice"]
@@ -29,6 +30,9 @@ class Lattice:
     @classmethod
     def around(cls, spline: Spline) -> Lattice:
         """Return the lattice on the smallest cap round the mean normal that holds every normal."""
+        if isinstance(spline, NetSpline):
+            axis, cosine = spline.cap
+            return cls(axis, cosine - 1e-12) if cosine > 0.0 else cls.everywhere()
         u, v = (
             low + (high - low) * (np.arange(count) + 0.5) / count
             for (low, high), count in zip(spline.domain, spline.cells, strict=True)
