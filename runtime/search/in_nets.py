@@ -20,9 +20,8 @@ from ..base.aliases import Array, Flags, Indices
 from ..base.formula_calls import python_function, vector
 from ..base.integers import Integers, integers, integers_by_row, ratio, sign
 from ..base.kept import kept
-from ..base.scales import scales_to_one
 from ..base.threads import over_ranges
-from ..base.tolerances import ACCURATE, DATA_ERROR, FORM_ERROR
+from ..base.tolerances import ACCURATE, DATA_ERROR, FORM_ERROR, SINGULAR_POINT
 from ..samples.fields import FLOAT_NAMES
 from ..spline.joints import EDGES
 from ..spline.nets import NetSpline, vectors_of_nets
@@ -34,6 +33,8 @@ __all__ = ["Cones", "Found", "edge_signs", "fields_in_nets", "find_in_nets"]
 PAIRS_AT_A_TIME = 1 << 22
 # Cones are wider than the control normals by this, in cosine: more than their rounding.
 COSINE_ERROR = 1e-12
+# The least cosine of a normal and that of the patch at its point, or next to it.
+SAME_NORMAL = 0.999
 
 
 class Found(NamedTuple):
@@ -121,28 +122,40 @@ def _found(spline: NetSpline, normals: Array, first: int, last: int) -> Found:
     exact = np.flatnonzero(open_)
     local = np.zeros((len(patches), 3))
     inside = ~open_
-    inside[exact], local[exact] = _decided(
-        spline, patches[exact], some[rows[exact]], signs[exact]
-    )
+    inside[exact], local[exact] = _decided(spline, patches[exact], some[rows[exact]], signs[exact])
     sure = np.flatnonzero(~open_)
-    inside[sure] = _towards(spline, patches[sure], some[rows[sure]], None)
+    inside[sure] = _towards(spline, patches[sure], some[rows[sure]])
     kept_ = np.flatnonzero(inside)
     which = np.flatnonzero(open_[kept_])
     return Found(patches[kept_], rows[kept_] + first, which, local[kept_[which]])
 
 
-def _towards(
-    spline: NetSpline, patches: Indices, normals: Array, places: Array | None
-) -> Flags:
+def _towards(spline: NetSpline, patches: Indices, normals: Array) -> Flags:
     """Return whether normals, and not their opposites, are those of patches at their points."""
     patch, n = spline.patch(patches), vector(normals)
-    if places is None:
-        D, U, V, _ = python_function(formulas.forms)(patch, n)
-        u, v = python_function(formulas.parameters)(D, U, V)
-    else:
-        u, v = places.T
+    D, U, V, _ = python_function(formulas.forms)(patch, n)
+    u, v = python_function(formulas.parameters)(D, U, V)
     N = python_function(formulas.tangents)(patch, u, v)[2]
     return N.x * n.x + N.y * n.y + N.z * n.z > 0.0
+
+
+def _agree(spline: NetSpline, patches: Indices, normals: Array, places: Array) -> Flags:
+    """Return whether normals are those of patches at places (k, 2), or near singular ones.
+
+    At a singular point the tangents are perpendicular to a whole circle of directions.
+    """
+
+    def normals_at(at: Array) -> Array:
+        patch = spline.patch(patches)
+        return np.stack(python_function(formulas.tangents)(patch, *at.T)[2], axis=1)
+
+    here, centre = normals_at(places), normals_at(np.full_like(places, 1.0 / 3.0))
+    lengths = (np.linalg.norm(x, axis=1) for x in (here, centre))
+    singular = np.less_equal(next(lengths), SINGULAR_POINT * next(lengths))
+    beside = normals_at(places + SINGULAR_POINT * (1.0 / 3.0 - places))
+    N = np.where(singular[:, None], beside, here)
+    least = np.where(singular, SAME_NORMAL, 0.0) * np.linalg.norm(N, axis=1)
+    return np.einsum("kx,kx->k", N, normals) > least
 
 
 def _decided(
@@ -172,7 +185,7 @@ def _decided(
         return inside, local
     local[some, :2] = _places(spline, patches[some], normals[some])
     local[some, 2] = np.where(high[some] > 0, 1.0, -1.0)
-    inside[some] = _towards(spline, patches[some], normals[some], local[some, :2])
+    inside[some] = _agree(spline, patches[some], normals[some], local[some, :2])
     return inside, local
 
 
