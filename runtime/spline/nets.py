@@ -98,7 +98,8 @@ class NetSpline(Spline):
         return spline
 
     def __repr__(self) -> str:
-        return f"NetSpline({self.patches:,} {'patch' if self.patches == 1 else 'patches'} of {short_label(self.name)})"
+        kind = "patch" if self.patches == 1 else "patches"
+        return f"NetSpline({self.patches:,} {kind} of {short_label(self.name)})"
 
     def __getstate__(self) -> dict[str, object]:
         """Return what is pickled."""

@@ -229,12 +229,10 @@ def test_what_does_not_fit_together_is_refused() -> None:
         return np.array([a, b, c, (a + b) / 2, (a + c) / 2, (b + c) / 2])
 
     assert len(gm.Spline.from_nets([net(0, 1, 2), net(0, 2, 3)]).joints.patches) == 1
-    with pytest.raises(
-        gm.errors.InputError, match=r"a corner of another patch, at \[1.0, 0.0, 0.0\]"
-    ):
-        below = [net(0, 4, 2), net(4, 1, 2)]
-        mirrored = [(x * [1, -1, 1])[[1, 0, 2, 3, 5, 4]] for x in [net(0, 1, 2)]]
-        gm.Spline.from_nets([*below, *mirrored])
+    mirrored = (net(0, 1, 2) * [1, -1, 1])[[1, 0, 2, 3, 5, 4]]
+    corner = r"a corner of another patch, at \[1.0, 0.0, 0.0\]"
+    with pytest.raises(gm.errors.InputError, match=corner):
+        gm.Spline.from_nets([net(0, 4, 2), net(4, 1, 2), mirrored])
     with pytest.raises(gm.errors.InputError, match="opposite orientations"):
         gm.Spline.from_nets([net(0, 1, 2), net(3, 2, 0)])
     with pytest.raises(gm.errors.InputError, match="3 patches share one edge"):
