@@ -189,11 +189,14 @@ class CurveSamples:
 
         """
         report = self.report
-        return (
+        line = (
             f"{report.samples:,} samples at {report.normals:,} prescribed normals; "
             f"{report.inflections} inflections; {100.0 * report.straight_share:.2f} % of the "
             "curve is straight"
         )
+        if report.proved is None:
+            return line
+        return f"{line}; complete: proved for {report.proved:,} of {report.normals:,} normals"
 
     def __len__(self) -> int:
         return len(self.support)
