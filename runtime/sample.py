@@ -26,6 +26,7 @@ from .samples.report import warn_of
 from .samples.request import Request, checked_request
 from .samples.samples import Samples
 from .samples.whole import Whole
+from .spline.nets import NetSpline
 from .spline.spline import Spline
 from .surface.surface import Surface
 from .surface.surfaces import named
@@ -85,7 +86,7 @@ def sample(
         and v = const, spaced by how fast the normal turns along them, for `count`, `angle` and
         `coverage`: fewer samples for the same angles where parameters run along lines of curvature,
         and more where they do not. "uniform": the same everywhere, for `count` or
-        `coverage`. A number α, 0 < α ≤ 8: |K|^α, for `count`; uniform where the curvature is below
+        `coverage`. Splines of nets (see `Spline.from_nets`) have "gauss" only. A number α, 0 < α ≤ 8: |K|^α, for `count`; uniform where the curvature is below
         the error of the spline.
     relax : int, default 0
         Steps, at most 10, that move the samples that fill gaps to better places. Two or three are
@@ -204,6 +205,8 @@ def sample(
     (100, 40, 40)
 
     """
+    if isinstance(surface, NetSpline) and density is None:
+        density = "gauss"
     request = checked_request(normals, count, angle, coverage, density, relax, threads)
     with busy("sampling", progress):
         return sample_and_normals(

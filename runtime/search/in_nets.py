@@ -192,7 +192,7 @@ def _decided(
 def _places(spline: NetSpline, patches: Indices, normals: Array) -> Array:
     """Return u, v (k, 2) of the nearest place in the triangle, of exact quotients."""
     nets, _ = integers(spline.control_nets[patches])
-    vectors = vectors_of_nets(np.asarray(nets, dtype=object))
+    vectors = np.asarray(vectors_of_nets(np.asarray(nets, dtype=object)), dtype=object)
     n, _ = integers_by_row(normals)
     values = exact_forms(np.moveaxis(vectors, 0, -1), n)
     bars = np.full((len(patches), 3), 1.0 / 3.0)

@@ -21,7 +21,7 @@ from .inside import subcentroids
 from .joints import Joints, Topology, merged_points
 from .spline import Spline, short_label
 
-__all__ = ["NetSpline", "vectors_of_nets"]
+__all__ = ["NetSpline", "from_nets", "vectors_of_nets"]
 
 # Areas and solid angles are sums over the centroids of the squared number of parts of a patch.
 PARTS = 4
@@ -222,3 +222,58 @@ def vectors_of_nets(nets: Array) -> Array:
     """Return the vectors a, b, c, d, e (T, 5, 3) of nets (T, 6, 3)."""
     found = python_function(formulas.power_form)(*map(vector, np.moveaxis(nets, 1, 0)))
     return np.stack([np.stack(x, axis=-1) for x in found[:5]], axis=1)
+
+
+def from_nets(
+    nets: ArrayLike,
+    triangles: ArrayLike | None = None,
+    *,
+    name: str = "nets",
+    smooth: float = 0.01,
+) -> NetSpline:
+    """Return a spline of quadratic Bézier triangles on any triangulation.
+
+    Joints are found: edges with the same ends and the same middle control point, up to
+    rounding, or with the same indices. Where normals are continuous, a normal on the joint is
+    that of one of the two patches, and every point with a given normal is found exactly once.
+    A joint where they differ is a crease, and a border of both patches.
+
+    Parameters
+    ----------
+    nets : (T, 6, 3) or (N, 3) array_like
+        The nets, each in the order b200, b020, b002, b110, b101, b011, as in
+        `SupportFunction.of_patch`; with `triangles`, the points.
+    triangles : (T, 6) array_like of int, optional
+        The points of each net, in the same order. Patches that are joined share them.
+    name : str, default "nets"
+        Label of the surface.
+    smooth : float, default 0.01
+        The largest angle in degrees, of the normals of two patches, for which their joint is
+        smooth; see `NetSpline.joints`.
+
+    Returns
+    -------
+    NetSpline
+        The spline. What takes a `Spline` takes it, but for what needs a grid of cells.
+
+    Raises
+    ------
+    InputError
+        For arrays of other shapes, NaN and infinity; if a corner of a patch is inside an edge
+        of another one, if more than two patches share an edge, and if two have opposite
+        orientations.
+    SurfaceError
+        If all points are the same.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> points = [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (1, 0, 1), (0, 1, 1)]
+    >>> octant = gm.Spline.from_nets([points], name="octant")
+    >>> octant
+    NetSpline(1 patch of octant)
+    >>> gm.sample(octant, normals=[[1, 1, 1]]).points.round(3)
+    array([[0.556, 0.556, 0.556]])
+
+    """
+    return NetSpline.checked(nets, triangles, name, smooth)

@@ -21,11 +21,11 @@ from ..domain.domain import Boundary, Domain, brought_inside, checked_boundary, 
 from ..kernels import spline as kernels
 from .developable import CellMeasure
 from .inside import Inside
+from .methods import Methods
 
 if TYPE_CHECKING:
     from ..domain.trim import Trim
     from .misfit import Misfit
-    from .nets import NetSpline
 
 __all__ = ["Spline", "short_label"]
 
@@ -40,7 +40,7 @@ def short_label(name: str) -> str:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Spline(Immutable):
+class Spline(Immutable, Methods):
     """A C¹ quadratic triangular spline on the criss-cross grid (paper, Sect. 3.1); made by `fit`.
 
     Patches are numbered cell by cell (cell = i n + j, i along u), in each cell south, east, north,
@@ -160,63 +160,6 @@ class Spline(Immutable):
         """The diagonal of the bounding box, and the larger number of cells."""
         points = self.coefficients[1:-1, 1:-1].reshape(-1, 3)
         return math.hypot(*np.ptp(points, axis=0)), max(self.cells)
-
-    @staticmethod
-    def from_nets(
-        nets: ArrayLike,
-        triangles: ArrayLike | None = None,
-        *,
-        name: str = "nets",
-        smooth: float = 0.01,
-    ) -> NetSpline:
-        """Return a spline of quadratic Bézier triangles on any triangulation.
-
-        Joints are found: edges with the same ends and the same middle control point, up to
-        rounding, or with the same indices. Where normals are continuous, a normal on the joint is
-        that of one of the two patches, and every point with a given normal is found exactly once.
-        A joint where they differ is a crease, and a border of both patches.
-
-        Parameters
-        ----------
-        nets : (T, 6, 3) or (N, 3) array_like
-            The nets, each in the order b200, b020, b002, b110, b101, b011, as in
-            `SupportFunction.of_patch`; with `triangles`, the points.
-        triangles : (T, 6) array_like of int, optional
-            The points of each net, in the same order. Patches that are joined share them.
-        name : str, default "nets"
-            Label of the surface.
-        smooth : float, default 0.01
-            The largest angle in degrees, of the normals of two patches, for which their joint is
-            smooth; see `NetSpline.joints`.
-
-        Returns
-        -------
-        NetSpline
-            The spline. What takes a `Spline` takes it, but for what needs a grid of cells.
-
-        Raises
-        ------
-        InputError
-            For arrays of other shapes, NaN and infinity; if a corner of a patch is inside an edge
-            of another one, if more than two patches share an edge, and if two have opposite
-            orientations.
-        SurfaceError
-            If all points are the same.
-
-        Examples
-        --------
-        >>> import gaussmap as gm
-        >>> points = [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (1, 0, 1), (0, 1, 1)]
-        >>> octant = gm.Spline.from_nets([points], name="octant")
-        >>> octant
-        NetSpline(1 patch of octant)
-        >>> gm.sample(octant, normals=[[1, 1, 1]]).points.round(3)
-        array([[0.556, 0.556, 0.556]])
-
-        """
-        from .nets import NetSpline
-
-        return NetSpline.checked(nets, triangles, name, smooth)
 
     def evaluate(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
         """Return the points of the spline at parameters.

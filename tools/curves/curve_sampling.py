@@ -287,8 +287,10 @@ def sample(
         directions, hits = _by_count(spline, asked)
     else:
         hits = find(spline, directions)
-    on_spline = isinstance(spline, CurveSpline)
-    samples = (filled if on_spline else filled_on_curve)(spline, directions, hits)
+    if isinstance(spline, CurveSpline):
+        samples = filled(spline, directions, hits)
+    else:
+        samples = filled_on_curve(spline, directions, hits)
     _warn(samples.report, asked)
     return samples
 

@@ -93,9 +93,9 @@ def silhouette(
     """Return points of a surface whose normals are perpendicular to a direction.
 
     They lie on the contour generator, which a parallel projection along `direction` shows as the
-    outline: all of it, also where the surface hides it. Where K < 0 the outline is concave. They are
-    found on the spline that approximates the surface, and moved to the surface as samples are. Next
-    to parabolic points, where the surface may have no point with that normal near by, they are
+    outline: all of it, also where the surface hides it. Where K < 0 the outline is concave. They
+    are found on the spline that approximates the surface, and moved to the surface as samples are.
+    Next to parabolic points, where the surface may have no point with that normal near by, they are
     moved to its contour generator, and have another normal than that of their `normal_index`.
 
     Parameters

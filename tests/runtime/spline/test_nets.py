@@ -196,7 +196,7 @@ def test_the_same_samples_as_the_library_s_own_spline() -> None:
         assert (getattr(one, name) == getattr(other, name)).all()
     for name in ("points", "normals", "support", "gaussian_curvature", "mean_curvature"):
         assert np.allclose(getattr(one, name), getattr(other, name), rtol=1e-11, atol=1e-11)
-    count = gm.sample(nets, 1500, density="gauss")
+    count = gm.sample(nets, 1500)
     assert abs(len(count) - 1500) <= 0.02 * 1500 + 5
 
 

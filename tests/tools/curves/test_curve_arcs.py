@@ -68,7 +68,7 @@ def test_where_they_lie() -> None:
     assert gm.curves.sample(untraced, normals=[[0.5, -1.0]]).report.on == "spline"
     with pytest.raises(gm.errors.InputError, match="needs bounds of the derivatives"):
         gm.curves.sample(untraced, normals=normals, on="curve")
-    with pytest.raises(gm.errors.InputError, match='pieces=... is for on="spline"'):
+    with pytest.raises(gm.errors.InputError, match=r'pieces=\.\.\. is for on="spline"'):
         gm.curves.sample(star(), 10, pieces=64, on="curve")
     with pytest.raises(gm.errors.UnknownNameError):
         gm.curves.sample(star(), 10, on="surface")
