@@ -86,8 +86,9 @@ def sample(
         and v = const, spaced by how fast the normal turns along them, for `count`, `angle` and
         `coverage`: fewer samples for the same angles where parameters run along lines of curvature,
         and more where they do not. "uniform": the same everywhere, for `count` or
-        `coverage`. Splines of nets (see `Spline.from_nets`) have "gauss" only. A number α, 0 < α ≤ 8: |K|^α, for `count`; uniform where the curvature is below
-        the error of the spline.
+        `coverage`. Splines of nets (see `Spline.from_nets`) have "gauss" only, their
+        default. A number α, 0 < α ≤ 8: |K|^α, for `count`; uniform where the curvature is below the
+        error of the spline.
     relax : int, default 0
         Steps, at most 10, that move the samples that fill gaps to better places. Two or three are
         enough; they take 20 to 40 times as long as the sampling and 20 kB of memory for each sample

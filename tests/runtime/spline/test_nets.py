@@ -8,8 +8,8 @@ from fractions import Fraction
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.search.in_nets import edge_signs
 from gaussmap.runtime.spline.joints import EDGES
+from gaussmap.runtime.spline.nets import NetSpline
 from numpy.typing import NDArray
 from scipy.spatial import Delaunay
 
@@ -114,10 +114,10 @@ def _parts(rows, which: int):
 
 def degrees(samples: gm.Samples, count: int) -> Array:
     signs = np.copysign(1.0, samples.gaussian_curvature)
-    return np.bincount(samples.normal_index, signs, minlength=count)
+    return np.bincount(samples.normal_index, signs, minlength=count).astype(np.float64)
 
 
-def normals_on_joints(spline: gm.Spline) -> Array:
+def normals_on_joints(spline: NetSpline) -> Array:
     """Return unit normals at places of all joints and at their ends, as rounded."""
     found = []
     for patch, edge in zip(spline.joints.patches[:, 0], spline.joints.edges[:, 0], strict=True):
@@ -198,27 +198,6 @@ def test_the_same_samples_as_the_library_s_own_spline() -> None:
         assert np.allclose(getattr(one, name), getattr(other, name), rtol=1e-11, atol=1e-11)
     count = gm.sample(nets, 1500)
     assert abs(len(count) - 1500) <= 0.02 * 1500 + 5
-
-
-def test_forms_of_edges_are_those_of_the_patch() -> None:
-    """Every form has one sign whichever patch of a joint is asked; that of U, V, W at random."""
-    nets = np.random.default_rng(5).normal(size=(3, 6, 3))
-    spline = gm.Spline.from_nets(nets)
-    normals = gm.directions.random(50, seed=6)
-    for edge, form in enumerate("UVW"):
-        for patch, net in enumerate(nets):
-            rows = np.full(len(normals), 3 * patch + edge)
-            expected = [_form(net, n, form) for n in normals]
-            assert (edge_signs(spline, rows, normals) == np.sign(expected)).all()
-
-
-def _form(net: Array, n: Array, form: str) -> float:
-    """Return U, V or W of Cramer's rule."""
-    h = net @ n
-    A, C = h[0] - 2 * h[4] + h[2], h[1] - 2 * h[5] + h[2]
-    B, P, Q = h[3] - h[4] - h[5] + h[2], h[4] - h[2], h[5] - h[2]
-    U, V, D = B * Q - C * P, B * P - A * Q, A * C - B * B
-    return {"U": U, "V": V, "W": D - U - V}[form]
 
 
 def test_what_does_not_fit_together_is_refused() -> None:
