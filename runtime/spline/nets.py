@@ -224,6 +224,7 @@ def vectors_of_nets(nets: Array) -> Array:
     return np.stack([np.stack(x, axis=-1) for x in found[:5]], axis=1)
 
 
+@staticmethod
 def from_nets(
     nets: ArrayLike,
     triangles: ArrayLike | None = None,
