@@ -27,6 +27,7 @@ from .samples.report import warn_of
 from .samples.request import Request, checked_request
 from .samples.samples import Samples
 from .samples.whole import Whole
+from .spline.nets import NetSpline
 from .spline.spline import Spline
 from .surface.surface import Surface
 from .surface.surfaces import named
@@ -78,7 +79,7 @@ def sample(
         The target density. "gauss", the default with `normals` alone, is |K|, by samples at
         prescribed normals only; "balanced", the default otherwise, fills the gaps between these.
         "aligned" is a grid along parameter lines, "uniform" the same density everywhere, and a
-        number α that of |K|^α; see Notes.
+        number α that of |K|^α; see Notes. Splines of nets (`Spline.from_nets`) have "gauss" only.
     reach : (axis, angle), optional
         Only points whose normal is within an angle, in degrees, of a direction (3,): a probe, a
         camera or a printer comes from there. Count, angle and coverage hold for these points. Not
@@ -213,6 +214,8 @@ def sample(
     (100, 40, 40)
 
     """
+    if isinstance(surface, NetSpline) and density is None:
+        density = "gauss"
     request = checked_request(normals, count, angle, coverage, density, relax, threads, reach)
     with busy("sampling", progress):
         return sample_and_normals(

@@ -18,7 +18,7 @@ from .notation import VectorSymbol
 from .printer import source_of
 from .simplify import straight_line
 
-__all__ = ["array_function", "jet_function", "row_loop"]
+__all__ = ["array_function", "jet_function", "row_loop", "row_shapes"]
 
 Symbols = Sequence[sp.Symbol]
 
@@ -116,7 +116,29 @@ def _entries(argument: str, symbols: Symbols) -> list[tuple[str, str]]:
 
 
 def _shape(argument: str, symbols: Symbols) -> str:
+    row = _row_shape(argument, symbols)
+    return f"(k, {', '.join(map(str, row))})" if row else "(k,)"
+
+
+def _row_shape(argument: str, symbols: Symbols) -> tuple[int, ...]:
     if argument == "hessian":
-        return "(k, 3, 3)"
+        return 3, 3
     (symbol,) = symbols
-    return f"(k, {len(symbol.components)})" if isinstance(symbol, VectorSymbol) else "(k,)"
+    return (len(symbol.components),) if isinstance(symbol, VectorSymbol) else ()
+
+
+def row_shapes(formula: Formula) -> tuple[dict[str, tuple[int, ...]], dict[str, tuple[int, ...]]]:
+    """Return the shapes of a row of each array of `array_function`, of inputs and of outputs.
+
+    Raises ValueError for a formula that takes or returns all vectors of a patch or an arc.
+    """
+    inputs = arguments(formula)
+    outputs = {g[0] if g else x[0].name: x for g, x in grouped(formula.outputs)}
+    for name, symbols in (inputs | outputs).items():
+        if len(symbols) > 1 and name != "hessian":
+            raise ValueError(
+                f"{formula.name} has all vectors of one {name}, which is no array: name some of "
+                f"{', '.join(map(str, symbols))} otherwise."
+            )
+    first, second = ({x: _row_shape(x, y) for x, y in part.items()} for part in (inputs, outputs))
+    return first, second

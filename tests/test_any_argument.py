@@ -247,6 +247,7 @@ SPECIAL: dict[str, list[dict[str, Any]]] = {
     "Samples.write": [{"path": "new.npz"}],
     "Samples[…]": [{"key": 0}],
     "Spline": [{x: Of("spline", x) for x in ("coefficients", "domain", "boundary", "name")}],
+    "Spline.from_nets": [{"nets": np.array([PATCH])}],
     "Spline.in_cells": [{"places": np.array([[0.5, 0.5]])}],
     "Spline.normals_in_cells": [{"cells": np.array([[0.5, 0.5]])}],
     "SupportFunction": [{"_source": Of("support", "_source")}],

@@ -12,6 +12,7 @@ from ..directions.regions import Cap
 from ..directions.sets import part_of_fibonacci, spiral_angle
 from ..directions.unit import in_pieces, perpendicular
 from ..kernels.cone import least_cosine
+from ..spline.nets import NetSpline
 from ..spline.spline import Spline
 
 __all__ = ["Lattice"]
@@ -41,6 +42,9 @@ class Lattice:
 
     @classmethod
     def _around_all(cls, spline: Spline) -> Lattice:
+        if isinstance(spline, NetSpline):
+            axis, cosine = spline.cap
+            return cls(axis, cosine - 1e-12) if cosine > 0.0 else cls.everywhere()
         u, v = (
             low + (high - low) * (np.arange(count) + 0.5) / count
             for (low, high), count in zip(spline.domain, spline.cells, strict=True)

@@ -53,7 +53,7 @@ def place_of_samples(surface: object, on: str | None) -> str:
         if isinstance(surface, Spline):
             raise InputError(
                 f'on="surface" needs the surface, not its spline: sample the Surface of which '
-                f"{surface.name!r} is a spline, with cells={surface.cells}."
+                f"{surface.name!r} is a spline."
             )
     return str(on)
 

@@ -316,11 +316,13 @@ def _size_and_error(samples: SampleArrays) -> tuple[float, float]:
     """
     spline = samples.spline
     if spline is not None:
-        points, cells = spline.coefficients[1:-1, 1:-1].reshape(-1, 3), max(spline.cells)
+        diagonal, cells = spline.extent
+        largest = spline._largest
     elif "points" in samples.fields and len(samples.points) > 0:
         points, cells = samples.points.astype(np.float64), 0
+        diagonal = math.hypot(*np.ptp(points, axis=0))  # of coordinates whose squares overflow, too
+        largest = float(np.abs(points).max())
     else:
         return 0.0, 0.0
-    diagonal = math.hypot(*np.ptp(points, axis=0))  # of coordinates whose squares overflow, too
-    rounding = float(np.spacing(np.abs(points).max())) / (diagonal or 1.0)
+    rounding = float(np.spacing(largest)) / (diagonal or 1.0)
     return diagonal, rounding * max(DERIVATIVE_ERROR, PATCH_ERROR * cells**2)

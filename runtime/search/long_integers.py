@@ -19,6 +19,7 @@ __all__ = [
     "displaced_forms",
     "exact_forms",
     "forms_of_pairs",
+    "leading_sign",
     "monomials_of_forms",
     "patch_vectors",
 ]
@@ -34,7 +35,7 @@ def forms_of_pairs(
     """
     vectors, exponent = patch_vectors(spline, patches)
     n, exponents = integers_by_row(normals)
-    n = n * _leading_sign(n)
+    n = n * leading_sign(n)
     values = exact_forms(vectors, n)
     signs = sign(values[1:])
     tied = (signs == 0).any(axis=0) & ((signs.min(axis=0) >= 0) | (signs.max(axis=0) <= 0))
@@ -101,7 +102,7 @@ def monomials_of_forms(vectors: Integers, n: Integers) -> Integers:
     return np.stack(monomials)
 
 
-def _leading_sign(n: Integers) -> Integers:
+def leading_sign(n: Integers) -> Integers:
     """Return the sign of the first nonzero component of each column.
 
     The forms are even in n. A normal and its opposite must be displaced to opposite normals: where

@@ -21,10 +21,13 @@ from ..kernels.search import Bins, Coefficients, Found, search_in
 from ..kernels.sort import merge_hits
 from ..kernels.tile import STEP, fill_known, new_tile
 from ..samples.fields import ARRAY_NAMES, FLOAT_NAMES, INDEX_NAMES, new_field
+from ..spline.nets import NetSpline
 from ..spline.spline import Spline
 from .bins import NormalBins, icosahedron
 from .cone_tree import ConeTree
 from .exact import decide
+from .in_nets import Found as FoundInNets
+from .in_nets import cones_of, fields_in_nets, find_in_nets
 
 __all__ = [
     "Hits",
@@ -304,6 +307,8 @@ class Search:
 
 def developable_patches(spline: Spline, threads: int | None) -> int:
     """Return how many patches are developable, up to the rounding of their coordinates."""
+    if isinstance(spline, NetSpline):
+        return int(np.count_nonzero(cones_of(spline).flat))
     search = Search(spline, NormalBins(np.eye(3)))
     return kept(spline, "developable", lambda: search.developable(search.tree(threads).flat))
 
@@ -312,6 +317,8 @@ def find(
     spline: Spline, bins: NormalBins, threads: int | None = None, progress: bool = False
 ) -> Hits:
     """Return all hits: which patch of a spline has which of the normals."""
+    if isinstance(spline, NetSpline):
+        return _hits_in_nets(spline, find_in_nets(spline, bins.normals, threads))
     search = Search(spline, bins)
     if search.all_developable:
         return Hits.none(spline.patches)
@@ -339,6 +346,9 @@ def fill(
 
     They are written to the fields in `memory` that are large enough.
     """
+    if isinstance(spline, NetSpline):
+        found = FoundInNets(hits.patch_index, hits.normal_index, hits.exact, hits.local[:, :3])
+        return fields_in_nets(spline, bins.normals, found, fields, dtype)
     count = len(hits)
     types = dict.fromkeys(FLOAT_NAMES, dtype) | dict.fromkeys(INDEX_NAMES, np.int64)
     filled = {x: new_field(x, count, types[x], memory) for x in ARRAY_NAMES if x in fields}
@@ -407,6 +417,16 @@ def merged(
     numbers = np.concatenate(exact) if exact else np.empty(0, dtype=np.int64)
     indices = decided >> np.array([0, 32])
     return Hits(tuple(found), numbers, indices, local, sum(part.developable for part in parts))
+
+
+def _hits_in_nets(spline: NetSpline, found: FoundInNets) -> Hits:
+    """Return hits of a spline of nets as those of others."""
+    rows = np.stack([found.patches, found.normals * REPEATED], axis=1)
+    packed = (PackedHits(rows, np.empty((0, 3))),) if len(rows) else ()
+    local = np.concatenate([found.local, found.local[:, :2]], axis=1)
+    indices = np.stack([found.patches, found.normals], axis=1)[found.exact]
+    developable = developable_patches(spline, None)
+    return Hits(packed, found.exact, indices, local, developable)
 
 
 def _on_border(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -20,6 +21,7 @@ from ..domain.domain import Boundary, Domain, brought_inside, checked_boundary, 
 from ..kernels import spline as kernels
 from .developable import CellMeasure
 from .inside import Inside
+from .methods import Methods
 
 if TYPE_CHECKING:
     from ..domain.trim import Trim
@@ -38,7 +40,7 @@ def short_label(name: str) -> str:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Spline(Immutable):
+class Spline(Immutable, Methods):
     """A C¹ quadratic triangular spline on the criss-cross grid (paper, Sect. 3.1); made by `fit`.
 
     Patches are numbered cell by cell (cell = i n + j, i along u), in each cell south, east, north,
@@ -152,6 +154,12 @@ class Spline(Immutable):
     def noise(self) -> float:
         """A bound of the rounding of the coordinates, times `scale`."""
         return DATA_ERROR * (self._largest * self.scale)
+
+    @property
+    def extent(self) -> tuple[float, int]:
+        """The diagonal of the bounding box, and the larger number of cells."""
+        points = self.coefficients[1:-1, 1:-1].reshape(-1, 3)
+        return math.hypot(*np.ptp(points, axis=0)), max(self.cells)
 
     def evaluate(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
         """Return the points of the spline at parameters.

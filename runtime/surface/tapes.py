@@ -17,7 +17,7 @@ from ..kernels.tape_balls import BALL, bounds_of_boxes
 from ..kernels.tape_rounding import rounding_of_boxes
 from ..kernels.tape_splines import COORDINATES, NO_SPLINE, Polynomials
 
-__all__ = ["TapeWriter", "jets_of", "moved_tape", "tape_of_steps", "values_of"]
+__all__ = ["TapeWriter", "bounds_over_boxes", "jets_of", "moved_tape", "tape_of_steps", "values_of"]
 
 Array = NDArray[np.float64]
 Number = tuple[float, float]  # a value, and how far the exact one may be from it
@@ -189,6 +189,16 @@ def _constant_rows(tape: Tape) -> NDArray[np.bool_]:
             code not in LEAVES and constant[a] and (code not in BINARY or constant[b])
         )
     return constant
+
+
+def bounds_over_boxes(tape: Tape, centres: Array, half_widths: Array) -> Array:
+    """Return midpoints and radii (k, 2, 10, 3) of Taylor coefficients up to order 2 on boxes."""
+    middles, radii = np.empty((2, BALL * (len(tape.operations) + 1)))
+    bounds = np.empty((len(centres), 2, 10, 3))
+    centres, half_widths = np.array(centres), np.array(half_widths)
+    ends = np.empty((2, 4))
+    bounds_of_boxes(tape, 2, centres, half_widths, middles, radii, ends, bounds)
+    return bounds
 
 
 def _values(tape: Tape) -> Array:

@@ -15,13 +15,13 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...generated import curve as formulas
-from ...runtime.base.checks import checked_count
+from ...runtime.base.checks import checked_count, known_name
 from ...runtime.base.errors import GaussmapWarning, InputError, in_memory
 from ...runtime.base.formula_calls import plane_vector, python_function
 from ...runtime.base.memory import check_memory
@@ -29,6 +29,7 @@ from ...runtime.directions.circle import arc_of_normals, circle
 from ...runtime.directions.unit import as_normals
 from ...runtime.samples.report import WORTH_A_WARNING
 from .curve import Curve
+from .curve_arcs import CurveArcs, arcs_of
 from .curve_spline import CurveSpline, angles_of
 from .fitting import fit
 
@@ -40,6 +41,8 @@ Array = NDArray[np.float64]
 TRIES = 6
 # Arcs that this many uniform normals would sample are not straight, even with fewer normals.
 LEAST_NORMALS = 1_000
+# Where samples lie.
+PLACES = ("curve", "spline")
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +65,14 @@ class CurveReport:
         The number of changes of the sign of κ.
     turning_number : int or None
         The turning number of a closed curve; None for an open one.
+    on : {"curve", "spline"}
+        Where the samples lie.
+    proved : int or None
+        The number of prescribed normals of which all points are known, with a proof; None on
+        splines.
+    undecided : tuple of int
+        Rows of the other normals: those of inflections and straight parts, up to rounding, and all
+        if the curve has singular points.
 
     Examples
     --------
@@ -74,6 +85,8 @@ class CurveReport:
     ('circle', 8, 8, 64)
     >>> report.straight_share, report.inflections, report.turning_number
     (0.0, 0, 1)
+    >>> report.on, report.proved, report.undecided
+    ('curve', 8, ())
 
     """
 
@@ -84,6 +97,9 @@ class CurveReport:
     straight_share: float
     inflections: int
     turning_number: int | None
+    on: str = "spline"
+    proved: int | None = None
+    undecided: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, eq=False, slots=True, repr=False)
@@ -106,7 +122,8 @@ class CurveSamples:
     normal_index : (N,) int64 array
         Rows of the prescribed normals.
     piece_index : (N,) int64 array
-        Arcs of the spline that contain the points.
+        Arcs of the spline that contain the points, or arcs of the curve on which the normal turns
+        one way.
     ends : (2, 2) float64 array
         The ends of an open curve; (0, 2) for a closed one.
     report : CurveReport
@@ -172,11 +189,14 @@ class CurveSamples:
 
         """
         report = self.report
-        return (
+        line = (
             f"{report.samples:,} samples at {report.normals:,} prescribed normals; "
             f"{report.inflections} inflections; {100.0 * report.straight_share:.2f} % of the "
             "curve is straight"
         )
+        if report.proved is None:
+            return line
+        return f"{line}; complete: proved for {report.proved:,} of {report.normals:,} normals"
 
     def __len__(self) -> int:
         return len(self.support)
@@ -204,10 +224,13 @@ def sample(
     *,
     normals: ArrayLike | None = None,
     pieces: int | None = None,
+    on: str | None = None,
 ) -> CurveSamples:
     """Return every point of a planar curve that has one of the given normals, each exactly once.
 
-    Uniform normals give samples with the density |κ| (paper, Sect. 4.1).
+    Uniform normals give samples with the density |κ| (paper, Sect. 4.1). On the curve, all points
+    are found with a proof, by bounds of its derivatives: these are known of SymPy expressions and
+    of callables made of NumPy functions. The report lists normals that are `undecided`.
 
     Parameters
     ----------
@@ -218,7 +241,10 @@ def sample(
     normals : (S, 2) array_like, optional
         Directions of any length but 0, such as ``gm.directions.circle(100)``.
     pieces : int, optional
-        The number of arcs of the spline, see `fit`.
+        The number of arcs of the spline, see `fit`; samples then lie on the spline.
+    on : {"curve", "spline"}, optional
+        Where samples are to lie. By default on the curve, if its derivatives can be bounded, and on
+        the spline of others, of points, and with `pieces`.
 
     Returns
     -------
@@ -228,7 +254,9 @@ def sample(
     Raises
     ------
     InputError
-        For unusable arguments.
+        For unusable arguments, and with ``on="curve"`` if its derivatives cannot be bounded.
+    UnknownNameError
+        For another place.
     SurfaceError
         For a curve that cannot be evaluated.
 
@@ -253,18 +281,40 @@ def sample(
     directions = None if normals is None else as_normals(normals, 2)
     if isinstance(curve, CurveSpline) and pieces is not None:
         raise InputError("pieces=... is for curves; this spline already has its pieces.")
-    spline = curve if isinstance(curve, CurveSpline) else fit(curve, pieces)
+    spline = _searched(curve, pieces, on)
     if directions is None:
         assert asked is not None
         directions, hits = _by_count(spline, asked)
     else:
         hits = find(spline, directions)
-    samples = filled(spline, directions, hits)
+    if isinstance(spline, CurveSpline):
+        samples = filled(spline, directions, hits)
+    else:
+        samples = filled_on_curve(spline, directions, hits)
     _warn(samples.report, asked)
     return samples
 
 
-def find(spline: CurveSpline, normals: Array) -> Hits:
+def _searched(
+    curve: Curve | CurveSpline, pieces: int | None, on: str | None
+) -> CurveSpline | CurveArcs:
+    """Return what is searched: the arcs of a curve, or a spline."""
+    place = None if on is None else known_name(on, PLACES, "place of samples of curves")
+    if place == "curve" and pieces is not None:
+        raise InputError('pieces=... is for on="spline"; on the curve itself there is no spline.')
+    if isinstance(curve, Curve) and place != "spline" and pieces is None:
+        arcs = arcs_of(curve)
+        if arcs is not None:
+            return arcs
+    if place == "curve":
+        raise InputError(
+            f'on="curve" needs bounds of the derivatives of {curve.name!r}, as of SymPy '
+            "expressions and of callables made of NumPy functions; leave out on=…."
+        )
+    return curve if isinstance(curve, CurveSpline) else fit(curve, pieces)
+
+
+def find(spline: CurveSpline | CurveArcs, normals: Array) -> Hits:
     """Return all pairs of an arc of a spline and one of the unit normals (S, 2) that it has."""
     angles = angles_of(normals)
     order = np.argsort(angles, kind="stable")
@@ -281,7 +331,7 @@ def find(spline: CurveSpline, normals: Array) -> Hits:
     )
 
 
-def _places(spline: CurveSpline, angles: Array) -> NDArray[np.int64]:
+def _places(spline: CurveSpline | CurveArcs, angles: Array) -> NDArray[np.int64]:
     """Return the number of sorted angles before each joint, full turns included.
 
     Along straight arcs the normal is constant. The ends of an open curve belong to it: they are
@@ -323,7 +373,7 @@ def _merge_joints(angles: Array, turns: NDArray[np.int64], errors: Array, start:
                 angles[0], turns[0] = angles[here], turns[here] - whole
 
 
-def _by_count(spline: CurveSpline, count: int) -> tuple[Array, Hits]:
+def _by_count(spline: CurveSpline | CurveArcs, count: int) -> tuple[Array, Hits]:
     """Return uniform normals with about `count` samples, and these."""
     curved = np.flatnonzero(~spline.straight)
     total = float(np.abs(spline.turning_angles[curved]).sum())
@@ -359,6 +409,31 @@ def filled(spline: CurveSpline, normals: Array, hits: Hits) -> CurveSamples:
         t: Array = np.where(A != 0.0, inside, 0.5)
         x, curvature = python_function(formulas.arc_sample)(arcs, t, A)
     points = spline.coefficients[piece + 1] + np.stack(x, axis=-1) / spline.scale
+    parameters = spline.domain[0] + spline.step * (piece + t)
+    return _samples(spline, normals, hits, parameters, points, spline.scale * curvature)
+
+
+def filled_on_curve(arcs: CurveArcs, normals: Array, hits: Hits) -> CurveSamples:
+    """Return the same on the curve itself."""
+    mine = normals[hits.normal_index]
+    t = arcs.parameters(hits.piece_index, mine)
+    samples = _samples(arcs, normals, hits, t, *arcs.at(t, mine))
+    undecided = tuple(np.flatnonzero(arcs.undecided(normals)).tolist())
+    proved = len(normals) - len(undecided)
+    report = replace(samples.report, on="curve", proved=proved, undecided=undecided)
+    return replace(samples, report=report)
+
+
+def _samples(
+    spline: CurveSpline | CurveArcs,
+    normals: Array,
+    hits: Hits,
+    parameters: Array,
+    points: Array,
+    curvature: Array,
+) -> CurveSamples:
+    """Return samples at hits of unit normals (S, 2), with their report."""
+    mine = normals[hits.normal_index]
     report = CurveReport(
         curve=spline.name,
         normals=len(normals),
@@ -368,21 +443,21 @@ def filled(spline: CurveSpline, normals: Array, hits: Hits) -> CurveSamples:
         inflections=len(spline.inflections),
         turning_number=spline.turning_number,
     )
-    ends = spline.evaluate(spline.domain) if not spline.periodic else np.empty((0, 2))
+    ends = np.empty((0, 2)) if spline.periodic else spline.evaluate(np.array(spline.domain))
     return CurveSamples(
         points=points,
         normals=mine,
-        parameters=spline.domain[0] + spline.step * (piece + t),
+        parameters=parameters,
         support=np.einsum("kx,kx->k", mine, points),
-        curvature=np.copysign(spline.scale * curvature, hits.signs),
+        curvature=np.copysign(curvature, hits.signs),
         normal_index=hits.normal_index,
-        piece_index=piece,
+        piece_index=hits.piece_index,
         ends=ends,
         report=report,
     )
 
 
-def _straight_share(spline: CurveSpline, normals: int) -> float:
+def _straight_share(spline: CurveSpline | CurveArcs, normals: int) -> float:
     """Return the share of the length where κ ≈ 0, so that it has no samples.
 
     An arc is straight if a curve with its curvature and the length of this one gets no sample.

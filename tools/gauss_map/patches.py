@@ -18,6 +18,7 @@ from ...runtime.base.errors import InputError
 from ...runtime.base.formula_calls import patch, python_function, vector
 from ...runtime.base.scales import LARGEST_EXPONENT, scales_to_one
 from ...runtime.base.tolerances import CUBIC_ERROR, DATA_ERROR
+from ...runtime.spline.nets import NetSpline
 from ...runtime.spline.spline import Spline
 
 __all__ = ["Patches", "checked_control_points", "checked_nets"]
@@ -52,6 +53,8 @@ class Patches:
     @classmethod
     def of_spline(cls, spline: Spline) -> Patches:
         """Return all patches of a spline, from differences of its coefficients."""
+        if isinstance(spline, NetSpline):
+            return cls.of_control_points(spline.control_nets)
         cell, turn = np.divmod(np.arange(spline.patches), 4)
         i, j = np.divmod(cell, spline.cells[1])
         steps = NEIGHBOURS[turn][:, TRIANGLE_NEIGHBOURS]

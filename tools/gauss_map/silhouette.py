@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -12,22 +12,29 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from ...runtime.base.checks import whole_number
 from ...runtime.base.threads import thread_count
+from ...runtime.base.tolerances import NORMAL_ERROR
 from ...runtime.density.chosen_normals import NEAR_ENOUGH, NORMALS_PER_SAMPLE
 from ...runtime.directions.circle import circle
 from ...runtime.directions.unit import as_normals, perpendicular, unit_vector
-from ...runtime.fitting.fit import check_range, spline_of
-from ...runtime.samples.fields import ARRAY_NAMES, checked_dtype, checked_fields
-from ...runtime.samples.report import sampling_report, warn_of
+from ...runtime.place.on_spline import OnSpline
+from ...runtime.place.on_surface import geometry_of, place_of_samples
+from ...runtime.samples.fields import FLAG_NAMES, checked_dtype, checked_fields
+from ...runtime.samples.report import warn_of
 from ...runtime.samples.samples import Samples
 from ...runtime.search.bins import NormalBins
 from ...runtime.search.search import Hits, fill, find
 from ...runtime.spline.inside import count_of, samples_inside
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
+from ...runtime.surface.surfaces import named
 from .contours import polylines_of
 
 __all__ = ["Silhouette", "great_circle", "silhouette"]
 
+# Fields that say which normal a sample has, and where it was found.
+KEYS = ("normal_index", "patch_index")
+# The steps of Newton's method, and how far they may lead, in cells.
+MOST_STEPS, FARTHEST = 12, 2.0
 # The largest number of attempts to meet `count` by changing the number of normals.
 TRIES = 6
 
@@ -77,6 +84,7 @@ def silhouette(
     *,
     count: int = 1000,
     cells: Sequence[int] | None = None,
+    on: str | None = None,
     fields: Sequence[str] | None = None,
     dtype: DTypeLike = np.float64,
     threads: int | None = None,
@@ -85,9 +93,10 @@ def silhouette(
     """Return points of a surface whose normals are perpendicular to a direction.
 
     They lie on the contour generator, which a parallel projection along `direction` shows as the
-    outline: all of it, also where the surface hides it. Where K < 0 the outline is concave. Unlike
-    samples, they stay on the spline that approximates the surface: ``gm.fit(surface).misfit`` is
-    how far away it is, and more `cells` bring it nearer.
+    outline: all of it, also where the surface hides it. Where K < 0 the outline is concave. They
+    are found on the spline that approximates the surface, and moved to the surface as samples are.
+    Next to parabolic points, where the surface may have no point with that normal near by, they are
+    moved to its contour generator, and have another normal than that of their `normal_index`.
 
     Parameters
     ----------
@@ -98,7 +107,7 @@ def silhouette(
     count : int, default 1000
         The approximate number of points. Their normals are uniform on a great circle, so that
         points are dense where the outline is curved.
-    cells, fields, dtype, threads, progress : optional
+    cells, on, fields, dtype, threads, progress : optional
         As in `sample`.
 
     Returns
@@ -124,38 +133,107 @@ def silhouette(
     -----
     Parts of the contour generator along which the normal is constant, such as straight ones and the
     circle on top of a torus in the direction of its axis, give isolated points or none. A polyline
-    crosses them in one step.
+    crosses them in one step. Which parts of the outline are seen, its cusps and its T-junctions are
+    not computed.
 
     Examples
     --------
     >>> import gaussmap as gm
     >>> outline = gm.silhouette("torus", (1, 2, 3), count=200)
-    >>> bool((abs(outline.normals @ [1, 2, 3]) < 1e-12).all())
-    True
+    >>> bool((abs(outline.normals @ [1, 2, 3]) < 1e-12).all()), bool(outline.on_surface.all())
+    (True, True)
     >>> [(len(line), bool(line[0] == line[-1])) for line in outline.polylines]
     [(101, True), (101, True)]
     >>> outline.points[outline.polylines[0]].shape  # a closed curve
     (101, 3)
 
     """
-    names, number = checked_fields(fields), checked_dtype(dtype)
+    surface, number = named(surface), checked_dtype(dtype)
+    on_surface = place_of_samples(surface, on) == "surface"
+    names, flags = checked_fields(fields, surface=on_surface), FLAG_NAMES if on_surface else ()
     axis, asked = unit_vector(direction, "direction"), whole_number(count, "count")
     thread_count(threads)
-    spline = spline_of(surface, cells)
-    check_range(spline, number)
+    geometry = geometry_of(surface, cells, on).used(number, threads)
+    spline = geometry.spline
     bins, hits = _by_count(spline, axis, asked, threads, progress)
-    needed = {*names, "uv", "normal_index"}
-    arrays = fill(spline, bins, hits, threads, [x for x in ARRAY_NAMES if x in needed], number)
-    arrays = samples_inside(spline.trim, arrays, list(arrays))
-    order = np.argsort(arrays["normal_index"], kind="stable")
-    arrays = {name: x[order] for name, x in arrays.items()}
-    lines = polylines_of(spline, axis, arrays["uv"].astype(np.float64))
+    found = geometry.at_hits(bins, hits, list(dict.fromkeys([*names, *KEYS, *flags])), number)
+    order = np.argsort(found.fields["normal_index"], kind="stable")
+    arrays = {name: x[order] for name, x in found.fields.items()}
+    places = _places_on_spline(spline, bins, hits, arrays)
+    unrefined = _move_others(geometry, axis, places, arrays)
+    lines = polylines_of(spline, axis, places)
     chosen: dict[str, Any] = {name: arrays[name] for name in names}
     asked_normals = len(bins.normals)
     density = asked_normals / (4 * math.pi)
-    report = sampling_report(spline, asked_normals, len(order), density, hits.developable, chosen)
+    report = geometry.report(asked_normals, density, hits.developable, chosen)
+    report = replace(report, on=geometry.on, unrefined=unrefined)
     warn_of(report, asked, stacklevel=3)
-    return Silhouette(**chosen, report=report, spline=spline, polylines=lines)
+    return Silhouette(
+        **chosen, report=report, spline=spline, surface=geometry.surface, polylines=lines
+    )
+
+
+def _places_on_spline(
+    spline: Spline, bins: NormalBins, hits: Hits, arrays: dict[str, NDArray[Any]]
+) -> NDArray[np.float64]:
+    """Return the parameters (N, 2) at which samples were found on the spline."""
+    known = fill(spline, bins, hits, fields=(*KEYS, "uv"))
+    keys, mine = (x["normal_index"] * spline.patches + x["patch_index"] for x in (known, arrays))
+    order = np.argsort(keys)
+    return known["uv"][order[np.searchsorted(keys[order], mine)]]
+
+
+def _move_others(
+    geometry: OnSpline,
+    axis: NDArray[np.float64],
+    places: NDArray[np.float64],
+    arrays: dict[str, NDArray[Any]],
+) -> int | None:
+    """Move samples that are not on the surface to its contour generator; return how many are left.
+
+    Newton's method for N·axis = 0, from their places (N, 2) on the spline along the gradient, leads
+    there at parabolic points, too. The samples are overwritten.
+    """
+    if FLAG_NAMES[0] not in arrays:
+        return None
+    on_surface = arrays[FLAG_NAMES[0]]
+    rows = np.flatnonzero(~on_surface)
+    surface = geometry.surface
+    if len(rows) == 0 or surface is None:
+        return len(rows)
+    steps, start = geometry.spline.frame[2:], places[rows]
+    uv, near = start.copy(), np.zeros(len(rows), dtype=bool)
+    for _ in range(MOST_STEPS):
+        _, x_u, x_v, x_uu, x_uv, x_vv = np.moveaxis(surface.jets(*uv.T.copy()), 1, 0)
+        N = np.cross(x_u, x_v)
+        value = N @ axis
+        along_u, along_v = (
+            np.cross(x_u_w, x_v) + np.cross(x_u, x_v_w)
+            for x_u_w, x_v_w in ((x_uu, x_uv), (x_uv, x_vv))
+        )
+        gradient = steps * np.stack([along_u @ axis, along_v @ axis], axis=1)
+        near = np.abs(value) <= NORMAL_ERROR * np.linalg.norm(N, axis=1)
+        squares = np.square(gradient).sum(axis=1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            move = -steps * gradient * (value / squares)[:, None]
+        uv = np.where(near[:, None] | ~np.isfinite(move), uv, uv + move)
+        uv = np.clip(uv, start - FARTHEST * steps, start + FARTHEST * steps)
+        uv = _inside(uv, geometry.spline)
+    done = rows[near]
+    fields = [x for x in arrays if x not in KEYS]
+    K = np.ones(len(done))
+    dtype = arrays["points"].dtype if "points" in arrays else np.float64
+    moved = geometry.at_parameters(uv[near], np.tile(axis, (len(done), 1)), K, fields, dtype)
+    for name in fields:
+        arrays[name][done] = moved[name]
+    return int(np.count_nonzero(~arrays[FLAG_NAMES[0]]))
+
+
+def _inside(uv: NDArray[np.float64], spline: Spline) -> NDArray[np.float64]:
+    """Return parameters (k, 2) moved into the domain, along what is not periodic."""
+    free = [ends[0] == "periodic" for ends in spline.boundary]
+    low, high = np.array(spline.domain).T
+    return np.where(free, uv, np.clip(uv, low, high))
 
 
 def great_circle(axis: NDArray[np.float64], count: int) -> NDArray[np.float64]:

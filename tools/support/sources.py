@@ -15,6 +15,7 @@ from ...runtime.base.errors import InputError
 from ...runtime.base.formula_calls import python_function, vector
 from ...runtime.search.bins import NormalBins
 from ...runtime.search.search import fill, find
+from ...runtime.spline.nets import NetSpline
 from ...runtime.spline.spline import Spline
 from ..gauss_map.membership import PatchNormals
 from ..gauss_map.patches import checked_control_points
@@ -62,15 +63,18 @@ class SplineSource:
         known[hits.exact] = hits.local[:, 3:5]
         order = np.argsort(hits.normal_index, kind="stable")
         patches, rows = hits.patch_index[order], hits.normal_index[order]
-        hessian = np.empty((len(hits), 3, 3))
-        kernels.hessians_of_patches(
-            self.spline.coefficients,
-            self.spline.scale,
-            patches,
-            normals[rows],
-            known[order],
-            hessian,
-        )
+        if isinstance(self.spline, NetSpline):
+            hessian = _hessians_in_nets(self.spline, patches, normals[rows], fields["uv"][order])
+        else:
+            hessian = np.empty((len(hits), 3, 3))
+            kernels.hessians_of_patches(
+                self.spline.coefficients,
+                self.spline.scale,
+                patches,
+                normals[rows],
+                known[order],
+                hessian,
+            )
         return Sheets(
             rows, fields["points"][order], hessian, fields["gaussian_curvature"][order],
             fields["mean_curvature"][order], patches, fields["uv"][order],
@@ -147,3 +151,17 @@ class PatchSource:
     @cached_property
     def _normals(self) -> PatchNormals:
         return PatchNormals(self.control_points)
+
+
+def _hessians_in_nets(
+    spline: NetSpline, patches: NDArray[np.int64], normals: NDArray[np.float64],
+    uv: NDArray[np.float64],
+) -> NDArray[np.float64]:  # fmt: skip
+    """Return the Hessians (k, 3, 3) of the support function at unit normals (k, 3)."""
+    patch, n = spline.patch(patches), vector(normals)
+    D, *_ = python_function(formulas.forms)(patch, n)
+    A, B, C, _, _ = python_function(formulas.linear_forms)(patch, n)
+    p_u, p_v, _ = python_function(formulas.tangents)(patch, *uv.T)
+    H = python_function(formulas.hessian)(A, B, C, D, p_u, p_v)
+    rows = [[H.H_xx, H.H_xy, H.H_xz], [H.H_xy, H.H_yy, H.H_yz], [H.H_xz, H.H_yz, H.H_zz]]
+    return np.moveaxis(np.array(rows), 2, 0) / spline.scale

@@ -340,3 +340,22 @@ def test_directions_of_any_length(scale: float) -> None:
 def test_counts_that_are_none(count: Any) -> None:
     with pytest.raises(gm.errors.InputError, match="count must be a whole number of at least 1"):
         gm.silhouette(TORUS, [0, 0, 1], count=count)
+
+
+@compiled
+@pytest.mark.parametrize("name", ["torus", "wavy_graph", "enneper", "moebius_band"])
+def test_it_lies_on_the_surface(name: str) -> None:
+    """With the surface's own derivatives, at parabolic points too."""
+    surface, axis = gm.surfaces.surface(name), np.array([1.0, 0.2, 0.3]) / np.sqrt(1.13)
+    outline = gm.silhouette(surface, axis, count=400)
+    jets = surface.jets(*outline.uv.T)
+    normals = np.cross(jets[:, 1], jets[:, 2])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    assert np.abs(normals @ axis).max() < 2e-12
+    assert np.abs(jets[:, 0] - outline.points).max() < 1e-12
+    assert outline.on_surface is not None
+    assert outline.on_surface.all()
+    assert (outline.report.on, outline.report.unrefined) == ("surface", 0)
+    on_spline = gm.silhouette(surface, axis, count=400, on="spline")
+    assert on_spline.report.on == "spline"
+    assert len(on_spline.polylines) == len(outline.polylines)

@@ -1,0 +1,284 @@
+"""Joints of quadratic patches: which edges are one curve, and how far their normals differ."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import KDTree
+
+from ..base.aliases import Array, Flags, Indices
+from ..base.errors import InputError
+
+__all__ = ["EDGES", "Edge", "Joints", "Topology", "merged_points"]
+
+
+class Edge(NamedTuple):
+    """Rows of a net b200, b020, b002, b110, b101, b011: an edge, and the points beside it.
+
+    The edge has the control points `start`, `middle`, `end`; `start_beside` and `end_beside` are
+    those of the next row, so that their differences from `start` and `middle` point inwards.
+    """
+
+    start: int
+    middle: int
+    end: int
+    start_beside: int
+    end_beside: int
+
+
+# The edges u = 0, v = 0, w = 0, counterclockwise.
+EDGES = (Edge(1, 5, 2, 3, 4), Edge(2, 4, 0, 5, 3), Edge(0, 3, 1, 4, 5))
+# The rows of the corners, and where they are in the control normals N200, N110, N101, N020, N011,
+# N002; then the control normals of the edges.
+CORNER_NORMALS = (0, 3, 5)
+EDGE_NORMALS = ((3, 4, 5), (5, 2, 0), (0, 1, 3))
+# Parameters of an edge at which the normals of its patches are compared.
+PLACES = np.linspace(0.0, 1.0, 9)
+# Points closer than this, relative to the largest coordinate, are one point.
+SAME_POINT = 2.0**-36
+# Points of an edge that are tried as the nearest one to a corner, and steps of Newton's method.
+TRIED, STEPS = 33, 4
+
+
+class Joints(NamedTuple):
+    """The J joints of a spline of nets: curves that are edges of two patches.
+
+    Attributes
+    ----------
+    patches : (J, 2) int64 array
+        The two patches.
+    edges : (J, 2) int64 array
+        Their edges: 0, 1, 2 for u = 0, v = 0, w = 1 − u − v = 0.
+    angles : (J,) float64 array
+        The largest angle between the normals of the two patches, in degrees.
+    smooth : (J,) bool array
+        Whether the normals are continuous; otherwise the joint is a crease.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> joints = gm.Spline.from_nets(gm.fit("torus", (4, 4)).control_nets).joints
+    >>> len(joints.patches), bool(joints.angles.max() < 1e-5), bool(joints.smooth.all())
+    (96, True, True)
+
+    """
+
+    patches: NDArray[np.int64]
+    edges: NDArray[np.int64]
+    angles: NDArray[np.float64]
+    smooth: NDArray[np.bool_]
+
+
+def merged_points(points: Array) -> tuple[Array, Indices]:
+    """Return points that differ by more than rounding, and which of them each point (N, 3) is."""
+    size = float(np.abs(points).max()) * SAME_POINT
+    number = np.arange(len(points))
+    if size == 0.0:
+        return points[:1], np.zeros_like(number)
+    # Two points within half a box share a box in one of eight rasters.
+    for shift in product((0.0, 0.5), repeat=3):
+        boxes = np.floor(points / (2.0 * size) + shift)
+        _, group = np.unique(boxes, axis=0, return_inverse=True)
+        group = group.ravel()
+        least = np.full(group.max() + 1, len(points))
+        np.minimum.at(least, group, number)
+        number = least[group]
+    number = number[number]
+    firsts, inverse = np.unique(number, return_inverse=True)
+    return points[firsts], inverse.ravel()
+
+
+@dataclass(frozen=True, eq=False)
+class Topology:
+    """Nets (T, 6, 3) with the numbers (T, 6) of their points, and control normals (T, 6, 3).
+
+    Joints whose normals differ by at most `smooth` degrees are smooth.
+    """
+
+    nets: Array
+    numbers: Indices
+    normals: Array
+    smooth: float
+
+    @cached_property
+    def _ends(self) -> Indices:
+        """Start, end and middle (3 T, 3) of all edges; edge j of patch k is in row 3 k + j."""
+        rows = [[edge.start, edge.end, edge.middle] for edge in EDGES]
+        return self.numbers[:, rows].reshape(-1, 3)
+
+    @cached_property
+    def pairs(self) -> Indices:
+        """The two edges (J, 2) of each joint, as rows 3 k + j."""
+        start, end, middle = self._ends.T
+        keys = np.stack([np.minimum(start, end), np.maximum(start, end), middle], axis=1)
+        rows = np.flatnonzero(start != end)  # an edge that is one point joins nothing
+        _, group, sizes = np.unique(keys[rows], axis=0, return_inverse=True, return_counts=True)
+        group = group.ravel()
+        if (sizes > 2).any():
+            patches = rows[group == int(np.argmax(sizes > 2))] // 3
+            raise InputError(
+                f"{len(patches)} patches share one edge, and at most two can: patches "
+                f"{', '.join(map(str, patches.tolist()))}."
+            )
+        order = rows[np.argsort(group, kind="stable")]
+        first = (np.cumsum(sizes) - sizes)[sizes == 2]
+        pairs = np.stack([order[first], order[first + 1]], axis=1)
+        same = start[pairs[:, 0]] == start[pairs[:, 1]]
+        if same.any():
+            one, other = pairs[np.argmax(same)] // 3
+            raise InputError(
+                f"patches {one} and {other} have opposite orientations: both run the same way "
+                "along their joint; exchange the first two corners of one of them."
+            )
+        return pairs
+
+    @cached_property
+    def joints(self) -> Joints:
+        """The joints; InputError for vertices inside edges, too many patches at an edge."""
+        pairs = self.pairs
+        self._refuse_hanging_vertices()
+        left, right = (_normals_along(self.normals, edges) for edges in pairs.T)
+        angles = np.degrees(_largest_angles(left, right[:, ::-1]))
+        return Joints(pairs // 3, pairs % 3, angles, angles <= self.smooth)
+
+    @cached_property
+    def _is_point(self) -> Flags:
+        """Which edges (3 T,) are one point."""
+        return (self._ends[:, :1] == self._ends[:, 1:]).all(axis=1)
+
+    @cached_property
+    def smooth_pairs(self) -> Indices:
+        """Pairs of edges, as in `pairs`, along which the normals are the same.
+
+        They are those of the smooth joints, and the other two edges of a patch with one edge that
+        is a point: its normals are those of these edges.
+        """
+        rows = np.flatnonzero(self._is_point)
+        patch, edge = np.divmod(rows, 3)
+        beside = np.stack([3 * patch + (edge + k) % 3 for k in (1, 2)], axis=1)
+        beside = beside[~self._is_point[beside].any(axis=1)]
+        return np.concatenate([self.pairs[self.joints.smooth], beside])
+
+    @cached_property
+    def owner(self) -> tuple[Indices, NDArray[np.int8]]:
+        """For each edge (3 T,) the one whose boundary cone decides, and the sign of its form."""
+        owner, side = np.arange(3 * len(self.nets)), np.ones(3 * len(self.nets), np.int8)
+        one, other = np.concatenate([self.smooth_pairs, self.smooth_pairs[:, ::-1]]).T
+        while (later := owner[one] < owner[other]).any():
+            source, target = one[later], other[later]
+            owner[target], side[target] = owner[source], -side[source]
+        return owner, side
+
+    @cached_property
+    def on_border(self) -> Flags:
+        """Which edges (3 T,) are on no smooth joint; not those that are one point."""
+        free = ~self._is_point
+        free[self.smooth_pairs.ravel()] = False
+        return free
+
+    @cached_property
+    def corners(self) -> tuple[Array, Indices]:
+        """Unit normals at corners, one for all patches that meet there smoothly, and which (T, 3).
+
+        They are 0 where no patch has one.
+        """
+        pairs = self.smooth_pairs
+        # Edge j runs from corner j + 1 to corner j + 2.
+        patch, edge = pairs // 3, pairs % 3
+        start, end = 3 * patch + (edge + 1) % 3, 3 * patch + (edge + 2) % 3
+        one = np.concatenate([start[:, 0], end[:, 0]])
+        other = np.concatenate([end[:, 1], start[:, 1]])
+        count = 3 * len(self.nets)
+        links = coo_array((np.ones(len(one)), (one, other)), shape=(count, count))
+        number, fan = connected_components(links, directed=False)
+        own = _unit(self.normals[:, CORNER_NORMALS].reshape(-1, 3))
+        shared = np.zeros((number, 3))
+        known = np.flatnonzero(own.any(axis=1))[::-1]
+        shared[fan[known]] = own[known]
+        return shared, fan.reshape(-1, 3)
+
+    @cached_property
+    def angles(self) -> Array:
+        """How far normals of a patch (T,) are from those that its joints share, in radians."""
+        found = np.zeros(len(self.nets))
+        joints = self.joints
+        for side in (0, 1):
+            chosen = joints.patches[joints.smooth, side]
+            np.maximum.at(found, chosen, np.radians(joints.angles[joints.smooth]))
+        shared, fan = self.corners
+        own = self.normals[:, CORNER_NORMALS]
+        return np.maximum(found, _largest_angles(own, shared[fan]))
+
+    def _refuse_hanging_vertices(self) -> None:
+        joined = np.zeros(3 * len(self.nets), dtype=bool)
+        joined[self.pairs.ravel()] = True
+        edges = np.flatnonzero(~joined & (self._ends[:, 0] != self._ends[:, 1]))
+        if len(edges) == 0:
+            return
+        ends = self._ends[edges]
+        vertices = np.unique(ends[:, :2])
+        where = {int(x): self.nets.reshape(-1, 3)[k] for k, x in _firsts(self.numbers)}
+        points = np.array([where[int(x)] for x in vertices])
+        size = float(np.abs(self.nets).max()) * SAME_POINT
+        tree = KDTree(points)
+        for edge, (start, end, middle) in zip(edges.tolist(), ends.tolist(), strict=True):
+            curve = np.array([where[start], where[middle], where[end]])
+            centre = curve.mean(axis=0)
+            radius = float(np.linalg.norm(curve - centre, axis=1).max())
+            for near in tree.query_ball_point(centre, radius + size):
+                if vertices[near] not in (start, end) and _touches(curve, points[near], size):
+                    raise InputError(
+                        f"a corner of another patch, at {points[near].tolist()}, is inside an edge "
+                        f"of patch {edge // 3}: divide this patch there, so that patches meet "
+                        "along whole edges."
+                    )
+
+
+def _firsts(numbers: Indices) -> Iterator[tuple[int, int]]:
+    """Yield a place in the flat array of points for each number."""
+    values, places = np.unique(numbers, return_index=True)
+    return zip(places.tolist(), values.tolist(), strict=True)
+
+
+def _touches(curve: Array, point: Array, size: float) -> bool:
+    """Return whether a point is closer to a parabola than `size`, away from its ends."""
+    start, middle, end = curve - point
+    a, b = start - 2.0 * middle + end, 2.0 * (middle - start)
+    t = np.linspace(0.0, 1.0, TRIED)[:, None]
+    t = t[np.argmin(np.linalg.norm((a * t + b) * t + start, axis=1)), 0]
+    for _ in range(STEPS):
+        x, along = (a * t + b) * t + start, 2.0 * a * t + b
+        t = min(max(t - float(x @ along) / float(along @ along + 2.0 * (x @ a)), 0.0), 1.0)
+    x = (a * t + b) * t + start
+    return bool(0.0 < t < 1.0 and np.linalg.norm(x) < size)
+
+
+def _normals_along(normals: Array, edges: Indices) -> Array:
+    """Return normals (J, places, 3) along edges, from control normals (T, 6, 3)."""
+    patch, edge = np.divmod(edges, 3)
+    control = normals[patch[:, None], np.array(EDGE_NORMALS)[edge]]
+    t = PLACES
+    return np.einsum("pk,jkx->jpx", np.stack([(1 - t) ** 2, 2 * t * (1 - t), t**2], 1), control)
+
+
+def _largest_angles(left: Array, right: Array) -> Array:
+    """Return the largest angle (J,) of vectors (J, k, 3); none with a vector that is zero."""
+    left, right = _unit(left), _unit(right)
+    known = left.any(axis=-1) & right.any(axis=-1)
+    chord = np.where(known, np.linalg.norm(left - right, axis=-1), 0.0)
+    return (2.0 * np.arcsin(np.clip(0.5 * chord, 0.0, 1.0))).max(axis=-1)
+
+
+def _unit(vectors: Array) -> Array:
+    """Return vectors (…, 3) of unit length, 0 for those that are rounding."""
+    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    regular = lengths > SAME_POINT
+    return np.where(regular, vectors / np.where(regular, lengths, 1.0), 0.0)

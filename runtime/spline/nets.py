@@ -1,0 +1,280 @@
+"""A spline of quadratic patches that are given by their control nets, on any triangulation."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import NoReturn
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...generated import patch as formulas
+from ...generated.vectors import Patch
+from ..base.aliases import Array
+from ..base.checks import finite_array, finite_number, text
+from ..base.errors import InputError, SurfaceError
+from ..base.formula_calls import python_function, vector
+from ..base.scales import scale_to_one
+from .developable import CellMeasure
+from .inside import subcentroids
+from .joints import Joints, Topology, merged_points
+from .spline import Spline, short_label
+
+__all__ = ["NetSpline", "from_nets", "vectors_of_nets"]
+
+# Areas and solid angles are sums over the centroids of the squared number of parts of a patch.
+PARTS = 4
+GRID = (
+    "{name!r} is made of nets and has no grid of cells nor parameters u, v of a whole surface, "
+    "which this needs; fit a Surface instead."
+)
+
+
+class NetSpline(Spline):
+    """A spline of T quadratic Bézier triangles on any triangulation; made by `Spline.from_nets`.
+
+    The parameters `uv` of its samples are those in the triangle of their patch, u, v ≥ 0 and
+    u + v ≤ 1. What needs a grid of cells raises InputError.
+
+    Attributes
+    ----------
+    control_nets : (T, 6, 3) float64 array
+        The nets, each in the order b200, b020, b002, b110, b101, b011.
+    triangles : (T, 6) int64 array
+        The numbers of their points: equal ones for points that patches share.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> torus = gm.Spline.from_nets(gm.fit("torus", (16, 16)).control_nets, name="torus")
+    >>> torus, torus.control_nets.shape, torus.triangles.shape
+    (NetSpline(1,024 patches of torus), (1024, 6, 3), (1024, 6))
+    >>> len(gm.sample(torus, normals=[[1, 0, 0], [0, 0.6, 0.8]]))
+    4
+
+    """
+
+    control_nets: NDArray[np.float64]  # type: ignore[assignment]
+    triangles: NDArray[np.int64]
+    smooth: float
+
+    def __init__(
+        self, nets: NDArray[np.float64], triangles: NDArray[np.int64], name: str, smooth: float
+    ) -> None:
+        known = {
+            "control_nets": nets, "triangles": triangles, "name": text(name, "name"),
+            "smooth": smooth, "misfit": None, "trim": None, "apexes": 0, "georeference": None,
+        }  # fmt: skip
+        vars(self).update(known)
+
+    @classmethod
+    def checked(
+        cls, points: ArrayLike, triangles: ArrayLike | None, name: str, smooth: float
+    ) -> NetSpline:
+        """Make one of arguments of `Spline.from_nets`."""
+        limit = finite_number(smooth, "smooth")
+        if not 0.0 <= limit < 90.0:
+            raise InputError(f"smooth must be an angle from 0 to 90 degrees, not {limit:g}.")
+        if triangles is None:
+            nets = finite_array(points, ("T", 6, 3), "nets")
+            _, numbers = merged_points(nets.reshape(-1, 3)) if len(nets) else (0, np.empty(0, int))
+            indices = numbers.reshape(-1, 6)
+        else:
+            known, indices = finite_array(points, ("N", 3), "points"), np.asarray(triangles)
+            if indices.ndim != 2 or indices.shape[1] != 6 or indices.dtype.kind not in "iu":
+                raise InputError("triangles must be whole numbers of the shape (T, 6).")
+            if len(indices) and not 0 <= indices.min() <= indices.max() < len(known):
+                raise InputError(
+                    f"triangles have points that are not there: there are {len(known)}."
+                )
+            nets = known[indices]
+        if len(nets) == 0:
+            raise InputError("a spline needs at least one net.")
+        spline = cls(np.ascontiguousarray(nets), indices.astype(np.int64), name, limit)
+        if not np.abs(spline.vectors).any():
+            raise SurfaceError(f"all control points of {name!r} are the same.")
+        spline.joints  # noqa: B018 - refuses nets that do not fit together
+        return spline
+
+    def __repr__(self) -> str:
+        kind = "patch" if self.patches == 1 else "patches"
+        return f"NetSpline({self.patches:,} {kind} of {short_label(self.name)})"
+
+    def __getstate__(self) -> dict[str, object]:
+        """Return what is pickled."""
+        names = "control_nets", "triangles", "name", "smooth"
+        rest = {"misfit": None, "trim": None, "apexes": 0, "georeference": None}
+        return {x: getattr(self, x) for x in names} | rest
+
+    def __setstate__(self, state: dict[str, object]) -> None:
+        """Take what was pickled."""
+        vars(self).update(state)
+
+    def _refuse(self) -> NoReturn:
+        raise InputError(GRID.format(name=self.name))
+
+    @property
+    def coefficients(self) -> NDArray[np.float64]:  # type: ignore[override]
+        """Raise InputError: there is no grid."""
+        self._refuse()
+
+    @property
+    def domain(self) -> NoReturn:  # type: ignore[override]
+        """Raise InputError: there is no rectangle of parameters."""
+        self._refuse()
+
+    @property
+    def boundary(self) -> NoReturn:  # type: ignore[override]
+        """Raise InputError: there is no rectangle of parameters."""
+        self._refuse()
+
+    @property
+    def patches(self) -> int:
+        """The number of patches."""
+        return len(self.control_nets)
+
+    @cached_property
+    def scale(self) -> float:
+        """A power of two that brings the differences of control points to about 1."""
+        nets = self.control_nets
+        return scale_to_one(float(np.abs(nets - nets[:, 2:3]).max()))
+
+    @cached_property
+    def _largest(self) -> float:
+        return float(np.abs(self.control_nets).max())
+
+    @cached_property
+    def vectors(self) -> Array:
+        """The vectors a, b, c, d, e (T, 5, 3) of eq. (8), times `scale`."""
+        return vectors_of_nets((self.control_nets - self.control_nets[:, 2:3]) * self.scale)
+
+    @cached_property
+    def topology(self) -> Topology:
+        """How the patches are joined."""
+        normals = python_function(formulas.control_normals)(self.patch())
+        control = np.stack([np.stack(x, axis=-1) for x in normals], axis=1)
+        sizes = np.square(self.vectors).sum(axis=-1).max(axis=1)[:, None, None]
+        return Topology(
+            self.control_nets,
+            self.triangles,
+            control / np.where(sizes > 0.0, sizes, 1.0),
+            self.smooth,
+        )
+
+    @property
+    def joints(self) -> Joints:
+        """The joints of the patches, with the angles between their normals."""
+        return self.topology.joints
+
+    @property
+    def extent(self) -> tuple[float, int]:
+        """The diagonal of the bounding box, and the root of the number of patches."""
+        points = self.control_nets.reshape(-1, 3)
+        return math.hypot(*np.ptp(points, axis=0)), math.isqrt(self.patches)
+
+    def patch(self, rows: NDArray[np.int64] | slice = slice(None)) -> Patch:
+        """Return the vectors of some patches, as formulas take them, times `scale`; p is 0."""
+        a, b, c, d, e = np.moveaxis(self.vectors[rows], 1, 0)
+        zero = np.zeros_like(a)
+        return Patch(vector(a), vector(b), vector(c), vector(d), vector(e), vector(zero))
+
+    @property
+    def cap(self) -> tuple[Array, float]:
+        """A unit vector, and the least cosine of a normal with it; −1 if some are perpendicular."""
+        control = self.topology.normals.reshape(-1, 3)
+        lengths = np.linalg.norm(control, axis=1)
+        unit = control[lengths > 0.0] / lengths[lengths > 0.0, None]
+        mean = unit.sum(axis=0)
+        size = float(np.linalg.norm(mean))
+        axis = mean / size if size > 0.0 else np.array([0.0, 0.0, 1.0])
+        least = float((unit @ axis).min(initial=1.0))
+        return axis, least if size > 0.0 and least > 0.0 else -1.0
+
+    @cached_property
+    def measure(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Areas and signed solid angles of the patches, by quadrature: two (T,) float64 arrays.
+
+        Areas are in units of the squared diagonal of the bounding box.
+        """
+        u, v = subcentroids(PARTS).T
+        areas, angles = np.zeros(self.patches), np.zeros(self.patches)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            for x, y in zip(u, v, strict=True):
+                N = np.stack(python_function(formulas.tangents)(self.patch(), x, y)[2], axis=1)
+                area = np.linalg.norm(N, axis=1)
+                normals = vector(N / area[:, None])
+                K = python_function(formulas.curvature_at)(self.patch(), normals, x, y)[0]
+                areas += 0.5 / len(u) * area
+                angles += 0.5 / len(u) * np.nan_to_num(K * area)
+        diagonal = self.extent[0] * self.scale
+        return areas / diagonal**2, angles
+
+    @cached_property
+    def _cell_measure(self) -> CellMeasure:
+        areas, angles = self.measure
+        with np.errstate(divide="ignore", invalid="ignore"):
+            curvatures = np.where(areas > 0.0, np.abs(angles) / areas, 0.0)
+        return CellMeasure(areas, np.abs(angles), curvatures)
+
+
+def vectors_of_nets(nets: Array) -> Array:
+    """Return the vectors a, b, c, d, e (T, 5, 3) of nets (T, 6, 3)."""
+    found = python_function(formulas.power_form)(*map(vector, np.moveaxis(nets, 1, 0)))
+    return np.stack([np.stack(x, axis=-1) for x in found[:5]], axis=1)
+
+
+@staticmethod
+def from_nets(
+    nets: ArrayLike,
+    triangles: ArrayLike | None = None,
+    *,
+    name: str = "nets",
+    smooth: float = 0.01,
+) -> NetSpline:
+    """Return a spline of quadratic Bézier triangles on any triangulation.
+
+    Joints are found: edges with the same ends and the same middle control point, up to
+    rounding, or with the same indices. Where normals are continuous, a normal on the joint is
+    that of one of the two patches, and every point with a given normal is found exactly once.
+    A joint where they differ is a crease, and a border of both patches.
+
+    Parameters
+    ----------
+    nets : (T, 6, 3) or (N, 3) array_like
+        The nets, each in the order b200, b020, b002, b110, b101, b011, as in
+        `SupportFunction.of_patch`; with `triangles`, the points.
+    triangles : (T, 6) array_like of int, optional
+        The points of each net, in the same order. Patches that are joined share them.
+    name : str, default "nets"
+        Label of the surface.
+    smooth : float, default 0.01
+        The largest angle in degrees, of the normals of two patches, for which their joint is
+        smooth; see `NetSpline.joints`.
+
+    Returns
+    -------
+    NetSpline
+        The spline. What takes a `Spline` takes it, but for what needs a grid of cells.
+
+    Raises
+    ------
+    InputError
+        For arrays of other shapes, NaN and infinity; if a corner of a patch is inside an edge
+        of another one, if more than two patches share an edge, and if two have opposite
+        orientations.
+    SurfaceError
+        If all points are the same.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> points = [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (1, 0, 1), (0, 1, 1)]
+    >>> octant = gm.Spline.from_nets([points], name="octant")
+    >>> octant
+    NetSpline(1 patch of octant)
+    >>> gm.sample(octant, normals=[[1, 1, 1]]).points.round(3)
+    array([[0.556, 0.556, 0.556]])
+
+    """
+    return NetSpline.checked(nets, triangles, name, smooth)

@@ -1,0 +1,31 @@
+"""The boundary cones that decide for both patches of a joint."""
+
+from __future__ import annotations
+
+import gaussmap as gm
+import numpy as np
+from gaussmap.runtime.search.in_nets import edge_signs
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def test_forms_of_edges_are_those_of_the_patch() -> None:
+    """Every form has one sign whichever patch of a joint is asked; that of U, V, W at random."""
+    nets = np.random.default_rng(5).normal(size=(3, 6, 3))
+    spline = gm.Spline.from_nets(nets)
+    normals = gm.directions.random(50, seed=6)
+    for edge, form in enumerate("UVW"):
+        for patch, net in enumerate(nets):
+            rows = np.full(len(normals), 3 * patch + edge)
+            expected = [_form(net, n, form) for n in normals]
+            assert (edge_signs(spline, rows, normals) == np.sign(expected)).all()
+
+
+def _form(net: Array, n: Array, form: str) -> float:
+    """Return U, V or W of Cramer's rule."""
+    h = net @ n
+    A, C = h[0] - 2 * h[4] + h[2], h[1] - 2 * h[5] + h[2]
+    B, P, Q = h[3] - h[4] - h[5] + h[2], h[4] - h[2], h[5] - h[2]
+    U, V, D = B * Q - C * P, B * P - A * Q, A * C - B * B
+    return {"U": U, "V": V, "W": D - U - V}[form]

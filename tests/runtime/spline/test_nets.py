@@ -1,0 +1,244 @@
+"""Splines of users' own nets: joints, and every point with a normal exactly once."""
+
+from __future__ import annotations
+
+import pickle
+from fractions import Fraction
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.runtime.spline.joints import EDGES
+from gaussmap.runtime.spline.nets import NetSpline
+from numpy.typing import NDArray
+from scipy.spatial import Delaunay
+
+Array = NDArray[np.float64]
+SYMMETRIC = np.array([x for x in np.ndindex(5, 5, 5) if x != (2, 2, 2)]) - 2.0
+
+
+def octants() -> tuple[Array, NDArray[np.int64]]:
+    """Return points and triangles of a closed spline of 8 patches, with continuous normals."""
+    points, triangles = list[tuple[int, ...]](), list[list[int]]()
+
+    def number(point: Array) -> int:
+        key = tuple(int(x) for x in point)
+        if key not in points:
+            points.append(key)
+        return points.index(key)
+
+    net = np.array([(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (1, 0, 1), (0, 1, 1)])
+    for signs in np.ndindex(2, 2, 2):
+        flip = 1 - 2 * np.array(signs)
+        rows = [0, 1, 2, 3, 4, 5] if flip.prod() > 0 else [1, 0, 2, 3, 5, 4]
+        triangles.append([number(p) for p in (net * flip)[rows]])
+    return np.array(points, dtype=np.float64), np.array(triangles)
+
+
+def powell_sabin(count: int, seed: int, bumps: float) -> Array:
+    """Return the nets (6 T, 6, 3) of a Powell-Sabin spline over random points of a square."""
+    random = np.random.default_rng(seed)
+    square = np.array([(x, y) for x in (-1.0, 1.0) for y in (-1.0, 1.0)])
+    places = np.concatenate([square, random.uniform(-0.9, 0.9, (count, 2))])
+
+    def value(x: float, y: float) -> tuple[Array, Array]:
+        f = np.array([x + 0.1 * x * y, y - 0.1 * x * x, x * x + y * y + bumps * np.sin(3 * x * y)])
+        c = 3 * bumps * np.cos(3 * x * y)
+        return f, np.array([[1 + 0.1 * y, 0.1 * x], [-0.2 * x, 1], [2 * x + c * y, 2 * y + c * x]])
+
+    mesh = Delaunay(places)
+    centres = []
+    for corners in places[mesh.simplices]:
+        sides = [np.linalg.norm(corners[(k + 1) % 3] - corners[(k + 2) % 3]) for k in range(3)]
+        centres.append(np.average(corners, axis=0, weights=sides))
+    nets = []
+    for t, (corners, others) in enumerate(zip(mesh.simplices, mesh.neighbors, strict=True)):
+        Z, bars = centres[t], np.linalg.inv(np.c_[places[corners], np.ones(3)].T)
+        towards = {i: _towards(value, places[i], Z) for i in corners}
+        middle = sum(b * towards[i] for b, i in zip(bars @ [*Z, 1.0], corners, strict=True))
+        for k in range(3):
+            i, j = corners[(k + 1) % 3], corners[(k + 2) % 3]
+            share = 0.5 if others[k] < 0 else _crossing(places[i], places[j], Z, centres[others[k]])
+            R = (1 - share) * places[i] + share * places[j]
+            at_i, at_j = _towards(value, places[i], R), _towards(value, places[j], R)
+            on_edge = (1 - share) * at_i + share * at_j
+            inner = (1 - share) * towards[i] + share * towards[j]
+            f_i, f_j = value(*places[i])[0], value(*places[j])[0]
+            nets.append([f_i, on_edge, middle, at_i, towards[i], inner])
+            nets.append([on_edge, f_j, middle, at_j, inner, towards[j]])
+    return np.array(nets)
+
+
+def _towards(value, place: Array, other: Array) -> Array:
+    f, gradient = value(*place)
+    return f + 0.5 * gradient @ (other - place)
+
+
+def _crossing(p: Array, q: Array, a: Array, b: Array) -> float:
+    return float(np.linalg.solve(np.column_stack([q - p, a - b]), a - p)[0])
+
+
+def brute_force(nets: Array, normal: Array) -> list[int]:
+    """Return the signs of K of all points with a normal that is on no joint, on fractions."""
+    n = [Fraction(float(x)) for x in normal]
+
+    def dot(p: Array) -> Fraction:
+        return sum((x * Fraction(float(y)) for x, y in zip(n, p, strict=True)), Fraction(0))
+
+    found = []
+    for net in nets:
+        h = [dot(p) for p in net]
+        # n·p as a quadratic polynomial; its critical point by Cramer's rule.
+        a, c = 2 * (h[0] - 2 * h[4] + h[2]), 2 * (h[1] - 2 * h[5] + h[2])
+        b, d, e = 2 * (h[3] - h[4] - h[5] + h[2]), 2 * (h[4] - h[2]), 2 * (h[5] - h[2])
+        if (D := a * c - b * b) == 0:
+            continue
+        u, v = (b * e - c * d) / D, (b * d - a * e) / D
+        if u <= 0 or v <= 0 or u + v >= 1:
+            continue
+        rows = [[Fraction(float(x)) for x in p] for p in net]
+        w = 1 - u - v
+        x_u = [2 * ((p - t) * u + (q - s) * v + (t - r) * w) for p, q, r, s, t in _parts(rows, 0)]
+        x_v = [2 * ((p - t) * v + (q - s) * u + (t - r) * w) for p, q, r, s, t in _parts(rows, 1)]
+        cross = [x_u[i - 2] * x_v[i - 1] - x_u[i - 1] * x_v[i - 2] for i in range(3)]
+        if sum(x * y for x, y in zip(cross, n, strict=True)) > 0:
+            found.append(1 if D > 0 else -1)
+    return found
+
+
+def _parts(rows, which: int):
+    b200, b020, b002, b110, b101, b011 = rows
+    one = (b200, b110, b002, b011, b101) if which == 0 else (b020, b110, b002, b101, b011)
+    return zip(*one, strict=True)
+
+
+def degrees(samples: gm.Samples, count: int) -> Array:
+    signs = np.copysign(1.0, samples.gaussian_curvature)
+    return np.bincount(samples.normal_index, signs, minlength=count).astype(np.float64)
+
+
+def normals_on_joints(spline: NetSpline) -> Array:
+    """Return unit normals at places of all joints and at their ends, as rounded."""
+    found = []
+    for patch, edge in zip(spline.joints.patches[:, 0], spline.joints.edges[:, 0], strict=True):
+        start, middle, end, beside, end_beside = spline.control_nets[patch][list(EDGES[edge])]
+        for t in (0.0, 0.25, 0.5, 0.7, 1.0):
+            along = (1 - t) * (middle - start) + t * (end - middle)
+            across = (1 - t) * (beside - start) + t * (end_beside - middle)
+            found.append(np.cross(along, across))
+    lengths = np.linalg.norm(found, axis=1, keepdims=True)
+    return np.array(found)[lengths[:, 0] > 1e-12] / lengths[lengths[:, 0] > 1e-12]
+
+
+def test_closed_spline_of_8_patches() -> None:
+    """Eight octants of a closed surface; its joints are creases, whose angle is known."""
+    points, triangles = octants()
+    spline = gm.Spline.from_nets(points, triangles, name="octants")
+    joints = spline.joints
+    assert joints.patches.shape == (12, 2)
+    assert np.bincount(joints.patches.ravel()).tolist() == [3] * 8
+    assert not joints.smooth.any()
+    # Half-way along an edge the normal is (1, 1, 1) x's largest tilt out of the plane of symmetry.
+    assert np.allclose(joints.angles, 2.0 * np.degrees(np.arctan(np.sqrt(0.125))), atol=1e-9)
+    normals = gm.directions.random(200, seed=1)
+    samples = gm.sample(spline, normals=normals)
+    for k, n in enumerate(normals):
+        mine = samples.gaussian_curvature[samples.normal_index == k]
+        assert sorted(np.sign(mine)) == brute_force(spline.control_nets, n)
+
+
+@pytest.mark.parametrize("bumps", [0.0, 0.15, 0.6])
+def test_powell_sabin_spline(bumps: float) -> None:
+    nets = powell_sabin(30, 3, bumps)
+    spline = gm.Spline.from_nets(nets, name="Powell-Sabin")
+    assert spline.joints.smooth.all()
+    assert spline.joints.angles.max() < 1e-9
+    normals = gm.directions.random(60, seed=2) * [0.6, 0.6, 1.0]
+    normals[:, 2] = np.abs(normals[:, 2]) + 0.2
+    samples = gm.sample(spline, normals=normals)
+    for k, n in enumerate(normals / np.linalg.norm(normals, axis=1, keepdims=True)):
+        mine = samples[samples.normal_index == k]
+        assert sorted(np.sign(mine.gaussian_curvature)) == sorted(brute_force(nets, n))
+
+
+@pytest.mark.parametrize("bumps", [0.0, 0.15, 0.6])
+def test_normals_on_joints_and_at_corners(bumps: float) -> None:
+    """They have what normals next to them have: Σ sign K does not change at folds either."""
+    nets = powell_sabin(30, 3, bumps)
+    spline = gm.Spline.from_nets(nets)
+    normals = normals_on_joints(spline)
+    degree = degrees(gm.sample(spline, normals=normals), len(normals))
+    around = np.array([
+        degrees(gm.sample(spline, normals=normals + 1e-6 * np.array(step)), len(normals))
+        for step in ((1.0, 0.1, 0.2), (-0.6, 0.8, 0.1), (-0.4, -0.9, 0.1), (0.3, -0.8, -0.4))
+    ])  # fmt: skip
+    away = (around == around[0]).all(axis=0)  # from the border of the square
+    assert away.mean() > 0.8
+    assert (degree[away] == around[0, away]).all()
+
+
+def test_normals_of_a_closed_spline() -> None:
+    for name, degree in (("sphere", 1), ("torus", 0), ("ellipsoid", 1)):
+        spline = gm.Spline.from_nets(gm.fit(name, (8, 6)).control_nets, name=name)
+        normals = np.concatenate([normals_on_joints(spline), gm.icosphere(12), SYMMETRIC])
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        if degree:  # patches are singular at poles
+            normals = normals[np.abs(normals[:, 2]) < 0.995]
+        assert (gm.GaussMap(spline).degree(normals) == degree).all()
+
+
+def test_the_same_samples_as_the_library_s_own_spline() -> None:
+    own = gm.fit("torus", (16, 12))
+    nets = gm.Spline.from_nets(own.control_nets, name="torus")
+    normals = gm.directions.random(2000, seed=3)
+    one, other = (gm.sample(x, normals=normals) for x in (own, nets))
+    for name in ("patch_index", "normal_index"):
+        assert (getattr(one, name) == getattr(other, name)).all()
+    for name in ("points", "normals", "support", "gaussian_curvature", "mean_curvature"):
+        assert np.allclose(getattr(one, name), getattr(other, name), rtol=1e-11, atol=1e-11)
+    count = gm.sample(nets, 1500)
+    assert abs(len(count) - 1500) <= 0.02 * 1500 + 5
+
+
+def test_what_does_not_fit_together_is_refused() -> None:
+    square = np.array([(0, 0, 0), (2, 0, 0), (2, 2, 1), (0, 2, 0), (1, 0, 0)], dtype=np.float64)
+
+    def net(i: int, j: int, k: int) -> Array:
+        a, b, c = square[[i, j, k]]
+        return np.array([a, b, c, (a + b) / 2, (a + c) / 2, (b + c) / 2])
+
+    assert len(gm.Spline.from_nets([net(0, 1, 2), net(0, 2, 3)]).joints.patches) == 1
+    mirrored = (net(0, 1, 2) * [1, -1, 1])[[1, 0, 2, 3, 5, 4]]
+    corner = r"a corner of another patch, at \[1.0, 0.0, 0.0\]"
+    with pytest.raises(gm.errors.InputError, match=corner):
+        gm.Spline.from_nets([net(0, 4, 2), net(4, 1, 2), mirrored])
+    with pytest.raises(gm.errors.InputError, match="opposite orientations"):
+        gm.Spline.from_nets([net(0, 1, 2), net(3, 2, 0)])
+    with pytest.raises(gm.errors.InputError, match="3 patches share one edge"):
+        gm.Spline.from_nets([net(0, 1, 2), net(0, 2, 3), net(0, 2, 4)])
+    with pytest.raises(gm.errors.InputError, match="nets must"):
+        gm.Spline.from_nets(np.zeros((2, 5, 3)))
+    with pytest.raises(gm.errors.InputError, match="points that are not there"):
+        gm.Spline.from_nets(square, [[0, 1, 2, 3, 4, 5]])
+    with pytest.raises(gm.errors.SurfaceError, match="the same"):
+        gm.Spline.from_nets(np.ones((1, 6, 3)))
+
+
+def test_what_takes_a_spline_takes_it() -> None:
+    own = gm.fit("torus", (8, 8))
+    nets = gm.Spline.from_nets(own.control_nets, name="torus")
+    normals = gm.directions.random(200, seed=7)
+    images = gm.gauss_map.GaussianImages(nets)
+    assert (images.sheets(normals) == 2).all()
+    assert abs(images.solid_angles.sum()) < 1e-11
+    one, other = (gm.SupportFunction.of_spline(x).branches(normals) for x in (own, nets))
+    assert np.allclose(one.hessian, other.hessian, atol=1e-11)
+    assert np.allclose(one.support, other.support, atol=1e-12)
+    again = pickle.loads(pickle.dumps(nets))
+    assert len(gm.sample(again, normals=normals)) == 400
+    for refused in (
+        lambda: nets.evaluate(0.0, 0.0),
+        lambda: gm.sample(nets, 100, density="aligned"),
+    ):
+        with pytest.raises(gm.errors.InputError, match="no grid of cells"):
+            refused()
