@@ -69,19 +69,36 @@ class Undecided(NamedTuple):
 class ProvedPlaces(NamedTuple):
     """The points with given normals, in the order of the normals, then of u and v.
 
-    numbers (k,) int64 are those of normals; uv (k, 2) the parameters, and radius (k, 2) how far the
-    exact ones may be from them, each; sign (k,) int8 that of the Gaussian curvature; border (k,)
-    bool says whether the exact parameters may be outside of the domain, by at most the radius. All
-    other points with these normals are in the boxes of `undecided`, or in the boxes of the index
-    that are `unbounded`.
+    numbers (k,) int64 are those of normals. A row of places (k, 6) holds u, v, how far the exact
+    ones may be from them, each, a number with the sign of the Gaussian curvature, and 1 if the
+    exact parameters may be outside of the domain, by at most the radius, else 0. All other points
+    with these normals are in the boxes of `undecided`, or in the boxes of the index that are
+    `unbounded`.
     """
 
     numbers: NDArray[np.int64]
-    uv: NDArray[np.float64]
-    radius: NDArray[np.float64]
-    sign: NDArray[np.int8]
-    border: NDArray[np.bool_]
+    places: NDArray[np.float64]
     undecided: Undecided
+
+    @property
+    def uv(self) -> NDArray[np.float64]:
+        """The parameters (k, 2)."""
+        return self.places[:, :2]
+
+    @property
+    def radius(self) -> NDArray[np.float64]:
+        """How far the exact parameters may be from them (k, 2)."""
+        return self.places[:, 2:4]
+
+    @property
+    def sign(self) -> NDArray[np.int8]:
+        """The signs (k,) of the Gaussian curvature."""
+        return np.where(self.places[:, 4] > 0.0, 1, -1).astype(np.int8)
+
+    @property
+    def border(self) -> NDArray[np.bool_]:
+        """Whether the exact parameters may be outside of the domain (k,)."""
+        return self.places[:, 5] > 0.0
 
 
 class Places(NamedTuple):
@@ -279,7 +296,7 @@ class ProvedIndex:
 
         unknown = self._answered(merge, len(which), 1)
         columns = np.append(np.arange(BOX), BORDER)
-        return Places(slow[keep][:, columns], of_slow[keep]), unknown
+        return Places(np.take(slow[keep], columns, axis=1), of_slow[keep]), unknown
 
     def _answered(
         self, step: Callable[[Answers, Rooms, int, int], np.int64], count: int, threads: int | None

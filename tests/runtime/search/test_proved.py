@@ -467,14 +467,13 @@ def test_answers_do_not_depend_on_threads_and_other_normals() -> None:
         index_of("knobby").query(normals, threads=3),
         new_index(surface_of("knobby"), threads=2).query(normals, threads=2),
     ):
-        for one, two in zip((*whole[:5], *whole[5]), (*other[:5], *other[5]), strict=True):
+        for one, two in zip((*whole[:2], *whole[2]), (*other[:2], *other[2]), strict=True):
             np.testing.assert_array_equal(one, two)
     some = np.random.default_rng(11).permutation(len(normals))[:700]
     part = index_of("knobby").query(normals[some])
     starts = np.searchsorted(whole.numbers, np.arange(len(normals) + 1))
     rows = np.concatenate([np.arange(int(starts[k]), int(starts[k + 1])) for k in some])
-    for one, two in zip(part[1:5], whole[1:5], strict=True):
-        np.testing.assert_array_equal(one, two[rows])
+    np.testing.assert_array_equal(part.places, whole.places[rows])
 
 
 def test_small_rooms_grow(monkeypatch: pytest.MonkeyPatch) -> None:
