@@ -300,8 +300,9 @@ def atan_taylor(x):
 
 @inline
 def reduced_angle(x, k):
-    """The difference r of an angle x and k quarters of a turn, to two roundings if k is an
-    integer below 2**18, |r| is less than 1, and not less than 2**(-30) unless k is 0.
+    """The difference r of an angle x and the nearest number k of quarters of a turn. Products
+    with the first two numbers, and the first difference, are exact for |x| below 2**18, so that
+    r has two roundings; where most digits cancel, the second difference is exact, too.
 
         s = x - 1686629713*k/1073741824
         t = s - 2242054355*k/36893488147419103232

@@ -10,7 +10,16 @@ import sympy as sp
 from .formula import Formula
 from .notation import scalar
 
-__all__ = ["CODES", "FORMULAS", "FUNCTIONS", "LIBRARY", "constants"]
+__all__ = [
+    "CODES",
+    "FIRST_PART",
+    "FORMULAS",
+    "FUNCTIONS",
+    "LAST_PART",
+    "LIBRARY",
+    "SECOND_PART",
+    "constants",
+]
 
 x, y, w = scalar("x"), scalar("y"), scalar("w")
 HIGHEST = 3  # order of Taylor coefficients
@@ -195,8 +204,9 @@ k, z = scalar("k"), scalar("z")
 FIRST_PART, SECOND_PART, LAST_PART = _parts_of_quarter()
 REDUCED = Formula.build(
     "reduced_angle",
-    "The difference $r$ of an angle $x$ and $k$ quarters of a turn, to two roundings if $k$ is an "
-    "integer below 2**18, $|r|$ is less than 1, and not less than 2**(-30) unless $k$ is 0.",
+    "The difference $r$ of an angle $x$ and the nearest number $k$ of quarters of a turn. Products "
+    "with the first two numbers, and the first difference, are exact for $|x|$ below 2**18, so "
+    "that $r$ has two roundings; where most digits cancel, the second difference is exact, too.",
     inputs=[x, k],
     terms=[("s", x - k * FIRST_PART), ("t", scalar("s") - k * SECOND_PART)],
     outputs=[("r", scalar("t") - k * LAST_PART)],

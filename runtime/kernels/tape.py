@@ -17,7 +17,7 @@ from ...generated import elementary
 from ...generated import taylor as formulas
 from ...generated.vectors import Taylor
 from ..machine_code.jit import jit, long_vectors, loop
-from .tape_functions import coefficients, is_reduced, sine_and_cosine
+from .tape_functions import LARGEST_ANGLE, coefficients, sine_and_cosine
 from .tape_splines import COORDINATES, NO_SPLINE, Polynomials, own_parameter, span_at, spline_at
 
 __all__ = ["LANES", "POINT", "Tape", "evaluate_points", "points_jets"]
@@ -165,7 +165,7 @@ def write_sines(registers, a, at, count):
         registers[i], registers[i + U], registers[i + V] = y, f1, f2
     for k in range(count):
         i, x = np.uint64(at + k), registers[np.uint64(a + k)]
-        if not is_reduced(x, registers[i], registers[i + U]):
+        if not abs(x) < LARGEST_ANGLE:
             y, w = math.sin(x), math.cos(x)
             f1, f2, _ = elementary.sin_taylor(y, w)
             registers[i], registers[i + U], registers[i + V] = y, f1, f2

@@ -7,22 +7,29 @@ import math
 from ...generated import elementary
 from ..machine_code.jit import inline, loop
 
-__all__ = ["UNIT", "coefficients", "error_of_rounding", "is_reduced", "ranges", "sine_and_cosine"]
+__all__ = [
+    "LARGEST_ANGLE",
+    "UNIT",
+    "coefficients",
+    "error_of_rounding",
+    "ranges",
+    "sine_and_cosine",
+]
 
 UNIT = 2.0**-53  # the unit of rounding
 QUARTER = 0.5 * math.pi
 FAR = 1e8  # where multiples of π/2 are not looked for
 # Adding and subtracting it rounds numbers to integers.
 SHIFT = 1.5 * 2.0**52
-# The angles, and the results near multiples of π/2, that `reduced_angle` is good for.
-LARGEST_ANGLE, LEAST_RESULT = 2.0**18, 2.0**-29
+LARGEST_ANGLE = 2.0**18  # that `reduced_angle` is good for
 
 
 @inline
 def sine_and_cosine(x):
-    """Return the sine and the cosine of an angle, exact to LIBRARY where `is_reduced` holds.
+    """Return the sine and the cosine of an angle, as exact as those of the C library.
 
-    There are no branches, so that loops over lanes are vectorized.
+    Angles are less than LARGEST_ANGLE. There are no branches, so that loops over lanes are
+    vectorized.
     """
     k = (x * (1.0 / QUARTER) + SHIFT) - SHIFT
     y, w = elementary.sine_and_cosine(elementary.reduced_angle(x, k))
@@ -31,12 +38,6 @@ def sine_and_cosine(x):
     sign = 1.0 - 2.0 * (half - 2.0 * whole)
     swapped = k != 2.0 * half
     return sign * (w if swapped else y), sign * (-y if swapped else w)
-
-
-@inline
-def is_reduced(x, y, w):
-    """Say whether y and w are as exact a sine and a cosine as those of the C library."""
-    return abs(x) < LARGEST_ANGLE and (abs(x) < 0.5 or min(abs(y), abs(w)) > LEAST_RESULT)
 
 
 @loop

@@ -283,12 +283,13 @@ CASES = {
     "next to quarters": QUARTERS * (1.0 + 1e-9 * ANGLES.normal(size=len(QUARTERS))),
     "quarters": QUARTERS,
     "eighths": QUARTERS + math.pi / 4.0,
+    "most digits lost": np.array([45.553093477052, 91553.86390724055, 229174.47169039503]),
 }
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_sines_of_tapes_are_as_exact_as_those_of_the_c_library(name: str) -> None:
-    """Also where angles are reduced with many digits lost, which is left to the C library."""
+    """Also where angles are reduced with many digits lost; large ones are left to that."""
     angles = CASES[name]
     x, y = sp.symbols("u v")
     tape = gm.Surface.from_sympy((sp.sin(x), sp.cos(x), y), (x, y), domain=((0, 1), (0, 1))).tape
