@@ -21,7 +21,7 @@ from ...generated.elementary import SPLINE
 from ..base.threads import over_ranges
 from ..domain.domain import Boundary, Domain
 from ..kernels.proved_answers import BORDER, BOX, KINDS, Answers, merge_places
-from ..kernels.proved_bins import count_members, list_members
+from ..kernels.proved_bins import count_members, list_members, write_squares
 from ..kernels.proved_cells import OPEN, REACH, Cells, Work, cut_cells
 from ..kernels.proved_discs import decide_discs
 from ..kernels.proved_places import Boxes, decide_normals
@@ -388,9 +388,11 @@ def _cut(tape: Tape, lines: list[NDArray[np.float64]], threads: int | None) -> C
 def _listed(cells: Cells, discs: int, levels: int) -> Index:
     """Return the cells with the lists of those that may have the normals of bins."""
     starts, stack = np.zeros(6 * 4**levels + 1, np.int64), np.empty((4 + 3 * levels, 3), np.int64)
-    count_members(cells.cone, levels, stack, starts, np.empty(0, np.int32))
+    squares = np.empty((6 * (4 ** (levels + 1) - 1) // 3, 4))
+    write_squares(levels, squares)
+    count_members(cells.cone, squares, levels, stack, starts, np.empty(0, np.int32))
     members = np.empty(starts.sum(), np.int32)
-    list_members(cells.cone, levels, stack, starts, members)
+    list_members(cells.cone, squares, levels, stack, starts, members)
     return Index(cells, discs, starts, members)
 
 
