@@ -484,7 +484,7 @@ def test_small_rooms_grow(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(proved, "ROOM", 64)
     monkeypatch.setattr(proved, "CELL_ROOM", 64)
     found = new_index(surface_of("waves")).query(normals)
-    for one, two in zip((*expected[:5], *expected[5]), (*found[:5], *found[5]), strict=True):
+    for one, two in zip((*expected[:2], *expected[2]), (*found[:2], *found[2]), strict=True):
         np.testing.assert_array_equal(one, two)
 
 
