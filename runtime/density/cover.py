@@ -106,9 +106,9 @@ class Cover:
 
     def to_count(self, count: int) -> None:
         """Add samples until there are `count`."""
-        radius = WIDEST * self._radius_for(count)
+        radius, largest = WIDEST * self._radius_for(count), self._largest_radius
         self._begin(radius, count)
-        while self.count == count > self.fixed + 1 and radius * radius < self.space.integral:
+        while self.count == count > self.fixed + 1 and radius < largest:
             # The first candidates have used up the count, wherever the widest gaps are.
             self.remove_added()
             radius *= 2.0
@@ -216,8 +216,17 @@ class Cover:
         self._replace_added(self.added[numbers])
 
     def _radius_for(self, count: int) -> float:
-        """Return the radius at which about `count` samples cover the surface."""
-        return math.sqrt(PACKED * self.space.integral / count)
+        """Return the radius at which about `count` samples cover the surface.
+
+        On a strip that is narrower than that they stand in a row.
+        """
+        packed = math.sqrt(PACKED * self.space.integral / count)
+        return max(packed, 0.5 * self.space.longest / count)
+
+    @property
+    def _largest_radius(self) -> float:
+        """A radius at which few samples cover the surface, also if it is a narrow strip."""
+        return max(math.sqrt(self.space.integral), 0.5 * self.space.longest)
 
     def _begin(self, radius: float, count: int) -> None:
         self.take_candidates(radius / WIDEST, radius)

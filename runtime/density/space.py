@@ -128,6 +128,12 @@ class Space:
         return means * self.areas
 
     @property
+    def longest(self) -> float:
+        """The longest extent of a piece along an axis, for the smallest target density."""
+        points = (self.first.rows[found, :3] for _, found in by_piece(self.first))
+        return math.sqrt(self.smallest) * max(float(np.ptp(x, axis=0).max()) for x in points)
+
+    @property
     def smallest(self) -> float:
         """The smallest target density of a cell."""
         return float(self._densities.min())

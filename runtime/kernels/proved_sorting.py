@@ -8,26 +8,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..machine_code.jit import jit, loop
+from .proved_search import PLACE
 
 __all__ = ["Sorted", "count_places", "order_places", "put_places", "start_normals"]
 
 
 class Sorted(NamedTuple):
-    """Room for sorted places: numbers of normals (k,), parameters, radii (k, 2), signs, borders."""
+    """Room for sorted places (k, 6) of a search, and the numbers (k,) of their normals."""
 
     numbers: NDArray[np.int64]
-    uv: NDArray[np.float64]
-    radius: NDArray[np.float64]
-    sign: NDArray[np.int8]
-    border: NDArray[np.bool_]
+    places: NDArray[np.float64]
 
     @classmethod
     def new(cls, count: int) -> Sorted:
         """Return room for some places."""
-        return cls(
-            np.empty(count, np.int64), np.empty((count, 2)), np.empty((count, 2)),
-            np.empty(count, np.int8), np.empty(count, np.bool_),
-        )  # fmt: skip
+        return cls(np.empty(count, np.int64), np.empty((count, PLACE)))
 
 
 @jit
@@ -51,10 +46,8 @@ def put_places(places, numbers, starts, room):
         at = starts[numbers[k]]
         starts[numbers[k]] = at + 1
         room.numbers[at] = numbers[k]
-        room.uv[at, 0], room.uv[at, 1] = places[k, 0], places[k, 1]
-        room.radius[at, 0], room.radius[at, 1] = places[k, 2], places[k, 3]
-        room.sign[at] = 1 if places[k, 4] > 0.0 else -1
-        room.border[at] = places[k, 5] > 0.0
+        for x in range(PLACE):
+            room.places[at, x] = places[k, x]
 
 
 @jit
@@ -62,22 +55,15 @@ def order_places(room):
     """Sort the places with each normal by u, then v."""
     for first in range(1, room.numbers.size):
         k = first
-        while k > 0 and room.numbers[k - 1] == room.numbers[k] and is_before(room.uv, k, k - 1):
-            swap(room, k, k - 1)
+        while k > 0 and room.numbers[k - 1] == room.numbers[k] and is_before(room.places, k, k - 1):
+            for x in range(PLACE):
+                room.places[k, x], room.places[k - 1, x] = room.places[k - 1, x], room.places[k, x]
             k -= 1
 
 
 @loop
-def is_before(uv, i, k):
-    """Say whether parameters i are before parameters k."""
-    return uv[i, 0] < uv[k, 0] or (uv[i, 0] == uv[k, 0] and uv[i, 1] < uv[k, 1])
-
-
-@loop
-def swap(room, i, k):
-    """Exchange two places."""
-    for x in range(2):
-        room.uv[i, x], room.uv[k, x] = room.uv[k, x], room.uv[i, x]
-        room.radius[i, x], room.radius[k, x] = room.radius[k, x], room.radius[i, x]
-    room.sign[i], room.sign[k] = room.sign[k], room.sign[i]
-    room.border[i], room.border[k] = room.border[k], room.border[i]
+def is_before(places, i, k):
+    """Say whether the parameters of place i are before those of place k."""
+    return places[i, 0] < places[k, 0] or (
+        places[i, 0] == places[k, 0] and places[i, 1] < places[k, 1]
+    )

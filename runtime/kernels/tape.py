@@ -7,6 +7,7 @@ degree 2: numbers 1, u, v, uu, uv, vv for each row of the tape, each with LANES 
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -15,8 +16,8 @@ from numpy.typing import NDArray
 from ...generated import elementary
 from ...generated import taylor as formulas
 from ...generated.vectors import Taylor
-from ..machine_code.jit import jit, loop
-from .tape_functions import coefficients
+from ..machine_code.jit import jit, long_vectors, loop
+from .tape_functions import LARGEST_ANGLE, coefficients, sine_and_cosine
 from .tape_splines import COORDINATES, NO_SPLINE, Polynomials, own_parameter, span_at, spline_at
 
 __all__ = ["LANES", "POINT", "Tape", "evaluate_points", "points_jets"]
@@ -154,6 +155,23 @@ def write_coefficients(code, registers, a, at, count):
 
 
 @loop
+def write_sines(registers, a, at, count):
+    """Write the same as `write_coefficients` for sines."""
+    long_vectors()
+    for k in range(count):
+        i = np.uint64(at + k)
+        y, w = sine_and_cosine(registers[np.uint64(a + k)])
+        f1, f2, _ = elementary.sin_taylor(y, w)
+        registers[i], registers[i + U], registers[i + V] = y, f1, f2
+    for k in range(count):
+        i, x = np.uint64(at + k), registers[np.uint64(a + k)]
+        if not abs(x) < LARGEST_ANGLE:
+            y, w = math.sin(x), math.cos(x)
+            f1, f2, _ = elementary.sin_taylor(y, w)
+            registers[i], registers[i + U], registers[i + V] = y, f1, f2
+
+
+@loop
 def write_cofunction(code, registers, at, count):
     """Write value, f1 and f2 of the cosine to the row after those of the sine."""
     for k in range(count):
@@ -197,7 +215,10 @@ def evaluate_points(tape, u, v, count, registers):
                 count,
             )
         elif code > elementary.PRODUCT and code != elementary.COS and code != elementary.COSH:
-            write_coefficients(code, registers, a, at, count)
+            if code == elementary.SIN:
+                write_sines(registers, a, at, count)
+            else:
+                write_coefficients(code, registers, a, at, count)
             if code == elementary.SIN or code == elementary.SINH:
                 write_cofunction(code, registers, at, count)
                 compose(registers, a, at + POINT, count)

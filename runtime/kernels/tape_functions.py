@@ -5,13 +5,39 @@ from __future__ import annotations
 import math
 
 from ...generated import elementary
-from ..machine_code.jit import loop
+from ..machine_code.jit import inline, loop
 
-__all__ = ["UNIT", "coefficients", "error_of_rounding", "ranges"]
+__all__ = [
+    "LARGEST_ANGLE",
+    "UNIT",
+    "coefficients",
+    "error_of_rounding",
+    "ranges",
+    "sine_and_cosine",
+]
 
 UNIT = 2.0**-53  # the unit of rounding
 QUARTER = 0.5 * math.pi
 FAR = 1e8  # where multiples of π/2 are not looked for
+# Adding and subtracting it rounds numbers to integers.
+SHIFT = 1.5 * 2.0**52
+LARGEST_ANGLE = 2.0**18  # that `reduced_angle` is good for
+
+
+@inline
+def sine_and_cosine(x):
+    """Return the sine and the cosine of an angle, as exact as those of the C library.
+
+    Angles are less than LARGEST_ANGLE. There are no branches, so that loops over lanes are
+    vectorized.
+    """
+    k = (x * (1.0 / QUARTER) + SHIFT) - SHIFT
+    y, w = elementary.sine_and_cosine(elementary.reduced_angle(x, k))
+    half = ((0.5 * k - 0.25) + SHIFT) - SHIFT  # of whole numbers, rounded down
+    whole = ((0.5 * half - 0.25) + SHIFT) - SHIFT
+    sign = 1.0 - 2.0 * (half - 2.0 * whole)
+    swapped = k != 2.0 * half
+    return sign * (w if swapped else y), sign * (-y if swapped else w)
 
 
 @loop

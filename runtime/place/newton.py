@@ -6,7 +6,7 @@ n·x_u = n·x_v = 0 leads from one to the other, where the surface is neither pa
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,7 +31,7 @@ from ..spline.spline import Spline
 from ..surface.surface import Surface
 from .pole_charts import PoleChart, pole_charts
 
-__all__ = ["FOUND", "Target", "evaluate_on_surface", "refine"]
+__all__ = ["FOUND", "Target", "evaluate_on_surface", "near_poles", "refine"]
 
 Jets = Callable[[Array, Array], Array]
 
@@ -188,15 +188,22 @@ def evaluate_on_surface(
         points[part] = jets[:, 0]
         scales = np.array([spline.scale, *spline.frame[2:]])
         evaluate_jets(jets, scales, normals[part], gaussian[part], mean[part])
-        for chart in charts:
-            rows = first + np.flatnonzero(chart.next_to(uv[part]))
-            if len(rows):
-                s, t = chart.places(uv[rows]).T.copy()
-                n, K, H = np.empty((len(rows), 3)), np.empty(len(rows)), np.empty(len(rows))
-                scales = np.array([spline.scale, chart.cell, chart.cell])
-                evaluate_jets(chart.jets(s, t), scales, n, K, H)
-                normals[rows], gaussian[rows] = n * chart.orientation, K
-                mean[rows] = H * chart.orientation
+        for rows, n, K, H in near_poles(charts, spline, uv[part]):
+            normals[first + rows], gaussian[first + rows], mean[first + rows] = n, K, H
 
     list(over_ranges(work, count, ROWS_AT_A_TIME, threads))
     return points, normals, gaussian, mean
+
+
+def near_poles(
+    charts: list[PoleChart], spline: Spline, uv: Array
+) -> Iterator[tuple[Indices, Array, Array, Array]]:
+    """Yield the rows (k,) of parameters that need a chart, and unit normals, K and H there."""
+    for chart in charts:
+        rows = np.flatnonzero(chart.next_to(uv))
+        if len(rows):
+            s, t = chart.places(uv[rows]).T.copy()
+            n, K, H = np.empty((len(rows), 3)), np.empty(len(rows)), np.empty(len(rows))
+            scales = np.array([spline.scale, chart.cell, chart.cell])
+            evaluate_jets(chart.jets(s, t), scales, n, K, H)
+            yield rows, n * chart.orientation, K, H * chart.orientation

@@ -9,20 +9,23 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from ..base.memory import check_memory
-from ..kernels.forms import patches_at
-from ..samples.fields import FLAG_NAMES, PROVED_NAMES, bytes_of, dtype_of
+from ..base.threads import over_ranges
+from ..kernels.proved_cells import Work
+from ..kernels.proved_samples import CURVATURES, SampleFields, fill_places
+from ..kernels.tape import Tape
+from ..samples.fields import FLAG_NAMES, bytes_of, dtype_of, row_shape
 from ..samples.report import UndecidedNormal
 from ..search.proved import KINDS, ProvedIndex, ProvedPlaces, Undecided
-from ..spline.inside import samples_inside
+from ..spline.inside import samples_inside, with_uv
 from ..spline.spline import Spline
 from ..surface.surface import Surface
-from .newton import evaluate_on_surface
+from .newton import near_poles
 from .on_spline import Fields, FieldsOfSamples
+from .pole_charts import pole_charts
 
 __all__ = ["Proof", "index_of", "proved_samples"]
 
-# The fields that follow from the 2-jets of the surface.
-EVALUATED = {"points", "support", "gaussian_curvature", "mean_curvature"}
+PLACES_AT_A_TIME = 1 << 14
 
 
 class Proof(NamedTuple):
@@ -56,8 +59,9 @@ def proved_samples(
     """Return fields of all points that have unit normals (S, 3), by normal, and the proof."""
     found = index.query(normals, threads)
     check_memory("stored", len(found.numbers), bytes_of(fields, dtype))
-    arrays = _arrays(surface, spline, normals, found, set(fields), threads)
-    arrays = samples_inside(spline.trim, arrays, tuple(arrays))
+    wanted = with_uv(spline.trim, fields)
+    arrays = _arrays(surface, spline, index.tape, normals, found, wanted, threads)
+    arrays = samples_inside(spline.trim, arrays, fields)
     kept = {x: arrays[x].astype(dtype_of(x, dtype), copy=False) for x in fields}
     return FieldsOfSamples(kept, 0), _proof(len(normals), found.undecided)
 
@@ -65,33 +69,41 @@ def proved_samples(
 def _arrays(
     surface: Surface,
     spline: Spline,
+    tape: Tape,
     normals: NDArray[np.float64],
     found: ProvedPlaces,
-    fields: set[str],
+    fields: Sequence[str],
     threads: int | None,
 ) -> Fields:
-    """Return those fields that are wanted, and the parameters."""
-    count, uv = len(found.numbers), found.uv
-    arrays: Fields = {
-        "uv": uv,
-        "normal_index": found.numbers,
-        FLAG_NAMES[0]: np.ones(count, dtype=np.bool_),
-        PROVED_NAMES[0]: found.radius,
-    }
-    if fields & {"normals", "support"}:
-        arrays["normals"] = normals[found.numbers]
-    if fields & EVALUATED:
-        points, _, gaussian, mean = evaluate_on_surface(surface, spline, uv, threads)
-        arrays |= {"points": points, "mean_curvature": mean}
-        arrays["gaussian_curvature"] = np.copysign(gaussian, found.sign)
-    if "support" in fields:
-        arrays["support"] = np.einsum("kx,kx->k", arrays["points"], arrays["normals"])
-    if "patch_index" in fields:
-        patches, places = np.empty(count, dtype=np.int64), np.empty((count, 2))
-        frame = spline.frame
-        patches_at(*spline.cells, (uv - frame[:2]) / frame[2:], patches, places)
-        arrays["patch_index"] = patches
-    return arrays
+    """Return the fields that are wanted."""
+    numbers, places = found.numbers, found.places
+    count = len(numbers)
+    rooms = SampleFields(
+        *(
+            np.empty((count if x in fields else 0, *row_shape(x)), dtype_of(x, np.float64))
+            for x in SampleFields._fields
+        )
+    )
+    K, H = rooms.gaussian_curvature, rooms.mean_curvature
+    scales, frame = np.array([spline.scale, *spline.frame[2:]]), spline.frame
+    charts = pole_charts(surface, spline)
+
+    def work(first: int, last: int) -> None:
+        scratch = Work.new(len(tape.operations))
+        fill_places(
+            tape, scratch, numbers, places, first, last, normals, scales, frame, spline.cells,
+            np.empty(CURVATURES), rooms,
+        )  # fmt: skip
+        for rows, _, gaussian, mean in near_poles(charts, spline, places[first:last, :2]):
+            if len(K) > 0:
+                K[first + rows] = np.copysign(gaussian, places[first + rows, 4])
+            if len(H) > 0:
+                H[first + rows] = mean
+
+    list(over_ranges(work, count, PLACES_AT_A_TIME, threads))
+    arrays = {name: x for name, x in rooms._asdict().items() if name in fields}
+    flags = {name: np.ones(count, dtype=np.bool_) for name in FLAG_NAMES}
+    return arrays | flags | {"normal_index": numbers}
 
 
 def _proof(count: int, open_: Undecided) -> Proof:

@@ -21,7 +21,7 @@ from ...generated.elementary import SPLINE
 from ..base.threads import over_ranges
 from ..domain.domain import Boundary, Domain
 from ..kernels.proved_answers import BORDER, BOX, KINDS, Answers, merge_places
-from ..kernels.proved_bins import count_members, list_members
+from ..kernels.proved_bins import count_members, list_members, write_squares
 from ..kernels.proved_cells import OPEN, REACH, Cells, Work, cut_cells
 from ..kernels.proved_discs import decide_discs
 from ..kernels.proved_places import Boxes, decide_normals
@@ -69,19 +69,36 @@ class Undecided(NamedTuple):
 class ProvedPlaces(NamedTuple):
     """The points with given normals, in the order of the normals, then of u and v.
 
-    numbers (k,) int64 are those of normals; uv (k, 2) the parameters, and radius (k, 2) how far the
-    exact ones may be from them, each; sign (k,) int8 that of the Gaussian curvature; border (k,)
-    bool says whether the exact parameters may be outside of the domain, by at most the radius. All
-    other points with these normals are in the boxes of `undecided`, or in the boxes of the index
-    that are `unbounded`.
+    numbers (k,) int64 are those of normals. A row of places (k, 6) holds u, v, how far the exact
+    ones may be from them, each, a number with the sign of the Gaussian curvature, and 1 if the
+    exact parameters may be outside of the domain, by at most the radius, else 0. All other points
+    with these normals are in the boxes of `undecided`, or in the boxes of the index that are
+    `unbounded`.
     """
 
     numbers: NDArray[np.int64]
-    uv: NDArray[np.float64]
-    radius: NDArray[np.float64]
-    sign: NDArray[np.int8]
-    border: NDArray[np.bool_]
+    places: NDArray[np.float64]
     undecided: Undecided
+
+    @property
+    def uv(self) -> NDArray[np.float64]:
+        """The parameters (k, 2)."""
+        return self.places[:, :2]
+
+    @property
+    def radius(self) -> NDArray[np.float64]:
+        """How far the exact parameters may be from them (k, 2)."""
+        return self.places[:, 2:4]
+
+    @property
+    def sign(self) -> NDArray[np.int8]:
+        """The signs (k,) of the Gaussian curvature."""
+        return np.where(self.places[:, 4] > 0.0, 1, -1).astype(np.int8)
+
+    @property
+    def border(self) -> NDArray[np.bool_]:
+        """Whether the exact parameters may be outside of the domain (k,)."""
+        return self.places[:, 5] > 0.0
 
 
 class Places(NamedTuple):
@@ -279,7 +296,7 @@ class ProvedIndex:
 
         unknown = self._answered(merge, len(which), 1)
         columns = np.append(np.arange(BOX), BORDER)
-        return Places(slow[keep][:, columns], of_slow[keep]), unknown
+        return Places(np.take(slow[keep], columns, axis=1), of_slow[keep]), unknown
 
     def _answered(
         self, step: Callable[[Answers, Rooms, int, int], np.int64], count: int, threads: int | None
@@ -371,9 +388,11 @@ def _cut(tape: Tape, lines: list[NDArray[np.float64]], threads: int | None) -> C
 def _listed(cells: Cells, discs: int, levels: int) -> Index:
     """Return the cells with the lists of those that may have the normals of bins."""
     starts, stack = np.zeros(6 * 4**levels + 1, np.int64), np.empty((4 + 3 * levels, 3), np.int64)
-    count_members(cells.cone, levels, stack, starts, np.empty(0, np.int32))
+    squares = np.empty((6 * (4 ** (levels + 1) - 1) // 3, 4))
+    write_squares(levels, squares)
+    count_members(cells.cone, squares, levels, stack, starts, np.empty(0, np.int32))
     members = np.empty(starts.sum(), np.int32)
-    list_members(cells.cone, levels, stack, starts, members)
+    list_members(cells.cone, squares, levels, stack, starts, members)
     return Index(cells, discs, starts, members)
 
 

@@ -151,6 +151,11 @@ class Traced:
         """Return √(x² + y²)."""
         return self.written("sqrt", self * self + self.written("square", other))
 
+    def arctan2(self, other: object) -> Traced:
+        """Return the angle of (other, self), by half of it: it has no bounds where that is π/2."""
+        size = self.written("sqrt", self.written("square", other) + self * self)
+        return self.written("atan", self / (size + other)) * 2.0
+
     def tan(self) -> Traced:
         """Return the tangent."""
         return self.sin() / self.cos()

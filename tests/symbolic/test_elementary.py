@@ -11,7 +11,16 @@ import numpy as np
 import pytest
 import sympy as sp
 from gaussmap.generated import elementary as generated
-from gaussmap.symbolic.elementary import CODES, FORMULAS, FUNCTIONS, LIBRARY, x
+from gaussmap.symbolic.elementary import (
+    CODES,
+    FIRST_PART,
+    FORMULAS,
+    FUNCTIONS,
+    LAST_PART,
+    LIBRARY,
+    SECOND_PART,
+    x,
+)
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -151,3 +160,17 @@ def test_codes_are_those_of_the_table():
 def test_functions_are_of_x():
     assert all(f.of.free_symbols == {x} for f in FUNCTIONS.values())
     assert math.isnan(generated.EXTREMES[row("exp"), 0])
+
+
+def test_angles_below_a_number_are_not_so_near_to_quarters_that_the_last_part_is_too_short():
+    """The rest of π/2 times k, rounded, is less than the angle that is left: its error is one."""
+    bits = 300
+    with mp.workprec(bits + 60):
+        quarter = int(mp.floor(mp.pi / 2 * mp.mpf(2) ** bits))
+    last = LAST_PART * 2**bits
+    assert abs(FIRST_PART + SECOND_PART + LAST_PART - sp.Rational(quarter, 2**bits)) < 2.0**-121
+    count = math.ceil(2.0**18 / (math.pi / 2.0))
+    for k in range(1, count):
+        exact = k * quarter
+        angle = int(exact / 2**bits * 2.0**52) << (bits - 52)  # the float that is nearest
+        assert k * int(last) < abs(angle - exact)

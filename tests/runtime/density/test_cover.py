@@ -38,3 +38,25 @@ def test_candidates_for_a_count_are_evaluated_once(name, density, monkeypatch):
     monkeypatch.setattr(Space, "cut", recorded)
     gm.sample(gm.fit(name, (32, 32)), 600, density=density)
     assert len(taken) == 1
+
+
+@pytest.mark.parametrize("width", [1e-9, 1e-4])
+@pytest.mark.parametrize("count", [10, 50, 200])
+def test_samples_of_a_narrow_strip_stand_in_a_row(width, count, monkeypatch):
+    """As many places as for other surfaces are looked at: the area says nothing of the gaps."""
+    looked_at = []
+    evaluated = Space.evaluated
+
+    def counted(space, cells, *others):
+        looked_at.append(len(cells))
+        return evaluated(space, cells, *others)
+
+    monkeypatch.setattr(Space, "evaluated", counted)
+    strip = gm.Surface.from_callable(
+        lambda u, v: np.stack([u, width * v, width * np.sin(3 * u) * np.cos(2 * v)], axis=-1),
+        domain=((0, 1), (0, 1)),
+    )
+    places = np.sort(gm.sample(strip, count, density="uniform").points[:, 0])
+    assert len(places) == count
+    assert np.diff([-places[0], *places, 2.0 - places[-1]]).max() <= 1.6 / count
+    assert sum(looked_at) < 100_000

@@ -14,6 +14,7 @@ import sympy as sp
 from gaussmap.runtime.kernels.tape import LANES, POINT, Tape, points_jets
 from gaussmap.runtime.kernels.tape_balls import BALL, bounds_of_boxes
 from gaussmap.runtime.kernels.tape_rounding import rounding_of_boxes
+from gaussmap.symbolic.elementary import LIBRARY
 from gaussmap.symbolic.surfaces import CATALOGUE
 from hypothesis import assume, given
 from hypothesis import strategies as st
@@ -270,3 +271,32 @@ def test_radii_are_infinite_where_there_is_a_singularity(text):
     assert np.isinf(radii[1:, 2]).any()
     assert not np.isnan(radii).any()
     assert not np.isnan(errors_on(tape, centres, widths)).any()
+
+
+ANGLES = np.random.default_rng(3)
+QUARTERS = np.arange(-3000.0, 3000.0) * (math.pi / 2.0)
+CASES = {
+    "small": ANGLES.uniform(-7.0, 7.0, 3000),
+    "tiny": 10.0 ** ANGLES.uniform(-300.0, 0.0, 500),
+    "large": ANGLES.uniform(-(2.0**18), 2.0**18, 3000),
+    "beyond": np.array([2.0**18, 1e6, 1e15, 1e300]),
+    "next to quarters": QUARTERS * (1.0 + 1e-9 * ANGLES.normal(size=len(QUARTERS))),
+    "quarters": QUARTERS,
+    "eighths": QUARTERS + math.pi / 4.0,
+    "most digits lost": np.array([45.553093477052, 91553.86390724055, 229174.47169039503]),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_sines_of_tapes_are_as_exact_as_those_of_the_c_library(name: str) -> None:
+    """Also where angles are reduced with many digits lost; large ones are left to that."""
+    angles = CASES[name]
+    x, y = sp.symbols("u v")
+    tape = gm.Surface.from_sympy((sp.sin(x), sp.cos(x), y), (x, y), domain=((0, 1), (0, 1))).tape
+    assert tape is not None
+    found = jets_at(tape, np.stack([angles, np.zeros_like(angles)], axis=1))
+    with mp.workdps(80):
+        for place, row in zip(angles.tolist(), found, strict=True):
+            sine, cosine = mp.sin(mp.mpf(place)), mp.cos(mp.mpf(place))
+            for value, correct in zip(row[0, :2].tolist(), (sine, cosine), strict=True):
+                assert abs(mp.mpf(value) - correct) <= LIBRARY * 2.0**-53 * abs(correct)

@@ -467,14 +467,13 @@ def test_answers_do_not_depend_on_threads_and_other_normals() -> None:
         index_of("knobby").query(normals, threads=3),
         new_index(surface_of("knobby"), threads=2).query(normals, threads=2),
     ):
-        for one, two in zip((*whole[:5], *whole[5]), (*other[:5], *other[5]), strict=True):
+        for one, two in zip((*whole[:2], *whole[2]), (*other[:2], *other[2]), strict=True):
             np.testing.assert_array_equal(one, two)
     some = np.random.default_rng(11).permutation(len(normals))[:700]
     part = index_of("knobby").query(normals[some])
     starts = np.searchsorted(whole.numbers, np.arange(len(normals) + 1))
     rows = np.concatenate([np.arange(int(starts[k]), int(starts[k + 1])) for k in some])
-    for one, two in zip(part[1:5], whole[1:5], strict=True):
-        np.testing.assert_array_equal(one, two[rows])
+    np.testing.assert_array_equal(part.places, whole.places[rows])
 
 
 def test_small_rooms_grow(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -485,7 +484,7 @@ def test_small_rooms_grow(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(proved, "ROOM", 64)
     monkeypatch.setattr(proved, "CELL_ROOM", 64)
     found = new_index(surface_of("waves")).query(normals)
-    for one, two in zip((*expected[:5], *expected[5]), (*found[:5], *found[5]), strict=True):
+    for one, two in zip((*expected[:2], *expected[2]), (*found[:2], *found[2]), strict=True):
         np.testing.assert_array_equal(one, two)
 
 

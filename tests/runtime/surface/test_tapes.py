@@ -128,6 +128,7 @@ TRACED: list[Callable[..., Any]] = [
     of_functions,
     lambda u, v: np.stack([u, v, np.sin(3 * u) * np.cos(3 * v)], axis=-1),
     lambda u, v: np.moveaxis(np.array([u, v, +u * v]), 0, -1),
+    lambda u, v: np.stack([u, v, np.arctan2(v, u + 2.0) + np.arctan2(u, 3.0)], axis=-1),
     lambda u, v: np.stack([u, v, np.zeros_like(u)], axis=-1),
     lambda u, v: np.stack([u, v, np.full(u.shape, 3.0)], axis=-1),
     lambda u, v: np.stack([u, v, u * v], axis=-1) @ np.array([[1, 2, 3], [0, 1, 0], [1, 0, 2]]),
