@@ -278,7 +278,8 @@ def unwarned(
         raise InputError(f"out must be Samples of an earlier call, not {shown(out)}.")
     number = checked_dtype(dtype)
     if isinstance(surface, Whole):
-        wanted = checked_fields(fields, True, part=True, edges=edges)
+        at_normals = request.density == "gauss" and request.count is None and not edges
+        wanted = checked_fields(fields, True, at_normals, part=True, edges=edges)
         if cells is not None:
             raise InputError("cells=... are for splines; the faces of a part need none.")
         if checked_place(on) == "spline":

@@ -12,14 +12,14 @@ from ..base.memory import check_memory
 from ..kernels.forms import patches_at
 from ..samples.fields import FLAG_NAMES, PROVED_NAMES, bytes_of, dtype_of
 from ..samples.report import UndecidedNormal
-from ..search.proved import KINDS, ProvedIndex, ProvedPlaces, Undecided
+from ..search.proved import CELLS, KINDS, ProvedIndex, ProvedPlaces, Undecided
 from ..spline.inside import samples_inside
 from ..spline.spline import Spline
 from ..surface.surface import Surface
 from .newton import evaluate_on_surface
 from .on_spline import Fields, FieldsOfSamples
 
-__all__ = ["Proof", "index_of", "proved_samples"]
+__all__ = ["Proof", "index_of", "proof_of", "proved_samples"]
 
 # The fields that follow from the 2-jets of the surface.
 EVALUATED = {"points", "support", "gaussian_curvature", "mean_curvature"}
@@ -32,11 +32,13 @@ class Proof(NamedTuple):
     undecided: tuple[UndecidedNormal, ...]
 
 
-def index_of(surface: Surface, threads: int | None = None) -> ProvedIndex | None:
+def index_of(
+    surface: Surface, threads: int | None = None, cells: tuple[int, int] = CELLS
+) -> ProvedIndex | None:
     """Return the index of a surface; None if its derivatives have no bounds, next to poles, too."""
     if surface.tape is None:
         return None
-    index = ProvedIndex.of(surface.tape, surface.domain, surface.boundary, threads=threads)
+    index = ProvedIndex.of(surface.tape, surface.domain, surface.boundary, cells, threads)
     if index is None:
         return None
     poles = sum(end == "pole" for ends in surface.boundary for end in ends)
@@ -59,7 +61,7 @@ def proved_samples(
     arrays = _arrays(surface, spline, normals, found, set(fields), threads)
     arrays = samples_inside(spline.trim, arrays, tuple(arrays))
     kept = {x: arrays[x].astype(dtype_of(x, dtype), copy=False) for x in fields}
-    return FieldsOfSamples(kept, 0), _proof(len(normals), found.undecided)
+    return FieldsOfSamples(kept, 0), proof_of(len(normals), found.undecided)
 
 
 def _arrays(
@@ -94,9 +96,10 @@ def _arrays(
     return arrays
 
 
-def _proof(count: int, open_: Undecided) -> Proof:
+def proof_of(count: int, open_: Undecided, face: int | None = None) -> Proof:
+    """Return the proof for a number of normals, of which some are open; on a face of a part."""
     undecided = tuple(
-        UndecidedNormal.of((number, box, KINDS[kind], border))
+        UndecidedNormal(number, tuple(box), KINDS[kind], border, face)
         for number, box, kind, border in zip(*(x.tolist() for x in open_), strict=True)
     )
     return Proof(count - len(np.unique(open_.numbers)), undecided)

@@ -34,10 +34,11 @@ from ..kernels.proved_sorting import (
     start_normals,
 )
 from ..kernels.tape import LANES, Tape
+from ..kernels.tape_spline_bounds import SLACK
 from .bins import sorted_normals
 from .proved_discs import PoleDisc, pole_disc
 
-__all__ = ["KINDS", "ProvedIndex", "ProvedPlaces", "Undecided"]
+__all__ = ["CELLS", "KINDS", "ProvedIndex", "ProvedPlaces", "Undecided"]
 
 # How often irregular cells are cut into four, and cells without a narrow cone of normals.
 LEVELS = (2, 5)
@@ -340,7 +341,8 @@ def _lines(tape: Tape, axis: int, ends: NDArray[np.float64], count: int) -> NDAr
     (rows,) = np.nonzero(tape.operations[:, 0] == SPLINE)
     if axis == 0 and len(rows) > 0 and tape.operations[rows[0], 3] == 1:
         jumps = tape.numbers[rows[0], 0] - jumps  # u is reversed
-    jumps = jumps[(jumps > ends[0]) & (jumps < ends[1])]
+    slack = SLACK * np.abs(breaks[[0, -1]]).sum() if len(breaks) > 0 else 0.0
+    jumps = jumps[(jumps > ends[0] + slack) & (jumps < ends[1] - slack)]
     pieces = np.unique([*ends, *jumps])
     counts = np.maximum(1, np.round(count * np.diff(pieces) / (ends[1] - ends[0]))).astype(int)
     parts = [
