@@ -110,11 +110,11 @@ def at_normals(space: Space, normals: Array, curved: Iterable[int], progress: bo
     """
     density, found, estimated = len(normals) / (4 * math.pi), list[Found](), list[int]()
     for k, piece in enumerate(space.pieces):
-        samples = piece.proved_at(normals, space.threads)
-        if samples is None:
+        proved = piece.proved_at(normals, space.threads)
+        if proved is None:
             estimated.append(k)
-        elif len(samples) or samples.report.undecided:
-            found.append(Found(k, samples, normals))
+        else:
+            found += [Found(k, x, normals) for x in proved]
 
     def search(geometry: OnSpline) -> tuple[Samples, Array]:
         return _with_all_fields(geometry, choose(geometry, normals, progress), progress)

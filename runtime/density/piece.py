@@ -68,8 +68,11 @@ class Piece(ABC):
     def geometries(self, threads: int | None) -> list[OnSpline]:
         """Return what is searched for points with a normal; GaussmapError if it has no spline."""
 
-    def proved_at(self, normals: Array, threads: int | None) -> Samples | None:
-        """Return all points with unit normals (S, 3), with a proof; None if there is none."""
+    def proved_at(self, normals: Array, threads: int | None) -> list[Samples] | None:
+        """Return all points with unit normals (S, 3), with a proof; None if there is none.
+
+        The list is empty if there are no points, and none that are undecided.
+        """
         return None
 
     @abstractmethod

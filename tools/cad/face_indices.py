@@ -24,6 +24,8 @@ Array = NDArray[np.float64]
 
 # Cells of an index before they are cut: faces are simple, and there are many.
 CELLS = (4, 4)
+# Ends of a side are looked at if their distance is less than this part of the largest one.
+CLOSE = 1e-3
 SINGULAR = KINDS.index("singular")
 # Places along a side of a box at which it is looked how an offset is turned.
 PLACES = 3
@@ -35,7 +37,7 @@ def face_index(
     """Return the index of the surface of a face over a domain; None if nothing is proved."""
     simple = simplest(geometry, domain)
     if simple.kind in ROUND:
-        return RoundFace(simple, surface.domain, is_reversed)
+        return RoundFace.of(simple, surface.domain, is_reversed=is_reversed)
     if simple.kind != "offset" or simple.basis is None:
         return SmoothPieces.of(surface)
     basis = face_surface(simple.basis, domain, is_reversed=is_reversed)
@@ -54,7 +56,9 @@ class SmoothPieces:
         """Return those of a surface; None if one has none."""
         found = []
         for piece in surface.pieces():
-            index = index_of(replace(piece, boundary=found_sides(piece)[0]), cells=CELLS)
+            if _has_corners_that_meet(piece):
+                piece = replace(piece, boundary=found_sides(piece)[0])
+            index = index_of(piece, cells=CELLS)
             if index is None:
                 return None
             found.append(index)
@@ -112,3 +116,12 @@ class Offset:
         lengths = np.linalg.norm(found, axis=1)
         with np.errstate(invalid="ignore", divide="ignore"):
             return np.nan_to_num(np.einsum("kx,kx->k", found, normals) / lengths)
+
+
+def _has_corners_that_meet(surface: Surface) -> bool:
+    """Say whether a side of the domain may be one point: its ends are close to one another."""
+    (u0, u1), (v0, v1) = surface.domain
+    places = np.array([(u0, v0), (u1, v0), (u1, v1), (u0, v1)]).T.copy()
+    points = surface.jets(*places)[:, 0]
+    gaps = np.linalg.norm(np.roll(points, 1, axis=0) - points, axis=1)
+    return bool(gaps.min() <= CLOSE * gaps.max())

@@ -28,7 +28,7 @@ from ...runtime.samples.report import SamplingReport
 from ...runtime.samples.samples import Samples
 from ...runtime.surface.surface import Surface
 from .face_indices import face_index
-from .face_places import FaceIndex
+from .face_places import FaceIndex, FacePlaces
 from .faces import own_parameters
 from .part import Face
 from .records import Geometry
@@ -112,12 +112,17 @@ class FacePiece(Piece):
         found = kept(self.surface, FacePiece, self._geometries)
         return [x.used(np.float64, threads) for x in found]
 
-    def proved_at(self, normals: Array, threads: int | None) -> Samples | None:
+    def proved_at(self, normals: Array, threads: int | None) -> list[Samples] | None:
         """Return all points with unit normals (S, 3), with a proof; None if there is none."""
         index = kept(self.surface, face_index, self._index)
         if index is None:
             return None
         found = index.query(normals, threads)
+        nothing = not len(found.numbers) and not len(found.undecided.numbers)
+        return [] if nothing else [self._samples(normals, found)]
+
+    def _samples(self, normals: Array, found: FacePlaces) -> Samples:
+        """Return the places with normals (S, 3) that are inside the trim."""
         inside = self.contains(found.uv)
         check_memory("stored", int(inside.sum()), bytes_of(ARRAY_NAMES_OF_PART, np.float64))
         given, uv = normals[found.numbers[inside]], found.uv[inside]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ...runtime.search.proved import Undecided
 
-__all__ = ["FaceIndex", "FacePlaces", "joined", "undecided"]
+__all__ = ["NOTHING", "FaceIndex", "FacePlaces", "joined", "undecided"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -54,10 +54,18 @@ def undecided(numbers: Indices, boxes: Array, kind: int, border: bool) -> Undeci
     return Undecided(numbers, boxes, np.full(count, kind), np.full(count, border))
 
 
+NO_NUMBERS = np.empty(0, np.int64)
+NOTHING = FacePlaces(
+    NO_NUMBERS, np.empty((0, 2)), np.empty((0, 2)), np.empty(0),
+    undecided(NO_NUMBERS, np.empty((0, 4)), 0, border=False),
+)  # fmt: skip
+
+
 def joined(parts: Sequence[FacePlaces]) -> FacePlaces:
     """Return the points of several parts of a face, in the order of their normals."""
-    if len(parts) == 1:
-        return parts[0]
+    parts = [x for x in parts if len(x.numbers) or len(x.undecided.numbers)]
+    if len(parts) < 2:
+        return parts[0] if parts else NOTHING
     numbers, uv, radius, sign = (
         np.concatenate(x) for x in zip(*(part[:4] for part in parts), strict=True)
     )

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.base.errors import MissingFieldError, SurfaceError
+from ...runtime.base.kept import kept
 from ...runtime.base.trees import tree_of
 from ...runtime.density.cells import AREA, by_piece
 from ...runtime.density.space import Space
@@ -35,15 +36,19 @@ class PartSpace(Space):
 
 
 def space_of(part: Part, threads: int | None, target: TargetDensity | None = None) -> PartSpace:
-    """Return the space of a part; SurfaceError if no face can be sampled."""
-    pieces, failed = pieces_of(part.faces)
+    """Return the space of a part; SurfaceError if no face can be sampled.
+
+    Its first cells are kept, but for powers of K, which are many, and what pieces are made of, but
+    for rasters of their borders, which are large.
+    """
+    target = target or TargetDensity(floor=1.0)
+    pieces, failed = kept(part, pieces_of, lambda: pieces_of(part.faces))
     if not pieces:
         reason = f": {next(iter(failed.values()))}" if failed else "."
         raise SurfaceError(f"part {part.name!r} has no face that can be sampled{reason}")
-    label = f"part {part.name!r}"
-    return PartSpace(
-        label, tuple(pieces), target or TargetDensity(floor=1.0), threads, failed=failed
-    )
+    held = {} if target.gauss_weight > 0.0 else kept(part, target, dict)
+    copies = tuple(replace(x) for x in pieces)
+    return PartSpace(f"part {part.name!r}", copies, target, threads, _held=held, failed=failed)
 
 
 def weights_of(part: Part, samples: Samples) -> Array:

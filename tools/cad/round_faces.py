@@ -9,6 +9,7 @@ the radius of a torus.
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -18,7 +19,7 @@ from numpy.typing import NDArray
 
 from ...runtime.domain.domain import Domain, Interval
 from ...runtime.search.proved import KINDS
-from .face_places import FacePlaces, joined, undecided
+from .face_places import NOTHING, FacePlaces, joined, undecided
 from .records import Geometry
 
 __all__ = ["ROUND", "RoundFace"]
@@ -72,7 +73,7 @@ class Angles(NamedTuple):
     def places(self, sign: float) -> FacePlaces:
         """Return them as points whose curvature has a sign."""
         uv, radius = np.stack([self.u, self.v], axis=1), np.stack([self.of_u, self.of_v], axis=1)
-        return FacePlaces(self.numbers, uv, radius, np.full(len(uv), sign), nothing().undecided)
+        return FacePlaces(self.numbers, uv, radius, np.full(len(uv), sign), NOTHING.undecided)
 
     def boxes(self, kind: int, domain: Domain) -> FacePlaces:
         """Return them as boxes in a domain that are not decided."""
@@ -80,14 +81,7 @@ class Angles(NamedTuple):
         sides = self.u - self.of_u, self.u + self.of_u, self.v - self.of_v, self.v + self.of_v
         ends = np.array([u0, u0, v0, v0]), np.array([u1, u1, v1, v1])
         boxes = np.clip(np.stack(sides, axis=1), *ends)
-        return nothing()._replace(undecided=undecided(self.numbers, boxes, kind, border=True))
-
-
-def nothing() -> FacePlaces:
-    """Return no places."""
-    none = np.empty(0, np.int64)
-    open_ = undecided(none, np.empty((0, 4)), CONTINUUM, border=True)
-    return FacePlaces(none, np.empty((0, 2)), np.empty((0, 2)), np.empty(0), open_)
+        return NOTHING._replace(undecided=undecided(self.numbers, boxes, kind, border=True))
 
 
 def whole(interval: Interval, count: int) -> tuple[Array, Array]:
@@ -98,96 +92,102 @@ def whole(interval: Interval, count: int) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, eq=False)
 class RoundFace:
-    """A plane, cylinder, cone, sphere or torus over a domain; if `is_reversed`, u is, too."""
+    """A plane, cylinder, cone, sphere or torus over a domain; if `is_reversed`, u is, too.
 
-    geometry: Geometry
+    `frame` is M, or −M if normals are opposite to M⁻ᵀ m; `error` is that of angles of Mᵀ n.
+    """
+
+    kind: str
+    sizes: tuple[float, float]
+    frame: Array
+    error: float
     domain: Domain
     is_reversed: bool
 
+    @classmethod
+    def of(cls, geometry: Geometry, domain: Domain, *, is_reversed: bool) -> RoundFace:
+        """Return the face of a geometry over a domain."""
+        matrix, numbers = geometry.numbers[3:12].reshape(3, 3).T, geometry.numbers[12:].tolist()
+        inverse = np.linalg.inv(matrix)
+        error = ANGLE_ERROR * math.sqrt(float((matrix**2).sum() * (inverse**2).sum()))
+        outward = (np.cross(matrix[:, 0], matrix[:, 1]) @ matrix[:, 2] > 0.0) != is_reversed
+        sizes = {1: (0.0, *numbers), 2: tuple(numbers)}.get(len(numbers), (0.0, 0.0))
+        if geometry.kind == "cylinder":
+            sizes = sizes[::-1]
+        frame = matrix if outward else -matrix
+        return cls(geometry.kind, sizes, frame, error, domain, is_reversed)
+
     def query(self, normals: Array, threads: int | None = None) -> FacePlaces:
         """Return all points with unit normals (S, 3)."""
-        matrix = self.geometry.numbers[3:12].reshape(3, 3).T
-        side = -1.0 if self.is_reversed else 1.0
-        side *= math.copysign(1.0, float(np.linalg.det(matrix)))
-        kind, numbers = self.geometry.kind, self.geometry.numbers[12:].tolist()
-        if kind == "plane":
-            found = self._on_plane(normals, side * matrix)
-        elif kind in ("cylinder", "cone"):
-            radius, angle = (*numbers, 0.0)[:2]
-            found = self._on_rulings(normals, side * matrix, radius, angle)
+        if self.kind in ("sphere", "torus"):
+            found = self._on_circles(normals)
         else:
-            major, minor = (0.0, *numbers)[-2:]
-            found = self._on_circles(normals, side * matrix, major, minor)
+            found = self._on_plane(normals) if self.kind == "plane" else self._on_rulings(normals)
         return found.reversed_in(sum(self.domain[0])) if self.is_reversed else found
 
-    def _on_plane(self, normals: Array, matrix: Array) -> FacePlaces:
+    def _on_plane(self, normals: Array) -> FacePlaces:
         """Return the whole domain for the normal of a plane."""
-        normal = np.linalg.solve(matrix.T, [0.0, 0.0, 1.0])
-        (near,) = np.nonzero(normals @ (normal / np.linalg.norm(normal)) > 1.0 - NEAR)
-        own = normals[near] @ matrix
-        near = near[np.hypot(own[:, 0], own[:, 1]) <= angle_error(matrix) * own[:, 2]]
+        normal = np.cross(self.frame[:, 0], self.frame[:, 1])
+        normal *= math.copysign(1.0, normal @ self.frame[:, 2]) / math.sqrt(normal @ normal)
+        (near,) = np.nonzero(normals @ normal > 1.0 - NEAR)
+        if not len(near):
+            return NOTHING
+        own = normals[near] @ self.frame
+        near = near[np.hypot(own[:, 0], own[:, 1]) <= self.error * own[:, 2]]
         return Angles.on_lines(near, self.domain).boxes(CONTINUUM, self.domain)
 
-    def _on_rulings(
-        self, normals: Array, matrix: Array, radius: float, angle: float
-    ) -> FacePlaces:
+    def _on_rulings(self, normals: Array) -> FacePlaces:
         """Return rulings for the normals of a cylinder or a cone, on both sides of an apex."""
-        ends, found = radius + math.sin(angle) * np.array(self.domain[1]), [nothing()]
-        heights, error = normals @ matrix[:, 2] / np.linalg.norm(matrix, 2), angle_error(matrix)
-        limit = NEAR + float(np.linalg.cond(matrix)) - 1.0
+        radius, angle = self.sizes
+        ends, found = radius + math.sin(angle) * np.array(self.domain[1]), [NOTHING]
         for sign in sorted({math.copysign(1.0, x) for x in ends.tolist()}):
-            (near,) = np.nonzero(np.abs(sign * heights + math.sin(angle)) <= limit)
-            own = sign * normals[near] @ matrix
+            near = np.arange(len(normals))
+            if angle == 0.0:
+                size = NEAR * math.sqrt(float((self.frame**2).sum()))
+                (near,) = np.nonzero(np.abs(normals @ self.frame[:, 2]) <= size)
+            own = sign * normals[near] @ self.frame
             slopes = np.arctan2(own[:, 2], np.hypot(own[:, 0], own[:, 1]))
-            rows = np.abs(slopes + angle) <= error
+            rows = np.abs(slopes + angle) <= self.error
+            if not rows.any():
+                continue
             part = Angles.on_lines(near[rows], self.domain)._replace(
                 u=np.arctan2(own[rows, 1], own[rows, 0]),
-                of_u=np.full(rows.sum(), error / math.cos(angle)),
+                of_u=np.full(rows.sum(), self.error / math.cos(angle)),
             )
             found.append(part.within(self.domain[0], 0).boxes(CONTINUUM, self.domain))
         return joined(found)
 
-    def _on_circles(
-        self, normals: Array, matrix: Array, major: float, minor: float
-    ) -> FacePlaces:
-        """Return the points of a sphere, whose `major` radius is 0, or of a torus."""
+    def _on_circles(self, normals: Array) -> FacePlaces:
+        """Return the points of a sphere, whose first radius is 0, or of a torus."""
+        (major, minor), own, found = self.sizes, normals @ self.frame, list[FacePlaces]()
+        if self.kind == "sphere":
+            return self._at_angles(own, 1.0).places(1.0)
         sides = [math.copysign(1.0, major * minor)] if abs(major) > abs(minor) else [1.0, -1.0]
-        own, error = normals @ matrix, angle_error(matrix)
-        if self.geometry.kind == "sphere":
-            return self._at_angles(own, 1.0, error).places(1.0)
-        found = []
-        for side in sides:
-            for sign in (1.0, -1.0):  # of cos v
-                part = self._at_angles(side * own, sign, error)
-                # ρ r
-                sizes = side * (major + minor * np.cos(part.v)) * minor
-                noise = 4.0 * error * (abs(major) + abs(minor)) * abs(minor)
-                on_axis = part.of_u >= TURN
-                found += [
-                    part.at(~on_axis & (sizes > noise)).places(side * sign),
-                    part.at(~on_axis & (np.abs(sizes) <= noise)).boxes(SINGULAR, self.domain),
-                ]
-                if sign > 0.0:
-                    circles = part.at(on_axis & (sizes > -noise))
-                    u, of_u = whole(self.domain[0], len(circles.u))
-                    circles = circles._replace(u=u, of_u=of_u)
-                    found.append(circles.boxes(CONTINUUM, self.domain))
+        for side, sign in itertools.product(sides, (1.0, -1.0)):  # of ρ r and of cos v
+            part = self._at_angles(side * own, sign)
+            sizes = side * (major + minor * np.cos(part.v)) * minor
+            noise = 4.0 * self.error * (abs(major) + abs(minor)) * abs(minor)
+            on_axis = part.of_u >= TURN
+            found += [
+                part.at(~on_axis & (sizes > noise)).places(side * sign),
+                part.at(~on_axis & (np.abs(sizes) <= noise)).boxes(SINGULAR, self.domain),
+            ]
+            if sign > 0.0 and on_axis.any():
+                circles = part.at(on_axis & (sizes > -noise))
+                u, of_u = whole(self.domain[0], len(circles.u))
+                found.append(circles._replace(u=u, of_u=of_u).boxes(CONTINUUM, self.domain))
         return joined(found)
 
-    def _at_angles(self, own: Array, sign: float, error: float) -> Angles:
+    def _at_angles(self, own: Array, sign: float) -> Angles:
         """Return the places of normals in the frame of the face where cos v has a sign.
 
         Near the axis u is not known, and its radius is a turn.
         """
         across = np.hypot(own[:, 0], own[:, 1])
         u, v = np.arctan2(sign * own[:, 1], sign * own[:, 0]), np.arctan2(own[:, 2], sign * across)
-        part = error * np.linalg.norm(own, axis=1)
+        part = self.error * np.linalg.norm(own, axis=1)
         of_u = np.full(len(u), TURN)
         np.divide(part, across, out=of_u, where=across * TURN > part)
-        found = Angles(np.arange(len(u)), u, v, of_u, np.full(len(v), error))
+        found = Angles(np.arange(len(u)), u, v, of_u, np.full(len(v), self.error))
         return found.within(self.domain[1], 1).within(self.domain[0], 0)
 
-
-def angle_error(matrix: Array) -> float:
-    """Return how far angles of normals in a frame may be from the exact ones."""
-    return ANGLE_ERROR * float(np.linalg.cond(matrix))
