@@ -100,11 +100,11 @@ def test_points_of_spheres_and_tori(made, kind, frame, is_reversed, scale):
 
 
 def test_a_torus_that_meets_its_axis(made):
-    """Its inner part, with r > R, has opposite normals and K < 0 nowhere but there."""
+    """Where ρ = R + r cos v is negative, x_u × x_v points to the other side."""
     ends = (0.0, TURN), (0.0, TURN)
     face = made.face("torus", [*made.placement(), 1.0, 2.0], *ends, 1.0, (TURN, TURN))
     normals = random_normals(500, 5)
-    samples = gm.sample(made.part([face]), normals=normals)
+    samples = gm.GaussMap(made.part([face])).points(normals)
     u, v = samples.uv.T
     rho = 1.0 + 2.0 * np.cos(v)
     outward = np.stack([np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)], axis=1)
@@ -118,7 +118,7 @@ def test_a_torus_that_meets_its_axis(made):
     signs = np.array([1, 1, -1, -1])[:, None]
     expected = (np.sign(1.0 + 2.0 * np.cos(four)) == signs).sum(axis=0)
     assert (np.bincount(samples.normal_index, minlength=500) == expected).all()
-    assert len(set(expected.tolist())) > 1
+    assert (rho < 0.0).any() and (rho > 0.0).any()
 
 
 @pytest.mark.parametrize("frame", FRAMES)
@@ -261,15 +261,19 @@ def in_polygon(u: np.ndarray, v: np.ndarray) -> np.ndarray:
     return r * np.cos(angle % part - part / 2) < 0.4 * math.cos(part / 2)
 
 
-def roots(f, n: np.ndarray, sign: float) -> np.ndarray:
-    """Return the places (k, 2) inside the polygon where n has the side `sign` of x_u × x_v."""
+def roots(f, normals: np.ndarray, sign: float) -> list[np.ndarray]:
+    """Return the regular places (k, 2) inside the polygon with each normal, of 64 starts.
+
+    Normals point to the side `sign` of x_u × x_v.
+    """
     starts = (np.arange(8) + 0.5) / 8
-    u, v = (x.ravel().copy() for x in np.meshgrid(starts, starts))
+    u, v = (np.tile(x.ravel(), len(normals)) for x in np.meshgrid(starts, starts))
+    owner = np.repeat(np.arange(len(normals)), 64)
+    n, h = normals[owner], 1e-3
 
     def slopes(u: np.ndarray, v: np.ndarray) -> np.ndarray:
-        return tangents(f, u, v, 2.0**-8) @ n
+        return np.einsum("akx,kx->ak", tangents(f, u, v, 2.0**-8), n)
 
-    h = 1e-3
     for _ in range(8):
         g = slopes(u, v)
         g_u = (slopes(u + h, v) - slopes(u - h, v)) / (2 * h)
@@ -278,9 +282,19 @@ def roots(f, n: np.ndarray, sign: float) -> np.ndarray:
         du = (g[0] * g_v[1] - g[1] * g_v[0]) / determinant
         dv = (g_u[0] * g[1] - g_u[1] * g[0]) / determinant
         u, v = np.clip(u - du, 0.0, 1.0), np.clip(v - dv, 0.0, 1.0)
-    outward = sign * np.cross(*tangents(f, u, v, 2.0**-8)) @ n > 0.0
-    good = (np.abs(slopes(u, v)).max(axis=0) < 1e-7) & outward & in_polygon(u, v)
-    return np.unique(np.stack([u, v], axis=1)[good].round(4), axis=0)
+    outward = sign * np.einsum("kx,kx->k", np.cross(*tangents(f, u, v, 2.0**-8)), n)
+    good = (np.abs(slopes(u, v)).max(axis=0) < 1e-7) & (outward > 0.02) & in_polygon(u, v)
+    places = np.stack([u, v], axis=1)
+    return [clusters(places[good & (owner == k)]) for k in range(len(normals))]
+
+
+def clusters(places: np.ndarray) -> np.ndarray:
+    """Return one of places (k, 2) that are closer than 1e-3 to one another."""
+    found = list[np.ndarray]()
+    for place in places:
+        if not any(np.abs(place - x).max() < 1e-3 for x in found):
+            found.append(place)
+    return np.array(found).reshape(-1, 2)
 
 
 def faces_of_splines() -> dict:
@@ -314,8 +328,7 @@ def test_points_of_faces_of_splines(made, name, is_reversed):
     samples = gm.sample(made.part([face]), normals=normals)
     assert samples.report.estimated_faces == 0
     sign, total, wrong = -1.0 if is_reversed else 1.0, 0, 0
-    for k, n in enumerate(normals):
-        places = roots(f, n, sign)
+    for k, places in enumerate(roots(f, normals, sign)):
         mine = samples.uv[samples.normal_index == k].copy()
         if is_reversed:
             mine[:, 0] = 1.0 - mine[:, 0]
@@ -323,7 +336,7 @@ def test_points_of_faces_of_splines(made, name, is_reversed):
         same = len(places) == len(mine)
         if same and len(mine):
             gaps = np.abs(places[:, None] - mine[None]).max(axis=2)
-            same = bool((gaps.min(axis=0) < 1e-3).all() and (gaps.min(axis=1) < 1e-3).all())
+            same = bool((gaps.min(axis=0) < 1e-5).all() and (gaps.min(axis=1) < 1e-5).all())
         wrong += not same
     assert samples.report.proved == 30
     assert wrong == 0
@@ -331,8 +344,7 @@ def test_points_of_faces_of_splines(made, name, is_reversed):
 
 
 def test_the_kinds_that_are_proved():
-    """Each face of each kind, and all points once: those of the polygons of four tori are its."""
-    samples = gm.sample(all_kinds(), normals=gm.fibonacci(500))
+    samples = gm.GaussMap(all_kinds()).points(gm.fibonacci(500))
     assert (samples.report.estimated_faces, samples.report.proved) == (0, 500)
     assert set(samples.face_index.tolist()) == {2, 4, 5, 6, 7, 9}
     assert np.isfinite(samples.uv_radius).all()
@@ -375,10 +387,12 @@ def test_answers_do_not_depend_on_earlier_calls():
     known = gm.GaussMap(part)
     first = known.points(normals)
     gm.sample(part, 100)
+    with pytest.warns(gm.GaussmapWarning, match="is flat"):
+        sampled = gm.sample(part, normals=normals)
     for again in (
+        sampled,
         known.points(normals, threads=3),
         gm.GaussMap(pickle.loads(pickle.dumps(part))).points(normals),
-        gm.sample(part, normals=normals),
     ):
         for name, array in first.arrays().items():
             assert array.tobytes() == getattr(again, name).tobytes(), name
