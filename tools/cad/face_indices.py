@@ -67,7 +67,12 @@ class SmoothPieces:
     def query(self, normals: Array, threads: int | None = None) -> FacePlaces:
         """Return all points with unit normals (S, 3)."""
         found = (x.query(normals, threads) for x in self.indices)
-        return joined([FacePlaces(x.numbers, x.uv, x.radius, x.sign, x.undecided) for x in found])
+        return joined(
+            [
+                FacePlaces(x.numbers, x.uv, x.radius, x.sign.astype(np.float64), x.undecided)
+                for x in found
+            ]
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,8 +107,8 @@ class Offset:
         u, v, of_u, of_v = np.concatenate([found.uv, found.radius], axis=1)[lost].T
         small = np.stack([u - of_u, u + of_u, v - of_v, v + of_v], axis=1)
         singular = undecided(found.numbers[lost], small, SINGULAR, border=False)
-        both = Undecided(
-            *(np.concatenate([x[open_], y]) for x, y in zip(boxes, singular, strict=True))
+        both = Undecided._make(
+            np.concatenate([x[open_], y]) for x, y in zip(boxes, singular, strict=True)
         )
         return FacePlaces(
             found.numbers[keep], found.uv[keep], found.radius[keep], sign * found.sign[keep], both

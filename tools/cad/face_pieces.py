@@ -46,8 +46,9 @@ SAME_LINE = 1e-9
 # At poles, curvatures are those at this part of the domain from there.
 BESIDE = 1e-6
 CURVATURES = ("gaussian_curvature", "mean_curvature")
-# Where nothing is proved, points with a normal are searched on a spline: its cells for each part of a span, and their least
-# and largest number. At the border, points are lost by the error of the spline.
+# Where nothing is proved, and at normals of lattices, points are searched on a spline: its cells for
+# each part of a span, and their least and largest number. At the border, points are lost by the
+# error of the spline.
 CELLS_A_PART, FEWEST, MOST = 3, 64, 256
 # Which parameters of a kind of face are angles.
 ANGLES = {
@@ -132,28 +133,23 @@ class FacePiece(Piece):
             beside = uv[lost] + BESIDE * (self.middle.T - uv[lost])
             for name, values in self.fields_at(beside, beside, CURVATURES, np.float64).items():
                 fields[name][lost] = values
-        fields["gaussian_curvature"] = np.copysign(
-            fields["gaussian_curvature"], found.sign[inside]
-        )
+        fields["gaussian_curvature"] = np.copysign(fields["gaussian_curvature"], found.sign[inside])
         proof = proof_of(len(normals), found.undecided, self.face.index)
         report = SamplingReport(
             self.label, len(normals), len(uv), None, None, None, **proof._asdict()
         )
-        return Samples(
-            **fields | {
-                "normals": given,
-                "support": np.einsum("kx,kx->k", fields["points"], given),
-                "normal_index": found.numbers[inside],
-                "uv_radius": found.radius[inside],
-            },
-            report=report,
-        )  # fmt: skip
+        arrays: dict[str, Any] = {
+            **fields,
+            "normals": given,
+            "support": np.einsum("kx,kx->k", fields["points"], given),
+            "normal_index": found.numbers[inside],
+            "uv_radius": found.radius[inside],
+        }
+        return Samples(**arrays, report=report)
 
     def _index(self) -> FaceIndex | None:
         face = self.face
-        return face_index(
-            face.geometry, self.surface, face.domain, is_reversed=face.reversed
-        )
+        return face_index(face.geometry, self.surface, face.domain, is_reversed=face.reversed)
 
     def _geometries(self) -> list[OnSpline]:
         with warnings.catch_warnings():

@@ -69,12 +69,12 @@ def joined(parts: Sequence[FacePlaces]) -> FacePlaces:
     numbers, uv, radius, sign = (
         np.concatenate(x) for x in zip(*(part[:4] for part in parts), strict=True)
     )
-    boxes = Undecided(
-        *(np.concatenate(x) for x in zip(*(part.undecided for part in parts), strict=True))
+    boxes = Undecided._make(
+        np.concatenate(x) for x in zip(*(part.undecided for part in parts), strict=True)
     )
     order = np.argsort(numbers, kind="stable")
     of_boxes = np.argsort(boxes.numbers, kind="stable")
     return FacePlaces(
         numbers[order], uv[order], radius[order], sign[order],
-        Undecided(*(x[of_boxes] for x in boxes)),
+        Undecided._make(x[of_boxes] for x in boxes),
     )  # fmt: skip

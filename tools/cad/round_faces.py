@@ -49,7 +49,7 @@ class Angles(NamedTuple):
 
     def at(self, rows: NDArray[np.bool_]) -> Angles:
         """Return some of them."""
-        return Angles(*(x[rows] for x in self))
+        return Angles._make(x[rows] for x in self)
 
     def within(self, interval: Interval, axis: int) -> Angles:
         """Return those of u (axis 0) or v that are in an interval, whole turns away or not."""
@@ -62,7 +62,7 @@ class Angles(NamedTuple):
             part = list(self.at(rows))
             part[1 + axis] = np.clip(moved[rows], low, high)
             found.append(part)
-        return Angles(*map(np.concatenate, zip(*found, strict=True)))
+        return Angles._make(map(np.concatenate, zip(*found, strict=True)))
 
     @classmethod
     def on_lines(cls, numbers: Indices, domain: Domain) -> Angles:
@@ -190,4 +190,3 @@ class RoundFace:
         np.divide(part, across, out=of_u, where=across * TURN > part)
         found = Angles(np.arange(len(u)), u, v, of_u, np.full(len(v), self.error))
         return found.within(self.domain[1], 1).within(self.domain[0], 0)
-

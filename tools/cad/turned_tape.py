@@ -35,7 +35,7 @@ def turned_tape(curve: Nurbs) -> Tape | None:
     if tape is None:
         return None
     writer = TapeWriter()
-    point = Vector(*(Traced(writer, x) for x in writer.replay(tape)))
+    point = Vector._make(Traced(writer, x) for x in writer.replay(tape))
     angle, none = Traced(writer, writer.write("u")), Vector(0.0, 0.0, 0.0)
     turned = python_function(revolution_jet)(point, none, none, angle.cos(), angle.sin())[0]
     return writer.tape([x.row for x in turned])

@@ -2,6 +2,7 @@
 
 # pyright: reportOptionalMemberAccess=false, reportOptionalSubscript=false
 # pyright: reportArgumentType=false, reportAttributeAccessIssue=false
+# pyright: reportOptionalIterable=false, reportCallIssue=false
 
 import itertools
 import math
@@ -94,7 +95,8 @@ def test_points_of_spheres_and_tori(made, kind, frame, is_reversed, scale):
             assert distance <= 1e-13 * scale + 1e-15 * np.abs(origin).max()
     assert (np.bincount(samples.normal_index, minlength=400) == expected).all()
     assert (samples.report.proved, samples.report.undecided) == (400, ())
-    assert expected.max() >= 1 and expected.min() == 0
+    assert expected.max() >= 1
+    assert expected.min() == 0
     known = part.faces[0].surface.normals(*samples.uv.T)
     np.testing.assert_allclose(known, normals[samples.normal_index], atol=1e-13)
 
@@ -118,7 +120,8 @@ def test_a_torus_that_meets_its_axis(made):
     signs = np.array([1, 1, -1, -1])[:, None]
     expected = (np.sign(1.0 + 2.0 * np.cos(four)) == signs).sum(axis=0)
     assert (np.bincount(samples.normal_index, minlength=500) == expected).all()
-    assert (rho < 0.0).any() and (rho > 0.0).any()
+    assert (rho < 0.0).any()
+    assert (rho > 0.0).any()
 
 
 @pytest.mark.parametrize("frame", FRAMES)
