@@ -156,8 +156,8 @@ def sample(
     or follows from `coverage`; with a count or a coverage, κ counts up to 20 √λ.
 
     Derivatives can be bounded of surfaces of the catalogue, of SymPy expressions, of callables made
-    of NumPy functions, of NURBS without poles, of affine images of these, and of faces of parts. The
-    report says for how many normals the points are `proved` to be all, and lists the others in
+    of NumPy functions, of NURBS without poles, of affine images of these, and of faces of parts.
+    The report says for how many normals points are `proved` to be all, and lists the others in
     `undecided`; see `SamplingReport`. What is found out about the last eight surfaces is kept, so
     that the function of a surface must return the same points each time; `GaussMap` keeps it as
     long as it is wanted. On other surfaces, and at normals that were not prescribed, a sample is

@@ -50,7 +50,7 @@ CELL_ROOM, ROOM = 2048, 1 << 12
 # Normals of a tile are close to one another if there are so many in a bin; fewer are not sorted.
 NORMALS_PER_BIN, SORTED = 24, 64
 FINEST = 1024
-# Cells without a cone of normals are in all bins.
+# Cells without a cone of normals are in all bins: they are this part of the domain at most.
 MOST_OPEN = 0.25
 
 
@@ -162,7 +162,8 @@ class ProvedIndex:
         u, v, h_u, h_v = cut.place[blind].T
         unbounded = np.column_stack([u - h_u, u + h_u, v - h_v, v + h_v])
         cut = Cells(*(x[~blind] for x in cut))
-        if np.count_nonzero(cut.cone[:, 3] >= OPEN) > MOST_OPEN * len(cut.place):
+        sizes = cut.place[:, 2] * cut.place[:, 3]
+        if sizes[cut.cone[:, 3] >= OPEN].sum() > MOST_OPEN * sizes.sum():
             return None
         both = Cells(*map(np.concatenate, zip(cut, *(x.cell for x in discs), strict=True)))
         levels = max(2, round(np.log2(np.sqrt(len(both.place) / 24.0 + 1.0))))

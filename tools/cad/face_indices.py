@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,7 @@ from ...runtime.place.proved import index_of
 from ...runtime.search.proved import KINDS, ProvedIndex, Undecided
 from ...runtime.surface.collapsed import found_sides
 from ...runtime.surface.surface import Surface
+from .apexes import Apex, apexes_of
 from .face_places import FaceIndex, FacePlaces, joined, undecided
 from .faces import face_surface, simplest
 from .records import Geometry
@@ -45,34 +47,46 @@ def face_index(
     return None if index is None else Offset(index, surface)
 
 
+class SmoothPiece(NamedTuple):
+    """The index of a smooth piece of a surface, and its sides that are one point."""
+
+    index: ProvedIndex
+    apexes: Sequence[Apex]
+
+    def query(self, normals: Array, threads: int | None) -> FacePlaces:
+        """Return all points with unit normals (S, 3)."""
+        found = self.index.query(normals, threads)
+        open_ = found.undecided
+        for apex in self.apexes:
+            open_ = apex.decided(open_, normals)
+        sign = found.sign.astype(np.float64)
+        return FacePlaces(found.numbers, found.uv, found.radius, sign, open_)
+
+
 @dataclass(frozen=True, eq=False)
 class SmoothPieces:
     """The indices of the smooth pieces of a surface."""
 
-    indices: Sequence[ProvedIndex]
+    pieces: Sequence[SmoothPiece]
 
     @classmethod
     def of(cls, surface: Surface) -> SmoothPieces | None:
         """Return those of a surface; None if one has none."""
         found = []
         for piece in surface.pieces():
-            if _has_corners_that_meet(piece):
+            may_have_points = _has_corners_that_meet(piece)
+            if may_have_points:
                 piece = replace(piece, boundary=found_sides(piece)[0])
             index = index_of(piece, cells=CELLS)
             if index is None:
                 return None
-            found.append(index)
+            apexes = apexes_of(piece, index.tape) if may_have_points else []
+            found.append(SmoothPiece(index, apexes))
         return cls(found)
 
     def query(self, normals: Array, threads: int | None = None) -> FacePlaces:
         """Return all points with unit normals (S, 3)."""
-        found = (x.query(normals, threads) for x in self.indices)
-        return joined(
-            [
-                FacePlaces(x.numbers, x.uv, x.radius, x.sign.astype(np.float64), x.undecided)
-                for x in found
-            ]
-        )
+        return joined([x.query(normals, threads) for x in self.pieces])
 
 
 @dataclass(frozen=True, eq=False)

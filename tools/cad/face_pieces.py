@@ -46,8 +46,8 @@ SAME_LINE = 1e-9
 # At poles, curvatures are those at this part of the domain from there.
 BESIDE = 1e-6
 CURVATURES = ("gaussian_curvature", "mean_curvature")
-# Where nothing is proved, and at normals of lattices, points are searched on a spline: its cells for
-# each part of a span, and their least and largest number. At the border, points are lost by the
+# Where nothing is proved, and at normals of lattices, points are searched on a spline: its cells
+# for each part of a span, and their least and largest number. At the border, points are lost by the
 # error of the spline.
 CELLS_A_PART, FEWEST, MOST = 3, 64, 256
 # Which parameters of a kind of face are angles.

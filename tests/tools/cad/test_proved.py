@@ -264,8 +264,8 @@ def in_polygon(u: np.ndarray, v: np.ndarray) -> np.ndarray:
     return r * np.cos(angle % part - part / 2) < 0.4 * math.cos(part / 2)
 
 
-def roots(f, normals: np.ndarray, sign: float) -> list[np.ndarray]:
-    """Return the regular places (k, 2) inside the polygon with each normal, of 64 starts.
+def roots(f, normals: np.ndarray, sign: float, inside=in_polygon) -> list[np.ndarray]:
+    """Return the regular places (k, 2) inside with each normal, of 64 starts.
 
     Normals point to the side `sign` of x_u × x_v.
     """
@@ -286,7 +286,7 @@ def roots(f, normals: np.ndarray, sign: float) -> list[np.ndarray]:
         dv = (g_u[0] * g[1] - g_u[1] * g[0]) / determinant
         u, v = np.clip(u - du, 0.0, 1.0), np.clip(v - dv, 0.0, 1.0)
     outward = sign * np.einsum("kx,kx->k", np.cross(*tangents(f, u, v, 2.0**-8)), n)
-    good = (np.abs(slopes(u, v)).max(axis=0) < 1e-7) & (outward > 0.02) & in_polygon(u, v)
+    good = (np.abs(slopes(u, v)).max(axis=0) < 1e-7) & (outward > 0.02) & inside(u, v)
     places = np.stack([u, v], axis=1)
     return [clusters(places[good & (owner == k)]) for k in range(len(normals))]
 
@@ -344,6 +344,34 @@ def test_points_of_faces_of_splines(made, name, is_reversed):
     assert samples.report.proved == 30
     assert wrong == 0
     assert total > 8
+
+
+def test_a_triangular_face(made):
+    """Its side u = 1 is a point, where x_u × x_v vanishes, but no normal is left undecided."""
+    points = POINTS.copy()
+    points[2] = [1.0, 0.4, 0.7]
+    geometry = Geometry("nurbs", net=Net((2, 2), (KNOTS, KNOTS), points))
+    part = made.part([FaceRecord(geometry, ((0.0, 1.0), (0.0, 1.0)), area=0.5)])
+
+    def f(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        return np.einsum("ki,kj,ijx->kx", bernstein(u), bernstein(v), points)
+
+    u = np.concatenate([np.linspace(0.1, 0.9, 20), 1.0 - np.logspace(-1, -6, 20)])
+    v = np.random.default_rng(3).uniform(0.1, 0.9, 40)
+    normals = np.cross(*tangents(f, u, v, 2.0**-8)) / (1.0 - u)[:, None]
+    normals = np.concatenate([normals / np.linalg.norm(normals, axis=1)[:, None], -normals[:20]])
+    normals = np.concatenate([normals, random_normals(200)])
+    samples = gm.GaussMap(part).points(normals)
+    assert samples.report.proved == len(normals)
+    for k in range(40):
+        gaps = np.abs(samples.uv[samples.normal_index == k] - [u[k], v[k]]).max(axis=1)
+        assert gaps.min() < 1e-4
+    chosen = normals[40:] / np.linalg.norm(normals[40:], axis=1)[:, None]
+    expected = [
+        len(x) for x in roots(f, chosen, 1.0, lambda u, v: (u < 0.97) & (u > 0) & (v > 0) & (v < 1))
+    ]
+    found = np.bincount(samples.normal_index[samples.uv[:, 0] < 0.97], minlength=len(normals))
+    assert found[40:].tolist() == expected
 
 
 def test_the_kinds_that_are_proved():
