@@ -162,8 +162,9 @@ def sample(
 
     **On the surface.** All points with prescribed normals are found, with a proof, where the
     derivatives of the surface can be bounded: those of the catalogue, of SymPy expressions, of
-    callables made of NumPy functions, of NURBS without poles, and of affine images of these. The
-    report says for how many normals the points are `proved` to be all, and lists the others in
+    callables made of NumPy functions, of NURBS without poles, of affine images of these, and of
+    faces of parts. The report says for how many normals the points are `proved` to be all, and
+    lists the others in
     `undecided`; see `SamplingReport`. What is found out about the last eight surfaces is kept, so
     that the function of a surface must return the same points each time; `GaussMap` keeps it as
     long as it is wanted. On other surfaces, and at normals that were not prescribed, a sample is
@@ -290,7 +291,8 @@ def unwarned(
         raise InputError(f"out must be Samples of an earlier call, not {shown(out)}.")
     number = checked_dtype(dtype)
     if isinstance(surface, Whole):
-        wanted = checked_fields(fields, True, part=True, edges=edges)
+        at_normals = request.density == "gauss" and request.count is None and not edges
+        wanted = checked_fields(fields, True, at_normals, part=True, edges=edges)
         if cells is not None:
             raise InputError("cells=... are for splines; the faces of a part need none.")
         if checked_place(on) == "spline":

@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
+from operator import attrgetter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -45,7 +46,8 @@ class Found(NamedTuple):
 class Given:
     """Samples at normals (S, 3), which are `density` per steradian, on some pieces of a space.
 
-    The normals are those of all pieces, or, if `same_normals` is False, of each one in turn.
+    The normals are those of all pieces, or, if `same_normals` is False, of each one in turn. On
+    `estimated` pieces points are not proved to be all.
     """
 
     space: Space
@@ -53,6 +55,7 @@ class Given:
     density: float = 0.0
     found: tuple[Found, ...] = ()
     same_normals: bool = True
+    estimated: tuple[int, ...] = ()
 
     def __len__(self) -> int:
         return sum(len(x.samples) for x in self.found)
@@ -90,7 +93,7 @@ class Given:
             indices = self.space.pieces[piece].indices
             known = getattr(samples, name)
             if known is None:
-                known = np.full(len(samples), indices[name])
+                known = np.full((len(samples), *row_shape(name)), indices.get(name, math.nan))
             elif name == "patch_index":
                 known = known + indices.get(name, 0)
             elif name == "normal_index":
@@ -100,14 +103,25 @@ class Given:
         return np.concatenate([x.astype(dtype, copy=False) for x in parts])
 
 
-def at_normals(space: Space, normals: Array, pieces: Iterable[int], progress: bool) -> Given:
-    """Return all points of some pieces that have one of normals (S, 3), each once."""
-    density = len(normals) / (4 * math.pi)
+def at_normals(space: Space, normals: Array, curved: Iterable[int], progress: bool) -> Given:
+    """Return all points that have one of normals (S, 3), each once.
+
+    Pieces that prove it have all; of the others, the `curved` ones are searched.
+    """
+    density, found, estimated = len(normals) / (4 * math.pi), list[Found](), list[int]()
+    for k, piece in enumerate(space.pieces):
+        proved = piece.proved_at(normals, space.threads)
+        if proved is None:
+            estimated.append(k)
+        else:
+            found += [Found(k, x, normals) for x in proved]
 
     def search(geometry: OnSpline) -> tuple[Samples, Array]:
         return _with_all_fields(geometry, choose(geometry, normals, progress), progress)
 
-    return Given(space, normals, density, tuple(_searched(space, pieces, search)))
+    found += _searched(space, (k for k in curved if k in estimated), search)
+    found.sort(key=attrgetter("piece"))
+    return Given(space, normals, density, tuple(found), estimated=tuple(estimated))
 
 
 def at_lattices(

@@ -15,6 +15,7 @@ from ..base.aliases import Array, Flags, Indices
 from ..domain.domain import Domain, brought_inside
 from ..domain.trim import Trim
 from ..place.on_spline import OnSpline
+from ..samples.samples import Samples
 from .borders import Border
 
 __all__ = ["Piece", "boxes_between"]
@@ -66,6 +67,13 @@ class Piece(ABC):
     @abstractmethod
     def geometries(self, threads: int | None) -> list[OnSpline]:
         """Return what is searched for points with a normal; GaussmapError if it has no spline."""
+
+    def proved_at(self, normals: Array, threads: int | None) -> list[Samples] | None:
+        """Return all points with unit normals (S, 3), with a proof; None if there is none.
+
+        The list is empty if there are no points, and none that are undecided.
+        """
+        return None
 
     @abstractmethod
     def fields_at(

@@ -19,7 +19,7 @@ from .tape import LANES
 from .tape_functions import UNIT
 from .tape_splines import COORDINATES, MOST_COEFFICIENTS, own_parameter
 
-__all__ = ["write_spline_balls", "write_spline_errors"]
+__all__ = ["SLACK", "write_spline_balls", "write_spline_errors"]
 
 # The orders of Taylor coefficients in u and v.
 IN_U = np.array([0, 1, 0, 2, 1, 0, 3, 2, 1, 0])

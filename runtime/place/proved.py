@@ -15,7 +15,7 @@ from ..kernels.proved_samples import CURVATURES, SampleFields, fill_places
 from ..kernels.tape import Tape
 from ..samples.fields import FLAG_NAMES, bytes_of, dtype_of, row_shape
 from ..samples.report import UndecidedNormal
-from ..search.proved import KINDS, ProvedIndex, ProvedPlaces, Undecided
+from ..search.proved import CELLS, KINDS, ProvedIndex, ProvedPlaces, Undecided
 from ..spline.inside import samples_inside, with_uv
 from ..spline.spline import Spline
 from ..surface.surface import Surface
@@ -23,7 +23,7 @@ from .newton import near_poles
 from .on_spline import Fields, FieldsOfSamples
 from .pole_charts import pole_charts
 
-__all__ = ["Proof", "index_of", "proved_samples"]
+__all__ = ["Proof", "index_of", "proof_of", "proved_samples"]
 
 PLACES_AT_A_TIME = 1 << 14
 
@@ -35,11 +35,13 @@ class Proof(NamedTuple):
     undecided: tuple[UndecidedNormal, ...]
 
 
-def index_of(surface: Surface, threads: int | None = None) -> ProvedIndex | None:
+def index_of(
+    surface: Surface, threads: int | None = None, cells: tuple[int, int] = CELLS
+) -> ProvedIndex | None:
     """Return the index of a surface; None if its derivatives have no bounds, next to poles, too."""
     if surface.tape is None:
         return None
-    index = ProvedIndex.of(surface.tape, surface.domain, surface.boundary, threads=threads)
+    index = ProvedIndex.of(surface.tape, surface.domain, surface.boundary, cells, threads)
     if index is None:
         return None
     poles = sum(end == "pole" for ends in surface.boundary for end in ends)
@@ -63,7 +65,7 @@ def proved_samples(
     arrays = _arrays(surface, spline, index.tape, normals, found, wanted, threads)
     arrays = samples_inside(spline.trim, arrays, fields)
     kept = {x: arrays[x].astype(dtype_of(x, dtype), copy=False) for x in fields}
-    return FieldsOfSamples(kept, 0), _proof(len(normals), found.undecided)
+    return FieldsOfSamples(kept, 0), proof_of(len(normals), found.undecided)
 
 
 def _arrays(
@@ -106,9 +108,10 @@ def _arrays(
     return arrays | flags | {"normal_index": numbers}
 
 
-def _proof(count: int, open_: Undecided) -> Proof:
+def proof_of(count: int, open_: Undecided, face: int | None = None) -> Proof:
+    """Return the proof for a number of normals, of which some are open; on a face of a part."""
     undecided = tuple(
-        UndecidedNormal.of((number, box, KINDS[kind], border))
+        UndecidedNormal(number, tuple(box), KINDS[kind], border, face)
         for number, box, kind, border in zip(*(x.tolist() for x in open_), strict=True)
     )
     return Proof(count - len(np.unique(open_.numbers)), undecided)

@@ -43,7 +43,7 @@ MOST_COUNT = 2**63 - 1
 PLACES = ("surface", "spline")
 COUNTS = (
     "normals", "patches", "developable_patches", "infinite_curvatures", "unrefined", "apexes",
-    "proved", "index", "faces", "empty_faces", "edge_samples",
+    "proved", "index", "faces", "empty_faces", "estimated_faces", "edge_samples",
 )  # fmt: skip
 DISTANCES = ("coverage", "angle", "fit_distance", "fit_rms", "fit_angle")
 
@@ -79,13 +79,15 @@ class UndecidedNormal(NamedTuple):
         "singular": x_u × x_v may vanish.
     border : bool
         Whether the box reaches an open side of the domain.
+    face : int or None
+        Of a CAD part: the index of the face whose parameters these are.
 
     Examples
     --------
     >>> import gaussmap as gm
     >>> place = gm.sample("torus", normals=[[0, 0, 1]]).report.undecided[0]
-    >>> place.normal, place.kind, place.border, len(place.box)
-    (0, 'continuum', False, 4)
+    >>> place.normal, place.kind, place.border, len(place.box), place.face
+    (0, 'continuum', False, 4, None)
 
     """
 
@@ -93,13 +95,15 @@ class UndecidedNormal(NamedTuple):
     box: tuple[float, float, float, float]
     kind: str
     border: bool
+    face: int | None = None
 
     @classmethod
     def of(cls, values: Sequence[Any]) -> UndecidedNormal:
         """Return one from plain values, such as those of a file."""
-        normal, (u0, u1, v0, v1), kind, border = values
+        normal, (u0, u1, v0, v1), kind, border, *rest = values
         box = float(u0), float(u1), float(v0), float(v1)
-        return cls(int(normal), box, str(kind), bool(border))
+        face = int(rest[0]) if rest and rest[0] is not None else None
+        return cls(int(normal), box, str(kind), bool(border), face)
 
 
 # What makes plain values of the entries, and refuses others; only those of KNOWN are never None.
@@ -155,10 +159,10 @@ class SamplingReport:
         the surface that has the normal, and others at singular points.
     proved : int or None
         The number of prescribed normals of which all points are known, with a proof; the others are
-        `undecided`. None where nothing is proved: on splines, and on surfaces whose derivatives
-        have no bounds.
+        `undecided`. None where nothing is proved: on splines, on surfaces whose derivatives have no
+        bounds, and on parts with `estimated_faces`.
     undecided : tuple of UndecidedNormal, or None
-        Where further points of some normals may be: entries (normal, box, kind, border).
+        Where further points of some normals may be: entries (normal, box, kind, border, face).
     fit_distance, fit_rms : float or None
         The largest distance of the spline from the surface, or from the data, that it approximates,
         and the root mean square of the distance; see `Spline.misfit`.
@@ -173,6 +177,9 @@ class SamplingReport:
         "aligned" if samples are on a grid, whether or not they have the fields row and column.
     faces, empty_faces : int or None
         Of a CAD part: the number of its faces, and how many of them have no sample.
+    estimated_faces : int or None
+        Of a CAD part at prescribed normals: the number of faces whose derivatives have no bounds.
+        Their points are found from a spline by Newton's method, and their `uv_radius` is NaN.
     oriented : bool or None
         Of a CAD part: whether its normals are known to point out of solids.
     edge_samples : int or None
@@ -203,6 +210,8 @@ class SamplingReport:
     (2, ())
     >>> report.faces, report.empty_faces, report.oriented  # not of a CAD part
     (None, None, None)
+    >>> report.estimated_faces is None
+    True
     >>> report.density is report.edge_samples is report.crs is report.origin is None
     True
     >>> report.developable_share, report.apexes, report.index
@@ -233,6 +242,7 @@ class SamplingReport:
     density: str | None = None
     faces: int | None = None
     empty_faces: int | None = None
+    estimated_faces: int | None = None
     oriented: bool | None = None
     edge_samples: int | None = None
     crs: str | None = None

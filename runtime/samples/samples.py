@@ -62,7 +62,7 @@ class Samples(SampleArrays, Methods):
         ``on="spline"``, or if it was not requested.
     uv_radius : (N, 2) float64 array or None
         Of points that are proved to be all with prescribed normals: how far the exact parameters
-        may be from `uv`. None for other samples.
+        may be from `uv`; NaN on faces of parts where points are estimated. None for others.
     row, column : (N,) int64 array or None
         For samples on a grid (see ``density="aligned"`` of `sample`): the numbers of the lines
         v = const and u = const on which a sample is, from 0 upwards; −1 for one that is on no grid.

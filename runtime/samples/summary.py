@@ -42,6 +42,8 @@ def summary_of(samples: SampleArrays) -> str:
         line += f"; {report.faces:,} faces"
         if report.empty_faces:
             line += f", {report.empty_faces:,} of them without samples"
+        if report.estimated_faces:
+            line += f", {report.estimated_faces:,} of them estimated"
     if report.edge_samples is not None:
         line += f"; {report.edge_samples:,} of the samples are on sharp edges"
     if report.unrefined:

@@ -34,10 +34,11 @@ from ..kernels.proved_sorting import (
     start_normals,
 )
 from ..kernels.tape import LANES, Tape
+from ..kernels.tape_spline_bounds import SLACK
 from .bins import sorted_normals
 from .proved_discs import PoleDisc, pole_disc
 
-__all__ = ["KINDS", "ProvedIndex", "ProvedPlaces", "Undecided"]
+__all__ = ["CELLS", "KINDS", "ProvedIndex", "ProvedPlaces", "Undecided"]
 
 # How often irregular cells are cut into four, and cells without a narrow cone of normals.
 LEVELS = (2, 5)
@@ -49,7 +50,7 @@ CELL_ROOM, ROOM = 2048, 1 << 12
 # Normals of a tile are close to one another if there are so many in a bin; fewer are not sorted.
 NORMALS_PER_BIN, SORTED = 24, 64
 FINEST = 1024
-# Cells without a cone of normals are in all bins.
+# Cells without a cone of normals are in all bins: they are this part of the domain at most.
 MOST_OPEN = 0.25
 
 
@@ -178,7 +179,8 @@ class ProvedIndex:
         u, v, h_u, h_v = cut.place[blind].T
         unbounded = np.column_stack([u - h_u, u + h_u, v - h_v, v + h_v])
         cut = Cells(*(x[~blind] for x in cut))
-        if np.count_nonzero(cut.cone[:, 3] >= OPEN) > MOST_OPEN * len(cut.place):
+        sizes = cut.place[:, 2] * cut.place[:, 3]
+        if sizes[cut.cone[:, 3] >= OPEN].sum() > MOST_OPEN * sizes.sum():
             return None
         both = Cells(*map(np.concatenate, zip(cut, *(x.cell for x in discs), strict=True)))
         levels = max(2, round(np.log2(np.sqrt(len(both.place) / 24.0 + 1.0))))
@@ -357,7 +359,8 @@ def _lines(tape: Tape, axis: int, ends: NDArray[np.float64], count: int) -> NDAr
     (rows,) = np.nonzero(tape.operations[:, 0] == SPLINE)
     if axis == 0 and len(rows) > 0 and tape.operations[rows[0], 3] == 1:
         jumps = tape.numbers[rows[0], 0] - jumps  # u is reversed
-    jumps = jumps[(jumps > ends[0]) & (jumps < ends[1])]
+    slack = SLACK * np.abs(breaks[[0, -1]]).sum() if len(breaks) > 0 else 0.0
+    jumps = jumps[(jumps > ends[0] + slack) & (jumps < ends[1] - slack)]
     pieces = np.unique([*ends, *jumps])
     counts = np.maximum(1, np.round(count * np.diff(pieces) / (ends[1] - ends[0]))).astype(int)
     parts = [

@@ -8,6 +8,7 @@ their rounding.
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -23,6 +24,7 @@ __all__ = ["nurbs_tape"]
 Array = NDArray[np.float64]
 
 UNIT = 2.0**-53
+KEPT = 256  # bases of spans: those of the faces of a part are often the same
 MOST_NUMBERS = 4_000_000  # in the coefficients of all polynomials: 64 MB with their errors
 
 
@@ -69,16 +71,20 @@ def _axis(net: Net, axis: int) -> Axis:
     frames = np.stack([middles, scales], axis=1)
     basis = np.array(
         [
-            _basis(knots, degree, int(span), *map(Fraction, frame))
-            for span, frame in zip(spans, frames.tolist(), strict=True)
+            _basis(tuple(knots[k - degree : k + degree + 2].tolist()), degree, *frame)
+            for k, frame in zip(spans.tolist(), frames.tolist(), strict=True)
         ]
     )
     return Axis(breaks, smooth.astype(np.int64), frames, spans - degree, basis)
 
 
-def _basis(knots: Array, degree: int, span: int, middle: Fraction, scale: Fraction) -> Array:
-    """Return the coefficients of basis functions in s = (u − middle) scale, a row for each."""
-    exact = [scale * (Fraction(x) - middle) for x in knots[span - degree : span + degree + 2]]
+@lru_cache(KEPT)
+def _basis(knots: tuple[float, ...], degree: int, middle: float, scale: float) -> Array:
+    """Return the coefficients of basis functions in s = (u − middle) scale, a row for each.
+
+    The knots are those around a span.
+    """
+    exact = [Fraction(scale) * (Fraction(x) - Fraction(middle)) for x in knots]
     rows = [[Fraction(1)]]
     for j in range(1, degree + 1):
         found = [[Fraction(0)] * (j + 1) for _ in range(j + 1)]

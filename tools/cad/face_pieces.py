@@ -15,6 +15,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from ...runtime.base.errors import GaussmapError, GaussmapWarning
 from ...runtime.base.kept import kept
+from ...runtime.base.memory import check_memory
 from ...runtime.base.scales import scale_to_one
 from ...runtime.density.piece import Piece, boxes_between
 from ...runtime.directions.regions import Cap
@@ -22,9 +23,14 @@ from ...runtime.domain.domain import Domain
 from ...runtime.kernels.refine import evaluate_jets
 from ...runtime.place.on_spline import OnSpline
 from ...runtime.place.on_surface import geometry_of
+from ...runtime.place.proved import proof_of
 from ...runtime.place.reach import in_reach, normals_of_jets
-from ...runtime.samples.fields import dtype_of
+from ...runtime.samples.fields import ARRAY_NAMES_OF_PART, bytes_of, dtype_of
+from ...runtime.samples.report import SamplingReport
+from ...runtime.samples.samples import Samples
 from ...runtime.surface.surface import Surface
+from .face_indices import face_index
+from .face_places import FaceIndex, FacePlaces
 from .faces import own_parameters
 from .part import Face
 from .records import Geometry
@@ -39,8 +45,12 @@ ANGLE = 0.25
 PARTS_OF_SPAN = 2
 # Lines that are closer to one another than this part of the domain are one.
 SAME_LINE = 1e-9
-# Points with a normal are searched on a spline: its cells for each part of a span, and their least
-# and largest number. At the border, points are lost by the error of the spline.
+# At poles, curvatures are those at this part of the domain from there.
+BESIDE = 1e-6
+CURVATURES = ("gaussian_curvature", "mean_curvature")
+# Where nothing is proved, and at normals of lattices, points are searched on a spline: its cells
+# for each part of a span, and their least and largest number. At the border, points are lost by the
+# error of the spline.
 CELLS_A_PART, FEWEST, MOST = 3, 64, 256
 # The part of a face that can be reached is measured at about this number of places squared.
 RASTER = 64
@@ -124,6 +134,44 @@ class FacePiece(Piece):
         """Return what is searched for points with a normal; GaussmapError if it has no spline."""
         found = kept(self.surface, FacePiece, self._geometries)
         return [x.used(np.float64, threads).within(self.reach) for x in found]
+
+    def proved_at(self, normals: Array, threads: int | None) -> list[Samples] | None:
+        """Return all points with unit normals (S, 3), with a proof; None if there is none."""
+        index = kept(self.surface, face_index, self._index)
+        if index is None:
+            return None
+        found = index.query(normals, threads)
+        nothing = not len(found.numbers) and not len(found.undecided.numbers)
+        return [] if nothing else [self._samples(normals, found)]
+
+    def _samples(self, normals: Array, found: FacePlaces) -> Samples:
+        """Return the places with normals (S, 3) that are inside the trim."""
+        inside = self.contains(found.uv)
+        check_memory("stored", int(inside.sum()), bytes_of(ARRAY_NAMES_OF_PART, np.float64))
+        given, uv = normals[found.numbers[inside]], found.uv[inside]
+        fields = self.fields_at(uv, uv, ARRAY_NAMES_OF_PART, np.float64)
+        lost = ~fields["normals"].any(axis=1)
+        if lost.any():  # at a pole
+            beside = uv[lost] + BESIDE * (self.middle.T - uv[lost])
+            for name, values in self.fields_at(beside, beside, CURVATURES, np.float64).items():
+                fields[name][lost] = values
+        fields["gaussian_curvature"] = np.copysign(fields["gaussian_curvature"], found.sign[inside])
+        proof = proof_of(len(normals), found.undecided, self.face.index)
+        report = SamplingReport(
+            self.label, len(normals), len(uv), None, None, None, **proof._asdict()
+        )
+        arrays: dict[str, Any] = {
+            **fields,
+            "normals": given,
+            "support": np.einsum("kx,kx->k", fields["points"], given),
+            "normal_index": found.numbers[inside],
+            "uv_radius": found.radius[inside],
+        }
+        return Samples(**arrays, report=report)
+
+    def _index(self) -> FaceIndex | None:
+        face = self.face
+        return face_index(face.geometry, self.surface, face.domain, is_reversed=face.reversed)
 
     def _geometries(self) -> list[OnSpline]:
         with warnings.catch_warnings():

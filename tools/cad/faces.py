@@ -2,7 +2,8 @@
 
 Parameters are those of Open CASCADE and STEP, see `saving`; their domain is that of the loops.
 Planes, cylinders, cones, spheres, tori and surfaces of revolution are evaluated in their own frame,
-and placed. What is extruded is a NURBS. Second derivatives of offsets are numerical (see `offset`).
+and placed. What is extruded is a NURBS. Second derivatives of offsets are numerical (see
+`offset_surface`).
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from .nets import SAME_END, curve_of_net, nurbs_of_curve, nurbs_of_net, nurbs_ov
 from .offset_surface import OffsetSurface, Turned
 from .records import Geometry, Net
 
-__all__ = ["face_surface", "own_parameters"]
+__all__ = ["face_surface", "own_parameters", "simplest"]
 
 Array = NDArray[np.float64]
 
@@ -220,17 +221,27 @@ def _around(interval: Interval) -> tuple[Interval, BoundaryPair]:
 
 def _offset(geometry: Geometry, domain: Domain) -> Shape:
     """Return an offset: of planes, cylinders, cones, spheres and tori, another one of its kind."""
-    assert geometry.basis is not None
-    basis, distance = geometry.basis, float(geometry.numbers[0])
-    same_kind = _moved_numbers(basis, distance, domain)
-    if same_kind is not None:
-        return _shape(replace(basis, numbers=same_kind), domain)
-    shape = _shape(basis, domain)
+    simple = simplest(geometry, domain)
+    if simple.kind != "offset":
+        return _shape(simple, domain)
+    assert simple.basis is not None
+    shape, distance = _shape(simple.basis, domain), float(simple.numbers[0])
     if shape.placement is not None and shape.placement.reflects:
         distance = -distance
     return replace(
         shape, function=OffsetSurface(shape.function, distance, shape.domain), collapses=True
     )
+
+
+def simplest(geometry: Geometry, domain: Domain) -> Geometry:
+    """Return a geometry without offsets of planes, cylinders, cones, spheres and most tori."""
+    if geometry.kind != "offset" or geometry.basis is None:
+        return geometry
+    basis = simplest(geometry.basis, domain)
+    numbers = _moved_numbers(basis, float(geometry.numbers[0]), domain)
+    if numbers is None:
+        return replace(geometry, basis=basis)
+    return replace(basis, numbers=numbers)
 
 
 def _moved_numbers(basis: Geometry, distance: float, domain: Domain) -> Array | None:

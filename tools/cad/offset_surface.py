@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from ...generated.differences import FIRST
 from ...runtime.base import compiling  # noqa: F401 - announces compilation on terminals
 from ...runtime.domain.domain import Domain
+from ...runtime.kernels.tape import Tape
 from ...runtime.surface.derivatives import (
     Differentiable,
     nodes_between,
@@ -26,6 +27,7 @@ from ...runtime.surface.derivatives import (
 from ...runtime.surface.moved import Moved
 from ...runtime.surface.nurbs import Nurbs
 from ..kernels import faces as kernels
+from .turned_tape import turned_tape
 
 __all__ = ["OffsetSurface", "Turned"]
 
@@ -60,6 +62,10 @@ class Turned(Differentiable):
         jets, along = np.empty((len(u), 6, 3)), self.curve.jets(v, np.zeros(len(v)))[:, [0, 1, 3]]
         kernels.revolve(np.ascontiguousarray(u), along, jets)
         return jets
+
+    def tape(self) -> Tape | None:
+        """Return the operations of the curve, and those that turn it."""
+        return turned_tape(self.curve)
 
     def restricted(self, domain: Domain) -> Turned:
         """Return a part of the surface, evaluated from inside where the curve is not smooth."""

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.base.errors import MissingFieldError, SurfaceError
+from ...runtime.base.kept import kept
 from ...runtime.base.trees import tree_of
 from ...runtime.density.cells import AREA, by_piece
 from ...runtime.density.space import Space
@@ -38,17 +39,24 @@ class PartSpace(Space):
 def space_of(
     part: Part, threads: int | None, target: TargetDensity | None = None, reach: Cap | None = None
 ) -> PartSpace:
-    """Return the space of a part, or of what is in a `reach`; SurfaceError if that is nothing."""
-    pieces, failed = pieces_of(part.faces, reach)
+    """Return the space of a part, or of what is in a `reach`; SurfaceError if that is nothing.
+
+    Of whole parts the first cells are kept, but for powers of K, which are many, and what pieces
+    are made of, but for rasters of their borders, which are large.
+    """
+    target = target or TargetDensity(floor=1.0)
+    if reach is None:
+        pieces, failed = kept(part, pieces_of, lambda: pieces_of(part.faces))
+    else:
+        pieces, failed = pieces_of(part.faces, reach)
     if not pieces:
         if reach is not None and len(failed) < len(part.faces):
             raise SurfaceError(f"no normal of part {part.name!r} is within the reach.")
         reason = f": {next(iter(failed.values()))}" if failed else "."
         raise SurfaceError(f"part {part.name!r} has no face that can be sampled{reason}")
-    label = f"part {part.name!r}"
-    return PartSpace(
-        label, tuple(pieces), target or TargetDensity(floor=1.0), threads, failed=failed
-    )
+    held = {} if reach or target.gauss_weight > 0.0 else kept(part, target, dict)
+    copies = tuple(replace(x) for x in pieces)
+    return PartSpace(f"part {part.name!r}", copies, target, threads, _held=held, failed=failed)
 
 
 def weights_of(part: Part, samples: Samples) -> Array:

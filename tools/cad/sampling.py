@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -88,7 +89,24 @@ def _report(
         faces=len(part),
         empty_faces=len(part) - len(held),
         oriented=part.oriented,
+        **_proof(space, cover),
     )
+
+
+def _proof(space: PartSpace, cover: Cover) -> dict[str, Any]:
+    """Return what is proved of points at prescribed normals: of how many normals, and where not."""
+    given = cover.at_normals
+    if not given.same_normals or not len(given.normals):
+        return {}
+    places = [y for x in given.found for y in x.samples.report.undecided or ()]
+    places.sort(key=attrgetter("normal"))
+    estimated = len(given.estimated) + len(space.failed)
+    proved = len(given.normals) - len({x.normal for x in places})
+    return {
+        "proved": None if estimated else proved,
+        "undecided": tuple(places),
+        "estimated_faces": estimated,
+    }
 
 
 def _warn(part: Part, report: SamplingReport, failed: int, angle: float | None) -> None:

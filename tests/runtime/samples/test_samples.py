@@ -190,6 +190,7 @@ class TestReport:
             "density": "aligned",
             "faces": np.int32(3),
             "empty_faces": np.uint8(1),
+            "estimated_faces": np.int64(1),
             "oriented": True,
             "edge_samples": np.int64(2),
             "crs": "EPSG:32633",
@@ -198,11 +199,11 @@ class TestReport:
         report = SamplingReport("s", *numbers, **more)
         assert [type(getattr(report, f.name)) for f in fields(report)] == [
             str, int, int, int, float, int, float, float, int, str, int, int, tuple,
-            float, float, float, int, int, str, int, int, bool, int, str, tuple,
+            float, float, float, int, int, str, int, int, int, bool, int, str, tuple,
         ]  # fmt: skip
-        assert report.undecided == ((0, (0.0, 1.0, 2.0, 3.0), "double", True),)
+        assert report.undecided == ((0, (0.0, 1.0, 2.0, 3.0), "double", True, None),)
         (place,) = report.undecided or ()
-        assert [type(x) for x in place] == [int, tuple, str, bool]
+        assert [type(x) for x in place[:4]] == [int, tuple, str, bool]
 
     @pytest.mark.parametrize("name", ["normals", "samples", "patches", "developable_patches"])
     @pytest.mark.parametrize("bad", [-1, 1.5, "3"])

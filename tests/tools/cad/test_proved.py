@@ -1,0 +1,448 @@
+"""Points of faces with given normals, against oracles that share no code with the project."""
+
+# pyright: reportOptionalMemberAccess=false, reportOptionalSubscript=false
+# pyright: reportArgumentType=false, reportAttributeAccessIssue=false
+# pyright: reportOptionalIterable=false, reportCallIssue=false
+
+import itertools
+import math
+import pickle
+
+import gaussmap as gm
+import mpmath
+import numpy as np
+import pytest
+from gaussmap.tools.cad.examples import all_kinds
+from gaussmap.tools.cad.records import FaceRecord, Geometry, Net
+
+TURN = 2.0 * math.pi
+
+
+def random_normals(count: int, seed: int = 0) -> np.ndarray:
+    found = np.random.default_rng(seed).normal(size=(count, 3))
+    return found / np.linalg.norm(found, axis=1, keepdims=True)
+
+
+def rotation(seed: int) -> np.ndarray:
+    q, r = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
+    q *= np.sign(np.diag(r))
+    return q if np.linalg.det(q) > 0.0 else -q
+
+
+# Frames (origin, columns x, y, z): turned, mirrored, far away, and neither orthogonal nor unit.
+SKEW = np.array([[1.0, 0.2, 0.0], [0.0, 0.8, 0.1], [0.0, 0.0, 1.3]])
+FRAMES = {
+    "turned": ((1.0, -2.0, 3.0), rotation(1)),
+    "mirrored": ((0.5, 0.0, 0.0), rotation(2) * [1.0, 1.0, -1.0]),
+    "far": ((1e6, -1e6, 1e6), rotation(3)),
+    "skew": ((0.0, 0.0, 1.0), rotation(4) @ SKEW),
+}
+
+
+def numbers_of(frame: str, *lengths: float) -> np.ndarray:
+    origin, columns = FRAMES[frame]
+    return np.concatenate([origin, columns.T.ravel(), lengths])
+
+
+def own_normals(frame: str, normals: np.ndarray, *, is_reversed: bool) -> np.ndarray:
+    """Return the directions in the frame of a face of which normals in space are the images."""
+    columns = FRAMES[frame][1]
+    outward = np.sign(np.linalg.det(columns)) * (-1.0 if is_reversed else 1.0)
+    found = outward * np.linalg.solve(np.linalg.inv(columns).T, normals.T).T
+    return found / np.linalg.norm(found, axis=1, keepdims=True)
+
+
+def in_window(points: np.ndarray, window: np.ndarray, angles: np.ndarray) -> np.ndarray:
+    """Return how many copies of angles (k, 2) are in a window, those of whole turns away, too."""
+    count = np.zeros(len(points), int)
+    for i, j in itertools.product(range(-2, 3), repeat=2):
+        moved = angles + TURN * np.array([i, j])
+        count += ((moved > window[:, 0]) & (moved < window[:, 1])).all(axis=1)
+    return count
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
+@pytest.mark.parametrize("is_reversed", [False, True])
+@pytest.mark.parametrize("frame", FRAMES)
+@pytest.mark.parametrize("kind", ["sphere", "torus", "inner torus"])
+def test_points_of_spheres_and_tori(made, kind, frame, is_reversed, scale):
+    """A normal of a torus is that of the points R e + r n, and of −R e + r n."""
+    major, minor = {"sphere": (0.0, 2.0), "torus": (3.0, 1.0), "inner torus": (3.0, -1.0)}[kind]
+    major, minor = scale * major, scale * minor
+    window = np.array([(0.4, 5.9), (-1.1, 1.4) if kind == "sphere" else (2.0, 7.0)])
+    lengths = (minor,) if kind == "sphere" else (major, minor)
+    numbers = numbers_of(frame, *lengths)
+    face = made.face(kind.split()[-1], numbers, *window.tolist(), scale**2, reversed=is_reversed)
+    part, normals = made.part([face]), random_normals(400)
+    samples = gm.sample(part, normals=normals)
+    own = own_normals(frame, normals, is_reversed=is_reversed)
+    along = np.hypot(own[:, 0], own[:, 1])[:, None]
+    side = np.sign(minor) if kind != "sphere" else 1.0
+    expected = 0
+    for branch in (1.0,) if kind == "sphere" else (1.0, -1.0):
+        e = branch * own / along * [1.0, 1.0, 0.0]
+        points = major * e + minor * side * own
+        v = np.arctan2(points[:, 2] / minor, ((points - major * e) * e).sum(axis=1) / minor)
+        angles = np.stack([np.arctan2(e[:, 1], e[:, 0]), v], axis=1)
+        if kind == "sphere":
+            angles[:, 0] = np.arctan2(own[:, 1], own[:, 0])
+        expected = expected + in_window(points, window, angles)
+        origin, columns = FRAMES[frame]
+        there = in_window(points, window, angles) == 1
+        for k in np.flatnonzero(there):
+            mine = samples.points[samples.normal_index == k]
+            distance = np.linalg.norm(mine - (origin + columns @ points[k]), axis=1).min()
+            assert distance <= 1e-13 * scale + 1e-15 * np.abs(origin).max()
+    assert (np.bincount(samples.normal_index, minlength=400) == expected).all()
+    assert (samples.report.proved, samples.report.undecided) == (400, ())
+    assert expected.max() >= 1
+    assert expected.min() == 0
+    known = part.faces[0].surface.normals(*samples.uv.T)
+    np.testing.assert_allclose(known, normals[samples.normal_index], atol=1e-13)
+
+
+def test_a_torus_that_meets_its_axis(made):
+    """Where ρ = R + r cos v is negative, x_u × x_v points to the other side."""
+    ends = (0.0, TURN), (0.0, TURN)
+    face = made.face("torus", [*made.placement(), 1.0, 2.0], *ends, 1.0, (TURN, TURN))
+    normals = random_normals(500, 5)
+    samples = gm.GaussMap(made.part([face])).points(normals)
+    u, v = samples.uv.T
+    rho = 1.0 + 2.0 * np.cos(v)
+    outward = np.stack([np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)], axis=1)
+    np.testing.assert_allclose(
+        np.sign(rho)[:, None] * outward, normals[samples.normal_index], atol=1e-13
+    )
+    assert (np.sign(samples.gaussian_curvature) == np.sign(np.cos(v) * rho)).all()
+    # n with u, and −n with u + π: v is one of four angles, of which those with the right sign of ρ.
+    slope = np.arcsin(normals[:, 2])
+    four = np.stack([slope, np.pi - slope, -slope, np.pi + slope])
+    signs = np.array([1, 1, -1, -1])[:, None]
+    expected = (np.sign(1.0 + 2.0 * np.cos(four)) == signs).sum(axis=0)
+    assert (np.bincount(samples.normal_index, minlength=500) == expected).all()
+    assert (rho < 0.0).any()
+    assert (rho > 0.0).any()
+
+
+@pytest.mark.parametrize("frame", FRAMES)
+def test_radii_contain_the_exact_parameters(made, frame):
+    """50 digits, next to poles, too."""
+    ends = (0.0, TURN), (-math.pi / 2, math.pi / 2)
+    face = made.face("sphere", numbers_of(frame, 1.0), *ends, 12.0, (TURN, 0.0))
+    near = np.array([1.0, 0.3, 1e3]) * 10.0 ** -np.arange(0, 9)[:, None]
+    near[:, 2] = 1.0
+    columns = FRAMES[frame][1]
+    normals = np.concatenate([random_normals(300), near @ np.linalg.inv(columns) * [1, 1, 1]])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    samples = gm.sample(made.part([face]), normals=normals)
+    assert len(samples) == len(normals)
+    side, ratios = np.sign(np.linalg.det(columns)), []
+    with mpmath.workdps(50):
+        for n, uv, radius in zip(normals, samples.uv, samples.uv_radius, strict=True):
+            x, y, z = (
+                side * sum(mpmath.mpf(columns[i, k]) * mpmath.mpf(n[i]) for i in range(3))
+                for k in range(3)
+            )
+            exact = mpmath.atan2(y, x) % (2 * mpmath.pi), mpmath.atan2(z, mpmath.hypot(x, y))
+            off = [abs(mpmath.mpf(a) - b) for a, b in zip(uv, exact, strict=True)]
+            off[0] = min(off[0], 2 * mpmath.pi - off[0])
+            ratios.append([float(a / mpmath.mpf(r)) for a, r in zip(off, radius, strict=True)])
+    largest = np.max(ratios, axis=0)
+    assert (largest <= 1.0).all()
+    assert (largest > 0.005).all()  # and are not far too wide
+
+
+def test_the_pole_of_a_sphere(made):
+    ends = (0.0, TURN), (-math.pi / 2, math.pi / 2)
+    face = made.face("sphere", [*made.placement(), 2.0], *ends, 1.0, (TURN, 0.0))
+    samples = gm.sample(made.part([face]), normals=[[0, 0, 1], [0, 0, -1], [1e-12, 0, 1]])
+    assert samples.normal_index.tolist() == [0, 1, 2]
+    np.testing.assert_allclose(samples.points, 2.0 * samples.normals, atol=1e-15)
+    np.testing.assert_allclose(samples.gaussian_curvature, 0.25, rtol=1e-6)
+    np.testing.assert_allclose(samples.mean_curvature, 0.5, rtol=1e-6)
+    assert samples.report.proved == 3
+
+
+@pytest.mark.parametrize("is_reversed", [False, True])
+def test_planes_cylinders_and_cones_have_lines_of_points(made, is_reversed):
+    """Their normals are known to be those of a continuum; all others have no point."""
+    sign, angle = -1.0 if is_reversed else 1.0, 0.3
+    place, more = made.placement(), {"reversed": is_reversed}
+    faces = [
+        made.face("plane", place, (0.0, 1.0), (0.0, 2.0), 2.0, **more),
+        made.face("cylinder", [*place, 1.5], (0.5, 2.5), (-1.0, 1.0), 6.0, **more),
+        made.face("cone", [*place, 1.0, angle], (0.5, 2.5), (0.0, 2.0), 6.0, **more),
+    ]
+    phi = 1.25
+    across = np.array([math.cos(phi), math.sin(phi), 0.0])
+    normals = sign * np.array([
+        [0.0, 0.0, 1.0],
+        across,
+        math.cos(angle) * across - [0.0, 0.0, math.sin(angle)],
+        [math.cos(4.0), math.sin(4.0), 0.0],  # beyond the end
+        [1e-9, 0.0, 1.0],
+        math.cos(angle) * across + [0.0, 0.0, math.sin(angle)],
+    ])  # fmt: skip
+    part = made.part(faces)
+    with pytest.warns(gm.GaussmapWarning, match="is flat"):
+        samples = gm.sample(part, normals=normals)
+    assert len(samples) == 0
+    assert samples.report.proved == 3
+    assert "complete: proved for 3 of 6 normals" in samples.summary()
+    assert [(x.normal, x.face, x.kind) for x in samples.report.undecided] == [
+        (k, k, "continuum") for k in range(3)
+    ]
+    u = 3.0 - phi if is_reversed else phi
+    assert samples.report.undecided[0].box == (0.0, 1.0, 0.0, 2.0)
+    for place, ends in zip(samples.report.undecided[1:], [(-1.0, 1.0), (0.0, 2.0)], strict=True):
+        u0, u1, *along = place.box
+        assert u0 < u < u1 < u0 + 1e-13
+        assert tuple(along) == ends
+    known = part.faces[2].surface.normals(u, 1.0)
+    np.testing.assert_allclose(known, normals[2], atol=1e-14)
+
+
+def test_both_sides_of_an_apex(made):
+    cone = made.face("cone", [*made.placement(), 0.0, 0.5], (0.0, TURN), (-1.0, 1.0), 3.0)
+    normals = [[math.cos(0.5), 0.0, s * math.sin(0.5)] for s in (-1.0, 1.0)]
+    with pytest.warns(gm.GaussmapWarning, match="is flat"):
+        found = gm.sample(made.part([cone]), normals=normals).report.undecided
+    middles = sorted((x.normal, round((x.box[0] + x.box[1]) / 2, 6) % 6.283185) for x in found)
+    # Below the apex ρ < 0, and x_u × x_v points to the axis: at the angle π from n.
+    assert {x for x, _ in middles} == {0, 1}
+    assert any(abs(u - math.pi) < 1e-5 for x, u in middles if x == 1)
+
+
+# --- faces of splines: a search by differences from many starts -----------------------------------
+
+NODES = np.arange(3) / 2
+GRID = np.stack(np.meshgrid(NODES, NODES, indexing="ij"), axis=-1)
+HEIGHTS = GRID[..., 0] ** 2 + GRID[..., 0] * GRID[..., 1]
+POINTS, WEIGHTS = np.dstack([GRID, HEIGHTS]), 1.0 + GRID.prod(axis=2)
+KNOTS = np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0])
+DIFFERENCE = [(-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12)]
+
+
+def bernstein(t: np.ndarray) -> np.ndarray:
+    return np.stack([(1 - t) ** 2, 2 * t * (1 - t), t**2], axis=-1)
+
+
+def on_net(u: np.ndarray, v: np.ndarray, weights: np.ndarray = WEIGHTS) -> np.ndarray:
+    b = np.einsum("ki,kj,ij->kij", bernstein(u), bernstein(v), weights)
+    return np.einsum("kij,ijx->kx", b, POINTS) / b.sum(axis=(1, 2))[:, None]
+
+
+def on_curve(t: np.ndarray) -> np.ndarray:
+    b = bernstein(t) * WEIGHTS[1]
+    return (b @ (POINTS[1] + [1.0, 0.0, 0.0])) / b.sum(axis=1)[:, None]
+
+
+def turned(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    (x, y, z), c, s = on_curve(v).T, np.cos(u), np.sin(u)
+    return np.stack([c * x - s * y, s * x + c * y, z], axis=1)
+
+
+def tangents(f, u: np.ndarray, v: np.ndarray, h: float) -> np.ndarray:
+    """Return x_u and x_v (2, k, 3), by differences of fourth order."""
+    return np.stack([
+        sum(c * f(u + k * h * du, v + k * h * dv) for k, c in DIFFERENCE) / h
+        for du, dv in ((1.0, 0.0), (0.0, 1.0))
+    ])  # fmt: skip
+
+
+def offset_by(distance: float):
+    def position(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        normal = np.cross(*tangents(on_net, u, v, 2.0**-10))
+        return on_net(u, v) + distance * normal / np.linalg.norm(normal, axis=1)[:, None]
+
+    return position
+
+
+def in_polygon(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Return what is inside of 24 corners at the distance 0.4 from the middle, one of them at 0."""
+    r, angle, part = np.hypot(u - 0.5, v - 0.5), np.arctan2(v - 0.5, u - 0.5), TURN / 24
+    return r * np.cos(angle % part - part / 2) < 0.4 * math.cos(part / 2)
+
+
+def roots(f, normals: np.ndarray, sign: float, inside=in_polygon) -> list[np.ndarray]:
+    """Return the regular places (k, 2) inside with each normal, of 64 starts.
+
+    Normals point to the side `sign` of x_u × x_v.
+    """
+    starts = (np.arange(8) + 0.5) / 8
+    u, v = (np.tile(x.ravel(), len(normals)) for x in np.meshgrid(starts, starts))
+    owner = np.repeat(np.arange(len(normals)), 64)
+    n, h = normals[owner], 1e-3
+
+    def slopes(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        return np.einsum("akx,kx->ak", tangents(f, u, v, 2.0**-8), n)
+
+    for _ in range(8):
+        g = slopes(u, v)
+        g_u = (slopes(u + h, v) - slopes(u - h, v)) / (2 * h)
+        g_v = (slopes(u, v + h) - slopes(u, v - h)) / (2 * h)
+        determinant = g_u[0] * g_v[1] - g_u[1] * g_v[0]
+        du = (g[0] * g_v[1] - g[1] * g_v[0]) / determinant
+        dv = (g_u[0] * g[1] - g_u[1] * g[0]) / determinant
+        u, v = np.clip(u - du, 0.0, 1.0), np.clip(v - dv, 0.0, 1.0)
+    outward = sign * np.einsum("kx,kx->k", np.cross(*tangents(f, u, v, 2.0**-8)), n)
+    good = (np.abs(slopes(u, v)).max(axis=0) < 1e-7) & (outward > 0.02) & inside(u, v)
+    places = np.stack([u, v], axis=1)
+    return [clusters(places[good & (owner == k)]) for k in range(len(normals))]
+
+
+def clusters(places: np.ndarray) -> np.ndarray:
+    """Return one of places (k, 2) that are closer than 1e-3 to one another."""
+    found = list[np.ndarray]()
+    for place in places:
+        if not any(np.abs(place - x).max() < 1e-3 for x in found):
+            found.append(place)
+    return np.array(found).reshape(-1, 2)
+
+
+def faces_of_splines() -> dict:
+    """Return geometries of faces, and their positions."""
+    curve = Net((2,), (KNOTS,), POINTS[1] + [1.0, 0.0, 0.0], WEIGHTS[1])
+    plain, net = (Net((2, 2), (KNOTS, KNOTS), POINTS, w) for w in (None, WEIGHTS))
+    z = [0.0, 0.0, 1.0]
+    found = {
+        "nurbs": (Geometry("nurbs", net=plain), lambda u, v: on_net(u, v, np.ones((3, 3)))),
+        "rational": (Geometry("nurbs", net=net), on_net),
+        "revolution": (Geometry("revolution", np.array([0.0, 0.0, 0.0, *z]), curve), turned),
+    }
+    for distance in (0.1, -1.5, 3.0):
+        geometry = Geometry("offset", np.array([distance]), basis=Geometry("nurbs", net=net))
+        found[f"offset {distance}"] = geometry, offset_by(distance)
+    return found
+
+
+@pytest.mark.parametrize("is_reversed", [False, True])
+@pytest.mark.parametrize("name", faces_of_splines())
+def test_points_of_faces_of_splines(made, name, is_reversed):
+    """Normals are those of random places, and their opposites, so that most have points."""
+    geometry, f = faces_of_splines()[name]
+    angles, ends = np.linspace(0.0, TURN, 24, endpoint=False), (0.1, 0.9)
+    circle = 0.5 + 0.4 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    face = FaceRecord(geometry, (ends, ends), loops=[circle], area=0.5, reversed=is_reversed)
+    u, v = np.random.default_rng(7).uniform(0.1, 0.9, (2, 15))
+    normals = np.cross(*tangents(f, u, v, 2.0**-8))
+    normals = np.concatenate([normals, -normals])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    samples = gm.sample(made.part([face]), normals=normals)
+    assert samples.report.estimated_faces == 0
+    sign, total, wrong = -1.0 if is_reversed else 1.0, 0, 0
+    for k, places in enumerate(roots(f, normals, sign)):
+        mine = samples.uv[samples.normal_index == k].copy()
+        if is_reversed:
+            mine[:, 0] = 1.0 - mine[:, 0]
+        total += len(places)
+        same = len(places) == len(mine)
+        if same and len(mine):
+            gaps = np.abs(places[:, None] - mine[None]).max(axis=2)
+            same = bool((gaps.min(axis=0) < 1e-5).all() and (gaps.min(axis=1) < 1e-5).all())
+        wrong += not same
+    assert samples.report.proved == 30
+    assert wrong == 0
+    assert total > 8
+
+
+def test_a_triangular_face(made):
+    """Its side u = 1 is a point, where x_u × x_v vanishes: only normals beside it are undecided."""
+    points = POINTS.copy()
+    points[2] = [1.0, 0.4, 0.7]
+    geometry = Geometry("nurbs", net=Net((2, 2), (KNOTS, KNOTS), points))
+    part = made.part([FaceRecord(geometry, ((0.0, 1.0), (0.0, 1.0)), area=0.5)])
+
+    def f(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        return np.einsum("ki,kj,ijx->kx", bernstein(u), bernstein(v), points)
+
+    u = np.concatenate([np.linspace(0.1, 0.9, 20), 1.0 - np.logspace(-1, -6, 20)])
+    v = np.random.default_rng(3).uniform(0.1, 0.9, 40)
+    normals = np.cross(*tangents(f, u, v, 2.0**-8)) / (1.0 - u)[:, None]
+    normals = np.concatenate([normals / np.linalg.norm(normals, axis=1)[:, None], -normals[:20]])
+    normals = np.concatenate([normals, random_normals(200)])
+    samples = gm.GaussMap(part).points(normals)
+    boxes = {x.normal: x.box for x in samples.report.undecided}
+    assert set(boxes) <= set(range(23, 40))
+    for k in range(40):
+        if k in boxes:
+            u0, u1, v0, v1 = boxes[k]
+            assert u0 <= u[k] <= u1 == 1.0
+            assert v0 <= v[k] <= v1
+        else:
+            gaps = np.abs(samples.uv[samples.normal_index == k] - [u[k], v[k]]).max(axis=1)
+            assert gaps.min() < 1e-4
+    chosen = normals[40:] / np.linalg.norm(normals[40:], axis=1)[:, None]
+    expected = [
+        len(x) for x in roots(f, chosen, 1.0, lambda u, v: (u < 0.97) & (u > 0) & (v > 0) & (v < 1))
+    ]
+    found = np.bincount(samples.normal_index[samples.uv[:, 0] < 0.97], minlength=len(normals))
+    assert found[40:].tolist() == expected
+
+
+def test_the_kinds_that_are_proved():
+    samples = gm.GaussMap(all_kinds()).points(gm.fibonacci(500))
+    assert (samples.report.estimated_faces, samples.report.proved) == (0, 500)
+    assert set(samples.face_index.tolist()) == {2, 4, 5, 6, 7, 9}
+    assert np.isfinite(samples.uv_radius).all()
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
+def test_the_parts_of_a_closed_surface_have_its_degree(made, scale):
+    """A torus in six faces, cut by slanted lines: Σ sign K is 0, and there are two points."""
+    lines = np.linspace(0.0, TURN, 7)
+    numbers, faces = [*made.placement((1e6, 0.0, 0.0)), 3.0 * scale, scale], []
+    for low, high in itertools.pairwise(lines):
+        loop = np.array([(low, 0.0), (high, 0.0), (high + 0.5, TURN), (low + 0.5, TURN)])
+        ends = (low, high + 0.5), (0.0, TURN)
+        faces.append(made.face("torus", numbers, *ends, scale**2, (TURN, TURN), loops=[loop]))
+    known, normals = gm.GaussMap(made.part(faces)), random_normals(2000, 9)
+    assert (known.count(normals) == 2).all()
+    assert (known.degree(normals) == 0).all()
+
+
+def test_what_has_no_bounds_is_estimated(made):
+    """Degrees 13 × 13 have too many coefficients."""
+    nodes = np.linspace(0.0, 1.0, 14)
+    x, y = np.meshgrid(nodes, nodes, indexing="ij")
+    knots = np.repeat([0.0, 1.0], 14)
+    net = Net((13, 13), (knots, knots), np.stack([x, y, x * x - y * y], axis=2))
+    face = FaceRecord(Geometry("nurbs", net=net), ((0.0, 1.0), (0.0, 1.0)), area=2.0)
+    ball = made.face("sphere", [*made.placement(), 1.0], (0.0, TURN), (-0.5, 0.5), 6.0)
+    samples = gm.sample(made.part([face, ball]), normals=random_normals(300))
+    of_ball = samples.face_index == 1
+    assert 0 < of_ball.sum() < len(samples)
+    assert np.isfinite(samples.uv_radius[of_ball]).all()
+    assert np.isnan(samples.uv_radius[~of_ball]).all()
+    assert (samples.report.proved, samples.report.estimated_faces) == (None, 1)
+    assert "2 faces, 1 of them estimated" in samples.summary()
+    assert "proved" not in samples.summary()
+
+
+def test_answers_do_not_depend_on_earlier_calls():
+    part, normals = all_kinds(), random_normals(300)
+    known = gm.GaussMap(part)
+    first = known.points(normals)
+    gm.sample(part, 100)
+    with pytest.warns(gm.GaussmapWarning, match="is flat"):
+        sampled = gm.sample(part, normals=normals)
+    for again in (
+        sampled,
+        known.points(normals, threads=3),
+        gm.GaussMap(pickle.loads(pickle.dumps(part))).points(normals),
+    ):
+        for name, array in first.arrays().items():
+            assert array.tobytes() == getattr(again, name).tobytes(), name
+    single = np.concatenate([known.points(n[None]).uv for n in normals])
+    order = np.lexsort((first.face_index, first.normal_index))
+    assert single.tobytes() == first.uv[order].tobytes()
+
+
+def test_undecided_faces_are_in_files(made, tmp_path):
+    part = made.part(made.box_faces())
+    with pytest.warns(gm.GaussmapWarning, match="is flat"):
+        samples = gm.sample(part, normals=np.eye(3))
+    assert [x.face for x in samples.report.undecided] == [1, 3, 5]
+    for name in ("a.npz", "a.ply"):
+        samples.write(tmp_path / name)
+        assert gm.read_samples(tmp_path / name).report == samples.report

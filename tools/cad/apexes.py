@@ -1,0 +1,76 @@
+"""Sides of the domain of a face that are one point: where there is no normal, and none is missed.
+
+If u = u₁ is such a side, x_v is 0 on it. So n·x_v = (u − u₁) n·x_uv at a place between, for each n,
+and a point with the normal n beside it has n·x_u = 0, and n·x_uv = 0 between it and the side.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.kernels.tape import Tape
+from ...runtime.kernels.tape_balls import BALL, bounds_of_boxes
+from ...runtime.search.proved import KINDS, Undecided
+from ...runtime.surface.surface import Surface
+
+__all__ = ["Apex", "apexes_of"]
+
+Array = NDArray[np.float64]
+
+SINGULAR = KINDS.index("singular")
+# Places on a side at which it is looked whether it is one point, up to so many roundings.
+PLACES, ROUNDINGS = 17, 64.0
+MIXED = 4  # the place of the coefficient of u v in Taylor polynomials; those of u and v are 1 and 2
+
+
+@dataclass(frozen=True, eq=False)
+class Apex:
+    """The side of u (axis 0) or of v where it has the value `end`, of a surface with a tape."""
+
+    tape: Tape
+    axis: int
+    end: float
+
+    def decided(self, open_: Undecided, normals: Array) -> Undecided:
+        """Return boxes without those that have no point with the normal, one of normals (S, 3)."""
+        low, high = 2 * self.axis, 2 * self.axis + 1
+        # Those that touch the side.
+        (rows,) = np.nonzero(
+            (open_.kinds == SINGULAR)
+            & (open_.boxes[:, low] <= self.end)
+            & (open_.boxes[:, high] >= self.end)
+        )
+        if not len(rows):
+            return open_
+        boxes = open_.boxes[rows].reshape(-1, 2, 2)
+        bounds = np.empty((len(rows), 2, 10, 3))
+        middles, radii = np.empty((2, BALL * (len(self.tape.operations) + 1)))
+        half = np.ascontiguousarray((boxes[:, :, 1] - boxes[:, :, 0]) / 2.0)
+        centres = np.ascontiguousarray(boxes.mean(axis=2))
+        bounds_of_boxes(self.tape, 2, centres, half, middles, radii, np.empty((2, 4)), bounds)
+        given = normals[open_.numbers[rows]]
+        none = np.zeros(len(rows), np.bool_)
+        for order in (1 + self.axis, MIXED):
+            value = np.einsum("kx,kx->k", bounds[:, 0, order], given)
+            reach = np.einsum("kx,kx->k", bounds[:, 1, order], np.abs(given))
+            size = np.einsum("kx,kx->k", np.abs(bounds[:, 0, order]), np.abs(given))
+            none |= np.abs(value) > reach * (1.0 + 1e-12) + 1e-15 * size
+        keep = np.ones(len(open_.numbers), np.bool_)
+        keep[rows[none]] = False
+        return Undecided._make(x[keep] for x in open_)
+
+
+def apexes_of(surface: Surface, tape: Tape) -> list[Apex]:
+    """Return the sides of a surface that are one point up to rounding."""
+    found = []
+    for axis in (0, 1):
+        along = np.linspace(*surface.domain[1 - axis], PLACES)
+        for end in surface.domain[axis]:
+            places = [np.full(PLACES, end), along]
+            points = surface.jets(*(places if axis == 0 else places[::-1]))[:, 0]
+            if np.ptp(points, axis=0).max() <= ROUNDINGS * np.spacing(np.abs(points).max()):
+                found.append(Apex(tape, axis, end))
+    return found

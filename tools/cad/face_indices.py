@@ -1,0 +1,146 @@
+"""What finds all points of faces with given normals, with a proof: in closed form, or an index."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.domain.domain import Domain
+from ...runtime.place.proved import index_of
+from ...runtime.search.proved import KINDS, ProvedIndex, Undecided
+from ...runtime.surface.collapsed import found_sides
+from ...runtime.surface.surface import Surface
+from .apexes import Apex, apexes_of
+from .face_places import FaceIndex, FacePlaces, joined, undecided
+from .faces import face_surface, simplest
+from .records import Geometry
+from .round_faces import ROUND, RoundFace
+
+__all__ = ["face_index"]
+
+Array = NDArray[np.float64]
+
+# Cells of an index before they are cut: faces are simple, and there are many.
+CELLS = (4, 4)
+# Ends of a side are looked at if their distance is less than this part of the largest one.
+CLOSE = 1e-3
+SINGULAR = KINDS.index("singular")
+# Places along a side of a box at which it is looked how an offset is turned.
+PLACES = 3
+
+
+def face_index(
+    geometry: Geometry, surface: Surface, domain: Domain, *, is_reversed: bool
+) -> FaceIndex | None:
+    """Return the index of the surface of a face over a domain; None if nothing is proved."""
+    simple = simplest(geometry, domain)
+    if simple.kind in ROUND:
+        return RoundFace.of(simple, surface.domain, is_reversed=is_reversed)
+    if simple.kind != "offset" or simple.basis is None:
+        return SmoothPieces.of(surface)
+    basis = face_surface(simple.basis, domain, is_reversed=is_reversed)
+    index = face_index(simple.basis, basis, domain, is_reversed=is_reversed)
+    return None if index is None else Offset(index, surface)
+
+
+class SmoothPiece(NamedTuple):
+    """The index of a smooth piece of a surface, and its sides that are one point."""
+
+    index: ProvedIndex
+    apexes: Sequence[Apex]
+
+    def query(self, normals: Array, threads: int | None) -> FacePlaces:
+        """Return all points with unit normals (S, 3)."""
+        found = self.index.query(normals, threads)
+        open_ = found.undecided
+        for apex in self.apexes:
+            open_ = apex.decided(open_, normals)
+        sign = found.sign.astype(np.float64)
+        return FacePlaces(found.numbers, found.uv, found.radius, sign, open_)
+
+
+@dataclass(frozen=True, eq=False)
+class SmoothPieces:
+    """The indices of the smooth pieces of a surface."""
+
+    pieces: Sequence[SmoothPiece]
+
+    @classmethod
+    def of(cls, surface: Surface) -> SmoothPieces | None:
+        """Return those of a surface; None if one has none."""
+        found = []
+        for piece in surface.pieces():
+            may_have_points = _has_corners_that_meet(piece)
+            if may_have_points:
+                piece = replace(piece, boundary=found_sides(piece)[0])
+            index = index_of(piece, cells=CELLS)
+            if index is None:
+                return None
+            apexes = apexes_of(piece, index.tape) if may_have_points else []
+            found.append(SmoothPiece(index, apexes))
+        return cls(found)
+
+    def query(self, normals: Array, threads: int | None = None) -> FacePlaces:
+        """Return all points with unit normals (S, 3)."""
+        return joined([x.query(normals, threads) for x in self.pieces])
+
+
+@dataclass(frozen=True, eq=False)
+class Offset:
+    """An offset of the surface of a face, from the index of that.
+
+    Both have the same parameters, and opposite normals where one principal curvature has a centre
+    that is nearer than the offset: there (1 + d κ₁) (1 + d κ₂) is negative.
+    """
+
+    basis: FaceIndex
+    surface: Surface
+
+    def query(self, normals: Array, threads: int | None = None) -> FacePlaces:
+        """Return all points with unit normals (S, 3)."""
+        return joined([
+            self._turned(self.basis.query(sign * normals, threads), sign * normals, sign)
+            for sign in (1.0, -1.0)
+        ])  # fmt: skip
+
+    def _turned(self, found: FacePlaces, normals: Array, sign: float) -> FacePlaces:
+        """Return those of places of the other surface at which normals have a sign."""
+        sides = sign * self._sides(found.uv, normals[found.numbers])
+        keep, lost = sides > 0.5, np.abs(sides) <= 0.5
+        boxes = found.undecided
+        shares = np.linspace(0.0, 1.0, PLACES)
+        grid = np.stack(np.meshgrid(shares, shares, indexing="ij"), axis=-1).reshape(-1, 1, 2)
+        low, high = boxes.boxes[:, ::2], boxes.boxes[:, 1::2]
+        places = (low + grid * (high - low)).reshape(-1, 2)
+        of_boxes = self._sides(places, np.tile(normals[boxes.numbers], (PLACES**2, 1)))
+        open_ = (sign * of_boxes.reshape(PLACES**2, -1) >= -0.5).any(axis=0)
+        u, v, of_u, of_v = np.concatenate([found.uv, found.radius], axis=1)[lost].T
+        small = np.stack([u - of_u, u + of_u, v - of_v, v + of_v], axis=1)
+        singular = undecided(found.numbers[lost], small, SINGULAR, border=False)
+        both = Undecided._make(
+            np.concatenate([x[open_], y]) for x, y in zip(boxes, singular, strict=True)
+        )
+        return FacePlaces(
+            found.numbers[keep], found.uv[keep], found.radius[keep], sign * found.sign[keep], both
+        )
+
+    def _sides(self, uv: Array, normals: Array) -> Array:
+        """Return products of unit normals (k, 3) and those of the offset; 0 where it has none."""
+        jets = self.surface.jets(uv[:, 0].copy(), uv[:, 1].copy())
+        found = np.cross(jets[:, 1], jets[:, 2])
+        lengths = np.linalg.norm(found, axis=1)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return np.nan_to_num(np.einsum("kx,kx->k", found, normals) / lengths)
+
+
+def _has_corners_that_meet(surface: Surface) -> bool:
+    """Say whether a side of the domain may be one point: its ends are close to one another."""
+    (u0, u1), (v0, v1) = surface.domain
+    places = np.array([(u0, v0), (u1, v0), (u1, v1), (u0, v1)]).T.copy()
+    points = surface.jets(*places)[:, 0]
+    gaps = np.linalg.norm(np.roll(points, 1, axis=0) - points, axis=1)
+    return bool(gaps.min() <= CLOSE * gaps.max())

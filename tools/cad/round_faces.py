@@ -1,0 +1,192 @@
+"""All points with given normals on planes, cylinders, cones, spheres and tori, in closed form.
+
+Normals of the map x → M x + p are M⁻ᵀ m, up to their length, so that n becomes m = Mᵀ n in the
+frame of the face, whatever M is. There, x_u × x_v has the direction of (cos u cos w, sin u cos w,
+sin w), but for a sign: w = v on spheres and tori, and minus the half angle on cylinders and cones.
+The sign is that of ρ, the distance from the axis as the numbers of the face give it, times that of
+the radius of a torus.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.domain.domain import Domain, Interval
+from ...runtime.search.proved import KINDS
+from .face_places import NOTHING, FacePlaces, joined, undecided
+from .records import Geometry
+
+__all__ = ["ROUND", "RoundFace"]
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+ROUND = ("plane", "cylinder", "cone", "sphere", "torus")
+TURN = 2.0 * math.pi
+EPS = 2.0**-52
+# Angles of Mᵀ n have at most this error, times the condition of M: products of three terms, roots
+# and inverse functions of the C library have a few roundings each.
+ANGLE_ERROR = 16.0 * EPS
+# Normals that are farther than this from those of a plane, a cylinder or a cone are left out first.
+NEAR = 1e-6
+CONTINUUM, SINGULAR = KINDS.index("continuum"), KINDS.index("singular")
+
+
+class Angles(NamedTuple):
+    """Places u, v (k,) of the normals with some numbers (k,), and their radii (k,)."""
+
+    numbers: Indices
+    u: Array
+    v: Array
+    of_u: Array
+    of_v: Array
+
+    def at(self, rows: NDArray[np.bool_]) -> Angles:
+        """Return some of them."""
+        return Angles._make(x[rows] for x in self)
+
+    def within(self, interval: Interval, axis: int) -> Angles:
+        """Return those of u (axis 0) or v that are in an interval, whole turns away or not."""
+        (low, high), values, radius = interval, self[1 + axis], self[3 + axis]
+        found = []
+        for turn in range(1 + int((high - low) / TURN)):
+            first = np.ceil((low - radius - values) / TURN)
+            moved = values + TURN * (first + turn)
+            rows = (moved <= high + radius) & ((turn == 0) | (moved < high - radius))
+            part = list(self.at(rows))
+            part[1 + axis] = np.clip(moved[rows], low, high)
+            found.append(part)
+        return Angles._make(map(np.concatenate, zip(*found, strict=True)))
+
+    @classmethod
+    def on_lines(cls, numbers: Indices, domain: Domain) -> Angles:
+        """Return whole domains for the normals with some numbers."""
+        (u, of_u), (v, of_v) = (whole(x, len(numbers)) for x in domain)
+        return cls(numbers, u, v, of_u, of_v)
+
+    def places(self, sign: float) -> FacePlaces:
+        """Return them as points whose curvature has a sign."""
+        uv, radius = np.stack([self.u, self.v], axis=1), np.stack([self.of_u, self.of_v], axis=1)
+        return FacePlaces(self.numbers, uv, radius, np.full(len(uv), sign), NOTHING.undecided)
+
+    def boxes(self, kind: int, domain: Domain) -> FacePlaces:
+        """Return them as boxes in a domain that are not decided."""
+        (u0, u1), (v0, v1) = domain
+        sides = self.u - self.of_u, self.u + self.of_u, self.v - self.of_v, self.v + self.of_v
+        ends = np.array([u0, u0, v0, v0]), np.array([u1, u1, v1, v1])
+        boxes = np.clip(np.stack(sides, axis=1), *ends)
+        return NOTHING._replace(undecided=undecided(self.numbers, boxes, kind, border=True))
+
+
+def whole(interval: Interval, count: int) -> tuple[Array, Array]:
+    """Return the middle of an interval and half of its length, (k,) each."""
+    low, high = interval
+    return np.full(count, (low + high) / 2.0), np.full(count, (high - low) / 2.0)
+
+
+@dataclass(frozen=True, eq=False)
+class RoundFace:
+    """A plane, cylinder, cone, sphere or torus over a domain; if `is_reversed`, u is, too.
+
+    `frame` is M, or −M if normals are opposite to M⁻ᵀ m; `error` is that of angles of Mᵀ n.
+    """
+
+    kind: str
+    sizes: tuple[float, float]
+    frame: Array
+    error: float
+    domain: Domain
+    is_reversed: bool
+
+    @classmethod
+    def of(cls, geometry: Geometry, domain: Domain, *, is_reversed: bool) -> RoundFace:
+        """Return the face of a geometry over a domain."""
+        matrix, numbers = geometry.numbers[3:12].reshape(3, 3).T, geometry.numbers[12:].tolist()
+        inverse = np.linalg.inv(matrix)
+        error = ANGLE_ERROR * math.sqrt(float((matrix**2).sum() * (inverse**2).sum()))
+        outward = (np.cross(matrix[:, 0], matrix[:, 1]) @ matrix[:, 2] > 0.0) != is_reversed
+        sizes = {1: (0.0, *numbers), 2: tuple(numbers)}.get(len(numbers), (0.0, 0.0))
+        if geometry.kind == "cylinder":
+            sizes = sizes[::-1]
+        frame = matrix if outward else -matrix
+        return cls(geometry.kind, sizes, frame, error, domain, is_reversed)
+
+    def query(self, normals: Array, threads: int | None = None) -> FacePlaces:
+        """Return all points with unit normals (S, 3)."""
+        if self.kind in ("sphere", "torus"):
+            found = self._on_circles(normals)
+        else:
+            found = self._on_plane(normals) if self.kind == "plane" else self._on_rulings(normals)
+        return found.reversed_in(sum(self.domain[0])) if self.is_reversed else found
+
+    def _on_plane(self, normals: Array) -> FacePlaces:
+        """Return the whole domain for the normal of a plane."""
+        normal = np.cross(self.frame[:, 0], self.frame[:, 1])
+        normal *= math.copysign(1.0, normal @ self.frame[:, 2]) / math.sqrt(normal @ normal)
+        (near,) = np.nonzero(normals @ normal > 1.0 - NEAR)
+        if not len(near):
+            return NOTHING
+        own = normals[near] @ self.frame
+        near = near[np.hypot(own[:, 0], own[:, 1]) <= self.error * own[:, 2]]
+        return Angles.on_lines(near, self.domain).boxes(CONTINUUM, self.domain)
+
+    def _on_rulings(self, normals: Array) -> FacePlaces:
+        """Return rulings for the normals of a cylinder or a cone, on both sides of an apex."""
+        radius, angle = self.sizes
+        ends, found = radius + math.sin(angle) * np.array(self.domain[1]), [NOTHING]
+        for sign in sorted({math.copysign(1.0, x) for x in ends.tolist()}):
+            near = np.arange(len(normals))
+            if angle == 0.0:
+                size = NEAR * math.sqrt(float((self.frame**2).sum()))
+                (near,) = np.nonzero(np.abs(normals @ self.frame[:, 2]) <= size)
+            own = sign * normals[near] @ self.frame
+            slopes = np.arctan2(own[:, 2], np.hypot(own[:, 0], own[:, 1]))
+            rows = np.abs(slopes + angle) <= self.error
+            if not rows.any():
+                continue
+            part = Angles.on_lines(near[rows], self.domain)._replace(
+                u=np.arctan2(own[rows, 1], own[rows, 0]),
+                of_u=np.full(rows.sum(), self.error / math.cos(angle)),
+            )
+            found.append(part.within(self.domain[0], 0).boxes(CONTINUUM, self.domain))
+        return joined(found)
+
+    def _on_circles(self, normals: Array) -> FacePlaces:
+        """Return the points of a sphere, whose first radius is 0, or of a torus."""
+        (major, minor), own, found = self.sizes, normals @ self.frame, list[FacePlaces]()
+        if self.kind == "sphere":
+            return self._at_angles(own, 1.0).places(1.0)
+        sides = [math.copysign(1.0, major * minor)] if abs(major) > abs(minor) else [1.0, -1.0]
+        for side, sign in itertools.product(sides, (1.0, -1.0)):  # of ρ r and of cos v
+            part = self._at_angles(side * own, sign)
+            sizes = side * (major + minor * np.cos(part.v)) * minor
+            noise = 4.0 * self.error * (abs(major) + abs(minor)) * abs(minor)
+            on_axis = part.of_u >= TURN
+            found += [
+                part.at(~on_axis & (sizes > noise)).places(side * sign),
+                part.at(~on_axis & (np.abs(sizes) <= noise)).boxes(SINGULAR, self.domain),
+            ]
+            if sign > 0.0 and on_axis.any():
+                circles = part.at(on_axis & (sizes > -noise))
+                u, of_u = whole(self.domain[0], len(circles.u))
+                found.append(circles._replace(u=u, of_u=of_u).boxes(CONTINUUM, self.domain))
+        return joined(found)
+
+    def _at_angles(self, own: Array, sign: float) -> Angles:
+        """Return the places of normals in the frame of the face where cos v has a sign.
+
+        Near the axis u is not known, and its radius is a turn.
+        """
+        across = np.hypot(own[:, 0], own[:, 1])
+        u, v = np.arctan2(sign * own[:, 1], sign * own[:, 0]), np.arctan2(own[:, 2], sign * across)
+        part = self.error * np.linalg.norm(own, axis=1)
+        of_u = np.full(len(u), TURN)
+        np.divide(part, across, out=of_u, where=across * TURN > part)
+        found = Angles(np.arange(len(u)), u, v, of_u, np.full(len(v), self.error))
+        return found.within(self.domain[1], 1).within(self.domain[0], 0)

@@ -1,0 +1,41 @@
+"""The tape of a surface of revolution: the polynomials of a NURBS curve, and the turn."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...generated.faces import revolution_jet
+from ...generated.vectors import Vector
+from ...runtime.base.formula_calls import python_function
+from ...runtime.kernels.tape import Tape
+from ...runtime.surface.nurbs import Nurbs
+from ...runtime.surface.tapes import TapeWriter
+from ...runtime.surface.traced import Traced
+
+__all__ = ["turned_tape"]
+
+# A curve does not depend on u: there is one span, whose ends are beyond all angles of faces.
+ALL_ANGLES = np.array([-64.0, 64.0])
+
+
+def turned_tape(curve: Nurbs) -> Tape | None:
+    """Return the tape of the curve v = 0 of a NURBS, whose u is v here, turned by u about z."""
+    along = replace(
+        curve,
+        degrees=(0, curve.degrees[0]),
+        knots=(ALL_ANGLES, curve.knots[0]),
+        points=np.ascontiguousarray(curve.points[:, 0][None]),
+        domain=((-64.0, 64.0), curve.domain[0]),
+        periodic=(False, curve.periodic[0]),
+        creases=((), curve.creases[0]),
+    )
+    tape = along.tape()
+    if tape is None:
+        return None
+    writer = TapeWriter()
+    point = Vector._make(Traced(writer, x) for x in writer.replay(tape))
+    angle, none = Traced(writer, writer.write("u")), Vector(0.0, 0.0, 0.0)
+    turned = python_function(revolution_jet)(point, none, none, angle.cos(), angle.sin())[0]
+    return writer.tape([x.row for x in turned])
