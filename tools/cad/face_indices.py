@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,7 +46,8 @@ def face_index(
     return None if index is None else Offset(index, surface)
 
 
-class SmoothPiece(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class SmoothPiece:
     """The index of a smooth piece of a surface, and its sides that are one point."""
 
     index: ProvedIndex
