@@ -191,9 +191,11 @@ def _parts_of_quarter() -> list[Any]:
     return [*parts, sp.Rational(float(rest))]
 
 
-def _horner(function: Any, first: int, last: int) -> Any:  # noqa: ANN401
-    """Return the terms of a Taylor series from x^first to x^last over x^first, in z = x²."""
-    result: Any = sp.S.Zero
+def _horner(function: Any, first: int, last: int, result: Any = sp.S.Zero) -> Any:  # noqa: ANN401
+    """Return the terms of a Taylor series from x^first to x^last over x^first, in z = x².
+
+    The result is that of the higher terms.
+    """
     for order in range(last, first - 1, -2):
         term = sp.diff(function, x, order).subs(x, 0) / sp.factorial(order)
         result = term + z * result
@@ -218,11 +220,13 @@ SINE_AND_COSINE = Formula.build(
     inputs=[x],
     terms=[
         ("z", x**2),
-        ("p", _horner(sp.sin(x), 3, 17)),
-        ("q", _horner(sp.cos(x), 4, 18)),
+        ("y_1", _horner(sp.sin(x), 11, 17)),
+        ("y_2", _horner(sp.sin(x), 3, 9, scalar("y_1"))),
+        ("w_1", _horner(sp.cos(x), 12, 18)),
+        ("w_2", _horner(sp.cos(x), 4, 10, scalar("w_1"))),
         ("a", x * z),
-        ("b", z * scalar("q") - sp.S.Half),
+        ("b", z * scalar("w_2") - sp.S.Half),
     ],
-    outputs=[("y", x + scalar("a") * scalar("p")), ("w", 1 + z * scalar("b"))],
+    outputs=[("y", x + scalar("a") * scalar("y_2")), ("w", 1 + z * scalar("b"))],
 )
 FORMULAS = (*(_formula(*item) for item in FUNCTIONS.items()), REDUCED, SINE_AND_COSINE)

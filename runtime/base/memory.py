@@ -64,7 +64,7 @@ COSTS: dict[str, Cost] = {
     "candidates": Cost("candidates for samples", 700.0, 0.0, LARGER),
     "part": Cost("samples", 8e3, 0.0, "use fewer"),
     "relaxed part": Cost("samples", 25e3, 0.0, "use fewer, or relax=0, which takes a third"),
-    "curve": Cost("samples", 200.0, 0.0, "use fewer"),
+    "curve": Cost("samples", 420.0, 0.0, "use fewer"),
     # 450 in arrays, and what Qhull takes.
     "mesh": Cost("vertices of a mesh", 600.0, 0.0, "use fewer samples"),
     "cells": Cost("cells", 120.0, 0.0, "use fewer, or tolerance=..., which chooses them"),

@@ -10,12 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import KDTree
 
 from ..base.aliases import Array, Flags, Indices
 from ..base.errors import InputError
+from ..base.trees import tree_of
 
 __all__ = ["EDGES", "Edge", "Joints", "Topology", "merged_points"]
 
@@ -190,6 +188,9 @@ class Topology:
 
         They are 0 where no patch has one.
         """
+        from scipy.sparse import coo_array  # loaded late: most splines have a grid
+        from scipy.sparse.csgraph import connected_components
+
         pairs = self.smooth_pairs
         # Edge j runs from corner j + 1 to corner j + 2.
         patch, edge = pairs // 3, pairs % 3
@@ -228,7 +229,7 @@ class Topology:
         where = {int(x): self.nets.reshape(-1, 3)[k] for k, x in _firsts(self.numbers)}
         points = np.array([where[int(x)] for x in vertices])
         size = float(np.abs(self.nets).max()) * SAME_POINT
-        tree = KDTree(points)
+        tree = tree_of(points)
         for edge, (start, end, middle) in zip(edges.tolist(), ends.tolist(), strict=True):
             curve = np.array([where[start], where[middle], where[end]])
             centre = curve.mean(axis=0)

@@ -157,7 +157,15 @@ class Spline(Immutable, Methods):
 
     @property
     def extent(self) -> tuple[float, int]:
-        """The diagonal of the bounding box, and the larger number of cells."""
+        """The diagonal of the bounding box, and the larger number of cells.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.fit("plane", (8, 12)).extent[1]
+        12
+
+        """
         points = self.coefficients[1:-1, 1:-1].reshape(-1, 3)
         return math.hypot(*np.ptp(points, axis=0)), max(self.cells)
 

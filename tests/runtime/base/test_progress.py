@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import io
+import select
 import sys
 import time
 from typing import Any
@@ -78,7 +79,10 @@ def test_progress_stays_on_standard_error(
         terminal.write("then ")
         list(gm.sample_many(["torus"], count=100, cells=(8, 8), progress=True))
         terminal.flush()
-        one, _, many = screen.read(1 << 16).decode().partition("then ")
+        written = b""
+        while select.select([screen], [], [], 1.0)[0]:  # it arrives in pieces
+            written += screen.read(1 << 16)
+        one, _, many = written.decode().partition("then ")
         monkeypatch.undo()
     assert "sampling: 00:00" in one
     assert "1/1" in many

@@ -233,7 +233,7 @@ def test_some_fields(tmp_path):
     few = gm.sample(box(), 30, edges=True, fields=("points", "other_face_index"))
     few.write(tmp_path / "few.csv")
     lines = (tmp_path / "few.csv").read_text().splitlines()
-    assert lines[0] == "x,y,z,other_face_index"
+    assert lines[0] == "x [mm],y [mm],z [mm],other_face_index"
     assert len(lines) == 1 + len(few)
 
 

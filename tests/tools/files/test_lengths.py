@@ -45,9 +45,8 @@ def terrain(crs):
 
 
 def test_tables_of_parts_name_the_unit(tmp_path):
-    from gaussmap.tools.cad.examples import box
-
-    samples = gm.sample(box(), 20)
+    part = gm.read_part(f"{gm.__path__[0]}/docs/gallery/bracket.npz")
+    samples = gm.sample(part, 40)
     names = header(samples, tmp_path)
     assert names[:4] == ["x [mm]", "y [mm]", "z [mm]", "nx"]
     assert {"support [mm]", "gaussian_curvature [1/mm^2]", "mean_curvature [1/mm]"} <= {*names}
