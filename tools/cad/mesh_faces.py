@@ -39,12 +39,11 @@ class FaceBorder:
     @classmethod
     def of(cls, piece: FacePiece, sampled: SampledEdges) -> FaceBorder:
         """Return the border of a piece, whose wires are known."""
-        owner = piece.face.part.edge_of_sides
         uv, numbers, segments, edges, first = [], [], [], [], 0
         for wire in piece.face.wires:
             start = first
             for side, backwards in wire:
-                edge = int(owner[side])
+                edge = sampled.edges[side]
                 way = slice(None, None, -1 if backwards else 1)
                 uv.append(sampled.uv[side][way][:-1])
                 numbers.append(sampled.numbers[edge][way][:-1])

@@ -161,12 +161,6 @@ class Part(Methods, Whole):
         return tuple(map(str, self.about.get("warnings", ())))
 
     @cached_property
-    def edge_of_sides(self) -> NDArray[np.int64]:
-        """The edge (U,) of each side of an edge in `arrays`."""
-        starts = self.arrays["edge_side_starts"]
-        return np.repeat(np.arange(len(starts) - 1), np.diff(starts))
-
-    @cached_property
     def _reasons(self) -> dict[str, str]:
         return dict(self.about.get("reasons", {}))
 

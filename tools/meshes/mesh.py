@@ -72,8 +72,8 @@ class Mesh(Methods):
     ((200, 3), (200, 3), (200, 2), (400, 3))
     >>> bool((mesh.sample_index >= 0).all()), bool((mesh.sides == 1).all()), mesh.name
     (True, True, 'torus')
-    >>> mesh.faces is mesh.triangles
-    True
+    >>> mesh.faces is mesh.triangles, mesh.split is mesh
+    (True, True)
     >>> len(mesh.edges), len(mesh.boundary_edges), mesh.euler_characteristic
     (600, 0, 0)
     >>> mesh.left_out, mesh.domain == gm.surfaces.torus().domain, mesh.boundary[0]

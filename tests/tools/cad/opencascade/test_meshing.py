@@ -79,7 +79,7 @@ SHAPES = {
     "crossed cylinders": (crossed, 2),
     "two": (lambda: compound(box(), cylinder(0.3, 1.0, origin=(9.0, 0.0, 0.0))), 4),
 }
-# The smallest angles in degrees, where they are small: triangles at the tip of a cone stay as they are.
+# The smallest angles in degrees where they are small: at the tip of a cone nothing is flipped.
 THIN = {"cone": 0.2}
 
 
