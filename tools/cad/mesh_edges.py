@@ -31,12 +31,14 @@ SAME = 1e-7
 class SampledEdges:
     """Vertices on edges: points (M, 3), in L; of each edge their numbers, and of each side u, v.
 
-    These are on the surfaces of pieces of the space, in the direction of the edge.
+    These are on the surfaces of pieces of the space, in the direction of the edge, which `edges`
+    has for each side.
     """
 
     points: Array
     numbers: dict[int, Indices]
     uv: dict[int, Array]
+    edges: dict[int, int]
 
 
 @dataclass(eq=False)
@@ -176,12 +178,9 @@ class MeshEdges:
             inner = np.arange(first, first + m - 1)
             numbers[edge] = np.concatenate([ends[edge, :1], inner, ends[edge, 1:]])
             first += m - 1
-        uv = {}
-        for k, (side, edge) in enumerate(
-            zip(self.sides.tolist(), self.owner.tolist(), strict=True)
-        ):
-            uv[side] = self._uv(k, shares[edge])
-        return SampledEdges(self._points(points, first, numbers, uv), numbers, uv)
+        edges = dict(zip(self.sides.tolist(), self.owner.tolist(), strict=True))
+        uv = {side: self._uv(k, shares[edge]) for k, (side, edge) in enumerate(edges.items())}
+        return SampledEdges(self._points(points, first, numbers, uv), numbers, uv, edges)
 
     def _points(
         self, vertices: Array, count: int, numbers: dict[int, Indices], uv: dict[int, Array]

@@ -25,8 +25,10 @@ from ...runtime.density.filling import Filling, target_of
 from ...runtime.density.grid import Grid
 from ...runtime.density.space import Space
 from ...runtime.samples.request import checked_request
+from ..kernels.flips import flip_edges
 from ..meshes.links import edge_numbers, neighbours
-from ..meshes.triangulated import LARGEST_DEVIATION, Triangulated, checked_prefer, flip_edges
+from ..meshes.mesh import scaled
+from ..meshes.triangulated import LARGEST_DEVIATION, checked_prefer
 from .edges import Places, at_places
 from .mesh_edges import MeshEdges, SampledEdges
 from .mesh_faces import EXTRA, Crossing, FaceBorder, triangles_of
@@ -112,12 +114,11 @@ class Corners:
         without = ~np.asarray(normals.any(axis=1))[triangles].all(axis=1)
         stay = np.concatenate([np.sort(self.fixed, axis=1) @ [count, 1], numbers[without].ravel()])
         adjacent[np.isin(numbers, stay)] = -1
-        nothing, no = np.full(count, -1), np.zeros(count, dtype=np.bool_)
-        mesh = Triangulated(
-            "", self.known.uv, nothing, no, points, normals, triangles,
-            np.ones_like(triangles), adjacent, no,
+        flip_edges(
+            scaled(points), normals, triangles, np.ones_like(triangles), adjacent, True,
+            math.cos(math.radians(LARGEST_DEVIATION)),
+            np.arange(len(triangles)), np.ones(len(triangles), dtype=np.bool_),
         )  # fmt: skip
-        flip_edges(mesh, "shape", math.cos(math.radians(LARGEST_DEVIATION)))
         return triangles
 
     def normals(self, space: PartSpace, triangles: Indices) -> Array:
