@@ -21,15 +21,15 @@ __all__ = ["MeshEdges", "SampledEdges"]
 PLACES = 64
 # An edge that ends where it begins has at least so many steps.
 CLOSED = 3
-# Of a step that is left over so much is worth no vertex.
-SLACK = 0.3
 # Ends of an edge without vertices that are closer than this part of the size are one.
 SAME = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
 class SampledEdges:
-    """Vertices on edges: points (M, 3), in L; of each edge their numbers, and of each side u, v.
+    """Vertices on edges: points (M, 3), in L; of each edge their numbers and their shares, 0 to 1.
+
+    And of each side u, v.
 
     These are on the surfaces of pieces of the space, in the direction of the edge, which `edges`
     has for each side.
@@ -37,6 +37,7 @@ class SampledEdges:
 
     points: Array
     numbers: dict[int, Indices]
+    shares: dict[int, Array]
     uv: dict[int, Array]
     edges: dict[int, int]
 
@@ -46,14 +47,14 @@ class MeshEdges:
     """All edges around the pieces of a space, and into how many steps they are divided.
 
     `sides` (S,) are places in the sides of edges of the part; `owner` (S,) are their edges,
-    `pieces` (S,) their pieces. `factors` (E,) multiply the numbers of steps.
+    `pieces` (S,) their pieces. `more` are shares of edges at which there are further vertices.
     """
 
     space: PartSpace
     sides: Indices
     owner: Indices
     pieces: Indices
-    factors: Indices
+    more: dict[int, Array]
 
     @classmethod
     def of(cls, space: PartSpace) -> MeshEdges:
@@ -71,7 +72,7 @@ class MeshEdges:
         in_wire = np.isin(np.arange(len(owner)), arrays["wire_sides"])
         sides = np.flatnonzero((pieces >= 0) & known & (counts >= 2) & in_wire)
         sides = sides[np.argsort(pieces[sides], kind="stable")]
-        return cls(space, sides, owner[sides], pieces[sides], np.ones(edges, dtype=np.int64))
+        return cls(space, sides, owner[sides], pieces[sides], {})
 
     @property
     def arrays(self) -> dict[str, Indices]:
@@ -88,7 +89,8 @@ class MeshEdges:
     def count(self, count: int) -> int:
         """Return how many vertices edges have in a mesh of so many."""
         steps = self._steps(count)[self.used & ~self.arrays["edge_degenerate"]]
-        return len(self._vertices[0]) + int((steps - 1).sum())
+        more = sum(map(len, self.more.values()))
+        return len(self._vertices[0]) + int((steps - 1).sum()) + more
 
     def least_count(self) -> int:
         """Return the smallest count of vertices of a mesh, which those of edges do not exceed."""
@@ -103,15 +105,19 @@ class MeshEdges:
     @cached_property
     def used(self) -> Flags:
         """Which edges (E,) of the part have a side here."""
-        return np.bincount(self.owner, minlength=len(self.factors)) > 0
+        return self.around > 0
+
+    @cached_property
+    def around(self) -> Indices:
+        """The numbers of sides (E,) that edges of the part have here."""
+        return np.bincount(self.owner, minlength=len(self.arrays["edge_vertices"]))
 
     def _steps(self, count: int) -> Indices:
         """Return the numbers of steps (E,) in a mesh with a count of vertices."""
         ends = self._vertices[1]
         least = np.where(ends[:, 0] == ends[:, 1], CLOSED, 1)
-        wanted = np.ceil(self._costs[:, -1] / step_of(self.space, count) - SLACK).astype(np.int64)
-        steps = np.maximum(wanted, least) * self.factors
-        return np.where(self.arrays["edge_degenerate"], 1, steps)
+        wanted = np.ceil(self._costs[:, -1] / step_of(self.space, count)).astype(np.int64)
+        return np.where(self.arrays["edge_degenerate"], 1, np.maximum(wanted, least))
 
     @cached_property
     def _vertices(self) -> tuple[Array, Indices]:
@@ -127,6 +133,14 @@ class MeshEdges:
         numbers, places = np.unique(ends[self.used], return_inverse=True)
         ends[self.used] = places.reshape(-1, 2)
         return np.array(points).reshape(-1, 3)[numbers], ends
+
+    def refine(self, sampled: SampledEdges, segments: dict[int, Flags]) -> None:
+        """Add a vertex in the middle of some segments between the vertices of edges."""
+        for edge, chosen in segments.items():
+            if not self.arrays["edge_degenerate"][edge]:
+                at = sampled.shares[edge]
+                middles = (at[1:] + at[:-1])[chosen] / 2.0
+                self.more[edge] = np.concatenate([self.more.get(edge, at[:0]), middles])
 
     # --- places -----------------------------------------------------------------------------------
 
@@ -150,7 +164,7 @@ class MeshEdges:
         turns = np.linalg.norm(np.diff(along, axis=1), axis=2) / 2.0
         bends = np.pad(turns, ((0, 0), (0, 1))) + np.pad(turns, ((0, 0), (1, 0)))
         costs = np.maximum(costs, np.minimum(bends, math.sqrt(self.space.target.ceiling) * lengths))
-        found = np.zeros((len(self.factors), PLACES))
+        found = np.zeros((len(self.around), PLACES))
         np.maximum.at(found, self.owner, costs)
         return np.pad(np.cumsum(found, axis=1), ((0, 0), (1, 0)))
 
@@ -169,18 +183,17 @@ class MeshEdges:
         points, ends = self._vertices
         steps, first = self._steps(count), len(points)
         shares, numbers = {}, {}
+        even = np.linspace(0.0, 1.0, PLACES + 1)
         for edge in np.flatnonzero(self.used).tolist():
-            costs, m = self._costs[edge], int(steps[edge])
-            even = np.linspace(0.0, 1.0, PLACES + 1)
-            at = np.linspace(0.0, 1.0, m + 1)
-            shares[edge] = np.interp(at * costs[-1], costs, even) if costs[-1] > 0.0 else at
-            shares[edge][[0, -1]] = 0.0, 1.0
-            inner = np.arange(first, first + m - 1)
+            costs, at = self._costs[edge], np.linspace(0.0, 1.0, int(steps[edge]) + 1)
+            at[1:-1] = np.interp(at * costs[-1], costs, even)[1:-1] if costs[-1] > 0.0 else at[1:-1]
+            shares[edge] = np.sort(np.concatenate([at, self.more.get(edge, at[:0])]))
+            inner = np.arange(first, first + len(shares[edge]) - 2)
             numbers[edge] = np.concatenate([ends[edge, :1], inner, ends[edge, 1:]])
-            first += m - 1
+            first += len(inner)
         edges = dict(zip(self.sides.tolist(), self.owner.tolist(), strict=True))
         uv = {side: self._uv(k, shares[edge]) for k, (side, edge) in enumerate(edges.items())}
-        return SampledEdges(self._points(points, first, numbers, uv), numbers, uv, edges)
+        return SampledEdges(self._points(points, first, numbers, uv), numbers, shares, uv, edges)
 
     def _points(
         self, vertices: Array, count: int, numbers: dict[int, Indices], uv: dict[int, Array]

@@ -7,6 +7,7 @@ scaled by its mean lengths, and edges are flipped in space.
 
 from __future__ import annotations
 
+import itertools
 import math
 import warnings
 from collections.abc import Iterator
@@ -14,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...runtime.base.aliases import Array, Indices
+from ...runtime.base.aliases import Array, Flags, Indices
 from ...runtime.base.errors import GaussmapWarning, InputError, SurfaceError
 from ...runtime.base.extras import check_extra
 from ...runtime.base.memory import check_memory
@@ -164,8 +165,12 @@ class Meshing:
         """Divide edges until no border crosses itself; return the faces for which that fails."""
         crossing, rounds = self._crossing(), 1
         while crossing and rounds < ROUNDS:
-            owner = np.concatenate([border.edges for _, border, _ in crossing])
-            if not self._halve(np.unique(owner)):
+            sampled = self._sampled()
+            owner = np.unique(np.concatenate([border.edges for _, border, _ in crossing]))
+            all_of = {
+                k: np.ones(len(sampled.shares[k]) - 1, dtype=np.bool_) for k in owner.tolist()
+            }
+            if not self._refine(sampled, all_of):
                 break
             crossing, rounds = self._crossing(), rounds + 1
         return {k: text for k, _, text in crossing}
@@ -187,17 +192,18 @@ class Meshing:
             sampled, rounds = self._sampled(), rounds + 1
             mesh = self._made(sampled)
             wrong = _wrong(sampled, mesh, self.edges)
-            if not len(wrong) or rounds == ROUNDS or not self._halve(_edges_at(wrong, sampled)):
+            coarse = _between(np.concatenate([wrong, _inverted(mesh)]), sampled)
+            if not coarse or rounds == ROUNDS or not self._refine(sampled, coarse):
                 return _without_unused(mesh), len(wrong)
 
-    def _halve(self, edges: Indices) -> bool:
-        """Divide edges into twice as many steps, if there are any, and vertices enough for that."""
-        factors = self.edges.factors.copy()
-        self.edges.factors[edges] *= 2
-        enough = self.edges.count(self.count) <= self.count
-        if not enough:
-            self.edges.factors[:] = factors
-        return enough and len(edges) > 0
+    def _refine(self, sampled: SampledEdges, segments: dict[int, Flags]) -> bool:
+        """Divide segments of edges, if there are vertices enough for that; return whether."""
+        before = dict(self.edges.more)
+        self.edges.refine(sampled, segments)
+        if self.edges.count(self.count) <= self.count:
+            return True
+        self.edges.more = before
+        return False
 
     def _sampled(self) -> SampledEdges:
         if self.edges.count(self.count) > self.count:
@@ -303,11 +309,10 @@ def _wrong(sampled: SampledEdges, mesh: PartMesh, edges: MeshEdges) -> Indices:
     count = len(mesh.vertices)
     numbers, times = np.unique(edge_numbers(mesh.triangles, count), return_counts=True)
     along, sides = [np.empty((0, 2), dtype=np.int64)], [np.empty(0, dtype=np.int64)]
-    of_edge = np.bincount(edges.owner, minlength=len(edges.factors))
     for edge, line in enumerate(mesh.lines):
         if len(line):
             along.append(np.sort(np.stack([line[:-1], line[1:]], axis=1), axis=1))
-            sides.append(np.full(len(line) - 1, of_edge[edge]))
+            sides.append(np.full(len(line) - 1, edges.around[edge]))
     segments, rows = np.unique(np.concatenate(along) @ [count, 1], return_index=True)
     wanted = np.concatenate(sides)[rows]
     expected = np.full(len(numbers), 2)
@@ -320,14 +325,29 @@ def _wrong(sampled: SampledEdges, mesh: PartMesh, edges: MeshEdges) -> Indices:
     return np.stack(np.divmod(found, count), axis=1)
 
 
-def _edges_at(pairs: Indices, sampled: SampledEdges) -> Indices:
-    """Return the edges of a part that have both vertices of some pairs (k, 2)."""
-    at: dict[int, set[int]] = {x: set() for x in np.unique(pairs).tolist()}
+def _inverted(mesh: PartMesh) -> Indices:
+    """Return the edges (k, 2) of triangles that point away from a normal at a corner."""
+    a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))
+    across = np.cross(b - a, c - a)
+    products = np.einsum("tx,tkx->tk", across, mesh.corner_normals)
+    found = mesh.triangles[(products < 0.0).any(axis=1)]
+    return found[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+
+
+def _between(pairs: Indices, sampled: SampledEdges) -> dict[int, Flags]:
+    """Return the segments of edges of a part between the vertices of pairs (k, 2)."""
+    at: dict[int, dict[int, list[int]]] = {x: {} for x in np.unique(pairs).tolist()}
     for edge, line in sampled.numbers.items():
-        for vertex in line[np.isin(line, pairs)].tolist():
-            at[vertex].add(edge)
-    found = sorted(set[int]().union(*(at[a] & at[b] for a, b in pairs.tolist())))
-    return np.array(found, dtype=np.int64)
+        for place in np.flatnonzero(np.isin(line, pairs)).tolist():
+            at[int(line[place])].setdefault(edge, []).append(place)
+    found: dict[int, Flags] = {}
+    for a, b in pairs.tolist():
+        for edge in at[a].keys() & at[b].keys():
+            places = [sorted(x) for x in itertools.product(at[a][edge], at[b][edge])]
+            low, high = min(places, key=lambda x: x[1] - x[0])
+            nothing = np.zeros(len(sampled.numbers[edge]) - 1, dtype=np.bool_)
+            found.setdefault(edge, nothing)[low:high] = True
+    return found
 
 
 def _without_unused(mesh: PartMesh) -> PartMesh:
