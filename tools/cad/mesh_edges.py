@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -19,6 +18,8 @@ __all__ = ["MeshEdges", "SampledEdges"]
 
 # Steps of edges are measured between this many places, at equal parameters.
 PLACES = 64
+# Steps are so many times shorter at most where an edge is curved more than the faces around.
+BENT = 2.0
 # An edge that ends where it begins has at least so many steps.
 CLOSED = 3
 # Ends of an edge without vertices that are closer than this part of the size are one.
@@ -86,21 +87,26 @@ class MeshEdges:
 
     # --- numbers ----------------------------------------------------------------------------------
 
-    def count(self, count: int) -> int:
-        """Return how many vertices edges have in a mesh of so many."""
-        steps = self._steps(count)[self.used & ~self.arrays["edge_degenerate"]]
+    @property
+    def least(self) -> int:
+        """The number of vertices of edges that are divided as little as they may be."""
+        return self._count(0)
+
+    def _count(self, spaced: int) -> int:
+        """Return how many vertices edges have that are spaced as in a mesh of `spaced` vertices."""
+        steps = self._steps(spaced)[self.used & ~self.arrays["edge_degenerate"]]
         more = sum(map(len, self.more.values()))
         return len(self._vertices[0]) + int((steps - 1).sum()) + more
 
-    def least_count(self) -> int:
-        """Return the smallest count of vertices of a mesh, which those of edges do not exceed."""
-        low, high = 0, 1
-        while self.count(high) > high:
-            low, high = high, 2 * high
+    def _spaced(self, count: int) -> int:
+        """Return the largest number, up to a count, with which edges do not exceed that count."""
+        if self._count(count) <= count:
+            return count
+        low, high = 0, count
         while high - low > 1:
             middle = (low + high) // 2
-            low, high = (middle, high) if self.count(middle) > middle else (low, middle)
-        return high
+            low, high = (middle, high) if self._count(middle) <= count else (low, middle)
+        return low
 
     @cached_property
     def used(self) -> Flags:
@@ -112,11 +118,11 @@ class MeshEdges:
         """The numbers of sides (E,) that edges of the part have here."""
         return np.bincount(self.owner, minlength=len(self.arrays["edge_vertices"]))
 
-    def _steps(self, count: int) -> Indices:
-        """Return the numbers of steps (E,) in a mesh with a count of vertices."""
+    def _steps(self, spaced: int) -> Indices:
+        """Return the numbers of steps (E,) of edges spaced as in a mesh of `spaced` vertices."""
         ends = self._vertices[1]
         least = np.where(ends[:, 0] == ends[:, 1], CLOSED, 1)
-        wanted = np.ceil(self._costs[:, -1] / step_of(self.space, count)).astype(np.int64)
+        wanted = np.ceil(self._costs[:, -1] / step_of(self.space, spaced)).astype(np.int64)
         return np.where(self.arrays["edge_degenerate"], 1, np.maximum(wanted, least))
 
     @cached_property
@@ -149,7 +155,7 @@ class MeshEdges:
         """The lengths (E, PLACES + 1) of edges up to places, in units of the sizing function.
 
         It is the smaller one of those of the faces around. Where an edge is curved more than they
-        are, its curvature counts, up to the ceiling of the target density.
+        are, as the border of a plane, steps are shorter, by the factor BENT at most.
         """
         shares = np.linspace(0.0, 1.0, PLACES + 1)
         uv = [self._uv(k, shares) for k in range(len(self.sides))]
@@ -163,7 +169,7 @@ class MeshEdges:
         along = steps / np.where(lengths > 0.0, lengths, 1.0)[..., None]
         turns = np.linalg.norm(np.diff(along, axis=1), axis=2) / 2.0
         bends = np.pad(turns, ((0, 0), (0, 1))) + np.pad(turns, ((0, 0), (1, 0)))
-        costs = np.maximum(costs, np.minimum(bends, math.sqrt(self.space.target.ceiling) * lengths))
+        costs = np.maximum(costs, np.minimum(bends, BENT * costs))
         found = np.zeros((len(self.around), PLACES))
         np.maximum.at(found, self.owner, costs)
         return np.pad(np.cumsum(found, axis=1), ((0, 0), (1, 0)))
@@ -179,9 +185,12 @@ class MeshEdges:
         return own_parameters(face.surface, curve(shares), is_reversed=face.reversed)
 
     def sampled(self, count: int) -> SampledEdges:
-        """Return the vertices on edges in a mesh of a count of them."""
+        """Return the vertices on edges in a mesh of a count, `least` or more.
+
+        Where edges as fine as the inside of faces would have more than these, they are coarser.
+        """
         points, ends = self._vertices
-        steps, first = self._steps(count), len(points)
+        steps, first = self._steps(self._spaced(count)), len(points)
         shares, numbers = {}, {}
         even = np.linspace(0.0, 1.0, PLACES + 1)
         for edge in np.flatnonzero(self.used).tolist():

@@ -200,15 +200,15 @@ class Meshing:
         """Divide segments of edges, if there are vertices enough for that; return whether."""
         before = dict(self.edges.more)
         self.edges.refine(sampled, segments)
-        if self.edges.count(self.count) <= self.count:
+        if self.edges.least <= self.count:
             return True
         self.edges.more = before
         return False
 
     def _sampled(self) -> SampledEdges:
-        if self.edges.count(self.count) > self.count:
+        if self.edges.least > self.count:
             raise InputError(
-                f"a mesh of part {self.part.name!r} needs {self.edges.least_count():,} vertices at "
+                f"a mesh of part {self.part.name!r} needs {self.edges.least:,} vertices at "
                 f"least, for its edges, and not {self.count:,}; take more samples."
             )
         return self.edges.sampled(self.count)

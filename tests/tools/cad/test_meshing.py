@@ -32,7 +32,7 @@ def sound(mesh: PartMesh, count: int) -> PartMesh:
     return mesh
 
 
-@pytest.mark.parametrize("count", [20, 21, 100, 1000, 1001])
+@pytest.mark.parametrize("count", [8, 9, 20, 21, 100, 1000, 1001])
 def test_a_box(count):
     mesh = sound(meshed(box(*SIZES), count), count)
     assert mesh.closed
@@ -156,10 +156,41 @@ def test_a_hole(made):
     assert np.cross(b - a, c - a)[:, 2].sum() / 2.0 == pytest.approx(12.0, rel=1e-12)
 
 
+def ring(made, inner: float) -> Part:
+    """Return a flat ring of radii 1 and `inner`, whose circles begin at opposite sides."""
+    u = np.linspace(0.0, made.TURN, 33)
+    edges, loops, wires = [], [], []
+    for k, (radius, start) in enumerate(((1.0, 0.0), (inner, np.pi))):
+        circle = radius * np.stack([np.cos(u + start), np.sin(u + start)], axis=1)
+        slopes = made.TURN * np.stack([-circle[:, 1], circle[:, 0]], axis=1)
+        edges.append(made.edge((0,), [made.side(circle, slopes)], (k, k)))
+        turn = np.linspace(0.0, made.TURN, 1440, endpoint=False)
+        loops.append(radius * np.stack([np.cos(turn), np.sin(turn)], axis=1))
+        wires.append([(k, 0, k == 1)])
+    ends, area = (-1.0, 1.0), np.pi * (1.0 - inner**2)
+    face = made.face("plane", made.placement(), ends, ends, area, loops=loops, wires=wires)
+    vertices = np.array([(1.0, 0.0, 0.0), (-inner, 0.0, 0.0)])
+    return made.part([face], "ring", False, edges=edges, vertices=vertices)
+
+
+@pytest.mark.parametrize("inner", [0.9, 0.995, 0.999])
+def test_edges_are_divided_until_they_do_not_cross(made, inner):
+    """The polygons of two circles that are close cross each other unless they are fine."""
+    part = ring(made, inner)
+    mesh = meshed(part, 600)
+    assert len(mesh.vertices) == 600
+    assert mesh.failed == {}
+    assert mesh.euler_characteristic == 0
+    a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))
+    across = np.cross(b - a, c - a)[:, 2] / 2.0
+    assert across.min() > 0.0
+    assert across.sum() == pytest.approx(part.area, rel=0.02)
+
+
 def test_counts_below_what_edges_need_are_refused(made):
     for part in (box(*SIZES), made.cylinder(), all_kinds()):
         with pytest.raises(gm.errors.InputError, match="at least, for its edges") as caught:
-            gm.sample(part, 5).mesh()
+            gm.sample(part, 4).mesh()
         least = int(str(caught.value).split(" needs ")[1].split()[0].replace(",", ""))
         assert len(meshed(part, least).vertices) == least
         with pytest.raises(gm.errors.InputError, match=f"needs {least:,} vertices"):
@@ -254,5 +285,5 @@ def test_command_line(tmp_path, monkeypatch, capsys, main):
     assert main(["mesh", "box.npz", "--count", "300", "-o", "box.stl"]) == 0
     assert "300 vertices, 596 triangles, closed" in capsys.readouterr().out
     assert (tmp_path / "box.stl").stat().st_size == 84 + 50 * 596
-    assert main(["mesh", "box.npz", "--count", "9", "-o", "no.stl"]) == 2
-    assert "needs 20 vertices at least" in capsys.readouterr().err
+    assert main(["mesh", "box.npz", "--count", "7", "-o", "no.stl"]) == 2
+    assert "needs 8 vertices at least" in capsys.readouterr().err
