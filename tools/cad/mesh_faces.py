@@ -21,7 +21,9 @@ SAME = 1e-11
 
 
 class Crossing(Exception):  # noqa: N818 - it says what was found
-    """The border of a face crosses itself, or has nothing inside."""
+    """The border of a face crosses itself, or has nothing inside; `face` is its index if known."""
+
+    face = -1
 
 
 @dataclass(frozen=True, eq=False)

@@ -71,9 +71,12 @@ def mesh_of_samples(part: Part, count: int, angle: float | None, prefer: str) ->
         meshing = Meshing.of(part, whole, count, failed)
         crossing = meshing.refine()
         if not crossing:
-            break
+            try:
+                mesh, wrong = meshing.mesh()
+                break
+            except Crossing as error:  # by rounding
+                crossing = {error.face: f"of face {error.face}, {error}."}
         failed |= crossing
-    mesh, wrong = meshing.mesh()
     if failed:
         text = (
             f"lacks {plural(len(failed), 'face')} of {len(part):,}: {next(iter(failed.values()))}"
@@ -186,15 +189,26 @@ class Meshing:
         return found
 
     def mesh(self) -> tuple[PartMesh, int]:
-        """Return the mesh, and the number of its edges that are wrong."""
-        rounds = 0
+        """Return the mesh, and the number of its edges that are wrong.
+
+        Edges are divided where they are, and where triangles point inward, as long as that helps.
+        Raises Crossing if the border of a face crosses itself.
+        """
+        best, least, rounds = None, (0, 0), 0
         while True:
             sampled, rounds = self._sampled(), rounds + 1
-            mesh = self._made(sampled)
-            wrong = _wrong(sampled, mesh, self.edges)
-            coarse = _between(np.concatenate([wrong, _inverted(mesh)]), sampled)
+            try:
+                mesh = self._made(sampled)
+            except Crossing:
+                if best is None:
+                    raise
+                return best, least[0]
+            wrong, inverted = _wrong(sampled, mesh, self.edges), _inverted(mesh)
+            if best is None or (len(wrong), len(inverted)) < least:
+                best, least = _without_unused(mesh), (len(wrong), len(inverted))
+            coarse = _between(np.concatenate([wrong, inverted]), sampled)
             if not coarse or rounds == ROUNDS or not self._refine(sampled, coarse):
-                return _without_unused(mesh), len(wrong)
+                return best, least[0]
 
     def _refine(self, sampled: SampledEdges, segments: dict[int, Flags]) -> bool:
         """Divide segments of edges, if there are vertices enough for that; return whether."""
@@ -258,7 +272,12 @@ class Meshing:
         for k, border in enumerate(borders):
             vectors = known.vectors[starts[k] : starts[k + 1], 1:]
             lengths = np.sqrt((vectors**2).sum(axis=2).mean(axis=0))
-            found, segments = triangles_of(border, inner[k], np.where(lengths > 0.0, lengths, 1.0))
+            lengths = np.where(lengths > 0.0, lengths, 1.0)
+            try:
+                found, segments = triangles_of(border, inner[k], lengths)
+            except Crossing as error:
+                error.face = self.space.pieces[k].face.index
+                raise
             triangles.append(starts[k] + found)
             fixed.append(starts[k] + segments)
         at = np.concatenate(
